@@ -1,0 +1,43 @@
+"""The command line ``bearing-sim``.
+
+Each command lives in its own module and is imported only when it is called, so that ``--help`` stays
+fast (click's lazy-group pattern).
+"""
+
+import importlib
+
+import click
+
+_COMMANDS = {
+    "run": "Run a scene under its constant conditions.",
+    "replay": "Run the model on a recorded log of shaft speed and radial load.",
+    "import-csv": "Turn a measured table into an MCAP log.",
+    "view": "Show a recording in rerun.",
+    "mission": "Write the bundled synthetic mission as an MCAP log.",
+    "scenes": "List the bundled scenes, bearings and oils.",
+}
+
+
+class _LazyGroup(click.Group):
+    def list_commands(self, context):
+        return list(_COMMANDS)
+
+    def get_command(self, context, name):
+        if name not in _COMMANDS:
+            return None
+        module = importlib.import_module(f"bearing_sim.commands.{name.replace('-', '_')}")
+        return module.command
+
+    def format_commands(self, context, formatter):
+        with formatter.section("Commands"):
+            formatter.write_dl(list(_COMMANDS.items()))
+
+
+@click.group(cls=_LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(package_name="bearing_sim")
+def main():
+    """Cage slip and rating life of high-speed roller bearings with lobed raceways."""
+
+
+if __name__ == "__main__":
+    main()

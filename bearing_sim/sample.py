@@ -1,0 +1,56 @@
+"""The sample record: everything that a level observes at one instant.
+
+One line per observable (name, unit, meaning, shape).  MCAP topics, rerun paths, CSV headers and ROS
+messages derive from it, so a new observable is one line here and one in a level's ``observe``.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+
+class Observable(NamedTuple):
+    """One field of the sample record."""
+
+    name: str
+    unit: str
+    meaning: str
+    per_roller: bool = False
+
+
+OBSERVABLES = (
+    Observable("time", "s", "simulated time since the start of the run"),
+    Observable("shaft_angle", "rad", "shaft rotation since the start"),
+    Observable("shaft_speed", "rad/s", "shaft speed"),
+    Observable("load_y", "N", "radial load on the inner ring along y"),
+    Observable("load_z", "N", "radial load on the inner ring along z"),
+    Observable("oil_temperature", "K", "oil temperature"),
+    Observable("cage_angle", "rad", "cage rotation since the start"),
+    Observable("cage_speed", "rad/s", "cage angular speed"),
+    Observable("ideal_cage_angle", "rad", "rotation of a cage without slip since the start"),
+    Observable("ideal_cage_speed", "rad/s", "cage speed without slip, omega_i (1 - gamma)/2"),
+    Observable("cage_slip", "", "cage slip, 1 - cage speed / ideal cage speed (Deng 2017, eq. 17); NaN at rest"),
+    Observable("rating_life", "h", "rating life L10 at the present condition; infinite at rest"),
+    Observable("damage", "", "fraction of life used since the start (Miner)"),
+    Observable("inner_equivalent_load", "N", "dynamic equivalent roller load of the rotating inner ring"),
+    Observable("outer_equivalent_load", "N", "dynamic equivalent roller load of the stationary outer ring"),
+    Observable("ring_y", "m", "inner-ring centre displacement along y"),
+    Observable("ring_z", "m", "inner-ring centre displacement along z"),
+    Observable("cage_torque", "N m", "torque of rollers, guide land and oil on cage and rollers about the shaft axis"),
+    Observable("roller_angle", "rad", "azimuth of the roller centre", True),
+    Observable("roller_radius", "m", "distance of the roller centre from the outer-ring centre", True),
+    Observable("roller_spin", "rad/s", "roller spin, positive where it rolls on the outer ring", True),
+    Observable("roller_rotation", "rad", "roller rotation about its own axis since the start", True),
+    Observable("inner_load", "N", "normal force between roller and inner raceway", True),
+    Observable("outer_load", "N", "normal force between roller and outer raceway", True),
+)
+
+
+def sample_dtype(rollers: int) -> np.dtype:
+    """Return the structured dtype of one sample of a bearing with that many rollers."""
+    return np.dtype([(o.name, np.float64, (rollers,)) if o.per_roller else (o.name, np.float64) for o in OBSERVABLES])
+
+
+def new_block(samples: int, rollers: int) -> np.ndarray:
+    """Return a block of ``samples`` zeroed samples, shape (samples,)."""
+    return np.zeros(samples, sample_dtype(rollers))

@@ -1,0 +1,276 @@
+"""The scene: everything a run needs, as frozen records in SI.
+
+One record per block of the YAML file.  Each quantity is declared once, with unit, bounds and meaning;
+`bearing_sim.scene_file` reads files against these declarations.
+"""
+
+import math
+from dataclasses import field
+from typing import Annotated, Literal
+
+from pydantic import ConfigDict, Field, model_validator
+from pydantic.dataclasses import dataclass
+
+from bearing_sim.quantity import quantity
+
+_strict = dataclass(frozen=True, kw_only=True, config=ConfigDict(extra="forbid", str_strip_whitespace=True))
+
+
+@_strict
+class OuterRaceway:
+    """Outer raceway contour R_e(phi) = R_low + D/2 - D/2 cos(n (phi - phi_e)) (Deng 2017, eq. 2); D = 0 is a round bearing."""
+
+    low_radius: quantity("m", "radius at the low points, R_low", 1e-3, 2.0, "mm")
+    d_value: quantity("m", "high-point radius less low-point radius, D", 0.0, 5e-3, "mm") = 0.0
+    lobes: Annotated[int, Field(ge=1, le=12)] = 3
+    installation_angle: quantity("rad", "azimuth of a low point, phi_e", -2 * math.pi, 2 * math.pi, "deg") = 0.0
+    contour_slope: bool = True
+
+
+@_strict
+class InnerRaceway:
+    """Round inner raceway, turning with the shaft."""
+
+    radius: quantity("m", "inner raceway radius, R_i", 1e-3, 2.0, "mm")
+
+
+@_strict
+class Roller:
+    """The rollers, all equal."""
+
+    count: Annotated[int, Field(ge=3, le=200)]
+    diameter: quantity("m", "roller diameter, D_w", 0.5e-3, 0.5, "mm")
+    length: quantity("m", "roller effective length, L", 0.5e-3, 0.5, "mm")
+    crown: Literal["none"] = "none"
+
+
+@_strict
+class Cage:
+    """The cage, guided on two lands of the outer ring."""
+
+    mass: quantity("kg", "cage mass", 1e-6, 1e3, "g")
+    polar_inertia: quantity("kg*m^2", "cage inertia about the shaft axis", 1e-12, 1e3) | None = None
+    inner_radius: quantity("m", "radius of the cage's bore", 1e-3, 2.0, "mm")
+    width: quantity("m", "axial width of the cage", 1e-4, 1.0, "mm")
+    guide_radius: quantity("m", "radius of the outer-ring guide lands, R_g", 1e-3, 2.0, "mm")
+    guide_clearance: quantity("m", "radial clearance between cage and guide lands, c", 1e-6, 5e-3, "mm")
+    guide_land_width: quantity("m", "width of one of the two guide lands", 1e-5, 0.5, "mm")
+    pocket_friction: quantity("", "friction coefficient between roller and pocket, mu_c", 0.0, 1.0) = 0.05
+
+
+@_strict
+class Material:
+    """Elastic constants and density of rings and rollers."""
+
+    youngs_modulus: quantity("Pa", "Young's modulus, E", 1e9, 1e12, "GPa") = 2.06e11
+    poisson_ratio: quantity("", "Poisson's ratio, nu", 0.0, 0.49) = 0.3
+    density: quantity("kg/m^3", "density", 500.0, 25e3) = 7850.0
+
+
+@_strict
+class Bearing:
+    """One cylindrical roller bearing."""
+
+    name: str
+    source: str
+    outer_raceway: OuterRaceway
+    inner_raceway: InnerRaceway
+    roller: Roller
+    cage: Cage
+    material: Material = field(default_factory=Material)
+
+    @property
+    def pitch_radius(self) -> float:
+        """r_m = R_i + R_w [m]."""
+        return self.inner_raceway.radius + self.roller.diameter / 2
+
+    @property
+    def pitch_diameter(self) -> float:
+        """d_m = 2 r_m [m]."""
+        return 2 * self.pitch_radius
+
+    @property
+    def diameter_ratio(self) -> float:
+        """gamma = D_w / d_m."""
+        return self.roller.diameter / self.pitch_diameter
+
+    @property
+    def radial_clearance_at_low_points(self) -> float:
+        """R_low - R_i - D_w [m]; negative where the low points squeeze the rollers."""
+        return self.outer_raceway.low_radius - self.inner_raceway.radius - self.roller.diameter
+
+    @model_validator(mode="after")
+    def _parts_fit_together(self):
+        # Several faults may hold at once: an author fixes a file faster when told all of them.
+        faults = []
+        if self.roller.count * self.roller.diameter > 2 * self.pitch_radius * math.pi:
+            faults.append(
+                f"roller: {self.roller.count} rollers of {1e3 * self.roller.diameter:.6g} mm do not fit on a pitch circle of "
+                f"{2e3 * self.pitch_radius:.6g} mm; use fewer or thinner ones"
+            )
+        clearance = self.radial_clearance_at_low_points
+        if not -0.02 * self.roller.diameter <= clearance <= 0.5 * self.roller.diameter:
+            faults.append(
+                f"outer_raceway.low_radius: {1e3 * self.outer_raceway.low_radius:.6g} mm leaves {1e6 * clearance:.6g} um between inner "
+                f"raceway, roller and low point; expected {-2e4 * self.roller.diameter:.6g} to {5e5 * self.roller.diameter:.6g} um"
+            )
+        if self.cage.guide_clearance >= self.cage.guide_radius - self.cage.inner_radius:
+            faults.append("cage.inner_radius: the bore lies outside the cage's outer surface (guide_radius less guide_clearance)")
+        if self.cage.inner_radius <= self.inner_raceway.radius:
+            faults.append("cage.inner_radius: the cage's bore cuts into the inner raceway")
+        if 2 * self.cage.guide_land_width > self.cage.width:
+            faults.append("cage.guide_land_width: the two lands together are wider than the cage")
+        if faults:
+            raise ValueError("; ".join(faults))
+        return self
+
+
+@_strict
+class DoubleExponentialViscosity:
+    """eta0 = scale (exp(exp(a - b ln T)) - c), T in kelvin."""
+
+    law: Literal["double_exponential"] = "double_exponential"
+    scale: quantity("Pa*s", "factor", 1e-12, 1e3)
+    a: float
+    b: float
+    c: float
+
+
+@_strict
+class ReferenceViscosity:
+    """eta0 = viscosity exp(linear d + quadratic d^2), d = (T_ref - T)/(T_ref T)."""
+
+    law: Literal["reference"] = "reference"
+    temperature: quantity("K", "reference temperature, T_ref", 150.0, 800.0, "degC")
+    viscosity: quantity("Pa*s", "viscosity at the reference temperature", 1e-6, 1e3)
+    linear: float
+    quadratic: float
+
+
+@_strict
+class HyperbolicPressureViscosity:
+    """alpha = offset + slope/(T - pole), T in kelvin, alpha in 1/Pa."""
+
+    law: Literal["hyperbolic"] = "hyperbolic"
+    offset: float
+    slope: float
+    pole: float
+
+
+@_strict
+class PowerPressureViscosity:
+    """alpha = exp(exponent ln eta0 - constant)/eta0, alpha in 1/Pa."""
+
+    law: Literal["power"] = "power"
+    exponent: float
+    constant: float
+
+
+@_strict
+class Oil:
+    """An oil's properties as functions of temperature (see `bearing_sim.oil`)."""
+
+    name: str
+    source: str
+    viscosity: Annotated[DoubleExponentialViscosity | ReferenceViscosity, Field(discriminator="law")]
+    pressure_viscosity: Annotated[HyperbolicPressureViscosity | PowerPressureViscosity, Field(discriminator="law")]
+    density_temperatures: tuple[quantity("K", "temperature of a density point", 150.0, 800.0, "degC"), ...]
+    densities: tuple[quantity("kg/m^3", "density at that temperature", 100.0, 3000.0), ...]
+    thermal_conductivity: quantity("", "thermal conductivity [W/(m K)]", 0.01, 10.0) = 0.0966
+
+    @model_validator(mode="after")
+    def _density_points_pair_up(self):
+        if len(self.density_temperatures) != len(self.densities) or len(self.densities) < 1:
+            raise ValueError(
+                f"densities: {len(self.densities)} values for {len(self.density_temperatures)} density_temperatures; expected as many, at least one"
+            )
+        if any(b <= a for a, b in zip(self.density_temperatures, self.density_temperatures[1:])):
+            raise ValueError("density_temperatures: expected rising temperatures")
+        return self
+
+
+@_strict
+class Oil4109Traction:
+    """Traction of the 4109 aviation oil by dimensionless load, speed and temperature (physics section 3, law 1)."""
+
+    law: Literal["oil_4109"] = "oil_4109"
+
+
+@_strict
+class ConstantTraction:
+    """mu(s) = (A + B s) exp(-C s) + D with constant coefficients; D = -A keeps mu(0) = 0."""
+
+    law: Literal["constant"] = "constant"
+    a: quantity("", "A", -1.0, 0.0) = -0.0196
+    b: quantity("", "B", 0.0, 1e3) = 0.39873
+    c: quantity("", "C", 0.0, 1e4) = 39.002
+    d: quantity("", "D", 0.0, 1.0) = 0.01984
+
+
+@_strict
+class Lubricant:
+    """The oil, how much of it is in the air inside the bearing, and how it transmits tangential force."""
+
+    oil: Oil
+    temperature: quantity("K", "oil temperature", 220.0, 600.0, "degC") = 393.15
+    mixture_fraction: quantity("", "volume fraction of oil in the oil-air mixture", 0.0, 1.0) = 0.03
+    traction_scale: quantity("", "factor on every traction coefficient", 0.0, 100.0) = 1.0
+    traction: Annotated[Oil4109Traction | ConstantTraction, Field(discriminator="law")] = field(default_factory=Oil4109Traction)
+
+
+@_strict
+class Operating:
+    """Constant conditions of `bearing-sim run`, and the state from which a node or a replay starts to listen."""
+
+    shaft_speed: quantity("rad/s", "shaft speed, omega_i", -12000.0, 12000.0, "rpm")
+    radial_load: quantity("N", "radial load on the inner ring, F_r", 0.0, 1e6) = 0.0
+    load_angle: quantity("rad", "azimuth of the radial load, from +y", -2 * math.pi, 2 * math.pi, "deg") = 0.0
+
+
+@_strict
+class Integration:
+    """How time is advanced."""
+
+    method: Literal["rosenbrock2"] = "rosenbrock2"
+    relative_tolerance: quantity("", "error allowed in a step, relative to the state", 1e-10, 0.1) = 1e-3
+    maximum_step: quantity("s", "longest step", 1e-9, 1.0, "us") = 1e-2
+    first_step: quantity("s", "first step", 1e-12, 1.0, "us") = 1e-5
+    step_budget: Annotated[int, Field(ge=10, le=1_000_000_000)] = 2_000_000
+
+
+@_strict
+class InputLimits:
+    """What an input message may be; anything else is refused, said, and the last good value held."""
+
+    maximum_speed: quantity("rad/s", "largest shaft speed accepted", 0.0, 12000.0, "rpm") = 100_000 * math.pi / 30
+    maximum_load: quantity("N", "largest radial load accepted", 0.0, 1e6) = 50_000.0
+    minimum_temperature: quantity("K", "lowest oil temperature accepted", 150.0, 800.0, "degC") = 233.15
+    maximum_temperature: quantity("K", "highest oil temperature accepted", 150.0, 800.0, "degC") = 523.15
+    reverse_rotation: bool = False
+    stale_after: quantity("s", "age at which an input counts as stale", 1e-3, 3600.0) = 1.0
+    minimum_rate: quantity("Hz", "lowest message rate expected", 0.0, 1e5) = 1.0
+    maximum_rate: quantity("Hz", "highest message rate expected", 0.0, 1e5) = 2000.0
+
+
+@_strict
+class Thresholds:
+    """When the condition is a warning or an error."""
+
+    slip_warning: quantity("", "cage slip that is a warning", 0.0, 1.0, "%") = 0.05
+    slip_error: quantity("", "cage slip that is an error (Deng 2017: 10 %)", 0.0, 1.0, "%") = 0.10
+    life_warning: quantity("h", "rating life below which there is a warning (Deng 2017: 300 h)", 0.0, 1e9) = 300.0
+
+
+@_strict
+class Scene:
+    """One bearing, its oil, its operating conditions, and how it is computed."""
+
+    name: str
+    description: str = ""
+    level: Literal["slip"] = "slip"
+    bearing: Bearing
+    lubricant: Lubricant
+    operating: Operating
+    integration: Integration = field(default_factory=Integration)
+    input_limits: InputLimits = field(default_factory=InputLimits)
+    thresholds: Thresholds = field(default_factory=Thresholds)

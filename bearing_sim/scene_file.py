@@ -1,0 +1,241 @@
+"""Read scenes: YAML, presets, command-line overrides; every fault of a file reported at once."""
+
+import dataclasses
+import difflib
+import re
+import types
+import typing
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from importlib import resources
+from pathlib import Path
+
+import yaml
+from pydantic import TypeAdapter, ValidationError
+
+from bearing_sim.scene import Scene
+
+_UNION_TAGS = frozenset({"oil_4109", "constant", "double_exponential", "reference", "hyperbolic", "power"})
+
+
+@dataclass(frozen=True)
+class Fault:
+    """One thing wrong in a scene: where, what was found (as text) and what was expected."""
+
+    path: str
+    value: str
+    reason: str
+
+    def __str__(self) -> str:
+        found = f" = {self.value}" if self.value else ""
+        return f"{self.path or 'scene'}{found}: {self.reason}"
+
+
+class SceneError(ValueError):
+    """A scene that cannot be used; ``faults`` lists everything that is wrong with it."""
+
+    def __init__(self, origin: str, faults: Iterable[Fault]):
+        self.origin = origin
+        self.faults = tuple(faults)
+        count = len(self.faults)
+        super().__init__("\n".join([f"{origin}: {count} fault{'s' * (count != 1)}"] + [f"  {fault}" for fault in self.faults]))
+
+
+class _UniqueKeyLoader(yaml.SafeLoader):
+    """SafeLoader that refuses a key written twice: PyYAML would silently keep the last."""
+
+
+def _mapping_with_unique_keys(loader: yaml.SafeLoader, node: yaml.MappingNode) -> dict:
+    seen = set()
+    for key_node, _ in node.value:
+        key = loader.construct_object(key_node)
+        if key in seen:
+            raise yaml.constructor.ConstructorError(None, None, f"the key {key!r} is written twice", key_node.start_mark)
+        seen.add(key)
+    return loader.construct_mapping(node, deep=True)
+
+
+_UniqueKeyLoader.add_constructor(yaml.resolver.BaseResolver.DEFAULT_MAPPING_TAG, _mapping_with_unique_keys)
+
+
+def scene_names() -> list[str]:
+    """Return the names of the bundled scenes."""
+    return sorted(entry.name.removesuffix(".yaml") for entry in resources.files("bearing_sim").joinpath("scenes").iterdir() if entry.name.endswith(".yaml"))
+
+
+def load_scene(scene: str | Path, overrides: Iterable[str] = ()) -> Scene:
+    """Load a scene by bundled name or file path.
+
+    Parameters
+    ----------
+    scene : the name of a bundled scene (see `scene_names`) or the path of a YAML file.
+    overrides : ``"bearing.outer_raceway.low_radius=34.865mm"`` and the like, applied in order over the file.
+
+    Raises
+    ------
+    SceneError
+        The file is absent, is no YAML, or holds faults; all of them are listed.
+    """
+    if str(scene) in scene_names():
+        text = resources.files("bearing_sim").joinpath("scenes", f"{scene}.yaml").read_text()
+    else:
+        path = Path(scene)
+        if not path.is_file():
+            known = ", ".join(scene_names())
+            raise SceneError(str(scene), [Fault("", "", f"no such file, and no bundled scene of that name; bundled: {known}")])
+        text = path.read_text()
+    return scene_from_yaml(text, overrides, origin=str(scene))
+
+
+def scene_from_yaml(text: str, overrides: Iterable[str] = (), origin: str = "scene") -> Scene:
+    """Build a scene from YAML text (see `load_scene`)."""
+    tree = _tree_from_yaml(text, origin)
+    for override in overrides:
+        _apply_override(tree, override)
+    return scene_from_mapping(tree, origin)
+
+
+def scene_from_mapping(tree: Mapping, origin: str = "scene") -> Scene:
+    """Build a scene from nested mappings, resolving presets from the catalog.
+
+    Raises
+    ------
+    SceneError
+        Listing every fault with its path, its value and what was expected.
+    """
+    resolved, faults = _with_presets(tree)
+    try:
+        scene = TypeAdapter(Scene).validate_python(resolved)
+    except ValidationError as error:
+        faults += [_fault(problem) for problem in error.errors(include_url=False)]
+    if faults:
+        raise SceneError(origin, faults)
+    return scene
+
+
+def scene_to_yaml(scene: Scene) -> str:
+    """Return the whole scene as YAML in SI; `scene_from_yaml` reads it back equal."""
+    return yaml.safe_dump(_plain(dataclasses.asdict(scene)), sort_keys=False, allow_unicode=True)
+
+
+def _plain(value):
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items()}
+    if isinstance(value, (tuple, list)):
+        return [_plain(item) for item in value]
+    return value
+
+
+def _tree_from_yaml(text: str, origin: str) -> dict:
+    try:
+        tree = yaml.load(text, Loader=_UniqueKeyLoader)
+    except yaml.YAMLError as error:
+        raise SceneError(origin, [Fault("", "", f"not readable as YAML: {' '.join(str(error).split())}")]) from None
+    if not isinstance(tree, dict):
+        raise SceneError(origin, [Fault("", repr(tree), "expected a mapping with bearing, lubricant, operating ...")])
+    return tree
+
+
+def _apply_override(tree: dict, override: str) -> None:
+    path, equals, text = override.partition("=")
+    keys = path.strip().split(".")
+    if not equals or not all(keys):
+        raise SceneError("--set", [Fault(path, "", "expected FIELD=VALUE, such as bearing.outer_raceway.low_radius=34.865mm")])
+    try:
+        value = yaml.load(text, Loader=_UniqueKeyLoader)
+    except yaml.YAMLError:
+        value = text.strip()
+    node = tree
+    for depth, key in enumerate(keys[:-1]):
+        child = node.get(key)
+        if isinstance(child, str) and depth == 0 and key == "bearing":
+            child = {"preset": child}
+        if child is None:
+            child = {}
+        if not isinstance(child, dict):
+            raise SceneError("--set", [Fault(".".join(keys[: depth + 1]), repr(child), f"is a value, not a block, so {path} cannot be set")])
+        node[key] = dict(child)
+        node = node[key]
+    node[keys[-1]] = value
+
+
+def _catalog_names(kind: str) -> list[str]:
+    folder = resources.files("bearing_sim").joinpath("catalog", kind)
+    return sorted(entry.name.removesuffix(".yaml") for entry in folder.iterdir() if entry.name.endswith(".yaml"))
+
+
+def _from_catalog(kind: str, name: str, path: str) -> tuple[dict, list[Fault]]:
+    names = _catalog_names(kind)
+    if name not in names:
+        return {}, [Fault(path, repr(name), f"not in the catalog{did_you_mean(str(name), names)}; known: {', '.join(names)}")]
+    return yaml.load(resources.files("bearing_sim").joinpath("catalog", kind, f"{name}.yaml").read_text(), Loader=_UniqueKeyLoader), []
+
+
+def _with_presets(tree: Mapping) -> tuple[dict, list[Fault]]:
+    tree, faults = dict(tree), []
+    bearing = tree.get("bearing")
+    if isinstance(bearing, str):
+        bearing = {"preset": bearing}
+    if isinstance(bearing, Mapping) and "preset" in bearing:
+        preset, unknown = _from_catalog("bearings", bearing["preset"], "bearing.preset")
+        faults += unknown
+        tree["bearing"] = _merged(preset, {key: value for key, value in bearing.items() if key != "preset"})
+        if unknown:  # its missing fields are consequences, not faults
+            raise SceneError("scene", faults)
+    lubricant = tree.get("lubricant")
+    if isinstance(lubricant, Mapping) and isinstance(lubricant.get("oil"), str):
+        oil, unknown = _from_catalog("oils", lubricant["oil"], "lubricant.oil")
+        faults += unknown
+        if unknown:
+            oil = _from_catalog("oils", _catalog_names("oils")[0], "")[0]  # so that the rest is still checked
+        tree["lubricant"] = {**lubricant, "oil": oil}
+    return tree, faults
+
+
+def _merged(base: dict, over: Mapping) -> dict:
+    merged = dict(base)
+    for key, value in over.items():
+        both_blocks = isinstance(value, Mapping) and isinstance(merged.get(key), dict)
+        merged[key] = _merged(merged[key], value) if both_blocks else value
+    return merged
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> str:
+    """Return ``" (did you mean ...?)"`` for the nearest known word, or nothing."""
+    close = difflib.get_close_matches(word, list(known), n=1)
+    return f" (did you mean {close[0]!r}?)" if close else ""
+
+
+def _fault(problem: Mapping) -> Fault:
+    path = ".".join(str(part) for part in problem["loc"] if part not in _UNION_TAGS)
+    kind, reason, value = problem["type"], problem["msg"], problem["input"]
+    shown = "" if isinstance(value, Mapping) or dataclasses.is_dataclass(value) or type(value).__name__ == "ArgsKwargs" else repr(value)
+    if kind == "missing":
+        return Fault(path, "", "missing")
+    if kind == "unexpected_keyword_argument":
+        known = _field_names(problem["loc"][:-1])
+        return Fault(path, shown, f"unknown field{did_you_mean(str(problem['loc'][-1]), known)}; known here: {', '.join(known)}")
+    return Fault(path, shown, re.sub(r"^(Value error, |Input should be )", lambda m: "" if m[1].startswith("Value") else "expected ", reason))
+
+
+def _field_names(loc: Iterable) -> list[str]:
+    kind = Scene
+    for part in loc:
+        options = [kind] if dataclasses.is_dataclass(kind) else []
+        if part in _UNION_TAGS:
+            kind = next(option for option in typing.get_args(kind) if option.law == part)
+            continue
+        for option in options:
+            kind = _unwrapped(typing.get_type_hints(option, include_extras=True)[part])
+    return [field.name for field in dataclasses.fields(kind)] if dataclasses.is_dataclass(kind) else []
+
+
+def _unwrapped(hint):
+    """Return the record type, or the union of record types, inside an annotation."""
+    if typing.get_origin(hint) is typing.Annotated:
+        hint = typing.get_args(hint)[0]
+    if isinstance(hint, types.UnionType) and not any(dataclasses.is_dataclass(arg) for arg in typing.get_args(hint)):
+        return float
+    return hint
+
+
