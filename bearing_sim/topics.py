@@ -1,0 +1,207 @@
+"""Topics: which ROS messages an input, a sample and a list of events become, and which numbers an input message holds.
+
+One table for recordings and for the node, free of ROS.  A message is a plain nested dict of field to value: dict for a
+message, list for a sequence of messages or strings, float64 array for a sequence of numbers, float, int, str, and bytes of
+length one for a ``byte``.  Every array is filled (`serialize_message` pads messages with empty arrays, and strict
+readers refuse the padding), so each message class can be filled from its dict by one small generic function.
+
+Names are relative; a recording writes them with a leading slash.
+"""
+
+import math
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from bearing_sim.events import Event, Level
+
+SHAFT_JOINT = "shaft"
+FRAME = "bearing"  # x along the shaft
+ZERO_CELSIUS = 273.15  # [K]
+
+
+class Topic(NamedTuple):
+    """One topic.
+
+    Attributes
+    ----------
+    name : relative topic name.
+    ros_type : ``package/msg/Type``.
+    meaning : what it carries, with units.
+    message : ``message(stamp_ns, source) -> dict``, where ``source`` is an `bearing_sim.simulation.Inputs` for an input
+        topic and one sample (see `bearing_sim.sample`) for an output topic.
+    """
+
+    name: str
+    ros_type: str
+    meaning: str
+    message: Callable[[int, Any], dict]
+
+
+def stamp(stamp_ns: int) -> dict:
+    """Return builtin_interfaces/Time of nanoseconds since the epoch."""
+    seconds, nanoseconds = divmod(int(stamp_ns), 1_000_000_000)
+    return {"sec": seconds, "nanosec": nanoseconds}
+
+
+def header(stamp_ns: int, frame_id: str = "") -> dict:
+    """Return std_msgs/Header."""
+    return {"stamp": stamp(stamp_ns), "frame_id": frame_id}
+
+
+def _joints(stamp_ns: int, names: list[str], position: list, velocity: list, effort: list) -> dict:
+    return {
+        "header": header(stamp_ns),
+        "name": names,
+        "position": np.array(position, float),
+        "velocity": np.array(velocity, float),
+        "effort": np.array(effort, float),
+    }
+
+
+def _shaft_speed(stamp_ns: int, inputs) -> dict:
+    # A JointState may not leave arrays empty here; NaN says that angle and torque are not known.
+    return _joints(stamp_ns, [SHAFT_JOINT], [math.nan], [inputs.shaft_speed], [math.nan])
+
+
+def _radial_load(stamp_ns: int, inputs) -> dict:
+    force = {"x": 0.0, "y": float(inputs.load_y), "z": float(inputs.load_z)}
+    return {"header": header(stamp_ns, FRAME), "wrench": {"force": force, "torque": {"x": 0.0, "y": 0.0, "z": 0.0}}}
+
+
+def _oil_temperature(stamp_ns: int, inputs) -> dict:
+    return {"header": header(stamp_ns, FRAME), "temperature": float(inputs.oil_temperature) - ZERO_CELSIUS, "variance": 0.0}
+
+
+def _number(field: str) -> Callable[[int, Any], dict]:
+    return lambda stamp_ns, sample: {"data": float(sample[field])}
+
+
+def _bearing_joints(stamp_ns: int, sample) -> dict:
+    return _joints(
+        stamp_ns,
+        [SHAFT_JOINT, "cage", "cage_ideal"],
+        [sample["shaft_angle"], sample["cage_angle"], sample["ideal_cage_angle"]],
+        [sample["shaft_speed"], sample["cage_speed"], sample["ideal_cage_speed"]],
+        [math.nan, sample["cage_torque"], math.nan],
+    )
+
+
+def _roller_loads(stamp_ns: int, sample) -> dict:
+    inner, outer = sample["inner_load"], sample["outer_load"]
+    rollers = len(inner)
+    dim = [{"label": "ring", "size": 2, "stride": 2 * rollers}, {"label": "roller", "size": rollers, "stride": rollers}]
+    return {"layout": {"dim": dim, "data_offset": 0}, "data": np.concatenate((inner, outer))}
+
+
+INPUTS = {
+    topic.name: topic
+    for topic in (
+        Topic("shaft_speed", "sensor_msgs/msg/JointState", "velocity of the joint 'shaft' [rad/s]", _shaft_speed),
+        Topic("radial_load", "geometry_msgs/msg/WrenchStamped", "force.y, force.z on the inner ring in the bearing frame [N]", _radial_load),
+        Topic("oil_temperature", "sensor_msgs/msg/Temperature", "oil temperature [degC]", _oil_temperature),
+    )
+}
+"""The input topics by channel (`bearing_sim.runtime.input_gate` uses the same channel names)."""
+
+OUTPUTS = {
+    topic.name: topic
+    for topic in (
+        Topic("cage_slip", "std_msgs/msg/Float64", "cage slip [fraction]; NaN at rest", _number("cage_slip")),
+        Topic("rating_life", "std_msgs/msg/Float64", "rating life at the present condition [h]; infinite at rest", _number("rating_life")),
+        Topic("damage", "std_msgs/msg/Float64", "fraction of life used since the start", _number("damage")),
+        Topic("bearing_joints", "sensor_msgs/msg/JointState", "shaft, cage, cage_ideal: angle [rad], speed [rad/s], torque [N m]", _bearing_joints),
+        Topic("roller_loads", "std_msgs/msg/Float64MultiArray", "roller loads [N], ring (inner, outer) x roller", _roller_loads),
+    )
+}
+"""The output topics by name."""
+
+DIAGNOSTICS = ("diagnostics", "diagnostic_msgs/msg/DiagnosticArray")
+"""Name and type of the topic whose messages `diagnostics` makes."""
+
+
+def diagnostics(
+    stamp_ns: int, events: Iterable[Event] = (), values: Mapping[str, object] | None = None, component: str = "bearing_sim", hardware_id: str = ""
+) -> dict:
+    """Return diagnostic_msgs/DiagnosticArray: one status for the whole, then one for each event.
+
+    Parameters
+    ----------
+    stamp_ns : time of the message [ns since the epoch].
+    events : what a person should be told now; the worst of them gives the first status its level and message.
+    values : key to value, the unit written in the key (see `condition`); shown with the first status.
+    component : first half of each status' name, the node's name by convention.
+    hardware_id : the bearing's name.
+    """
+    events = list(events)
+    worst = max(events, key=lambda event: event.level, default=Event(0.0, Level.OK, "ok", "OK"))
+    whole = _status(f"{component}: condition", hardware_id, worst.level, worst.text, values or {})
+    parts = [_status(f"{component}: {event.code}", hardware_id, event.level, event.text, {"time [s]": event.time}) for event in events]
+    return {"header": header(stamp_ns), "status": [whole, *parts]}
+
+
+def _status(name: str, hardware_id: str, level: Level, text: str, values: Mapping[str, object]) -> dict:
+    pairs = [{"key": key, "value": f"{value:.9g}" if isinstance(value, float) else str(value)} for key, value in values.items()]
+    return {"level": bytes([level]), "name": name, "message": text, "hardware_id": hardware_id, "values": pairs}
+
+
+def condition(sample) -> dict[str, float]:
+    """Return the numbers of one sample that a diagnostics reader wants, the unit in each key."""
+    return {
+        "shaft speed [rpm]": float(sample["shaft_speed"]) * 30 / math.pi,
+        "radial load [N]": math.hypot(sample["load_y"], sample["load_z"]),
+        "oil temperature [degC]": float(sample["oil_temperature"]) - ZERO_CELSIUS,
+        "cage slip [%]": 100 * float(sample["cage_slip"]),
+        "rating life [h]": float(sample["rating_life"]),
+        "damage [% of life]": 100 * float(sample["damage"]),
+    }
+
+
+def input_types(channel: str) -> tuple[str, ...]:
+    """Return the message types from which `input_values` can read a channel."""
+    scalar = ("std_msgs/msg/Float64",) if channel != "oil_temperature" else ()
+    return (INPUTS[channel].ros_type, *scalar)
+
+
+def input_values(channel: str, ros_type: str, message, joint: str = SHAFT_JOINT) -> tuple[float, ...]:
+    """Return the numbers of an input message in SI, as `bearing_sim.runtime.input_gate.InputGate.offer` takes them.
+
+    Parameters
+    ----------
+    channel : ``"shaft_speed"`` -> (speed,), ``"radial_load"`` -> (force_y, force_z), ``"oil_temperature"`` -> (kelvin,).
+    ros_type : one of `input_types`; a scalar load acts along +y.
+    message : any object with the fields of that type as attributes.
+    joint : name of the shaft's joint in a JointState.
+
+    Raises
+    ------
+    ValueError
+        The type does not fit the channel, or the message does not hold the joint's velocity.
+    """
+    if ros_type not in input_types(channel):
+        raise ValueError(f"{ros_type} cannot carry {channel}; expected {' or '.join(input_types(channel))}")
+    if ros_type == "std_msgs/msg/Float64":
+        return (float(message.data),) if channel == "shaft_speed" else (float(message.data), 0.0)
+    if channel == "oil_temperature":
+        return (float(message.temperature) + ZERO_CELSIUS,)
+    if channel == "radial_load":
+        return (float(message.wrench.force.y), float(message.wrench.force.z))
+    names = list(message.name)
+    if joint not in names:
+        raise ValueError(f"no joint {joint!r} in the message; it has {', '.join(map(repr, names)) or 'none'}")
+    place = names.index(joint)
+    if place >= len(message.velocity):
+        raise ValueError(f"the message has no velocity for the joint {joint!r} ({len(message.velocity)} velocities for {len(names)} joints)")
+    return (float(message.velocity[place]),)
+
+
+def header_stamp_ns(message) -> int | None:
+    """Return the header's stamp [ns since the epoch], or None for a message without one (or with stamp zero, which means unset)."""
+    stamped = getattr(message, "header", None)
+    if stamped is None:
+        return None
+    time = stamped.stamp
+    # Jazzy calls the field nanosec; ROS 1 style bindings say nsec.
+    nanoseconds = int(time.sec) * 1_000_000_000 + int(time.nanosec if hasattr(time, "nanosec") else time.nsec)
+    return nanoseconds or None
