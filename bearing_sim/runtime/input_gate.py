@@ -1,0 +1,217 @@
+"""The door for input messages: what is not a usable value is refused, named and counted, and the last good value is held.
+
+Pure arithmetic on numbers and times that the caller brings along; no clock, no ROS.  The node and the replay of
+recordings use the same gate, so a log is judged exactly as it would have been live.
+"""
+
+import math
+from collections import Counter
+from dataclasses import dataclass
+
+from bearing_sim.events import Event, Level
+from bearing_sim.scene import InputLimits
+from bearing_sim.simulation import Inputs
+
+CHANNELS = ("shaft_speed", "radial_load", "oil_temperature")
+_RATE_WINDOW = 1.0  # [s] a rate is the count of messages over at least this long
+_RATE_TOLERANCE = 0.1  # relative: timers jitter
+_SLOW_CHANNEL = {"oil_temperature": 10.0}  # oil warms up in minutes: its messages may be that much rarer
+_RISING_TO_FOLLOW = 3  # this many refused messages in a row with rising stamps: the sender's clock has been set anew
+
+
+@dataclass
+class _Channel:
+    """What is remembered of one input: the newest stamp, the newest arrival, and the count of the running rate window."""
+
+    stamp: float = -math.inf
+    arrival: float = -math.inf
+    seen: bool = False
+    window_start: float = math.nan
+    window_count: int = 0
+    rate: float = math.nan
+    earlier_stamp: float = -math.inf
+    earlier_count: int = 0
+
+
+class InputGate:
+    """Judges input messages against the scene's limits and holds the last good values.
+
+    Parameters
+    ----------
+    limits : what a message may be (see `bearing_sim.scene.InputLimits`).
+    held : the inputs before the first message.
+
+    Attributes
+    ----------
+    held : Inputs
+        The last good values.
+    refused, accepted : collections.Counter
+        Messages refused by event code, and accepted by channel.
+    """
+
+    def __init__(self, limits: InputLimits, held: Inputs):
+        self.limits = limits
+        self.held = held
+        self.refused: Counter[str] = Counter()
+        self.accepted: Counter[str] = Counter()
+        self._channels = {name: _Channel() for name in CHANNELS}
+        self._reported: set[tuple[str, str]] = set()
+
+    def offer(self, channel: str, stamp: float, values: tuple[float, ...], arrival: float | None = None) -> Event | None:
+        """Judge one message; take its values over into ``held`` if they are good.
+
+        Parameters
+        ----------
+        channel : ``"shaft_speed"``, ``"radial_load"`` or ``"oil_temperature"``.
+        stamp : the sender's time [s since the start]; must rise from message to message of a channel.
+        values : ``(speed,)`` [rad/s]; ``(force_y, force_z)`` [N], or ``(force,)`` [N] for a magnitude along +y, which cannot
+            be negative; ``(temperature,)`` [K].
+        arrival : the receiver's time [s since the start], by which age and rate are judged; ``stamp`` where absent (replay).
+            Where it is given, a sender whose clock was set back is followed after a few messages, else never.
+
+        Returns
+        -------
+        None if accepted, otherwise the event that says what is wrong, what was expected and what is held instead.
+
+        Raises
+        ------
+        KeyError
+            No such channel.
+        """
+        state = self._channels[channel]
+        received = stamp if arrival is None else arrival
+        if math.isfinite(received):
+            self._count_rate(state, received)
+        fault = _value_fault(channel, values, self.limits)
+        if fault is None:
+            fault = _stamp_fault(state, stamp)
+            if fault and arrival is not None and _clock_set_anew(state, stamp):
+                fault = None
+        if fault is not None:
+            return self.refuse(channel, received, *fault)
+        state.stamp, state.earlier_count = stamp, 0
+        state.arrival = max(state.arrival, received)
+        self.accepted[channel] += 1
+        self.held = _with_values(self.held, channel, values)
+        return None
+
+    def refuse(self, channel: str, time: float, code: str, reason: str, level: Level = Level.ERROR) -> Event:
+        """Count a refused message and return its event; for faults that only the caller can see, such as a missing joint."""
+        self.refused[code] += 1
+        return Event(time, level, code, f"{channel}: {reason}; message refused, holding {_held_text(self.held, channel)}")
+
+    def check(self, now: float) -> list[Event]:
+        """Return what is wrong at ``now`` [s since the start] with the flow of messages, as long as it is wrong.
+
+        Codes ``input.stale`` (no good message for ``limits.stale_after``) and ``input.rate`` (outside ``minimum_rate`` to
+        ``maximum_rate``, with a tenth of tolerance).  The optional oil temperature is judged only once a message of it came.
+        """
+        events = []
+        for channel, state in self._channels.items():
+            event = self._stale_event(channel, state, now) or self._rate_event(channel, state, now)
+            if event is not None:
+                events.append(event)
+        return events
+
+    def onsets(self, now: float) -> list[Event]:
+        """Return those events of `check` that did not hold at the last call of ``onsets``: each trouble once, for logs."""
+        holding = {(event.code, event.text.partition(":")[0]): event for event in self.check(now)}
+        fresh = [event for key, event in holding.items() if key not in self._reported]
+        self._reported = set(holding)
+        return fresh
+
+    def rate(self, channel: str) -> float:
+        """Return the last measured message rate of a channel [Hz]; NaN until a window of messages is full."""
+        return self._channels[channel].rate
+
+    def _count_rate(self, state: _Channel, received: float) -> None:
+        state.seen = True
+        elapsed = received - state.window_start
+        if not 0.0 <= elapsed:  # the first message, or the receiver's clock went back
+            state.window_start, state.window_count = received, 0
+            return
+        state.window_count += 1
+        if elapsed >= _RATE_WINDOW:
+            state.rate = state.window_count / elapsed
+            state.window_start, state.window_count = received, 0
+
+    def _stale_event(self, channel: str, state: _Channel, now: float) -> Event | None:
+        patience = self.limits.stale_after * _SLOW_CHANNEL.get(channel, 1.0)
+        age = now - max(state.arrival, 0.0)
+        if age <= patience or (channel in _SLOW_CHANNEL and not state.seen):
+            return None
+        since = f"no good message for {age:.3g} s" if state.arrival > -math.inf else f"no good message since the start {age:.3g} s ago"
+        text = f"{channel}: {since}, expected one within {patience:.3g} s; holding {_held_text(self.held, channel)}"
+        return Event(now, Level.WARN, "input.stale", text)
+
+    def _rate_event(self, channel: str, state: _Channel, now: float) -> Event | None:
+        slowest = self.limits.minimum_rate / _SLOW_CHANNEL.get(channel, 1.0)
+        fastest = self.limits.maximum_rate
+        if slowest * (1 - _RATE_TOLERANCE) <= state.rate <= fastest * (1 + _RATE_TOLERANCE) or math.isnan(state.rate):
+            return None
+        text = f"{channel}: messages come at {state.rate:.3g} Hz, expected {slowest:.3g} to {fastest:.3g} Hz; values are used as they come"
+        return Event(now, Level.WARN, "input.rate", text)
+
+
+def _value_fault(channel: str, values: tuple[float, ...], limits: InputLimits) -> tuple[str, str] | None:
+    """Return code and reason of what is wrong with the values, or None."""
+    expected_count = (1, 2) if channel == "radial_load" else (1,)
+    if len(values) not in expected_count:
+        return "input.malformed", f"{len(values)} values, expected {' or '.join(map(str, expected_count))}"
+    unit = _UNITS[channel]
+    shown = ", ".join(f"{value:.6g}" for value in values)
+    if not all(map(math.isfinite, values)):
+        return "input.not_finite", f"{shown} {unit} is not finite"
+    if channel == "oil_temperature":
+        low, high = limits.minimum_temperature, limits.maximum_temperature
+        if not low <= values[0] <= high:
+            code = "input.too_small" if values[0] < low else "input.too_large"
+            return code, f"{shown} K is outside {low:.6g} to {high:.6g} K"
+        return None
+    signed = len(values) == 2 or (channel == "shaft_speed" and limits.reverse_rotation)
+    if values[0] < 0.0 and not signed:
+        hint = " (input_limits.reverse_rotation is off)" if channel == "shaft_speed" else ""
+        return "input.negative", f"{shown} {unit} is negative, expected zero or more{hint}"
+    magnitude, largest = math.hypot(*values), limits.maximum_speed if channel == "shaft_speed" else limits.maximum_load
+    if magnitude > largest:
+        return "input.too_large", f"{magnitude:.6g} {unit} is above the largest accepted, {largest:.6g} {unit}"
+    return None
+
+
+def _stamp_fault(state: _Channel, stamp: float) -> tuple[str, str, Level] | None:
+    """Return code, reason and level of what is wrong with the stamp, or None."""
+    if not math.isfinite(stamp):
+        return "input.stamp_not_finite", f"stamp {stamp} s is not finite", Level.ERROR
+    if stamp == state.stamp:
+        return "input.time_repeated", f"stamp {stamp:.6f} s repeats the last one, expected a later one", Level.WARN
+    if stamp < state.stamp:
+        back = state.stamp - stamp
+        return "input.time_backwards", f"stamp {stamp:.6f} s lies {back:.6g} s before the last one, expected a later one", Level.ERROR
+    return None
+
+
+def _clock_set_anew(state: _Channel, stamp: float) -> bool:
+    """Return whether enough refused messages in a row rise among themselves: then their sender's clock is the one to follow."""
+    state.earlier_count = state.earlier_count + 1 if stamp > state.earlier_stamp and state.earlier_count else 1
+    state.earlier_stamp = stamp
+    return math.isfinite(stamp) and state.earlier_count > _RISING_TO_FOLLOW
+
+
+_UNITS = {"shaft_speed": "rad/s", "radial_load": "N", "oil_temperature": "K"}
+
+
+def _with_values(held: Inputs, channel: str, values: tuple[float, ...]) -> Inputs:
+    numbers = [float(value) for value in values]
+    if channel == "shaft_speed":
+        return held._replace(shaft_speed=numbers[0])
+    if channel == "radial_load":
+        return held._replace(load_y=numbers[0], load_z=numbers[1] if len(numbers) == 2 else 0.0)
+    return held._replace(oil_temperature=numbers[0])
+
+
+def _held_text(held: Inputs, channel: str) -> str:
+    if channel == "shaft_speed":
+        return f"{held.shaft_speed:.6g} rad/s"
+    if channel == "radial_load":
+        return f"({held.load_y:.6g}, {held.load_z:.6g}) N"
+    return f"{held.oil_temperature:.6g} K"

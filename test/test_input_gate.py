@@ -1,0 +1,155 @@
+"""The gate accepts what the scene allows, refuses the rest with a reason, and holds the last good value."""
+
+import math
+import random
+
+import pytest
+
+from bearing_sim.events import Level
+from bearing_sim.runtime.input_gate import InputGate
+from bearing_sim.scene import InputLimits
+from bearing_sim.simulation import Inputs
+
+START = Inputs(shaft_speed=100.0, load_y=800.0, load_z=0.0, oil_temperature=393.15)
+LIMITS = InputLimits(maximum_speed=5000.0, maximum_load=2000.0, stale_after=1.0, minimum_rate=5.0, maximum_rate=200.0)
+
+
+@pytest.fixture
+def gate():
+    return InputGate(LIMITS, START)
+
+
+def feed(gate, rate, duration, start=0.0, channel="shaft_speed", values=(100.0,)):
+    """Offer good messages at a rate; return the time of the last."""
+    stamp = start
+    for index in range(1, int(rate * duration) + 1):
+        stamp = start + index / rate
+        assert gate.offer(channel, stamp, values) is None
+    return stamp
+
+
+def test_good_messages_of_all_channels_are_held_together(gate):
+    assert gate.offer("shaft_speed", 0.1, (4712.0,)) is None
+    assert gate.offer("radial_load", 0.1, (-300.0, 400.0)) is None
+    assert gate.offer("oil_temperature", 0.1, (350.0,)) is None
+    assert gate.held == Inputs(4712.0, -300.0, 400.0, 350.0)
+    assert not gate.refused
+
+
+@pytest.mark.parametrize(
+    "channel, values, code, words",
+    [
+        ("shaft_speed", (math.nan,), "input.not_finite", "nan rad/s"),
+        ("shaft_speed", (math.inf,), "input.not_finite", "inf rad/s"),
+        ("shaft_speed", (-1.0,), "input.negative", "reverse_rotation"),
+        ("shaft_speed", (5001.0,), "input.too_large", "5000 rad/s"),
+        ("shaft_speed", (), "input.malformed", "0 values"),
+        ("radial_load", (-1.0,), "input.negative", "-1 N"),
+        ("radial_load", (1500.0, 1500.0), "input.too_large", "2000 N"),
+        ("radial_load", (0.0, -math.inf), "input.not_finite", "-inf N"),
+        ("radial_load", (1.0, 2.0, 3.0), "input.malformed", "3 values"),
+        ("oil_temperature", (20.0,), "input.too_small", "233.15"),
+        ("oil_temperature", (1e9,), "input.too_large", "523.15"),
+        ("oil_temperature", (math.nan,), "input.not_finite", "nan K"),
+    ],
+)
+def test_a_bad_value_is_refused_with_its_reason_and_the_last_good_one_held(gate, channel, values, code, words):
+    event = gate.offer(channel, 0.5, values)
+    assert (event.code, event.level, event.time) == (code, Level.ERROR, 0.5)
+    assert words in event.text and event.text.startswith(channel) and "holding" in event.text
+    assert gate.held == START
+    assert gate.refused == {code: 1}
+    assert gate.offer("shaft_speed", 0.6, (200.0,)) is None, "the gate works on after a refusal"
+
+
+def test_values_on_the_bounds_are_accepted(gate):
+    for channel, values in [("shaft_speed", (5000.0,)), ("shaft_speed", (0.0,)), ("radial_load", (1200.0, 1600.0)), ("oil_temperature", (233.15,))]:
+        assert gate.offer(channel, 1.0 + len(gate.accepted) + gate.accepted.total(), values) is None
+
+
+def test_a_negative_speed_is_good_where_the_scene_allows_reverse_rotation():
+    gate = InputGate(InputLimits(reverse_rotation=True, maximum_speed=5000.0), START)
+    assert gate.offer("shaft_speed", 0.1, (-4999.0,)) is None
+    assert gate.held.shaft_speed == -4999.0
+    assert gate.offer("shaft_speed", 0.2, (-5001.0,)).code == "input.too_large"
+
+
+def test_a_scalar_load_acts_along_y(gate):
+    gate.offer("radial_load", 0.1, (1.0, 2.0))
+    gate.offer("radial_load", 0.2, (700.0,))
+    assert (gate.held.load_y, gate.held.load_z) == (700.0, 0.0)
+
+
+def test_a_stamp_going_back_or_repeating_is_refused_and_channels_do_not_mix(gate):
+    gate.offer("shaft_speed", 5.0, (200.0,))
+    assert gate.offer("radial_load", 1.0, (900.0, 0.0)) is None
+    assert gate.offer("shaft_speed", 5.0, (300.0,)).code == "input.time_repeated"
+    back = gate.offer("shaft_speed", 2.0, (300.0,))
+    assert back.code == "input.time_backwards" and "3 s before" in back.text
+    assert gate.offer("shaft_speed", math.nan, (300.0,)).code == "input.stamp_not_finite"
+    assert gate.held.shaft_speed == 200.0
+    assert gate.offer("shaft_speed", 5.1, (300.0,)) is None
+
+
+def test_a_log_never_goes_back_in_time(gate):
+    gate.offer("shaft_speed", 100.0, (200.0,))
+    assert all(gate.offer("shaft_speed", 1.0 + 0.1 * k, (300.0,)) is not None for k in range(50))
+
+
+def test_a_live_sender_whose_clock_was_set_back_is_followed_after_a_few_refusals(gate):
+    gate.offer("shaft_speed", 100.0, (200.0,), arrival=1.0)
+    answers = [gate.offer("shaft_speed", 1.0 + 0.1 * k, (300.0,), arrival=1.1 + 0.1 * k) for k in range(6)]
+    assert [answer is None for answer in answers] == [False, False, False, True, True, True]
+    assert gate.held.shaft_speed == 300.0
+
+
+def test_two_live_senders_with_different_clocks_are_not_followed_in_turns(gate):
+    for k in range(20):
+        assert gate.offer("shaft_speed", 100.0 + k, (200.0,), arrival=0.1 * k) is None
+        assert gate.offer("shaft_speed", 10.0 + k, (300.0,), arrival=0.1 * k + 0.05).code == "input.time_backwards"
+
+
+def test_an_input_is_stale_when_no_good_message_came_for_the_set_time(gate):
+    last = feed(gate, 20.0, 3.0)
+    feed(gate, 20.0, 3.0, channel="radial_load", values=(800.0, 0.0))
+    assert gate.check(last + 0.9) == []
+    (stale, other) = gate.check(last + 1.1)
+    assert stale.code == other.code == "input.stale" and stale.level == Level.WARN
+    assert "shaft_speed" in stale.text and "1.1 s" in stale.text and "100 rad/s" in stale.text
+    gate.offer("shaft_speed", last + 1.2, (math.nan,))
+    assert len(gate.check(last + 1.2)) == 2, "a refused message does not refresh an input"
+
+
+def test_inputs_that_never_came_are_stale_but_the_optional_temperature_is_not(gate):
+    assert {event.text.partition(":")[0] for event in gate.check(2.0)} == {"shaft_speed", "radial_load"}
+
+
+@pytest.mark.parametrize("rate, wrong", [(2.0, True), (10.0, False), (100.0, False), (400.0, True)])
+def test_a_message_rate_outside_the_limits_is_named(gate, rate, wrong):
+    last = feed(gate, rate, 4.0)
+    feed(gate, 20.0, 4.0, channel="radial_load", values=(800.0,))
+    events = gate.check(last)
+    assert [event.code for event in events] == ["input.rate"] * wrong
+    assert gate.rate("shaft_speed") == pytest.approx(rate, rel=0.02)
+    if wrong:
+        assert f"{rate:.3g} Hz" in events[0].text
+
+
+def test_onsets_report_a_lasting_trouble_once_and_again_after_it_was_gone(gate):
+    assert len(gate.onsets(2.0)) == 2
+    assert gate.onsets(3.0) == []
+    last = feed(gate, 20.0, 2.0, start=3.0)
+    assert gate.onsets(last) == []
+    assert [event.code for event in gate.onsets(last + 2.0)] == ["input.stale"]
+
+
+def test_random_messages_never_leave_a_bad_value_held():
+    draw, gate = random.Random(1), InputGate(LIMITS, START)
+    odd = [math.nan, math.inf, -math.inf, -1.0, 0.0, 1e300, 1e-320, 100.0, 400.0]
+    for k in range(3000):
+        channel = draw.choice(["shaft_speed", "radial_load", "oil_temperature"])
+        stamp = draw.choice([*[float(k)] * 20, k - 5.0, *odd])
+        gate.offer(channel, stamp, tuple(draw.choices(odd, k=draw.choice([0, 1, 1, 1, 2, 3]))), arrival=float(k))
+        held = gate.held
+        assert 0.0 <= held.shaft_speed <= 5000.0 and math.hypot(held.load_y, held.load_z) <= 2000.0 and 233.15 <= held.oil_temperature <= 523.15
+    assert gate.refused.total() + gate.accepted.total() == 3000 and gate.accepted.total() > 100
