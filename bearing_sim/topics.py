@@ -170,7 +170,7 @@ def input_values(channel: str, ros_type: str, message, joint: str = SHAFT_JOINT)
     Parameters
     ----------
     channel : ``"shaft_speed"`` -> (speed,), ``"radial_load"`` -> (force_y, force_z), ``"oil_temperature"`` -> (kelvin,).
-    ros_type : one of `input_types`; a scalar load acts along +y.
+    ros_type : one of `input_types`; a scalar load gives (force,), a magnitude along +y.
     message : any object with the fields of that type as attributes.
     joint : name of the shaft's joint in a JointState.
 
@@ -182,7 +182,7 @@ def input_values(channel: str, ros_type: str, message, joint: str = SHAFT_JOINT)
     if ros_type not in input_types(channel):
         raise ValueError(f"{ros_type} cannot carry {channel}; expected {' or '.join(input_types(channel))}")
     if ros_type == "std_msgs/msg/Float64":
-        return (float(message.data),) if channel == "shaft_speed" else (float(message.data), 0.0)
+        return (float(message.data),)
     if channel == "oil_temperature":
         return (float(message.temperature) + ZERO_CELSIUS,)
     if channel == "radial_load":

@@ -8,7 +8,9 @@ import pytest
 
 from bearing_sim import topics
 from bearing_sim.events import Event, Level
+from bearing_sim.runtime.input_gate import InputGate
 from bearing_sim.sample import new_block
+from bearing_sim.scene import InputLimits
 from bearing_sim.simulation import Inputs
 
 STAMP = 1_700_000_000_250_000_001
@@ -62,8 +64,10 @@ def test_oil_temperature_travels_in_celsius():
     assert topics.INPUTS["oil_temperature"].message(STAMP, Inputs(0, 0, 0, 393.15))["temperature"] == pytest.approx(120.0)
 
 
-def test_scalar_load_acts_along_y():
-    assert topics.input_values("radial_load", "std_msgs/msg/Float64", SimpleNamespace(data=800.0)) == (800.0, 0.0)
+def test_scalar_load_is_a_magnitude_which_the_gate_puts_along_y():
+    gate = InputGate(InputLimits(), Inputs(0.0, 1.0, 2.0, 390.0))
+    assert gate.offer("radial_load", 0.0, topics.input_values("radial_load", "std_msgs/msg/Float64", SimpleNamespace(data=800.0))) is None
+    assert (gate.held.load_y, gate.held.load_z) == (800.0, 0.0)
 
 
 def test_joints_are_found_by_name_not_by_place():

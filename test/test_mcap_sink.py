@@ -1,0 +1,230 @@
+"""Claims about recordings: strict readers decode every message, the file says where it comes from, a killed run loses little."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+from mcap.exceptions import EndOfFile, RecordLengthLimitExceeded
+from mcap.reader import make_reader
+from mcap.records import Channel, Message
+from mcap.stream_reader import StreamReader
+from mcap_ros2.decoder import DecoderFactory
+from rosbags.rosbag2 import Reader
+from rosbags.typesys import Stores, get_typestore
+
+from bearing_sim import provenance
+from bearing_sim.events import Event, Level
+from bearing_sim.sample import new_block
+from bearing_sim.scene_file import load_scene, scene_from_yaml
+from bearing_sim.simulation import Inputs
+from bearing_sim.sinks.mcap_file import McapFile
+from bearing_sim.sinks.mcap_sink import METADATA, McapSink
+from bearing_sim.topics import INPUTS, OUTPUTS
+
+START = 1_700_000_000_000_000_000
+ROLLERS = 18
+
+
+def numbered_block(samples):
+    """Samples at 10 Hz whose every number is told apart."""
+    block = new_block(samples, ROLLERS)
+    for place, name in enumerate(block.dtype.names):
+        block[name] = 1000.0 * place + np.arange(block[name].size).reshape(block[name].shape)
+    block["time"] = np.arange(samples) / 10
+    return block
+
+
+@pytest.fixture
+def scene():
+    return load_scene("deng2017_table1")
+
+
+@pytest.fixture
+def recording(tmp_path, scene):
+    """A finished recording of three ticks, an event and a diagnostics message; returns path and samples."""
+    block = numbered_block(3)
+    with McapSink(tmp_path / "run.mcap", scene, START) as sink:
+        for sample in range(3):
+            sink.write_inputs(sample / 10, Inputs(4000.0 + sample, 800.0, -50.0, 393.15))
+            sink.write(block[sample : sample + 1])
+        sink.write_event(Event(0.2, Level.WARN, "slip.high", "slip is 6 %, expected below 5 %"))
+    return sink.path, block
+
+
+def messages(path):
+    with open(path, "rb") as stream:
+        reader = make_reader(stream, decoder_factories=[DecoderFactory()])
+        return [(channel.topic, message.log_time, decoded) for _, channel, message, decoded in reader.iter_decoded_messages()]
+
+
+def test_rosbags_deserialises_every_message(recording):
+    path, block = recording
+    store = get_typestore(Stores.ROS2_JAZZY)
+    seen = {}
+    with Reader(path) as reader:
+        for connection, stamp, raw in reader.messages():
+            seen.setdefault(connection.topic, []).append((stamp, store.deserialize_cdr(raw, connection.msgtype)))
+    assert {topic.lstrip("/"): len(got) for topic, got in seen.items()} == {**dict.fromkeys([*INPUTS, *OUTPUTS], 3), "diagnostics": 1}
+    assert [message.data for _, message in seen["/cage_slip"]] == list(block["cage_slip"])
+    np.testing.assert_array_equal(seen["/roller_loads"][1][1].data, [*block["inner_load"][1], *block["outer_load"][1]])
+    joints = seen["/bearing_joints"][2][1]
+    assert dict(zip(joints.name, joints.velocity)) == {
+        "shaft": block["shaft_speed"][2], "cage": block["cage_speed"][2], "cage_ideal": block["ideal_cage_speed"][2]
+    }
+    assert seen["/diagnostics"][0][1].status[0].level == 1
+
+
+def test_mcap_ros2_decodes_every_message_at_its_sample_time(recording):
+    path, block = recording
+    decoded = messages(path)
+    assert [(log_time, message.data) for topic, log_time, message in decoded if topic == "/damage"] == [
+        (START + 100_000_000 * sample, block["damage"][sample]) for sample in range(3)
+    ]
+    loads = [message.wrench.force for topic, _, message in decoded if topic == "/radial_load"]
+    assert [(force.y, force.z) for force in loads] == [(800.0, -50.0)] * 3
+
+
+def test_header_stamps_agree_with_log_times(recording):
+    for _, log_time, message in messages(recording[0]):
+        if hasattr(message, "header"):
+            assert message.header.stamp.sec * 10**9 + message.header.stamp.nanosec == log_time
+
+
+def test_rosbag2_metadata_counts_what_is_in_the_file(recording):
+    with open(recording[0], "rb") as stream:
+        reader = make_reader(stream)
+        records = {record.name: record.metadata for record in reader.iter_metadata()}
+        summary = reader.get_summary()
+    bag = yaml.safe_load(records["rosbag2"]["serialized_metadata"])["rosbag2_bagfile_information"]
+    assert bag["version"] == 9 and bag["message_count"] == summary.statistics.message_count == 3 * 8 + 1
+    assert bag["duration"]["nanoseconds"] == 200_000_000
+    hashes = {entry["topic_metadata"]["name"]: entry["topic_metadata"]["type_description_hash"] for entry in bag["topics_with_message_count"]}
+    assert hashes == {channel.topic: channel.metadata["topic_type_hash"] for channel in summary.channels.values()}
+    assert all("reliable" in channel.metadata["offered_qos_profiles"] for channel in summary.channels.values())
+    with open(recording[0], "rb") as stream:
+        assert make_reader(stream).get_header().profile == "ros2"
+
+
+def test_type_hashes_are_those_of_the_ros_distribution(recording):
+    """std_msgs/msg/Float64 of Jazzy, as `ros2 topic info --verbose` prints it."""
+    with open(recording[0], "rb") as stream:
+        channels = make_reader(stream).get_summary().channels.values()
+    slip = next(channel for channel in channels if channel.topic == "/cage_slip")
+    assert slip.metadata["topic_type_hash"] == "RIHS01_705ba9c3d1a09df43737eb67095534de36fd426c0587779bda2bc51fe790182a"
+
+
+def test_file_holds_its_scene_and_its_origin(recording, scene):
+    with open(recording[0], "rb") as stream:
+        origin = next(record.metadata for record in make_reader(stream).iter_metadata() if record.name == METADATA)
+    assert scene_from_yaml(origin["scene"]) == scene
+    assert int(origin["start_ns"]) == START and origin["level"] == scene.level
+    assert origin["package_version"] == provenance.package_version()
+    assert origin["git_hash"] == provenance.git_hash()
+
+
+def test_rerun_accepts_the_file(recording, tmp_path):
+    rerun_cli = pytest.importorskip("rerun_cli", reason="rerun-sdk is not installed")
+    executable = Path(rerun_cli.__file__).with_name("rerun")
+    environment = dict(os.environ, HOME=str(tmp_path), XDG_CONFIG_HOME=str(tmp_path), RUST_LOG="error")
+    subprocess.run([executable, "analytics", "disable"], env=environment, capture_output=True, timeout=30)
+    check = subprocess.run([executable, "mcap", "check", str(recording[0])], env=environment, capture_output=True, text=True, timeout=60)
+    assert check.returncode == 0, check.stdout + check.stderr
+    assert "/cage_slip" in check.stdout
+
+
+def test_unfinished_file_keeps_a_name_that_says_so(tmp_path, scene):
+    sink = McapSink(tmp_path / "run.mcap", scene, START)
+    assert [entry.name for entry in tmp_path.iterdir()] == ["run.mcap.active"]
+    sink.close()
+    assert [entry.name for entry in tmp_path.iterdir()] == ["run.mcap"]
+
+
+def test_remains_of_a_killed_run_are_not_overwritten(tmp_path, scene):
+    (tmp_path / "run.mcap.active").write_bytes(b"precious")
+    with pytest.raises(FileExistsError, match="killed run"):
+        McapSink(tmp_path / "run.mcap", scene, START)
+    assert (tmp_path / "run.mcap.active").read_bytes() == b"precious"
+
+
+def test_writing_after_close_is_refused_and_closing_twice_is_not(tmp_path, scene):
+    sink = McapSink(tmp_path / "run.mcap", scene, START)
+    sink.close()
+    sink.close()
+    with pytest.raises(ValueError, match="closed"):
+        sink.write(numbered_block(1))
+
+
+def test_message_written_before_a_pause_reaches_the_file_without_a_further_write(tmp_path):
+    recording = McapFile(tmp_path / "run.mcap", flush_every=0.05)
+    recording.write("/cage_slip", "std_msgs/msg/Float64", 5, {"data": 0.25})
+    deadline = time.monotonic() + 20
+    while not (found := list(streamed(recording.active_path))) and time.monotonic() < deadline:
+        time.sleep(0.02)
+    recording.close()
+    assert [(topic, message.log_time) for topic, message in found] == [("/cage_slip", 5)]
+
+
+def test_a_fault_of_the_timer_reaches_the_writer(tmp_path):
+    recording = McapFile(tmp_path / "run.mcap", flush_every=0.01)
+    recording.write("/cage_slip", "std_msgs/msg/Float64", 5, {"data": 0.25})
+
+    def full_disk():
+        raise OSError(28, "No space left on device")
+
+    recording._writer.flush = full_disk
+    recording._flusher.join(20)
+    with pytest.raises(OSError, match="No space left"):
+        recording.write("/cage_slip", "std_msgs/msg/Float64", 6, {"data": 0.25})
+
+
+def streamed(path):
+    """Every (topic, message) of a file that may end anywhere."""
+    channels = {}
+    with open(path, "rb") as stream:
+        try:
+            for record in StreamReader(stream).records:
+                if isinstance(record, Channel):
+                    channels[record.id] = record.topic
+                elif isinstance(record, Message):
+                    yield channels[record.channel_id], record
+        except (EndOfFile, RecordLengthLimitExceeded):
+            return
+
+
+WRITER = """
+import sys, time
+from bearing_sim.sample import new_block
+from bearing_sim.scene_file import load_scene
+from bearing_sim.sinks.mcap_sink import McapSink
+sink = McapSink(sys.argv[1], load_scene("deng2017_table1"), time.time_ns())
+block = new_block(1, 18)
+start = time.time_ns()
+while True:
+    block["time"] = (time.time_ns() - sink.start_ns) / 1e9
+    sink.write(block)
+    print(time.time_ns(), flush=True)
+    time.sleep(0.01)
+"""
+
+
+@pytest.mark.timeout(60)
+def test_sigkill_loses_at_most_the_last_second(tmp_path):
+    """A child writes wall-clock times at 100 Hz and tells after each write; what it told one second before it died must be in the file."""
+    child = subprocess.Popen([sys.executable, "-c", WRITER, str(tmp_path / "run.mcap")], stdout=subprocess.PIPE, text=True)
+    told = []
+    while len(told) < 2 or told[-1] - told[0] < 2.2e9:
+        told.append(int(child.stdout.readline()))
+    os.kill(child.pid, signal.SIGKILL)
+    told += [int(line) for line in child.stdout if line.endswith("\n")]
+    child.wait(10)
+    recovered = [message.log_time for topic, message in streamed(tmp_path / "run.mcap.active") if topic == "/cage_slip"]
+    assert not (tmp_path / "run.mcap").exists()
+    assert recovered == sorted(recovered) and len(recovered) > 50
+    assert told[-1] - recovered[-1] < 1e9
+    assert len(recovered) >= sum(moment <= recovered[-1] for moment in told)
