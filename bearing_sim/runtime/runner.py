@@ -1,0 +1,273 @@
+"""Run a simulation on its own thread, tick by tick, paced against wall time.
+
+The thread that solves does nothing else: inputs come in through a mailbox that holds the latest value, blocks of samples
+go out through a bounded queue whose oldest entries give way.  Whatever the readers do, the solver never waits for them.
+"""
+
+import threading
+import time
+import traceback
+from collections import deque
+from collections.abc import Callable
+from enum import Enum
+
+import numpy as np
+
+from bearing_sim.events import Event, Level
+from bearing_sim.runtime.pacer import Pace, Pacer
+from bearing_sim.simulation import Inputs, IntegrationError
+
+
+class Phase(Enum):
+    """What the runner is doing."""
+
+    READY = "ready"  # not started
+    WAITING = "waiting for the first input"
+    RUNNING = "running"
+    PAUSED = "paused"
+    STOPPED = "stopped"
+    CRASHED = "crashed"  # a fault in the program; told by an event, everything else works on
+
+
+class Runner:
+    """Advances one simulation on a worker thread.
+
+    **Time.**  Samples and events carry run time: seconds since the start of the run, at the pacer's rate.  It is simulated
+    time plus whatever was skipped (waiting, pauses, lost time, the restart at a reset), so it never goes back.
+
+    Parameters
+    ----------
+    simulation : the model (see `bearing_sim.simulation.Simulation`); touched by the worker thread only, from `start` on.
+    pacer : decides when a tick is due.
+    tick : simulated seconds of one call of ``simulation.advance``; over it the inputs go linearly to their newest values.
+    samples : samples in the block of one tick.
+    capacity : blocks and events that the output queue holds; when it is full the oldest goes and is counted.
+    clock : wall clock [s], monotonic.
+    """
+
+    def __init__(
+        self, simulation, pacer: Pacer, tick: float = 0.01, samples: int = 1, capacity: int = 512, clock: Callable[[], float] = time.monotonic
+    ):
+        self._simulation, self._pacer, self._clock = simulation, pacer, clock
+        self.tick, self._samples = tick, samples
+        self._changed = threading.Condition()  # guards all that follows
+        self._queue: deque[np.ndarray | Event] = deque()
+        self._capacity = capacity
+        self._dropped = 0
+        self._latest: Inputs | None = None
+        self._newest: np.void | None = None
+        self._stopping = self._paused = self._reset_wanted = False
+        self._resets = 0
+        self._phase = Phase.READY
+        self._failed_ticks = 0
+        self._pace = pacer.pace
+        self._thread = threading.Thread(target=self._work, name="bearing-solver", daemon=True)
+        self._origin = self._shift = 0.0  # run time = simulated time + shift; worker thread only
+
+    def start(self, origin: float | None = None) -> None:
+        """Start the thread.  Run time 0 is wall time ``origin`` (now where absent); simulated time waits for the first input."""
+        self._origin = self._clock() if origin is None else origin
+        self._phase = Phase.WAITING
+        self._thread.start()
+
+    def post(self, inputs: Inputs) -> None:
+        """Set the inputs that the next tick shall reach.  The first ones start the model, in ideal rolling at these inputs."""
+        with self._changed:
+            self._latest = inputs
+            self._changed.notify_all()
+
+    def take(self) -> list[np.ndarray | Event]:
+        """Return the blocks and events since the last call, oldest first."""
+        with self._changed:
+            taken, self._queue = list(self._queue), deque()
+        return taken
+
+    def pause(self, paused: bool = True) -> None:
+        """Hold simulated time, or let it go on."""
+        with self._changed:
+            self._paused = paused
+            self._changed.notify_all()
+
+    def reset(self, timeout: float = 2.0) -> bool:
+        """Return state and damage to the start, in ideal rolling at the present inputs.
+
+        Returns
+        -------
+        whether it was done within ``timeout`` [s]; if not, it will be done after the running tick.
+        """
+        with self._changed:
+            if not self._thread.is_alive():
+                return False
+            wanted = self._resets + 1
+            self._reset_wanted = True
+            self._changed.notify_all()
+            return self._changed.wait_for(lambda: self._resets >= wanted, timeout)
+
+    def stop(self, timeout: float = 2.0) -> bool:
+        """End the thread after the running tick.  Returns whether it ended within ``timeout`` [s]."""
+        with self._changed:
+            self._stopping = True
+            self._changed.notify_all()
+        if self._thread.is_alive():
+            self._thread.join(timeout)
+        return not self._thread.is_alive()
+
+    @property
+    def phase(self) -> Phase:
+        """What the runner is doing."""
+        return self._phase
+
+    @property
+    def newest(self) -> np.void | None:
+        """The newest sample, or None before the first."""
+        return self._newest
+
+    @property
+    def dropped(self) -> int:
+        """Blocks and events that gave way because nobody took them."""
+        return self._dropped
+
+    @property
+    def pace(self) -> Pace:
+        """Real-time factors and lost time."""
+        return self._pace
+
+    @property
+    def failed_ticks(self) -> int:
+        """Ticks in a row, up to now, that could not be integrated."""
+        return self._failed_ticks
+
+    def _work(self) -> None:
+        phase = Phase.STOPPED
+        try:
+            while self._wait_for_first_input() and not self._begin():
+                pass
+            while self._next_tick():
+                pass
+        except Exception:  # a fault of the program: say it where people look, and leave the last sample standing
+            phase = Phase.CRASHED
+            reason = traceback.format_exc(limit=-3).strip()
+            self._put(Event(self._run_time(), Level.ERROR, "solver.crashed", f"the solver thread ended by a program fault, outputs are held: {reason}"))
+        with self._changed:
+            self._phase = phase
+            self._changed.notify_all()
+
+    def _wait_for_first_input(self) -> bool:
+        with self._changed:
+            while self._latest is None and not self._stopping:
+                if self._reset_wanted:  # nothing ran yet, so there is nothing to reset
+                    self._reset_done()
+                self._changed.wait(0.5)
+            return not self._stopping
+
+    def _begin(self) -> bool:
+        """Start the model at the inputs; False when they are such that it cannot."""
+        with self._changed:
+            inputs = self._latest
+        try:
+            self._simulation.reset(inputs)
+        except IntegrationError as error:
+            self._fail(error)
+            return False
+        self._failed_ticks = 0
+        self._anchor()
+        self._phase = Phase.RUNNING
+        return True
+
+    def _next_tick(self) -> bool:
+        """Obey requests, sleep until the tick is due, run it; False to end."""
+        with self._changed:
+            if self._paused and not self._stopping and not self._reset_wanted:
+                self._phase = Phase.PAUSED
+                self._changed.wait_for(lambda: self._stopping or self._reset_wanted or not self._paused)
+                self._anchor()
+            self._phase = Phase.PAUSED if self._paused else Phase.RUNNING
+            if self._stopping:
+                return False
+            inputs, reset_wanted = self._latest, self._reset_wanted
+        if reset_wanted:
+            self._reset(inputs)
+            return True
+        if self._sleep_until_due():
+            with self._changed:
+                inputs = self._latest
+            self._advance(inputs)
+        return True
+
+    def _sleep_until_due(self) -> bool:
+        """Return whether the tick is due; False when a request came in between."""
+        resyncs = self._pacer.pace.resyncs
+        wall, end = self._clock(), self._simulation.time + self.tick
+        delay = self._pacer.delay(wall, end)
+        if self._pacer.pace.resyncs != resyncs:
+            self._shift = self._run_time(wall) - end
+        if delay <= 0.0:
+            return True
+        with self._changed:
+            return not self._changed.wait_for(lambda: self._stopping or self._reset_wanted or self._paused, delay)
+
+    def _advance(self, inputs: Inputs) -> None:
+        began = self._clock()
+        try:
+            block = self._simulation.advance(self.tick, inputs, self._samples)
+        except IntegrationError as error:
+            self._fail(error)
+            return
+        ended = self._clock()
+        self._pacer.worked(ended, self.tick, ended - began)
+        self._pace = self._pacer.pace
+        block = block.copy()  # the model may keep its own
+        block["time"] += self._shift
+        if self._failed_ticks:
+            text = f"time advances again after {self._failed_ticks} failed ticks"
+            self._put(Event(float(block["time"][-1]), Level.OK, "solver.recovered", text))
+            self._failed_ticks = 0
+        self._newest = block[-1]
+        self._put(block)
+
+    def _fail(self, error: IntegrationError) -> None:
+        """Say the first failure of a row, hold the state, and let this tick's wall time go by before the next try."""
+        self._failed_ticks += 1
+        if self._failed_ticks == 1:
+            text = f"time could not be advanced ({error}); the last good state is held and the next inputs are tried"
+            self._put(Event(self._run_time(), Level.ERROR, "solver.failed", text))
+        with self._changed:
+            self._changed.wait_for(lambda: self._stopping or self._reset_wanted, self.tick / self._pacer.rate)
+
+    def _reset(self, inputs: Inputs) -> None:
+        try:
+            self._simulation.reset(inputs)
+        except IntegrationError as error:
+            self._fail(error)
+        else:
+            self._anchor()
+            self._failed_ticks = 0
+            sample = self._simulation.sample.copy()
+            sample["time"] += self._shift
+            self._newest = sample
+            text = "state and damage returned to the start, in ideal rolling at the present inputs"
+            self._put(Event(float(sample["time"]), Level.OK, "run.reset", text))
+        with self._changed:
+            self._reset_done()
+
+    def _reset_done(self) -> None:
+        self._reset_wanted = False
+        self._resets += 1
+        self._changed.notify_all()
+
+    def _run_time(self, wall: float | None = None) -> float:
+        return ((self._clock() if wall is None else wall) - self._origin) * self._pacer.rate
+
+    def _anchor(self) -> None:
+        wall = self._clock()
+        self._pacer.anchor(wall, self._simulation.time)
+        # Where the model is ahead by the rounding of a clock, run time stays; it may skip but not go back.
+        floor = float(self._newest["time"]) - self._simulation.time if self._newest is not None else -np.inf
+        self._shift = max(self._run_time(wall) - self._simulation.time, floor)
+
+    def _put(self, item: np.ndarray | Event) -> None:
+        with self._changed:
+            if len(self._queue) >= self._capacity:
+                self._queue.popleft()
+                self._dropped += 1
+            self._queue.append(item)
