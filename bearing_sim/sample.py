@@ -4,6 +4,7 @@ One line per observable (name, unit, meaning, shape).  MCAP topics, rerun paths,
 messages derive from it, so a new observable is one line here and one in a level's ``observe``.
 """
 
+from collections import namedtuple
 from typing import NamedTuple
 
 import numpy as np
@@ -54,3 +55,14 @@ def sample_dtype(rollers: int) -> np.dtype:
 def new_block(samples: int, rollers: int) -> np.ndarray:
     """Return a block of ``samples`` zeroed samples, shape (samples,)."""
     return np.zeros(samples, sample_dtype(rollers))
+
+
+# Where compiled code finds an observable in a sample laid out flat: scalars first, then one run of Z numbers
+# per roller observable.
+SCALARS = sum(not o.per_roller for o in OBSERVABLES)
+COLUMN = namedtuple("Column", [o.name for o in OBSERVABLES])(*[i if i < SCALARS else i - SCALARS for i in range(len(OBSERVABLES))])
+
+
+def flat(block: np.ndarray) -> np.ndarray:
+    """Return a block's numbers as a matrix that shares its memory, shape (samples, SCALARS + runs * Z)."""
+    return block.view(np.float64).reshape(block.shape[0], -1)

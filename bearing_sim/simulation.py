@@ -1,10 +1,15 @@
 """Simulation: owns time, state and workspace of one bearing; ``advance`` returns a block of samples."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.scene import Scene
+from bearing_sim.integrators.status import COUNT, OK, REASONS, new_counts
+from bearing_sim.levels import slip
+from bearing_sim.params import lubricate, pack
+from bearing_sim.sample import flat, new_block
+from bearing_sim.scene import Operating, Scene
 
 
 class Inputs(NamedTuple):
@@ -30,6 +35,13 @@ class IntegrationError(RuntimeError):
     """Time could not be advanced; the simulation keeps the state from before the call."""
 
 
+def scene_inputs(scene: Scene) -> Inputs:
+    """Return the operating conditions of a scene as inputs."""
+    operating: Operating = scene.operating
+    load_y, load_z = operating.radial_load * math.cos(operating.load_angle), operating.radial_load * math.sin(operating.load_angle)
+    return Inputs(operating.shaft_speed, load_y, load_z, scene.lubricant.temperature)
+
+
 class Simulation:
     """One bearing in time.
 
@@ -39,24 +51,118 @@ class Simulation:
     inputs : conditions at time 0; the scene's operating block where absent.
     """
 
-    def __init__(self, scene: Scene, inputs: Inputs | None = None): ...
+    def __init__(self, scene: Scene, inputs: Inputs | None = None):
+        self.scene = scene
+        self._params = pack(scene)
+        self.reset(inputs)
 
-    scene: Scene
-    inputs: Inputs  # the conditions now
-    time: float  # [s]
-    sample: np.void  # the newest sample (see `bearing_sim.sample`)
-    counters: Counters
+    def reset(self, inputs: Inputs | None = None) -> None:
+        """Return to time 0, no damage, and the state of ideal rolling at ``inputs``.
+
+        Raises
+        ------
+        ValueError
+            An input is not finite.
+        """
+        self.inputs = _checked(inputs if inputs is not None else scene_inputs(self.scene))
+        self.time = 0.0
+        self._work = slip.new_work(self._params)
+        self._state = slip.initial_state(self._params, self.inputs.shaft_speed)
+        self._scratch = np.zeros((5, self._state.size))
+        self._counts = new_counts()
+        self._step = float(self.scene.integration.first_step)
+        self._lubrication = lubricate(self.scene.lubricant, self._params, self.inputs.oil_temperature)
+        self._previous = new_block(1, self._params.rollers.count)
+        self._observe_start()
+
+    def _observe_start(self) -> None:
+        rows, zeros = flat(self._previous), flat(new_block(1, self._params.rollers.count))
+        slip.observe(0.0, self._state, self._model(self.inputs, 1.0), self._work, 0.0, zeros[0], rows[0])
+
+    def _model(self, end: Inputs, duration: float) -> slip.Model:
+        now = self.inputs
+        drive = slip.Drive(
+            self.time,
+            now.shaft_speed,
+            (end.shaft_speed - now.shaft_speed) / duration,
+            now.load_y,
+            (end.load_y - now.load_y) / duration,
+            now.load_z,
+            (end.load_z - now.load_z) / duration,
+        )
+        return slip.Model(self._params, self._lubrication, drive)
+
+    @property
+    def sample(self) -> np.void:
+        """The newest sample (see `bearing_sim.sample`)."""
+        return self._previous[0]
+
+    @property
+    def counters(self) -> Counters:
+        """Work done since the start."""
+        return Counters(*(int(self._counts[index]) for index in COUNT))
 
     def advance(self, duration: float, inputs: Inputs | None = None, samples: int = 1) -> np.ndarray:
         """Advance by ``duration`` [s] while the inputs go linearly from their present values to ``inputs``.
 
-        Returns a block of ``samples`` samples, evenly spaced, the last one at the end.
+        The oil temperature takes its new value at the start: it is slow, and every oil property hangs on it.
+
+        Parameters
+        ----------
+        duration : length of the interval [s], positive.
+        inputs : conditions at its end; unchanged where absent.
+        samples : how many samples to return, evenly spaced, the last one at the end.
+
+        Returns
+        -------
+        block : samples, shape (samples,), see `bearing_sim.sample.sample_dtype`.
 
         Raises
         ------
         IntegrationError
             With the reason; time and state stay as they were.
+        ValueError
+            ``duration`` is not positive and finite, ``samples`` is below 1, or an input is not finite.
         """
+        if not 0.0 < duration < math.inf or samples < 1:
+            raise ValueError(f"advance takes a positive finite duration and at least one sample, got {duration!r} s and {samples!r}")
+        end = self.inputs if inputs is None else _checked(inputs)
+        if end.oil_temperature != self._lubrication.temperature:
+            self._lubrication = lubricate(self.scene.lubricant, self._params, end.oil_temperature)
+        block = new_block(samples, self._params.rollers.count)
+        state = self._state.copy()
+        integration = self.scene.integration
+        status, step = slip.advance(
+            self.time,
+            float(duration),
+            state,
+            self._step,
+            integration.relative_tolerance,
+            integration.maximum_step,
+            integration.step_budget,
+            self._model(end, duration),
+            self._work,
+            self._scratch,
+            self._counts,
+            flat(self._previous)[0],
+            flat(block),
+        )
+        if status != OK:
+            self._work = slip.new_work(self._params)  # a failed search may have left nonsense to start the next one from
+            self._step = float(integration.first_step)
+            raise IntegrationError(
+                f"{REASONS[status]} between {self.time:.6g} and {self.time + duration:.6g} s (shaft {end.shaft_speed:.6g} rad/s, "
+                f"load {math.hypot(end.load_y, end.load_z):.6g} N, {end.oil_temperature:.6g} K); the state before is kept"
+            )
+        self.time += duration
+        self.inputs, self._state, self._step = end, state, step
+        self._previous = block[-1:].copy()
+        return block
 
-    def reset(self, inputs: Inputs | None = None) -> None:
-        """Return to time 0, no damage, and the state of ideal rolling at ``inputs``."""
+
+def _checked(inputs: Inputs) -> Inputs:
+    inputs = Inputs(*(float(value) for value in inputs))
+    for name, value in inputs._asdict().items():
+        if not math.isfinite(value):
+            raise ValueError(f"{name} = {value}: expected a finite number")
+    return inputs

@@ -1,0 +1,36 @@
+"""How an advance ended: values, because compiled code raises nothing."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+OK = 0
+STEP_BUDGET = 1
+STEP_TOO_SMALL = 2
+NON_FINITE = 3
+NOT_EVALUATED = 4
+
+REASONS = {
+    STEP_BUDGET: "the step budget was used up before the end of the interval",
+    STEP_TOO_SMALL: "the error could not be kept within tolerance at the smallest step",
+    NON_FINITE: "the state stopped being finite",
+    NOT_EVALUATED: "the right-hand side could not be evaluated",
+}
+
+
+class Count(NamedTuple):
+    """Where each kind of work is counted in an int64 array of shape (len(Count),)."""
+
+    steps: int = 0
+    rejected_steps: int = 1
+    non_finite_steps: int = 2
+    right_hand_sides: int = 3
+    jacobians: int = 4
+
+
+COUNT = Count()
+
+
+def new_counts() -> np.ndarray:
+    """Return zeroed counts."""
+    return np.zeros(len(COUNT), np.int64)

@@ -1,0 +1,43 @@
+"""Normal contact of rollers and raceways: Palmgren's line contact (Deng 2017, eq. 3 to 5)."""
+
+from bearing_sim.kernels.compilation import kernel
+
+EXPONENT = 10.0 / 9.0
+
+
+def line_contact_stiffness(length, youngs_modulus, poisson_ratio):
+    """Return K of Q = K delta^(10/9) [N/m^(10/9)] for two bodies of one material.
+
+    Palmgren's fit in N and mm: Q = (delta/A_1)^(10/9) L^(8/9), A_1 = 1.36 eta^0.9, eta the sum over both
+    bodies of (1 - nu^2)/E (Deng 2017, eq. 3, with 10/9 where it prints 1.11).
+
+    Parameters
+    ----------
+    length : effective contact length [m].
+    youngs_modulus : E [Pa].
+    poisson_ratio : nu.
+    """
+    eta = 2.0 * (1.0 - poisson_ratio**2) / (youngs_modulus * 1e-6)
+    a_1 = 1.36 * eta**0.9
+    per_millimetre = (length * 1e3) ** (8.0 / 9.0) / a_1**EXPONENT
+    return per_millimetre * 1e3**EXPONENT
+
+
+@kernel
+def line_contact(penetration, stiffness):
+    """Return normal force [N] and its slope [N/m] at a penetration [m]; both 0 when apart.
+
+    The force is once continuously differentiable at first touch.
+    """
+    if penetration <= 0.0:
+        return 0.0, 0.0
+    root = stiffness * penetration ** (1.0 / 9.0)
+    return root * penetration, EXPONENT * root
+
+
+@kernel
+def line_penetration(force, stiffness):
+    """Return the penetration [m] that carries a normal force [N], the inverse of `line_contact`."""
+    if force <= 0.0:
+        return 0.0
+    return (force / stiffness) ** 0.9

@@ -1,0 +1,141 @@
+"""Quasi-static radial balance: which roller carries what, and where the inner ring is.
+
+Each roller is held by Q_e = Q_i + F_c, a monotone scalar equation; the ring by two force balances, whose
+potential is convex.  Newton's method with a bounded, backtracked step therefore always gets there.
+"""
+
+import math
+
+import numpy as np
+
+from bearing_sim.kernels.compilation import kernel
+from bearing_sim.kernels.contact import EXPONENT
+
+# A ring that no roller holds (clearance, no load) has no position: this spring, a millionth of a contact's, gives it one.
+_CENTRING_STIFFNESS = 1e3  # N/m
+_LONGEST_STEP = 2e-5  # m, a few contact penetrations
+_ITERATIONS = 100
+_RELATIVE_RESIDUAL = 1e-7
+
+
+def _outer_shares(intervals):
+    """Tabulate h(x) of h^(10/9) = (1 - h)^(10/9) + x^(10/9) on even x from 0 to 1.
+
+    h is the outer contact's share of the approach and x = free penetration / approach: the one curve on which every
+    squeezed roller lies, whatever its stiffness, speed and approach.
+    """
+    shares = np.empty(intervals + 1)
+    for i, x in enumerate(np.linspace(0.0, 1.0, intervals + 1)):
+        low, high = 0.5, 1.0
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            if middle**EXPONENT - (1.0 - middle) ** EXPONENT < x**EXPONENT:
+                low = middle
+            else:
+                high = middle
+        shares[i] = 0.5 * (low + high)
+    return shares
+
+
+_OUTER_SHARES = _outer_shares(1024)
+
+
+@kernel
+def squeezed_roller(approach, centrifugal, free, stiffness):
+    """Balance one roller between the raceways: Q_e = Q_i + F_c, delta_i + delta_e = approach.
+
+    Parameters
+    ----------
+    approach : R_i + D_w - R_e + ring displacement towards the roller [m]; negative with clearance.
+    centrifugal : F_c [N], not negative.
+    free : outer penetration under F_c alone [m], to 1e-4.
+    stiffness : K [N/m^(10/9)].
+
+    Returns
+    -------
+    outer_penetration [m], inner_load [N], inner_slope [N/m] (dQ_i / d approach)
+    """
+    if approach <= free:
+        return free, 0.0, 0.0
+    position = free / approach * (_OUTER_SHARES.shape[0] - 1)
+    index = min(int(position), _OUTER_SHARES.shape[0] - 2)
+    outer = approach * (_OUTER_SHARES[index] + (position - index) * (_OUTER_SHARES[index + 1] - _OUTER_SHARES[index]))
+    inner, inner_root, outer_root, step = approach - outer, 0.0, 0.0, 0.0
+    for _ in range(20):
+        if inner <= 0.0:
+            return approach, 0.0, 0.0
+        outer_root, inner_root = stiffness * outer ** (1.0 / 9.0), stiffness * inner ** (1.0 / 9.0)
+        step = (outer_root * outer - inner_root * inner - centrifugal) / (EXPONENT * (outer_root + inner_root))
+        if abs(step) <= 1e-5 * inner:
+            break
+        outer -= step
+        inner += step
+    # The step just found is applied to first order: what it leaves is its square.
+    inner_load = inner_root * (inner + EXPONENT * step)
+    return outer - step, inner_load, EXPONENT * inner_root * outer_root / (outer_root + inner_root)
+
+
+@kernel
+def _ring_forces(y, z, load_y, load_z, rollers, stiffness, loads):
+    """Balance all rollers at a ring position; return the ring's residual force and its stiffness matrix."""
+    force_y, force_z = load_y - _CENTRING_STIFFNESS * y, load_z - _CENTRING_STIFFNESS * z
+    k_yy, k_yz, k_zz = _CENTRING_STIFFNESS, 0.0, _CENTRING_STIFFNESS
+    for j in range(rollers):
+        cosine, sine = loads.cosine[j], loads.sine[j]
+        approach = loads.squeeze[j] + y * cosine + z * sine
+        outer, inner_load, slope = squeezed_roller(approach, loads.centrifugal[j], loads.free[j], stiffness)
+        loads.outer_penetration[j] = outer
+        loads.inner[j] = inner_load
+        loads.outer[j] = inner_load + loads.centrifugal[j]
+        if slope == 0.0:
+            continue
+        force_y -= inner_load * cosine
+        force_z -= inner_load * sine
+        k_yy += slope * cosine * cosine
+        k_yz += slope * cosine * sine
+        k_zz += slope * sine * sine
+    return force_y, force_z, k_yy, k_yz, k_zz
+
+
+@kernel
+def balance_ring(load_y, load_z, rollers, stiffness, loads):
+    """Find the ring position at which the roller loads carry the radial load.
+
+    Parameters
+    ----------
+    load_y, load_z : radial load on the inner ring [N].
+    rollers : number of rollers, Z.
+    stiffness : K [N/m^(10/9)].
+    loads : `bearing_sim.levels.slip.RollerLoads`; cosine, sine, squeeze, centrifugal and free go in; ring (start and
+        result), outer_penetration, inner and outer come out.
+
+    Returns
+    -------
+    converged : bool
+    """
+    y, z = loads.ring[0], loads.ring[1]
+    force_y, force_z, k_yy, k_yz, k_zz = _ring_forces(y, z, load_y, load_z, rollers, stiffness, loads)
+    tolerance = _RELATIVE_RESIDUAL * (math.hypot(load_y, load_z) + 1.0)
+    for _ in range(_ITERATIONS):
+        residual = math.hypot(force_y, force_z)
+        if residual <= tolerance:
+            loads.ring[0], loads.ring[1] = y, z
+            return True
+        determinant = k_yy * k_zz - k_yz * k_yz
+        step_y = (k_zz * force_y - k_yz * force_z) / determinant
+        step_z = (k_yy * force_z - k_yz * force_y) / determinant
+        length = math.hypot(step_y, step_z)
+        scale = 1.0 if length <= _LONGEST_STEP else _LONGEST_STEP / length
+        for _ in range(30):
+            next_y, next_z = y + scale * step_y, z + scale * step_z
+            next_force_y, next_force_z, next_yy, next_yz, next_zz = _ring_forces(
+                next_y, next_z, load_y, load_z, rollers, stiffness, loads
+            )
+            # Downhill in the convex potential: the remaining force must not push back past the step by more than it pushed on.
+            if next_force_y * step_y + next_force_z * step_z >= -0.5 * (force_y * step_y + force_z * step_z):
+                break
+            scale *= 0.5
+        y, z = next_y, next_z
+        force_y, force_z, k_yy, k_yz, k_zz = next_force_y, next_force_z, next_yy, next_yz, next_zz
+    loads.ring[0], loads.ring[1] = y, z
+    return math.hypot(force_y, force_z) <= 1e3 * tolerance

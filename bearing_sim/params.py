@@ -1,0 +1,136 @@
+"""What compiled code sees: plain numbers in nested named tuples; `pack` is the only bridge from a scene."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from bearing_sim.kernels.contact import line_contact_stiffness
+from bearing_sim.kernels.raceway import lobed_contour
+from bearing_sim.kernels.traction import TractionConstants, constant_constants, oil_4109_constants
+from bearing_sim.oil import oil_at
+from bearing_sim.rating_life import ring_ratings
+from bearing_sim.scene import ConstantTraction, Lubricant, Scene
+
+
+class Rollers(NamedTuple):
+    """The set of rollers."""
+
+    count: int  # Z
+    radius: float  # R_w [m]
+    length: float  # L [m]
+    mass: float  # m_r [kg]
+    inertia: float  # J_r about its own axis [kg m^2]
+
+
+class Raceways(NamedTuple):
+    """Both raceways and the contact on them."""
+
+    inner_radius: float  # R_i [m]
+    low_radius: float  # R_low [m]
+    pitch_radius: float  # r_m = R_i + R_w [m]
+    diameter_ratio: float  # gamma = D_w / d_m
+    contour: np.ndarray  # R_e(phi), periodic cubic table, shape (n, 4)
+    slope_factor: float  # 1 with the lean of the contact normal, 0 without (Deng 2017)
+    stiffness: float  # K of Q = K delta^(10/9) [N/m^(10/9)]
+    inner_curvature_radius: float  # effective radius of the inner contact [m]
+    outer_curvature_radius: float  # effective radius of the outer contact [m]
+    reduced_modulus: float  # E' = 2 / sum((1 - nu^2)/E) [Pa]
+
+
+class CageBody(NamedTuple):
+    """The cage."""
+
+    inertia: float  # about the shaft axis [kg m^2]
+    pocket_friction: float  # mu_c
+    guide_radius: float  # R_g [m]
+    guide_clearance: float  # c [m]
+    guide_width: float  # L_g, all lands together [m]
+    outer_radius: float  # of the cage [m]
+    inner_radius: float  # of the cage [m]
+    width: float  # of the cage [m]
+
+
+class Life(NamedTuple):
+    """Load ratings of one roller contact (ISO/TS 16281)."""
+
+    inner_rating: float  # Q_ci [N]
+    outer_rating: float  # Q_ce [N]
+
+
+class Params(NamedTuple):
+    """Everything about the bearing that does not change while it runs."""
+
+    rollers: Rollers
+    raceways: Raceways
+    cage: CageBody
+    life: Life
+
+
+class Lubrication(NamedTuple):
+    """What the oil does at its present temperature."""
+
+    inner: TractionConstants  # of roller and inner raceway
+    outer: TractionConstants  # of roller and outer raceway
+    viscosity: float  # eta_0 of the oil [Pa s]
+    mixture_density: float  # of the oil-air mixture [kg/m^3]
+    temperature: float  # of the oil [K]
+
+
+def pack(scene: Scene) -> Params:
+    """Return the parameters of a scene as compiled code wants them: float64, int, C-contiguous arrays."""
+    bearing = scene.bearing
+    roller_radius = bearing.roller.diameter / 2
+    mass = math.pi * roller_radius**2 * bearing.roller.length * bearing.material.density
+    inner_radius, low_radius = bearing.inner_raceway.radius, bearing.outer_raceway.low_radius
+    compliance = 2 * (1 - bearing.material.poisson_ratio**2) / bearing.material.youngs_modulus
+    inner_rating, outer_rating = ring_ratings(bearing.roller.count, bearing.roller.diameter, bearing.roller.length, bearing.diameter_ratio)
+    cage = bearing.cage
+    return Params(
+        rollers=Rollers(int(bearing.roller.count), roller_radius, bearing.roller.length, mass, 0.5 * mass * roller_radius**2),
+        raceways=Raceways(
+            inner_radius=inner_radius,
+            low_radius=low_radius,
+            pitch_radius=bearing.pitch_radius,
+            diameter_ratio=bearing.diameter_ratio,
+            contour=lobed_contour(low_radius, bearing.outer_raceway.d_value, bearing.outer_raceway.lobes, bearing.outer_raceway.installation_angle),
+            slope_factor=1.0 if bearing.outer_raceway.contour_slope else 0.0,
+            stiffness=line_contact_stiffness(bearing.roller.length, bearing.material.youngs_modulus, bearing.material.poisson_ratio),
+            inner_curvature_radius=1 / (1 / roller_radius + 1 / inner_radius),
+            outer_curvature_radius=1 / (1 / roller_radius - 1 / low_radius),
+            reduced_modulus=2 / compliance,
+        ),
+        cage=CageBody(
+            inertia=cage.polar_inertia if cage.polar_inertia is not None else cage.mass * bearing.pitch_radius**2,
+            pocket_friction=cage.pocket_friction,
+            guide_radius=cage.guide_radius,
+            guide_clearance=cage.guide_clearance,
+            guide_width=2 * cage.guide_land_width,
+            outer_radius=cage.guide_radius - cage.guide_clearance,
+            inner_radius=cage.inner_radius,
+            width=cage.width,
+        ),
+        life=Life(inner_rating, outer_rating),
+    )
+
+
+def lubricate(lubricant: Lubricant, params: Params, temperature: float) -> Lubrication:
+    """Return what the lubricant does at a temperature [K].
+
+    The oil-air mixture has the mixture fraction of the oil's density, and the oil's viscosity.
+    """
+    oil = oil_at(lubricant.oil, temperature)
+    raceways, law = params.raceways, lubricant.traction
+
+    def constants(curvature_radius):
+        if isinstance(law, ConstantTraction):
+            return constant_constants(lubricant.traction_scale, law.b, law.c, law.d)
+        return oil_4109_constants(lubricant.traction_scale, oil, curvature_radius, raceways.reduced_modulus)
+
+    return Lubrication(
+        inner=constants(raceways.inner_curvature_radius),
+        outer=constants(raceways.outer_curvature_radius),
+        viscosity=oil.viscosity,
+        mixture_density=lubricant.mixture_fraction * oil.density,
+        temperature=oil.temperature,
+    )
