@@ -1,0 +1,128 @@
+"""``bearing-sim replay``: run the model on a recorded log of shaft speed and radial load."""
+
+from contextlib import ExitStack
+from pathlib import Path
+
+import click
+
+from bearing_sim.commands.reporting import BadInput, FailedRun, print_json, print_table, progress_bar, told_as_bad_input
+
+
+@click.command()
+@click.argument("log", type=click.Path(path_type=Path), metavar="IN.mcap")
+@click.option("--scene", "scene_name", required=True, metavar="SCENE", help="Bundled scene or YAML file.")
+@click.option("--set", "overrides", multiple=True, metavar="FIELD=VALUE", help="Override a field of the scene; may be repeated.")
+@click.option("-o", "--out", required=True, type=click.Path(path_type=Path), metavar="OUT.mcap", help="Recording of inputs and outputs.")
+@click.option("--rrd", type=click.Path(path_type=Path), metavar="RUN.rrd", help="Write a view for rerun, too.")
+@click.option("--rate", type=click.FloatRange(min=0, min_open=True), metavar="HZ", help="Outputs per simulated second [default: one at each stamp].")
+@click.option("--speed-topic", metavar="TOPIC", help="Topic of the shaft speed [default: /shaft_speed].")
+@click.option("--load-topic", metavar="TOPIC", help="Topic of the radial load [default: /radial_load].")
+@click.option("--temperature-topic", metavar="TOPIC", help="Topic of the oil temperature [default: /oil_temperature, where there is one].")
+@click.option("--joint", default="shaft", show_default=True, metavar="NAME", help="The shaft's joint in JointState messages.")
+@click.option("--stamps", type=click.Choice(["header", "log"]), default="header", show_default=True, help="Times of the messages: header stamps, or log times.")
+@click.option("--longest-gap", type=click.FloatRange(min=0, min_open=True), metavar="S",
+              help="Longer times between messages are not simulated [default: ten times the usual spacing, at least the scene's input_limits.stale_after].")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+def command(log, scene_name, overrides, out, rrd, rate, speed_topic, load_topic, temperature_topic, joint, stamps, longest_gap, as_json):
+    """Run the model on IN.mcap and write inputs and outputs to OUT.mcap.
+
+    IN.mcap is any rosbag2 recording in MCAP (a file, also an unfinished one, or a bag's folder) with shaft speed (JointState or
+    Float64) and radial load (WrenchStamped, or Float64 along +y). Needs no ROS. Inputs go linearly from stamp to stamp; bad
+    messages are refused, told and counted as in a live run.
+    """
+    from bearing_sim.input_course import judge
+    from bearing_sim.input_log import InputLogError, read_input_log
+    from bearing_sim.replay import replay
+    from bearing_sim.scene_file import SceneError, load_scene
+    from bearing_sim.simulation import Inputs
+    from bearing_sim.sinks.mcap_sink import McapSink
+
+    names = {"shaft_speed": speed_topic, "radial_load": load_topic, "oil_temperature": temperature_topic}
+    with told_as_bad_input(SceneError, InputLogError, FileExistsError, PermissionError):
+        if out.exists() and log.exists() and out.samefile(log):
+            raise BadInput(f"{out} is the log itself; write to another file")
+        scene = load_scene(scene_name, overrides)
+        recorded = read_input_log(log, names, joint, stamps)
+        held = Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature)
+        course = judge(recorded, scene.input_limits, held, longest_gap)
+        origin = {"log": log.name, "command": "replay"}
+        recording = McapSink(out, scene, course.start_ns, {"bearing_sim_replay": origin})
+    try:
+        with ExitStack() as stack:
+            stack.callback(recording.close)
+            watchers = []
+            if rrd is not None:
+                from bearing_sim.sinks.rerun_sink import RerunSink
+
+                watchers.append(RerunSink(scene, path=rrd))
+                stack.callback(watchers[0].close)
+            progress = stack.enter_context(progress_bar(f"replaying {log.name}", course.end * 1e-9))
+            result = replay(scene, course, recording, watchers, rate, progress)
+    except OSError as fault:  # a full disk, say
+        raise FailedRun(str(fault)) from None
+    if as_json:
+        print_json(_report(result, course, recorded, scene, out))
+    else:
+        _print(result, course, recorded, scene, out)
+    if result.given_up:
+        raise FailedRun(result.given_up)
+
+
+def _report(result, course, recorded, scene, out) -> dict:
+    slip = result.slip_figures()
+    return {
+        "scene": scene.name,
+        "level": scene.level,
+        "log": str(recorded.path),
+        "out": str(out),
+        "cage_slip": slip["mean"],
+        "cage_slip_median": slip["median"],
+        "cage_slip_p95": slip["p95"],
+        "cage_slip_p99": slip["p99"],
+        "cage_slip_maximum": slip["maximum"],
+        "life_hours": result.life_hours,
+        "least_rating_life_hours": result.least_rating_life,
+        "damage": result.damage,
+        "log_seconds": result.log_seconds,
+        "sim_seconds": result.sim_seconds,
+        "gaps": len(course.gaps),
+        "gap_seconds": result.gap_seconds,
+        "wall_seconds": result.wall_seconds,
+        "real_time_factor": result.real_time_factor,
+        "steps": result.steps,
+        "rejected_steps": result.rejected_steps,
+        "non_finite_steps": result.non_finite_steps,
+        "failed_ticks": result.failed_ticks,
+        "samples": result.samples,
+        "inputs": course.messages,
+        "inputs_refused": course.refused.total(),
+        "inputs_refused_by_reason": dict(course.refused),
+        "inputs_stamped_by": {channel: series.stamped_by for channel, series in recorded.series.items()},
+        "events": dict(result.events),
+        "log_unfinished": recorded.unfinished,
+        "given_up": result.given_up,
+    }
+
+
+def _print(result, course, recorded, scene, out) -> None:
+    from bearing_sim.input_log import summary_lines
+
+    slip = {name: f"{100 * value:.2f} %" for name, value in result.slip_figures().items()}
+    refused = ", ".join(f"{count} x {code}" for code, count in sorted(course.refused.items())) or "none"
+    rows = [("log", line) for line in summary_lines(recorded)]
+    if recorded.unfinished:
+        rows.append(("log ends early", recorded.unfinished))
+    rows += [
+        ("level", scene.level),
+        ("cage slip while turning", f"mean {slip['mean']}, median {slip['median']}, 95 % below {slip['p95']}, 99 % below {slip['p99']}, most {slip['maximum']}"),
+        ("life under this course", f"{result.life_hours:.4g} h (least rating life of an instant {result.least_rating_life:.4g} h)"),
+        ("life used", f"{100 * result.damage:.4g} %"),
+        ("refused inputs", f"{refused} (of {course.messages})"),
+        ("gaps", f"{len(course.gaps)}, {result.gap_seconds:.4g} s not simulated"),
+        ("simulated", f"{result.sim_seconds:.6g} s of {result.log_seconds:.6g} s, {result.samples} outputs"),
+        ("took", f"{result.wall_seconds:.3g} s, {result.real_time_factor:.3g} times real time"),
+        ("steps", f"{result.steps}, {result.rejected_steps} rejected, {result.non_finite_steps} of them not finite, {result.failed_ticks} stretches left out"),
+        ("events", ", ".join(f"{count} x {code}" for code, count in sorted(result.events.items())) or "none"),
+        ("recording", str(out)),
+    ]
+    print_table(f"replay of {recorded.path.name} on {scene.name}", rows)

@@ -1,0 +1,71 @@
+"""What commands share in talking to people and to programs: faults, JSON, tables, progress."""
+
+import json
+import math
+import sys
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+
+import click
+
+
+class BadInput(click.ClickException):
+    """The caller gave something that cannot be used: one message, exit code 2."""
+
+    exit_code = 2
+
+
+class FailedRun(click.ClickException):
+    """A run that did not come to its end: one message, exit code 1."""
+
+    exit_code = 1
+
+
+@contextmanager
+def told_as_bad_input(*kinds: type[Exception]) -> Iterator[None]:
+    """Turn exceptions of these kinds into one message and exit code 2."""
+    try:
+        yield
+    except kinds as fault:
+        raise BadInput(str(fault)) from None
+
+
+def print_json(report: Mapping) -> None:
+    """Print one JSON object and nothing else; NaN and infinity become null."""
+    click.echo(json.dumps(_finite(report), indent=2, allow_nan=False))
+
+
+def _finite(value):
+    if isinstance(value, Mapping):
+        return {str(key): _finite(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_finite(item) for item in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
+
+
+def print_table(title: str, rows: Iterable[tuple[str, str]]) -> None:
+    """Print names and values in two columns."""
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table("", "", title=title, show_header=False, title_justify="left")
+    for name, value in rows:
+        table.add_row(name, value)
+    Console(width=None if sys.stdout.isatty() else 150).print(table)
+
+
+@contextmanager
+def progress_bar(text: str, total: float) -> Iterator[Callable[[float], None]]:
+    """Show a bar with the time to go on stderr, on a terminal only; yields the function that takes what is done of ``total``."""
+    if not sys.stderr.isatty():
+        yield lambda done: None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+    columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeElapsedColumn(), TextColumn("to go"), TimeRemainingColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(text, total=total)
+        yield lambda done: bar.update(task, completed=done)

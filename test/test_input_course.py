@@ -1,0 +1,140 @@
+"""Claims about judging a log: the gate's verdicts, linear between good messages, gaps and the common time told."""
+
+import math
+import random
+
+import numpy as np
+import pytest
+from recordings import JOINTS, SECOND, TEMPERATURE, WRENCH, joint_state, steady_log, temperature, truncated, wrench, write_log
+
+from bearing_sim.input_course import judge
+from bearing_sim.input_log import Fault, InputLogError, read_input_log
+from bearing_sim.scene import InputLimits
+from bearing_sim.simulation import Inputs
+from bearing_sim.sinks.mcap_file import McapFile
+
+HELD = Inputs(0.0, 0.0, 0.0, 393.15)
+LIMITS = InputLimits(maximum_speed=5000.0, maximum_load=2000.0, stale_after=1.0)
+T0 = 1_700_000_000 * SECOND
+
+
+def course_of(path, **options):
+    return judge(read_input_log(path), LIMITS, HELD, **options)
+
+
+def codes(course):
+    return [event.code for event in course.events]
+
+
+def test_inputs_are_linear_between_stamps_of_each_channel(tmp_path):
+    course = course_of(write_log(tmp_path / "log.mcap", [(0.0, 100.0), (0.4, 300.0)], [(0.0, 0.0, 50.0), (0.1, 100.0, 50.0), (0.4, 100.0, -10.0)]))
+    middle = course.at(np.array([200_000_000]), 393.15)[0]
+    assert middle == pytest.approx([200.0, 100.0, 30.0, 393.15])
+    assert list(course.instants) == [0, 100_000_000, 400_000_000]
+
+
+def test_course_begins_when_both_are_known_and_ends_with_the_first_that_ends(tmp_path):
+    course = course_of(write_log(tmp_path / "log.mcap", [(t / 10, 100.0) for t in range(11)], [(t / 10, 1.0, 0.0) for t in range(3, 15)]))
+    assert course.start_ns == T0 + 300_000_000
+    assert course.end == 700_000_000
+
+
+def test_oil_temperature_is_followed_where_recorded_and_else_the_scenes(tmp_path):
+    speeds, loads = [(0.0, 1.0), (1.0, 1.0)], [(0.0, 1.0, 0.0), (1.0, 1.0, 0.0)]
+    with_it = course_of(write_log(tmp_path / "a.mcap", speeds, loads, [(0.0, 20.0), (1.0, 40.0)]))
+    without = course_of(write_log(tmp_path / "b.mcap", speeds, loads))
+    assert with_it.at(np.array([500_000_000]), 393.15)[0, 3] == pytest.approx(303.15)
+    assert without.at(np.array([500_000_000]), 393.15)[0, 3] == 393.15
+
+
+def test_oil_topic_without_one_readable_message_leaves_the_scenes_temperature(tmp_path):
+    path = tmp_path / "log.mcap"
+    with McapFile(path) as recording:
+        recording.write("/oil_temperature", TEMPERATURE, T0, temperature(0, 20.0))
+        recording.write("/oil_temperature", TEMPERATURE, T0 + 1, temperature(0, 20.0))
+        for place in range(3):
+            recording.write("/shaft_speed", JOINTS, T0 + place, joint_state(T0 + place, 1.0))
+            recording.write("/radial_load", WRENCH, T0 + place, wrench(T0 + place, 1.0))
+    log = read_input_log(path)
+    log.series["oil_temperature"].faults.append(Fault(T0, "input.unreadable", "cannot be decoded"))
+    for numbers in (log.series["oil_temperature"].stamps, log.series["oil_temperature"].log_times, log.series["oil_temperature"].values):
+        numbers.clear()
+    course = judge(log, LIMITS, HELD)
+    assert course.at(course.instants, 350.0)[:, 3] == pytest.approx(350.0)
+    assert course.refused == {"input.unreadable": 1}
+
+
+@pytest.mark.parametrize(
+    "bad, code",
+    [(math.nan, "input.not_finite"), (math.inf, "input.not_finite"), (-1.0, "input.negative"), (5001.0, "input.too_large")],
+)
+def test_bad_value_is_refused_counted_and_bridged_by_its_good_neighbours(tmp_path, bad, code):
+    speeds = [(0.0, 100.0), (0.1, bad), (0.2, 300.0)]
+    course = course_of(write_log(tmp_path / "log.mcap", speeds, [(t / 10, 1.0, 0.0) for t in range(3)]))
+    assert course.refused == {code: 1}
+    assert codes(course) == [code] and course.events[0].time == pytest.approx(0.1)
+    assert list(course.values["shaft_speed"]) == [100.0, 300.0]
+    assert course.messages == 6
+
+
+def test_repeated_and_backward_stamps_are_refused_by_their_own_names(tmp_path):
+    speeds = [(0.0, 1.0), (0.1, 2.0), (0.1, 3.0), (0.05, 4.0), (0.2, 5.0)]
+    course = course_of(write_log(tmp_path / "log.mcap", speeds, [(0.0, 1.0, 0.0), (0.2, 1.0, 0.0)]))
+    assert course.refused == {"input.time_repeated": 1, "input.time_backwards": 1}
+    assert list(course.values["shaft_speed"]) == [1.0, 2.0, 5.0]
+
+
+def test_of_many_faults_the_first_are_told_and_all_are_counted(tmp_path):
+    speeds = [(t / 10, 1.0 if t in (0, 50) else math.nan) for t in range(51)]
+    course = course_of(write_log(tmp_path / "log.mcap", speeds, [(t / 10, 1.0, 0.0) for t in range(51)]))
+    assert course.refused["input.not_finite"] == 49
+    told = [event for event in course.events if event.code == "input.not_finite"]
+    assert len(told) == 6 and "44 more" in told[-1].text
+
+
+def test_events_are_in_order_of_time(tmp_path):
+    noise = random.Random(3)
+    speeds = [(t / 10, noise.choice([1.0, math.nan, -5.0, 9e9])) for t in range(200)]
+    course = course_of(write_log(tmp_path / "log.mcap", [(0.0, 1.0), *speeds[1:], (20.0, 1.0)], [(t / 10, 1.0, 0.0) for t in range(201)]))
+    times = [event.time for event in course.events]
+    assert times == sorted(times)
+
+
+def test_a_long_silence_is_stale_and_a_gap(tmp_path):
+    times = [t / 10 for t in range(10)] + [t / 10 for t in range(40, 50)]
+    course = course_of(write_log(tmp_path / "log.mcap", [(t, 1.0) for t in times], [(t / 10, 1.0, 0.0) for t in range(50)]))
+    assert course.gaps == [(900_000_000, 4_000_000_000)]
+    assert {"input.stale", "input.gap"} <= set(codes(course))
+    assert next(event.time for event in course.events if event.code == "input.gap") == pytest.approx(0.9)
+
+
+def test_slow_but_steady_log_is_no_gap_unless_asked_for(tmp_path):
+    path = write_log(tmp_path / "log.mcap", [(60.0 * t, 1.0) for t in range(5)], [(60.0 * t, 1.0, 0.0) for t in range(5)])
+    course = course_of(path)
+    assert course.gaps == [] and set(codes(course)) == {"input.stale"}
+    assert all("linearly" in event.text and "holding" not in event.text for event in course.events)
+    assert len(course_of(path, longest_gap=30.0).gaps) == 8
+
+
+def test_wrong_message_rate_is_told_once(tmp_path):
+    course = judge(read_input_log(steady_log(tmp_path / "log.mcap", duration=9.0, rate=2)), InputLimits(minimum_rate=5.0), HELD)
+    assert codes(course) == ["input.rate", "input.rate"]
+    assert {event.text.partition(":")[0] for event in course.events} == {"shaft_speed", "radial_load"}
+
+
+def test_cut_log_is_told_at_its_end(tmp_path):
+    whole = steady_log(tmp_path / "log.mcap", duration=2.0)
+    cut = truncated(whole, tmp_path / "log.mcap.active", whole.stat().st_size - 20)
+    assert codes(course_of(cut)) == ["log.unfinished"]
+
+
+def test_log_of_which_nothing_passes_is_refused_with_the_reasons(tmp_path):
+    path = write_log(tmp_path / "log.mcap", [(0.0, math.nan), (1.0, math.nan)], [(0.0, 1.0, 0.0), (1.0, 1.0, 0.0)])
+    with pytest.raises(InputLogError, match="every message of shaft_speed was refused: 2 x input.not_finite"):
+        course_of(path)
+
+
+def test_channels_on_different_clocks_are_refused_with_their_spans(tmp_path):
+    path = write_log(tmp_path / "log.mcap", [(0.0, 1.0), (1.0, 1.0)], [(5.0, 1.0, 0.0), (6.0, 1.0, 0.0)])
+    with pytest.raises(InputLogError, match="never known together .*log times"):
+        course_of(path)

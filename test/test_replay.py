@@ -1,0 +1,230 @@
+"""Claims about the replay: it visits every stamp, writes inputs and outputs, survives what cannot be integrated."""
+
+import json
+import math
+from collections import defaultdict
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from fake_simulation import FakeSimulation
+from mcap.reader import make_reader
+from mcap_ros2.decoder import DecoderFactory
+from recordings import SECOND, steady_log, write_log
+
+from bearing_sim.cli import main
+from bearing_sim.input_course import judge
+from bearing_sim.input_log import read_input_log
+from bearing_sim.replay import Replay, replay
+from bearing_sim.scene_file import load_scene
+from bearing_sim.simulation import Counters, Inputs
+
+SCENE = load_scene("deng2017_table1")
+HELD = Inputs(0.0, 0.0, 0.0, 393.15)
+
+
+class ListSink:
+    """Keeps what it is given."""
+
+    def __init__(self):
+        self.inputs, self.samples, self.events, self.diagnostics = [], [], [], []
+
+    def write_inputs(self, time, inputs, channels):
+        self.inputs.append((time, inputs, tuple(channels)))
+
+    def write(self, block):
+        self.samples += list(block.copy())
+
+    def write_event(self, event):
+        self.events.append(event)
+
+    def write_diagnostics(self, time, events=(), values=None):
+        self.diagnostics.append((time, list(events), values))
+
+
+def run(path, fails_at=None, watchers=(), **options):
+    """Replay a log on the stand-in; returns result, sink and stand-in."""
+    made = []
+
+    def model(scene, inputs):
+        simulation = FakeSimulation(inputs)
+        simulation.fails_at = fails_at or simulation.fails_at
+        simulation.counters = Counters(7, 2, 1, 0, 0)
+        made.append(simulation)
+        return simulation
+
+    sink = ListSink()
+    course = judge(read_input_log(path), SCENE.input_limits, HELD)
+    return replay(SCENE, course, sink, watchers, model=model, **options), sink, made[0]
+
+
+def times(sink):
+    return [float(sample["time"]) for sample in sink.samples]
+
+
+def test_one_output_at_each_stamp_with_the_inputs_of_that_stamp(tmp_path):
+    path = write_log(tmp_path / "log.mcap", [(0.0, 100.0), (0.2, 300.0), (0.5, 300.0)], [(0.0, 0.0, 0.0), (0.4, 400.0, 40.0), (0.5, 400.0, 40.0)])
+    result, sink, _ = run(path)
+    assert times(sink) == pytest.approx([0.2, 0.4, 0.5])
+    assert [sample["shaft_speed"] for sample in sink.samples] == pytest.approx([300.0, 300.0, 300.0])
+    assert [sample["load_y"] for sample in sink.samples] == pytest.approx([200.0, 400.0, 400.0])
+    assert (result.samples, result.sim_seconds) == (3, pytest.approx(0.5))
+    assert (result.steps, result.rejected_steps, result.non_finite_steps) == (7, 2, 1)
+
+
+def test_inputs_are_written_at_their_own_stamps(tmp_path):
+    path = write_log(tmp_path / "log.mcap", [(0.0, 100.0), (0.2, 300.0)], [(0.0, 0.0, 0.0), (0.1, 100.0, 0.0), (0.2, 0.0, 0.0)], [(0.1, 50.0)])
+    _, sink, _ = run(path)
+    assert [(round(time, 9), channels) for time, _, channels in sink.inputs] == [
+        (0.0, ("shaft_speed", "radial_load")), (0.1, ("radial_load", "oil_temperature")), (0.2, ("shaft_speed", "radial_load"))
+    ]
+
+
+def test_output_rate_changes_the_outputs_and_not_the_path_of_the_inputs(tmp_path):
+    speeds = [(0.0, 0.0), (0.05, 500.0), (1.0, 500.0)]  # the corner at 0.05 s lies between outputs
+    path = write_log(tmp_path / "log.mcap", speeds, [(0.0, 1.0, 0.0), (1.0, 1.0, 0.0)])
+    result, sink, simulation = run(path, rate=4.0)
+    assert times(sink) == pytest.approx([0.25, 0.5, 0.75, 1.0])
+    assert simulation.angle == pytest.approx(0.5 * 0.05 * 500 + 0.95 * 500)
+    assert result.samples == 4
+
+
+def test_output_rate_may_exceed_the_stamps(tmp_path):
+    _, sink, _ = run(steady_log(tmp_path / "log.mcap", duration=1.0, rate=10), rate=100.0)
+    assert times(sink) == pytest.approx(np.arange(1, 101) / 100)
+
+
+def test_gap_is_not_simulated_and_time_goes_on_after_it(tmp_path):
+    stamps = [t / 10 for t in range(11)] + [t / 10 for t in range(100, 111)]
+    path = write_log(tmp_path / "log.mcap", [(t, 100.0) for t in stamps], [(t, 1.0, 0.0) for t in stamps])
+    result, sink, simulation = run(path)
+    assert result.gap_seconds == pytest.approx(9.0) and result.sim_seconds == pytest.approx(2.0)
+    assert simulation.time == pytest.approx(2.0)
+    assert times(sink)[9:11] == pytest.approx([1.0, 10.1])
+    assert "input.gap" in result.events
+
+
+def test_stretch_that_cannot_be_integrated_is_told_counted_and_left_out(tmp_path):
+    result, sink, _ = run(steady_log(tmp_path / "log.mcap", duration=1.0), fails_at=failing_calls(3, 4))
+    assert result.failed_ticks == 2 and result.samples == 8
+    told = [event for event in sink.events if event.code.startswith("solver")]
+    assert [event.code for event in told] == ["solver.failed", "solver.recovered"]
+    assert "step size" in told[0].text and "held" in told[0].text
+    assert result.given_up == "" and times(sink)[-1] == pytest.approx(1.0)
+
+
+def failing_calls(*which):
+    calls = iter(range(10**9))
+    return lambda time, inputs: next(calls) in which
+
+
+def test_run_that_fails_ten_times_in_a_row_is_given_up(tmp_path):
+    result, sink, _ = run(steady_log(tmp_path / "log.mcap", duration=5.0), fails_at=lambda time, inputs: time > 0.95)
+    assert "10 stretches in a row" in result.given_up
+    assert result.samples == 10 and sink.events[-1].code == "run.given_up"
+
+
+def test_condition_is_told_when_it_changes_and_reported_every_second(tmp_path):
+    _, sink, _ = run(steady_log(tmp_path / "log.mcap", duration=5.0))
+    assert [event.code for event in sink.events] == ["bearing.slip"]  # the stand-in slips a tenth, for good
+    assert np.diff([time for time, _, _ in sink.diagnostics]) == pytest.approx(1.0)
+    assert all(events and values["cage slip [%]"] == pytest.approx(10.0) for _, events, values in sink.diagnostics)
+
+
+def test_watchers_get_every_sample_and_event(tmp_path):
+    watcher = ListSink()
+    _, sink, _ = run(steady_log(tmp_path / "log.mcap", duration=25.0), watchers=[watcher])
+    assert times(watcher) == times(sink) and len(times(sink)) == 250
+    assert watcher.events == sink.events
+
+
+def test_progress_never_goes_back_and_ends_at_the_end(tmp_path):
+    reached = []
+    run(steady_log(tmp_path / "log.mcap", duration=20.0), progress=reached.append)
+    assert reached == sorted(reached) and reached[-1] == pytest.approx(20.0)
+
+
+def test_slip_figures_weigh_by_time_and_leave_out_the_standing_shaft():
+    result = Replay(1.0, slip=[0.1, 0.4, math.nan, 5.0], speed=[100.0, 100.0, 0.0, 0.5], weight=[3.0, 1.0, 9.0, 9.0], life=[1.0])
+    figures = result.slip_figures()
+    assert figures["mean"] == pytest.approx((3 * 0.1 + 0.4) / 4)
+    assert (figures["median"], figures["maximum"]) == (0.1, 0.4)
+    assert math.isnan(Replay(1.0, slip=[math.nan], speed=[0.0], weight=[1.0]).slip_figures()["mean"])
+
+
+def test_life_is_simulated_time_over_damage():
+    assert Replay(1.0, sim_seconds=7200.0, damage=0.01).life_hours == pytest.approx(200.0)
+    assert Replay(1.0, sim_seconds=7200.0).life_hours == math.inf
+
+
+def command(*arguments):
+    return CliRunner().invoke(main, ["replay", *map(str, arguments)])
+
+
+@pytest.mark.timeout(120)
+def test_command_writes_inputs_and_outputs_and_one_json_object(tmp_path):
+    log = steady_log(tmp_path / "log.mcap", duration=2.0, speed=1500 * math.pi)
+    out = tmp_path / "out.mcap"
+    ran = command(log, "--scene", "deng2017_table1", "--set", "bearing.outer_raceway.d_value=0.098mm", "-o", out, "--json")
+    assert ran.exit_code == 0, ran.output
+    report = json.loads(ran.stdout)
+    assert report["samples"] == 20 and report["inputs_refused"] == 0 and report["non_finite_steps"] == 0
+    assert 0.0 < report["cage_slip"] < 1.0 and report["life_hours"] > 0 and report["sim_seconds"] == pytest.approx(2.0)
+    counts, ends = defaultdict(int), {}
+    with open(out, "rb") as stream:
+        for _, channel, message, decoded in make_reader(stream, decoder_factories=[DecoderFactory()]).iter_decoded_messages():
+            counts[channel.topic] += 1
+            ends[channel.topic] = decoded
+    assert counts["/shaft_speed"] == counts["/radial_load"] == 21
+    assert counts["/cage_slip"] == counts["/roller_loads"] == counts["/bearing_joints"] == 20
+    assert ends["/damage"].data == pytest.approx(report["damage"])
+    assert "oil_temperature" not in "".join(counts)
+
+
+@pytest.mark.timeout(120)
+def test_what_a_replay_writes_can_be_replayed(tmp_path):
+    first = steady_log(tmp_path / "log.mcap", duration=0.5)
+    assert command(first, "--scene", "deng2017_table1", "-o", tmp_path / "a.mcap").exit_code == 0
+    again = command(tmp_path / "a.mcap", "--scene", "deng2017_table1", "-o", tmp_path / "b.mcap", "--json")
+    assert again.exit_code == 0 and json.loads(again.stdout)["samples"] == 5
+
+
+@pytest.mark.parametrize(
+    "arguments, words",
+    [
+        (["absent.mcap", "--scene", "deng2017_table1"], "no such file"),
+        (["log.mcap", "--scene", "no_such_scene"], "no bundled scene"),
+        (["log.mcap", "--scene", "deng2017_table1", "--set", "bearing.roler.count=3"], "did you mean"),
+        (["log.mcap", "--scene", "deng2017_table1", "--speed-topic", "/shaft_sped"], "no /shaft_sped"),
+        (["log.mcap", "--scene", "deng2017_table1", "--rate", "0"], "rate"),
+    ],
+)
+def test_bad_input_is_one_message_and_exit_code_2(tmp_path, monkeypatch, arguments, words):
+    monkeypatch.chdir(tmp_path)
+    steady_log(tmp_path / "log.mcap", duration=0.3)
+    ran = command(*arguments, "-o", "out.mcap", "--json")
+    assert ran.exit_code == 2 and words in ran.stderr and ran.stdout == ""
+    assert not list(tmp_path.glob("out*"))
+
+
+def test_log_is_never_overwritten_by_its_own_replay(tmp_path):
+    log = steady_log(tmp_path / "log.mcap", duration=0.3)
+    before = log.read_bytes()
+    ran = command(log, "--scene", "deng2017_table1", "-o", log)
+    assert ran.exit_code == 2 and "another file" in ran.stderr and log.read_bytes() == before
+
+
+def test_given_up_run_exits_1_with_a_finished_file(tmp_path, monkeypatch):
+    def model(scene, inputs):
+        simulation = FakeSimulation(inputs)
+        simulation.fails_at = lambda time, inputs: time > 0.35
+        simulation.counters = Counters(7, 2, 1, 0, 0)
+        return simulation
+
+    monkeypatch.setattr(replay, "__defaults__", (*replay.__defaults__[:-1], model))
+    log = steady_log(tmp_path / "log.mcap", duration=5.0)
+    ran = command(log, "--scene", "deng2017_table1", "-o", tmp_path / "out.mcap", "--json")
+    assert ran.exit_code == 1 and "10 stretches" in ran.stderr
+    assert json.loads(ran.stdout)["given_up"]
+    with open(tmp_path / "out.mcap", "rb") as stream:
+        assert make_reader(stream).get_summary().statistics.message_count > 0
