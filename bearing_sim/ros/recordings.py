@@ -1,0 +1,42 @@
+"""Open the node's recordings; what they need is imported only when one is wanted."""
+
+from pathlib import Path
+
+from bearing_sim.scene import Scene
+
+
+def open_recording(path: Path, scene: Scene, start_ns: int):
+    """Return an MCAP sink (see `bearing_sim.sinks.mcap_sink.McapSink`).
+
+    Raises
+    ------
+    OSError
+        The file cannot be made; FileExistsError where another run is writing it.
+    """
+    from bearing_sim.sinks.mcap_sink import McapSink
+
+    return McapSink(path, scene, start_ns)
+
+
+def fresh_path(path: Path) -> Path:
+    """Return ``path``, or the first of ``path_2``, ``path_3`` ... that no recording has, finished or not."""
+    number, candidate = 1, path
+    while candidate.exists() or candidate.with_name(candidate.name + ".active").exists():
+        number += 1
+        candidate = path.with_stem(f"{path.stem}_{number}")
+    return candidate
+
+
+def open_view(scene: Scene, start_ns: int, path: str, port: int):
+    """Return a rerun sink (see `bearing_sim.sinks.rerun_sink.RerunSink`) that writes a file, serves viewers, or both.
+
+    Raises
+    ------
+    OSError
+        The file cannot be made or the port cannot be served.
+    """
+    from bearing_sim.sinks.rerun_sink import RerunSink
+
+    if path:
+        Path(path).parent.mkdir(parents=True, exist_ok=True)
+    return RerunSink(scene, path=path or None, serve_port=port or None, start_ns=start_ns)

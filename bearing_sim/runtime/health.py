@@ -1,0 +1,150 @@
+"""What a person should be told about a running model: events that hold now, and the numbers behind them.
+
+Pure: it reads the newest sample, the input gate and the runner, and knows no ROS.
+"""
+
+import math
+from collections.abc import Iterable, Mapping
+from types import MappingProxyType
+from typing import NamedTuple
+
+from bearing_sim import topics
+from bearing_sim.events import Event, Level
+from bearing_sim.runtime.input_gate import InputGate
+from bearing_sim.runtime.runner import Phase, Runner
+from bearing_sim.scene import Thresholds
+
+_LINGER = 2.0  # [s] a momentary event is shown this long, so that a report at 1 Hz cannot miss it
+
+
+class Condition(NamedTuple):
+    """The state of health at one instant."""
+
+    events: list[Event]  # what holds now, the worst first
+    values: dict[str, object]  # diagnostics numbers, the unit in each key
+
+    @property
+    def level(self) -> Level:
+        """The level of the worst event."""
+        return self.events[0].level if self.events else Level.OK
+
+
+class Health:
+    """Collects momentary events and judges lasting ones.
+
+    Parameters
+    ----------
+    thresholds : from which slip and life on there is a warning or an error.
+    """
+
+    def __init__(self, thresholds: Thresholds):
+        self._thresholds = thresholds
+        self._momentary: dict[str, tuple[Event, int]] = {}
+        self._holding: set[str] = set()
+        self._seen = {"lost": 0.0, "dropped": 0}
+
+    def note(self, event: Event) -> bool:
+        """Take in a momentary event (a refused message, a failure).  Returns whether it is news: not shown already."""
+        kind = _kind(event)
+        known, count = self._momentary.get(kind, (None, 0))
+        self._momentary[kind] = (event, count + 1)
+        return known is None
+
+    def review(
+        self, now: float, gate: InputGate, runner: Runner, others: Iterable[Event] = (), values: Mapping[str, object] = MappingProxyType({})
+    ) -> Condition:
+        """Return what holds at ``now`` [s since the start]; ``others`` are added to the events, ``values`` to the numbers."""
+        self._momentary = {kind: (event, count) for kind, (event, count) in self._momentary.items() if now - event.time < _LINGER}
+        events = [_counted(event, count) for event, count in self._momentary.values()]
+        events += [*others, *gate.check(now)]
+        events += run_events(now, runner)
+        events += self._losses(now, runner)
+        if runner.newest is not None:
+            events += bearing_events(runner.newest, self._thresholds)
+        known = {}
+        for event in sorted(events, key=lambda event: -event.level):
+            known.setdefault(_kind(event), event)
+        return Condition(list(known.values()), _numbers(gate, runner) | dict(values))
+
+    def news(self, events: Iterable[Event]) -> list[Event]:
+        """Return those lasting events that did not hold at the last call: each trouble once, for logs and recordings."""
+        holding = {_kind(event): event for event in events if _kind(event) not in self._momentary}
+        fresh = [event for kind, event in holding.items() if kind not in self._holding]
+        self._holding = set(holding)
+        return fresh
+
+    def _losses(self, now: float, runner: Runner) -> list[Event]:
+        """Turn growing loss counters into momentary events."""
+        pace, fresh = runner.pace, []
+        if pace.lost > self._seen["lost"]:
+            self._seen["lost"] = pace.lost
+            text = (
+                f"time was given up because the solver or the machine was too slow: {pace.lost:.3g} s so far; "
+                f"{pace.real_time_factor:.3g} of real time is held, the solver alone would reach {pace.solver_factor:.3g}"
+            )
+            fresh.append(Event(now, Level.WARN, "pace.lost", text))
+        if runner.dropped > self._seen["dropped"]:
+            self._seen["dropped"] = runner.dropped
+            fresh.append(Event(now, Level.WARN, "output.dropped", f"{runner.dropped} blocks of samples were dropped because nobody took them in time"))
+        for event in fresh:
+            self.note(event)
+        return fresh
+
+
+def bearing_events(sample, thresholds: Thresholds) -> list[Event]:
+    """Return the warnings and errors about the bearing that one sample calls for."""
+    time, slip, life = float(sample["time"]), float(sample["cage_slip"]), float(sample["rating_life"])
+    events = []
+    if abs(slip) >= thresholds.slip_warning:  # false for NaN, the slip at rest
+        error = abs(slip) >= thresholds.slip_error
+        limit = thresholds.slip_error if error else thresholds.slip_warning
+        text = f"cage slip: {100 * slip:.3g} % has reached {100 * limit:.3g} %"
+        events.append(Event(time, Level.ERROR if error else Level.WARN, "bearing.slip", text))
+    if life < thresholds.life_warning:
+        text = f"rating life: {life:.4g} h at the present condition is below {thresholds.life_warning:.4g} h"
+        events.append(Event(time, Level.WARN, "bearing.life", text))
+    if float(sample["damage"]) >= 1.0:
+        events.append(Event(time, Level.ERROR, "bearing.life_used", f"damage: {float(sample['damage']):.3g} of the rating life is used up"))
+    return events
+
+
+def run_events(now: float, runner: Runner) -> list[Event]:
+    """Return what the runner's phase calls for."""
+    if runner.phase is Phase.CRASHED:
+        return [Event(now, Level.ERROR, "solver.crashed", "the solver thread ended by a program fault; outputs are held, restart the node")]
+    if runner.failed_ticks:
+        text = f"time could not be advanced for {runner.failed_ticks} ticks; the last good state is held, the next inputs are tried"
+        return [Event(now, Level.ERROR, "solver.failed", text)]
+    if runner.phase is Phase.WAITING:
+        return [Event(now, Level.WARN, "run.waiting", "waiting for the first shaft_speed; nothing is computed yet")]
+    if runner.phase is Phase.PAUSED:
+        return [Event(now, Level.OK, "run.paused", "paused: simulated time is held")]
+    return []
+
+
+def _numbers(gate: InputGate, runner: Runner) -> dict[str, object]:
+    pace = runner.pace
+    numbers = topics.condition(runner.newest) if runner.newest is not None else {}
+    numbers |= {
+        "phase": runner.phase.value,
+        "run time [s]": float(runner.newest["time"]) if runner.newest is not None else 0.0,
+        "real-time factor held": pace.real_time_factor,
+        "real-time factor possible": pace.solver_factor,
+        "time lost [s]": pace.lost,
+        "blocks dropped": runner.dropped,
+        "messages refused": gate.refused.total(),
+    }
+    for channel, rate in ((channel, gate.rate(channel)) for channel in topics.INPUTS):
+        if not math.isnan(rate):
+            numbers[f"{channel} rate [Hz]"] = rate
+    numbers |= {f"refused: {code}": count for code, count in sorted(gate.refused.items())}
+    return numbers
+
+
+def _counted(event: Event, count: int) -> Event:
+    return event if count == 1 else event._replace(text=f"{event.text} ({count} times)")
+
+
+def _kind(event: Event) -> str:
+    """Two events are the same trouble when code and subject (the word before the colon) agree."""
+    return f"{event.code} {event.text.partition(':')[0]}" if event.code.startswith("input.") else event.code

@@ -1,0 +1,235 @@
+"""The live model: messages in, samples and news out, sinks fed and survived; without ROS and with a stand-in for the physics."""
+
+import math
+import time
+
+import pytest
+from fake_simulation import FakeSimulation
+
+from bearing_sim.events import Event, Level
+from bearing_sim.runtime.health import bearing_events
+from bearing_sim.runtime.live import LONGEST_TICK, LiveModel, cadence
+from bearing_sim.runtime.runner import Phase
+from bearing_sim.scene_file import load_scene
+
+START_NS = 1_700_000_000_000_000_000
+
+
+class ListSink:
+    """Keeps what it is given; fails on demand."""
+
+    def __init__(self, fails=False):
+        self.blocks, self.events, self.inputs, self.closed, self.fails = [], [], [], 0, fails
+
+    def write(self, block):
+        if self.fails:
+            raise OSError("no space left on device")
+        self.blocks.append(block)
+
+    def write_event(self, event):
+        self.events.append(event)
+
+    def close(self):
+        self.closed += 1
+
+
+class ListRecorder(ListSink):
+    """A sink that wants inputs too."""
+
+    def write_inputs(self, time, inputs, channels):
+        self.inputs.append((time, inputs, list(channels)))
+
+    def write_diagnostics(self, time, events, values):
+        self.events += events
+
+
+class Bench:
+    """A live model, a made-up receiver's clock, and every piece of news so far."""
+
+    def __init__(self, simulation=None, **options):
+        overrides = ["input_limits.stale_after=0.5s", "input_limits.minimum_rate=0Hz"]
+        self.simulation = simulation or FakeSimulation()
+        self.live = LiveModel(load_scene("deng2017_table1", overrides), self.simulation, START_NS, **options)
+        self.began = time.monotonic()
+        self.news = []
+
+    @property
+    def now_ns(self):
+        return START_NS + round((time.monotonic() - self.began) * 1e9)
+
+    def speed(self, value, stamp_ns=None):
+        return self.live.offer("shaft_speed", (value,), stamp_ns, self.now_ns)
+
+    def load(self, y=800.0, z=0.0):
+        return self.live.offer("radial_load", (y, z), None, self.now_ns)
+
+    def run(self, seconds, drive=True):
+        """Feed good inputs at 50 Hz, or none, and collect."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            if drive:
+                self.speed(100.0)
+                self.load()
+            self.news += self.live.collect(self.now_ns)
+            time.sleep(0.02)
+
+    def codes(self):
+        return {event.code for event in self.live.condition(self.now_ns).events}
+
+
+@pytest.fixture
+def bench():
+    benches = []
+
+    def make(*args, **options):
+        benches.append(Bench(*args, **options))
+        return benches[-1]
+
+    yield make
+    for one in benches:
+        assert one.live.close()
+
+
+def test_the_model_waits_for_the_first_good_speed_and_says_so(bench):
+    one = bench()
+    one.load()
+    one.speed(math.nan)
+    one.run(0.1, drive=False)
+    assert one.live.runner.phase is Phase.WAITING
+    assert {"run.waiting", "input.not_finite"} <= one.codes()
+    one.run(0.2)
+    assert one.live.runner.phase is Phase.RUNNING
+    assert "run.waiting" not in one.codes()
+
+
+def test_a_refused_message_is_news_once_shown_for_a_while_with_its_count_and_the_model_holds(bench):
+    one = bench()
+    one.run(0.1)
+    for _ in range(5):
+        one.speed(-1.0)
+    one.run(0.1)
+    assert [event.code for event in one.news if event.code.startswith("input.")] == ["input.negative"]
+    condition = one.live.condition(one.now_ns)
+    assert condition.level is Level.ERROR
+    assert "(5 times)" in condition.events[0].text
+    assert condition.values["messages refused"] == condition.values["refused: input.negative"] == 5
+    assert one.live.runner.newest["shaft_speed"] == 100.0
+    one.run(2.2)
+    assert "input.negative" not in one.codes(), "it is over"
+
+
+def test_a_stale_input_is_news_when_it_starts_and_gone_when_messages_come_again(bench):
+    one = bench()
+    one.run(0.1)
+    one.run(0.8, drive=False)
+    assert "input.stale" in one.codes()
+    assert sum(event.code == "input.stale" for event in one.news) == 2, "once for speed, once for load"
+    one.run(0.1)
+    assert "input.stale" not in one.codes()
+
+
+def test_sinks_get_every_sample_once_in_order_and_recorders_the_inputs_too(bench):
+    one = bench()
+    sink, recorder = ListSink(), ListRecorder()
+    one.live.attach("view", sink)
+    one.live.attach("record", recorder)
+    one.run(0.5)
+    assert one.live.close()
+    times = [t for block in sink.blocks for t in block["time"]]
+    assert len(times) == len(one.simulation.calls) and times == sorted(times)
+    assert [t for block in recorder.blocks for t in block["time"]] == times
+    assert sink.closed == recorder.closed == 1 and not sink.inputs
+    assert {tuple(channels) for _, _, channels in recorder.inputs} == {("shaft_speed",), ("radial_load",)}
+    assert recorder.inputs[0][1].shaft_speed == 100.0
+
+
+def test_a_sink_that_cannot_write_is_given_up_and_named_and_the_rest_goes_on(bench):
+    one = bench()
+    broken, good = ListSink(fails=True), ListSink()
+    one.live.attach("record", broken)
+    one.live.attach("view", good)
+    one.run(0.3)
+    condition = one.live.condition(one.now_ns)
+    assert condition.level is Level.ERROR
+    assert any("record failed" in event.text and "no space left" in event.text for event in condition.events)
+    assert sum(event.code.startswith("sink.failed") for event in one.news) == 1
+    assert len(good.blocks) > 10 and broken.closed == 1
+    one.live.attach("record", ListSink())
+    assert not any(code.startswith("sink.failed") for code in one.codes()), "a new recording ends the trouble"
+
+
+def test_two_sinks_of_a_name_are_refused_and_an_absent_one_detaches_to_nothing(bench):
+    one = bench()
+    one.live.attach("record", ListSink())
+    with pytest.raises(ValueError, match="record"):
+        one.live.attach("record", ListSink())
+    assert one.live.detach("other") is None
+
+
+def test_a_solver_that_fails_is_an_error_as_long_as_it_fails(bench):
+    one = bench()
+    one.run(0.1)
+    one.simulation.fails_at = lambda now, inputs: True
+    one.run(0.2)
+    assert one.live.condition(one.now_ns).level is Level.ERROR and "solver.failed" in one.codes()
+    one.simulation.fails_at = lambda now, inputs: False
+    one.run(2.3)
+    assert "solver.failed" not in one.codes()
+    assert {"solver.failed", "solver.recovered"} <= {event.code for event in one.news}
+
+
+def test_time_lost_to_a_slow_solver_is_told_with_both_factors(bench):
+    simulation = FakeSimulation()
+    simulation.seconds_per_tick = 0.04
+    one = bench(simulation)
+    one.run(1.0)
+    condition = one.live.condition(one.now_ns)
+    assert "pace.lost" in one.codes()
+    assert condition.values["time lost [s]"] > 0.2
+    assert condition.values["real-time factor held"] == pytest.approx(0.25, abs=0.1)
+    assert condition.values["real-time factor possible"] == pytest.approx(0.25, abs=0.1)
+
+
+@pytest.mark.parametrize(
+    "slip, life, damage, expected",
+    [
+        (0.01, 1000.0, 0.0, []),
+        (math.nan, math.inf, 0.0, []),
+        (0.05, 1000.0, 0.0, [("bearing.slip", Level.WARN)]),
+        (0.10, 1000.0, 0.0, [("bearing.slip", Level.ERROR)]),
+        (0.01, 299.0, 0.0, [("bearing.life", Level.WARN)]),
+        (0.2, 100.0, 1.5, [("bearing.slip", Level.ERROR), ("bearing.life", Level.WARN), ("bearing.life_used", Level.ERROR)]),
+    ],
+)
+def test_slip_and_life_are_judged_by_the_scenes_thresholds(slip, life, damage, expected):
+    sample = {"time": 1.0, "cage_slip": slip, "rating_life": life, "damage": damage}
+    events = bearing_events(sample, load_scene("deng2017_table1").thresholds)
+    assert [(event.code, event.level) for event in events] == expected
+
+
+def test_the_worst_event_comes_first(bench):
+    one = bench()
+    one.live.health.note(Event(0.0, Level.WARN, "a.warning", "w"))
+    one.live.health.note(Event(0.0, Level.ERROR, "an.error", "e"))
+    one.live.health.note(Event(0.0, Level.OK, "fine", "f"))
+    levels = [event.level for event in one.live.condition(START_NS).events]
+    assert levels == sorted(levels, reverse=True) and levels[0] is Level.ERROR
+
+
+@pytest.mark.parametrize("rate", [0.5, 1.0, 30.0, 99.0, 100.0, 250.0, 1000.0, 4321.0])
+def test_ticks_stay_short_and_make_the_sample_rate_exactly(rate):
+    beat = cadence(rate)
+    assert beat.tick <= LONGEST_TICK * (1 + 1e-6)
+    assert beat.samples / (beat.tick * beat.every) == pytest.approx(rate, rel=1e-12)
+
+
+def test_a_low_sample_rate_thins_what_sinks_get_not_what_the_model_does(bench):
+    one = bench(sample_rate=10.0)
+    sink = ListSink()
+    one.live.attach("view", sink)
+    one.run(1.0)
+    assert one.live.close()
+    assert len(one.simulation.calls) > 50
+    assert len(sink.blocks) == len(one.simulation.calls) // 10
+    steps = sorted(b["time"][0] - a["time"][0] for a, b in zip(sink.blocks, sink.blocks[1:]))
+    assert steps[len(steps) // 2] == pytest.approx(0.1)
