@@ -1,0 +1,281 @@
+"""Read our own recordings back: MCAP messages to blocks of samples and events, as the sinks take them.
+
+What a recording does not hold follows from the scene and from what it does hold, as level ``slip`` sees the bearing:
+rollers stand at equal steps behind the cage's angle, an outer load says how deep a roller sits in the outer raceway, and
+the inner loads together say where the inner ring is.  Spins are not recorded: rollers are taken to roll on the outer ring.
+"""
+
+import math
+import struct
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import yaml
+import zstandard
+from mcap.exceptions import EndOfFile, McapError
+from mcap.records import Channel, Footer, Message, Metadata, Schema
+from mcap.stream_reader import CRCValidationError, StreamReader
+
+from bearing_sim.events import Event, Level
+from bearing_sim.kernels.contact import line_contact_stiffness
+from bearing_sim.sample import new_block
+from bearing_sim.scene import Scene
+from bearing_sim.scene_file import SceneError, scene_from_yaml
+from bearing_sim.sinks.section import outer_contour
+from bearing_sim.topics import DIAGNOSTICS, INPUTS, OUTPUTS, ZERO_CELSIUS
+
+ROWS_PER_BLOCK = 1000
+METADATA = "bearing_sim"
+_REPEATS_WITHIN = 2.5  # [s] a lasting trouble is reported every second, and told once
+_TYPES = {f"/{topic.name}": topic.ros_type for topic in (*INPUTS.values(), *OUTPUTS.values())} | {f"/{DIAGNOSTICS[0]}": DIAGNOSTICS[1]}
+_OUTPUT_TOPICS = frozenset(f"/{name}" for name in OUTPUTS)
+_BROKEN = (McapError, CRCValidationError, zstandard.ZstdError, struct.error, UnicodeDecodeError)
+
+
+class RecordingError(ValueError):
+    """A file that is no recording of ours; the message says what is missing."""
+
+
+class Recording:
+    """A recording of one run.
+
+    Parameters
+    ----------
+    path : an MCAP file that `bearing_sim.sinks.mcap_sink.McapSink` wrote, finished or not.
+
+    Attributes
+    ----------
+    scene : what was simulated.
+    start_ns : wall time of sample time 0 [ns since the epoch].
+    samples : number of samples.
+    first_time, last_time : simulated times of the first and the last sample [s].
+    largest_load : largest roller load [N].
+    unfinished : why reading ends before the file's proper end, or ``""``.
+
+    Raises
+    ------
+    RecordingError
+        No such file, no MCAP, no scene in its metadata, or no samples.
+    """
+
+    def __init__(self, path: str | Path):
+        self.path = Path(path)
+        self.unfinished = ""
+        if not self.path.is_file():
+            raise RecordingError(f"{self.path}: no such file")
+        metadata, times, self.largest_load, present = self._scan()
+        if metadata is None:
+            listing = ", ".join(sorted(present)) or "no topics"
+            raise RecordingError(f"{self.path}: no metadata record {METADATA!r}, so this is no recording of bearing_sim; it has {listing}")
+        try:
+            self.scene: Scene = scene_from_yaml(metadata["scene"], origin=f"{self.path}: scene in the metadata")
+            self.start_ns = int(metadata["start_ns"])
+        except (KeyError, ValueError, SceneError, yaml.YAMLError) as fault:
+            raise RecordingError(f"{self.path}: the metadata cannot be used: {fault}") from None
+        if not times:
+            raise RecordingError(f"{self.path}: no samples on {', '.join(sorted(_OUTPUT_TOPICS))}; it has {', '.join(sorted(present)) or 'no topics'}")
+        self.samples = len(times)
+        self.first_time, self.last_time = ((edge(times) - self.start_ns) * 1e-9 for edge in (min, max))
+
+    @property
+    def duration(self) -> float:
+        """Simulated time from the first to the last sample [s]."""
+        return self.last_time - self.first_time
+
+    def _scan(self) -> tuple[dict | None, set[int], float, set[str]]:
+        """Return our metadata, the log times of samples, the largest load and the topics."""
+        metadata, times, largest, present = None, set(), 0.0, set()
+        loads_topic = "/roller_loads"
+        for topic, message in self._messages():
+            if isinstance(message, Metadata):
+                metadata = message.metadata if message.name == METADATA else metadata
+                continue
+            present.add(topic)
+            if topic == loads_topic:
+                times.add(message.log_time)
+                values = _trailing_doubles(message.data)
+                largest = max(largest, float(values.max(initial=0.0))) if np.isfinite(values).all() else largest
+        return metadata, times, largest, present
+
+    def _messages(self) -> Iterator[tuple[str, Message | Metadata]]:
+        """Yield (topic, message) in file order, and metadata records with topic ``""``; end quietly where a file was cut short."""
+        topics: dict[int, str] = {}
+        schemas: dict[int, str] = {}
+        started = finished = False
+        with open(self.path, "rb") as stream:
+            records = StreamReader(_WholeReads(stream), validate_crcs=True, record_size_limit=max(self.path.stat().st_size, 1)).records
+            try:
+                for record in records:
+                    started = True
+                    if isinstance(record, Message):
+                        yield topics[record.channel_id], record
+                    elif isinstance(record, Schema):
+                        schemas[record.id] = record.name
+                    elif isinstance(record, Channel):
+                        self._require_type(record.topic, schemas.get(record.schema_id, ""))
+                        topics[record.id] = record.topic
+                    elif isinstance(record, Metadata):
+                        yield "", record
+                    finished = finished or isinstance(record, Footer)
+            except _BROKEN as fault:
+                if not started:
+                    raise RecordingError(f"{self.path}: not an MCAP file ({fault or type(fault).__name__})") from None
+                if not finished:
+                    self.unfinished = f"the file ends early ({str(fault) or type(fault).__name__}); what was complete before that is shown"
+
+    def _require_type(self, topic: str, ros_type: str) -> None:
+        expected = _TYPES.get(topic)
+        if expected is not None and ros_type != expected:
+            raise RecordingError(f"{self.path}: {topic} is of type {ros_type or 'unknown'}; a recording of bearing_sim has {expected}")
+
+    def __iter__(self) -> Iterator[np.ndarray | Event]:
+        """Yield blocks of at most `ROWS_PER_BLOCK` samples, and events, in the order of the file."""
+        rows = _Rows(self.scene, self.start_ns)
+        told: dict[tuple[str, Level], float] = {}
+        decode = _decoder()
+        for topic, message in self._messages():
+            if topic not in _TYPES:
+                continue
+            decoded = decode(message.data, _TYPES[topic])
+            if topic == f"/{DIAGNOSTICS[0]}":
+                yield from _news(decoded, (message.log_time - self.start_ns) * 1e-9, told)
+                continue
+            if topic in _OUTPUT_TOPICS and rows.begins_sample(message.log_time) and rows.count == ROWS_PER_BLOCK:
+                yield rows.take()
+            rows.enter(topic, message.log_time, decoded)
+        if rows.count:
+            yield rows.take()
+
+
+class _WholeReads:
+    """A stream that never returns less than asked for: the end of a file cut short shall not pass for data."""
+
+    def __init__(self, stream):
+        self._stream = stream
+
+    def read(self, length: int) -> bytes:
+        data = self._stream.read(length)
+        if len(data) < length:
+            raise EndOfFile()
+        return data
+
+
+def _trailing_doubles(data: bytes) -> np.ndarray:
+    """Return the numbers of a Float64MultiArray, the last thing in its CDR: their count, padding to eight bytes, the numbers."""
+    words = np.frombuffer(data, "<u4", offset=4, count=(len(data) - 4) // 4)
+    for start in range(2, len(words) + 1, 2):
+        if len(words) - start in (2 * words[start - 1], 2 * words[start - 2]):
+            return np.frombuffer(data, "<f8", offset=4 + 4 * start)
+    return np.empty(0)
+
+
+def _decoder():
+    from rosbags.typesys import Stores, get_typestore
+
+    return get_typestore(Stores.ROS2_JAZZY).deserialize_cdr
+
+
+def _news(message, time: float, told: dict[tuple[str, Level], float]) -> Iterator[Event]:
+    """Yield the events of a diagnostics message that were not told a moment ago; the first status is the whole's."""
+    for status in message.status[1:]:
+        code, level = status.name.partition(": ")[2], Level(int(status.level))
+        if time - told.get((code, level), -math.inf) > _REPEATS_WITHIN:
+            yield Event(time, level, code, status.message)
+        told[code, level] = time
+
+
+class _Rows:
+    """Samples being put together from messages that share a log time; inputs hold until the next ones."""
+
+    def __init__(self, scene: Scene, start_ns: int):
+        self._scene, self._start_ns = scene, start_ns
+        self._block = new_block(ROWS_PER_BLOCK, scene.bearing.roller.count)
+        self._log_time: int | None = None
+        operating = scene.operating
+        self._load = (operating.radial_load * math.cos(operating.load_angle), operating.radial_load * math.sin(operating.load_angle))
+        self._temperature = scene.lubricant.temperature
+        self.count = 0
+
+    def begins_sample(self, log_time: int) -> bool:
+        """Return whether an output message at this time starts a new sample."""
+        return log_time != self._log_time
+
+    def enter(self, topic: str, log_time: int, message) -> None:
+        """Enter one decoded message."""
+        if topic == "/radial_load":
+            self._load = (message.wrench.force.y, message.wrench.force.z)
+        elif topic == "/oil_temperature":
+            self._temperature = message.temperature + ZERO_CELSIUS
+        elif topic in _OUTPUT_TOPICS:
+            if self.begins_sample(log_time):
+                self._begin(log_time)
+            self._enter_output(topic, message)
+
+    def _begin(self, log_time: int) -> None:
+        self._log_time = log_time
+        row = self._block[self.count]
+        for name in row.dtype.names:
+            row[name] = np.nan
+        row["time"] = (log_time - self._start_ns) * 1e-9
+        row["load_y"], row["load_z"] = self._load
+        row["oil_temperature"] = self._temperature
+        self.count += 1
+
+    def _enter_output(self, topic: str, message) -> None:
+        row = self._block[self.count - 1]
+        if topic == "/bearing_joints":
+            places = {name: place for place, name in enumerate(message.name)}
+            for joint, field in (("shaft", "shaft"), ("cage", "cage"), ("cage_ideal", "ideal_cage")):
+                row[f"{field}_angle"], row[f"{field}_speed"] = message.position[places[joint]], message.velocity[places[joint]]
+            row["cage_torque"] = message.effort[places["cage"]]
+        elif topic == "/roller_loads":
+            rollers = self._scene.bearing.roller.count
+            row["inner_load"], row["outer_load"] = message.data[:rollers], message.data[rollers:]
+        else:
+            row[topic[1:]] = message.data
+
+    def take(self) -> np.ndarray:
+        """Return the samples so far, completed, and start anew."""
+        block, self.count = self._block[: self.count].copy(), 0
+        complete(self._scene, block)
+        return block
+
+
+def complete(scene: Scene, block: np.ndarray) -> None:
+    """Fill in what a recording does not hold from what it does (see the module's description).
+
+    Equivalent loads are the power means of the instant, not averaged over a roller pitch.
+
+    Parameters
+    ----------
+    scene : what was simulated.
+    block : samples with time, speeds, angles and loads; changed in place.
+    """
+    bearing, material = scene.bearing, scene.bearing.material
+    count, radius = bearing.roller.count, bearing.roller.diameter / 2
+    stiffness = line_contact_stiffness(bearing.roller.length, material.youngs_modulus, material.poisson_ratio)
+    azimuth = block["cage_angle"][:, None] + 2 * math.pi / count * np.arange(count)
+    approach = {ring: np.maximum(block[f"{ring}_load"] / stiffness, 0.0) ** 0.9 for ring in ("inner", "outer")}
+    block["roller_angle"] = azimuth
+    block["roller_radius"] = outer_contour(bearing.outer_raceway, azimuth) - radius + approach["outer"]
+    block["roller_spin"] = (block["cage_speed"] * bearing.pitch_radius / radius)[:, None]
+    block["roller_rotation"] = (block["cage_angle"] * bearing.pitch_radius / radius)[:, None]
+    block["inner_equivalent_load"] = np.mean(block["inner_load"] ** 4, axis=1) ** (1 / 4)
+    block["outer_equivalent_load"] = np.mean(block["outer_load"] ** 4.5, axis=1) ** (1 / 4.5)
+    # A loaded roller touches the ring: e cos(phi - phi_e) = delta_i - (R_i + R_w - r); all of them together give e.
+    wanted = approach["inner"] - (bearing.inner_raceway.radius + radius - block["roller_radius"])
+    block["ring_y"], block["ring_z"] = _ring_centre(azimuth, wanted, block["inner_load"] > 0)
+
+
+def _ring_centre(azimuth: np.ndarray, wanted: np.ndarray, touching: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the ring centre [m] that fits ``wanted`` [m] best over the touching rollers, by least squares, shape (n,) each.
+
+    A slight pull to the centre gives a ring that too few rollers hold a place.
+    """
+    cosine, sine = np.where(touching, np.cos(azimuth), 0.0), np.where(touching, np.sin(azimuth), 0.0)
+    wanted = np.where(touching, np.nan_to_num(wanted), 0.0)
+    a, b, d = (cosine**2).sum(axis=1) + 1e-9, (cosine * sine).sum(axis=1), (sine**2).sum(axis=1) + 1e-9
+    p, q = (cosine * wanted).sum(axis=1), (sine * wanted).sum(axis=1)
+    determinant = a * d - b * b
+    return (d * p - b * q) / determinant, (a * q - b * p) / determinant

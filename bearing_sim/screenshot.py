@@ -1,0 +1,142 @@
+"""Pictures of a rerun recording without a display: rerun's own headless viewer, steered over a local port.
+
+Needs a Vulkan driver; a software one will do.
+"""
+
+import os
+import socket
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+
+HOW_TO_GET_VULKAN = (
+    "the viewer found no graphics driver; a software one is enough: on Debian or Ubuntu `apt-get install -y --no-install-recommends mesa-vulkan-drivers`, "
+    "on Fedora `dnf install mesa-vulkan-drivers`, on Arch `pacman -S vulkan-swrast`"
+)
+_NOT_OUR_FAULT = ("oftware rasterizer", "NameHasOwner")  # notices about the machine, not about what is shown
+
+
+class ViewerFailed(RuntimeError):
+    """The headless viewer could not be started, or did not get ready."""
+
+
+class HeadlessViewer:
+    """A viewer without a window, as a context manager.
+
+    Parameters
+    ----------
+    recording : path of an .rrd file, or the URL of a running server.
+    size : width and height of the picture [px].
+    timeline : the timeline that `seek` moves along.
+    ready_within : seconds to wait for the recording to be loaded.
+
+    Raises
+    ------
+    ViewerFailed
+        On entry, saying why and what to do.
+    """
+
+    def __init__(self, recording: str | Path, size: tuple[int, int] = (1600, 1000), timeline: str = "sim_time", ready_within: float = 90.0):
+        self._recording = str(recording)
+        self._size = size
+        self._timeline = timeline
+        self._ready_within = ready_within
+
+    def __enter__(self) -> "HeadlessViewer":
+        import rerun_cli
+
+        # The native program itself: the console script only starts it as a child, which would survive a kill.
+        program = Path(rerun_cli.__file__).with_name("rerun.exe" if os.name == "nt" else "rerun")
+        self._home = tempfile.TemporaryDirectory(prefix="bearing_sim_viewer_")
+        environment = dict(os.environ, RUST_LOG="error", HOME=self._home.name, XDG_RUNTIME_DIR=self._home.name)
+        environment.pop("DISPLAY", None)
+        subprocess.run([program, "analytics", "disable"], env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)
+        port = _free_port()
+        options = ["--headless", "--bind", "127.0.0.1", "--port", str(port), "--memory-limit", "2GB", "--hide-welcome-screen"]
+        self._messages = tempfile.TemporaryFile()
+        self._process = subprocess.Popen(
+            [program, *options, "--window-size", f"{self._size[0]}x{self._size[1]}", self._recording],
+            env=environment,
+            stdout=subprocess.DEVNULL,
+            stderr=self._messages,
+        )
+        try:
+            self._connect(port)
+        except BaseException:
+            self.__exit__()
+            raise
+        return self
+
+    def __exit__(self, *_) -> None:
+        self._process.terminate()
+        try:
+            self._process.wait(10)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+        self._messages.close()
+        self._home.cleanup()
+
+    def _connect(self, port: int) -> None:
+        from rerun.experimental import ViewerClient
+
+        deadline = time.monotonic() + self._ready_within
+        last_fault = "it did not answer"
+        while time.monotonic() < deadline:
+            if self._process.poll() is not None:
+                raise ViewerFailed(self._why_it_ended())
+            try:
+                self._client = ViewerClient.connect(f"rerun+http://127.0.0.1:{port}/proxy")
+                state = self._client.get_state()
+                if state.recordings and state.recordings[0].timelines and not state.loading:
+                    return
+                last_fault = "it shows no recording"
+            except (RuntimeError, ConnectionError, OSError, ValueError) as fault:  # not listening yet
+                last_fault = str(fault)
+            time.sleep(0.1)
+        raise ViewerFailed(f"the viewer was not ready after {self._ready_within:g} s: {last_fault}")
+
+    def _why_it_ended(self) -> str:
+        self._messages.seek(0)
+        said = self._messages.read().decode(errors="replace").strip()
+        lowered = said.lower()
+        if "graphics" in lowered or "render context" in lowered or "adapter" in lowered:
+            return HOW_TO_GET_VULKAN
+        return f"the viewer ended with code {self._process.returncode}: {said[-800:] or 'no message'}"
+
+    def span(self) -> tuple[float, float]:
+        """Return first and last time of the recording's timeline [s]."""
+        line = next(line for line in self._client.get_state().recordings[0].timelines if line.name == self._timeline)
+        return (line.start or 0) / 1e9, (line.end or 0) / 1e9
+
+    def seek(self, seconds: float) -> None:
+        """Go to a time and wait until the picture stands still (lay-out and zoom are animated)."""
+        self._client.set_time(self._timeline, duration=seconds, play_state="paused")
+        before = None
+        for _ in range(40):
+            now = self._client.take_screenshot(max_size=480)
+            if now == before:
+                return
+            before = now
+            time.sleep(0.15)
+
+    def png(self) -> bytes:
+        """Return the picture as PNG."""
+        return self._client.take_screenshot()
+
+    def views(self) -> list[str]:
+        """Return the names of the views on the screen."""
+        return [view.name for view in self._client.get_state().views]
+
+    def problems(self) -> list[str]:
+        """Return what any view or the viewer itself complains about."""
+        reported = [f"{view.name}: {report.severity} {report.summary}" for view in self._client.get_state().views for report in view.reports]
+        logged = [f"{entry.level}: {entry.message}" for entry in self._client.get_logs() if entry.level in ("WARN", "ERROR")]
+        return reported + [text for text in logged if not any(notice in text for notice in _NOT_OUR_FAULT)]
+
+
+def _free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]

@@ -1,0 +1,48 @@
+"""Colours of the view: a map for loads and a palette for lines, both readable with any kind of colour blindness."""
+
+import numpy as np
+
+# Viridis (S. van der Walt, N. Smith, CC0) at nine even points, the first one lightened for a dark background; between them
+# linear, which the eye does not notice.
+_ANCHORS = np.array(
+    [(82, 24, 110), (71, 44, 122), (59, 81, 139), (44, 113, 142), (33, 144, 141), (39, 173, 129), (92, 200, 99), (170, 220, 50), (253, 231, 37)], float
+)
+
+# Okabe and Ito's palette, lightened where needed for a dark background.
+BLUE = (86, 180, 233, 255)
+ORANGE = (230, 159, 0, 255)
+GREEN = (44, 196, 146, 255)
+YELLOW = (240, 228, 66, 255)
+VERMILION = (232, 106, 32, 255)
+PURPLE = (204, 121, 167, 255)
+WHITE = (235, 235, 235, 255)
+GREY = (150, 155, 165, 255)
+STEEL = (92, 98, 110, 255)
+DARK_STEEL = (52, 57, 68, 255)
+BRONZE = (150, 112, 66, 255)
+DARK_BRONZE = (112, 84, 52, 255)
+UNLOADED = (86, 92, 106, 255)
+
+
+def load_palette(entries: int = 256) -> np.ndarray:
+    """Return the colour map from no load to full scale, uint8, shape (entries, 3)."""
+    place = np.linspace(0.0, len(_ANCHORS) - 1, entries)
+    return np.stack([np.interp(place, np.arange(len(_ANCHORS)), _ANCHORS[:, channel]) for channel in range(3)], axis=1).round().astype(np.uint8)
+
+
+_PALETTE = load_palette()
+
+
+def load_colours(loads: np.ndarray, scale: float) -> np.ndarray:
+    """Return one RGBA colour for each load [N], uint8, shape (..., 4); what carries nothing is grey.
+
+    Parameters
+    ----------
+    loads : loads [N]; NaN counts as none.
+    scale : load at the upper end of the map [N].
+    """
+    loads = np.nan_to_num(np.asarray(loads, float))
+    index = np.clip(255 * loads / scale, 0, 255).astype(int)
+    colours = np.concatenate((_PALETTE[index], np.full((*loads.shape, 1), 255, np.uint8)), axis=-1)
+    colours[loads <= 0] = UNLOADED
+    return colours

@@ -1,0 +1,116 @@
+"""The load map: inner contact load by azimuth and time, as a small picture that grows or rolls with the run."""
+
+import math
+import struct
+import zlib
+
+import numpy as np
+
+from bearing_sim.sinks.colours import load_palette
+
+AZIMUTH_BINS = 72
+COLUMNS = 160
+NOT_YET = (13, 14, 17)
+NO_LOAD = (44, 47, 55)
+_PIXELS = (3, 4)  # height and width of a cell
+
+
+class LoadMap:
+    """Mean load per azimuth bin and time column.
+
+    By azimuth, not by roller: load zones stand still in azimuth, while a roller passes them hundreds of times a second,
+    far more often than most recordings take samples.
+
+    Parameters
+    ----------
+    span : time [s] that the columns cover.
+    rolling : True keeps the newest ``span`` seconds; False starts at 0 and doubles the span when the run outgrows it.
+    """
+
+    def __init__(self, span: float, rolling: bool):
+        self.span = span
+        self.start = 0.0
+        self._rolling = rolling
+        self._sums = np.zeros((AZIMUTH_BINS, COLUMNS))
+        self._counts = np.zeros((AZIMUTH_BINS, COLUMNS))
+
+    def add(self, block: np.ndarray) -> None:
+        """Enter the samples of a block, which must not be older than those before."""
+        times = block["time"]
+        self._make_room(float(times[-1]))
+        columns = np.floor((times - self.start) / self.span * COLUMNS).astype(int)
+        kept = (columns >= 0) & (columns <= COLUMNS)  # a sample on the right edge belongs to the last column
+        columns = np.minimum(columns[kept], COLUMNS - 1)
+        turns = block["roller_angle"][kept] / (2 * math.pi)
+        bins = np.minimum((AZIMUTH_BINS * (turns - np.floor(turns))).astype(int), AZIMUTH_BINS - 1)
+        place = (bins, np.broadcast_to(columns[:, None], bins.shape))
+        np.add.at(self._sums, place, np.nan_to_num(block["inner_load"][kept]))
+        np.add.at(self._counts, place, 1.0)
+
+    def _make_room(self, newest: float) -> None:
+        if self._rolling:
+            width = self.span / COLUMNS
+            shift = math.ceil((newest - self.start - self.span) / width)
+            if shift > 0:
+                self.start += shift * width
+                for table in (self._sums, self._counts):
+                    table[:, : max(COLUMNS - shift, 0)] = table[:, shift:]
+                    table[:, max(COLUMNS - shift, 0) :] = 0.0
+            return
+        while newest > self.start + self.span * (1 + 1e-9):
+            self.span *= 2
+            for table in (self._sums, self._counts):
+                table[:, : COLUMNS // 2] = table[:, ::2] + table[:, 1::2]
+                table[:, COLUMNS // 2 :] = 0.0
+
+    def loads(self) -> np.ndarray:
+        """Return mean loads [N], shape (AZIMUTH_BINS, COLUMNS); NaN where there is no sample yet.
+
+        A bin that no roller met while its column lasted takes the value between its neighbours in azimuth.
+        """
+        with np.errstate(invalid="ignore", divide="ignore"):
+            means = self._sums / self._counts
+        azimuth = np.arange(AZIMUTH_BINS)
+        for column in np.flatnonzero((self._counts > 0).any(axis=0)):
+            met = self._counts[:, column] > 0
+            means[:, column] = np.interp(azimuth, azimuth[met], means[met, column], period=AZIMUTH_BINS)
+        return means
+
+    def png(self, load_scale: float) -> bytes:
+        """Return the map as PNG: time to the right, azimuth upwards, colours from 0 to ``load_scale`` [N]."""
+        loads = self.loads()
+        index = np.clip(1 + 253 * np.nan_to_num(loads) / load_scale, 1, 254).astype(np.uint8)
+        index[np.nan_to_num(loads) <= 0] = 255
+        index[np.isnan(loads)] = 0
+        palette = np.concatenate(([NOT_YET], load_palette(254), [NO_LOAD])).astype(np.uint8)
+        return palette_png(np.kron(index[::-1], np.ones(_PIXELS, np.uint8)), palette)
+
+
+def map_size() -> tuple[int, int]:
+    """Return width and height of the map's picture [px]."""
+    return COLUMNS * _PIXELS[1], AZIMUTH_BINS * _PIXELS[0]
+
+
+def map_bounds() -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return the horizontal and vertical range [px] of the map with the labels of its axes."""
+    width, height = map_size()
+    return (-0.115 * width, 1.05 * width), (-0.06 * height, 1.2 * height)
+
+
+def palette_png(index: np.ndarray, palette: np.ndarray) -> bytes:
+    """Return an indexed picture as PNG.
+
+    Parameters
+    ----------
+    index : entries of the palette, uint8, shape (height, width).
+    palette : RGB colours, uint8, shape (n, 3), n <= 256.
+    """
+    height, width = index.shape
+    rows = np.concatenate((np.zeros((height, 1), np.uint8), index), axis=1)  # each row begins with its filter: none
+
+    def chunk(kind: bytes, content: bytes) -> bytes:
+        return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
+
+    header = struct.pack(">IIBBBBB", width, height, 8, 3, 0, 0, 0)
+    parts = chunk(b"IHDR", header) + chunk(b"PLTE", palette.tobytes()) + chunk(b"IDAT", zlib.compress(rows.tobytes(), 6)) + chunk(b"IEND", b"")
+    return b"\x89PNG\r\n\x1a\n" + parts

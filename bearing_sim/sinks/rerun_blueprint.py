@@ -1,0 +1,140 @@
+"""Lay-out of the view: which panel shows what, with the unit in every title."""
+
+from typing import NamedTuple
+
+import rerun as rr
+import rerun.blueprint as rrb
+
+from bearing_sim.scene import Scene
+from bearing_sim.sinks import section
+from bearing_sim.sinks.load_map import map_bounds
+from bearing_sim.sinks.rerun_series import TIMELINE
+
+LIVE_WINDOW = 30.0  # [s] of history that a live view shows
+BACKGROUND = (13, 14, 17)
+
+
+class Extent(NamedTuple):
+    """What a finished run covers, so that every axis can be chosen well.
+
+    Attributes
+    ----------
+    times : first and last simulated time [s].
+    values : lowest and highest plotted value by entity path.
+    """
+
+    times: tuple[float, float]
+    values: dict[str, tuple[float, float]]
+
+
+def section_title(scene: Scene) -> str:
+    """Return the title of the cross-section, which states what is not to scale."""
+    return f"Cross-section: lobes, play and displacements drawn x{section.magnification(scene.bearing)}"
+
+
+def blueprint(scene: Scene, bounds, live: bool, extent: Extent | None = None) -> rrb.Blueprint:
+    """Return the lay-out.
+
+    Parameters
+    ----------
+    scene : what is shown.
+    bounds : horizontal and vertical range of the cross-section [mm] (`SectionDrawing.bounds`).
+    live : True follows the newest data and shows the last seconds only.
+    extent : what the finished run covers; axes choose themselves where absent.
+    """
+    axes = _Axes(live, extent)
+    plots = rrb.Horizontal(_middle(axes), _right(axes), column_shares=[0.58, 0.42])
+    log = rrb.TextLogView(
+        origin="/log", name="Log", columns=rrb.TextLogColumns(timeline_columns=[TIMELINE], text_log_columns=["loglevel", "body"])
+    )
+    return rrb.Blueprint(
+        rrb.Horizontal(_left(scene, bounds), rrb.Vertical(plots, log, row_shares=[0.84, 0.16]), column_shares=[0.42, 0.58]),
+        rrb.BlueprintPanel(state="collapsed"),
+        rrb.SelectionPanel(state="collapsed"),
+        rrb.TimePanel(state="collapsed", timeline=TIMELINE, play_state="following"),
+        auto_views=False,
+        auto_layout=False,
+    )
+
+
+class _Axes:
+    """Makes plots whose axes fit together."""
+
+    def __init__(self, live: bool, extent: Extent | None):
+        self._extent = extent
+        self.time = _time_axis(live, extent)
+
+    def plot(self, title: str, contents: list[str], legend=rrb.Corner2D.LeftTop, from_zero: bool = True) -> rrb.TimeSeriesView:
+        """Return a plot of some series; ``legend`` None hides it, ``from_zero`` keeps zero on the axis."""
+        return rrb.TimeSeriesView(
+            origin="/",
+            contents=contents,
+            name=title,
+            axis_x=self.time,
+            axis_y=self._value_axis(contents, from_zero),
+            plot_legend=rrb.PlotLegend(legend, visible=legend is not None),
+        )
+
+    def _value_axis(self, contents: list[str], from_zero: bool) -> rrb.ScalarAxis | None:
+        known = [self._extent.values[path] for path in contents if path in self._extent.values] if self._extent else []
+        if not known:
+            return None
+        low, high = min(low for low, _ in known), max(high for _, high in known)
+        if from_zero:
+            low, high = min(low, 0.0), max(high, 0.0)
+        margin = 0.08 * (high - low) or 0.05 * abs(high) or 1.0
+        return rrb.ScalarAxis(range=(low if from_zero and low == 0.0 else low - margin, high + margin))
+
+
+def _time_axis(live: bool, extent: Extent | None) -> rrb.TimeAxis:
+    shared = rrb.components.LinkAxis.LinkToGlobal
+    if live:
+        window = rr.TimeRange(start=rr.TimeRangeBoundary.cursor_relative(seconds=-LIVE_WINDOW), end=rr.TimeRangeBoundary.cursor_relative())
+        return rrb.TimeAxis(link=shared, view_range=window)
+    if extent is None:
+        return rrb.TimeAxis(link=shared)
+    first, last = extent.times
+    margin = 0.03 * (last - first) or 0.1
+    window = rr.TimeRange(start=rr.TimeRangeBoundary.absolute(seconds=first), end=rr.TimeRangeBoundary.absolute(seconds=last + margin))
+    return rrb.TimeAxis(link=shared, view_range=window)
+
+
+def _left(scene: Scene, bounds) -> rrb.Vertical:
+    map_x, map_y = map_bounds()
+    return rrb.Vertical(
+        rrb.Spatial2DView(
+            origin="/section", name=section_title(scene), visual_bounds=rrb.VisualBounds2D(x_range=bounds[0], y_range=bounds[1]), background=BACKGROUND
+        ),
+        rrb.Spatial2DView(
+            origin="/load_map",
+            name="Load map: load on the inner ring by azimuth and time, colours as above",
+            visual_bounds=rrb.VisualBounds2D(x_range=map_x, y_range=map_y),
+            background=BACKGROUND,
+        ),
+        row_shares=[0.71, 0.29],
+    )
+
+
+def _middle(axes: _Axes) -> rrb.Vertical:
+    return rrb.Vertical(
+        axes.plot("Speeds [rpm]", ["/speed/shaft", "/speed/ideal_cage", "/speed/cage"]),
+        axes.plot("Cage slip [%] (yellow: warning, red: error)", ["/slip/warning", "/slip/error", "/slip/cage"], legend=None),
+        rrb.StateTimelineView(origin="/regime", name="Regime by these thresholds", time_view=axes.time),
+        axes.plot("Rating life, log10 of hours: 2 = 100 h, 3 = 1000 h (yellow: warning)", ["/life/warning", "/life/log10_hours"], None, from_zero=False),
+        rrb.Tabs(
+            axes.plot("Roller loads [N]", ["/loads/inner_largest", "/loads/outer_largest"], rrb.Corner2D.RightBottom),
+            axes.plot("Each roller, inner [N]", ["/loads/each/inner"], None),
+            axes.plot("Each roller, outer [N]", ["/loads/each/outer"], None),
+        ),
+        row_shares=[0.23, 0.22, 0.12, 0.2, 0.23],
+    )
+
+
+def _right(axes: _Axes) -> rrb.Vertical:
+    return rrb.Vertical(
+        rrb.Tabs(rrb.TextDocumentView(origin="/now", name="Now"), rrb.TextDocumentView(origin="/about", name="About")),
+        axes.plot("Radial load [N]", ["/load/radial"], None),
+        axes.plot("Oil temperature [°C]", ["/oil/temperature"], None, from_zero=False),
+        axes.plot("Damage [millionths of the life]", ["/damage/ppm"], None),
+        row_shares=[0.4, 0.2, 0.2, 0.2],
+    )

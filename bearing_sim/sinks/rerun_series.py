@@ -1,0 +1,206 @@
+"""Series of the view: numbers over time as columns, regime lane, log, and the texts beside them."""
+
+import math
+
+import numpy as np
+import rerun as rr
+
+from bearing_sim.events import Event, Level
+from bearing_sim.sample import OBSERVABLES
+from bearing_sim.scene import Scene
+from bearing_sim.sinks import colours, section
+
+TIMELINE = "sim_time"
+RPM = 30 / math.pi
+ZERO_CELSIUS = 273.15
+REGIMES = {
+    "at rest": 0x4A4F5AFF,
+    "rolling": 0x0A7F62FF,
+    "slipping": 0xC99A00FF,
+    "skidding": 0xC8501AFF,
+    "overrunning": 0x8A5A8FFF,
+}
+_LOG_LEVELS = {Level.OK: rr.TextLogLevel.INFO, Level.WARN: rr.TextLogLevel.WARN, Level.ERROR: rr.TextLogLevel.ERROR}
+
+_LINES = {
+    "/speed/shaft": ("shaft", colours.BLUE, 2.0),
+    "/speed/cage": ("cage", colours.ORANGE, 2.5),
+    "/speed/ideal_cage": ("cage without slip", colours.GREY, 1.5),
+    "/slip/cage": ("cage slip", colours.BLUE, 2.5),
+    "/slip/warning": ("warning", colours.YELLOW, 1.0),
+    "/slip/error": ("error", colours.VERMILION, 1.0),
+    "/life/log10_hours": ("life", colours.GREEN, 2.5),
+    "/life/warning": ("warning", colours.YELLOW, 1.0),
+    "/damage/ppm": ("damage", colours.PURPLE, 2.5),
+    "/load/radial": ("radial load", colours.YELLOW, 2.0),
+    "/oil/temperature": ("oil", colours.VERMILION, 2.0),
+    "/loads/inner_largest": ("inner, largest", colours.BLUE, 2.0),
+    "/loads/outer_largest": ("outer, largest", colours.VERMILION, 2.0),
+    "/sink/dropped": ("blocks dropped", colours.WHITE, 1.5),
+}
+
+
+def plottable(values) -> np.ndarray:
+    """Return float32 values with NaN, a gap in a plot, wherever there is no finite number."""
+    values = np.asarray(values, np.float64)
+    return np.where(np.isfinite(values), values, np.nan).astype(np.float32)
+
+
+def log10_hours(life) -> np.ndarray:
+    """Return log10 of a life in hours, NaN where it is infinite, zero or unknown."""
+    life = np.asarray(life, np.float64)
+    return np.log10(life, where=(life > 0) & np.isfinite(life), out=np.full(life.shape, np.nan))
+
+
+def series(block: np.ndarray) -> dict[str, np.ndarray]:
+    """Return what is plotted of a block, in the units that people read, by entity path."""
+    return {
+        "/speed/shaft": RPM * block["shaft_speed"],
+        "/speed/cage": RPM * block["cage_speed"],
+        "/speed/ideal_cage": RPM * block["ideal_cage_speed"],
+        "/slip/cage": 100 * block["cage_slip"],
+        "/life/log10_hours": log10_hours(block["rating_life"]),
+        "/life/hours": block["rating_life"],
+        "/damage/ppm": 1e6 * block["damage"],
+        "/load/radial": np.hypot(block["load_y"], block["load_z"]),
+        "/oil/temperature": block["oil_temperature"] - ZERO_CELSIUS,
+        "/loads/inner_largest": block["inner_load"].max(axis=1),
+        "/loads/outer_largest": block["outer_load"].max(axis=1),
+        "/loads/each/inner": block["inner_load"],
+        "/loads/each/outer": block["outer_load"],
+    }
+
+
+class RunSeries:
+    """Series of one run into one recording.
+
+    Parameters
+    ----------
+    recording : rerun.RecordingStream.
+    scene : whose thresholds are drawn and whose bearing is described.
+    """
+
+    def __init__(self, recording: rr.RecordingStream, scene: Scene):
+        self._recording = recording
+        self._scene = scene
+        self._regime = ""
+        self.ranges: dict[str, tuple[float, float]] = {}  # lowest and highest value so far, by entity path
+
+    def describe(self) -> None:
+        """Log names, colours and texts that hold for the whole run."""
+        for path, (name, colour, width) in _LINES.items():
+            self._recording.log(path, rr.SeriesLines(names=[name], colors=[colour], widths=[width]), static=True)
+        count = self._scene.bearing.roller.count
+        around = colours.load_palette(count)
+        for ring in ("inner", "outer"):
+            names = [f"{ring} {j + 1}" for j in range(count)]
+            self._recording.log(f"/loads/each/{ring}", rr.SeriesLines(names=names, colors=around, widths=np.full(count, 1.0)), static=True)
+        states = rr.StateConfiguration(values=list(REGIMES), labels=list(REGIMES), colors=np.array(list(REGIMES.values()), np.uint32))
+        self._recording.log("/regime", states, static=True)
+
+    def write(self, block: np.ndarray) -> None:
+        """Send the columns of a block, in one piece per series."""
+        index = [rr.TimeColumn(TIMELINE, duration=block["time"])]
+        for path, values in series(block).items():
+            self._send(path, index, plottable(values))
+        self._write_thresholds(block["time"][[0, -1]])
+        self._write_regimes(block)
+
+    def _write_thresholds(self, ends: np.ndarray) -> None:
+        limits = self._scene.thresholds
+        lines = {
+            "/slip/warning": 100 * limits.slip_warning,
+            "/slip/error": 100 * limits.slip_error,
+            "/life/warning": float(log10_hours(limits.life_warning)),
+        }
+        index = [rr.TimeColumn(TIMELINE, duration=ends)]
+        for path, value in lines.items():
+            self._send(path, index, np.full(2, value, np.float32))
+
+    def _send(self, path: str, index: list[rr.TimeColumn], values: np.ndarray) -> None:
+        self._recording.send_columns(path, indexes=index, columns=rr.Scalars.columns(scalars=values))
+        finite = values[np.isfinite(values)]
+        if finite.size:
+            low, high = self.ranges.get(path, (np.inf, -np.inf))
+            self.ranges[path] = min(low, float(finite.min())), max(high, float(finite.max()))
+
+    def _write_regimes(self, block: np.ndarray) -> None:
+        limits = self._scene.thresholds
+        for time, slip in zip(block["time"], block["cage_slip"]):
+            now = section.regime(float(slip), limits.slip_warning, limits.slip_error)
+            if now != self._regime:
+                self._regime = now
+                self._recording.set_time(TIMELINE, duration=float(time))
+                self._recording.log("/regime", rr.StateChange(state=now))
+
+    def write_event(self, event: Event) -> None:
+        """Log an event at its own time."""
+        self._recording.set_time(TIMELINE, duration=float(event.time))
+        self._recording.log("/log", rr.TextLog(event.text, level=_LOG_LEVELS[Level(event.level)]))
+
+    def write_readout(self, sample: np.void, dropped: int) -> None:
+        """Log the numbers of one sample as text at the recording's present time."""
+        limits = self._scene.thresholds
+        slip, life = float(sample["cage_slip"]), float(sample["rating_life"])
+        lines = [
+            ("cage slip", f"**{100 * slip:.2f} %**" if math.isfinite(slip) else "none (at rest)"),
+            ("rating life", f"**{_hours(life)}**"),
+            ("damage", f"{1e6 * float(sample['damage']):.3g} millionths of the life"),
+            ("shaft", f"{RPM * float(sample['shaft_speed']):,.0f} rpm"),
+            ("cage", f"{RPM * float(sample['cage_speed']):,.0f} rpm"),
+            ("radial load", f"{math.hypot(sample['load_y'], sample['load_z']):,.0f} N"),
+            ("oil", f"{float(sample['oil_temperature']) - ZERO_CELSIUS:.1f} °C"),
+            ("rollers loaded", f"{np.count_nonzero(sample['inner_load'] > 0)} of {len(sample['inner_load'])}"),
+            ("largest load", f"inner {_newton(sample['inner_load'])}, outer {_newton(sample['outer_load'])}"),
+        ]
+        if dropped:
+            lines.append(("not shown", f"{dropped} blocks dropped"))
+        regime = section.regime(slip, limits.slip_warning, limits.slip_error)
+        table = "\n".join([f"| cage is | {regime} |", "|---|---|"] + [f"| {name} | {value} |" for name, value in lines])
+        self._recording.log("/now", rr.TextDocument(table, media_type=rr.MediaType.MARKDOWN))
+
+    def write_dropped(self, time: float, dropped: int) -> None:
+        """Log how many blocks the view has missed so far."""
+        self._recording.set_time(TIMELINE, duration=time)
+        self._recording.log("/sink/dropped", rr.Scalars(float(dropped)))
+        text = f"the view missed {dropped} blocks so far: it is slower than the simulation, which goes on undisturbed"
+        self._recording.log("/log", rr.TextLog(text, level=rr.TextLogLevel.WARN))
+
+
+def _hours(life: float) -> str:
+    if not math.isfinite(life):
+        return "unlimited (at rest)" if life > 0 else "unknown"
+    return f"{life:,.0f} h" if life < 1e6 else f"{life:.2g} h"
+
+
+def _newton(loads: np.ndarray) -> str:
+    return f"{float(loads.max()):.0f} N" if np.isfinite(loads).any() else "unknown"
+
+
+def about(scene: Scene, factor: int) -> str:
+    """Return the description of a run as Markdown."""
+    bearing, oil, limits = scene.bearing, scene.lubricant, scene.thresholds
+    raceway, roller = bearing.outer_raceway, bearing.roller
+    return f"""## {scene.name}
+
+{scene.description}
+
+**Bearing** {bearing.name}: {roller.count} rollers {1e3 * roller.diameter:g} x {1e3 * roller.length:g} mm,
+outer raceway with {raceway.lobes} lobes, R_low {1e3 * raceway.low_radius:.4f} mm, D {1e6 * raceway.d_value:g} um,
+low point at {math.degrees(raceway.installation_angle):g} deg,
+play at the low points {1e6 * bearing.radial_clearance_at_low_points:.1f} um (negative: preload).
+
+**Oil** {oil.oil.name}, {oil.temperature - ZERO_CELSIUS:g} °C at the start, {100 * oil.mixture_fraction:g} % in the air, traction law {oil.traction.law}.
+
+**Level** {scene.level}.
+
+**Picture**: bodies to scale; every radial departure from the ideal bearing (lobes, play, elastic approach, ring displacement)
+is drawn x{factor}. Seen against the x axis: Y right, Z up; azimuth runs from +Y towards +Z. Red line: outer raceway; dashed: ideal
+round raceway; green: guide land. Rollers are coloured by inner contact load, grey ones carry none. Arrows at the raceways: contact
+forces on the rings, full scale of the colours = longest; yellow: radial load on the inner ring, twice that scale as far as there is room.
+The orange cage bar and the white marks show rotation.
+
+**Thresholds**: slip {100 * limits.slip_warning:g} % warning, {100 * limits.slip_error:g} % error; life below {limits.life_warning:g} h warning.
+
+{len(OBSERVABLES)} observables per sample; the recording (MCAP) is the archive, this view is derived from it.
+"""

@@ -1,0 +1,141 @@
+"""The cross-section as numbers: which points a picture of the bearing is made of, free of any drawing library.
+
+One rule draws everything to scale and the play too: bodies keep their size, while every radial departure from the
+ideal bearing (round outer raceway of radius R_i + D_w, no clearance, centred ring) is drawn `magnification` times.  So a
+contour lobe, a gap, an elastic approach (seen as an overlap) and the inner ring's displacement share one factor.
+
+Lengths here are millimetres; the picture looks against the x axis, y to the right, z up.
+"""
+
+import math
+
+import numpy as np
+
+from bearing_sim.scene import Bearing, OuterRaceway
+
+MILLIMETRE = 1e-3  # [m]
+CONTOUR_POINTS = 361
+
+
+def picture(y, z) -> np.ndarray:
+    """Return points (y, z) as a picture whose vertical axis points down wants them, shape (..., 2).
+
+    The only place where the vertical axis is turned over.
+    """
+    return np.stack(np.broadcast_arrays(np.asarray(y, float), -np.asarray(z, float)), axis=-1)
+
+
+def polar(radius, azimuth, centre=(0.0, 0.0)) -> np.ndarray:
+    """Return picture points at a radius [mm] and azimuth [rad] about ``centre`` (y, z) [mm]."""
+    return picture(centre[0] + radius * np.cos(azimuth), centre[1] + radius * np.sin(azimuth))
+
+
+def outer_contour(raceway: OuterRaceway, azimuth) -> np.ndarray:
+    """Return R_e [m] at an azimuth [rad] (Deng 2017, eq. 2)."""
+    half = raceway.d_value / 2
+    return raceway.low_radius + half - half * np.cos(raceway.lobes * (np.asarray(azimuth) - raceway.installation_angle))
+
+
+def ideal_outer_radius(bearing: Bearing) -> float:
+    """Return R_i + D_w [m]: the outer raceway that leaves the rollers neither play nor preload."""
+    return bearing.inner_raceway.radius + bearing.roller.diameter
+
+
+def round_up(number: float) -> float:
+    """Return the smallest of ... 1, 1.5, 2, 3, 4, 5, 6, 8, 10, 15, 20 ... that is not below a positive number."""
+    decade = 10.0 ** math.floor(math.log10(number))
+    return next(step * decade for step in (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0) if step * decade >= number * (1 - 1e-9))
+
+
+def round_ticks(low: float, high: float, most: int = 6) -> np.ndarray:
+    """Return at most ``most`` round numbers from ``low`` to ``high``, evenly spaced."""
+    step = round_up((high - low) / (most - 1))
+    first = math.ceil(low / step - 1e-9)
+    return np.round(step * np.arange(first, math.floor(high / step + 0.02) + 1), 9)
+
+
+def magnification(bearing: Bearing) -> int:
+    """Return the factor for radial departures: the largest of the contour is drawn as a good third of a roller."""
+    ideal, raceway = ideal_outer_radius(bearing), bearing.outer_raceway
+    departure = max(abs(raceway.low_radius - ideal), abs(raceway.low_radius + raceway.d_value - ideal), 1e-3 * bearing.roller.diameter)
+    wanted = 0.4 * bearing.roller.diameter / departure
+    return next((factor for factor in (300, 200, 150, 100, 80, 50, 40, 30, 20, 15, 10, 8, 5, 4, 3, 2) if factor <= wanted), 1)
+
+
+def drawn_contour(bearing: Bearing, factor: float, azimuth) -> np.ndarray:
+    """Return the drawn radius [mm] of the outer raceway at an azimuth [rad]."""
+    ideal = ideal_outer_radius(bearing)
+    return (ideal + factor * (outer_contour(bearing.outer_raceway, azimuth) - ideal)) / MILLIMETRE
+
+
+def outer_surface_radius(bearing: Bearing, factor: float) -> float:
+    """Return the drawn outside radius [mm] of the outer ring; the scene does not give the true one."""
+    highest = drawn_contour(bearing, factor, np.linspace(0.0, 2 * math.pi, CONTOUR_POINTS)).max()
+    return float(highest + 0.25 * bearing.roller.diameter / MILLIMETRE)
+
+
+def roller_centres(bearing: Bearing, factor: float, sample) -> np.ndarray:
+    """Return the drawn roller centres (picture points, mm), shape (Z, 2)."""
+    pitch = bearing.pitch_radius
+    radius = (pitch + factor * (sample["roller_radius"] - pitch)) / MILLIMETRE
+    return polar(radius, sample["roller_angle"])
+
+
+def spin_marks(bearing: Bearing, centres: np.ndarray, sample) -> np.ndarray:
+    """Return a mark on each roller from its centre to its rim that turns with it, shape (Z, 2, 2).
+
+    A roller that rolls on the outer ring has positive spin and turns against the orbit, hence the sign.
+    """
+    rim = polar(0.8 * bearing.roller.diameter / 2 / MILLIMETRE, -sample["roller_rotation"])
+    return np.stack((centres, centres + rim), axis=1)
+
+
+def cage_bars(bearing: Bearing, cage_angle: float) -> np.ndarray:
+    """Return the middle lines of the bars between the pockets, shape (Z, 2, 2); bar 0 lies behind pocket 0."""
+    count = bearing.roller.count
+    inner, outer = bearing.cage.inner_radius / MILLIMETRE, (bearing.cage.guide_radius - bearing.cage.guide_clearance) / MILLIMETRE
+    azimuth = cage_angle + (np.arange(count) - 0.5) * 2 * math.pi / count
+    rounding = min(cage_bar_half_width(bearing), 0.4 * (outer - inner))  # thick lines end in half a circle
+    return np.stack((polar(inner + rounding, azimuth), polar(outer - rounding, azimuth)), axis=1)
+
+
+def cage_bar_half_width(bearing: Bearing) -> float:
+    """Return half the drawn width [mm] of a bar: what the pockets leave on the pitch circle."""
+    room = math.pi * bearing.pitch_radius / bearing.roller.count - 1.03 * bearing.roller.diameter / 2
+    return max(room, 0.02 * bearing.roller.diameter) / MILLIMETRE
+
+
+def ring_displacement(factor: float, sample) -> tuple[float, float]:
+    """Return the drawn displacement (y, z) [mm] of the inner ring's centre."""
+    return factor * float(sample["ring_y"]) / MILLIMETRE, factor * float(sample["ring_z"]) / MILLIMETRE
+
+
+def load_arrows(bearing: Bearing, factor: float, sample, length_per_newton: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Return origins and vectors of the forces on both rings: what the rollers press on, drawn outside them.
+
+    Parameters
+    ----------
+    length_per_newton : drawn length of a force [mm/N].
+
+    Returns
+    -------
+    inner_origins, inner_vectors, outer_origins, outer_vectors : picture points, each of shape (Z, 2).
+    """
+    azimuth = sample["roller_angle"]
+    inner_radius = bearing.inner_raceway.radius / MILLIMETRE
+    inner_origins = polar(inner_radius, azimuth, ring_displacement(factor, sample))
+    outer_origins = polar(drawn_contour(bearing, factor, azimuth), azimuth)
+    inner_vectors = polar(-length_per_newton * sample["inner_load"], azimuth)
+    outer_vectors = polar(length_per_newton * sample["outer_load"], azimuth)
+    return inner_origins, inner_vectors, outer_origins, outer_vectors
+
+
+def regime(slip: float, warning: float, error: float) -> str:
+    """Return the word for a cage slip (fractions): rolling, slipping, skidding, overrunning, or at rest for NaN."""
+    if math.isnan(slip):
+        return "at rest"
+    if slip >= error:
+        return "skidding"
+    if slip >= warning:
+        return "slipping"
+    return "overrunning" if slip <= -warning else "rolling"
