@@ -182,7 +182,8 @@ def _overlap(log: InputLog, stamps: dict[str, list[int]], refused: Counter) -> t
             f"{channel} from {stamps[channel][0] * 1e-9:.3f} to {stamps[channel][-1] * 1e-9:.3f} s by {log.series[channel].stamped_by}"
             for channel in REQUIRED
         )
-        raise InputLogError(f"{log.path}: shaft speed and radial load are never known together ({spans}); log times may agree better than header stamps")
+        hint = "log times may agree better than header stamps"
+        raise InputLogError(f"{log.path}: shaft speed and radial load are never known together ({spans}); {hint}")
     return start, end
 
 

@@ -89,7 +89,7 @@ def load_scene(scene: str | Path, overrides: Iterable[str] = ()) -> Scene:
 
 def scene_from_yaml(text: str, overrides: Iterable[str] = (), origin: str = "scene") -> Scene:
     """Build a scene from YAML text (see `load_scene`)."""
-    tree = _tree_from_yaml(text, origin)
+    tree = yaml_mapping(text, origin, "bearing, lubricant, operating ...")
     for override in overrides:
         _apply_override(tree, override)
     return scene_from_mapping(tree, origin)
@@ -107,7 +107,7 @@ def scene_from_mapping(tree: Mapping, origin: str = "scene") -> Scene:
     try:
         scene = TypeAdapter(Scene).validate_python(resolved)
     except ValidationError as error:
-        faults += [_fault(problem) for problem in error.errors(include_url=False)]
+        faults += faults_of(error, Scene, _UNION_TAGS)
     if faults:
         raise SceneError(origin, faults)
     return scene
@@ -126,13 +126,20 @@ def _plain(value):
     return value
 
 
-def _tree_from_yaml(text: str, origin: str) -> dict:
+def yaml_mapping(text: str, origin: str, expected: str) -> dict:
+    """Return the mapping that YAML text holds; ``expected`` names some of its keys to an author who wrote something else.
+
+    Raises
+    ------
+    SceneError
+        The text is no YAML, is no mapping, or has a key twice.
+    """
     try:
         tree = yaml.load(text, Loader=_UniqueKeyLoader)
     except yaml.YAMLError as error:
         raise SceneError(origin, [Fault("", "", f"not readable as YAML: {' '.join(str(error).split())}")]) from None
     if not isinstance(tree, dict):
-        raise SceneError(origin, [Fault("", repr(tree), "expected a mapping with bearing, lubricant, operating ...")])
+        raise SceneError(origin, [Fault("", repr(tree), f"expected a mapping with {expected}")])
     return tree
 
 
@@ -206,27 +213,39 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     return f" (did you mean {close[0]!r}?)" if close else ""
 
 
-def _fault(problem: Mapping) -> Fault:
-    path = ".".join(str(part) for part in problem["loc"] if part not in _UNION_TAGS)
+def faults_of(error: ValidationError, record: type, laws: frozenset[str]) -> list[Fault]:
+    """Return the faults that pydantic found in a tree, in our words.
+
+    Parameters
+    ----------
+    error : what pydantic raised.
+    record : the record type of the whole tree.
+    laws : values of the field ``law`` by which the tree's unions are told apart; pydantic puts them into its paths.
+    """
+    return [_fault(problem, record, laws) for problem in error.errors(include_url=False)]
+
+
+def _fault(problem: Mapping, record: type, laws: frozenset[str]) -> Fault:
+    path = ".".join(str(part) for part in problem["loc"] if part not in laws)
     kind, reason, value = problem["type"], problem["msg"], problem["input"]
     shown = "" if isinstance(value, Mapping) or dataclasses.is_dataclass(value) or type(value).__name__ == "ArgsKwargs" else repr(value)
     if kind == "missing":
         return Fault(path, "", "missing")
     if kind == "unexpected_keyword_argument":
-        known = _field_names(problem["loc"][:-1])
+        known = _field_names(problem["loc"][:-1], record, laws)
         return Fault(path, shown, f"unknown field{did_you_mean(str(problem['loc'][-1]), known)}; known here: {', '.join(known)}")
     return Fault(path, shown, re.sub(r"^(Value error, |Input should be )", lambda m: "" if m[1].startswith("Value") else "expected ", reason))
 
 
-def _field_names(loc: Iterable) -> list[str]:
-    kind = Scene
+def _field_names(loc: Iterable, record: type, laws: frozenset[str]) -> list[str]:
+    kind = record
     for part in loc:
-        options = [kind] if dataclasses.is_dataclass(kind) else []
-        if part in _UNION_TAGS:
+        if isinstance(part, int):  # a place in a tuple of records
+            kind = _unwrapped(typing.get_args(kind)[0])
+        elif part in laws:
             kind = next(option for option in typing.get_args(kind) if option.law == part)
-            continue
-        for option in options:
-            kind = _unwrapped(typing.get_type_hints(option, include_extras=True)[part])
+        elif dataclasses.is_dataclass(kind):
+            kind = _unwrapped(typing.get_type_hints(kind, include_extras=True)[part])
     return [field.name for field in dataclasses.fields(kind)] if dataclasses.is_dataclass(kind) else []
 
 
@@ -234,8 +253,9 @@ def _unwrapped(hint):
     """Return the record type, or the union of record types, inside an annotation."""
     if typing.get_origin(hint) is typing.Annotated:
         hint = typing.get_args(hint)[0]
-    if isinstance(hint, types.UnionType) and not any(dataclasses.is_dataclass(arg) for arg in typing.get_args(hint)):
-        return float
+    if isinstance(hint, types.UnionType):
+        records = [arg for arg in typing.get_args(hint) if dataclasses.is_dataclass(arg)]
+        return hint if len(records) > 1 else records[0] if records else float
     return hint
 
 

@@ -19,9 +19,13 @@ from bearing_sim.commands.reporting import BadInput, FailedRun, print_json, prin
 @click.option("--load-topic", metavar="TOPIC", help="Topic of the radial load [default: /radial_load].")
 @click.option("--temperature-topic", metavar="TOPIC", help="Topic of the oil temperature [default: /oil_temperature, where there is one].")
 @click.option("--joint", default="shaft", show_default=True, metavar="NAME", help="The shaft's joint in JointState messages.")
-@click.option("--stamps", type=click.Choice(["header", "log"]), default="header", show_default=True, help="Times of the messages: header stamps, or log times.")
-@click.option("--longest-gap", type=click.FloatRange(min=0, min_open=True), metavar="S",
-              help="Longer times between messages are not simulated [default: ten times the usual spacing, at least the scene's input_limits.stale_after].")
+@click.option("--stamps", type=click.Choice(["header", "log"]), default="header", show_default=True, help="Go by header stamps, or by log times.")
+@click.option(
+    "--longest-gap",
+    type=click.FloatRange(min=0, min_open=True),
+    metavar="S",
+    help="Longer times between messages are not simulated [default: ten times their median spacing, at least input_limits.stale_after of the scene].",
+)
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 def command(log, scene_name, overrides, out, rrd, rate, speed_topic, load_topic, temperature_topic, joint, stamps, longest_gap, as_json):
     """Run the model on IN.mcap and write inputs and outputs to OUT.mcap.
@@ -108,20 +112,22 @@ def _print(result, course, recorded, scene, out) -> None:
     from bearing_sim.input_log import summary_lines
 
     slip = {name: f"{100 * value:.2f} %" for name, value in result.slip_figures().items()}
+    shares = f"mean {slip['mean']}, median {slip['median']}, 95 % below {slip['p95']}, 99 % below {slip['p99']}, most {slip['maximum']}"
+    rejected = f"{result.rejected_steps} rejected, {result.non_finite_steps} of them not finite"
     refused = ", ".join(f"{count} x {code}" for code, count in sorted(course.refused.items())) or "none"
     rows = [("log", line) for line in summary_lines(recorded)]
     if recorded.unfinished:
         rows.append(("log ends early", recorded.unfinished))
     rows += [
         ("level", scene.level),
-        ("cage slip while turning", f"mean {slip['mean']}, median {slip['median']}, 95 % below {slip['p95']}, 99 % below {slip['p99']}, most {slip['maximum']}"),
+        ("cage slip while turning", shares),
         ("life under this course", f"{result.life_hours:.4g} h (least rating life of an instant {result.least_rating_life:.4g} h)"),
         ("life used", f"{100 * result.damage:.4g} %"),
         ("refused inputs", f"{refused} (of {course.messages})"),
         ("gaps", f"{len(course.gaps)}, {result.gap_seconds:.4g} s not simulated"),
         ("simulated", f"{result.sim_seconds:.6g} s of {result.log_seconds:.6g} s, {result.samples} outputs"),
         ("took", f"{result.wall_seconds:.3g} s, {result.real_time_factor:.3g} times real time"),
-        ("steps", f"{result.steps}, {result.rejected_steps} rejected, {result.non_finite_steps} of them not finite, {result.failed_ticks} stretches left out"),
+        ("steps", f"{result.steps}, {rejected}; {result.failed_ticks} stretches left out"),
         ("events", ", ".join(f"{count} x {code}" for code, count in sorted(result.events.items())) or "none"),
         ("recording", str(out)),
     ]

@@ -1,0 +1,107 @@
+"""The bundled mission: a synthetic engine cycle, made up for demonstrations.  It was measured nowhere.
+
+Start, idle, take-off at 45,000 rpm, cruise, descent under light load with a gust, stop.
+"""
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+from bearing_sim import topics
+from bearing_sim.provenance import git_hash, package_version
+from bearing_sim.simulation import Inputs
+from bearing_sim.sinks.mcap_file import McapFile
+
+DURATION = 60.0  # [s]
+METADATA = "bearing_sim_mission"
+"""Name of the metadata record: synthetic ("true"), duration [s], rate [Hz], package_version, git_hash."""
+
+# Per phase: its name, its end as a share of the mission, and what is reached at its end:
+# shaft speed [rpm], load along y and z [N], oil temperature [degC].
+PHASES = (
+    ("rest", 0.03, 0.0, 120.0, 0.0, 40.0),
+    ("start", 0.15, 22_000.0, 250.0, 0.0, 70.0),
+    ("idle", 0.23, 22_000.0, 250.0, 0.0, 85.0),
+    ("run-up", 0.31, 45_000.0, 800.0, 150.0, 105.0),
+    ("take-off", 0.43, 45_000.0, 800.0, 150.0, 120.0),
+    ("throttle back", 0.48, 39_000.0, 500.0, 50.0, 120.0),
+    ("cruise", 0.60, 39_000.0, 500.0, 50.0, 115.0),
+    ("unload", 0.65, 33_000.0, 100.0, 0.0, 110.0),
+    ("descent", 0.84, 33_000.0, 100.0, 0.0, 100.0),
+    ("run-down", 0.97, 0.0, 120.0, 0.0, 80.0),
+    ("standstill", 1.00, 0.0, 120.0, 0.0, 80.0),
+)
+_GUST = (0.73, 0.05, 700.0, -400.0)  # centre and width as shares of the mission; load added at its height along y and z [N]
+
+
+def mission(time: float, duration: float = DURATION) -> Inputs:
+    """Return the inputs at a time of the mission.
+
+    Every quantity goes from phase to phase by the smooth step 3 s^2 - 2 s^3, so its first derivative is continuous; the
+    gust during the descent is a raised cosine.  Before the start and after the end the shaft rests.
+
+    Parameters
+    ----------
+    time : since the start of the mission [s].
+    duration : length of the whole mission [s]; every phase shrinks or grows with it.
+    """
+    share = min(max(time / duration, 0.0), 1.0)
+    begin, before = 0.0, PHASES[0][2:]
+    for _, end, *reached in PHASES:
+        if share <= end:
+            break
+        begin, before = end, reached
+    part = (share - begin) / (end - begin)
+    step = part * part * (3.0 - 2.0 * part)
+    speed_rpm, load_y, load_z, celsius = (old + step * (new - old) for old, new in zip(before, reached))
+    gust = _gust(share)
+    return Inputs(speed_rpm * math.pi / 30, load_y + gust * _GUST[2], load_z + gust * _GUST[3], celsius + topics.ZERO_CELSIUS)
+
+
+def _gust(share: float) -> float:
+    centre, width = _GUST[:2]
+    away = abs(share - centre) / width
+    return 0.5 * (1.0 + math.cos(2.0 * math.pi * away)) if away < 0.5 else 0.0
+
+
+def phase(time: float, duration: float = DURATION) -> str:
+    """Return the name of the phase at a time of the mission."""
+    share = time / duration
+    return next((name for name, end, *_ in PHASES if share <= end), PHASES[-1][0])
+
+
+def write_mission(
+    path: str | Path, start_ns: int, duration: float = DURATION, rate: float = 50.0, progress: Callable[[float], None] = lambda seconds: None
+) -> int:
+    """Write the mission as an input log.
+
+    Parameters
+    ----------
+    path : the recording to write.
+    start_ns : time 0 [ns since the epoch].
+    duration : length of the mission [s].
+    rate : messages per second of speed and load [Hz]; of the oil temperature there is one a second.
+    progress : called now and then with the time that has been reached [s].
+
+    Returns
+    -------
+    Number of messages written.
+    """
+    origin = {"package_version": package_version(), "git_hash": git_hash()}
+    record = {"synthetic": "true", "duration": repr(duration), "rate": repr(rate), **origin}
+    ticks, written = round(duration * rate), 0
+    with McapFile(path, {METADATA: record}, {"generator": "bearing_sim", "synthetic": "true", **origin}) as recording:
+        next_oil = 0.0
+        for tick in range(ticks + 1):
+            time = tick / rate
+            inputs, stamp = mission(time, duration), start_ns + round(tick * 1e9 / rate)
+            channels = ["shaft_speed", "radial_load"]
+            if time >= next_oil:
+                channels.append("oil_temperature")
+                next_oil += 1.0
+            for channel in channels:
+                topic = topics.INPUTS[channel]
+                recording.write(f"/{topic.name}", topic.ros_type, stamp, topic.message(stamp, inputs))
+            written += len(channels)
+            progress(time)
+    return written
