@@ -50,19 +50,19 @@ def header(stamp_ns: int, frame_id: str = "") -> dict:
     return {"stamp": stamp(stamp_ns), "frame_id": frame_id}
 
 
-def _joints(stamp_ns: int, names: list[str], position: list, velocity: list, effort: list) -> dict:
+def _joints(stamp_ns: int, names: list[str], position: list, velocity: list) -> dict:
+    # No array may stay empty; NaN says that a torque is not known.
     return {
         "header": header(stamp_ns),
         "name": names,
         "position": np.array(position, float),
         "velocity": np.array(velocity, float),
-        "effort": np.array(effort, float),
+        "effort": np.full(len(names), math.nan),
     }
 
 
 def _shaft_speed(stamp_ns: int, inputs) -> dict:
-    # A JointState may not leave arrays empty here; NaN says that angle and torque are not known.
-    return _joints(stamp_ns, [SHAFT_JOINT], [math.nan], [inputs.shaft_speed], [math.nan])
+    return _joints(stamp_ns, [SHAFT_JOINT], [math.nan], [inputs.shaft_speed])  # nor is the angle known
 
 
 def _radial_load(stamp_ns: int, inputs) -> dict:
@@ -84,7 +84,6 @@ def _bearing_joints(stamp_ns: int, sample) -> dict:
         [SHAFT_JOINT, "cage", "cage_ideal"],
         [sample["shaft_angle"], sample["cage_angle"], sample["ideal_cage_angle"]],
         [sample["shaft_speed"], sample["cage_speed"], sample["ideal_cage_speed"]],
-        [math.nan, sample["cage_torque"], math.nan],
     )
 
 
@@ -111,7 +110,7 @@ OUTPUTS = {
         Topic("cage_slip", "std_msgs/msg/Float64", "cage slip [fraction]; NaN at rest", _number("cage_slip")),
         Topic("rating_life", "std_msgs/msg/Float64", "rating life at the present condition [h]; infinite at rest", _number("rating_life")),
         Topic("damage", "std_msgs/msg/Float64", "fraction of life used since the start", _number("damage")),
-        Topic("bearing_joints", "sensor_msgs/msg/JointState", "shaft, cage, cage_ideal: angle [rad], speed [rad/s], torque [N m]", _bearing_joints),
+        Topic("bearing_joints", "sensor_msgs/msg/JointState", "shaft, cage, cage_ideal: angle [rad], speed [rad/s]; no torque", _bearing_joints),
         Topic("roller_loads", "std_msgs/msg/Float64MultiArray", "roller loads [N], ring (inner, outer) x roller", _roller_loads),
     )
 }
