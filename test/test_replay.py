@@ -10,7 +10,7 @@ from click.testing import CliRunner
 from fake_simulation import FakeSimulation
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
-from recordings import SECOND, steady_log, write_log
+from recordings import steady_log, write_log
 
 from bearing_sim.cli import main
 from bearing_sim.input_course import judge
@@ -18,6 +18,7 @@ from bearing_sim.input_log import read_input_log
 from bearing_sim.replay import Replay, replay
 from bearing_sim.scene_file import load_scene
 from bearing_sim.simulation import Counters, Inputs
+from bearing_sim.sinks.mcap_sink import McapSink
 
 SCENE = load_scene("deng2017_table1")
 HELD = Inputs(0.0, 0.0, 0.0, 393.15)
@@ -182,6 +183,19 @@ def test_command_writes_inputs_and_outputs_and_one_json_object(tmp_path):
 
 
 @pytest.mark.timeout(120)
+def test_view_for_rerun_gets_the_whole_run(tmp_path):
+    chunk = pytest.importorskip("rerun.chunk", reason="rerun-sdk is not installed")
+    log = steady_log(tmp_path / "log.mcap", duration=1.0)
+    ran = command(log, "--scene", "deng2017_table1", "-o", tmp_path / "out.mcap", "--rrd", tmp_path / "run.rrd", "--json")
+    assert ran.exit_code == 0, ran.output
+    times = set()
+    for part in chunk.RrdReader(str(tmp_path / "run.rrd")).stream():
+        if not part.is_static and "sim_time" in part.timeline_names:
+            times |= {moment.total_seconds() for moment in part.to_record_batch().column("sim_time").to_pylist()}
+    assert {round(moment, 6) for moment in times} >= {place / 10 for place in range(1, 11)}
+
+
+@pytest.mark.timeout(120)
 def test_what_a_replay_writes_can_be_replayed(tmp_path):
     first = steady_log(tmp_path / "log.mcap", duration=0.5)
     assert command(first, "--scene", "deng2017_table1", "-o", tmp_path / "a.mcap").exit_code == 0
@@ -212,6 +226,24 @@ def test_log_is_never_overwritten_by_its_own_replay(tmp_path):
     before = log.read_bytes()
     ran = command(log, "--scene", "deng2017_table1", "-o", log)
     assert ran.exit_code == 2 and "another file" in ran.stderr and log.read_bytes() == before
+
+
+def test_output_that_cannot_be_written_is_one_message_and_exit_code_2(tmp_path):
+    log = steady_log(tmp_path / "log.mcap", duration=0.3)
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "busy.mcap.active").write_bytes(b"")
+    for out, words in (("folder", "is a folder"), ("log.mcap/out.mcap", "log.mcap"), ("busy.mcap", "killed run")):
+        ran = command(log, "--scene", "deng2017_table1", "-o", tmp_path / out)
+        assert ran.exit_code == 2 and words in ran.stderr and "Traceback" not in ran.stderr
+
+
+def test_disk_that_fills_up_during_the_run_is_a_failed_run(tmp_path, monkeypatch):
+    def full_disk(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(McapSink, "write", full_disk)
+    ran = command(steady_log(tmp_path / "log.mcap", duration=0.3), "--scene", "deng2017_table1", "-o", tmp_path / "out.mcap")
+    assert ran.exit_code == 1 and "No space left" in ran.stderr
 
 
 def test_given_up_run_exits_1_with_a_finished_file(tmp_path, monkeypatch):

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.commands.reporting import BadInput, FailedRun, print_json, print_table, progress_bar, told_as_bad_input
+from bearing_sim.commands.reporting import BadInput, print_json, print_table, progress_bar, told_as_bad_input, told_file_faults
 
 
 @click.command("import-csv")
@@ -22,18 +22,13 @@ def command(data, mapping_name, out, as_json):
     from bearing_sim.csv_import import TableError, read_table, write_log
     from bearing_sim.csv_mapping import MappingError, load_mapping
 
-    with told_as_bad_input(MappingError, TableError, FileExistsError, PermissionError):
+    with told_as_bad_input(MappingError, TableError), told_file_faults():
         if out.exists() and data.exists() and out.samefile(data):
             raise BadInput(f"{out} is the table itself; write to another file")
         mapping, text = load_mapping(mapping_name)
         table = read_table(data, mapping)
-        try:
-            with progress_bar(f"importing {data.name}", sum(map(len, table.stamps.values()))) as progress:
-                write_log(table, text, data, out, progress)
-        except (FileExistsError, PermissionError):
-            raise
-        except OSError as fault:  # a full disk, say
-            raise FailedRun(str(fault)) from None
+        with progress_bar(f"importing {data.name}", sum(map(len, table.stamps.values()))) as progress:
+            write_log(table, text, data, out, progress)
     if as_json:
         print_json(_report(table, mapping, out))
     else:

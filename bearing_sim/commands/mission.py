@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.commands.reporting import FailedRun, print_json, progress_bar, told_as_bad_input
+from bearing_sim.commands.reporting import print_json, progress_bar, told_file_faults
 
 
 @click.command()
@@ -24,14 +24,8 @@ def command(out, duration, rate, start, as_json):
     from bearing_sim.mission import write_mission
 
     start_ns = time.time_ns() if start is None else int(start.replace(tzinfo=timezone.utc).timestamp()) * 1_000_000_000
-    with told_as_bad_input(FileExistsError, PermissionError):
-        try:
-            with progress_bar("writing the mission", duration) as progress:
-                messages = write_mission(out, start_ns, duration, rate, progress)
-        except (FileExistsError, PermissionError):
-            raise
-        except OSError as fault:  # a full disk, say
-            raise FailedRun(str(fault)) from None
+    with told_file_faults(), progress_bar("writing the mission", duration) as progress:
+        messages = write_mission(out, start_ns, duration, rate, progress)
     if as_json:
         print_json({"out": str(out), "synthetic": True, "duration_seconds": duration, "rate": rate, "messages": messages, "start_ns": start_ns})
     else:

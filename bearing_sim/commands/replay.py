@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.commands.reporting import BadInput, FailedRun, print_json, print_table, progress_bar, told_as_bad_input
+from bearing_sim.commands.reporting import BadInput, FailedRun, print_json, print_table, progress_bar, told_as_bad_input, told_file_faults
 
 
 @click.command()
@@ -42,28 +42,23 @@ def command(log, scene_name, overrides, out, rrd, rate, speed_topic, load_topic,
     from bearing_sim.sinks.mcap_sink import McapSink
 
     names = {"shaft_speed": speed_topic, "radial_load": load_topic, "oil_temperature": temperature_topic}
-    with told_as_bad_input(SceneError, InputLogError, FileExistsError, PermissionError):
+    with told_as_bad_input(SceneError, InputLogError), told_file_faults():
         if out.exists() and log.exists() and out.samefile(log):
             raise BadInput(f"{out} is the log itself; write to another file")
         scene = load_scene(scene_name, overrides)
         recorded = read_input_log(log, names, joint, stamps)
         held = Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature)
         course = judge(recorded, scene.input_limits, held, longest_gap)
-        origin = {"log": log.name, "command": "replay"}
-        recording = McapSink(out, scene, course.start_ns, {"bearing_sim_replay": origin})
-    try:
+        seconds = course.end * 1e-9
         with ExitStack() as stack:
-            stack.callback(recording.close)
+            recording = stack.enter_context(McapSink(out, scene, course.start_ns, {"bearing_sim_replay": {"log": log.name}}))
             watchers = []
             if rrd is not None:
                 from bearing_sim.sinks.rerun_sink import RerunSink
 
-                watchers.append(RerunSink(scene, path=rrd))
-                stack.callback(watchers[0].close)
-            progress = stack.enter_context(progress_bar(f"replaying {log.name}", course.end * 1e-9))
+                watchers.append(stack.enter_context(RerunSink(scene, path=rrd, start_ns=course.start_ns, lossless=True, duration=seconds)))
+            progress = stack.enter_context(progress_bar(f"replaying {log.name}", seconds))
             result = replay(scene, course, recording, watchers, rate, progress)
-    except OSError as fault:  # a full disk, say
-        raise FailedRun(str(fault)) from None
     if as_json:
         print_json(_report(result, course, recorded, scene, out))
     else:

@@ -1,5 +1,6 @@
 """What commands share in talking to people and to programs: faults, JSON, tables, progress."""
 
+import errno
 import json
 import math
 import sys
@@ -28,6 +29,16 @@ def told_as_bad_input(*kinds: type[Exception]) -> Iterator[None]:
         yield
     except kinds as fault:
         raise BadInput(str(fault)) from None
+
+
+@contextmanager
+def told_file_faults() -> Iterator[None]:
+    """Turn a file that cannot be opened into exit code 2, and a disk that fails or fills up during a run into exit code 1."""
+    try:
+        yield
+    except OSError as fault:
+        failed = fault.errno in (errno.ENOSPC, errno.EIO, errno.EDQUOT, errno.EFBIG)
+        raise (FailedRun if failed else BadInput)(str(fault)) from None
 
 
 def print_json(report: Mapping) -> None:

@@ -102,8 +102,8 @@ class McapFile:
 
     Raises
     ------
-    FileExistsError
-        ``<path>.active`` exists: a run that writes it now, or the remains of a killed one.
+    OSError
+        The file cannot be written there; FileExistsError if ``<path>.active`` exists: a run that writes it now, or the remains of a killed one.
     """
 
     def __init__(
@@ -115,6 +115,8 @@ class McapFile:
     ):
         self.path = Path(path)
         self.active_path = self.path.with_name(self.path.name + _ACTIVE)
+        if self.path.is_dir():
+            raise IsADirectoryError(f"{self.path} is a folder; expected the name of a file to write")
         self.path.parent.mkdir(parents=True, exist_ok=True)
         try:
             self._stream = open(self.active_path, "xb")
@@ -213,7 +215,7 @@ class McapFile:
 
     def _raise_fault(self) -> None:
         if self._fault is not None:
-            raise OSError(f"{self.active_path} could not be written: {self._fault}") from self._fault
+            raise OSError(self._fault.errno, f"{self.active_path} could not be written: {self._fault.strerror}") from self._fault
 
     def _rosbag2_metadata(self) -> str:
         start, end = self._span or (0, 0)
