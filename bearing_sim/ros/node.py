@@ -142,18 +142,27 @@ class BearingNode(Node):
             self.live.record_diagnostics(condition, now_ns)
 
     def _log(self, event: Event) -> None:
-        logger = self.get_logger()
-        {Level.OK: logger.info, Level.WARN: logger.warning, Level.ERROR: logger.error}[event.level](f"{event.code}: {event.text}")
+        logger, line = self.get_logger(), f"{event.code}: {event.text}"
+        # rclpy refuses a line of code that logs at more than one severity.
+        if event.level == Level.ERROR:
+            logger.error(line)
+        elif event.level == Level.WARN:
+            logger.warning(line)
+        else:
+            logger.info(line)
 
     def _start_recording(self, path: Path) -> None:
         self.live.attach("record", open_recording(path, self.scene, self.live.start_ns))
         self.get_logger().info(f"recording {path}")
 
     def _serve_start_recording(self, _, response):
+        if self.live.has("record"):
+            response.success, response.message = False, "a recording is going on; stop it first"
+            return response
         path = fresh_path(Path(self.settings.record or "recordings/run.mcap"))
         try:
             self._start_recording(path)
-        except (OSError, ValueError) as fault:
+        except OSError as fault:
             response.success, response.message = False, str(fault)
         else:
             response.success, response.message = True, str(path.resolve())

@@ -42,23 +42,24 @@ class Health:
         self._momentary: dict[str, tuple[Event, int]] = {}
         self._holding: set[str] = set()
         self._seen = {"lost": 0.0, "dropped": 0}
+        self._news: list[Event] = []
 
-    def note(self, event: Event) -> bool:
-        """Take in a momentary event (a refused message, a failure).  Returns whether it is news: not shown already."""
+    def note(self, event: Event) -> None:
+        """Take in a momentary event (a refused message, a failure); while one of its kind is shown it is only counted."""
         kind = _kind(event)
-        known, count = self._momentary.get(kind, (None, 0))
+        _, count = self._momentary.get(kind, (None, 0))
         self._momentary[kind] = (event, count + 1)
-        return known is None
+        if count == 0:
+            self._news.append(event)
 
     def review(
         self, now: float, gate: InputGate, runner: Runner, others: Iterable[Event] = (), values: Mapping[str, object] = MappingProxyType({})
     ) -> Condition:
         """Return what holds at ``now`` [s since the start]; ``others`` are added to the events, ``values`` to the numbers."""
         self._momentary = {kind: (event, count) for kind, (event, count) in self._momentary.items() if now - event.time < _LINGER}
+        self._note_losses(now, runner)
         events = [_counted(event, count) for event, count in self._momentary.values()]
-        events += [*others, *gate.check(now)]
-        events += run_events(now, runner)
-        events += self._losses(now, runner)
+        events += [*others, *gate.check(now), *run_events(now, runner)]
         if runner.newest is not None:
             events += bearing_events(runner.newest, self._thresholds)
         known = {}
@@ -67,28 +68,26 @@ class Health:
         return Condition(list(known.values()), _numbers(gate, runner) | dict(values))
 
     def news(self, events: Iterable[Event]) -> list[Event]:
-        """Return those lasting events that did not hold at the last call: each trouble once, for logs and recordings."""
-        holding = {_kind(event): event for event in events if _kind(event) not in self._momentary}
-        fresh = [event for kind, event in holding.items() if kind not in self._holding]
-        self._holding = set(holding)
-        return fresh
+        """Return, each trouble once, what was noted and which of the lasting ``events`` began since the last call."""
+        lasting = {_kind(event): event for event in events if _kind(event) not in self._momentary}
+        begun = [event for kind, event in lasting.items() if kind not in self._holding]
+        self._holding = set(lasting)
+        noted, self._news = self._news, []
+        return noted + begun
 
-    def _losses(self, now: float, runner: Runner) -> list[Event]:
+    def _note_losses(self, now: float, runner: Runner) -> None:
         """Turn growing loss counters into momentary events."""
-        pace, fresh = runner.pace, []
+        pace = runner.pace
         if pace.lost > self._seen["lost"]:
             self._seen["lost"] = pace.lost
             text = (
                 f"time was given up because the solver or the machine was too slow: {pace.lost:.3g} s so far; "
                 f"{pace.real_time_factor:.3g} of real time is held, the solver alone would reach {pace.solver_factor:.3g}"
             )
-            fresh.append(Event(now, Level.WARN, "pace.lost", text))
+            self.note(Event(now, Level.WARN, "pace.lost", text))
         if runner.dropped > self._seen["dropped"]:
             self._seen["dropped"] = runner.dropped
-            fresh.append(Event(now, Level.WARN, "output.dropped", f"{runner.dropped} blocks of samples were dropped because nobody took them in time"))
-        for event in fresh:
-            self.note(event)
-        return fresh
+            self.note(Event(now, Level.WARN, "output.dropped", f"{runner.dropped} blocks of samples were dropped because nobody took them in time"))
 
 
 def bearing_events(sample, thresholds: Thresholds) -> list[Event]:

@@ -99,7 +99,6 @@ class LiveModel:
         self._sinks: dict[str, Sink] = {}
         self._recorders: dict[str, Recorder] = {}
         self._given_up: dict[str, Event] = {}
-        self._fresh: list[Event] = []
         self.runner.start()
 
     def run_time(self, now_ns: int) -> float:
@@ -117,7 +116,7 @@ class LiveModel:
         now = self.run_time(now_ns)
         event = self.gate.offer(channel, now if stamp_ns is None else self.run_time(stamp_ns), values, arrival=now)
         if event is not None:
-            self._note(event)
+            self.health.note(event)
             return event
         # Speed starts the model: load and temperature have sensible values in the scene, a wrong speed would be a false jolt.
         if self.gate.accepted["shaft_speed"]:
@@ -129,7 +128,7 @@ class LiveModel:
     def refuse(self, channel: str, code: str, reason: str, now_ns: int) -> Event:
         """Take in a message that could not even be read."""
         event = self.gate.refuse(channel, self.run_time(now_ns), code, reason)
-        self._note(event)
+        self.health.note(event)
         return event
 
     def attach(self, name: str, sink: Sink) -> None:
@@ -146,6 +145,10 @@ class LiveModel:
         self._given_up.pop(name, None)
         if hasattr(sink, "write_inputs"):
             self._recorders[name] = sink
+
+    def has(self, name: str) -> bool:
+        """Return whether there is a sink of that name."""
+        return name in self._sinks
 
     def detach(self, name: str) -> Sink | None:
         """Close a sink and return it; None when there is none of that name.
@@ -166,14 +169,13 @@ class LiveModel:
         now = self.run_time(now_ns)
         for item in self.runner.take():
             if isinstance(item, Event):
-                self._note(item._replace(time=now))
+                self.health.note(item._replace(time=now))
             else:
                 self._write(now, item)
-        self._fresh += self.health.news(self.condition(now_ns).events)
-        fresh, self._fresh = self._fresh, []
-        for event in fresh:
+        news = self.health.news(self.condition(now_ns).events)
+        for event in news:
             self._to_sinks(now, lambda sink, event=event: sink.write_event(event))
-        return fresh
+        return news
 
     def condition(self, now_ns: int) -> Condition:
         """Return what holds now, with the numbers behind it."""
@@ -205,10 +207,6 @@ class LiveModel:
         for name in sorted(self._sinks, key=lambda name: name not in self._recorders):  # recordings first: a view may take its time
             self._guarded(name, 0.0, lambda: self.detach(name))
         return stopped
-
-    def _note(self, event: Event) -> None:
-        if self.health.note(event):
-            self._fresh.append(event)
 
     def _write(self, now: float, block: np.ndarray) -> None:
         self._blocks += 1

@@ -1,0 +1,146 @@
+"""A running bearing_node and a client of it in this process, connected over DDS on the loopback interface only."""
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"  # before anything of ROS is loaded
+
+import rclpy  # noqa: E402
+from rclpy.executors import SingleThreadedExecutor  # noqa: E402
+from rclpy.qos import qos_profile_sensor_data  # noqa: E402
+
+from bearing_sim import topics  # noqa: E402
+from bearing_sim.ros.messages import message, message_class  # noqa: E402
+from bearing_sim.simulation import Inputs  # noqa: E402
+
+GOOD = Inputs(shaft_speed=1000.0, load_y=800.0, load_z=0.0, oil_temperature=393.15)
+PATIENCE = 30.0  # [s] how long to wait for what should come at once: the machine may be busy
+_REPOSITORY = Path(__file__).resolve().parent.parent
+
+
+def fresh_domain() -> int:
+    """Return a ROS_DOMAIN_ID of one's own (of 1 to 100: higher ones collide with ports that the system hands out)."""
+    return random.SystemRandom().randint(1, 100)
+
+
+class NodeProcess:
+    """``python -m MODULE ARGUMENTS`` under a watchdog that kills it, with everything it prints kept in a file."""
+
+    def __init__(self, folder: Path, domain: int, *arguments: str, module: str = "bearing_sim.ros.node", limit: int = 90, **environment: str):
+        self.log = folder / f"{module.rpartition('.')[2]}_{time.monotonic_ns()}.log"
+        environment = {**os.environ, "ROS_DOMAIN_ID": str(domain), "ROS_LOG_DIR": str(folder / "ros_log"), **environment}
+        environment["PYTHONPATH"] = os.pathsep.join(filter(None, [str(_REPOSITORY), environment.get("PYTHONPATH")]))
+        command = ["timeout", "-s", "KILL", str(limit), sys.executable, "-m", module, *arguments]
+        with open(self.log, "wb") as log:
+            self.process = subprocess.Popen(command, env=environment, stdout=log, stderr=subprocess.STDOUT, cwd=folder)
+
+    def end(self, number: int = signal.SIGTERM) -> int:
+        """Send a signal and return the exit code."""
+        if self.process.poll() is None:
+            if number == signal.SIGKILL:
+                os.killpg(self.process.pid, number)  # `timeout` leads a process group of its own, the node is in it
+            else:
+                self.process.send_signal(number)
+        return self.wait()
+
+    def wait(self) -> int:
+        """Return the exit code when the process has ended."""
+        return self.process.wait(PATIENCE)
+
+    @property
+    def text(self) -> str:
+        """Everything printed so far."""
+        return self.log.read_text(errors="replace")
+
+
+class Client:
+    """Publishes inputs, keeps outputs, calls services."""
+
+    def __init__(self, domain: int, namespace: str = "", scalar: bool = False):
+        self.context = rclpy.Context()
+        rclpy.init(context=self.context, domain_id=domain)
+        self.node = rclpy.create_node("test_client", context=self.context, namespace=namespace, enable_rosout=False)
+        self.executor = SingleThreadedExecutor(context=self.context)
+        self.executor.add_node(self.node)
+        self.received = {name: [] for name in [*topics.OUTPUTS, "diagnostics"]}
+        self._types = {name: topics.INPUTS[name].ros_type for name in ("shaft_speed", "radial_load")}
+        if scalar:
+            self._types = dict.fromkeys(self._types, "std_msgs/msg/Float64")
+        self.publishers = {
+            name: self.node.create_publisher(message_class(kind), name, qos_profile_sensor_data) for name, kind in self._types.items()
+        }
+        for name, topic in topics.OUTPUTS.items():
+            self.node.create_subscription(message_class(topic.ros_type), name, self.received[name].append, 200)
+        name, kind = topics.DIAGNOSTICS
+        self.node.create_subscription(message_class(kind), f"/{name}", self.received[name].append, 200)
+
+    def close(self):
+        self.executor.shutdown()
+        self.node.destroy_node()
+        rclpy.shutdown(context=self.context)
+
+    def spin(self, seconds: float) -> None:
+        """Let messages come in for a while."""
+        end = time.monotonic() + seconds
+        while (rest := end - time.monotonic()) > 0:
+            self.executor.spin_once(timeout_sec=rest)
+
+    def spin_until(self, condition, what: str, process: NodeProcess | None = None) -> None:
+        """Let messages come in until the condition holds; fail with a clear word when it does not."""
+        end = time.monotonic() + PATIENCE
+        while not condition():
+            assert time.monotonic() < end, f"waited {PATIENCE} s in vain: {what}\n{process.text if process else ''}"
+            assert process is None or process.process.poll() is None, f"the node ended early: {what}\n{process.text}"
+            self.executor.spin_once(timeout_sec=0.05)
+
+    def wait_until_matched(self, process: NodeProcess) -> None:
+        """Wait until the node listens and can be heard."""
+        self.spin_until(lambda: all(p.get_subscription_count() for p in self.publishers.values()), "the node subscribes", process)
+
+    def send(self, channel: str, stamp_ns: int | None = None, **values: float) -> None:
+        """Publish one message; ``values`` replace those of `GOOD`."""
+        stamp_ns = self.node.get_clock().now().nanoseconds if stamp_ns is None else stamp_ns
+        inputs = GOOD._replace(**values)
+        if self._types[channel] == "std_msgs/msg/Float64":
+            fields = {"data": inputs.shaft_speed if channel == "shaft_speed" else inputs.load_y}
+        else:
+            fields = topics.INPUTS[channel].message(stamp_ns, inputs)
+        self.publishers[channel].publish(message(self._types[channel], fields))
+
+    def drive(self, seconds: float, rate: float = 50.0, **values: float) -> None:
+        """Publish both inputs at a rate for a while."""
+        end, due = time.monotonic() + seconds, time.monotonic()
+        while time.monotonic() < end:
+            self.send("shaft_speed", **values)
+            self.send("radial_load", **values)
+            due = max(due + 1 / rate, time.monotonic())
+            self.spin(due - time.monotonic())
+
+    def drive_until(self, condition, what: str, process: NodeProcess, rate: float = 50.0, **values: float) -> None:
+        """Publish both inputs at a rate until the condition holds."""
+        end = time.monotonic() + PATIENCE
+        while not condition():
+            assert time.monotonic() < end, f"waited {PATIENCE} s in vain: {what}\n{self.statuses()[-12:]}\n{process.text}"
+            assert process.process.poll() is None, f"the node ended early: {what}\n{process.text}"
+            self.drive(0.1, rate, **values)
+
+    def statuses(self, since: int = 0) -> list[tuple[int, str, str]]:
+        """Return (level, name, message) of every status in the diagnostics from the message number ``since`` on."""
+        return [(s.level[0], s.name, s.message) for report in self.received["diagnostics"][since:] for s in report.status]
+
+    def values(self) -> dict[str, str]:
+        """Return the numbers of the newest diagnostics."""
+        return {pair.key: pair.value for pair in self.received["diagnostics"][-1].status[0].values}
+
+    def call(self, kind, service: str, request, process: NodeProcess):
+        """Call a service and return its response."""
+        client = self.node.create_client(kind, f"bearing_node/{service}")
+        self.spin_until(client.service_is_ready, f"the service {service} is there", process)
+        future = client.call_async(request)
+        self.spin_until(future.done, f"the service {service} answers", process)
+        return future.result()
