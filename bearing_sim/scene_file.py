@@ -5,7 +5,7 @@ import difflib
 import re
 import types
 import typing
-from collections.abc import Iterable, Mapping
+from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
@@ -49,6 +49,8 @@ def _mapping_with_unique_keys(loader: yaml.SafeLoader, node: yaml.MappingNode) -
     seen = set()
     for key_node, _ in node.value:
         key = loader.construct_object(key_node)
+        if not isinstance(key, Hashable):
+            raise yaml.constructor.ConstructorError(None, None, "a key cannot be a list or a mapping", key_node.start_mark)
         if key in seen:
             raise yaml.constructor.ConstructorError(None, None, f"the key {key!r} is written twice", key_node.start_mark)
         seen.add(key)
@@ -166,13 +168,14 @@ def _apply_override(tree: dict, override: str) -> None:
     node[keys[-1]] = value
 
 
-def _catalog_names(kind: str) -> list[str]:
+def catalog_names(kind: str) -> list[str]:
+    """Return the names of the catalog entries of a kind: ``bearings``, ``oils`` or ``mappings``."""
     folder = resources.files("bearing_sim").joinpath("catalog", kind)
     return sorted(entry.name.removesuffix(".yaml") for entry in folder.iterdir() if entry.name.endswith(".yaml"))
 
 
 def _from_catalog(kind: str, name: str, path: str) -> tuple[dict, list[Fault]]:
-    names = _catalog_names(kind)
+    names = catalog_names(kind)
     if name not in names:
         return {}, [Fault(path, repr(name), f"not in the catalog{did_you_mean(str(name), names)}; known: {', '.join(names)}")]
     return yaml.load(resources.files("bearing_sim").joinpath("catalog", kind, f"{name}.yaml").read_text(), Loader=_UniqueKeyLoader), []
@@ -194,7 +197,7 @@ def _with_presets(tree: Mapping) -> tuple[dict, list[Fault]]:
         oil, unknown = _from_catalog("oils", lubricant["oil"], "lubricant.oil")
         faults += unknown
         if unknown:
-            oil = _from_catalog("oils", _catalog_names("oils")[0], "")[0]  # so that the rest is still checked
+            oil = _from_catalog("oils", catalog_names("oils")[0], "")[0]  # so that the rest is still checked
         tree["lubricant"] = {**lubricant, "oil": oil}
     return tree, faults
 
@@ -231,6 +234,11 @@ def _fault(problem: Mapping, record: type, laws: frozenset[str]) -> Fault:
     shown = "" if isinstance(value, Mapping) or dataclasses.is_dataclass(value) or type(value).__name__ == "ArgsKwargs" else repr(value)
     if kind == "missing":
         return Fault(path, "", "missing")
+    if kind == "union_tag_not_found":
+        return Fault(f"{path}.law", "", "missing")
+    if kind == "union_tag_invalid":
+        tag, known = problem["ctx"]["tag"], problem["ctx"]["expected_tags"]
+        return Fault(f"{path}.law", repr(tag), f"expected one of {known}{did_you_mean(str(tag), re.findall(r'[a-z_0-9]+', known))}")
     if kind == "unexpected_keyword_argument":
         known = _field_names(problem["loc"][:-1], record, laws)
         return Fault(path, shown, f"unknown field{did_you_mean(str(problem['loc'][-1]), known)}; known here: {', '.join(known)}")

@@ -54,7 +54,9 @@ oil_temperature: {column: T}
 @pytest.mark.parametrize(
     "old, new, words",
     [
-        ("law: sum", "law: product", "'sum', 'norm', 'mass_times_acceleration'"),
+        ("law: sum", "law: summ", "radial_load.law = 'summ': expected one of 'sum', 'norm', .*did you mean 'sum'"),
+        ("law: sum, ", "", "radial_load.law: missing"),
+        ("name: test rig", "name: test rig\n[1, 2]: 3", "a key cannot be a list"),
         ("unit: kN", "unit: kN, scale: 3 N", "either unit, or scale"),
         ("unit: kN", "unit: kN, offset: 3 N", "no offset beside unit"),
         ("unit: kN", "scale: .nan", "outside|finite"),

@@ -2,6 +2,10 @@
 
 import json
 import math
+import signal
+import subprocess
+import sys
+import time
 from collections import defaultdict
 
 import numpy as np
@@ -219,6 +223,22 @@ def test_bad_input_is_one_message_and_exit_code_2(tmp_path, monkeypatch, argumen
     ran = command(*arguments, "-o", "out.mcap", "--json")
     assert ran.exit_code == 2 and words in ran.stderr and ran.stdout == ""
     assert not list(tmp_path.glob("out*"))
+
+
+@pytest.mark.timeout(120)
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_run_that_is_told_to_stop_leaves_a_finished_file(tmp_path, number):
+    log = steady_log(tmp_path / "log.mcap", duration=2000.0)
+    arguments = [sys.executable, "-m", "bearing_sim.cli", "replay", log, "--scene", "deng2017_table1", "-o", tmp_path / "out.mcap", "--json"]
+    child = subprocess.Popen([str(argument) for argument in arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    active, deadline = tmp_path / "out.mcap.active", time.monotonic() + 60
+    while not (active.exists() and active.stat().st_size > 20_000) and time.monotonic() < deadline:
+        time.sleep(0.05)
+    child.send_signal(number)
+    stdout, stderr = child.communicate(timeout=30)
+    assert child.returncode != 0 and b"Traceback" not in stderr and not active.exists()
+    with open(tmp_path / "out.mcap", "rb") as stream:
+        assert make_reader(stream).get_summary().statistics.message_count > 100
 
 
 def test_log_is_never_overwritten_by_its_own_replay(tmp_path):

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.commands.reporting import BadInput, FailedRun, print_json, print_table, progress_bar, told_as_bad_input, told_file_faults
+from bearing_sim.commands.reporting import BadInput, FailedRun, orderly_end, print_json, print_table, progress_bar, told_as_bad_input, told_file_faults
 
 
 @click.command()
@@ -42,7 +42,7 @@ def command(log, scene_name, overrides, out, rrd, rate, speed_topic, load_topic,
     from bearing_sim.sinks.mcap_sink import McapSink
 
     names = {"shaft_speed": speed_topic, "radial_load": load_topic, "oil_temperature": temperature_topic}
-    with told_as_bad_input(SceneError, InputLogError), told_file_faults():
+    with told_as_bad_input(SceneError, InputLogError), told_file_faults(), orderly_end():
         if out.exists() and log.exists() and out.samefile(log):
             raise BadInput(f"{out} is the log itself; write to another file")
         scene = load_scene(scene_name, overrides)

@@ -3,7 +3,9 @@
 import errno
 import json
 import math
+import signal
 import sys
+import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 
@@ -39,6 +41,19 @@ def told_file_faults() -> Iterator[None]:
     except OSError as fault:
         failed = fault.errno in (errno.ENOSPC, errno.EIO, errno.EDQUOT, errno.EFBIG)
         raise (FailedRun if failed else BadInput)(str(fault)) from None
+
+
+@contextmanager
+def orderly_end() -> Iterator[None]:
+    """Make SIGTERM unwind the program as Ctrl-C does, so that recordings are finished; exit code 143."""
+    if threading.current_thread() is not threading.main_thread():  # only the main thread may set handlers
+        yield
+        return
+    before = signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 def print_json(report: Mapping) -> None:
