@@ -37,7 +37,6 @@ OBSERVABLES = (
     Observable("outer_equivalent_load", "N", "dynamic equivalent roller load of the stationary outer ring"),
     Observable("ring_y", "m", "inner-ring centre displacement along y"),
     Observable("ring_z", "m", "inner-ring centre displacement along z"),
-    Observable("cage_torque", "N m", "torque of rollers, guide land and oil on cage and rollers about the shaft axis"),
     Observable("roller_angle", "rad", "azimuth of the roller centre", True),
     Observable("roller_radius", "m", "distance of the roller centre from the outer-ring centre", True),
     Observable("roller_spin", "rad/s", "roller spin, positive where it rolls on the outer ring", True),

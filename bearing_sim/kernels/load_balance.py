@@ -5,6 +5,7 @@ potential is convex.  Newton's method with a bounded, backtracked step therefore
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -38,6 +39,24 @@ def _outer_shares(intervals):
 
 
 _OUTER_SHARES = _outer_shares(1024)
+
+
+class LoadRow(NamedTuple):
+    """Rows of a loads array, shape (len(LOAD), Z): the radial balance of all rollers at one cage angle."""
+
+    cosine: int = 0  # of the roller's azimuth
+    sine: int = 1
+    squeeze: int = 2  # R_i + D_w - R_e [m]: the approach with the ring in the centre
+    contour_slope: int = 3  # dR_e/dphi [m/rad]
+    centrifugal: int = 4  # F_c [N]
+    free: int = 5  # outer penetration under F_c alone [m]
+    radius: int = 6  # distance of the roller from the outer-ring centre [m]
+    outer_penetration: int = 7  # [m]
+    inner: int = 8  # Q_i [N]
+    outer: int = 9  # Q_e [N]
+
+
+LOAD = LoadRow()
 
 
 @kernel
@@ -76,17 +95,17 @@ def squeezed_roller(approach, centrifugal, free, stiffness):
 
 
 @kernel
-def _ring_forces(y, z, load_y, load_z, rollers, stiffness, loads):
+def _ring_forces(y, z, load_y, load_z, stiffness, loads):
     """Balance all rollers at a ring position; return the ring's residual force and its stiffness matrix."""
     force_y, force_z = load_y - _CENTRING_STIFFNESS * y, load_z - _CENTRING_STIFFNESS * z
     k_yy, k_yz, k_zz = _CENTRING_STIFFNESS, 0.0, _CENTRING_STIFFNESS
-    for j in range(rollers):
-        cosine, sine = loads.cosine[j], loads.sine[j]
-        approach = loads.squeeze[j] + y * cosine + z * sine
-        outer, inner_load, slope = squeezed_roller(approach, loads.centrifugal[j], loads.free[j], stiffness)
-        loads.outer_penetration[j] = outer
-        loads.inner[j] = inner_load
-        loads.outer[j] = inner_load + loads.centrifugal[j]
+    for j in range(loads.shape[1]):
+        cosine, sine = loads[LOAD.cosine, j], loads[LOAD.sine, j]
+        approach = loads[LOAD.squeeze, j] + y * cosine + z * sine
+        outer, inner_load, slope = squeezed_roller(approach, loads[LOAD.centrifugal, j], loads[LOAD.free, j], stiffness)
+        loads[LOAD.outer_penetration, j] = outer
+        loads[LOAD.inner, j] = inner_load
+        loads[LOAD.outer, j] = inner_load + loads[LOAD.centrifugal, j]
         if slope == 0.0:
             continue
         force_y -= inner_load * cosine
@@ -98,28 +117,28 @@ def _ring_forces(y, z, load_y, load_z, rollers, stiffness, loads):
 
 
 @kernel
-def balance_ring(load_y, load_z, rollers, stiffness, loads):
+def balance_ring(load_y, load_z, stiffness, loads, ring):
     """Find the ring position at which the roller loads carry the radial load.
 
     Parameters
     ----------
     load_y, load_z : radial load on the inner ring [N].
-    rollers : number of rollers, Z.
     stiffness : K [N/m^(10/9)].
-    loads : `bearing_sim.levels.slip.RollerLoads`; cosine, sine, squeeze, centrifugal and free go in; ring (start and
-        result), outer_penetration, inner and outer come out.
+    loads : array with rows `LOAD`; cosine, sine, squeeze, centrifugal and free go in; outer_penetration, inner and outer
+        come out.
+    ring : ring centre (y, z) [m], start and result, shape (2,).
 
     Returns
     -------
     converged : bool
     """
-    y, z = loads.ring[0], loads.ring[1]
-    force_y, force_z, k_yy, k_yz, k_zz = _ring_forces(y, z, load_y, load_z, rollers, stiffness, loads)
+    y, z = ring[0], ring[1]
+    force_y, force_z, k_yy, k_yz, k_zz = _ring_forces(y, z, load_y, load_z, stiffness, loads)
     tolerance = _RELATIVE_RESIDUAL * (math.hypot(load_y, load_z) + 1.0)
     for _ in range(_ITERATIONS):
         residual = math.hypot(force_y, force_z)
         if residual <= tolerance:
-            loads.ring[0], loads.ring[1] = y, z
+            ring[0], ring[1] = y, z
             return True
         determinant = k_yy * k_zz - k_yz * k_yz
         step_y = (k_zz * force_y - k_yz * force_z) / determinant
@@ -129,7 +148,7 @@ def balance_ring(load_y, load_z, rollers, stiffness, loads):
         for _ in range(30):
             next_y, next_z = y + scale * step_y, z + scale * step_z
             next_force_y, next_force_z, next_yy, next_yz, next_zz = _ring_forces(
-                next_y, next_z, load_y, load_z, rollers, stiffness, loads
+                next_y, next_z, load_y, load_z, stiffness, loads
             )
             # Downhill in the convex potential: the remaining force must not push back past the step by more than it pushed on.
             if next_force_y * step_y + next_force_z * step_z >= -0.5 * (force_y * step_y + force_z * step_z):
@@ -137,5 +156,5 @@ def balance_ring(load_y, load_z, rollers, stiffness, loads):
             scale *= 0.5
         y, z = next_y, next_z
         force_y, force_z, k_yy, k_yz, k_zz = next_force_y, next_force_z, next_yy, next_yz, next_zz
-    loads.ring[0], loads.ring[1] = y, z
+    ring[0], ring[1] = y, z
     return math.hypot(force_y, force_z) <= 1e3 * tolerance

@@ -5,7 +5,7 @@ import math
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from bearing_sim.kernels.compilation import kernel
+from bearing_sim.kernels.compilation import kernel, template
 
 TABLE_INTERVALS = 720
 
@@ -48,21 +48,17 @@ def lobed_contour(low_radius, d_value, lobes, installation_angle):
     return contour_table(angles, radii)
 
 
-@kernel
-def contour_at(table, azimuth):
+@template
+def contour_at(table, position):
     """Return contour radius [m] and its derivative by azimuth [m/rad].
 
     Parameters
     ----------
     table : periodic cubic table, shape (n, 4), see `contour_table`.
-    azimuth : any angle [rad].
+    position : azimuth in intervals of the table, n azimuth/(2 pi), from 0 to n.
     """
     intervals = table.shape[0]
-    spacing = 2.0 * math.pi / intervals
-    turns = azimuth / (2.0 * math.pi)
-    position = (turns - math.floor(turns)) * intervals
     index = min(int(position), intervals - 1)
-    x = (position - index) * spacing
-    radius = ((table[index, 0] * x + table[index, 1]) * x + table[index, 2]) * x + table[index, 3]
-    derivative = (3.0 * table[index, 0] * x + 2.0 * table[index, 1]) * x + table[index, 2]
-    return radius, derivative
+    x = (position - index) * (2.0 * math.pi / intervals)
+    a, b, c = table[index, 0], table[index, 1], table[index, 2]
+    return ((a * x + b) * x + c) * x + table[index, 3], (3.0 * a * x + 2.0 * b) * x + c

@@ -12,6 +12,7 @@ import math
 from typing import NamedTuple
 
 from bearing_sim.kernels.compilation import kernel
+from bearing_sim.kernels.elementary import exponential, logarithm
 
 # Below these the powers of the fits run away; both are far below anything that carries torque.
 _LOAD_FLOOR = 1e-3  # N
@@ -31,6 +32,31 @@ class TractionConstants(NamedTuple):
     c_constant: float
     c_load: float
     c_speed: float
+
+
+class FilmRow(NamedTuple):
+    """Rows of a film array, shape (len(FILM), Z): one raceway's contacts with all rollers.
+
+    One array instead of one each, because compiled code counts references to every array that it hands on.
+    """
+
+    rolling: int = 0  # mean speed u of both surfaces relative to the contact [m/s]
+    sliding: int = 1  # surface-speed difference du, raceway less roller [m/s]
+    load: int = 2  # normal force Q [N]
+    force: int = 3  # T on the roller, with the sign of du [N]
+    by_sliding: int = 4  # dT/d(du) [N s/m]
+    by_rolling: int = 5  # dT/du [N s/m]
+    log_load: int = 6  # from here on, steps of the computation
+    log_speed: int = 7
+    inverse_speed: int = 8
+    slide_to_roll: int = 9
+    d: int = 10
+    b: int = 11
+    c: int = 12
+    decay: int = 13
+
+
+FILM = FilmRow()
 
 
 def oil_4109_constants(scale, oil, curvature_radius, reduced_modulus):
@@ -65,52 +91,57 @@ def constant_constants(scale, b, c, d):
     """
 
     def logarithm(value):
-        return math.log(value) if value > 0 else -math.inf
+        return math.log(value) if value > 0 else -600.0  # a factor that is nothing, and no infinity to multiply by zero
 
     return TractionConstants(scale, logarithm(d), 0.0, 0.0, logarithm(b), 0.0, 0.0, logarithm(c), 0.0, 0.0)
 
 
 @kernel
-def traction(load, rolling_speed, sliding_speed, constants):
-    """Return the tangential force [N] on the slower surface's side and its slopes.
+def traction(film, constants):
+    """Compute the tangential forces of one raceway's contacts with all rollers.
 
     Parameters
     ----------
-    load : normal force Q [N].
-    rolling_speed : mean speed u of both surfaces relative to the contact [m/s].
-    sliding_speed : surface-speed difference du [m/s]; the force has its sign.
-    constants : `TractionConstants` of the contact.
-
-    Returns
-    -------
-    force : T [N]
-    by_sliding : dT/d(du) [N s/m]
-    by_rolling : dT/du [N s/m]
+    film : array with rows `FILM`; rolling, sliding and load go in, force and its slopes come out.
+    constants : `TractionConstants` of the raceway.
     """
-    if load <= 0.0:
-        return 0.0, 0.0, 0.0
-    squared_speed = rolling_speed * rolling_speed + _ROLLING_SPEED_FLOOR * _ROLLING_SPEED_FLOOR
-    log_speed = 0.5 * math.log(squared_speed)
-    log_load = math.log(max(load, _LOAD_FLOOR))
-    d = math.exp(constants.d_constant + constants.d_load * log_load + constants.d_speed * log_speed)
-    b = math.exp(constants.b_constant + constants.b_load * log_load + constants.b_speed * log_speed)
-    c = math.exp(constants.c_constant + constants.c_load * log_load + constants.c_speed * log_speed)
-    inverse_speed = 1.0 / math.sqrt(squared_speed)
-    slide_to_roll = abs(sliding_speed) * inverse_speed
-    decay = math.exp(-c * slide_to_roll)
-    rest = d - b * slide_to_roll
-    coefficient = d - rest * decay
-    by_ratio = (b + c * rest) * decay
-    by_log_speed = (
-        constants.d_speed * d * (1.0 - decay)
-        + constants.b_speed * b * slide_to_roll * decay
-        + constants.c_speed * c * slide_to_roll * rest * decay
-        - slide_to_roll * by_ratio
-    )
-    force = constants.scale * load
-    sign = 1.0 if sliding_speed >= 0.0 else -1.0
-    return (
-        sign * force * coefficient,
-        force * by_ratio * inverse_speed,
-        sign * force * by_log_speed * rolling_speed / squared_speed,
-    )
+    # Short loops with few operands each: only those does the compiler vectorise.
+    for j in range(film.shape[1]):
+        film[FILM.log_load, j] = logarithm(max(film[FILM.load, j], _LOAD_FLOOR))
+    for j in range(film.shape[1]):
+        speed = film[FILM.rolling, j]
+        film[FILM.log_speed, j] = 0.5 * logarithm(speed * speed + _ROLLING_SPEED_FLOOR * _ROLLING_SPEED_FLOOR)
+    for j in range(film.shape[1]):
+        film[FILM.inverse_speed, j] = exponential(-film[FILM.log_speed, j])
+    for j in range(film.shape[1]):
+        film[FILM.d, j] = exponential(
+            constants.d_constant + constants.d_load * film[FILM.log_load, j] + constants.d_speed * film[FILM.log_speed, j]
+        )
+    for j in range(film.shape[1]):
+        film[FILM.b, j] = exponential(
+            constants.b_constant + constants.b_load * film[FILM.log_load, j] + constants.b_speed * film[FILM.log_speed, j]
+        )
+    for j in range(film.shape[1]):
+        film[FILM.c, j] = exponential(
+            constants.c_constant + constants.c_load * film[FILM.log_load, j] + constants.c_speed * film[FILM.log_speed, j]
+        )
+    for j in range(film.shape[1]):
+        film[FILM.slide_to_roll, j] = abs(film[FILM.sliding, j]) * film[FILM.inverse_speed, j]
+    for j in range(film.shape[1]):
+        film[FILM.decay, j] = exponential(-film[FILM.c, j] * film[FILM.slide_to_roll, j])
+    for j in range(film.shape[1]):
+        ratio, decay = film[FILM.slide_to_roll, j], film[FILM.decay, j]
+        d, b, c = film[FILM.d, j], film[FILM.b, j], film[FILM.c, j]
+        rest = d - b * ratio
+        by_ratio = (b + c * rest) * decay
+        by_log_speed = (
+            constants.d_speed * d * (1.0 - decay)
+            + (constants.b_speed * b + constants.c_speed * c * rest) * ratio * decay
+            - ratio * by_ratio
+        )
+        force = constants.scale * film[FILM.load, j]
+        signed_force = force if film[FILM.sliding, j] >= 0.0 else -force
+        inverse_speed = film[FILM.inverse_speed, j]
+        film[FILM.force, j] = signed_force * (d - rest * decay)
+        film[FILM.by_sliding, j] = force * by_ratio * inverse_speed
+        film[FILM.by_rolling, j] = signed_force * by_log_speed * film[FILM.rolling, j] * inverse_speed * inverse_speed

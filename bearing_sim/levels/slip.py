@@ -4,7 +4,7 @@ Rollers are locked to their pockets, so all orbit with the cage; each is held ra
 inner ring by the load.  What is left of Deng 2017, eq. 14 to 16, is one angular momentum balance for cage and
 rollers together and one spin equation per roller.  Left out: pocket play, radial vibration, cage whirl.
 
-State: y = (theta_c, omega_c, w_1, ..., w_Z) in rad and rad/s; the border of the block-arrow Jacobian comes first.
+State: y = (theta_c, omega_c, w_1, ..., w_Z) in rad and rad/s; the Jacobian is an arrow, its border comes first.
 """
 
 import math
@@ -15,58 +15,35 @@ import numpy as np
 from bearing_sim.integrators.drive import drive
 from bearing_sim.integrators.rosenbrock2 import rosenbrock2_step
 from bearing_sim.integrators.status import OK
-from bearing_sim.kernels.block_arrow import BlockArrow, factor_shifted, new_block_arrow, solve_factored
+from bearing_sim.kernels.arrow import ARROW, Arrow, factor_shifted, new_arrow, solve_factored
 from bearing_sim.kernels.cage import land_torque
 from bearing_sim.kernels.compilation import kernel
 from bearing_sim.kernels.contact import line_penetration
 from bearing_sim.kernels.drag import churning_force, cylinder_torque, end_face_torque
-from bearing_sim.kernels.load_balance import balance_ring
+from bearing_sim.kernels.load_balance import LOAD, balance_ring
 from bearing_sim.kernels.raceway import contour_at
-from bearing_sim.kernels.traction import traction
+from bearing_sim.kernels.traction import FILM, traction
 from bearing_sim.params import Lubrication, Params
 from bearing_sim.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT, rating_life_revolutions
 from bearing_sim.sample import COLUMN, SCALARS
 
 THETA, OMEGA, SPIN = 0, 1, 2
 _FRICTION_SPIN = 10.0  # rad/s; pocket friction is proportional to spin well below this
-_PITCH_POSITIONS = 6  # cage angles over one roller pitch for the equivalent loads
+_PITCH_POSITIONS = 10  # cage angles over one roller pitch for the equivalent loads
 _SLIP_FLOOR = 1.0  # rad/s of ideal cage speed; slip of a bearing at rest is not defined
-
-
-class RollerLoads(NamedTuple):
-    """Radial balance of all rollers and the ring at one cage angle; arrays of shape (Z,)."""
-
-    cosine: np.ndarray
-    sine: np.ndarray
-    squeeze: np.ndarray  # R_i + D_w - R_e [m]: the approach with the ring in the centre
-    contour_slope: np.ndarray  # dR_e/dphi [m/rad]
-    centrifugal: np.ndarray  # F_c [N]
-    free: np.ndarray  # outer penetration under F_c alone [m]
-    radius: np.ndarray  # distance of the roller from the outer-ring centre [m]
-    outer_penetration: np.ndarray  # [m]
-    inner: np.ndarray  # Q_i [N]
-    outer: np.ndarray  # Q_e [N]
-    ring: np.ndarray  # ring centre (y, z) [m], shape (2,); start of the next search
-
-
-class Forces(NamedTuple):
-    """Forces on each roller, arrays of shape (Z,)."""
-
-    tangential: np.ndarray  # sum of all forces along the orbit but the pocket's [N]
-    spin_torque: np.ndarray  # R_w (T_i - T_e) [N m]
-    spin_torque_slope: np.ndarray  # by the roller's spin [N m s]
 
 
 class Work(NamedTuple):
     """Memory that the level writes while it computes."""
 
-    loads: RollerLoads
-    forces: Forces
-    pitch_cosine: np.ndarray  # of 2 pi j/Z, shape (Z,)
-    pitch_sine: np.ndarray
-    jacobian: BlockArrow
-    factored: BlockArrow  # of I - gamma h J
-    scratch: np.ndarray  # shape (2, 2)
+    loads: np.ndarray  # rows `bearing_sim.kernels.load_balance.LOAD`, shape (10, Z)
+    ring: np.ndarray  # ring centre (y, z) [m], shape (2,); start of the next search
+    inner_film: np.ndarray  # rows `bearing_sim.kernels.traction.FILM`, shape (14, Z)
+    outer_film: np.ndarray
+    tangential: np.ndarray  # all forces along the orbit on each roller but the pocket's [N], shape (Z,)
+    pitch: np.ndarray  # rows cosine and sine of 2 pi j/Z, and the angle in intervals of the contour table, shape (3, Z)
+    jacobian: Arrow
+    factored: Arrow  # of I - gamma h J
 
 
 class Drive(NamedTuple):
@@ -94,13 +71,14 @@ def new_work(params):
     count = params.rollers.count
     angles = 2 * math.pi * np.arange(count) / count
     return Work(
-        RollerLoads(*[np.zeros(count) for _ in range(10)], np.zeros(2)),
-        Forces(*[np.zeros(count) for _ in range(3)]),
-        np.cos(angles),
-        np.sin(angles),
-        new_block_arrow(count, 1, 2),
-        new_block_arrow(count, 1, 2),
-        np.zeros((2, 2)),
+        loads=np.zeros((len(LOAD), count)),
+        ring=np.zeros(2),
+        inner_film=np.zeros((len(FILM), count)),
+        outer_film=np.zeros((len(FILM), count)),
+        tangential=np.zeros(count),
+        pitch=np.array([np.cos(angles), np.sin(angles), params.raceways.contour.shape[0] * np.arange(count) / count]),
+        jacobian=new_arrow(count),
+        factored=new_arrow(count),
     )
 
 
@@ -119,60 +97,57 @@ def balance_loads(cage_angle, cage_speed, load_y, load_z, params, work):
     rollers, raceways, loads = params.rollers, params.raceways, work.loads
     cosine, sine = math.cos(cage_angle), math.sin(cage_angle)
     free_at_pitch = line_penetration(rollers.mass * raceways.pitch_radius * cage_speed * cage_speed, raceways.stiffness)
+    intervals = raceways.contour.shape[0]
+    turns = cage_angle / (2.0 * math.pi)
+    start = (turns - math.floor(turns)) * intervals
     for j in range(rollers.count):
-        loads.cosine[j] = cosine * work.pitch_cosine[j] - sine * work.pitch_sine[j]
-        loads.sine[j] = sine * work.pitch_cosine[j] + cosine * work.pitch_sine[j]
-        radius, slope = contour_at(raceways.contour, cage_angle + 2.0 * math.pi * j / rollers.count)
-        loads.contour_slope[j] = slope
-        loads.squeeze[j] = raceways.inner_radius + 2.0 * rollers.radius - radius
+        loads[LOAD.cosine, j] = cosine * work.pitch[0, j] - sine * work.pitch[1, j]
+        loads[LOAD.sine, j] = sine * work.pitch[0, j] + cosine * work.pitch[1, j]
+        position = start + work.pitch[2, j]
+        radius, slope = contour_at(raceways.contour, position - intervals if position >= intervals else position)
+        loads[LOAD.contour_slope, j] = slope
+        loads[LOAD.squeeze, j] = raceways.inner_radius + 2.0 * rollers.radius - radius
         # The penetration is a ten-thousandth of the radius: the centrifugal force does not wait for it.
-        loads.radius[j] = radius - rollers.radius
-        loads.centrifugal[j] = rollers.mass * loads.radius[j] * cage_speed * cage_speed
-        loads.free[j] = free_at_pitch * (1.0 + 0.9 * (loads.radius[j] / raceways.pitch_radius - 1.0))
-    converged = balance_ring(load_y, load_z, rollers.count, raceways.stiffness, loads)
+        loads[LOAD.radius, j] = radius - rollers.radius
+        loads[LOAD.centrifugal, j] = rollers.mass * loads[LOAD.radius, j] * cage_speed * cage_speed
+        loads[LOAD.free, j] = free_at_pitch * (1.0 + 0.9 * (loads[LOAD.radius, j] / raceways.pitch_radius - 1.0))
+    converged = balance_ring(load_y, load_z, raceways.stiffness, loads, work.ring)
     for j in range(rollers.count):
-        loads.radius[j] += loads.outer_penetration[j]
+        loads[LOAD.radius, j] += loads[LOAD.outer_penetration, j]
     return converged
 
 
 @kernel
-def _roller_forces(j, cage_speed, spin, shaft_speed, model, work):
-    """Tangential force and spin torque of roller j, and their slopes, but for the churning that all rollers share.
+def _tractions(cage_speed, shaft_speed, y, model, work):
+    """Compute the tangential forces in all contacts; results in ``work.inner_film`` and ``work.outer_film``."""
+    rollers, inner_radius = model.params.rollers, model.params.raceways.inner_radius
+    inner, outer, loads = work.inner_film, work.outer_film, work.loads
+    for j in range(rollers.count):
+        radius = loads[LOAD.radius, j]
+        orbital, surface = radius * cage_speed, y[SPIN + j] * rollers.radius
+        roller_rolling = surface + cage_speed * rollers.radius
+        inner[FILM.rolling, j] = 0.5 * ((shaft_speed - cage_speed) * inner_radius + roller_rolling)
+        inner[FILM.sliding, j] = shaft_speed * inner_radius - orbital - surface
+        outer[FILM.rolling, j] = 0.5 * (cage_speed * (radius + rollers.radius) + roller_rolling)
+        outer[FILM.sliding, j] = surface - orbital
+        inner[FILM.load, j] = loads[LOAD.inner, j]
+        outer[FILM.load, j] = loads[LOAD.outer, j]
+    traction(inner, model.lubrication.inner)
+    traction(outer, model.lubrication.outer)
 
-    Returns tangential force [N], its slopes by cage speed and spin, spin torque [N m] and its slopes by cage speed and spin.
+
+@kernel
+def _leaning_force(cage_speed, params, work):
+    """Write into ``work.tangential`` the force along the orbit on each roller [N] that comes without oil.
+
+    Both normal forces lean, the outer by the contour's slope and the inner by the ring's displacement, and a roller that
+    follows the contour feels the Coriolis force.
     """
-    rollers, raceways, loads = model.params.rollers, model.params.raceways, work.loads
-    lubrication = model.lubrication
-    radius, roller_radius = loads.radius[j], rollers.radius
-    outer_radius = radius + roller_radius
-    orbital, surface = radius * cage_speed, spin * roller_radius
-    inner, inner_sliding, inner_rolling = traction(
-        loads.inner[j],
-        0.5 * ((shaft_speed - cage_speed) * raceways.inner_radius + (spin + cage_speed) * roller_radius),
-        shaft_speed * raceways.inner_radius - orbital - surface,
-        lubrication.inner,
-    )
-    outer, outer_sliding, outer_rolling = traction(
-        loads.outer[j],
-        0.5 * (cage_speed * outer_radius + (spin + cage_speed) * roller_radius),
-        surface - orbital,
-        lubrication.outer,
-    )
-    inner_by_cage = -radius * inner_sliding + 0.5 * (roller_radius - raceways.inner_radius) * inner_rolling
-    inner_by_spin = -roller_radius * inner_sliding + 0.5 * roller_radius * inner_rolling
-    outer_by_cage = -radius * outer_sliding + 0.5 * (outer_radius + roller_radius) * outer_rolling
-    outer_by_spin = roller_radius * outer_sliding + 0.5 * roller_radius * outer_rolling
-    # Both normal forces lean: the outer by the contour's slope, the inner by the ring's displacement.
-    lean = loads.outer[j] * loads.contour_slope[j] + loads.inner[j] * (loads.ring[1] * loads.cosine[j] - loads.ring[0] * loads.sine[j])
-    coriolis = 2.0 * rollers.mass * loads.contour_slope[j] * cage_speed * cage_speed
-    return (
-        inner + outer + raceways.slope_factor * (lean / radius - coriolis),
-        inner_by_cage + outer_by_cage,
-        inner_by_spin + outer_by_spin,
-        roller_radius * (inner - outer),
-        roller_radius * (inner_by_cage - outer_by_cage),
-        roller_radius * (inner_by_spin - outer_by_spin),
-    )
+    y, z, loads = work.ring[0], work.ring[1], work.loads
+    coriolis = 2.0 * params.rollers.mass * cage_speed * cage_speed
+    for j in range(params.rollers.count):
+        lean = loads[LOAD.outer, j] * loads[LOAD.contour_slope, j] + loads[LOAD.inner, j] * (z * loads[LOAD.cosine, j] - y * loads[LOAD.sine, j])
+        work.tangential[j] = params.raceways.slope_factor * (lean / loads[LOAD.radius, j] - coriolis * loads[LOAD.contour_slope, j])
 
 
 @kernel
@@ -210,8 +185,8 @@ def _shaft_speed(t, drive):
 @kernel
 def _equations(t, y, model, work, rate, with_jacobian):
     """Evaluate the right-hand side, and the Jacobian where asked; return False where the loads did not balance."""
-    params, drive, forces, loads, jacobian = model.params, model.drive, work.forces, work.loads, work.jacobian
-    rollers, cage = params.rollers, params.cage
+    params, drive, loads, tangential = model.params, model.drive, work.loads, work.tangential
+    rollers, cage, inner_radius = params.rollers, params.cage, params.raceways.inner_radius
     cage_speed, shaft_speed = y[OMEGA], _shaft_speed(t, drive)
     elapsed = t - drive.start
     load_y, load_z = drive.load_y + drive.load_y_rate * elapsed, drive.load_z + drive.load_z_rate * elapsed
@@ -219,39 +194,41 @@ def _equations(t, y, model, work, rate, with_jacobian):
         return False
     torque, torque_slope = _cage_torque(cage_speed, shaft_speed, model)
     churning, churning_slope = _churning(cage_speed, model)
-    inertia = cage.inertia
+    _leaning_force(cage_speed, params, work)
+    _tractions(cage_speed, shaft_speed, y, model, work)
+    inner, outer, jacobian, border = work.inner_film, work.outer_film, work.jacobian.rows, work.jacobian.border
+    inertia, roller_radius = cage.inertia, rollers.radius
     for j in range(rollers.count):
-        radius = loads.radius[j]
-        force, by_cage, by_spin, spin_torque, spin_by_cage, spin_by_spin = _roller_forces(
-            j, cage_speed, y[SPIN + j], shaft_speed, model, work
-        )
-        force -= churning
-        torque += radius * force
-        torque_slope += radius * (by_cage - churning_slope)
+        radius = loads[LOAD.radius, j]
+        tangential[j] += inner[FILM.force, j] + outer[FILM.force, j] - churning
+        torque += radius * tangential[j]
         inertia += rollers.mass * radius * radius
-        forces.tangential[j] = force
-        forces.spin_torque[j] = spin_torque
-        forces.spin_torque_slope[j] = spin_by_spin
         if with_jacobian:
-            jacobian.below[j, OMEGA, 0] = radius * by_spin
-            jacobian.right[j, 0, OMEGA] = spin_by_cage / rollers.inertia
+            outer_radius = radius + roller_radius
+            inner_by_cage = 0.5 * (roller_radius - inner_radius) * inner[FILM.by_rolling, j] - radius * inner[FILM.by_sliding, j]
+            outer_by_cage = 0.5 * (roller_radius + outer_radius) * outer[FILM.by_rolling, j] - radius * outer[FILM.by_sliding, j]
+            inner_by_spin = roller_radius * (0.5 * inner[FILM.by_rolling, j] - inner[FILM.by_sliding, j])
+            outer_by_spin = roller_radius * (0.5 * outer[FILM.by_rolling, j] + outer[FILM.by_sliding, j])
+            torque_slope += radius * (inner_by_cage + outer_by_cage - churning_slope)
+            jacobian[ARROW.row, j] = radius * (inner_by_spin + outer_by_spin)
+            jacobian[ARROW.column, j] = roller_radius * (inner_by_cage - outer_by_cage) / rollers.inertia
+            jacobian[ARROW.diagonal, j] = roller_radius * (inner_by_spin - outer_by_spin) / rollers.inertia
     cage_acceleration = torque / inertia
     rate[THETA] = cage_speed
     rate[OMEGA] = cage_acceleration
     for j in range(rollers.count):
         # The pocket supplies what the roller lacks to go with the cage, and its friction brakes the spin (Deng 2017, eq. 13).
-        pocket = abs(forces.tangential[j] - rollers.mass * loads.radius[j] * cage_acceleration)
+        pocket = abs(tangential[j] - rollers.mass * loads[LOAD.radius, j] * cage_acceleration)
         spin = y[SPIN + j]
         smooth = math.sqrt(spin * spin + _FRICTION_SPIN * _FRICTION_SPIN)
-        brake = cage.pocket_friction * pocket * rollers.radius
-        rate[SPIN + j] = (forces.spin_torque[j] - brake * spin / smooth) / rollers.inertia
+        brake = cage.pocket_friction * pocket * roller_radius / rollers.inertia
+        rate[SPIN + j] = roller_radius * (inner[FILM.force, j] - outer[FILM.force, j]) / rollers.inertia - brake * spin / smooth
         if with_jacobian:
-            brake_slope = brake * _FRICTION_SPIN * _FRICTION_SPIN / (smooth * smooth * smooth)
-            jacobian.blocks[j, 0, 0] = (forces.spin_torque_slope[j] - brake_slope) / rollers.inertia
-            jacobian.below[j, OMEGA, 0] /= inertia
+            jacobian[ARROW.diagonal, j] -= brake * _FRICTION_SPIN * _FRICTION_SPIN / (smooth * smooth * smooth)
+            jacobian[ARROW.row, j] /= inertia
     if with_jacobian:
-        jacobian.corner[THETA, OMEGA] = 1.0
-        jacobian.corner[OMEGA, OMEGA] = torque_slope / inertia
+        border[0] = 1.0
+        border[1] = torque_slope / inertia
     return True
 
 
@@ -306,8 +283,8 @@ def equivalent_loads(cage_angle, cage_speed, load_y, load_z, params, work):
     for position in range(_PITCH_POSITIONS):
         balance_loads(cage_angle - 2.0 * math.pi * position / (_PITCH_POSITIONS * count), cage_speed, load_y, load_z, params, work)
         for j in range(count):
-            inner += work.loads.inner[j] ** ROTATING_EXPONENT
-            outer += work.loads.outer[j] ** STATIONARY_EXPONENT
+            inner += work.loads[LOAD.inner, j] ** ROTATING_EXPONENT
+            outer += work.loads[LOAD.outer, j] ** STATIONARY_EXPONENT
     samples = _PITCH_POSITIONS * count
     return (inner / samples) ** (1.0 / ROTATING_EXPONENT), (outer / samples) ** (1.0 / STATIONARY_EXPONENT)
 
@@ -346,33 +323,30 @@ def observe(t, y, model, work, interval, previous, row):
     row[COLUMN.damage] = previous[COLUMN.damage] + abs(rotation) / (2.0 * math.pi * revolutions)
     row[COLUMN.inner_equivalent_load] = inner_equivalent
     row[COLUMN.outer_equivalent_load] = outer_equivalent
-    row[COLUMN.ring_y] = loads.ring[0]
-    row[COLUMN.ring_z] = loads.ring[1]
-    torque, churning = _cage_torque(cage_speed, shaft_speed, model)[0], _churning(cage_speed, model)[0]
+    row[COLUMN.ring_y] = work.ring[0]
+    row[COLUMN.ring_z] = work.ring[1]
     for j in range(count):
-        torque += loads.radius[j] * (_roller_forces(j, cage_speed, y[SPIN + j], shaft_speed, model, work)[0] - churning)
         first = SCALARS + j
         row[first + COLUMN.roller_angle * count] = y[THETA] + 2.0 * math.pi * j / count
-        row[first + COLUMN.roller_radius * count] = loads.radius[j]
+        row[first + COLUMN.roller_radius * count] = loads[LOAD.radius, j]
         row[first + COLUMN.roller_spin * count] = y[SPIN + j]
         before = first + COLUMN.roller_rotation * count
         spin_before = previous[first + COLUMN.roller_spin * count]
         row[before] = previous[before] + 0.5 * (spin_before + y[SPIN + j]) * interval
-        row[first + COLUMN.inner_load * count] = loads.inner[j]
-        row[first + COLUMN.outer_load * count] = loads.outer[j]
-    row[COLUMN.cage_torque] = torque
+        row[first + COLUMN.inner_load * count] = loads[LOAD.inner, j]
+        row[first + COLUMN.outer_load * count] = loads[LOAD.outer, j]
 
 
 @kernel
 def factor(shift, work):
     """Factor I - shift J; return False where it is singular."""
-    return factor_shifted(work.jacobian, shift, work.scratch, work.factored)
+    return factor_shifted(work.jacobian, shift, work.factored)
 
 
 @kernel
 def solve(work, x):
     """Replace the right side ``x`` by the solution with the last factorisation."""
-    solve_factored(work.factored, x, work.scratch)
+    solve_factored(work.factored, x)
 
 
 @kernel

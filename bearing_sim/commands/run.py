@@ -1,0 +1,125 @@
+"""``bearing-sim run``: a scene under its constant conditions."""
+
+import math
+import time
+from contextlib import ExitStack
+from pathlib import Path
+
+import click
+
+from bearing_sim.commands.reporting import BadInput, FailedRun, print_json, print_table, progress_bar, told_as_bad_input, told_file_faults
+
+_BLOCK = 10  # samples
+_SAMPLES = 10_000  # of a long run, unless asked otherwise
+_RATE = 1000.0  # Hz, of a short one
+
+
+@click.command()
+@click.argument("scene_name", metavar="SCENE")
+@click.option("--set", "overrides", multiple=True, metavar="FIELD=VALUE", help="Override a field of the scene; may be repeated.")
+@click.option("--duration", default="0.5 s", show_default=True, metavar="S", help="Simulated time, such as 0.5 or '300 ms' (Deng 2017: 0.5 s).")
+@click.option("--level", metavar="LEVEL", help="Fidelity level instead of the scene's.")
+@click.option("--rate", type=click.FloatRange(min=0, min_open=True), metavar="HZ", help="Samples per simulated second [default: 1000, fewer beyond 10 s].")
+@click.option("--out", type=click.Path(path_type=Path), metavar="RUN.mcap", help="Record the run.")
+@click.option("--rrd", type=click.Path(path_type=Path), metavar="RUN.rrd", help="Write a view for rerun, too.")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+def command(scene_name, overrides, duration, level, rate, out, rrd, as_json):
+    """Run SCENE (a bundled scene or a YAML file) under its constant conditions, from ideal rolling on.
+
+    Cage slip is the mean over the last fifth of the run, after it has settled.
+    """
+    from bearing_sim.scene_file import SceneError, load_scene
+    from bearing_sim.simulation import IntegrationError, Simulation
+
+    seconds = _seconds(duration)
+    with told_as_bad_input(SceneError):
+        scene = load_scene(scene_name, [*overrides, *([f"level={level}"] if level else [])])
+    samples = max(round(seconds * (rate or min(_RATE, _SAMPLES / seconds))), 5)
+    with told_file_faults(), ExitStack() as stack:
+        sinks = _sinks(stack, scene, seconds, out, rrd)
+        progress = stack.enter_context(progress_bar(f"running {scene.name}", seconds))
+        started = time.perf_counter()
+        simulation = Simulation(scene)
+        first = time.perf_counter()
+        try:
+            settled = _advance(simulation, seconds, samples, sinks, progress)
+        except IntegrationError as error:
+            raise FailedRun(str(error)) from None
+        wall = time.perf_counter() - first
+    report = _report(simulation, settled, seconds, wall, first - started)
+    if as_json:
+        print_json(report)
+    else:
+        _print(report)
+
+
+def _seconds(duration: str) -> float:
+    from bearing_sim.quantity import to_si
+
+    with told_as_bad_input(ValueError):
+        seconds = to_si(duration, "s")
+    if not 0.0 < seconds <= 1e6:
+        raise BadInput(f"--duration {duration}: expected more than 0 and at most 1e6 s")
+    return seconds
+
+
+def _sinks(stack, scene, seconds, out, rrd) -> list:
+    start_ns, sinks = time.time_ns(), []
+    if out is not None:
+        from bearing_sim.sinks.mcap_sink import McapSink
+
+        sinks.append(stack.enter_context(McapSink(out, scene, start_ns)))
+    if rrd is not None:
+        from bearing_sim.sinks.rerun_sink import RerunSink
+
+        sinks.append(stack.enter_context(RerunSink(scene, path=rrd, start_ns=start_ns, lossless=True, duration=seconds)))
+    return sinks
+
+
+def _advance(simulation, seconds, samples, sinks, progress) -> list:
+    """Advance to the end block by block; return the settled last fifth of the slips as a list of numbers."""
+    interval, settled = seconds / samples, []
+    for done in range(0, samples, _BLOCK):
+        count = min(_BLOCK, samples - done)
+        block = simulation.advance(count * interval, samples=count)
+        for sink in sinks:
+            sink.write(block)
+        settled += [slip for offset, slip in enumerate(block["cage_slip"].tolist()) if done + offset >= 0.8 * samples]
+        progress((done + count) * interval)
+    return settled
+
+
+def _report(simulation, settled, seconds, wall, start_up) -> dict:
+    last, counters = simulation.sample, simulation.counters
+    return {
+        "scene": simulation.scene.name,
+        "level": simulation.scene.level,
+        "cage_slip": math.fsum(settled) / len(settled),
+        "cage_slip_minimum": min(settled),
+        "cage_slip_maximum": max(settled),
+        "life_hours": float(last["rating_life"]),
+        "damage": float(last["damage"]),
+        "cage_speed_rpm": float(last["cage_speed"]) * 30 / math.pi,
+        "inner_load_maximum": float(last["inner_load"].max()),
+        "outer_load_maximum": float(last["outer_load"].max()),
+        "sim_seconds": seconds,
+        "wall_seconds": wall,
+        "start_up_seconds": start_up,
+        "real_time_factor": seconds / wall,
+        **counters._asdict(),
+    }
+
+
+def _print(report) -> None:
+    rejected = f"{report['rejected_steps']} rejected, {report['non_finite_steps']} of them not finite"
+    print_table(
+        f"{report['scene']} at level {report['level']}",
+        [
+            ("cage slip", f"{100 * report['cage_slip']:.2f} % ({100 * report['cage_slip_minimum']:.2f} to {100 * report['cage_slip_maximum']:.2f} %)"),
+            ("cage speed", f"{report['cage_speed_rpm']:.6g} rpm"),
+            ("rating life", f"{report['life_hours']:.4g} h"),
+            ("largest roller load", f"inner {report['inner_load_maximum']:.4g} N, outer {report['outer_load_maximum']:.4g} N"),
+            ("simulated", f"{report['sim_seconds']:.4g} s in {report['wall_seconds']:.3g} s, {report['real_time_factor']:.3g} times real time"),
+            ("steps", f"{report['steps']}, {rejected}"),
+        ],
+    )
