@@ -7,6 +7,8 @@ import subprocess
 import sys
 import time
 from collections import defaultdict
+from itertools import islice
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,6 +18,7 @@ from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 from recordings import steady_log, write_log
 
+import bearing_sim
 from bearing_sim.cli import main
 from bearing_sim.input_course import judge
 from bearing_sim.input_log import read_input_log
@@ -280,3 +283,27 @@ def test_given_up_run_exits_1_with_a_finished_file(tmp_path, monkeypatch):
     assert json.loads(ran.stdout)["given_up"]
     with open(tmp_path / "out.mcap", "rb") as stream:
         assert make_reader(stream).get_summary().statistics.message_count > 0
+
+
+@pytest.mark.timeout(300)
+def test_a_minute_of_the_measured_flight_replays_whole(tmp_path):
+    """Through import and replay; speed and load at the end against the table's own numbers."""
+    source = Path(bearing_sim.__file__).resolve().parents[2] / "shared" / "data" / "citation_flight_20190312_n1_n2_acc.csv"
+    if not source.is_file():
+        pytest.skip("the measured flight is not redistributable and not here; expected in ../shared/data beside the repository")
+    with open(source) as stream:
+        lines = list(islice(stream, 601))
+    (tmp_path / "minute.csv").write_text("".join(lines))
+    imported = CliRunner().invoke(main, ["import-csv", str(tmp_path / "minute.csv"), "citation_flight", "-o", str(tmp_path / "minute.mcap")])
+    assert imported.exit_code == 0, imported.output
+    ran = command(tmp_path / "minute.mcap", "--scene", "deng2017_table1", "-o", tmp_path / "out.mcap", "--json")
+    assert ran.exit_code == 0, ran.output
+    report = json.loads(ran.stdout)
+    assert (report["samples"], report["non_finite_steps"], report["failed_ticks"], report["inputs_refused"]) == (599, 0, 0, 0)
+    assert report["sim_seconds"] == pytest.approx(float(lines[-1].split(",")[0]) - float(lines[1].split(",")[0]))
+    last = dict(zip(lines[0].split(","), map(float, lines[-1].split(","))))
+    with open(tmp_path / "out.mcap", "rb") as stream:
+        reader = make_reader(stream, decoder_factories=[DecoderFactory()])
+        *_, joints = (decoded for *_, decoded in reader.iter_decoded_messages(topics=["/bearing_joints"]))
+    assert joints.velocity[0] == pytest.approx(last["N2_lh_pct"] / 100 * 32760 * math.pi / 30)
+    assert 0.0 < joints.velocity[1] < joints.velocity[0] / 2
