@@ -1,0 +1,35 @@
+"""Cage slip and rating life of high-speed roller bearings with lobed raceways.
+
+=====================  ==================================================================================
+module                 responsibility
+=====================  ==================================================================================
+``scene``              what to simulate: frozen records, one declaration per quantity
+``scene_file``         YAML, presets, overrides; every fault of a file at once
+``quantity``           units at the door
+``params``             what compiled code sees; `pack` is the only bridge from a scene
+``simulation``         owns time and state; ``advance`` returns a block of samples
+``sample``             the sample record: names, units and meanings of all observables
+``levels``             one complete model per file
+``kernels``            scalar laws: contact, traction, cage, drag, raceway, load balance, linear algebra
+``integrators``        stiff methods and the drive loop; they know no bearings
+``rating_life``        roller loads to rating life
+``oil``                oil properties at a temperature
+``runtime``            pacing, the solver's thread, the gate for inputs, health
+``sinks``              MCAP and rerun
+``topics``             the messages that samples and inputs become
+``ros``                the ROS 2 node and player
+``commands``, ``cli``  the command line
+=====================  ==================================================================================
+"""
+
+from importlib import import_module
+
+_EXPORTS = {"Scene": "scene", "load_scene": "scene_file", "SceneError": "scene_file", "Simulation": "simulation", "Inputs": "simulation"}
+__all__ = list(_EXPORTS)
+
+
+def __getattr__(name):
+    # Loaded at first use: the simulation brings its compiler with it, which a look at the version does not need.
+    if name in _EXPORTS:
+        return getattr(import_module(f"bearing_sim.{_EXPORTS[name]}"), name)
+    raise AttributeError(f"module 'bearing_sim' has no attribute {name!r}")

@@ -111,6 +111,9 @@ class Quantity:
             number = to_si(value, self.unit)
         except ValueError as fault:
             raise PydanticCustomError("quantity", "{reason}", {"reason": str(fault)}) from None
+        for bound in (self.minimum, self.maximum):
+            if math.isclose(number, bound, rel_tol=1e-12):  # "10 um" must not miss a bound of 1e-5 by round-off
+                number = bound
         if not self.minimum <= number <= self.maximum:  # NaN fails here too
             raise PydanticCustomError(
                 "bound",

@@ -54,7 +54,7 @@ class Cage:
     width: quantity("m", "axial width of the cage", 1e-4, 1.0, "mm")
     guide_radius: quantity("m", "radius of the outer-ring guide lands, R_g", 1e-3, 2.0, "mm")
     guide_clearance: quantity("m", "radial clearance between cage and guide lands, c", 1e-6, 5e-3, "mm")
-    guide_land_width: quantity("m", "width of one of the two guide lands", 1e-5, 0.5, "mm")
+    guide_land_width: quantity("m", "width of one of the two guide lands", 1e-6, 0.5, "mm")
     pocket_friction: quantity("", "friction coefficient between roller and pocket, mu_c", 0.0, 1.0) = 0.05
 
 

@@ -1,0 +1,59 @@
+from glob import glob
+
+from setuptools import find_packages, setup
+
+package_name = "bearing_sim"
+# ROS 2 Jazzy from wheels, for machines without a ROS installation; where ROS 2 is installed, colcon builds without pip.
+ros_wheels = [
+    f"{requirement}; platform_system == 'Linux' and platform_machine == 'x86_64'"
+    for requirement in (
+        "ros-jazzy-rclpy[fastrtps]==7.1.6",
+        "ros-jazzy-std-msgs==5.3.6",
+        "ros-jazzy-sensor-msgs==5.3.6",
+        "ros-jazzy-geometry-msgs==5.3.6",
+        "ros-jazzy-diagnostic-msgs==5.3.6",
+        "ros-jazzy-std-srvs==5.3.6",
+    )
+]
+
+setup(
+    name=package_name,
+    version="0.1.0",
+    packages=find_packages(exclude=["test"]),
+    package_data={package_name: ["catalog/*/*.yaml", "scenes/*.yaml"]},
+    data_files=[
+        ("share/ament_index/resource_index/packages", [f"resource/{package_name}"]),
+        (f"share/{package_name}", ["package.xml"]),
+        (f"share/{package_name}/launch", glob("launch_scripts/*.launch.py")),
+    ],
+    python_requires=">=3.11",
+    install_requires=[
+        "click>=8.1",
+        "mcap>=1.2",
+        "mcap-ros2-support>=0.5",
+        "numba>=0.61",
+        "numpy>=2.0",
+        "pint>=0.24",
+        "platformdirs>=4",
+        "pydantic>=2.9",
+        "PyYAML>=6",
+        "rerun-sdk==0.41.0",
+        "rich>=13",
+        "rosbags>=0.10",
+        "scipy>=1.13",
+        *ros_wheels,
+    ],
+    extras_require={"test": ["hypothesis>=6", "pytest>=8", "pytest-timeout>=2.3"]},
+    zip_safe=False,
+    maintainer="bearing_sim maintainers",
+    maintainer_email="maintainers@bearing-sim.org",
+    description="Predicts cage slip and rating life of high-speed roller bearings with lobed raceways, live, from shaft speed and radial load.",
+    license="Apache-2.0",
+    entry_points={
+        "console_scripts": [
+            "bearing-sim = bearing_sim.cli:main",
+            "bearing_node = bearing_sim.ros.node:main",
+            "bearing_player = bearing_sim.ros.player:main",
+        ]
+    },
+)

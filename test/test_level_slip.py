@@ -1,0 +1,190 @@
+"""The slip level against an independent model, published values, limits and symmetries."""
+
+import math
+
+import numpy as np
+import pytest
+from reference_slip import Reference
+
+from bearing_sim import Inputs, Simulation, load_scene
+from bearing_sim.levels import slip
+from bearing_sim.simulation import IntegrationError, scene_inputs
+
+TIGHT = ["integration.relative_tolerance=1e-7", "integration.maximum_step=1us"]
+
+
+def simulation(*overrides, inputs=None):
+    return Simulation(load_scene("deng2017_table1", overrides), inputs)
+
+
+def slips_at(run, times):
+    before, slips = 0.0, []
+    for time in times:
+        slips.append(run.advance(time - before)["cage_slip"][0])
+        before = time
+    return np.array(slips)
+
+
+@pytest.mark.parametrize(("low_radius", "angle"), [(34.860, 0.0), (34.8675, 0.0), (34.865, math.pi / 3)])
+def test_cage_slip_follows_the_plain_numpy_model_to_1e_4(low_radius, angle):
+    times = np.linspace(1e-3, 4e-3, 4)
+    expected = Reference(low_radius=low_radius * 1e-3, installation_angle=angle).slip(times, rtol=1e-5)
+    run = simulation(f"bearing.outer_raceway.low_radius={low_radius} mm", f"bearing.outer_raceway.installation_angle={angle}", *TIGHT)
+    assert expected[-1] > 0.02
+    np.testing.assert_allclose(slips_at(run, times), expected, atol=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("low_radius", "angle", "slip_percent", "life_hours"),
+    [(34.8600, 0, 4.3, 182), (34.8625, 0, 5.95, 389), (34.8650, 0, 10.9, 906), (34.8675, 0, 26.2, 2351), (34.8650, 60, 10.9, 1028)],
+)
+def test_slip_and_life_at_45000_rpm_are_those_of_an_independent_calculation(low_radius, angle, slip_percent, life_hours):
+    # Slip within a tenth and life within 2 %: the calculation made its own choices where the literature leaves the drag open.
+    run = simulation(f"bearing.outer_raceway.low_radius={low_radius} mm", f"bearing.outer_raceway.installation_angle={angle} deg")
+    settled = run.advance(0.5, samples=500)[400:]
+    assert 100 * settled["cage_slip"].mean() == pytest.approx(slip_percent, rel=0.1)
+    assert settled["rating_life"].mean() == pytest.approx(life_hours, rel=0.02)
+
+
+def test_cage_turns_at_epicyclic_speed_when_nothing_drags():
+    free = ["lubricant.mixture_fraction=0", "bearing.cage.guide_land_width=1 um", "bearing.cage.pocket_friction=0"]
+    run = simulation(*free, "bearing.outer_raceway.low_radius=34.86 mm", "lubricant.traction_scale=5")
+    assert abs(run.advance(0.05)["cage_slip"][0]) < 2e-4
+
+
+def test_cage_stops_driving_when_traction_is_nothing():
+    run = simulation("lubricant.traction_scale=0")
+    slip_now = run.advance(0.05)["cage_slip"][0]
+    assert slip_now > 0.3 and slip_now > simulation().advance(0.05)["cage_slip"][0]
+
+
+def test_jacobian_is_that_of_finite_differences_where_loads_do_not_move():
+    run = simulation("bearing.cage.pocket_friction=0")
+    run.advance(0.01)
+    state, work, model = run._state.copy(), run._work, run._model(run.inputs, 1.0)
+    rate = np.zeros_like(state)
+    assert slip.rhs_and_jacobian(run.time, state, model, work, rate)
+    rows, border = work.jacobian.rows.copy(), work.jacobian.border.copy()
+
+    def difference(index, step):
+        above, below, up, down = state.copy(), state.copy(), np.zeros_like(state), np.zeros_like(state)
+        above[index] += step
+        below[index] -= step
+        slip.rhs(run.time, above, model, work, up)
+        slip.rhs(run.time, below, model, work, down)
+        return (up - down) / (2 * step)
+
+    for j in (0, 7, 13):
+        column = difference(slip.SPIN + j, 1e-2)
+        assert column[slip.SPIN + j] == pytest.approx(rows[0, j], rel=1e-5)
+        assert column[slip.OMEGA] == pytest.approx(rows[2, j], rel=1e-5)
+    by_speed = difference(slip.OMEGA, 1e-2)
+    assert by_speed[slip.THETA] == pytest.approx(border[0])
+    # The cage speed also moves the loads, by the centrifugal force, which the Jacobian leaves out.
+    assert by_speed[slip.OMEGA] == pytest.approx(border[1], rel=0.2)
+
+
+def test_reversed_rotation_mirrors_slip_and_loads():
+    forward, backward = simulation(), simulation("operating.shaft_speed=-45000 rpm")
+    ahead, back = forward.advance(0.02)[0], backward.advance(0.02)[0]
+    assert back["cage_slip"] == pytest.approx(ahead["cage_slip"], rel=1e-9)
+    assert back["cage_speed"] == pytest.approx(-ahead["cage_speed"], rel=1e-9)
+    mirrored = np.roll(back["inner_load"][::-1], 1)
+    np.testing.assert_allclose(mirrored, ahead["inner_load"], rtol=1e-6, atol=1e-6)
+
+
+def test_turning_load_and_contour_by_a_pitch_changes_nothing_but_the_numbering():
+    pitch = 2 * math.pi / 18
+    straight = simulation().advance(0.01)[0]
+    turned = simulation(f"operating.load_angle={pitch}", f"bearing.outer_raceway.installation_angle={pitch}").advance(0.01)[0]
+    assert turned["cage_slip"] == pytest.approx(straight["cage_slip"], rel=1e-6)
+    np.testing.assert_allclose(np.roll(turned["outer_load"], -1), straight["outer_load"], rtol=1e-5)
+
+
+def test_inner_loads_carry_the_radial_load_and_outer_loads_add_the_centrifugal_force():
+    sample = simulation("operating.load_angle=0.7").advance(0.01)[0]
+    azimuth, inner, outer = sample["roller_angle"], sample["inner_load"], sample["outer_load"]
+    assert inner @ np.cos(azimuth) == pytest.approx(800 * math.cos(0.7), rel=1e-3)
+    assert inner @ np.sin(azimuth) == pytest.approx(800 * math.sin(0.7), rel=1e-3)
+    mass = math.pi * 3.5e-3**2 * 7e-3 * 7850
+    np.testing.assert_allclose(outer - inner, mass * sample["roller_radius"] * sample["cage_speed"] ** 2, rtol=1e-3)
+
+
+def test_life_falls_with_load_and_rises_with_the_clearance_at_low_points():
+    def life(*overrides):
+        return simulation(*overrides).advance(0.01)["rating_life"][0]
+
+    assert life("operating.radial_load=3 kN") < life("operating.radial_load=800 N") < life("bearing.outer_raceway.low_radius=34.8675 mm")
+
+
+def test_damage_is_revolutions_over_life():
+    run = simulation()
+    block = run.advance(0.1, samples=100)
+    assert block["damage"][-1] == pytest.approx(np.sum(1e-3 / 3600 / block["rating_life"]), rel=2e-2)
+    assert np.all(np.diff(block["damage"]) > 0)
+
+
+def test_damage_does_not_fall_in_reverse():
+    block = simulation("operating.shaft_speed=-20000 rpm").advance(0.01, samples=10)
+    assert np.all(np.diff(block["damage"]) > 0)
+
+
+@pytest.mark.parametrize(
+    ("start", "end"),
+    [
+        (Inputs(0.0, 0.0, 0.0, 393.15), Inputs(4712.0, 800.0, 0.0, 393.15)),  # from rest
+        (Inputs(4712.0, 800.0, 0.0, 393.15), Inputs(0.0, 0.0, 0.0, 393.15)),  # to rest, unloaded
+        (Inputs(1000.0, 100.0, 0.0, 393.15), Inputs(-1000.0, 0.0, 100.0, 393.15)),  # reversal
+        (Inputs(4712.0, 0.0, 0.0, 393.15), Inputs(4712.0, 50e3, 0.0, 393.15)),  # load step
+        (Inputs(10471.0, 0.0, 0.0, 240.0), Inputs(10471.0, 10.0, 0.0, 500.0)),  # cold, fast, unloaded
+    ],
+)
+@pytest.mark.parametrize("low_radius", ["34.825 mm", "34.8625 mm", "34.9 mm"])  # 50 um of preload; stock; loose
+def test_extreme_courses_stay_finite(start, end, low_radius):
+    run = simulation(f"bearing.outer_raceway.low_radius={low_radius}", inputs=start)
+    for target in (end, end, start):
+        block = run.advance(0.02, target, samples=20)
+        for name in ("cage_speed", "roller_spin", "inner_load", "outer_load", "ring_y", "ring_z", "damage"):
+            assert np.isfinite(block[name]).all(), name
+        assert (block["inner_load"] >= 0).all() and (block["outer_load"] >= -1e-9).all()
+
+
+def test_slip_is_undefined_and_life_infinite_at_rest():
+    sample = simulation("operating.shaft_speed=0").advance(0.01)[0]
+    assert math.isnan(sample["cage_slip"]) and math.isinf(sample["rating_life"]) and sample["damage"] == 0
+
+
+def test_error_falls_with_the_tolerance():
+    times = [2e-3]
+    best = slips_at(simulation(*TIGHT), times)[0]
+
+    def error(tolerance):
+        return abs(slips_at(simulation(f"integration.relative_tolerance={tolerance}"), times)[0] - best)
+
+    assert error(1e-5) < error(1e-3) / 5
+
+
+def test_a_used_up_step_budget_is_told_and_the_state_before_is_kept():
+    run = simulation("integration.step_budget=100")
+    run.advance(1e-3)
+    state, time, sample = run._state.copy(), run.time, run.sample.copy()
+    with pytest.raises(IntegrationError, match="step budget .* the state before is kept"):
+        run.advance(1.0)
+    assert run.time == time and (run._state == state).all() and run.sample == sample
+    run.advance(1e-3)
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf])
+def test_inputs_that_are_not_finite_are_refused_by_name(bad):
+    run = simulation()
+    with pytest.raises(ValueError, match="load_y"):
+        run.advance(1e-3, scene_inputs(run.scene)._replace(load_y=bad))
+    assert run.time == 0.0
+
+
+def test_one_signature_serves_every_run():
+    # A second signature would be a compilation of seconds in the middle of a run.
+    for rollers in (6, 18, 20):
+        run = simulation(f"bearing.roller.count={rollers}", "operating.shaft_speed=9000")
+        run.advance(1, Inputs(5000, 1, 2, 390), samples=2) if rollers == 6 else run.advance(1e-3)
+    assert len(slip.advance.signatures) == 1

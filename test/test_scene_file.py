@@ -1,0 +1,120 @@
+"""Scenes: units at the door, every fault at once, messages that help."""
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bearing_sim import SceneError, load_scene
+from bearing_sim.quantity import Quantity, to_si
+from bearing_sim.scene_file import scene_from_yaml, scene_names, scene_to_yaml
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "expected"),
+    [
+        ("7.0 mm", "m", 7e-3),
+        ("34.865mm", "m", 34.865e-3),
+        ("45000 rpm", "rad/s", 45000 * math.pi / 30),
+        ("120 degC", "K", 393.15),
+        ("60 deg", "rad", math.pi / 3),
+        ("3 %", "", 0.03),
+        ("5 kN", "N", 5000.0),
+        ("206 GPa", "Pa", 2.06e11),
+        ("1e-3", "m", 1e-3),
+        (7, "m", 7.0),
+    ],
+)
+def test_quantities_come_in_with_units_and_bare_numbers_are_si(text, unit, expected):
+    assert to_si(text, unit) == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize(("text", "reason"), [("7 s", "wrong dimension"), ("7 furlgons", "unknown unit"), ("seven", "expected a length"), ("", "expected a length"), (True, "expected a length"), ("7 mm mm", "wrong dimension"), ("3 )(", "expected a length")])
+def test_what_is_no_length_is_refused_with_an_example(text, reason):
+    with pytest.raises(ValueError, match=reason) as fault:
+        to_si(text, "m")
+    assert "7.0 mm" in str(fault.value)
+
+
+@given(st.floats(1e-9, 1e9))
+def test_a_bound_itself_is_within_bounds(value):
+    Quantity("m", "", value, 2 * value).read(value)
+
+
+@pytest.mark.parametrize("name", scene_names())
+def test_bundled_scenes_survive_a_round_trip_through_yaml(name):
+    scene = load_scene(name)
+    assert scene_from_yaml(scene_to_yaml(scene)) == scene
+
+
+def test_all_faults_are_told_at_once_each_with_path_value_and_bound():
+    wrong = [
+        "bearing.outer_raceway.low_radus=34.865mm",
+        "bearing.roller.diameter=7 s",
+        "bearing.roller.count=2.5",
+        "bearing.cage.mass=-1 g",
+        "operating.shaft_speed=nan rpm",
+        "level=planr",
+        "lubricant.traction.law=constant",
+        "lubricant.traction.q=1",
+    ]
+    with pytest.raises(SceneError) as error:
+        load_scene("deng2017_table1", wrong)
+    faults = {fault.path: str(fault) for fault in error.value.faults}
+    assert set(faults) == {
+        "bearing.outer_raceway.low_radus", "bearing.roller.diameter", "bearing.roller.count", "bearing.cage.mass",
+        "operating.shaft_speed", "level", "lubricant.traction.q",
+    }  # fmt: skip
+    assert "did you mean 'low_radius'?" in faults["bearing.outer_raceway.low_radus"]
+    assert "-1 g is outside 0.001 g to 1e+06 g" in faults["bearing.cage.mass"]
+    assert "'7 s'" in faults["bearing.roller.diameter"]
+
+
+def test_parts_that_do_not_fit_together_are_told_together():
+    with pytest.raises(SceneError) as error:
+        load_scene("deng2017_table1", ["bearing.roller.count=40", "bearing.cage.width=1 mm", "bearing.outer_raceway.low_radius=50 mm"])
+    text = str(error.value)
+    assert "40 rollers of 7 mm do not fit" in text and "wider than the cage" in text and "low_radius: 50 mm leaves" in text
+
+
+@pytest.mark.parametrize(
+    ("override", "expected"),
+    [
+        ("bearing.outer_raceway.low_radius", "expected FIELD=VALUE"),
+        ("=3", "expected FIELD=VALUE"),
+        ("operating.shaft_speed.x=3", "is a value, not a block"),
+        ("lubricant.oil=mil_l_7807", "did you mean 'mil_l_7808'?"),
+        ("bearing.preset=deng2017_table3", "did you mean 'deng2017_table"),
+        ("bearing.roller.crown=iso_log", "crown"),
+    ],
+)
+def test_overrides_that_cannot_be_applied_say_why(override, expected):
+    with pytest.raises(SceneError) as error:
+        load_scene("deng2017_table1", [override])
+    assert expected in str(error.value)
+
+
+@pytest.mark.parametrize("text", ["", "[]", "name: x\nname: y", "{", "7", "a: *b", "bearing: 7\nlubricant: []\noperating: x\nname: 3", "name: a\nbearing: {preset: [1]}"])
+def test_files_that_are_no_scene_end_in_a_message(text):
+    with pytest.raises(SceneError):
+        scene_from_yaml(text)
+
+
+@given(st.recursive(st.none() | st.booleans() | st.floats() | st.text(max_size=5), lambda x: st.lists(x, max_size=3) | st.dictionaries(st.sampled_from(["name", "bearing", "preset", "lubricant", "oil", "operating", "roller", "traction", "law"]), x, max_size=4), max_leaves=12))
+def test_no_yaml_tree_crashes_the_reader(tree):
+    import yaml
+
+    with pytest.raises(SceneError):
+        scene_from_yaml(yaml.safe_dump(tree))
+
+
+def test_an_unknown_scene_lists_what_is_bundled():
+    with pytest.raises(SceneError, match="deng2017_table1"):
+        load_scene("no_such_scene")
+
+
+def test_both_bearings_have_the_published_geometry():
+    first, second = load_scene("deng2017_table1").bearing, load_scene("deng2017_table2").bearing
+    assert (2 * first.inner_raceway.radius, 2 * first.outer_raceway.low_radius, first.outer_raceway.d_value) == pytest.approx((55.75e-3, 69.725e-3, 98e-6))
+    assert (2 * second.inner_raceway.radius, 2 * second.outer_raceway.low_radius, second.outer_raceway.d_value) == pytest.approx((55.7e-3, 69.648e-3, 60e-6))
