@@ -1,0 +1,12 @@
+#!/usr/bin/env bash
+# Set up what the tests need in .venv and run them all; arguments go to pytest.
+#
+#   launch_scripts/test.sh [pytest arguments]
+set -euo pipefail
+
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+. "$here/launch_scripts/environment.sh"
+install_package test
+
+cd "$here"
+exec "$venv/bin/python" -m pytest "$@"
