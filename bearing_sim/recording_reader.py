@@ -144,8 +144,9 @@ class Recording:
             if topic in _OUTPUT_TOPICS and rows.begins_sample(message.log_time) and rows.count == ROWS_PER_BLOCK:
                 yield rows.take()
             rows.enter(topic, message.log_time, decoded)
-        if rows.count:
-            yield rows.take()
+        last = rows.take()
+        if len(last):
+            yield last
 
 
 class _WholeReads:
@@ -228,7 +229,6 @@ class _Rows:
             places = {name: place for place, name in enumerate(message.name)}
             for joint, field in (("shaft", "shaft"), ("cage", "cage"), ("cage_ideal", "ideal_cage")):
                 row[f"{field}_angle"], row[f"{field}_speed"] = message.position[places[joint]], message.velocity[places[joint]]
-            row["cage_torque"] = message.effort[places["cage"]]
         elif topic == "/roller_loads":
             rollers = self._scene.bearing.roller.count
             row["inner_load"], row["outer_load"] = message.data[:rollers], message.data[rollers:]
@@ -237,7 +237,8 @@ class _Rows:
 
     def take(self) -> np.ndarray:
         """Return the samples so far, completed, and start anew."""
-        block, self.count = self._block[: self.count].copy(), 0
+        block, self.count = self._block[: self.count], 0
+        block = block[~np.isnan(block["inner_load"]).all(axis=1)]  # of a sample cut short by a kill the loads, written last, are missing
         complete(self._scene, block)
         return block
 

@@ -44,10 +44,7 @@ class HeadlessViewer:
         self._ready_within = ready_within
 
     def __enter__(self) -> "HeadlessViewer":
-        import rerun_cli
-
-        # The native program itself: the console script only starts it as a child, which would survive a kill.
-        program = Path(rerun_cli.__file__).with_name("rerun.exe" if os.name == "nt" else "rerun")
+        program = viewer_program()
         self._home = tempfile.TemporaryDirectory(prefix="bearing_sim_viewer_")
         environment = dict(os.environ, RUST_LOG="error", HOME=self._home.name, XDG_RUNTIME_DIR=self._home.name)
         environment.pop("DISPLAY", None)
@@ -134,6 +131,13 @@ class HeadlessViewer:
         reported = [f"{view.name}: {report.severity} {report.summary}" for view in self._client.get_state().views for report in view.reports]
         logged = [f"{entry.level}: {entry.message}" for entry in self._client.get_logs() if entry.level in ("WARN", "ERROR")]
         return reported + [text for text in logged if not any(notice in text for notice in _NOT_OUR_FAULT)]
+
+
+def viewer_program() -> Path:
+    """Return the native viewer: the console script only starts it as a child, which would survive a kill."""
+    import rerun_cli
+
+    return Path(rerun_cli.__file__).with_name("rerun.exe" if os.name == "nt" else "rerun")
 
 
 def _free_port() -> int:

@@ -36,7 +36,6 @@ def synthetic_block(scene, times, speeds=(520.0, 4700.0), slips=(0.01, 0.16)):
     block["outer_equivalent_load"] = 0.7 * largest
     block["rating_life"] = 1e9 / block["shaft_speed"] * (500.0 / largest) ** 4
     block["damage"] = np.cumsum(step / 3600 / block["rating_life"])
-    block["cage_torque"] = 0.1 * np.sin(times)
     return block
 
 

@@ -24,12 +24,12 @@ class LoadMap:
     Parameters
     ----------
     span : time [s] that the columns cover.
-    rolling : True keeps the newest ``span`` seconds; False starts at 0 and doubles the span when the run outgrows it.
+    rolling : True keeps the newest ``span`` seconds; False starts at the first sample and doubles the span when the run outgrows it.
     """
 
     def __init__(self, span: float, rolling: bool):
         self.span = span
-        self.start = 0.0
+        self.start: float | None = None  # time at the left edge [s]; known from the first sample on
         self._rolling = rolling
         self._sums = np.zeros((AZIMUTH_BINS, COLUMNS))
         self._counts = np.zeros((AZIMUTH_BINS, COLUMNS))
@@ -37,6 +37,8 @@ class LoadMap:
     def add(self, block: np.ndarray) -> None:
         """Enter the samples of a block, which must not be older than those before."""
         times = block["time"]
+        if self.start is None:
+            self.start = float(times[0])
         self._make_room(float(times[-1]))
         columns = np.floor((times - self.start) / self.span * COLUMNS).astype(int)
         kept = (columns >= 0) & (columns <= COLUMNS)  # a sample on the right edge belongs to the last column

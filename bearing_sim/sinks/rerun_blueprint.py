@@ -11,6 +11,7 @@ from bearing_sim.sinks.load_map import map_bounds
 from bearing_sim.sinks.rerun_series import TIMELINE
 
 LIVE_WINDOW = 30.0  # [s] of history that a live view shows
+_LINKED_UP_TO = 50.0  # [s]
 BACKGROUND = (13, 14, 17)
 
 
@@ -64,15 +65,15 @@ class _Axes:
         self._extent = extent
         self.time = _time_axis(live, extent)
 
-    def plot(self, title: str, contents: list[str], legend=rrb.Corner2D.LeftTop, from_zero: bool = True) -> rrb.TimeSeriesView:
-        """Return a plot of some series; ``legend`` None hides it, ``from_zero`` keeps zero on the axis."""
+    def plot(self, title: str, contents: list[str], from_zero: bool = True) -> rrb.TimeSeriesView:
+        """Return a plot of some series; ``from_zero`` keeps zero on the axis.  The title is the legend: it hides no line."""
         return rrb.TimeSeriesView(
             origin="/",
             contents=contents,
             name=title,
             axis_x=self.time,
             axis_y=self._value_axis(contents, from_zero),
-            plot_legend=rrb.PlotLegend(legend, visible=legend is not None),
+            plot_legend=rrb.PlotLegend(visible=False),
         )
 
     def _value_axis(self, contents: list[str], from_zero: bool) -> rrb.ScalarAxis | None:
@@ -87,23 +88,33 @@ class _Axes:
 
 
 def _time_axis(live: bool, extent: Extent | None) -> rrb.TimeAxis:
-    shared = rrb.components.LinkAxis.LinkToGlobal
+    # Linked axes zoom together, but show a minute around the cursor, whatever range is asked for: right for short runs only.
     if live:
-        window = rr.TimeRange(start=rr.TimeRangeBoundary.cursor_relative(seconds=-LIVE_WINDOW), end=rr.TimeRangeBoundary.cursor_relative())
-        return rrb.TimeAxis(link=shared, view_range=window)
-    if extent is None:
-        return rrb.TimeAxis(link=shared)
+        return _window(rr.TimeRangeBoundary.cursor_relative(seconds=-LIVE_WINDOW), rr.TimeRangeBoundary.cursor_relative())
+    if extent is None or extent.times[1] - extent.times[0] <= _LINKED_UP_TO:
+        return rrb.TimeAxis(link=rrb.components.LinkAxis.LinkToGlobal)
     first, last = extent.times
-    margin = 0.03 * (last - first) or 0.1
-    window = rr.TimeRange(start=rr.TimeRangeBoundary.absolute(seconds=first), end=rr.TimeRangeBoundary.absolute(seconds=last + margin))
-    return rrb.TimeAxis(link=shared, view_range=window)
+    return _window(rr.TimeRangeBoundary.absolute(seconds=first), rr.TimeRangeBoundary.absolute(seconds=last + 0.03 * (last - first)))
+
+
+def _window(start: rr.TimeRangeBoundary, end: rr.TimeRangeBoundary) -> rrb.TimeAxis:
+    return rrb.TimeAxis(link=rrb.components.LinkAxis.Independent, view_range=rr.TimeRange(start=start, end=end))
 
 
 def _left(scene: Scene, bounds) -> rrb.Vertical:
     map_x, map_y = map_bounds()
+    reach = bounds[0][1]
+    eye = rrb.EyeControls3D(position=(2.0 * reach, 1.1 * reach, 0.8 * reach), look_target=(0.0, 0.0, 0.0), eye_up=(0.0, 0.0, 1.0))
     return rrb.Vertical(
-        rrb.Spatial2DView(
-            origin="/section", name=section_title(scene), visual_bounds=rrb.VisualBounds2D(x_range=bounds[0], y_range=bounds[1]), background=BACKGROUND
+        rrb.Tabs(
+            rrb.Spatial2DView(
+                origin="/section",
+                name=section_title(scene),
+                visual_bounds=rrb.VisualBounds2D(x_range=bounds[0], y_range=bounds[1]),
+                background=BACKGROUND,
+            ),
+            rrb.Spatial3DView(origin="/", contents="/solid/**", name=f"3D, x{section.magnification(scene.bearing)}", background=BACKGROUND, eye_controls=eye, line_grid=False),
+            active_tab=0,
         ),
         rrb.Spatial2DView(
             origin="/load_map",
@@ -117,14 +128,14 @@ def _left(scene: Scene, bounds) -> rrb.Vertical:
 
 def _middle(axes: _Axes) -> rrb.Vertical:
     return rrb.Vertical(
-        axes.plot("Speeds [rpm]", ["/speed/shaft", "/speed/ideal_cage", "/speed/cage"]),
-        axes.plot("Cage slip [%] (yellow: warning, red: error)", ["/slip/warning", "/slip/error", "/slip/cage"], legend=None),
+        axes.plot("Speeds [rpm] (blue: shaft, orange: cage, grey: cage without slip)", ["/speed/shaft", "/speed/ideal_cage", "/speed/cage"]),
+        axes.plot("Cage slip [%] (yellow: warning, red: error)", ["/slip/warning", "/slip/error", "/slip/cage"]),
         rrb.StateTimelineView(origin="/regime", name="Regime by these thresholds", time_view=axes.time),
-        axes.plot("Rating life, log10 of hours: 2 = 100 h, 3 = 1000 h (yellow: warning)", ["/life/warning", "/life/log10_hours"], None, from_zero=False),
+        axes.plot("Rating life, log10 of hours: 2 = 100 h, 3 = 1000 h (yellow: warning)", ["/life/warning", "/life/log10_hours"], from_zero=False),
         rrb.Tabs(
-            axes.plot("Roller loads [N]", ["/loads/inner_largest", "/loads/outer_largest"], rrb.Corner2D.RightBottom),
-            axes.plot("Each roller, inner [N]", ["/loads/each/inner"], None),
-            axes.plot("Each roller, outer [N]", ["/loads/each/outer"], None),
+            axes.plot("Largest load [N]: blue inner, red outer", ["/loads/inner_largest", "/loads/outer_largest"]),
+            axes.plot("Inner [N]", ["/loads/each/inner"]),
+            axes.plot("Outer [N]", ["/loads/each/outer"]),
         ),
         row_shares=[0.23, 0.22, 0.12, 0.2, 0.23],
     )
@@ -133,8 +144,8 @@ def _middle(axes: _Axes) -> rrb.Vertical:
 def _right(axes: _Axes) -> rrb.Vertical:
     return rrb.Vertical(
         rrb.Tabs(rrb.TextDocumentView(origin="/now", name="Now"), rrb.TextDocumentView(origin="/about", name="About")),
-        axes.plot("Radial load [N]", ["/load/radial"], None),
-        axes.plot("Oil temperature [°C]", ["/oil/temperature"], None, from_zero=False),
-        axes.plot("Damage [millionths of the life]", ["/damage/ppm"], None),
+        axes.plot("Radial load [N]", ["/load/radial"]),
+        axes.plot("Oil temperature [°C]", ["/oil/temperature"], from_zero=False),
+        axes.plot("Damage [millionths of the life]", ["/damage/ppm"]),
         row_shares=[0.4, 0.2, 0.2, 0.2],
     )

@@ -50,58 +50,57 @@ class SectionDrawing:
         sizes = [[rim, rim] for rim in rims]
         self._still("cage/rims", rr.Ellipses2D(centers=np.zeros((2, 2)), half_sizes=sizes, line_radii=0.12, colors=colours.DARK_BRONZE, draw_order=-1.0))
         self._draw_axes()
+        self._style_moving_parts()
+
+    def _style_moving_parts(self) -> None:
+        """Log once what the moving parts keep: each picture then holds positions and load colours only."""
+        bearing = self._bearing
+        raceway = bearing.inner_raceway.radius / MILLIMETRE
+        width = 0.35 * bearing.roller.diameter / MILLIMETRE
+        ring = {"half_sizes": [[raceway - width / 2] * 2, [raceway - 0.1] * 2], "line_radii": [width / 2, 0.2]}
+        self._still("inner_ring/body", rr.Ellipses2D.from_fields(**ring, colors=[colours.DARK_STEEL, colours.BLUE], draw_order=0.0))
+        self._still("inner_ring/shaft_mark", rr.LineStrips2D.from_fields(radii=0.45, colors=colours.BLUE, draw_order=2.0))
+        bars = np.full((bearing.roller.count, 4), colours.BRONZE, np.uint8)
+        bars[0] = colours.ORANGE
+        self._still("cage/bars", rr.LineStrips2D.from_fields(radii=section.cage_bar_half_width(bearing), colors=bars, draw_order=3.0))
+        self._still("rollers", rr.Points2D.from_fields(radii=bearing.roller.diameter / 2 / MILLIMETRE, draw_order=5.0))
+        self._still("spin_marks", rr.LineStrips2D.from_fields(radii=0.22, colors=colours.WHITE, draw_order=6.0))
+        self._still("forces/inner", rr.Arrows2D.from_fields(radii=0.22, draw_order=9.0))
+        self._still("forces/outer", rr.Arrows2D.from_fields(radii=0.22, colors=colours.VERMILION, draw_order=9.0))
+        self._still("forces/radial_load", rr.Arrows2D.from_fields(radii=0.5, colors=colours.YELLOW, draw_order=10.0))
 
     def draw(self, sample: np.void) -> None:
         """Draw the moving parts of one sample at the recording's present time."""
-        largest = float(np.nanmax(np.concatenate((sample["inner_load"], sample["outer_load"])), initial=0.0))
+        largest = max(_largest(sample["inner_load"]), _largest(sample["outer_load"]))
         if largest > 1.05 * self.load_scale:
             self.load_scale = section.round_up(largest)
         if self.load_scale != self._legend_scale:
             self._draw_legend()
         self._draw_inner_ring(sample)
-        self._draw_cage(sample)
-        self._draw_rollers(sample)
-        self._draw_forces(sample)
+        bars = section.cage_bars(self._bearing, sample["cage_angle"])
+        self._log("cage/bars", rr.LineStrips2D.from_fields(strips=bars))
+        fill = colours.load_colours(sample["inner_load"], self.load_scale)
+        centres = section.roller_centres(self._bearing, self.factor, sample)
+        self._log("rollers", rr.Points2D.from_fields(positions=centres, colors=fill))
+        self._log("spin_marks", rr.LineStrips2D.from_fields(strips=section.spin_marks(self._bearing, centres, sample)))
+        self._draw_forces(sample, fill)
 
     def _draw_inner_ring(self, sample) -> None:
-        bearing = self._bearing
         centre = section.ring_displacement(self.factor, sample)
-        raceway = bearing.inner_raceway.radius / MILLIMETRE
-        width = 0.35 * bearing.roller.diameter / MILLIMETRE
-        angle = sample["shaft_angle"]
-        middle = [picture(*centre)]
-        body = rr.Ellipses2D(centers=middle, half_sizes=[[raceway - width / 2] * 2], line_radii=width / 2, colors=colours.DARK_STEEL, draw_order=0.0)
-        self._log("inner_ring/body", body)
-        line = rr.Ellipses2D(centers=middle, half_sizes=[[raceway - 0.1] * 2], line_radii=0.2, colors=colours.BLUE, draw_order=1.0)
-        self._log("inner_ring/raceway", line)
-        mark = np.stack((polar(0.84 * raceway, angle, centre), polar(raceway, angle, centre)))
-        self._log("inner_ring/shaft_mark", rr.LineStrips2D([mark], radii=0.45, colors=colours.BLUE, draw_order=2.0))
+        raceway = self._bearing.inner_raceway.radius / MILLIMETRE
+        self._log("inner_ring/body", rr.Ellipses2D.from_fields(centers=np.tile(picture(*centre), (2, 1))))
+        mark = polar(raceway * np.array([0.84, 1.0]), sample["shaft_angle"], centre)
+        self._log("inner_ring/shaft_mark", rr.LineStrips2D.from_fields(strips=mark[None]))
 
-    def _draw_cage(self, sample) -> None:
-        bearing = self._bearing
-        bars = section.cage_bars(bearing, sample["cage_angle"])
-        bar_colours = np.full((len(bars), 4), colours.BRONZE, np.uint8)
-        bar_colours[0] = colours.ORANGE
-        self._log("cage/bars", rr.LineStrips2D(bars, radii=section.cage_bar_half_width(bearing), colors=bar_colours, draw_order=3.0))
-
-    def _draw_rollers(self, sample) -> None:
-        centres = section.roller_centres(self._bearing, self.factor, sample)
-        radius = self._bearing.roller.diameter / 2 / MILLIMETRE
-        fill = colours.load_colours(sample["inner_load"], self.load_scale)
-        self._log("rollers", rr.Points2D(centres, radii=radius, colors=fill, draw_order=5.0))
-        marks = section.spin_marks(self._bearing, centres, sample)
-        self._log("spin_marks", rr.LineStrips2D(marks, radii=0.22, colors=colours.WHITE, draw_order=6.0))
-
-    def _draw_forces(self, sample) -> None:
+    def _draw_forces(self, sample, fill: np.ndarray) -> None:
         per_newton = self._arrow / self.load_scale
         origins_i, vectors_i, origins_e, vectors_e = section.load_arrows(self._bearing, self.factor, sample, per_newton)
-        inner_colours = colours.load_colours(sample["inner_load"], self.load_scale)
-        self._log("forces/inner", rr.Arrows2D(origins=origins_i, vectors=vectors_i, radii=0.22, colors=inner_colours, draw_order=9.0))
-        self._log("forces/outer", rr.Arrows2D(origins=origins_e, vectors=vectors_e, radii=0.22, colors=colours.VERMILION, draw_order=9.0))
+        self._log("forces/inner", rr.Arrows2D.from_fields(origins=origins_i, vectors=vectors_i, colors=fill))
+        self._log("forces/outer", rr.Arrows2D.from_fields(origins=origins_e, vectors=vectors_e))
         load = math.hypot(sample["load_y"], sample["load_z"])
         length = min(max(LOAD_ARROW_FACTOR * load * per_newton, 0.12 * self._bore), 0.42 * self._bore) if load > 0 else 0.0
         vector = polar(length, math.atan2(sample["load_z"], sample["load_y"]))
-        self._log("forces/radial_load", rr.Arrows2D(origins=[[0.0, 0.0]], vectors=[vector], radii=0.5, colors=colours.YELLOW, draw_order=10.0))
+        self._log("forces/radial_load", rr.Arrows2D.from_fields(origins=np.zeros((1, 2)), vectors=vector[None]))
         beside = picture(0.25 * self._bore, (0.22 if sample["load_z"] <= 0 else -0.09) * self._bore)  # where the arrow is not
         self._text("forces/radial_load_text", [beside], [f"radial load {load:.0f} N"])
 
@@ -142,6 +141,10 @@ class SectionDrawing:
 
     def _still(self, path: str, what) -> None:
         self._recording.log(f"{ROOT}/{path}", what, static=True)
+
+
+def _largest(loads: np.ndarray) -> float:
+    return float(np.nan_to_num(loads).max())
 
 
 def labels(places, texts: list[str]) -> rr.Arrows2D:

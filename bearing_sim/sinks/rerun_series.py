@@ -39,6 +39,8 @@ _LINES = {
     "/sink/dropped": ("blocks dropped", colours.WHITE, 1.5),
 }
 
+_AGGREGATION = {"/loads/inner_largest": "Max", "/loads/outer_largest": "Max", "/slip/cage": "Max"}  # where many samples share a pixel
+
 
 def plottable(values) -> np.ndarray:
     """Return float32 values with NaN, a gap in a plot, wherever there is no finite number."""
@@ -89,7 +91,8 @@ class RunSeries:
     def describe(self) -> None:
         """Log names, colours and texts that hold for the whole run."""
         for path, (name, colour, width) in _LINES.items():
-            self._recording.log(path, rr.SeriesLines(names=[name], colors=[colour], widths=[width]), static=True)
+            line = rr.SeriesLines(names=[name], colors=[colour], widths=[width], aggregation_policy=_AGGREGATION.get(path, "Average"))
+            self._recording.log(path, line, static=True)
         count = self._scene.bearing.roller.count
         around = colours.load_palette(count)
         for ring in ("inner", "outer"):

@@ -12,6 +12,7 @@ from bearing_sim.sinks.load_map import LoadMap, map_size
 from bearing_sim.sinks.rerun_blueprint import LIVE_WINDOW, Extent, blueprint
 from bearing_sim.sinks.rerun_scene import SectionDrawing, labels
 from bearing_sim.sinks.rerun_series import TIMELINE, RunSeries, about
+from bearing_sim.sinks.rerun_solid import SolidDrawing
 
 APPLICATION = "bearing_sim"
 ROWS_PER_COLUMN = 1000
@@ -82,6 +83,7 @@ class RunView:
         self._recording.set_log_time_enabled(False)  # one timeline: the simulated time
         scale = section.round_up(load_scale) if load_scale else first_load_scale(scene)
         self._drawing = SectionDrawing(self._recording, scene, scale)
+        self._solid = SolidDrawing(self._recording, scene)
         sinks = [rr.FileSink(str(path))] if path is not None else []
         if serve_port is not None:
             sinks.append(rr.GrpcServerSink("127.0.0.1", serve_port, server_memory_limit=_SERVER_MEMORY))
@@ -98,6 +100,7 @@ class RunView:
         self._first_time = 0.0
         self._scene, self._live = scene, live
         self._drawing.draw_still_parts()
+        self._solid.draw_still_parts()
         self._series.describe()
         self._recording.log("/about", rr.TextDocument(about(scene, self._drawing.factor), media_type=rr.MediaType.MARKDOWN), static=True)
         self.dropped = 0
@@ -112,9 +115,7 @@ class RunView:
         self._newest = block[-1]
         self._pending.append(block)
         for index in self._frames.pick(block["time"]):
-            self._recording.set_time(TIMELINE, duration=float(block["time"][index]))
-            self._drawing.draw(block[index])
-            self._series.write_readout(block[index], self.dropped)
+            self._draw(block[index])
         entered = 0
         for index in self._map_times.pick(block["time"]):
             self._map.add(block[entered : index + 1])
@@ -144,15 +145,19 @@ class RunView:
         """Send the rest and finish the file."""
         self.flush()
         if self._newest is not None:
-            self._recording.set_time(TIMELINE, duration=float(self._newest["time"]))
-            self._drawing.draw(self._newest)
-            self._series.write_readout(self._newest, self.dropped)
+            self._draw(self._newest)
             self._draw_map(float(self._newest["time"]))
             if not self._live:  # now that every series is known, its axis can be chosen to hold it
                 extent = Extent((self._first_time, float(self._newest["time"])), self._series.ranges)
                 self._recording.send_blueprint(blueprint(self._scene, self._drawing.bounds(), live=False, extent=extent))
         self._recording.flush(timeout_sec=5.0)
         self._recording.disconnect()
+
+    def _draw(self, sample: np.void) -> None:
+        self._recording.set_time(TIMELINE, duration=float(sample["time"]))
+        self._drawing.draw(sample)
+        self._solid.draw(sample, self._drawing.load_scale)
+        self._series.write_readout(sample, self.dropped)
 
     def _draw_map(self, time: float) -> None:
         width, height = map_size()

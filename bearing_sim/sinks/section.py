@@ -50,7 +50,7 @@ def round_up(number: float) -> float:
 def round_ticks(low: float, high: float, most: int = 6) -> np.ndarray:
     """Return at most ``most`` round numbers from ``low`` to ``high``, evenly spaced."""
     step = round_up((high - low) / (most - 1))
-    first = math.ceil(low / step - 1e-9)
+    first = math.ceil(low / step - 0.02)
     return np.round(step * np.arange(first, math.floor(high / step + 0.02) + 1), 9)
 
 

@@ -1,0 +1,91 @@
+"""The load map: loads stand where they act, whatever the run's length."""
+
+import math
+import struct
+import zlib
+
+import numpy as np
+from synthetic_run import synthetic_block
+
+from bearing_sim.scene_file import load_scene
+from bearing_sim.sinks.load_map import AZIMUTH_BINS, COLUMNS, LoadMap, map_size, palette_png
+
+SCENE = load_scene("deng2017_table1")
+
+
+def standing_load(times, azimuth=math.pi / 2, load=1000.0):
+    """Rollers pass by; whichever is within 12 deg of an azimuth carries a load."""
+    block = synthetic_block(SCENE, times)
+    away = np.angle(np.exp(1j * (block["roller_angle"] - azimuth)))
+    block["inner_load"] = np.where(np.abs(away) < math.radians(12), load, 0.0)
+    return block
+
+
+def test_load_that_stands_still_is_a_level_band_at_its_azimuth():
+    chart = LoadMap(1.0, rolling=False)
+    chart.add(standing_load(np.linspace(1e-4, 1.0, 8000)))
+    mean = np.nanmean(chart.loads(), axis=1)
+    centre = (np.arange(AZIMUTH_BINS) + 0.5) * 360 / AZIMUTH_BINS
+    assert (mean[np.abs(centre - 90) < 7] > 990).all()
+    assert (mean[np.abs(centre - 90) > 18] < 10).all()
+
+
+def test_run_longer_than_expected_keeps_its_beginning():
+    chart = LoadMap(1.0, rolling=False)
+    times = np.linspace(1e-3, 3.9, 6000)
+    for part in np.array_split(standing_load(times), 40):
+        chart.add(part)
+    assert chart.span == 4.0 and chart.start == times[0]
+    known = ~np.isnan(chart.loads()).all(axis=0)
+    assert known[: int(0.95 * COLUMNS)].all() and not known[-2:].any()
+    assert np.nanmax(chart.loads()) == 1000.0
+
+
+def test_rolling_map_shows_the_newest_seconds_only():
+    chart = LoadMap(1.0, rolling=True)
+    chart.add(standing_load(np.linspace(0.01, 1.0, 2000), azimuth=math.pi))
+    for part in np.array_split(standing_load(np.linspace(1.0, 5.0, 8000)), 80):
+        chart.add(part)
+    assert 3.95 <= chart.start <= 4.02
+    mean = np.nanmean(chart.loads(), axis=1)
+    assert mean[AZIMUTH_BINS // 4] > 900 and mean[AZIMUTH_BINS // 2] < 10
+
+
+def test_jump_ahead_leaves_nothing_of_the_past():
+    chart = LoadMap(1.0, rolling=True)
+    chart.add(standing_load(np.linspace(0.01, 1.0, 500)))
+    chart.add(standing_load(np.array([1000.0, 1000.001])))
+    assert (~np.isnan(chart.loads()).all(axis=0)).sum() == 1
+
+
+def test_unknown_loads_pass_for_none():
+    block = standing_load(np.linspace(0.01, 1.0, 500))
+    block["inner_load"][:] = np.nan
+    chart = LoadMap(1.0, rolling=False)
+    chart.add(block)
+    assert np.nanmax(chart.loads()) == 0.0
+    assert chart.png(1000.0).startswith(b"\x89PNG")
+
+
+def test_png_holds_the_pixels_it_was_given():
+    index = np.arange(12, dtype=np.uint8).reshape(3, 4)
+    palette = np.random.default_rng(1).integers(0, 255, (12, 3)).astype(np.uint8)
+    content = palette_png(index, palette)
+    chunks, place = {}, 8
+    while place < len(content):
+        size = struct.unpack(">I", content[place : place + 4])[0]
+        kind, body = content[place + 4 : place + 8], content[place + 8 : place + 8 + size]
+        assert struct.unpack(">I", content[place + 8 + size : place + 12 + size])[0] == zlib.crc32(kind + body)
+        chunks[kind], place = body, place + 12 + size
+    assert struct.unpack(">II", chunks[b"IHDR"][:8]) == (4, 3)
+    rows = np.frombuffer(zlib.decompress(chunks[b"IDAT"]), np.uint8).reshape(3, 5)
+    assert (rows[:, 0] == 0).all() and (rows[:, 1:] == index).all()
+    assert chunks[b"PLTE"] == palette.tobytes()
+
+
+def test_map_has_one_block_of_pixels_a_cell():
+    chart = LoadMap(1.0, rolling=False)
+    chart.add(standing_load(np.linspace(0.01, 1.0, 100)))
+    width, height = struct.unpack(">II", chart.png(100.0)[16:24])
+    assert (width, height) == map_size()
+    assert width % COLUMNS == 0 and height % AZIMUTH_BINS == 0

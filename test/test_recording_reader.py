@@ -1,0 +1,136 @@
+"""Reading our recordings back: what was recorded, and what follows from it."""
+
+import math
+
+import numpy as np
+import pytest
+from recordings import steady_log, truncated
+from synthetic_run import synthetic_block
+
+from bearing_sim.events import Event, Level
+from bearing_sim.recording_reader import ROWS_PER_BLOCK, Recording, RecordingError
+from bearing_sim.scene_file import load_scene
+from bearing_sim.simulation import Inputs
+from bearing_sim.sinks.mcap_sink import McapSink
+
+SCENE = load_scene("deng2017_table1")
+START_NS = 1_700_000_000_000_000_000
+TIMES = 0.01 * np.arange(1, 1301)
+
+
+@pytest.fixture(scope="module")
+def block():
+    block = synthetic_block(SCENE, TIMES)
+    block["load_y"], block["load_z"] = 800.0 * np.cos(TIMES), 800.0 * np.sin(TIMES)
+    block["rating_life"][:3], block["cage_slip"][:3] = np.inf, np.nan
+    return block
+
+
+@pytest.fixture(scope="module")
+def path(block, tmp_path_factory):
+    path = tmp_path_factory.mktemp("recording") / "run.mcap"
+    with McapSink(path, SCENE, START_NS) as sink:
+        for sample in block:
+            inputs = Inputs(sample["shaft_speed"], sample["load_y"], sample["load_z"], sample["oil_temperature"])
+            sink.write_inputs(float(sample["time"]), inputs)
+            sink.write(sample.reshape(1))
+    return path
+
+
+def blocks(recording):
+    return [item for item in recording if isinstance(item, np.ndarray)]
+
+
+def test_recorded_observables_come_back_as_they_were(path, block):
+    recording = Recording(path)
+    read = np.concatenate(blocks(recording))
+    assert recording.scene == SCENE and recording.start_ns == START_NS and recording.unfinished == ""
+    assert recording.samples == len(block) == len(read)
+    assert (recording.first_time, recording.last_time) == pytest.approx((0.01, 13.0))
+    assert recording.largest_load == max(block["inner_load"].max(), block["outer_load"].max())
+    np.testing.assert_allclose(read["time"], block["time"], atol=1e-6)
+    names = ["shaft_angle", "shaft_speed", "cage_angle", "cage_speed", "ideal_cage_angle", "ideal_cage_speed", "cage_slip", "rating_life", "damage"]
+    for name in [*names, "load_y", "load_z", "oil_temperature", "inner_load", "outer_load"]:
+        np.testing.assert_allclose(read[name], block[name], rtol=1e-12, atol=1e-12, err_msg=name)
+
+
+def test_blocks_are_no_longer_than_promised(path, block):
+    assert [len(part) for part in blocks(Recording(path))] == [ROWS_PER_BLOCK, len(block) - ROWS_PER_BLOCK]
+
+
+def test_roller_places_and_ring_centre_follow_from_angles_and_loads(path, block):
+    read = np.concatenate(blocks(Recording(path)))
+    np.testing.assert_allclose(read["roller_angle"], block["roller_angle"], atol=1e-9)
+    np.testing.assert_allclose(read["roller_radius"], block["roller_radius"], atol=2e-9)
+    three_touch = (block["inner_load"] > 1).sum(axis=1) >= 3
+    assert three_touch.sum() > 500
+    np.testing.assert_allclose(read["ring_y"][three_touch], 6e-6, atol=1e-8)
+    np.testing.assert_allclose(read["ring_z"][three_touch], -1e-6, atol=1e-8)
+
+
+def test_rollers_are_taken_to_roll_on_the_outer_ring(path):
+    read = np.concatenate(blocks(Recording(path)))
+    surface = read["roller_spin"] * SCENE.bearing.roller.diameter / 2
+    orbit = (read["cage_speed"] * SCENE.bearing.pitch_radius)[:, None]
+    np.testing.assert_allclose(surface, np.broadcast_to(orbit, surface.shape))
+
+
+def test_recording_cut_short_is_shown_up_to_the_cut_and_says_so(path, tmp_path):
+    recording = Recording(truncated(path, tmp_path / "run.mcap.active", path.stat().st_size // 2))
+    read = np.concatenate(blocks(recording))
+    assert "ends early" in recording.unfinished
+    assert 300 < recording.samples < 1000 and len(read) == recording.samples
+    assert np.isfinite(read["shaft_speed"][:-1]).all()
+
+
+def test_lasting_trouble_is_told_once_and_again_only_after_it_was_gone(tmp_path):
+    slip, stale = Event(0.0, Level.ERROR, "bearing.slip", "cage slip: 12 %"), Event(0.0, Level.WARN, "input.stale", "radial_load: none for 1 s")
+    with McapSink(tmp_path / "run.mcap", SCENE, START_NS) as sink:
+        sink.write(synthetic_block(SCENE, TIMES[:1]))
+        for second in range(20):
+            lasting = [slip] if second < 5 or second > 10 else []
+            sink.write_diagnostics(float(second), lasting, {"cage slip [%]": 12.0})
+            if second == 3:
+                sink.write_event(stale._replace(time=3.5))
+    told = [(event.time, event.level, event.code, event.text) for event in Recording(tmp_path / "run.mcap") if isinstance(event, Event)]
+    assert told == [
+        (0.0, Level.ERROR, "bearing.slip", "cage slip: 12 %"),
+        (3.5, Level.WARN, "input.stale", "radial_load: none for 1 s"),
+        (11.0, Level.ERROR, "bearing.slip", "cage slip: 12 %"),
+    ]
+
+
+def test_log_of_inputs_is_no_recording_of_a_run(tmp_path):
+    with pytest.raises(RecordingError, match="no metadata record 'bearing_sim'.*/shaft_speed"):
+        Recording(steady_log(tmp_path / "log.mcap"))
+
+
+def test_recording_without_samples_is_refused(tmp_path):
+    with McapSink(tmp_path / "run.mcap", SCENE, START_NS) as sink:
+        sink.write_inputs(0.0, Inputs(1.0, 2.0, 3.0, 300.0))
+    with pytest.raises(RecordingError, match="no samples"):
+        Recording(tmp_path / "run.mcap")
+
+
+@pytest.mark.parametrize("content", [b"", b"not an MCAP file at all", b"\x89MCAP0\r\n"])
+def test_other_files_are_refused(tmp_path, content):
+    (tmp_path / "run.mcap").write_bytes(content)
+    with pytest.raises(RecordingError):
+        Recording(tmp_path / "run.mcap")
+    with pytest.raises(RecordingError, match="no such file"):
+        Recording(tmp_path / "absent.mcap")
+
+
+def test_simulated_bearing_is_read_back_as_the_level_saw_it(tmp_path):
+    from bearing_sim.simulation import Simulation
+
+    simulation = Simulation(SCENE, Inputs(2000.0, 600.0, -500.0, 393.15))
+    block = simulation.advance(0.02, samples=40)
+    with McapSink(tmp_path / "run.mcap", SCENE, START_NS) as sink:
+        sink.write_inputs(0.0, simulation.inputs)
+        sink.write(block)
+    (read,) = blocks(Recording(tmp_path / "run.mcap"))
+    turn = np.angle(np.exp(1j * (read["roller_angle"] - block["roller_angle"])))
+    np.testing.assert_allclose(turn, 0.0, atol=1e-9)
+    np.testing.assert_allclose(read["roller_radius"], block["roller_radius"], atol=2e-8)
+    assert math.hypot(np.abs(read["ring_y"] - block["ring_y"]).max(), np.abs(read["ring_z"] - block["ring_z"]).max()) < 5e-7

@@ -1,0 +1,286 @@
+"""The rerun sink: what it writes, and that it never holds up the run."""
+
+import math
+import socket
+import threading
+
+import numpy as np
+import psutil
+import pytest
+import rerun as rr
+from rerun.chunk import RrdReader
+from synthetic_run import synthetic_block
+
+from bearing_sim.events import Event, Level
+from bearing_sim.scene_file import load_scene
+from bearing_sim.sinks import rerun_sink
+from bearing_sim.sinks.rerun_series import log10_hours
+from bearing_sim.sinks.rerun_sink import RerunSink
+from bearing_sim.sinks.rerun_view import FileFrames, LiveFrames
+
+SCENE = load_scene("deng2017_table1")
+TIMES = 0.001 * np.arange(1, 401)
+
+
+@pytest.fixture(autouse=True)
+def strict_rerun():
+    rr.set_strict_mode(True)
+    yield
+    rr.set_strict_mode(False)
+
+
+def written(path, block, events=(), **options):
+    with RerunSink(SCENE, path=path, lossless=True, **options) as sink:
+        for event in events:
+            sink.write_event(event)
+        for part in np.array_split(block, 9):
+            sink.write(part)
+    assert sink.fault is None
+    return sink
+
+
+def column(path, entity, component):
+    """Return times [s] and values of one component, in the order of time."""
+    times, values = [], []
+    for chunk in RrdReader(str(path)).stream():
+        if chunk.entity_path != entity or chunk.is_static:
+            continue
+        table = chunk.to_record_batch()
+        if component in table.schema.names:
+            times += [time.total_seconds() for time in table.column("sim_time").to_pylist()]
+            values += table.column(component).to_pylist()
+    order = np.argsort(times, kind="stable")
+    return np.array(times)[order], [values[place] for place in order]
+
+
+def test_series_in_the_file_are_the_samples_in_readers_units(tmp_path):
+    block = synthetic_block(SCENE, TIMES)
+    written(tmp_path / "run.rrd", block)
+    expected = {
+        "/speed/shaft": block["shaft_speed"] * 60 / (2 * math.pi),
+        "/speed/cage": block["cage_speed"] * 60 / (2 * math.pi),
+        "/speed/ideal_cage": block["ideal_cage_speed"] * 60 / (2 * math.pi),
+        "/slip/cage": block["cage_slip"] * 100,
+        "/life/hours": block["rating_life"],
+        "/life/log10_hours": np.log10(block["rating_life"]),
+        "/damage/ppm": block["damage"] * 1e6,
+        "/load/radial": np.full(len(block), 800.0),
+        "/oil/temperature": block["oil_temperature"] - 273.15,
+    }
+    for path, values in expected.items():
+        times, read = column(tmp_path / "run.rrd", path, "Scalars:scalars")
+        np.testing.assert_allclose(times, block["time"], atol=1e-6, err_msg=path)
+        np.testing.assert_allclose(np.concatenate(read), values, rtol=1e-6, err_msg=path)
+    for ring in ("inner", "outer"):
+        _, read = column(tmp_path / "run.rrd", f"/loads/each/{ring}", "Scalars:scalars")
+        np.testing.assert_allclose(np.array(read), block[f"{ring}_load"], rtol=1e-6)
+
+
+def test_everything_that_moves_lies_on_the_simulated_time_alone(tmp_path):
+    written(tmp_path / "run.rrd", synthetic_block(SCENE, TIMES), [Event(0.1, Level.WARN, "a", "text")])
+    lines = {name for chunk in RrdReader(str(tmp_path / "run.rrd")).stream() if not chunk.is_static for name in chunk.timeline_names}
+    assert lines == {"sim_time"}
+
+
+def test_slip_at_rest_and_endless_life_are_gaps_not_numbers(tmp_path):
+    block = synthetic_block(SCENE, TIMES)
+    block["cage_slip"][:50] = np.nan
+    block["rating_life"][:50] = np.inf
+    written(tmp_path / "run.rrd", block)
+    for path in ("/slip/cage", "/life/hours", "/life/log10_hours"):
+        values = np.concatenate(column(tmp_path / "run.rrd", path, "Scalars:scalars")[1])
+        assert np.isnan(values[:50]).all() and np.isfinite(values[50:]).all(), path
+    assert np.isnan(log10_hours(np.array([0.0, np.inf, np.nan]))).all()
+
+
+def test_threshold_lines_stand_at_the_scenes_thresholds(tmp_path):
+    written(tmp_path / "run.rrd", synthetic_block(SCENE, TIMES))
+    for path, value in (("/slip/warning", 5.0), ("/slip/error", 10.0), ("/life/warning", math.log10(300))):
+        values = np.concatenate(column(tmp_path / "run.rrd", path, "Scalars:scalars")[1])
+        np.testing.assert_allclose(values, value, rtol=1e-6)
+
+
+def test_regime_lane_changes_where_slip_crosses_the_thresholds(tmp_path):
+    block = synthetic_block(SCENE, TIMES, slips=(0.0, 0.2))
+    written(tmp_path / "run.rrd", block)
+    times, states = column(tmp_path / "run.rrd", "/regime", "StateChange:state")
+    assert [state for state, in states] == ["rolling", "slipping", "skidding"]
+    crossings = [block["time"][0], *(block["time"][np.argmax(block["cage_slip"] >= limit)] for limit in (0.05, 0.10))]
+    np.testing.assert_allclose(times, crossings, atol=1e-6)
+
+
+def test_events_reach_the_log_with_time_level_and_text(tmp_path):
+    events = [Event(0.1, Level.WARN, "input.stale", "shaft_speed: none for 1 s"), Event(0.2, Level.ERROR, "bearing.slip", "cage slip: 12 %")]
+    written(tmp_path / "run.rrd", synthetic_block(SCENE, TIMES), events)
+    times, texts = column(tmp_path / "run.rrd", "/log", "TextLog:text")
+    levels = column(tmp_path / "run.rrd", "/log", "TextLog:level")[1]
+    logged = {text: (round(time, 6), level) for time, (text,), (level,) in zip(times, texts, levels)}
+    assert logged["shaft_speed: none for 1 s"] == (0.1, "WARN")
+    assert logged["cage slip: 12 %"] == (0.2, "ERROR")
+
+
+class StuckView:
+    """A view whose viewer has stopped reading."""
+
+    def __init__(self, *_, **__):
+        self.blocked, self.release = threading.Event(), threading.Event()
+        self.rows, self.events, self.dropped, self.closed = 0, 0, [], False
+        StuckView.newest = self
+
+    def write(self, block):
+        self.blocked.set()
+        assert self.release.wait(60)
+        self.rows += len(block)
+
+    def write_event(self, event):
+        self.events += 1
+
+    def write_dropped(self, dropped):
+        self.dropped.append(dropped)
+
+    def flush(self):
+        pass
+
+    def close(self):
+        self.closed = True
+
+
+@pytest.fixture
+def stuck(monkeypatch, tmp_path):
+    monkeypatch.setattr(rerun_sink, "RunView", StuckView)
+    monkeypatch.setattr(rerun_sink, "_FLUSH_EVERY", 0.0)
+    return tmp_path / "run.rrd"
+
+
+def test_stuck_viewer_never_blocks_the_producer_and_what_is_dropped_is_counted(stuck):
+    sink = RerunSink(SCENE, path=stuck)
+    blocks = [synthetic_block(SCENE, TIMES)] * 200
+    sink.write(blocks[0])
+    assert StuckView.newest.blocked.wait(60)
+    for block in blocks[1:]:  # were this to block, nothing would ever release the view
+        sink.write(block)
+    sink.write_event(Event(0.0, Level.OK, "a", "b"))
+    assert 0 < sink.dropped < 200
+    queued_rows = sum(map(len, blocks)) - 400 * sink.dropped
+    assert queued_rows <= 20_000 + 2 * 400, "the queue is bounded by rows"
+    StuckView.newest.release.set()
+    assert sink.close(timeout=60)
+    taken = StuckView.newest.rows // 400 + StuckView.newest.events
+    assert taken + sink.dropped == 201
+    assert StuckView.newest.dropped[-1] == sink.dropped, "the view was told"
+
+
+def test_close_gives_up_on_a_stuck_viewer(stuck):
+    sink = RerunSink(SCENE, path=stuck)
+    sink.write(synthetic_block(SCENE, TIMES))
+    assert StuckView.newest.blocked.wait(60)
+    assert sink.close(timeout=0.05) is False
+    StuckView.newest.release.set()
+
+
+def test_lossless_sink_makes_the_producer_wait_and_drops_nothing(stuck):
+    sink = RerunSink(SCENE, path=stuck, lossless=True)
+    block = synthetic_block(SCENE, TIMES)
+    producer = threading.Thread(target=lambda: [sink.write(block) for _ in range(200)])
+    producer.start()
+    assert StuckView.newest.blocked.wait(60)
+    producer.join(0.3)
+    assert producer.is_alive(), "200 blocks do not fit into the queue"
+    StuckView.newest.release.set()
+    producer.join(60)
+    assert sink.close(timeout=60)
+    assert (StuckView.newest.rows, sink.dropped) == (200 * 400, 0)
+
+
+class BrokenView(StuckView):
+    def write(self, block):
+        raise RuntimeError("disk full")
+
+
+def test_failing_viewer_is_told_and_the_run_goes_on(monkeypatch, tmp_path):
+    monkeypatch.setattr(rerun_sink, "RunView", BrokenView)
+    sink = RerunSink(SCENE, path=tmp_path / "run.rrd")
+    sink.write(synthetic_block(SCENE, TIMES))
+    sink.close(timeout=60)
+    assert "disk full" in sink.fault
+    lossless = RerunSink(SCENE, path=tmp_path / "run.rrd", lossless=True)
+    with pytest.raises(OSError, match="disk full"):
+        for _ in range(1000):
+            lossless.write(synthetic_block(SCENE, TIMES[:2]))
+    lossless.close(timeout=60)
+
+
+def test_dropped_blocks_show_in_the_view(tmp_path):
+    from bearing_sim.sinks.rerun_view import RunView
+
+    view = RunView(SCENE, path=tmp_path / "run.rrd", live=False)
+    view.write(synthetic_block(SCENE, TIMES))
+    view.write_dropped(7)
+    view.close()
+    texts = [text for text, in column(tmp_path / "run.rrd", "/log", "TextLog:text")[1]]
+    assert any("missed 7 blocks" in text for text in texts)
+    assert column(tmp_path / "run.rrd", "/sink/dropped", "Scalars:scalars")[1] == [[7.0]]
+    assert "7 blocks dropped" in column(tmp_path / "run.rrd", "/now", "TextDocument:text")[1][-1][0]
+
+
+def test_taken_port_is_told_at_once():
+    with socket.socket() as other:
+        other.bind(("127.0.0.1", 0))
+        other.listen()
+        port = other.getsockname()[1]
+        with pytest.raises(OSError, match=f"port {port} on 127.0.0.1"):
+            RerunSink(SCENE, serve_port=port)
+
+
+def test_server_listens_on_the_loopback_only():
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    with RerunSink(SCENE, serve_port=port) as sink:
+        sink.write(synthetic_block(SCENE, TIMES))
+        assert _listening_address(port) == {"127.0.0.1"}
+
+
+def _listening_address(port):
+    for _ in range(200):
+        found = {c.laddr.ip for c in psutil.Process().net_connections() if c.status == psutil.CONN_LISTEN and c.laddr.port == port}
+        if found:
+            return found
+        threading.Event().wait(0.05)
+    return set()
+
+
+@pytest.mark.parametrize("options", [{}, {"serve_port": 1, "lossless": True}])
+def test_senseless_options_are_refused(options):
+    with pytest.raises(ValueError):
+        RerunSink(SCENE, **options)
+
+
+def test_file_that_cannot_be_written_is_told_at_once(tmp_path):
+    with pytest.raises(OSError):
+        RerunSink(SCENE, path=tmp_path / "absent" / "run.rrd")
+
+
+def test_pictures_of_a_long_file_stay_few_and_even():
+    times = 0.1 * np.arange(46_800)
+    frames = FileFrames(duration=4680.0)
+    picked = np.array(frames.pick(times))
+    assert 1000 < len(picked) <= 1600
+    assert np.ptp(np.diff(times[picked])) < 0.11
+
+
+def test_pictures_of_a_file_of_unknown_length_thin_out():
+    frames = FileFrames(duration=None)
+    drawn = sum(len(frames.pick(part)) for part in np.array_split(1e-3 * np.arange(1_000_000), 1000))
+    assert 1500 < drawn < 750 * 14
+
+
+def test_live_pictures_are_bounded_by_wall_time_and_show_the_newest():
+    now = [0.0]
+    frames = LiveFrames(rate=30.0, clock=lambda: now[0])
+    drawn = []
+    for step in range(1000):
+        now[0] = step * 1e-3
+        drawn += frames.pick(np.array([step, step + 0.5]))
+    assert set(drawn) == {1}
+    assert 28 <= len(drawn) <= 31
