@@ -11,7 +11,7 @@ START = Inputs(shaft_speed=100.0, load_y=800.0, load_z=0.0, oil_temperature=393.
 
 
 class FakeSimulation:
-    """Slip is a tenth, damage grows with shaft rotation; nothing is compiled."""
+    """Slip is a hundredth, damage grows with shaft rotation; nothing is compiled."""
 
     rollers = 6
 
@@ -54,6 +54,6 @@ class FakeSimulation:
         sample = new_block(1, self.rollers)[0]
         sample["time"], sample["shaft_speed"], sample["shaft_angle"] = now, inputs.shaft_speed, self.angle
         sample["load_y"], sample["load_z"], sample["oil_temperature"] = inputs.load_y, inputs.load_z, inputs.oil_temperature
-        sample["ideal_cage_speed"], sample["cage_speed"], sample["cage_slip"] = 0.4 * inputs.shaft_speed, 0.36 * inputs.shaft_speed, 0.1
+        sample["ideal_cage_speed"], sample["cage_speed"], sample["cage_slip"] = 0.4 * inputs.shaft_speed, 0.396 * inputs.shaft_speed, 0.01
         sample["rating_life"], sample["damage"] = 1000.0, 1e-9 * self.angle
         return sample

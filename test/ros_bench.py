@@ -20,6 +20,7 @@ from bearing_sim.simulation import Inputs  # noqa: E402
 
 GOOD = Inputs(shaft_speed=1000.0, load_y=800.0, load_z=0.0, oil_temperature=393.15)
 PATIENCE = 30.0  # [s] how long to wait for what should come at once: the machine may be busy
+_COMPILING = 100.0  # [s] how long the node may take to its start when its code has to be compiled
 _REPOSITORY = Path(__file__).resolve().parent.parent
 
 
@@ -31,7 +32,7 @@ def fresh_domain() -> int:
 class NodeProcess:
     """``python -m MODULE ARGUMENTS`` under a watchdog that kills it, with everything it prints kept in a file."""
 
-    def __init__(self, folder: Path, domain: int, *arguments: str, module: str = "bearing_sim.ros.node", limit: int = 90, **environment: str):
+    def __init__(self, folder: Path, domain: int, *arguments: str, module: str = "bearing_sim.ros.node", limit: int = 150, **environment: str):
         self.log = folder / f"{module.rpartition('.')[2]}_{time.monotonic_ns()}.log"
         environment = {**os.environ, "ROS_DOMAIN_ID": str(domain), "ROS_LOG_DIR": str(folder / "ros_log"), **environment}
         environment["PYTHONPATH"] = os.pathsep.join(filter(None, [str(_REPOSITORY), environment.get("PYTHONPATH")]))
@@ -90,17 +91,17 @@ class Client:
         while (rest := end - time.monotonic()) > 0:
             self.executor.spin_once(timeout_sec=rest)
 
-    def spin_until(self, condition, what: str, process: NodeProcess | None = None) -> None:
+    def spin_until(self, condition, what: str, process: NodeProcess, patience: float = PATIENCE) -> None:
         """Let messages come in until the condition holds; fail with a clear word when it does not."""
-        end = time.monotonic() + PATIENCE
+        end = time.monotonic() + patience
         while not condition():
-            assert time.monotonic() < end, f"waited {PATIENCE} s in vain: {what}\n{process.text if process else ''}"
-            assert process is None or process.process.poll() is None, f"the node ended early: {what}\n{process.text}"
+            assert time.monotonic() < end, f"waited {patience} s in vain: {what}\n{process.text}"
+            assert process.process.poll() is None, f"the node ended early: {what}\n{process.text}"
             self.executor.spin_once(timeout_sec=0.05)
 
     def wait_until_matched(self, process: NodeProcess) -> None:
         """Wait until the node listens and can be heard."""
-        self.spin_until(lambda: all(p.get_subscription_count() for p in self.publishers.values()), "the node subscribes", process)
+        self.spin_until(lambda: all(p.get_subscription_count() for p in self.publishers.values()), "the node subscribes", process, _COMPILING)
 
     def send(self, channel: str, stamp_ns: int | None = None, **values: float) -> None:
         """Publish one message; ``values`` replace those of `GOOD`."""

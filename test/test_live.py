@@ -202,9 +202,32 @@ def test_time_lost_to_a_slow_solver_is_told_with_both_factors(bench):
     ],
 )
 def test_slip_and_life_are_judged_by_the_scenes_thresholds(slip, life, damage, expected):
-    sample = {"time": 1.0, "cage_slip": slip, "rating_life": life, "damage": damage}
+    sample = {"time": 1.0, "shaft_speed": 1000.0, "cage_slip": slip, "rating_life": life, "damage": damage}
     events = bearing_events(sample, load_scene("deng2017_table1").thresholds)
     assert [(event.code, event.level) for event in events] == expected
+
+
+def test_slip_of_a_shaft_that_hardly_turns_is_no_trouble():
+    sample = {"time": 1.0, "shaft_speed": 5.0, "cage_slip": 0.9, "rating_life": 1e6, "damage": 0.0}
+    assert bearing_events(sample, load_scene("deng2017_table1").thresholds) == []
+
+
+def test_a_slip_that_flickers_around_its_limit_is_told_once_and_its_rise_to_an_error_again(bench):
+    one = bench()
+    one.run(0.2)
+    slip = iter([0.049, 0.051] * 40)
+    observe = one.simulation._observe
+
+    def flickering(now, inputs):
+        sample = observe(now, inputs)
+        sample["cage_slip"] = next(slip, 0.3)
+        return sample
+
+    one.simulation._observe = flickering
+    one.news.clear()
+    one.run(2.0)
+    told = [event.level for event in one.news if event.code == "bearing.slip"]
+    assert told == [Level.WARN, Level.ERROR]
 
 
 def test_the_worst_event_comes_first(bench):

@@ -20,7 +20,7 @@ from bearing_sim import topics  # noqa: E402
 from bearing_sim.input_log import read_input_log  # noqa: E402
 from bearing_sim.scene_file import load_scene  # noqa: E402
 
-pytestmark = pytest.mark.timeout(120)
+pytestmark = pytest.mark.timeout(180)
 SECOND = 1_000_000_000
 FAST = 45_000 * math.pi / 30  # [rad/s]; the other tests turn slower, so that a busy machine keeps up
 
@@ -120,7 +120,7 @@ def gated(tmp_path_factory):
     domain = fresh_domain()
     limits = ["maximum_speed=50000rpm", "maximum_load=5000N", "stale_after=0.5s", "minimum_rate=5Hz", "maximum_rate=120Hz"]
     overrides = ", ".join(f"'input_limits.{limit}'" for limit in limits)
-    process = NodeProcess(tmp_path_factory.mktemp("gated"), domain, "--ros-args", "-p", f"overrides:=[{overrides}]", limit=150)
+    process = NodeProcess(tmp_path_factory.mktemp("gated"), domain, "--ros-args", "-p", f"overrides:=[{overrides}]", limit=240)
     client = Client(domain)
     client.wait_until_matched(process)
     client.drive_until(lambda: client.received["cage_slip"], "the node runs", process)

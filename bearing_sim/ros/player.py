@@ -3,9 +3,12 @@
 Run by ``bearing_player LOG.mcap`` or ``python -m bearing_sim.ros.player LOG.mcap``; remappings follow ``--ros-args``.
 """
 
+import signal
 import sys
 import time
 from collections import Counter
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
@@ -14,12 +17,12 @@ import rclpy
 from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args
 
 from bearing_sim import topics
 from bearing_sim.input_log import REQUIRED, InputLog, InputLogError, read_input_log
 from bearing_sim.ros.messages import message, message_class
-from bearing_sim.ros.process import signals_left_to_ros
 from bearing_sim.simulation import Inputs
 
 _SLICE = 0.05  # [s] a sleep is cut into such slices, so that a signal is obeyed
@@ -45,20 +48,44 @@ def plays(log: InputLog) -> list[Play]:
     return sorted(merged, key=lambda play: play.time)
 
 
+class Stop:
+    """Whether a signal has asked for the end."""
+
+    def __init__(self):
+        self.wanted = False
+
+    def __call__(self, *_) -> None:
+        self.wanted = True
+
+
+@contextmanager
+def stop_on_signals() -> Iterator[Stop]:
+    """Turn SIGINT and SIGTERM into a wish; rclpy's own handlers would take the context away in the middle of a message."""
+    stop = Stop()
+    before = {number: signal.signal(number, stop) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield stop
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
 class Player:
     """Publishes plays through a node.
 
     Parameters
     ----------
     node : the node whose names and remappings count.
+    stop : tells when to end early.
     channels : the channels that will be published.
     scalar : publish shaft speed and radial load as Float64.
     """
 
-    def __init__(self, node: Node, channels, scalar: bool = False):
-        self._node = node
+    def __init__(self, node: Node, stop: Stop, channels, scalar: bool = False):
+        self._node, self._stop = node, stop
         self.sent: Counter[str] = Counter()
         self.lateness = 0.0  # [s] summed over all messages
+        self.reached = 0.0  # [s] time in the log
         self._types = {
             channel: _SCALAR if scalar and _SCALAR in topics.input_types(channel) else topics.INPUTS[channel].ros_type for channel in channels
         }
@@ -74,7 +101,7 @@ class Player:
         """Wait for a subscriber of every required channel; False when ``limit`` [s] passed or a signal came."""
         deadline = time.monotonic() + limit
         while self.unheard():
-            if time.monotonic() > deadline or not rclpy.ok():
+            if time.monotonic() > deadline or self._stop.wanted:
                 return False
             time.sleep(_SLICE)
         return True
@@ -86,12 +113,13 @@ class Player:
             due = start + play.time / rate
             while (rest := due - time.monotonic()) > 0.0:
                 progress(play.time - rest * rate)
-                if not rclpy.ok():
+                if self._stop.wanted:
                     return False
                 time.sleep(min(rest, _SLICE))
-            if not rclpy.ok():
+            if self._stop.wanted:
                 return False
             self.lateness += max(0.0, time.monotonic() - due)
+            self.reached = play.time
             self._publish(play, start_ns + round(play.time / rate * 1e9))
         progress(plays[-1].time)
         for publisher in self._publishers.values():
@@ -163,12 +191,13 @@ def command(context, log, rate, wait_for_subscribers, wait_limit, input_type, jo
         click.echo(f"bearing_player: {recording.unfinished}", err=True)
     messages = plays(recording)
     node = rclpy.create_node("bearing_player", start_parameter_services=False)
-    player = Player(node, recording.series, input_type == "scalar")
+    stop: Stop = context.obj
+    player = Player(node, stop, recording.series, input_type == "scalar")
     try:
         if wait_for_subscribers and not player.wait_until_heard(wait_limit):
-            if rclpy.ok():
+            if not stop.wanted:
                 click.echo(f"bearing_player: nobody listens to {', '.join(player.unheard())} after {wait_limit:g} s", err=True)
-            context.exit(1 if rclpy.ok() else 130)
+            context.exit(130 if stop.wanted else 1)
         progress = Progress(f"playing {log.name}", messages[-1].time)
         try:
             complete = player.play(messages, rate, progress)
@@ -177,7 +206,7 @@ def command(context, log, rate, wait_for_subscribers, wait_limit, input_type, jo
         counts = ", ".join(f"{count} {channel}" for channel, count in player.sent.items())
         late = 1e3 * player.lateness / max(1, player.sent.total())
         ending = "played" if complete else "stopped by a signal after"
-        click.echo(f"{ending} {messages[-1].time:.1f} s of log at rate {rate:g}: {counts}; {late:.2f} ms late on average")
+        click.echo(f"{ending} {player.reached:.1f} s of log at rate {rate:g}: {counts}; {late:.2f} ms late on average")
         context.exit(0 if complete else 130)
     finally:
         node.destroy_node()
@@ -194,19 +223,19 @@ def main(args: list[str] | None = None) -> int:
     own = remove_ros_args(argv)[1:]
     if {"-h", "--help"} & set(own):
         return command.main(own, prog_name="bearing_player", standalone_mode=False) or 0
-    with signals_left_to_ros():
-        try:
-            rclpy.init(args=argv)
-        except RuntimeError as fault:
-            click.echo(f"bearing_player: cannot start ROS: {' '.join(str(fault).split())}", err=True)
-            return 2
-        try:
-            return command.main(own, prog_name="bearing_player", standalone_mode=False) or 0
-        except click.ClickException as fault:
-            fault.show()
-            return fault.exit_code
-        finally:
-            rclpy.try_shutdown()
+    try:
+        rclpy.init(args=argv, signal_handler_options=SignalHandlerOptions.NO)
+    except RuntimeError as fault:
+        click.echo(f"bearing_player: cannot start ROS: {' '.join(str(fault).split())}", err=True)
+        return 2
+    try:
+        with stop_on_signals() as stop:
+            return command.main(own, prog_name="bearing_player", standalone_mode=False, obj=stop) or 0
+    except click.ClickException as fault:
+        fault.show()
+        return fault.exit_code
+    finally:
+        rclpy.shutdown()
 
 
 if __name__ == "__main__":

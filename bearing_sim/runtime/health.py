@@ -14,7 +14,8 @@ from bearing_sim.runtime.input_gate import InputGate
 from bearing_sim.runtime.runner import Phase, Runner
 from bearing_sim.scene import Thresholds
 
-_LINGER = 2.0  # [s] a momentary event is shown this long, so that a report at 1 Hz cannot miss it
+_LINGER = 2.0  # [s] a momentary event is shown this long: a report at 1 Hz cannot miss it, a value at its limit does not flicker
+_CRAWL = 20.0  # [rad/s] of the shaft: leaving rest a cage may slip by any fraction of next to nothing, which harms no surface
 
 
 class Condition(NamedTuple):
@@ -40,7 +41,8 @@ class Health:
     def __init__(self, thresholds: Thresholds):
         self._thresholds = thresholds
         self._momentary: dict[str, tuple[Event, int]] = {}
-        self._holding: set[str] = set()
+        self._bearing: dict[tuple[str, Level], tuple[float, Event]] = {}
+        self._holding: set[tuple[str, Level]] = set()
         self._seen = {"lost": 0.0, "dropped": 0}
         self._news: list[Event] = []
 
@@ -60,8 +62,7 @@ class Health:
         self._note_losses(now, runner)
         events = [_counted(event, count) for event, count in self._momentary.values()]
         events += [*others, *gate.check(now), *run_events(now, runner)]
-        if runner.newest is not None:
-            events += bearing_events(runner.newest, self._thresholds)
+        events += self._bearing_events(now, runner)
         known = {}
         for event in sorted(events, key=lambda event: -event.level):
             known.setdefault(_kind(event), event)
@@ -69,11 +70,18 @@ class Health:
 
     def news(self, events: Iterable[Event]) -> list[Event]:
         """Return, each trouble once, what was noted and which of the lasting ``events`` began since the last call."""
-        lasting = {_kind(event): event for event in events if _kind(event) not in self._momentary}
+        lasting = {(_kind(event), event.level): event for event in events if _kind(event) not in self._momentary}
         begun = [event for kind, event in lasting.items() if kind not in self._holding]
         self._holding = set(lasting)
         noted, self._news = self._news, []
         return noted + begun
+
+    def _bearing_events(self, now: float, runner: Runner) -> list[Event]:
+        """Return what the newest sample calls for, and what others called for a moment ago."""
+        if runner.newest is not None:
+            self._bearing |= {(event.code, event.level): (now, event) for event in bearing_events(runner.newest, self._thresholds)}
+        self._bearing = {key: (seen, event) for key, (seen, event) in self._bearing.items() if now - seen < _LINGER}
+        return [event for _, event in self._bearing.values()]
 
     def _note_losses(self, now: float, runner: Runner) -> None:
         """Turn growing loss counters into momentary events."""
@@ -94,7 +102,7 @@ def bearing_events(sample, thresholds: Thresholds) -> list[Event]:
     """Return the warnings and errors about the bearing that one sample calls for."""
     time, slip, life = float(sample["time"]), float(sample["cage_slip"]), float(sample["rating_life"])
     events = []
-    if abs(slip) >= thresholds.slip_warning:  # false for NaN, the slip at rest
+    if abs(slip) >= thresholds.slip_warning and abs(float(sample["shaft_speed"])) >= _CRAWL:  # false for NaN, the slip at rest
         error = abs(slip) >= thresholds.slip_error
         limit = thresholds.slip_error if error else thresholds.slip_warning
         text = f"cage slip: {100 * slip:.3g} % has reached {100 * limit:.3g} %"
@@ -115,7 +123,7 @@ def run_events(now: float, runner: Runner) -> list[Event]:
         text = f"time could not be advanced for {runner.failed_ticks} ticks; the last good state is held, the next inputs are tried"
         return [Event(now, Level.ERROR, "solver.failed", text)]
     if runner.phase is Phase.WAITING:
-        return [Event(now, Level.WARN, "run.waiting", "waiting for the first shaft_speed; nothing is computed yet")]
+        return [Event(now, Level.OK, "run.waiting", "waiting for the first shaft_speed; nothing is computed yet")]
     if runner.phase is Phase.PAUSED:
         return [Event(now, Level.OK, "run.paused", "paused: simulated time is held")]
     return []
