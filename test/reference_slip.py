@@ -127,7 +127,7 @@ class Reference:
         roll_e = (omega * (radius + r_w) + (spin + omega) * r_w) / 2
         traction_i = inner * self.traction_coefficient(inner, roll_i, slide_i, 1 / (1 / r_w + 1 / r_i))
         traction_e = outer * self.traction_coefficient(outer, roll_e, slide_e, 1 / (1 / r_w - 1 / self.low_radius))
-        lean = (outer * slope + inner * (ring_z * np.cos(azimuth) - ring_y * np.sin(azimuth))) / radius
+        lean = (outer * slope + inner * (ring_y * np.sin(azimuth) - ring_z * np.cos(azimuth))) / radius
         along = traction_i + traction_e - self.churning(omega) + lean - 2 * self.mass * slope * omega**2
         cage_inertia = 0.05 * self.pitch_radius**2
         acceleration = (radius @ along + self.cage_drag(omega)) / (cage_inertia + self.mass * radius @ radius)

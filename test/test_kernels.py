@@ -13,7 +13,7 @@ from bearing_sim.kernels.cage import land_torque
 from bearing_sim.kernels.contact import line_contact, line_contact_stiffness, line_penetration
 from bearing_sim.kernels.drag import churning_force, cylinder_torque, end_face_torque
 from bearing_sim.kernels.load_balance import LOAD, balance_ring, squeezed_roller
-from bearing_sim.kernels.raceway import TABLE_INTERVALS, contour_at, contour_table, lobed_contour
+from bearing_sim.kernels.raceway import TABLE_INTERVALS, contour_at, lobed_contour
 from bearing_sim.kernels.traction import FILM, traction
 from bearing_sim.oil import oil_at
 from bearing_sim.params import lubricate, pack
@@ -47,12 +47,11 @@ def test_contour_table_is_the_cosine_of_deng_eq_2(azimuth, lobes, angle):
     assert slope == pytest.approx(lobes * 0.049e-3 * math.sin(phase), abs=1e-8)
 
 
-def test_contour_through_measured_points_passes_through_them():
-    angles = np.sort(np.random.default_rng(7).uniform(0, 2 * math.pi, 12))
-    radii = 35e-3 + 20e-6 * np.cos(3 * angles)
-    table = contour_table(angles, radii)
-    for angle, radius in zip(angles, radii):
-        assert contour_at(table, angle / (2 * math.pi) * TABLE_INTERVALS)[0] == pytest.approx(radius, abs=1e-9)
+def test_contour_is_continuous_with_its_slope_around_the_turn():
+    table = lobed_contour(34.86e-3, 0.098e-3, 2, 0.3)
+    for knot in (0.0, 1.0, 400.0, TABLE_INTERVALS - 1.0):
+        before, after = contour_at(table, knot - 1e-9 if knot else TABLE_INTERVALS - 1e-9), contour_at(table, knot)
+        assert before == pytest.approx(after, abs=1e-11)
 
 
 def traction_coefficient(slide_to_roll, load=1000.0, rolling=73.0, contact="inner", overrides=()):

@@ -7,6 +7,7 @@ import pytest
 from reference_slip import Reference
 
 from bearing_sim import Inputs, Simulation, load_scene
+from bearing_sim.kernels.load_balance import LOAD
 from bearing_sim.levels import slip
 from bearing_sim.simulation import IntegrationError, scene_inputs
 
@@ -82,6 +83,27 @@ def test_jacobian_is_that_of_finite_differences_where_loads_do_not_move():
     assert by_speed[slip.THETA] == pytest.approx(border[0])
     # The cage speed also moves the loads, by the centrifugal force, which the Jacobian leaves out.
     assert by_speed[slip.OMEGA] == pytest.approx(border[1], rel=0.2)
+
+
+def test_leaning_normal_forces_are_the_slope_of_the_elastic_energy():
+    # At standstill all normal forces derive from one potential: elastic energy less the work of the load on the ring.
+    load_y, load_z = 900.0, 300.0
+    run = simulation("operating.shaft_speed=0", "bearing.roller.count=5", "lubricant.traction_scale=0", inputs=Inputs(0.0, load_y, load_z, 393.15))
+    stiffness = run._params.raceways.stiffness
+
+    def energy(angle):
+        assert slip.balance_loads(angle, 0.0, load_y, load_z, run._params, run._work)
+        loads, ring = run._work.loads, run._work.ring
+        penetrations = np.concatenate([(loads[LOAD.inner] / stiffness) ** 0.9, (loads[LOAD.outer] / stiffness) ** 0.9])
+        return 9 / 19 * stiffness * np.sum(penetrations ** (19 / 9)) - load_y * ring[0] - load_z * ring[1]
+
+    state, rate = run._state.copy(), np.zeros_like(run._state)
+    state[slip.THETA] = angle = 0.13
+    slope = (energy(angle + 1e-5) - energy(angle - 1e-5)) / 2e-5
+    assert slip.rhs(0.0, state, run._model(run.inputs, 1.0), run._work, rate)
+    inertia = run._params.cage.inertia + run._params.rollers.mass * np.sum(run._work.loads[LOAD.radius] ** 2)
+    assert abs(slope) > 0.01
+    assert rate[slip.OMEGA] * inertia == pytest.approx(-slope, rel=1e-3)
 
 
 def test_reversed_rotation_mirrors_slip_and_loads():

@@ -56,6 +56,14 @@ def orderly_end() -> Iterator[None]:
         signal.signal(signal.SIGTERM, before)
 
 
+def tell_compilation() -> None:
+    """Say on stderr that compiling will take a while, where this version of the model has not run here yet."""
+    from bearing_sim.kernels.compilation import CACHE_FOLDER
+
+    if not any(CACHE_FOLDER.rglob("*.nbi")):
+        click.echo("compiling the model, once for this version: about 20 s ...", err=True)
+
+
 def print_json(report: Mapping) -> None:
     """Print one JSON object and nothing else; NaN and infinity become null."""
     click.echo(json.dumps(_finite(report), indent=2, allow_nan=False))

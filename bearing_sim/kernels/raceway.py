@@ -3,32 +3,30 @@
 import math
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
-from bearing_sim.kernels.compilation import kernel, template
+from bearing_sim.kernels.compilation import template
 
 TABLE_INTERVALS = 720
 
 
-def contour_table(angles, radii):
-    """Return the periodic cubic spline through (angle, radius) points as a table for `contour_at`.
+def contour_table(radii, slopes):
+    """Return the periodic cubic table with given radii and slopes at its knots, for `contour_at`.
 
     Parameters
     ----------
-    angles : rising angles over less than one turn [rad], shape (n,), n >= 3.
-    radii : contour radius there [m], shape (n,).
+    radii : R_e at n even azimuths of one turn from 0 [m], shape (n,).
+    slopes : dR_e/dphi there [m/rad], shape (n,).
 
     Returns
     -------
-    table : spline coefficients on even intervals of one turn from azimuth 0, highest power first,
-        shape (TABLE_INTERVALS, 4).
+    table : coefficients by interval, highest power of the azimuth within it first, shape (n, 4).
     """
-    turn = 2.0 * math.pi
-    spline = CubicSpline(np.append(angles, angles[0] + turn), np.append(radii, radii[0]), bc_type="periodic")
-    knots = np.linspace(0.0, turn, TABLE_INTERVALS + 1)
-    even_radii = spline(knots)
-    even_radii[-1] = even_radii[0]
-    return np.ascontiguousarray(CubicSpline(knots, even_radii, bc_type="periodic").c.T)
+    spacing = 2.0 * math.pi / len(radii)
+    rise = (np.roll(radii, -1) - radii) / spacing
+    next_slopes = np.roll(slopes, -1)
+    cubic = (slopes + next_slopes - 2.0 * rise) / spacing**2
+    square = (3.0 * rise - 2.0 * slopes - next_slopes) / spacing
+    return np.ascontiguousarray(np.stack([cubic, square, slopes, radii], axis=1))
 
 
 def lobed_contour(low_radius, d_value, lobes, installation_angle):
@@ -43,9 +41,8 @@ def lobed_contour(low_radius, d_value, lobes, installation_angle):
     lobes : number of low points.
     installation_angle : azimuth of a low point, phi_e [rad].
     """
-    angles = np.linspace(0.0, 2.0 * math.pi, TABLE_INTERVALS, endpoint=False)
-    radii = low_radius + d_value / 2 - d_value / 2 * np.cos(lobes * (angles - installation_angle))
-    return contour_table(angles, radii)
+    phase = lobes * (np.linspace(0.0, 2.0 * math.pi, TABLE_INTERVALS, endpoint=False) - installation_angle)
+    return contour_table(low_radius + d_value / 2 * (1.0 - np.cos(phase)), lobes * d_value / 2 * np.sin(phase))
 
 
 @template

@@ -146,7 +146,7 @@ def _leaning_force(cage_speed, params, work):
     y, z, loads = work.ring[0], work.ring[1], work.loads
     coriolis = 2.0 * params.rollers.mass * cage_speed * cage_speed
     for j in range(params.rollers.count):
-        lean = loads[LOAD.outer, j] * loads[LOAD.contour_slope, j] + loads[LOAD.inner, j] * (z * loads[LOAD.cosine, j] - y * loads[LOAD.sine, j])
+        lean = loads[LOAD.outer, j] * loads[LOAD.contour_slope, j] + loads[LOAD.inner, j] * (y * loads[LOAD.sine, j] - z * loads[LOAD.cosine, j])
         work.tangential[j] = params.raceways.slope_factor * (lean / loads[LOAD.radius, j] - coriolis * loads[LOAD.contour_slope, j])
 
 
