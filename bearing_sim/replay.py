@@ -29,6 +29,7 @@ class Replay:
     Attributes
     ----------
     log_seconds, sim_seconds, wall_seconds : length of the log's course, what of it was simulated, and what that took.
+    cpu_seconds : processor time that it took, of all threads; less than ``wall_seconds`` where others had the processor.
     samples : outputs written.
     steps, rejected_steps, non_finite_steps : the integrator's work.
     failed_ticks, gap_seconds : ticks that could not be integrated, and time in gaps of the log; neither is simulated.
@@ -41,6 +42,7 @@ class Replay:
     log_seconds: float
     sim_seconds: float = 0.0
     wall_seconds: float = 0.0
+    cpu_seconds: float = 0.0
     samples: int = 0
     steps: int = 0
     rejected_steps: int = 0
@@ -136,7 +138,7 @@ class _Run:
         self._unweighed = 0.0  # [s] simulated since the last output
 
     def run(self, model: Callable[[Scene, Inputs], Simulation]) -> Replay:
-        began = time.perf_counter()
+        began, began_cpu = time.perf_counter(), time.process_time()
         inputs = self._course.at(self._grid, self._scene.lubricant.temperature)
         self._write_inputs(0, Inputs(*inputs[0]))
         try:
@@ -148,7 +150,7 @@ class _Run:
             self._result.steps, self._result.rejected_steps, self._result.non_finite_steps = simulation.counters[:3]
         self._tell_events_until(math.inf)
         self._show_watchers()
-        self._result.wall_seconds = time.perf_counter() - began
+        self._result.wall_seconds, self._result.cpu_seconds = time.perf_counter() - began, time.process_time() - began_cpu
         return self._result
 
     def _advance_over_grid(self, simulation: Simulation, inputs: np.ndarray) -> None:
@@ -205,7 +207,8 @@ class _Run:
             self._tell(Event(moment, Level.OK, code, "back within its limits"))
         self._holding = now
         if moment >= self._next_report:
-            self._next_report = moment + _REPORT_EVERY
+            # A hundredth early, so that reports keep to whole seconds where stamps jitter.
+            self._next_report = (math.floor(moment / _REPORT_EVERY + 0.01) + 0.99) * _REPORT_EVERY
             worst_first = sorted(now.values(), key=lambda event: -event.level)
             self._recording.write_diagnostics(moment, worst_first, condition(sample))
 
