@@ -20,6 +20,7 @@ from recordings import steady_log, write_log
 
 import bearing_sim
 from bearing_sim.cli import main
+from bearing_sim.events import Event, Level
 from bearing_sim.input_course import judge
 from bearing_sim.input_log import read_input_log
 from bearing_sim.replay import Replay, replay
@@ -50,7 +51,7 @@ class ListSink:
         self.diagnostics.append((time, list(events), values))
 
 
-def run(path, fails_at=None, watchers=(), **options):
+def run(path, fails_at=None, watchers=(), scene=SCENE, **options):
     """Replay a log on the stand-in; returns result, sink and stand-in."""
     made = []
 
@@ -62,8 +63,8 @@ def run(path, fails_at=None, watchers=(), **options):
         return simulation
 
     sink = ListSink()
-    course = judge(read_input_log(path), SCENE.input_limits, HELD)
-    return replay(SCENE, course, sink, watchers, model=model, **options), sink, made[0]
+    course = judge(read_input_log(path), scene.input_limits, HELD)
+    return replay(scene, course, sink, watchers, model=model, **options), sink, made[0]
 
 
 def times(sink):
@@ -132,11 +133,27 @@ def test_run_that_fails_ten_times_in_a_row_is_given_up(tmp_path):
     assert result.samples == 10 and sink.events[-1].code == "run.given_up"
 
 
-def test_condition_is_told_when_it_changes_and_reported_every_second(tmp_path):
+def test_condition_is_told_when_it_changes_and_reported_every_second(tmp_path, monkeypatch):
+    """A judgement that finds the life too short from 2 s to 3.5 s."""
+
+    def judged(sample, thresholds):
+        time = float(sample["time"])
+        return [Event(time, Level.WARN, "bearing.life", "short")] if 1.99 < time < 3.51 else []
+
+    monkeypatch.setattr("bearing_sim.replay.bearing_events", judged)
     _, sink, _ = run(steady_log(tmp_path / "log.mcap", duration=5.0))
-    assert [event.code for event in sink.events] == ["bearing.slip"]  # the stand-in slips a tenth, for good
-    assert np.diff([time for time, _, _ in sink.diagnostics]) == pytest.approx(1.0)
-    assert all(events and values["cage slip [%]"] == pytest.approx(10.0) for _, events, values in sink.diagnostics)
+    assert [(round(event.time, 6), event.level, event.code) for event in sink.events] == [
+        (2.0, Level.WARN, "bearing.life"), (3.6, Level.OK, "bearing.life")
+    ]
+    assert [round(time, 6) for time, _, _ in sink.diagnostics] == [0.1, 1.0, 2.0, 3.0, 4.0, 5.0]
+    assert [bool(events) for _, events, _ in sink.diagnostics] == [False, False, True, True, False, False]
+    assert all(float(values["shaft speed [rpm]"]) == pytest.approx(4000 * 30 / math.pi) for _, _, values in sink.diagnostics)
+
+
+def test_slip_above_its_limit_is_told_by_the_judgement_of_the_live_run(tmp_path):
+    scene = load_scene("deng2017_table1", ["thresholds.slip_warning=0.1%", "thresholds.slip_error=0.5%"])
+    _, sink, _ = run(steady_log(tmp_path / "log.mcap", duration=1.0), scene=scene)
+    assert [(event.code, event.level) for event in sink.events] == [("bearing.slip", Level.ERROR)]
 
 
 def test_watchers_get_every_sample_and_event(tmp_path):

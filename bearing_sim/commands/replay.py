@@ -1,11 +1,22 @@
 """``bearing-sim replay``: run the model on a recorded log of shaft speed and radial load."""
 
-from contextlib import ExitStack
+import time
+from contextlib import ExitStack, suppress
 from pathlib import Path
 
 import click
 
-from bearing_sim.commands.reporting import BadInput, FailedRun, orderly_end, print_json, print_table, progress_bar, told_as_bad_input, told_file_faults
+from bearing_sim.commands.reporting import (
+    BadInput,
+    FailedRun,
+    orderly_end,
+    print_json,
+    print_table,
+    progress_bar,
+    tell_compilation,
+    told_as_bad_input,
+    told_file_faults,
+)
 
 
 @click.command()
@@ -38,7 +49,7 @@ def command(log, scene_name, overrides, out, rrd, rate, speed_topic, load_topic,
     from bearing_sim.input_log import InputLogError, read_input_log
     from bearing_sim.replay import replay
     from bearing_sim.scene_file import SceneError, load_scene
-    from bearing_sim.simulation import Inputs
+    from bearing_sim.simulation import Inputs, IntegrationError, Simulation
     from bearing_sim.sinks.mcap_sink import McapSink
 
     names = {"shaft_speed": speed_topic, "radial_load": load_topic, "oil_temperature": temperature_topic}
@@ -57,10 +68,15 @@ def command(log, scene_name, overrides, out, rrd, rate, speed_topic, load_topic,
                 from bearing_sim.sinks.rerun_sink import RerunSink
 
                 watchers.append(stack.enter_context(RerunSink(scene, path=rrd, start_ns=course.start_ns, lossless=True, duration=seconds)))
+            tell_compilation()
+            started = time.perf_counter()
+            with suppress(IntegrationError):  # the replay itself will tell
+                Simulation(scene).advance(1e-6)  # machine code is compiled or loaded here, and not timed with the run
+            start_up = time.perf_counter() - started
             progress = stack.enter_context(progress_bar(f"replaying {log.name}", seconds))
             result = replay(scene, course, recording, watchers, rate, progress)
     if as_json:
-        print_json(_report(result, course, recorded, scene, out))
+        print_json({**_report(result, course, recorded, scene, out), "start_up_seconds": start_up})
     else:
         _print(result, course, recorded, scene, out)
     if result.given_up:
