@@ -65,8 +65,8 @@ class Recording:
         if not self.path.is_file():
             raise RecordingError(f"{self.path}: no such file")
         metadata, times, self.largest_load, present = self._scan()
+        listing = ", ".join(sorted(present)) or "no topics"
         if metadata is None:
-            listing = ", ".join(sorted(present)) or "no topics"
             raise RecordingError(f"{self.path}: no metadata record {METADATA!r}, so this is no recording of bearing_sim; it has {listing}")
         try:
             self.scene: Scene = scene_from_yaml(metadata["scene"], origin=f"{self.path}: scene in the metadata")
@@ -74,7 +74,7 @@ class Recording:
         except (KeyError, ValueError, SceneError, yaml.YAMLError) as fault:
             raise RecordingError(f"{self.path}: the metadata cannot be used: {fault}") from None
         if not times:
-            raise RecordingError(f"{self.path}: no samples on {', '.join(sorted(_OUTPUT_TOPICS))}; it has {', '.join(sorted(present)) or 'no topics'}")
+            raise RecordingError(f"{self.path}: no samples on {', '.join(sorted(_OUTPUT_TOPICS))}; it has {listing}")
         self.samples = len(times)
         self.first_time, self.last_time = ((edge(times) - self.start_ns) * 1e-9 for edge in (min, max))
 
@@ -181,6 +181,8 @@ def _news(message, time: float, told: dict[tuple[str, Level], float]) -> Iterato
     """Yield the events of a diagnostics message that were not told a moment ago; the first status is the whole's."""
     for status in message.status[1:]:
         code, level = status.name.partition(": ")[2], Level(int(status.level))
+        for other in set(Level) - {level}:  # a change of level is news, and so is the way back
+            told.pop((code, other), None)
         if time - told.get((code, level), -math.inf) > _REPEATS_WITHIN:
             yield Event(time, level, code, status.message)
         told[code, level] = time

@@ -100,6 +100,16 @@ def test_lasting_trouble_is_told_once_and_again_only_after_it_was_gone(tmp_path)
     ]
 
 
+def test_trouble_that_comes_back_after_its_end_was_told_is_news(tmp_path):
+    course = [(0.0, Level.WARN), (0.1, Level.OK), (0.2, Level.WARN), (0.3, Level.WARN), (0.4, Level.ERROR)]
+    with McapSink(tmp_path / "run.mcap", SCENE, START_NS) as sink:
+        sink.write(synthetic_block(SCENE, TIMES[:1]))
+        for time, level in course:
+            sink.write_event(Event(time, level, "bearing.slip", "text"))
+    told = [event.level for event in Recording(tmp_path / "run.mcap") if isinstance(event, Event)]
+    assert told == [Level.WARN, Level.OK, Level.WARN, Level.ERROR]
+
+
 def test_log_of_inputs_is_no_recording_of_a_run(tmp_path):
     with pytest.raises(RecordingError, match="no metadata record 'bearing_sim'.*/shaft_speed"):
         Recording(steady_log(tmp_path / "log.mcap"))

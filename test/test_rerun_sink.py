@@ -14,12 +14,13 @@ from synthetic_run import synthetic_block
 from bearing_sim.events import Event, Level
 from bearing_sim.scene_file import load_scene
 from bearing_sim.sinks import rerun_sink
-from bearing_sim.sinks.rerun_series import log10_hours
+from bearing_sim.sinks.rerun_series import RunSeries, log10_hours
 from bearing_sim.sinks.rerun_sink import RerunSink
 from bearing_sim.sinks.rerun_view import FileFrames, LiveFrames
 
 SCENE = load_scene("deng2017_table1")
-TIMES = 0.001 * np.arange(1, 401)
+TIMES = 0.001 * np.arange(1, 101)
+LONG = 0.001 * np.arange(1, 401)
 
 
 @pytest.fixture(autouse=True)
@@ -84,13 +85,22 @@ def test_everything_that_moves_lies_on_the_simulated_time_alone(tmp_path):
 
 def test_slip_at_rest_and_endless_life_are_gaps_not_numbers(tmp_path):
     block = synthetic_block(SCENE, TIMES)
-    block["cage_slip"][:50] = np.nan
-    block["rating_life"][:50] = np.inf
+    block["cage_slip"][:20] = np.nan
+    block["rating_life"][:20] = np.inf
     written(tmp_path / "run.rrd", block)
     for path in ("/slip/cage", "/life/hours", "/life/log10_hours"):
         values = np.concatenate(column(tmp_path / "run.rrd", path, "Scalars:scalars")[1])
-        assert np.isnan(values[:50]).all() and np.isfinite(values[50:]).all(), path
-    assert np.isnan(log10_hours(np.array([0.0, np.inf, np.nan]))).all()
+        assert np.isnan(values[:20]).all() and np.isfinite(values[20:]).all(), path
+    assert np.isnan(log10_hours(np.array([0.0, np.inf, np.nan, 1e30]))).all()
+
+
+def test_slip_of_a_shaft_that_hardly_turns_does_not_choose_the_axis():
+    series = RunSeries(rr.RecordingStream("test"), SCENE)
+    block = synthetic_block(SCENE, TIMES, speeds=(1.0, 4000.0), slips=(0.0, 0.06))
+    block["cage_slip"][:5] = -30.0
+    series.write(block)
+    assert series.ranges()["/slip/cage"] == pytest.approx((0.0, 6.0), abs=0.2)
+    assert series.ranges()["/load/radial"] == (800.0, 800.0)
 
 
 def test_threshold_lines_stand_at_the_scenes_thresholds(tmp_path):
@@ -110,13 +120,13 @@ def test_regime_lane_changes_where_slip_crosses_the_thresholds(tmp_path):
 
 
 def test_events_reach_the_log_with_time_level_and_text(tmp_path):
-    events = [Event(0.1, Level.WARN, "input.stale", "shaft_speed: none for 1 s"), Event(0.2, Level.ERROR, "bearing.slip", "cage slip: 12 %")]
+    events = [Event(0.05, Level.WARN, "input.stale", "shaft_speed: none for 1 s"), Event(0.08, Level.ERROR, "bearing.slip", "cage slip: 12 %")]
     written(tmp_path / "run.rrd", synthetic_block(SCENE, TIMES), events)
     times, texts = column(tmp_path / "run.rrd", "/log", "TextLog:text")
     levels = column(tmp_path / "run.rrd", "/log", "TextLog:level")[1]
     logged = {text: (round(time, 6), level) for time, (text,), (level,) in zip(times, texts, levels)}
-    assert logged["shaft_speed: none for 1 s"] == (0.1, "WARN")
-    assert logged["cage slip: 12 %"] == (0.2, "ERROR")
+    assert logged["shaft_speed: none for 1 s  [input.stale]"] == (0.05, "WARN")
+    assert logged["cage slip: 12 %  [bearing.slip]"] == (0.08, "ERROR")
 
 
 class StuckView:
@@ -154,7 +164,7 @@ def stuck(monkeypatch, tmp_path):
 
 def test_stuck_viewer_never_blocks_the_producer_and_what_is_dropped_is_counted(stuck):
     sink = RerunSink(SCENE, path=stuck)
-    blocks = [synthetic_block(SCENE, TIMES)] * 200
+    blocks = [synthetic_block(SCENE, LONG)] * 200
     sink.write(blocks[0])
     assert StuckView.newest.blocked.wait(60)
     for block in blocks[1:]:  # were this to block, nothing would ever release the view
@@ -172,7 +182,7 @@ def test_stuck_viewer_never_blocks_the_producer_and_what_is_dropped_is_counted(s
 
 def test_close_gives_up_on_a_stuck_viewer(stuck):
     sink = RerunSink(SCENE, path=stuck)
-    sink.write(synthetic_block(SCENE, TIMES))
+    sink.write(synthetic_block(SCENE, LONG))
     assert StuckView.newest.blocked.wait(60)
     assert sink.close(timeout=0.05) is False
     StuckView.newest.release.set()
@@ -180,7 +190,7 @@ def test_close_gives_up_on_a_stuck_viewer(stuck):
 
 def test_lossless_sink_makes_the_producer_wait_and_drops_nothing(stuck):
     sink = RerunSink(SCENE, path=stuck, lossless=True)
-    block = synthetic_block(SCENE, TIMES)
+    block = synthetic_block(SCENE, LONG)
     producer = threading.Thread(target=lambda: [sink.write(block) for _ in range(200)])
     producer.start()
     assert StuckView.newest.blocked.wait(60)
@@ -213,7 +223,7 @@ def test_failing_viewer_is_told_and_the_run_goes_on(monkeypatch, tmp_path):
 def test_dropped_blocks_show_in_the_view(tmp_path):
     from bearing_sim.sinks.rerun_view import RunView
 
-    view = RunView(SCENE, path=tmp_path / "run.rrd", live=False)
+    view = RunView(SCENE, path=tmp_path / "run.rrd")
     view.write(synthetic_block(SCENE, TIMES))
     view.write_dropped(7)
     view.close()
@@ -273,6 +283,12 @@ def test_pictures_of_a_file_of_unknown_length_thin_out():
     frames = FileFrames(duration=None)
     drawn = sum(len(frames.pick(part)) for part in np.array_split(1e-3 * np.arange(1_000_000), 1000))
     assert 1500 < drawn < 750 * 14
+
+
+def test_pictures_of_a_file_written_in_real_time_are_no_closer_than_told():
+    frames = FileFrames(duration=None, shortest=1 / 15)
+    drawn = [len(frames.pick(part)) for part in np.array_split(1e-3 * np.arange(20_000), 20)]
+    assert max(drawn) <= 16
 
 
 def test_live_pictures_are_bounded_by_wall_time_and_show_the_newest():

@@ -113,6 +113,15 @@ def test_regime_follows_the_thresholds(slip, word):
     assert section.regime(slip, 0.05, 0.10) == word
 
 
+def test_regime_does_not_flicker_at_a_threshold():
+    word, words = "", []
+    for slip in (0.04, 0.051, 0.0495, 0.051, 0.047, 0.101, 0.099, 0.0949, -0.051, -0.049, -0.04):
+        word = section.regime(slip, 0.05, 0.10, word)
+        words.append(word)
+    expected = ["rolling", "slipping", "slipping", "slipping", "rolling", "skidding", "skidding", "slipping", "overrunning", "overrunning", "rolling"]
+    assert words == expected
+
+
 @pytest.mark.parametrize("number, expected", [(0.99, 1.0), (1.0, 1.0), (1.01, 1.5), (222.0, 300.0), (3104.0, 4000.0), (8.1e-4, 1e-3)])
 def test_scales_are_round_and_not_exceeded(number, expected):
     assert section.round_up(number) == pytest.approx(expected)

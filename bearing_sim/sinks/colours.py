@@ -5,7 +5,8 @@ import numpy as np
 # Viridis (S. van der Walt, N. Smith, CC0) at nine even points, the first one lightened for a dark background; between them
 # linear, which the eye does not notice.
 _ANCHORS = np.array(
-    [(82, 24, 110), (71, 44, 122), (59, 81, 139), (44, 113, 142), (33, 144, 141), (39, 173, 129), (92, 200, 99), (170, 220, 50), (253, 231, 37)], float
+    [(82, 24, 110), (71, 44, 122), (59, 81, 139), (44, 113, 142), (33, 144, 141), (39, 173, 129), (92, 200, 99), (170, 220, 50), (253, 231, 37)],
+    float,
 )
 
 # Okabe and Ito's palette, lightened where needed for a dark background.

@@ -1,5 +1,6 @@
 """Lay-out of the view: which panel shows what, with the unit in every title."""
 
+import math
 from typing import NamedTuple
 
 import rerun as rr
@@ -84,6 +85,9 @@ class _Axes:
         if from_zero:
             low, high = min(low, 0.0), max(high, 0.0)
         margin = 0.08 * (high - low) or 0.05 * abs(high) or 1.0
+        decade = 10.0 ** math.ceil(math.log10(high)) if from_zero and high > 0 else math.inf
+        if 0.45 * decade < high < decade:  # ticks are labelled at powers of ten first: keep one in sight
+            return rrb.ScalarAxis(range=(low - margin if low < 0 else 0.0, 1.04 * decade))
         return rrb.ScalarAxis(range=(low if from_zero and low == 0.0 else low - margin, high + margin))
 
 
@@ -113,7 +117,14 @@ def _left(scene: Scene, bounds) -> rrb.Vertical:
                 visual_bounds=rrb.VisualBounds2D(x_range=bounds[0], y_range=bounds[1]),
                 background=BACKGROUND,
             ),
-            rrb.Spatial3DView(origin="/", contents="/solid/**", name=f"3D, x{section.magnification(scene.bearing)}", background=BACKGROUND, eye_controls=eye, line_grid=False),
+            rrb.Spatial3DView(
+                origin="/",
+                contents="/solid/**",
+                name=f"3D, x{section.magnification(scene.bearing)}",
+                background=BACKGROUND,
+                eye_controls=eye,
+                line_grid=False,
+            ),
             active_tab=0,
         ),
         rrb.Spatial2DView(
@@ -145,7 +156,7 @@ def _right(axes: _Axes) -> rrb.Vertical:
     return rrb.Vertical(
         rrb.Tabs(rrb.TextDocumentView(origin="/now", name="Now"), rrb.TextDocumentView(origin="/about", name="About")),
         axes.plot("Radial load [N]", ["/load/radial"]),
-        axes.plot("Oil temperature [°C]", ["/oil/temperature"], from_zero=False),
+        axes.plot("Oil temperature [°C]", ["/oil/temperature"]),
         axes.plot("Damage [millionths of the life]", ["/damage/ppm"]),
         row_shares=[0.4, 0.2, 0.2, 0.2],
     )

@@ -38,7 +38,8 @@ class SectionDrawing:
         bearing, outside = self._bearing, self._outside
         contour = section.drawn_contour(bearing, self.factor, _TURN)
         body = np.stack((polar(contour, _TURN), polar(outside, _TURN)), axis=1)
-        self._still("outer_ring/body", rr.LineStrips2D(body, radii=1.1 * math.pi * outside / len(_TURN), colors=colours.DARK_STEEL, draw_order=-5.0))
+        half_width = 1.1 * math.pi * outside / len(_TURN)  # a bit more than half the distance: the strips close up
+        self._still("outer_ring/body", rr.LineStrips2D(body, radii=half_width, colors=colours.DARK_STEEL, draw_order=-5.0))
         self._still("outer_ring/surface", rr.LineStrips2D([polar(outside, _TURN)], radii=0.1, colors=colours.STEEL, draw_order=-4.0))
         self._still("outer_ring/raceway", rr.LineStrips2D([polar(contour, _TURN)], radii=0.22, colors=colours.VERMILION, draw_order=8.0))
         round_radius = section.ideal_outer_radius(bearing) / MILLIMETRE
@@ -48,7 +49,8 @@ class SectionDrawing:
         cage = bearing.cage
         rims = [cage.inner_radius / MILLIMETRE, (cage.guide_radius - cage.guide_clearance) / MILLIMETRE]
         sizes = [[rim, rim] for rim in rims]
-        self._still("cage/rims", rr.Ellipses2D(centers=np.zeros((2, 2)), half_sizes=sizes, line_radii=0.12, colors=colours.DARK_BRONZE, draw_order=-1.0))
+        circles = rr.Ellipses2D(centers=np.zeros((2, 2)), half_sizes=sizes, line_radii=0.12, colors=colours.DARK_BRONZE, draw_order=-1.0)
+        self._still("cage/rims", circles)
         self._draw_axes()
         self._style_moving_parts()
 

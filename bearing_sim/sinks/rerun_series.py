@@ -6,13 +6,13 @@ import numpy as np
 import rerun as rr
 
 from bearing_sim.events import Event, Level
-from bearing_sim.sample import OBSERVABLES
 from bearing_sim.scene import Scene
 from bearing_sim.sinks import colours, section
 
 TIMELINE = "sim_time"
 RPM = 30 / math.pi
 ZERO_CELSIUS = 273.15
+ENDLESS = 1e7  # [h]; a bearing that hardly turns has a life of 1e30 h, which would flatten everything else
 REGIMES = {
     "at rest": 0x4A4F5AFF,
     "rolling": 0x0A7F62FF,
@@ -49,9 +49,9 @@ def plottable(values) -> np.ndarray:
 
 
 def log10_hours(life) -> np.ndarray:
-    """Return log10 of a life in hours, NaN where it is infinite, zero or unknown."""
+    """Return log10 of a life in hours, NaN where it is endless (more than `ENDLESS`), zero or unknown."""
     life = np.asarray(life, np.float64)
-    return np.log10(life, where=(life > 0) & np.isfinite(life), out=np.full(life.shape, np.nan))
+    return np.log10(life, where=(life > 0) & (life <= ENDLESS), out=np.full(life.shape, np.nan))
 
 
 def series(block: np.ndarray) -> dict[str, np.ndarray]:
@@ -86,7 +86,8 @@ class RunSeries:
         self._recording = recording
         self._scene = scene
         self._regime = ""
-        self.ranges: dict[str, tuple[float, float]] = {}  # lowest and highest value so far, by entity path
+        self._ranges: dict[str, tuple[float, float]] = {}  # lowest and highest value so far, by entity path
+        self._slip_ranges: dict[int, tuple[float, float]] = {}  # the same for the slip, by octave of the shaft speed
 
     def describe(self) -> None:
         """Log names, colours and texts that hold for the whole run."""
@@ -106,6 +107,7 @@ class RunSeries:
         index = [rr.TimeColumn(TIMELINE, duration=block["time"])]
         for path, values in series(block).items():
             self._send(path, index, plottable(values))
+        self._note_slip(block)
         self._write_thresholds(block["time"][[0, -1]])
         self._write_regimes(block)
 
@@ -122,15 +124,27 @@ class RunSeries:
 
     def _send(self, path: str, index: list[rr.TimeColumn], values: np.ndarray) -> None:
         self._recording.send_columns(path, indexes=index, columns=rr.Scalars.columns(scalars=values))
-        finite = values[np.isfinite(values)]
-        if finite.size:
-            low, high = self.ranges.get(path, (np.inf, -np.inf))
-            self.ranges[path] = min(low, float(finite.min())), max(high, float(finite.max()))
+        _widen(self._ranges, path, values)
+
+    def _note_slip(self, block: np.ndarray) -> None:
+        octaves = np.floor(np.log2(np.maximum(np.abs(block["shaft_speed"]), 1e-3)))
+        for octave in np.unique(octaves):
+            _widen(self._slip_ranges, int(octave), 100 * block["cage_slip"][octaves == octave])
+
+    def ranges(self) -> dict[str, tuple[float, float]]:
+        """Return lowest and highest value of each series so far, by entity path.
+
+        The slip counts only where the shaft turns at a good tenth of its highest speed: of a shaft that hardly turns it may
+        be anything, and says nothing.
+        """
+        fast = [span for octave, span in self._slip_ranges.items() if octave >= max(self._slip_ranges) - 3]
+        slip = {"/slip/cage": (min(low for low, _ in fast), max(high for _, high in fast))} if fast else {}
+        return self._ranges | slip
 
     def _write_regimes(self, block: np.ndarray) -> None:
         limits = self._scene.thresholds
         for time, slip in zip(block["time"], block["cage_slip"]):
-            now = section.regime(float(slip), limits.slip_warning, limits.slip_error)
+            now = section.regime(float(slip), limits.slip_warning, limits.slip_error, self._regime)
             if now != self._regime:
                 self._regime = now
                 self._recording.set_time(TIMELINE, duration=float(time))
@@ -139,7 +153,7 @@ class RunSeries:
     def write_event(self, event: Event) -> None:
         """Log an event at its own time."""
         self._recording.set_time(TIMELINE, duration=float(event.time))
-        self._recording.log("/log", rr.TextLog(event.text, level=_LOG_LEVELS[Level(event.level)]))
+        self._recording.log("/log", rr.TextLog(f"{event.text}  [{event.code}]", level=_LOG_LEVELS[Level(event.level)]))
 
     def write_readout(self, sample: np.void, dropped: int) -> None:
         """Log the numbers of one sample as text at the recording's present time."""
@@ -149,8 +163,8 @@ class RunSeries:
             ("cage slip", f"**{100 * slip:.2f} %**" if math.isfinite(slip) else "none (at rest)"),
             ("rating life", f"**{_hours(life)}**"),
             ("damage", f"{1e6 * float(sample['damage']):.3g} millionths of the life"),
-            ("shaft", f"{RPM * float(sample['shaft_speed']):,.0f} rpm"),
-            ("cage", f"{RPM * float(sample['cage_speed']):,.0f} rpm"),
+            ("shaft", f"{round(RPM * float(sample['shaft_speed'])):,} rpm"),
+            ("cage", f"{round(RPM * float(sample['cage_speed'])):,} rpm"),
             ("radial load", f"{math.hypot(sample['load_y'], sample['load_z']):,.0f} N"),
             ("oil", f"{float(sample['oil_temperature']) - ZERO_CELSIUS:.1f} °C"),
             ("rollers loaded", f"{np.count_nonzero(sample['inner_load'] > 0)} of {len(sample['inner_load'])}"),
@@ -170,10 +184,18 @@ class RunSeries:
         self._recording.log("/log", rr.TextLog(text, level=rr.TextLogLevel.WARN))
 
 
+def _widen(ranges: dict, key, values: np.ndarray) -> None:
+    """Widen a range so that it holds all finite values."""
+    finite = values[np.isfinite(values)]
+    if finite.size:
+        low, high = ranges.get(key, (np.inf, -np.inf))
+        ranges[key] = min(low, float(finite.min())), max(high, float(finite.max()))
+
+
 def _hours(life: float) -> str:
     if not math.isfinite(life):
-        return "unlimited (at rest)" if life > 0 else "unknown"
-    return f"{life:,.0f} h" if life < 1e6 else f"{life:.2g} h"
+        return "endless (at rest)" if life > 0 else "unknown"
+    return f"{life:,.0f} h" if life < ENDLESS else "endless"
 
 
 def _newton(loads: np.ndarray) -> str:
@@ -193,7 +215,8 @@ outer raceway with {raceway.lobes} lobes, R_low {1e3 * raceway.low_radius:.4f} m
 low point at {math.degrees(raceway.installation_angle):g} deg,
 play at the low points {1e6 * bearing.radial_clearance_at_low_points:.1f} um (negative: preload).
 
-**Oil** {oil.oil.name}, {oil.temperature - ZERO_CELSIUS:g} °C at the start, {100 * oil.mixture_fraction:g} % in the air, traction law {oil.traction.law}.
+**Oil** {oil.oil.name}, {oil.temperature - ZERO_CELSIUS:g} °C at the start, {100 * oil.mixture_fraction:g} % in the air,
+traction law {oil.traction.law}.
 
 **Level** {scene.level}.
 
@@ -205,5 +228,6 @@ The orange cage bar and the white marks show rotation.
 
 **Thresholds**: slip {100 * limits.slip_warning:g} % warning, {100 * limits.slip_error:g} % error; life below {limits.life_warning:g} h warning.
 
-{len(OBSERVABLES)} observables per sample; the recording (MCAP) is the archive, this view is derived from it.
+**Loads** are those of the sampled instants: at constant speed samples may meet the rollers in the same places again and
+again, and then the largest load changes with the speed while the bearing's does not.
 """

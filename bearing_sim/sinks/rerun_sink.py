@@ -56,7 +56,7 @@ class RerunSink:
     path : .rrd file to write, or None.
     serve_port : port on 127.0.0.1 at which viewers may connect, or None.
     start_ns : wall time of sample time 0 [ns since the epoch], or None.
-    lossless : True makes the producer wait where blocks would be dropped; for files only.
+    lossless : True makes the producer wait where blocks would be dropped; for files only, and not for real time.
     duration : simulated time that will come [s], where known; spreads the pictures of a file over it.
     load_scale : load [N] at the upper end of the colours, where known.
 
@@ -96,8 +96,8 @@ class RerunSink:
         self._lossless = lossless
         self._queue = _RowQueue(_QUEUED_ROWS)
         self._closed = False
-        options = {"path": path, "serve_port": serve_port, "start_ns": start_ns, "duration": duration, "load_scale": load_scale, "live": not lossless}
-        self._worker = threading.Thread(target=self._work, args=(scene, options), name="rerun", daemon=True)
+        options = {"start_ns": start_ns, "duration": duration, "load_scale": load_scale, "real_time": not lossless}
+        self._worker = threading.Thread(target=self._work, args=(scene, path, serve_port, options), name="rerun", daemon=True)
         self._worker.start()
 
     def write(self, block: np.ndarray) -> None:
@@ -163,9 +163,9 @@ class RerunSink:
                 continue
         raise OSError(f"rerun stopped: {self.fault}")
 
-    def _work(self, scene: Scene, options: dict) -> None:
+    def _work(self, scene: Scene, path, serve_port, options: dict) -> None:
         try:
-            self._show_all(RunView(scene, **options))
+            self._show_all(RunView(scene, path, serve_port, **options))
         except Exception as fault:  # whatever rerun raises, the run goes on; the reason is kept and told
             self.fault = f"{type(fault).__name__}: {fault}"
             _log.error("rerun stopped, the run goes on without it: %s", self.fault)
@@ -204,4 +204,5 @@ def _require_free(port: int) -> None:
         try:
             probe.bind(("127.0.0.1", port))
         except OSError as fault:
-            raise OSError(f"port {port} on 127.0.0.1 cannot be used for the view ({fault.strerror}); close what uses it or choose another port") from fault
+            text = f"port {port} on 127.0.0.1 cannot be used for the view ({fault.strerror}); close what uses it or choose another port"
+            raise OSError(text) from fault

@@ -87,7 +87,10 @@ def _band(inner: float, outer: float, half_length: float) -> rr.Mesh3D:
         faces += [np.stack((a, a + 1, b), axis=1), np.stack((b, a + 1, b + 1), axis=1)]
     normals = [_side_normals(first, second) for first, second in zip(corners, corners[1:] + corners[:1]) for _ in range(2)]
     return rr.Mesh3D(
-        vertex_positions=np.concatenate(vertices), vertex_normals=np.concatenate(normals), triangle_indices=np.concatenate(faces), albedo_factor=colours.STEEL
+        vertex_positions=np.concatenate(vertices),
+        vertex_normals=np.concatenate(normals),
+        triangle_indices=np.concatenate(faces),
+        albedo_factor=colours.STEEL,
     )
 
 

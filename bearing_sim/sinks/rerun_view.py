@@ -1,6 +1,7 @@
 """What one run looks like in one rerun recording; everything here is called from one thread."""
 
 import time as wall
+from pathlib import Path
 
 import numpy as np
 import rerun as rr
@@ -17,12 +18,13 @@ from bearing_sim.sinks.rerun_solid import SolidDrawing
 APPLICATION = "bearing_sim"
 ROWS_PER_COLUMN = 1000
 _SERVER_MEMORY = "256MB"
+_RATE = 30.0  # [Hz] pictures for those who watch
 
 
 class LiveFrames:
     """Picks pictures for somebody who watches: at most ``rate`` a second of wall time, each the newest."""
 
-    def __init__(self, rate: float = 30.0, clock=wall.monotonic):
+    def __init__(self, rate: float, clock=wall.monotonic):
         self._interval = 1 / rate
         self._clock = clock
         self._next = -np.inf
@@ -39,11 +41,12 @@ class LiveFrames:
 class FileFrames:
     """Picks pictures for a file: evenly in simulated time, ``most`` of them over the run.
 
-    Where the run's duration is not known beforehand, the interval doubles each time half of ``most`` have been drawn.
+    Where the run's duration is not known beforehand, the interval doubles each time half of ``most`` have been drawn; it is
+    never shorter than ``shortest`` [s].
     """
 
-    def __init__(self, duration: float | None, most: int = 1500):
-        self._interval = duration / most if duration else 0.0
+    def __init__(self, duration: float | None, most: int = 1500, shortest: float = 0.0):
+        self._interval = max(duration / most if duration else 0.0, shortest)
         self._fixed = duration is not None
         self._batch = most // 2
         self._drawn = 0
@@ -75,10 +78,20 @@ class RunView:
     start_ns : wall time of sample time 0 [ns since the epoch], or None.
     duration : simulated time that will come [s], where known.
     load_scale : load [N] at the upper end of the colour map, where known; grows by itself when exceeded.
-    live : True for somebody who watches now, False for a file to be opened later.
+    real_time : True while the run goes on in real time, which pictures must not take processor time from.
     """
 
-    def __init__(self, scene: Scene, path=None, serve_port=None, start_ns=None, duration=None, load_scale=None, live=True):
+    def __init__(
+        self,
+        scene: Scene,
+        path: str | Path | None = None,
+        serve_port: int | None = None,
+        start_ns: int | None = None,
+        duration: float | None = None,
+        load_scale: float | None = None,
+        real_time: bool = False,
+    ):
+        live = serve_port is not None
         self._recording = rr.RecordingStream(APPLICATION)
         self._recording.set_log_time_enabled(False)  # one timeline: the simulated time
         scale = section.round_up(load_scale) if load_scale else first_load_scale(scene)
@@ -92,13 +105,16 @@ class RunView:
         if start_ns is not None:
             self._recording.send_recording_start_time_nanos(start_ns)
         self._series = RunSeries(self._recording, scene)
-        self._frames = LiveFrames() if live else FileFrames(duration)
-        self._map = LoadMap(LIVE_WINDOW if live else duration or 1.0, rolling=live)
+        # A file keeps every picture: half as many for those who watch, evenly spread ones where nobody does.
+        in_file = FileFrames(duration, shortest=2 / _RATE if real_time else 0.0)
+        self._frames = LiveFrames(_RATE if path is None else _RATE / 2) if live else in_file
         self._map_times = LiveFrames(rate=2.0) if live else FileFrames(duration, most=30)
+        self._map = LoadMap(LIVE_WINDOW if live else duration or 1.0, rolling=live)
+        self._whole_map = LoadMap(duration or 1.0, rolling=False) if live and path is not None else None
         self._pending: list[np.ndarray] = []
         self._newest: np.void | None = None
         self._first_time = 0.0
-        self._scene, self._live = scene, live
+        self._scene, self._has_file = scene, path is not None
         self._drawing.draw_still_parts()
         self._solid.draw_still_parts()
         self._series.describe()
@@ -111,15 +127,17 @@ class RunView:
             return
         if self._newest is None:
             self._first_time = float(block["time"][0])
-            self._series.write_event(Event(float(block["time"][0]), Level.OK, "view.start", "the run starts"))
+            self._series.write_event(Event(float(block["time"][0]), Level.OK, "run.start", "the run starts"))
         self._newest = block[-1]
         self._pending.append(block)
         for index in self._frames.pick(block["time"]):
             self._draw(block[index])
+        if self._whole_map is not None:
+            self._whole_map.add(block)
         entered = 0
         for index in self._map_times.pick(block["time"]):
             self._map.add(block[entered : index + 1])
-            self._draw_map(float(block["time"][index]))
+            self._draw_map(self._map, float(block["time"][index]))
             entered = index + 1
         if entered < len(block):
             self._map.add(block[entered:])
@@ -145,10 +163,11 @@ class RunView:
         """Send the rest and finish the file."""
         self.flush()
         if self._newest is not None:
+            last = float(self._newest["time"])
             self._draw(self._newest)
-            self._draw_map(float(self._newest["time"]))
-            if not self._live:  # now that every series is known, its axis can be chosen to hold it
-                extent = Extent((self._first_time, float(self._newest["time"])), self._series.ranges)
+            self._draw_map(self._whole_map or self._map, last)
+            if self._has_file:  # now that every series is known, its axis can be chosen to hold it
+                extent = Extent((self._first_time, last), self._series.ranges())
                 self._recording.send_blueprint(blueprint(self._scene, self._drawing.bounds(), live=False, extent=extent))
         self._recording.flush(timeout_sec=5.0)
         self._recording.disconnect()
@@ -159,12 +178,12 @@ class RunView:
         self._solid.draw(sample, self._drawing.load_scale)
         self._series.write_readout(sample, self.dropped)
 
-    def _draw_map(self, time: float) -> None:
+    def _draw_map(self, chart: LoadMap, time: float) -> None:
         width, height = map_size()
         self._recording.set_time(TIMELINE, duration=time)
-        self._recording.log("/load_map/map", rr.EncodedImage(contents=self._map.png(self._drawing.load_scale), media_type="image/png"))
-        times = section.round_ticks(self._map.start, self._map.start + self._map.span)
-        across = (times - self._map.start) / self._map.span * width
+        self._recording.log("/load_map/map", rr.EncodedImage(contents=chart.png(self._drawing.load_scale), media_type="image/png"))
+        times = section.round_ticks(chart.start, chart.start + chart.span)
+        across = (times - chart.start) / chart.span * width
         self._label("/load_map/time", np.stack((across, np.full(len(times), 1.02 * height)), axis=1), [f"{time:g} s" for time in times])
         places = np.stack((np.full(5, -0.06 * width), height * np.linspace(0.9, -0.02, 5)), axis=1)
         self._label("/load_map/azimuth", places, ["0° +Y", "90° +Z", "180°", "270°", "360°"])

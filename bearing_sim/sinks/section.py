@@ -130,12 +130,15 @@ def load_arrows(bearing: Bearing, factor: float, sample, length_per_newton: floa
     return inner_origins, inner_vectors, outer_origins, outer_vectors
 
 
-def regime(slip: float, warning: float, error: float) -> str:
-    """Return the word for a cage slip (fractions): rolling, slipping, skidding, overrunning, or at rest for NaN."""
+def regime(slip: float, warning: float, error: float, before: str = "") -> str:
+    """Return the word for a cage slip (fractions): rolling, slipping, skidding, overrunning, or at rest for NaN.
+
+    A regime, once entered (``before``), holds until the slip is a twentieth below its threshold: no flicker at the line.
+    """
     if math.isnan(slip):
         return "at rest"
-    if slip >= error:
+    if slip >= (0.95 * error if before == "skidding" else error):
         return "skidding"
-    if slip >= warning:
+    if slip >= (0.95 * warning if before in ("slipping", "skidding") else warning):
         return "slipping"
-    return "overrunning" if slip <= -warning else "rolling"
+    return "overrunning" if slip <= -(0.95 * warning if before == "overrunning" else warning) else "rolling"
