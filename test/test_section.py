@@ -77,13 +77,18 @@ def test_loaded_rollers_overlap_the_drawn_inner_raceway_and_unloaded_ones_do_not
     assert (gap[one["inner_load"] == 0] > -0.02).all()
 
 
-def test_rollers_stand_between_cage_bars():
-    one = sample()
-    centres = section.roller_centres(BEARING, 1, one)
-    bars = section.cage_bars(BEARING, one["cage_angle"]).mean(axis=1)
-    nearest = distance(centres[:, None] - bars[None]).min(axis=1)
+@pytest.mark.parametrize("rollers", [8, 14, 18])
+def test_rollers_stand_between_cage_bars_and_touch_none(rollers):
+    scene = load_scene("deng2017_table1", [f"bearing.roller.count={rollers}"])
+    one = synthetic_block(scene, [0.5])[0]
+    centres = section.roller_centres(scene.bearing, 1, one)
+    bars = section.cage_bars(scene.bearing, one["cage_angle"])
+    along = np.linspace(0, 1, 41)[:, None, None]
+    points = (bars[:, 0] + along * (bars[:, 1] - bars[:, 0])).reshape(-1, 2)
+    nearest = distance(centres[:, None] - points[None]).min(axis=1)
     np.testing.assert_allclose(nearest, nearest[0], rtol=1e-2)
-    assert nearest[0] > 3.5 + section.cage_bar_half_width(BEARING) - 0.1
+    gap = nearest[0] - 3.5 - section.cage_bar_stroke(scene.bearing)
+    assert -0.1 < gap < 1.0
 
 
 def test_spin_mark_turns_against_the_orbit_when_the_roller_rolls_on_the_outer_ring():

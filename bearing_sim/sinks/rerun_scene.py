@@ -64,7 +64,7 @@ class SectionDrawing:
         self._still("inner_ring/shaft_mark", rr.LineStrips2D.from_fields(radii=0.45, colors=colours.BLUE, draw_order=2.0))
         bars = np.full((bearing.roller.count, 4), colours.BRONZE, np.uint8)
         bars[0] = colours.ORANGE
-        self._still("cage/bars", rr.LineStrips2D.from_fields(radii=section.cage_bar_half_width(bearing), colors=bars, draw_order=3.0))
+        self._still("cage/bars", rr.LineStrips2D.from_fields(radii=section.cage_bar_stroke(bearing), colors=bars, draw_order=3.0))
         self._still("rollers", rr.Points2D.from_fields(radii=bearing.roller.diameter / 2 / MILLIMETRE, draw_order=5.0))
         self._still("spin_marks", rr.LineStrips2D.from_fields(radii=0.22, colors=colours.WHITE, draw_order=6.0))
         self._still("forces/inner", rr.Arrows2D.from_fields(radii=0.22, draw_order=9.0))

@@ -47,7 +47,7 @@ class SolidDrawing:
         ring = bearing.inner_raceway.radius / MILLIMETRE
         self._still("inner_ring/body", _band(0.6 * ring, ring, 1.2 * half))
         self._still("inner_ring/shaft_mark", rr.LineStrips3D.from_fields(radii=0.5, colors=colours.BLUE))
-        self._still("cage/bars", rr.LineStrips3D.from_fields(radii=0.6 * section.cage_bar_half_width(bearing), colors=self._bar_colours()))
+        self._still("cage/bars", rr.LineStrips3D.from_fields(radii=0.6 * section.cage_bar_stroke(bearing), colors=self._bar_colours()))
 
     def draw(self, sample: np.void, load_scale: float) -> None:
         """Draw the moving parts of one sample, loads coloured up to ``load_scale`` [N]."""

@@ -91,18 +91,30 @@ def spin_marks(bearing: Bearing, centres: np.ndarray, sample) -> np.ndarray:
 
 
 def cage_bars(bearing: Bearing, cage_angle: float) -> np.ndarray:
-    """Return the middle lines of the bars between the pockets, shape (Z, 2, 2); bar 0 lies behind pocket 0."""
+    """Return the middle lines of the bars between the pockets, shape (Z, 2, 2); bar 0 lies behind pocket 0.
+
+    Drawn as thick as `cage_bar_stroke` says, a line's ends being round: along the radius where the pockets leave little,
+    along the circumference where they leave much.
+    """
     count = bearing.roller.count
-    inner, outer = bearing.cage.inner_radius / MILLIMETRE, (bearing.cage.guide_radius - bearing.cage.guide_clearance) / MILLIMETRE
     azimuth = cage_angle + (np.arange(count) - 0.5) * 2 * math.pi / count
-    rounding = min(cage_bar_half_width(bearing), 0.4 * (outer - inner))  # thick lines end in half a circle
-    return np.stack((polar(inner + rounding, azimuth), polar(outer - rounding, azimuth)), axis=1)
+    middle, depth, width = _cage_bar(bearing)
+    if width <= depth:
+        return np.stack((polar(middle - (depth - width), azimuth), polar(middle + (depth - width), azimuth)), axis=1)
+    lean = (width - depth) / middle
+    return np.stack((polar(middle, azimuth - lean), polar(middle, azimuth + lean)), axis=1)
 
 
-def cage_bar_half_width(bearing: Bearing) -> float:
-    """Return half the drawn width [mm] of a bar: what the pockets leave on the pitch circle."""
+def cage_bar_stroke(bearing: Bearing) -> float:
+    """Return the half thickness [mm] of the lines of `cage_bars`."""
+    return min(_cage_bar(bearing)[1:])
+
+
+def _cage_bar(bearing: Bearing) -> tuple[float, float, float]:
+    """Return middle radius, half depth and half width [mm] of a bar: what cage and pockets leave on the pitch circle."""
+    inner, outer = bearing.cage.inner_radius / MILLIMETRE, (bearing.cage.guide_radius - bearing.cage.guide_clearance) / MILLIMETRE
     room = math.pi * bearing.pitch_radius / bearing.roller.count - 1.03 * bearing.roller.diameter / 2
-    return max(room, 0.02 * bearing.roller.diameter) / MILLIMETRE
+    return (inner + outer) / 2, (outer - inner) / 2, max(room, 0.02 * bearing.roller.diameter) / MILLIMETRE
 
 
 def ring_displacement(factor: float, sample) -> tuple[float, float]:
