@@ -29,7 +29,7 @@ setup(
     python_requires=">=3.11",
     install_requires=[
         "click>=8.1",
-        "mcap>=1.2",
+        "mcap>=1.6",  # Writer.flush
         "mcap-ros2-support>=0.5",
         "numba>=0.61",
         "numpy>=2.0",
@@ -39,7 +39,7 @@ setup(
         "PyYAML>=6",
         "rerun-sdk==0.41.0",
         "rich>=13",
-        "rosbags>=0.10",
+        "rosbags>=0.11",
         "scipy>=1.13",
         *ros_wheels,
     ],
