@@ -9,67 +9,9 @@
 set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-venv="$here/.venv"
-
-complain() {
-    printf 'demo.sh: %s\n' "$*" >&2
-    exit 2
-}
-
-# The demonstration brings its own ROS; one that the shell has sourced must not mix with it.
-unset PYTHONPATH PYTHONHOME AMENT_PREFIX_PATH RMW_IMPLEMENTATION ROS_LOCALHOST_ONLY
-if [ -n "${_ROS_WHEELS_BOOTSTRAP_COMPLETE:-}" ] || [ -n "${ROS_DISTRO:-}" ]; then
-    unset _ROS_WHEELS_BOOTSTRAP_COMPLETE LD_LIBRARY_PATH ROS_DISTRO
-fi
-
-usable() {
-    "$1" -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 13))' >/dev/null 2>&1
-}
-
-find_python() {
-    local candidate
-    for candidate in ${PYTHON:+"$PYTHON"} python3 python3.13 python3.12 python3.11; do
-        if usable "$candidate"; then
-            printf '%s' "$candidate"
-            return
-        fi
-    done
-    complain "needs Python 3.11 to 3.13; python3 is $(python3 --version 2>&1 || true). Install one, or name it: PYTHON=/path/to/python3 $0"
-}
-
-make_venv() {
-    local python
-    python=$(find_python)
-    "$python" -c 'import venv, ensurepip' 2>/dev/null ||
-        complain "$python has no venv module; on Debian and Ubuntu: apt install python3-venv"
-    printf 'making %s with %s\n' "$venv" "$("$python" --version)" >&2
-    rm -rf "$venv"
-    "$python" -m venv "$venv" || complain "$python could not make $venv"
-}
-
-sources() {
-    (cd "$here" && find bearing_sim launch_scripts resource setup.py setup.cfg package.xml -type f ! -name '*.pyc' -print0 |
-        LC_ALL=C sort -z | xargs -0 cksum | cksum)
-}
-
-install_package() {
-    local wanted stamp="$venv/.bearing_sim_sources"
-    wanted=$(sources)
-    if [ -f "$stamp" ] && [ "$(cat "$stamp")" = "$wanted" ]; then
-        return
-    fi
-    printf 'installing bearing_sim and what it needs (the first time takes a minute or two)\n' >&2
-    "$venv/bin/python" -m pip install -qq --upgrade "$here" || {
-        printf 'demo.sh: the installation failed; see the message above\n' >&2
-        exit 1
-    }
-    printf '%s\n' "$wanted" >"$stamp"
-}
-
-usable "$venv/bin/python" || make_venv
+. "$here/launch_scripts/environment.sh"
 install_package
 
-export ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST # the loopback interface only
-export PYTHONSAFEPATH=1                        # the installed package, whatever the current folder holds
+export PYTHONSAFEPATH=1 # the installed package, whatever the current folder holds
 export BEARING_SIM_DEMO_DOMAIN_ID="${ROS_DOMAIN_ID:-}"
 exec "$venv/bin/python" -m bearing_sim.ros.demo --out "$here/runs" "$@"
