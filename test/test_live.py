@@ -129,7 +129,7 @@ def test_a_stale_input_is_news_when_it_starts_and_gone_when_messages_come_again(
 
 
 def test_sinks_get_every_sample_once_in_order_and_recorders_the_inputs_too(bench):
-    one = bench()
+    one = bench(sample_rate=1 / LONGEST_TICK)
     sink, recorder = ListSink(), ListRecorder()
     one.live.attach("view", sink)
     one.live.attach("record", recorder)
@@ -180,7 +180,7 @@ def test_a_solver_that_fails_is_an_error_as_long_as_it_fails(bench):
 
 def test_time_lost_to_a_slow_solver_is_told_with_both_factors(bench):
     simulation = FakeSimulation()
-    simulation.seconds_per_tick = 0.04
+    simulation.seconds_per_tick = 4 * LONGEST_TICK
     one = bench(simulation)
     one.run(1.0)
     condition = one.live.condition(one.now_ns)
@@ -253,6 +253,6 @@ def test_a_low_sample_rate_thins_what_sinks_get_not_what_the_model_does(bench):
     one.run(1.0)
     assert one.live.close()
     assert len(one.simulation.calls) > 50
-    assert len(sink.blocks) == len(one.simulation.calls) // 10
+    assert len(sink.blocks) == len(one.simulation.calls) // cadence(10.0).every
     steps = sorted(b["time"][0] - a["time"][0] for a, b in zip(sink.blocks, sink.blocks[1:]))
     assert steps[len(steps) // 2] == pytest.approx(0.1)

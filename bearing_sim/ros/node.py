@@ -11,7 +11,7 @@ from functools import partial
 from pathlib import Path
 
 from rclpy.node import Node
-from rclpy.qos import QoSProfile, ReliabilityPolicy, qos_profile_sensor_data
+from rclpy.qos import QoSProfile, ReliabilityPolicy
 from std_srvs.srv import SetBool, Trigger
 
 from bearing_sim import topics
@@ -19,7 +19,7 @@ from bearing_sim.events import Event, Level
 from bearing_sim.ros.messages import message, message_class
 from bearing_sim.ros.parameters import Settings, SettingsError, declare
 from bearing_sim.ros.process import CannotRun, run_node
-from bearing_sim.ros.recordings import fresh_path, open_recording, open_view
+from bearing_sim.ros.recordings import fresh_path, open_recording, open_view, prepare
 from bearing_sim.runtime.health import Condition
 from bearing_sim.runtime.live import LiveModel, warmed_up
 from bearing_sim.scene import Scene
@@ -29,6 +29,8 @@ from bearing_sim.simulation import IntegrationError, Simulation
 _REVIEW_PERIOD = 0.05  # [s] how soon a change of health is told
 _DIAGNOSTICS_PERIOD = 1.0  # [s] (REP 107)
 _STATE_QOS = QoSProfile(depth=10, reliability=ReliabilityPolicy.RELIABLE)
+# As sensor data, so that any publisher matches, but deeper: a recording shall not miss inputs when the machine stalls.
+_INPUT_QOS = QoSProfile(depth=200, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 class BearingNode(Node):
@@ -67,6 +69,7 @@ class BearingNode(Node):
 
     def _compile(self) -> None:
         try:
+            prepare(view=bool(self.settings.rrd or self.settings.rerun_port))
             self._simulation: Simulation = warmed_up(self.scene, self.settings.sample_rate)
         except Exception as fault:  # handed over to the main thread, which raises it
             self._warm_up_fault = fault
@@ -87,7 +90,7 @@ class BearingNode(Node):
             ros_type = topic.ros_type
             if settings.input_type == "scalar" and "std_msgs/msg/Float64" in topics.input_types(channel):
                 ros_type = "std_msgs/msg/Float64"
-            self.create_subscription(message_class(ros_type), channel, partial(self._take, channel, ros_type), qos_profile_sensor_data)
+            self.create_subscription(message_class(ros_type), channel, partial(self._take, channel, ros_type), _INPUT_QOS)
         self.create_service(Trigger, "~/reset", self._serve_reset)
         self.create_service(Trigger, "~/start_recording", self._serve_start_recording)
         self.create_service(Trigger, "~/stop_recording", self._serve_stop_recording)
@@ -180,7 +183,8 @@ class BearingNode(Node):
 
     def _serve_reset(self, _, response):
         response.success = self.live.runner.reset()
-        response.message = "state and damage are at the start" if response.success else "not done within two seconds; it is done after the running tick"
+        late = "not done within two seconds; it is done after the running tick"
+        response.message = "state and damage are at the start" if response.success else late
         return response
 
     def _serve_pause(self, request, response):

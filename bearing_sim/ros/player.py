@@ -26,6 +26,8 @@ from bearing_sim.ros.messages import message, message_class
 from bearing_sim.simulation import Inputs
 
 _SLICE = 0.05  # [s] a sleep is cut into such slices, so that a signal is obeyed
+_DELIVERY = 0.2  # [s] best-effort subscribers acknowledge nothing, and a message of a publisher that is gone is lost
+_COURTESY = 1.0  # [s] how long the optional channels are waited for once the required ones are heard
 _SCALAR = "std_msgs/msg/Float64"
 
 
@@ -93,14 +95,20 @@ class Player:
         qos = QoSProfile(depth=100, reliability=ReliabilityPolicy.RELIABLE)
         self._publishers = {channel: node.create_publisher(message_class(kind), channel, qos) for channel, kind in self._types.items()}
 
-    def unheard(self) -> list[str]:
-        """Return the required channels that nobody listens to."""
-        return [channel for channel in REQUIRED if channel in self._publishers and self._publishers[channel].get_subscription_count() == 0]
+    def unheard(self, channels=REQUIRED) -> list[str]:
+        """Return those of the channels that nobody listens to."""
+        return [channel for channel in channels if self._publishers[channel].get_subscription_count() == 0]
 
     def wait_until_heard(self, limit: float) -> bool:
         """Wait for a subscriber of every required channel; False when ``limit`` [s] passed or a signal came."""
+        if not self._wait(REQUIRED, limit):
+            return False
+        self._wait(self._publishers, _COURTESY)
+        return not self._stop.wanted
+
+    def _wait(self, channels, limit: float) -> bool:
         deadline = time.monotonic() + limit
-        while self.unheard():
+        while self.unheard(channels):
             if time.monotonic() > deadline or self._stop.wanted:
                 return False
             time.sleep(_SLICE)
@@ -124,6 +132,7 @@ class Player:
         progress(plays[-1].time)
         for publisher in self._publishers.values():
             publisher.wait_for_all_acked(Duration(seconds=1))
+        time.sleep(_DELIVERY)
         return True
 
     def _publish(self, play: Play, stamp_ns: int) -> None:

@@ -1,8 +1,21 @@
-"""Open the node's recordings; what they need is imported only when one is wanted."""
+"""Open the node's recordings; what a view needs is imported only when one is wanted."""
 
+import importlib
 from pathlib import Path
 
+from bearing_sim import topics
 from bearing_sim.scene import Scene
+
+
+def prepare(view: bool) -> None:
+    """Load what recordings need, which takes half a second that the running node shall not pay at its first message."""
+    from bearing_sim.sinks.mcap_file import message_type
+
+    importlib.import_module("bearing_sim.sinks.mcap_sink")
+    for ros_type in {topic.ros_type for topic in (*topics.INPUTS.values(), *topics.OUTPUTS.values())} | {topics.DIAGNOSTICS[1]}:
+        message_type(ros_type)
+    if view:
+        importlib.import_module("bearing_sim.sinks.rerun_sink")
 
 
 def open_recording(path: Path, scene: Scene, start_ns: int):

@@ -18,7 +18,7 @@ from bearing_sim.runtime.runner import Runner
 from bearing_sim.scene import Scene
 from bearing_sim.simulation import Inputs, Simulation
 
-LONGEST_TICK = 0.01  # [s] inputs act this late at most
+LONGEST_TICK = 0.005  # [s] inputs act this late at most; outputs can be published at 200 Hz
 _SLACK = 4.0  # [s] how long blocks wait to be collected before the oldest are dropped
 
 

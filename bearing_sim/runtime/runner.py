@@ -147,7 +147,8 @@ class Runner:
         except Exception:  # a fault of the program: say it where people look, and leave the last sample standing
             phase = Phase.CRASHED
             reason = traceback.format_exc(limit=-3).strip()
-            self._put(Event(self._run_time(), Level.ERROR, "solver.crashed", f"the solver thread ended by a program fault, outputs are held: {reason}"))
+            text = f"the solver thread ended by a program fault, outputs are held: {reason}"
+            self._put(Event(self._run_time(), Level.ERROR, "solver.crashed", text))
         with self._changed:
             self._phase = phase
             self._changed.notify_all()
