@@ -49,9 +49,9 @@ sources() {
 # install_package [EXTRA]: the package with an extra, such as test
 install_package() {
     local extra="${1:-}" wanted stamp
+    usable "$venv/bin/python" || make_venv
     wanted=$(sources)
     stamp="$venv/.bearing_sim_sources${extra:+_$extra}"
-    usable "$venv/bin/python" || make_venv
     if [ -f "$stamp" ] && [ "$(cat "$stamp")" = "$wanted" ]; then
         return
     fi
