@@ -36,7 +36,7 @@ def _compiled(function, **options):
     theirs = numba.config.CACHE_DIR
     numba.config.CACHE_DIR = str(CACHE_FOLDER)
     try:
-        return numba.njit(cache=True, nogil=True, error_model="numpy", **options)(function)
+        return numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"}, **options)(function)
     finally:
         numba.config.CACHE_DIR = theirs
 
