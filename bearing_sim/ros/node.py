@@ -138,7 +138,7 @@ class BearingNode(Node):
         if now_ns < self._next_report_ns and condition.level == self._last_level:
             return
         self._last_level = condition.level
-        self._next_report_ns = now_ns + round(_DIAGNOSTICS_PERIOD * 1e9)
+        self._next_report_ns = now_ns + round((_DIAGNOSTICS_PERIOD - _REVIEW_PERIOD / 2) * 1e9)
         fields = topics.diagnostics(now_ns, condition.events, condition.values, self.get_name(), self.scene.bearing.name)
         self._diagnostics.publish(message(topics.DIAGNOSTICS[1], fields))
         if self.live is not None:
