@@ -130,6 +130,7 @@ class BearingNode(Node):
                 self._report(now_ns, Condition([warming], {}))
                 return
             self._open()
+            now_ns = self._now_ns()
         for event in self.live.collect(now_ns):
             self._log(event)
         self._report(now_ns, self.live.condition(now_ns))
