@@ -10,8 +10,10 @@ from hypothesis import strategies as st
 from bearing_sim import load_scene
 from bearing_sim.kernels.arrow import ARROW, factor_shifted, new_arrow, solve_factored
 from bearing_sim.kernels.cage import land_torque
+from bearing_sim.kernels.compilation import kernel
 from bearing_sim.kernels.contact import line_contact, line_contact_stiffness, line_penetration
 from bearing_sim.kernels.drag import churning_force, cylinder_torque, end_face_torque
+from bearing_sim.kernels.elementary import exponential, logarithm
 from bearing_sim.kernels.load_balance import LOAD, balance_ring, squeezed_roller
 from bearing_sim.kernels.raceway import TABLE_INTERVALS, contour_at, lobed_contour
 from bearing_sim.kernels.traction import FILM, traction
@@ -20,6 +22,21 @@ from bearing_sim.params import lubricate, pack
 from bearing_sim.rating_life import load_rating, rating_life_revolutions, ring_ratings
 
 STIFFNESS = line_contact_stiffness(7e-3, 2.06e11, 0.3)
+
+
+@kernel
+def _elementary(x, exponentials, logarithms):
+    for i in range(x.shape[0]):
+        exponentials[i] = exponential(x[i])
+        logarithms[i] = logarithm(exponentials[i])
+
+
+def test_elementary_functions_are_accurate_over_their_range():
+    x = np.linspace(-699.0, 699.0, 100_001)
+    exponentials, logarithms = np.zeros_like(x), np.zeros_like(x)
+    _elementary(x, exponentials, logarithms)
+    np.testing.assert_allclose(exponentials, np.exp(x), rtol=1e-10)
+    np.testing.assert_allclose(logarithms, x, rtol=0, atol=1e-10)
 
 
 def test_line_contact_stiffness_is_palmgrens_for_a_7_mm_steel_roller():
@@ -56,11 +73,11 @@ def test_contour_is_continuous_with_its_slope_around_the_turn():
 
 def traction_coefficient(slide_to_roll, load=1000.0, rolling=73.0, contact="inner", overrides=()):
     scene = load_scene("deng2017_table1", overrides)
-    constants = getattr(lubricate(scene.lubricant, pack(scene), 393.15), contact)
-    film = np.zeros((len(FILM), 3))
+    lubrication = lubricate(scene.lubricant, pack(scene), 393.15)
+    film = np.zeros((len(FILM), 6))
     film[FILM.rolling], film[FILM.sliding], film[FILM.load] = rolling, slide_to_roll * abs(rolling), load
-    traction(film, constants)
-    return film[:, 1]
+    traction(film, lubrication.inner, lubrication.outer)
+    return film[:, 1 if contact == "inner" else 4]
 
 
 @pytest.mark.parametrize(("slide_to_roll", "expected"), [(0.01, 0.0013), (0.05, 0.0052), (0.2, 0.0094)])

@@ -1,8 +1,8 @@
 """Exponential and logarithm that the compiler can vectorise.
 
 The library calls of `math` stop vectorisation, and the vector library of other builds is not to be had here.
-These two are branch-free, accurate to 2e-14 relative (exp, arguments within +-700) and absolute (log, positive
-normal numbers), and run 2.5 times as fast in a loop over rollers.
+These two are branch-free, accurate to 1e-11 relative (exp, arguments within +-700) and 2e-11 absolute (log, positive
+normal numbers), far more than any law that they serve, and run more than twice as fast in a loop over rollers.
 """
 
 import math
@@ -38,9 +38,7 @@ def _vector_exponential(x):
     shifted = x * 1.4426950408889634 + _ROUND
     n = shifted - _ROUND
     r = x - n * _LN2_HIGH - n * _LN2_LOW
-    p = 1.0 / 39916800.0
-    p = p * r + 1.0 / 3628800.0
-    p = p * r + 1.0 / 362880.0
+    p = 1.0 / 362880.0
     p = p * r + 1.0 / 40320.0
     p = p * r + 1.0 / 5040.0
     p = p * r + 1.0 / 720.0
@@ -60,9 +58,7 @@ def _vector_logarithm(x):
     mantissa = _double(bits - (exponent << 52))
     f = (mantissa - 1.0) / (mantissa + 1.0)
     g = f * f
-    p = 2.0 / 15.0
-    p = p * g + 2.0 / 13.0
-    p = p * g + 2.0 / 11.0
+    p = 2.0 / 11.0
     p = p * g + 2.0 / 9.0
     p = p * g + 2.0 / 7.0
     p = p * g + 2.0 / 5.0

@@ -35,7 +35,7 @@ class TractionConstants(NamedTuple):
 
 
 class FilmRow(NamedTuple):
-    """Rows of a film array, shape (len(FILM), Z): one raceway's contacts with all rollers.
+    """Rows of a film array, shape (len(FILM), 2 Z): all rollers' contacts with the inner, then with the outer raceway.
 
     One array instead of one each, because compiled code counts references to every array that it hands on.
     """
@@ -97,14 +97,16 @@ def constant_constants(scale, b, c, d):
 
 
 @kernel
-def traction(film, constants):
-    """Compute the tangential forces of one raceway's contacts with all rollers.
+def traction(film, inner, outer):
+    """Compute the tangential forces of all contacts.
 
     Parameters
     ----------
-    film : array with rows `FILM`; rolling, sliding and load go in, force and its slopes come out.
-    constants : `TractionConstants` of the raceway.
+    film : array with rows `FILM`, the inner contacts of all rollers first; rolling, sliding and load go in, force and its
+        slopes come out.
+    inner, outer : `TractionConstants` of the raceways; they differ in the constants alone.
     """
+    rollers = film.shape[1] // 2
     # Short loops with few operands each: only those does the compiler vectorise.
     for j in range(film.shape[1]):
         film[FILM.log_load, j] = logarithm(max(film[FILM.load, j], _LOAD_FLOOR))
@@ -114,17 +116,14 @@ def traction(film, constants):
     for j in range(film.shape[1]):
         film[FILM.inverse_speed, j] = exponential(-film[FILM.log_speed, j])
     for j in range(film.shape[1]):
-        film[FILM.d, j] = exponential(
-            constants.d_constant + constants.d_load * film[FILM.log_load, j] + constants.d_speed * film[FILM.log_speed, j]
-        )
+        constant = inner.d_constant if j < rollers else outer.d_constant
+        film[FILM.d, j] = exponential(constant + inner.d_load * film[FILM.log_load, j] + inner.d_speed * film[FILM.log_speed, j])
     for j in range(film.shape[1]):
-        film[FILM.b, j] = exponential(
-            constants.b_constant + constants.b_load * film[FILM.log_load, j] + constants.b_speed * film[FILM.log_speed, j]
-        )
+        constant = inner.b_constant if j < rollers else outer.b_constant
+        film[FILM.b, j] = exponential(constant + inner.b_load * film[FILM.log_load, j] + inner.b_speed * film[FILM.log_speed, j])
     for j in range(film.shape[1]):
-        film[FILM.c, j] = exponential(
-            constants.c_constant + constants.c_load * film[FILM.log_load, j] + constants.c_speed * film[FILM.log_speed, j]
-        )
+        constant = inner.c_constant if j < rollers else outer.c_constant
+        film[FILM.c, j] = exponential(constant + inner.c_load * film[FILM.log_load, j] + inner.c_speed * film[FILM.log_speed, j])
     for j in range(film.shape[1]):
         film[FILM.slide_to_roll, j] = abs(film[FILM.sliding, j]) * film[FILM.inverse_speed, j]
     for j in range(film.shape[1]):
@@ -134,12 +133,8 @@ def traction(film, constants):
         d, b, c = film[FILM.d, j], film[FILM.b, j], film[FILM.c, j]
         rest = d - b * ratio
         by_ratio = (b + c * rest) * decay
-        by_log_speed = (
-            constants.d_speed * d * (1.0 - decay)
-            + (constants.b_speed * b + constants.c_speed * c * rest) * ratio * decay
-            - ratio * by_ratio
-        )
-        force = constants.scale * film[FILM.load, j]
+        by_log_speed = inner.d_speed * d * (1.0 - decay) + (inner.b_speed * b + inner.c_speed * c * rest) * ratio * decay - ratio * by_ratio
+        force = inner.scale * film[FILM.load, j]
         signed_force = force if film[FILM.sliding, j] >= 0.0 else -force
         inverse_speed = film[FILM.inverse_speed, j]
         film[FILM.force, j] = signed_force * (d - rest * decay)

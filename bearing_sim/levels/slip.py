@@ -39,8 +39,7 @@ class Work(NamedTuple):
 
     loads: np.ndarray  # rows `bearing_sim.kernels.load_balance.LOAD`, shape (10, Z)
     ring: np.ndarray  # ring centre (y, z) [m], shape (2,); start of the next search
-    inner_film: np.ndarray  # rows `bearing_sim.kernels.traction.FILM`, shape (14, Z)
-    outer_film: np.ndarray
+    film: np.ndarray  # rows `bearing_sim.kernels.traction.FILM`, shape (14, 2 Z)
     tangential: np.ndarray  # all forces along the orbit on each roller but the pocket's [N], shape (Z,)
     pitch: np.ndarray  # rows cosine and sine of 2 pi j/Z, and the angle in intervals of the contour table, shape (3, Z)
     jacobian: Arrow
@@ -74,8 +73,7 @@ def new_work(params):
     return Work(
         loads=np.zeros((len(LOAD), count)),
         ring=np.zeros(2),
-        inner_film=np.zeros((len(FILM), count)),
-        outer_film=np.zeros((len(FILM), count)),
+        film=np.zeros((len(FILM), 2 * count)),
         tangential=np.zeros(count),
         pitch=np.array([np.cos(angles), np.sin(angles), params.raceways.contour.shape[0] * np.arange(count) / count]),
         jacobian=new_arrow(count),
@@ -120,21 +118,20 @@ def balance_loads(cage_angle, cage_speed, load_y, load_z, params, work):
 
 @kernel
 def _tractions(cage_speed, shaft_speed, y, model, work):
-    """Compute the tangential forces in all contacts; results in ``work.inner_film`` and ``work.outer_film``."""
+    """Compute the tangential forces in all contacts; results in ``work.film``."""
     rollers, inner_radius = model.params.rollers, model.params.raceways.inner_radius
-    inner, outer, loads = work.inner_film, work.outer_film, work.loads
-    for j in range(rollers.count):
-        radius = loads[LOAD.radius, j]
+    film, loads, count = work.film, work.loads, model.params.rollers.count
+    for j in range(count):
+        radius, outer = loads[LOAD.radius, j], count + j
         orbital, surface = radius * cage_speed, y[SPIN + j] * rollers.radius
         roller_rolling = surface + cage_speed * rollers.radius
-        inner[FILM.rolling, j] = 0.5 * ((shaft_speed - cage_speed) * inner_radius + roller_rolling)
-        inner[FILM.sliding, j] = shaft_speed * inner_radius - orbital - surface
-        outer[FILM.rolling, j] = 0.5 * (cage_speed * (radius + rollers.radius) + roller_rolling)
-        outer[FILM.sliding, j] = surface - orbital
-        inner[FILM.load, j] = loads[LOAD.inner, j]
-        outer[FILM.load, j] = loads[LOAD.outer, j]
-    traction(inner, model.lubrication.inner)
-    traction(outer, model.lubrication.outer)
+        film[FILM.rolling, j] = 0.5 * ((shaft_speed - cage_speed) * inner_radius + roller_rolling)
+        film[FILM.sliding, j] = shaft_speed * inner_radius - orbital - surface
+        film[FILM.load, j] = loads[LOAD.inner, j]
+        film[FILM.rolling, outer] = 0.5 * (cage_speed * (radius + rollers.radius) + roller_rolling)
+        film[FILM.sliding, outer] = surface - orbital
+        film[FILM.load, outer] = loads[LOAD.outer, j]
+    traction(film, model.lubrication.inner, model.lubrication.outer)
 
 
 @kernel
@@ -197,19 +194,19 @@ def _equations(t, y, model, work, rate, with_jacobian):
     churning, churning_slope = _churning(cage_speed, model)
     _leaning_force(cage_speed, params, work)
     _tractions(cage_speed, shaft_speed, y, model, work)
-    inner, outer, jacobian, border = work.inner_film, work.outer_film, work.jacobian.rows, work.jacobian.border
+    film, jacobian, border = work.film, work.jacobian.rows, work.jacobian.border
     inertia, roller_radius = cage.inertia, rollers.radius
     for j in range(rollers.count):
         radius = loads[LOAD.radius, j]
-        tangential[j] += inner[FILM.force, j] + outer[FILM.force, j] - churning
+        tangential[j] += film[FILM.force, j] + film[FILM.force, rollers.count + j] - churning
         torque += radius * tangential[j]
         inertia += rollers.mass * radius * radius
         if with_jacobian:
             outer_radius = radius + roller_radius
-            inner_by_cage = 0.5 * (roller_radius - inner_radius) * inner[FILM.by_rolling, j] - radius * inner[FILM.by_sliding, j]
-            outer_by_cage = 0.5 * (roller_radius + outer_radius) * outer[FILM.by_rolling, j] - radius * outer[FILM.by_sliding, j]
-            inner_by_spin = roller_radius * (0.5 * inner[FILM.by_rolling, j] - inner[FILM.by_sliding, j])
-            outer_by_spin = roller_radius * (0.5 * outer[FILM.by_rolling, j] + outer[FILM.by_sliding, j])
+            inner_by_cage = 0.5 * (roller_radius - inner_radius) * film[FILM.by_rolling, j] - radius * film[FILM.by_sliding, j]
+            outer_by_cage = 0.5 * (roller_radius + outer_radius) * film[FILM.by_rolling, rollers.count + j] - radius * film[FILM.by_sliding, rollers.count + j]
+            inner_by_spin = roller_radius * (0.5 * film[FILM.by_rolling, j] - film[FILM.by_sliding, j])
+            outer_by_spin = roller_radius * (0.5 * film[FILM.by_rolling, rollers.count + j] + film[FILM.by_sliding, rollers.count + j])
             torque_slope += radius * (inner_by_cage + outer_by_cage - churning_slope)
             jacobian[ARROW.row, j] = radius * (inner_by_spin + outer_by_spin)
             jacobian[ARROW.column, j] = roller_radius * (inner_by_cage - outer_by_cage) / rollers.inertia
@@ -223,7 +220,7 @@ def _equations(t, y, model, work, rate, with_jacobian):
         spin = y[SPIN + j]
         smooth = math.sqrt(spin * spin + _FRICTION_SPIN * _FRICTION_SPIN)
         brake = cage.pocket_friction * pocket * roller_radius / rollers.inertia
-        rate[SPIN + j] = roller_radius * (inner[FILM.force, j] - outer[FILM.force, j]) / rollers.inertia - brake * spin / smooth
+        rate[SPIN + j] = roller_radius * (film[FILM.force, j] - film[FILM.force, rollers.count + j]) / rollers.inertia - brake * spin / smooth
         if with_jacobian:
             jacobian[ARROW.diagonal, j] -= brake * _FRICTION_SPIN * _FRICTION_SPIN / (smooth * smooth * smooth)
             jacobian[ARROW.row, j] /= inertia
