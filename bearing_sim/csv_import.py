@@ -252,9 +252,7 @@ def _find_gaps(table: Table, mapping: Mapping, row_spacings: np.ndarray) -> None
             table.gaps.append((channel, table.lines[channel][place + 1], float(spacings[place])))
 
 
-def write_log(
-    table: Table, mapping_text: str, source: str | Path, out: str | Path, progress: Callable[[float], None] = lambda done: None
-) -> None:
+def write_log(table: Table, mapping_text: str, source: str | Path, out: str | Path, progress: Callable[[float], None] = lambda done: None) -> None:
     """Write a table as an input log, each channel at its own stamps, all in order of time.
 
     Parameters

@@ -107,8 +107,8 @@ class TimeColumn:
 
 def nanoseconds(moment: datetime.datetime) -> int:
     """Return nanoseconds since 1970 of a moment; UTC where it names no zone."""
-    zoned = moment if moment.tzinfo is not None else moment.replace(tzinfo=datetime.timezone.utc)
-    return (zoned - datetime.datetime(1970, 1, 1, tzinfo=datetime.timezone.utc)) // datetime.timedelta(microseconds=1) * 1000
+    zoned = moment if moment.tzinfo is not None else moment.replace(tzinfo=datetime.UTC)
+    return (zoned - datetime.datetime(1970, 1, 1, tzinfo=datetime.UTC)) // datetime.timedelta(microseconds=1) * 1000
 
 
 @_strict

@@ -74,9 +74,7 @@ class InputLog:
     unfinished: str
 
 
-def read_input_log(
-    path: str | Path, names: Mapping[str, str] | None = None, joint: str = topics.SHAFT_JOINT, stamps: str = "header"
-) -> InputLog:
+def read_input_log(path: str | Path, names: Mapping[str, str] | None = None, joint: str = topics.SHAFT_JOINT, stamps: str = "header") -> InputLog:
     """Read the inputs of a recording.
 
     Parameters
@@ -149,9 +147,7 @@ def _records(file: Path) -> Iterator[McapRecord]:
         yield from StreamReader(_WholeReads(stream), validate_crcs=True, record_size_limit=size).records
 
 
-def _read_file(
-    file: Path, wanted: Mapping[str, str], joint: str, stamps: str, found: dict[str, Series], present: dict[str, str]
-) -> str:
+def _read_file(file: Path, wanted: Mapping[str, str], joint: str, stamps: str, found: dict[str, Series], present: dict[str, str]) -> str:
     """Add a file's messages to ``found`` and its topics to ``present``; return why it ended early, or ``""``."""
     schemas: dict[int, Schema] = {}
     readers: dict[int, Callable[[Message], None] | None] = {}

@@ -7,6 +7,7 @@ import numpy as np
 
 from bearing_sim.scene import DoubleExponentialViscosity, HyperbolicPressureViscosity, Oil
 
+
 class OilState(NamedTuple):
     """An oil at one temperature, in SI."""
 

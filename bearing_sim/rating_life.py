@@ -16,14 +16,7 @@ def load_rating(rollers, roller_diameter, length, gamma):
     gamma : D_w / d_m.
     """
     ratio = (1 - gamma) / (1 + gamma)
-    f_c = (
-        207.9
-        * 0.83
-        * gamma ** (2 / 9)
-        * (1 - gamma) ** (29 / 27)
-        * (1 + gamma) ** -0.25
-        * (1 + (1.04 * ratio ** (143 / 108)) ** 4.5) ** (-2 / 9)
-    )
+    f_c = 207.9 * 0.83 * gamma ** (2 / 9) * (1 - gamma) ** (29 / 27) * (1 + gamma) ** -0.25 * (1 + (1.04 * ratio ** (143 / 108)) ** 4.5) ** (-2 / 9)
     return 1.1 * f_c * (1e3 * length) ** (7 / 9) * rollers**0.75 * (1e3 * roller_diameter) ** (29 / 27)
 
 

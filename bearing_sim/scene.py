@@ -220,7 +220,7 @@ class Lubricant:
 
 @_strict
 class Operating:
-    """Constant conditions of `bearing-sim run`, and the state from which a node or a replay starts to listen."""
+    """Constant conditions of `bearing-sim run`; a live run takes them for an input that has not come yet."""
 
     shaft_speed: quantity("rad/s", "shaft speed, omega_i", -12000.0, 12000.0, "rpm")
     radial_load: quantity("N", "radial load on the inner ring, F_r", 0.0, 1e6) = 0.0
@@ -232,7 +232,7 @@ class Integration:
     """How time is advanced.
 
     The error that the tolerance bounds is that of the embedded first-order method, a pessimist: at 1e-2 the second-order
-    result is already within 1 % of its own slip, and half a roller pitch of cage rotation is what limits the step.
+    result has settled, and a little under half a roller pitch of cage rotation is what limits the step.
     """
 
     method: Literal["rosenbrock2"] = "rosenbrock2"
@@ -262,6 +262,8 @@ class Thresholds:
 
     slip_warning: quantity("", "cage slip that is a warning", 0.0, 1.0, "%") = 0.05
     slip_error: quantity("", "cage slip that is an error (Deng 2017: 10 %)", 0.0, 1.0, "%") = 0.10
+    # Leaving rest a cage may slip by any fraction of next to nothing, which harms no surface.
+    slip_from_speed: quantity("rad/s", "shaft speed from which slip is judged", 0.0, 12000.0, "rpm") = 20.0
     life_warning: quantity("h", "rating life below which there is a warning (Deng 2017: 300 h)", 0.0, 1e9) = 300.0
 
 

@@ -62,7 +62,9 @@ _UniqueKeyLoader.add_constructor(yaml.resolver.BaseResolver.DEFAULT_MAPPING_TAG,
 
 def scene_names() -> list[str]:
     """Return the names of the bundled scenes."""
-    return sorted(entry.name.removesuffix(".yaml") for entry in resources.files("bearing_sim").joinpath("scenes").iterdir() if entry.name.endswith(".yaml"))
+    return sorted(
+        entry.name.removesuffix(".yaml") for entry in resources.files("bearing_sim").joinpath("scenes").iterdir() if entry.name.endswith(".yaml")
+    )
 
 
 def load_scene(scene: str | Path, overrides: Iterable[str] = ()) -> Scene:
@@ -265,5 +267,3 @@ def _unwrapped(hint):
         records = [arg for arg in typing.get_args(hint) if dataclasses.is_dataclass(arg)]
         return hint if len(records) > 1 else records[0] if records else float
     return hint
-
-

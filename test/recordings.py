@@ -25,7 +25,10 @@ def temperature(stamp_ns, celsius):
 
 
 JOINTS, WRENCH, TEMPERATURE, FLOAT = (
-    "sensor_msgs/msg/JointState", "geometry_msgs/msg/WrenchStamped", "sensor_msgs/msg/Temperature", "std_msgs/msg/Float64"
+    "sensor_msgs/msg/JointState",
+    "geometry_msgs/msg/WrenchStamped",
+    "sensor_msgs/msg/Temperature",
+    "std_msgs/msg/Float64",
 )
 
 

@@ -72,9 +72,7 @@ class Client:
         self._types = {name: topics.INPUTS[name].ros_type for name in ("shaft_speed", "radial_load")}
         if scalar:
             self._types = dict.fromkeys(self._types, "std_msgs/msg/Float64")
-        self.publishers = {
-            name: self.node.create_publisher(message_class(kind), name, qos_profile_sensor_data) for name, kind in self._types.items()
-        }
+        self.publishers = {name: self.node.create_publisher(message_class(kind), name, qos_profile_sensor_data) for name, kind in self._types.items()}
         for name, topic in topics.OUTPUTS.items():
             self.node.create_subscription(message_class(topic.ros_type), name, self.received[name].append, 200)
         name, kind = topics.DIAGNOSTICS

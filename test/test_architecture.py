@@ -33,7 +33,10 @@ ALLOWED = {
     "params.py": ({"numpy"}, {"kernels", "oil", "rating_life", "scene"}),
     "rating_life.py": (set(), {"kernels.compilation"}),
     "simulation.py": ({"numpy"}, {"integrators.status", "levels", "params", "sample", "scene"}),
-    "sinks": ({"numpy", "mcap", "rosbags", "rerun", "yaml"}, {"sinks", "sample", "scene", "scene_file", "events", "topics", "provenance", "simulation"}),
+    "sinks": (
+        {"numpy", "mcap", "rosbags", "rerun", "yaml"},
+        {"sinks", "sample", "scene", "scene_file", "events", "topics", "provenance", "simulation"},
+    ),
     "runtime": ({"numpy"}, {"runtime", "simulation", "scene", "events", "sample", "topics"}),
 }
 
@@ -78,13 +81,19 @@ def test_nothing_imports_ros(path):
 
 
 def test_the_core_needs_neither_ros_nor_mcap_nor_rerun():
-    code = "import sys, bearing_sim; bearing_sim.Simulation, bearing_sim.load_scene; print(*(m for m in ('rclpy', 'mcap', 'rerun', 'rosbags') if m in sys.modules))"
+    code = (
+        "import sys, bearing_sim; bearing_sim.Simulation, bearing_sim.load_scene;"
+        "print(*(m for m in ('rclpy', 'mcap', 'rerun', 'rosbags') if m in sys.modules))"
+    )
     found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120, cwd=ROOT, check=True)
     assert found.stdout.strip() == ""
 
 
 def test_help_does_not_load_the_model():
-    code = "import sys; from bearing_sim.cli import main; main(['run', '--help'], standalone_mode=False); print(*(m for m in ('numba', 'pint', 'scipy', 'rerun', 'pydantic') if m in sys.modules), file=sys.stderr)"
+    code = (
+        "import sys; from bearing_sim.cli import main; main(['run', '--help'], standalone_mode=False);"
+        "print(*(m for m in ('numba', 'pint', 'scipy', 'rerun', 'pydantic') if m in sys.modules), file=sys.stderr)"
+    )
     found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120, cwd=ROOT, check=True)
     assert found.stderr.strip() == "" and "SCENE" in found.stdout
 
@@ -93,7 +102,8 @@ def test_a_second_process_finds_all_machine_code_in_the_cache():
     code = (
         "from bearing_sim import Simulation, load_scene; from bearing_sim.levels import slip;"
         "Simulation(load_scene('deng2017_table1')).advance(1e-3);"
-        "print(sum(slip.advance.stats.cache_misses.values()) + sum(slip.observe.stats.cache_misses.values()), sum(slip.advance.stats.cache_hits.values()))"
+        "misses = sum(slip.advance.stats.cache_misses.values()) + sum(slip.observe.stats.cache_misses.values());"
+        "print(misses, sum(slip.advance.stats.cache_hits.values()))"
     )
     run = [sys.executable, "-c", code]
     subprocess.run(run, timeout=300, cwd=ROOT, check=True, capture_output=True)
@@ -122,7 +132,9 @@ def test_the_model_runs_uncompiled_for_the_debugger():
     import os
 
     def slip(**environment):
-        found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=300, cwd=ROOT, check=True, env={**os.environ, **environment})
+        found = subprocess.run(
+            [sys.executable, "-c", code], capture_output=True, text=True, timeout=300, cwd=ROOT, check=True, env={**os.environ, **environment}
+        )
         return float(found.stdout)
 
     assert slip(NUMBA_DISABLE_JIT="1") == pytest.approx(slip(), rel=1e-9)

@@ -43,8 +43,10 @@ def test_rows_become_messages_in_si_at_their_times(tmp_path):
     [
         ("{law: sum, columns: [{column: f, unit: N}, {column: g, unit: kN}]}", 3 + 4000.0),
         ("{law: norm, columns: [{column: f, unit: N}, {column: g, unit: N}]}", 5.0),
-        ("{law: mass_times_acceleration, mass: 12 kg, accelerations: [{column: f, scale: 1 g_0, offset: 1 g_0}, {column: g, scale: 1 g_0}]}",
-         12 * 9.80665 * math.hypot(1 + 3, 4)),
+        (
+            "{law: mass_times_acceleration, mass: 12 kg, accelerations: [{column: f, scale: 1 g_0, offset: 1 g_0}, {column: g, scale: 1 g_0}]}",
+            12 * 9.80665 * math.hypot(1 + 3, 4),
+        ),
         ("{law: gear_force, power: {column: g, unit: kW}, efficiency: 0.8, pitch_diameter: 500 mm}", 2 * 4000 / (0.8 * math.pi * 0.5)),
     ],
 )
@@ -82,8 +84,15 @@ def test_every_fault_is_counted_with_its_line_and_only_its_message_is_lost(tmp_p
     table = table_of(tmp_path, FAULTY)
     lines = {code: [line for line, _ in told] for code, told in table.told.items()}
     assert lines == {
-        "shaft_speed.empty_cell": [3], "shaft_speed.not_a_number": [4, 14], "radial_load.not_finite": [5], "time.repeated": [6],
-        "time.backwards": [7], "time.empty_cell": [8], "time.unreadable": [9, 13], "time.cells": [10, 11], "time.empty_line": [12],
+        "shaft_speed.empty_cell": [3],
+        "shaft_speed.not_a_number": [4, 14],
+        "radial_load.not_finite": [5],
+        "time.repeated": [6],
+        "time.backwards": [7],
+        "time.empty_cell": [8],
+        "time.unreadable": [9, 13],
+        "time.cells": [10, 11],
+        "time.empty_line": [12],
     }
     assert table.refused == {code: len(found) for code, found in lines.items()}
     assert [stamp - EPOCH for stamp in table.stamps["shaft_speed"]] == [0, 300_000_000, 700_000_000]
@@ -145,8 +154,15 @@ def test_missing_columns_are_all_named_with_a_guess(tmp_path):
 
 @pytest.mark.parametrize(
     "content, words",
-    [(None, "no such file"), (b"", "header has nothing"), (b"t,n,f\n", "has no rows"), (b"t,n,f\n0,,\n1,,\n", "2 x shaft_speed.empty_cell"),
-     (b"t,n,f,f\n0,1,1,1\n", "2 columns are called 'f'"), (b"t,n,f\n0,\xff,1\n", "UTF-8"), (b't,n,f\n0,"1"x,1\n', "line 2")],
+    [
+        (None, "no such file"),
+        (b"", "header has nothing"),
+        (b"t,n,f\n", "has no rows"),
+        (b"t,n,f\n0,,\n1,,\n", "2 x shaft_speed.empty_cell"),
+        (b"t,n,f,f\n0,1,1,1\n", "2 columns are called 'f'"),
+        (b"t,n,f\n0,\xff,1\n", "UTF-8"),
+        (b't,n,f\n0,"1"x,1\n', "line 2"),
+    ],
 )
 def test_table_that_cannot_become_a_log_is_refused_in_words(tmp_path, content, words):
     if content is not None:

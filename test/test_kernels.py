@@ -137,9 +137,7 @@ def test_squeezed_roller_is_in_balance(approach, centrifugal):
     assert slope >= 0
 
 
-@given(
-    st.floats(0, 5e4), st.floats(0, 2 * math.pi), st.floats(-60e-6, 300e-6), st.integers(3, 40), st.floats(0, 600), st.floats(0, 1.0)
-)
+@given(st.floats(0, 5e4), st.floats(0, 2 * math.pi), st.floats(-60e-6, 300e-6), st.integers(3, 40), st.floats(0, 600), st.floats(0, 1.0))
 @settings(max_examples=300, deadline=None)
 def test_ring_balance_is_found_at_any_load_clearance_and_speed(load, angle, clearance, rollers, centrifugal, turn):
     azimuth = turn + 2 * math.pi * np.arange(rollers) / rollers

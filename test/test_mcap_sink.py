@@ -75,7 +75,9 @@ def test_rosbags_deserialises_every_message(recording):
     np.testing.assert_array_equal(seen["/roller_loads"][1][1].data, [*block["inner_load"][1], *block["outer_load"][1]])
     joints = seen["/bearing_joints"][2][1]
     assert dict(zip(joints.name, joints.velocity)) == {
-        "shaft": block["shaft_speed"][2], "cage": block["cage_speed"][2], "cage_ideal": block["ideal_cage_speed"][2]
+        "shaft": block["shaft_speed"][2],
+        "cage": block["cage_speed"][2],
+        "cage_ideal": block["ideal_cage_speed"][2],
     }
     assert seen["/diagnostics"][0][1].status[0].level == 1
 

@@ -12,8 +12,8 @@ import pytest
 pytest.importorskip("rclpy", reason="the node needs ROS 2 (pip install 'bearing_sim[ros]', or a ROS installation)")
 
 from mcap.reader import make_reader  # noqa: E402
-from rosbags.highlevel import AnyReader  # noqa: E402
 from ros_bench import GOOD, Client, NodeProcess, fresh_domain  # noqa: E402
+from rosbags.highlevel import AnyReader  # noqa: E402
 from std_srvs.srv import SetBool, Trigger  # noqa: E402
 
 from bearing_sim import topics  # noqa: E402

@@ -85,7 +85,9 @@ def test_inputs_are_written_at_their_own_stamps(tmp_path):
     path = write_log(tmp_path / "log.mcap", [(0.0, 100.0), (0.2, 300.0)], [(0.0, 0.0, 0.0), (0.1, 100.0, 0.0), (0.2, 0.0, 0.0)], [(0.1, 50.0)])
     _, sink, _ = run(path)
     assert [(round(time, 9), channels) for time, _, channels in sink.inputs] == [
-        (0.0, ("shaft_speed", "radial_load")), (0.1, ("radial_load", "oil_temperature")), (0.2, ("shaft_speed", "radial_load"))
+        (0.0, ("shaft_speed", "radial_load")),
+        (0.1, ("radial_load", "oil_temperature")),
+        (0.2, ("shaft_speed", "radial_load")),
     ]
 
 
@@ -143,7 +145,8 @@ def test_condition_is_told_when_it_changes_and_reported_every_second(tmp_path, m
     monkeypatch.setattr("bearing_sim.replay.bearing_events", judged)
     _, sink, _ = run(steady_log(tmp_path / "log.mcap", duration=5.0))
     assert [(round(event.time, 6), event.level, event.code) for event in sink.events] == [
-        (2.0, Level.WARN, "bearing.life"), (3.6, Level.OK, "bearing.life")
+        (2.0, Level.WARN, "bearing.life"),
+        (3.6, Level.OK, "bearing.life"),
     ]
     assert [round(time, 6) for time, _, _ in sink.diagnostics] == [0.1, 1.0, 2.0, 3.0, 4.0, 5.0]
     assert [bool(events) for _, events, _ in sink.diagnostics] == [False, False, True, True, False, False]
@@ -197,7 +200,7 @@ def test_command_writes_inputs_and_outputs_and_one_json_object(tmp_path):
     assert 0.0 < report["cage_slip"] < 1.0 and report["life_hours"] > 0 and report["sim_seconds"] == pytest.approx(2.0)
     counts, ends = defaultdict(int), {}
     with open(out, "rb") as stream:
-        for _, channel, message, decoded in make_reader(stream, decoder_factories=[DecoderFactory()]).iter_decoded_messages():
+        for _, channel, _message, decoded in make_reader(stream, decoder_factories=[DecoderFactory()]).iter_decoded_messages():
             counts[channel.topic] += 1
             ends[channel.topic] = decoded
     assert counts["/shaft_speed"] == counts["/radial_load"] == 21

@@ -114,7 +114,7 @@ def test_regime_lane_changes_where_slip_crosses_the_thresholds(tmp_path):
     block = synthetic_block(SCENE, TIMES, slips=(0.0, 0.2))
     written(tmp_path / "run.rrd", block)
     times, states = column(tmp_path / "run.rrd", "/regime", "StateChange:state")
-    assert [state for state, in states] == ["rolling", "slipping", "skidding"]
+    assert [state for (state,) in states] == ["rolling", "slipping", "skidding"]
     crossings = [block["time"][0], *(block["time"][np.argmax(block["cage_slip"] >= limit)] for limit in (0.05, 0.10))]
     np.testing.assert_allclose(times, crossings, atol=1e-6)
 
@@ -227,7 +227,7 @@ def test_dropped_blocks_show_in_the_view(tmp_path):
     view.write(synthetic_block(SCENE, TIMES))
     view.write_dropped(7)
     view.close()
-    texts = [text for text, in column(tmp_path / "run.rrd", "/log", "TextLog:text")[1]]
+    texts = [text for (text,) in column(tmp_path / "run.rrd", "/log", "TextLog:text")[1]]
     assert any("missed 7 blocks" in text for text in texts)
     assert column(tmp_path / "run.rrd", "/sink/dropped", "Scalars:scalars")[1] == [[7.0]]
     assert "7 blocks dropped" in column(tmp_path / "run.rrd", "/now", "TextDocument:text")[1][-1][0]

@@ -5,11 +5,11 @@ import time
 
 import numpy as np
 import pytest
+from fake_simulation import START, FakeSimulation
 
 from bearing_sim.events import Event, Level
 from bearing_sim.runtime.pacer import Pacer
 from bearing_sim.runtime.runner import Phase, Runner
-from fake_simulation import START, FakeSimulation
 
 FAST = START._replace(shaft_speed=300.0)
 

@@ -30,7 +30,18 @@ def test_quantities_come_in_with_units_and_bare_numbers_are_si(text, unit, expec
     assert to_si(text, unit) == pytest.approx(expected, rel=1e-12)
 
 
-@pytest.mark.parametrize(("text", "reason"), [("7 s", "wrong dimension"), ("7 furlgons", "unknown unit"), ("seven", "expected a length"), ("", "expected a length"), (True, "expected a length"), ("7 mm mm", "wrong dimension"), ("3 )(", "expected a length")])
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("7 s", "wrong dimension"),
+        ("7 furlgons", "unknown unit"),
+        ("seven", "expected a length"),
+        ("", "expected a length"),
+        (True, "expected a length"),
+        ("7 mm mm", "wrong dimension"),
+        ("3 )(", "expected a length"),
+    ],
+)
 def test_what_is_no_length_is_refused_with_an_example(text, reason):
     with pytest.raises(ValueError, match=reason) as fault:
         to_si(text, "m")
@@ -95,13 +106,26 @@ def test_overrides_that_cannot_be_applied_say_why(override, expected):
     assert expected in str(error.value)
 
 
-@pytest.mark.parametrize("text", ["", "[]", "name: x\nname: y", "{", "7", "a: *b", "bearing: 7\nlubricant: []\noperating: x\nname: 3", "name: a\nbearing: {preset: [1]}"])
+@pytest.mark.parametrize(
+    "text", ["", "[]", "name: x\nname: y", "{", "7", "a: *b", "bearing: 7\nlubricant: []\noperating: x\nname: 3", "name: a\nbearing: {preset: [1]}"]
+)
 def test_files_that_are_no_scene_end_in_a_message(text):
     with pytest.raises(SceneError):
         scene_from_yaml(text)
 
 
-@given(st.recursive(st.none() | st.booleans() | st.floats() | st.text(max_size=5), lambda x: st.lists(x, max_size=3) | st.dictionaries(st.sampled_from(["name", "bearing", "preset", "lubricant", "oil", "operating", "roller", "traction", "law"]), x, max_size=4), max_leaves=12))
+@given(
+    st.recursive(
+        st.none() | st.booleans() | st.floats() | st.text(max_size=5),
+        lambda x: (
+            st.lists(x, max_size=3)
+            | st.dictionaries(
+                st.sampled_from(["name", "bearing", "preset", "lubricant", "oil", "operating", "roller", "traction", "law"]), x, max_size=4
+            )
+        ),
+        max_leaves=12,
+    )
+)
 def test_no_yaml_tree_crashes_the_reader(tree):
     import yaml
 
@@ -116,5 +140,9 @@ def test_an_unknown_scene_lists_what_is_bundled():
 
 def test_both_bearings_have_the_published_geometry():
     first, second = load_scene("deng2017_table1").bearing, load_scene("deng2017_table2").bearing
-    assert (2 * first.inner_raceway.radius, 2 * first.outer_raceway.low_radius, first.outer_raceway.d_value) == pytest.approx((55.75e-3, 69.725e-3, 98e-6))
-    assert (2 * second.inner_raceway.radius, 2 * second.outer_raceway.low_radius, second.outer_raceway.d_value) == pytest.approx((55.7e-3, 69.648e-3, 60e-6))
+    assert (2 * first.inner_raceway.radius, 2 * first.outer_raceway.low_radius, first.outer_raceway.d_value) == pytest.approx(
+        (55.75e-3, 69.725e-3, 98e-6)
+    )
+    assert (2 * second.inner_raceway.radius, 2 * second.outer_raceway.low_radius, second.outer_raceway.d_value) == pytest.approx(
+        (55.7e-3, 69.648e-3, 60e-6)
+    )

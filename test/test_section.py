@@ -40,9 +40,7 @@ def test_drawn_contour_is_the_raceway_with_its_departure_from_round_times_the_fa
 def test_installation_angle_turns_the_drawn_contour():
     turned = load_scene("deng2017_table1", ["bearing.outer_raceway.installation_angle=40deg"]).bearing
     azimuth = np.linspace(0, 2 * math.pi, 50)
-    np.testing.assert_allclose(
-        section.drawn_contour(turned, 30, azimuth + math.radians(40)), section.drawn_contour(BEARING, 30, azimuth), atol=1e-9
-    )
+    np.testing.assert_allclose(section.drawn_contour(turned, 30, azimuth + math.radians(40)), section.drawn_contour(BEARING, 30, azimuth), atol=1e-9)
 
 
 @pytest.mark.parametrize(

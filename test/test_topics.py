@@ -50,9 +50,7 @@ def test_stamp_keeps_every_nanosecond():
     assert topics.stamp(STAMP) == {"sec": 1_700_000_000, "nanosec": 250_000_001}
 
 
-@pytest.mark.parametrize(
-    "channel, expected", [("shaft_speed", (4712.5,)), ("radial_load", (600.0, -300.0)), ("oil_temperature", (393.15,))]
-)
+@pytest.mark.parametrize("channel, expected", [("shaft_speed", (4712.5,)), ("radial_load", (600.0, -300.0)), ("oil_temperature", (393.15,))])
 def test_an_input_written_is_the_input_read(channel, expected):
     topic = topics.INPUTS[channel]
     message = as_object(topic.message(STAMP, Inputs(4712.5, 600.0, -300.0, 393.15)))

@@ -50,7 +50,7 @@ def test_recording_becomes_a_file_for_rerun_with_its_events(recording, tmp_path)
     texts, speeds = [], 0
     for chunk in RrdReader(str(tmp_path / "run.rrd")).stream():
         if chunk.entity_path == "/log":
-            texts += [text for text, in chunk.to_record_batch().column("TextLog:text").to_pylist()]
+            texts += [text for (text,) in chunk.to_record_batch().column("TextLog:text").to_pylist()]
         if chunk.entity_path == "/speed/shaft" and not chunk.is_static:
             speeds += chunk.to_record_batch().num_rows
     assert "cage slip: 6 % has reached 5 %  [bearing.slip]" in texts

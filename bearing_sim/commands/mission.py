@@ -1,5 +1,6 @@
 """``bearing-sim mission``: write the bundled synthetic mission as an MCAP log."""
 
+from datetime import UTC
 from pathlib import Path
 
 import click
@@ -19,11 +20,10 @@ def command(out, duration, rate, start, as_json):
     It is made up, measured nowhere, and good for demonstrations only.
     """
     import time
-    from datetime import timezone
 
     from bearing_sim.mission import write_mission
 
-    start_ns = time.time_ns() if start is None else int(start.replace(tzinfo=timezone.utc).timestamp()) * 1_000_000_000
+    start_ns = time.time_ns() if start is None else int(start.replace(tzinfo=UTC).timestamp()) * 1_000_000_000
     with told_file_faults(), progress_bar("writing the mission", duration) as progress:
         messages = write_mission(out, start_ns, duration, rate, progress)
     if as_json:

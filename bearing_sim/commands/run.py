@@ -7,7 +7,16 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.commands.reporting import BadInput, FailedRun, print_json, print_table, progress_bar, tell_compilation, told_as_bad_input, told_file_faults
+from bearing_sim.commands.reporting import (
+    BadInput,
+    FailedRun,
+    print_json,
+    print_table,
+    progress_bar,
+    tell_compilation,
+    told_as_bad_input,
+    told_file_faults,
+)
 
 _BLOCK = 10  # samples
 _SAMPLES = 10_000  # of a long run, unless asked otherwise
@@ -19,7 +28,9 @@ _RATE = 1000.0  # Hz, of a short one
 @click.option("--set", "overrides", multiple=True, metavar="FIELD=VALUE", help="Override a field of the scene; may be repeated.")
 @click.option("--duration", default="0.5 s", show_default=True, metavar="S", help="Simulated time, such as 0.5 or '300 ms' (Deng 2017: 0.5 s).")
 @click.option("--level", metavar="LEVEL", help="Fidelity level instead of the scene's.")
-@click.option("--rate", type=click.FloatRange(min=0, min_open=True), metavar="HZ", help="Samples per simulated second [default: 1000, fewer beyond 10 s].")
+@click.option(
+    "--rate", type=click.FloatRange(min=0, min_open=True), metavar="HZ", help="Samples per simulated second [default: 1000, fewer beyond 10 s]."
+)
 @click.option("--out", type=click.Path(path_type=Path), metavar="RUN.mcap", help="Record the run.")
 @click.option("--rrd", type=click.Path(path_type=Path), metavar="RUN.rrd", help="Write a view for rerun, too.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
@@ -118,7 +129,10 @@ def _print(report) -> None:
     print_table(
         f"{report['scene']} at level {report['level']}",
         [
-            ("cage slip", f"{100 * report['cage_slip']:.2f} % ({100 * report['cage_slip_minimum']:.2f} to {100 * report['cage_slip_maximum']:.2f} %)"),
+            (
+                "cage slip",
+                f"{100 * report['cage_slip']:.2f} % ({100 * report['cage_slip_minimum']:.2f} to {100 * report['cage_slip_maximum']:.2f} %)",
+            ),
             ("cage speed", f"{report['cage_speed_rpm']:.6g} rpm"),
             ("rating life", f"{report['life_hours']:.4g} h"),
             ("largest roller load", f"inner {report['inner_load_maximum']:.4g} N, outer {report['outer_load_maximum']:.4g} N"),

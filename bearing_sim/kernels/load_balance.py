@@ -147,9 +147,7 @@ def balance_ring(load_y, load_z, stiffness, loads, ring):
         scale = 1.0 if length <= _LONGEST_STEP else _LONGEST_STEP / length
         for _ in range(30):
             next_y, next_z = y + scale * step_y, z + scale * step_z
-            next_force_y, next_force_z, next_yy, next_yz, next_zz = _ring_forces(
-                next_y, next_z, load_y, load_z, stiffness, loads
-            )
+            next_force_y, next_force_z, next_yy, next_yz, next_zz = _ring_forces(next_y, next_z, load_y, load_z, stiffness, loads)
             # Downhill in the convex potential: the remaining force must not push back past the step by more than it pushed on.
             if next_force_y * step_y + next_force_z * step_z >= -0.5 * (force_y * step_y + force_z * step_z):
                 break

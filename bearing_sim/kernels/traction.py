@@ -79,9 +79,7 @@ def oil_4109_constants(scale, oil, curvature_radius, reduced_modulus):
     def powers(factor, w, u, t):
         return math.log(factor) + w * log_w + u * log_u + t * log_t, w, u - 2 * t
 
-    return TractionConstants(
-        scale, *powers(696.0, -0.163, 0.577, 0.308), *powers(5.19e6, -0.373, 1.0, 0.687), *powers(6.826e5, -0.170, 0.578, 0.373)
-    )
+    return TractionConstants(scale, *powers(696.0, -0.163, 0.577, 0.308), *powers(5.19e6, -0.373, 1.0, 0.687), *powers(6.826e5, -0.170, 0.578, 0.373))
 
 
 def constant_constants(scale, b, c, d):

@@ -152,9 +152,7 @@ def _leaning_force(cage_speed, params, work):
 def _churning(cage_speed, model):
     """Drag of the mixture on one roller [N] and its slope by cage speed [N s]; all orbit at the pitch radius to 0.3 %."""
     rollers, lubrication, pitch_radius = model.params.rollers, model.lubrication, model.params.raceways.pitch_radius
-    force, slope = churning_force(
-        pitch_radius * cage_speed, lubrication.mixture_density, lubrication.viscosity, 2.0 * rollers.radius, rollers.length
-    )
+    force, slope = churning_force(pitch_radius * cage_speed, lubrication.mixture_density, lubrication.viscosity, 2.0 * rollers.radius, rollers.length)
     return force, pitch_radius * slope
 
 
@@ -204,7 +202,9 @@ def _equations(t, y, model, work, rate, with_jacobian):
         if with_jacobian:
             outer_radius = radius + roller_radius
             inner_by_cage = 0.5 * (roller_radius - inner_radius) * film[FILM.by_rolling, j] - radius * film[FILM.by_sliding, j]
-            outer_by_cage = 0.5 * (roller_radius + outer_radius) * film[FILM.by_rolling, rollers.count + j] - radius * film[FILM.by_sliding, rollers.count + j]
+            outer_by_cage = (
+                0.5 * (roller_radius + outer_radius) * film[FILM.by_rolling, rollers.count + j] - radius * film[FILM.by_sliding, rollers.count + j]
+            )
             inner_by_spin = roller_radius * (0.5 * film[FILM.by_rolling, j] - film[FILM.by_sliding, j])
             outer_by_spin = roller_radius * (0.5 * film[FILM.by_rolling, rollers.count + j] + film[FILM.by_sliding, rollers.count + j])
             torque_slope += radius * (inner_by_cage + outer_by_cage - churning_slope)
@@ -358,9 +358,7 @@ def _step(t, y, rate, h, model, work, stages, next_y, error):
 
 @kernel
 def _drive(t, end, y, h, tolerance, maximum_step, budget, model, work, scratch, counts):
-    return drive(
-        rhs_and_jacobian, _step, error_norm, step_limit, 2, t, end, y, h, tolerance, maximum_step, budget, model, work, scratch, counts
-    )
+    return drive(rhs_and_jacobian, _step, error_norm, step_limit, 2, t, end, y, h, tolerance, maximum_step, budget, model, work, scratch, counts)
 
 
 @kernel

@@ -15,7 +15,6 @@ from bearing_sim.runtime.runner import Phase, Runner
 from bearing_sim.scene import Thresholds
 
 _LINGER = 2.0  # [s] a momentary event is shown this long: a report at 1 Hz cannot miss it, a value at its limit does not flicker
-_CRAWL = 20.0  # [rad/s] of the shaft: leaving rest a cage may slip by any fraction of next to nothing, which harms no surface
 
 
 class Condition(NamedTuple):
@@ -102,7 +101,7 @@ def bearing_events(sample, thresholds: Thresholds) -> list[Event]:
     """Return the warnings and errors about the bearing that one sample calls for."""
     time, slip, life = float(sample["time"]), float(sample["cage_slip"]), float(sample["rating_life"])
     events = []
-    if abs(slip) >= thresholds.slip_warning and abs(float(sample["shaft_speed"])) >= _CRAWL:  # false for NaN, the slip at rest
+    if abs(slip) >= thresholds.slip_warning and abs(float(sample["shaft_speed"])) >= thresholds.slip_from_speed:  # NaN, at rest, is no slip
         error = abs(slip) >= thresholds.slip_error
         limit = thresholds.slip_error if error else thresholds.slip_warning
         text = f"cage slip: {100 * slip:.3g} % has reached {100 * limit:.3g} %"

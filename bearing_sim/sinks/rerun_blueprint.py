@@ -46,9 +46,7 @@ def blueprint(scene: Scene, bounds, live: bool, extent: Extent | None = None) ->
     """
     axes = _Axes(live, extent)
     plots = rrb.Horizontal(_middle(axes), _right(axes), column_shares=[0.58, 0.42])
-    log = rrb.TextLogView(
-        origin="/log", name="Log", columns=rrb.TextLogColumns(timeline_columns=[TIMELINE], text_log_columns=["loglevel", "body"])
-    )
+    log = rrb.TextLogView(origin="/log", name="Log", columns=rrb.TextLogColumns(timeline_columns=[TIMELINE], text_log_columns=["loglevel", "body"]))
     return rrb.Blueprint(
         rrb.Horizontal(_left(scene, bounds), rrb.Vertical(plots, log, row_shares=[0.84, 0.16]), column_shares=[0.42, 0.58]),
         rrb.BlueprintPanel(state="collapsed"),
