@@ -253,7 +253,13 @@ def test_bad_input_is_one_message_and_exit_code_2(tmp_path, monkeypatch, argumen
 def test_run_that_is_told_to_stop_leaves_a_finished_file(tmp_path, number):
     log = steady_log(tmp_path / "log.mcap", duration=2000.0)
     arguments = [sys.executable, "-m", "bearing_sim.cli", "replay", log, "--scene", "deng2017_table1", "-o", tmp_path / "out.mcap", "--json"]
-    child = subprocess.Popen([str(argument) for argument in arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    child = subprocess.Popen(
+        [str(argument) for argument in arguments],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        # a shell starts background jobs with SIGINT ignored, and children inherit that
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+    )
     active, deadline = tmp_path / "out.mcap.active", time.monotonic() + 60
     while not (active.exists() and active.stat().st_size > 20_000) and time.monotonic() < deadline:
         time.sleep(0.05)

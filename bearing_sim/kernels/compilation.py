@@ -32,11 +32,13 @@ CACHE_FOLDER = Path(platformdirs.user_cache_dir("bearing_sim")) / "compiled" / s
 
 
 def _compiled(function, **options):
+    # Compiled code here allocates nothing: without reference counting (_nrt) a step takes a fifth less time.
+    # Fused multiply-add is the one liberty with arithmetic: the rest of fastmath would delete the checks for NaN.
     # numba reads the folder when it decorates: set it just here, so that other users of numba keep theirs.
     theirs = numba.config.CACHE_DIR
     numba.config.CACHE_DIR = str(CACHE_FOLDER)
     try:
-        return numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"}, **options)(function)
+        return numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"}, _nrt=False, **options)(function)
     finally:
         numba.config.CACHE_DIR = theirs
 

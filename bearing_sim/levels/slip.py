@@ -17,7 +17,7 @@ from bearing_sim.integrators.rosenbrock2 import rosenbrock2_step
 from bearing_sim.integrators.status import OK
 from bearing_sim.kernels.arrow import ARROW, Arrow, factor_shifted, new_arrow, solve_factored
 from bearing_sim.kernels.cage import land_torque
-from bearing_sim.kernels.compilation import kernel
+from bearing_sim.kernels.compilation import kernel, template
 from bearing_sim.kernels.contact import line_penetration
 from bearing_sim.kernels.drag import churning_force, cylinder_torque, end_face_torque
 from bearing_sim.kernels.load_balance import LOAD, balance_ring
@@ -173,7 +173,7 @@ def _cage_torque(cage_speed, shaft_speed, model):
     return lands + outside + inside - faces, lands_slope - outside_slope - inside_slope - faces_slope
 
 
-@kernel
+@template
 def _shaft_speed(t, drive):
     return drive.shaft_speed + drive.shaft_acceleration * (t - drive.start)
 
@@ -245,7 +245,7 @@ def rhs_and_jacobian(t, y, model, work, rate):
     return _equations(t, y, model, work, rate, True)
 
 
-@kernel
+@template
 def error_norm(t, y, change, relative_tolerance, model):
     """Return the largest share of its tolerance that any state's error takes.
 
@@ -264,7 +264,7 @@ def error_norm(t, y, change, relative_tolerance, model):
     return largest
 
 
-@kernel
+@template
 def step_limit(t, y, model):
     """Return the longest sensible step [s], a little under half a roller pitch of cage rotation.
 
@@ -339,19 +339,19 @@ def observe(t, y, model, work, interval, previous, row):
         row[first + COLUMN.outer_load * count] = loads[LOAD.outer, j]
 
 
-@kernel
+@template
 def factor(shift, work):
     """Factor I - shift J; return False where it is singular."""
     return factor_shifted(work.jacobian, shift, work.factored)
 
 
-@kernel
+@template
 def solve(work, x):
     """Replace the right side ``x`` by the solution with the last factorisation."""
     solve_factored(work.factored, x)
 
 
-@kernel
+@template
 def _step(t, y, rate, h, model, work, stages, next_y, error):
     return rosenbrock2_step(rhs, factor, solve, t, y, rate, h, model, work, stages, next_y, error)
 
