@@ -42,13 +42,26 @@ class CageBody(NamedTuple):
     """The cage."""
 
     inertia: float  # about the shaft axis [kg m^2]
+    mass: float  # [kg]
     pocket_friction: float  # mu_c
+    pocket_clearance: float  # C_p [m]
+    pocket_stiffness: float  # K_c of the film, until the clearance is used up [N/m]
+    pocket_damping: float  # of the film [N s/m]
     guide_radius: float  # R_g [m]
     guide_clearance: float  # c [m]
     guide_width: float  # L_g, all lands together [m]
+    land_film: float  # films in the guide land thinner than this touch [m]
+    land_friction: float  # coefficient of boundary friction there
     outer_radius: float  # of the cage [m]
     inner_radius: float  # of the cage [m]
     width: float  # of the cage [m]
+
+
+class Ring(NamedTuple):
+    """The inner ring and what moves with it."""
+
+    mass: float  # [kg]
+    contact_damping: float  # a of Q (1 + a d(delta)/dt) [s/m]
 
 
 class Life(NamedTuple):
@@ -64,6 +77,7 @@ class Params(NamedTuple):
     rollers: Rollers
     raceways: Raceways
     cage: CageBody
+    ring: Ring
     life: Life
 
 
@@ -102,14 +116,21 @@ def pack(scene: Scene) -> Params:
         ),
         cage=CageBody(
             inertia=cage.polar_inertia if cage.polar_inertia is not None else cage.mass * bearing.pitch_radius**2,
+            mass=cage.mass,
             pocket_friction=cage.pocket_friction,
+            pocket_clearance=cage.pocket_clearance,
+            pocket_stiffness=cage.pocket_film_force / cage.pocket_clearance,
+            pocket_damping=cage.pocket_film_damping,
             guide_radius=cage.guide_radius,
             guide_clearance=cage.guide_clearance,
             guide_width=2 * cage.guide_land_width,
+            land_film=cage.land_film,
+            land_friction=cage.land_friction,
             outer_radius=cage.guide_radius - cage.guide_clearance,
             inner_radius=cage.inner_radius,
             width=cage.width,
         ),
+        ring=Ring(bearing.inner_raceway.ring_mass + bearing.inner_raceway.supported_mass, bearing.contact.damping),
         life=Life(inner_rating, outer_rating),
     )
 

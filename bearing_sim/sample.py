@@ -37,12 +37,16 @@ OBSERVABLES = (
     Observable("outer_equivalent_load", "N", "dynamic equivalent roller load of the stationary outer ring"),
     Observable("ring_y", "m", "inner-ring centre displacement along y"),
     Observable("ring_z", "m", "inner-ring centre displacement along z"),
+    Observable("cage_y", "m", "cage centre displacement along y; 0 at a level without whirl"),
+    Observable("cage_z", "m", "cage centre displacement along z; 0 at a level without whirl"),
     Observable("roller_angle", "rad", "azimuth of the roller centre", True),
     Observable("roller_radius", "m", "distance of the roller centre from the outer-ring centre", True),
     Observable("roller_spin", "rad/s", "roller spin, positive where it rolls on the outer ring", True),
     Observable("roller_rotation", "rad", "roller rotation about its own axis since the start", True),
     Observable("inner_load", "N", "normal force between roller and inner raceway", True),
     Observable("outer_load", "N", "normal force between roller and outer raceway", True),
+    Observable("orbital_speed", "rad/s", "angular speed of the roller centre about the outer-ring centre", True),
+    Observable("pocket_force", "N", "force of the cage's pocket on the roller, positive where it drives the roller", True),
 )
 
 

@@ -32,6 +32,8 @@ class InnerRaceway:
     """Round inner raceway, turning with the shaft."""
 
     radius: quantity("m", "inner raceway radius, R_i", 1e-3, 2.0, "mm")
+    ring_mass: quantity("kg", "mass of the inner ring", 1e-4, 1e3) = 0.05
+    supported_mass: quantity("kg", "mass of the shaft that moves with the inner ring", 0.0, 1e5) = 0.5
 
 
 @_strict
@@ -55,7 +57,19 @@ class Cage:
     guide_radius: quantity("m", "radius of the outer-ring guide lands, R_g", 1e-3, 2.0, "mm")
     guide_clearance: quantity("m", "radial clearance between cage and guide lands, c", 1e-6, 5e-3, "mm")
     guide_land_width: quantity("m", "width of one of the two guide lands", 1e-6, 0.5, "mm")
+    land_film: quantity("m", "film in the guide land below which surfaces touch", 0.0, 1e-4, "um") = 3e-6
+    land_friction: quantity("", "boundary friction coefficient of the guide land", 0.0, 1.0) = 0.08
     pocket_friction: quantity("", "friction coefficient between roller and pocket, mu_c", 0.0, 1.0) = 0.05
+    pocket_clearance: quantity("m", "clearance between roller and pocket along the orbit, C_p", 1e-6, 5e-3, "mm") = 1e-4
+    pocket_film_force: quantity("N", "force of the pocket's oil film when the clearance is used up", 0.0, 1e4) = 67.0
+    pocket_film_damping: quantity("", "damping of the pocket's oil film [N s/m]", 0.0, 1e4) = 5.0
+
+
+@_strict
+class Contact:
+    """Dissipation in normal contacts, after Hunt and Crossley: Q (1 + a d(delta)/dt), never pulling."""
+
+    damping: quantity("", "a [s/m]; 0.104 is a viscous ratio of 0.05 for a 7 mm roller at 500 N", 0.0, 100.0) = 0.104
 
 
 @_strict
@@ -78,6 +92,7 @@ class Bearing:
     roller: Roller
     cage: Cage
     material: Material = field(default_factory=Material)
+    contact: Contact = field(default_factory=Contact)
 
     @property
     def pitch_radius(self) -> float:
@@ -235,7 +250,7 @@ class Integration:
     result has settled, and a little under half a roller pitch of cage rotation is what limits the step.
     """
 
-    method: Literal["rosenbrock2"] = "rosenbrock2"
+    method: Literal["rosenbrock2", "sdirk2"] | None = None  # None is the level's own
     relative_tolerance: quantity("", "error allowed in a step, relative to the state", 1e-10, 0.1) = 1e-2
     maximum_step: quantity("s", "longest step", 1e-9, 1.0, "us") = 1e-2
     first_step: quantity("s", "first step", 1e-12, 1.0, "us") = 1e-5
@@ -273,10 +288,17 @@ class Scene:
 
     name: str
     description: str = ""
-    level: Literal["slip"] = "slip"
+    level: Literal["slip", "planar"] = "slip"
     bearing: Bearing
     lubricant: Lubricant
     operating: Operating
     integration: Integration = field(default_factory=Integration)
     input_limits: InputLimits = field(default_factory=InputLimits)
     thresholds: Thresholds = field(default_factory=Thresholds)
+
+    @model_validator(mode="after")
+    def _method_is_one_of_the_level(self):
+        own = {"slip": "rosenbrock2", "planar": "sdirk2"}[self.level]
+        if self.integration.method not in (None, own):
+            raise ValueError(f"integration.method: level {self.level} is integrated by {own}, not by {self.integration.method}")
+        return self

@@ -6,7 +6,9 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.integrators.status import COUNT, OK, REASONS, new_counts
-from bearing_sim.levels import slip
+from bearing_sim.levels.inputs import Drive
+from bearing_sim.levels.level import LEVELS
+from bearing_sim.levels.slip import Model
 from bearing_sim.params import lubricate, pack
 from bearing_sim.sample import flat, new_block
 from bearing_sim.scene import Operating, Scene
@@ -54,6 +56,7 @@ class Simulation:
     def __init__(self, scene: Scene, inputs: Inputs | None = None):
         self.scene = scene
         self._params = pack(scene)
+        self._level = LEVELS[scene.level]
         self.reset(inputs)
 
     def reset(self, inputs: Inputs | None = None) -> None:
@@ -66,9 +69,9 @@ class Simulation:
         """
         self.inputs = _checked(inputs if inputs is not None else scene_inputs(self.scene))
         self.time = 0.0
-        self._work = slip.new_work(self._params)
-        self._state = slip.initial_state(self._params, self.inputs.shaft_speed)
-        self._scratch = np.zeros((5, self._state.size))
+        self._work = self._level.new_work(self._params)
+        self._state = self._level.initial_state(self._params, self._work, *self.inputs[:3])
+        self._scratch = np.zeros((7, self._state.size))
         self._counts = new_counts()
         self._step = float(self.scene.integration.first_step)
         self._lubrication = lubricate(self.scene.lubricant, self._params, self.inputs.oil_temperature)
@@ -77,11 +80,11 @@ class Simulation:
 
     def _observe_start(self) -> None:
         rows, zeros = flat(self._previous), flat(new_block(1, self._params.rollers.count))
-        slip.observe(0.0, self._state, self._model(self.inputs, 1.0), self._work, 0.0, zeros[0], rows[0])
+        self._level.observe(0.0, self._state, self._model(self.inputs, 1.0), self._work, 0.0, zeros[0], rows[0], self._scratch[0])
 
-    def _model(self, end: Inputs, duration: float) -> slip.Model:
+    def _model(self, end: Inputs, duration: float) -> Model:
         now = self.inputs
-        drive = slip.Drive(
+        drive = Drive(
             self.time,
             now.shaft_speed,
             (end.shaft_speed - now.shaft_speed) / duration,
@@ -90,7 +93,7 @@ class Simulation:
             now.load_z,
             (end.load_z - now.load_z) / duration,
         )
-        return slip.Model(self._params, self._lubrication, drive)
+        return Model(self._params, self._lubrication, drive, float(self.scene.integration.relative_tolerance))
 
     @property
     def sample(self) -> np.void:
@@ -132,12 +135,11 @@ class Simulation:
         block = new_block(samples, self._params.rollers.count)
         state = self._state.copy()
         integration = self.scene.integration
-        status, step = slip.advance(
+        status, step = self._level.advance(
             self.time,
             float(duration),
             state,
             self._step,
-            integration.relative_tolerance,
             integration.maximum_step,
             integration.step_budget,
             self._model(end, duration),
@@ -148,7 +150,7 @@ class Simulation:
             flat(block),
         )
         if status != OK:
-            self._work = slip.new_work(self._params)  # a failed search may have left nonsense to start the next one from
+            self._work = self._level.new_work(self._params)  # a failed search may have left nonsense to start the next one from
             self._step = float(integration.first_step)
             raise IntegrationError(
                 f"{REASONS[status]} between {self.time:.6g} and {self.time + duration:.6g} s (shaft {end.shaft_speed:.6g} rad/s, "

@@ -7,6 +7,7 @@ import pytest
 
 from bearing_sim.integrators.drive import drive
 from bearing_sim.integrators.rosenbrock2 import rosenbrock2_step
+from bearing_sim.integrators.sdirk2 import sdirk2_step
 from bearing_sim.integrators.status import COUNT, NON_FINITE, NOT_EVALUATED, OK, STEP_BUDGET, STEP_TOO_SMALL, new_counts
 from bearing_sim.kernels.compilation import kernel
 
@@ -70,6 +71,27 @@ def nan_step(t, y, rate, h, model, work, stages, next_y, error):
 
 
 @kernel
+def nothing(t, y, model, work, rate):
+    return True
+
+
+@kernel
+def stay(y, h, model, guess):
+    guess[0] = y[0]
+
+
+@kernel
+def implicit_step(t, y, rate, h, model, work, stages, next_y, error):
+    # the counts of iterations go where no stage stands
+    return sdirk2_step(rate_and_jacobian, stay, factor, solve, norm, t, y, h, 1e-9, model, work, stages, next_y, error, work[2:])
+
+
+@kernel
+def advance_implicit(t, end, y, h, tolerance, longest, budget, model, work, scratch, counts):
+    return drive(nothing, implicit_step, norm, no_limit, 2, t, end, y, h, tolerance, longest, budget, model, work, scratch, counts)
+
+
+@kernel
 def advance(t, end, y, h, tolerance, longest, budget, model, work, scratch, counts):
     return drive(rate_and_jacobian, step, norm, no_limit, 2, t, end, y, h, tolerance, longest, budget, model, work, scratch, counts)
 
@@ -89,7 +111,7 @@ def solution(stiffness, steps=0, told=1.0, tolerance=1e9, end=2.0, budget=10**7,
     y, counts = np.array([start]), new_counts()
     longest = end / steps if steps else 1e9
     status, _ = run(
-        0.0, end, y, longest if steps else 1e-3, tolerance, longest, budget, np.array([stiffness, told]), np.zeros(2), np.zeros((5, 1)), counts
+        0.0, end, y, longest if steps else 1e-3, tolerance, longest, budget, np.array([stiffness, told]), np.zeros(4), np.zeros((7, 1)), counts
     )
     return y[0], status, counts
 
@@ -109,6 +131,21 @@ def test_stiff_solution_is_followed_at_steps_a_million_times_its_time_constant()
     assert abs(solution(1e9, steps=400)[0] - math.cos(2.0)) < 0.005
 
 
+@pytest.mark.parametrize("stiffness", [2.0, 50.0])
+def test_sdirk2_is_of_order_2(stiffness):
+    errors = [abs(solution(stiffness, steps, run=advance_implicit)[0] - math.cos(2.0)) for steps in (64, 128, 256)]
+    orders = [math.log2(a / b) for a, b in zip(errors, errors[1:])]
+    assert orders == pytest.approx([2.0, 2.0], abs=0.25)
+
+
+def test_sdirk2_follows_a_stiff_solution_without_lagging():
+    assert solution(1e9, steps=100, run=advance_implicit)[0] == pytest.approx(math.cos(2.0), abs=1e-8)
+
+
+def test_sdirk2_lets_a_stiff_transient_die_in_one_long_step():
+    assert solution(1e12, steps=1, end=1e-3, start=5.0, run=advance_implicit)[0] == pytest.approx(1.0, abs=1e-5)
+
+
 def test_a_stiff_transient_dies_in_one_long_step():
     # L-stability: the factor of one step goes to zero with the stiffness
     value, _, _ = solution(1e12, steps=1, end=1e-3, start=5.0)
@@ -125,7 +162,7 @@ def test_error_stays_within_a_few_tolerances_and_work_grows_with_accuracy():
 def test_the_last_step_ends_exactly_at_the_end():
     y, counts = np.array([1.0]), new_counts()
     for k in range(10):
-        advance(0.1 * k, 0.1 * (k + 1), y, 0.03, 1e9, 0.03, 10**6, np.array([3.0, 1.0]), np.zeros(2), np.zeros((5, 1)), counts)
+        advance(0.1 * k, 0.1 * (k + 1), y, 0.03, 1e9, 0.03, 10**6, np.array([3.0, 1.0]), np.zeros(4), np.zeros((7, 1)), counts)
     assert y[0] == pytest.approx(math.cos(1.0), abs=2e-4)
     assert counts[COUNT.steps] == 40
 

@@ -46,14 +46,15 @@ class FilmRow(NamedTuple):
     force: int = 3  # T on the roller, with the sign of du [N]
     by_sliding: int = 4  # dT/d(du) [N s/m]
     by_rolling: int = 5  # dT/du [N s/m]
-    log_load: int = 6  # from here on, steps of the computation
-    log_speed: int = 7
-    inverse_speed: int = 8
-    slide_to_roll: int = 9
-    d: int = 10
-    b: int = 11
-    c: int = 12
-    decay: int = 13
+    by_load: int = 6  # dT/dQ
+    log_load: int = 7  # from here on, steps of the computation
+    log_speed: int = 8
+    inverse_speed: int = 9
+    slide_to_roll: int = 10
+    d: int = 11
+    b: int = 12
+    c: int = 13
+    decay: int = 14
 
 
 FILM = FilmRow()
@@ -132,9 +133,12 @@ def traction(film, inner, outer):
         rest = d - b * ratio
         by_ratio = (b + c * rest) * decay
         by_log_speed = inner.d_speed * d * (1.0 - decay) + (inner.b_speed * b + inner.c_speed * c * rest) * ratio * decay - ratio * by_ratio
+        by_log_load = inner.d_load * d * (1.0 - decay) + (inner.b_load * b + inner.c_load * c * rest) * ratio * decay
+        coefficient = inner.scale * (d - rest * decay)
         force = inner.scale * film[FILM.load, j]
         signed_force = force if film[FILM.sliding, j] >= 0.0 else -force
         inverse_speed = film[FILM.inverse_speed, j]
         film[FILM.force, j] = signed_force * (d - rest * decay)
+        film[FILM.by_load, j] = (1.0 if film[FILM.sliding, j] >= 0.0 else -1.0) * (coefficient + inner.scale * by_log_load)
         film[FILM.by_sliding, j] = force * by_ratio * inverse_speed
         film[FILM.by_rolling, j] = signed_force * by_log_speed * film[FILM.rolling, j] * inverse_speed * inverse_speed

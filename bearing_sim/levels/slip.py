@@ -19,19 +19,21 @@ from bearing_sim.kernels.arrow import ARROW, Arrow, factor_shifted, new_arrow, s
 from bearing_sim.kernels.cage import land_torque
 from bearing_sim.kernels.compilation import kernel, template
 from bearing_sim.kernels.contact import line_penetration
-from bearing_sim.kernels.drag import churning_force, cylinder_torque, end_face_torque
+from bearing_sim.kernels.drag import churning_force
 from bearing_sim.kernels.load_balance import LOAD, balance_ring
 from bearing_sim.kernels.raceway import contour_at
 from bearing_sim.kernels.traction import FILM, traction
+from bearing_sim.levels.inputs import Drive, load_at, shaft_speed_at
+from bearing_sim.levels.mixture import mixture_torque
+from bearing_sim.levels.observation import observe_course
 from bearing_sim.params import Lubrication, Params
-from bearing_sim.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT, rating_life_revolutions
+from bearing_sim.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT
 from bearing_sim.sample import COLUMN, SCALARS
 
 THETA, OMEGA, SPIN = 0, 1, 2
 _FRICTION_SPIN = 10.0  # rad/s; pocket friction is proportional to spin well below this
 _PITCH_POSITIONS = 10  # cage angles over one roller pitch for the equivalent loads
 _STEP_OF_A_PITCH = 1.0 / (2.0 + 1.0 / (3.0 + 0.5 * (math.sqrt(5.0) - 1.0)))  # 0.4393, as irrational as numbers get
-_SLIP_FLOOR = 1.0  # rad/s of ideal cage speed; slip of a bearing at rest is not defined
 
 
 class Work(NamedTuple):
@@ -46,24 +48,13 @@ class Work(NamedTuple):
     factored: Arrow  # of I - gamma h J
 
 
-class Drive(NamedTuple):
-    """Inputs as straight lines in time."""
-
-    start: float  # [s]
-    shaft_speed: float  # at the start [rad/s]
-    shaft_acceleration: float  # [rad/s^2]
-    load_y: float  # [N]
-    load_y_rate: float  # [N/s]
-    load_z: float
-    load_z_rate: float
-
-
 class Model(NamedTuple):
     """What the right-hand side depends on besides time and state."""
 
     params: Params
     lubrication: Lubrication
     drive: Drive
+    tolerance: float  # relative error allowed in a step
 
 
 def new_work(params):
@@ -81,7 +72,7 @@ def new_work(params):
     )
 
 
-def initial_state(params, shaft_speed):
+def initial_state(params, work, shaft_speed, load_y, load_z):
     """Return the state of ideal rolling: the cage at omega_i (1 - gamma)/2, rollers rolling on the outer ring."""
     cage_speed = 0.5 * shaft_speed * (1 - params.raceways.diameter_ratio)
     state = np.zeros(params.rollers.count + 2)
@@ -159,23 +150,9 @@ def _churning(cage_speed, model):
 @kernel
 def _cage_torque(cage_speed, shaft_speed, model):
     """Torque of guide lands and mixture on the cage body [N m] and its slope by cage speed."""
-    params, lubrication = model.params, model.lubrication
-    cage = params.cage
-    density, viscosity = lubrication.mixture_density, lubrication.viscosity
-    lands, lands_slope = land_torque(cage_speed, 0.0, 0.0, lubrication.viscosity, cage)
-    outside, outside_slope = cylinder_torque(
-        -cage_speed, cage.outer_radius, params.raceways.low_radius - cage.outer_radius, cage.width - cage.guide_width, density, viscosity
-    )
-    inside, inside_slope = cylinder_torque(
-        shaft_speed - cage_speed, cage.inner_radius, cage.inner_radius - params.raceways.inner_radius, cage.width, density, viscosity
-    )
-    faces, faces_slope = end_face_torque(cage_speed, cage.outer_radius, cage.inner_radius, density, viscosity)
-    return lands + outside + inside - faces, lands_slope - outside_slope - inside_slope - faces_slope
-
-
-@template
-def _shaft_speed(t, drive):
-    return drive.shaft_speed + drive.shaft_acceleration * (t - drive.start)
+    lands, lands_slope = land_torque(cage_speed, 0.0, 0.0, model.lubrication.viscosity, model.params.cage)
+    mixture, mixture_slope = mixture_torque(cage_speed, shaft_speed, model.params, model.lubrication)
+    return lands + mixture, lands_slope + mixture_slope
 
 
 @kernel
@@ -183,9 +160,8 @@ def _equations(t, y, model, work, rate, with_jacobian):
     """Evaluate the right-hand side, and the Jacobian where asked; return False where the loads did not balance."""
     params, drive, loads, tangential = model.params, model.drive, work.loads, work.tangential
     rollers, cage, inner_radius = params.rollers, params.cage, params.raceways.inner_radius
-    cage_speed, shaft_speed = y[OMEGA], _shaft_speed(t, drive)
-    elapsed = t - drive.start
-    load_y, load_z = drive.load_y + drive.load_y_rate * elapsed, drive.load_z + drive.load_z_rate * elapsed
+    cage_speed, shaft_speed = y[OMEGA], shaft_speed_at(t, drive)
+    load_y, load_z = load_at(t, drive)
     if not balance_loads(y[THETA], cage_speed, load_y, load_z, params, work):
         return False
     torque, torque_slope = _cage_torque(cage_speed, shaft_speed, model)
@@ -253,7 +229,7 @@ def error_norm(t, y, change, relative_tolerance, model):
     measured, because nothing restores it.
     """
     raceways, rollers = model.params.raceways, model.params.rollers
-    ideal = max(0.5 * abs(_shaft_speed(t, model.drive)) * (1.0 - raceways.diameter_ratio), abs(y[OMEGA]))
+    ideal = max(0.5 * abs(shaft_speed_at(t, model.drive)) * (1.0 - raceways.diameter_ratio), abs(y[OMEGA]))
     scale = 1.0 / (relative_tolerance * max(ideal, 10.0))
     largest = abs(change[OMEGA]) * scale
     spin_scale = scale * rollers.radius / raceways.pitch_radius
@@ -292,39 +268,21 @@ def equivalent_loads(cage_angle, cage_speed, load_y, load_z, params, work):
 
 
 @kernel
-def observe(t, y, model, work, interval, previous, row):
+def observe(t, y, model, work, interval, previous, row, rate):
     """Write the sample of state ``y``.
 
     Parameters
     ----------
     interval : time since the previous sample [s]; damage and angles accumulate over it.
     previous, row : flat samples, shape (SCALARS + runs * Z,); see `bearing_sim.sample.flat`.
+    rate : scratch, shape (Z + 2,).
     """
-    params, drive, loads = model.params, model.drive, work.loads
-    count = params.rollers.count
-    shaft_speed, cage_speed = _shaft_speed(t, drive), y[OMEGA]
-    elapsed = t - drive.start
-    load_y, load_z = drive.load_y + drive.load_y_rate * elapsed, drive.load_z + drive.load_z_rate * elapsed
-    ideal = 0.5 * shaft_speed * (1.0 - params.raceways.diameter_ratio)
-    rotation = 0.5 * (shaft_speed + previous[COLUMN.shaft_speed]) * interval
-    row[COLUMN.time] = t
-    row[COLUMN.shaft_speed] = shaft_speed
-    row[COLUMN.shaft_angle] = previous[COLUMN.shaft_angle] + rotation
-    row[COLUMN.load_y] = load_y
-    row[COLUMN.load_z] = load_z
-    row[COLUMN.oil_temperature] = model.lubrication.temperature
-    row[COLUMN.cage_angle] = y[THETA]
-    row[COLUMN.cage_speed] = cage_speed
-    row[COLUMN.ideal_cage_angle] = previous[COLUMN.ideal_cage_angle] + 0.5 * rotation * (1.0 - params.raceways.diameter_ratio)
-    row[COLUMN.ideal_cage_speed] = ideal
-    row[COLUMN.cage_slip] = 1.0 - cage_speed / ideal if abs(ideal) >= _SLIP_FLOOR else math.nan
+    params, loads = model.params, work.loads
+    count, cage_speed = params.rollers.count, y[OMEGA]
+    load_y, load_z = load_at(t, model.drive)
     inner_equivalent, outer_equivalent = equivalent_loads(y[THETA], cage_speed, load_y, load_z, params, work)
-    balance_loads(y[THETA], cage_speed, load_y, load_z, params, work)
-    revolutions = rating_life_revolutions(inner_equivalent, outer_equivalent, params.life)
-    row[COLUMN.rating_life] = 2.0 * math.pi * revolutions / (3600.0 * abs(shaft_speed))
-    row[COLUMN.damage] = previous[COLUMN.damage] + abs(rotation) / (2.0 * math.pi * revolutions)
-    row[COLUMN.inner_equivalent_load] = inner_equivalent
-    row[COLUMN.outer_equivalent_load] = outer_equivalent
+    observe_course(t, y[THETA], cage_speed, inner_equivalent, outer_equivalent, model, interval, previous, row)
+    rhs(t, y, model, work, rate)
     row[COLUMN.ring_y] = work.ring[0]
     row[COLUMN.ring_z] = work.ring[1]
     for j in range(count):
@@ -337,6 +295,9 @@ def observe(t, y, model, work, interval, previous, row):
         row[before] = previous[before] + 0.5 * (spin_before + y[SPIN + j]) * interval
         row[first + COLUMN.inner_load * count] = loads[LOAD.inner, j]
         row[first + COLUMN.outer_load * count] = loads[LOAD.outer, j]
+        row[first + COLUMN.orbital_speed * count] = cage_speed
+        drive_force = params.rollers.mass * loads[LOAD.radius, j] * rate[OMEGA]
+        row[first + COLUMN.pocket_force * count] = drive_force - work.tangential[j]
 
 
 @template
@@ -362,7 +323,7 @@ def _drive(t, end, y, h, tolerance, maximum_step, budget, model, work, scratch, 
 
 
 @kernel
-def advance(t, duration, y, h, tolerance, maximum_step, budget, model, work, scratch, counts, previous, rows):
+def advance(t, duration, y, h, maximum_step, budget, model, work, scratch, counts, previous, rows):
     """Advance ``y`` in place by ``duration`` [s] and write evenly spaced samples into ``rows``, the last at the end.
 
     Parameters as in `bearing_sim.integrators.drive.drive` and `observe`; ``budget`` is for the whole call.
@@ -378,9 +339,9 @@ def advance(t, duration, y, h, tolerance, maximum_step, budget, model, work, scr
     for k in range(samples):
         start, end = t + k * interval, t + (k + 1) * interval
         left = budget - (counts[0] + counts[1] - taken)
-        status, h = _drive(start, end, y, h, tolerance, maximum_step, left, model, work, scratch, counts)
+        status, h = _drive(start, end, y, h, model.tolerance, maximum_step, left, model, work, scratch, counts)
         if status != OK:
             return status, h
-        observe(end, y, model, work, interval, before, rows[k])
+        observe(end, y, model, work, interval, before, rows[k], scratch[0])
         before = rows[k]
     return OK, h

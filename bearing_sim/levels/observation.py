@@ -1,0 +1,45 @@
+"""What every level observes in the same way: inputs, slip, life and damage."""
+
+import math
+
+from bearing_sim.kernels.compilation import kernel
+from bearing_sim.levels.inputs import load_at, shaft_speed_at
+from bearing_sim.rating_life import rating_life_revolutions
+from bearing_sim.sample import COLUMN
+
+_SLIP_FLOOR = 1.0  # rad/s of ideal cage speed; slip of a bearing at rest is not defined
+
+
+@kernel
+def observe_course(t, cage_angle, cage_speed, inner_equivalent, outer_equivalent, model, interval, previous, row):
+    """Write inputs, cage, slip, life and damage of one instant.
+
+    Parameters
+    ----------
+    cage_angle, cage_speed : of the cage [rad, rad/s].
+    inner_equivalent, outer_equivalent : dynamic equivalent roller loads [N].
+    model : a level's model with params, lubrication and drive.
+    interval : time since the previous sample [s]; damage and angles accumulate over it.
+    previous, row : flat samples, shape (SCALARS + runs * Z,); see `bearing_sim.sample.flat`.
+    """
+    ratio = model.params.raceways.diameter_ratio
+    shaft_speed = shaft_speed_at(t, model.drive)
+    load_y, load_z = load_at(t, model.drive)
+    ideal = 0.5 * shaft_speed * (1.0 - ratio)
+    rotation = 0.5 * (shaft_speed + previous[COLUMN.shaft_speed]) * interval
+    row[COLUMN.time] = t
+    row[COLUMN.shaft_speed] = shaft_speed
+    row[COLUMN.shaft_angle] = previous[COLUMN.shaft_angle] + rotation
+    row[COLUMN.load_y] = load_y
+    row[COLUMN.load_z] = load_z
+    row[COLUMN.oil_temperature] = model.lubrication.temperature
+    row[COLUMN.cage_angle] = cage_angle
+    row[COLUMN.cage_speed] = cage_speed
+    row[COLUMN.ideal_cage_angle] = previous[COLUMN.ideal_cage_angle] + 0.5 * rotation * (1.0 - ratio)
+    row[COLUMN.ideal_cage_speed] = ideal
+    row[COLUMN.cage_slip] = 1.0 - cage_speed / ideal if abs(ideal) >= _SLIP_FLOOR else math.nan
+    revolutions = rating_life_revolutions(inner_equivalent, outer_equivalent, model.params.life)
+    row[COLUMN.rating_life] = 2.0 * math.pi * revolutions / (3600.0 * abs(shaft_speed))
+    row[COLUMN.damage] = previous[COLUMN.damage] + abs(rotation) / (2.0 * math.pi * revolutions)
+    row[COLUMN.inner_equivalent_load] = inner_equivalent
+    row[COLUMN.outer_equivalent_load] = outer_equivalent

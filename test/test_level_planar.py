@@ -1,0 +1,140 @@
+"""The planar level: its derivatives, its algebra, an independent calculation, its limit, rough courses."""
+
+import math
+
+import numpy as np
+import pytest
+
+from bearing_sim import Inputs, Simulation, load_scene
+from bearing_sim.levels import planar, planar_rollers
+from bearing_sim.levels.planar_algebra import BLOCK, BORDER
+
+# Settings of the independent calculation; its pockets had no friction.
+INDEPENDENT = [
+    "bearing.contact.damping=0.3",
+    "bearing.inner_raceway.supported_mass=0.25",
+    "bearing.outer_raceway.contour_slope=false",
+    "bearing.cage.land_film=4.5 um",
+    "bearing.cage.land_friction=0",
+    "bearing.cage.pocket_friction=0",
+]
+
+
+def simulation(*overrides, inputs=None):
+    return Simulation(load_scene("deng2017_table1", ["level=planar", *overrides]), inputs)
+
+
+def rough_state(run):
+    """A state with loaded, parted and colliding rollers, walls touched and the cage on its land."""
+    random = np.random.default_rng(1)
+    state = run._state.copy()
+    state[2:4] = 0.148e-3, -0.01e-3
+    state[5:9] += random.normal(size=4) * 1e-2
+    state[9] *= 0.95
+    rollers = state[2 * BORDER :].reshape(-1, BLOCK)
+    rollers += random.normal(size=rollers.shape) * [2e-7, 3e-3, 1e-2, 0.2, 100.0]
+    return state
+
+
+def dense_jacobian(run, state):
+    model, work, rate = run._model(run.inputs, 1.0), run._work, np.zeros_like(state)
+    planar_rollers.equations(0.0, state, model, work, rate, True)
+    size, border = state.size, 2 * BORDER
+    matrix = np.zeros((size, size))
+    matrix[:BORDER, BORDER:border] = np.eye(BORDER)
+    matrix[BORDER:border, :border] = work.border_own
+    for j in range(run._params.rollers.count):
+        first = border + BLOCK * j
+        matrix[first, first + 2] = matrix[first + 1, first + 3] = 1.0
+        matrix[first + 2 : first + 5, first : first + BLOCK] = work.roller_rows[j, :, :BLOCK]
+        matrix[first + 2 : first + 5, :border] += work.roller_rows[j, :, BLOCK:]
+        matrix[BORDER:border, first : first + BLOCK] = work.border_rows[j, :, :BLOCK]
+        matrix[BORDER:border, :border] += work.border_rows[j, :, BLOCK:]
+    return matrix
+
+
+def differences(run, state):
+    model, work, size = run._model(run.inputs, 1.0), run._work, state.size
+    steps = np.concatenate([np.full(4, 1e-10), [3e-9], np.full(4, 1e-5), [1e-3], np.tile([1e-10, 3e-9, 1e-5, 1e-4, 1e-2], (size - 10) // 5)])
+    matrix = np.zeros((size, size))
+    for i, step in enumerate(steps):
+        above, below, up, down = state.copy(), state.copy(), np.zeros(size), np.zeros(size)
+        above[i] += step
+        below[i] -= step
+        planar_rollers.equations(0.0, above, model, work, up, False)
+        planar_rollers.equations(0.0, below, model, work, down, False)
+        matrix[:, i] = (up - down) / (2 * step)
+    return matrix
+
+
+def test_jacobian_is_that_of_finite_differences():
+    run = simulation()
+    state = rough_state(run)
+    found, expected = dense_jacobian(run, state), differences(run, state)
+    # Differences of forces of kilonewtons over tenths of nanometres are good to about 1e-5 of the largest entries.
+    scale = np.abs(expected) + 1e-5 * np.sqrt(np.abs(expected).max(0)[None, :] * np.abs(expected).max(1)[:, None])
+    scale += 1e-9 * np.abs(expected).max(1)[:, None] + 1e-300
+    assert np.abs(found - expected).max() > 0
+    assert (np.abs(found - expected) / scale).max() < 1e-3
+
+
+def test_block_arrow_solution_is_that_of_the_dense_matrix():
+    run = simulation()
+    state, shift = rough_state(run), 2e-5
+    matrix = np.eye(state.size) - shift * dense_jacobian(run, state)
+    right = np.random.default_rng(2).normal(size=state.size)
+    x = right.copy()
+    assert planar.factor(shift, run._work)
+    planar.solve(run._work, x)
+    expected = np.linalg.solve(matrix, right)
+    np.testing.assert_allclose(x, expected, rtol=0, atol=1e-9 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize(("low_radius", "slip_percent"), [(34.8600, 5.2), (34.8625, 7.05), (34.8650, 11.0), (34.8675, 24.8)])
+def test_slip_is_that_of_an_independent_calculation_with_its_settings(low_radius, slip_percent):
+    run = simulation(f"bearing.outer_raceway.low_radius={low_radius} mm", *INDEPENDENT)
+    settled = run.advance(0.4, samples=400)[300:]
+    assert 100 * settled["cage_slip"].mean() == pytest.approx(slip_percent, rel=0.1)
+    # the cage whirls close to its land
+    assert np.hypot(settled["cage_y"], settled["cage_z"]).mean() == pytest.approx(0.15e-3, rel=0.05)
+
+
+def test_planar_becomes_slip_when_pockets_are_tight_and_the_cage_light_and_free():
+    free = ["bearing.cage.pocket_friction=0", "bearing.cage.land_friction=0", "bearing.cage.guide_land_width=1 um"]
+    tight = ["bearing.cage.pocket_clearance=5 um", "bearing.cage.mass=5 g", "bearing.cage.polar_inertia=4.9e-5"]
+    slow = simulation(*free, *tight).advance(0.15, samples=150)["cage_slip"][100:].mean()
+    quick = Simulation(load_scene("deng2017_table1", [*free, *tight])).advance(0.15, samples=150)["cage_slip"][100:].mean()
+    assert slow == pytest.approx(quick, rel=0.05)
+
+
+def test_normal_forces_carry_the_load_in_the_mean():
+    block = simulation().advance(0.02, samples=400)[100:]
+    azimuth, inner = block["roller_angle"], block["inner_load"]
+    assert (inner * np.cos(azimuth)).sum(1).mean() == pytest.approx(800.0, rel=0.05)
+    assert abs((inner * np.sin(azimuth)).sum(1).mean()) < 60.0
+
+
+@pytest.mark.parametrize(
+    ("start", "end"),
+    [
+        (Inputs(0.0, 100.0, 0.0, 393.15), Inputs(4712.0, 800.0, 0.0, 393.15)),  # from rest
+        (Inputs(4712.0, 0.0, 0.0, 393.15), Inputs(4712.0, 5000.0, 0.0, 393.15)),  # load step
+        (Inputs(1000.0, 100.0, 0.0, 393.15), Inputs(-1000.0, 0.0, 100.0, 393.15)),  # reversal
+    ],
+)
+@pytest.mark.parametrize("low_radius", ["34.8625 mm", "34.89 mm"])  # squeezed; loose
+def test_rough_courses_stay_finite(start, end, low_radius):
+    run = simulation(f"bearing.outer_raceway.low_radius={low_radius}", inputs=start)
+    for target in (end, end):
+        block = run.advance(0.02, target, samples=20)
+        for name in ("cage_speed", "cage_y", "roller_spin", "inner_load", "outer_load", "pocket_force", "damage"):
+            assert np.isfinite(block[name]).all(), name
+        assert (block["inner_load"] >= 0).all() and (block["outer_load"] >= 0).all()
+        assert math.hypot(block["cage_y"][-1], block["cage_z"][-1]) < 0.16e-3
+
+
+def test_a_method_of_another_level_is_refused_by_name():
+    from bearing_sim import SceneError
+
+    with pytest.raises(SceneError, match="planar is integrated by sdirk2"):
+        simulation("integration.method=rosenbrock2")
