@@ -12,31 +12,48 @@ from bearing_sim.kernels.compilation import template
 GAMMA = 1.0 - 1.0 / math.sqrt(2.0)
 _ITERATIONS = 12
 _CONVERGED = 0.05  # of the error that a step may make
+_CONTRACTION = 0.2  # slower than this, an iteration wants new derivatives
+_FAR = 20.0  # so far off, old derivatives may belong to other contacts
 
 
 @template
-def solve_stage(rhs_and_jacobian, factor, solve, norm, t, known, shift, tolerance, model, work, y, rate, change, counts):
+def solve_stage(rhs, rhs_and_jacobian, factor, solve, norm, t, known, shift, tolerance, model, work, y, rate, change, held, counts):
     """Solve y = known + shift f(t, y) by Newton's method.
+
+    Derivatives are the dearest part of an iteration: they are kept from iteration to iteration and from step to step for as
+    long as each iteration takes the rest to a fifth.
 
     Parameters
     ----------
-    rhs_and_jacobian, factor, solve, norm : kernels of the level (see `bearing_sim.integrators.drive`).
+    rhs, rhs_and_jacobian, factor, solve, norm : kernels of the level (see `bearing_sim.integrators.drive`).
     known : what the stage builds on, shape (n,).
     shift : gamma h [s].
     y : start of the iteration, and the stage's result.
     rate : takes f(t, y) of the last but one iterate.
     change : scratch, shape (n,).
-    counts : int64 array; [0] right-hand sides with Jacobians, [1] factorisations.
+    held : the shift of the factorisation at hand, 0 where there is none, shape (1,).
+    counts : int64 array; [0] right-hand sides, [1] Jacobians.
 
     Returns
     -------
     converged : bool
     """
+    before, slow = math.inf, False
     for _ in range(_ITERATIONS):
-        if not rhs_and_jacobian(t, y, model, work, rate) or not factor(shift, work):
-            return False
+        if slow or held[0] == 0.0:
+            evaluated = rhs_and_jacobian(t, y, model, work, rate)
+            counts[1] += 1
+            held[0] = 0.0
+        else:
+            evaluated = rhs(t, y, model, work, rate)
         counts[0] += 1
-        counts[1] += 1
+        if not evaluated:
+            return False
+        if held[0] != shift:
+            if not factor(shift, work):
+                held[0] = 0.0
+                return False
+            held[0] = shift
         for i in range(y.shape[0]):
             change[i] = known[i] + shift * rate[i] - y[i]
         solve(work, change)
@@ -44,25 +61,29 @@ def solve_stage(rhs_and_jacobian, factor, solve, norm, t, known, shift, toleranc
             y[i] += change[i]
         size = norm(t, y, change, tolerance, model)
         if not math.isfinite(size):
+            held[0] = 0.0
             return False
         if size < _CONVERGED:
             return True
+        slow = size > _CONTRACTION * before or size > _FAR
+        before = size
+    held[0] = 0.0
     return False
 
 
 @template
-def sdirk2_step(rhs_and_jacobian, predict, factor, solve, norm, t, y, h, tolerance, model, work, stages, next_y, error, counts):
+def sdirk2_step(rhs, rhs_and_jacobian, predict, factor, solve, norm, t, y, h, tolerance, model, work, stages, next_y, error, held, counts):
     """Take one step from (t, y); write the result and its error estimate.
 
     Parameters
     ----------
-    rhs_and_jacobian, predict, factor, solve, norm : kernels of the level; ``predict(y, h, model, guess)`` writes where the
+    rhs, rhs_and_jacobian, predict, factor, solve, norm : kernels of the level; ``predict(y, h, model, guess)`` writes where the
         state will be after h, roughly.
     h : step [s].
     stages : scratch, shape (4, n).
     next_y, error : results, shape (n,); the error is the difference to the embedded method of order 1, filtered by the
         iteration matrix so that stiff components do not dominate it (Shampine and Baca 1984).
-    counts : see `solve_stage`.
+    held, counts : see `solve_stage`.
 
     Returns
     -------
@@ -71,13 +92,13 @@ def sdirk2_step(rhs_and_jacobian, predict, factor, solve, norm, t, y, h, toleran
     first, known, rate, change = stages[0], stages[1], stages[2], stages[3]
     shift = GAMMA * h
     predict(y, shift, model, first)
-    if not solve_stage(rhs_and_jacobian, factor, solve, norm, t + shift, y, shift, tolerance, model, work, first, rate, change, counts):
+    if not solve_stage(rhs, rhs_and_jacobian, factor, solve, norm, t + shift, y, shift, tolerance, model, work, first, rate, change, held, counts):
         return False
     for i in range(y.shape[0]):
         error[i] = (first[i] - y[i]) / shift  # the first stage's slope
         known[i] = y[i] + (1.0 - GAMMA) * h * error[i]
     predict(first, h - shift, model, next_y)
-    if not solve_stage(rhs_and_jacobian, factor, solve, norm, t + h, known, shift, tolerance, model, work, next_y, rate, change, counts):
+    if not solve_stage(rhs, rhs_and_jacobian, factor, solve, norm, t + h, known, shift, tolerance, model, work, next_y, rate, change, held, counts):
         return False
     for i in range(y.shape[0]):
         error[i] = next_y[i] - known[i] - shift * error[i]

@@ -64,6 +64,12 @@ def initial_state(params: Params, work, shaft_speed, load_y, load_z):
 
 
 @kernel
+def rhs(t, y, model, work, rate):
+    """Write dy/dt into ``rate``."""
+    return planar_rollers.equations(t, y, model, work, rate, False)
+
+
+@kernel
 def rhs_and_jacobian(t, y, model, work, rate):
     """Write dy/dt into ``rate`` and all derivatives into ``work``."""
     return planar_rollers.equations(t, y, model, work, rate, True)
@@ -140,7 +146,23 @@ def step_limit(t, y, model):
 @kernel
 def _step(t, y, rate, h, model, work, stages, next_y, error):
     return sdirk2_step(
-        rhs_and_jacobian, predict, factor, solve, error_norm, t, y, h, model.tolerance, model, work, stages, next_y, error, work.counts
+        rhs,
+        rhs_and_jacobian,
+        predict,
+        factor,
+        solve,
+        error_norm,
+        t,
+        y,
+        h,
+        model.tolerance,
+        model,
+        work,
+        stages,
+        next_y,
+        error,
+        work.held,
+        work.counts,
     )
 
 
@@ -165,7 +187,7 @@ def _average_loads(turned, work):
 @kernel
 def observe(t, y, model, work, interval, previous, row, rate):
     """Write the sample of state ``y``; parameters as in `bearing_sim.levels.slip.observe`."""
-    planar_rollers.equations(t, y, model, work, rate, False)
+    rhs(t, y, model, work, rate)
     rows, count = work.rollers, work.rollers.shape[1]
     inner, outer = work.powers[0] ** (1.0 / ROTATING_EXPONENT), work.powers[1] ** (1.0 / STATIONARY_EXPONENT)
     observe_course(t, y[THETA], y[OMEGA], inner, outer, model, interval, previous, row)

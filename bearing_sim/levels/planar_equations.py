@@ -71,6 +71,7 @@ class Work(NamedTuple):
     border_own: np.ndarray  # derivatives of the border's accelerations by border positions and speeds, shape (5, 10)
     factored: Factored  # of I - gamma h J
     powers: np.ndarray  # running means of Q_i^4 and Q_e^4.5 over a cage turn, shape (2,)
+    held: np.ndarray  # shift of the factorisation at hand [s], shape (1,)
     counts: np.ndarray  # Newton iterations and factorisations, int64
 
 
@@ -88,6 +89,7 @@ def new_work(params):
         np.zeros((BORDER, 2 * BORDER)),
         new_factored(count),
         np.zeros(2),
+        np.zeros(1),
         np.zeros(2, np.int64),
     )
 
