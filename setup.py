@@ -41,6 +41,7 @@ setup(
         "rich>=13",
         "rosbags>=0.11",
         "scipy>=1.13",
+        "zstandard>=0.22",
         *ros_wheels,
     ],
     extras_require={"test": ["hypothesis>=6", "pytest>=8", "pytest-timeout>=2.3"]},

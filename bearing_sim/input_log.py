@@ -12,12 +12,13 @@ from typing import NamedTuple
 
 import yaml
 import zstandard
-from mcap.exceptions import EndOfFile, McapError
+from mcap.exceptions import McapError
 from mcap.records import Channel, Footer, McapRecord, Message, Schema
 from mcap.stream_reader import CRCValidationError, StreamReader
 from mcap_ros2.decoder import DecoderFactory
 
 from bearing_sim import topics
+from bearing_sim.mcap_stream import WholeReads
 from bearing_sim.scene_file import did_you_mean
 
 REQUIRED = ("shaft_speed", "radial_load")
@@ -128,23 +129,10 @@ def _files(path: Path) -> list[Path]:
     return files
 
 
-class _WholeReads:
-    """A stream that never returns less than asked for: the end of a file cut short shall not pass for data."""
-
-    def __init__(self, stream):
-        self._stream = stream
-
-    def read(self, length: int) -> bytes:
-        data = self._stream.read(length)
-        if len(data) < length:
-            raise EndOfFile()
-        return data
-
-
 def _records(file: Path) -> Iterator[McapRecord]:
     with open(file, "rb") as stream:
         size = file.stat().st_size
-        yield from StreamReader(_WholeReads(stream), validate_crcs=True, record_size_limit=size).records
+        yield from StreamReader(WholeReads(stream), validate_crcs=True, record_size_limit=size).records
 
 
 def _read_file(file: Path, wanted: Mapping[str, str], joint: str, stamps: str, found: dict[str, Series], present: dict[str, str]) -> str:

@@ -13,12 +13,13 @@ from pathlib import Path
 import numpy as np
 import yaml
 import zstandard
-from mcap.exceptions import EndOfFile, McapError
+from mcap.exceptions import McapError
 from mcap.records import Channel, Footer, Message, Metadata, Schema
 from mcap.stream_reader import CRCValidationError, StreamReader
 
 from bearing_sim.events import Event, Level
 from bearing_sim.kernels.contact import line_contact_stiffness
+from bearing_sim.mcap_stream import WholeReads
 from bearing_sim.sample import new_block
 from bearing_sim.scene import Scene
 from bearing_sim.scene_file import SceneError, scene_from_yaml
@@ -104,7 +105,7 @@ class Recording:
         schemas: dict[int, str] = {}
         started = finished = False
         with open(self.path, "rb") as stream:
-            records = StreamReader(_WholeReads(stream), validate_crcs=True, record_size_limit=max(self.path.stat().st_size, 1)).records
+            records = StreamReader(WholeReads(stream), validate_crcs=True, record_size_limit=max(self.path.stat().st_size, 1)).records
             try:
                 for record in records:
                     started = True
@@ -147,19 +148,6 @@ class Recording:
         last = rows.take()
         if len(last):
             yield last
-
-
-class _WholeReads:
-    """A stream that never returns less than asked for: the end of a file cut short shall not pass for data."""
-
-    def __init__(self, stream):
-        self._stream = stream
-
-    def read(self, length: int) -> bytes:
-        data = self._stream.read(length)
-        if len(data) < length:
-            raise EndOfFile()
-        return data
 
 
 def _trailing_doubles(data: bytes) -> np.ndarray:

@@ -24,20 +24,8 @@ def line_contact_stiffness(length, youngs_modulus, poisson_ratio):
 
 
 @kernel
-def line_contact(penetration, stiffness):
-    """Return normal force [N] and its slope [N/m] at a penetration [m]; both 0 when apart.
-
-    The force is once continuously differentiable at first touch.
-    """
-    if penetration <= 0.0:
-        return 0.0, 0.0
-    root = stiffness * penetration ** (1.0 / 9.0)
-    return root * penetration, EXPONENT * root
-
-
-@kernel
 def line_penetration(force, stiffness):
-    """Return the penetration [m] that carries a normal force [N], the inverse of `line_contact`."""
+    """Return the penetration [m] that carries a normal force [N]: Palmgren's law the other way round."""
     if force <= 0.0:
         return 0.0
     return (force / stiffness) ** 0.9
