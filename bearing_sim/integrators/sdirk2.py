@@ -12,8 +12,8 @@ from bearing_sim.kernels.compilation import template
 GAMMA = 1.0 - 1.0 / math.sqrt(2.0)
 _ITERATIONS = 12
 _CONVERGED = 0.05  # of the error that a step may make
-_CONTRACTION = 0.2  # slower than this, an iteration wants new derivatives
-_FAR = 20.0  # so far off, old derivatives may belong to other contacts
+_CONTRACTION = 0.4  # slower than this, an iteration wants new derivatives
+_FAR = 100.0  # so far off, old derivatives may belong to other contacts
 
 
 @template
@@ -21,7 +21,7 @@ def solve_stage(rhs, rhs_and_jacobian, factor, solve, norm, t, known, shift, tol
     """Solve y = known + shift f(t, y) by Newton's method.
 
     Derivatives are the dearest part of an iteration: they are kept from iteration to iteration and from step to step for as
-    long as each iteration takes the rest to a fifth.
+    long as each iteration more than halves what is left.
 
     Parameters
     ----------
