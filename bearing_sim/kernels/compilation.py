@@ -32,7 +32,7 @@ CACHE_FOLDER = Path(platformdirs.user_cache_dir("bearing_sim")) / "compiled" / s
 
 
 def _compiled(function, **options):
-    # Compiled code here allocates nothing: without reference counting (_nrt) a step takes a fifth less time.
+    # Compiled code here allocates nothing: without reference counting (_nrt) a step takes a sixth less time.
     # Fused multiply-add is the one liberty with arithmetic: the rest of fastmath would delete the checks for NaN.
     # numba reads the folder when it decorates: set it just here, so that other users of numba keep theirs.
     theirs = numba.config.CACHE_DIR
