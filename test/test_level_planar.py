@@ -71,11 +71,14 @@ def test_jacobian_is_that_of_finite_differences():
     run = simulation()
     state = rough_state(run)
     found, expected = dense_jacobian(run, state), differences(run, state)
-    # Differences of forces of kilonewtons over tenths of nanometres are good to about 1e-5 of the largest entries.
     scale = np.abs(expected) + 1e-5 * np.sqrt(np.abs(expected).max(0)[None, :] * np.abs(expected).max(1)[:, None])
     scale += 1e-9 * np.abs(expected).max(1)[:, None] + 1e-300
-    assert np.abs(found - expected).max() > 0
-    assert (np.abs(found - expected) / scale).max() < 1e-3
+    error = (np.abs(found - expected) / scale).max(0)
+    speeds = np.concatenate([np.arange(BORDER, 2 * BORDER), *[np.arange(2 * BORDER + k, state.size, BLOCK) for k in (2, 3, 4)]])
+    positions = np.setdiff1d(np.arange(state.size), speeds)
+    assert error[speeds].max() < 1e-6
+    # Forces of kilonewtons over differences of tenths of nanometres: the differences themselves are good to 3e-4.
+    assert error[positions].max() < 1e-3
 
 
 def test_block_arrow_solution_is_that_of_the_dense_matrix():
