@@ -17,6 +17,7 @@ from bearing_sim.kernels.raceway import contour_at
 from bearing_sim.levels import planar_algebra, planar_rollers, slip
 from bearing_sim.levels.inputs import shaft_speed_at
 from bearing_sim.levels.observation import observe_course
+from bearing_sim.levels.pitch import pitch_step
 from bearing_sim.levels.planar_algebra import BLOCK, BORDER
 from bearing_sim.levels.planar_equations import (
     CAGE_Y,
@@ -35,7 +36,6 @@ from bearing_sim.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT
 from bearing_sim.sample import COLUMN, SCALARS
 
 _FIRST_ECCENTRICITY = 0.3  # of the guide clearance; a cage exactly in the centre would have no direction to whirl from
-_CHUNK_OF_A_PITCH = 0.4393  # how often loads are averaged; as irrational as the slip level's step, and for the same reason
 
 
 def initial_state(params: Params, work, shaft_speed, load_y, load_z):
@@ -139,8 +139,8 @@ def error_norm(t, y, change, tolerance, model):
 
 @kernel
 def step_limit(t, y, model):
-    """Return the longest sensible step [s]: as in the slip level, no lobe is jumped over."""
-    return 0.4393 * 2.0 * math.pi / (model.params.rollers.count * max(abs(y[OMEGA]), 1e-3))
+    """Return the longest sensible step [s] (see `bearing_sim.levels.pitch.pitch_step`)."""
+    return pitch_step(y[OMEGA], model.params.rollers.count)
 
 
 @kernel
@@ -221,8 +221,8 @@ def advance(t, duration, y, h, maximum_step, budget, model, work, scratch, count
     for k in range(samples):
         now, end = t + k * interval, t + (k + 1) * interval
         while now < end:
-            pitch = 2.0 * math.pi / (model.params.rollers.count * max(abs(y[OMEGA]), 1e-3))
-            pieces = math.ceil((end - now) / (_CHUNK_OF_A_PITCH * pitch))
+            # loads are averaged as often as a step may be long, and for the same reason
+            pieces = math.ceil((end - now) / step_limit(now, y, model))
             then = end if pieces <= 1.0 else now + (end - now) / pieces
             angle = y[THETA]
             left = budget - (counts[COUNT.steps] + counts[COUNT.rejected_steps] - taken)

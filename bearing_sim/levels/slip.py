@@ -26,6 +26,7 @@ from bearing_sim.kernels.traction import FILM, traction
 from bearing_sim.levels.inputs import Drive, load_at, shaft_speed_at
 from bearing_sim.levels.mixture import mixture_torque
 from bearing_sim.levels.observation import observe_course
+from bearing_sim.levels.pitch import pitch_step
 from bearing_sim.params import Lubrication, Params
 from bearing_sim.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT
 from bearing_sim.sample import COLUMN, SCALARS
@@ -33,7 +34,6 @@ from bearing_sim.sample import COLUMN, SCALARS
 THETA, OMEGA, SPIN = 0, 1, 2
 _FRICTION_SPIN = 10.0  # rad/s; pocket friction is proportional to spin well below this
 _PITCH_POSITIONS = 10  # cage angles over one roller pitch for the equivalent loads
-_STEP_OF_A_PITCH = 1.0 / (2.0 + 1.0 / (3.0 + 0.5 * (math.sqrt(5.0) - 1.0)))  # 0.4393, as irrational as numbers get
 
 
 class Work(NamedTuple):
@@ -242,12 +242,8 @@ def error_norm(t, y, change, relative_tolerance, model):
 
 @template
 def step_limit(t, y, model):
-    """Return the longest sensible step [s], a little under half a roller pitch of cage rotation.
-
-    All rollers together repeat themselves each pitch, so a step of half a pitch would see the same two moments of it again and
-    again and take them for the mean.  A fraction that no small denominator comes near sees all moments alike.
-    """
-    return _STEP_OF_A_PITCH * 2.0 * math.pi / (model.params.rollers.count * max(abs(y[OMEGA]), 1e-3))
+    """Return the longest sensible step [s] (see `bearing_sim.levels.pitch.pitch_step`)."""
+    return pitch_step(y[OMEGA], model.params.rollers.count)
 
 
 @kernel
