@@ -71,7 +71,7 @@ class Simulation:
         self.time = 0.0
         self._work = self._level.new_work(self._params)
         self._state = self._level.initial_state(self._params, self._work, *self.inputs[:3])
-        self._scratch = np.zeros((7, self._state.size))
+        self._scratch = np.zeros((9, self._state.size))
         self._counts = new_counts()
         self._step = float(self.scene.integration.first_step)
         self._lubrication = lubricate(self.scene.lubricant, self._params, self.inputs.oil_temperature)

@@ -56,6 +56,11 @@ def norm(t, y, change, tolerance, model):
 
 
 @kernel
+def kept(h, y, model, work):
+    pass
+
+
+@kernel
 def no_limit(t, y, model):
     return 1e9
 
@@ -88,22 +93,22 @@ def implicit_step(t, y, rate, h, model, work, stages, next_y, error):
 
 @kernel
 def advance_implicit(t, end, y, h, tolerance, longest, budget, model, work, scratch, counts):
-    return drive(nothing, implicit_step, norm, no_limit, 2, t, end, y, h, tolerance, longest, budget, model, work, scratch, counts)
+    return drive(nothing, implicit_step, norm, no_limit, kept, 2, t, end, y, h, tolerance, longest, budget, model, work, scratch, counts)
 
 
 @kernel
 def advance(t, end, y, h, tolerance, longest, budget, model, work, scratch, counts):
-    return drive(rate_and_jacobian, step, norm, no_limit, 2, t, end, y, h, tolerance, longest, budget, model, work, scratch, counts)
+    return drive(rate_and_jacobian, step, norm, no_limit, kept, 2, t, end, y, h, tolerance, longest, budget, model, work, scratch, counts)
 
 
 @kernel
 def advance_nan(t, end, y, h, tolerance, longest, budget, model, work, scratch, counts):
-    return drive(nan_rate, nan_step, norm, no_limit, 2, t, end, y, h, tolerance, longest, budget, model, work, scratch, counts)
+    return drive(nan_rate, nan_step, norm, no_limit, kept, 2, t, end, y, h, tolerance, longest, budget, model, work, scratch, counts)
 
 
 @kernel
 def advance_failing(t, end, y, h, tolerance, longest, budget, model, work, scratch, counts):
-    return drive(failing_rate, step, norm, no_limit, 2, t, end, y, h, tolerance, longest, budget, model, work, scratch, counts)
+    return drive(failing_rate, step, norm, no_limit, kept, 2, t, end, y, h, tolerance, longest, budget, model, work, scratch, counts)
 
 
 def solution(stiffness, steps=0, told=1.0, tolerance=1e9, end=2.0, budget=10**7, run=advance, start=1.0):

@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from bearing_sim import Inputs, Simulation, load_scene
+from bearing_sim.kernels.lanes import LANES
 from bearing_sim.levels import planar, planar_rollers
-from bearing_sim.levels.planar_algebra import BLOCK, BORDER
+from bearing_sim.levels.planar_algebra import BLOCK, BORDER, LOCAL
+from bearing_sim.levels.planar_state import ROLLERS
 
 # Settings of the independent calculation; its pockets had no friction.
 INDEPENDENT = [
@@ -31,7 +33,7 @@ def rough_state(run):
     state[2:4] = 0.148e-3, -0.01e-3
     state[5:9] += random.normal(size=4) * 1e-2
     state[9] *= 0.95
-    rollers = state[2 * BORDER :].reshape(-1, BLOCK)
+    rollers = state[ROLLERS:].reshape(BLOCK, -1).T
     rollers += random.normal(size=rollers.shape) * [2e-7, 3e-3, 1e-2, 0.2, 100.0]
     return state
 
@@ -43,19 +45,21 @@ def dense_jacobian(run, state):
     matrix = np.zeros((size, size))
     matrix[:BORDER, BORDER:border] = np.eye(BORDER)
     matrix[BORDER:border, :border] = work.border_own
-    for j in range(run._params.rollers.count):
-        first = border + BLOCK * j
-        matrix[first, first + 2] = matrix[first + 1, first + 3] = 1.0
-        matrix[first + 2 : first + 5, first : first + BLOCK] = work.roller_rows[j, :, :BLOCK]
-        matrix[first + 2 : first + 5, :border] += work.roller_rows[j, :, BLOCK:]
-        matrix[BORDER:border, first : first + BLOCK] = work.border_rows[j, :, :BLOCK]
-        matrix[BORDER:border, :border] += work.border_rows[j, :, BLOCK:]
+    count = run._params.rollers.count
+    for j in range(count):
+        own = ROLLERS + j + count * np.arange(BLOCK)
+        slopes = work.slopes[j // LANES, :, j % LANES].reshape(-1, LOCAL)
+        matrix[own[:2], own[2:4]] = 1.0
+        matrix[own[2:, None], own] = slopes[:3, :BLOCK]
+        matrix[own[2:], :border] += slopes[:3, BLOCK:]
+        matrix[BORDER:border, own] = slopes[3:, :BLOCK]
+        matrix[BORDER:border, :border] += slopes[3:, BLOCK:]
     return matrix
 
 
 def differences(run, state):
     model, work, size = run._model(run.inputs, 1.0), run._work, state.size
-    steps = np.concatenate([np.full(4, 1e-10), [3e-9], np.full(4, 1e-5), [1e-3], np.tile([1e-10, 3e-9, 1e-5, 1e-4, 1e-2], (size - 10) // 5)])
+    steps = np.concatenate([np.full(4, 1e-10), [3e-9], np.full(4, 1e-5), [1e-3], np.repeat([1e-10, 3e-9, 1e-5, 1e-4, 1e-2], (size - 10) // 5)])
     matrix = np.zeros((size, size))
     for i, step in enumerate(steps):
         above, below, up, down = state.copy(), state.copy(), np.zeros(size), np.zeros(size)
@@ -74,7 +78,7 @@ def test_jacobian_is_that_of_finite_differences():
     scale = np.abs(expected) + 1e-5 * np.sqrt(np.abs(expected).max(0)[None, :] * np.abs(expected).max(1)[:, None])
     scale += 1e-9 * np.abs(expected).max(1)[:, None] + 1e-300
     error = (np.abs(found - expected) / scale).max(0)
-    speeds = np.concatenate([np.arange(BORDER, 2 * BORDER), *[np.arange(2 * BORDER + k, state.size, BLOCK) for k in (2, 3, 4)]])
+    speeds = np.concatenate([np.arange(BORDER, 2 * BORDER), np.arange(ROLLERS + 2 * run._params.rollers.count, state.size)])
     positions = np.setdiff1d(np.arange(state.size), speeds)
     assert error[speeds].max() < 1e-6
     # Forces of kilonewtons over differences of tenths of nanometres: the differences themselves are good to 3e-4.

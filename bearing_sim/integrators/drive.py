@@ -9,16 +9,19 @@ from bearing_sim.integrators.status import COUNT, NON_FINITE, NOT_EVALUATED, OK,
 from bearing_sim.kernels.compilation import template
 
 _SMALLEST_STEP = 1e-12  # s
+_BEARABLE = 3.0  # times the tolerance: the estimate is a pessimist, and a repeated step costs as much as a whole one
+_GOAL, _GAIN = 0.7, 0.2
 _SAFETY, _LARGEST_GROWTH, _LARGEST_SHRINK = 0.85, 4.0, 0.2
 
 
 @template
-def drive(rhs_and_jacobian, step, error_norm, step_limit, order, t, end, y, h, tolerance, maximum_step, budget, model, work, scratch, counts):
+def drive(rhs_and_jacobian, step, error_norm, step_limit, accepted, order, t, end, y, h, tolerance, maximum_step, budget, model, work, scratch, counts):
     """Advance ``y`` in place from ``t`` to ``end``.
 
     Parameters
     ----------
     rhs_and_jacobian, step, error_norm, step_limit : kernels (see `bearing_sim.levels.slip` and `rosenbrock2`).
+    accepted : kernel called after each accepted step, ``accepted(h, y, model, work)``.
     order : order of the error estimate plus one, the root in the step-size rule.
     h : step to try first [s].
     tolerance : relative error allowed in a step.
@@ -52,13 +55,14 @@ def drive(rhs_and_jacobian, step, error_norm, step_limit, order, t, end, y, h, t
         evaluated = step(t, y, rate, this, model, work, stages, next_y, error)
         counts[COUNT.right_hand_sides] += 1
         share = error_norm(t, y, error, tolerance, model) if evaluated else math.inf
-        if share <= 1.0:
+        if share <= _BEARABLE:
             counts[COUNT.steps] += 1
             for i in range(size):
                 y[i] = next_y[i]
             t = end if this == left else t + this
+            accepted(this, y, model, work)
             fresh = False
-            growth = min(_LARGEST_GROWTH, _SAFETY * (share + 1e-10) ** (-1.0 / order))
+            growth = min(_LARGEST_GROWTH, (_GOAL / (share + 1e-10)) ** (_GAIN / order))
             h = max(this * growth, h) if this < wanted else wanted * growth
         else:
             counts[COUNT.rejected_steps] += 1

@@ -12,12 +12,12 @@ from bearing_sim.kernels.compilation import template
 GAMMA = 1.0 - 1.0 / math.sqrt(2.0)
 _ITERATIONS = 12
 _CONVERGED = 0.05  # of the error that a step may make
+_SETTLED = 0.3  # so small a first correction leaves, squared, less than that
 _CONTRACTION = 0.4  # slower than this, an iteration wants new derivatives
-_FAR = 100.0  # so far off, old derivatives may belong to other contacts
 
 
 @template
-def solve_stage(rhs, rhs_and_jacobian, factor, solve, norm, t, known, shift, tolerance, model, work, y, rate, change, held, counts):
+def solve_stage(rhs, rhs_and_jacobian, factor, solve, norm, t, known, shift, tolerance, model, work, y, rate, change, held, counts, renew):
     """Solve y = known + shift f(t, y) by Newton's method.
 
     Derivatives are the dearest part of an iteration: they are kept from iteration to iteration and from step to step for as
@@ -38,20 +38,21 @@ def solve_stage(rhs, rhs_and_jacobian, factor, solve, norm, t, known, shift, tol
     -------
     converged : bool
     """
-    before, slow = math.inf, False
+    before, outdated = math.inf, renew
     for _ in range(_ITERATIONS):
-        if slow or held[0] == 0.0:
+        fresh = outdated or held[0] == 0.0
+        if fresh:
             evaluated = rhs_and_jacobian(t, y, model, work, rate)
             counts[1] += 1
-            held[0] = 0.0
         else:
             evaluated = rhs(t, y, model, work, rate)
         counts[0] += 1
         if not evaluated:
             return False
-        if held[0] != shift:
+        if fresh or held[0] != shift:
+            held[0] = 0.0
+            counts[2] += 1
             if not factor(shift, work):
-                held[0] = 0.0
                 return False
             held[0] = shift
         for i in range(y.shape[0]):
@@ -63,9 +64,9 @@ def solve_stage(rhs, rhs_and_jacobian, factor, solve, norm, t, known, shift, tol
         if not math.isfinite(size):
             held[0] = 0.0
             return False
-        if size < _CONVERGED:
+        if size < (_SETTLED if fresh else _CONVERGED):
             return True
-        slow = size > _CONTRACTION * before or size > _FAR
+        outdated = size > _CONTRACTION * before or size > 1.0
         before = size
     held[0] = 0.0
     return False
@@ -77,8 +78,8 @@ def sdirk2_step(rhs, rhs_and_jacobian, predict, factor, solve, norm, t, y, h, to
 
     Parameters
     ----------
-    rhs, rhs_and_jacobian, predict, factor, solve, norm : kernels of the level; ``predict(y, h, model, guess)`` writes where the
-        state will be after h, roughly.
+    rhs, rhs_and_jacobian, predict, factor, solve, norm : kernels of the level; ``predict(known, shift, slope, model, work,
+        guess)`` writes a first guess of the solution of guess = known + shift f(guess), given f a little earlier.
     h : step [s].
     stages : scratch, shape (4, n).
     next_y, error : results, shape (n,); the error is the difference to the embedded method of order 1, filtered by the
@@ -89,18 +90,24 @@ def sdirk2_step(rhs, rhs_and_jacobian, predict, factor, solve, norm, t, y, h, to
     -------
     converged : False where a stage did not.
     """
-    first, known, rate, change = stages[0], stages[1], stages[2], stages[3]
+    first, known, rate, change, slope, next_slope = stages[0], stages[1], stages[2], stages[3], stages[4], stages[5]
     shift = GAMMA * h
-    predict(y, shift, model, first)
-    if not solve_stage(rhs, rhs_and_jacobian, factor, solve, norm, t + shift, y, shift, tolerance, model, work, first, rate, change, held, counts):
+    per_shift = 1.0 / shift
+    if abs(held[1] - t) < 0.01 * h:
+        for i in range(y.shape[0]):
+            slope[i] = next_slope[i]
+    predict(y, shift, slope, model, work, first)
+    if not solve_stage(rhs, rhs_and_jacobian, factor, solve, norm, t + shift, y, shift, tolerance, model, work, first, rate, change, held, counts, True):
         return False
     for i in range(y.shape[0]):
-        error[i] = (first[i] - y[i]) / shift  # the first stage's slope
+        error[i] = (first[i] - y[i]) * per_shift  # the first stage's slope
         known[i] = y[i] + (1.0 - GAMMA) * h * error[i]
-    predict(first, h - shift, model, next_y)
-    if not solve_stage(rhs, rhs_and_jacobian, factor, solve, norm, t + h, known, shift, tolerance, model, work, next_y, rate, change, held, counts):
+    predict(known, shift, error, model, work, next_y)
+    if not solve_stage(rhs, rhs_and_jacobian, factor, solve, norm, t + h, known, shift, tolerance, model, work, next_y, rate, change, held, counts, True):
         return False
     for i in range(y.shape[0]):
-        error[i] = next_y[i] - known[i] - shift * error[i]
+        next_slope[i] = (next_y[i] - known[i]) * per_shift
+        error[i] = shift * (next_slope[i] - error[i])
+    held[1] = t + h
     solve(work, error)
     return True

@@ -1,8 +1,11 @@
 """Normal contact of rollers and raceways: Palmgren's line contact (Deng 2017, eq. 3 to 5)."""
 
-from bearing_sim.kernels.compilation import kernel
+from bearing_sim.kernels.compilation import kernel, template
+from bearing_sim.kernels.elementary import exponential, logarithm
+from bearing_sim.kernels.lanes import larger, where_positive
 
 EXPONENT = 10.0 / 9.0
+TINY = 1e-15  # m; a penetration that carries nothing
 
 
 def line_contact_stiffness(length, youngs_modulus, poisson_ratio):
@@ -29,3 +32,31 @@ def line_penetration(force, stiffness):
     if force <= 0.0:
         return 0.0
     return (force / stiffness) ** 0.9
+
+
+@template
+def log_penetration(penetration):
+    """Return ln(penetration), finite where there is none (lanes)."""
+    return logarithm(larger(penetration, TINY))
+
+
+@template
+def damped_line_contact(penetration, log, rate, stiffness, damping):
+    """Return Q = K delta^(10/9) (1 + a d(delta)/dt), never pulling, and its slopes (Hunt and Crossley 1975).
+
+    Parameters
+    ----------
+    penetration, log : delta [m] and `log_penetration` of it (lanes).
+    rate : d(delta)/dt [m/s] (lanes).
+    stiffness : K [N/m^(10/9)].
+    damping : a [s/m].
+
+    Returns
+    -------
+    load [N], by_penetration [N/m], by_rate [N s/m]
+    """
+    root = stiffness * exponential(log * (1.0 / 9.0))
+    elastic = root * larger(penetration, 0.0)
+    factor = 1.0 + damping * rate
+    pressed = where_positive(factor, where_positive(penetration, 1.0, 0.0), 0.0)
+    return elastic * larger(factor, 0.0), pressed * EXPONENT * root * factor, pressed * elastic * damping

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from bearing_sim.kernels.compilation import template
+from bearing_sim.kernels.lanes import floor, gather, where_positive
 
 TABLE_INTERVALS = 720
 
@@ -59,3 +60,22 @@ def contour_at(table, position):
     x = (position - index) * (2.0 * math.pi / intervals)
     a, b, c = table[index, 0], table[index, 1], table[index, 2]
     return ((a * x + b) * x + c) * x + table[index, 3], (3.0 * a * x + 2.0 * b) * x + c
+
+
+@template
+def contour_lanes(table, turn):
+    """Return contour radius [m] and its first and second derivative by azimuth [m/rad, m/rad^2], several at once.
+
+    Parameters
+    ----------
+    table : periodic cubic table, shape (n, 4), see `contour_table`.
+    turn : azimuth in turns, from 0 to 1 (lanes).
+    """
+    intervals = table.shape[0]
+    position = turn * intervals
+    index = floor(position)
+    index -= where_positive(index - (intervals - 0.5), 1.0, 0.0)  # a turn of all but 1 may round up to the end of the table
+    x = (position - index) * (2.0 * math.pi / intervals)
+    cubic, square, line = gather(table, index, 0), gather(table, index, 1), gather(table, index, 2)
+    radius = ((cubic * x + square) * x + line) * x + gather(table, index, 3)
+    return radius, (3.0 * cubic * x + 2.0 * square) * x + line, 6.0 * cubic * x + 2.0 * square

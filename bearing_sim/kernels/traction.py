@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 from bearing_sim.kernels.compilation import kernel
 from bearing_sim.kernels.elementary import exponential, logarithm
+from bearing_sim.kernels.lanes import larger, load, magnitude, store, where_positive
 
 # Below these the powers of the fits run away; both are far below anything that carries torque.
 _LOAD_FLOOR = 1e-3  # N
@@ -34,15 +35,12 @@ class TractionConstants(NamedTuple):
     c_speed: float
 
 
-class FilmRow(NamedTuple):
-    """Rows of a film array, shape (len(FILM), 2 Z): all rollers' contacts with the inner, then with the outer raceway.
+class ContactRow(NamedTuple):
+    """Rows of a contacts array (see `bearing_sim.kernels.lanes.new_rows`): all blocks of inner contacts, then all of outer ones."""
 
-    One array instead of one each, because compiled code counts references to every array that it hands on.
-    """
-
-    rolling: int = 0  # mean speed u of both surfaces relative to the contact [m/s]
-    sliding: int = 1  # surface-speed difference du, raceway less roller [m/s]
-    load: int = 2  # normal force Q [N]
+    load: int = 0  # normal force Q [N]
+    rolling: int = 1  # mean speed u of both surfaces relative to the contact [m/s]
+    sliding: int = 2  # surface-speed difference du, raceway less roller [m/s]
     force: int = 3  # T on the roller, with the sign of du [N]
     by_sliding: int = 4  # dT/d(du) [N s/m]
     by_rolling: int = 5  # dT/du [N s/m]
@@ -50,14 +48,18 @@ class FilmRow(NamedTuple):
     log_load: int = 7  # from here on, steps of the computation
     log_speed: int = 8
     inverse_speed: int = 9
-    slide_to_roll: int = 10
-    d: int = 11
-    b: int = 12
-    c: int = 13
-    decay: int = 14
+    d: int = 10
+    b: int = 11
+    c: int = 12
+    decay: int = 13
+    penetration: int = 14  # [m]; these five belong to the normal force
+    rate: int = 15  # its time derivative [m/s]
+    stiffness: int = 16  # dQ by penetration [N/m]
+    damping: int = 17  # dQ by its rate [N s/m]
+    log_penetration: int = 18
 
 
-FILM = FilmRow()
+CONTACT = ContactRow()
 
 
 def oil_4109_constants(scale, oil, curvature_radius, reduced_modulus):
@@ -96,49 +98,57 @@ def constant_constants(scale, b, c, d):
 
 
 @kernel
-def traction(film, inner, outer):
+def _powers(contacts, first, end, constants):
+    """Write D, B, C and exp(-C s) of the contacts in some blocks."""
+    for block in range(first, end):
+        log_load, log_speed = load(contacts, block, CONTACT.log_load), load(contacts, block, CONTACT.log_speed)
+        store(contacts, block, CONTACT.d, exponential(constants.d_constant + constants.d_load * log_load + constants.d_speed * log_speed))
+        store(contacts, block, CONTACT.b, exponential(constants.b_constant + constants.b_load * log_load + constants.b_speed * log_speed))
+        store(contacts, block, CONTACT.c, exponential(constants.c_constant + constants.c_load * log_load + constants.c_speed * log_speed))
+
+
+@kernel
+def traction(contacts, inner, outer):
     """Compute the tangential forces of all contacts.
 
     Parameters
     ----------
-    film : array with rows `FILM`, the inner contacts of all rollers first; rolling, sliding and load go in, force and its
-        slopes come out.
-    inner, outer : `TractionConstants` of the raceways; they differ in the constants alone.
+    contacts : array with rows `CONTACT`; load, rolling and sliding go in, force and its slopes come out.
+    inner, outer : `TractionConstants` of the raceways; they differ in the constant factors alone.
     """
-    rollers = film.shape[1] // 2
-    # Short loops with few operands each: only those does the compiler vectorise.
-    for j in range(film.shape[1]):
-        film[FILM.log_load, j] = logarithm(max(film[FILM.load, j], _LOAD_FLOOR))
-    for j in range(film.shape[1]):
-        speed = film[FILM.rolling, j]
-        film[FILM.log_speed, j] = 0.5 * logarithm(speed * speed + _ROLLING_SPEED_FLOOR * _ROLLING_SPEED_FLOOR)
-    for j in range(film.shape[1]):
-        film[FILM.inverse_speed, j] = exponential(-film[FILM.log_speed, j])
-    for j in range(film.shape[1]):
-        constant = inner.d_constant if j < rollers else outer.d_constant
-        film[FILM.d, j] = exponential(constant + inner.d_load * film[FILM.log_load, j] + inner.d_speed * film[FILM.log_speed, j])
-    for j in range(film.shape[1]):
-        constant = inner.b_constant if j < rollers else outer.b_constant
-        film[FILM.b, j] = exponential(constant + inner.b_load * film[FILM.log_load, j] + inner.b_speed * film[FILM.log_speed, j])
-    for j in range(film.shape[1]):
-        constant = inner.c_constant if j < rollers else outer.c_constant
-        film[FILM.c, j] = exponential(constant + inner.c_load * film[FILM.log_load, j] + inner.c_speed * film[FILM.log_speed, j])
-    for j in range(film.shape[1]):
-        film[FILM.slide_to_roll, j] = abs(film[FILM.sliding, j]) * film[FILM.inverse_speed, j]
-    for j in range(film.shape[1]):
-        film[FILM.decay, j] = exponential(-film[FILM.c, j] * film[FILM.slide_to_roll, j])
-    for j in range(film.shape[1]):
-        ratio, decay = film[FILM.slide_to_roll, j], film[FILM.decay, j]
-        d, b, c = film[FILM.d, j], film[FILM.b, j], film[FILM.c, j]
+    blocks = contacts.shape[0]
+    # Short loops: the processor works on several blocks at once where one long chain of operations would make it wait.
+    for block in range(blocks):
+        store(contacts, block, CONTACT.log_load, logarithm(larger(load(contacts, block, CONTACT.load), _LOAD_FLOOR)))
+    for block in range(blocks):
+        rolling = load(contacts, block, CONTACT.rolling)
+        log_speed = 0.5 * logarithm(rolling * rolling + _ROLLING_SPEED_FLOOR * _ROLLING_SPEED_FLOOR)
+        store(contacts, block, CONTACT.log_speed, log_speed)
+        store(contacts, block, CONTACT.inverse_speed, exponential(-log_speed))
+    _powers(contacts, 0, blocks // 2, inner)
+    _powers(contacts, blocks // 2, blocks, outer)
+    for block in range(blocks):
+        ratio = magnitude(load(contacts, block, CONTACT.sliding)) * load(contacts, block, CONTACT.inverse_speed)
+        store(contacts, block, CONTACT.decay, exponential(-(load(contacts, block, CONTACT.c) * ratio)))
+    for block in range(blocks):
+        sliding, inverse_speed, decay = (
+            load(contacts, block, CONTACT.sliding),
+            load(contacts, block, CONTACT.inverse_speed),
+            load(contacts, block, CONTACT.decay),
+        )
+        d, b, c = load(contacts, block, CONTACT.d), load(contacts, block, CONTACT.b), load(contacts, block, CONTACT.c)
+        normal, rolling = load(contacts, block, CONTACT.load), load(contacts, block, CONTACT.rolling)
+        ratio = magnitude(sliding) * inverse_speed
         rest = d - b * ratio
         by_ratio = (b + c * rest) * decay
-        by_log_speed = inner.d_speed * d * (1.0 - decay) + (inner.b_speed * b + inner.c_speed * c * rest) * ratio * decay - ratio * by_ratio
-        by_log_load = inner.d_load * d * (1.0 - decay) + (inner.b_load * b + inner.c_load * c * rest) * ratio * decay
-        coefficient = inner.scale * (d - rest * decay)
-        force = inner.scale * film[FILM.load, j]
-        signed_force = force if film[FILM.sliding, j] >= 0.0 else -force
-        inverse_speed = film[FILM.inverse_speed, j]
-        film[FILM.force, j] = signed_force * (d - rest * decay)
-        film[FILM.by_load, j] = (1.0 if film[FILM.sliding, j] >= 0.0 else -1.0) * (coefficient + inner.scale * by_log_load)
-        film[FILM.by_sliding, j] = force * by_ratio * inverse_speed
-        film[FILM.by_rolling, j] = signed_force * by_log_speed * film[FILM.rolling, j] * inverse_speed * inverse_speed
+        # d, b and c are powers of load and speed: each change is the exponent times the value
+        settled, spent = d * (1.0 - decay), ratio * decay
+        by_log_speed = inner.d_speed * settled + (inner.b_speed * b + inner.c_speed * c * rest) * spent - ratio * by_ratio
+        by_log_load = inner.d_load * settled + (inner.b_load * b + inner.c_load * c * rest) * spent
+        coefficient = d - rest * decay
+        scale = where_positive(sliding, inner.scale, -inner.scale)
+        force = scale * normal
+        store(contacts, block, CONTACT.force, force * coefficient)
+        store(contacts, block, CONTACT.by_load, scale * (coefficient + by_log_load))
+        store(contacts, block, CONTACT.by_sliding, inner.scale * normal * by_ratio * inverse_speed)
+        store(contacts, block, CONTACT.by_rolling, force * by_log_speed * rolling * inverse_speed * inverse_speed)

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import NamedTuple
 
-from bearing_sim.levels import planar, planar_equations, slip
+from bearing_sim.levels import planar, planar_state, slip
 
 
 class Level(NamedTuple):
@@ -26,5 +26,5 @@ class Level(NamedTuple):
 
 LEVELS = {
     "slip": Level(slip.new_work, slip.initial_state, slip.observe, slip.advance, "pocket play, radial vibration, cage whirl, tilt and skew"),
-    "planar": Level(planar_equations.new_work, planar.initial_state, planar.observe, planar.advance, "tilt and skew"),
+    "planar": Level(planar_state.new_work, planar.initial_state, planar.observe, planar.advance, "tilt and skew"),
 }

@@ -1,6 +1,7 @@
 """Level ``planar``: every roller, the cage and the inner ring move in the plane.
 
-State and equations: `bearing_sim.levels.planar_equations` and `planar_rollers`; algebra: `planar_algebra`.  Left out: tilt
+State: `bearing_sim.levels.planar_state`; equations: `planar_rollers` and `planar_border`, their derivatives: `planar_slopes`;
+algebra: `planar_algebra`.  Left out: tilt
 and skew.
 """
 
@@ -12,25 +13,16 @@ from bearing_sim.integrators.drive import drive
 from bearing_sim.integrators.sdirk2 import sdirk2_step
 from bearing_sim.integrators.status import COUNT, OK
 from bearing_sim.kernels.compilation import kernel
+from bearing_sim.kernels.lanes import LANES, load, square_root, total
 from bearing_sim.kernels.load_balance import LOAD
-from bearing_sim.kernels.raceway import contour_at
+from bearing_sim.kernels.traction import CONTACT
 from bearing_sim.levels import planar_algebra, planar_rollers, slip
 from bearing_sim.levels.inputs import shaft_speed_at
 from bearing_sim.levels.observation import observe_course
 from bearing_sim.levels.pitch import pitch_step
 from bearing_sim.levels.planar_algebra import BLOCK, BORDER
-from bearing_sim.levels.planar_equations import (
-    CAGE_Y,
-    CAGE_Z,
-    OMEGA,
-    PHI_SPEED,
-    R_SPEED,
-    RING_Y,
-    RING_Z,
-    ROLLER,
-    SPIN,
-    THETA,
-)
+from bearing_sim.levels.planar_prediction import predict
+from bearing_sim.levels.planar_state import CAGE_Y, CAGE_Z, OMEGA, RING_Y, RING_Z, ROLLER, ROLLERS, THETA
 from bearing_sim.params import Params
 from bearing_sim.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT
 from bearing_sim.sample import COLUMN, SCALARS
@@ -55,11 +47,11 @@ def initial_state(params: Params, work, shaft_speed, load_y, load_z):
     state[RING_Y], state[RING_Z] = balance.ring
     state[CAGE_Y] = _FIRST_ECCENTRICITY * params.cage.guide_clearance
     state[OMEGA] = course[slip.OMEGA]
-    rollers = state[2 * BORDER :].reshape(count, BLOCK)
-    rollers[:, 0] = balance.loads[LOAD.radius]
-    rollers[:, 1] = 2.0 * math.pi * np.arange(count) / count
-    rollers[:, PHI_SPEED] = course[slip.OMEGA]
-    rollers[:, SPIN] = course[slip.SPIN :]
+    radius, angle, _, orbital_speed, spin = state[ROLLERS:].reshape(BLOCK, count)
+    radius[:] = balance.loads[LOAD.radius]
+    angle[:] = 2.0 * math.pi * np.arange(count) / count
+    orbital_speed[:] = course[slip.OMEGA]
+    spin[:] = course[slip.SPIN :]
     return state
 
 
@@ -84,35 +76,13 @@ def nothing(t, y, model, work, rate):
 @kernel
 def factor(shift, work):
     """Factor I - shift J; return False where it is singular."""
-    return planar_algebra.factor(work.roller_rows, work.border_rows, work.border_own, shift, work.factored)
+    return planar_algebra.factor(work.slopes, work.border_own, shift, work.factored)
 
 
 @kernel
 def solve(work, x):
     """Replace the right side ``x`` by the solution with the last factorisation."""
-    planar_algebra.solve(work.roller_rows, work.border_rows, work.factored, x)
-
-
-@kernel
-def predict(y, h, model, guess):
-    """Write where the state will be after ``h``: positions go on with their speeds, rollers follow the contour."""
-    contour = model.params.raceways.contour
-    intervals = contour.shape[0]
-    for k in range(BORDER):
-        guess[k] = y[k] + h * y[BORDER + k]
-        guess[BORDER + k] = y[BORDER + k]
-    for first in range(2 * BORDER, y.shape[0], BLOCK):
-        phi = y[first + 1]
-        after = phi + h * y[first + PHI_SPEED]
-        turns = phi / (2.0 * math.pi)
-        before = contour_at(contour, (turns - math.floor(turns)) * intervals)[0]
-        turns = after / (2.0 * math.pi)
-        radius, slope = contour_at(contour, (turns - math.floor(turns)) * intervals)
-        guess[first] = y[first] + radius - before
-        guess[first + 1] = after
-        guess[first + R_SPEED] = slope * y[first + PHI_SPEED]
-        guess[first + PHI_SPEED] = y[first + PHI_SPEED]
-        guess[first + SPIN] = y[first + SPIN]
+    planar_algebra.solve(work.slopes, work.factored, x)
 
 
 @kernel
@@ -124,14 +94,15 @@ def error_norm(t, y, change, tolerance, model):
     """
     raceways, rollers = model.params.raceways, model.params.rollers
     ideal = max(0.5 * abs(shaft_speed_at(t, model.drive)) * (1.0 - raceways.diameter_ratio), abs(y[OMEGA]), 10.0)
-    near, far = 1.0 / (5e-5 * tolerance), 1.0 / (1.5e-3 * tolerance)
+    near, far = 1.0 / (1e-4 * tolerance), 1.0 / (2e-4 * tolerance)
     turning = 1.0 / (5.0 * tolerance * ideal)
     angle, spin = far * raceways.pitch_radius, turning * rollers.radius / raceways.pitch_radius
     largest = max(abs(change[RING_Y]) * near, abs(change[RING_Z]) * near, abs(change[CAGE_Y]) * far, abs(change[CAGE_Z]) * far)
     largest = max(largest, abs(change[OMEGA]) * turning)
-    for first in range(2 * BORDER, y.shape[0], BLOCK):
-        share = max(abs(change[first]) * near, abs(change[first + 1] - change[THETA]) * angle)
-        share = max(share, abs(change[first + PHI_SPEED]) * turning, abs(change[first + SPIN]) * spin)
+    count = rollers.count
+    for j in range(ROLLERS, ROLLERS + count):
+        share = max(abs(change[j]) * near, abs(change[j + count] - change[THETA]) * angle)
+        share = max(share, abs(change[j + 3 * count]) * turning, abs(change[j + 4 * count]) * spin)
         if not share <= largest:
             largest = share
     return largest
@@ -167,43 +138,47 @@ def _step(t, y, rate, h, model, work, stages, next_y, error):
 
 
 @kernel
-def _drive(t, end, y, h, tolerance, maximum_step, budget, model, work, scratch, counts):
-    return drive(nothing, _step, error_norm, step_limit, 2, t, end, y, h, tolerance, maximum_step, budget, model, work, scratch, counts)
+def _average_loads(h, y, model, work):
+    """Take the loads at the end of a step of length ``h`` [s] into the running means over a cage turn."""
+    count, turned = model.params.rollers.count, h * y[OMEGA]
+    rows, contacts = work.rollers, work.contacts
+    blocks = rows.shape[0]
+    inner, outer = 0.0, 0.0
+    for block in range(blocks):
+        present, q_i, q_e = load(rows, block, ROLLER.present), load(contacts, block, CONTACT.load), load(contacts, blocks + block, CONTACT.load)
+        inner += total(present * (q_i * q_i) * (q_i * q_i))
+        outer += total(present * (q_e * q_e) * (q_e * q_e) * square_root(q_e))
+    share = 1.0 - math.exp(-abs(turned) / (2.0 * math.pi))
+    work.powers[0] += share * (inner / count - work.powers[0])
+    work.powers[1] += share * (outer / count - work.powers[1])
 
 
 @kernel
-def _average_loads(turned, work):
-    """Take the loads of this instant into the running means over a cage turn; ``turned`` is the cage's rotation since [rad]."""
-    rows = work.rollers
-    inner, outer = 0.0, 0.0
-    for j in range(rows.shape[1]):
-        inner += rows[ROLLER.inner_load, j] ** ROTATING_EXPONENT
-        outer += rows[ROLLER.outer_load, j] ** STATIONARY_EXPONENT
-    share = 1.0 - math.exp(-abs(turned) / (2.0 * math.pi))
-    work.powers[0] += share * (inner / rows.shape[1] - work.powers[0])
-    work.powers[1] += share * (outer / rows.shape[1] - work.powers[1])
+def _drive(t, end, y, h, tolerance, maximum_step, budget, model, work, scratch, counts):
+    return drive(nothing, _step, error_norm, step_limit, _average_loads, 2, t, end, y, h, tolerance, maximum_step, budget, model, work, scratch, counts)
 
 
 @kernel
 def observe(t, y, model, work, interval, previous, row, rate):
     """Write the sample of state ``y``; parameters as in `bearing_sim.levels.slip.observe`."""
     rhs(t, y, model, work, rate)
-    rows, count = work.rollers, work.rollers.shape[1]
+    rows, count = work.rollers, model.params.rollers.count
     inner, outer = work.powers[0] ** (1.0 / ROTATING_EXPONENT), work.powers[1] ** (1.0 / STATIONARY_EXPONENT)
     observe_course(t, y[THETA], y[OMEGA], inner, outer, model, interval, previous, row)
     row[COLUMN.ring_y], row[COLUMN.ring_z] = y[RING_Y], y[RING_Z]
     row[COLUMN.cage_y], row[COLUMN.cage_z] = y[CAGE_Y], y[CAGE_Z]
     for j in range(count):
-        state, first = 2 * BORDER + BLOCK * j, SCALARS + j
-        row[first + COLUMN.roller_angle * count] = y[state + 1]
-        row[first + COLUMN.roller_radius * count] = y[state]
-        row[first + COLUMN.roller_spin * count] = y[state + SPIN]
+        first, block, lane = SCALARS + j, j // LANES, j % LANES
+        spin = rows[block, ROLLER.spin, lane]
+        row[first + COLUMN.roller_angle * count] = rows[block, ROLLER.angle, lane]
+        row[first + COLUMN.roller_radius * count] = rows[block, ROLLER.radius, lane]
+        row[first + COLUMN.roller_spin * count] = spin
         place = first + COLUMN.roller_rotation * count
-        row[place] = previous[place] + 0.5 * (previous[first + COLUMN.roller_spin * count] + y[state + SPIN]) * interval
-        row[first + COLUMN.inner_load * count] = rows[ROLLER.inner_load, j]
-        row[first + COLUMN.outer_load * count] = rows[ROLLER.outer_load, j]
-        row[first + COLUMN.orbital_speed * count] = y[state + PHI_SPEED]
-        row[first + COLUMN.pocket_force * count] = rows[ROLLER.pocket_force, j]
+        row[place] = previous[place] + 0.5 * (previous[first + COLUMN.roller_spin * count] + spin) * interval
+        row[first + COLUMN.inner_load * count] = work.contacts[block, CONTACT.load, lane]
+        row[first + COLUMN.outer_load * count] = work.contacts[rows.shape[0] + block, CONTACT.load, lane]
+        row[first + COLUMN.orbital_speed * count] = rows[block, ROLLER.orbital_speed, lane]
+        row[first + COLUMN.pocket_force * count] = rows[block, ROLLER.pocket_force, lane]
 
 
 @kernel
@@ -219,20 +194,13 @@ def advance(t, duration, y, h, maximum_step, budget, model, work, scratch, count
     evaluated, derived = counts[COUNT.right_hand_sides], counts[COUNT.jacobians]
     work.counts[:] = 0
     for k in range(samples):
-        now, end = t + k * interval, t + (k + 1) * interval
-        while now < end:
-            # loads are averaged as often as a step may be long, and for the same reason
-            pieces = math.ceil((end - now) / step_limit(now, y, model))
-            then = end if pieces <= 1.0 else now + (end - now) / pieces
-            angle = y[THETA]
-            left = budget - (counts[COUNT.steps] + counts[COUNT.rejected_steps] - taken)
-            status, h = _drive(now, then, y, h, model.tolerance, maximum_step, left, model, work, scratch, counts)
-            # the drive loop cannot see the iterations inside a step
-            counts[COUNT.right_hand_sides], counts[COUNT.jacobians] = evaluated + work.counts[0], derived + work.counts[1]
-            if status != OK:
-                return status, h
-            _average_loads(y[THETA] - angle, work)
-            now = then
+        start, end = t + k * interval, t + (k + 1) * interval
+        left = budget - (counts[COUNT.steps] + counts[COUNT.rejected_steps] - taken)
+        status, h = _drive(start, end, y, h, model.tolerance, maximum_step, left, model, work, scratch, counts)
+        # the drive loop cannot see the iterations inside a step
+        counts[COUNT.right_hand_sides], counts[COUNT.jacobians] = evaluated + work.counts[0], derived + work.counts[1]
+        if status != OK:
+            return status, h
         observe(end, y, model, work, interval, before, rows[k], scratch[0])
         before = rows[k]
     return OK, h

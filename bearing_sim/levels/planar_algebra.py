@@ -1,4 +1,4 @@
-"""Block-arrow algebra of the planar level: a 3x3 block for each roller and one 5x5 border.
+"""Block-arrow algebra of the planar level: a 3x3 block for each roller and one 5x5 border; ``LANES`` rollers at a time.
 
 (I - s J) x = b for the whole first-order state, reduced to speeds: every position is x = b + s v.  Cost O(Z).
 """
@@ -7,21 +7,24 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.kernels.compilation import kernel
+from bearing_sim.kernels.compilation import kernel, template
+from bearing_sim.kernels.lanes import LANES, load, magnitude, new_rows, store, total, where_positive
 
 BORDER = 5  # positions of ring and cage, and as many speeds
 BLOCK = 5  # states of a roller
 LOCAL = BLOCK + 2 * BORDER  # what a roller depends on
 AT_POSITIONS, AT_SPEEDS = BLOCK, BLOCK + BORDER  # where border positions and speeds stand among them
+SLOPES = (3 + BORDER) * LOCAL  # rows of derivatives: of r'', phi'', w', then of the border's accelerations, each by `LOCAL` variables
+_INVERSE, _RIGHT, _BELOW = 0, 9, 9 + 3 * BORDER  # rows of a factorisation
+_FACTORED = _BELOW + 3 * BORDER
 
 
 class Factored(NamedTuple):
     """A factorisation of I - s J."""
 
     shift: np.ndarray  # s, shape (1,)
-    inverse: np.ndarray  # inverse roller blocks, shape (Z, 3, 3)
-    right: np.ndarray  # inverse block times the roller's coupling to the border's speeds, shape (Z, 3, 5)
-    below: np.ndarray  # the border's coupling to the roller's speeds, shape (Z, 5, 3)
+    rows: np.ndarray  # by roller: inverse block (3x3), that times its coupling to the border's speeds (3x5), the border's to it (5x3)
+    right: np.ndarray  # right sides by roller: r, phi, and the three speeds
     positions: np.ndarray  # d(border accelerations)/d(border positions), all rollers together, shape (5, 5)
     schur: np.ndarray  # inverse Schur complement, shape (5, 5)
     scratch: np.ndarray  # shape (5, 5)
@@ -29,8 +32,8 @@ class Factored(NamedTuple):
 
 def new_factored(count):
     """Return a zeroed factorisation for ``count`` rollers."""
-    shapes = (1,), (count, 3, 3), (count, 3, BORDER), (count, BORDER, 3), (BORDER, BORDER), (BORDER, BORDER), (BORDER, BORDER)
-    return Factored(*[np.zeros(shape) for shape in shapes])
+    square = (BORDER, BORDER)
+    return Factored(np.zeros(1), new_rows(_FACTORED, count), new_rows(BLOCK, count), np.zeros(square), np.zeros(square), np.zeros(square))
 
 
 @kernel
@@ -63,28 +66,59 @@ def _invert(matrix, inverse):
     return True
 
 
+@template
+def _shifted(slopes, block, row, position, speed, s):
+    """Return s (d/d(speed) + s d/d(position)): what a speed does within an implicit step."""
+    return s * (load(slopes, block, row + speed) + s * load(slopes, block, row + position))
+
+
 @kernel
-def _roller_block(own, j, s, inverse):
-    """Invert I - s (dv'/dv + s dv'/dq) of roller j; return False if singular."""
-    a, b, c = 1.0 - s * (own[j, 0, 2] + s * own[j, 0, 0]), -s * (own[j, 0, 3] + s * own[j, 0, 1]), -s * own[j, 0, 4]
-    d, e, f = -s * (own[j, 1, 2] + s * own[j, 1, 0]), 1.0 - s * (own[j, 1, 3] + s * own[j, 1, 1]), -s * own[j, 1, 4]
-    g, h, i = -s * (own[j, 2, 2] + s * own[j, 2, 0]), -s * (own[j, 2, 3] + s * own[j, 2, 1]), 1.0 - s * own[j, 2, 4]
+def _roller_blocks(block, slopes, s, rows):
+    """Invert I - s (dv'/dv + s dv'/dq) of a block of rollers; return whether all are regular."""
+    a, b = 1.0 - _shifted(slopes, block, 0, 0, 2, s), -_shifted(slopes, block, 0, 1, 3, s)
+    d, e = -_shifted(slopes, block, LOCAL, 0, 2, s), 1.0 - _shifted(slopes, block, LOCAL, 1, 3, s)
+    g, h = -_shifted(slopes, block, 2 * LOCAL, 0, 2, s), -_shifted(slopes, block, 2 * LOCAL, 1, 3, s)
+    c, f, i = -(s * load(slopes, block, 4)), -(s * load(slopes, block, LOCAL + 4)), 1.0 - s * load(slopes, block, 2 * LOCAL + 4)
     m_0, m_1, m_2 = e * i - f * h, f * g - d * i, d * h - e * g
     determinant = a * m_0 + b * m_1 + c * m_2
     scale = 1.0 / determinant
-    inverse[j, 0, 0], inverse[j, 0, 1], inverse[j, 0, 2] = m_0 * scale, (c * h - b * i) * scale, (b * f - c * e) * scale
-    inverse[j, 1, 0], inverse[j, 1, 1], inverse[j, 1, 2] = m_1 * scale, (a * i - c * g) * scale, (c * d - a * f) * scale
-    inverse[j, 2, 0], inverse[j, 2, 1], inverse[j, 2, 2] = m_2 * scale, (b * g - a * h) * scale, (a * e - b * d) * scale
-    return abs(determinant) > 0.0
+    store(rows, block, _INVERSE, m_0 * scale)
+    store(rows, block, _INVERSE + 1, (c * h - b * i) * scale)
+    store(rows, block, _INVERSE + 2, (b * f - c * e) * scale)
+    store(rows, block, _INVERSE + 3, m_1 * scale)
+    store(rows, block, _INVERSE + 4, (a * i - c * g) * scale)
+    store(rows, block, _INVERSE + 5, (c * d - a * f) * scale)
+    store(rows, block, _INVERSE + 6, m_2 * scale)
+    store(rows, block, _INVERSE + 7, (b * g - a * h) * scale)
+    store(rows, block, _INVERSE + 8, (a * e - b * d) * scale)
+    return total(where_positive(magnitude(determinant), 1.0, 0.0)) == LANES
 
 
 @kernel
-def factor(own, passed, border, s, factored):
+def _couplings(block, slopes, s, rows):
+    """Write how a block of rollers and the border act on each other."""
+    for m in range(BORDER):
+        c_0 = _shifted(slopes, block, m, AT_POSITIONS, AT_SPEEDS, s)
+        c_1 = _shifted(slopes, block, LOCAL + m, AT_POSITIONS, AT_SPEEDS, s)
+        c_2 = _shifted(slopes, block, 2 * LOCAL + m, AT_POSITIONS, AT_SPEEDS, s)
+        for k in range(3):
+            row = load(rows, block, 3 * k) * c_0 + load(rows, block, 3 * k + 1) * c_1 + load(rows, block, 3 * k + 2) * c_2
+            store(rows, block, _RIGHT + BORDER * k + m, row)
+    for k in range(BORDER):
+        first = (3 + k) * LOCAL
+        store(rows, block, _BELOW + 3 * k, _shifted(slopes, block, first, 0, 2, s))
+        store(rows, block, _BELOW + 3 * k + 1, _shifted(slopes, block, first, 1, 3, s))
+        store(rows, block, _BELOW + 3 * k + 2, s * load(slopes, block, first + 4))
+
+
+@kernel
+def factor(slopes, border, s, factored):
     """Factor I - s J.
 
     Parameters
     ----------
-    own, passed, border : derivatives, see `bearing_sim.levels.planar_equations.Work`.
+    slopes : derivatives through each roller, rows as `SLOPES` says.
+    border : derivatives of the border's accelerations by its own positions and speeds, shape (5, 10).
     s : gamma h [s].
     factored : takes the factorisation.
 
@@ -92,79 +126,112 @@ def factor(own, passed, border, s, factored):
     -------
     regular : False where a pivot is zero or not finite.
     """
-    inverse, right, below = factored.inverse, factored.right, factored.below
-    positions, corner = factored.positions, factored.scratch
+    rows, positions, corner = factored.rows, factored.positions, factored.scratch
     factored.shift[0] = s
     for k in range(BORDER):
         for m in range(BORDER):
             positions[k, m] = border[k, m]
             corner[k, m] = (1.0 if k == m else 0.0) - s * (border[k, BORDER + m] + s * border[k, m])
     regular = True
-    for j in range(own.shape[0]):
-        regular = _roller_block(own, j, s, inverse) and regular
-        for k in range(3):
-            for m in range(BORDER):
-                total = 0.0
-                for a in range(3):
-                    total -= inverse[j, k, a] * s * (own[j, a, AT_SPEEDS + m] + s * own[j, a, AT_POSITIONS + m])
-                right[j, k, m] = total
+    for block in range(slopes.shape[0]):
+        regular = _roller_blocks(block, slopes, s, rows) and regular
+        _couplings(block, slopes, s, rows)
         for k in range(BORDER):
-            below[j, k, 0] = -s * (passed[j, k, 2] + s * passed[j, k, 0])
-            below[j, k, 1] = -s * (passed[j, k, 3] + s * passed[j, k, 1])
-            below[j, k, 2] = -s * passed[j, k, 4]
+            b_0, b_1, b_2 = load(rows, block, _BELOW + 3 * k), load(rows, block, _BELOW + 3 * k + 1), load(rows, block, _BELOW + 3 * k + 2)
+            first = (3 + k) * LOCAL
             for m in range(BORDER):
-                positions[k, m] += passed[j, k, AT_POSITIONS + m]
-                corner[k, m] -= (
-                    s * (passed[j, k, AT_SPEEDS + m] + s * passed[j, k, AT_POSITIONS + m])
-                    + below[j, k, 0] * right[j, 0, m]
-                    + below[j, k, 1] * right[j, 1, m]
-                    + below[j, k, 2] * right[j, 2, m]
-                )
+                by_position = load(slopes, block, first + AT_POSITIONS + m)
+                through = b_0 * load(rows, block, _RIGHT + m) + b_1 * load(rows, block, _RIGHT + BORDER + m)
+                through += b_2 * load(rows, block, _RIGHT + 2 * BORDER + m)
+                positions[k, m] += total(by_position)
+                corner[k, m] -= total(through + s * (load(slopes, block, first + AT_SPEEDS + m) + s * by_position))
     return _invert(corner, factored.schur) and regular
 
 
 @kernel
-def solve(own, passed, factored, x):
-    """Replace the right side ``x``, a whole state, by the solution of (I - s J) x = b."""
-    s, inverse, right, below = factored.shift[0], factored.inverse, factored.right, factored.below
+def _spread(x, count, right):
+    """Copy the rollers' part of a right side into lanes."""
+    for k in range(BLOCK):
+        first = 2 * BORDER + k * count
+        for j in range(count):
+            right[j // LANES, k, j % LANES] = x[first + j]
+
+
+@kernel
+def _collect(right, count, x):
+    """Copy the rollers' part of a solution out of lanes."""
+    for k in range(BLOCK):
+        first = 2 * BORDER + k * count
+        for j in range(count):
+            x[first + j] = right[j // LANES, k, j % LANES]
+
+
+@kernel
+def _eliminate(block, slopes, s, x, factored):
+    """Reduce a block's right side to speeds, solve for them without the border, and take what they do to it from its own."""
+    rows, right = factored.rows, factored.right
+    radius, angle = load(right, block, 0), load(right, block, 1)
+    b_0 = load(slopes, block, 0) * radius + load(slopes, block, 1) * angle
+    b_1 = load(slopes, block, LOCAL) * radius + load(slopes, block, LOCAL + 1) * angle
+    b_2 = load(slopes, block, 2 * LOCAL) * radius + load(slopes, block, 2 * LOCAL + 1) * angle
+    for m in range(BORDER):
+        b_0 += x[m] * load(slopes, block, AT_POSITIONS + m)
+        b_1 += x[m] * load(slopes, block, LOCAL + AT_POSITIONS + m)
+        b_2 += x[m] * load(slopes, block, 2 * LOCAL + AT_POSITIONS + m)
+    b_0, b_1, b_2 = load(right, block, 2) + s * b_0, load(right, block, 3) + s * b_1, load(right, block, 4) + s * b_2
+    v_0 = load(rows, block, 0) * b_0 + load(rows, block, 1) * b_1 + load(rows, block, 2) * b_2
+    v_1 = load(rows, block, 3) * b_0 + load(rows, block, 4) * b_1 + load(rows, block, 5) * b_2
+    v_2 = load(rows, block, 6) * b_0 + load(rows, block, 7) * b_1 + load(rows, block, 8) * b_2
+    store(right, block, 2, v_0)
+    store(right, block, 3, v_1)
+    store(right, block, 4, v_2)
     for k in range(BORDER):
-        total = 0.0
+        first, below = (3 + k) * LOCAL, _BELOW + 3 * k
+        passed = s * (load(slopes, block, first) * radius + load(slopes, block, first + 1) * angle)
+        passed += load(rows, block, below) * v_0 + load(rows, block, below + 1) * v_1 + load(rows, block, below + 2) * v_2
+        x[BORDER + k] += total(passed)
+
+
+@kernel
+def _substitute(block, s, x, factored):
+    """Complete a block's speeds by what the border does to them, and its positions."""
+    rows, right = factored.rows, factored.right
+    v_0, v_1, v_2 = load(right, block, 2), load(right, block, 3), load(right, block, 4)
+    for m in range(BORDER):
+        v_0 += x[BORDER + m] * load(rows, block, _RIGHT + m)
+        v_1 += x[BORDER + m] * load(rows, block, _RIGHT + BORDER + m)
+        v_2 += x[BORDER + m] * load(rows, block, _RIGHT + 2 * BORDER + m)
+    store(right, block, 0, load(right, block, 0) + s * v_0)
+    store(right, block, 1, load(right, block, 1) + s * v_1)
+    store(right, block, 2, v_0)
+    store(right, block, 3, v_1)
+    store(right, block, 4, v_2)
+
+
+@kernel
+def solve(slopes, factored, x):
+    """Replace the right side ``x``, a whole state, by the solution of (I - s J) x = b."""
+    s, schur = factored.shift[0], factored.schur
+    count = (x.shape[0] - 2 * BORDER) // BLOCK
+    _spread(x, count, factored.right)
+    for k in range(BORDER):
+        through = 0.0
         for m in range(BORDER):
-            total += factored.positions[k, m] * x[m]
-        x[BORDER + k] += s * total
-    for j in range(own.shape[0]):
-        first = 2 * BORDER + BLOCK * j
-        radius, phi = x[first], x[first + 1]
-        b_0, b_1, b_2 = 0.0, 0.0, 0.0
-        for m in range(BORDER):
-            b_0 += own[j, 0, AT_POSITIONS + m] * x[m]
-            b_1 += own[j, 1, AT_POSITIONS + m] * x[m]
-            b_2 += own[j, 2, AT_POSITIONS + m] * x[m]
-        b_0 = x[first + 2] + s * (own[j, 0, 0] * radius + own[j, 0, 1] * phi + b_0)
-        b_1 = x[first + 3] + s * (own[j, 1, 0] * radius + own[j, 1, 1] * phi + b_1)
-        b_2 = x[first + 4] + s * (own[j, 2, 0] * radius + own[j, 2, 1] * phi + b_2)
-        v_0 = inverse[j, 0, 0] * b_0 + inverse[j, 0, 1] * b_1 + inverse[j, 0, 2] * b_2
-        v_1 = inverse[j, 1, 0] * b_0 + inverse[j, 1, 1] * b_1 + inverse[j, 1, 2] * b_2
-        v_2 = inverse[j, 2, 0] * b_0 + inverse[j, 2, 1] * b_1 + inverse[j, 2, 2] * b_2
-        x[first + 2], x[first + 3], x[first + 4] = v_0, v_1, v_2
-        for k in range(BORDER):
-            x[BORDER + k] += s * (passed[j, k, 0] * radius + passed[j, k, 1] * phi)
-            x[BORDER + k] -= below[j, k, 0] * v_0 + below[j, k, 1] * v_1 + below[j, k, 2] * v_2
+            through += factored.positions[k, m] * x[m]
+        x[BORDER + k] += s * through
+    for block in range(slopes.shape[0]):
+        _eliminate(block, slopes, s, x, factored)
     u_0 = u_1 = u_2 = u_3 = u_4 = 0.0
     for m in range(BORDER):
         value = x[BORDER + m]
-        u_0 += factored.schur[0, m] * value
-        u_1 += factored.schur[1, m] * value
-        u_2 += factored.schur[2, m] * value
-        u_3 += factored.schur[3, m] * value
-        u_4 += factored.schur[4, m] * value
+        u_0 += schur[0, m] * value
+        u_1 += schur[1, m] * value
+        u_2 += schur[2, m] * value
+        u_3 += schur[3, m] * value
+        u_4 += schur[4, m] * value
     x[BORDER], x[BORDER + 1], x[BORDER + 2], x[BORDER + 3], x[BORDER + 4] = u_0, u_1, u_2, u_3, u_4
+    for block in range(slopes.shape[0]):
+        _substitute(block, s, x, factored)
     for k in range(BORDER):
         x[k] += s * x[BORDER + k]
-    for j in range(own.shape[0]):
-        first = 2 * BORDER + BLOCK * j
-        for k in range(3):
-            for m in range(BORDER):
-                x[first + 2 + k] -= right[j, k, m] * x[BORDER + m]
-        x[first] += s * x[first + 2]
-        x[first + 1] += s * x[first + 3]
+    _collect(factored.right, count, x)

@@ -20,9 +20,10 @@ from bearing_sim.kernels.cage import land_torque
 from bearing_sim.kernels.compilation import kernel, template
 from bearing_sim.kernels.contact import line_penetration
 from bearing_sim.kernels.drag import churning_force
+from bearing_sim.kernels.lanes import LANES, new_rows
 from bearing_sim.kernels.load_balance import LOAD, balance_ring
 from bearing_sim.kernels.raceway import contour_at
-from bearing_sim.kernels.traction import FILM, traction
+from bearing_sim.kernels.traction import CONTACT, traction
 from bearing_sim.levels.inputs import Drive, load_at, shaft_speed_at
 from bearing_sim.levels.mixture import mixture_torque
 from bearing_sim.levels.observation import observe_course
@@ -41,7 +42,7 @@ class Work(NamedTuple):
 
     loads: np.ndarray  # rows `bearing_sim.kernels.load_balance.LOAD`, shape (10, Z)
     ring: np.ndarray  # ring centre (y, z) [m], shape (2,); start of the next search
-    film: np.ndarray  # rows `bearing_sim.kernels.traction.FILM`, shape (14, 2 Z)
+    contacts: np.ndarray  # rows `bearing_sim.kernels.traction.CONTACT`, those with the inner raceway first
     tangential: np.ndarray  # all forces along the orbit on each roller but the pocket's [N], shape (Z,)
     pitch: np.ndarray  # rows cosine and sine of 2 pi j/Z, and the angle in intervals of the contour table, shape (3, Z)
     jacobian: Arrow
@@ -64,7 +65,7 @@ def new_work(params):
     return Work(
         loads=np.zeros((len(LOAD), count)),
         ring=np.zeros(2),
-        film=np.zeros((len(FILM), 2 * count)),
+        contacts=np.concatenate([new_rows(len(CONTACT), count)] * 2),
         tangential=np.zeros(count),
         pitch=np.array([np.cos(angles), np.sin(angles), params.raceways.contour.shape[0] * np.arange(count) / count]),
         jacobian=new_arrow(count),
@@ -109,20 +110,21 @@ def balance_loads(cage_angle, cage_speed, load_y, load_z, params, work):
 
 @kernel
 def _tractions(cage_speed, shaft_speed, y, model, work):
-    """Compute the tangential forces in all contacts; results in ``work.film``."""
+    """Compute the tangential forces in all contacts; results in ``work.contacts``."""
     rollers, inner_radius = model.params.rollers, model.params.raceways.inner_radius
-    film, loads, count = work.film, work.loads, model.params.rollers.count
+    contacts, loads, count = work.contacts, work.loads, model.params.rollers.count
+    blocks = contacts.shape[0] // 2
     for j in range(count):
-        radius, outer = loads[LOAD.radius, j], count + j
+        radius, block, lane = loads[LOAD.radius, j], j // LANES, j % LANES
         orbital, surface = radius * cage_speed, y[SPIN + j] * rollers.radius
         roller_rolling = surface + cage_speed * rollers.radius
-        film[FILM.rolling, j] = 0.5 * ((shaft_speed - cage_speed) * inner_radius + roller_rolling)
-        film[FILM.sliding, j] = shaft_speed * inner_radius - orbital - surface
-        film[FILM.load, j] = loads[LOAD.inner, j]
-        film[FILM.rolling, outer] = 0.5 * (cage_speed * (radius + rollers.radius) + roller_rolling)
-        film[FILM.sliding, outer] = surface - orbital
-        film[FILM.load, outer] = loads[LOAD.outer, j]
-    traction(film, model.lubrication.inner, model.lubrication.outer)
+        contacts[block, CONTACT.rolling, lane] = 0.5 * ((shaft_speed - cage_speed) * inner_radius + roller_rolling)
+        contacts[block, CONTACT.sliding, lane] = shaft_speed * inner_radius - orbital - surface
+        contacts[block, CONTACT.load, lane] = loads[LOAD.inner, j]
+        contacts[blocks + block, CONTACT.rolling, lane] = 0.5 * (cage_speed * (radius + rollers.radius) + roller_rolling)
+        contacts[blocks + block, CONTACT.sliding, lane] = surface - orbital
+        contacts[blocks + block, CONTACT.load, lane] = loads[LOAD.outer, j]
+    traction(contacts, model.lubrication.inner, model.lubrication.outer)
 
 
 @kernel
@@ -168,21 +170,20 @@ def _equations(t, y, model, work, rate, with_jacobian):
     churning, churning_slope = _churning(cage_speed, model)
     _leaning_force(cage_speed, params, work)
     _tractions(cage_speed, shaft_speed, y, model, work)
-    film, jacobian, border = work.film, work.jacobian.rows, work.jacobian.border
-    inertia, roller_radius = cage.inertia, rollers.radius
+    contacts, jacobian, border = work.contacts, work.jacobian.rows, work.jacobian.border
+    inertia, roller_radius, blocks = cage.inertia, rollers.radius, contacts.shape[0] // 2
     for j in range(rollers.count):
-        radius = loads[LOAD.radius, j]
-        tangential[j] += film[FILM.force, j] + film[FILM.force, rollers.count + j] - churning
+        radius, block, lane = loads[LOAD.radius, j], j // LANES, j % LANES
+        tangential[j] += contacts[block, CONTACT.force, lane] + contacts[blocks + block, CONTACT.force, lane] - churning
         torque += radius * tangential[j]
         inertia += rollers.mass * radius * radius
         if with_jacobian:
-            outer_radius = radius + roller_radius
-            inner_by_cage = 0.5 * (roller_radius - inner_radius) * film[FILM.by_rolling, j] - radius * film[FILM.by_sliding, j]
-            outer_by_cage = (
-                0.5 * (roller_radius + outer_radius) * film[FILM.by_rolling, rollers.count + j] - radius * film[FILM.by_sliding, rollers.count + j]
-            )
-            inner_by_spin = roller_radius * (0.5 * film[FILM.by_rolling, j] - film[FILM.by_sliding, j])
-            outer_by_spin = roller_radius * (0.5 * film[FILM.by_rolling, rollers.count + j] + film[FILM.by_sliding, rollers.count + j])
+            inner_rolling, inner_sliding = 0.5 * contacts[block, CONTACT.by_rolling, lane], contacts[block, CONTACT.by_sliding, lane]
+            outer_rolling, outer_sliding = 0.5 * contacts[blocks + block, CONTACT.by_rolling, lane], contacts[blocks + block, CONTACT.by_sliding, lane]
+            inner_by_cage = (roller_radius - inner_radius) * inner_rolling - radius * inner_sliding
+            outer_by_cage = (2.0 * roller_radius + radius) * outer_rolling - radius * outer_sliding
+            inner_by_spin = roller_radius * (inner_rolling - inner_sliding)
+            outer_by_spin = roller_radius * (outer_rolling + outer_sliding)
             torque_slope += radius * (inner_by_cage + outer_by_cage - churning_slope)
             jacobian[ARROW.row, j] = radius * (inner_by_spin + outer_by_spin)
             jacobian[ARROW.column, j] = roller_radius * (inner_by_cage - outer_by_cage) / rollers.inertia
@@ -196,7 +197,8 @@ def _equations(t, y, model, work, rate, with_jacobian):
         spin = y[SPIN + j]
         smooth = math.sqrt(spin * spin + _FRICTION_SPIN * _FRICTION_SPIN)
         brake = cage.pocket_friction * pocket * roller_radius / rollers.inertia
-        rate[SPIN + j] = roller_radius * (film[FILM.force, j] - film[FILM.force, rollers.count + j]) / rollers.inertia - brake * spin / smooth
+        turning = contacts[j // LANES, CONTACT.force, j % LANES] - contacts[blocks + j // LANES, CONTACT.force, j % LANES]
+        rate[SPIN + j] = roller_radius * turning / rollers.inertia - brake * spin / smooth
         if with_jacobian:
             jacobian[ARROW.diagonal, j] -= brake * _FRICTION_SPIN * _FRICTION_SPIN / (smooth * smooth * smooth)
             jacobian[ARROW.row, j] /= inertia
@@ -314,8 +316,13 @@ def _step(t, y, rate, h, model, work, stages, next_y, error):
 
 
 @kernel
+def _nothing(h, y, model, work):
+    """Nothing is kept from step to step."""
+
+
+@kernel
 def _drive(t, end, y, h, tolerance, maximum_step, budget, model, work, scratch, counts):
-    return drive(rhs_and_jacobian, _step, error_norm, step_limit, 2, t, end, y, h, tolerance, maximum_step, budget, model, work, scratch, counts)
+    return drive(rhs_and_jacobian, _step, error_norm, step_limit, _nothing, 2, t, end, y, h, tolerance, maximum_step, budget, model, work, scratch, counts)
 
 
 @kernel

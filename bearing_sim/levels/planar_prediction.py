@@ -1,0 +1,106 @@
+"""Where a stage's solution is looked for first: so near that one Newton iteration is most often enough.
+
+Almost all of a stage's nonlinearity is in the normal contacts of each roller, which open and close within a step.  With ring
+and orbit as extrapolation leaves them, each roller's radial equation is a scalar one and rises monotonically: a few Newton
+iterations of its own, all rollers at once, cost a fraction of one iteration of the whole.
+"""
+
+import math
+
+from bearing_sim.kernels.compilation import kernel
+from bearing_sim.kernels.elementary import cosine_sine
+from bearing_sim.kernels.lanes import LANES, floor, load, square_root, store
+from bearing_sim.kernels.raceway import contour_lanes
+from bearing_sim.kernels.traction import CONTACT
+from bearing_sim.levels.planar_algebra import BORDER
+from bearing_sim.levels.planar_rollers import normal_forces
+from bearing_sim.levels.planar_state import R_SPEED, RING_Y, RING_Z, ROLLER, ROLLERS, R
+
+_ITERATIONS = 2
+
+
+@kernel
+def _extrapolate(known, shift, slope, count, guess):
+    """Write speeds as their slope takes them on, and the positions that belong to them."""
+    for k in range(BORDER):
+        guess[BORDER + k] = known[BORDER + k] + shift * slope[BORDER + k]
+        guess[k] = known[k] + shift * guess[BORDER + k]
+    for j in range(ROLLERS + 3 * count, ROLLERS + 5 * count):
+        guess[j] = known[j] + shift * slope[j]
+    for j in range(ROLLERS + count, ROLLERS + 2 * count):
+        guess[j] = known[j] + shift * guess[j + 2 * count]
+
+
+@kernel
+def _start(known, shift, guess, count, raceways, rows):
+    """Write azimuths, the contour and what each radial equation builds on; let the rollers follow the contour at first."""
+    last = count - 1
+    for j in range(rows.shape[0] * LANES):
+        block, lane, roller = j // LANES, j % LANES, ROLLERS + min(j, last)
+        rows[block, ROLLER.angle, lane] = guess[roller + count]
+        rows[block, ROLLER.orbital_speed, lane] = guess[roller + 3 * count]
+        rows[block, ROLLER.known_radius, lane] = known[roller + R]
+        rows[block, ROLLER.known_speed, lane] = known[roller + R_SPEED * count]
+    for block in range(rows.shape[0]):
+        turn = load(rows, block, ROLLER.angle) * (0.5 / math.pi)
+        turn -= floor(turn)
+        cosine, sine = cosine_sine(turn)
+        radius, slope, _ = contour_lanes(raceways.contour, turn)
+        store(rows, block, ROLLER.cosine, cosine)
+        store(rows, block, ROLLER.sine, sine)
+        store(rows, block, ROLLER.slope, slope)
+        store(rows, block, ROLLER.contour, radius)
+        follows = load(rows, block, ROLLER.known_radius) + shift * slope * load(rows, block, ROLLER.orbital_speed)
+        store(rows, block, ROLLER.radius, follows)
+
+
+@kernel
+def _balance(guess, shift, params, rows, contacts):
+    """Take one Newton step of all radial equations: r = known + shift r', r' = known' + shift (r phi'^2 + (Q_i - Q_e)/m)."""
+    raceways, roller_radius, mass, blocks = params.raceways, params.rollers.radius, params.rollers.mass, rows.shape[0]
+    per_shift = 1.0 / shift
+    for block in range(blocks):
+        radius, cosine, sine = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.cosine), load(rows, block, ROLLER.sine)
+        along, across = guess[RING_Y] * cosine + guess[RING_Z] * sine, guess[RING_Z] * cosine - guess[RING_Y] * sine
+        speed = (radius - load(rows, block, ROLLER.known_radius)) * per_shift
+        distance = square_root((radius - along) * (radius - along) + across * across)
+        store(contacts, block, CONTACT.penetration, raceways.inner_radius + roller_radius - distance)
+        store(contacts, block, CONTACT.rate, guess[BORDER + RING_Y] * cosine + guess[BORDER + RING_Z] * sine - speed)
+        store(contacts, blocks + block, CONTACT.penetration, radius + roller_radius - load(rows, block, ROLLER.contour))
+        rate = speed - load(rows, block, ROLLER.slope) * load(rows, block, ROLLER.orbital_speed)
+        store(contacts, blocks + block, CONTACT.rate, rate)
+    normal_forces(params, contacts)
+    for block in range(blocks):
+        outer = blocks + block
+        radius, orbital_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.orbital_speed)
+        speed = (radius - load(rows, block, ROLLER.known_radius)) * per_shift
+        stiffness = load(contacts, block, CONTACT.stiffness) + load(contacts, outer, CONTACT.stiffness)
+        damping = load(contacts, block, CONTACT.damping) + load(contacts, outer, CONTACT.damping)
+        force = load(contacts, outer, CONTACT.load) - load(contacts, block, CONTACT.load)
+        force += mass * ((speed - load(rows, block, ROLLER.known_speed)) * per_shift - radius * orbital_speed * orbital_speed)
+        store(rows, block, ROLLER.radius, radius - force / (mass * per_shift * per_shift + damping * per_shift + stiffness))
+
+
+@kernel
+def predict(known, shift, slope, model, work, guess):
+    """Write a first guess of the solution of guess = known + shift f(guess).
+
+    Parameters
+    ----------
+    known : what the stage builds on.
+    shift : gamma h [s].
+    slope : f a little earlier, or zeros.
+    model, work : of the level.
+    guess : takes the guess.
+    """
+    params, rows = model.params, work.rollers
+    count = params.rollers.count
+    _extrapolate(known, shift, slope, count, guess)
+    _start(known, shift, guess, count, params.raceways, rows)
+    for _ in range(_ITERATIONS):
+        _balance(guess, shift, params, rows, work.contacts)
+    per_shift = 1.0 / shift
+    for j in range(count):
+        roller = ROLLERS + j
+        guess[roller] = rows[j // LANES, ROLLER.radius, j % LANES]
+        guess[roller + R_SPEED * count] = (guess[roller] - known[roller]) * per_shift

@@ -1,0 +1,120 @@
+"""What the planar level keeps: the order of its state, and the memory that it writes while it computes.
+
+State: y = (positions of the border, speeds of the border, r of all rollers, phi, r', phi', w); the border is inner ring y and
+z, cage y, z and angle.  A roller sees 15 variables: its own five, the border's five positions and five speeds; all derivatives
+are rows over these.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from bearing_sim.kernels.compilation import kernel
+from bearing_sim.kernels.lanes import LANES, new_rows
+from bearing_sim.kernels.traction import CONTACT
+from bearing_sim.levels.planar_algebra import BORDER, SLOPES, Factored, new_factored
+
+RING_Y, RING_Z, CAGE_Y, CAGE_Z, THETA = 0, 1, 2, 3, 4
+OMEGA = BORDER + THETA
+ROLLERS = 2 * BORDER  # where the rollers' states begin: a run of Z for each of the five
+R, PHI, R_SPEED, PHI_SPEED, SPIN = 0, 1, 2, 3, 4
+
+
+class RollerRow(NamedTuple):
+    """Rows of the rollers array, see `bearing_sim.kernels.lanes.new_rows`."""
+
+    radius: int = 0  # r [m]
+    angle: int = 1  # phi [rad]
+    radial_speed: int = 2  # r' [m/s]
+    orbital_speed: int = 3  # phi' [rad/s]
+    spin: int = 4  # w [rad/s]
+    radial_acceleration: int = 5  # r'' [m/s^2]
+    orbital_acceleration: int = 6  # phi'' [rad/s^2]
+    spin_acceleration: int = 7  # w' [rad/s^2]
+    present: int = 8  # 1 for a roller, 0 for a lane that holds none
+    pitch_cosine: int = 9  # of 2 pi j/Z
+    pitch_sine: int = 10
+    cosine: int = 11  # of the roller's azimuth
+    sine: int = 12
+    normal_r: int = 13  # direction from the ring's centre to the roller's, in the roller's frame
+    normal_t: int = 14
+    inverse_distance: int = 15  # of both centres [1/m]
+    speed_normal: int = 16  # of the roller's centre seen from the ring's [m/s]
+    speed_tangent: int = 17
+    slope: int = 18  # dR_e/dphi [m/rad]
+    curvature: int = 19  # d2R_e/dphi2 [m/rad^2]
+    churning: int = 20  # drag of the mixture against the orbit [N]
+    pocket_cosine: int = 21  # of the pocket's azimuth
+    pocket_sine: int = 22
+    play_cosine: int = 23  # of the angle from the pocket to the roller
+    play_sine: int = 24
+    pocket_offset: int = 25  # of the roller from the middle of its pocket [m]
+    pocket_rate: int = 26  # its time derivative [m/s]
+    pocket_force: int = 27  # of the pocket on the roller along the orbit [N]
+    pocket_stiffness: int = 28  # slopes of the force against the offset [N/m, N s/m]
+    pocket_damping: int = 29
+    pocket_friction: int = 30  # coefficient, with the sign of the spin
+    pocket_friction_slope: int = 31  # by spin [s/rad]
+    contour: int = 32  # from here on, steps of a prediction: R_e where the roller will be [m]
+    known_radius: int = 33  # what its stage builds on [m, m/s]
+    known_speed: int = 34
+
+
+ROLLER = RollerRow()
+
+
+class Work(NamedTuple):
+    """Memory that the level writes while it computes."""
+
+    rollers: np.ndarray  # rows `ROLLER`
+    contacts: np.ndarray  # rows `bearing_sim.kernels.traction.CONTACT`, those with the inner raceway first
+    slopes: np.ndarray  # derivatives through each roller, see `bearing_sim.levels.planar_algebra.SLOPES`
+    border_own: np.ndarray  # derivatives of the border's accelerations by border positions and speeds, shape (5, 10)
+    factored: Factored  # of I - gamma h J
+    powers: np.ndarray  # running means of Q_i^4 and Q_e^4.5 over a cage turn, shape (2,)
+    held: np.ndarray  # shift of the factorisation at hand and end of the last step [s], shape (2,)
+    counts: np.ndarray  # right-hand sides, Jacobians and factorisations inside steps, int64
+
+
+def new_work(params):
+    """Return the level's workspace for a bearing."""
+    count = params.rollers.count
+    rollers = new_rows(len(ROLLER), count)
+    lanes = np.arange(rollers.shape[0] * LANES).reshape(-1, LANES)
+    rollers[:, ROLLER.present] = lanes < count
+    pitch = 2 * math.pi * np.minimum(lanes, count - 1) / count
+    rollers[:, ROLLER.pitch_cosine], rollers[:, ROLLER.pitch_sine] = np.cos(pitch), np.sin(pitch)
+    return Work(
+        rollers,
+        np.zeros((2 * rollers.shape[0], len(CONTACT), LANES)),
+        new_rows(SLOPES, count),
+        np.zeros((BORDER, 2 * BORDER)),
+        new_factored(count),
+        np.zeros(2),
+        np.zeros(2),
+        np.zeros(3, np.int64),
+    )
+
+
+@kernel
+def spread_state(y, count, rollers):
+    """Copy the rollers' states from ``y`` into their lanes; lanes without a roller go with the last one, so as to stay finite."""
+    last = count - 1
+    for k in range(5):
+        first = ROLLERS + k * count
+        for j in range(count):
+            rollers[j // LANES, k, j % LANES] = y[first + j]
+        for j in range(count, rollers.shape[0] * LANES):
+            rollers[j // LANES, k, j % LANES] = y[first + last]
+
+
+@kernel
+def collect_rates(y, count, rollers, rate):
+    """Copy the rollers' speeds and accelerations from their lanes into ``rate``."""
+    for j in range(2 * count):
+        rate[ROLLERS + j] = y[ROLLERS + 2 * count + j]
+    for k in range(3):
+        first = ROLLERS + (2 + k) * count
+        for j in range(count):
+            rate[first + j] = rollers[j // LANES, ROLLER.radial_acceleration + k, j % LANES]
