@@ -21,7 +21,7 @@ _ENOUGH = 0.1  # of the error that a step may make: an iteration ends there
 _CONTRACTION = 0.4  # slower than this, an iteration wants new derivatives
 _SHIFT_CHANGE = 0.3  # relative; further off, the matrix is factored anew with the derivatives at hand
 _LOWER, _SAME, _HIGHER = 1.3, 1.2, 1.4  # safety in the step of the order below, at hand and above (Shampine and Reichelt)
-_WORTH_CHANGING, _LARGEST_GROWTH, _LARGEST_SHRINK = 1.2, 10.0, 0.2
+_WORTH_CHANGING, _LARGEST_GROWTH, _LARGEST_SHRINK = 1.5, 10.0, 0.2
 _BELOW_LIMIT = 0.9  # of a limit that wanders; following it would change the step each time
 
 

@@ -1,9 +1,8 @@
 """Explicit Runge-Kutta method of order 5 with an embedded one of order 4, as a drive loop.
 
 J. R. Dormand, P. J. Prince: A family of embedded Runge-Kutta formulae, J. Comput. Appl. Math. 6 (1980), RK5(4)7M.  Its last stage
-is the first of the next step.  The step-size rule is that of E. Hairer, S. P. Norsett, G. Wanner: Solving Ordinary
-Differential Equations I, 2nd ed. (1993), section IV.2 of volume II: it remembers the last error, which keeps steps even where
-stability bounds them.
+is the first of the next step.  The step-size rule remembers the last error, which keeps steps even where stability bounds them:
+E. Hairer, G. Wanner: Solving Ordinary Differential Equations II, 2nd ed. (1996), section IV.2.
 """
 
 import math
