@@ -37,14 +37,17 @@ def fixed_step(rhs_and_jacobian, step, t, end, y, h, budget, model, work, scratc
     h : as given.
     """
     rate, next_y, error, stages = scratch[0], scratch[1], scratch[2], scratch[3:]
-    start, whole = t, math.ceil((end - t) / h * (1.0 - 1e-9))
+    whole = math.ceil((end - t) / h * (1.0 - 1e-9))
+    length = (end - t) / max(whole, 1.0)
+    if abs(length - h) <= 1e-9 * h:
+        length = h  # to the last digit, so that a factorisation still fits the next call
     done, halves, finer = 0, 0, 1  # whole steps done; parts of the next one done, of how many
     fresh = False
     while done < whole:
         if budget <= 0:
             return STEP_BUDGET, h
         budget -= 1
-        now, this = start + (end - start) * ((done + halves / finer) / whole), (end - start) / (whole * finer)
+        now, this = t + length * (done + halves / finer), length / finer
         if not fresh:
             counts[COUNT.right_hand_sides] += 1
             counts[COUNT.jacobians] += 1

@@ -225,11 +225,17 @@ def observe(t, y, model, work, interval, previous, row, rate):
         row[first + COLUMN.pocket_force * count] = rows[ROLLER.pocket_force, j]
 
 
+@kernel
+def even_part(left, limit, maximum_step):
+    """Return how far to go before loads are averaged again: an even part of what is left, within the limit [s]."""
+    return left / math.ceil(left / limit) if left > limit else left
+
+
 @template
-def advance_by(drive_to, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
+def advance_by(drive_to, part, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
     """Advance ``y`` in place by ``duration`` [s] and write evenly spaced samples into ``rows``, the last at the end.
 
-    Parameters and results as in `bearing_sim.levels.slip.advance_by`.
+    Parameters and results as in `bearing_sim.levels.slip.advance_by`, and the kernel ``part`` like `even_part`.
     """
     samples = rows.shape[0]
     interval = duration / samples
@@ -239,8 +245,8 @@ def advance_by(drive_to, t, duration, y, h, maximum_step, budget, model, work, m
         now, end = t + k * interval, t + (k + 1) * interval
         while now < end:
             # loads are averaged as often as a step may be long, and for the same reason
-            pieces = math.ceil((end - now) / step_limit(now, y, model))
-            then = end if pieces <= 1.0 else now + (end - now) / pieces
+            length = part(end - now, step_limit(now, y, model), maximum_step)
+            then = end if length >= (1.0 - 1e-9) * (end - now) else now + length
             angle = y[THETA]
             left = budget - (counts[COUNT.steps] + counts[COUNT.rejected_steps] - taken)
             status, h = drive_to(now, then, stop, y, h, model.tolerance, maximum_step, left, model, work, memory, counts)
@@ -256,4 +262,4 @@ def advance_by(drive_to, t, duration, y, h, maximum_step, budget, model, work, m
 @kernel
 def advance(t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
     """Advance by the level's own method, adaptive; parameters and results as in `bearing_sim.levels.slip.advance_by`."""
-    return advance_by(_drive, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows)
+    return advance_by(_drive, even_part, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows)

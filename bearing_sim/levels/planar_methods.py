@@ -1,11 +1,25 @@
 """Level ``planar`` advanced by methods other than its own; the scene names which."""
 
+import math
+
 from bearing_sim.integrators.bdf import bdf
 from bearing_sim.integrators.fixed_step import fixed_step
 from bearing_sim.integrators.rk45 import rk45
 from bearing_sim.integrators.status import COUNT
 from bearing_sim.kernels.compilation import kernel
-from bearing_sim.levels.planar import advance_by, count_iterations, error_norm, factor, nothing, rhs, rhs_and_jacobian, sdirk2, solve, step_limit
+from bearing_sim.levels.planar import (
+    advance_by,
+    count_iterations,
+    error_norm,
+    even_part,
+    factor,
+    nothing,
+    rhs,
+    rhs_and_jacobian,
+    sdirk2,
+    solve,
+    step_limit,
+)
 
 
 @kernel
@@ -22,6 +36,13 @@ def _drive_rk45(t, end, stop, y, h, tolerance, maximum_step, budget, model, work
 
 
 @kernel
+def _whole_steps(left, limit, step):
+    # as many whole steps as the limit allows, of the length that shares out what is left evenly: the same each time
+    even = left / math.ceil(left / step * (1.0 - 1e-9))
+    return even * max(1.0, math.floor(limit / even))
+
+
+@kernel
 def _drive_fixed(t, end, stop, y, h, tolerance, maximum_step, budget, model, work, memory, counts):
     evaluated, derived, factored = counts[COUNT.right_hand_sides], counts[COUNT.jacobians], counts[COUNT.factorisations]
     status, h = fixed_step(nothing, sdirk2, t, end, y, maximum_step, budget, model, work, memory.scratch, counts)
@@ -32,16 +53,16 @@ def _drive_fixed(t, end, stop, y, h, tolerance, maximum_step, budget, model, wor
 @kernel
 def advance_bdf(t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
     """Advance by backward differentiation formulas (`bearing_sim.integrators.bdf`)."""
-    return advance_by(_drive_bdf, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows)
+    return advance_by(_drive_bdf, even_part, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows)
 
 
 @kernel
 def advance_rk45(t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
     """Advance by an explicit method (`bearing_sim.integrators.rk45`)."""
-    return advance_by(_drive_rk45, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows)
+    return advance_by(_drive_rk45, even_part, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows)
 
 
 @kernel
 def advance_fixed(t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
     """Advance by the level's own method with one step, ``maximum_step`` [s], and no error control (`bearing_sim.integrators.fixed_step`)."""
-    return advance_by(_drive_fixed, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows)
+    return advance_by(_drive_fixed, _whole_steps, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows)
