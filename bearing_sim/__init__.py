@@ -4,6 +4,7 @@
 module                 responsibility
 =====================  ==================================================================================
 ``scene``              what to simulate: frozen records, one declaration per quantity
+``methods``            by which integrators each level can be advanced
 ``scene_file``         YAML, presets, overrides; every fault of a file at once
 ``quantity``           units at the door
 ``params``             what compiled code sees; `pack` is the only bridge from a scene
@@ -11,7 +12,7 @@ module                 responsibility
 ``sample``             the sample record: names, units and meanings of all observables
 ``levels``             one complete model per file
 ``kernels``            scalar laws: contact, traction, cage, drag, raceway, load balance, linear algebra
-``integrators``        stiff methods and the drive loop; they know no bearings
+``integrators``        stiff and explicit methods and their drive loops; they know no bearings
 ``rating_life``        roller loads to rating life
 ``oil``                oil properties at a temperature
 ``runtime``            pacing, the solver's thread, the gate for inputs, health

@@ -11,6 +11,7 @@ from typing import Annotated, Literal
 from pydantic import ConfigDict, Field, model_validator
 from pydantic.dataclasses import dataclass
 
+from bearing_sim.methods import FIXED_STEP, METHODS
 from bearing_sim.quantity import quantity
 
 _strict = dataclass(frozen=True, kw_only=True, config=ConfigDict(extra="forbid", str_strip_whitespace=True))
@@ -248,12 +249,14 @@ class Integration:
 
     The error that the tolerance bounds is that of the embedded first-order method, a pessimist: at 1e-2 the second-order
     result has settled, and a little under half a roller pitch of cage rotation is what limits the step.
+    With a fixed step nothing is estimated: first and longest step go unused.
     """
 
-    method: Literal["rosenbrock2", "sdirk2"] | None = None  # None is the level's own
+    method: str | None = None  # see `bearing_sim.methods`; None is the level's own
     relative_tolerance: quantity("", "error allowed in a step, relative to the state", 1e-10, 0.1) = 1e-2
     maximum_step: quantity("s", "longest step", 1e-9, 1.0, "us") = 1e-2
     first_step: quantity("s", "first step", 1e-12, 1.0, "us") = 1e-5
+    fixed_step: quantity("s", "step without error control, for hard real time", 1e-9, 1e-2, "us") | None = None
     step_budget: Annotated[int, Field(ge=10, le=1_000_000_000)] = 2_000_000
 
 
@@ -298,7 +301,10 @@ class Scene:
 
     @model_validator(mode="after")
     def _method_is_one_of_the_level(self):
-        own = {"slip": "rosenbrock2", "planar": "sdirk2"}[self.level]
-        if self.integration.method not in (None, own):
-            raise ValueError(f"integration.method: level {self.level} is integrated by {own}, not by {self.integration.method}")
+        names = METHODS[self.level]
+        method = self.integration.method or names[0]
+        if method not in names:
+            raise ValueError(f"integration.method: level {self.level} is integrated by {', '.join(names[:-1])} or {names[-1]}, not by {method}")
+        if self.integration.fixed_step is not None and method not in FIXED_STEP:
+            raise ValueError(f"integration.fixed_step: {method} chooses its steps; {' and '.join(FIXED_STEP)} can keep to one")
         return self

@@ -31,6 +31,7 @@ class Counters(NamedTuple):
     non_finite_steps: int
     right_hand_sides: int
     jacobians: int
+    factorisations: int
 
 
 class IntegrationError(RuntimeError):
@@ -57,6 +58,7 @@ class Simulation:
         self.scene = scene
         self._params = pack(scene)
         self._level = LEVELS[scene.level]
+        self._method = self._level.method(scene.integration.method)
         self.reset(inputs)
 
     def reset(self, inputs: Inputs | None = None) -> None:
@@ -71,7 +73,7 @@ class Simulation:
         self.time = 0.0
         self._work = self._level.new_work(self._params)
         self._state = self._level.initial_state(self._params, self._work, *self.inputs[:3])
-        self._scratch = np.zeros((9, self._state.size))
+        self._memory = self._method.new_memory(self._state.size)
         self._counts = new_counts()
         self._step = float(self.scene.integration.first_step)
         self._lubrication = lubricate(self.scene.lubricant, self._params, self.inputs.oil_temperature)
@@ -80,7 +82,7 @@ class Simulation:
 
     def _observe_start(self) -> None:
         rows, zeros = flat(self._previous), flat(new_block(1, self._params.rollers.count))
-        self._level.observe(0.0, self._state, self._model(self.inputs, 1.0), self._work, 0.0, zeros[0], rows[0], self._scratch[0])
+        self._level.observe(0.0, self._state, self._model(self.inputs, 1.0), self._work, 0.0, zeros[0], rows[0], self._memory.scratch[0])
 
     def _model(self, end: Inputs, duration: float) -> Model:
         now = self.inputs
@@ -135,22 +137,24 @@ class Simulation:
         block = new_block(samples, self._params.rollers.count)
         state = self._state.copy()
         integration = self.scene.integration
-        status, step = self._level.advance(
+        advance = self._method.advance if integration.fixed_step is None else self._method.advance_fixed
+        status, step = advance(
             self.time,
             float(duration),
             state,
             self._step,
-            integration.maximum_step,
+            integration.maximum_step if integration.fixed_step is None else integration.fixed_step,
             integration.step_budget,
             self._model(end, duration),
             self._work,
-            self._scratch,
+            self._memory,
             self._counts,
             flat(self._previous)[0],
             flat(block),
         )
         if status != OK:
             self._work = self._level.new_work(self._params)  # a failed search may have left nonsense to start the next one from
+            self._memory = self._method.new_memory(state.size)
             self._step = float(integration.first_step)
             raise IntegrationError(
                 f"{REASONS[status]} between {self.time:.6g} and {self.time + duration:.6g} s (shaft {end.shaft_speed:.6g} rad/s, "

@@ -58,7 +58,7 @@ def run(path, fails_at=None, watchers=(), scene=SCENE, **options):
     def model(scene, inputs):
         simulation = FakeSimulation(inputs)
         simulation.fails_at = fails_at or simulation.fails_at
-        simulation.counters = Counters(7, 2, 1, 0, 0)
+        simulation.counters = Counters(7, 2, 1, 0, 0, 0)
         made.append(simulation)
         return simulation
 
@@ -299,7 +299,7 @@ def test_given_up_run_exits_1_with_a_finished_file(tmp_path, monkeypatch):
     def model(scene, inputs):
         simulation = FakeSimulation(inputs)
         simulation.fails_at = lambda time, inputs: time > 0.35
-        simulation.counters = Counters(7, 2, 1, 0, 0)
+        simulation.counters = Counters(7, 2, 1, 0, 0, 0)
         return simulation
 
     monkeypatch.setattr(replay, "__defaults__", (*replay.__defaults__[:-1], model))

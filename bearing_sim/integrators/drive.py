@@ -54,6 +54,7 @@ def drive(rhs_and_jacobian, step, error_norm, step_limit, accepted, order, t, en
         this = left if wanted >= left else (0.5 * left if wanted > 0.5 * left else wanted)
         evaluated = step(t, y, rate, this, model, work, stages, next_y, error)
         counts[COUNT.right_hand_sides] += 1
+        counts[COUNT.factorisations] += 1
         share = error_norm(t, y, error, tolerance, model) if evaluated else math.inf
         if share <= _BEARABLE:
             counts[COUNT.steps] += 1

@@ -9,12 +9,14 @@ STEP_BUDGET = 1
 STEP_TOO_SMALL = 2
 NON_FINITE = 3
 NOT_EVALUATED = 4
+NOT_CONVERGED = 5
 
 REASONS = {
     STEP_BUDGET: "the step budget was used up before the end of the interval",
     STEP_TOO_SMALL: "the error could not be kept within tolerance at the smallest step",
     NON_FINITE: "the state stopped being finite",
     NOT_EVALUATED: "the right-hand side could not be evaluated",
+    NOT_CONVERGED: "the iteration of a step did not converge, nor that of its eighth part",
 }
 
 
@@ -26,6 +28,7 @@ class Count(NamedTuple):
     non_finite_steps: int = 2
     right_hand_sides: int = 3
     jacobians: int = 4
+    factorisations: int = 5
 
 
 COUNT = Count()

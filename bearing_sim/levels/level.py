@@ -1,9 +1,26 @@
 """The levels of fidelity, each a record of functions."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
-from bearing_sim.levels import planar, planar_state, slip
+from bearing_sim.integrators.history import new_history
+from bearing_sim.integrators.memory import new_memory
+from bearing_sim.levels import planar, planar_methods, planar_state, slip, slip_methods
+
+
+class Method(NamedTuple):
+    """A level advanced by one integrator; compiled when first called, so that a run compiles what it uses.
+
+    Attributes
+    ----------
+    new_memory : number of states -> what the method keeps; ``scratch`` in it is free between calls.
+    advance : compiled, see `bearing_sim.levels.slip.advance_by`.
+    advance_fixed : the same without error control, in steps of the maximum step; None where the method lives by its estimates.
+    """
+
+    new_memory: Callable
+    advance: Callable
+    advance_fixed: Callable | None = None
 
 
 class Level(NamedTuple):
@@ -13,18 +30,43 @@ class Level(NamedTuple):
     ----------
     new_work : params -> workspace.
     initial_state : (params, work, shaft speed, load y, load z) -> state of ideal rolling.
-    observe, advance : compiled, see `bearing_sim.levels.slip`.
+    observe : compiled, see `bearing_sim.levels.slip`.
+    methods : by name (see `bearing_sim.methods`), the level's own first.
     leaves_out : what the level does not model, in words.
     """
 
     new_work: Callable
     initial_state: Callable
     observe: Callable
-    advance: Callable
+    methods: Mapping[str, Method]
     leaves_out: str
+
+    def method(self, name: str | None) -> Method:
+        """Return the method of that name, or the level's own."""
+        return self.methods[name if name is not None else next(iter(self.methods))]
 
 
 LEVELS = {
-    "slip": Level(slip.new_work, slip.initial_state, slip.observe, slip.advance, "pocket play, radial vibration, cage whirl, tilt and skew"),
-    "planar": Level(planar_state.new_work, planar.initial_state, planar.observe, planar.advance, "tilt and skew"),
+    "slip": Level(
+        slip.new_work,
+        slip.initial_state,
+        slip.observe,
+        {
+            "rosenbrock2": Method(new_memory, slip.advance, slip_methods.advance_fixed),
+            "bdf": Method(new_history, slip_methods.advance_bdf),
+            "rk45": Method(new_memory, slip_methods.advance_rk45),
+        },
+        "pocket play, radial vibration, cage whirl, tilt and skew",
+    ),
+    "planar": Level(
+        planar_state.new_work,
+        planar.initial_state,
+        planar.observe,
+        {
+            "sdirk2": Method(new_memory, planar.advance, planar_methods.advance_fixed),
+            "bdf": Method(new_history, planar_methods.advance_bdf),
+            "rk45": Method(new_memory, planar_methods.advance_rk45),
+        },
+        "tilt and skew",
+    ),
 }

@@ -12,7 +12,7 @@ import numpy as np
 from bearing_sim.integrators.drive import drive
 from bearing_sim.integrators.sdirk2 import sdirk2_step
 from bearing_sim.integrators.status import COUNT, OK
-from bearing_sim.kernels.compilation import kernel
+from bearing_sim.kernels.compilation import kernel, template
 from bearing_sim.kernels.lanes import LANES, load, square_root, total
 from bearing_sim.kernels.load_balance import LOAD
 from bearing_sim.kernels.traction import CONTACT
@@ -115,7 +115,8 @@ def step_limit(t, y, model):
 
 
 @kernel
-def _step(t, y, rate, h, model, work, stages, next_y, error):
+def sdirk2(t, y, rate, h, model, work, stages, next_y, error):
+    """Take one step of the level's own method (see `bearing_sim.integrators.sdirk2`)."""
     return sdirk2_step(
         rhs,
         rhs_and_jacobian,
@@ -138,7 +139,7 @@ def _step(t, y, rate, h, model, work, stages, next_y, error):
 
 
 @kernel
-def _average_loads(h, y, model, work):
+def average_loads(h, y, model, work):
     """Take the loads at the end of a step of length ``h`` [s] into the running means over a cage turn."""
     count, turned = model.params.rollers.count, h * y[OMEGA]
     rows, contacts = work.rollers, work.contacts
@@ -154,8 +155,31 @@ def _average_loads(h, y, model, work):
 
 
 @kernel
+def count_iterations(evaluated, derived, factored, work, counts):
+    """Replace what a drive loop counted by what the iterations inside its steps cost, which it cannot see.
+
+    Parameters
+    ----------
+    evaluated, derived, factored : right-hand sides, Jacobians and factorisations before.
+    """
+    counts[COUNT.right_hand_sides] = evaluated + work.counts[0]
+    counts[COUNT.jacobians] = derived + work.counts[1]
+    counts[COUNT.factorisations] = factored + work.counts[2]
+    work.counts[:] = 0
+
+
+@kernel
+def _drive(t, end, stop, y, h, tolerance, maximum_step, budget, model, work, memory, counts):
+    scratch = memory.scratch
+    evaluated, derived, factored = counts[COUNT.right_hand_sides], counts[COUNT.jacobians], counts[COUNT.factorisations]
+    status, h = drive(nothing, sdirk2, error_norm, step_limit, average_loads, 2, t, end, y, h, tolerance, maximum_step, budget, model, work, scratch, counts)
+    count_iterations(evaluated, derived, factored, work, counts)
+    return status, h
+
+
+@kernel
 def _drive(t, end, y, h, tolerance, maximum_step, budget, model, work, scratch, counts):
-    return drive(nothing, _step, error_norm, step_limit, _average_loads, 2, t, end, y, h, tolerance, maximum_step, budget, model, work, scratch, counts)
+    return drive(nothing, _step, error_norm, step_limit, average_loads, 2, t, end, y, h, tolerance, maximum_step, budget, model, work, scratch, counts)
 
 
 @kernel
@@ -181,26 +205,28 @@ def observe(t, y, model, work, interval, previous, row, rate):
         row[first + COLUMN.pocket_force * count] = rows[block, ROLLER.pocket_force, lane]
 
 
-@kernel
-def advance(t, duration, y, h, maximum_step, budget, model, work, scratch, counts, previous, rows):
+@template
+def advance_by(drive_to, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
     """Advance ``y`` in place by ``duration`` [s] and write evenly spaced samples into ``rows``, the last at the end.
 
-    Parameters and results as in `bearing_sim.levels.slip.advance`.
+    Parameters and results as in `bearing_sim.levels.slip.advance_by`.
     """
     samples = rows.shape[0]
     interval = duration / samples
     before = previous
-    taken = counts[COUNT.steps] + counts[COUNT.rejected_steps]
-    evaluated, derived = counts[COUNT.right_hand_sides], counts[COUNT.jacobians]
-    work.counts[:] = 0
+    taken, stop = counts[COUNT.steps] + counts[COUNT.rejected_steps], t + samples * interval
     for k in range(samples):
-        start, end = t + k * interval, t + (k + 1) * interval
+        end = t + (k + 1) * interval
         left = budget - (counts[COUNT.steps] + counts[COUNT.rejected_steps] - taken)
-        status, h = _drive(start, end, y, h, model.tolerance, maximum_step, left, model, work, scratch, counts)
-        # the drive loop cannot see the iterations inside a step
-        counts[COUNT.right_hand_sides], counts[COUNT.jacobians] = evaluated + work.counts[0], derived + work.counts[1]
+        status, h = drive_to(t + k * interval, end, stop, y, h, model.tolerance, maximum_step, left, model, work, memory, counts)
         if status != OK:
             return status, h
-        observe(end, y, model, work, interval, before, rows[k], scratch[0])
+        observe(end, y, model, work, interval, before, rows[k], memory.scratch[0])
         before = rows[k]
     return OK, h
+
+
+@kernel
+def advance(t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
+    """Advance by the level's own method, adaptive; parameters and results as in `bearing_sim.levels.slip.advance_by`."""
+    return advance_by(_drive, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows)

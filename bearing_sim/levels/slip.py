@@ -14,7 +14,7 @@ import numpy as np
 
 from bearing_sim.integrators.drive import drive
 from bearing_sim.integrators.rosenbrock2 import rosenbrock2_step
-from bearing_sim.integrators.status import OK
+from bearing_sim.integrators.status import COUNT, OK
 from bearing_sim.kernels.arrow import ARROW, Arrow, factor_shifted, new_arrow, solve_factored
 from bearing_sim.kernels.cage import land_torque
 from bearing_sim.kernels.compilation import kernel, template
@@ -311,25 +311,36 @@ def solve(work, x):
 
 
 @template
-def _step(t, y, rate, h, model, work, stages, next_y, error):
+def rosenbrock2(t, y, rate, h, model, work, stages, next_y, error):
+    """Take one step of the level's own method (see `bearing_sim.integrators.rosenbrock2`)."""
     return rosenbrock2_step(rhs, factor, solve, t, y, rate, h, model, work, stages, next_y, error)
 
 
 @kernel
-def _nothing(h, y, model, work):
-    """Nothing is kept from step to step."""
+def keep_nothing(h, y, model, work):
+    """Keep nothing from step to step."""
 
 
 @kernel
-def _drive(t, end, y, h, tolerance, maximum_step, budget, model, work, scratch, counts):
-    return drive(rhs_and_jacobian, _step, error_norm, step_limit, _nothing, 2, t, end, y, h, tolerance, maximum_step, budget, model, work, scratch, counts)
+def _drive(t, end, stop, y, h, tolerance, maximum_step, budget, model, work, memory, counts):
+    scratch = memory.scratch
+    return drive(
+        rhs_and_jacobian, rosenbrock2, error_norm, step_limit, keep_nothing, 2, t, end, y, h, tolerance, maximum_step, budget, model, work, scratch, counts
+    )
 
 
-@kernel
-def advance(t, duration, y, h, maximum_step, budget, model, work, scratch, counts, previous, rows):
+@template
+def advance_by(drive_to, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
     """Advance ``y`` in place by ``duration`` [s] and write evenly spaced samples into ``rows``, the last at the end.
 
-    Parameters as in `bearing_sim.integrators.drive.drive` and `observe`; ``budget`` is for the whole call.
+    Parameters
+    ----------
+    drive_to : kernel, a method's drive loop; takes ``stop`` after ``end``, which it may pass, but not ``stop``.
+    t : time [s].
+    h, maximum_step, counts : as in `bearing_sim.integrators.drive.drive`.
+    budget : steps for the whole call.
+    memory : of the method.
+    previous, rows : flat samples; see `observe`.
 
     Returns
     -------
@@ -338,13 +349,19 @@ def advance(t, duration, y, h, maximum_step, budget, model, work, scratch, count
     samples = rows.shape[0]
     interval = duration / samples
     before = previous
-    taken = counts[0] + counts[1]
+    taken, stop = counts[COUNT.steps] + counts[COUNT.rejected_steps], t + samples * interval
     for k in range(samples):
         start, end = t + k * interval, t + (k + 1) * interval
-        left = budget - (counts[0] + counts[1] - taken)
-        status, h = _drive(start, end, y, h, model.tolerance, maximum_step, left, model, work, scratch, counts)
+        left = budget - (counts[COUNT.steps] + counts[COUNT.rejected_steps] - taken)
+        status, h = drive_to(start, end, stop, y, h, model.tolerance, maximum_step, left, model, work, memory, counts)
         if status != OK:
             return status, h
-        observe(end, y, model, work, interval, before, rows[k], scratch[0])
+        observe(end, y, model, work, interval, before, rows[k], memory.scratch[0])
         before = rows[k]
     return OK, h
+
+
+@kernel
+def advance(t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
+    """Advance by the level's own method, adaptive; parameters and results as in `advance_by`."""
+    return advance_by(_drive, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows)
