@@ -87,10 +87,15 @@ VARIANTS = {
     ),
     "backwards, oblique load, loose": (
         {"shaft_speed": -1500.0, "load": (300.0, -400.0), "low_radius": 34.88e-3},
-        ["operating.shaft_speed=-1500", "operating.radial_load=500 N", "operating.load_angle=-0.9272952180016122", "bearing.outer_raceway.low_radius=34.88 mm"],
+        [
+            "operating.shaft_speed=-1500",
+            "operating.radial_load=500 N",
+            "operating.load_angle=-0.9272952180016122",
+            "bearing.outer_raceway.low_radius=34.88 mm",
+        ],
     ),
     "nine rollers, damped": ({"rollers": 9, "contact_damping": 1.0}, ["bearing.roller.count=9", "bearing.contact.damping=1"]),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("variant", VARIANTS)
