@@ -26,7 +26,9 @@ def command(as_json, quick, cold):
 
 def _print(report) -> None:
     machine = report["machine"]
-    click.echo(f"core {machine['core']} of {machine['cores']} ({machine['processor']}), load average {machine['load_average']:.2f} at the start")
+    click.echo(
+        f"core {machine['core']} of {machine['cores']} ({machine['processor']}), load average {machine['load_average']:.2f} at the start; had it for {100 * machine['share_of_core']:.0f} % of the time"
+    )
     _print_cases(report["cases"])
     _print_others(report["others"])
     _print_references(report["references"])
@@ -86,10 +88,10 @@ def _print_cases(cases) -> None:
 
 def _print_others(others) -> None:
     def row(run):
-        told = [_number(run[name]) for name in ("tolerance", "wall_seconds", "real_time_factor", "right_hand_sides", "trajectory_error")]
+        told = [_number(run[name]) for name in ("tolerance", "core_seconds", "real_time_factor", "right_hand_sides", "trajectory_error")]
         return [run["level"], f"{run['speed_rpm']:.0f}", run["solver"], *told, run["fault"]]
 
-    columns = ("level", "rpm", "solver", "tolerance", "wall [s]", "x real time", "rhs", "2 ms err", "fault")
+    columns = ("level", "rpm", "solver", "tolerance", "spent [s]", "x real time", "rhs", "2 ms err", "fault")
     _table("other solvers on the same compiled right-hand side, from ideal rolling", columns, map(row, others))
 
 
@@ -121,5 +123,5 @@ def _print_bounds(bounds) -> None:
 
 def _print_scaling(scaling) -> None:
     for level in scaling:
-        costs = ", ".join(f"{rollers}: {cost:.3g}" for rollers, cost in zip(level["rollers"], level["wall_per_second"]))
-        click.echo(f"{level['level']}, wall time of a simulated second by rollers: {costs}; power of Z from 18 on {_number(level['exponent'])}")
+        costs = ", ".join(f"{rollers}: {cost:.3g}" for rollers, cost in zip(level["rollers"], level["core_seconds_per_second"]))
+        click.echo(f"{level['level']}, time of a simulated second by rollers: {costs}; power of Z from 18 on {_number(level['exponent'])}")

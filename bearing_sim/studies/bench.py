@@ -1,11 +1,12 @@
 """The bench: how fast each level and method is, how far off, against which other solvers, and what bounds it.
 
-One process on one core measures everything, so that its figures compare with each other.
+One process on one core measures everything, so that its figures compare with each other.  All times are those that the process
+has the core: whatever else runs on the machine does not count, and on an idle one it is the time on the wall.  Of repeats the
+least is taken, because a disturbance can only add.
 """
 
 import os
 import platform
-import statistics
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -43,7 +44,7 @@ class Extent(NamedTuple):
     window_times: int = 4  # in it at which states are compared
     settled: tuple = (0.2, 0.4)  # for means and quantiles [s]
     timed: float = 0.1  # for speed, after settling [s]
-    repeats: int = 3
+    repeats: int = 5
     tight: tuple = (3e-4, 1e-3)  # tolerances of the settled reference, and of the run that shows it converged
     others: tuple = OTHERS
     rollers: tuple = (9, 18, 36, 72, 144)
@@ -88,6 +89,7 @@ def run_bench(quick: bool = False, cold: bool = False, tell: Callable[[str], Non
     """
     extent = QUICK if quick else FULL
     with one_core() as core:
+        began, had = time.perf_counter(), time.process_time()
         report = {"bearing": BEARING, "radial_load": LOAD, "quick": quick, "machine": _machine(core)}
         cases, references, others, bounds = [], [], [], []
         for level in LEVELS:
@@ -105,6 +107,7 @@ def run_bench(quick: bool = False, cold: bool = False, tell: Callable[[str], Non
         scaling = [_scaling_case(level, rollers, extent) for level in LEVELS for rollers in extent.rollers]
         cases += [case for case in scaling if case["rollers"] != STOCK_ROLLERS]
         report |= {"cases": cases, "others": others, "references": references, "bound": bounds, "scaling": _scaling(scaling)}
+        report["machine"]["share_of_core"] = (time.process_time() - had) / (time.perf_counter() - began)
         if extent.start_up:
             tell("start-up")
             report["start_up"] = [
@@ -160,10 +163,10 @@ class _Course:
 
     def _described(self, run: SolverRun) -> dict:
         if run.states is None:
-            return {"wall_seconds": None, "real_time_factor": None, "right_hand_sides": None, "trajectory_error": None, "fault": run.fault}
+            return {"core_seconds": None, "real_time_factor": None, "right_hand_sides": None, "trajectory_error": None, "fault": run.fault}
         return {
-            "wall_seconds": run.wall,
-            "real_time_factor": self.times[-1] / run.wall,
+            "core_seconds": run.spent,
+            "real_time_factor": self.times[-1] / run.spent,
             "right_hand_sides": run.right_hand_sides,
             "trajectory_error": self.error(run.states),
             "fault": "",
@@ -175,14 +178,14 @@ class _Course:
             return None
         return max(error_share(self.problem, *pair) for pair in zip(states, self.reference.states))
 
-    def lsoda_wall(self, allowed_error: float | None = None) -> float | None:
-        """Wall time of LSODA at 1e-5, or the least at no larger an error than is allowed."""
-        runs = [run for run in self.others if run["solver"] == "LSODA" and run["wall_seconds"] is not None]
+    def lsoda_time(self, allowed_error: float | None = None) -> float | None:
+        """Time of LSODA at 1e-5, or the least at no larger an error than is allowed."""
+        runs = [run for run in self.others if run["solver"] == "LSODA" and run["core_seconds"] is not None]
         if allowed_error is None:
             runs = [run for run in runs if run["tolerance"] == LSODA_TOLERANCE]
         else:
             runs = [run for run in runs if run["trajectory_error"] <= allowed_error]
-        return min((run["wall_seconds"] for run in runs), default=None)
+        return min((run["core_seconds"] for run in runs), default=None)
 
     def described(self) -> dict:
         return {"trajectory_method": "DOP853", "trajectory_tolerance": _REFERENCE_TOLERANCE, "trajectory_own_error": self.own_error}
@@ -219,7 +222,7 @@ class _SettledReference:
 class _Timed(NamedTuple):
     """A timed run."""
 
-    wall: float  # median [s]
+    spent: float  # least of the repeats [s]
     counters: dict  # of one run
     state: np.ndarray  # at its end
 
@@ -228,25 +231,25 @@ def _timed(scene: Scene, before: float, duration: float, repeats: int) -> _Timed
     """Time ``duration`` [s] at a sample a millisecond, once ``before`` [s] has passed; the runs follow upon each other."""
     run = Simulation(scene)
     run.advance(max(before, 1e-6))  # compiles
-    walls = []
+    spent = []
     for _ in range(repeats):
         counted = run.counters
-        started = time.perf_counter()
+        started = time.process_time()
         run.advance(duration, samples=max(round(1e3 * duration), 1))
-        walls.append(time.perf_counter() - started)
-    spent = {name: after - counted._asdict()[name] for name, after in run.counters._asdict().items()}
-    return _Timed(statistics.median(walls), spent, run.state)
+        spent.append(time.process_time() - started)
+    counters = {name: after - counted._asdict()[name] for name, after in run.counters._asdict().items()}
+    return _Timed(min(spent), counters, run.state)
 
 
-def _window_wall(scene: Scene, window: float, repeats: int) -> float:
-    """Wall time of the window from ideal rolling, the same that others are timed on."""
-    run, walls = Simulation(scene), []
-    for _ in range(5 * repeats):
+def _window_time(scene: Scene, window: float, repeats: int) -> float:
+    """Time that the window from ideal rolling takes, the same that others are timed on."""
+    run, spent = Simulation(scene), []
+    for _ in range(4 * repeats):
         run.reset()
-        started = time.perf_counter()
+        started = time.process_time()
         run.advance(window)
-        walls.append(time.perf_counter() - started)
-    return statistics.median(walls)
+        spent.append(time.process_time() - started)
+    return min(spent)
 
 
 def _new_case(level: str, method: str, speed: float, rollers: int) -> dict:
@@ -271,10 +274,10 @@ def _case(level, method, overrides, speed, extent, course, settled) -> tuple[dic
         run.advance(after - before)
         states.append(run.state)
     case["trajectory_error"] = course.error(states)
-    ours, lsoda = _window_wall(scene, extent.window, extent.repeats), course.lsoda_wall()
+    ours, lsoda = _window_time(scene, extent.window, extent.repeats), course.lsoda_time()
     case["window_seconds"] = ours
     if lsoda is not None:
-        fair = course.lsoda_wall(case["trajectory_error"])
+        fair = course.lsoda_time(case["trajectory_error"])
         case |= {"lsoda_ratio": lsoda / ours, "lsoda_ratio_at_our_error": fair / ours if fair is not None else None}
     step = extent.timed / timed.counters["steps"]
     bound |= {"step_simulated_us": 1e6 * step, "step_simulated_at_tenfold_tolerance_us": 1e6 * extent.timed / looser.counters["steps"]}
@@ -287,8 +290,8 @@ def _case(level, method, overrides, speed, extent, course, settled) -> tuple[dic
 def _speed(timed: _Timed, duration: float) -> dict:
     counters = timed.counters
     return {
-        "real_time_factor": duration / timed.wall,
-        "step_us": 1e6 * timed.wall / counters["steps"],
+        "real_time_factor": duration / timed.spent,
+        "step_us": 1e6 * timed.spent / counters["steps"],
         "simulated_seconds": duration,
         **counters,
     }
@@ -305,11 +308,11 @@ def _scaling_case(level: str, rollers: int, extent: Extent) -> dict:
 
 
 def _scaling(cases: list[dict]) -> list[dict]:
-    """Wall time of a simulated second by the number of rollers, and the power of Z that it grows with from 18 on."""
+    """Time that a simulated second takes by the number of rollers, and the power of Z that it grows with from 18 on."""
     found = []
     for level in LEVELS:
         own = {case["rollers"]: 1.0 / case["real_time_factor"] for case in cases if case["level"] == level}
         first, last = STOCK_ROLLERS, max(own)
         exponent = np.log(own[last] / own[first]) / np.log(last / first) if last > first else None
-        found.append({"level": level, "rollers": list(own), "wall_per_second": list(own.values()), "exponent": exponent})
+        found.append({"level": level, "rollers": list(own), "core_seconds_per_second": list(own.values()), "exponent": exponent})
     return found

@@ -19,7 +19,7 @@ class SolverRun(NamedTuple):
     """How a solver did."""
 
     states: np.ndarray | None  # at the times asked for, shape (times, n); None where it did not get there
-    wall: float  # [s]
+    spent: float  # time on the core [s]
     right_hand_sides: int
     fault: str  # why there is no result, or ""
 
@@ -37,7 +37,7 @@ def solve_with(solver: str, problem: Problem, times: np.ndarray, tolerance: floa
     problem : what to integrate.
     times : when the state is wanted [s], rising; the last is the end.
     tolerance : relative.
-    patience : wall time after which to give up [s].
+    patience : time on the core after which to give up [s].
     """
     rhs, model, work = problem.kernels.rhs, problem.model, problem.work
     state, out, evaluations, deadline = np.zeros_like(problem.start), np.zeros_like(problem.start), 0, np.inf
@@ -45,7 +45,7 @@ def solve_with(solver: str, problem: Problem, times: np.ndarray, tolerance: floa
     def rate(t, y):
         nonlocal evaluations
         evaluations += 1
-        if time.perf_counter() > deadline:
+        if time.process_time() > deadline:
             raise _TooLong
         state[:] = y  # some solvers hand over read-only or strided memory, which would be compiled for again
         rhs(t, state, model, work, out)
@@ -53,7 +53,7 @@ def solve_with(solver: str, problem: Problem, times: np.ndarray, tolerance: floa
 
     rate(0.0, problem.start)  # compiles
     evaluations, scales = 0, state_scales(problem)
-    started = time.perf_counter()
+    started = time.process_time()
     deadline = started + patience
     try:
         states, fault = (_sundials if solver == "CVODE" else _scipy)(rate, solver, problem.start, times, tolerance, scales)
@@ -61,7 +61,7 @@ def solve_with(solver: str, problem: Problem, times: np.ndarray, tolerance: floa
         states, fault = None, f"gave up after {patience:g} s"
     except ImportError:
         states, fault = None, "scikit-sundae is not installed"
-    return SolverRun(states, time.perf_counter() - started, evaluations, fault)
+    return SolverRun(states, time.process_time() - started, evaluations, fault)
 
 
 def _scipy(rate, solver, start, times, tolerance, scales):
