@@ -26,9 +26,8 @@ def command(as_json, quick, cold):
 
 def _print(report) -> None:
     machine = report["machine"]
-    click.echo(
-        f"core {machine['core']} of {machine['cores']} ({machine['processor']}), load average {machine['load_average']:.2f} at the start; had it for {100 * machine['share_of_core']:.0f} % of the time"
-    )
+    click.echo(f"core {machine['core']} of {machine['cores']} ({machine['processor']}), load average {machine['load_average']:.2f} at the start")
+    click.echo(f"times on the core, which the bench had for {100 * machine['share_of_core']:.0f} % of the time")
     _print_cases(report["cases"])
     _print_others(report["others"])
     _print_references(report["references"])
