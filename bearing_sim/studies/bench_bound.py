@@ -32,20 +32,20 @@ def kernel_times(problem: Problem, state: np.ndarray, calls: int) -> dict[str, f
 def shares(times: dict[str, float], counters: dict, step_us: float) -> dict[str, float]:
     """Return the part of a step's time that goes into each kernel, by what is counted in a step.
 
-    A solution is counted for each right-hand side, a factorisation for each Jacobian where the level does not count them.  What
-    is left is the method's own arithmetic, the loop around it, and what the counts miss.
+    An implicit method is taken to solve and to measure once for each right-hand side, and to factor at least once for each
+    Jacobian; an explicit one to measure once a step.  What is left is the method's own arithmetic and the loop around it.
     """
-    steps = counters["steps"]
-    evaluations, jacobians = counters["right_hand_sides"] / steps, counters["jacobians"] / steps
-    factorisations = counters.get("factorisations", counters["jacobians"]) / steps
-    in_a_step = {
+    steps, evaluations = counters["steps"], counters["right_hand_sides"]
+    factorisations = max(counters.get("factorisations", 0), counters["jacobians"])
+    implicit = factorisations > 0
+    calls = {
         "right_hand_side": evaluations,
-        "jacobian": jacobians,
+        "jacobian": counters["jacobians"],
         "factorisation": factorisations,
-        "solve": evaluations,
-        "error_norm": evaluations,
+        "solve": evaluations if implicit else 0,
+        "error_norm": evaluations if implicit else steps + counters["rejected_steps"],
     }
-    parts = {name: in_a_step[name] * spent / step_us for name, spent in times.items()}
+    parts = {name: calls[name] / steps * spent / step_us for name, spent in times.items()}
     return {**parts, "rest": 1.0 - sum(parts.values())}
 
 
