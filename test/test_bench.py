@@ -58,6 +58,15 @@ def test_kernels_and_the_rest_make_up_a_step(report):
         assert sum(bound["share"].values()) == pytest.approx(1.0)
 
 
+def test_the_tables_name_every_level_method_and_solver(report, capsys):
+    from bearing_sim.commands import bench
+
+    bench._print(report)
+    told = capsys.readouterr().out
+    for name in {*LEVELS, *(method for level in LEVELS for method in level_methods(level)), "LSODA", "CVODE"}:
+        assert name in told
+
+
 @pytest.mark.parametrize("rollers", [9, 36, 144])
 def test_scaled_bearings_keep_rollers_clearances_spacing_and_surface_speeds(rollers):
     stock, scaled = scaled_scene("planar", 45_000), scaled_scene("planar", 45_000, rollers)

@@ -67,9 +67,8 @@ def _print_cases(cases) -> None:
         if case["fault"]:
             return [*named(case), case["fault"]]
         steps = case["steps"]
-        per_step = [
-            None if case[name] is None else case[name] / steps for name in ("rejected_steps", "right_hand_sides", "jacobians", "factorisations")
-        ]
+        counted = ("rejected_steps", "right_hand_sides", "jacobians", "factorisations")
+        per_step = [None if case[name] is None or not steps else case[name] / steps for name in counted]
         told = [case["real_time_factor"], case["step_us"], steps / case["simulated_seconds"], *per_step]
         return [*named(case), *map(_number, told), _number(case["lsoda_ratio"], ".0f"), _number(case["lsoda_ratio_at_our_error"], ".0f")]
 
