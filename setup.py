@@ -44,7 +44,7 @@ setup(
         "zstandard>=0.22",
         *ros_wheels,
     ],
-    extras_require={"test": ["hypothesis>=6", "pytest>=8", "pytest-timeout>=2.3"]},
+    extras_require={"test": ["hypothesis>=6", "pytest>=8", "pytest-timeout>=2.3", "scikit-sundae>=1.1"]},
     zip_safe=False,
     maintainer="bearing_sim maintainers",
     maintainer_email="maintainers@bearing-sim.org",

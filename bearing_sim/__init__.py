@@ -17,6 +17,7 @@ module                 responsibility
 ``oil``                oil properties at a temperature
 ``runtime``            pacing, the solver's thread, the gate for inputs, health
 ``sinks``              MCAP and rerun
+``studies``            the bench: speed and error of every level and method
 ``topics``             the messages that samples and inputs become
 ``ros``                the ROS 2 node and player
 ``commands``, ``cli``  the command line

@@ -103,6 +103,11 @@ class Simulation:
         return self._previous[0]
 
     @property
+    def state(self) -> np.ndarray:
+        """A copy of the level's state vector."""
+        return self._state.copy()
+
+    @property
     def counters(self) -> Counters:
         """Work done since the start."""
         return Counters(*(int(self._counts[index]) for index in COUNT))

@@ -38,6 +38,10 @@ ALLOWED = {
         {"numpy", "mcap", "rosbags", "rerun", "yaml"},
         {"sinks", "sample", "scene", "scene_file", "events", "topics", "provenance", "simulation"},
     ),
+    "studies": (
+        NUMBERS | {"sksundae"},
+        {"studies", "levels", "params", "sample", "scene", "scene_file", "simulation"},
+    ),
     "runtime": ({"numpy"}, {"runtime", "simulation", "scene", "events", "sample", "topics"}),
 }
 

@@ -1,0 +1,317 @@
+"""A plain NumPy model of level ``planar``, for comparison: one file, no code shared with the package, written from the equations.
+
+Everything is a Cartesian vector in the radial plane, rollers too: places and velocities in y and z, shape (2, Z).  Each force is
+written down once, at the body and the point where it acts; there is no derivative by hand.  Functions of complex numbers are
+kept analytic (branches look at real parts, nothing takes an absolute value), so that a complex step differentiates them.
+"""
+
+from dataclasses import dataclass
+from types import SimpleNamespace
+
+import numpy as np
+
+
+def larger(x, y):
+    """The number with the larger real part."""
+    return np.where(np.real(x) >= np.real(y), x, y)
+
+
+def magnitude(x):
+    return np.where(np.real(x) >= 0, x, -x)
+
+
+def power_of_positive(x, exponent):
+    """x^exponent, and 0 where x is not positive."""
+    return np.where(np.real(x) > 0, np.where(np.real(x) > 0, x, 1.0) ** exponent, 0.0)
+
+
+def dot(a, b):
+    return a[0] * b[0] + a[1] * b[1]
+
+
+def cross(a, b):
+    """Moment of b at arm a about the shaft axis x."""
+    return a[0] * b[1] - a[1] * b[0]
+
+
+def ahead(a):
+    """A vector turned by 90 degrees from y towards z."""
+    return np.array([-a[1], a[0]])
+
+
+def azimuth_of(place):
+    rough = np.arctan2(np.real(place[1]), np.real(place[0]))
+    c, s = np.cos(rough), np.sin(rough)
+    return rough + np.arctan((place[1] * c - place[0] * s) / (place[0] * c + place[1] * s))
+
+
+@dataclass
+class State:
+    """Places [m], velocities [m/s], angles [rad] and speeds [rad/s]; spins are positive where rollers roll on the outer ring."""
+
+    ring: np.ndarray  # shape (2,)
+    ring_velocity: np.ndarray
+    cage: np.ndarray
+    cage_velocity: np.ndarray
+    cage_angle: float
+    cage_speed: float
+    place: np.ndarray  # of the rollers' centres, shape (2, Z)
+    velocity: np.ndarray
+    spin: np.ndarray  # shape (Z,)
+
+
+@dataclass
+class Reference:
+    """Bearing of Deng 2017, Table 1 (SI), 45,000 rpm, MIL-L-7808 at 120 degC, with the defaults of the package for what it leaves open."""
+
+    low_radius: float = 34.8625e-3
+    d_value: float = 0.098e-3
+    knots: int = 720  # of the periodic cubic table that stands for the contour; 0 takes the cosine itself
+    contour_slope: bool = True
+    straight_churning: bool = True  # as the package does: the drag on rollers along its tangent at the cage's speed
+    shaft_speed: float = 45000 * np.pi / 30
+    load: tuple = (800.0, 0.0)
+    rollers: int = 18
+    roller_radius: float = 3.5e-3
+    length: float = 7e-3
+    inner_radius: float = 27.875e-3
+    ring_mass: float = 0.55
+    cage_mass: float = 0.05
+    contact_damping: float = 0.104
+    pocket_friction: float = 0.05
+    pocket_clearance: float = 0.1e-3
+    pocket_film_force: float = 67.0
+    pocket_film_damping: float = 5.0
+    land_friction: float = 0.08
+    land_film: float = 3e-6
+    guide_clearance: float = 0.15e-3
+
+    def __post_init__(self):
+        self.pitch_radius = self.inner_radius + self.roller_radius
+        self.mass = np.pi * self.roller_radius**2 * self.length * 7850.0
+        self.roller_inertia = 0.5 * self.mass * self.roller_radius**2
+        self.cage_inertia = self.cage_mass * self.pitch_radius**2
+        eta = 2 * (1 - 0.3**2) / 2.06e5  # 1/MPa
+        self.stiffness = (self.length * 1e3) ** (8 / 9) / (1.36 * eta**0.9) ** (10 / 9) * 1000 ** (10 / 9)
+        self.modulus = 2 / (2 * (1 - 0.3**2) / 2.06e11)
+        self.temperature = 393.15
+        self.viscosity = 9.997e-4 * (np.exp(np.exp(22.216 - 3.7048 * np.log(393.15))) - 0.87)
+        self.density = 0.03 * (914 + (870 - 914) * (393.15 - 367) / (422 - 367))
+        self.guide_radius, self.land_width = 33.5e-3, 2.5e-3  # two lands
+        self.outside, self.inside, self.width = self.guide_radius - self.guide_clearance, 29.6e-3, 12e-3
+
+    def contour(self, azimuth):
+        """R_e and its slope by azimuth."""
+        half = self.d_value / 2
+
+        def cosine(phi):
+            return self.low_radius + half - half * np.cos(3 * phi), 3 * half * np.sin(3 * phi)
+
+        if not self.knots:
+            return cosine(azimuth)
+        spacing = 2 * np.pi / self.knots
+        knot = np.floor(np.real(azimuth) / spacing) * spacing
+        s = (azimuth - knot) / spacing
+        (a, da), (b, db) = cosine(knot), cosine(knot + spacing)
+        radius = (1 + 2 * s) * (1 - s) ** 2 * a + s * (1 - s) ** 2 * spacing * da + s**2 * (3 - 2 * s) * b + s**2 * (s - 1) * spacing * db
+        slope = 6 * s * (1 - s) * (b - a) / spacing + (1 - s) * (1 - 3 * s) * da + s * (3 * s - 2) * db
+        return radius, slope
+
+    def normal_contact(self, penetration, rate):
+        """Force with Hunt-Crossley damping, never pulling; its elastic part; and the energy of that."""
+        elastic = self.stiffness * power_of_positive(penetration, 10 / 9)
+        energy = 9 / 19 * self.stiffness * power_of_positive(penetration, 19 / 9)
+        return elastic * larger(1 + self.contact_damping * rate, 0.0), elastic, energy
+
+    def traction(self, load, rolling, sliding, curvature_radius):
+        """mu Q, odd in the sliding speed (Deng 2017, ref. 17); load and rolling speed kept off zero, where the powers run away."""
+        rolling = np.sqrt(rolling**2 + 0.05**2)
+        w = larger(load, 1e-3) / (self.modulus * curvature_radius**2)
+        u = self.viscosity * rolling / (self.modulus * curvature_radius)
+        t = 0.0966 * self.temperature / (self.viscosity * rolling**2)
+        a = -696 * w**-0.163 * u**0.577 * t**0.308
+        b = 5.19e6 * w**-0.373 * u * t**0.687
+        c = 6.826e5 * w**-0.170 * u**0.578 * t**0.373
+        s = magnitude(sliding) / rolling
+        return load * np.where(np.real(sliding) >= 0, 1, -1) * ((a + b * s) * np.exp(-c * s) - a)
+
+    def pocket(self, offset, rate):
+        """Force of a pocket's walls against a roller's offset, its elastic part, and the energy of that."""
+        way, sign = magnitude(offset), np.where(np.real(offset) >= 0, 1, -1)
+        film = self.pocket_film_force / self.pocket_clearance
+        excess = larger(way - self.pocket_clearance, 0.0)
+        in_film = way - excess
+        wall, wall_elastic, wall_energy = self.normal_contact(excess, rate * sign)
+        elastic = sign * (film * in_film + wall_elastic)
+        energy = film * (in_film**2 / 2 + in_film * excess) + wall_energy
+        return sign * (film * in_film + wall) + self.pocket_film_damping * rate, elastic, energy
+
+    def churning(self, speed):
+        """Drag of the mixture on a roller by its orbital speed, and its slope; the drag is a power of the speed between table points."""
+        v = magnitude(speed)
+        reynolds = np.log(self.density * v * 2 * self.roller_radius / self.viscosity)
+        points = np.log([1e-1, 1, 10, 100, 1e3, 1e4, 2e5, 3e5, 4e5, 5e5, 1e6])
+        values = np.log([60, 10, 3, 1.8, 1.0, 1.2, 1.2, 0.9, 0.65, 0.3, 0.3])
+        segment = np.clip(np.searchsorted(points, np.real(reynolds)) - 1, 0, len(points) - 2)
+        share = (reynolds - points[segment]) / (points[segment + 1] - points[segment])
+        coefficient = np.exp(values[segment] + share * (values[segment + 1] - values[segment]))
+        force = 0.5 * self.density * coefficient * self.length * 2 * self.roller_radius * v * speed
+        return force, (2 + (values[segment + 1] - values[segment]) / (points[segment + 1] - points[segment])) * force / speed
+
+    def couette(self, speed, radius, gap, length):
+        reynolds = self.density * magnitude(speed) * radius * gap / self.viscosity
+        factor = larger(larger(1.0, 1.3 * (reynolds * np.sqrt(gap / radius) / 41) ** 0.539), 3.0 * (reynolds / 2500) ** 0.856)
+        return 2 * np.pi * self.viscosity * radius**3 * speed * length / gap * factor
+
+    def end_faces(self, omega):
+        reynolds = self.density * magnitude(omega) * self.outside**2 / self.viscosity
+        assert np.real(reynolds) < 2.5e5
+        return 0.5 * self.density * omega * magnitude(omega) * (self.outside**5 - self.inside**5) * 3.87 * reynolds**-0.5
+
+    def land_film_force(self, cage, omega):
+        """Short journal bearing; a cage nearer to the land than its thinnest film finds the film no stiffer."""
+        c, radius = self.guide_clearance, self.guide_radius
+        eps_squared = dot(cage, cage) / c**2
+        thinnest = 1 - self.land_film / c
+        eps_squared = np.where(np.real(eps_squared) > thinnest**2, thinnest**2, eps_squared)
+        rest = 1 - eps_squared
+        scale = 2 * self.viscosity * radius * omega * self.land_width**3 / c**2
+        towards = magnitude(scale) * np.sqrt(eps_squared) / rest**2 * -cage / c
+        across = scale * np.pi / (4 * rest**1.5) * ahead(cage) / c
+        torque = -2 * np.pi * self.viscosity * radius * omega * radius**2 * 2 * self.land_width / (c * np.sqrt(rest))
+        return towards + across, torque
+
+    def land_contact(self, cage, velocity, omega):
+        """Force on the cage where it touches, the friction in it, heat of both, and the elastic energy."""
+        eccentricity = np.sqrt(dot(cage, cage))
+        outward = cage / eccentricity
+        depth, rate = eccentricity - (self.guide_clearance - self.land_film), dot(velocity, outward)
+        normal, elastic, energy = self.normal_contact(depth, rate)
+        surface = omega * self.guide_radius
+        friction = self.land_friction * normal * surface / np.sqrt(surface**2 + 0.1**2)
+        heat = (normal - elastic) * rate + friction * (surface + dot(velocity, ahead(outward)))
+        return -normal * outward - friction * ahead(outward), friction, heat, energy
+
+    def forces(self, state):
+        """All forces at a state, by name, with the speeds that they work at."""
+        f = SimpleNamespace(state=state)
+        r_w, r_i, omega_i = self.roller_radius, self.inner_radius, self.shaft_speed
+        ring, ring_velocity = state.ring[:, None], state.ring_velocity[:, None]
+        f.radius = np.sqrt(dot(state.place, state.place))
+        f.outward = state.place / f.radius
+        f.along = ahead(f.outward)
+        radial_speed, f.orbit = dot(state.velocity, f.outward), dot(state.velocity, f.along)
+        turning = f.orbit / f.radius
+
+        from_ring, relative = state.place - ring, state.velocity - ring_velocity
+        f.distance = np.sqrt(dot(from_ring, from_ring))
+        f.normal = from_ring / f.distance
+        f.inner_rate = -dot(relative, f.normal)
+        f.inner, f.inner_elastic, f.inner_energy = self.normal_contact(r_i + r_w - f.distance, f.inner_rate)
+        contour, slope = self.contour(azimuth_of(state.place))
+        f.outer_rate = radial_speed - slope * turning
+        f.outer, f.outer_elastic, f.outer_energy = self.normal_contact(f.radius + r_w - contour, f.outer_rate)
+        f.lean = (slope if self.contour_slope else 0 * slope) / f.radius
+
+        f.inner_slide = omega_i * r_i - dot(relative, ahead(f.normal)) - state.spin * r_w
+        f.outer_slide = state.spin * r_w - f.orbit
+        roll_i = ((omega_i - turning) * r_i + (state.spin + turning) * r_w) / 2
+        roll_e = (turning * (f.radius + r_w) + (state.spin + turning) * r_w) / 2
+        f.inner_traction = self.traction(f.inner, roll_i, f.inner_slide, 1 / (1 / r_w + 1 / r_i))
+        f.outer_traction = self.traction(f.outer, roll_e, f.outer_slide, 1 / (1 / r_w - 1 / self.low_radius))
+        f.churning, _ = self.churning(f.orbit)
+        if self.straight_churning:
+            pitch_speed = self.pitch_radius * state.cage_speed
+            force, slope = self.churning(pitch_speed)
+            f.churning = force + slope * (f.orbit - pitch_speed)
+
+        pocket_angle = state.cage_angle + 2 * np.pi * np.arange(self.rollers) / self.rollers
+        f.pocket_outward = np.array([np.cos(pocket_angle), np.sin(pocket_angle)])
+        f.pocket_along = ahead(f.pocket_outward)
+        f.from_cage = state.place - state.cage[:, None]
+        cage_there = state.cage_velocity[:, None] + state.cage_speed * ahead(f.from_cage)
+        f.pocket_slide = dot(state.velocity - cage_there, f.pocket_outward)  # of the roller's centre past the wall
+        f.pocket_rate = dot(state.velocity - cage_there, f.pocket_along)
+        f.pocket, f.pocket_elastic, f.pocket_energy = self.pocket(dot(f.from_cage, f.pocket_along), f.pocket_rate)
+        f.pocket_smooth = self.pocket_friction * state.spin / np.sqrt(state.spin**2 + 10.0**2)
+
+        f.film, f.film_torque = self.land_film_force(state.cage, state.cage_speed)
+        f.land, f.land_friction, f.land_heat, f.land_energy = self.land_contact(state.cage, state.cage_velocity, state.cage_speed)
+        f.bore_torque = self.couette(omega_i - state.cage_speed, self.inside, self.inside - r_i, self.width)
+        gap = self.low_radius - self.outside
+        f.case_torque = -self.couette(state.cage_speed, self.outside, gap, self.width - 2 * self.land_width) - self.end_faces(state.cage_speed)
+        return f
+
+    def accelerations(self, f):
+        """Of ring, cage, cage angle, rollers and spins, under the forces ``f``."""
+        r_w = self.roller_radius
+        inner = f.inner * f.normal + f.inner_traction * ahead(f.normal)
+        outer = -f.outer * f.outward + (f.outer * f.lean + f.outer_traction) * f.along
+        # a wall pushes back along the orbit, and its friction drags along the wall, against the turning surface
+        pocket = -f.pocket * (f.pocket_along + f.pocket_smooth * f.pocket_outward)
+        spin_torque = r_w * (f.inner_traction - f.outer_traction - f.pocket_smooth * magnitude(f.pocket))
+        touch = f.from_cage + np.where(np.real(f.pocket) >= 0, r_w, -r_w) * f.pocket_along
+        cage_torque = f.film_torque + f.bore_torque + f.case_torque - f.land_friction * self.guide_radius + np.sum(cross(touch, -pocket))
+        return (
+            (np.array(self.load) - inner.sum(1)) / self.ring_mass,
+            (f.film + f.land - pocket.sum(1)) / self.cage_mass,
+            cage_torque / self.cage_inertia,
+            (inner + outer + pocket - f.churning * f.along) / self.mass,
+            spin_torque / self.roller_inertia,
+        )
+
+    def powers(self, f):
+        """Work done on the bearing, and heat by cause [W]."""
+        state, omega_i, omega = f.state, self.shaft_speed, f.state.cage_speed
+        wall_slide = f.pocket * f.pocket_slide + magnitude(f.pocket) * self.roller_radius * (state.spin + omega)
+        work = {
+            "shaft": omega_i * (self.inner_radius * f.inner_traction.sum() + f.bore_torque),
+            "load": dot(self.load, state.ring_velocity),
+        }
+        heat = {
+            "inner traction": np.sum(f.inner_traction * f.inner_slide),
+            "outer traction": np.sum(f.outer_traction * f.outer_slide),
+            "normal damping": np.sum((f.inner - f.inner_elastic) * f.inner_rate + (f.outer - f.outer_elastic) * f.outer_rate),
+            "pocket damping": np.sum((f.pocket - f.pocket_elastic) * f.pocket_rate),
+            "pocket friction": np.sum(f.pocket_smooth * wall_slide),
+            "churning": np.sum(f.churning * f.orbit),
+            "guide land film": -dot(f.film, state.cage_velocity) - f.film_torque * omega,
+            "guide land contact": f.land_heat,
+            "mixture on the cage": f.bore_torque * (omega_i - omega) - f.case_torque * omega,
+        }
+        return work, heat
+
+    def energy(self, f):
+        """Kinetic and elastic energy [J]."""
+        state = f.state
+        kinetic = (
+            self.ring_mass * dot(state.ring_velocity, state.ring_velocity)
+            + self.cage_mass * dot(state.cage_velocity, state.cage_velocity)
+            + self.cage_inertia * state.cage_speed**2
+            + np.sum(self.mass * dot(state.velocity, state.velocity) + self.roller_inertia * state.spin**2)
+        ) / 2
+        return kinetic + np.sum(f.inner_energy + f.outer_energy + f.pocket_energy) + f.land_energy
+
+    def momentum(self, state):
+        """Linear momentum, shape (2,), and angular momentum about the outer ring's centre of all that moves but the shaft's turning."""
+        linear = self.ring_mass * state.ring_velocity + self.cage_mass * state.cage_velocity + self.mass * state.velocity.sum(1)
+        angular = (
+            self.ring_mass * cross(state.ring, state.ring_velocity)
+            + self.cage_mass * cross(state.cage, state.cage_velocity)
+            + self.cage_inertia * state.cage_speed
+            + np.sum(self.mass * cross(state.place, state.velocity) - self.roller_inertia * state.spin)
+        )
+        return linear, angular
+
+    def impulses(self, f):
+        """Force on the whole from outside, shape (2,), and its moment about the outer ring's centre with the shaft's torque.
+
+        The shaft's torque acts where the roller has its inner contact, a roller radius from its centre.
+        """
+        state = f.state
+        on_rollers = -f.outer * f.outward + (f.outer * f.lean + f.outer_traction - f.churning) * f.along
+        force = np.array(self.load) + on_rollers.sum(1) + f.film + f.land
+        shaft = np.sum(f.inner_traction * (f.distance - self.roller_radius)) + f.bore_torque
+        moment = cross(state.ring, self.load) + np.sum(cross(state.place, on_rollers) + self.roller_radius * f.outer_traction)
+        cage = cross(state.cage, f.film + f.land) + f.film_torque + f.case_torque - f.land_friction * self.guide_radius
+        return force, moment + cage + shaft
