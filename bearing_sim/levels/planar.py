@@ -31,6 +31,8 @@ from bearing_sim.levels.planar_equations import (
     SPIN,
     THETA,
 )
+from bearing_sim.levels.planar_power import planar_powers
+from bearing_sim.levels.power import write_powers
 from bearing_sim.params import Params
 from bearing_sim.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT
 from bearing_sim.sample import COLUMN, SCALARS
@@ -193,6 +195,8 @@ def observe(t, y, model, work, interval, previous, row, rate):
     observe_course(t, y[THETA], y[OMEGA], inner, outer, model, interval, previous, row)
     row[COLUMN.ring_y], row[COLUMN.ring_z] = y[RING_Y], y[RING_Z]
     row[COLUMN.cage_y], row[COLUMN.cage_z] = y[CAGE_Y], y[CAGE_Z]
+    row[COLUMN.land_eccentricity] = math.hypot(y[CAGE_Y], y[CAGE_Z]) / model.params.cage.guide_clearance
+    write_powers(planar_powers(y, shaft_speed_at(t, model.drive), model, work), row)
     for j in range(count):
         state, first = 2 * BORDER + BLOCK * j, SCALARS + j
         row[first + COLUMN.roller_angle * count] = y[state + 1]
