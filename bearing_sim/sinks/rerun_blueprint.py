@@ -34,8 +34,11 @@ class Extent(NamedTuple):
 
 def section_title(scene: Scene) -> str:
     """Return the title of the cross-section, which states what is not to scale."""
-    cage = f", the cage's x{section.cage_magnification(scene)}" if scene.cage_whirls else ""
-    return f"Cross-section: lobes, play and displacements drawn x{section.magnification(scene.bearing)}{cage}"
+    return f"Cross-section: lobes, play and displacements drawn x{section.magnification(scene.bearing)}{_cage_factor(scene)}"
+
+
+def _cage_factor(scene: Scene) -> str:
+    return f", cage x{section.cage_magnification(scene)}" if scene.cage_whirls else ""
 
 
 def blueprint(scene: Scene, bounds, live: bool, extent: Extent | None = None) -> rrb.Blueprint:
@@ -68,15 +71,15 @@ class _Axes:
         self._extent = extent
         self.time = _time_axis(live, extent)
 
-    def plot(self, title: str, contents: list[str], from_zero: bool = True, legend: bool = False) -> rrb.TimeSeriesView:
-        """Return a plot of some series; ``from_zero`` keeps zero on the axis.  The title is the ``legend`` where it can: it hides no line."""
+    def plot(self, title: str, contents: list[str], from_zero: bool = True) -> rrb.TimeSeriesView:
+        """Return a plot of some series; ``from_zero`` keeps zero on the axis.  The title is the legend: it hides no line."""
         return rrb.TimeSeriesView(
             origin="/",
             contents=contents,
             name=title,
             axis_x=self.time,
             axis_y=self._value_axis(contents, from_zero),
-            plot_legend=rrb.PlotLegend(visible=legend),
+            plot_legend=rrb.PlotLegend(visible=False),
         )
 
     def _value_axis(self, contents: list[str], from_zero: bool) -> rrb.ScalarAxis | None:
@@ -128,7 +131,7 @@ def _left(scene: Scene, bounds) -> rrb.Vertical:
             rrb.Spatial3DView(
                 origin="/",
                 contents="/solid/**",
-                name=f"3D, x{section.magnification(scene.bearing)}",
+                name=f"3D, x{section.magnification(scene.bearing)}{_cage_factor(scene)}",
                 background=BACKGROUND,
                 eye_controls=eye,
                 line_grid=False,
@@ -156,7 +159,7 @@ def _middle(scene: Scene, axes: _Axes) -> rrb.Vertical:
         axes.plot("Speeds [rpm] (blue: shaft, orange: cage, grey: cage without slip)", ["/speed/shaft", "/speed/ideal_cage", "/speed/cage"]),
         rrb.Tabs(
             axes.plot("Cage slip [%] (yellow: warning, red: error)", ["/slip/warning", "/slip/error", "/slip/cage"]),
-            axes.plot("Pocket [N]", ["/loads/each/pocket"]),
+            axes.plot("Pocket [N]", ["/loads/pocket_largest"]),
             *whirl,
             active_tab=0,
         ),
@@ -182,7 +185,7 @@ def _right(axes: _Axes) -> rrb.Vertical:
     )
     return rrb.Vertical(
         rrb.Tabs(rrb.TextDocumentView(origin="/now", name="Now"), rrb.TextDocumentView(origin="/about", name="About")),
-        rrb.Tabs(bars, axes.plot("over time [W]", [f"/power/{cause}" for cause in CAUSES], legend=True), active_tab=0),
+        rrb.Tabs(bars, axes.plot("Over time [W]", [f"/power/{cause}" for cause in CAUSES]), active_tab=0),
         axes.plot("Radial load [N]", ["/load/radial"]),
         rrb.Tabs(axes.plot("Damage [millionths of the life]", ["/damage/ppm"]), axes.plot("Oil [°C]", ["/oil/temperature"]), active_tab=0),
         row_shares=[0.385, 0.285, 0.165, 0.165],

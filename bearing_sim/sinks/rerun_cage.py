@@ -57,6 +57,7 @@ class CageDrawing:
         self._clearance = scene.bearing.cage.guide_clearance / _MICROMETRE
         self._film = scene.bearing.cage.land_film / _MICROMETRE
         self._path = OrbitPath()
+        self._line_drawn = False
 
     def draw_still_parts(self) -> None:
         """Draw the clearance, the axes, and what the moving parts keep."""
@@ -79,9 +80,12 @@ class CageDrawing:
         points = picture(places[:, 0], places[:, 1])
         fade = _faded(len(points))
         dense = self._path.is_dense()
-        strips = np.stack((points[:-1], points[1:]), axis=1) if dense else np.empty((0, 2, 2))
-        self._log("path/line", rr.LineStrips2D.from_fields(strips=strips, colors=fade[1:] if dense else fade[:0]))
-        self._log("path/dots", rr.Points2D.from_fields(positions=points[:0] if dense else points, colors=fade[:0] if dense else fade))
+        if dense or self._line_drawn:
+            strips = np.stack((points[:-1], points[1:]), axis=1) if dense else np.empty((0, 2, 2))
+            self._log("path/line", rr.LineStrips2D.from_fields(strips=strips, colors=fade[1:] if dense else fade[:0]))
+        if not dense or not self._line_drawn:
+            self._log("path/dots", rr.Points2D.from_fields(positions=points[:0] if dense else points, colors=fade[:0] if dense else fade))
+        self._line_drawn = dense
         y, z = (float(sample[field]) / _MICROMETRE for field in ("cage_y", "cage_z"))
         known = math.isfinite(y) and math.isfinite(z)
         self._log("centre", rr.Points2D.from_fields(positions=[picture(y, z)] if known else np.empty((0, 2))))

@@ -38,10 +38,16 @@ _LINES = {
     "/loads/inner_largest": ("inner, largest", colours.BLUE, 2.0),
     "/loads/outer_largest": ("outer, largest", colours.VERMILION, 2.0),
     "/cage/eccentricity": ("cage eccentricity e/c", colours.ORANGE, 2.0),
+    "/loads/pocket_largest": ("on a roller by its pocket, largest", colours.PURPLE, 2.0),
     "/sink/dropped": ("blocks dropped", colours.WHITE, 1.5),
 } | {f"/power/{cause}": (name, colour, 2.0) for cause, (name, colour) in CAUSES.items()}
 
-_AGGREGATION = {"/loads/inner_largest": "Max", "/loads/outer_largest": "Max", "/slip/cage": "Max"}  # where many samples share a pixel
+_AGGREGATION = {
+    "/loads/pocket_largest": "Max",
+    "/loads/inner_largest": "Max",
+    "/loads/outer_largest": "Max",
+    "/slip/cage": "Max",
+}  # where many samples share a pixel
 
 
 def plottable(values) -> np.ndarray:
@@ -70,6 +76,7 @@ def series(block: np.ndarray) -> dict[str, np.ndarray]:
         "/oil/temperature": block["oil_temperature"] - ZERO_CELSIUS,
         "/loads/inner_largest": block["inner_load"].max(axis=1),
         "/loads/outer_largest": block["outer_load"].max(axis=1),
+        "/loads/pocket_largest": np.abs(block["pocket_force"]).max(axis=1),
         "/loads/each/inner": block["inner_load"],
         "/loads/each/outer": block["outer_load"],
         "/loads/each/pocket": block["pocket_force"],

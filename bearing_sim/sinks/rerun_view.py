@@ -112,6 +112,7 @@ class RunView:
         # A file keeps every picture: half as many for those who watch, evenly spread ones where nobody does.
         in_file = FileFrames(duration, shortest=2 / _RATE if real_time else 0.0)
         self._frames = LiveFrames(_RATE if path is None else _RATE / 2) if live else in_file
+        self._details = LiveFrames(rate=10.0) if live else None  # nobody reads numbers faster
         self._map_times = LiveFrames(rate=2.0) if live else FileFrames(duration, most=30)
         self._map = LoadMap(LIVE_WINDOW if live else duration or 1.0, rolling=live, narrow=scene.cage_whirls)
         self._whole_map = LoadMap(duration or 1.0, rolling=False, narrow=scene.cage_whirls) if live and path is not None else None
@@ -187,9 +188,10 @@ class RunView:
         self._recording.set_time(TIMELINE, duration=float(sample["time"]))
         self._drawing.draw(sample)
         self._solid.draw(sample, self._drawing.load_scale)
-        self._power.draw(sample)
-        if self._cage is not None:
-            self._cage.draw(sample)
+        if self._details is None or self._details.pick(sample["time"][None]):
+            self._power.draw(sample)
+            if self._cage is not None:
+                self._cage.draw(sample)
         self._series.write_readout(sample, self.dropped)
 
     def _follow_cage(self, samples: np.ndarray) -> None:
