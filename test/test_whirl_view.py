@@ -65,7 +65,7 @@ def last_value(chunks, entity, component):
 def test_orbit_is_shown_where_the_level_has_whirl_and_only_there():
     shown = {scene.level: set(views(blueprint(scene, ((-40, 40), (-40, 40)), live=False).root_container)) for scene in (SLIP, PLANAR)}
     assert {"Cage orbit", "e/c"} <= shown["planar"] and not {"Cage orbit", "e/c"} & shown["slip"]
-    assert {"Power in and lost", "Pocket [N]"} <= shown["planar"] & shown["slip"]
+    assert {"Power: mean of 20 samples", "Pocket [N]"} <= shown["planar"] & shown["slip"]
 
 
 def test_run_without_whirl_writes_no_orbit(tmp_path):
@@ -90,13 +90,14 @@ def test_series_of_powers_and_eccentricity_are_the_samples(tmp_path):
     assert last_value(chunks, "/loads/pocket_largest", "Scalars:scalars") == [27.0]
 
 
-def test_bars_are_as_long_as_their_powers(tmp_path):
+def test_bars_are_as_long_as_the_mean_of_their_newest_powers(tmp_path):
     block = whirling_block()
     chunks = written(tmp_path / "run.rrd", PLANAR, block)
     strips = np.array(last_value(chunks, "/power_now/bars", "LineStrips2D:strips"))
     radii = np.array(last_value(chunks, "/power_now/bars", "LineStrips2D:radii"))
     length = strips[:, 1, 0] - strips[:, 0, 0] + 2 * radii
-    powers = np.array([block[f"{cause}_power"][-1] for cause in CAUSES])
+    powers = np.array([block[f"{cause}_power"][-20:].mean() for cause in CAUSES])
+    assert last_value(chunks, "/power_now/watts", "Arrows2D:labels") == [f"{power:,.0f} W" for power in powers]
     np.testing.assert_allclose(length, powers * length[-1] / powers[-1], rtol=1e-5)
 
 

@@ -10,7 +10,7 @@ from bearing_sim.scene import Scene
 from bearing_sim.sinks import section
 from bearing_sim.sinks.load_map import map_bounds
 from bearing_sim.sinks.rerun_cage import ORBIT_EDGE
-from bearing_sim.sinks.rerun_power import CAUSES
+from bearing_sim.sinks.rerun_power import CAUSES, SAMPLES
 from bearing_sim.sinks.rerun_power import bounds as power_bounds
 from bearing_sim.sinks.rerun_series import TIMELINE
 
@@ -179,13 +179,13 @@ def _right(axes: _Axes) -> rrb.Vertical:
     across, down = power_bounds()
     bars = rrb.Spatial2DView(
         origin="/power_now",
-        name="Power in and lost",
+        name=f"Power: mean of {SAMPLES} samples",
         visual_bounds=rrb.VisualBounds2D(x_range=across, y_range=down),
         background=BACKGROUND,
     )
     return rrb.Vertical(
         rrb.Tabs(rrb.TextDocumentView(origin="/now", name="Now"), rrb.TextDocumentView(origin="/about", name="About")),
-        rrb.Tabs(bars, axes.plot("Over time [W]", [f"/power/{cause}" for cause in CAUSES]), active_tab=0),
+        rrb.Tabs(bars, axes.plot("Plot [W]", [f"/power/{cause}" for cause in CAUSES]), active_tab=0),
         axes.plot("Radial load [N]", ["/load/radial"]),
         rrb.Tabs(axes.plot("Damage [millionths of the life]", ["/damage/ppm"]), axes.plot("Oil [°C]", ["/oil/temperature"]), active_tab=0),
         row_shares=[0.385, 0.285, 0.165, 0.165],

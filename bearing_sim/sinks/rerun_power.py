@@ -7,6 +7,7 @@ from bearing_sim.sinks import colours, section
 from bearing_sim.sinks.rerun_scene import labels
 
 ROOT = "/power_now"
+SAMPLES = 20  # that the bars are means of
 CAUSES = {
     "shaft": ("in: shaft", colours.WHITE),
     "inner_sliding": ("inner sliding", colours.BLUE),
@@ -25,6 +26,8 @@ _WIDTH, _PITCH = 100.0, 12.0  # drawn length of the scale, and distance of two b
 class PowerDrawing:
     """Bars of one run, each on a line of its own with its name and its watts; all on one scale, which grows when exceeded.
 
+    Means of the newest `SAMPLES`: at an instant the shaft's power is in part stored, in motion and elastic contacts, or given back.
+
     Parameters
     ----------
     recording : rerun.RecordingStream to draw into; its time is set by the caller.
@@ -33,6 +36,7 @@ class PowerDrawing:
     def __init__(self, recording: rr.RecordingStream):
         self._recording = recording
         self._scale = 1.0  # [W]
+        self._newest = np.empty((0, len(CAUSES)))
         self._levels = _PITCH * np.arange(len(CAUSES))
 
     def draw_still_parts(self) -> None:
@@ -42,9 +46,14 @@ class PowerDrawing:
         style = rr.LineStrips2D.from_fields(colors=[colour for _, colour in CAUSES.values()])
         self._recording.log(f"{ROOT}/bars", style, static=True)
 
-    def draw(self, sample: np.void) -> None:
-        """Draw the bars of one sample at the recording's present time."""
-        powers = np.array([float(sample[f"{cause}_power"]) for cause in CAUSES])
+    def add(self, block: np.ndarray) -> None:
+        """Enter the samples of a block, drawn or not."""
+        rows = np.stack([block[f"{cause}_power"][-SAMPLES:] for cause in CAUSES], axis=1)
+        self._newest = np.concatenate((self._newest, rows))[-SAMPLES:]
+
+    def draw(self) -> None:
+        """Draw the bars at the recording's present time."""
+        powers = self._newest.mean(axis=0)
         known = np.nan_to_num(powers)
         if np.abs(known).max() > self._scale:
             self._scale = section.round_up(float(np.abs(known).max()))

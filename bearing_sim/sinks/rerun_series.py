@@ -242,8 +242,8 @@ round raceway; green: guide land. Rollers are coloured by inner contact load, gr
 forces on the rings, full scale of the colours = longest; yellow: radial load on the inner ring, twice that scale as far as there is room.
 The orange cage bar and the white marks show rotation. Purple arrows: forces of the pockets on the rollers, scale in the middle.
 {_WHIRL if scene.cage_whirls else ""}
-**Power** by cause is that of the instant: what the shaft puts in by the tractions on the inner ring and by the mixture in the cage's
-bore is lost, or stored for a moment in motion and elastic contacts.
+**Power** by cause: what the shaft puts in by the tractions on the inner ring and by the mixture in the cage's bore is lost, or
+stored for a moment in motion and elastic contacts; the bars are means of the newest samples.
 
 **Thresholds**: slip {100 * limits.slip_warning:g} % warning, {100 * limits.slip_error:g} % error; life below {limits.life_warning:g} h warning.
 

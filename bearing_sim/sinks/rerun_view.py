@@ -140,10 +140,10 @@ class RunView:
         self._pending.append(block)
         drawn = 0
         for index in self._frames.pick(block["time"]):
-            self._follow_cage(block[drawn : index + 1])
+            self._follow(block[drawn : index + 1])
             self._draw(block[index])
             drawn = index + 1
-        self._follow_cage(block[drawn:])
+        self._follow(block[drawn:])
         if self._whole_map is not None:
             self._whole_map.add(block)
         entered = 0
@@ -189,13 +189,15 @@ class RunView:
         self._drawing.draw(sample)
         self._solid.draw(sample, self._drawing.load_scale)
         if self._details is None or self._details.pick(sample["time"][None]):
-            self._power.draw(sample)
+            self._power.draw()
             if self._cage is not None:
                 self._cage.draw(sample)
         self._series.write_readout(sample, self.dropped)
 
-    def _follow_cage(self, samples: np.ndarray) -> None:
-        if self._cage is not None and len(samples):
+    def _follow(self, samples: np.ndarray) -> None:
+        """Take samples into what a picture shows of the time before it."""
+        self._power.add(samples)
+        if self._cage is not None:
             self._cage.add(samples)
 
     def _draw_map(self, chart: LoadMap, time: float) -> None:
