@@ -27,6 +27,11 @@ def model_of(run):
     return run._model(run.inputs, 1.0)._replace(drive=Drive(0.0, SHAFT_SPEED, 3e4, LOAD[0], 0.0, LOAD[1], 0.0))
 
 
+def rollers_of(state):
+    """View of r, phi, r', phi' and w of all rollers, shape (Z, 5): the one place here that knows how the state is laid out."""
+    return state[2 * BORDER :].reshape(-1, BLOCK)
+
+
 def rough_planar_state(run, seed):
     """Rollers loaded, parted and colliding; walls hit on both sides; the cage against its land, coming or going, or off it."""
     random = np.random.default_rng(seed)
@@ -35,18 +40,17 @@ def rough_planar_state(run, seed):
     state[2:4] = random.choice([0.1e-3, 0.149e-3]) * np.array([math.cos(angle), math.sin(angle)])
     state[5:9] += random.normal(size=4) * [1e-2, 1e-2, 0.5, 0.5]
     state[9] *= random.uniform(0.7, 1.1)
-    rollers = state[2 * BORDER :].reshape(-1, BLOCK)
+    rollers = rollers_of(state)
     rollers += random.normal(size=rollers.shape) * [2e-6, 3e-3, 1.0, 20.0, 1500.0]
     return state
 
 
 def planar_energy(run, state):
     """Kinetic and elastic energy [J] of a state, from its positions and speeds alone."""
-    params, border = run._params, 2 * BORDER
+    params = run._params
     raceways, cage = params.raceways, params.cage
     ring, centre, theta = state[0:2], state[2:4], state[4]
-    rollers = state[border:].reshape(-1, BLOCK)
-    r, phi, r_speed, phi_speed, spin = rollers.T
+    r, phi, r_speed, phi_speed, spin = rollers_of(state).T
     kinetic = 0.5 * params.ring.mass * state[5:7] @ state[5:7] + 0.5 * cage.mass * state[7:9] @ state[7:9] + 0.5 * cage.inertia * state[9] ** 2
     kinetic += 0.5 * params.rollers.mass * (r_speed**2 + (r * phi_speed) ** 2).sum() + 0.5 * params.rollers.inertia * (spin**2).sum()
 
@@ -103,7 +107,7 @@ def test_contour_without_slope_leaves_the_books_open_by_its_own_squeeze(seed):
     run = simulation("planar", "bearing.outer_raceway.contour_slope=false")
     state = rough_planar_state(run, seed)
     gap, largest, _ = planar_gap(run, state)
-    rows, phi_speed = run._work.rollers, state[2 * BORDER :].reshape(-1, BLOCK)[:, 3]
+    rows, phi_speed = run._work.rollers, rollers_of(state)[:, 3]
     squeeze = (rows[ROLLER.outer_load] * rows[ROLLER.slope] * phi_speed).sum()
     assert abs(squeeze) > 50.0
     assert gap == pytest.approx(squeeze, abs=1e-8 * largest)
