@@ -1,8 +1,9 @@
 """Read our own recordings back: MCAP messages to blocks of samples and events, as the sinks take them.
 
-What a recording does not hold follows from the scene and from what it does hold, as level ``slip`` sees the bearing:
-rollers stand at equal steps behind the cage's angle, an outer load says how deep a roller sits in the outer raceway, and
-the inner loads together say where the inner ring is.  Spins are not recorded: rollers are taken to roll on the outer ring.
+What a recording does not hold follows from the scene and from what it does hold: rollers stand at equal steps behind the
+cage's angle (their play in the pockets is left out), an outer load says how deep a roller sits in the outer raceway, and
+rotations follow from spins.  Of a recording from before some observables were recorded, the inner loads together say where
+the inner ring is, rollers are taken to roll on the outer ring, and what cannot be known is NaN.
 """
 
 import math
@@ -24,7 +25,7 @@ from bearing_sim.sample import new_block
 from bearing_sim.scene import Scene
 from bearing_sim.scene_file import SceneError, scene_from_yaml
 from bearing_sim.sinks.section import outer_contour
-from bearing_sim.topics import DIAGNOSTICS, INPUTS, OUTPUTS, ZERO_CELSIUS
+from bearing_sim.topics import ARRAYS, DIAGNOSTICS, INPUTS, OUTPUTS, ZERO_CELSIUS
 
 ROWS_PER_BLOCK = 1000
 METADATA = "bearing_sim"
@@ -183,6 +184,7 @@ class _Rows:
         self._scene, self._start_ns = scene, start_ns
         self._block = new_block(ROWS_PER_BLOCK, scene.bearing.roller.count)
         self._log_time: int | None = None
+        self._last: np.void | None = None
         operating = scene.operating
         self._load = (operating.radial_load * math.cos(operating.load_angle), operating.radial_load * math.sin(operating.load_angle))
         self._temperature = scene.lubricant.temperature
@@ -219,9 +221,10 @@ class _Rows:
             places = {name: place for place, name in enumerate(message.name)}
             for joint, field in (("shaft", "shaft"), ("cage", "cage"), ("cage_ideal", "ideal_cage")):
                 row[f"{field}_angle"], row[f"{field}_speed"] = message.position[places[joint]], message.velocity[places[joint]]
-        elif topic == "/roller_loads":
-            rollers = self._scene.bearing.roller.count
-            row["inner_load"], row["outer_load"] = message.data[:rollers], message.data[rollers:]
+        elif topic[1:] in ARRAYS:
+            fields = ARRAYS[topic[1:]].fields
+            for field, values in zip(fields, np.reshape(message.data, (len(fields), -1))):
+                row[field] = values if row[field].ndim else values[0]
         else:
             row[topic[1:]] = message.data
 
@@ -229,19 +232,22 @@ class _Rows:
         """Return the samples so far, completed, and start anew."""
         block, self.count = self._block[: self.count], 0
         block = block[~np.isnan(block["inner_load"]).all(axis=1)]  # of a sample cut short by a kill the loads, written last, are missing
-        complete(self._scene, block)
+        complete(self._scene, block, self._last)
+        if len(block):
+            self._last = block[-1].copy()
         return block
 
 
-def complete(scene: Scene, block: np.ndarray) -> None:
+def complete(scene: Scene, block: np.ndarray, before: np.void | None = None) -> None:
     """Fill in what a recording does not hold from what it does (see the module's description).
 
-    Equivalent loads are the power means of the instant, not averaged over a roller pitch.
+    Equivalent loads that were not recorded are the power means of the instant, not averaged over a roller pitch.
 
     Parameters
     ----------
     scene : what was simulated.
-    block : samples with time, speeds, angles and loads; changed in place.
+    block : samples with time, speeds, angles and loads, NaN where nothing was recorded; changed in place.
+    before : the completed sample before the block.
     """
     bearing, material = scene.bearing, scene.bearing.material
     count, radius = bearing.roller.count, bearing.roller.diameter / 2
@@ -250,13 +256,33 @@ def complete(scene: Scene, block: np.ndarray) -> None:
     approach = {ring: np.maximum(block[f"{ring}_load"] / stiffness, 0.0) ** 0.9 for ring in ("inner", "outer")}
     block["roller_angle"] = azimuth
     block["roller_radius"] = outer_contour(bearing.outer_raceway, azimuth) - radius + approach["outer"]
-    block["roller_spin"] = (block["cage_speed"] * bearing.pitch_radius / radius)[:, None]
-    block["roller_rotation"] = (block["cage_angle"] * bearing.pitch_radius / radius)[:, None]
-    block["inner_equivalent_load"] = np.mean(block["inner_load"] ** 4, axis=1) ** (1 / 4)
-    block["outer_equivalent_load"] = np.mean(block["outer_load"] ** 4.5, axis=1) ** (1 / 4.5)
+    rolling = bearing.pitch_radius / radius
+    _fill(block, "roller_spin", (block["cage_speed"] * rolling)[:, None])
+    _fill(block, "orbital_speed", block["cage_speed"][:, None])
+    start = block["cage_angle"][:1, None] * rolling
+    block["roller_rotation"] = _rotation(block, before if before is not None else block[0], start) if len(block) else 0.0
+    block["land_eccentricity"] = np.hypot(block["cage_y"], block["cage_z"]) / bearing.cage.guide_clearance
+    _fill(block, "inner_equivalent_load", np.mean(block["inner_load"] ** 4, axis=1) ** (1 / 4))
+    _fill(block, "outer_equivalent_load", np.mean(block["outer_load"] ** 4.5, axis=1) ** (1 / 4.5))
     # A loaded roller touches the ring: e cos(phi - phi_e) = delta_i - (R_i + R_w - r); all of them together give e.
-    wanted = approach["inner"] - (bearing.inner_raceway.radius + radius - block["roller_radius"])
-    block["ring_y"], block["ring_z"] = _ring_centre(azimuth, wanted, block["inner_load"] > 0)
+    if np.isnan(block["ring_y"]).any():
+        wanted = approach["inner"] - (bearing.inner_raceway.radius + radius - block["roller_radius"])
+        for field, places in zip(("ring_y", "ring_z"), _ring_centre(azimuth, wanted, block["inner_load"] > 0)):
+            _fill(block, field, places)
+
+
+def _fill(block: np.ndarray, field: str, values: np.ndarray) -> None:
+    """Enter values where none were recorded."""
+    block[field] = np.where(np.isnan(block[field]), values, block[field])
+
+
+def _rotation(block: np.ndarray, before: np.void, start: np.ndarray) -> np.ndarray:
+    """Return the rollers' rotation [rad] by trapezoids over their spins, from ``before`` or, where it knows none, from ``start``."""
+    times = np.concatenate(([before["time"]], block["time"]))
+    spins = np.concatenate((before["roller_spin"][None], block["roller_spin"]))
+    steps = 0.5 * (spins[1:] + spins[:-1]) * np.diff(times)[:, None]
+    known = np.isfinite(before["roller_rotation"])
+    return np.where(known, before["roller_rotation"], start) + np.cumsum(steps, axis=0)
 
 
 def _ring_centre(azimuth: np.ndarray, wanted: np.ndarray, touching: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -39,6 +39,17 @@ OBSERVABLES = (
     Observable("ring_z", "m", "inner-ring centre displacement along z"),
     Observable("cage_y", "m", "cage centre displacement along y; 0 at a level without whirl"),
     Observable("cage_z", "m", "cage centre displacement along z; 0 at a level without whirl"),
+    Observable("land_eccentricity", "", "cage eccentricity in the guide land, e/c; 0 at a level without whirl"),
+    Observable(
+        "shaft_power", "W", "power that the shaft puts in: through the tractions on the inner ring, and through the mixture in the cage's bore"
+    ),
+    Observable("inner_sliding_power", "W", "power lost by sliding between rollers and inner raceway"),
+    Observable("outer_sliding_power", "W", "power lost by sliding between rollers and outer raceway"),
+    Observable("churning_power", "W", "power lost by rollers in the oil-air mixture"),
+    Observable("windage_power", "W", "power lost by the cage in the oil-air mixture"),
+    Observable("land_power", "W", "power that the guide land takes from the cage: oil film and boundary friction"),
+    Observable("pocket_power", "W", "power lost in the pockets: friction, and damping of their film"),
+    Observable("damping_power", "W", "power lost by Hunt and Crossley's damping of all normal contacts; 0 at a level without vibration"),
     Observable("roller_angle", "rad", "azimuth of the roller centre", True),
     Observable("roller_radius", "m", "distance of the roller centre from the outer-ring centre", True),
     Observable("roller_spin", "rad/s", "roller spin, positive where it rolls on the outer ring", True),

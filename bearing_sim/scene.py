@@ -299,6 +299,11 @@ class Scene:
     input_limits: InputLimits = field(default_factory=InputLimits)
     thresholds: Thresholds = field(default_factory=Thresholds)
 
+    @property
+    def cage_whirls(self) -> bool:
+        """Whether the level moves the cage's centre."""
+        return self.level != "slip"
+
     @model_validator(mode="after")
     def _method_is_one_of_the_level(self):
         names = METHODS[self.level]

@@ -87,11 +87,53 @@ def _bearing_joints(stamp_ns: int, sample) -> dict:
     )
 
 
-def _roller_loads(stamp_ns: int, sample) -> dict:
-    inner, outer = sample["inner_load"], sample["outer_load"]
-    rollers = len(inner)
-    dim = [{"label": "ring", "size": 2, "stride": 2 * rollers}, {"label": "roller", "size": rollers, "stride": rollers}]
-    return {"layout": {"dim": dim, "data_offset": 0}, "data": np.concatenate((inner, outer))}
+class Rows(NamedTuple):
+    """What a std_msgs/Float64MultiArray of ours holds: observables one after the other, each a number or one for each roller.
+
+    Attributes
+    ----------
+    label : of the array's first dimension; says what its rows are, in order.
+    fields : the observable of each row.
+    """
+
+    label: str
+    fields: tuple[str, ...]
+
+
+ARRAYS = {
+    "equivalent_loads": Rows("ring: inner, outer", ("inner_equivalent_load", "outer_equivalent_load")),
+    "centre_positions": Rows("inner ring y, z, cage y, z", ("ring_y", "ring_z", "cage_y", "cage_z")),
+    "power": Rows(
+        "shaft, inner sliding, outer sliding, churning, windage, land, pocket, damping",
+        (
+            "shaft_power",
+            "inner_sliding_power",
+            "outer_sliding_power",
+            "churning_power",
+            "windage_power",
+            "land_power",
+            "pocket_power",
+            "damping_power",
+        ),
+    ),
+    "roller_speeds": Rows("speed: orbital, spin", ("orbital_speed", "roller_spin")),
+    "pocket_forces": Rows("force on", ("pocket_force",)),
+    "roller_loads": Rows("ring", ("inner_load", "outer_load")),
+}
+"""The output topics that carry arrays, by name; a second dimension ``roller`` where there is a number for each."""
+
+
+def _array(name: str) -> Callable[[int, Any], dict]:
+    label, fields = ARRAYS[name]
+
+    def message(stamp_ns: int, sample) -> dict:
+        data = np.array([sample[field] for field in fields], float)
+        dim = [{"label": label, "size": len(fields), "stride": data.size}]
+        if data.ndim == 2:
+            dim.append({"label": "roller", "size": data.shape[1], "stride": data.shape[1]})
+        return {"layout": {"dim": dim, "data_offset": 0}, "data": data.ravel()}
+
+    return message
 
 
 INPUTS = {
@@ -104,6 +146,8 @@ INPUTS = {
 }
 """The input topics by channel (`bearing_sim.runtime.input_gate` uses the same channel names)."""
 
+_MULTI_ARRAY = "std_msgs/msg/Float64MultiArray"
+
 OUTPUTS = {
     topic.name: topic
     for topic in (
@@ -111,7 +155,13 @@ OUTPUTS = {
         Topic("rating_life", "std_msgs/msg/Float64", "rating life at the present condition [h]; infinite at rest", _number("rating_life")),
         Topic("damage", "std_msgs/msg/Float64", "fraction of life used since the start", _number("damage")),
         Topic("bearing_joints", "sensor_msgs/msg/JointState", "shaft, cage, cage_ideal: angle [rad], speed [rad/s]; no torque", _bearing_joints),
-        Topic("roller_loads", "std_msgs/msg/Float64MultiArray", "roller loads [N], ring (inner, outer) x roller", _roller_loads),
+        Topic("equivalent_loads", _MULTI_ARRAY, "dynamic equivalent roller loads [N], ring (inner, outer)", _array("equivalent_loads")),
+        Topic("centre_positions", _MULTI_ARRAY, "displacements [m]: inner ring y, z, cage y, z", _array("centre_positions")),
+        Topic("power", _MULTI_ARRAY, "power [W]: what the shaft puts in, then what is lost, by cause", _array("power")),
+        Topic("roller_speeds", _MULTI_ARRAY, "speeds [rad/s], (orbital, spin) x roller", _array("roller_speeds")),
+        Topic("pocket_forces", _MULTI_ARRAY, "forces of the pockets on the rollers [N], positive where they drive", _array("pocket_forces")),
+        # the last of a sample: readers take it for complete where this has come
+        Topic("roller_loads", _MULTI_ARRAY, "roller loads [N], ring (inner, outer) x roller", _array("roller_loads")),
     )
 }
 """The output topics by name."""

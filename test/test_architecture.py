@@ -181,7 +181,7 @@ def test_public_things_have_docstrings_whose_parameters_match_the_signature(modu
 def test_every_observable_has_a_unit_a_meaning_and_its_column():
     for observable in OBSERVABLES:
         assert observable.meaning and re.fullmatch(r"[a-z][a-z0-9_]*", observable.name)
-        assert observable.unit in {"", "s", "rad", "rad/s", "N", "K", "m", "h"}
+        assert observable.unit in {"", "s", "rad", "rad/s", "N", "K", "m", "h", "W"}
     dtype, rollers = sample_dtype(5), 5
     for name, column in COLUMN._asdict().items():
         per_roller = dtype[name].shape != ()

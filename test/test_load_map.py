@@ -89,3 +89,11 @@ def test_map_has_one_block_of_pixels_a_cell():
     width, height = struct.unpack(">II", chart.png(100.0)[16:24])
     assert (width, height) == map_size()
     assert width % COLUMNS == 0 and height % AZIMUTH_BINS == 0
+
+
+def test_narrow_map_is_higher_for_its_width():
+    chart = LoadMap(1.0, rolling=False, narrow=True)
+    chart.add(standing_load(np.linspace(0.01, 1.0, 100)))
+    width, height = struct.unpack(">II", chart.png(100.0)[16:24])
+    assert (width, height) == map_size(narrow=True)
+    assert height / width > map_size()[1] / map_size()[0]

@@ -23,9 +23,9 @@ from bearing_sim.events import Event, Level
 from bearing_sim.sample import new_block
 from bearing_sim.scene_file import load_scene, scene_from_yaml
 from bearing_sim.simulation import Inputs
-from bearing_sim.sinks.mcap_file import McapFile
+from bearing_sim.sinks.mcap_file import McapFile, message_type
 from bearing_sim.sinks.mcap_sink import METADATA, McapSink
-from bearing_sim.topics import INPUTS, OUTPUTS
+from bearing_sim.topics import ARRAYS, INPUTS, OUTPUTS
 
 START = 1_700_000_000_000_000_000
 ROLLERS = 18
@@ -104,7 +104,7 @@ def test_rosbag2_metadata_counts_what_is_in_the_file(recording):
         records = {record.name: record.metadata for record in reader.iter_metadata()}
         summary = reader.get_summary()
     bag = yaml.safe_load(records["rosbag2"]["serialized_metadata"])["rosbag2_bagfile_information"]
-    assert bag["version"] == 9 and bag["message_count"] == summary.statistics.message_count == 3 * 8 + 1
+    assert bag["version"] == 9 and bag["message_count"] == summary.statistics.message_count == 3 * (len(INPUTS) + len(OUTPUTS)) + 1
     assert bag["duration"]["nanoseconds"] == 200_000_000
     hashes = {entry["topic_metadata"]["name"]: entry["topic_metadata"]["type_description_hash"] for entry in bag["topics_with_message_count"]}
     assert hashes == {channel.topic: channel.metadata["topic_type_hash"] for channel in summary.channels.values()}
@@ -230,3 +230,15 @@ def test_sigkill_loses_at_most_the_last_second(tmp_path):
     assert recovered == sorted(recovered) and len(recovered) > 50
     assert told[-1] - recovered[-1] < 1e9
     assert len(recovered) >= sum(moment <= recovered[-1] for moment in told)
+
+
+@pytest.mark.parametrize("topic", ARRAYS)
+def test_arrays_are_serialised_as_the_general_way_does(topic):
+    ros_type = OUTPUTS[topic].ros_type
+    store = get_typestore(Stores.ROS2_JAZZY)
+    for sample in numbered_block(2):
+        message = OUTPUTS[topic].message(START, sample)
+        read = store.deserialize_cdr(message_type(ros_type).serialize(message), ros_type)
+        np.testing.assert_array_equal(read.data, message["data"])
+        assert [(d.label, d.size, d.stride) for d in read.layout.dim] == [tuple(d.values()) for d in message["layout"]["dim"]]
+        assert bytes(store.serialize_cdr(read, ros_type)) == message_type(ros_type).serialize(message)

@@ -23,7 +23,7 @@ def simulation(*overrides):
 
 def by_roller(state):
     """View of the rollers' part of a state vector: rows r, phi, r', phi', w, shape (5, Z)."""
-    return state[BORDER_STATES:].reshape(-1, 5).T
+    return state[BORDER_STATES:].reshape(5, -1)
 
 
 def plain(state):

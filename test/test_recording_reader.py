@@ -12,6 +12,7 @@ from bearing_sim.recording_reader import ROWS_PER_BLOCK, Recording, RecordingErr
 from bearing_sim.scene_file import load_scene
 from bearing_sim.simulation import Inputs
 from bearing_sim.sinks.mcap_sink import McapSink
+from bearing_sim.topics import INPUTS
 
 SCENE = load_scene("deng2017_table1")
 START_NS = 1_700_000_000_000_000_000
@@ -58,18 +59,55 @@ def test_blocks_are_no_longer_than_promised(path, block):
     assert [len(part) for part in blocks(Recording(path))] == [ROWS_PER_BLOCK, len(block) - ROWS_PER_BLOCK]
 
 
-def test_roller_places_and_ring_centre_follow_from_angles_and_loads(path, block):
+def test_roller_places_follow_from_angles_and_loads(path, block):
     read = np.concatenate(blocks(Recording(path)))
     np.testing.assert_allclose(read["roller_angle"], block["roller_angle"], atol=1e-9)
     np.testing.assert_allclose(read["roller_radius"], block["roller_radius"], atol=2e-9)
+
+
+def assert_ring_centre_follows_from_loads(block):
     three_touch = (block["inner_load"] > 1).sum(axis=1) >= 3
     assert three_touch.sum() > 500
-    np.testing.assert_allclose(read["ring_y"][three_touch], 6e-6, atol=1e-8)
-    np.testing.assert_allclose(read["ring_z"][three_touch], -1e-6, atol=1e-8)
+    np.testing.assert_allclose(block["ring_y"][three_touch], 6e-6, atol=1e-8)
+    np.testing.assert_allclose(block["ring_z"][three_touch], -1e-6, atol=1e-8)
 
 
-def test_rollers_are_taken_to_roll_on_the_outer_ring(path):
+@pytest.mark.parametrize("level", ["slip", "planar"])
+def test_what_a_level_observes_comes_back_from_its_recording(level, tmp_path):
+    from bearing_sim.simulation import Simulation
+
+    simulation = Simulation(load_scene("deng2017_table1", [f"level={level}"]))
+    block = simulation.advance(0.006, samples=ROWS_PER_BLOCK + 200)
+    with McapSink(tmp_path / "run.mcap", simulation.scene, START_NS) as sink:
+        sink.write_inputs(0.0, simulation.inputs)
+        sink.write(block)
+    read = np.concatenate(blocks(Recording(tmp_path / "run.mcap")))
+    derived = {"time", "roller_angle", "roller_radius", "roller_rotation"}
+    for name in block.dtype.names:
+        if name not in derived:
+            np.testing.assert_allclose(read[name], block[name], rtol=1e-12, atol=0.0, err_msg=name)
+    play = SCENE.bearing.cage.pocket_clearance / SCENE.bearing.pitch_radius
+    turn = np.angle(np.exp(1j * (read["roller_angle"] - block["roller_angle"])))
+    assert np.abs(turn).max() < (1e-9 if level == "slip" else 3 * play)
+    np.testing.assert_allclose(read["roller_radius"], block["roller_radius"], atol=2e-6)
+    turned = read["roller_rotation"] - block["roller_rotation"]
+    np.testing.assert_allclose(turned, np.broadcast_to(turned[0], turned.shape), atol=1e-3)  # stamps are whole nanoseconds
+
+
+def test_a_recording_without_the_newer_topics_is_still_read(path, monkeypatch):
+    older = {"roller_loads", "bearing_joints", "cage_slip", "rating_life", "damage"}
+    from bearing_sim import recording_reader
+
+    monkeypatch.setattr(recording_reader, "_TYPES", {t: k for t, k in recording_reader._TYPES.items() if t[1:] in older or t[1:] in INPUTS})
     read = np.concatenate(blocks(Recording(path)))
+    assert np.isnan(read["pocket_force"]).all() and np.isnan(read["shaft_power"]).all() and np.isnan(read["cage_y"]).all()
+    for name in ("roller_spin", "roller_rotation", "inner_equivalent_load", "ring_y", "orbital_speed"):
+        assert np.isfinite(read[name][10:]).all(), name
+    assert_rollers_roll_on_the_outer_ring(read)
+    assert_ring_centre_follows_from_loads(read)
+
+
+def assert_rollers_roll_on_the_outer_ring(read):
     surface = read["roller_spin"] * SCENE.bearing.roller.diameter / 2
     orbit = (read["cage_speed"] * SCENE.bearing.pitch_radius)[:, None]
     np.testing.assert_allclose(surface, np.broadcast_to(orbit, surface.shape))

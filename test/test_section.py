@@ -144,3 +144,40 @@ def test_more_load_is_never_darker_and_none_is_grey():
     colours = load_colours(np.array([0.0, np.nan, 500.0, 5000.0]), 1000.0)
     assert colours[0].tolist() == colours[1].tolist() == list(UNLOADED)
     assert colours[3, :3].tolist() == load_palette()[-1].tolist()
+
+
+PLANAR = load_scene("deng2017_table1", ["level=planar"])
+
+
+def test_cage_on_its_land_is_drawn_on_the_drawn_land_whose_place_is_inside_the_raceway():
+    factor, one = section.cage_magnification(PLANAR), sample()
+    one["cage_y"], one["cage_z"] = 0.15e-3 * math.cos(1.0), 0.15e-3 * math.sin(1.0)
+    outer_radius = 33.5 - 0.15
+    reach = outer_radius + math.hypot(*section.cage_displacement(factor, one))
+    assert reach == pytest.approx(section.drawn_guide_radius(BEARING, factor))
+    assert factor > 1 and reach < 34.875
+    assert f"cage x{factor}" in section_title(PLANAR)
+
+
+def test_level_without_whirl_draws_the_land_where_it_is():
+    assert section.cage_magnification(SCENE) == 1
+    assert section.drawn_guide_radius(BEARING, 1) == pytest.approx(33.5)
+    assert "cage" not in section_title(SCENE)
+
+
+def test_bars_go_where_the_cages_centre_goes():
+    moved = section.cage_bars(BEARING, 0.3, (1.0, 2.0)) - section.cage_bars(BEARING, 0.3)
+    np.testing.assert_allclose(moved, np.broadcast_to([1.0, -2.0], moved.shape), atol=1e-12)  # the picture's second axis points down
+
+
+def test_pocket_that_drives_a_roller_pushes_it_along_the_orbit():
+    one = sample()
+    one["pocket_force"] = 10.0
+    later = one.copy()
+    later["roller_angle"] += 1e-6
+    motion = section.roller_centres(BEARING, 1, later) - section.roller_centres(BEARING, 1, one)
+    arrows = section.pocket_arrows(one, 0.1)
+    np.testing.assert_allclose(distance(arrows), 1.0)
+    np.testing.assert_allclose(arrows, motion / distance(motion)[:, None], atol=1e-4)
+    one["pocket_force"] = np.nan
+    assert (section.pocket_arrows(one, 0.1) == 0.0).all()

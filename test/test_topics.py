@@ -91,6 +91,17 @@ def test_roller_loads_layout_indexes_the_data():
     assert message["data"][1 * roller["stride"] + 2] == sample["outer_load"][2]
 
 
+@pytest.mark.parametrize("name", topics.ARRAYS)
+def test_every_array_says_how_its_numbers_lie(name):
+    sample = one_sample(rollers=4)
+    message = topics.OUTPUTS[name].message(STAMP, sample)
+    dim, (label, fields) = message["layout"]["dim"], topics.ARRAYS[name]
+    assert dim[0]["label"] == label and math.prod(d["size"] for d in dim) == dim[0]["stride"] == len(message["data"])
+    step = dim[1]["stride"] if len(dim) == 2 else 1
+    for row, field in enumerate(fields):
+        np.testing.assert_array_equal(message["data"][row * step : (row + 1) * step], np.atleast_1d(sample[field]))
+
+
 def test_diagnostics_level_is_a_byte_and_the_worst_of_the_events():
     events = [Event(1.0, Level.WARN, "slip.high", "slip is 6 %"), Event(1.0, Level.ERROR, "input.stale", "no speed for 2 s")]
     message = topics.diagnostics(STAMP, events, topics.condition(one_sample()), hardware_id="b1")

@@ -15,7 +15,10 @@ _SAFETY, _LARGEST_GROWTH, _LARGEST_SHRINK = 0.85, 4.0, 0.2
 
 
 @template
-def drive(rhs_and_jacobian, step, error_norm, step_limit, accepted, order, t, end, y, h, tolerance, maximum_step, budget, model, work, scratch, counts):
+def drive(
+    rhs_and_jacobian, step, error_norm, step_limit, accepted, order,
+    t, end, y, h, tolerance, maximum_step, budget, model, work, scratch, counts,
+):  # fmt: skip
     """Advance ``y`` in place from ``t`` to ``end``.
 
     Parameters

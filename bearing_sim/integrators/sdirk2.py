@@ -17,11 +17,12 @@ _CONTRACTION = 0.4  # slower than this, an iteration wants new derivatives
 
 
 @template
-def solve_stage(rhs, rhs_and_jacobian, factor, solve, norm, t, known, shift, tolerance, model, work, y, rate, change, held, counts, renew):
+def solve_stage(rhs, rhs_and_jacobian, factor, solve, norm, t, known, shift, tolerance, model, work, y, rate, change, held, counts):
     """Solve y = known + shift f(t, y) by Newton's method.
 
-    Derivatives are the dearest part of an iteration: they are kept from iteration to iteration and from step to step for as
-    long as each iteration more than halves what is left.
+    Derivatives are taken where the iteration starts: the guess is so good that with them one iteration is most often enough,
+    while those of an earlier stage, where other contacts were loaded, leave several to do.  Later iterations keep them for as
+    long as each more than halves what is left.
 
     Parameters
     ----------
@@ -38,7 +39,7 @@ def solve_stage(rhs, rhs_and_jacobian, factor, solve, norm, t, known, shift, tol
     -------
     converged : bool
     """
-    before, outdated = math.inf, renew
+    before, outdated = math.inf, True
     for _ in range(_ITERATIONS):
         fresh = outdated or held[0] == 0.0
         if fresh:
@@ -97,13 +98,17 @@ def sdirk2_step(rhs, rhs_and_jacobian, predict, factor, solve, norm, t, y, h, to
         for i in range(y.shape[0]):
             slope[i] = next_slope[i]
     predict(y, shift, slope, model, work, first)
-    if not solve_stage(rhs, rhs_and_jacobian, factor, solve, norm, t + shift, y, shift, tolerance, model, work, first, rate, change, held, counts, True):
+    if not solve_stage(
+        rhs, rhs_and_jacobian, factor, solve, norm, t + shift, y, shift, tolerance, model, work, first, rate, change, held, counts, True
+    ):
         return False
     for i in range(y.shape[0]):
         error[i] = (first[i] - y[i]) * per_shift  # the first stage's slope
         known[i] = y[i] + (1.0 - GAMMA) * h * error[i]
     predict(known, shift, error, model, work, next_y)
-    if not solve_stage(rhs, rhs_and_jacobian, factor, solve, norm, t + h, known, shift, tolerance, model, work, next_y, rate, change, held, counts, True):
+    if not solve_stage(
+        rhs, rhs_and_jacobian, factor, solve, norm, t + h, known, shift, tolerance, model, work, next_y, rate, change, held, counts, True
+    ):
         return False
     for i in range(y.shape[0]):
         next_slope[i] = (next_y[i] - known[i]) * per_shift

@@ -2,7 +2,21 @@
 
 import math
 
-from bearing_sim.kernels.compilation import kernel
+from bearing_sim.kernels.compilation import kernel, template
+
+FRICTION_SPIN = 10.0  # rad/s; pocket friction is proportional to spin well below this
+
+
+@template
+def pocket_friction(spin, coefficient):
+    """Return the friction coefficient of a pocket with the sign of the roller's spin, smooth through zero.
+
+    Parameters
+    ----------
+    spin : of the roller [rad/s].
+    coefficient : mu_c of a roller that turns fast (Deng 2017, eq. 13).
+    """
+    return coefficient * spin / math.sqrt(spin * spin + FRICTION_SPIN * FRICTION_SPIN)
 
 
 @kernel

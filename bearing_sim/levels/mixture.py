@@ -5,6 +5,17 @@ from bearing_sim.kernels.drag import cylinder_torque, end_face_torque
 
 
 @kernel
+def bore_torque(cage_speed, shaft_speed, params, lubrication):
+    """Return the torque of the mixture in the cage's bore, which the inner ring drives [N m], and minus its slope by cage speed [N m s].
+
+    Parameters as of `mixture_torque`.
+    """
+    radius = params.cage.inner_radius
+    gap = radius - params.raceways.inner_radius
+    return cylinder_torque(shaft_speed - cage_speed, radius, gap, params.cage.width, lubrication.mixture_density, lubrication.viscosity)
+
+
+@kernel
 def mixture_torque(cage_speed, shaft_speed, params, lubrication):
     """Return the torque of the mixture on the cage [N m] and its slope by cage speed [N m s].
 
@@ -18,8 +29,7 @@ def mixture_torque(cage_speed, shaft_speed, params, lubrication):
     """
     cage, density, viscosity = params.cage, lubrication.mixture_density, lubrication.viscosity
     outer_gap = params.raceways.low_radius - cage.outer_radius
-    inner_gap = cage.inner_radius - params.raceways.inner_radius
     outside, outside_slope = cylinder_torque(-cage_speed, cage.outer_radius, outer_gap, cage.width - cage.guide_width, density, viscosity)
-    inside, inside_slope = cylinder_torque(shaft_speed - cage_speed, cage.inner_radius, inner_gap, cage.width, density, viscosity)
+    inside, inside_slope = bore_torque(cage_speed, shaft_speed, params, lubrication)
     faces, faces_slope = end_face_torque(cage_speed, cage.outer_radius, cage.inner_radius, density, viscosity)
     return outside + inside - faces, -outside_slope - inside_slope - faces_slope

@@ -21,8 +21,10 @@ from bearing_sim.levels.inputs import shaft_speed_at
 from bearing_sim.levels.observation import observe_course
 from bearing_sim.levels.pitch import pitch_step
 from bearing_sim.levels.planar_algebra import BLOCK, BORDER
+from bearing_sim.levels.planar_power import planar_powers
 from bearing_sim.levels.planar_prediction import predict
 from bearing_sim.levels.planar_state import CAGE_Y, CAGE_Z, OMEGA, RING_Y, RING_Z, ROLLER, ROLLERS, THETA
+from bearing_sim.levels.power import write_powers
 from bearing_sim.params import Params
 from bearing_sim.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT
 from bearing_sim.sample import COLUMN, SCALARS
@@ -41,7 +43,7 @@ def initial_state(params: Params, work, shaft_speed, load_y, load_z):
     count = params.rollers.count
     balance, course = slip.new_work(params), slip.initial_state(params, None, shaft_speed, load_y, load_z)
     inner, outer = slip.equivalent_loads(0.0, course[slip.OMEGA], load_y, load_z, params, balance)
-    work.powers[:] = inner**ROTATING_EXPONENT, outer**STATIONARY_EXPONENT
+    work.load_means[:] = inner**ROTATING_EXPONENT, outer**STATIONARY_EXPONENT
     slip.balance_loads(0.0, course[slip.OMEGA], load_y, load_z, params, balance)
     state = np.zeros(2 * BORDER + BLOCK * count)
     state[RING_Y], state[RING_Z] = balance.ring
@@ -150,8 +152,8 @@ def average_loads(h, y, model, work):
         inner += total(present * (q_i * q_i) * (q_i * q_i))
         outer += total(present * (q_e * q_e) * (q_e * q_e) * square_root(q_e))
     share = 1.0 - math.exp(-abs(turned) / (2.0 * math.pi))
-    work.powers[0] += share * (inner / count - work.powers[0])
-    work.powers[1] += share * (outer / count - work.powers[1])
+    work.load_means[0] += share * (inner / count - work.load_means[0])
+    work.load_means[1] += share * (outer / count - work.load_means[1])
 
 
 @kernel
@@ -170,16 +172,20 @@ def count_iterations(evaluated, derived, factored, work, counts):
 
 @kernel
 def _drive(t, end, stop, y, h, tolerance, maximum_step, budget, model, work, memory, counts):
-    scratch = memory.scratch
     evaluated, derived, factored = counts[COUNT.right_hand_sides], counts[COUNT.jacobians], counts[COUNT.factorisations]
-    status, h = drive(nothing, sdirk2, error_norm, step_limit, average_loads, 2, t, end, y, h, tolerance, maximum_step, budget, model, work, scratch, counts)
+    status, h = drive(
+        nothing, sdirk2, error_norm, step_limit, average_loads, 2,
+        t, end, y, h, tolerance, maximum_step, budget, model, work, memory.scratch, counts,
+    )  # fmt: skip
     count_iterations(evaluated, derived, factored, work, counts)
     return status, h
 
 
 @kernel
 def _drive(t, end, y, h, tolerance, maximum_step, budget, model, work, scratch, counts):
-    return drive(nothing, _step, error_norm, step_limit, average_loads, 2, t, end, y, h, tolerance, maximum_step, budget, model, work, scratch, counts)
+    return drive(
+        nothing, _step, error_norm, step_limit, average_loads, 2, t, end, y, h, tolerance, maximum_step, budget, model, work, scratch, counts
+    )
 
 
 @kernel
@@ -187,10 +193,12 @@ def observe(t, y, model, work, interval, previous, row, rate):
     """Write the sample of state ``y``; parameters as in `bearing_sim.levels.slip.observe`."""
     rhs(t, y, model, work, rate)
     rows, count = work.rollers, model.params.rollers.count
-    inner, outer = work.powers[0] ** (1.0 / ROTATING_EXPONENT), work.powers[1] ** (1.0 / STATIONARY_EXPONENT)
+    inner, outer = work.load_means[0] ** (1.0 / ROTATING_EXPONENT), work.load_means[1] ** (1.0 / STATIONARY_EXPONENT)
     observe_course(t, y[THETA], y[OMEGA], inner, outer, model, interval, previous, row)
     row[COLUMN.ring_y], row[COLUMN.ring_z] = y[RING_Y], y[RING_Z]
     row[COLUMN.cage_y], row[COLUMN.cage_z] = y[CAGE_Y], y[CAGE_Z]
+    row[COLUMN.land_eccentricity] = math.hypot(y[CAGE_Y], y[CAGE_Z]) / model.params.cage.guide_clearance
+    write_powers(planar_powers(y, shaft_speed_at(t, model.drive), model, work), row)
     for j in range(count):
         first, block, lane = SCALARS + j, j // LANES, j % LANES
         spin = rows[block, ROLLER.spin, lane]

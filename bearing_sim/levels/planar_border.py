@@ -8,11 +8,11 @@ from bearing_sim.levels.mixture import mixture_torque
 from bearing_sim.levels.planar_algebra import BORDER
 from bearing_sim.levels.planar_state import CAGE_Y, CAGE_Z, OMEGA, RING_Y, RING_Z, THETA
 
-_LAND_SLIDING = 0.1  # m/s; boundary friction is proportional to the sliding speed well below this
+LAND_SLIDING = 0.1  # m/s; boundary friction is proportional to the sliding speed well below this
 
 
 @kernel
-def _land(y, params, viscosity):
+def land_film(y, params, viscosity):
     """Forces y, z [N] and torque [N m] of guide land and their derivatives by cage y, z, and speeds y, z, omega (3 rows of 5).
 
     A short journal bearing (Deng 2017, section 3.1.3) whose film goes over into line contact with boundary friction where it
@@ -49,7 +49,7 @@ def _land(y, params, viscosity):
 
 
 @kernel
-def _land_contact(y, params):
+def land_contact(y, params):
     """Force towards the centre [N] where the cage touches its land, with its slopes by eccentricity and its rate; and both."""
     cage = params.cage
     eccentricity = math.sqrt(y[CAGE_Y] * y[CAGE_Y] + y[CAGE_Z] * y[CAGE_Z])
@@ -71,12 +71,12 @@ def border_accelerations(t, y, model, work, rate, with_jacobian):
     cage = params.cage
     load_y, load_z = load_at(t, drive)
     rate[BORDER + RING_Y], rate[BORDER + RING_Z] = load_y / params.ring.mass, load_z / params.ring.mass
-    f_y, f_z, m, yy, yz, yo, zy, zz, zo, my, mz, mo = _land(y, params, model.lubrication.viscosity)
+    f_y, f_z, m, yy, yz, yo, zy, zz, zo, my, mz, mo = land_film(y, params, model.lubrication.viscosity)
     drag, drag_slope = mixture_torque(y[OMEGA], shaft_speed_at(t, drive), params, model.lubrication)
-    contact, by_depth, by_rate, eccentricity, approach = _land_contact(y, params)
+    contact, by_depth, by_rate, eccentricity, approach = land_contact(y, params)
     n_y, n_z = 0.0, 0.0
     surface = y[OMEGA] * cage.guide_radius
-    smooth = math.sqrt(surface * surface + _LAND_SLIDING * _LAND_SLIDING)
+    smooth = math.sqrt(surface * surface + LAND_SLIDING * LAND_SLIDING)
     friction = cage.land_friction * surface / smooth
     if contact > 0.0:
         n_y, n_z = y[CAGE_Y] / eccentricity, y[CAGE_Z] / eccentricity
@@ -107,7 +107,7 @@ def border_accelerations(t, y, model, work, rate, with_jacobian):
     lever = -friction * cage.guide_radius / cage.inertia
     own[THETA, CAGE_Y] += lever * by_y
     own[THETA, CAGE_Z] += lever * by_z
-    friction_slope = cage.land_friction * cage.guide_radius * _LAND_SLIDING * _LAND_SLIDING / (smooth * smooth * smooth)
+    friction_slope = cage.land_friction * cage.guide_radius * LAND_SLIDING * LAND_SLIDING / (smooth * smooth * smooth)
     own[CAGE_Y, OMEGA] += contact * friction_slope * n_z / cage.mass
     own[CAGE_Z, OMEGA] -= contact * friction_slope * n_y / cage.mass
     own[THETA, OMEGA] -= friction_slope * contact * cage.guide_radius / cage.inertia

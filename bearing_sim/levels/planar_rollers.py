@@ -5,7 +5,8 @@ Deng 2017, eq. 14 to 16, with the exact directions about the displaced inner rin
 
 import math
 
-from bearing_sim.kernels.compilation import kernel, template
+from bearing_sim.kernels.cage import FRICTION_SPIN
+from bearing_sim.kernels.compilation import kernel
 from bearing_sim.kernels.contact import damped_line_contact, log_penetration
 from bearing_sim.kernels.drag import churning_force
 from bearing_sim.kernels.elementary import cosine_sine
@@ -17,8 +18,6 @@ from bearing_sim.levels.planar_algebra import BORDER
 from bearing_sim.levels.planar_border import border_accelerations
 from bearing_sim.levels.planar_slopes import roller_slopes
 from bearing_sim.levels.planar_state import CAGE_Y, CAGE_Z, OMEGA, RING_Y, RING_Z, ROLLER, THETA, collect_rates, spread_state
-
-_FRICTION_SPIN = 10.0  # rad/s; friction is proportional to the spin well below this
 
 
 @kernel
@@ -107,7 +106,7 @@ def _pocket_forces(block, y, cage_cosine, cage_sine, params, rows):
         force += side * (wall - cage.pocket_stiffness * larger(excess, 0.0))
         stiffness = where_positive(excess, wall_stiffness, stiffness)
         damping += wall_damping
-    smooth = 1.0 / square_root(spin * spin + _FRICTION_SPIN * _FRICTION_SPIN)
+    smooth = 1.0 / square_root(spin * spin + FRICTION_SPIN * FRICTION_SPIN)
     store(rows, block, ROLLER.pocket_cosine, pocket_cosine)
     store(rows, block, ROLLER.pocket_sine, pocket_sine)
     store(rows, block, ROLLER.play_cosine, play_cosine)
@@ -118,7 +117,7 @@ def _pocket_forces(block, y, cage_cosine, cage_sine, params, rows):
     store(rows, block, ROLLER.pocket_stiffness, stiffness)
     store(rows, block, ROLLER.pocket_damping, damping)
     store(rows, block, ROLLER.pocket_friction, cage.pocket_friction * spin * smooth)
-    store(rows, block, ROLLER.pocket_friction_slope, (cage.pocket_friction * _FRICTION_SPIN * _FRICTION_SPIN) * smooth * smooth * smooth)
+    store(rows, block, ROLLER.pocket_friction_slope, (cage.pocket_friction * FRICTION_SPIN * FRICTION_SPIN) * smooth * smooth * smooth)
 
 
 @kernel

@@ -91,12 +91,8 @@ def _inner_slopes(block, y, params, rows, contacts, slopes):
     ring_y, ring_z = _PASSED + LOCAL * RING_Y, _PASSED + LOCAL * RING_Z
     _store_own(block, slopes, ring_y, 1.0, (r_0 * c - a_0 * s, r_1 * c - a_1 * s, r_2 * c - a_2 * s, r_3 * c - a_3 * s), r_4 * c - a_4 * s)
     _store_own(block, slopes, ring_z, 1.0, (r_0 * s + a_0 * c, r_1 * s + a_1 * c, r_2 * s + a_2 * c, r_3 * s + a_3 * c), r_4 * s + a_4 * c)
-    _store_ring(
-        block, slopes, ring_y, 1.0, f_r1 * c - f_t1 * s, f_r2 * c - f_t2 * s, f_r3 * c - f_t3 * s, f_r4 * c - f_t4 * s, cosine, sine
-    )
-    _store_ring(
-        block, slopes, ring_z, 1.0, f_r1 * s + f_t1 * c, f_r2 * s + f_t2 * c, f_r3 * s + f_t3 * c, f_r4 * s + f_t4 * c, cosine, sine
-    )
+    _store_ring(block, slopes, ring_y, 1.0, f_r1 * c - f_t1 * s, f_r2 * c - f_t2 * s, f_r3 * c - f_t3 * s, f_r4 * c - f_t4 * s, cosine, sine)
+    _store_ring(block, slopes, ring_z, 1.0, f_r1 * s + f_t1 * c, f_r2 * s + f_t2 * c, f_r3 * s + f_t3 * c, f_r4 * s + f_t4 * c, cosine, sine)
 
 
 @template
@@ -157,10 +153,10 @@ def _store_cage(block, slopes, first, scale, by_position, by_speed):
 @kernel
 def _pocket_slopes(block, y, params, rows, slopes):
     """Add the pockets to the rows of the rollers, write those of the cage."""
-    cage, mass = params.cage, params.rollers.mass
+    mass = params.rollers.mass
     radius, radial_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.radial_speed)
     stiffness, damping = load(rows, block, ROLLER.pocket_stiffness), load(rows, block, ROLLER.pocket_damping)
-    force, offset = -load(rows, block, ROLLER.pocket_force), load(rows, block, ROLLER.pocket_offset)
+    force = -load(rows, block, ROLLER.pocket_force)
     friction, bend = load(rows, block, ROLLER.pocket_friction), load(rows, block, ROLLER.pocket_friction_slope)
     p_c, p_s = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
     play_c, play_s = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)

@@ -72,7 +72,7 @@ class Work(NamedTuple):
     slopes: np.ndarray  # derivatives through each roller, see `bearing_sim.levels.planar_algebra.SLOPES`
     border_own: np.ndarray  # derivatives of the border's accelerations by border positions and speeds, shape (5, 10)
     factored: Factored  # of I - gamma h J
-    powers: np.ndarray  # running means of Q_i^4 and Q_e^4.5 over a cage turn, shape (2,)
+    load_means: np.ndarray  # running means of Q_i^4 and Q_e^4.5 over a cage turn, shape (2,)
     held: np.ndarray  # shift of the factorisation at hand and end of the last step [s], shape (2,)
     counts: np.ndarray  # right-hand sides, Jacobians and factorisations inside steps, int64
 

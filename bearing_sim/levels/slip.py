@@ -16,7 +16,7 @@ from bearing_sim.integrators.drive import drive
 from bearing_sim.integrators.rosenbrock2 import rosenbrock2_step
 from bearing_sim.integrators.status import COUNT, OK
 from bearing_sim.kernels.arrow import ARROW, Arrow, factor_shifted, new_arrow, solve_factored
-from bearing_sim.kernels.cage import land_torque
+from bearing_sim.kernels.cage import FRICTION_SPIN, land_torque, pocket_friction
 from bearing_sim.kernels.compilation import kernel, template
 from bearing_sim.kernels.contact import line_penetration
 from bearing_sim.kernels.drag import churning_force
@@ -28,12 +28,13 @@ from bearing_sim.levels.inputs import Drive, load_at, shaft_speed_at
 from bearing_sim.levels.mixture import mixture_torque
 from bearing_sim.levels.observation import observe_course
 from bearing_sim.levels.pitch import pitch_step
+from bearing_sim.levels.power import write_powers
+from bearing_sim.levels.slip_power import slip_powers
 from bearing_sim.params import Lubrication, Params
 from bearing_sim.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT
 from bearing_sim.sample import COLUMN, SCALARS
 
 THETA, OMEGA, SPIN = 0, 1, 2
-_FRICTION_SPIN = 10.0  # rad/s; pocket friction is proportional to spin well below this
 _PITCH_POSITIONS = 10  # cage angles over one roller pitch for the equivalent loads
 
 
@@ -178,8 +179,8 @@ def _equations(t, y, model, work, rate, with_jacobian):
         torque += radius * tangential[j]
         inertia += rollers.mass * radius * radius
         if with_jacobian:
-            inner_rolling, inner_sliding = 0.5 * contacts[block, CONTACT.by_rolling, lane], contacts[block, CONTACT.by_sliding, lane]
-            outer_rolling, outer_sliding = 0.5 * contacts[blocks + block, CONTACT.by_rolling, lane], contacts[blocks + block, CONTACT.by_sliding, lane]
+            inner_rolling, outer_rolling = 0.5 * contacts[block, CONTACT.by_rolling, lane], 0.5 * contacts[blocks + block, CONTACT.by_rolling, lane]
+            inner_sliding, outer_sliding = contacts[block, CONTACT.by_sliding, lane], contacts[blocks + block, CONTACT.by_sliding, lane]
             inner_by_cage = (roller_radius - inner_radius) * inner_rolling - radius * inner_sliding
             outer_by_cage = (2.0 * roller_radius + radius) * outer_rolling - radius * outer_sliding
             inner_by_spin = roller_radius * (inner_rolling - inner_sliding)
@@ -195,12 +196,13 @@ def _equations(t, y, model, work, rate, with_jacobian):
         # The pocket supplies what the roller lacks to go with the cage, and its friction brakes the spin (Deng 2017, eq. 13).
         pocket = abs(tangential[j] - rollers.mass * loads[LOAD.radius, j] * cage_acceleration)
         spin = y[SPIN + j]
-        smooth = math.sqrt(spin * spin + _FRICTION_SPIN * _FRICTION_SPIN)
-        brake = cage.pocket_friction * pocket * roller_radius / rollers.inertia
+        brake = pocket * pocket_friction(spin, cage.pocket_friction)
         turning = contacts[j // LANES, CONTACT.force, j % LANES] - contacts[blocks + j // LANES, CONTACT.force, j % LANES]
-        rate[SPIN + j] = roller_radius * turning / rollers.inertia - brake * spin / smooth
+        rate[SPIN + j] = roller_radius * (turning - brake) / rollers.inertia
         if with_jacobian:
-            jacobian[ARROW.diagonal, j] -= brake * _FRICTION_SPIN * _FRICTION_SPIN / (smooth * smooth * smooth)
+            smooth = math.sqrt(spin * spin + FRICTION_SPIN * FRICTION_SPIN)
+            brake_slope = cage.pocket_friction * pocket * FRICTION_SPIN * FRICTION_SPIN / (smooth * smooth * smooth)
+            jacobian[ARROW.diagonal, j] -= roller_radius * brake_slope / rollers.inertia
             jacobian[ARROW.row, j] /= inertia
     if with_jacobian:
         border[0] = 1.0
@@ -281,6 +283,7 @@ def observe(t, y, model, work, interval, previous, row, rate):
     inner_equivalent, outer_equivalent = equivalent_loads(y[THETA], cage_speed, load_y, load_z, params, work)
     observe_course(t, y[THETA], cage_speed, inner_equivalent, outer_equivalent, model, interval, previous, row)
     rhs(t, y, model, work, rate)
+    write_powers(slip_powers(cage_speed, rate[OMEGA], y[SPIN:], shaft_speed_at(t, model.drive), model, work), row)
     row[COLUMN.ring_y] = work.ring[0]
     row[COLUMN.ring_z] = work.ring[1]
     for j in range(count):
@@ -323,10 +326,10 @@ def keep_nothing(h, y, model, work):
 
 @kernel
 def _drive(t, end, stop, y, h, tolerance, maximum_step, budget, model, work, memory, counts):
-    scratch = memory.scratch
     return drive(
-        rhs_and_jacobian, rosenbrock2, error_norm, step_limit, keep_nothing, 2, t, end, y, h, tolerance, maximum_step, budget, model, work, scratch, counts
-    )
+        rhs_and_jacobian, rosenbrock2, error_norm, step_limit, keep_nothing, 2,
+        t, end, y, h, tolerance, maximum_step, budget, model, work, memory.scratch, counts,
+    )  # fmt: skip
 
 
 @template

@@ -13,6 +13,7 @@ COLUMNS = 160
 NOT_YET = (13, 14, 17)
 NO_LOAD = (44, 47, 55)
 _PIXELS = (3, 4)  # height and width of a cell
+_NARROW = 2  # times the height in a narrow picture
 
 
 class LoadMap:
@@ -25,9 +26,11 @@ class LoadMap:
     ----------
     span : time [s] that the columns cover.
     rolling : True keeps the newest ``span`` seconds; False starts at the first sample and doubles the span when the run outgrows it.
+    narrow : True makes pictures for a view that shares its place.
     """
 
-    def __init__(self, span: float, rolling: bool):
+    def __init__(self, span: float, rolling: bool, narrow: bool = False):
+        self._narrow = narrow
         self.span = span
         self.start: float | None = None  # time at the left edge [s]; known from the first sample on
         self._rolling = rolling
@@ -85,18 +88,27 @@ class LoadMap:
         index[np.nan_to_num(loads) <= 0] = 255
         index[np.isnan(loads)] = 0
         palette = np.concatenate(([NOT_YET], load_palette(254), [NO_LOAD])).astype(np.uint8)
-        return palette_png(np.kron(index[::-1], np.ones(_PIXELS, np.uint8)), palette)
+        return palette_png(np.kron(index[::-1], np.ones(_pixels(self._narrow), np.uint8)), palette)
 
 
-def map_size() -> tuple[int, int]:
-    """Return width and height of the map's picture [px]."""
-    return COLUMNS * _PIXELS[1], AZIMUTH_BINS * _PIXELS[0]
+def map_size(narrow: bool = False) -> tuple[int, int]:
+    """Return width and height of the map's picture [px]; a ``narrow`` one suits a view that shares its place."""
+    return COLUMNS * _pixels(narrow)[1], AZIMUTH_BINS * _pixels(narrow)[0]
 
 
-def map_bounds() -> tuple[tuple[float, float], tuple[float, float]]:
+def label_distance(narrow: bool = False) -> float:
+    """Return how far left of the map the middle of its labels stands [px]: they keep their size on the screen."""
+    return (0.11 if narrow else 0.06) * map_size(narrow)[0]
+
+
+def _pixels(narrow: bool) -> tuple[int, int]:
+    return (_NARROW if narrow else 1) * _PIXELS[0], _PIXELS[1]
+
+
+def map_bounds(narrow: bool = False) -> tuple[tuple[float, float], tuple[float, float]]:
     """Return the horizontal and vertical range [px] of the map with the labels of its axes."""
-    width, height = map_size()
-    return (-0.115 * width, 1.05 * width), (-0.06 * height, 1.2 * height)
+    width, height = map_size(narrow)
+    return (-1.92 * label_distance(narrow), width + 0.83 * label_distance(narrow)), (-0.06 * height, 1.2 * height)
 
 
 def palette_png(index: np.ndarray, palette: np.ndarray) -> bytes:

@@ -18,6 +18,7 @@ from rosbags.typesys import Stores, get_typestore
 
 _CHUNK_SIZE = 64 * 1024  # [byte] the writer holds one chunk in memory: small chunks keep each write and each loss short
 _ACTIVE = ".active"
+_ARRAY = "std_msgs/msg/Float64MultiArray"
 _FOREVER = {"sec": 9223372036, "nsec": 854775807}
 _QOS = [
     {
@@ -59,7 +60,26 @@ def message_type(ros_type: str) -> MessageType:
     store = _typestore()
     fill = _filler(ros_type)
     definition, _ = store.generate_msgdef(ros_type, ros_version=2)
-    return MessageType(definition, store.hash_rihs01(ros_type), lambda message: bytes(store.serialize_cdr(fill(message), ros_type)))
+
+    def serialize(message: dict) -> bytes:
+        return bytes(store.serialize_cdr(fill(message), ros_type))
+
+    return MessageType(definition, store.hash_rihs01(ros_type), _array_serializer(serialize) if ros_type == _ARRAY else serialize)
+
+
+def _array_serializer(serialize: Callable[[dict], bytes]) -> Callable[[dict], bytes]:
+    """Return a serialiser of arrays that keeps the bytes before the numbers: most of a sample are arrays of unchanging lay-out."""
+    heads: dict[tuple, bytes] = {}
+
+    def serialize_array(message: dict) -> bytes:
+        layout, data = message["layout"], np.asarray(message["data"], "<f8")
+        key = (layout["data_offset"], data.size, *[(dim["label"], dim["size"], dim["stride"]) for dim in layout["dim"]])
+        if key not in heads:
+            whole = serialize(message)
+            heads[key] = whole[: len(whole) - data.nbytes]
+        return heads[key] + data.tobytes()
+
+    return serialize_array
 
 
 @cache

@@ -9,6 +9,9 @@ import rerun.blueprint as rrb
 from bearing_sim.scene import Scene
 from bearing_sim.sinks import section
 from bearing_sim.sinks.load_map import map_bounds
+from bearing_sim.sinks.rerun_cage import ORBIT_EDGE
+from bearing_sim.sinks.rerun_power import CAUSES, SAMPLES
+from bearing_sim.sinks.rerun_power import bounds as power_bounds
 from bearing_sim.sinks.rerun_series import TIMELINE
 
 LIVE_WINDOW = 30.0  # [s] of history that a live view shows
@@ -31,7 +34,11 @@ class Extent(NamedTuple):
 
 def section_title(scene: Scene) -> str:
     """Return the title of the cross-section, which states what is not to scale."""
-    return f"Cross-section: lobes, play and displacements drawn x{section.magnification(scene.bearing)}"
+    return f"Cross-section: lobes, play and displacements drawn x{section.magnification(scene.bearing)}{_cage_factor(scene)}"
+
+
+def _cage_factor(scene: Scene) -> str:
+    return f", cage x{section.cage_magnification(scene)}" if scene.cage_whirls else ""
 
 
 def blueprint(scene: Scene, bounds, live: bool, extent: Extent | None = None) -> rrb.Blueprint:
@@ -45,7 +52,7 @@ def blueprint(scene: Scene, bounds, live: bool, extent: Extent | None = None) ->
     extent : what the finished run covers; axes choose themselves where absent.
     """
     axes = _Axes(live, extent)
-    plots = rrb.Horizontal(_middle(axes), _right(axes), column_shares=[0.58, 0.42])
+    plots = rrb.Horizontal(_middle(scene, axes), _right(axes), column_shares=[0.58, 0.42])
     log = rrb.TextLogView(origin="/log", name="Log", columns=rrb.TextLogColumns(timeline_columns=[TIMELINE], text_log_columns=["loglevel", "body"]))
     return rrb.Blueprint(
         rrb.Horizontal(_left(scene, bounds), rrb.Vertical(plots, log, row_shares=[0.84, 0.16]), column_shares=[0.42, 0.58]),
@@ -104,9 +111,15 @@ def _window(start: rr.TimeRangeBoundary, end: rr.TimeRangeBoundary) -> rrb.TimeA
 
 
 def _left(scene: Scene, bounds) -> rrb.Vertical:
-    map_x, map_y = map_bounds()
+    map_x, map_y = map_bounds(narrow=scene.cage_whirls)
     reach = bounds[0][1]
     eye = rrb.EyeControls3D(position=(2.0 * reach, 1.1 * reach, 0.8 * reach), look_target=(0.0, 0.0, 0.0), eye_up=(0.0, 0.0, 1.0))
+    chart = rrb.Spatial2DView(
+        origin="/load_map",
+        name="Load map, colours as above" if scene.cage_whirls else "Load map: load on the inner ring by azimuth and time, colours as above",
+        visual_bounds=rrb.VisualBounds2D(x_range=map_x, y_range=map_y),
+        background=BACKGROUND,
+    )
     return rrb.Vertical(
         rrb.Tabs(
             rrb.Spatial2DView(
@@ -118,43 +131,62 @@ def _left(scene: Scene, bounds) -> rrb.Vertical:
             rrb.Spatial3DView(
                 origin="/",
                 contents="/solid/**",
-                name=f"3D, x{section.magnification(scene.bearing)}",
+                name=f"3D, x{section.magnification(scene.bearing)}{_cage_factor(scene)}",
                 background=BACKGROUND,
                 eye_controls=eye,
                 line_grid=False,
             ),
             active_tab=0,
         ),
-        rrb.Spatial2DView(
-            origin="/load_map",
-            name="Load map: load on the inner ring by azimuth and time, colours as above",
-            visual_bounds=rrb.VisualBounds2D(x_range=map_x, y_range=map_y),
-            background=BACKGROUND,
-        ),
+        rrb.Horizontal(chart, _orbit(scene), column_shares=[0.64, 0.36]) if scene.cage_whirls else chart,
         row_shares=[0.71, 0.29],
     )
 
 
-def _middle(axes: _Axes) -> rrb.Vertical:
+def _orbit(scene: Scene) -> rrb.Spatial2DView:
+    edge = ORBIT_EDGE * scene.bearing.cage.guide_clearance * 1e6
+    return rrb.Spatial2DView(
+        origin="/cage_orbit",
+        name="Cage orbit",
+        visual_bounds=rrb.VisualBounds2D(x_range=(-edge, edge), y_range=(-edge, edge)),
+        background=BACKGROUND,
+    )
+
+
+def _middle(scene: Scene, axes: _Axes) -> rrb.Vertical:
+    whirl = [axes.plot("e/c", ["/cage/eccentricity"])] if scene.cage_whirls else []
     return rrb.Vertical(
         axes.plot("Speeds [rpm] (blue: shaft, orange: cage, grey: cage without slip)", ["/speed/shaft", "/speed/ideal_cage", "/speed/cage"]),
-        axes.plot("Cage slip [%] (yellow: warning, red: error)", ["/slip/warning", "/slip/error", "/slip/cage"]),
+        rrb.Tabs(
+            axes.plot("Cage slip [%] (yellow: warning, red: error)", ["/slip/warning", "/slip/error", "/slip/cage"]),
+            axes.plot("Pocket [N]", ["/loads/pocket_largest"]),
+            *whirl,
+            active_tab=0,
+        ),
         rrb.StateTimelineView(origin="/regime", name="Regime by these thresholds", time_view=axes.time),
         axes.plot("Rating life, log10 of hours: 2 = 100 h, 3 = 1000 h (yellow: warning)", ["/life/warning", "/life/log10_hours"], from_zero=False),
         rrb.Tabs(
             axes.plot("Largest load [N]: blue inner, red outer", ["/loads/inner_largest", "/loads/outer_largest"]),
             axes.plot("Inner [N]", ["/loads/each/inner"]),
             axes.plot("Outer [N]", ["/loads/each/outer"]),
+            active_tab=0,
         ),
         row_shares=[0.23, 0.22, 0.12, 0.2, 0.23],
     )
 
 
 def _right(axes: _Axes) -> rrb.Vertical:
+    across, down = power_bounds()
+    bars = rrb.Spatial2DView(
+        origin="/power_now",
+        name=f"Power: mean of {SAMPLES} samples",
+        visual_bounds=rrb.VisualBounds2D(x_range=across, y_range=down),
+        background=BACKGROUND,
+    )
     return rrb.Vertical(
         rrb.Tabs(rrb.TextDocumentView(origin="/now", name="Now"), rrb.TextDocumentView(origin="/about", name="About")),
+        rrb.Tabs(bars, axes.plot("Plot [W]", [f"/power/{cause}" for cause in CAUSES]), active_tab=0),
         axes.plot("Radial load [N]", ["/load/radial"]),
-        axes.plot("Oil temperature [°C]", ["/oil/temperature"]),
-        axes.plot("Damage [millionths of the life]", ["/damage/ppm"]),
-        row_shares=[0.4, 0.2, 0.2, 0.2],
+        rrb.Tabs(axes.plot("Damage [millionths of the life]", ["/damage/ppm"]), axes.plot("Oil [°C]", ["/oil/temperature"]), active_tab=0),
+        row_shares=[0.385, 0.285, 0.165, 0.165],
     )

@@ -11,6 +11,7 @@ from bearing_sim.sinks.section import MILLIMETRE, picture, polar
 
 ROOT = "/section"
 LOAD_ARROW_FACTOR = 2.0  # the radial load's arrow is longer than the contacts' by this, within what the bore has room for
+FIRST_POCKET_SCALE = 20.0  # N; grows by itself when exceeded
 _TURN = np.linspace(0.0, 2 * math.pi, section.CONTOUR_POINTS)
 
 
@@ -27,6 +28,8 @@ class SectionDrawing:
     def __init__(self, recording: rr.RecordingStream, scene: Scene, load_scale: float):
         self._recording = recording
         self._bearing = scene.bearing
+        self._cage_factor = section.cage_magnification(scene)
+        self._pocket_scale, self._pocket_legend_scale = FIRST_POCKET_SCALE, 0.0
         self.factor = section.magnification(scene.bearing)
         self.load_scale = load_scale
         self._legend_scale = 0.0
@@ -44,13 +47,8 @@ class SectionDrawing:
         self._still("outer_ring/raceway", rr.LineStrips2D([polar(contour, _TURN)], radii=0.22, colors=colours.VERMILION, draw_order=8.0))
         round_radius = section.ideal_outer_radius(bearing) / MILLIMETRE
         self._still("outer_ring/round_reference", rr.LineStrips2D(_dashes(round_radius, 120), radii=0.06, colors=colours.GREY, draw_order=7.0))
-        guide = bearing.cage.guide_radius / MILLIMETRE
+        guide = section.drawn_guide_radius(bearing, self._cage_factor)
         self._still("outer_ring/guide_land", rr.LineStrips2D(_dashes(guide, 240), radii=0.08, colors=colours.GREEN, draw_order=-2.0))
-        cage = bearing.cage
-        rims = [cage.inner_radius / MILLIMETRE, (cage.guide_radius - cage.guide_clearance) / MILLIMETRE]
-        sizes = [[rim, rim] for rim in rims]
-        circles = rr.Ellipses2D(centers=np.zeros((2, 2)), half_sizes=sizes, line_radii=0.12, colors=colours.DARK_BRONZE, draw_order=-1.0)
-        self._still("cage/rims", circles)
         self._draw_axes()
         self._style_moving_parts()
 
@@ -62,6 +60,10 @@ class SectionDrawing:
         ring = {"half_sizes": [[raceway - width / 2] * 2, [raceway - 0.1] * 2], "line_radii": [width / 2, 0.2]}
         self._still("inner_ring/body", rr.Ellipses2D.from_fields(**ring, colors=[colours.DARK_STEEL, colours.BLUE], draw_order=0.0))
         self._still("inner_ring/shaft_mark", rr.LineStrips2D.from_fields(radii=0.45, colors=colours.BLUE, draw_order=2.0))
+        cage = bearing.cage
+        rims = [cage.inner_radius / MILLIMETRE, (cage.guide_radius - cage.guide_clearance) / MILLIMETRE]
+        sizes = [[rim, rim] for rim in rims]
+        self._still("cage/rims", rr.Ellipses2D.from_fields(half_sizes=sizes, line_radii=0.12, colors=colours.DARK_BRONZE, draw_order=-1.0))
         bars = np.full((bearing.roller.count, 4), colours.BRONZE, np.uint8)
         bars[0] = colours.ORANGE
         self._still("cage/bars", rr.LineStrips2D.from_fields(radii=section.cage_bar_stroke(bearing), colors=bars, draw_order=3.0))
@@ -69,6 +71,7 @@ class SectionDrawing:
         self._still("spin_marks", rr.LineStrips2D.from_fields(radii=0.22, colors=colours.WHITE, draw_order=6.0))
         self._still("forces/inner", rr.Arrows2D.from_fields(radii=0.22, draw_order=9.0))
         self._still("forces/outer", rr.Arrows2D.from_fields(radii=0.22, colors=colours.VERMILION, draw_order=9.0))
+        self._still("forces/pocket", rr.Arrows2D.from_fields(radii=0.22, colors=colours.PURPLE, draw_order=9.5))
         self._still("forces/radial_load", rr.Arrows2D.from_fields(radii=0.5, colors=colours.YELLOW, draw_order=10.0))
 
     def draw(self, sample: np.void) -> None:
@@ -79,13 +82,16 @@ class SectionDrawing:
         if self.load_scale != self._legend_scale:
             self._draw_legend()
         self._draw_inner_ring(sample)
-        bars = section.cage_bars(self._bearing, sample["cage_angle"])
+        cage = section.cage_displacement(self._cage_factor, sample)
+        self._log("cage/rims", rr.Ellipses2D.from_fields(centers=np.tile(picture(*cage), (2, 1))))
+        bars = section.cage_bars(self._bearing, sample["cage_angle"], cage)
         self._log("cage/bars", rr.LineStrips2D.from_fields(strips=bars))
         fill = colours.load_colours(sample["inner_load"], self.load_scale)
         centres = section.roller_centres(self._bearing, self.factor, sample)
         self._log("rollers", rr.Points2D.from_fields(positions=centres, colors=fill))
         self._log("spin_marks", rr.LineStrips2D.from_fields(strips=section.spin_marks(self._bearing, centres, sample)))
         self._draw_forces(sample, fill)
+        self._draw_pocket_forces(sample, centres)
 
     def _draw_inner_ring(self, sample) -> None:
         centre = section.ring_displacement(self.factor, sample)
@@ -105,6 +111,27 @@ class SectionDrawing:
         self._log("forces/radial_load", rr.Arrows2D.from_fields(origins=np.zeros((1, 2)), vectors=vector[None]))
         beside = picture(0.25 * self._bore, (0.22 if sample["load_z"] <= 0 else -0.09) * self._bore)  # where the arrow is not
         self._text("forces/radial_load_text", [beside], [f"radial load {load:.0f} N"])
+
+    def _draw_pocket_forces(self, sample, centres: np.ndarray) -> None:
+        largest = _largest(np.abs(sample["pocket_force"]))
+        if largest > 1.05 * self._pocket_scale:
+            self._pocket_scale = section.round_up(largest)
+        if self._pocket_scale != self._pocket_legend_scale:
+            self._draw_pocket_legend()
+        vectors = section.pocket_arrows(sample, self._pocket_length / self._pocket_scale)
+        self._log("forces/pocket", rr.Arrows2D.from_fields(origins=centres, vectors=vectors))
+
+    def _draw_pocket_legend(self) -> None:
+        self._pocket_legend_scale = self._pocket_scale
+        level, start = -0.75 * self._bore, -0.5 * self._bore
+        arrow = picture(self._pocket_length, 0.0)
+        self._log("legend/pocket", rr.Arrows2D(origins=[picture(start, level)], vectors=[arrow], radii=0.22, colors=colours.PURPLE))
+        self._text("legend/pocket_text", [picture(0.19 * self._bore, level + 0.05 * self._bore)], [f"{self._pocket_scale:g} N on roller by pocket"])
+
+    @property
+    def _pocket_length(self) -> float:
+        """Drawn length of the pocket forces' scale [mm]."""
+        return 0.9 * self._bearing.roller.diameter / MILLIMETRE
 
     def _draw_axes(self) -> None:
         unit = self._bore
@@ -126,7 +153,7 @@ class SectionDrawing:
     def _draw_legend(self) -> None:
         self._legend_scale = self.load_scale
         unit, steps = self._bore, 64
-        edges, level = np.linspace(-0.45 * unit, 0.45 * unit, steps + 1), -0.6 * unit
+        edges, level = np.linspace(-0.45 * unit, 0.45 * unit, steps + 1), -0.46 * unit
         strips = np.stack((picture(edges[:-1], level), picture(edges[1:], level)), axis=1)
         self._log("legend/map", rr.LineStrips2D(strips, radii=0.03 * unit, colors=colours.load_palette(steps)))
         loads = np.linspace(0.0, self.load_scale, 3)

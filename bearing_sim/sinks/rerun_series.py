@@ -8,6 +8,7 @@ import rerun as rr
 from bearing_sim.events import Event, Level
 from bearing_sim.scene import Scene
 from bearing_sim.sinks import colours, section
+from bearing_sim.sinks.rerun_power import CAUSES
 
 TIMELINE = "sim_time"
 RPM = 30 / math.pi
@@ -36,10 +37,17 @@ _LINES = {
     "/oil/temperature": ("oil", colours.VERMILION, 2.0),
     "/loads/inner_largest": ("inner, largest", colours.BLUE, 2.0),
     "/loads/outer_largest": ("outer, largest", colours.VERMILION, 2.0),
+    "/cage/eccentricity": ("cage eccentricity e/c", colours.ORANGE, 2.0),
+    "/loads/pocket_largest": ("on a roller by its pocket, largest", colours.PURPLE, 2.0),
     "/sink/dropped": ("blocks dropped", colours.WHITE, 1.5),
-}
+} | {f"/power/{cause}": (name, colour, 2.0) for cause, (name, colour) in CAUSES.items()}
 
-_AGGREGATION = {"/loads/inner_largest": "Max", "/loads/outer_largest": "Max", "/slip/cage": "Max"}  # where many samples share a pixel
+_AGGREGATION = {
+    "/loads/pocket_largest": "Max",
+    "/loads/inner_largest": "Max",
+    "/loads/outer_largest": "Max",
+    "/slip/cage": "Max",
+}  # where many samples share a pixel
 
 
 def plottable(values) -> np.ndarray:
@@ -68,9 +76,12 @@ def series(block: np.ndarray) -> dict[str, np.ndarray]:
         "/oil/temperature": block["oil_temperature"] - ZERO_CELSIUS,
         "/loads/inner_largest": block["inner_load"].max(axis=1),
         "/loads/outer_largest": block["outer_load"].max(axis=1),
+        "/loads/pocket_largest": np.abs(block["pocket_force"]).max(axis=1),
         "/loads/each/inner": block["inner_load"],
         "/loads/each/outer": block["outer_load"],
-    }
+        "/loads/each/pocket": block["pocket_force"],
+        "/cage/eccentricity": block["land_eccentricity"],
+    } | {f"/power/{cause}": block[f"{cause}_power"] for cause in CAUSES}
 
 
 class RunSeries:
@@ -96,9 +107,9 @@ class RunSeries:
             self._recording.log(path, line, static=True)
         count = self._scene.bearing.roller.count
         around = colours.load_palette(count)
-        for ring in ("inner", "outer"):
-            names = [f"{ring} {j + 1}" for j in range(count)]
-            self._recording.log(f"/loads/each/{ring}", rr.SeriesLines(names=names, colors=around, widths=np.full(count, 1.0)), static=True)
+        for force in ("inner", "outer", "pocket"):
+            names = [f"{force} {j + 1}" for j in range(count)]
+            self._recording.log(f"/loads/each/{force}", rr.SeriesLines(names=names, colors=around, widths=np.full(count, 1.0)), static=True)
         states = rr.StateConfiguration(values=list(REGIMES), labels=list(REGIMES), colors=np.array(list(REGIMES.values()), np.uint32))
         self._recording.log("/regime", states, static=True)
 
@@ -202,6 +213,11 @@ def _newton(loads: np.ndarray) -> str:
     return f"{float(loads.max()):.0f} N" if np.isfinite(loads).any() else "unknown"
 
 
+_WHIRL = """The cage's displacement and its guide clearance have a factor of their own, which the title says; cage orbit: the place of
+its centre in the guide clearance and its path in the last turns, dots where samples are too far apart for a line.
+"""
+
+
 def about(scene: Scene, factor: int) -> str:
     """Return the description of a run as Markdown."""
     bearing, oil, limits = scene.bearing, scene.lubricant, scene.thresholds
@@ -224,7 +240,10 @@ traction law {oil.traction.law}.
 is drawn x{factor}. Seen against the x axis: Y right, Z up; azimuth runs from +Y towards +Z. Red line: outer raceway; dashed: ideal
 round raceway; green: guide land. Rollers are coloured by inner contact load, grey ones carry none. Arrows at the raceways: contact
 forces on the rings, full scale of the colours = longest; yellow: radial load on the inner ring, twice that scale as far as there is room.
-The orange cage bar and the white marks show rotation.
+The orange cage bar and the white marks show rotation. Purple arrows: forces of the pockets on the rollers, scale in the middle.
+{_WHIRL if scene.cage_whirls else ""}
+**Power** by cause: what the shaft puts in by the tractions on the inner ring and by the mixture in the cage's bore is lost, or
+stored for a moment in motion and elastic contacts; the bars are means of the newest samples.
 
 **Thresholds**: slip {100 * limits.slip_warning:g} % warning, {100 * limits.slip_error:g} % error; life below {limits.life_warning:g} h warning.
 

@@ -27,6 +27,7 @@ class SolidDrawing:
     def __init__(self, recording: rr.RecordingStream, scene: Scene):
         self._recording = recording
         self._bearing = scene.bearing
+        self._cage_factor = section.cage_magnification(scene)
         self._factor = section.magnification(scene.bearing)
         self._half_length = scene.bearing.roller.length / 2 / MILLIMETRE
 
@@ -61,7 +62,8 @@ class SolidDrawing:
         self._log("inner_ring/shaft_mark", rr.LineStrips3D.from_fields(strips=mark[None]))
         middle = (bearing.cage.inner_radius + bearing.cage.guide_radius - bearing.cage.guide_clearance) / 2 / MILLIMETRE
         azimuth = sample["cage_angle"] + (np.arange(bearing.roller.count) - 0.5) * 2 * math.pi / bearing.roller.count
-        bars = np.stack([_ring(middle, azimuth, end) for end in (-1.1 * half, 1.1 * half)], axis=1)
+        cage = [*section.cage_displacement(self._cage_factor, sample), 0.0]
+        bars = np.stack([_ring(middle, azimuth, end) + cage for end in (-1.1 * half, 1.1 * half)], axis=1)
         self._log("cage/bars", rr.LineStrips3D.from_fields(strips=bars))
 
     def _bar_colours(self) -> np.ndarray:

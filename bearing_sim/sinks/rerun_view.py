@@ -9,8 +9,10 @@ import rerun as rr
 from bearing_sim.events import Event, Level
 from bearing_sim.scene import Scene
 from bearing_sim.sinks import section
-from bearing_sim.sinks.load_map import LoadMap, map_size
+from bearing_sim.sinks.load_map import LoadMap, label_distance, map_size
 from bearing_sim.sinks.rerun_blueprint import LIVE_WINDOW, Extent, blueprint
+from bearing_sim.sinks.rerun_cage import CageDrawing
+from bearing_sim.sinks.rerun_power import PowerDrawing
 from bearing_sim.sinks.rerun_scene import SectionDrawing, labels
 from bearing_sim.sinks.rerun_series import TIMELINE, RunSeries, about
 from bearing_sim.sinks.rerun_solid import SolidDrawing
@@ -97,6 +99,8 @@ class RunView:
         scale = section.round_up(load_scale) if load_scale else first_load_scale(scene)
         self._drawing = SectionDrawing(self._recording, scene, scale)
         self._solid = SolidDrawing(self._recording, scene)
+        self._cage = CageDrawing(self._recording, scene) if scene.cage_whirls else None
+        self._power = PowerDrawing(self._recording)
         sinks = [rr.FileSink(str(path))] if path is not None else []
         if serve_port is not None:
             sinks.append(rr.GrpcServerSink("127.0.0.1", serve_port, server_memory_limit=_SERVER_MEMORY))
@@ -108,15 +112,19 @@ class RunView:
         # A file keeps every picture: half as many for those who watch, evenly spread ones where nobody does.
         in_file = FileFrames(duration, shortest=2 / _RATE if real_time else 0.0)
         self._frames = LiveFrames(_RATE if path is None else _RATE / 2) if live else in_file
+        self._details = LiveFrames(rate=10.0) if live else None  # nobody reads numbers faster
         self._map_times = LiveFrames(rate=2.0) if live else FileFrames(duration, most=30)
-        self._map = LoadMap(LIVE_WINDOW if live else duration or 1.0, rolling=live)
-        self._whole_map = LoadMap(duration or 1.0, rolling=False) if live and path is not None else None
+        self._map = LoadMap(LIVE_WINDOW if live else duration or 1.0, rolling=live, narrow=scene.cage_whirls)
+        self._whole_map = LoadMap(duration or 1.0, rolling=False, narrow=scene.cage_whirls) if live and path is not None else None
         self._pending: list[np.ndarray] = []
         self._newest: np.void | None = None
         self._first_time = 0.0
         self._scene, self._has_file = scene, path is not None
         self._drawing.draw_still_parts()
         self._solid.draw_still_parts()
+        self._power.draw_still_parts()
+        if self._cage is not None:
+            self._cage.draw_still_parts()
         self._series.describe()
         self._recording.log("/about", rr.TextDocument(about(scene, self._drawing.factor), media_type=rr.MediaType.MARKDOWN), static=True)
         self.dropped = 0
@@ -130,8 +138,12 @@ class RunView:
             self._series.write_event(Event(float(block["time"][0]), Level.OK, "run.start", "the run starts"))
         self._newest = block[-1]
         self._pending.append(block)
+        drawn = 0
         for index in self._frames.pick(block["time"]):
+            self._follow(block[drawn : index + 1])
             self._draw(block[index])
+            drawn = index + 1
+        self._follow(block[drawn:])
         if self._whole_map is not None:
             self._whole_map.add(block)
         entered = 0
@@ -176,16 +188,27 @@ class RunView:
         self._recording.set_time(TIMELINE, duration=float(sample["time"]))
         self._drawing.draw(sample)
         self._solid.draw(sample, self._drawing.load_scale)
+        if self._details is None or self._details.pick(sample["time"][None]):
+            self._power.draw()
+            if self._cage is not None:
+                self._cage.draw(sample)
         self._series.write_readout(sample, self.dropped)
 
+    def _follow(self, samples: np.ndarray) -> None:
+        """Take samples into what a picture shows of the time before it."""
+        self._power.add(samples)
+        if self._cage is not None:
+            self._cage.add(samples)
+
     def _draw_map(self, chart: LoadMap, time: float) -> None:
-        width, height = map_size()
+        narrow = self._scene.cage_whirls
+        width, height = map_size(narrow)
         self._recording.set_time(TIMELINE, duration=time)
         self._recording.log("/load_map/map", rr.EncodedImage(contents=chart.png(self._drawing.load_scale), media_type="image/png"))
         times = section.round_ticks(chart.start, chart.start + chart.span)
         across = (times - chart.start) / chart.span * width
         self._label("/load_map/time", np.stack((across, np.full(len(times), 1.02 * height)), axis=1), [f"{time:g} s" for time in times])
-        places = np.stack((np.full(5, -0.06 * width), height * np.linspace(0.9, -0.02, 5)), axis=1)
+        places = np.stack((np.full(5, -label_distance(narrow)), height * np.linspace(0.9, -0.02, 5)), axis=1)
         self._label("/load_map/azimuth", places, ["0° +Y", "90° +Z", "180°", "270°", "360°"])
 
     def _label(self, path: str, places: np.ndarray, texts: list[str]) -> None:

@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from bearing_sim.scene import Bearing, OuterRaceway
+from bearing_sim.scene import Bearing, OuterRaceway, Scene
 
 MILLIMETRE = 1e-3  # [m]
 CONTOUR_POINTS = 361
@@ -62,6 +62,28 @@ def magnification(bearing: Bearing) -> int:
     return next((factor for factor in (300, 200, 150, 100, 80, 50, 40, 30, 20, 15, 10, 8, 5, 4, 3, 2) if factor <= wanted), 1)
 
 
+def cage_magnification(scene: Scene) -> int:
+    """Return the factor for the cage's displacement and its guide clearance: the land stays well inside the raceway; 1 without whirl.
+
+    The cage has a factor of its own, because its clearance is several times that of the rollers.
+    """
+    if not scene.cage_whirls:
+        return 1
+    cage = scene.bearing.cage
+    room = 0.8 * (ideal_outer_radius(scene.bearing) - cage.guide_radius) / cage.guide_clearance + 1.0
+    return next((factor for factor in (100, 50, 30, 20, 15, 10, 8, 5, 4, 3, 2) if factor <= room), 1)
+
+
+def drawn_guide_radius(bearing: Bearing, cage_factor: float) -> float:
+    """Return the drawn radius [mm] of the guide land: the clearance is drawn ``cage_factor`` times."""
+    return (bearing.cage.guide_radius + (cage_factor - 1) * bearing.cage.guide_clearance) / MILLIMETRE
+
+
+def cage_displacement(cage_factor: float, sample) -> tuple[float, float]:
+    """Return the drawn displacement (y, z) [mm] of the cage's centre; none where it is not known."""
+    return tuple(cage_factor * float(np.nan_to_num(sample[field])) / MILLIMETRE for field in ("cage_y", "cage_z"))
+
+
 def drawn_contour(bearing: Bearing, factor: float, azimuth) -> np.ndarray:
     """Return the drawn radius [mm] of the outer raceway at an azimuth [rad]."""
     ideal = ideal_outer_radius(bearing)
@@ -90,8 +112,10 @@ def spin_marks(bearing: Bearing, centres: np.ndarray, sample) -> np.ndarray:
     return np.stack((centres, centres + rim), axis=1)
 
 
-def cage_bars(bearing: Bearing, cage_angle: float) -> np.ndarray:
+def cage_bars(bearing: Bearing, cage_angle: float, centre=(0.0, 0.0)) -> np.ndarray:
     """Return the middle lines of the bars between the pockets, shape (Z, 2, 2); bar 0 lies behind pocket 0.
+
+    The cage's centre is drawn at ``centre`` (y, z) [mm].
 
     Drawn as thick as `cage_bar_stroke` says, a line's ends being round: along the radius where the pockets leave little,
     along the circumference where they leave much.
@@ -100,9 +124,9 @@ def cage_bars(bearing: Bearing, cage_angle: float) -> np.ndarray:
     azimuth = cage_angle + (np.arange(count) - 0.5) * 2 * math.pi / count
     middle, depth, width = _cage_bar(bearing)
     if width <= depth:
-        return np.stack((polar(middle - (depth - width), azimuth), polar(middle + (depth - width), azimuth)), axis=1)
+        return np.stack((polar(middle - (depth - width), azimuth, centre), polar(middle + (depth - width), azimuth, centre)), axis=1)
     lean = (width - depth) / middle
-    return np.stack((polar(middle, azimuth - lean), polar(middle, azimuth + lean)), axis=1)
+    return np.stack((polar(middle, azimuth - lean, centre), polar(middle, azimuth + lean, centre)), axis=1)
 
 
 def cage_bar_stroke(bearing: Bearing) -> float:
@@ -140,6 +164,16 @@ def load_arrows(bearing: Bearing, factor: float, sample, length_per_newton: floa
     inner_vectors = polar(-length_per_newton * sample["inner_load"], azimuth)
     outer_vectors = polar(length_per_newton * sample["outer_load"], azimuth)
     return inner_origins, inner_vectors, outer_origins, outer_vectors
+
+
+def pocket_arrows(sample, length_per_newton: float) -> np.ndarray:
+    """Return vectors of the pockets' forces on the rollers, along the orbit, shape (Z, 2); none where they are not known.
+
+    Parameters
+    ----------
+    length_per_newton : drawn length of a force [mm/N].
+    """
+    return polar(length_per_newton * np.nan_to_num(sample["pocket_force"]), sample["roller_angle"] + math.pi / 2)
 
 
 def regime(slip: float, warning: float, error: float, before: str = "") -> str:

@@ -1,0 +1,113 @@
+"""Power by cause at level ``planar`` (see `bearing_sim.levels.power`), with the forces of `planar_border` and `planar_rollers`.
+
+What gives back what it takes, so is no loss: Palmgren's part of every normal force, the spring of the pockets' films, and the
+contour's slope, by which an outer load pushes along the orbit what it is pressed in.  Without that slope (``contour_slope:
+false``, Deng's form) nothing pays for the contour's squeeze, and the books are open by the sum of Q_e R_e' phi'.
+
+The film of the guide land pushes the cage across its eccentricity, and so feeds the whirl out of a rotation that pays no
+torque for it; ``land_power`` is net of that, what the land takes from the cage altogether.
+"""
+
+import math
+
+from bearing_sim.kernels.compilation import kernel
+from bearing_sim.kernels.lanes import LANES
+from bearing_sim.kernels.traction import CONTACT
+from bearing_sim.levels.planar_algebra import BORDER
+from bearing_sim.levels.planar_border import LAND_SLIDING, land_contact, land_film
+from bearing_sim.levels.planar_state import CAGE_Y, CAGE_Z, OMEGA, ROLLER
+from bearing_sim.levels.power import Powers, elastic_force, shaft_traction_power, sliding_power, windage_powers
+
+
+@kernel
+def _raceway_damping(params, work):
+    """Return the power lost by damping between rollers and raceways [W]."""
+    contacts, stiffness, lost = work.contacts, params.raceways.stiffness, 0.0
+    for raceway in range(2):
+        for j in range(params.rollers.count):
+            block, lane = raceway * work.rollers.shape[0] + j // LANES, j % LANES
+            damped = contacts[block, CONTACT.load, lane] - elastic_force(contacts[block, CONTACT.penetration, lane], stiffness)
+            lost += damped * contacts[block, CONTACT.rate, lane]
+    return lost
+
+
+@kernel
+def _churning(rows, count):
+    """Return the power of the mixture's drag on all rollers [W]."""
+    lost = 0.0
+    for j in range(count):
+        block, lane = j // LANES, j % LANES
+        lost += rows[block, ROLLER.churning, lane] * rows[block, ROLLER.radius, lane] * rows[block, ROLLER.orbital_speed, lane]
+    return lost
+
+
+@kernel
+def _pockets(y, params, rows):
+    """Return the power lost to pocket friction and film damping, and to damping of the walls' contact [W].
+
+    Friction acts where a roller's surface meets the wall, against what that surface slides along the wall: by the roller's spin,
+    by its motion in the pocket and by the cage's rotation.
+    """
+    cage, omega = params.cage, y[OMEGA]
+    lost, damped = 0.0, 0.0
+    for j in range(params.rollers.count):
+        block, lane = j // LANES, j % LANES
+        spin, radius = rows[block, ROLLER.spin, lane], rows[block, ROLLER.radius, lane]
+        radial_speed, orbital_speed = rows[block, ROLLER.radial_speed, lane], rows[block, ROLLER.orbital_speed, lane]
+        speed_r = y[BORDER + CAGE_Y] * rows[block, ROLLER.pocket_cosine, lane] + y[BORDER + CAGE_Z] * rows[block, ROLLER.pocket_sine, lane]
+        offset, rate, force = rows[block, ROLLER.pocket_offset, lane], rows[block, ROLLER.pocket_rate, lane], -rows[block, ROLLER.pocket_force, lane]
+        side = params.rollers.radius if force >= 0.0 else -params.rollers.radius
+        slides = radial_speed * rows[block, ROLLER.play_cosine, lane] - radius * orbital_speed * rows[block, ROLLER.play_sine, lane]
+        sliding = slides + spin * side - (speed_r - omega * (offset + side))
+        film = cage.pocket_damping * rate
+        spring = cage.pocket_stiffness * min(max(offset, -cage.pocket_clearance), cage.pocket_clearance)
+        wall = math.copysign(elastic_force(abs(offset) - cage.pocket_clearance, params.raceways.stiffness), offset)
+        lost += force * rows[block, ROLLER.pocket_friction, lane] * sliding + film * rate
+        damped += (force - film - spring - wall) * rate
+    return lost, damped
+
+
+@kernel
+def _land_powers(y, model):
+    """Return the power that film and friction of the guide land take from the cage, and what damping takes where it touches [W]."""
+    cage = model.params.cage
+    omega, y_speed, z_speed = y[OMEGA], y[BORDER + CAGE_Y], y[BORDER + CAGE_Z]
+    film = land_film(y, model.params, model.lubrication.viscosity)
+    lost = -(film[0] * y_speed + film[1] * z_speed + film[2] * omega)
+    touching = land_contact(y, model.params)
+    contact, eccentricity = touching[0], touching[3]
+    depth = eccentricity - (cage.guide_clearance - cage.land_film)
+    if depth <= 0.0:
+        return lost, 0.0
+    n_y, n_z = y[CAGE_Y] / eccentricity, y[CAGE_Z] / eccentricity
+    approach = n_y * y_speed + n_z * z_speed
+    surface = omega * cage.guide_radius
+    friction = cage.land_friction * surface / math.sqrt(surface * surface + LAND_SLIDING * LAND_SLIDING)
+    lost += friction * contact * (surface + n_y * z_speed - n_z * y_speed)
+    return lost, (contact - elastic_force(depth, model.params.raceways.stiffness)) * approach
+
+
+@kernel
+def planar_powers(y, shaft_speed, model, work):
+    """Return `bearing_sim.levels.power.Powers` of a state.
+
+    Parameters
+    ----------
+    y : the state.
+    shaft_speed : [rad/s].
+    model, work : of the level; the right-hand side at ``y`` has been evaluated into ``work``.
+    """
+    params, contacts, count = model.params, work.contacts, model.params.rollers.count
+    bore, windage = windage_powers(y[OMEGA], shaft_speed, params, model.lubrication)
+    pocket, walls = _pockets(y, params, work.rollers)
+    land, touching = _land_powers(y, model)
+    return Powers(
+        shaft_traction_power(contacts, count, shaft_speed, params.raceways.inner_radius) + bore,
+        sliding_power(contacts, 0, count),
+        sliding_power(contacts, work.rollers.shape[0], count),
+        _churning(work.rollers, count),
+        windage,
+        land,
+        pocket,
+        _raceway_damping(params, work) + walls + touching,
+    )

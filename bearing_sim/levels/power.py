@@ -1,0 +1,99 @@
+"""Power by cause: where the work of the shaft goes, the same books at every level.
+
+At each instant, with exactly the forces of the level's equations of motion,
+
+    shaft_power + (power of the radial load) = sum of the losses + d(kinetic + elastic energy)/dt.
+
+A loss is force times sliding speed, or force times rate of approach.  The shaft puts power in through the tractions on the inner
+ring and through the mixture in the cage's bore; what the ring and the shaft do to the mixture elsewhere is outside the model.
+"""
+
+from typing import NamedTuple
+
+from bearing_sim.kernels.compilation import kernel, template
+from bearing_sim.kernels.contact import EXPONENT
+from bearing_sim.kernels.lanes import LANES
+from bearing_sim.kernels.traction import CONTACT
+from bearing_sim.levels.mixture import bore_torque, mixture_torque
+from bearing_sim.sample import COLUMN
+
+
+class Powers(NamedTuple):
+    """Power by cause [W]; the fields are those of `bearing_sim.sample` without the ending ``_power``."""
+
+    shaft: float
+    inner_sliding: float
+    outer_sliding: float
+    churning: float
+    windage: float
+    land: float
+    pocket: float
+    damping: float
+
+
+@kernel
+def write_powers(powers, row):
+    """Write `Powers` into a flat sample (see `bearing_sim.sample.flat`)."""
+    row[COLUMN.shaft_power] = powers.shaft
+    row[COLUMN.inner_sliding_power] = powers.inner_sliding
+    row[COLUMN.outer_sliding_power] = powers.outer_sliding
+    row[COLUMN.churning_power] = powers.churning
+    row[COLUMN.windage_power] = powers.windage
+    row[COLUMN.land_power] = powers.land
+    row[COLUMN.pocket_power] = powers.pocket
+    row[COLUMN.damping_power] = powers.damping
+
+
+@kernel
+def sliding_power(contacts, first, count):
+    """Return the power lost by sliding between one raceway and all rollers [W], T du of each.
+
+    Parameters
+    ----------
+    contacts : rows `bearing_sim.kernels.traction.CONTACT`, tractions computed.
+    first : the raceway's first block.
+    count : number of rollers.
+    """
+    lost = 0.0
+    for j in range(count):
+        block, lane = first + j // LANES, j % LANES
+        lost += contacts[block, CONTACT.force, lane] * contacts[block, CONTACT.sliding, lane]
+    return lost
+
+
+@kernel
+def shaft_traction_power(contacts, count, shaft_speed, inner_radius):
+    """Return the power of the shaft through the tractions on the inner ring [W]: their torque times its speed.
+
+    Parameters
+    ----------
+    contacts : rows `bearing_sim.kernels.traction.CONTACT`, the inner contacts first.
+    count : number of rollers.
+    shaft_speed : [rad/s].
+    inner_radius : R_i [m].
+    """
+    force = 0.0
+    for j in range(count):
+        force += contacts[j // LANES, CONTACT.force, j % LANES]
+    return force * inner_radius * shaft_speed
+
+
+@kernel
+def windage_powers(cage_speed, shaft_speed, params, lubrication):
+    """Return what the shaft puts into the mixture in the cage's bore and what cage and shaft lose to the mixture there [W].
+
+    Heat in the bore is torque times the difference of both speeds, on the cage's other faces torque times cage speed.
+
+    Parameters
+    ----------
+    cage_speed, shaft_speed : [rad/s].
+    params, lubrication : of the bearing, see `bearing_sim.params`.
+    """
+    driven = bore_torque(cage_speed, shaft_speed, params, lubrication)[0] * shaft_speed
+    return driven, driven - mixture_torque(cage_speed, shaft_speed, params, lubrication)[0] * cage_speed
+
+
+@template
+def elastic_force(penetration, stiffness):
+    """Return Palmgren's K delta^(10/9) [N], the part of a normal force that gives back what it takes; 0 of parted bodies."""
+    return stiffness * max(penetration, 0.0) ** EXPONENT

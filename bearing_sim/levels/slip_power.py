@@ -1,0 +1,47 @@
+"""Power by cause at level ``slip`` (see `bearing_sim.levels.power`).
+
+Rollers are locked to their pockets and everything radial is quasi-static: nothing is damped, no land is eccentric, and the
+kinetic energy of the books is that of rotation, of cage, orbiting rollers and their spins.  The forces that lean, by the
+contour's slope and the ring's displacement, exchange it with the contacts' elastic energy and the load's, and lose nothing.
+"""
+
+from bearing_sim.kernels.cage import land_torque, pocket_friction
+from bearing_sim.kernels.compilation import kernel
+from bearing_sim.kernels.drag import churning_force
+from bearing_sim.kernels.load_balance import LOAD
+from bearing_sim.levels.power import Powers, shaft_traction_power, sliding_power, windage_powers
+
+
+@kernel
+def slip_powers(cage_speed, cage_acceleration, spins, shaft_speed, model, work):
+    """Return `bearing_sim.levels.power.Powers` of a state.
+
+    Parameters
+    ----------
+    cage_speed, cage_acceleration : [rad/s, rad/s^2].
+    spins : of the rollers [rad/s], shape (Z,).
+    shaft_speed : [rad/s].
+    model, work : of the level; the right-hand side at that state has been evaluated into ``work``.
+    """
+    params, lubrication, contacts, loads = model.params, model.lubrication, work.contacts, work.loads
+    rollers, count = params.rollers, params.rollers.count
+    bore, windage = windage_powers(cage_speed, shaft_speed, params, lubrication)
+    drag = churning_force(
+        params.raceways.pitch_radius * cage_speed, lubrication.mixture_density, lubrication.viscosity, 2.0 * rollers.radius, rollers.length
+    )[0]
+    churning, pocket = 0.0, 0.0
+    for j in range(count):
+        radius = loads[LOAD.radius, j]
+        churning += drag * radius * cage_speed
+        force = abs(rollers.mass * radius * cage_acceleration - work.tangential[j])
+        pocket += force * pocket_friction(spins[j], params.cage.pocket_friction) * rollers.radius * spins[j]
+    return Powers(
+        shaft_traction_power(contacts, count, shaft_speed, params.raceways.inner_radius) + bore,
+        sliding_power(contacts, 0, count),
+        sliding_power(contacts, contacts.shape[0] // 2, count),
+        churning,
+        windage,
+        -land_torque(cage_speed, 0.0, 0.0, lubrication.viscosity, params.cage)[0] * cage_speed,
+        pocket,
+        0.0,
+    )

@@ -1,0 +1,187 @@
+"""Power by cause: the books of energy close, and each loss is what a plain calculation gives."""
+
+import math
+
+import numpy as np
+import pytest
+
+from bearing_sim import Inputs, Simulation, load_scene
+from bearing_sim.kernels.lanes import by_roller
+from bearing_sim.kernels.load_balance import LOAD as LOAD_ROW
+from bearing_sim.kernels.traction import CONTACT
+from bearing_sim.levels import planar, slip
+from bearing_sim.levels.inputs import Drive
+from bearing_sim.levels.planar_algebra import BLOCK
+from bearing_sim.levels.planar_power import planar_powers
+from bearing_sim.levels.planar_state import ROLLER, ROLLERS
+from bearing_sim.levels.slip_power import slip_powers
+
+LOSSES = ("inner_sliding", "outer_sliding", "churning", "windage", "land", "pocket", "damping")
+LOAD = np.array([700.0, -300.0])
+SHAFT_SPEED = 4500.0
+
+
+def simulation(level, *overrides):
+    return Simulation(load_scene("deng2017_table1", [f"level={level}", *overrides]))
+
+
+def model_of(run):
+    return run._model(run.inputs, 1.0)._replace(drive=Drive(0.0, SHAFT_SPEED, 3e4, LOAD[0], 0.0, LOAD[1], 0.0))
+
+
+def rollers_of(state):
+    """View of r, phi, r', phi' and w of all rollers, shape (Z, 5): the one place here that knows how the state is laid out."""
+    return state[ROLLERS:].reshape(BLOCK, -1).T
+
+
+def rough_planar_state(run, seed):
+    """Rollers loaded, parted and colliding; walls hit on both sides; the cage against its land, coming or going, or off it."""
+    random = np.random.default_rng(seed)
+    state = run._state.copy()
+    angle = random.uniform(0, 2 * math.pi)
+    state[2:4] = random.choice([0.1e-3, 0.149e-3]) * np.array([math.cos(angle), math.sin(angle)])
+    state[5:9] += random.normal(size=4) * [1e-2, 1e-2, 0.5, 0.5]
+    state[9] *= random.uniform(0.7, 1.1)
+    rollers = rollers_of(state)
+    rollers += random.normal(size=rollers.shape) * [2e-6, 3e-3, 1.0, 20.0, 1500.0]
+    return state
+
+
+def planar_energy(run, state):
+    """Kinetic and elastic energy [J] of a state, from its positions and speeds alone."""
+    params = run._params
+    raceways, cage = params.raceways, params.cage
+    ring, centre, theta = state[0:2], state[2:4], state[4]
+    r, phi, r_speed, phi_speed, spin = rollers_of(state).T
+    kinetic = 0.5 * params.ring.mass * state[5:7] @ state[5:7] + 0.5 * cage.mass * state[7:9] @ state[7:9] + 0.5 * cage.inertia * state[9] ** 2
+    kinetic += 0.5 * params.rollers.mass * (r_speed**2 + (r * phi_speed) ** 2).sum() + 0.5 * params.rollers.inertia * (spin**2).sum()
+
+    def contact(depth):
+        return 9 / 19 * raceways.stiffness * np.maximum(depth, 0.0) ** (19 / 9)
+
+    place = np.stack([r * np.cos(phi), r * np.sin(phi)])
+    inner = raceways.inner_radius + params.rollers.radius - np.hypot(*(place - ring[:, None]))
+    outer = r + params.rollers.radius - contour(raceways.contour, phi)
+    pocket = theta + 2 * math.pi * np.arange(len(r)) / len(r)
+    offset = np.abs(np.sum((place - centre[:, None]) * np.stack([-np.sin(pocket), np.cos(pocket)]), axis=0))
+    play = cage.pocket_clearance
+    film = cage.pocket_stiffness * np.where(offset < play, offset**2 / 2, play * (offset - play / 2))
+    depth = np.hypot(*centre) - (cage.guide_clearance - cage.land_film)
+    return kinetic + (contact(inner) + contact(outer) + film + contact(offset - play)).sum() + contact(depth)
+
+
+def contour(table, phi):
+    place = (phi / (2 * math.pi)) % 1.0 * len(table)
+    index = np.minimum(place.astype(int), len(table) - 1)
+    x = (place - index) * 2 * math.pi / len(table)
+    a, b, c, d = table[index].T
+    return ((a * x + b) * x + c) * x + d
+
+
+def energy_rate(run, state, rate):
+    """dE/dt along the motion, by central differences with one step of extrapolation."""
+
+    def difference(h):
+        return (planar_energy(run, state + h * rate) - planar_energy(run, state - h * rate)) / (2 * h)
+
+    return (4 * difference(2e-9) - difference(4e-9)) / 3
+
+
+def planar_gap(run, state):
+    """Power given less power lost and stored, and the largest of them all [W]."""
+    rate, model = np.zeros_like(state), model_of(run)
+    planar.rhs(0.0, state, model, run._work, rate)
+    powers = planar_powers(state, SHAFT_SPEED, model, run._work)
+    stored = energy_rate(run, state, rate)
+    return powers.shaft + LOAD @ state[5:7] - sum(powers[1:]) - stored, max(*powers, abs(stored)), powers
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_every_force_of_level_planar_stands_in_the_books(seed):
+    run = simulation("planar")
+    gap, largest, powers = planar_gap(run, rough_planar_state(run, seed))
+    assert abs(gap) < 1e-8 * largest  # of finite differences; the powers go from 100 W to 10 MW
+    assert all(lost > 0.0 for lost in powers[1:])
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_contour_without_slope_leaves_the_books_open_by_its_own_squeeze(seed):
+    run = simulation("planar", "bearing.outer_raceway.contour_slope=false")
+    state = rough_planar_state(run, seed)
+    gap, largest, _ = planar_gap(run, state)
+    phi_speed = rollers_of(state)[:, 3]
+    work, count = run._work, len(phi_speed)
+    outer_load = by_roller(work.contacts[work.rollers.shape[0] :], CONTACT.load, count)
+    squeeze = (outer_load * by_roller(work.rollers, ROLLER.slope, count) * phi_speed).sum()
+    assert abs(squeeze) > 50.0
+    assert gap == pytest.approx(squeeze, abs=1e-8 * largest)
+
+
+@pytest.mark.parametrize("eccentricity", [0.0, 0.5, 0.9])
+def test_power_of_the_land_is_that_of_a_short_journal_bearing(eccentricity):
+    run = simulation("planar")
+    cage, eta = run._params.cage, run._lubrication.viscosity
+    state = run._state.copy()
+    state[2], state[3], state[7], state[8] = eccentricity * cage.guide_clearance, 0.0, 0.02, 0.03
+    planar.rhs(0.0, state, model_of(run), run._work, np.zeros_like(state))
+    omega, c, width = state[9], cage.guide_clearance, cage.guide_width
+    rest = 1 - eccentricity**2
+    speed = eta * omega * cage.guide_radius * 2 * (width / 2) ** 3 / c**2  # two lands
+    towards, across = speed * eccentricity**2 / rest**2, speed * math.pi * eccentricity / 4 / rest**1.5
+    torque = 2 * math.pi * eta * omega * cage.guide_radius**3 * width / c / math.sqrt(rest)
+    expected = torque * omega + towards * state[7] - across * state[8]
+    assert planar_powers(state, SHAFT_SPEED, model_of(run), run._work).land == pytest.approx(expected, rel=1e-9)
+
+
+def test_what_the_shaft_gives_in_a_turn_of_the_cage_is_lost_or_stored():
+    run = simulation("planar")
+    run.advance(0.01)
+    before, turn = planar_energy(run, run._state), 0.003
+    block = run.advance(turn, samples=6000)
+    speed_y = np.gradient(block["ring_y"], block["time"])
+    given = block["shaft_power"] + block["load_y"] * speed_y
+    lost = sum(block[f"{name}_power"] for name in LOSSES)
+    stored = planar_energy(run, run._state) - before
+    work = given.mean() * turn
+    assert work > 5.0
+    assert (given - lost).mean() * turn == pytest.approx(stored, abs=0.01 * work)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_every_force_of_level_slip_stands_in_the_books(seed):
+    run = simulation("slip", "bearing.cage.pocket_friction=0.2")
+    random = np.random.default_rng(seed)
+    state, params = run._state.copy(), run._params
+    state[0], state[1] = random.uniform(0, 2 * math.pi), state[1] * random.uniform(0.5, 1.2)
+    state[2:] *= random.uniform(0.3, 1.3, size=len(state) - 2)
+    model, work, rate = model_of(run), run._work, np.zeros_like(state)
+    assert slip.rhs(0.0, state, model, work, rate)
+    powers = slip_powers(state[1], rate[1], state[2:], SHAFT_SPEED, model, work)
+    loads, (y, z) = work.loads, work.ring
+    radius, slope, mass = loads[LOAD_ROW.radius], loads[LOAD_ROW.contour_slope], params.rollers.mass
+    stored = state[1] * rate[1] * (params.cage.inertia + mass * (radius**2).sum()) + params.rollers.inertia * state[2:] @ rate[2:]
+    lever = loads[LOAD_ROW.outer] * slope + loads[LOAD_ROW.inner] * (y * loads[LOAD_ROW.sine] - z * loads[LOAD_ROW.cosine])
+    leaning = state[1] * (lever - 2 * mass * state[1] ** 2 * slope * radius).sum()
+    assert powers.shaft + leaning - sum(powers[1:]) == pytest.approx(stored, abs=1e-9 * sum(map(abs, powers)))
+    assert all(lost > 0.0 for lost in powers[1:-1]) and powers.damping == 0.0
+
+
+def test_what_the_shaft_gives_at_level_slip_is_lost_in_the_mean():
+    run = simulation("slip")
+    run.advance(0.3)
+    block = run.advance(0.05, samples=1009)
+    lost = sum(block[f"{name}_power"] for name in LOSSES).mean()
+    assert block["shaft_power"].mean() == pytest.approx(lost, rel=0.005)
+
+
+@pytest.mark.parametrize("level", ["slip", "planar"])
+def test_bearing_at_rest_loses_nothing(level):
+    run = Simulation(load_scene("deng2017_table1", [f"level={level}"]), Inputs(0.0, 800.0, 0.0, 393.15))
+    assert all(abs(run.sample[f"{name}_power"]) < 1e-9 for name in ("shaft", *LOSSES))
+
+
+def test_land_eccentricity_is_the_cages_share_of_its_clearance():
+    run = simulation("planar")
+    sample = run.advance(0.005)[0]
+    assert sample["land_eccentricity"] == pytest.approx(math.hypot(sample["cage_y"], sample["cage_z"]) / 0.15e-3)
+    assert simulation("slip").advance(0.005)["land_eccentricity"][0] == 0.0

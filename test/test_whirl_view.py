@@ -1,0 +1,137 @@
+"""What the view shows of cage and powers: the orbit where there is one, the sample's own numbers everywhere."""
+
+import math
+
+import numpy as np
+import pytest
+import rerun as rr
+import rerun.blueprint as rrb
+from rerun.chunk import RrdReader
+from synthetic_run import synthetic_block
+
+from bearing_sim.scene_file import load_scene
+from bearing_sim.sinks.rerun_blueprint import blueprint
+from bearing_sim.sinks.rerun_cage import TURNS, OrbitPath
+from bearing_sim.sinks.rerun_power import CAUSES
+from bearing_sim.sinks.rerun_sink import RerunSink
+
+SLIP, PLANAR = (load_scene("deng2017_table1", [f"level={level}"]) for level in ("slip", "planar"))
+
+
+@pytest.fixture(autouse=True)
+def strict_rerun():
+    rr.set_strict_mode(True)
+    yield
+    rr.set_strict_mode(False)
+
+
+def views(part):
+    if isinstance(part, rrb.View):
+        yield part.name
+    for inner in getattr(part, "contents", None) or [] if not isinstance(part, rrb.View) else []:
+        yield from views(inner)
+
+
+def whirling_block(samples=200, turns=10.0):
+    block = synthetic_block(PLANAR, 1e-4 * np.arange(1, samples + 1), speeds=(4000.0, 4000.0))
+    turn = np.linspace(0.0, 2 * math.pi * turns, samples)
+    block["cage_angle"] = turn
+    block["cage_y"], block["cage_z"] = 0.1e-3 * np.cos(turn / 2), 0.1e-3 * np.sin(turn / 2)
+    block["land_eccentricity"] = 0.1 / 0.15
+    for place, cause in enumerate(CAUSES):
+        block[f"{cause}_power"] = 100.0 * place + turn
+    block["pocket_force"] = np.arange(-9, 9) * 3.0
+    return block
+
+
+def written(path, scene, block):
+    with RerunSink(scene, path=path, lossless=True) as sink:
+        for part in np.array_split(block, 7):
+            sink.write(part)
+    assert sink.fault is None
+    return list(RrdReader(str(path)).stream())
+
+
+def last_value(chunks, entity, component):
+    found = {}
+    for chunk in chunks:
+        table = chunk.to_record_batch()
+        if chunk.entity_path == entity and not chunk.is_static and component in table.schema.names:
+            times = [time.total_seconds() for time in table.column("sim_time").to_pylist()]
+            found |= dict(zip(times, table.column(component).to_pylist()))
+    return found[max(found)]
+
+
+def test_orbit_is_shown_where_the_level_has_whirl_and_only_there():
+    shown = {scene.level: set(views(blueprint(scene, ((-40, 40), (-40, 40)), live=False).root_container)) for scene in (SLIP, PLANAR)}
+    assert {"Cage orbit", "e/c"} <= shown["planar"] and not {"Cage orbit", "e/c"} & shown["slip"]
+    assert {"Power: mean of 20 samples", "Pocket [N]"} <= shown["planar"] & shown["slip"]
+
+
+def test_run_without_whirl_writes_no_orbit(tmp_path):
+    block = synthetic_block(SLIP, 0.001 * np.arange(1, 50))
+    assert not any(chunk.entity_path.startswith("/cage_orbit") for chunk in written(tmp_path / "run.rrd", SLIP, block))
+
+
+def test_orbit_is_in_micrometres_with_z_upwards(tmp_path):
+    block = whirling_block(turns=9.5)
+    chunks = written(tmp_path / "run.rrd", PLANAR, block)
+    (centre,) = last_value(chunks, "/cage_orbit/centre", "Points2D:positions")
+    np.testing.assert_allclose(centre, [1e6 * block["cage_y"][-1], -1e6 * block["cage_z"][-1]], atol=1e-3)
+    assert last_value(chunks, "/cage_orbit/text", "Arrows2D:labels") == ["e/c = 0.667, c = 150 µm"]
+
+
+def test_series_of_powers_and_eccentricity_are_the_samples(tmp_path):
+    block = whirling_block()
+    chunks = written(tmp_path / "run.rrd", PLANAR, block)
+    for cause in CAUSES:
+        assert last_value(chunks, f"/power/{cause}", "Scalars:scalars") == pytest.approx([block[f"{cause}_power"][-1]])
+    assert last_value(chunks, "/cage/eccentricity", "Scalars:scalars") == pytest.approx([2 / 3])
+    assert last_value(chunks, "/loads/pocket_largest", "Scalars:scalars") == [27.0]
+
+
+def test_bars_are_as_long_as_the_mean_of_their_newest_powers(tmp_path):
+    block = whirling_block()
+    chunks = written(tmp_path / "run.rrd", PLANAR, block)
+    strips = np.array(last_value(chunks, "/power_now/bars", "LineStrips2D:strips"))
+    radii = np.array(last_value(chunks, "/power_now/bars", "LineStrips2D:radii"))
+    length = strips[:, 1, 0] - strips[:, 0, 0] + 2 * radii
+    powers = np.array([block[f"{cause}_power"][-20:].mean() for cause in CAUSES])
+    assert last_value(chunks, "/power_now/watts", "Arrows2D:labels") == [f"{power:,.0f} W" for power in powers]
+    np.testing.assert_allclose(length, powers * length[-1] / powers[-1], rtol=1e-5)
+
+
+def test_path_holds_the_last_turns_of_the_cage():
+    path, block = OrbitPath(), whirling_block(samples=500, turns=10.0)
+    for part in np.array_split(block, 11):
+        path.add(part)
+    recent = block["cage_angle"] >= block["cage_angle"][-1] - 2 * math.pi * TURNS
+    np.testing.assert_array_equal(path.places(), np.stack((block["cage_y"], block["cage_z"]), axis=1)[recent])
+    assert path.is_dense()
+
+
+def test_samples_a_good_part_of_a_turn_apart_are_no_line():
+    path = OrbitPath()
+    assert not path.is_dense() and path.places().shape == (0, 2)
+    path.add(whirling_block(samples=100, turns=30.0))
+    assert not path.is_dense()
+    assert len(path.places()) >= 40
+
+
+def test_recording_that_does_not_know_the_cages_place_is_shown_without(tmp_path):
+    block = whirling_block()
+    for name in ("cage_y", "cage_z", "land_eccentricity", "pocket_force", "orbital_speed", *(f"{cause}_power" for cause in CAUSES)):
+        block[name] = np.nan
+    chunks = written(tmp_path / "run.rrd", PLANAR, block)
+    assert last_value(chunks, "/cage_orbit/text", "Arrows2D:labels") == ["not recorded"]
+    assert set(last_value(chunks, "/power_now/watts", "Arrows2D:labels")) == {"unknown"}
+
+
+def test_line_and_dots_take_turns_as_the_sampling_does(tmp_path):
+    fine, coarse = whirling_block(samples=300, turns=6.0), whirling_block(samples=300, turns=200.0)
+    coarse["time"] += fine["time"][-1]
+    coarse["cage_angle"] += fine["cage_angle"][-1]
+    for name, block, line, dots in (("a", fine, True, False), ("b", np.concatenate((fine, coarse)), False, True)):
+        chunks = written(tmp_path / f"{name}.rrd", PLANAR, block)
+        assert bool(last_value(chunks, "/cage_orbit/path/line", "LineStrips2D:strips")) is line
+        assert bool(last_value(chunks, "/cage_orbit/path/dots", "Points2D:positions")) is dots
