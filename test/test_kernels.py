@@ -13,10 +13,11 @@ from bearing_sim.kernels.cage import land_torque
 from bearing_sim.kernels.compilation import kernel
 from bearing_sim.kernels.contact import line_contact_stiffness, line_penetration
 from bearing_sim.kernels.drag import churning_force, cylinder_torque, end_face_torque
-from bearing_sim.kernels.elementary import exponential, logarithm
+from bearing_sim.kernels.elementary import cosine_sine, exponential, logarithm
+from bearing_sim.kernels.lanes import LANES, floor, larger, load, magnitude, smaller, spread, square_root, store, total, where_positive
 from bearing_sim.kernels.load_balance import LOAD, balance_ring, squeezed_roller
 from bearing_sim.kernels.raceway import TABLE_INTERVALS, contour_at, lobed_contour
-from bearing_sim.kernels.traction import FILM, traction
+from bearing_sim.kernels.traction import CONTACT, traction
 from bearing_sim.oil import oil_at
 from bearing_sim.params import lubricate, pack
 from bearing_sim.rating_life import load_rating, rating_life_revolutions, ring_ratings
@@ -37,6 +38,31 @@ def test_elementary_functions_are_accurate_over_their_range():
     _elementary(x, exponentials, logarithms)
     np.testing.assert_allclose(exponentials, np.exp(x), rtol=1e-10)
     np.testing.assert_allclose(logarithms, x, rtol=0, atol=1e-10)
+
+
+@kernel
+def _by_lanes(given, found):
+    for block in range(given.shape[0]):
+        x, y = load(given, block, 0), load(given, block, 1)
+        store(found, block, 0, exponential(x))
+        store(found, block, 1, logarithm(magnitude(x)))
+        cosine, sine = cosine_sine(x - floor(x))
+        store(found, block, 2, cosine)
+        store(found, block, 3, sine)
+        store(found, block, 4, where_positive(x - y, larger(x, y), -smaller(x, y)))
+        store(found, block, 5, square_root(x * x + 2.0) / (1.0 - 0.5 * y * y * -1.0))
+        store(found, block, 6, spread(total(x)))
+
+
+def test_laws_on_lanes_are_those_of_numbers():
+    given = np.random.default_rng(3).normal(size=(5, 2, LANES))
+    found = np.zeros((5, 7, LANES))
+    _by_lanes(given, found)
+    x, y = given[:, 0], given[:, 1]
+    expected = [np.exp(x), np.log(abs(x)), np.cos(2 * np.pi * x), np.sin(2 * np.pi * x), np.maximum(x, y)]
+    expected[4] = np.where(x > y, x, -x)
+    expected += [np.sqrt(x**2 + 2) / (1 + y**2 / 2), np.repeat(x.sum(1, keepdims=True), LANES, axis=1)]
+    np.testing.assert_allclose(found, np.stack(expected, axis=1), rtol=1e-10, atol=1e-10)
 
 
 def test_line_contact_stiffness_is_palmgrens_for_a_7_mm_steel_roller():
@@ -69,16 +95,16 @@ def test_contour_is_continuous_with_its_slope_around_the_turn():
 def traction_coefficient(slide_to_roll, load=1000.0, rolling=73.0, contact="inner", overrides=()):
     scene = load_scene("deng2017_table1", overrides)
     lubrication = lubricate(scene.lubricant, pack(scene), 393.15)
-    film = np.zeros((len(FILM), 6))
-    film[FILM.rolling], film[FILM.sliding], film[FILM.load] = rolling, slide_to_roll * abs(rolling), load
-    traction(film, lubrication.inner, lubrication.outer)
-    return film[:, 1 if contact == "inner" else 4]
+    contacts = np.zeros((2, len(CONTACT), LANES))
+    contacts[:, CONTACT.rolling], contacts[:, CONTACT.sliding], contacts[:, CONTACT.load] = rolling, slide_to_roll * abs(rolling), load
+    traction(contacts, lubrication.inner, lubrication.outer)
+    return contacts[0 if contact == "inner" else 1, :, 1]
 
 
 @pytest.mark.parametrize(("slide_to_roll", "expected"), [(0.01, 0.0013), (0.05, 0.0052), (0.2, 0.0094)])
 def test_oil_4109_traction_has_its_check_values(slide_to_roll, expected):
     # MIL-L-7808 class at 120 degC, inner contact, 1000 N, 73 m/s; the published values have two digits
-    assert traction_coefficient(slide_to_roll)[FILM.force] / 1000 == pytest.approx(expected, abs=0.6e-4)
+    assert traction_coefficient(slide_to_roll)[CONTACT.force] / 1000 == pytest.approx(expected, abs=0.6e-4)
 
 
 def test_oil_4109_traction_is_the_published_product_of_powers():
@@ -91,12 +117,12 @@ def test_oil_4109_traction_is_the_published_product_of_powers():
     b = 5.19e6 * w**-0.373 * u * t**0.687
     c = 6.826e5 * w**-0.170 * u**0.578 * t**0.373
     expected = load * ((a + b * s) * math.exp(-c * s) - a)
-    assert traction_coefficient(s, load, rolling, "outer")[FILM.force] == pytest.approx(expected, rel=1e-6)
+    assert traction_coefficient(s, load, rolling, "outer")[CONTACT.force] == pytest.approx(expected, rel=1e-6)
 
 
 def test_constant_traction_has_the_sample_maximum():
     law = ["lubricant.traction.law=constant"]
-    coefficients = [traction_coefficient(s, overrides=law)[FILM.force] / 1000 for s in np.arange(0.005, 0.3, 0.005)]
+    coefficients = [traction_coefficient(s, overrides=law)[CONTACT.force] / 1000 for s in np.arange(0.005, 0.3, 0.005)]
     assert max(coefficients) == pytest.approx(0.0204, abs=1e-4)
     assert 0.005 * (1 + int(np.argmax(coefficients))) == pytest.approx(0.075, abs=0.011)
 
@@ -105,18 +131,18 @@ def test_constant_traction_has_the_sample_maximum():
 @settings(max_examples=300)
 def test_traction_is_odd_bounded_and_smooth_in_the_sliding_speed(slide, rolling, load):
     ahead, back = traction_coefficient(slide, load, rolling), traction_coefficient(-slide, load, rolling)
-    assert back[FILM.force] == pytest.approx(-ahead[FILM.force], rel=1e-12, abs=1e-12)
-    assert abs(ahead[FILM.force]) <= 0.5 * load
-    assert np.isfinite(ahead[[FILM.force, FILM.by_sliding, FILM.by_rolling]]).all()
+    assert back[CONTACT.force] == pytest.approx(-ahead[CONTACT.force], rel=1e-12, abs=1e-12)
+    assert abs(ahead[CONTACT.force]) <= 0.5 * load
+    assert np.isfinite(ahead[[CONTACT.force, CONTACT.by_sliding, CONTACT.by_rolling]]).all()
 
 
 def test_traction_slopes_are_finite_differences():
     def force(sliding, rolling):
-        return traction_coefficient(sliding / rolling, 600.0, rolling)[FILM.force]
+        return traction_coefficient(sliding / rolling, 600.0, rolling)[CONTACT.force]
 
     found = traction_coefficient(2.0 / 50.0, 600.0, 50.0)
-    assert found[FILM.by_sliding] == pytest.approx((force(2.001, 50) - force(1.999, 50)) / 0.002, rel=1e-5)
-    assert found[FILM.by_rolling] == pytest.approx((force(2.0, 50.01) - force(2.0, 49.99)) / 0.02, rel=1e-4)
+    assert found[CONTACT.by_sliding] == pytest.approx((force(2.001, 50) - force(1.999, 50)) / 0.002, rel=1e-5)
+    assert found[CONTACT.by_rolling] == pytest.approx((force(2.0, 50.01) - force(2.0, 49.99)) / 0.02, rel=1e-4)
 
 
 @given(st.floats(-1e-4, 3e-4), st.floats(0.0, 2000.0))
