@@ -61,8 +61,8 @@ def norm(t, y, change, tolerance, model):
 
 
 @kernel
-def stay(y, h, model, guess):
-    guess[0] = y[0]
+def stay(known, shift, slope, model, work, guess):
+    guess[0] = known[0]
 
 
 @kernel
@@ -72,7 +72,7 @@ def linear_step(t, y, rate, h, model, work, stages, next_y, error):
 
 @kernel
 def solved_step(t, y, rate, h, model, work, stages, next_y, error):
-    return sdirk2_step(rate_of, rate_and_jacobian, stay, factor, solve, norm, t, y, h, 1e-9, model, work, stages, next_y, error, work[2:3], work[3:])
+    return sdirk2_step(rate_of, rate_and_jacobian, stay, factor, solve, norm, t, y, h, 1e-9, model, work, stages, next_y, error, work[2:4], work[4:])
 
 
 @kernel
@@ -105,7 +105,7 @@ def failed(t, end, y, h, budget, model, work, scratch, counts):
 def solution(run, h, stiffness=2.0, nan_from=math.inf, converging=math.inf, end=2.0, budget=10**6, start=1.0):
     """Return value, status and counts at ``end``."""
     y, counts = np.array([start]), new_counts()
-    status, again = run(0.0, end, y, h, budget, np.array([stiffness, nan_from, converging]), np.zeros(6), np.zeros((7, 1)), counts)
+    status, again = run(0.0, end, y, h, budget, np.array([stiffness, nan_from, converging]), np.zeros(7), np.zeros((9, 1)), counts)
     assert again == h
     return y[0], status, counts
 

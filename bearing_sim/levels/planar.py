@@ -182,13 +182,6 @@ def _drive(t, end, stop, y, h, tolerance, maximum_step, budget, model, work, mem
 
 
 @kernel
-def _drive(t, end, y, h, tolerance, maximum_step, budget, model, work, scratch, counts):
-    return drive(
-        nothing, _step, error_norm, step_limit, average_loads, 2, t, end, y, h, tolerance, maximum_step, budget, model, work, scratch, counts
-    )
-
-
-@kernel
 def observe(t, y, model, work, interval, previous, row, rate):
     """Write the sample of state ``y``; parameters as in `bearing_sim.levels.slip.observe`."""
     rhs(t, y, model, work, rate)
