@@ -32,8 +32,8 @@ def solve_stage(rhs, rhs_and_jacobian, factor, solve, norm, t, known, shift, tol
     y : start of the iteration, and the stage's result.
     rate : takes f(t, y) of the last but one iterate.
     change : scratch, shape (n,).
-    held : the shift of the factorisation at hand, 0 where there is none, shape (1,).
-    counts : int64 array; [0] right-hand sides, [1] Jacobians.
+    held : the shift of the factorisation at hand first, 0 where there is none.
+    counts : int64 array: right-hand sides, Jacobians, factorisations.
 
     Returns
     -------
@@ -82,10 +82,11 @@ def sdirk2_step(rhs, rhs_and_jacobian, predict, factor, solve, norm, t, y, h, to
     rhs, rhs_and_jacobian, predict, factor, solve, norm : kernels of the level; ``predict(known, shift, slope, model, work,
         guess)`` writes a first guess of the solution of guess = known + shift f(guess), given f a little earlier.
     h : step [s].
-    stages : scratch, shape (4, n).
+    stages : shape (6, n); the last two rows keep the slope at the end of a step for the next one.
     next_y, error : results, shape (n,); the error is the difference to the embedded method of order 1, filtered by the
         iteration matrix so that stiff components do not dominate it (Shampine and Baca 1984).
-    held, counts : see `solve_stage`.
+    held : see `solve_stage`, and the time where the last step ended [s], shape (2,).
+    counts : see `solve_stage`.
 
     Returns
     -------
@@ -98,17 +99,13 @@ def sdirk2_step(rhs, rhs_and_jacobian, predict, factor, solve, norm, t, y, h, to
         for i in range(y.shape[0]):
             slope[i] = next_slope[i]
     predict(y, shift, slope, model, work, first)
-    if not solve_stage(
-        rhs, rhs_and_jacobian, factor, solve, norm, t + shift, y, shift, tolerance, model, work, first, rate, change, held, counts, True
-    ):
+    if not solve_stage(rhs, rhs_and_jacobian, factor, solve, norm, t + shift, y, shift, tolerance, model, work, first, rate, change, held, counts):
         return False
     for i in range(y.shape[0]):
         error[i] = (first[i] - y[i]) * per_shift  # the first stage's slope
         known[i] = y[i] + (1.0 - GAMMA) * h * error[i]
     predict(known, shift, error, model, work, next_y)
-    if not solve_stage(
-        rhs, rhs_and_jacobian, factor, solve, norm, t + h, known, shift, tolerance, model, work, next_y, rate, change, held, counts, True
-    ):
+    if not solve_stage(rhs, rhs_and_jacobian, factor, solve, norm, t + h, known, shift, tolerance, model, work, next_y, rate, change, held, counts):
         return False
     for i in range(y.shape[0]):
         next_slope[i] = (next_y[i] - known[i]) * per_shift
