@@ -19,7 +19,7 @@ from bearing_sim.kernels.traction import CONTACT
 from bearing_sim.levels import planar_algebra, planar_rollers, slip
 from bearing_sim.levels.inputs import shaft_speed_at
 from bearing_sim.levels.observation import observe_course
-from bearing_sim.levels.pitch import pitch_step
+from bearing_sim.levels.pitch import FIFTH_PITCH, pitch_step
 from bearing_sim.levels.planar_algebra import BLOCK, BORDER
 from bearing_sim.levels.planar_power import planar_powers
 from bearing_sim.levels.planar_prediction import predict
@@ -91,13 +91,14 @@ def solve(work, x):
 def error_norm(t, y, change, tolerance, model):
     """Return the largest share of its tolerance that any state's error takes.
 
-    At a tolerance of 1e-2: roller and ring positions 0.5 um, pocket offsets and the cage 15 um, speeds along the orbit and
-    spins 5 % of ideal rolling, for a step.  Radial speeds follow the positions.
+    At a tolerance of 1e-2: roller and ring positions 1.4 um, pocket offsets and the cage 2.8 um, speeds along the orbit and
+    spins 7 % of ideal rolling, for a step.  Radial speeds follow the positions.  The error is that of the embedded method of
+    order 1, the result's is a hundredth of it; pockets weigh most, because their oscillation is what a long step blurs first.
     """
     raceways, rollers = model.params.raceways, model.params.rollers
     ideal = max(0.5 * abs(shaft_speed_at(t, model.drive)) * (1.0 - raceways.diameter_ratio), abs(y[OMEGA]), 10.0)
-    near, far = 1.0 / (1e-4 * tolerance), 1.0 / (2e-4 * tolerance)
-    turning = 1.0 / (5.0 * tolerance * ideal)
+    near, far = 1.0 / (1.4e-4 * tolerance), 1.0 / (2.8e-4 * tolerance)
+    turning = 1.0 / (7.0 * tolerance * ideal)
     angle, spin = far * raceways.pitch_radius, turning * rollers.radius / raceways.pitch_radius
     largest = max(abs(change[RING_Y]) * near, abs(change[RING_Z]) * near, abs(change[CAGE_Y]) * far, abs(change[CAGE_Z]) * far)
     largest = max(largest, abs(change[OMEGA]) * turning)
@@ -113,7 +114,7 @@ def error_norm(t, y, change, tolerance, model):
 @kernel
 def step_limit(t, y, model):
     """Return the longest sensible step [s] (see `bearing_sim.levels.pitch.pitch_step`)."""
-    return pitch_step(y[OMEGA], model.params.rollers.count)
+    return pitch_step(y[OMEGA], model.params.rollers.count, FIFTH_PITCH)
 
 
 @kernel

@@ -8,9 +8,10 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.kernels.compilation import kernel, template
-from bearing_sim.kernels.lanes import LANES, load, magnitude, new_rows, store, total, where_positive
+from bearing_sim.kernels.lanes import LANES, load, magnitude, new_rows, spread, store, total, where_positive
 
 BORDER = 5  # positions of ring and cage, and as many speeds
+_RING = 2  # of them the ring's
 BLOCK = 5  # states of a roller
 LOCAL = BLOCK + 2 * BORDER  # what a roller depends on
 AT_POSITIONS, AT_SPEEDS = BLOCK, BLOCK + BORDER  # where border positions and speeds stand among them
@@ -26,44 +27,58 @@ class Factored(NamedTuple):
     rows: np.ndarray  # by roller: inverse block (3x3), that times its coupling to the border's speeds (3x5), the border's to it (5x3)
     right: np.ndarray  # right sides by roller: r, phi, and the three speeds
     positions: np.ndarray  # d(border accelerations)/d(border positions), all rollers together, shape (5, 5)
-    schur: np.ndarray  # inverse Schur complement, shape (5, 5)
-    scratch: np.ndarray  # shape (5, 5)
+    schur: np.ndarray  # Schur complement as L U, shape (5, 5)
+    order: np.ndarray  # of its rows, shape (5,)
+    border: np.ndarray  # scratch, shape (5,)
 
 
 def new_factored(count):
     """Return a zeroed factorisation for ``count`` rollers."""
     square = (BORDER, BORDER)
-    return Factored(np.zeros(1), new_rows(_FACTORED, count), new_rows(BLOCK, count), np.zeros(square), np.zeros(square), np.zeros(square))
+    rows, right = new_rows(_FACTORED, count), new_rows(BLOCK, count)
+    return Factored(np.zeros(1), rows, right, np.zeros(square), np.zeros(square), np.zeros(BORDER, np.int64), np.zeros(BORDER))
 
 
 @kernel
-def _invert(matrix, inverse):
-    """Invert a small matrix by Gauss-Jordan elimination with row pivoting; return False if it is singular or not finite."""
+def _factor_border(matrix, order):
+    """Factor a small matrix in place into L U with rows in ``order`` (partial pivoting); return False if singular or not finite."""
     n = matrix.shape[0]
     for i in range(n):
-        for j in range(n):
-            inverse[i, j] = 1.0 if i == j else 0.0
+        order[i] = i
+    regular = True
     for k in range(n):
         pivot = k
         for i in range(k + 1, n):
             if abs(matrix[i, k]) > abs(matrix[pivot, k]):
                 pivot = i
-        value = matrix[pivot, k]
-        if not abs(value) > 0.0:
-            return False
-        for j in range(n):
-            matrix[k, j], matrix[pivot, j] = matrix[pivot, j], matrix[k, j]
-            inverse[k, j], inverse[pivot, j] = inverse[pivot, j], inverse[k, j]
-        for j in range(n):
-            matrix[k, j] /= value
-            inverse[k, j] /= value
-        for i in range(n):
-            factor = matrix[i, k]
-            if i != k and factor != 0.0:
-                for j in range(n):
-                    matrix[i, j] -= factor * matrix[k, j]
-                    inverse[i, j] -= factor * inverse[k, j]
-    return True
+        if pivot != k:
+            order[k], order[pivot] = order[pivot], order[k]
+            for j in range(n):
+                matrix[k, j], matrix[pivot, j] = matrix[pivot, j], matrix[k, j]
+        regular = regular and abs(matrix[k, k]) > 0.0
+        matrix[k, k] = 1.0 / matrix[k, k]  # the inverse is what a solution wants
+        for i in range(k + 1, n):
+            share = matrix[i, k] * matrix[k, k]
+            matrix[i, k] = share
+            for j in range(k + 1, n):
+                matrix[i, j] -= share * matrix[k, j]
+    return regular
+
+
+@kernel
+def _solve_border(matrix, order, right, x):
+    """Write the solution of the factored border for ``right`` into ``x``."""
+    n = matrix.shape[0]
+    for i in range(n):
+        value = right[order[i]]
+        for j in range(i):
+            value -= matrix[i, j] * x[j]
+        x[i] = value
+    for i in range(n - 1, -1, -1):
+        value = x[i]
+        for j in range(i + 1, n):
+            value -= matrix[i, j] * x[j]
+        x[i] = value * matrix[i, i]
 
 
 @template
@@ -112,6 +127,28 @@ def _couplings(block, slopes, s, rows):
 
 
 @kernel
+def _through_rollers(k, m, rows):
+    """Return what a border speed does to another border equation by way of all rollers that give way."""
+    radial, orbital, spinning = spread(0.0), spread(0.0), spread(0.0)
+    for block in range(rows.shape[0]):
+        radial += load(rows, block, _BELOW + 3 * k) * load(rows, block, _RIGHT + m)
+        orbital += load(rows, block, _BELOW + 3 * k + 1) * load(rows, block, _RIGHT + BORDER + m)
+        spinning += load(rows, block, _BELOW + 3 * k + 2) * load(rows, block, _RIGHT + 2 * BORDER + m)
+    return total(radial + orbital + spinning)
+
+
+@kernel
+def _passed_by_rollers(k, m, slopes):
+    """Return what a border position and its speed do to a border acceleration by way of all rollers that stand still."""
+    by_position, by_speed = spread(0.0), spread(0.0)
+    first = (3 + k) * LOCAL + m
+    for block in range(slopes.shape[0]):
+        by_position += load(slopes, block, first + AT_POSITIONS)
+        by_speed += load(slopes, block, first + AT_SPEEDS)
+    return total(by_position), total(by_speed)
+
+
+@kernel
 def factor(slopes, border, s, factored):
     """Factor I - s J.
 
@@ -126,26 +163,21 @@ def factor(slopes, border, s, factored):
     -------
     regular : False where a pivot is zero or not finite.
     """
-    rows, positions, corner = factored.rows, factored.positions, factored.scratch
+    rows, corner = factored.rows, factored.schur
     factored.shift[0] = s
-    for k in range(BORDER):
-        for m in range(BORDER):
-            positions[k, m] = border[k, m]
-            corner[k, m] = (1.0 if k == m else 0.0) - s * (border[k, BORDER + m] + s * border[k, m])
     regular = True
     for block in range(slopes.shape[0]):
         regular = _roller_blocks(block, slopes, s, rows) and regular
         _couplings(block, slopes, s, rows)
-        for k in range(BORDER):
-            b_0, b_1, b_2 = load(rows, block, _BELOW + 3 * k), load(rows, block, _BELOW + 3 * k + 1), load(rows, block, _BELOW + 3 * k + 2)
-            first = (3 + k) * LOCAL
-            for m in range(BORDER):
-                by_position = load(slopes, block, first + AT_POSITIONS + m)
-                through = b_0 * load(rows, block, _RIGHT + m) + b_1 * load(rows, block, _RIGHT + BORDER + m)
-                through += b_2 * load(rows, block, _RIGHT + 2 * BORDER + m)
-                positions[k, m] += total(by_position)
-                corner[k, m] -= total(through + s * (load(slopes, block, first + AT_SPEEDS + m) + s * by_position))
-    return _invert(corner, factored.schur) and regular
+    for k in range(BORDER):
+        for m in range(BORDER):
+            corner[k, m] = (1.0 if k == m else 0.0) - s * (border[k, BORDER + m] + s * border[k, m]) - _through_rollers(k, m, rows)
+            factored.positions[k, m] = border[k, m]
+            if (k < _RING) == (m < _RING):  # ring and cage meet only in the rollers
+                by_position, by_speed = _passed_by_rollers(k, m, slopes)
+                corner[k, m] -= s * (by_speed + s * by_position)
+                factored.positions[k, m] += by_position
+    return _factor_border(corner, factored.order) and regular
 
 
 @kernel
@@ -211,7 +243,7 @@ def _substitute(block, s, x, factored):
 @kernel
 def solve(slopes, factored, x):
     """Replace the right side ``x``, a whole state, by the solution of (I - s J) x = b."""
-    s, schur = factored.shift[0], factored.schur
+    s = factored.shift[0]
     count = (x.shape[0] - 2 * BORDER) // BLOCK
     _spread(x, count, factored.right)
     for k in range(BORDER):
@@ -221,15 +253,9 @@ def solve(slopes, factored, x):
         x[BORDER + k] += s * through
     for block in range(slopes.shape[0]):
         _eliminate(block, slopes, s, x, factored)
-    u_0 = u_1 = u_2 = u_3 = u_4 = 0.0
-    for m in range(BORDER):
-        value = x[BORDER + m]
-        u_0 += schur[0, m] * value
-        u_1 += schur[1, m] * value
-        u_2 += schur[2, m] * value
-        u_3 += schur[3, m] * value
-        u_4 += schur[4, m] * value
-    x[BORDER], x[BORDER + 1], x[BORDER + 2], x[BORDER + 3], x[BORDER + 4] = u_0, u_1, u_2, u_3, u_4
+    for k in range(BORDER):
+        factored.border[k] = x[BORDER + k]
+    _solve_border(factored.schur, factored.order, factored.border, x[BORDER : 2 * BORDER])
     for block in range(slopes.shape[0]):
         _substitute(block, s, x, factored)
     for k in range(BORDER):

@@ -27,7 +27,7 @@ from bearing_sim.kernels.traction import CONTACT, traction
 from bearing_sim.levels.inputs import Drive, load_at, shaft_speed_at
 from bearing_sim.levels.mixture import mixture_torque
 from bearing_sim.levels.observation import observe_course
-from bearing_sim.levels.pitch import pitch_step
+from bearing_sim.levels.pitch import HALF_PITCH, pitch_step
 from bearing_sim.levels.power import write_powers
 from bearing_sim.levels.slip_power import slip_powers
 from bearing_sim.params import Lubrication, Params
@@ -247,7 +247,7 @@ def error_norm(t, y, change, relative_tolerance, model):
 @template
 def step_limit(t, y, model):
     """Return the longest sensible step [s] (see `bearing_sim.levels.pitch.pitch_step`)."""
-    return pitch_step(y[OMEGA], model.params.rollers.count)
+    return pitch_step(y[OMEGA], model.params.rollers.count, HALF_PITCH)
 
 
 @kernel
