@@ -52,6 +52,7 @@ class CageBody(NamedTuple):
     guide_width: float  # L_g, all lands together [m]
     land_film: float  # films in the guide land thinner than this touch [m]
     land_friction: float  # coefficient of boundary friction there
+    land_squeeze: float  # 1 where the film knows how the cage's centre moves, 0 without (Deng 2017)
     outer_radius: float  # of the cage [m]
     inner_radius: float  # of the cage [m]
     width: float  # of the cage [m]
@@ -126,6 +127,7 @@ def pack(scene: Scene) -> Params:
             guide_width=2 * cage.guide_land_width,
             land_film=cage.land_film,
             land_friction=cage.land_friction,
+            land_squeeze=1.0 if cage.land_squeeze else 0.0,
             outer_radius=cage.guide_radius - cage.guide_clearance,
             inner_radius=cage.inner_radius,
             width=cage.width,

@@ -60,6 +60,7 @@ class Cage:
     guide_land_width: quantity("m", "width of one of the two guide lands", 1e-6, 0.5, "mm")
     land_film: quantity("m", "film in the guide land below which surfaces touch", 0.0, 1e-4, "um") = 3e-6
     land_friction: quantity("", "boundary friction coefficient of the guide land", 0.0, 1.0) = 0.08
+    land_squeeze: bool = True  # the film knows how the cage's centre moves; false is Deng's form, of a centre that rests
     pocket_friction: quantity("", "friction coefficient between roller and pocket, mu_c", 0.0, 1.0) = 0.05
     pocket_clearance: quantity("m", "clearance between roller and pocket along the orbit, C_p", 1e-6, 5e-3, "mm") = 1e-4
     pocket_film_force: quantity("N", "force of the pocket's oil film when the clearance is used up", 0.0, 1e4) = 67.0

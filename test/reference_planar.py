@@ -84,6 +84,7 @@ class Reference:
     pocket_film_damping: float = 5.0
     land_friction: float = 0.08
     land_film: float = 3e-6
+    land_squeeze: bool = True
     guide_clearance: float = 0.15e-3
 
     def __post_init__(self):
@@ -168,18 +169,22 @@ class Reference:
         assert np.real(reynolds) < 2.5e5
         return 0.5 * self.density * omega * magnitude(omega) * (self.outside**5 - self.inside**5) * 3.87 * reynolds**-0.5
 
-    def land_film_force(self, cage, omega):
-        """Short journal bearing; a cage nearer to the land than its thinnest film finds the film no stiffer."""
+    def land_film_force(self, cage, velocity, omega):
+        """Short journal bearing with half a film; a cage nearer to the land than its thinnest film finds the film no stiffer."""
         c, radius = self.guide_clearance, self.guide_radius
-        eps_squared = dot(cage, cage) / c**2
-        thinnest = 1 - self.land_film / c
-        eps_squared = np.where(np.real(eps_squared) > thinnest**2, thinnest**2, eps_squared)
-        rest = 1 - eps_squared
-        scale = 2 * self.viscosity * radius * omega * self.land_width**3 / c**2
-        towards = magnitude(scale) * np.sqrt(eps_squared) / rest**2 * -cage / c
-        across = scale * np.pi / (4 * rest**1.5) * ahead(cage) / c
+        eccentricity = np.sqrt(dot(cage, cage))
+        outward = cage / eccentricity
+        eps, thinnest = eccentricity / c, 1 - self.land_film / c
+        clipped = np.where(np.real(eps) > thinnest, thinnest, eps)
+        rest = 1 - clipped**2
+        scale = 2 * self.viscosity * radius * self.land_width**3 / c**2
+        rate, along = (dot(velocity, outward) / c, dot(velocity, ahead(outward)) / c) if self.land_squeeze else (0.0, 0.0)
+        wedge = eps * omega - 2 * along
+        side = wedge / np.sqrt(wedge**2 + 10.0**2)
+        inwards = clipped / rest**2 * wedge * side + np.pi / 2 * (1 + 2 * clipped**2) / rest**2.5 * rate
+        across = np.pi / 4 / rest**1.5 * wedge + 2 * clipped / rest**2 * side * rate
         torque = -2 * np.pi * self.viscosity * radius * omega * radius**2 * 2 * self.land_width / (c * np.sqrt(rest))
-        return towards + across, torque
+        return scale * (across * ahead(outward) - inwards * outward), torque
 
     def land_contact(self, cage, velocity, omega):
         """Force on the cage where it touches, the friction in it, heat of both, and the elastic energy."""
@@ -235,7 +240,7 @@ class Reference:
         f.pocket, f.pocket_elastic, f.pocket_energy = self.pocket(dot(f.from_cage, f.pocket_along), f.pocket_rate)
         f.pocket_smooth = self.pocket_friction * state.spin / np.sqrt(state.spin**2 + 10.0**2)
 
-        f.film, f.film_torque = self.land_film_force(state.cage, state.cage_speed)
+        f.film, f.film_torque = self.land_film_force(state.cage, state.cage_velocity, state.cage_speed)
         f.land, f.land_friction, f.land_heat, f.land_energy = self.land_contact(state.cage, state.cage_velocity, state.cage_speed)
         f.bore_torque = self.couette(omega_i - state.cage_speed, self.inside, self.inside - r_i, self.width)
         gap = self.low_radius - self.outside

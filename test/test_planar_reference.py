@@ -94,6 +94,7 @@ VARIANTS = {
             "bearing.outer_raceway.low_radius=34.88 mm",
         ],
     ),
+    "a film that knows no whirl": ({"land_squeeze": False}, ["bearing.cage.land_squeeze=false"]),
     "nine rollers, damped": ({"rollers": 9, "contact_damping": 1.0}, ["bearing.roller.count=9", "bearing.contact.damping=1"]),
 }
 

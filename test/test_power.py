@@ -117,22 +117,6 @@ def test_contour_without_slope_leaves_the_books_open_by_its_own_squeeze(seed):
     assert gap == pytest.approx(squeeze, abs=1e-8 * largest)
 
 
-@pytest.mark.parametrize("eccentricity", [0.0, 0.5, 0.9])
-def test_power_of_the_land_is_that_of_a_short_journal_bearing(eccentricity):
-    run = simulation("planar")
-    cage, eta = run._params.cage, run._lubrication.viscosity
-    state = run._state.copy()
-    state[2], state[3], state[7], state[8] = eccentricity * cage.guide_clearance, 0.0, 0.02, 0.03
-    planar.rhs(0.0, state, model_of(run), run._work, np.zeros_like(state))
-    omega, c, width = state[9], cage.guide_clearance, cage.guide_width
-    rest = 1 - eccentricity**2
-    speed = eta * omega * cage.guide_radius * 2 * (width / 2) ** 3 / c**2  # two lands
-    towards, across = speed * eccentricity**2 / rest**2, speed * math.pi * eccentricity / 4 / rest**1.5
-    torque = 2 * math.pi * eta * omega * cage.guide_radius**3 * width / c / math.sqrt(rest)
-    expected = torque * omega + towards * state[7] - across * state[8]
-    assert planar_powers(state, SHAFT_SPEED, model_of(run), run._work).land == pytest.approx(expected, rel=1e-9)
-
-
 def test_what_the_shaft_gives_in_a_turn_of_the_cage_is_lost_or_stored():
     run = simulation("planar")
     run.advance(0.01)

@@ -14,7 +14,8 @@ from bearing_sim.kernels.compilation import kernel
 from bearing_sim.kernels.lanes import LANES
 from bearing_sim.kernels.traction import CONTACT
 from bearing_sim.levels.planar_algebra import BORDER
-from bearing_sim.levels.planar_border import LAND_SLIDING, land_contact, land_film
+from bearing_sim.levels.planar_border import LAND_SLIDING
+from bearing_sim.levels.planar_land import land_contact, land_film
 from bearing_sim.levels.planar_state import CAGE_Y, CAGE_Z, OMEGA, ROLLER
 from bearing_sim.levels.power import Powers, elastic_force, shaft_traction_power, sliding_power, windage_powers
 
