@@ -44,6 +44,8 @@ class CageBody(NamedTuple):
     inertia: float  # about the shaft axis [kg m^2]
     mass: float  # [kg]
     pocket_friction: float  # mu_c
+    pocket_reaction: float  # 1 where level slip lets pocket friction brake the cage, 0 without
+    assumed_eccentricity: float  # of the cage at level slip, over the guide clearance
     pocket_clearance: float  # C_p [m]
     pocket_stiffness: float  # K_c of the film, until the clearance is used up [N/m]
     pocket_damping: float  # of the film [N s/m]
@@ -119,6 +121,8 @@ def pack(scene: Scene) -> Params:
             inertia=cage.polar_inertia if cage.polar_inertia is not None else cage.mass * bearing.pitch_radius**2,
             mass=cage.mass,
             pocket_friction=cage.pocket_friction,
+            pocket_reaction=1.0 if cage.pocket_reaction else 0.0,
+            assumed_eccentricity=cage.assumed_eccentricity,
             pocket_clearance=cage.pocket_clearance,
             pocket_stiffness=cage.pocket_film_force / cage.pocket_clearance,
             pocket_damping=cage.pocket_film_damping,

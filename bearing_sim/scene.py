@@ -62,6 +62,9 @@ class Cage:
     land_friction: quantity("", "boundary friction coefficient of the guide land", 0.0, 1.0) = 0.08
     land_squeeze: bool = True  # the film knows how the cage's centre moves; false is Deng's form, of a centre that rests
     pocket_friction: quantity("", "friction coefficient between roller and pocket, mu_c", 0.0, 1.0) = 0.05
+    # Level slip has no pockets to act back from and no whirl: it is told what the cage feels of them.
+    pocket_reaction: bool = False  # whether at level slip pocket friction brakes the cage as it brakes the rollers
+    assumed_eccentricity: quantity("", "eccentricity of the cage at level slip, a fraction of the guide clearance", 0.0, 0.999) = 0.0
     pocket_clearance: quantity("m", "clearance between roller and pocket along the orbit, C_p", 1e-6, 5e-3, "mm") = 1e-4
     pocket_film_force: quantity("N", "force of the pocket's oil film when the clearance is used up", 0.0, 1e4) = 67.0
     pocket_film_damping: quantity("", "damping of the pocket's oil film [N s/m]", 0.0, 1e4) = 5.0

@@ -153,7 +153,8 @@ def _churning(cage_speed, model):
 @kernel
 def _cage_torque(cage_speed, shaft_speed, model):
     """Torque of guide lands and mixture on the cage body [N m] and its slope by cage speed."""
-    lands, lands_slope = land_torque(cage_speed, 0.0, 0.0, model.lubrication.viscosity, model.params.cage)
+    cage = model.params.cage
+    lands, lands_slope = land_torque(cage_speed, 0.0, cage.assumed_eccentricity, model.lubrication.viscosity, cage)
     mixture, mixture_slope = mixture_torque(cage_speed, shaft_speed, model.params, model.lubrication)
     return lands + mixture, lands_slope + mixture_slope
 
@@ -191,12 +192,13 @@ def _equations(t, y, model, work, rate, with_jacobian):
             jacobian[ARROW.diagonal, j] = roller_radius * (inner_by_spin - outer_by_spin) / rollers.inertia
     cage_acceleration = torque / inertia
     rate[THETA] = cage_speed
-    rate[OMEGA] = cage_acceleration
+    reaction = 0.0
     for j in range(rollers.count):
         # The pocket supplies what the roller lacks to go with the cage, and its friction brakes the spin (Deng 2017, eq. 13).
         pocket = abs(tangential[j] - rollers.mass * loads[LOAD.radius, j] * cage_acceleration)
         spin = y[SPIN + j]
         brake = pocket * pocket_friction(spin, cage.pocket_friction)
+        reaction += roller_radius * brake
         turning = contacts[j // LANES, CONTACT.force, j % LANES] - contacts[blocks + j // LANES, CONTACT.force, j % LANES]
         rate[SPIN + j] = roller_radius * (turning - brake) / rollers.inertia
         if with_jacobian:
@@ -204,6 +206,7 @@ def _equations(t, y, model, work, rate, with_jacobian):
             brake_slope = cage.pocket_friction * pocket * FRICTION_SPIN * FRICTION_SPIN / (smooth * smooth * smooth)
             jacobian[ARROW.diagonal, j] -= roller_radius * brake_slope / rollers.inertia
             jacobian[ARROW.row, j] /= inertia
+    rate[OMEGA] = cage_acceleration - cage.pocket_reaction * reaction / inertia
     if with_jacobian:
         border[0] = 1.0
         border[1] = torque_slope / inertia

@@ -34,14 +34,16 @@ def slip_powers(cage_speed, cage_acceleration, spins, shaft_speed, model, work):
         radius = loads[LOAD.radius, j]
         churning += drag * radius * cage_speed
         force = abs(rollers.mass * radius * cage_acceleration - work.tangential[j])
-        pocket += force * pocket_friction(spins[j], params.cage.pocket_friction) * rollers.radius * spins[j]
+        pocket += (
+            force * pocket_friction(spins[j], params.cage.pocket_friction) * rollers.radius * (spins[j] + params.cage.pocket_reaction * cage_speed)
+        )
     return Powers(
         shaft_traction_power(contacts, count, shaft_speed, params.raceways.inner_radius) + bore,
         sliding_power(contacts, 0, count),
         sliding_power(contacts, contacts.shape[0] // 2, count),
         churning,
         windage,
-        -land_torque(cage_speed, 0.0, 0.0, lubrication.viscosity, params.cage)[0] * cage_speed,
+        -land_torque(cage_speed, 0.0, params.cage.assumed_eccentricity, lubrication.viscosity, params.cage)[0] * cage_speed,
         pocket,
         0.0,
     )
