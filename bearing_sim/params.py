@@ -5,8 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.contour import outer_contour
 from bearing_sim.kernels.contact import line_contact_stiffness
-from bearing_sim.kernels.raceway import lobed_contour
+from bearing_sim.kernels.raceway import tabulated
 from bearing_sim.kernels.traction import TractionConstants, constant_constants, oil_4109_constants
 from bearing_sim.oil import oil_at
 from bearing_sim.rating_life import ring_ratings
@@ -110,7 +111,7 @@ def pack(scene: Scene) -> Params:
             low_radius=low_radius,
             pitch_radius=bearing.pitch_radius,
             diameter_ratio=bearing.diameter_ratio,
-            contour=lobed_contour(low_radius, bearing.outer_raceway.d_value, bearing.outer_raceway.lobes, bearing.outer_raceway.installation_angle),
+            contour=tabulated(lambda azimuth: outer_contour(bearing.outer_raceway, azimuth)),
             slope_factor=1.0 if bearing.outer_raceway.contour_slope else 0.0,
             stiffness=line_contact_stiffness(bearing.roller.length, bearing.material.youngs_modulus, bearing.material.poisson_ratio),
             inner_curvature_radius=1 / (1 / roller_radius + 1 / inner_radius),

@@ -8,33 +8,12 @@ import math
 from dataclasses import field
 from typing import Annotated, Literal
 
-from pydantic import ConfigDict, Field, model_validator
-from pydantic.dataclasses import dataclass
+from pydantic import Field, model_validator
 
 from bearing_sim.methods import FIXED_STEP, METHODS
 from bearing_sim.quantity import quantity
-
-_strict = dataclass(frozen=True, kw_only=True, config=ConfigDict(extra="forbid", str_strip_whitespace=True))
-
-
-@_strict
-class OuterRaceway:
-    """Outer raceway contour R_e(phi) = R_low + D/2 - D/2 cos(n (phi - phi_e)) (Deng 2017, eq. 2); D = 0 is a round bearing."""
-
-    low_radius: quantity("m", "radius at the low points, R_low", 1e-3, 2.0, "mm")
-    d_value: quantity("m", "high-point radius less low-point radius, D", 0.0, 5e-3, "mm") = 0.0
-    lobes: Annotated[int, Field(ge=1, le=12)] = 3
-    installation_angle: quantity("rad", "azimuth of a low point, phi_e", -2 * math.pi, 2 * math.pi, "deg") = 0.0
-    contour_slope: bool = True
-
-
-@_strict
-class InnerRaceway:
-    """Round inner raceway, turning with the shaft."""
-
-    radius: quantity("m", "inner raceway radius, R_i", 1e-3, 2.0, "mm")
-    ring_mass: quantity("kg", "mass of the inner ring", 1e-4, 1e3) = 0.05
-    supported_mass: quantity("kg", "mass of the shaft that moves with the inner ring", 0.0, 1e5) = 0.5
+from bearing_sim.scene_raceway import InnerRaceway, OuterRaceway
+from bearing_sim.scene_record import record as _strict
 
 
 @_strict
