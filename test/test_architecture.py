@@ -44,7 +44,7 @@ ALLOWED = {
         {"sinks", "contour", "sample", "scene", "scene_file", "events", "topics", "provenance", "simulation"},
     ),
     "studies": (
-        NUMBERS | {"sksundae"},
+        NUMBERS | {"sksundae", "matplotlib"},
         {"studies", "levels", "params", "sample", "scene", "scene_file", "simulation"},
     ),
     "runtime": ({"numpy"}, {"runtime", "simulation", "scene", "events", "sample", "topics"}),
