@@ -16,6 +16,7 @@ module                 responsibility
 ``integrators``        stiff and explicit methods and their drive loops; they know no bearings
 ``rating_life``        roller loads to rating life
 ``oil``                oil properties at a temperature
+``ring_growth``        how far rings grow by rotation, fits and heat
 ``runtime``            pacing, the solver's thread, the gate for inputs, health
 ``sinks``              MCAP and rerun
 ``studies``            the bench: speed and error of every level and method

@@ -16,7 +16,9 @@ from pydantic import TypeAdapter, ValidationError
 from bearing_sim.contour_scene import UNREAD, anchor_contour, drop_other_forms, with_contour_text
 from bearing_sim.scene import Scene
 
-_UNION_TAGS = frozenset({"oil_4109", "constant", "double_exponential", "reference", "hyperbolic", "power"})
+_UNION_TAGS = frozenset(
+    {"oil_4109", "constant", "kragelskii", "eyring", "fitted", "custom", "double_exponential", "reference", "hyperbolic", "power"}
+)
 
 
 @dataclass(frozen=True)
@@ -219,10 +221,15 @@ def _with_presets(tree: Mapping) -> tuple[dict, list[Fault]]:
     lubricant = tree.get("lubricant")
     if isinstance(lubricant, Mapping) and isinstance(lubricant.get("oil"), str):
         oil, unknown = _from_catalog("oils", lubricant["oil"], "lubricant.oil")
+        if lubricant["oil"] == "custom":
+            unknown = [Fault("lubricant.oil", "'custom'", "expected a block: law: custom, viscosity_40, viscosity_100, density, pressure_viscosity")]
         faults += unknown
         if unknown:
             oil = _from_catalog("oils", catalog_names("oils")[0], "")[0]  # so that the rest is still checked
         tree["lubricant"] = {**lubricant, "oil": oil}
+    lubricant = tree.get("lubricant")
+    if isinstance(lubricant, Mapping) and isinstance(lubricant.get("oil"), Mapping) and "law" not in lubricant["oil"]:
+        tree["lubricant"] = {**lubricant, "oil": {"law": "fitted", **lubricant["oil"]}}
     return tree, faults
 
 

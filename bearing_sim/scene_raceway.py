@@ -66,3 +66,39 @@ class InnerRaceway:
     ring_mass: quantity("kg", "mass of the inner ring", 1e-4, 1e3) = 0.05
     supported_mass: quantity("kg", "mass of the shaft that moves with the inner ring", 0.0, 1e5) = 0.5
     bore_radius: quantity("m", "bore radius of the inner ring", 1e-3, 2.0, "mm") | None = None
+
+
+@record
+class RingGrowth:
+    """What changes the play of a bearing besides its drawing: rotation, fits, heat.  All off by default."""
+
+    centrifugal: bool = False
+    shaft_interference: quantity("m", "diametral interference of shaft and inner ring", 0.0, 1e-3, "um") = 0.0
+    shaft_bore_radius: quantity("m", "bore radius of the shaft; 0 is a solid one", 0.0, 2.0, "mm") = 0.0
+    housing_interference: quantity("m", "diametral interference of housing and outer ring", 0.0, 1e-3, "um") = 0.0
+    housing_radius: quantity("m", "outside radius of the housing", 1e-3, 10.0, "mm") | None = None
+    thermal: bool = False
+    expansion: quantity("1/K", "linear thermal expansion of rings and rollers", 0.0, 1e-3) = 1.2e-5
+    reference_temperature: quantity("K", "temperature at which the drawing holds", 150.0, 800.0, "degC") = 293.15
+    inner_excess: quantity("K", "inner ring's temperature less the oil's", -200.0, 200.0) = 0.0
+    roller_excess: quantity("K", "rollers' temperature less the oil's", -200.0, 200.0) = 0.0
+    outer_excess: quantity("K", "outer ring's temperature less the oil's", -200.0, 200.0) = 0.0
+
+
+def growth_faults(bearing) -> list[str]:
+    """Return what the options of ring growth lack or contradict in a bearing, in words."""
+    growth, inner, outer, faults = bearing.ring_growth, bearing.inner_raceway, bearing.outer_raceway, []
+    if growth.centrifugal or growth.shaft_interference:
+        if inner.bore_radius is None:
+            faults.append("inner_raceway.bore_radius: missing; ring_growth needs it")
+        elif not growth.shaft_bore_radius < inner.bore_radius < inner.radius:
+            faults.append("inner_raceway.bore_radius: expected between the shaft's bore and the raceway")
+    if growth.housing_interference:
+        faults += [
+            f"{name}: missing; ring_growth.housing_interference needs it"
+            for name, value in (("outer_raceway.outside_radius", outer.outside_radius), ("ring_growth.housing_radius", growth.housing_radius))
+            if value is None
+        ]
+        if not faults and not outer.low_radius + outer.d_value < outer.outside_radius < growth.housing_radius:
+            faults.append("outer_raceway.outside_radius: expected between the raceway and the housing's outside")
+    return faults
