@@ -16,7 +16,7 @@ from bearing_sim.scene_lubricant import CustomOil, Oil, Oil4109Traction, Tractio
 from bearing_sim.scene_raceway import InnerRaceway, OuterRaceway, RingGrowth, growth_faults
 from bearing_sim.scene_record import record as _strict
 
-LEVELS_WITH_GROWTH = ("slip",)  # levels that compute pumping and rings that grow with speed and temperature
+LEVELS_WITH_GROWTH = ("slip", "planar")  # levels that compute pumping and rings that grow with speed and temperature
 
 
 @_strict
