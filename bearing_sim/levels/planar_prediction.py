@@ -9,7 +9,7 @@ import math
 
 from bearing_sim.kernels.compilation import kernel
 from bearing_sim.kernels.elementary import cosine_sine
-from bearing_sim.kernels.lanes import LANES, floor, load, square_root, store
+from bearing_sim.kernels.lanes import LANES, floor, highest, larger, load, magnitude, spread, square_root, store
 from bearing_sim.kernels.raceway import contour_lanes
 from bearing_sim.kernels.traction import CONTACT
 from bearing_sim.levels.growth import inner_growth
@@ -17,7 +17,8 @@ from bearing_sim.levels.planar_algebra import BORDER
 from bearing_sim.levels.planar_rollers import normal_forces
 from bearing_sim.levels.planar_state import R_SPEED, RING_Y, RING_Z, ROLLER, ROLLERS, R
 
-_ITERATIONS = 2
+_ITERATIONS = 4
+_SETTLED = 5e-5  # m, times the tolerance: what one iteration more would change is left to the whole system's
 
 
 @kernel
@@ -57,7 +58,10 @@ def _start(known, shift, guess, count, raceways, rows):
 
 @kernel
 def _balance(guess, shift, inner_radius, params, rows, contacts):
-    """Take one Newton step of all radial equations: r = known + shift r', r' = known' + shift (r phi'^2 + (Q_i - Q_e)/m)."""
+    """Take one Newton step of all radial equations and return the largest change [m].
+
+    r = known + shift r', r' = known' + shift (r phi'^2 + (Q_i - Q_e)/m)
+    """
     roller_radius, mass, blocks = params.rollers.radius, params.rollers.mass, rows.shape[0]
     per_shift = 1.0 / shift
     for block in range(blocks):
@@ -71,6 +75,7 @@ def _balance(guess, shift, inner_radius, params, rows, contacts):
         rate = speed - load(rows, block, ROLLER.slope) * load(rows, block, ROLLER.orbital_speed)
         store(contacts, blocks + block, CONTACT.rate, rate)
     normal_forces(params, contacts)
+    largest = spread(0.0)
     for block in range(blocks):
         outer = blocks + block
         radius, orbital_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.orbital_speed)
@@ -79,7 +84,10 @@ def _balance(guess, shift, inner_radius, params, rows, contacts):
         damping = load(contacts, block, CONTACT.damping) + load(contacts, outer, CONTACT.damping)
         force = load(contacts, outer, CONTACT.load) - load(contacts, block, CONTACT.load)
         force += mass * ((speed - load(rows, block, ROLLER.known_speed)) * per_shift - radius * orbital_speed * orbital_speed)
-        store(rows, block, ROLLER.radius, radius - force / (mass * per_shift * per_shift + damping * per_shift + stiffness))
+        change = force / (mass * per_shift * per_shift + damping * per_shift + stiffness)
+        largest = larger(largest, magnitude(change))
+        store(rows, block, ROLLER.radius, radius - change)
+    return highest(largest)
 
 
 @kernel
@@ -100,7 +108,8 @@ def predict(known, shift, slope, model, work, guess):
     _extrapolate(known, shift, slope, count, guess)
     _start(known, shift, guess, count, params.raceways, rows)
     for _ in range(_ITERATIONS):
-        _balance(guess, shift, inner_radius, params, rows, work.contacts)
+        if _balance(guess, shift, inner_radius, params, rows, work.contacts) < _SETTLED * model.tolerance:
+            break
     per_shift = 1.0 / shift
     for j in range(count):
         roller = ROLLERS + j
