@@ -4,6 +4,7 @@
 module                 responsibility
 =====================  ==================================================================================
 ``scene``              what to simulate: frozen records, one declaration per quantity
+``crown``              profiles of the rollers
 ``methods``            by which integrators each level can be advanced
 ``scene_file``         YAML, presets, overrides; every fault of a file at once
 ``quantity``           units at the door

@@ -5,12 +5,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.kernels.contact import line_contact_stiffness
+from bearing_sim.crown import crown_drops
+from bearing_sim.kernels.contact import iso_contact_stiffness, line_contact_stiffness
 from bearing_sim.kernels.raceway import lobed_contour
 from bearing_sim.kernels.traction import TractionConstants, constant_constants, oil_4109_constants
 from bearing_sim.oil import oil_at
 from bearing_sim.rating_life import ring_ratings
-from bearing_sim.scene import ConstantTraction, Lubricant, Scene
+from bearing_sim.scene import Bearing, ConstantTraction, Lubricant, Scene
 
 
 class Rollers(NamedTuple):
@@ -21,6 +22,7 @@ class Rollers(NamedTuple):
     length: float  # L [m]
     mass: float  # m_r [kg]
     inertia: float  # J_r about its own axis [kg m^2]
+    crown: np.ndarray  # drop C_k of each slice, off the penetration of each contact [m], shape (N,)
 
 
 class Raceways(NamedTuple):
@@ -94,6 +96,13 @@ class Lubrication(NamedTuple):
     temperature: float  # of the oil [K]
 
 
+def contact_stiffness(bearing: Bearing) -> float:
+    """Return K of Q = K delta^(10/9) [N/m^(10/9)] of one contact, by the scene's spring constant."""
+    if bearing.contact.spring == "iso":
+        return iso_contact_stiffness(bearing.roller.length)
+    return line_contact_stiffness(bearing.roller.length, bearing.material.youngs_modulus, bearing.material.poisson_ratio)
+
+
 def pack(scene: Scene) -> Params:
     """Return the parameters of a scene as compiled code wants them: float64, int, C-contiguous arrays."""
     bearing = scene.bearing
@@ -104,7 +113,16 @@ def pack(scene: Scene) -> Params:
     inner_rating, outer_rating = ring_ratings(bearing.roller.count, bearing.roller.diameter, bearing.roller.length, bearing.diameter_ratio)
     cage = bearing.cage
     return Params(
-        rollers=Rollers(int(bearing.roller.count), roller_radius, bearing.roller.length, mass, 0.5 * mass * roller_radius**2),
+        rollers=Rollers(
+            count=int(bearing.roller.count),
+            radius=roller_radius,
+            length=bearing.roller.length,
+            mass=mass,
+            inertia=0.5 * mass * roller_radius**2,
+            crown=np.ascontiguousarray(
+                crown_drops(bearing.roller.crown, bearing.roller.diameter, bearing.roller.length, bearing.roller.slices), np.float64
+            ),
+        ),
         raceways=Raceways(
             inner_radius=inner_radius,
             low_radius=low_radius,
@@ -112,7 +130,7 @@ def pack(scene: Scene) -> Params:
             diameter_ratio=bearing.diameter_ratio,
             contour=lobed_contour(low_radius, bearing.outer_raceway.d_value, bearing.outer_raceway.lobes, bearing.outer_raceway.installation_angle),
             slope_factor=1.0 if bearing.outer_raceway.contour_slope else 0.0,
-            stiffness=line_contact_stiffness(bearing.roller.length, bearing.material.youngs_modulus, bearing.material.poisson_ratio),
+            stiffness=contact_stiffness(bearing),
             inner_curvature_radius=1 / (1 / roller_radius + 1 / inner_radius),
             outer_curvature_radius=1 / (1 / roller_radius - 1 / low_radius),
             reduced_modulus=2 / compliance,

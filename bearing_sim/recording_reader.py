@@ -19,8 +19,8 @@ from mcap.records import Channel, Footer, Message, Metadata, Schema
 from mcap.stream_reader import CRCValidationError, StreamReader
 
 from bearing_sim.events import Event, Level
-from bearing_sim.kernels.contact import line_contact_stiffness
 from bearing_sim.mcap_stream import WholeReads
+from bearing_sim.params import contact_stiffness
 from bearing_sim.sample import new_block
 from bearing_sim.scene import Scene
 from bearing_sim.scene_file import SceneError, scene_from_yaml
@@ -249,9 +249,9 @@ def complete(scene: Scene, block: np.ndarray, before: np.void | None = None) -> 
     block : samples with time, speeds, angles and loads, NaN where nothing was recorded; changed in place.
     before : the completed sample before the block.
     """
-    bearing, material = scene.bearing, scene.bearing.material
+    bearing = scene.bearing
     count, radius = bearing.roller.count, bearing.roller.diameter / 2
-    stiffness = line_contact_stiffness(bearing.roller.length, material.youngs_modulus, material.poisson_ratio)
+    stiffness = contact_stiffness(bearing)
     azimuth = block["cage_angle"][:, None] + 2 * math.pi / count * np.arange(count)
     approach = {ring: np.maximum(block[f"{ring}_load"] / stiffness, 0.0) ** 0.9 for ring in ("inner", "outer")}
     block["roller_angle"] = azimuth

@@ -15,7 +15,9 @@ from pydantic import TypeAdapter, ValidationError
 
 from bearing_sim.scene import Scene
 
-_UNION_TAGS = frozenset({"oil_4109", "constant", "double_exponential", "reference", "hyperbolic", "power"})
+_UNION_TAGS = frozenset(
+    {"oil_4109", "constant", "double_exponential", "reference", "hyperbolic", "power", "none", "iso_log", "straight_arc", "table"}
+)
 
 
 @dataclass(frozen=True)
