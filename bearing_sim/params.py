@@ -10,7 +10,7 @@ from bearing_sim.kernels.contact import iso_contact_stiffness, line_contact_stif
 from bearing_sim.kernels.raceway import lobed_contour
 from bearing_sim.kernels.traction import TractionConstants, constant_constants, oil_4109_constants
 from bearing_sim.oil import oil_at
-from bearing_sim.rating_life import ring_ratings
+from bearing_sim.rating_life import CLEANLINESS, fatigue_limit, load_rating, reliability_factor, ring_ratings, static_rating
 from bearing_sim.scene import Bearing, ConstantTraction, Lubricant, Scene
 
 
@@ -70,10 +70,16 @@ class Ring(NamedTuple):
 
 
 class Life(NamedTuple):
-    """Load ratings of one roller contact (ISO/TS 16281)."""
+    """Load ratings of one roller contact (ISO/TS 16281), and what modifies the life (ISO 281)."""
 
     inner_rating: float  # Q_ci [N]
     outer_rating: float  # Q_ce [N]
+    reliability_factor: float  # a_1
+    modified: bool  # whether a_ISO is taken
+    cleanliness_slope: float  # of e_C, see `bearing_sim.rating_life.CLEANLINESS`
+    cleanliness_loss: float
+    fatigue_limit_ratio: float  # C_u/C_r
+    lamina: bool  # whether a level with slices takes the life by them
 
 
 class Params(NamedTuple):
@@ -94,6 +100,7 @@ class Lubrication(NamedTuple):
     viscosity: float  # eta_0 of the oil [Pa s]
     mixture_density: float  # of the oil-air mixture [kg/m^3]
     temperature: float  # of the oil [K]
+    kinematic_viscosity: float  # nu of the oil [m^2/s]
 
 
 def contact_stiffness(bearing: Bearing) -> float:
@@ -110,7 +117,6 @@ def pack(scene: Scene) -> Params:
     mass = math.pi * roller_radius**2 * bearing.roller.length * bearing.material.density
     inner_radius, low_radius = bearing.inner_raceway.radius, bearing.outer_raceway.low_radius
     compliance = 2 * (1 - bearing.material.poisson_ratio**2) / bearing.material.youngs_modulus
-    inner_rating, outer_rating = ring_ratings(bearing.roller.count, bearing.roller.diameter, bearing.roller.length, bearing.diameter_ratio)
     cage = bearing.cage
     return Params(
         rollers=Rollers(
@@ -155,7 +161,25 @@ def pack(scene: Scene) -> Params:
             width=cage.width,
         ),
         ring=Ring(bearing.inner_raceway.ring_mass + bearing.inner_raceway.supported_mass, bearing.contact.damping),
-        life=Life(inner_rating, outer_rating),
+        life=_life(scene),
+    )
+
+
+def _life(scene: Scene) -> Life:
+    bearing, choice = scene.bearing, scene.life
+    dimensions = (bearing.roller.count, bearing.roller.diameter, bearing.roller.length, bearing.diameter_ratio)
+    inner_rating, outer_rating = ring_ratings(*dimensions)
+    slope, loss = CLEANLINESS.get(choice.a_iso, (0.0, 0.0))
+    limit = fatigue_limit(static_rating(*dimensions), bearing.pitch_diameter)
+    return Life(
+        inner_rating=inner_rating,
+        outer_rating=outer_rating,
+        reliability_factor=reliability_factor(choice.reliability),
+        modified=choice.a_iso != "none",
+        cleanliness_slope=slope,
+        cleanliness_loss=loss,
+        fatigue_limit_ratio=limit / load_rating(*dimensions),
+        lamina=bool(choice.lamina),
     )
 
 
@@ -178,4 +202,5 @@ def lubricate(lubricant: Lubricant, params: Params, temperature: float) -> Lubri
         viscosity=oil.viscosity,
         mixture_density=lubricant.mixture_fraction * oil.density,
         temperature=oil.temperature,
+        kinematic_viscosity=oil.viscosity / oil.density,
     )

@@ -264,6 +264,8 @@ def complete(scene: Scene, block: np.ndarray, before: np.void | None = None) -> 
     block["land_eccentricity"] = np.hypot(block["cage_y"], block["cage_z"]) / bearing.cage.guide_clearance
     _fill(block, "inner_equivalent_load", np.mean(block["inner_load"] ** 4, axis=1) ** (1 / 4))
     _fill(block, "outer_equivalent_load", np.mean(block["outer_load"] ** 4.5, axis=1) ** (1 / 4.5))
+    for life in ("lamina_life", "modified_rating_life"):
+        _fill(block, life, block["rating_life"])
     # A loaded roller touches the ring: e cos(phi - phi_e) = delta_i - (R_i + R_w - r); all of them together give e.
     if np.isnan(block["ring_y"]).any():
         wanted = approach["inner"] - (bearing.inner_raceway.radius + radius - block["roller_radius"])

@@ -33,7 +33,7 @@ ALLOWED = {
     "scene_file.py": ({"pydantic", "yaml"}, {"scene", "quantity"}),
     "oil.py": ({"numpy"}, {"scene"}),
     "params.py": ({"numpy"}, {"crown", "kernels", "oil", "rating_life", "scene"}),
-    "rating_life.py": (set(), {"kernels.compilation"}),
+    "rating_life.py": ({"numpy"}, {"kernels.compilation"}),
     "simulation.py": ({"numpy"}, {"integrators.status", "levels", "params", "sample", "scene"}),
     "sinks": (
         {"numpy", "mcap", "rosbags", "rerun", "yaml"},
