@@ -14,11 +14,11 @@ module                 responsibility
 ``levels``             one complete model per file
 ``kernels``            scalar laws: contact, traction, cage, drag, raceway, load balance, linear algebra
 ``integrators``        stiff and explicit methods and their drive loops; they know no bearings
-``rating_life``        roller loads to rating life
+``rating_life``        roller loads to rating life: whole rollers, slices, oil and reliability
 ``oil``                oil properties at a temperature
 ``runtime``            pacing, the solver's thread, the gate for inputs, health
 ``sinks``              MCAP and rerun
-``studies``            the bench: speed and error of every level and method
+``studies``            the bench: speed and error of every level and method; statics: the load distribution by slices
 ``topics``             the messages that samples and inputs become
 ``ros``                the ROS 2 node and player
 ``commands``, ``cli``  the command line

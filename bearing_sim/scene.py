@@ -257,6 +257,16 @@ class Operating:
     shaft_speed: quantity("rad/s", "shaft speed, omega_i", -12000.0, 12000.0, "rpm")
     radial_load: quantity("N", "radial load on the inner ring, F_r", 0.0, 1e6) = 0.0
     load_angle: quantity("rad", "azimuth of the radial load, from +y", -2 * math.pi, 2 * math.pi, "deg") = 0.0
+    moment: quantity("N*m", "moment on the inner ring, which then tilts freely; None: its tilt is held", 0.0, 1e5) | None = None
+    moment_angle: quantity("rad", "azimuth to which the moment leans the ring's +x end, from +y", -2 * math.pi, 2 * math.pi, "deg") = 0.0
+    misalignment: quantity("rad", "tilt at which the inner ring is held", 0.0, 0.02, "mrad") = 0.0
+    misalignment_angle: quantity("rad", "azimuth to which the ring's +x end leans, from +y", -2 * math.pi, 2 * math.pi, "deg") = 0.0
+
+    @model_validator(mode="after")
+    def _ring_is_held_or_free(self):
+        if self.moment is not None and self.misalignment != 0.0:
+            raise ValueError("misalignment: a ring under a moment tilts freely; give the moment or the misalignment")
+        return self
 
 
 @_strict
@@ -325,7 +335,7 @@ class LifeRating:
 
     reliability: quantity("", "probability of reaching the life", 0.9, 0.9995, "%") = 0.9
     a_iso: CLEANLINESS = "none"
-    lamina: bool = True  # by slices (ISO/TS 16281) where the level has slices; False by whole rollers there, too
+    lamina: bool = False  # by slices, with stress risers (ISO/TS 16281)
 
 
 @_strict
@@ -350,9 +360,13 @@ class Scene:
 
     @model_validator(mode="after")
     def _level_sees_what_the_scene_says(self):
-        crown = self.bearing.roller.crown.law
-        if crown != "none" and self.level in _WHOLE_ROLLERS:
-            raise ValueError(f"bearing.roller.crown: {crown} needs level spatial, which slices the rollers; level {self.level} would ignore it")
+        crown, operating = self.bearing.roller.crown.law, self.operating
+        needs = [f"bearing.roller.crown: {crown} needs level spatial, which slices the rollers"] if crown != "none" else []
+        needs += ["operating.moment: needs level spatial, whose ring tilts"] if operating.moment is not None else []
+        needs += ["operating.misalignment: needs level spatial, whose ring tilts"] if operating.misalignment != 0.0 else []
+        needs += ["life.lamina: needs level spatial, which slices the rollers"] if self.life.lamina else []
+        if needs and self.level in _WHOLE_ROLLERS:
+            raise ValueError("; ".join(f"{need}; level {self.level} would ignore it" for need in needs))
         return self
 
     @model_validator(mode="after")

@@ -40,8 +40,8 @@ ALLOWED = {
         {"sinks", "sample", "scene", "scene_file", "events", "topics", "provenance", "simulation"},
     ),
     "studies": (
-        NUMBERS | {"sksundae"},
-        {"studies", "levels", "params", "sample", "scene", "scene_file", "simulation"},
+        NUMBERS | {"sksundae", "matplotlib"},
+        {"studies", "levels", "params", "rating_life", "sample", "scene", "scene_file", "simulation"},
     ),
     "runtime": ({"numpy"}, {"runtime", "simulation", "scene", "events", "sample", "topics"}),
 }

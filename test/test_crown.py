@@ -89,6 +89,13 @@ def test_a_level_without_slices_refuses_a_crown_and_names_the_level_it_needs(lev
     assert scene("bearing.roller.crown=none", level=level)
 
 
+def test_a_level_without_slices_names_everything_that_it_would_ignore():
+    with pytest.raises(SceneError, match="crown.*moment.*lamina"):
+        scene("bearing.roller.crown=iso_log", "operating.moment=1 N*m", "life.lamina=true", level="planar")
+    with pytest.raises(SceneError, match="misalignment: needs level spatial"):
+        scene("operating.misalignment=1 mrad", level="slip")
+
+
 @pytest.mark.parametrize(
     "crown, told",
     [

@@ -76,3 +76,18 @@ def balance(
 def roller_tilts(slices) -> np.ndarray:
     """Return each roller's tilt in the plane of shaft and azimuth [rad], shape (Z,); positive presses the end at positive x outwards."""
     return slices.roller[ROLLER_ROW.tilt] / slices.half_length
+
+
+def roller_loads(slices) -> tuple[np.ndarray, np.ndarray]:
+    """Return the loads of all rollers on the inner and the outer raceway [N], shape (Z,) each."""
+    return slices.inner.sum(axis=1), slices.outer.sum(axis=1)
+
+
+def about_yz(amount: float, azimuth: float) -> tuple[float, float]:
+    """Return a tilt or a moment about (y, z) that leans the ring's +x end towards an azimuth [rad]."""
+    return -amount * math.sin(azimuth), amount * math.cos(azimuth)
+
+
+def leaning(tilt_y: float, tilt_z: float) -> tuple[float, float]:
+    """Return amount and azimuth [rad] of a tilt or a moment about y and z: `about_yz` the other way round."""
+    return math.hypot(tilt_y, tilt_z), math.atan2(-tilt_y, tilt_z)
