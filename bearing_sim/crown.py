@@ -5,12 +5,11 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, ConfigDict, Field, model_validator
-from pydantic.dataclasses import dataclass
+from pydantic import BeforeValidator, Field, model_validator
 
 from bearing_sim.quantity import quantity
+from bearing_sim.scene_record import record as _strict
 
-_strict = dataclass(frozen=True, kw_only=True, config=ConfigDict(extra="forbid", str_strip_whitespace=True))
 _TABLE_HEADER = "expected a header of two columns, position and drop, each with its unit in brackets, such as position[mm],drop[um]"
 
 
@@ -71,6 +70,21 @@ Crown = Annotated[
     BeforeValidator(_from_shorthand),
 ]
 """A crown in a scene: a record, or the bare name of one that needs no numbers (``none``, ``iso_log``)."""
+
+
+def anchor_crown(tree, folder: Path) -> None:
+    """Make a crown's file that a scene file names relative to that file's folder.
+
+    Parameters
+    ----------
+    tree : the scene as nested mappings; changed in place.
+    folder : of the scene file.
+    """
+    node = tree
+    for key in ("bearing", "roller", "crown"):
+        node = node.get(key) if isinstance(node, dict) else None
+    if isinstance(node, dict) and isinstance(node.get("file"), str):
+        node["file"] = str(folder / node["file"])
 
 
 def crown_points(path: str | Path) -> dict[str, list[str]]:

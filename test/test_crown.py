@@ -63,6 +63,15 @@ def test_a_crown_from_a_file_is_kept_inside_the_scene(tmp_path):
     assert scene_from_yaml(scene_to_yaml(read)) == read
 
 
+def test_a_scene_files_crown_lies_beside_it(tmp_path):
+    (tmp_path / "crown.csv").write_text("position[mm],drop[um]\n-3.5,4\n3.5,4\n")
+    path = tmp_path / "scene.yaml"
+    text = scene_to_yaml(scene()).replace("    crown:\n      law: none\n", "    crown: {law: table, file: crown.csv}\n")
+    assert "crown.csv" in text
+    path.write_text(text)
+    assert load_scene(path).bearing.roller.crown.drops == (4e-6, 4e-6)
+
+
 @pytest.mark.parametrize(
     "text, told",
     [

@@ -15,12 +15,13 @@ from bearing_sim.params import Params
 
 
 @kernel
-def place_rollers(cage_angle, cage_speed, params, slices):
+def place_rollers(cage_angle, cage_speed, growth, params, slices):
     """Write azimuths, approaches and centrifugal forces of all rollers into ``slices.roller``.
 
     Parameters
     ----------
     cage_angle, cage_speed : of the cage [rad, rad/s]; roller 0 stands at the cage's angle.
+    growth : of the inner raceway's radius [m], see `bearing_sim.levels.growth`.
     params : `bearing_sim.params.Params`.
     slices : `bearing_sim.kernels.lamina.Slices`.
     """
@@ -31,7 +32,7 @@ def place_rollers(cage_angle, cage_speed, params, slices):
         turn -= math.floor(turn)
         radius, _ = contour_at(raceways.contour, turn * raceways.contour.shape[0])
         slices.roller[row.cosine, j], slices.roller[row.sine, j] = math.cos(azimuth), math.sin(azimuth)
-        slices.roller[row.squeeze, j] = raceways.inner_radius + 2.0 * rollers.radius - radius
+        slices.roller[row.squeeze, j] = raceways.inner_radius + growth + 2.0 * rollers.radius - radius
         slices.roller[row.centrifugal, j] = rollers.mass * (radius - rollers.radius) * cage_speed * cage_speed
 
 
@@ -43,6 +44,7 @@ def balance(
     moment: tuple[float, float] = (0.0, 0.0),
     tilts: tuple[float, float] | None = None,
     slices=None,
+    growth: float = 0.0,
 ):
     """Return the bearing in balance, as `bearing_sim.kernels.lamina.Slices`.
 
@@ -54,20 +56,21 @@ def balance(
     moment : moment about (y, z) on it [N m]; without effect where the tilts are given.
     tilts : the ring's tilts about (y, z) [rad]; None lets it tilt until the moments balance.
     slices : a balance nearby to start from, overwritten.
+    growth : of the inner raceway's radius by rotation and heat [m], see `bearing_sim.levels.growth`.
 
     Raises
     ------
     ArithmeticError
         No balance was found, or an input is not finite.
     """
-    inputs = (cage_angle, cage_speed, *load, *moment, *(tilts or ()))
+    inputs = (cage_angle, cage_speed, *load, *moment, *(tilts or ()), growth)
     if not all(map(math.isfinite, inputs)):
         raise ArithmeticError(f"no balance by slices of inputs that are not finite: {inputs}")
     if slices is None:
         slices = new_slices(params.rollers.count, params.rollers.crown, params.rollers.length, params.raceways.stiffness)
     if tilts is not None:
         slices.ring[2:] = tilts
-    place_rollers(float(cage_angle), float(cage_speed), params, slices)
+    place_rollers(float(cage_angle), float(cage_speed), float(growth), params, slices)
     if not balance_slices(float(load[0]), float(load[1]), float(moment[0]), float(moment[1]), tilts is None, slices):
         raise ArithmeticError(f"the balance by slices did not converge at load {load} N, moment {moment} N m, cage {cage_speed:.6g} rad/s")
     return slices

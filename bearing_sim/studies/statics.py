@@ -69,11 +69,14 @@ def statics(scene: Scene, slices: int) -> Statics:
     moment = about_yz(operating.moment or 0.0, operating.moment_angle)
     tilts = about_yz(operating.misalignment, operating.misalignment_angle) if operating.moment is None else None
 
+    lubrication = lubricate(scene.lubricant, params, scene.lubricant.temperature)
+    growth = lubrication.ring_growth + params.growth.by_square_speed * operating.shaft_speed**2
+
     inner_means, outer_means, risers = np.zeros(slices), np.zeros(slices), stress_risers(slices)
     rotating, stationary, at = 0.0, 0.0, None
     for position in reversed(range(_PITCH_POSITIONS)):  # the last one has roller 0 on the load line
         angle = operating.load_angle + 2 * math.pi * position / (_PITCH_POSITIONS * count)
-        at = balance(params, angle, cage_speed, load, moment, tilts, at)
+        at = balance(params, angle, cage_speed, load, moment, tilts, at, growth)
         inner, outer = roller_loads(at)
         rotating += np.mean(inner**ROTATING_EXPONENT) / _PITCH_POSITIONS
         stationary += np.mean(outer**STATIONARY_EXPONENT) / _PITCH_POSITIONS
@@ -81,9 +84,8 @@ def statics(scene: Scene, slices: int) -> Statics:
 
     equivalent = float(rotating ** (1 / ROTATING_EXPONENT)), float(stationary ** (1 / STATIONARY_EXPONENT))
     whole, sliced = rating_life_revolutions(*equivalent, life), lamina_life_revolutions(inner_means, outer_means, life)
-    viscosity = lubricate(scene.lubricant, params, scene.lubricant.temperature).kinematic_viscosity
     pitch, speed = 2 * raceways.pitch_radius, abs(operating.shaft_speed)
-    kappa = viscosity_ratio(viscosity, speed, pitch)
+    kappa = viscosity_ratio(lubrication.kinematic_viscosity, speed, pitch)
     hours = 2 * math.pi / (3600 * speed) if speed > 0.0 else math.inf
     width = params.rollers.length / slices
     return Statics(
@@ -102,7 +104,7 @@ def statics(scene: Scene, slices: int) -> Statics:
         equivalent_loads=equivalent,
         rating_life=hours * whole,
         lamina_life=hours * sliced,
-        modified_life=hours * modified_life_revolutions(sliced if life.lamina else whole, speed, viscosity, pitch, life),
+        modified_life=hours * modified_life_revolutions(sliced if life.lamina else whole, speed, lubrication.kinematic_viscosity, pitch, life),
         viscosity_ratio=kappa,
         contamination_factor=contamination_factor(kappa, life.cleanliness_slope, life.cleanliness_loss, pitch) if life.modified else math.nan,
     )
