@@ -10,7 +10,7 @@ from bearing_sim.kernels.raceway import lobed_contour
 from bearing_sim.kernels.traction import TractionConstants, constant_constants, oil_4109_constants
 from bearing_sim.oil import oil_at
 from bearing_sim.rating_life import ring_ratings
-from bearing_sim.scene import ConstantTraction, Lubricant, Scene
+from bearing_sim.scene import Bearing, ConstantTraction, Lubricant, Scene
 
 
 class Rollers(NamedTuple):
@@ -67,6 +67,32 @@ class Ring(NamedTuple):
     contact_damping: float  # a of Q (1 + a d(delta)/dt) [s/m]
 
 
+class Slices(NamedTuple):
+    """The rollers' slices; level ``spatial`` alone looks at them."""
+
+    places: np.ndarray  # axial place of each slice's middle from the roller's, x_k [m], shape (N,)
+    crown: np.ndarray  # drop of the profile there, C_k [m], shape (N,)
+
+
+class Tilts(NamedTuple):
+    """What tilts and what tilts it; level ``spatial`` alone looks at it.
+
+    Tilts and moments are pairs by y and z: a tilt is the inclination of the axis towards them, a moment is what drives it.
+    """
+
+    roller_inertia: float  # about a diameter [kg m^2]
+    cage_inertia: float
+    ring_inertia: float
+    gyroscopic: float  # 1 with gyroscopic moments, 0 without (Deng 2017)
+    ring_polar_inertia: float  # [kg m^2]
+    land_place: float  # of one of the cage's guide lands along the axis, the other is opposite [m]
+    ring_free: float  # 1 where a moment tilts the ring, 0 where its tilt is held
+    moment_y: float  # on the ring [N m]
+    moment_z: float
+    misalignment_y: float  # where the ring begins, and stays where it is held [rad]
+    misalignment_z: float
+
+
 class Life(NamedTuple):
     """Load ratings of one roller contact (ISO/TS 16281)."""
 
@@ -82,6 +108,8 @@ class Params(NamedTuple):
     cage: CageBody
     ring: Ring
     life: Life
+    slices: Slices
+    tilts: Tilts
 
 
 class Lubrication(NamedTuple):
@@ -138,6 +166,36 @@ def pack(scene: Scene) -> Params:
         ),
         ring=Ring(bearing.inner_raceway.ring_mass + bearing.inner_raceway.supported_mass, bearing.contact.damping),
         life=Life(inner_rating, outer_rating),
+        slices=_slices(bearing),
+        tilts=_tilts(scene, mass),
+    )
+
+
+def _slices(bearing: Bearing) -> Slices:
+    count, length = bearing.roller.slices, bearing.roller.length
+    places = (np.arange(count) - 0.5 * (count - 1)) * (length / count)
+    return Slices(places, np.zeros(count))
+
+
+def _tilts(scene: Scene, roller_mass: float) -> Tilts:
+    bearing, operating = scene.bearing, scene.operating
+    cage, inner = bearing.cage, bearing.inner_raceway
+    polar = cage.polar_inertia if cage.polar_inertia is not None else cage.mass * bearing.pitch_radius**2
+    ring_polar = inner.polar_inertia if inner.polar_inertia is not None else 0.5 * (inner.ring_mass + inner.supported_mass) * inner.radius**2
+    distance = cage.guide_land_distance if cage.guide_land_distance is not None else cage.width - cage.guide_land_width
+    moment = operating.moment if operating.moment is not None else 0.0
+    return Tilts(
+        roller_inertia=roller_mass * (3 * (bearing.roller.diameter / 2) ** 2 + bearing.roller.length**2) / 12,
+        cage_inertia=cage.transverse_inertia if cage.transverse_inertia is not None else 0.5 * polar,
+        ring_inertia=inner.transverse_inertia if inner.transverse_inertia is not None else 0.5 * ring_polar,
+        gyroscopic=1.0 if scene.dynamics.gyroscopic else 0.0,
+        ring_polar_inertia=ring_polar,
+        land_place=distance / 2,
+        ring_free=1.0 if operating.moment is not None else 0.0,
+        moment_y=moment * math.cos(operating.moment_angle),
+        moment_z=moment * math.sin(operating.moment_angle),
+        misalignment_y=operating.misalignment * math.cos(operating.misalignment_angle),
+        misalignment_z=operating.misalignment * math.sin(operating.misalignment_angle),
     )
 
 

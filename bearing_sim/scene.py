@@ -35,6 +35,8 @@ class InnerRaceway:
     radius: quantity("m", "inner raceway radius, R_i", 1e-3, 2.0, "mm")
     ring_mass: quantity("kg", "mass of the inner ring", 1e-4, 1e3) = 0.05
     supported_mass: quantity("kg", "mass of the shaft that moves with the inner ring", 0.0, 1e5) = 0.5
+    polar_inertia: quantity("kg*m^2", "inertia of ring and shaft about the shaft axis; None: a solid cylinder", 1e-12, 1e6) | None = None
+    transverse_inertia: quantity("kg*m^2", "their inertia about a diameter; None: half of the polar one", 1e-12, 1e6) | None = None
 
 
 @_strict
@@ -45,6 +47,7 @@ class Roller:
     diameter: quantity("m", "roller diameter, D_w", 0.5e-3, 0.5, "mm")
     length: quantity("m", "roller effective length, L", 0.5e-3, 0.5, "mm")
     crown: Literal["none"] = "none"
+    slices: Annotated[int, Field(ge=1, le=400)] = 20
 
 
 @_strict
@@ -53,11 +56,13 @@ class Cage:
 
     mass: quantity("kg", "cage mass", 1e-6, 1e3, "g")
     polar_inertia: quantity("kg*m^2", "cage inertia about the shaft axis", 1e-12, 1e3) | None = None
+    transverse_inertia: quantity("kg*m^2", "cage inertia about a diameter; None: half of the polar one", 1e-12, 1e3) | None = None
     inner_radius: quantity("m", "radius of the cage's bore", 1e-3, 2.0, "mm")
     width: quantity("m", "axial width of the cage", 1e-4, 1.0, "mm")
     guide_radius: quantity("m", "radius of the outer-ring guide lands, R_g", 1e-3, 2.0, "mm")
     guide_clearance: quantity("m", "radial clearance between cage and guide lands, c", 1e-6, 5e-3, "mm")
     guide_land_width: quantity("m", "width of one of the two guide lands", 1e-6, 0.5, "mm")
+    guide_land_distance: quantity("m", "between the middles of both guide lands; None: at the cage's edges", 0.0, 1.0, "mm") | None = None
     land_film: quantity("m", "film in the guide land below which surfaces touch", 0.0, 1e-4, "um") = 3e-6
     land_friction: quantity("", "boundary friction coefficient of the guide land", 0.0, 1.0) = 0.08
     land_squeeze: bool = True  # the film knows how the cage's centre moves; false is Deng's form, of a centre that rests
@@ -245,6 +250,23 @@ class Operating:
     shaft_speed: quantity("rad/s", "shaft speed, omega_i", -12000.0, 12000.0, "rpm")
     radial_load: quantity("N", "radial load on the inner ring, F_r", 0.0, 1e6) = 0.0
     load_angle: quantity("rad", "azimuth of the radial load, from +y", -2 * math.pi, 2 * math.pi, "deg") = 0.0
+    moment: quantity("N*m", "moment on the inner ring, which then tilts freely; None: its tilt is held", 0.0, 1e5) | None = None
+    moment_angle: quantity("rad", "azimuth to which the moment leans the ring's +x end, from +y", -2 * math.pi, 2 * math.pi, "deg") = 0.0
+    misalignment: quantity("rad", "tilt at which the inner ring is held", 0.0, 0.02, "mrad") = 0.0
+    misalignment_angle: quantity("rad", "azimuth to which the ring's +x end leans, from +y", -2 * math.pi, 2 * math.pi, "deg") = 0.0
+
+    @model_validator(mode="after")
+    def _ring_is_held_or_free(self):
+        if self.moment is not None and self.misalignment != 0.0:
+            raise ValueError("misalignment: a ring under a moment tilts freely; give the moment or the misalignment")
+        return self
+
+
+@_strict
+class Dynamics:
+    """What the equations of motion take into account."""
+
+    gyroscopic: bool = True
 
 
 @_strict
@@ -295,10 +317,11 @@ class Scene:
 
     name: str
     description: str = ""
-    level: Literal["slip", "planar"] = "slip"
+    level: Literal["slip", "planar", "spatial"] = "slip"
     bearing: Bearing
     lubricant: Lubricant
     operating: Operating
+    dynamics: Dynamics = field(default_factory=Dynamics)
     integration: Integration = field(default_factory=Integration)
     input_limits: InputLimits = field(default_factory=InputLimits)
     thresholds: Thresholds = field(default_factory=Thresholds)

@@ -1,0 +1,260 @@
+"""Contact of sliced rollers and raceways: normal force and traction of every slice, summed with their moments.
+
+Deng 2017, eq. 3 to 8: a slice of width L/N carries q = (K/N) delta_k^(10/9), delta_k = delta - C_k + lean x_k, damped as a whole
+contact is.  Traction takes a slice for a whole contact with the slice's load per length, and gives it the N-th part: equal slices
+add up to what `bearing_sim.kernels.traction` gives.  The sliding speed of a slice follows from how fast the axes skew against
+each other; the rolling speed is the same for all slices.
+
+Left out: sliding along the axis of a skewed roller, and the difference of circumference along a crowned one.
+"""
+
+from typing import NamedTuple
+
+from bearing_sim.kernels.compilation import kernel, template
+from bearing_sim.kernels.contact import EXPONENT, TINY
+from bearing_sim.kernels.elementary import exponential, logarithm
+from bearing_sim.kernels.lanes import larger, load, magnitude, spread, store, total, where_positive
+
+_LOAD_FLOOR = 1e-3  # N; as in `bearing_sim.kernels.traction`
+_ROLLING_SPEED_FLOOR = 0.05  # m/s
+
+
+class SlicedRow(NamedTuple):
+    """Rows of a sliced contacts array: all blocks of inner contacts, then all of outer ones.  Moments are sums of forces times x."""
+
+    load: int = 0  # normal force Q [N]
+    rolling: int = 1  # mean speed u of both surfaces relative to the contact [m/s]
+    sliding: int = 2  # surface-speed difference du in the middle, raceway less roller [m/s]
+    force: int = 3  # traction T on the roller, with the sign of du [N]
+    tilting: int = 4  # moment of the normal forces [N m]
+    skewing: int = 5  # moment of the tractions [N m]
+    penetration: int = 6  # in the middle [m]
+    rate: int = 7  # its time derivative [m/s]
+    lean: int = 8  # slope of the penetration along the axis
+    lean_rate: int = 9  # its time derivative [1/s]
+    sliding_lean: int = 10  # slope of du along the axis [1/s]
+    stiffness: int = 11  # from here on sums over slices of derivatives times 1, x and x^2: of q by penetration
+    damping: int = 14  # of q by its rate
+    traction_stiffness: int = 17  # of T by penetration
+    traction_damping: int = 20  # of T by its rate
+    by_sliding: int = 23  # of T by du
+    by_rolling: int = 26  # of T by u; 1 and x only
+
+
+SLICED = SlicedRow()
+SLICED_ROWS = 28
+
+
+@template
+def slice_force(depth, rate, stiffness, damping):
+    """Return load of a slice [N], the root K delta^(1/9) [N/m], the damping factor, and 1 where they press (lanes).
+
+    Parameters
+    ----------
+    depth, rate : penetration of the slice [m] and its time derivative [m/s].
+    stiffness : K/N [N/m^(10/9)].
+    damping : a [s/m].
+    """
+    root = stiffness * exponential(logarithm(larger(depth, TINY)) * (1.0 / 9.0))
+    factor = 1.0 + damping * rate
+    pressed = where_positive(factor, where_positive(depth, 1.0, 0.0), 0.0)
+    return pressed * root * depth * factor, root, factor, pressed
+
+
+@kernel
+def touches(block, contacts, reach):
+    """Return whether any slice of a block of rollers may be loaded.
+
+    Parameters
+    ----------
+    reach : place of the last slice [m].
+    """
+    deepest = load(contacts, block, SLICED.penetration) + magnitude(load(contacts, block, SLICED.lean)) * reach
+    return total(where_positive(deepest, 1.0, 0.0)) > 0.0
+
+
+@kernel
+def _clear(block, contacts, rows):
+    """Write that nothing is loaded."""
+    store(contacts, block, SLICED.load, 0.0)
+    store(contacts, block, SLICED.force, 0.0)
+    store(contacts, block, SLICED.tilting, 0.0)
+    store(contacts, block, SLICED.skewing, 0.0)
+    for row in range(SLICED.stiffness, rows):
+        store(contacts, block, row, 0.0)
+
+
+@kernel
+def normal_slices(block, contacts, slices, stiffness, damping):
+    """Write normal force, tilting moment and their slopes of a block of contacts, no traction.
+
+    Parameters
+    ----------
+    contacts : rows `SLICED`; penetration, lean and their rates go in.
+    slices : `bearing_sim.params.Slices`.
+    stiffness, damping : of the whole contact, K [N/m^(10/9)] and a [s/m].
+    """
+    count = slices.places.shape[0]
+    if not touches(block, contacts, slices.places[count - 1]):
+        _clear(block, contacts, SLICED.traction_stiffness)
+        return
+    penetration, rate = load(contacts, block, SLICED.penetration), load(contacts, block, SLICED.rate)
+    lean, lean_rate = load(contacts, block, SLICED.lean), load(contacts, block, SLICED.lean_rate)
+    part = stiffness / count
+    q_0, q_1 = spread(0.0), spread(0.0)
+    k_0, k_1, k_2 = spread(0.0), spread(0.0), spread(0.0)
+    d_0, d_1, d_2 = spread(0.0), spread(0.0), spread(0.0)
+    for k in range(count):
+        x, drop = slices.places[k], slices.crown[k]
+        depth = penetration + lean * x - drop
+        q, root, factor, pressed = slice_force(depth, rate + lean_rate * x, part, damping)
+        by_depth, by_rate = pressed * root * factor, pressed * root * depth
+        by_depth_x, by_rate_x = by_depth * x, by_rate * x
+        q_0 += q
+        q_1 += q * x
+        k_0 += by_depth
+        k_1 += by_depth_x
+        k_2 += by_depth_x * x
+        d_0 += by_rate
+        d_1 += by_rate_x
+        d_2 += by_rate_x * x
+    store(contacts, block, SLICED.load, q_0)
+    store(contacts, block, SLICED.tilting, q_1)
+    store(contacts, block, SLICED.stiffness, EXPONENT * k_0)
+    store(contacts, block, SLICED.stiffness + 1, EXPONENT * k_1)
+    store(contacts, block, SLICED.stiffness + 2, EXPONENT * k_2)
+    store(contacts, block, SLICED.damping, damping * d_0)
+    store(contacts, block, SLICED.damping + 1, damping * d_1)
+    store(contacts, block, SLICED.damping + 2, damping * d_2)
+
+
+@template
+def _speed_powers(rolling, constants):
+    """Return 1/u and what ln D, ln B and ln C have of the rolling speed, kept off zero."""
+    log_speed = 0.5 * logarithm(rolling * rolling + _ROLLING_SPEED_FLOOR * _ROLLING_SPEED_FLOOR)
+    d = constants.d_constant + constants.d_speed * log_speed
+    b = constants.b_constant + constants.b_speed * log_speed
+    c = constants.c_constant + constants.c_speed * log_speed
+    return exponential(-log_speed), d, b, c
+
+
+@kernel
+def slice_forces(block, contacts, slices, constants, stiffness, damping):
+    """Write forces and moments of a block of contacts.
+
+    Parameters
+    ----------
+    contacts : rows `SLICED`; penetration, lean, rates and speeds go in.
+    slices : `bearing_sim.params.Slices`.
+    constants : `bearing_sim.kernels.traction.TractionConstants`.
+    stiffness, damping : of the whole contact, K [N/m^(10/9)] and a [s/m].
+    """
+    count = slices.places.shape[0]
+    if not touches(block, contacts, slices.places[count - 1]):
+        _clear(block, contacts, SLICED.stiffness)
+        return
+    penetration, rate = load(contacts, block, SLICED.penetration), load(contacts, block, SLICED.rate)
+    lean, lean_rate = load(contacts, block, SLICED.lean), load(contacts, block, SLICED.lean_rate)
+    middle, sliding_lean = load(contacts, block, SLICED.sliding), load(contacts, block, SLICED.sliding_lean)
+    inverse_speed, log_d, log_b, log_c = _speed_powers(load(contacts, block, SLICED.rolling), constants)
+    part = stiffness / count
+    q_0, q_1, t_0, t_1 = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
+    for k in range(count):
+        x, drop = slices.places[k], slices.crown[k]
+        q, _, _, _ = slice_force(penetration + lean * x - drop, rate + lean_rate * x, part, damping)
+        log_load = logarithm(larger(q * count, _LOAD_FLOOR))
+        sliding = middle + sliding_lean * x
+        ratio = magnitude(sliding) * inverse_speed
+        d, b = exponential(log_d + constants.d_load * log_load), exponential(log_b + constants.b_load * log_load)
+        decay = exponential(-(exponential(log_c + constants.c_load * log_load) * ratio))
+        force = where_positive(sliding, constants.scale, -constants.scale) * q * (d - (d - b * ratio) * decay)
+        q_0 += q
+        q_1 += q * x
+        t_0 += force
+        t_1 += force * x
+    store(contacts, block, SLICED.load, q_0)
+    store(contacts, block, SLICED.tilting, q_1)
+    store(contacts, block, SLICED.force, t_0)
+    store(contacts, block, SLICED.skewing, t_1)
+
+
+@kernel
+def slice_forces_and_slopes(block, contacts, slices, constants, stiffness, damping):
+    """Write forces and moments of a block of contacts, and their slopes; parameters as of `slice_forces`."""
+    count = slices.places.shape[0]
+    if not touches(block, contacts, slices.places[count - 1]):
+        _clear(block, contacts, contacts.shape[1])
+        return
+    penetration, rate = load(contacts, block, SLICED.penetration), load(contacts, block, SLICED.rate)
+    lean, lean_rate = load(contacts, block, SLICED.lean), load(contacts, block, SLICED.lean_rate)
+    middle, sliding_lean = load(contacts, block, SLICED.sliding), load(contacts, block, SLICED.sliding_lean)
+    rolling = load(contacts, block, SLICED.rolling)
+    inverse_speed, log_d, log_b, log_c = _speed_powers(rolling, constants)
+    part = stiffness / count
+    q_0, q_1, t_0, t_1 = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
+    k_0, k_1, k_2 = spread(0.0), spread(0.0), spread(0.0)
+    d_0, d_1, d_2 = spread(0.0), spread(0.0), spread(0.0)
+    tk_0, tk_1, tk_2 = spread(0.0), spread(0.0), spread(0.0)
+    td_0, td_1, td_2 = spread(0.0), spread(0.0), spread(0.0)
+    s_0, s_1, s_2, u_0, u_1 = spread(0.0), spread(0.0), spread(0.0), spread(0.0), spread(0.0)
+    for k in range(count):
+        x, drop = slices.places[k], slices.crown[k]
+        depth = penetration + lean * x - drop
+        q, root, factor, pressed = slice_force(depth, rate + lean_rate * x, part, damping)
+        by_depth, by_rate = pressed * root * factor, pressed * root * depth
+        log_load = logarithm(larger(q * count, _LOAD_FLOOR))
+        sliding = middle + sliding_lean * x
+        ratio = magnitude(sliding) * inverse_speed
+        d, b = exponential(log_d + constants.d_load * log_load), exponential(log_b + constants.b_load * log_load)
+        c = exponential(log_c + constants.c_load * log_load)
+        decay = exponential(-(c * ratio))
+        # as in `bearing_sim.kernels.traction`: d, b and c are powers of load and speed
+        rest = d - b * ratio
+        by_ratio, settled, spent = (b + c * rest) * decay, d * (1.0 - decay), ratio * decay
+        by_log_speed = constants.d_speed * settled + (constants.b_speed * b + constants.c_speed * c * rest) * spent - ratio * by_ratio
+        by_log_load = constants.d_load * settled + (constants.b_load * b + constants.c_load * c * rest) * spent
+        coefficient = d - rest * decay
+        scale = where_positive(sliding, constants.scale, -constants.scale)
+        force, by_load, by_sliding, by_rolling = scale * q * coefficient, scale * (coefficient + by_log_load), q * by_ratio, scale * q * by_log_speed
+        square = x * x
+        q_0 += q
+        q_1 += q * x
+        t_0 += force
+        t_1 += force * x
+        k_0 += by_depth
+        k_1 += by_depth * x
+        k_2 += by_depth * square
+        d_0 += by_rate
+        d_1 += by_rate * x
+        d_2 += by_rate * square
+        by_depth, by_rate = by_load * by_depth, by_load * by_rate
+        tk_0 += by_depth
+        tk_1 += by_depth * x
+        tk_2 += by_depth * square
+        td_0 += by_rate
+        td_1 += by_rate * x
+        td_2 += by_rate * square
+        s_0 += by_sliding
+        s_1 += by_sliding * x
+        s_2 += by_sliding * square
+        u_0 += by_rolling
+        u_1 += by_rolling * x
+    store(contacts, block, SLICED.load, q_0)
+    store(contacts, block, SLICED.tilting, q_1)
+    store(contacts, block, SLICED.force, t_0)
+    store(contacts, block, SLICED.skewing, t_1)
+    _store_sums(block, contacts, SLICED.stiffness, EXPONENT, k_0, k_1, k_2)
+    _store_sums(block, contacts, SLICED.damping, damping, d_0, d_1, d_2)
+    _store_sums(block, contacts, SLICED.traction_stiffness, EXPONENT, tk_0, tk_1, tk_2)
+    _store_sums(block, contacts, SLICED.traction_damping, damping, td_0, td_1, td_2)
+    _store_sums(block, contacts, SLICED.by_sliding, constants.scale * inverse_speed, s_0, s_1, s_2)
+    by_speed = rolling * inverse_speed * inverse_speed
+    store(contacts, block, SLICED.by_rolling, by_speed * u_0)
+    store(contacts, block, SLICED.by_rolling + 1, by_speed * u_1)
+
+
+@template
+def _store_sums(block, contacts, row, scale, plain, first, second):
+    store(contacts, block, row, scale * plain)
+    store(contacts, block, row + 1, scale * first)
+    store(contacts, block, row + 2, scale * second)
