@@ -72,6 +72,7 @@ class Slices(NamedTuple):
 
     places: np.ndarray  # axial place of each slice's middle from the roller's, x_k [m], shape (N,)
     crown: np.ndarray  # drop of the profile there, C_k [m], shape (N,)
+    together: int  # slices that share one evaluation of the traction law
 
 
 class Tilts(NamedTuple):
@@ -174,7 +175,7 @@ def pack(scene: Scene) -> Params:
 def _slices(bearing: Bearing) -> Slices:
     count, length = bearing.roller.slices, bearing.roller.length
     places = (np.arange(count) - 0.5 * (count - 1)) * (length / count)
-    return Slices(places, np.zeros(count))
+    return Slices(places, np.zeros(count), int(bearing.roller.slices_per_traction))
 
 
 def _tilts(scene: Scene, roller_mass: float) -> Tilts:

@@ -41,13 +41,17 @@ class InnerRaceway:
 
 @_strict
 class Roller:
-    """The rollers, all equal."""
+    """The rollers, all equal.
+
+    Level ``spatial`` cuts them into slices; so many neighbours at a time share a traction coefficient, that of their mean load.
+    """
 
     count: Annotated[int, Field(ge=3, le=200)]
     diameter: quantity("m", "roller diameter, D_w", 0.5e-3, 0.5, "mm")
     length: quantity("m", "roller effective length, L", 0.5e-3, 0.5, "mm")
     crown: Literal["none"] = "none"
     slices: Annotated[int, Field(ge=1, le=400)] = 20
+    slices_per_traction: Annotated[int, Field(ge=1, le=400)] = 4
 
 
 @_strict

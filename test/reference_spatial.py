@@ -39,6 +39,7 @@ class SpatialReference:
 
     planar: Reference = field(default_factory=Reference)
     slices: int = 6
+    together: int = 4  # slices that share a traction coefficient
     crown: np.ndarray | None = None
     gyroscopic: bool = True
     ring_free: bool = True
@@ -52,6 +53,19 @@ class SpatialReference:
         self.cage_transverse = p.cage_inertia / 2
         self.ring_polar = p.ring_mass * p.inner_radius**2 / 2
         self.land = (p.width - p.land_width) / 2
+
+    def traction(self, load, rolling, sliding, curvature_radius):
+        """Tractions of pieces of some slices each, as shares of a whole contact with the piece's load per length.
+
+        ``load`` is that of whole contacts with the slices' load per length; ``sliding`` a function of the place.
+        """
+        cuts = range(0, self.slices, self.together)
+        parts = [slice(first, min(first + self.together, self.slices)) for first in cuts]
+        places = np.array([self.x[part].mean() for part in parts])
+        loads = np.stack([load[:, part].mean(1) for part in parts], axis=1)
+        shares = np.array([len(self.x[part]) / self.slices for part in parts])
+        slides = sliding(places)
+        return SimpleNamespace(x=places, slide=slides, force=shares * self.planar.traction(loads, rolling[:, None], slides, curvature_radius))
 
     def forces(self, state):
         """All forces at a state, by name; those of slices have a last axis over slices."""
@@ -75,9 +89,12 @@ class SpatialReference:
         f.inner_rate = -dot(relative, f.normal)[:, None] - (dot(leaning, f.normal) + dot(lean, across) * passing)[:, None] * x
         f.inner, f.inner_elastic, f.inner_energy = p.normal_contact(depth, f.inner_rate)
         f.inner_way = f.normal[:, :, None] + (across * dot(lean, across) / f.distance)[:, :, None] * x  # minus the gradient of the depth
-        f.inner_slide = (omega_i * r_i - state.spin * r_w)[:, None] - dot(relative, across)[:, None] - dot(leaning, across)[:, None] * x
+
+        def inner_slide(x):
+            return (omega_i * r_i - state.spin * r_w)[:, None] - dot(relative, across)[:, None] - dot(leaning, across)[:, None] * x
+
         roll_i = ((omega_i - turning) * r_i + (state.spin + turning) * r_w) / 2
-        f.inner_traction = p.traction(f.inner, roll_i[:, None], f.inner_slide, 1 / (1 / r_w + 1 / r_i))
+        f.inner_traction = self.traction(f.inner, roll_i, inner_slide, 1 / (1 / r_w + 1 / r_i))
         f.across = across
 
         # outer raceway: in the frame of the roller, where the contour is taken at the centre's azimuth
@@ -88,9 +105,12 @@ class SpatialReference:
         f.outer_rate = (radial_speed - slope * turning)[:, None] + tilting[:, None] * x
         f.outer, f.outer_elastic, f.outer_energy = p.normal_contact(depth, f.outer_rate)
         f.outer_lean = (slope if p.contour_slope else 0 * slope)[:, None] / f.radius[:, None] - f.skew[:, None] / f.radius[:, None] * x
-        f.outer_slide = (state.spin * r_w)[:, None] - f.orbit[:, None] - dot(state.leaning, f.along)[:, None] * x
+
+        def outer_slide(x):
+            return (state.spin * r_w)[:, None] - f.orbit[:, None] - dot(state.leaning, f.along)[:, None] * x
+
         roll_e = (turning * (f.radius + r_w) + (state.spin + turning) * r_w) / 2
-        f.outer_traction = p.traction(f.outer, roll_e[:, None], f.outer_slide, 1 / (1 / r_w - 1 / p.low_radius))
+        f.outer_traction = self.traction(f.outer, roll_e, outer_slide, 1 / (1 / r_w - 1 / p.low_radius))
         pitch_speed = p.pitch_radius * state.cage_speed
         drag, drag_slope = p.churning(pitch_speed)
         f.churning = drag + drag_slope * (f.orbit - pitch_speed)
@@ -109,7 +129,6 @@ class SpatialReference:
         for name in ("inner", "outer", "pocket"):
             for kind in ("", "_elastic", "_energy"):
                 setattr(f, name + kind, getattr(f, name + kind) / n)
-        f.inner_traction, f.outer_traction = f.inner_traction / n, f.outer_traction / n
         f.pocket_whole = f.pocket.sum(1)
 
         f.lands = []
@@ -127,10 +146,12 @@ class SpatialReference:
     def accelerations(self, f):
         """Of ring, its lean, cage, its lean, cage angle, rollers, their leans and spins, under the forces ``f``."""
         p, x, state, r_w = self.planar, self.x, f.state, self.planar.roller_radius
-        inner = f.inner * f.inner_way + f.inner_traction * f.across[:, :, None]
-        outer = -f.outer * f.outward[:, :, None] + (f.outer * f.outer_lean + f.outer_traction) * f.along[:, :, None]
+        dragged_i, dragged_e = f.inner_traction.force.sum(1), f.outer_traction.force.sum(1)
+        skewed_i, skewed_e = (f.inner_traction.force * f.inner_traction.x).sum(1), (f.outer_traction.force * f.outer_traction.x).sum(1)
+        inner = (f.inner * f.inner_way).sum(2) + dragged_i * f.across
+        outer = -f.outer.sum(1) * f.outward + ((f.outer * f.outer_lean).sum(1) + dragged_e) * f.along
         pocket = -f.pocket * (f.pocket_along + f.pocket_smooth * f.pocket_outward)[:, :, None]
-        spin_torque = r_w * (f.inner_traction.sum(1) - f.outer_traction.sum(1) - f.pocket_smooth * magnitude(f.pocket_whole))
+        spin_torque = r_w * (dragged_i - dragged_e - f.pocket_smooth * magnitude(f.pocket_whole))
         touch = f.from_cage + (np.where(np.real(f.pocket_whole) >= 0, r_w, -r_w) * f.pocket_along)[:, :, None]
         cage_torque = f.bore_torque + f.case_torque + np.sum(cross(touch, -pocket))
         cage_force, cage_moment = -pocket.sum((1, 2)), -(pocket * x).sum((1, 2))
@@ -139,8 +160,8 @@ class SpatialReference:
             cage_force, cage_moment = cage_force + force, cage_moment + land.place * force
             cage_torque = cage_torque + (land.torque - land.friction * p.guide_radius) / 2
         # the outer contact's pressure on a slice acts in the roller's own frame: outwards on its tilt, nothing on its skew
-        pressed = -(f.outer * x).sum(1) * f.outward + (f.outer_traction * x).sum(1) * f.along
-        inner_moment = (f.inner * x).sum(1) * f.normal + (f.inner_traction * x).sum(1) * f.across
+        pressed = -(f.outer * x).sum(1) * f.outward + skewed_e * f.along
+        inner_moment = (f.inner * x).sum(1) * f.normal + skewed_i * f.across
         moment = inner_moment + pressed + (pocket * x).sum(2)
         g = 1.0 if self.gyroscopic else 0.0
 
@@ -149,12 +170,12 @@ class SpatialReference:
 
         ring = axis(np.array(self.moment) - inner_moment.sum(1), self.ring_polar / 2, self.ring_polar, p.shaft_speed, state.ring_leaning)
         return (
-            (np.array(p.load) - inner.sum((1, 2))) / p.ring_mass,
+            (np.array(p.load) - inner.sum(1)) / p.ring_mass,
             ring if self.ring_free else 0 * ring,
             cage_force / p.cage_mass,
             axis(cage_moment, self.cage_transverse, p.cage_inertia, state.cage_speed, state.cage_leaning),
             cage_torque / p.cage_inertia,
-            (inner.sum(2) + outer.sum(2) + pocket.sum(2) - f.churning * f.along) / p.mass,
+            (inner + outer + pocket.sum(2) - f.churning * f.along) / p.mass,
             axis(moment, self.transverse, p.roller_inertia, -state.spin, state.leaning),
             spin_torque / p.roller_inertia,
         )
@@ -164,13 +185,13 @@ class SpatialReference:
         p, state, omega_i, omega = self.planar, f.state, self.planar.shaft_speed, f.state.cage_speed
         wall_slide = (f.pocket * f.pocket_slide).sum(1) + magnitude(f.pocket_whole) * p.roller_radius * (state.spin + omega)
         work = {
-            "shaft": omega_i * (p.inner_radius * f.inner_traction.sum() + f.bore_torque),
+            "shaft": omega_i * (p.inner_radius * f.inner_traction.force.sum() + f.bore_torque),
             "load": dot(p.load, state.ring_velocity),
             "moment": dot(self.moment, state.ring_leaning),
         }
         heat = {
-            "inner traction": np.sum(f.inner_traction * f.inner_slide),
-            "outer traction": np.sum(f.outer_traction * f.outer_slide),
+            "inner traction": np.sum(f.inner_traction.force * f.inner_traction.slide),
+            "outer traction": np.sum(f.outer_traction.force * f.outer_traction.slide),
             "normal damping": np.sum((f.inner - f.inner_elastic) * f.inner_rate + (f.outer - f.outer_elastic) * f.outer_rate),
             "pocket damping": np.sum((f.pocket - f.pocket_elastic) * f.pocket_rate),
             "pocket friction": np.sum(f.pocket_smooth * wall_slide),

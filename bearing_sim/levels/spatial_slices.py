@@ -1,9 +1,10 @@
 """Contact of sliced rollers and raceways: normal force and traction of every slice, summed with their moments.
 
 Deng 2017, eq. 3 to 8: a slice of width L/N carries q = (K/N) delta_k^(10/9), delta_k = delta - C_k + lean x_k, damped as a whole
-contact is.  Traction takes a slice for a whole contact with the slice's load per length, and gives it the N-th part: equal slices
-add up to what `bearing_sim.kernels.traction` gives.  The sliding speed of a slice follows from how fast the axes skew against
-each other; the rolling speed is the same for all slices.
+contact is.  Traction takes a piece of a few slices for a whole contact with the piece's mean load per length, and gives it its share
+of that: equal slices add up to what `bearing_sim.kernels.traction` gives.  Pieces because traction goes almost with the load, and
+costs three times what the load costs; a piece of one slice is Deng's own sum.  The sliding speed of a piece follows from how fast
+the axes skew against each other; the rolling speed is the same for all.
 
 Left out: sliding along the axis of a skewed roller, and the difference of circumference along a crowned one.
 """
@@ -35,14 +36,14 @@ class SlicedRow(NamedTuple):
     sliding_lean: int = 10  # slope of du along the axis [1/s]
     stiffness: int = 11  # from here on sums over slices of derivatives times 1, x and x^2: of q by penetration
     damping: int = 14  # of q by its rate
-    traction_stiffness: int = 17  # of T by penetration
-    traction_damping: int = 20  # of T by its rate
-    by_sliding: int = 23  # of T by du
-    by_rolling: int = 26  # of T by u; 1 and x only
+    of_force: int = 17  # slopes of the traction by penetration and lean, three rows on by their rates
+    of_skewing: int = 22  # slopes of its moment by the same
+    by_sliding: int = 27  # sums of dT/d(du) times 1, x and x^2
+    by_rolling: int = 30  # of dT/du times 1 and x
 
 
 SLICED = SlicedRow()
-SLICED_ROWS = 28
+SLICED_ROWS = 32
 
 
 @template
@@ -96,7 +97,7 @@ def normal_slices(block, contacts, slices, stiffness, damping):
     """
     count = slices.places.shape[0]
     if not touches(block, contacts, slices.places[count - 1]):
-        _clear(block, contacts, SLICED.traction_stiffness)
+        _clear(block, contacts, SLICED.of_force)
         return
     penetration, rate = load(contacts, block, SLICED.penetration), load(contacts, block, SLICED.rate)
     lean, lean_rate = load(contacts, block, SLICED.lean), load(contacts, block, SLICED.lean_rate)
@@ -159,19 +160,24 @@ def slice_forces(block, contacts, slices, constants, stiffness, damping):
     inverse_speed, log_d, log_b, log_c = _speed_powers(load(contacts, block, SLICED.rolling), constants)
     part = stiffness / count
     q_0, q_1, t_0, t_1 = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
-    for k in range(count):
-        x, drop = slices.places[k], slices.crown[k]
-        q, _, _, _ = slice_force(penetration + lean * x - drop, rate + lean_rate * x, part, damping)
-        log_load = logarithm(larger(q * count, _LOAD_FLOOR))
-        sliding = middle + sliding_lean * x
+    for first in range(0, count, slices.together):
+        end = min(first + slices.together, count)
+        q = spread(0.0)
+        for k in range(first, end):
+            x = slices.places[k]
+            load_k, _, _, _ = slice_force(penetration + lean * x - slices.crown[k], rate + lean_rate * x, part, damping)
+            q += load_k
+            q_1 += load_k * x
+        place = 0.5 * (slices.places[first] + slices.places[end - 1])
+        log_load = logarithm(larger(q * (count / (end - first)), _LOAD_FLOOR))
+        sliding = middle + sliding_lean * place
         ratio = magnitude(sliding) * inverse_speed
         d, b = exponential(log_d + constants.d_load * log_load), exponential(log_b + constants.b_load * log_load)
         decay = exponential(-(exponential(log_c + constants.c_load * log_load) * ratio))
         force = where_positive(sliding, constants.scale, -constants.scale) * q * (d - (d - b * ratio) * decay)
         q_0 += q
-        q_1 += q * x
         t_0 += force
-        t_1 += force * x
+        t_1 += force * place
     store(contacts, block, SLICED.load, q_0)
     store(contacts, block, SLICED.tilting, q_1)
     store(contacts, block, SLICED.force, t_0)
@@ -194,16 +200,34 @@ def slice_forces_and_slopes(block, contacts, slices, constants, stiffness, dampi
     q_0, q_1, t_0, t_1 = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
     k_0, k_1, k_2 = spread(0.0), spread(0.0), spread(0.0)
     d_0, d_1, d_2 = spread(0.0), spread(0.0), spread(0.0)
-    tk_0, tk_1, tk_2 = spread(0.0), spread(0.0), spread(0.0)
-    td_0, td_1, td_2 = spread(0.0), spread(0.0), spread(0.0)
+    tk_0, tk_1, mk_0, mk_1 = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
+    td_0, td_1, md_0, md_1 = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
     s_0, s_1, s_2, u_0, u_1 = spread(0.0), spread(0.0), spread(0.0), spread(0.0), spread(0.0)
-    for k in range(count):
-        x, drop = slices.places[k], slices.crown[k]
-        depth = penetration + lean * x - drop
-        q, root, factor, pressed = slice_force(depth, rate + lean_rate * x, part, damping)
-        by_depth, by_rate = pressed * root * factor, pressed * root * depth
-        log_load = logarithm(larger(q * count, _LOAD_FLOOR))
-        sliding = middle + sliding_lean * x
+    for first in range(0, count, slices.together):
+        end = min(first + slices.together, count)
+        q, by_depth, by_lean, by_rate, by_lean_rate = spread(0.0), spread(0.0), spread(0.0), spread(0.0), spread(0.0)
+        for k in range(first, end):
+            x = slices.places[k]
+            depth = penetration + lean * x - slices.crown[k]
+            load_k, root, factor, pressed = slice_force(depth, rate + lean_rate * x, part, damping)
+            stiff, damped = pressed * root * factor, pressed * root * depth
+            stiff_x, damped_x = stiff * x, damped * x
+            q += load_k
+            q_1 += load_k * x
+            by_depth += stiff
+            by_lean += stiff_x
+            k_2 += stiff_x * x
+            by_rate += damped
+            by_lean_rate += damped_x
+            d_2 += damped_x * x
+        q_0 += q
+        k_0 += by_depth
+        k_1 += by_lean
+        d_0 += by_rate
+        d_1 += by_lean_rate
+        place = 0.5 * (slices.places[first] + slices.places[end - 1])
+        log_load = logarithm(larger(q * (count / (end - first)), _LOAD_FLOOR))
+        sliding = middle + sliding_lean * place
         ratio = magnitude(sliding) * inverse_speed
         d, b = exponential(log_d + constants.d_load * log_load), exponential(log_b + constants.b_load * log_load)
         c = exponential(log_c + constants.c_load * log_load)
@@ -216,37 +240,36 @@ def slice_forces_and_slopes(block, contacts, slices, constants, stiffness, dampi
         coefficient = d - rest * decay
         scale = where_positive(sliding, constants.scale, -constants.scale)
         force, by_load, by_sliding, by_rolling = scale * q * coefficient, scale * (coefficient + by_log_load), q * by_ratio, scale * q * by_log_speed
-        square = x * x
-        q_0 += q
-        q_1 += q * x
+        by_load_x, by_sliding_x = by_load * place, by_sliding * place
         t_0 += force
-        t_1 += force * x
-        k_0 += by_depth
-        k_1 += by_depth * x
-        k_2 += by_depth * square
-        d_0 += by_rate
-        d_1 += by_rate * x
-        d_2 += by_rate * square
-        by_depth, by_rate = by_load * by_depth, by_load * by_rate
-        tk_0 += by_depth
-        tk_1 += by_depth * x
-        tk_2 += by_depth * square
-        td_0 += by_rate
-        td_1 += by_rate * x
-        td_2 += by_rate * square
+        t_1 += force * place
+        tk_0 += by_load * by_depth
+        tk_1 += by_load * by_lean
+        td_0 += by_load * by_rate
+        td_1 += by_load * by_lean_rate
+        mk_0 += by_load_x * by_depth
+        mk_1 += by_load_x * by_lean
+        md_0 += by_load_x * by_rate
+        md_1 += by_load_x * by_lean_rate
         s_0 += by_sliding
-        s_1 += by_sliding * x
-        s_2 += by_sliding * square
+        s_1 += by_sliding_x
+        s_2 += by_sliding_x * place
         u_0 += by_rolling
-        u_1 += by_rolling * x
+        u_1 += by_rolling * place
     store(contacts, block, SLICED.load, q_0)
     store(contacts, block, SLICED.tilting, q_1)
     store(contacts, block, SLICED.force, t_0)
     store(contacts, block, SLICED.skewing, t_1)
     _store_sums(block, contacts, SLICED.stiffness, EXPONENT, k_0, k_1, k_2)
     _store_sums(block, contacts, SLICED.damping, damping, d_0, d_1, d_2)
-    _store_sums(block, contacts, SLICED.traction_stiffness, EXPONENT, tk_0, tk_1, tk_2)
-    _store_sums(block, contacts, SLICED.traction_damping, damping, td_0, td_1, td_2)
+    store(contacts, block, SLICED.of_force, EXPONENT * tk_0)
+    store(contacts, block, SLICED.of_force + 1, EXPONENT * tk_1)
+    store(contacts, block, SLICED.of_force + 3, damping * td_0)
+    store(contacts, block, SLICED.of_force + 4, damping * td_1)
+    store(contacts, block, SLICED.of_skewing, EXPONENT * mk_0)
+    store(contacts, block, SLICED.of_skewing + 1, EXPONENT * mk_1)
+    store(contacts, block, SLICED.of_skewing + 3, damping * md_0)
+    store(contacts, block, SLICED.of_skewing + 4, damping * md_1)
     _store_sums(block, contacts, SLICED.by_sliding, constants.scale * inverse_speed, s_0, s_1, s_2)
     by_speed = rolling * inverse_speed * inverse_speed
     store(contacts, block, SLICED.by_rolling, by_speed * u_0)

@@ -44,7 +44,7 @@ def _chain_row(block, row, first, along, rows, contacts, chain):
     Parameters
     ----------
     row : of ``chain``, where the result begins.
-    first : rows of the sums over slices, as offsets from SLICED.load: derivatives by penetration, and by its rate.
+    first : row of the derivative by penetration; that by lean comes next, and three rows on those by their rates.
     along : the derivatives by sliding, or -1 for a normal force.
     """
     inverse = load(rows, block, ROLLER.inverse_distance)
@@ -79,8 +79,8 @@ def _inner_chain(block, rows, contacts, chain):
     t, m = load(contacts, block, SLICED.force), load(contacts, block, SLICED.skewing)
     _chain_row(block, 0, SLICED.stiffness, -1, rows, contacts, chain)
     _chain_row(block, 2 * _SEEN, SLICED.stiffness + 1, -1, rows, contacts, chain)
-    _chain_row(block, 4 * _SEEN, SLICED.traction_stiffness, SLICED.by_sliding, rows, contacts, chain)
-    _chain_row(block, 3 * _SEEN, SLICED.traction_stiffness + 1, SLICED.by_sliding + 1, rows, contacts, chain)
+    _chain_row(block, 4 * _SEEN, SLICED.of_force, SLICED.by_sliding, rows, contacts, chain)
+    _chain_row(block, 3 * _SEEN, SLICED.of_skewing, SLICED.by_sliding + 1, rows, contacts, chain)
     # the normal forces' own lever, where slices stand apart along the orbit
     for k in range(_SEEN):
         store(chain, 0, _SEEN + k, load(chain, 0, 4 * _SEEN + k) + load(chain, 0, 2 * _SEEN + k) * b_p)
@@ -203,10 +203,10 @@ def _outer_slopes(block, y, churning, params, rows, contacts, slopes):
     """Add the outer contact and the drag of the mixture to a roller's rows."""
     outer = rows.shape[0] + block
     _outer_row(block, _RADIAL, -1.0, SLICED.stiffness, -1, rows, contacts, params, slopes)
-    _outer_row(block, _ALONG, 1.0, SLICED.traction_stiffness, SLICED.by_sliding, rows, contacts, params, slopes)
+    _outer_row(block, _ALONG, 1.0, SLICED.of_force, SLICED.by_sliding, rows, contacts, params, slopes)
     _outer_row(block, _TILTING, -1.0, SLICED.stiffness + 1, -1, rows, contacts, params, slopes)
-    _outer_row(block, _SKEWING, 1.0, SLICED.traction_stiffness + 1, SLICED.by_sliding + 1, rows, contacts, params, slopes)
-    _outer_row(block, _SPINNING, -1.0, SLICED.traction_stiffness, SLICED.by_sliding, rows, contacts, params, slopes)
+    _outer_row(block, _SKEWING, 1.0, SLICED.of_skewing, SLICED.by_sliding + 1, rows, contacts, params, slopes)
+    _outer_row(block, _SPINNING, -1.0, SLICED.of_force, SLICED.by_sliding, rows, contacts, params, slopes)
     radius, orbital_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.orbital_speed)
     q, s, skew = load(contacts, outer, SLICED.load), load(contacts, outer, SLICED.tilting), load(rows, block, ROLLER.skew)
     slope, curvature, inverse = load(rows, block, ROLLER.slope), load(rows, block, ROLLER.curvature), 1.0 / radius
