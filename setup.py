@@ -29,6 +29,7 @@ setup(
     python_requires=">=3.11",
     install_requires=[
         "click>=8.1",
+        "matplotlib>=3.9",
         "mcap>=1.6",  # Writer.flush
         "mcap-ros2-support>=0.5",
         "numba>=0.61",

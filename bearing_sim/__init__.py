@@ -4,6 +4,7 @@
 module                 responsibility
 =====================  ==================================================================================
 ``scene``              what to simulate: frozen records, one declaration per quantity
+``contour``            forms of the outer raceway; ``contour_file``, ``contour_scene``: measured ones
 ``methods``            by which integrators each level can be advanced
 ``scene_file``         YAML, presets, overrides; every fault of a file at once
 ``quantity``           units at the door
@@ -15,6 +16,7 @@ module                 responsibility
 ``integrators``        stiff and explicit methods and their drive loops; they know no bearings
 ``rating_life``        roller loads to rating life
 ``oil``                oil properties at a temperature
+``ring_growth``        how far rings grow by rotation, fits and heat
 ``runtime``            pacing, the solver's thread, the gate for inputs, health
 ``sinks``              MCAP and rerun
 ``studies``            the bench: speed and error of every level and method

@@ -5,7 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.scene import DoubleExponentialViscosity, HyperbolicPressureViscosity, Oil
+from bearing_sim.scene_lubricant import CustomOil, DoubleExponentialViscosity, HyperbolicPressureViscosity, Oil
+
+_DENSITY_TEMPERATURE = 288.15  # K, of data sheets
 
 
 class OilState(NamedTuple):
@@ -16,24 +18,58 @@ class OilState(NamedTuple):
     density: float  # [kg/m^3]
     pressure_viscosity: float  # alpha [1/Pa]
     conductivity: float  # k [W/(m K)]
+    temperature_viscosity: float  # beta = -d ln eta_0/dT [1/K]
 
 
-def oil_at(oil: Oil, temperature: float) -> OilState:
+def oil_at(oil: Oil | CustomOil, temperature: float) -> OilState:
     """Return the oil's properties at a temperature [K].
 
-    Fits of the ADORE-style data base (see the oil's ``source``); the density is interpolated linearly
-    between its points and held beyond them.
+    Fits of the ADORE-style data base (see the oil's ``source``), or ASTM D341 of a custom oil; a fitted oil's density is
+    interpolated linearly between its points and held beyond them.
     """
-    law = oil.viscosity
+    viscosity, density = _viscosity_and_density(oil, temperature)
+    warmer, colder = (_viscosity_and_density(oil, temperature + side)[0] for side in (0.1, -0.1))
+    if isinstance(oil, CustomOil):
+        alpha = oil.pressure_viscosity
+    elif isinstance(law := oil.pressure_viscosity, HyperbolicPressureViscosity):
+        alpha = law.offset + law.slope / (temperature - law.pole)
+    else:
+        alpha = math.exp(law.exponent * math.log(viscosity) - law.constant) / viscosity
+    thinning = math.log(colder / warmer) / 0.2
+    return OilState(float(temperature), viscosity, density, alpha, oil.thermal_conductivity, thinning)
+
+
+def _viscosity_and_density(oil: Oil | CustomOil, temperature: float) -> tuple[float, float]:
+    """Return eta_0 [Pa s] and density [kg/m^3]."""
+    if isinstance(oil, CustomOil):
+        density = oil.density * (1.0 - oil.expansion * (temperature - _DENSITY_TEMPERATURE))
+        return density * walther_viscosity(temperature, oil.viscosity_40, oil.viscosity_100), density
+    law, density = oil.viscosity, float(np.interp(temperature, oil.density_temperatures, oil.densities))
     if isinstance(law, DoubleExponentialViscosity):
-        viscosity = law.scale * (math.exp(math.exp(law.a - law.b * math.log(temperature))) - law.c)
-    else:
-        d = (law.temperature - temperature) / (law.temperature * temperature)
-        viscosity = law.viscosity * math.exp(law.linear * d + law.quadratic * d * d)
-    pressure_law = oil.pressure_viscosity
-    if isinstance(pressure_law, HyperbolicPressureViscosity):
-        alpha = pressure_law.offset + pressure_law.slope / (temperature - pressure_law.pole)
-    else:
-        alpha = math.exp(pressure_law.exponent * math.log(viscosity) - pressure_law.constant) / viscosity
-    density = float(np.interp(temperature, oil.density_temperatures, oil.densities))
-    return OilState(float(temperature), viscosity, density, alpha, oil.thermal_conductivity)
+        return law.scale * (math.exp(math.exp(law.a - law.b * math.log(temperature))) - law.c), density
+    d = (law.temperature - temperature) / (law.temperature * temperature)
+    return law.viscosity * math.exp(law.linear * d + law.quadratic * d * d), density
+
+
+def walther_viscosity(temperature: float, viscosity_40: float, viscosity_100: float) -> float:
+    """Return the kinematic viscosity at a temperature: a straight line of lg lg Z over lg T (ASTM D341).
+
+    Z = nu + 0.7 + exp(-1.47 - 1.84 nu - 0.51 nu^2) with nu in mm^2/s.
+
+    Parameters
+    ----------
+    temperature : [K].
+    viscosity_40, viscosity_100 : at 40 and 100 degC [m^2/s].
+    """
+    low, high = math.log10(313.15), math.log10(373.15)
+    thick, thin = (_lg_lg_z(1e6 * viscosity) for viscosity in (viscosity_40, viscosity_100))
+    wanted = thick + (thin - thick) * (math.log10(temperature) - low) / (high - low)
+    few, many = 0.2, 1e12  # mm^2/s; the standard ends at 0.21
+    for _ in range(100):  # halving the logarithm: the standard's own inverse is good to three digits only
+        middle = math.sqrt(few * many)
+        few, many = (few, middle) if _lg_lg_z(middle) > wanted else (middle, many)
+    return 1e-6 * middle
+
+
+def _lg_lg_z(nu: float) -> float:
+    return math.log10(math.log10(nu + 0.7 + math.exp(-1.47 - 1.84 * nu - 0.51 * nu * nu)))

@@ -5,12 +5,22 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.contour import outer_contour
 from bearing_sim.kernels.contact import line_contact_stiffness
-from bearing_sim.kernels.raceway import lobed_contour
-from bearing_sim.kernels.traction import TractionConstants, constant_constants, oil_4109_constants
+from bearing_sim.kernels.film import Pumping, pumping_constant
+from bearing_sim.kernels.raceway import tabulated
+from bearing_sim.kernels.traction import (
+    TractionConstants,
+    constant_constants,
+    kragelskii_constants,
+    oil_4109_constants,
+    thermal_eyring_constants,
+)
 from bearing_sim.oil import oil_at
 from bearing_sim.rating_life import ring_ratings
-from bearing_sim.scene import Bearing, ConstantTraction, Lubricant, Scene
+from bearing_sim.ring_growth import Growth, fit_growth, running_growth
+from bearing_sim.scene import Bearing, Lubricant, Scene
+from bearing_sim.scene_lubricant import ConstantTraction, EyringTraction, KragelskiiTraction
 
 
 class Rollers(NamedTuple):
@@ -109,6 +119,7 @@ class Params(NamedTuple):
     cage: CageBody
     ring: Ring
     life: Life
+    growth: Growth  # of the inner raceway with speed and temperature
     slices: Slices
     tilts: Tilts
 
@@ -121,6 +132,8 @@ class Lubrication(NamedTuple):
     viscosity: float  # eta_0 of the oil [Pa s]
     mixture_density: float  # of the oil-air mixture [kg/m^3]
     temperature: float  # of the oil [K]
+    pumping: Pumping  # resistance to rolling
+    ring_growth: float  # of the inner raceway by heat [m]
 
 
 def pack(scene: Scene) -> Params:
@@ -128,7 +141,8 @@ def pack(scene: Scene) -> Params:
     bearing = scene.bearing
     roller_radius = bearing.roller.diameter / 2
     mass = math.pi * roller_radius**2 * bearing.roller.length * bearing.material.density
-    inner_radius, low_radius = bearing.inner_raceway.radius, bearing.outer_raceway.low_radius
+    inner_growth, outer_growth = fit_growth(bearing)
+    inner_radius, low_radius = bearing.inner_raceway.radius + inner_growth, bearing.outer_raceway.low_radius + outer_growth
     compliance = 2 * (1 - bearing.material.poisson_ratio**2) / bearing.material.youngs_modulus
     inner_rating, outer_rating = ring_ratings(bearing.roller.count, bearing.roller.diameter, bearing.roller.length, bearing.diameter_ratio)
     cage = bearing.cage
@@ -139,7 +153,7 @@ def pack(scene: Scene) -> Params:
             low_radius=low_radius,
             pitch_radius=bearing.pitch_radius,
             diameter_ratio=bearing.diameter_ratio,
-            contour=lobed_contour(low_radius, bearing.outer_raceway.d_value, bearing.outer_raceway.lobes, bearing.outer_raceway.installation_angle),
+            contour=tabulated(lambda azimuth: outer_contour(bearing.outer_raceway, azimuth)) + [0.0, 0.0, 0.0, outer_growth],
             slope_factor=1.0 if bearing.outer_raceway.contour_slope else 0.0,
             stiffness=line_contact_stiffness(bearing.roller.length, bearing.material.youngs_modulus, bearing.material.poisson_ratio),
             inner_curvature_radius=1 / (1 / roller_radius + 1 / inner_radius),
@@ -167,6 +181,7 @@ def pack(scene: Scene) -> Params:
         ),
         ring=Ring(bearing.inner_raceway.ring_mass + bearing.inner_raceway.supported_mass, bearing.contact.damping),
         life=Life(inner_rating, outer_rating),
+        growth=running_growth(bearing),
         slices=_slices(bearing),
         tilts=_tilts(scene, mass),
     )
@@ -206,17 +221,28 @@ def lubricate(lubricant: Lubricant, params: Params, temperature: float) -> Lubri
     The oil-air mixture has the mixture fraction of the oil's density, and the oil's viscosity.
     """
     oil = oil_at(lubricant.oil, temperature)
-    raceways, law = params.raceways, lubricant.traction
-
-    def constants(curvature_radius):
-        if isinstance(law, ConstantTraction):
-            return constant_constants(lubricant.traction_scale, law.b, law.c, law.d)
-        return oil_4109_constants(lubricant.traction_scale, oil, curvature_radius, raceways.reduced_modulus)
-
+    raceways, growth, length = params.raceways, params.growth, params.rollers.length
+    radii = raceways.inner_curvature_radius, raceways.outer_curvature_radius
+    inner, outer = (_traction_constants(lubricant, oil, radius, raceways.reduced_modulus, length) for radius in radii)
+    pumped = (pumping_constant(oil.viscosity, raceways.reduced_modulus, radius, length) for radius in radii)
     return Lubrication(
-        inner=constants(raceways.inner_curvature_radius),
-        outer=constants(raceways.outer_curvature_radius),
+        inner=inner,
+        outer=outer,
         viscosity=oil.viscosity,
         mixture_density=lubricant.mixture_fraction * oil.density,
         temperature=oil.temperature,
+        pumping=Pumping(int(lubricant.pumping), *pumped),
+        ring_growth=growth.constant + growth.by_temperature * oil.temperature,
     )
+
+
+def _traction_constants(lubricant, oil, curvature_radius, reduced_modulus, length) -> TractionConstants:
+    """Return the constants of one contact by the lubricant's law."""
+    law, scale = lubricant.traction, lubricant.traction_scale
+    if isinstance(law, ConstantTraction):
+        return constant_constants(scale, law.b, law.c, law.d)
+    if isinstance(law, KragelskiiTraction):
+        return kragelskii_constants(scale, law.mu_0, law.mu_max, law.v_max, law.mu_inf, law.rise_speed)
+    if isinstance(law, EyringTraction):
+        return thermal_eyring_constants(scale, oil, curvature_radius, reduced_modulus, length, law.eyring_stress, law.limiting_ratio)
+    return oil_4109_constants(scale, oil, curvature_radius, reduced_modulus)

@@ -18,13 +18,13 @@ from mcap.exceptions import McapError
 from mcap.records import Channel, Footer, Message, Metadata, Schema
 from mcap.stream_reader import CRCValidationError, StreamReader
 
+from bearing_sim.contour import outer_contour
 from bearing_sim.events import Event, Level
 from bearing_sim.kernels.contact import line_contact_stiffness
 from bearing_sim.mcap_stream import WholeReads
 from bearing_sim.sample import new_block
 from bearing_sim.scene import Scene
 from bearing_sim.scene_file import SceneError, scene_from_yaml
-from bearing_sim.sinks.section import outer_contour
 from bearing_sim.topics import ARRAYS, DIAGNOSTICS, INPUTS, OUTPUTS, ZERO_CELSIUS
 
 ROWS_PER_BLOCK = 1000
@@ -255,7 +255,7 @@ def complete(scene: Scene, block: np.ndarray, before: np.void | None = None) -> 
     azimuth = block["cage_angle"][:, None] + 2 * math.pi / count * np.arange(count)
     approach = {ring: np.maximum(block[f"{ring}_load"] / stiffness, 0.0) ** 0.9 for ring in ("inner", "outer")}
     block["roller_angle"] = azimuth
-    block["roller_radius"] = outer_contour(bearing.outer_raceway, azimuth) - radius + approach["outer"]
+    block["roller_radius"] = outer_contour(bearing.outer_raceway, azimuth)[0] - radius + approach["outer"]
     rolling = bearing.pitch_radius / radius
     _fill(block, "roller_spin", (block["cage_speed"] * rolling)[:, None])
     _fill(block, "orbital_speed", block["cage_speed"][:, None])

@@ -8,35 +8,15 @@ import math
 from dataclasses import field
 from typing import Annotated, Literal
 
-from pydantic import ConfigDict, Field, model_validator
-from pydantic.dataclasses import dataclass
+from pydantic import Field, model_validator
 
 from bearing_sim.methods import FIXED_STEP, METHODS
 from bearing_sim.quantity import quantity
+from bearing_sim.scene_lubricant import CustomOil, Oil, Oil4109Traction, Traction
+from bearing_sim.scene_raceway import InnerRaceway, OuterRaceway, RingGrowth, growth_faults
+from bearing_sim.scene_record import record as _strict
 
-_strict = dataclass(frozen=True, kw_only=True, config=ConfigDict(extra="forbid", str_strip_whitespace=True))
-
-
-@_strict
-class OuterRaceway:
-    """Outer raceway contour R_e(phi) = R_low + D/2 - D/2 cos(n (phi - phi_e)) (Deng 2017, eq. 2); D = 0 is a round bearing."""
-
-    low_radius: quantity("m", "radius at the low points, R_low", 1e-3, 2.0, "mm")
-    d_value: quantity("m", "high-point radius less low-point radius, D", 0.0, 5e-3, "mm") = 0.0
-    lobes: Annotated[int, Field(ge=1, le=12)] = 3
-    installation_angle: quantity("rad", "azimuth of a low point, phi_e", -2 * math.pi, 2 * math.pi, "deg") = 0.0
-    contour_slope: bool = True
-
-
-@_strict
-class InnerRaceway:
-    """Round inner raceway, turning with the shaft."""
-
-    radius: quantity("m", "inner raceway radius, R_i", 1e-3, 2.0, "mm")
-    ring_mass: quantity("kg", "mass of the inner ring", 1e-4, 1e3) = 0.05
-    supported_mass: quantity("kg", "mass of the shaft that moves with the inner ring", 0.0, 1e5) = 0.5
-    polar_inertia: quantity("kg*m^2", "inertia of ring and shaft about the shaft axis; None: a solid cylinder", 1e-12, 1e6) | None = None
-    transverse_inertia: quantity("kg*m^2", "their inertia about a diameter; None: half of the polar one", 1e-12, 1e6) | None = None
+LEVELS_WITH_GROWTH = ("slip",)  # levels that compute pumping and rings that grow with speed and temperature
 
 
 @_strict
@@ -107,6 +87,7 @@ class Bearing:
     cage: Cage
     material: Material = field(default_factory=Material)
     contact: Contact = field(default_factory=Contact)
+    ring_growth: RingGrowth = field(default_factory=RingGrowth)
 
     @property
     def pitch_radius(self) -> float:
@@ -149,102 +130,22 @@ class Bearing:
             faults.append("cage.inner_radius: the cage's bore cuts into the inner raceway")
         if 2 * self.cage.guide_land_width > self.cage.width:
             faults.append("cage.guide_land_width: the two lands together are wider than the cage")
+        faults += growth_faults(self)
         if faults:
             raise ValueError("; ".join(faults))
         return self
 
 
 @_strict
-class DoubleExponentialViscosity:
-    """eta0 = scale (exp(exp(a - b ln T)) - c), T in kelvin."""
-
-    law: Literal["double_exponential"] = "double_exponential"
-    scale: quantity("Pa*s", "factor", 1e-12, 1e3)
-    a: float
-    b: float
-    c: float
-
-
-@_strict
-class ReferenceViscosity:
-    """eta0 = viscosity exp(linear d + quadratic d^2), d = (T_ref - T)/(T_ref T)."""
-
-    law: Literal["reference"] = "reference"
-    temperature: quantity("K", "reference temperature, T_ref", 150.0, 800.0, "degC")
-    viscosity: quantity("Pa*s", "viscosity at the reference temperature", 1e-6, 1e3)
-    linear: float
-    quadratic: float
-
-
-@_strict
-class HyperbolicPressureViscosity:
-    """alpha = offset + slope/(T - pole), T in kelvin, alpha in 1/Pa."""
-
-    law: Literal["hyperbolic"] = "hyperbolic"
-    offset: float
-    slope: float
-    pole: float
-
-
-@_strict
-class PowerPressureViscosity:
-    """alpha = exp(exponent ln eta0 - constant)/eta0, alpha in 1/Pa."""
-
-    law: Literal["power"] = "power"
-    exponent: float
-    constant: float
-
-
-@_strict
-class Oil:
-    """An oil's properties as functions of temperature (see `bearing_sim.oil`)."""
-
-    name: str
-    source: str
-    viscosity: Annotated[DoubleExponentialViscosity | ReferenceViscosity, Field(discriminator="law")]
-    pressure_viscosity: Annotated[HyperbolicPressureViscosity | PowerPressureViscosity, Field(discriminator="law")]
-    density_temperatures: tuple[quantity("K", "temperature of a density point", 150.0, 800.0, "degC"), ...]
-    densities: tuple[quantity("kg/m^3", "density at that temperature", 100.0, 3000.0), ...]
-    thermal_conductivity: quantity("", "thermal conductivity [W/(m K)]", 0.01, 10.0) = 0.0966
-
-    @model_validator(mode="after")
-    def _density_points_pair_up(self):
-        if len(self.density_temperatures) != len(self.densities) or len(self.densities) < 1:
-            raise ValueError(
-                f"densities: {len(self.densities)} values for {len(self.density_temperatures)} density_temperatures; expected as many, at least one"
-            )
-        if any(b <= a for a, b in zip(self.density_temperatures, self.density_temperatures[1:])):
-            raise ValueError("density_temperatures: expected rising temperatures")
-        return self
-
-
-@_strict
-class Oil4109Traction:
-    """Traction of the 4109 aviation oil by dimensionless load, speed and temperature (physics section 3, law 1)."""
-
-    law: Literal["oil_4109"] = "oil_4109"
-
-
-@_strict
-class ConstantTraction:
-    """mu(s) = (A + B s) exp(-C s) + D with constant coefficients; D = -A keeps mu(0) = 0."""
-
-    law: Literal["constant"] = "constant"
-    a: quantity("", "A", -1.0, 0.0) = -0.0196
-    b: quantity("", "B", 0.0, 1e3) = 0.39873
-    c: quantity("", "C", 0.0, 1e4) = 39.002
-    d: quantity("", "D", 0.0, 1.0) = 0.01984
-
-
-@_strict
 class Lubricant:
     """The oil, how much of it is in the air inside the bearing, and how it transmits tangential force."""
 
-    oil: Oil
+    oil: Annotated[Oil | CustomOil, Field(discriminator="law")]
     temperature: quantity("K", "oil temperature", 220.0, 600.0, "degC") = 393.15
     mixture_fraction: quantity("", "volume fraction of oil in the oil-air mixture", 0.0, 1.0) = 0.03
     traction_scale: quantity("", "factor on every traction coefficient", 0.0, 100.0) = 1.0
-    traction: Annotated[Oil4109Traction | ConstantTraction, Field(discriminator="law")] = field(default_factory=Oil4109Traction)
+    traction: Traction = field(default_factory=Oil4109Traction)
+    pumping: bool = False  # resistance of the oil that the inlets of the contacts pump back
 
 
 @_strict
@@ -343,4 +244,14 @@ class Scene:
             raise ValueError(f"integration.method: level {self.level} is integrated by {', '.join(names[:-1])} or {names[-1]}, not by {method}")
         if self.integration.fixed_step is not None and method not in FIXED_STEP:
             raise ValueError(f"integration.fixed_step: {method} chooses its steps; {' and '.join(FIXED_STEP)} can keep to one")
+        return self
+
+    @model_validator(mode="after")
+    def _level_knows_every_effect(self):
+        growth = self.bearing.ring_growth
+        asked = {"lubricant.pumping": self.lubricant.pumping, "bearing.ring_growth.centrifugal": growth.centrifugal}
+        asked["bearing.ring_growth.thermal"] = growth.thermal
+        if self.level not in LEVELS_WITH_GROWTH and any(asked.values()):
+            names = ", ".join(name for name, wanted in asked.items() if wanted)
+            raise ValueError(f"{names}: level {self.level} leaves this out; {', '.join(LEVELS_WITH_GROWTH)} has it")
         return self

@@ -13,9 +13,12 @@ from pathlib import Path
 import yaml
 from pydantic import TypeAdapter, ValidationError
 
+from bearing_sim.contour_scene import UNREAD, anchor_contour, drop_other_forms, with_contour_text
 from bearing_sim.scene import Scene
 
-_UNION_TAGS = frozenset({"oil_4109", "constant", "double_exponential", "reference", "hyperbolic", "power"})
+_UNION_TAGS = frozenset(
+    {"oil_4109", "constant", "kragelskii", "eyring", "fitted", "custom", "double_exponential", "reference", "hyperbolic", "power"}
+)
 
 
 @dataclass(frozen=True)
@@ -80,6 +83,7 @@ def load_scene(scene: str | Path, overrides: Iterable[str] = ()) -> Scene:
     SceneError
         The file is absent, is no YAML, or holds faults; all of them are listed.
     """
+    folder = None
     if str(scene) in scene_names():
         text = resources.files("bearing_sim").joinpath("scenes", f"{scene}.yaml").read_text()
     else:
@@ -87,13 +91,18 @@ def load_scene(scene: str | Path, overrides: Iterable[str] = ()) -> Scene:
         if not path.is_file():
             known = ", ".join(scene_names())
             raise SceneError(str(scene), [Fault("", "", f"no such file, and no bundled scene of that name; bundled: {known}")])
-        text = path.read_text()
-    return scene_from_yaml(text, overrides, origin=str(scene))
+        text, folder = path.read_text(), path.parent
+    return scene_from_yaml(text, overrides, origin=str(scene), folder=folder)
 
 
-def scene_from_yaml(text: str, overrides: Iterable[str] = (), origin: str = "scene") -> Scene:
-    """Build a scene from YAML text (see `load_scene`)."""
+def scene_from_yaml(text: str, overrides: Iterable[str] = (), origin: str = "scene", folder: Path | None = None) -> Scene:
+    """Build a scene from YAML text (see `load_scene`).
+
+    Files that the text names are looked for in ``folder``, those that an override names in the current folder.
+    """
     tree = yaml_mapping(text, origin, "bearing, lubricant, operating ...")
+    if folder is not None:
+        anchor_contour(tree, folder)
     for override in overrides:
         _apply_override(tree, override)
     return scene_from_mapping(tree, origin)
@@ -108,10 +117,13 @@ def scene_from_mapping(tree: Mapping, origin: str = "scene") -> Scene:
         Listing every fault with its path, its value and what was expected.
     """
     resolved, faults = _with_presets(tree)
+    resolved, unread = with_contour_text(resolved)
     try:
         scene = TypeAdapter(Scene).validate_python(resolved)
     except ValidationError as error:
-        faults += faults_of(error, Scene, _UNION_TAGS)
+        faults += [fault for fault in faults_of(error, Scene, _UNION_TAGS) if not (unread and UNREAD in fault.reason)]
+    if unread:
+        faults.append(Fault("bearing.outer_raceway.contour_file", *unread))
     if faults:
         raise SceneError(origin, faults)
     return scene
@@ -119,7 +131,14 @@ def scene_from_mapping(tree: Mapping, origin: str = "scene") -> Scene:
 
 def scene_to_yaml(scene: Scene) -> str:
     """Return the whole scene as YAML in SI; `scene_from_yaml` reads it back equal."""
-    return yaml.safe_dump(_plain(dataclasses.asdict(scene)), sort_keys=False, allow_unicode=True)
+    return yaml.dump(_plain(dataclasses.asdict(scene)), Dumper=_LineDumper, sort_keys=False, allow_unicode=True)
+
+
+class _LineDumper(yaml.SafeDumper):
+    """SafeDumper that writes a text of many lines, such as a contour, line by line."""
+
+
+_LineDumper.add_representer(str, lambda dumper, text: dumper.represent_scalar("tag:yaml.org,2002:str", text, style="|" if "\n" in text else None))
 
 
 def _plain(value):
@@ -168,6 +187,8 @@ def _apply_override(tree: dict, override: str) -> None:
         node[key] = dict(child)
         node = node[key]
     node[keys[-1]] = value
+    if keys[:-1] == ["bearing", "outer_raceway"]:
+        drop_other_forms(node, (keys[-1],))
 
 
 def catalog_names(kind: str) -> list[str]:
@@ -191,16 +212,24 @@ def _with_presets(tree: Mapping) -> tuple[dict, list[Fault]]:
     if isinstance(bearing, Mapping) and "preset" in bearing:
         preset, unknown = _from_catalog("bearings", bearing["preset"], "bearing.preset")
         faults += unknown
+        raceway = bearing.get("outer_raceway")
+        if isinstance(raceway, Mapping) and "outer_raceway" in preset:
+            drop_other_forms(preset["outer_raceway"], raceway)
         tree["bearing"] = _merged(preset, {key: value for key, value in bearing.items() if key != "preset"})
         if unknown:  # its missing fields are consequences, not faults
             raise SceneError("scene", faults)
     lubricant = tree.get("lubricant")
     if isinstance(lubricant, Mapping) and isinstance(lubricant.get("oil"), str):
         oil, unknown = _from_catalog("oils", lubricant["oil"], "lubricant.oil")
+        if lubricant["oil"] == "custom":
+            unknown = [Fault("lubricant.oil", "'custom'", "expected a block: law: custom, viscosity_40, viscosity_100, density, pressure_viscosity")]
         faults += unknown
         if unknown:
             oil = _from_catalog("oils", catalog_names("oils")[0], "")[0]  # so that the rest is still checked
         tree["lubricant"] = {**lubricant, "oil": oil}
+    lubricant = tree.get("lubricant")
+    if isinstance(lubricant, Mapping) and isinstance(lubricant.get("oil"), Mapping) and "law" not in lubricant["oil"]:
+        tree["lubricant"] = {**lubricant, "oil": {"law": "fitted", **lubricant["oil"]}}
     return tree, faults
 
 

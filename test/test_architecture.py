@@ -28,18 +28,25 @@ ALLOWED = {
     "events.py": (set(), set()),
     "quantity.py": ({"pint", "pydantic_core"}, set()),
     "methods.py": (set(), set()),
-    "scene.py": ({"pydantic"}, {"methods", "quantity"}),
-    "scene_file.py": ({"pydantic", "yaml"}, {"scene", "quantity"}),
-    "oil.py": ({"numpy"}, {"scene"}),
-    "params.py": ({"numpy"}, {"kernels", "oil", "rating_life", "scene"}),
+    "contour_file.py": ({"numpy", "scipy"}, {"quantity"}),
+    "contour.py": ({"numpy"}, {"contour_file"}),
+    "scene_record.py": ({"pydantic"}, set()),
+    "scene_raceway.py": ({"pydantic"}, {"contour", "quantity", "scene_record"}),
+    "scene_lubricant.py": ({"pydantic"}, {"quantity", "scene_record"}),
+    "ring_growth.py": (set(), {"scene"}),
+    "contour_scene.py": (set(), {"contour", "scene_raceway"}),
+    "scene.py": ({"pydantic"}, {"methods", "quantity", "scene_lubricant", "scene_raceway", "scene_record"}),
+    "scene_file.py": ({"pydantic", "yaml"}, {"contour_scene", "scene", "quantity"}),
+    "oil.py": ({"numpy"}, {"scene_lubricant"}),
+    "params.py": ({"numpy"}, {"contour", "kernels", "oil", "rating_life", "ring_growth", "scene", "scene_lubricant"}),
     "rating_life.py": (set(), {"kernels.compilation"}),
     "simulation.py": ({"numpy"}, {"integrators.status", "levels", "params", "sample", "scene"}),
     "sinks": (
         {"numpy", "mcap", "rosbags", "rerun", "yaml"},
-        {"sinks", "sample", "scene", "scene_file", "events", "topics", "provenance", "simulation"},
+        {"sinks", "contour", "sample", "scene", "scene_file", "events", "topics", "provenance", "simulation"},
     ),
     "studies": (
-        NUMBERS | {"sksundae"},
+        NUMBERS | {"sksundae", "matplotlib"},
         {"studies", "levels", "params", "sample", "scene", "scene_file", "simulation"},
     ),
     "runtime": ({"numpy"}, {"runtime", "simulation", "scene", "events", "sample", "topics"}),
@@ -124,7 +131,7 @@ def test_a_changed_law_in_another_file_changes_the_cache_folder(tmp_path, monkey
     shutil.copytree(PACKAGE, tmp_path / "bearing_sim", ignore=shutil.ignore_patterns("__pycache__"))
     monkeypatch.setattr(compilation, "_PACKAGE", tmp_path / "bearing_sim")
     before = compilation.sources_hash()
-    law = tmp_path / "bearing_sim/kernels/traction.py"
+    law = tmp_path / "bearing_sim/kernels/contact_rows.py"
     law.write_text(law.read_text().replace("0.05  # m/s", "0.06  # m/s"))
     assert compilation.sources_hash() != before
 

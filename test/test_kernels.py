@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bearing_sim import load_scene
+from bearing_sim.contour import outer_contour
 from bearing_sim.kernels.arrow import ARROW, factor_shifted, new_arrow, solve_factored
 from bearing_sim.kernels.cage import land_torque
 from bearing_sim.kernels.compilation import kernel
@@ -16,11 +17,12 @@ from bearing_sim.kernels.drag import churning_force, cylinder_torque, end_face_t
 from bearing_sim.kernels.elementary import cosine_sine, exponential, logarithm
 from bearing_sim.kernels.lanes import LANES, floor, larger, load, magnitude, smaller, spread, square_root, store, total, where_positive
 from bearing_sim.kernels.load_balance import LOAD, balance_ring, squeezed_roller
-from bearing_sim.kernels.raceway import TABLE_INTERVALS, contour_at, lobed_contour
+from bearing_sim.kernels.raceway import TABLE_INTERVALS, contour_at, tabulated
 from bearing_sim.kernels.traction import CONTACT, traction
 from bearing_sim.oil import oil_at
 from bearing_sim.params import lubricate, pack
 from bearing_sim.rating_life import load_rating, rating_life_revolutions, ring_ratings
+from bearing_sim.scene_raceway import OuterRaceway
 
 STIFFNESS = line_contact_stiffness(7e-3, 2.06e11, 0.3)
 
@@ -78,7 +80,9 @@ def test_penetration_is_that_of_palmgrens_force(penetration):
 @given(st.floats(0.0, 2 * math.pi, exclude_max=True), st.integers(1, 6), st.floats(-3, 3))
 @settings(max_examples=200)
 def test_contour_table_is_the_cosine_of_deng_eq_2(azimuth, lobes, angle):
-    table = lobed_contour(34.86e-3, 0.098e-3, lobes, angle)
+    raceway = OuterRaceway(low_radius=34.86e-3, d_value=0.098e-3, lobes=lobes, installation_angle=angle)
+    table = tabulated(lambda at: outer_contour(raceway, at))
+    assert len(table) == TABLE_INTERVALS
     radius, slope = contour_at(table, azimuth / (2 * math.pi) * TABLE_INTERVALS)
     phase = lobes * (azimuth - angle)
     assert radius == pytest.approx(34.86e-3 + 0.049e-3 * (1 - math.cos(phase)), abs=1e-11)
@@ -86,7 +90,8 @@ def test_contour_table_is_the_cosine_of_deng_eq_2(azimuth, lobes, angle):
 
 
 def test_contour_is_continuous_with_its_slope_around_the_turn():
-    table = lobed_contour(34.86e-3, 0.098e-3, 2, 0.3)
+    raceway = OuterRaceway(low_radius=34.86e-3, d_value=0.098e-3, lobes=2, installation_angle=0.3)
+    table = tabulated(lambda at: outer_contour(raceway, at))
     for knot in (0.0, 1.0, 400.0, TABLE_INTERVALS - 1.0):
         before, after = contour_at(table, knot - 1e-9 if knot else TABLE_INTERVALS - 1e-9), contour_at(table, knot)
         assert before == pytest.approx(after, abs=1e-11)

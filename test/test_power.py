@@ -131,9 +131,13 @@ def test_what_the_shaft_gives_in_a_turn_of_the_cage_is_lost_or_stored():
     assert (given - lost).mean() * turn == pytest.approx(stored, abs=0.01 * work)
 
 
+OPTIONS = ["bearing.cage.pocket_friction=0.2"], ["lubricant.pumping=true", "bearing.ring_growth.centrifugal=true", "lubricant.traction.law=eyring"]
+
+
+@pytest.mark.parametrize("options", OPTIONS, ids=["stock", "pumped and grown"])
 @pytest.mark.parametrize("seed", range(6))
-def test_every_force_of_level_slip_stands_in_the_books(seed):
-    run = simulation("slip", "bearing.cage.pocket_friction=0.2")
+def test_every_force_of_level_slip_stands_in_the_books(seed, options):
+    run = simulation("slip", *options)
     random = np.random.default_rng(seed)
     state, params = run._state.copy(), run._params
     state[0], state[1] = random.uniform(0, 2 * math.pi), state[1] * random.uniform(0.5, 1.2)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from synthetic_run import synthetic_block
 
+from bearing_sim.contour import outer_contour
 from bearing_sim.scene_file import load_scene
 from bearing_sim.sinks import section
 from bearing_sim.sinks.colours import UNLOADED, load_colours, load_palette
@@ -60,7 +61,7 @@ def test_roller_pressed_to_the_outer_raceway_touches_the_drawn_contour_and_overl
     one, factor = sample(), section.magnification(BEARING)
     reach = distance(section.roller_centres(BEARING, factor, one)) + 3.5
     contour = section.drawn_contour(BEARING, factor, one["roller_angle"])
-    true_overlap = one["roller_radius"] + 0.0035 - section.outer_contour(BEARING.outer_raceway, one["roller_angle"])
+    true_overlap = one["roller_radius"] + 0.0035 - outer_contour(BEARING.outer_raceway, one["roller_angle"])[0]
     np.testing.assert_allclose(reach - contour, factor * true_overlap * 1e3, atol=1e-9)
     assert (true_overlap >= 0).all()
 

@@ -8,6 +8,7 @@ from bearing_sim.kernels.compilation import template
 from bearing_sim.kernels.lanes import floor, gather, where_positive
 
 TABLE_INTERVALS = 720
+_TABLE_MISS = 0.2e-9  # m
 
 
 def contour_table(radii, slopes):
@@ -30,20 +31,25 @@ def contour_table(radii, slopes):
     return np.ascontiguousarray(np.stack([cubic, square, slopes, radii], axis=1))
 
 
-def lobed_contour(low_radius, d_value, lobes, installation_angle):
-    """Return the table of R_e = A + B cos(C phi + E) (Deng 2017, eq. 2).
-
-    A = R_low + D/2, B = -D/2, C = n lobes, E = -n phi_e; D = 0 gives a round raceway.
+def tabulated(contour):
+    """Return the table of a contour, made finer until it is within 0.2 nm of it (or has 16 times the usual knots).
 
     Parameters
     ----------
-    low_radius : radius at the low points, R_low [m].
-    d_value : high-point radius less low-point radius, D [m].
-    lobes : number of low points.
-    installation_angle : azimuth of a low point, phi_e [rad].
+    contour : azimuths [rad] -> radii [m] and slopes [m/rad].
     """
-    phase = lobes * (np.linspace(0.0, 2.0 * math.pi, TABLE_INTERVALS, endpoint=False) - installation_angle)
-    return contour_table(low_radius + d_value / 2 * (1.0 - np.cos(phase)), lobes * d_value / 2 * np.sin(phase))
+    intervals = TABLE_INTERVALS
+    while True:
+        knots = np.linspace(0.0, 2.0 * math.pi, intervals, endpoint=False)
+        table = contour_table(*contour(knots))
+        spacing, miss = 2.0 * math.pi / intervals, 0.0
+        for share in (0.25, 0.5, 0.75):
+            x = share * spacing
+            between = ((table[:, 0] * x + table[:, 1]) * x + table[:, 2]) * x + table[:, 3]
+            miss = max(miss, float(np.abs(between - contour(knots + x)[0]).max()))
+        if miss <= _TABLE_MISS or intervals >= 16 * TABLE_INTERVALS:
+            return table
+        intervals *= 2
 
 
 @template

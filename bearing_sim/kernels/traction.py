@@ -1,65 +1,24 @@
 """Tangential force of the oil film between roller and raceway (Deng 2017, eq. 7).
 
-Every law here is written in one form, odd in the sliding speed and zero without sliding:
+Every law here is odd in the sliding speed and zero without sliding.  All but one are written in one form,
 
     mu(s) = D - (D - B s) exp(-C s),   s = |du| / u,
 
 with B, C and D products of powers of load and rolling speed.  Two logarithms and four exponentials then
-serve a contact, where the published form takes nine powers.
+serve a contact, where the published form takes nine powers.  The Eyring film is in `bearing_sim.kernels.eyring`.
 """
 
 import math
-from typing import NamedTuple
+
+import numpy as np
 
 from bearing_sim.kernels.compilation import kernel
+from bearing_sim.kernels.contact_rows import CONTACT, EYRING, FITTED, KRAGELSKII, LOAD_FLOOR, ROLLING_SPEED_FLOOR, SPECIAL, TractionConstants
 from bearing_sim.kernels.elementary import exponential, logarithm
+from bearing_sim.kernels.eyring import eyring_constants, eyring_traction
 from bearing_sim.kernels.lanes import larger, load, magnitude, store, where_positive
 
-# Below these the powers of the fits run away; both are far below anything that carries torque.
-_LOAD_FLOOR = 1e-3  # N
-_ROLLING_SPEED_FLOOR = 0.05  # m/s
-
-
-class TractionConstants(NamedTuple):
-    """ln D, ln B, ln C of one contact as affine functions of ln Q and ln u (SI)."""
-
-    scale: float
-    d_constant: float
-    d_load: float
-    d_speed: float
-    b_constant: float
-    b_load: float
-    b_speed: float
-    c_constant: float
-    c_load: float
-    c_speed: float
-
-
-class ContactRow(NamedTuple):
-    """Rows of a contacts array (see `bearing_sim.kernels.lanes.new_rows`): all blocks of inner contacts, then all of outer ones."""
-
-    load: int = 0  # normal force Q [N]
-    rolling: int = 1  # mean speed u of both surfaces relative to the contact [m/s]
-    sliding: int = 2  # surface-speed difference du, raceway less roller [m/s]
-    force: int = 3  # T on the roller, with the sign of du [N]
-    by_sliding: int = 4  # dT/d(du) [N s/m]
-    by_rolling: int = 5  # dT/du [N s/m]
-    by_load: int = 6  # dT/dQ
-    log_load: int = 7  # from here on, steps of the computation
-    log_speed: int = 8
-    inverse_speed: int = 9
-    d: int = 10
-    b: int = 11
-    c: int = 12
-    decay: int = 13
-    penetration: int = 14  # [m]; these five belong to the normal force
-    rate: int = 15  # its time derivative [m/s]
-    stiffness: int = 16  # dQ by penetration [N/m]
-    damping: int = 17  # dQ by its rate [N s/m]
-    log_penetration: int = 18
-
-
-CONTACT = ContactRow()
+_STATIC, _DECAY, _RISE = 0, 1, 2  # places of Kragelskii's mu_0, C and the rate of rise in `TractionConstants.special`
 
 
 def oil_4109_constants(scale, oil, curvature_radius, reduced_modulus):
@@ -82,7 +41,8 @@ def oil_4109_constants(scale, oil, curvature_radius, reduced_modulus):
     def powers(factor, w, u, t):
         return math.log(factor) + w * log_w + u * log_u + t * log_t, w, u - 2 * t
 
-    return TractionConstants(scale, *powers(696.0, -0.163, 0.577, 0.308), *powers(5.19e6, -0.373, 1.0, 0.687), *powers(6.826e5, -0.170, 0.578, 0.373))
+    a, b, c = powers(696.0, -0.163, 0.577, 0.308), powers(5.19e6, -0.373, 1.0, 0.687), powers(6.826e5, -0.170, 0.578, 0.373)
+    return TractionConstants(scale, *a, *b, *c, FITTED, np.zeros(SPECIAL))
 
 
 def constant_constants(scale, b, c, d):
@@ -91,10 +51,46 @@ def constant_constants(scale, b, c, d):
     A given A other than -D would be a jump at zero sliding; it is taken as -D, which changes mu only where it rises.
     """
 
-    def logarithm(value):
-        return math.log(value) if value > 0 else -600.0  # a factor that is nothing, and no infinity to multiply by zero
+    return TractionConstants(scale, _log(d), 0.0, 0.0, _log(b), 0.0, 0.0, _log(c), 0.0, 0.0, FITTED, np.zeros(SPECIAL))
 
-    return TractionConstants(scale, logarithm(d), 0.0, 0.0, logarithm(b), 0.0, 0.0, logarithm(c), 0.0, 0.0)
+
+def _log(value):
+    return math.log(value) if value > 0 else -600.0  # a factor that is nothing, and no infinity to multiply by zero
+
+
+def kragelskii_coefficients(mu_0, mu_max, v_max, mu_inf):
+    """Return A, B, C, D of mu(v) = (A + B v) exp(-C v) + D (Kragelskii, as Gupta gives it) from four properties of its course.
+
+    A = mu_0 - mu_inf and D = mu_inf; the maximum at v_max asks for (C v_max - 1) exp(C v_max) = (mu_inf - mu_0)/(mu_max - mu_inf).
+
+    Parameters
+    ----------
+    mu_0 : coefficient without sliding.
+    mu_max, v_max : largest coefficient, above mu_0 and mu_inf, and the sliding speed where it is [m/s].
+    mu_inf : coefficient at high sliding speed.
+    """
+    from scipy.special import lambertw
+
+    decay = 1.0 + float(lambertw((mu_inf - mu_0) / (math.e * (mu_max - mu_inf))).real)
+    return mu_0 - mu_inf, (mu_max - mu_inf) * decay / v_max * math.exp(decay), decay / v_max, mu_inf
+
+
+def kragelskii_constants(scale, mu_0, mu_max, v_max, mu_inf, rise_speed):
+    """Return the constants of Kragelskii's law, by sliding speed: B and C are those of the form above times u.
+
+    A coefficient mu_0 without sliding would be a jump: it is reached over the sliding speed ``rise_speed`` [m/s].  Other
+    parameters as of `kragelskii_coefficients`.
+    """
+    _, b, c, d = kragelskii_coefficients(mu_0, mu_max, v_max, mu_inf)
+    special = np.zeros(SPECIAL)
+    special[_STATIC], special[_DECAY], special[_RISE] = mu_0, c, 1.0 / rise_speed
+    return TractionConstants(scale, _log(d), 0.0, 0.0, _log(b), 0.0, 1.0, _log(c), 0.0, 1.0, KRAGELSKII if mu_0 > 0 else FITTED, special)
+
+
+def thermal_eyring_constants(scale, oil, curvature_radius, reduced_modulus, length, eyring_stress, limiting_ratio):
+    """Return the constants of the Eyring film; parameters as of `bearing_sim.kernels.eyring.eyring_constants`."""
+    special = eyring_constants(oil, curvature_radius, reduced_modulus, length, eyring_stress, limiting_ratio)
+    return TractionConstants(scale, *(0.0,) * 9, EYRING, special)
 
 
 @kernel
@@ -108,6 +104,20 @@ def _powers(contacts, first, end, constants):
 
 
 @kernel
+def _static(contacts, first, end, scale, special):
+    """Add Kragelskii's coefficient without sliding, from where it has risen until it has decayed."""
+    static, decay, rise = special[_STATIC], special[_DECAY], special[_RISE]
+    for block in range(first, end):
+        normal, sliding = load(contacts, block, CONTACT.load), load(contacts, block, CONTACT.sliding)
+        late, soon = exponential(-decay * magnitude(sliding)), exponential(-rise * magnitude(sliding))
+        signed = where_positive(sliding, scale, -scale) * static * (late - soon)
+        store(contacts, block, CONTACT.force, load(contacts, block, CONTACT.force) + signed * normal)
+        store(contacts, block, CONTACT.by_load, load(contacts, block, CONTACT.by_load) + signed)
+        by_sliding = scale * static * normal * (rise * soon - decay * late)
+        store(contacts, block, CONTACT.by_sliding, load(contacts, block, CONTACT.by_sliding) + by_sliding)
+
+
+@kernel
 def traction(contacts, inner, outer):
     """Compute the tangential forces of all contacts.
 
@@ -117,12 +127,16 @@ def traction(contacts, inner, outer):
     inner, outer : `TractionConstants` of the raceways; they differ in the constant factors alone.
     """
     blocks = contacts.shape[0]
+    if inner.law == EYRING:
+        eyring_traction(contacts, 0, blocks // 2, inner.scale, inner.special)
+        eyring_traction(contacts, blocks // 2, blocks, outer.scale, outer.special)
+        return
     # Short loops: the processor works on several blocks at once where one long chain of operations would make it wait.
     for block in range(blocks):
-        store(contacts, block, CONTACT.log_load, logarithm(larger(load(contacts, block, CONTACT.load), _LOAD_FLOOR)))
+        store(contacts, block, CONTACT.log_load, logarithm(larger(load(contacts, block, CONTACT.load), LOAD_FLOOR)))
     for block in range(blocks):
         rolling = load(contacts, block, CONTACT.rolling)
-        log_speed = 0.5 * logarithm(rolling * rolling + _ROLLING_SPEED_FLOOR * _ROLLING_SPEED_FLOOR)
+        log_speed = 0.5 * logarithm(rolling * rolling + ROLLING_SPEED_FLOOR * ROLLING_SPEED_FLOOR)
         store(contacts, block, CONTACT.log_speed, log_speed)
         store(contacts, block, CONTACT.inverse_speed, exponential(-log_speed))
     _powers(contacts, 0, blocks // 2, inner)
@@ -152,3 +166,5 @@ def traction(contacts, inner, outer):
         store(contacts, block, CONTACT.by_load, scale * (coefficient + by_log_load))
         store(contacts, block, CONTACT.by_sliding, inner.scale * normal * by_ratio * inverse_speed)
         store(contacts, block, CONTACT.by_rolling, force * by_log_speed * rolling * inverse_speed * inverse_speed)
+    if inner.law == KRAGELSKII:
+        _static(contacts, 0, blocks, inner.scale, inner.special)

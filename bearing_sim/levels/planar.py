@@ -91,14 +91,14 @@ def solve(work, x):
 def error_norm(t, y, change, tolerance, model):
     """Return the largest share of its tolerance that any state's error takes.
 
-    At a tolerance of 1e-2: roller and ring positions 1.4 um, pocket offsets and the cage 2.8 um, speeds along the orbit and
-    spins 7 % of ideal rolling, for a step.  Radial speeds follow the positions.  The error is that of the embedded method of
+    At a tolerance of 1e-2: roller and ring positions 0.8 um, pocket offsets and the cage 1.6 um, speeds along the orbit and
+    spins 4 % of ideal rolling, for a step.  Radial speeds follow the positions.  The error is that of the embedded method of
     order 1, the result's is a hundredth of it; pockets weigh most, because their oscillation is what a long step blurs first.
     """
     raceways, rollers = model.params.raceways, model.params.rollers
     ideal = max(0.5 * abs(shaft_speed_at(t, model.drive)) * (1.0 - raceways.diameter_ratio), abs(y[OMEGA]), 10.0)
-    near, far = 1.0 / (1.4e-4 * tolerance), 1.0 / (2.8e-4 * tolerance)
-    turning = 1.0 / (7.0 * tolerance * ideal)
+    near, far = 1.0 / (8e-5 * tolerance), 1.0 / (1.6e-4 * tolerance)
+    turning = 1.0 / (4.0 * tolerance * ideal)
     angle, spin = far * raceways.pitch_radius, turning * rollers.radius / raceways.pitch_radius
     largest = max(abs(change[RING_Y]) * near, abs(change[RING_Z]) * near, abs(change[CAGE_Y]) * far, abs(change[CAGE_Z]) * far)
     largest = max(largest, abs(change[OMEGA]) * turning)

@@ -79,84 +79,86 @@ def normal_forces(params, contacts):
 
 
 @kernel
-def _pocket_forces(block, y, cage_cosine, cage_sine, params, rows):
+def _pocket_forces(y, cage_cosine, cage_sine, params, rows):
     """Write how a block of rollers lies in its pockets, and what the pockets do to it.
 
     The film's spring until the clearance is used up, then line contact on top of it (Deng 2017, eq. 10, made continuous).
     """
-    cage = params.cage
-    pitch_cosine, pitch_sine = load(rows, block, ROLLER.pitch_cosine), load(rows, block, ROLLER.pitch_sine)
-    pocket_cosine, pocket_sine = cage_cosine * pitch_cosine - cage_sine * pitch_sine, cage_sine * pitch_cosine + cage_cosine * pitch_sine
-    cosine, sine = load(rows, block, ROLLER.cosine), load(rows, block, ROLLER.sine)
-    play_cosine, play_sine = cosine * pocket_cosine + sine * pocket_sine, sine * pocket_cosine - cosine * pocket_sine
-    radius, orbital_speed, spin = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.orbital_speed), load(rows, block, ROLLER.spin)
-    omega = y[OMEGA]
-    cage_r, cage_t = y[CAGE_Y] * pocket_cosine + y[CAGE_Z] * pocket_sine, y[CAGE_Z] * pocket_cosine - y[CAGE_Y] * pocket_sine
-    speed_t = y[BORDER + CAGE_Z] * pocket_cosine - y[BORDER + CAGE_Y] * pocket_sine
-    offset = radius * play_sine - cage_t
-    rate = load(rows, block, ROLLER.radial_speed) * play_sine + radius * play_cosine * (orbital_speed - omega) - speed_t + omega * cage_r
-    stiffness, damping = spread(cage.pocket_stiffness), spread(cage.pocket_damping)
-    force = stiffness * offset + damping * rate
-    excess = magnitude(offset) - cage.pocket_clearance
-    if total(where_positive(excess, 1.0, 0.0)) > 0.0:
-        side = where_positive(offset, 1.0, -1.0)
-        wall, wall_stiffness, wall_damping = damped_line_contact(
-            excess, log_penetration(excess), rate * side, params.raceways.stiffness, params.ring.contact_damping
-        )
-        force += side * (wall - cage.pocket_stiffness * larger(excess, 0.0))
-        stiffness = where_positive(excess, wall_stiffness, stiffness)
-        damping += wall_damping
-    smooth = 1.0 / square_root(spin * spin + FRICTION_SPIN * FRICTION_SPIN)
-    store(rows, block, ROLLER.pocket_cosine, pocket_cosine)
-    store(rows, block, ROLLER.pocket_sine, pocket_sine)
-    store(rows, block, ROLLER.play_cosine, play_cosine)
-    store(rows, block, ROLLER.play_sine, play_sine)
-    store(rows, block, ROLLER.pocket_offset, offset)
-    store(rows, block, ROLLER.pocket_rate, rate)
-    store(rows, block, ROLLER.pocket_force, -force)
-    store(rows, block, ROLLER.pocket_stiffness, stiffness)
-    store(rows, block, ROLLER.pocket_damping, damping)
-    store(rows, block, ROLLER.pocket_friction, cage.pocket_friction * spin * smooth)
-    store(rows, block, ROLLER.pocket_friction_slope, (cage.pocket_friction * FRICTION_SPIN * FRICTION_SPIN) * smooth * smooth * smooth)
+    for block in range(rows.shape[0]):
+        cage = params.cage
+        pitch_cosine, pitch_sine = load(rows, block, ROLLER.pitch_cosine), load(rows, block, ROLLER.pitch_sine)
+        pocket_cosine, pocket_sine = cage_cosine * pitch_cosine - cage_sine * pitch_sine, cage_sine * pitch_cosine + cage_cosine * pitch_sine
+        cosine, sine = load(rows, block, ROLLER.cosine), load(rows, block, ROLLER.sine)
+        play_cosine, play_sine = cosine * pocket_cosine + sine * pocket_sine, sine * pocket_cosine - cosine * pocket_sine
+        radius, orbital_speed, spin = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.orbital_speed), load(rows, block, ROLLER.spin)
+        omega = y[OMEGA]
+        cage_r, cage_t = y[CAGE_Y] * pocket_cosine + y[CAGE_Z] * pocket_sine, y[CAGE_Z] * pocket_cosine - y[CAGE_Y] * pocket_sine
+        speed_t = y[BORDER + CAGE_Z] * pocket_cosine - y[BORDER + CAGE_Y] * pocket_sine
+        offset = radius * play_sine - cage_t
+        rate = load(rows, block, ROLLER.radial_speed) * play_sine + radius * play_cosine * (orbital_speed - omega) - speed_t + omega * cage_r
+        stiffness, damping = spread(cage.pocket_stiffness), spread(cage.pocket_damping)
+        force = stiffness * offset + damping * rate
+        excess = magnitude(offset) - cage.pocket_clearance
+        if total(where_positive(excess, 1.0, 0.0)) > 0.0:
+            side = where_positive(offset, 1.0, -1.0)
+            wall, wall_stiffness, wall_damping = damped_line_contact(
+                excess, log_penetration(excess), rate * side, params.raceways.stiffness, params.ring.contact_damping
+            )
+            force += side * (wall - cage.pocket_stiffness * larger(excess, 0.0))
+            stiffness = where_positive(excess, wall_stiffness, stiffness)
+            damping += wall_damping
+        smooth = 1.0 / square_root(spin * spin + FRICTION_SPIN * FRICTION_SPIN)
+        store(rows, block, ROLLER.pocket_cosine, pocket_cosine)
+        store(rows, block, ROLLER.pocket_sine, pocket_sine)
+        store(rows, block, ROLLER.play_cosine, play_cosine)
+        store(rows, block, ROLLER.play_sine, play_sine)
+        store(rows, block, ROLLER.pocket_offset, offset)
+        store(rows, block, ROLLER.pocket_rate, rate)
+        store(rows, block, ROLLER.pocket_force, -force)
+        store(rows, block, ROLLER.pocket_stiffness, stiffness)
+        store(rows, block, ROLLER.pocket_damping, damping)
+        store(rows, block, ROLLER.pocket_friction, cage.pocket_friction * spin * smooth)
+        store(rows, block, ROLLER.pocket_friction_slope, (cage.pocket_friction * FRICTION_SPIN * FRICTION_SPIN) * smooth * smooth * smooth)
 
 
 @kernel
-def _accelerate(block, y, churning, model, rows, contacts, rate):
+def _accelerate(y, churning, model, rows, contacts, rate):
     """Write the accelerations of a block of rollers; add to those of ring and cage what the rollers do to them."""
-    params = model.params
-    cage, ring, mass, roller_radius = params.cage, params.ring, params.rollers.mass, params.rollers.radius
-    radius, radial_speed, orbital_speed = (
-        load(rows, block, ROLLER.radius),
-        load(rows, block, ROLLER.radial_speed),
-        load(rows, block, ROLLER.orbital_speed),
-    )
-    outer = rows.shape[0] + block
-    n_r, n_t = load(rows, block, ROLLER.normal_r), load(rows, block, ROLLER.normal_t)
-    q_i, q_e = load(contacts, block, CONTACT.load), load(contacts, outer, CONTACT.load)
-    t_i, t_e = load(contacts, block, CONTACT.force), load(contacts, outer, CONTACT.force)
-    force, friction = -load(rows, block, ROLLER.pocket_force), load(rows, block, ROLLER.pocket_friction)
-    play_cosine, play_sine = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
-    radial, along = q_i * n_r - t_i * n_t, q_i * n_t + t_i * n_r
-    pitch_speed = params.raceways.pitch_radius * y[OMEGA]
-    drag = churning[0] + churning[1] * (radius * orbital_speed - pitch_speed)
-    slope = params.raceways.slope_factor * load(rows, block, ROLLER.slope)
-    f_r = radial - q_e - force * (play_sine + friction * play_cosine)
-    f_t = along + t_e + q_e * slope / radius - drag - force * (play_cosine - friction * play_sine)
-    store(rows, block, ROLLER.churning, drag)
-    store(rows, block, ROLLER.radial_acceleration, radius * orbital_speed * orbital_speed + f_r * (1.0 / mass))
-    store(rows, block, ROLLER.orbital_acceleration, (f_t * (1.0 / mass) - 2.0 * radial_speed * orbital_speed) / radius)
-    spin_acceleration = (t_i - t_e - friction * magnitude(force)) * (roller_radius / params.rollers.inertia)
-    store(rows, block, ROLLER.spin_acceleration, spin_acceleration)
-    present, cosine, sine = load(rows, block, ROLLER.present), load(rows, block, ROLLER.cosine), load(rows, block, ROLLER.sine)
-    pocket_cosine, pocket_sine = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
-    lever = radius * play_cosine - (y[CAGE_Y] * pocket_cosine + y[CAGE_Z] * pocket_sine)
-    offset = load(rows, block, ROLLER.pocket_offset)
-    torque = force * lever - friction * (magnitude(force) * roller_radius + offset * force)
-    rate[BORDER + RING_Y] -= total(present * (radial * cosine - along * sine)) / ring.mass
-    rate[BORDER + RING_Z] -= total(present * (radial * sine + along * cosine)) / ring.mass
-    rate[BORDER + CAGE_Y] += total(present * force * (friction * pocket_cosine - pocket_sine)) / cage.mass
-    rate[BORDER + CAGE_Z] += total(present * force * (pocket_cosine + friction * pocket_sine)) / cage.mass
-    rate[OMEGA] += total(present * torque) / cage.inertia
+    for block in range(rows.shape[0]):
+        params = model.params
+        cage, ring, mass, roller_radius = params.cage, params.ring, params.rollers.mass, params.rollers.radius
+        radius, radial_speed, orbital_speed = (
+            load(rows, block, ROLLER.radius),
+            load(rows, block, ROLLER.radial_speed),
+            load(rows, block, ROLLER.orbital_speed),
+        )
+        outer = rows.shape[0] + block
+        n_r, n_t = load(rows, block, ROLLER.normal_r), load(rows, block, ROLLER.normal_t)
+        q_i, q_e = load(contacts, block, CONTACT.load), load(contacts, outer, CONTACT.load)
+        t_i, t_e = load(contacts, block, CONTACT.force), load(contacts, outer, CONTACT.force)
+        force, friction = -load(rows, block, ROLLER.pocket_force), load(rows, block, ROLLER.pocket_friction)
+        play_cosine, play_sine = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
+        radial, along = q_i * n_r - t_i * n_t, q_i * n_t + t_i * n_r
+        pitch_speed = params.raceways.pitch_radius * y[OMEGA]
+        drag = churning[0] + churning[1] * (radius * orbital_speed - pitch_speed)
+        slope = params.raceways.slope_factor * load(rows, block, ROLLER.slope)
+        f_r = radial - q_e - force * (play_sine + friction * play_cosine)
+        f_t = along + t_e + q_e * slope / radius - drag - force * (play_cosine - friction * play_sine)
+        store(rows, block, ROLLER.churning, drag)
+        store(rows, block, ROLLER.radial_acceleration, radius * orbital_speed * orbital_speed + f_r * (1.0 / mass))
+        store(rows, block, ROLLER.orbital_acceleration, (f_t * (1.0 / mass) - 2.0 * radial_speed * orbital_speed) / radius)
+        spin_acceleration = (t_i - t_e - friction * magnitude(force)) * (roller_radius / params.rollers.inertia)
+        store(rows, block, ROLLER.spin_acceleration, spin_acceleration)
+        present, cosine, sine = load(rows, block, ROLLER.present), load(rows, block, ROLLER.cosine), load(rows, block, ROLLER.sine)
+        pocket_cosine, pocket_sine = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
+        lever = radius * play_cosine - (y[CAGE_Y] * pocket_cosine + y[CAGE_Z] * pocket_sine)
+        offset = load(rows, block, ROLLER.pocket_offset)
+        torque = force * lever - friction * (magnitude(force) * roller_radius + offset * force)
+        rate[BORDER + RING_Y] -= total(present * (radial * cosine - along * sine)) / ring.mass
+        rate[BORDER + RING_Z] -= total(present * (radial * sine + along * cosine)) / ring.mass
+        rate[BORDER + CAGE_Y] += total(present * force * (friction * pocket_cosine - pocket_sine)) / cage.mass
+        rate[BORDER + CAGE_Z] += total(present * force * (pocket_cosine + friction * pocket_sine)) / cage.mass
+        rate[OMEGA] += total(present * torque) / cage.inertia
 
 
 @kernel
@@ -190,10 +192,8 @@ def equations(t, y, model, work, rate, with_jacobian):
     _place(y, shaft_speed, params, rows, contacts)
     normal_forces(params, contacts)
     traction(contacts, model.lubrication.inner, model.lubrication.outer)
-    for block in range(rows.shape[0]):
-        _pocket_forces(block, y, cage_cosine, cage_sine, params, rows)
-    for block in range(rows.shape[0]):
-        _accelerate(block, y, churning, model, rows, contacts, rate)
+    _pocket_forces(y, cage_cosine, cage_sine, params, rows)
+    _accelerate(y, churning, model, rows, contacts, rate)
     if with_jacobian:
         roller_slopes(y, churning, params, rows, contacts, work.slopes)
     collect_rates(y, params.rollers.count, rows, rate)

@@ -50,49 +50,50 @@ def _store_ring(block, slopes, first, scale, by_apart_r, by_apart_t, by_speed_r,
 
 
 @kernel
-def _inner_slopes(block, y, params, rows, contacts, slopes):
+def _inner_slopes(y, params, rows, contacts, slopes):
     """Write all rows of ring and rollers as far as the inner contact makes them."""
-    cosine, sine = load(rows, block, ROLLER.cosine), load(rows, block, ROLLER.sine)
-    n_r, n_t, inverse = load(rows, block, ROLLER.normal_r), load(rows, block, ROLLER.normal_t), load(rows, block, ROLLER.inverse_distance)
-    v_n, v_t = load(rows, block, ROLLER.speed_normal), load(rows, block, ROLLER.speed_tangent)
-    q_i, t_i = load(contacts, block, CONTACT.load), load(contacts, block, CONTACT.force)
-    stiffness, damping = load(contacts, block, CONTACT.stiffness), load(contacts, block, CONTACT.damping)
-    by_load, by_sliding = load(contacts, block, CONTACT.by_load), load(contacts, block, CONTACT.by_sliding)
-    by_rolling = load(contacts, block, CONTACT.by_rolling)
-    radius, orbital_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.orbital_speed)
-    radial, along = q_i * n_r - t_i * n_t, q_i * n_t + t_i * n_r
-    turn_1, turn_2 = -n_t * inverse, n_r * inverse
-    q_1, q_2 = -(stiffness * n_r + damping * turn_1 * v_t), -(stiffness * n_t + damping * turn_2 * v_t)
-    q_3, q_4 = -(damping * n_r), -(damping * n_t)
-    t_1, t_2 = by_load * q_1 + by_sliding * turn_1 * v_n, by_load * q_2 + by_sliding * turn_2 * v_n
-    t_3, t_4 = by_load * q_3 + by_sliding * n_t, by_load * q_4 - by_sliding * n_r
-    f_r1, f_t1 = _in_frame(q_1, t_1, turn_1, n_r, n_t, radial, along)
-    f_r2, f_t2 = _in_frame(q_2, t_2, turn_2, n_r, n_t, radial, along)
-    f_r3, f_t3 = q_3 * n_r - t_3 * n_t, q_3 * n_t + t_3 * n_r
-    f_r4, f_t4 = q_4 * n_r - t_4 * n_t, q_4 * n_t + t_4 * n_r
-    t_rolling = 0.5 * by_rolling * (params.rollers.radius - params.raceways.inner_radius)
-    t_spin = (0.5 * by_rolling - by_sliding) * params.rollers.radius
-    r_0, r_1, r_2, r_3 = _by_own(f_r1, f_r2, f_r3, f_r4, y, cosine, sine, radius, orbital_speed)
-    a_0, a_1, a_2, a_3 = _by_own(f_t1, f_t2, f_t3, f_t4, y, cosine, sine, radius, orbital_speed)
-    s_0, s_1, s_2, s_3 = _by_own(t_1, t_2, t_3, t_4, y, cosine, sine, radius, orbital_speed)
-    r_3, a_3, s_3 = r_3 - t_rolling * n_t, a_3 + t_rolling * n_r, s_3 + t_rolling
-    r_4, a_4 = -(t_spin * n_t), t_spin * n_r
-    per_mass, per_inertia = 1.0 / params.rollers.mass, params.rollers.radius / params.rollers.inertia
-    per_lever = per_mass / radius
-    _store_own(block, slopes, _RADIAL, per_mass, (r_0, r_1, r_2, r_3), r_4)
-    _store_own(block, slopes, _ORBITAL, per_lever, (a_0, a_1, a_2, a_3), a_4)
-    _store_own(block, slopes, _SPINNING, per_inertia, (s_0, s_1, s_2, s_3), t_spin)
-    _store_ring(block, slopes, _RADIAL, per_mass, f_r1, f_r2, f_r3, f_r4, cosine, sine)
-    _store_ring(block, slopes, _ORBITAL, per_lever, f_t1, f_t2, f_t3, f_t4, cosine, sine)
-    _store_ring(block, slopes, _SPINNING, per_inertia, t_1, t_2, t_3, t_4, cosine, sine)
-    scale = load(rows, block, ROLLER.present) * (-1.0 / params.ring.mass)
-    c, s = scale * cosine, scale * sine
-    r_1, a_1 = r_1 - along, a_1 + radial
-    ring_y, ring_z = _PASSED + LOCAL * RING_Y, _PASSED + LOCAL * RING_Z
-    _store_own(block, slopes, ring_y, 1.0, (r_0 * c - a_0 * s, r_1 * c - a_1 * s, r_2 * c - a_2 * s, r_3 * c - a_3 * s), r_4 * c - a_4 * s)
-    _store_own(block, slopes, ring_z, 1.0, (r_0 * s + a_0 * c, r_1 * s + a_1 * c, r_2 * s + a_2 * c, r_3 * s + a_3 * c), r_4 * s + a_4 * c)
-    _store_ring(block, slopes, ring_y, 1.0, f_r1 * c - f_t1 * s, f_r2 * c - f_t2 * s, f_r3 * c - f_t3 * s, f_r4 * c - f_t4 * s, cosine, sine)
-    _store_ring(block, slopes, ring_z, 1.0, f_r1 * s + f_t1 * c, f_r2 * s + f_t2 * c, f_r3 * s + f_t3 * c, f_r4 * s + f_t4 * c, cosine, sine)
+    for block in range(rows.shape[0]):
+        cosine, sine = load(rows, block, ROLLER.cosine), load(rows, block, ROLLER.sine)
+        n_r, n_t, inverse = load(rows, block, ROLLER.normal_r), load(rows, block, ROLLER.normal_t), load(rows, block, ROLLER.inverse_distance)
+        v_n, v_t = load(rows, block, ROLLER.speed_normal), load(rows, block, ROLLER.speed_tangent)
+        q_i, t_i = load(contacts, block, CONTACT.load), load(contacts, block, CONTACT.force)
+        stiffness, damping = load(contacts, block, CONTACT.stiffness), load(contacts, block, CONTACT.damping)
+        by_load, by_sliding = load(contacts, block, CONTACT.by_load), load(contacts, block, CONTACT.by_sliding)
+        by_rolling = load(contacts, block, CONTACT.by_rolling)
+        radius, orbital_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.orbital_speed)
+        radial, along = q_i * n_r - t_i * n_t, q_i * n_t + t_i * n_r
+        turn_1, turn_2 = -n_t * inverse, n_r * inverse
+        q_1, q_2 = -(stiffness * n_r + damping * turn_1 * v_t), -(stiffness * n_t + damping * turn_2 * v_t)
+        q_3, q_4 = -(damping * n_r), -(damping * n_t)
+        t_1, t_2 = by_load * q_1 + by_sliding * turn_1 * v_n, by_load * q_2 + by_sliding * turn_2 * v_n
+        t_3, t_4 = by_load * q_3 + by_sliding * n_t, by_load * q_4 - by_sliding * n_r
+        f_r1, f_t1 = _in_frame(q_1, t_1, turn_1, n_r, n_t, radial, along)
+        f_r2, f_t2 = _in_frame(q_2, t_2, turn_2, n_r, n_t, radial, along)
+        f_r3, f_t3 = q_3 * n_r - t_3 * n_t, q_3 * n_t + t_3 * n_r
+        f_r4, f_t4 = q_4 * n_r - t_4 * n_t, q_4 * n_t + t_4 * n_r
+        t_rolling = 0.5 * by_rolling * (params.rollers.radius - params.raceways.inner_radius)
+        t_spin = (0.5 * by_rolling - by_sliding) * params.rollers.radius
+        r_0, r_1, r_2, r_3 = _by_own(f_r1, f_r2, f_r3, f_r4, y, cosine, sine, radius, orbital_speed)
+        a_0, a_1, a_2, a_3 = _by_own(f_t1, f_t2, f_t3, f_t4, y, cosine, sine, radius, orbital_speed)
+        s_0, s_1, s_2, s_3 = _by_own(t_1, t_2, t_3, t_4, y, cosine, sine, radius, orbital_speed)
+        r_3, a_3, s_3 = r_3 - t_rolling * n_t, a_3 + t_rolling * n_r, s_3 + t_rolling
+        r_4, a_4 = -(t_spin * n_t), t_spin * n_r
+        per_mass, per_inertia = 1.0 / params.rollers.mass, params.rollers.radius / params.rollers.inertia
+        per_lever = per_mass / radius
+        _store_own(block, slopes, _RADIAL, per_mass, (r_0, r_1, r_2, r_3), r_4)
+        _store_own(block, slopes, _ORBITAL, per_lever, (a_0, a_1, a_2, a_3), a_4)
+        _store_own(block, slopes, _SPINNING, per_inertia, (s_0, s_1, s_2, s_3), t_spin)
+        _store_ring(block, slopes, _RADIAL, per_mass, f_r1, f_r2, f_r3, f_r4, cosine, sine)
+        _store_ring(block, slopes, _ORBITAL, per_lever, f_t1, f_t2, f_t3, f_t4, cosine, sine)
+        _store_ring(block, slopes, _SPINNING, per_inertia, t_1, t_2, t_3, t_4, cosine, sine)
+        scale = load(rows, block, ROLLER.present) * (-1.0 / params.ring.mass)
+        c, s = scale * cosine, scale * sine
+        r_1, a_1 = r_1 - along, a_1 + radial
+        ring_y, ring_z = _PASSED + LOCAL * RING_Y, _PASSED + LOCAL * RING_Z
+        _store_own(block, slopes, ring_y, 1.0, (r_0 * c - a_0 * s, r_1 * c - a_1 * s, r_2 * c - a_2 * s, r_3 * c - a_3 * s), r_4 * c - a_4 * s)
+        _store_own(block, slopes, ring_z, 1.0, (r_0 * s + a_0 * c, r_1 * s + a_1 * c, r_2 * s + a_2 * c, r_3 * s + a_3 * c), r_4 * s + a_4 * c)
+        _store_ring(block, slopes, ring_y, 1.0, f_r1 * c - f_t1 * s, f_r2 * c - f_t2 * s, f_r3 * c - f_t3 * s, f_r4 * c - f_t4 * s, cosine, sine)
+        _store_ring(block, slopes, ring_z, 1.0, f_r1 * s + f_t1 * c, f_r2 * s + f_t2 * c, f_r3 * s + f_t3 * c, f_r4 * s + f_t4 * c, cosine, sine)
 
 
 @template
@@ -101,42 +102,43 @@ def _add(block, slopes, row, value):
 
 
 @kernel
-def _outer_slopes(block, y, churning, params, rows, contacts, slopes):
+def _outer_slopes(y, churning, params, rows, contacts, slopes):
     """Add the outer contact, the drag of the mixture and the frame's own rotation to the rows of the rollers."""
-    outer = rows.shape[0] + block
-    radius, radial_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.radial_speed)
-    orbital_speed, q_e = load(rows, block, ROLLER.orbital_speed), load(contacts, outer, CONTACT.load)
-    slope, curvature = load(rows, block, ROLLER.slope), load(rows, block, ROLLER.curvature)
-    stiffness, damping = load(contacts, outer, CONTACT.stiffness), load(contacts, outer, CONTACT.damping)
-    by_load, by_sliding = load(contacts, outer, CONTACT.by_load), load(contacts, outer, CONTACT.by_sliding)
-    by_rolling, roller_radius = 0.5 * load(contacts, outer, CONTACT.by_rolling), params.rollers.radius
-    q_1, q_2, q_3 = -(stiffness * slope) - damping * curvature * orbital_speed, damping, -(damping * slope)
-    t_0 = by_load * stiffness + (by_rolling - by_sliding) * orbital_speed
-    t_1, t_2 = by_load * q_1, by_load * q_2
-    t_3 = by_load * q_3 - by_sliding * radius + by_rolling * (radius + 2.0 * roller_radius)
-    t_4 = (by_sliding + by_rolling) * roller_radius
-    per_mass, per_inertia = 1.0 / params.rollers.mass, -roller_radius / params.rollers.inertia
-    per_radius = 1.0 / radius
-    lean, per_lever = params.raceways.slope_factor * slope * per_radius, per_mass * per_radius
-    _add(block, slopes, _RADIAL + R, orbital_speed * orbital_speed - per_mass * stiffness)
-    _add(block, slopes, _RADIAL + PHI, -per_mass * q_1)
-    _add(block, slopes, _RADIAL + R_SPEED, -per_mass * q_2)
-    _add(block, slopes, _RADIAL + PHI_SPEED, 2.0 * radius * orbital_speed - per_mass * q_3)
-    arm = q_e * lean * per_radius + churning[1] * orbital_speed
-    acceleration = load(rows, block, ROLLER.orbital_acceleration)
-    _add(block, slopes, _ORBITAL + R, per_lever * (t_0 + stiffness * lean - arm) - acceleration * per_radius)
-    bend = params.raceways.slope_factor * q_e * curvature * per_radius
-    _add(block, slopes, _ORBITAL + PHI, per_lever * (t_1 + q_1 * lean + bend))
-    _add(block, slopes, _ORBITAL + R_SPEED, per_lever * (t_2 + q_2 * lean) - 2.0 * orbital_speed * per_radius)
-    _add(block, slopes, _ORBITAL + PHI_SPEED, per_lever * (t_3 + q_3 * lean) - 2.0 * radial_speed * per_radius - churning[1] * per_mass)
-    _add(block, slopes, _ORBITAL + SPIN, per_lever * t_4)
-    pitch_speed = params.raceways.pitch_radius * y[OMEGA]
-    store(slopes, block, _ORBITAL + AT_SPEEDS + THETA, per_lever * (-churning[2] * (radius * orbital_speed - pitch_speed)))
-    _add(block, slopes, _SPINNING + R, per_inertia * t_0)
-    _add(block, slopes, _SPINNING + PHI, per_inertia * t_1)
-    _add(block, slopes, _SPINNING + R_SPEED, per_inertia * t_2)
-    _add(block, slopes, _SPINNING + PHI_SPEED, per_inertia * t_3)
-    _add(block, slopes, _SPINNING + SPIN, per_inertia * t_4)
+    for block in range(rows.shape[0]):
+        outer = rows.shape[0] + block
+        radius, radial_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.radial_speed)
+        orbital_speed, q_e = load(rows, block, ROLLER.orbital_speed), load(contacts, outer, CONTACT.load)
+        slope, curvature = load(rows, block, ROLLER.slope), load(rows, block, ROLLER.curvature)
+        stiffness, damping = load(contacts, outer, CONTACT.stiffness), load(contacts, outer, CONTACT.damping)
+        by_load, by_sliding = load(contacts, outer, CONTACT.by_load), load(contacts, outer, CONTACT.by_sliding)
+        by_rolling, roller_radius = 0.5 * load(contacts, outer, CONTACT.by_rolling), params.rollers.radius
+        q_1, q_2, q_3 = -(stiffness * slope) - damping * curvature * orbital_speed, damping, -(damping * slope)
+        t_0 = by_load * stiffness + (by_rolling - by_sliding) * orbital_speed
+        t_1, t_2 = by_load * q_1, by_load * q_2
+        t_3 = by_load * q_3 - by_sliding * radius + by_rolling * (radius + 2.0 * roller_radius)
+        t_4 = (by_sliding + by_rolling) * roller_radius
+        per_mass, per_inertia = 1.0 / params.rollers.mass, -roller_radius / params.rollers.inertia
+        per_radius = 1.0 / radius
+        lean, per_lever = params.raceways.slope_factor * slope * per_radius, per_mass * per_radius
+        _add(block, slopes, _RADIAL + R, orbital_speed * orbital_speed - per_mass * stiffness)
+        _add(block, slopes, _RADIAL + PHI, -per_mass * q_1)
+        _add(block, slopes, _RADIAL + R_SPEED, -per_mass * q_2)
+        _add(block, slopes, _RADIAL + PHI_SPEED, 2.0 * radius * orbital_speed - per_mass * q_3)
+        arm = q_e * lean * per_radius + churning[1] * orbital_speed
+        acceleration = load(rows, block, ROLLER.orbital_acceleration)
+        _add(block, slopes, _ORBITAL + R, per_lever * (t_0 + stiffness * lean - arm) - acceleration * per_radius)
+        bend = params.raceways.slope_factor * q_e * curvature * per_radius
+        _add(block, slopes, _ORBITAL + PHI, per_lever * (t_1 + q_1 * lean + bend))
+        _add(block, slopes, _ORBITAL + R_SPEED, per_lever * (t_2 + q_2 * lean) - 2.0 * orbital_speed * per_radius)
+        _add(block, slopes, _ORBITAL + PHI_SPEED, per_lever * (t_3 + q_3 * lean) - 2.0 * radial_speed * per_radius - churning[1] * per_mass)
+        _add(block, slopes, _ORBITAL + SPIN, per_lever * t_4)
+        pitch_speed = params.raceways.pitch_radius * y[OMEGA]
+        store(slopes, block, _ORBITAL + AT_SPEEDS + THETA, per_lever * (-churning[2] * (radius * orbital_speed - pitch_speed)))
+        _add(block, slopes, _SPINNING + R, per_inertia * t_0)
+        _add(block, slopes, _SPINNING + PHI, per_inertia * t_1)
+        _add(block, slopes, _SPINNING + R_SPEED, per_inertia * t_2)
+        _add(block, slopes, _SPINNING + PHI_SPEED, per_inertia * t_3)
+        _add(block, slopes, _SPINNING + SPIN, per_inertia * t_4)
 
 
 @template
@@ -151,45 +153,46 @@ def _store_cage(block, slopes, first, scale, by_position, by_speed):
 
 
 @kernel
-def _pocket_slopes(block, y, params, rows, slopes):
+def _pocket_slopes(y, params, rows, slopes):
     """Add the pockets to the rows of the rollers, write those of the cage."""
-    mass = params.rollers.mass
-    radius, radial_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.radial_speed)
-    stiffness, damping = load(rows, block, ROLLER.pocket_stiffness), load(rows, block, ROLLER.pocket_damping)
-    force = -load(rows, block, ROLLER.pocket_force)
-    friction, bend = load(rows, block, ROLLER.pocket_friction), load(rows, block, ROLLER.pocket_friction_slope)
-    p_c, p_s = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
-    play_c, play_s = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
-    omega = y[OMEGA]
-    cage_r, cage_t = y[CAGE_Y] * p_c + y[CAGE_Z] * p_s, y[CAGE_Z] * p_c - y[CAGE_Y] * p_s
-    speed_r = y[BORDER + CAGE_Y] * p_c + y[BORDER + CAGE_Z] * p_s
-    turning, reach = load(rows, block, ROLLER.orbital_speed) - omega, radius * play_c
-    lever, rise = reach - cage_r, radial_speed * play_c - radius * play_s * turning
-    own = (stiffness * play_s + damping * play_c * turning, stiffness * reach + damping * rise, damping * play_s, damping * reach)
-    at = (
-        stiffness * p_s + damping * (omega * p_c),
-        damping * (omega * p_s) - stiffness * p_c,
-        damping * (speed_r + omega * cage_t - rise) - stiffness * lever,
-    )
-    with_speed = (damping * p_s, -(damping * p_c), -(damping * lever))
-    push_r, push_t = play_s + friction * play_c, play_c - friction * play_s
-    size, side = magnitude(force), where_positive(force, 1.0, -1.0)
-    per_mass, per_lever = -1.0 / mass, (-1.0 / mass) / radius
-    per_inertia = (-params.rollers.radius / params.rollers.inertia) * friction * side
-    _add_own(block, slopes, _RADIAL, per_mass * push_r, own, per_mass * (force * play_c * bend))
-    _add_own(block, slopes, _ORBITAL, per_lever * push_t, own, -(per_lever * (force * play_s * bend)))
-    _add_own(block, slopes, _SPINNING, per_inertia, own, (-params.rollers.radius / params.rollers.inertia) * size * bend)
-    _store_cage(block, slopes, _RADIAL, per_mass * push_r, at, with_speed)
-    churned = load(slopes, block, _ORBITAL + AT_SPEEDS + THETA)
-    _store_cage(block, slopes, _ORBITAL, per_lever * push_t, at, with_speed)
-    _add(block, slopes, _ORBITAL + AT_SPEEDS + THETA, churned)
-    _store_cage(block, slopes, _SPINNING, per_inertia, at, with_speed)
-    # the force's own direction turns with the pocket
-    _add(block, slopes, _RADIAL + PHI, per_mass * (force * push_t))
-    _add(block, slopes, _RADIAL + AT_POSITIONS + THETA, -per_mass * (force * push_t))
-    _add(block, slopes, _ORBITAL + PHI, -(per_lever * (force * push_r)))
-    _add(block, slopes, _ORBITAL + AT_POSITIONS + THETA, per_lever * (force * push_r))
-    _cage_slopes(block, params, rows, slopes, own, at, with_speed, cage_t, lever)
+    for block in range(rows.shape[0]):
+        mass = params.rollers.mass
+        radius, radial_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.radial_speed)
+        stiffness, damping = load(rows, block, ROLLER.pocket_stiffness), load(rows, block, ROLLER.pocket_damping)
+        force = -load(rows, block, ROLLER.pocket_force)
+        friction, bend = load(rows, block, ROLLER.pocket_friction), load(rows, block, ROLLER.pocket_friction_slope)
+        p_c, p_s = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
+        play_c, play_s = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
+        omega = y[OMEGA]
+        cage_r, cage_t = y[CAGE_Y] * p_c + y[CAGE_Z] * p_s, y[CAGE_Z] * p_c - y[CAGE_Y] * p_s
+        speed_r = y[BORDER + CAGE_Y] * p_c + y[BORDER + CAGE_Z] * p_s
+        turning, reach = load(rows, block, ROLLER.orbital_speed) - omega, radius * play_c
+        lever, rise = reach - cage_r, radial_speed * play_c - radius * play_s * turning
+        own = (stiffness * play_s + damping * play_c * turning, stiffness * reach + damping * rise, damping * play_s, damping * reach)
+        at = (
+            stiffness * p_s + damping * (omega * p_c),
+            damping * (omega * p_s) - stiffness * p_c,
+            damping * (speed_r + omega * cage_t - rise) - stiffness * lever,
+        )
+        with_speed = (damping * p_s, -(damping * p_c), -(damping * lever))
+        push_r, push_t = play_s + friction * play_c, play_c - friction * play_s
+        size, side = magnitude(force), where_positive(force, 1.0, -1.0)
+        per_mass, per_lever = -1.0 / mass, (-1.0 / mass) / radius
+        per_inertia = (-params.rollers.radius / params.rollers.inertia) * friction * side
+        _add_own(block, slopes, _RADIAL, per_mass * push_r, own, per_mass * (force * play_c * bend))
+        _add_own(block, slopes, _ORBITAL, per_lever * push_t, own, -(per_lever * (force * play_s * bend)))
+        _add_own(block, slopes, _SPINNING, per_inertia, own, (-params.rollers.radius / params.rollers.inertia) * size * bend)
+        _store_cage(block, slopes, _RADIAL, per_mass * push_r, at, with_speed)
+        churned = load(slopes, block, _ORBITAL + AT_SPEEDS + THETA)
+        _store_cage(block, slopes, _ORBITAL, per_lever * push_t, at, with_speed)
+        _add(block, slopes, _ORBITAL + AT_SPEEDS + THETA, churned)
+        _store_cage(block, slopes, _SPINNING, per_inertia, at, with_speed)
+        # the force's own direction turns with the pocket
+        _add(block, slopes, _RADIAL + PHI, per_mass * (force * push_t))
+        _add(block, slopes, _RADIAL + AT_POSITIONS + THETA, -per_mass * (force * push_t))
+        _add(block, slopes, _ORBITAL + PHI, -(per_lever * (force * push_r)))
+        _add(block, slopes, _ORBITAL + AT_POSITIONS + THETA, per_lever * (force * push_r))
+        _cage_slopes(block, params, rows, slopes, own, at, with_speed, cage_t, lever)
 
 
 @template
@@ -247,9 +250,6 @@ def roller_slopes(y, churning, params, rows, contacts, slopes):
     contacts : see `bearing_sim.kernels.traction.CONTACT`.
     slopes : takes the derivatives.
     """
-    for block in range(rows.shape[0]):
-        _inner_slopes(block, y, params, rows, contacts, slopes)
-    for block in range(rows.shape[0]):
-        _outer_slopes(block, y, churning, params, rows, contacts, slopes)
-    for block in range(rows.shape[0]):
-        _pocket_slopes(block, y, params, rows, slopes)
+    _inner_slopes(y, params, rows, contacts, slopes)
+    _outer_slopes(y, churning, params, rows, contacts, slopes)
+    _pocket_slopes(y, params, rows, slopes)

@@ -46,7 +46,7 @@ def write_powers(powers, row):
 
 @kernel
 def sliding_power(contacts, first, count):
-    """Return the power lost by sliding between one raceway and all rollers [W], T du of each.
+    """Return the power lost in the films between one raceway and all rollers [W]: T du of each, and 2 F_R u by pumping.
 
     Parameters
     ----------
@@ -58,12 +58,13 @@ def sliding_power(contacts, first, count):
     for j in range(count):
         block, lane = first + j // LANES, j % LANES
         lost += contacts[block, CONTACT.force, lane] * contacts[block, CONTACT.sliding, lane]
+        lost += 2.0 * contacts[block, CONTACT.pumping, lane] * contacts[block, CONTACT.rolling, lane]
     return lost
 
 
 @kernel
 def shaft_traction_power(contacts, count, shaft_speed, inner_radius):
-    """Return the power of the shaft through the tractions on the inner ring [W]: their torque times its speed.
+    """Return the power of the shaft through the tractions and the pumping on the inner ring [W]: their torque times its speed.
 
     Parameters
     ----------
@@ -74,7 +75,7 @@ def shaft_traction_power(contacts, count, shaft_speed, inner_radius):
     """
     force = 0.0
     for j in range(count):
-        force += contacts[j // LANES, CONTACT.force, j % LANES]
+        force += contacts[j // LANES, CONTACT.force, j % LANES] + contacts[j // LANES, CONTACT.pumping, j % LANES]
     return force * inner_radius * shaft_speed
 
 

@@ -20,16 +20,19 @@ from bearing_sim.kernels.cage import FRICTION_SPIN, land_torque, pocket_friction
 from bearing_sim.kernels.compilation import kernel, template
 from bearing_sim.kernels.contact import line_penetration
 from bearing_sim.kernels.drag import churning_force
+from bearing_sim.kernels.film import pump
 from bearing_sim.kernels.lanes import LANES, new_rows
 from bearing_sim.kernels.load_balance import LOAD, balance_ring
 from bearing_sim.kernels.raceway import contour_at
 from bearing_sim.kernels.traction import CONTACT, traction
+from bearing_sim.levels.growth import inner_growth
 from bearing_sim.levels.inputs import Drive, load_at, shaft_speed_at
 from bearing_sim.levels.mixture import mixture_torque
 from bearing_sim.levels.observation import observe_course
 from bearing_sim.levels.pitch import HALF_PITCH, pitch_step
 from bearing_sim.levels.power import write_powers
 from bearing_sim.levels.slip_power import slip_powers
+from bearing_sim.levels.slip_pumping import push_rollers
 from bearing_sim.params import Lubrication, Params
 from bearing_sim.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT
 from bearing_sim.sample import COLUMN, SCALARS
@@ -45,6 +48,7 @@ class Work(NamedTuple):
     ring: np.ndarray  # ring centre (y, z) [m], shape (2,); start of the next search
     contacts: np.ndarray  # rows `bearing_sim.kernels.traction.CONTACT`, those with the inner raceway first
     tangential: np.ndarray  # all forces along the orbit on each roller but the pocket's [N], shape (Z,)
+    growth: np.ndarray  # of the inner raceway at present [m], shape (1,)
     pitch: np.ndarray  # rows cosine and sine of 2 pi j/Z, and the angle in intervals of the contour table, shape (3, Z)
     jacobian: Arrow
     factored: Arrow  # of I - gamma h J
@@ -68,6 +72,7 @@ def new_work(params):
         ring=np.zeros(2),
         contacts=np.concatenate([new_rows(len(CONTACT), count)] * 2),
         tangential=np.zeros(count),
+        growth=np.zeros(1),
         pitch=np.array([np.cos(angles), np.sin(angles), params.raceways.contour.shape[0] * np.arange(count) / count]),
         jacobian=new_arrow(count),
         factored=new_arrow(count),
@@ -87,6 +92,7 @@ def initial_state(params, work, shaft_speed, load_y, load_z):
 def balance_loads(cage_angle, cage_speed, load_y, load_z, params, work):
     """Find ring position and roller loads at a cage angle; results in ``work.loads``; False where it did not converge."""
     rollers, raceways, loads = params.rollers, params.raceways, work.loads
+    inner_radius = raceways.inner_radius + work.growth[0]
     cosine, sine = math.cos(cage_angle), math.sin(cage_angle)
     free_at_pitch = line_penetration(rollers.mass * raceways.pitch_radius * cage_speed * cage_speed, raceways.stiffness)
     intervals = raceways.contour.shape[0]
@@ -98,7 +104,7 @@ def balance_loads(cage_angle, cage_speed, load_y, load_z, params, work):
         position = start + work.pitch[2, j]
         radius, slope = contour_at(raceways.contour, position - intervals if position >= intervals else position)
         loads[LOAD.contour_slope, j] = slope
-        loads[LOAD.squeeze, j] = raceways.inner_radius + 2.0 * rollers.radius - radius
+        loads[LOAD.squeeze, j] = inner_radius + 2.0 * rollers.radius - radius
         # The penetration is a ten-thousandth of the radius: the centrifugal force does not wait for it.
         loads[LOAD.radius, j] = radius - rollers.radius
         loads[LOAD.centrifugal, j] = rollers.mass * loads[LOAD.radius, j] * cage_speed * cage_speed
@@ -112,7 +118,7 @@ def balance_loads(cage_angle, cage_speed, load_y, load_z, params, work):
 @kernel
 def _tractions(cage_speed, shaft_speed, y, model, work):
     """Compute the tangential forces in all contacts; results in ``work.contacts``."""
-    rollers, inner_radius = model.params.rollers, model.params.raceways.inner_radius
+    rollers, inner_radius = model.params.rollers, model.params.raceways.inner_radius + work.growth[0]
     contacts, loads, count = work.contacts, work.loads, model.params.rollers.count
     blocks = contacts.shape[0] // 2
     for j in range(count):
@@ -126,6 +132,8 @@ def _tractions(cage_speed, shaft_speed, y, model, work):
         contacts[blocks + block, CONTACT.sliding, lane] = surface - orbital
         contacts[blocks + block, CONTACT.load, lane] = loads[LOAD.outer, j]
     traction(contacts, model.lubrication.inner, model.lubrication.outer)
+    if model.lubrication.pumping.on:
+        pump(contacts, model.lubrication.pumping)
 
 
 @kernel
@@ -163,8 +171,10 @@ def _cage_torque(cage_speed, shaft_speed, model):
 def _equations(t, y, model, work, rate, with_jacobian):
     """Evaluate the right-hand side, and the Jacobian where asked; return False where the loads did not balance."""
     params, drive, loads, tangential = model.params, model.drive, work.loads, work.tangential
-    rollers, cage, inner_radius = params.rollers, params.cage, params.raceways.inner_radius
+    rollers, cage = params.rollers, params.cage
     cage_speed, shaft_speed = y[OMEGA], shaft_speed_at(t, drive)
+    work.growth[0] = inner_growth(shaft_speed, model)
+    inner_radius = params.raceways.inner_radius + work.growth[0]
     load_y, load_z = load_at(t, drive)
     if not balance_loads(y[THETA], cage_speed, load_y, load_z, params, work):
         return False
@@ -190,6 +200,10 @@ def _equations(t, y, model, work, rate, with_jacobian):
             jacobian[ARROW.row, j] = radius * (inner_by_spin + outer_by_spin)
             jacobian[ARROW.column, j] = roller_radius * (inner_by_cage - outer_by_cage) / rollers.inertia
             jacobian[ARROW.diagonal, j] = roller_radius * (inner_by_spin - outer_by_spin) / rollers.inertia
+    pumping = model.lubrication.pumping.on
+    if pumping:
+        pumped, pumped_slope = push_rollers(inner_radius, params, work, with_jacobian)
+        torque, torque_slope = torque + pumped, torque_slope + pumped_slope
     cage_acceleration = torque / inertia
     rate[THETA] = cage_speed
     reaction = 0.0
@@ -199,7 +213,10 @@ def _equations(t, y, model, work, rate, with_jacobian):
         spin = y[SPIN + j]
         brake = pocket * pocket_friction(spin, cage.pocket_friction)
         reaction += roller_radius * brake
-        turning = contacts[j // LANES, CONTACT.force, j % LANES] - contacts[blocks + j // LANES, CONTACT.force, j % LANES]
+        block, lane = j // LANES, j % LANES
+        turning = contacts[block, CONTACT.force, lane] - contacts[blocks + block, CONTACT.force, lane]
+        if pumping:
+            turning -= contacts[block, CONTACT.pumping, lane] + contacts[blocks + block, CONTACT.pumping, lane]
         rate[SPIN + j] = roller_radius * (turning - brake) / rollers.inertia
         if with_jacobian:
             smooth = math.sqrt(spin * spin + FRICTION_SPIN * FRICTION_SPIN)
@@ -283,6 +300,7 @@ def observe(t, y, model, work, interval, previous, row, rate):
     params, loads = model.params, work.loads
     count, cage_speed = params.rollers.count, y[OMEGA]
     load_y, load_z = load_at(t, model.drive)
+    work.growth[0] = inner_growth(shaft_speed_at(t, model.drive), model)
     inner_equivalent, outer_equivalent = equivalent_loads(y[THETA], cage_speed, load_y, load_z, params, work)
     observe_course(t, y[THETA], cage_speed, inner_equivalent, outer_equivalent, model, interval, previous, row)
     rhs(t, y, model, work, rate)

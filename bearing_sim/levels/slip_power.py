@@ -38,7 +38,7 @@ def slip_powers(cage_speed, cage_acceleration, spins, shaft_speed, model, work):
             force * pocket_friction(spins[j], params.cage.pocket_friction) * rollers.radius * (spins[j] + params.cage.pocket_reaction * cage_speed)
         )
     return Powers(
-        shaft_traction_power(contacts, count, shaft_speed, params.raceways.inner_radius) + bore,
+        shaft_traction_power(contacts, count, shaft_speed, params.raceways.inner_radius + work.growth[0]) + bore,
         sliding_power(contacts, 0, count),
         sliding_power(contacts, contacts.shape[0] // 2, count),
         churning,

@@ -12,11 +12,12 @@ from bearing_sim.kernels.drag import churning_force
 from bearing_sim.kernels.elementary import cosine_sine
 from bearing_sim.kernels.lanes import floor, load, magnitude, square_root, store, total
 from bearing_sim.kernels.raceway import contour_lanes
+from bearing_sim.kernels.traction import traction
 from bearing_sim.levels.inputs import shaft_speed_at
 from bearing_sim.levels.spatial_algebra import BORDER
 from bearing_sim.levels.spatial_border import border_accelerations
 from bearing_sim.levels.spatial_pockets import place_in_pockets, pocket_forces
-from bearing_sim.levels.spatial_slices import SLICED, slice_forces, slice_forces_and_slopes
+from bearing_sim.levels.spatial_slices import SLICED, load_pieces, sum_tractions
 from bearing_sim.levels.spatial_slopes import roller_slopes
 from bearing_sim.levels.spatial_state import (
     CAGE_TILT_Y,
@@ -188,7 +189,6 @@ def equations(t, y, model, work, rate, with_jacobian):
     along the orbit, follows I A'' = M + J w (A_t', -A_r') in a frame that does not turn, with M the sums of forces times x.
     """
     params, rows, contacts = model.params, work.rollers, work.contacts
-    stiffness, damping, blocks = params.raceways.stiffness, params.ring.contact_damping, rows.shape[0]
     churning = _churning(y, model)
     spread_state(y, params.rollers.count, rows)
     border_accelerations(t, y, model, work, rate, with_jacobian)
@@ -196,17 +196,13 @@ def equations(t, y, model, work, rate, with_jacobian):
         rate[k] = y[BORDER + k]
     cage_cosine, cage_sine = math.cos(y[THETA]), math.sin(y[THETA])
     place_rollers(y, shaft_speed_at(t, model.drive), params, rows, contacts)
-    for block in range(blocks):
-        if with_jacobian:
-            slice_forces_and_slopes(block, contacts, params.slices, model.lubrication.inner, stiffness, damping)
-            slice_forces_and_slopes(blocks + block, contacts, params.slices, model.lubrication.outer, stiffness, damping)
-        else:
-            slice_forces(block, contacts, params.slices, model.lubrication.inner, stiffness, damping)
-            slice_forces(blocks + block, contacts, params.slices, model.lubrication.outer, stiffness, damping)
-    for block in range(blocks):
+    load_pieces(contacts, work.pieces, params.slices, params.raceways.stiffness, params.ring.contact_damping)
+    traction(work.pieces, model.lubrication.inner, model.lubrication.outer)
+    sum_tractions(contacts, work.pieces, params.slices)
+    for block in range(rows.shape[0]):
         place_in_pockets(block, y, cage_cosine, cage_sine, rows)
         pocket_forces(block, params, rows)
-    for block in range(blocks):
+    for block in range(rows.shape[0]):
         _accelerate(block, y, churning, model, rows, contacts, rate)
     if with_jacobian:
         roller_slopes(y, churning, params, rows, contacts, work.chain, work.slopes)

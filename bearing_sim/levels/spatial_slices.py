@@ -13,11 +13,13 @@ from typing import NamedTuple
 
 from bearing_sim.kernels.compilation import kernel, template
 from bearing_sim.kernels.contact import EXPONENT, TINY
+from bearing_sim.kernels.contact_rows import CONTACT
 from bearing_sim.kernels.elementary import exponential, logarithm
 from bearing_sim.kernels.lanes import larger, load, magnitude, spread, store, total, where_positive
 
-_LOAD_FLOOR = 1e-3  # N; as in `bearing_sim.kernels.traction`
-_ROLLING_SPEED_FLOOR = 0.05  # m/s
+# rows of pieces behind those of a contact: slopes of a piece's normal force
+_BY_DEPTH, _BY_LEAN, _BY_RATE, _BY_LEAN_RATE = range(len(CONTACT), len(CONTACT) + 4)
+PIECE_ROWS = len(CONTACT) + 4
 
 
 class SlicedRow(NamedTuple):
@@ -129,151 +131,114 @@ def normal_slices(block, contacts, slices, stiffness, damping):
     store(contacts, block, SLICED.damping + 2, damping * d_2)
 
 
-@template
-def _speed_powers(rolling, constants):
-    """Return 1/u and what ln D, ln B and ln C have of the rolling speed, kept off zero."""
-    log_speed = 0.5 * logarithm(rolling * rolling + _ROLLING_SPEED_FLOOR * _ROLLING_SPEED_FLOOR)
-    d = constants.d_constant + constants.d_speed * log_speed
-    b = constants.b_constant + constants.b_speed * log_speed
-    c = constants.c_constant + constants.c_speed * log_speed
-    return exponential(-log_speed), d, b, c
-
-
 @kernel
-def slice_forces(block, contacts, slices, constants, stiffness, damping):
-    """Write forces and moments of a block of contacts.
+def load_pieces(contacts, pieces, slices, stiffness, damping):
+    """Write normal forces, tilting moments and their slopes of all contacts, and what traction needs to know of their pieces.
 
     Parameters
     ----------
     contacts : rows `SLICED`; penetration, lean, rates and speeds go in.
+    pieces : rows `bearing_sim.kernels.contact_rows.CONTACT` and, behind them, `_BY_DEPTH` and the like; those of a block of
+        contacts follow each other.  A piece is a whole contact with the piece's load per length.
     slices : `bearing_sim.params.Slices`.
-    constants : `bearing_sim.kernels.traction.TractionConstants`.
     stiffness, damping : of the whole contact, K [N/m^(10/9)] and a [s/m].
     """
-    count = slices.places.shape[0]
-    if not touches(block, contacts, slices.places[count - 1]):
-        _clear(block, contacts, SLICED.stiffness)
-        return
-    penetration, rate = load(contacts, block, SLICED.penetration), load(contacts, block, SLICED.rate)
-    lean, lean_rate = load(contacts, block, SLICED.lean), load(contacts, block, SLICED.lean_rate)
-    middle, sliding_lean = load(contacts, block, SLICED.sliding), load(contacts, block, SLICED.sliding_lean)
-    inverse_speed, log_d, log_b, log_c = _speed_powers(load(contacts, block, SLICED.rolling), constants)
-    part = stiffness / count
-    q_0, q_1, t_0, t_1 = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
-    for first in range(0, count, slices.together):
-        end = min(first + slices.together, count)
-        q = spread(0.0)
-        for k in range(first, end):
-            x = slices.places[k]
-            load_k, _, _, _ = slice_force(penetration + lean * x - slices.crown[k], rate + lean_rate * x, part, damping)
-            q += load_k
-            q_1 += load_k * x
-        place = 0.5 * (slices.places[first] + slices.places[end - 1])
-        log_load = logarithm(larger(q * (count / (end - first)), _LOAD_FLOOR))
-        sliding = middle + sliding_lean * place
-        ratio = magnitude(sliding) * inverse_speed
-        d, b = exponential(log_d + constants.d_load * log_load), exponential(log_b + constants.b_load * log_load)
-        decay = exponential(-(exponential(log_c + constants.c_load * log_load) * ratio))
-        force = where_positive(sliding, constants.scale, -constants.scale) * q * (d - (d - b * ratio) * decay)
-        q_0 += q
-        t_0 += force
-        t_1 += force * place
-    store(contacts, block, SLICED.load, q_0)
-    store(contacts, block, SLICED.tilting, q_1)
-    store(contacts, block, SLICED.force, t_0)
-    store(contacts, block, SLICED.skewing, t_1)
+    count, together, reach = slices.places.shape[0], slices.together, slices.places[slices.places.shape[0] - 1]
+    part, number = stiffness / count, pieces.shape[0] // contacts.shape[0]
+    for block in range(contacts.shape[0]):
+        penetration, rate = load(contacts, block, SLICED.penetration), load(contacts, block, SLICED.rate)
+        lean, lean_rate = load(contacts, block, SLICED.lean), load(contacts, block, SLICED.lean_rate)
+        sliding, sliding_lean, rolling = (
+            load(contacts, block, SLICED.sliding),
+            load(contacts, block, SLICED.sliding_lean),
+            load(contacts, block, SLICED.rolling),
+        )
+        loaded = touches(block, contacts, reach)
+        q_0, q_1 = spread(0.0), spread(0.0)
+        k_0, k_1, k_2 = spread(0.0), spread(0.0), spread(0.0)
+        d_0, d_1, d_2 = spread(0.0), spread(0.0), spread(0.0)
+        for which in range(number):
+            first, piece = which * together, block * number + which
+            end = min(first + together, count)
+            q, by_depth, by_lean, by_rate, by_lean_rate = spread(0.0), spread(0.0), spread(0.0), spread(0.0), spread(0.0)
+            if loaded:
+                for k in range(first, end):
+                    x = slices.places[k]
+                    depth = penetration + lean * x - slices.crown[k]
+                    load_k, root, factor, pressed = slice_force(depth, rate + lean_rate * x, part, damping)
+                    stiff, damped = pressed * root * factor, pressed * root * depth
+                    stiff_x, damped_x = stiff * x, damped * x
+                    q += load_k
+                    q_1 += load_k * x
+                    by_depth += stiff
+                    by_lean += stiff_x
+                    k_2 += stiff_x * x
+                    by_rate += damped
+                    by_lean_rate += damped_x
+                    d_2 += damped_x * x
+            q_0 += q
+            k_0 += by_depth
+            k_1 += by_lean
+            d_0 += by_rate
+            d_1 += by_lean_rate
+            store(pieces, piece, CONTACT.load, q * (count / (end - first)))
+            store(pieces, piece, CONTACT.rolling, rolling)
+            store(pieces, piece, CONTACT.sliding, sliding + sliding_lean * (0.5 * (slices.places[first] + slices.places[end - 1])))
+            store(pieces, piece, _BY_DEPTH, EXPONENT * by_depth)
+            store(pieces, piece, _BY_LEAN, EXPONENT * by_lean)
+            store(pieces, piece, _BY_RATE, damping * by_rate)
+            store(pieces, piece, _BY_LEAN_RATE, damping * by_lean_rate)
+        store(contacts, block, SLICED.load, q_0)
+        store(contacts, block, SLICED.tilting, q_1)
+        _store_sums(block, contacts, SLICED.stiffness, EXPONENT, k_0, k_1, k_2)
+        _store_sums(block, contacts, SLICED.damping, damping, d_0, d_1, d_2)
 
 
 @kernel
-def slice_forces_and_slopes(block, contacts, slices, constants, stiffness, damping):
-    """Write forces and moments of a block of contacts, and their slopes; parameters as of `slice_forces`."""
-    count = slices.places.shape[0]
-    if not touches(block, contacts, slices.places[count - 1]):
-        _clear(block, contacts, contacts.shape[1])
-        return
-    penetration, rate = load(contacts, block, SLICED.penetration), load(contacts, block, SLICED.rate)
-    lean, lean_rate = load(contacts, block, SLICED.lean), load(contacts, block, SLICED.lean_rate)
-    middle, sliding_lean = load(contacts, block, SLICED.sliding), load(contacts, block, SLICED.sliding_lean)
-    rolling = load(contacts, block, SLICED.rolling)
-    inverse_speed, log_d, log_b, log_c = _speed_powers(rolling, constants)
-    part = stiffness / count
-    q_0, q_1, t_0, t_1 = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
-    k_0, k_1, k_2 = spread(0.0), spread(0.0), spread(0.0)
-    d_0, d_1, d_2 = spread(0.0), spread(0.0), spread(0.0)
-    tk_0, tk_1, mk_0, mk_1 = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
-    td_0, td_1, md_0, md_1 = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
-    s_0, s_1, s_2, u_0, u_1 = spread(0.0), spread(0.0), spread(0.0), spread(0.0), spread(0.0)
-    for first in range(0, count, slices.together):
-        end = min(first + slices.together, count)
-        q, by_depth, by_lean, by_rate, by_lean_rate = spread(0.0), spread(0.0), spread(0.0), spread(0.0), spread(0.0)
-        for k in range(first, end):
-            x = slices.places[k]
-            depth = penetration + lean * x - slices.crown[k]
-            load_k, root, factor, pressed = slice_force(depth, rate + lean_rate * x, part, damping)
-            stiff, damped = pressed * root * factor, pressed * root * depth
-            stiff_x, damped_x = stiff * x, damped * x
-            q += load_k
-            q_1 += load_k * x
-            by_depth += stiff
-            by_lean += stiff_x
-            k_2 += stiff_x * x
-            by_rate += damped
-            by_lean_rate += damped_x
-            d_2 += damped_x * x
-        q_0 += q
-        k_0 += by_depth
-        k_1 += by_lean
-        d_0 += by_rate
-        d_1 += by_lean_rate
-        place = 0.5 * (slices.places[first] + slices.places[end - 1])
-        log_load = logarithm(larger(q * (count / (end - first)), _LOAD_FLOOR))
-        sliding = middle + sliding_lean * place
-        ratio = magnitude(sliding) * inverse_speed
-        d, b = exponential(log_d + constants.d_load * log_load), exponential(log_b + constants.b_load * log_load)
-        c = exponential(log_c + constants.c_load * log_load)
-        decay = exponential(-(c * ratio))
-        # as in `bearing_sim.kernels.traction`: d, b and c are powers of load and speed
-        rest = d - b * ratio
-        by_ratio, settled, spent = (b + c * rest) * decay, d * (1.0 - decay), ratio * decay
-        by_log_speed = constants.d_speed * settled + (constants.b_speed * b + constants.c_speed * c * rest) * spent - ratio * by_ratio
-        by_log_load = constants.d_load * settled + (constants.b_load * b + constants.c_load * c * rest) * spent
-        coefficient = d - rest * decay
-        scale = where_positive(sliding, constants.scale, -constants.scale)
-        force, by_load, by_sliding, by_rolling = scale * q * coefficient, scale * (coefficient + by_log_load), q * by_ratio, scale * q * by_log_speed
-        by_load_x, by_sliding_x = by_load * place, by_sliding * place
-        t_0 += force
-        t_1 += force * place
-        tk_0 += by_load * by_depth
-        tk_1 += by_load * by_lean
-        td_0 += by_load * by_rate
-        td_1 += by_load * by_lean_rate
-        mk_0 += by_load_x * by_depth
-        mk_1 += by_load_x * by_lean
-        md_0 += by_load_x * by_rate
-        md_1 += by_load_x * by_lean_rate
-        s_0 += by_sliding
-        s_1 += by_sliding_x
-        s_2 += by_sliding_x * place
-        u_0 += by_rolling
-        u_1 += by_rolling * place
-    store(contacts, block, SLICED.load, q_0)
-    store(contacts, block, SLICED.tilting, q_1)
-    store(contacts, block, SLICED.force, t_0)
-    store(contacts, block, SLICED.skewing, t_1)
-    _store_sums(block, contacts, SLICED.stiffness, EXPONENT, k_0, k_1, k_2)
-    _store_sums(block, contacts, SLICED.damping, damping, d_0, d_1, d_2)
-    store(contacts, block, SLICED.of_force, EXPONENT * tk_0)
-    store(contacts, block, SLICED.of_force + 1, EXPONENT * tk_1)
-    store(contacts, block, SLICED.of_force + 3, damping * td_0)
-    store(contacts, block, SLICED.of_force + 4, damping * td_1)
-    store(contacts, block, SLICED.of_skewing, EXPONENT * mk_0)
-    store(contacts, block, SLICED.of_skewing + 1, EXPONENT * mk_1)
-    store(contacts, block, SLICED.of_skewing + 3, damping * md_0)
-    store(contacts, block, SLICED.of_skewing + 4, damping * md_1)
-    _store_sums(block, contacts, SLICED.by_sliding, constants.scale * inverse_speed, s_0, s_1, s_2)
-    by_speed = rolling * inverse_speed * inverse_speed
-    store(contacts, block, SLICED.by_rolling, by_speed * u_0)
-    store(contacts, block, SLICED.by_rolling + 1, by_speed * u_1)
+def sum_tractions(contacts, pieces, slices):
+    """Write tractions, skewing moments and their slopes of all contacts from those of the pieces; parameters as of `load_pieces`."""
+    count, together, number = slices.places.shape[0], slices.together, pieces.shape[0] // contacts.shape[0]
+    for block in range(contacts.shape[0]):
+        t_0, t_1 = spread(0.0), spread(0.0)
+        tk_0, tk_1, mk_0, mk_1 = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
+        td_0, td_1, md_0, md_1 = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
+        s_0, s_1, s_2, u_0, u_1 = spread(0.0), spread(0.0), spread(0.0), spread(0.0), spread(0.0)
+        for which in range(number):
+            first, piece = which * together, block * number + which
+            end = min(first + together, count)
+            share, place = (end - first) / count, 0.5 * (slices.places[first] + slices.places[end - 1])
+            force, by_load = share * load(pieces, piece, CONTACT.force), load(pieces, piece, CONTACT.by_load)
+            by_sliding, by_rolling = share * load(pieces, piece, CONTACT.by_sliding), share * load(pieces, piece, CONTACT.by_rolling)
+            by_depth, by_lean = by_load * load(pieces, piece, _BY_DEPTH), by_load * load(pieces, piece, _BY_LEAN)
+            by_rate, by_lean_rate = by_load * load(pieces, piece, _BY_RATE), by_load * load(pieces, piece, _BY_LEAN_RATE)
+            t_0 += force
+            t_1 += force * place
+            tk_0 += by_depth
+            tk_1 += by_lean
+            td_0 += by_rate
+            td_1 += by_lean_rate
+            mk_0 += by_depth * place
+            mk_1 += by_lean * place
+            md_0 += by_rate * place
+            md_1 += by_lean_rate * place
+            s_0 += by_sliding
+            s_1 += by_sliding * place
+            s_2 += by_sliding * (place * place)
+            u_0 += by_rolling
+            u_1 += by_rolling * place
+        store(contacts, block, SLICED.force, t_0)
+        store(contacts, block, SLICED.skewing, t_1)
+        store(contacts, block, SLICED.of_force, tk_0)
+        store(contacts, block, SLICED.of_force + 1, tk_1)
+        store(contacts, block, SLICED.of_force + 3, td_0)
+        store(contacts, block, SLICED.of_force + 4, td_1)
+        store(contacts, block, SLICED.of_skewing, mk_0)
+        store(contacts, block, SLICED.of_skewing + 1, mk_1)
+        store(contacts, block, SLICED.of_skewing + 3, md_0)
+        store(contacts, block, SLICED.of_skewing + 4, md_1)
+        _store_sums(block, contacts, SLICED.by_sliding, 1.0, s_0, s_1, s_2)
+        store(contacts, block, SLICED.by_rolling, u_0)
+        store(contacts, block, SLICED.by_rolling + 1, u_1)
 
 
 @template

@@ -15,7 +15,7 @@ import numpy as np
 from bearing_sim.kernels.compilation import kernel
 from bearing_sim.kernels.lanes import LANES, new_rows
 from bearing_sim.levels.spatial_algebra import BLOCK, BORDER, SLOPES, Factored, new_factored
-from bearing_sim.levels.spatial_slices import SLICED_ROWS
+from bearing_sim.levels.spatial_slices import PIECE_ROWS, SLICED_ROWS
 
 RING_Y, RING_Z, RING_TILT_Y, RING_TILT_Z, CAGE_Y, CAGE_Z, CAGE_TILT_Y, CAGE_TILT_Z, THETA = range(BORDER)
 OMEGA = BORDER + THETA
@@ -88,6 +88,7 @@ class Work(NamedTuple):
 
     rollers: np.ndarray  # rows `ROLLER`
     contacts: np.ndarray  # rows `bearing_sim.levels.spatial_slices.SLICED`, those with the inner raceway first
+    pieces: np.ndarray  # of contacts, see `bearing_sim.levels.spatial_slices.load_pieces`
     slopes: np.ndarray  # derivatives through each roller, see `bearing_sim.levels.spatial_algebra`
     chain: np.ndarray  # scratch for derivatives of one block of rollers, shape (1, 154, LANES)
     border_own: np.ndarray  # derivatives of the border's accelerations by border positions and speeds, shape (9, 18)
@@ -110,6 +111,7 @@ def new_work(params):
     return Work(
         rollers=rollers,
         contacts=np.zeros((2 * rollers.shape[0], SLICED_ROWS, LANES)),
+        pieces=np.zeros((2 * rollers.shape[0] * -(-len(params.slices.places) // params.slices.together), PIECE_ROWS, LANES)),
         slopes=new_rows(SLOPES, count),
         chain=np.zeros((1, 154, LANES)),
         border_own=np.zeros((BORDER, 2 * BORDER)),

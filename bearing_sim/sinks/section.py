@@ -11,7 +11,8 @@ import math
 
 import numpy as np
 
-from bearing_sim.scene import Bearing, OuterRaceway, Scene
+from bearing_sim.contour import outer_contour
+from bearing_sim.scene import Bearing, Scene
 
 MILLIMETRE = 1e-3  # [m]
 CONTOUR_POINTS = 361
@@ -28,12 +29,6 @@ def picture(y, z) -> np.ndarray:
 def polar(radius, azimuth, centre=(0.0, 0.0)) -> np.ndarray:
     """Return picture points at a radius [mm] and azimuth [rad] about ``centre`` (y, z) [mm]."""
     return picture(centre[0] + radius * np.cos(azimuth), centre[1] + radius * np.sin(azimuth))
-
-
-def outer_contour(raceway: OuterRaceway, azimuth) -> np.ndarray:
-    """Return R_e [m] at an azimuth [rad] (Deng 2017, eq. 2)."""
-    half = raceway.d_value / 2
-    return raceway.low_radius + half - half * np.cos(raceway.lobes * (np.asarray(azimuth) - raceway.installation_angle))
 
 
 def ideal_outer_radius(bearing: Bearing) -> float:
@@ -87,7 +82,7 @@ def cage_displacement(cage_factor: float, sample) -> tuple[float, float]:
 def drawn_contour(bearing: Bearing, factor: float, azimuth) -> np.ndarray:
     """Return the drawn radius [mm] of the outer raceway at an azimuth [rad]."""
     ideal = ideal_outer_radius(bearing)
-    return (ideal + factor * (outer_contour(bearing.outer_raceway, azimuth) - ideal)) / MILLIMETRE
+    return (ideal + factor * (outer_contour(bearing.outer_raceway, azimuth)[0] - ideal)) / MILLIMETRE
 
 
 def outer_surface_radius(bearing: Bearing, factor: float) -> float:

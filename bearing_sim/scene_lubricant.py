@@ -1,0 +1,145 @@
+"""The lubricant of a scene: laws of viscosity, oils, laws of traction."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from bearing_sim.quantity import quantity
+from bearing_sim.scene_record import record
+
+
+@record
+class DoubleExponentialViscosity:
+    """eta0 = scale (exp(exp(a - b ln T)) - c), T in kelvin."""
+
+    law: Literal["double_exponential"] = "double_exponential"
+    scale: quantity("Pa*s", "factor", 1e-12, 1e3)
+    a: float
+    b: float
+    c: float
+
+
+@record
+class ReferenceViscosity:
+    """eta0 = viscosity exp(linear d + quadratic d^2), d = (T_ref - T)/(T_ref T)."""
+
+    law: Literal["reference"] = "reference"
+    temperature: quantity("K", "reference temperature, T_ref", 150.0, 800.0, "degC")
+    viscosity: quantity("Pa*s", "viscosity at the reference temperature", 1e-6, 1e3)
+    linear: float
+    quadratic: float
+
+
+@record
+class HyperbolicPressureViscosity:
+    """alpha = offset + slope/(T - pole), T in kelvin, alpha in 1/Pa."""
+
+    law: Literal["hyperbolic"] = "hyperbolic"
+    offset: float
+    slope: float
+    pole: float
+
+
+@record
+class PowerPressureViscosity:
+    """alpha = exp(exponent ln eta0 - constant)/eta0, alpha in 1/Pa."""
+
+    law: Literal["power"] = "power"
+    exponent: float
+    constant: float
+
+
+@record
+class Oil:
+    """An oil's properties as functions of temperature (see `bearing_sim.oil`)."""
+
+    law: Literal["fitted"] = "fitted"
+    name: str
+    source: str
+    viscosity: Annotated[DoubleExponentialViscosity | ReferenceViscosity, Field(discriminator="law")]
+    pressure_viscosity: Annotated[HyperbolicPressureViscosity | PowerPressureViscosity, Field(discriminator="law")]
+    density_temperatures: tuple[quantity("K", "temperature of a density point", 150.0, 800.0, "degC"), ...]
+    densities: tuple[quantity("kg/m^3", "density at that temperature", 100.0, 3000.0), ...]
+    thermal_conductivity: quantity("", "thermal conductivity [W/(m K)]", 0.01, 10.0) = 0.0966
+
+    @model_validator(mode="after")
+    def _density_points_pair_up(self):
+        if len(self.density_temperatures) != len(self.densities) or len(self.densities) < 1:
+            raise ValueError(
+                f"densities: {len(self.densities)} values for {len(self.density_temperatures)} density_temperatures; expected as many, at least one"
+            )
+        if any(b <= a for a, b in zip(self.density_temperatures, self.density_temperatures[1:])):
+            raise ValueError("density_temperatures: expected rising temperatures")
+        return self
+
+
+@record
+class CustomOil:
+    """An oil by what its data sheet says: kinematic viscosities at 40 and 100 degC (ASTM D341), density, pressure viscosity."""
+
+    law: Literal["custom"] = "custom"
+    name: str = "custom"
+    source: str = ""
+    viscosity_40: quantity("m^2/s", "kinematic viscosity at 40 degC", 2e-7, 0.1, "mm^2/s")
+    viscosity_100: quantity("m^2/s", "kinematic viscosity at 100 degC", 2e-7, 0.1, "mm^2/s")
+    density: quantity("kg/m^3", "density at 15 degC", 100.0, 3000.0)
+    expansion: quantity("1/K", "thermal expansion of the volume", 0.0, 1e-2) = 6.5e-4
+    pressure_viscosity: quantity("1/Pa", "pressure-viscosity coefficient, alpha", 1e-10, 1e-7, "1/GPa")
+    thermal_conductivity: quantity("", "thermal conductivity [W/(m K)]", 0.01, 10.0) = 0.14
+
+    @model_validator(mode="after")
+    def _thins_when_heated(self):
+        if self.viscosity_100 >= self.viscosity_40:
+            raise ValueError("viscosity_100: expected less than viscosity_40")
+        return self
+
+
+@record
+class Oil4109Traction:
+    """Traction of the 4109 aviation oil by dimensionless load, speed and temperature (physics section 3, law 1)."""
+
+    law: Literal["oil_4109"] = "oil_4109"
+
+
+@record
+class ConstantTraction:
+    """mu(s) = (A + B s) exp(-C s) + D with constant coefficients; D = -A keeps mu(0) = 0."""
+
+    law: Literal["constant"] = "constant"
+    a: quantity("", "A", -1.0, 0.0) = -0.0196
+    b: quantity("", "B", 0.0, 1e3) = 0.39873
+    c: quantity("", "C", 0.0, 1e4) = 39.002
+    d: quantity("", "D", 0.0, 1.0) = 0.01984
+
+
+@record
+class KragelskiiTraction:
+    """mu(v) = (A + B v) exp(-C v) + D by sliding speed v, from what its course looks like (Kragelskii, as Gupta gives it)."""
+
+    law: Literal["kragelskii"] = "kragelskii"
+    mu_0: quantity("", "coefficient without sliding; reached over rise_speed", 0.0, 1.0) = 0.0
+    mu_max: quantity("", "largest coefficient", 1e-6, 1.0) = 0.05
+    v_max: quantity("m/s", "sliding speed of the largest coefficient", 1e-3, 1e3) = 1.0
+    mu_inf: quantity("", "coefficient at high sliding speed", 0.0, 1.0) = 0.036
+    rise_speed: quantity("m/s", "sliding speed over which mu_0 is reached", 1e-4, 10.0) = 0.01
+
+    @model_validator(mode="after")
+    def _maximum_is_one(self):
+        faults = [f"{name}: expected less than mu_max" for name in ("mu_0", "mu_inf") if getattr(self, name) >= self.mu_max]
+        if self.mu_0 > 0.0 and self.rise_speed > 0.1 * self.v_max:
+            faults.append("rise_speed: expected at most a tenth of v_max")
+        if faults:
+            raise ValueError("; ".join(faults))
+        return self
+
+
+@record
+class EyringTraction:
+    """Thermal Eyring film with limiting shear stress (see `bearing_sim.kernels.eyring`)."""
+
+    law: Literal["eyring"] = "eyring"
+    eyring_stress: quantity("Pa", "Eyring stress, tau_E", 1e5, 1e9, "MPa") = 5e6
+    limiting_ratio: quantity("", "limiting shear stress over mean Hertz pressure, Lambda", 1e-3, 0.5) = 0.075
+
+
+Traction = Annotated[Oil4109Traction | ConstantTraction | KragelskiiTraction | EyringTraction, Field(discriminator="law")]
