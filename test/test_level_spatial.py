@@ -147,12 +147,12 @@ def test_a_misaligned_ring_presses_one_end_of_the_rollers_and_tilts_them_halfway
     rollers, blocks = by_roller(run.state), run._work.rollers.shape[0]
     rows = {"load": SLICED.load, "tilting": SLICED.tilting}
     inner, outer = ({name: by_lane(run._work.contacts[k * blocks : (k + 1) * blocks], row, Z) for name, row in rows.items()} for k in range(2))
-    loaded = inner["load"] > 20.0
     cosine = np.cos(rollers[1])
-    assert loaded.any() and (cosine[loaded] > 0).all()
-    # at the load the ring's +x end leans outwards: it presses the rollers' +x end, which leans outwards half as far
-    assert (inner["tilting"][loaded] > 0).all() and (outer["tilting"][loaded] > 0).all()
-    np.testing.assert_allclose(rollers[2][loaded], 0.25e-3 * cosine[loaded], rtol=0.3, atol=2e-5)
+    steep = np.abs(cosine) > 0.3
+    assert (inner["load"] > 0).all()  # a round raceway at this radius is preloaded
+    # where the ring's +x end leans outwards it presses the rollers' +x end, which leans outwards half as far
+    assert (inner["tilting"] * cosine > 0)[steep].all() and (outer["tilting"] * cosine > 0)[steep].all()
+    np.testing.assert_allclose(rollers[2], 0.25e-3 * cosine, rtol=0.3, atol=3e-5)
     straight = simulation("operating.shaft_speed=5000 rpm", "bearing.outer_raceway.d_value=0").advance(0.02)
     assert run.sample["inner_load"].sum() == pytest.approx(straight[-1]["inner_load"].sum(), rel=0.1)
 

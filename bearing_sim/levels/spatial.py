@@ -19,7 +19,7 @@ from bearing_sim.levels import slip, spatial_algebra, spatial_rollers
 from bearing_sim.levels.inputs import shaft_speed_at
 from bearing_sim.levels.observation import observe_course
 from bearing_sim.levels.pitch import FIFTH_PITCH, pitch_step
-from bearing_sim.levels.planar import count_iterations, nothing
+from bearing_sim.levels.planar import FAR, NEAR, TURNING, count_iterations, nothing
 from bearing_sim.levels.power import write_powers
 from bearing_sim.levels.spatial_algebra import BLOCK, BORDER
 from bearing_sim.levels.spatial_power import spatial_powers
@@ -111,8 +111,8 @@ def error_norm(t, y, change, tolerance, model):
     """
     raceways, rollers, half = model.params.raceways, model.params.rollers, 0.5 * model.params.rollers.length
     ideal = max(0.5 * abs(shaft_speed_at(t, model.drive)) * (1.0 - raceways.diameter_ratio), abs(y[OMEGA]), 10.0)
-    near, far = 1.0 / (1.4e-4 * tolerance), 1.0 / (2.8e-4 * tolerance)
-    turning = 1.0 / (7.0 * tolerance * ideal)
+    near, far = 1.0 / (NEAR * tolerance), 1.0 / (FAR * tolerance)
+    turning = 1.0 / (TURNING * tolerance * ideal)
     angle, spin = far * raceways.pitch_radius, turning * rollers.radius / raceways.pitch_radius
     largest = max(abs(change[RING_Y]) * near, abs(change[RING_Z]) * near, abs(change[CAGE_Y]) * far, abs(change[CAGE_Z]) * far)
     largest = max(largest, abs(change[OMEGA]) * turning, max(abs(change[RING_TILT_Y]), abs(change[RING_TILT_Z])) * near * half)

@@ -5,13 +5,13 @@ from bearing_sim.integrators.fixed_step import fixed_step
 from bearing_sim.integrators.rk45 import rk45
 from bearing_sim.integrators.status import COUNT
 from bearing_sim.kernels.compilation import kernel
+from bearing_sim.levels.planar import count_iterations, nothing
+from bearing_sim.levels.planar_methods import STRICTER
 from bearing_sim.levels.spatial import (
     advance_by,
     average_loads,
-    count_iterations,
     error_norm,
     factor,
-    nothing,
     rhs,
     rhs_and_jacobian,
     sdirk2,
@@ -21,16 +21,22 @@ from bearing_sim.levels.spatial import (
 
 
 @kernel
+def strict_error_norm(t, y, change, tolerance, model):
+    """Return `bearing_sim.levels.spatial.error_norm` so scaled that one tolerance means about one accuracy in every method."""
+    return STRICTER * error_norm(t, y, change, tolerance, model)
+
+
+@kernel
 def _drive_bdf(t, end, stop, y, h, tolerance, maximum_step, budget, model, work, memory, counts):
     return bdf(
-        rhs, rhs_and_jacobian, factor, solve, error_norm, step_limit, average_loads,
+        rhs, rhs_and_jacobian, factor, solve, strict_error_norm, step_limit, average_loads,
         t, end, stop, y, h, tolerance, maximum_step, budget, model, work, memory, counts,
     )  # fmt: skip
 
 
 @kernel
 def _drive_rk45(t, end, stop, y, h, tolerance, maximum_step, budget, model, work, memory, counts):
-    return rk45(rhs, error_norm, step_limit, average_loads, t, end, y, h, tolerance, maximum_step, budget, model, work, memory.scratch, counts)
+    return rk45(rhs, strict_error_norm, step_limit, average_loads, t, end, y, h, tolerance, maximum_step, budget, model, work, memory.scratch, counts)
 
 
 @kernel
