@@ -7,6 +7,7 @@ Names only, so that a scene can be read without the models; `bearing_sim.levels.
 METHODS = {
     "slip": ("rosenbrock2", "bdf", "rk45"),
     "planar": ("sdirk2", "bdf", "rk45"),
+    "spatial": ("sdirk2", "bdf", "rk45"),
 }
 # Methods that can keep to one step; the others live by their error estimates.
 FIXED_STEP = ("rosenbrock2", "sdirk2")

@@ -32,7 +32,6 @@ class Rollers(NamedTuple):
     length: float  # L [m]
     mass: float  # m_r [kg]
     inertia: float  # J_r about its own axis [kg m^2]
-    crown: np.ndarray  # drop C_k of each slice, off the penetration of each contact [m], shape (N,)
 
 
 class Raceways(NamedTuple):
@@ -79,6 +78,33 @@ class Ring(NamedTuple):
     contact_damping: float  # a of Q (1 + a d(delta)/dt) [s/m]
 
 
+class Slices(NamedTuple):
+    """The rollers' slices; level ``spatial`` and the statics by slices look at them."""
+
+    places: np.ndarray  # axial place of each slice's middle from the roller's, x_k [m], shape (N,)
+    crown: np.ndarray  # drop of the profile there, C_k [m], shape (N,)
+    together: int  # slices that share one evaluation of the traction law
+
+
+class Tilts(NamedTuple):
+    """What tilts and what tilts it; level ``spatial`` alone looks at it.
+
+    Tilts and moments are pairs by y and z: a tilt is the inclination of the axis towards them, a moment is what drives it.
+    """
+
+    roller_inertia: float  # about a diameter [kg m^2]
+    cage_inertia: float
+    ring_inertia: float
+    gyroscopic: float  # 1 with gyroscopic moments, 0 without (Deng 2017)
+    ring_polar_inertia: float  # [kg m^2]
+    land_place: float  # of one of the cage's guide lands along the axis, the other is opposite [m]
+    ring_free: float  # 1 where a moment tilts the ring, 0 where its tilt is held
+    moment_y: float  # on the ring [N m]
+    moment_z: float
+    misalignment_y: float  # where the ring begins, and stays where it is held [rad]
+    misalignment_z: float
+
+
 class Life(NamedTuple):
     """Load ratings of one roller contact (ISO/TS 16281), and what modifies the life (ISO 281)."""
 
@@ -101,6 +127,8 @@ class Params(NamedTuple):
     ring: Ring
     life: Life
     growth: Growth  # of the inner raceway with speed and temperature
+    slices: Slices
+    tilts: Tilts
 
 
 class Lubrication(NamedTuple):
@@ -139,9 +167,6 @@ def pack(scene: Scene) -> Params:
             length=bearing.roller.length,
             mass=mass,
             inertia=0.5 * mass * roller_radius**2,
-            crown=np.ascontiguousarray(
-                crown_drops(bearing.roller.crown, bearing.roller.diameter, bearing.roller.length, bearing.roller.slices), np.float64
-            ),
         ),
         raceways=Raceways(
             inner_radius=inner_radius,
@@ -177,6 +202,38 @@ def pack(scene: Scene) -> Params:
         ring=Ring(bearing.inner_raceway.ring_mass + bearing.inner_raceway.supported_mass, bearing.contact.damping),
         life=_life(scene),
         growth=running_growth(bearing),
+        slices=_slices(bearing),
+        tilts=_tilts(scene, mass),
+    )
+
+
+def _slices(bearing: Bearing) -> Slices:
+    count, length = bearing.roller.slices, bearing.roller.length
+    places = (np.arange(count) - 0.5 * (count - 1)) * (length / count)
+    roller = bearing.roller
+    drops = crown_drops(roller.crown, roller.diameter, roller.length, roller.slices)
+    return Slices(places, np.ascontiguousarray(drops, np.float64), int(roller.slices_per_traction))
+
+
+def _tilts(scene: Scene, roller_mass: float) -> Tilts:
+    bearing, operating = scene.bearing, scene.operating
+    cage, inner = bearing.cage, bearing.inner_raceway
+    polar = cage.polar_inertia if cage.polar_inertia is not None else cage.mass * bearing.pitch_radius**2
+    ring_polar = inner.polar_inertia if inner.polar_inertia is not None else 0.5 * (inner.ring_mass + inner.supported_mass) * inner.radius**2
+    distance = cage.guide_land_distance if cage.guide_land_distance is not None else cage.width - cage.guide_land_width
+    moment = operating.moment if operating.moment is not None else 0.0
+    return Tilts(
+        roller_inertia=roller_mass * (3 * (bearing.roller.diameter / 2) ** 2 + bearing.roller.length**2) / 12,
+        cage_inertia=cage.transverse_inertia if cage.transverse_inertia is not None else 0.5 * polar,
+        ring_inertia=inner.transverse_inertia if inner.transverse_inertia is not None else 0.5 * ring_polar,
+        gyroscopic=1.0 if scene.dynamics.gyroscopic else 0.0,
+        ring_polar_inertia=ring_polar,
+        land_place=distance / 2,
+        ring_free=1.0 if operating.moment is not None else 0.0,
+        moment_y=moment * math.cos(operating.moment_angle),
+        moment_z=moment * math.sin(operating.moment_angle),
+        misalignment_y=operating.misalignment * math.cos(operating.misalignment_angle),
+        misalignment_z=operating.misalignment * math.sin(operating.misalignment_angle),
     )
 
 

@@ -73,6 +73,7 @@ _EXAMPLES = {
     "s": "a time such as '0.5 s'",
     "Hz": "a rate such as '50 Hz'",
     "h": "a time in hours such as '300 h'",
+    "N*m": "a moment such as '1.5 N*m'",
     "kg*m^2": "an inertia such as '50 kg*mm^2'",
     "": "a pure number, or one in '%'",
 }

@@ -23,13 +23,17 @@ _WHOLE_ROLLERS = ("slip", "planar")  # levels whose rollers have no slices
 
 @_strict
 class Roller:
-    """The rollers, all equal."""
+    """The rollers, all equal.
+
+    Level ``spatial`` cuts them into slices; so many neighbours at a time share a traction coefficient, that of their mean load.
+    """
 
     count: Annotated[int, Field(ge=3, le=200)]
     diameter: quantity("m", "roller diameter, D_w", 0.5e-3, 0.5, "mm")
     length: quantity("m", "roller effective length, L", 0.5e-3, 0.5, "mm")
     crown: Crown = field(default_factory=NoCrown)  # see `bearing_sim.crown`
-    slices: Annotated[int, Field(ge=5, le=400)] = 20  # of a roller where the level slices it; ISO/TS 16281 asks for 30 for a life
+    slices: Annotated[int, Field(ge=1, le=400)] = 20  # of a roller where the level slices it; ISO/TS 16281 asks for 30 for a life
+    slices_per_traction: Annotated[int, Field(ge=1, le=400)] = 4  # that share one coefficient of traction
 
     @model_validator(mode="after")
     def _crown_fits(self):
@@ -45,11 +49,13 @@ class Cage:
 
     mass: quantity("kg", "cage mass", 1e-6, 1e3, "g")
     polar_inertia: quantity("kg*m^2", "cage inertia about the shaft axis", 1e-12, 1e3) | None = None
+    transverse_inertia: quantity("kg*m^2", "cage inertia about a diameter; None: half of the polar one", 1e-12, 1e3) | None = None
     inner_radius: quantity("m", "radius of the cage's bore", 1e-3, 2.0, "mm")
     width: quantity("m", "axial width of the cage", 1e-4, 1.0, "mm")
     guide_radius: quantity("m", "radius of the outer-ring guide lands, R_g", 1e-3, 2.0, "mm")
     guide_clearance: quantity("m", "radial clearance between cage and guide lands, c", 1e-6, 5e-3, "mm")
     guide_land_width: quantity("m", "width of one of the two guide lands", 1e-6, 0.5, "mm")
+    guide_land_distance: quantity("m", "between the middles of both guide lands; None: at the cage's edges", 0.0, 1.0, "mm") | None = None
     land_film: quantity("m", "film in the guide land below which surfaces touch", 0.0, 1e-4, "um") = 3e-6
     land_friction: quantity("", "boundary friction coefficient of the guide land", 0.0, 1.0) = 0.08
     land_squeeze: bool = True  # the film knows how the cage's centre moves; false is Deng's form, of a centre that rests
@@ -172,6 +178,13 @@ class Operating:
 
 
 @_strict
+class Dynamics:
+    """What the equations of motion take into account."""
+
+    gyroscopic: bool = True
+
+
+@_strict
 class Integration:
     """How time is advanced.
 
@@ -250,6 +263,7 @@ class Scene:
     bearing: Bearing
     lubricant: Lubricant
     operating: Operating
+    dynamics: Dynamics = field(default_factory=Dynamics)
     integration: Integration = field(default_factory=Integration)
     input_limits: InputLimits = field(default_factory=InputLimits)
     thresholds: Thresholds = field(default_factory=Thresholds)

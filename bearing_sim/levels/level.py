@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from bearing_sim.integrators.history import new_history
 from bearing_sim.integrators.memory import new_memory
-from bearing_sim.levels import planar, planar_methods, planar_state, slip, slip_methods
+from bearing_sim.levels import planar, planar_methods, planar_state, slip, slip_methods, spatial, spatial_methods, spatial_state
 
 
 class Method(NamedTuple):
@@ -68,5 +68,16 @@ LEVELS = {
             "rk45": Method(new_memory, planar_methods.advance_rk45),
         },
         "tilt and skew",
+    ),
+    "spatial": Level(
+        spatial_state.new_work,
+        spatial.initial_state,
+        spatial.observe,
+        {
+            "sdirk2": Method(new_memory, spatial.advance, spatial_methods.advance_fixed),
+            "bdf": Method(new_history, spatial_methods.advance_bdf),
+            "rk45": Method(new_memory, spatial_methods.advance_rk45),
+        },
+        "the rollers' way along their axes, bending of the rings",
     ),
 }

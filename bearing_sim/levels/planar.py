@@ -29,6 +29,7 @@ from bearing_sim.params import Params
 from bearing_sim.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT
 from bearing_sim.sample import COLUMN, SCALARS
 
+NEAR, FAR, TURNING = 8e-5, 1.6e-4, 4.0  # what a tolerance of 1 allows: positions, pockets and the cage [m], speeds against ideal rolling
 _FIRST_ECCENTRICITY = 0.3  # of the guide clearance; a cage exactly in the centre would have no direction to whirl from
 
 
@@ -98,8 +99,8 @@ def error_norm(t, y, change, tolerance, model):
     """
     raceways, rollers = model.params.raceways, model.params.rollers
     ideal = max(0.5 * abs(shaft_speed_at(t, model.drive)) * (1.0 - raceways.diameter_ratio), abs(y[OMEGA]), 10.0)
-    near, far = 1.0 / (8e-5 * tolerance), 1.0 / (1.6e-4 * tolerance)
-    turning = 1.0 / (4.0 * tolerance * ideal)
+    near, far = 1.0 / (NEAR * tolerance), 1.0 / (FAR * tolerance)
+    turning = 1.0 / (TURNING * tolerance * ideal)
     angle, spin = far * raceways.pitch_radius, turning * rollers.radius / raceways.pitch_radius
     largest = max(abs(change[RING_Y]) * near, abs(change[RING_Z]) * near, abs(change[CAGE_Y]) * far, abs(change[CAGE_Z]) * far)
     largest = max(largest, abs(change[OMEGA]) * turning)

@@ -19,13 +19,13 @@ from bearing_sim.levels.planar import (
     step_limit,
 )
 
-_STRICTER = 30.0  # sdirk2's estimate is that of order 1, far above its error; these estimate what they err
+STRICTER = 30.0  # sdirk2's estimate is that of order 1, far above its error; these estimate what they err
 
 
 @kernel
 def strict_error_norm(t, y, change, tolerance, model):
     """Return `bearing_sim.levels.planar.error_norm` so scaled that one tolerance means about one accuracy in every method."""
-    return _STRICTER * error_norm(t, y, change, tolerance, model)
+    return STRICTER * error_norm(t, y, change, tolerance, model)
 
 
 @kernel

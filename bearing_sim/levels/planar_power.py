@@ -70,7 +70,7 @@ def _pockets(y, params, rows):
 
 
 @kernel
-def _land_powers(y, model):
+def land_powers(y, model):
     """Return the power that film and friction of the guide land take from the cage, and what damping takes where it touches [W]."""
     cage = model.params.cage
     omega, y_speed, z_speed = y[OMEGA], y[BORDER + CAGE_Y], y[BORDER + CAGE_Z]
@@ -102,7 +102,7 @@ def planar_powers(y, shaft_speed, model, work):
     params, contacts, count = model.params, work.contacts, model.params.rollers.count
     bore, windage = windage_powers(y[OMEGA], shaft_speed, params, model.lubrication)
     pocket, walls = _pockets(y, params, work.rollers)
-    land, touching = _land_powers(y, model)
+    land, touching = land_powers(y, model)
     return Powers(
         shaft_traction_power(contacts, count, shaft_speed, params.raceways.inner_radius + inner_growth(shaft_speed, model)) + bore,
         sliding_power(contacts, 0, count),

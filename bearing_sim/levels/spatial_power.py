@@ -1,0 +1,104 @@
+"""Power by cause at level ``spatial`` (see `bearing_sim.levels.power` and `bearing_sim.levels.planar_power`), summed over slices.
+
+Speeds of slices are straight lines along the axis, so that most sums are a force times a speed and a moment times how it changes.
+What a moment on the inner ring puts in stands beside the radial load's power: neither is among the losses.
+"""
+
+from bearing_sim.kernels.compilation import kernel
+from bearing_sim.kernels.lanes import larger, load, magnitude, spread, total, where_positive
+from bearing_sim.levels.planar_power import land_powers
+from bearing_sim.levels.power import Powers, windage_powers
+from bearing_sim.levels.spatial_algebra import BORDER
+from bearing_sim.levels.spatial_border import place_land
+from bearing_sim.levels.spatial_slices import SLICED, slice_force
+from bearing_sim.levels.spatial_state import CAGE_TILT_Y, CAGE_TILT_Z, CAGE_Y, CAGE_Z, OMEGA, ROLLER
+
+
+@kernel
+def _contact_powers(first, y, params, work):
+    """Return the power lost between one raceway and all rollers by sliding and by damping [W], and the tractions' sum [N]."""
+    contacts, places, crown = work.contacts, params.slices.places, params.slices.crown
+    count = places.shape[0]
+    part, damping = params.raceways.stiffness / count, params.ring.contact_damping
+    sliding, damped, force = 0.0, 0.0, 0.0
+    for block in range(work.rollers.shape[0]):
+        at, present = first + block, load(work.rollers, block, ROLLER.present)
+        traction = load(contacts, at, SLICED.force)
+        slid = traction * load(contacts, at, SLICED.sliding) + load(contacts, at, SLICED.skewing) * load(contacts, at, SLICED.sliding_lean)
+        lost = spread(0.0)
+        for k in range(count):
+            depth = load(contacts, at, SLICED.penetration) + load(contacts, at, SLICED.lean) * places[k] - crown[k]
+            rate = load(contacts, at, SLICED.rate) + load(contacts, at, SLICED.lean_rate) * places[k]
+            q, root, _, _ = slice_force(depth, rate, part, damping)
+            lost += (q - root * larger(depth, 0.0)) * rate
+        sliding += total(present * slid)
+        damped += total(present * lost)
+        force += total(present * traction)
+    return sliding, damped, force
+
+
+@kernel
+def _pocket_powers(y, params, rows):
+    """Return the power lost to pocket friction and film damping, and to damping of the walls' contact [W]."""
+    cage, places, omega = params.cage, params.slices.places, y[OMEGA]
+    count = places.shape[0]
+    lost, damped = 0.0, 0.0
+    for block in range(rows.shape[0]):
+        present, spin, orbital_speed = load(rows, block, ROLLER.present), load(rows, block, ROLLER.spin), load(rows, block, ROLLER.orbital_speed)
+        p_c, p_s = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
+        c, s = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
+        force, moment = -load(rows, block, ROLLER.pocket_force), -load(rows, block, ROLLER.pocket_moment)
+        offset, rate = load(rows, block, ROLLER.pocket_offset), load(rows, block, ROLLER.pocket_rate)
+        skew, skew_rate = load(rows, block, ROLLER.pocket_skew), load(rows, block, ROLLER.pocket_skew_rate)
+        slides = load(rows, block, ROLLER.radial_speed) * c - load(rows, block, ROLLER.radius) * orbital_speed * s + omega * offset
+        slides -= y[BORDER + CAGE_Y] * p_c + y[BORDER + CAGE_Z] * p_s
+        leans = (load(rows, block, ROLLER.tilt_speed) - orbital_speed * load(rows, block, ROLLER.skew)) * c + omega * skew
+        leans -= (load(rows, block, ROLLER.skew_speed) + orbital_speed * load(rows, block, ROLLER.tilt)) * s
+        leans -= y[BORDER + CAGE_TILT_Y] * p_c + y[BORDER + CAGE_TILT_Z] * p_s
+        rubbed = force * slides + moment * leans + magnitude(force) * (spin + omega) * params.rollers.radius
+        film, kept = spread(0.0), spread(0.0)
+        for k in range(count):
+            place, speed = offset + skew * places[k], rate + skew_rate * places[k]
+            side, excess = where_positive(place, 1.0, -1.0), magnitude(place) - cage.pocket_clearance
+            _, root, _, _ = slice_force(excess, 0.0 * excess, params.raceways.stiffness / count, 0.0)
+            spring = cage.pocket_stiffness / count * (magnitude(place) - larger(excess, 0.0)) + root * larger(excess, 0.0)
+            film += cage.pocket_damping / count * speed * speed
+            kept += side * spring * speed
+        lost += total(present * (load(rows, block, ROLLER.pocket_friction) * rubbed + film))
+        damped += total(present * (force * rate + moment * skew_rate - film - kept))
+    return lost, damped
+
+
+@kernel
+def spatial_powers(y, shaft_speed, model, work):
+    """Return `bearing_sim.levels.power.Powers` of a state.
+
+    Parameters
+    ----------
+    y : the state.
+    shaft_speed : [rad/s].
+    model, work : of the level; the right-hand side at ``y`` has been evaluated into ``work``.
+    """
+    params, rows = model.params, work.rollers
+    bore, windage = windage_powers(y[OMEGA], shaft_speed, params, model.lubrication)
+    inner, inner_damped, driving = _contact_powers(0, y, params, work)
+    outer, outer_damped, _ = _contact_powers(rows.shape[0], y, params, work)
+    pocket, walls = _pocket_powers(y, params, rows)
+    place_land(y, params.tilts.land_place, work.lands[0])
+    place_land(y, -params.tilts.land_place, work.lands[1])
+    near, near_touching = land_powers(work.lands[0], model)
+    far, far_touching = land_powers(work.lands[1], model)
+    churning = 0.0
+    for block in range(rows.shape[0]):
+        drag = load(rows, block, ROLLER.present) * load(rows, block, ROLLER.churning)
+        churning += total(drag * load(rows, block, ROLLER.radius) * load(rows, block, ROLLER.orbital_speed))
+    return Powers(
+        driving * params.raceways.inner_radius * shaft_speed + bore,
+        inner,
+        outer,
+        churning,
+        windage,
+        0.5 * (near + far),
+        pocket,
+        inner_damped + outer_damped + walls + 0.5 * (near_touching + far_touching),
+    )

@@ -1,0 +1,152 @@
+"""Where a stage's solution is looked for first, as at level ``planar`` (see `bearing_sim.levels.planar_prediction`).
+
+With ring, cage, orbit and skew as extrapolation leaves them, each roller's place and tilt follow from two scalar equations of its
+own normal contacts: a few Newton iterations of all rollers at once.
+"""
+
+import math
+
+from bearing_sim.kernels.compilation import kernel
+from bearing_sim.kernels.elementary import cosine_sine
+from bearing_sim.kernels.lanes import LANES, floor, load, square_root, store
+from bearing_sim.kernels.raceway import contour_lanes
+from bearing_sim.levels.spatial_algebra import BORDER
+from bearing_sim.levels.spatial_slices import SLICED, normal_slices
+from bearing_sim.levels.spatial_state import (
+    PHI,
+    PHI_SPEED,
+    R_SPEED,
+    RING_TILT_Y,
+    RING_TILT_Z,
+    RING_Y,
+    RING_Z,
+    ROLLER,
+    ROLLERS,
+    SKEW,
+    SKEW_SPEED,
+    SPIN,
+    TILT,
+    TILT_SPEED,
+    R,
+)
+
+_ITERATIONS = 2
+
+
+@kernel
+def _extrapolate(known, shift, slope, count, guess):
+    """Write speeds as their slope takes them on, and the positions that belong to them."""
+    for k in range(BORDER):
+        guess[BORDER + k] = known[BORDER + k] + shift * slope[BORDER + k]
+        guess[k] = known[k] + shift * guess[BORDER + k]
+    for j in range(ROLLERS + PHI_SPEED * count, ROLLERS + (SPIN + 1) * count):
+        guess[j] = known[j] + shift * slope[j]
+    for j in range(ROLLERS + PHI * count, ROLLERS + (SKEW + 1) * count):
+        guess[j] = known[j] + shift * guess[j + (PHI_SPEED - PHI) * count]
+
+
+@kernel
+def _start(known, shift, guess, count, raceways, rows):
+    """Write azimuths, the contour and what each equation builds on; let the rollers follow the contour at first."""
+    last = count - 1
+    for j in range(rows.shape[0] * LANES):
+        block, lane, roller = j // LANES, j % LANES, ROLLERS + min(j, last)
+        rows[block, ROLLER.angle, lane] = guess[roller + PHI * count]
+        rows[block, ROLLER.orbital_speed, lane] = guess[roller + PHI_SPEED * count]
+        rows[block, ROLLER.tilt, lane] = guess[roller + TILT * count]
+        rows[block, ROLLER.skew, lane] = guess[roller + SKEW * count]
+        rows[block, ROLLER.skew_speed, lane] = guess[roller + SKEW_SPEED * count]
+        rows[block, ROLLER.known_radius, lane] = known[roller + R * count]
+        rows[block, ROLLER.known_speed, lane] = known[roller + R_SPEED * count]
+        rows[block, ROLLER.known_tilt, lane] = known[roller + TILT * count]
+        rows[block, ROLLER.known_tilt_speed, lane] = known[roller + TILT_SPEED * count]
+    for block in range(rows.shape[0]):
+        turn = load(rows, block, ROLLER.angle) * (0.5 / math.pi)
+        turn -= floor(turn)
+        cosine, sine = cosine_sine(turn)
+        radius, slope, _ = contour_lanes(raceways.contour, turn)
+        store(rows, block, ROLLER.cosine, cosine)
+        store(rows, block, ROLLER.sine, sine)
+        store(rows, block, ROLLER.slope, slope)
+        store(rows, block, ROLLER.contour, radius)
+        follows = load(rows, block, ROLLER.known_radius) + shift * slope * load(rows, block, ROLLER.orbital_speed)
+        store(rows, block, ROLLER.radius, follows)
+
+
+@kernel
+def _place(block, guess, shift, params, rows, contacts):
+    """Write penetrations, leans and their rates of a block of rollers."""
+    raceways, roller_radius, outer = params.raceways, params.rollers.radius, rows.shape[0] + block
+    per_shift = 1.0 / shift
+    cosine, sine = load(rows, block, ROLLER.cosine), load(rows, block, ROLLER.sine)
+    radius, tilt = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.tilt)
+    along, across = guess[RING_Y] * cosine + guess[RING_Z] * sine, guess[RING_Z] * cosine - guess[RING_Y] * sine
+    speed = (radius - load(rows, block, ROLLER.known_radius)) * per_shift
+    tilt_speed = (tilt - load(rows, block, ROLLER.known_tilt)) * per_shift
+    distance = square_root((radius - along) * (radius - along) + across * across)
+    store(contacts, block, SLICED.penetration, raceways.inner_radius + roller_radius - distance)
+    store(contacts, block, SLICED.rate, guess[BORDER + RING_Y] * cosine + guess[BORDER + RING_Z] * sine - speed)
+    store(contacts, block, SLICED.lean, guess[RING_TILT_Y] * cosine + guess[RING_TILT_Z] * sine - tilt)
+    turning = load(rows, block, ROLLER.orbital_speed) * (guess[RING_TILT_Z] * cosine - guess[RING_TILT_Y] * sine)
+    leaning = guess[BORDER + RING_TILT_Y] * cosine + guess[BORDER + RING_TILT_Z] * sine + turning
+    store(contacts, block, SLICED.lean_rate, leaning - tilt_speed)
+    store(contacts, outer, SLICED.penetration, radius + roller_radius - load(rows, block, ROLLER.contour))
+    store(contacts, outer, SLICED.rate, speed - load(rows, block, ROLLER.slope) * load(rows, block, ROLLER.orbital_speed))
+    store(contacts, outer, SLICED.lean, tilt)
+    store(contacts, outer, SLICED.lean_rate, tilt_speed)
+
+
+@kernel
+def _balance(block, shift, params, rows, contacts):
+    """Take one Newton step: r'' and tilt'' of the normal forces, the orbit and the spin as they are."""
+    mass, inertia, outer, per_shift = params.rollers.mass, params.tilts.roller_inertia, rows.shape[0] + block, 1.0 / shift
+    radius, tilt, orbital_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.tilt), load(rows, block, ROLLER.orbital_speed)
+    speed = (radius - load(rows, block, ROLLER.known_radius)) * per_shift
+    tilt_speed = (tilt - load(rows, block, ROLLER.known_tilt)) * per_shift
+    force = load(contacts, outer, SLICED.load) - load(contacts, block, SLICED.load)
+    force += mass * ((speed - load(rows, block, ROLLER.known_speed)) * per_shift - radius * orbital_speed * orbital_speed)
+    gyroscopic = params.tilts.gyroscopic * params.rollers.inertia * load(rows, block, ROLLER.spin)
+    moment = load(contacts, outer, SLICED.tilting) - load(contacts, block, SLICED.tilting)
+    moment += inertia * (tilt_speed - load(rows, block, ROLLER.known_tilt_speed)) * per_shift
+    moment -= (gyroscopic + 2.0 * inertia * orbital_speed) * load(rows, block, ROLLER.skew_speed)
+    moment -= (gyroscopic + inertia * orbital_speed) * orbital_speed * tilt
+    a = mass * per_shift * per_shift + load(contacts, outer, SLICED.stiffness) + load(contacts, block, SLICED.stiffness)
+    a += per_shift * (load(contacts, outer, SLICED.damping) + load(contacts, block, SLICED.damping))
+    b = load(contacts, outer, SLICED.stiffness + 1) + load(contacts, block, SLICED.stiffness + 1)
+    b += per_shift * (load(contacts, outer, SLICED.damping + 1) + load(contacts, block, SLICED.damping + 1))
+    d = inertia * per_shift * per_shift + load(contacts, outer, SLICED.stiffness + 2) + load(contacts, block, SLICED.stiffness + 2)
+    d += per_shift * (load(contacts, outer, SLICED.damping + 2) + load(contacts, block, SLICED.damping + 2))
+    inverse = 1.0 / (a * d - b * b)
+    store(rows, block, ROLLER.radius, radius - (d * force - b * moment) * inverse)
+    store(rows, block, ROLLER.tilt, tilt - (a * moment - b * force) * inverse)
+
+
+@kernel
+def predict(known, shift, slope, model, work, guess):
+    """Write a first guess of the solution of guess = known + shift f(guess).
+
+    Parameters
+    ----------
+    known : what the stage builds on.
+    shift : gamma h [s].
+    slope : f a little earlier, or zeros.
+    model, work : of the level.
+    guess : takes the guess.
+    """
+    params, rows, contacts = model.params, work.rollers, work.contacts
+    count, blocks = params.rollers.count, work.rollers.shape[0]
+    _extrapolate(known, shift, slope, count, guess)
+    _start(known, shift, guess, count, params.raceways, rows)
+    for _ in range(_ITERATIONS):
+        for block in range(blocks):
+            _place(block, guess, shift, params, rows, contacts)
+            normal_slices(block, contacts, params.slices, params.raceways.stiffness, params.ring.contact_damping)
+            normal_slices(blocks + block, contacts, params.slices, params.raceways.stiffness, params.ring.contact_damping)
+            _balance(block, shift, params, rows, contacts)
+    per_shift = 1.0 / shift
+    for j in range(count):
+        block, lane = j // LANES, j % LANES
+        for k in range(2):
+            place, row = ROLLERS + j + (R if k == 0 else TILT) * count, ROLLER.radius if k == 0 else ROLLER.tilt
+            guess[place] = rows[block, row, lane]
+            guess[place + R_SPEED * count] = (guess[place] - known[place]) * per_shift

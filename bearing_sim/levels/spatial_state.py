@@ -1,0 +1,147 @@
+"""What the spatial level keeps: the order of its state, and the memory that it writes while it computes.
+
+State: y = (positions of the border, speeds of the border, r of all rollers, phi, tilt, skew, r', phi', tilt', skew', w); the
+border is inner ring y and z, its tilts, cage y and z, its tilts, and cage angle.
+
+Every tilt is the inclination of an axis, so that the middle of a slice at x stands off the body's centre by x times it: tilt and
+skew of a roller incline its axis outwards and along the orbit, those of ring and cage incline theirs towards y and z.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from bearing_sim.kernels.compilation import kernel
+from bearing_sim.kernels.lanes import LANES, new_rows
+from bearing_sim.levels.spatial_algebra import BLOCK, BORDER, SLOPES, Factored, new_factored
+from bearing_sim.levels.spatial_slices import PIECE_ROWS, SLICED_ROWS
+
+RING_Y, RING_Z, RING_TILT_Y, RING_TILT_Z, CAGE_Y, CAGE_Z, CAGE_TILT_Y, CAGE_TILT_Z, THETA = range(BORDER)
+OMEGA = BORDER + THETA
+ROLLERS = 2 * BORDER  # where the rollers' states begin: a run of Z for each of the nine
+R, PHI, TILT, SKEW, R_SPEED, PHI_SPEED, TILT_SPEED, SKEW_SPEED, SPIN = range(BLOCK)
+
+
+class RollerRow(NamedTuple):
+    """Rows of the rollers array, see `bearing_sim.kernels.lanes.new_rows`; frame: outwards, along the orbit."""
+
+    radius: int = 0  # r [m]
+    angle: int = 1  # phi [rad]
+    tilt: int = 2  # inclination of the axis outwards [rad]
+    skew: int = 3  # and along the orbit
+    radial_speed: int = 4  # r' [m/s]
+    orbital_speed: int = 5  # phi' [rad/s]
+    tilt_speed: int = 6  # as seen in the frame that turns with the orbit [rad/s]
+    skew_speed: int = 7
+    spin: int = 8  # w [rad/s]
+    radial_acceleration: int = 9  # r'' [m/s^2]
+    orbital_acceleration: int = 10  # phi'' [rad/s^2]
+    tilt_acceleration: int = 11
+    skew_acceleration: int = 12
+    spin_acceleration: int = 13  # w' [rad/s^2]
+    present: int = 14  # 1 for a roller, 0 for a lane that holds none
+    pitch_cosine: int = 15  # of 2 pi j/Z
+    pitch_sine: int = 16
+    cosine: int = 17  # of the roller's azimuth
+    sine: int = 18
+    normal_r: int = 19  # direction from the ring's centre to the roller's
+    normal_t: int = 20
+    inverse_distance: int = 21  # of both centres [1/m]
+    speed_normal: int = 22  # of the roller's centre seen from the ring's [m/s]
+    speed_tangent: int = 23
+    lean_normal: int = 24  # inclination against the ring, along the normal and across [rad]
+    lean_tangent: int = 25
+    lean_speed_normal: int = 26  # how fast the axes incline against each other, in the same directions [rad/s]
+    lean_speed_tangent: int = 27
+    slope: int = 28  # dR_e/dphi [m/rad]
+    curvature: int = 29  # d2R_e/dphi2 [m/rad^2]
+    churning: int = 30  # drag of the mixture against the orbit [N]
+    pocket_cosine: int = 31  # of the pocket's azimuth
+    pocket_sine: int = 32
+    play_cosine: int = 33  # of the angle from the pocket to the roller
+    play_sine: int = 34
+    pocket_offset: int = 35  # of the roller from the middle of its pocket [m]
+    pocket_rate: int = 36  # its time derivative [m/s]
+    pocket_skew: int = 37  # inclination of the roller in its pocket, along the pocket's tangent [rad]
+    pocket_skew_rate: int = 38  # [rad/s]
+    pocket_lean: int = 39  # and outwards [rad]
+    pocket_force: int = 40  # of the pocket on the roller along the orbit [N]
+    pocket_moment: int = 41  # sum of force times place along the axis [N m]
+    pocket_friction: int = 42  # coefficient, with the sign of the spin
+    pocket_friction_slope: int = 43  # by spin [s/rad]
+    pocket_stiffness: int = 44  # sums over slices of the force's slope by offset, times 1, x, x^2
+    pocket_damping: int = 47  # and by the offset's rate
+    contour: int = 50  # from here on, steps of a prediction: R_e where the roller will be [m]
+    known_radius: int = 51  # what its stage builds on [m, m/s, rad, rad/s]
+    known_speed: int = 52
+    known_tilt: int = 53
+    known_tilt_speed: int = 54
+
+
+ROLLER = RollerRow()
+ROLLER_ROWS = 55
+
+
+class Work(NamedTuple):
+    """Memory that the level writes while it computes."""
+
+    rollers: np.ndarray  # rows `ROLLER`
+    contacts: np.ndarray  # rows `bearing_sim.levels.spatial_slices.SLICED`, those with the inner raceway first
+    pieces: np.ndarray  # of contacts, see `bearing_sim.levels.spatial_slices.load_pieces`
+    slopes: np.ndarray  # derivatives through each roller, see `bearing_sim.levels.spatial_algebra`
+    chain: np.ndarray  # scratch for derivatives of one block of rollers, shape (1, 154, LANES)
+    border_own: np.ndarray  # derivatives of the border's accelerations by border positions and speeds, shape (9, 18)
+    lands: np.ndarray  # scratch of the guide lands, shape (4, 18)
+    land_own: np.ndarray  # scratch of the guide lands, shape (2, 5, 10)
+    factored: Factored  # of I - gamma h J
+    load_means: np.ndarray  # running means of Q_i^4 and Q_e^4.5 over a cage turn, shape (2,)
+    held: np.ndarray  # shift of the factorisation at hand and end of the last step [s], shape (2,)
+    counts: np.ndarray  # right-hand sides, Jacobians and factorisations inside steps, int64
+
+
+def new_work(params):
+    """Return the level's workspace for a bearing."""
+    count = params.rollers.count
+    rollers = new_rows(ROLLER_ROWS, count)
+    lanes = np.arange(rollers.shape[0] * LANES).reshape(-1, LANES)
+    rollers[:, ROLLER.present] = lanes < count
+    pitch = 2 * math.pi * np.minimum(lanes, count - 1) / count
+    rollers[:, ROLLER.pitch_cosine], rollers[:, ROLLER.pitch_sine] = np.cos(pitch), np.sin(pitch)
+    return Work(
+        rollers=rollers,
+        contacts=np.zeros((2 * rollers.shape[0], SLICED_ROWS, LANES)),
+        pieces=np.zeros((2 * rollers.shape[0] * -(-len(params.slices.places) // params.slices.together), PIECE_ROWS, LANES)),
+        slopes=new_rows(SLOPES, count),
+        chain=np.zeros((1, 154, LANES)),
+        border_own=np.zeros((BORDER, 2 * BORDER)),
+        lands=np.zeros((4, 2 * BORDER)),
+        land_own=np.zeros((2, 5, 10)),
+        factored=new_factored(count),
+        load_means=np.zeros(2),
+        held=np.zeros(2),
+        counts=np.zeros(3, np.int64),
+    )
+
+
+@kernel
+def spread_state(y, count, rollers):
+    """Copy the rollers' states from ``y`` into their lanes; lanes without a roller go with the last one, so as to stay finite."""
+    last = count - 1
+    for k in range(BLOCK):
+        first = ROLLERS + k * count
+        for j in range(count):
+            rollers[j // LANES, k, j % LANES] = y[first + j]
+        for j in range(count, rollers.shape[0] * LANES):
+            rollers[j // LANES, k, j % LANES] = y[first + last]
+
+
+@kernel
+def collect_rates(y, count, rollers, rate):
+    """Copy the rollers' speeds and accelerations from their lanes into ``rate``."""
+    for j in range(4 * count):
+        rate[ROLLERS + j] = y[ROLLERS + R_SPEED * count + j]
+    for k in range(5):
+        first = ROLLERS + (R_SPEED + k) * count
+        for j in range(count):
+            rate[first + j] = rollers[j // LANES, ROLLER.radial_acceleration + k, j % LANES]

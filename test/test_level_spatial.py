@@ -1,0 +1,192 @@
+"""The spatial level: its planar limit, its symmetries, gyroscopic moments, misalignment, rough courses."""
+
+import math
+
+import numpy as np
+import pytest
+
+from bearing_sim import Inputs, SceneError, Simulation, load_scene
+from bearing_sim.kernels.lanes import by_roller as by_lane
+from bearing_sim.levels import spatial
+from bearing_sim.levels.spatial_algebra import BLOCK, BORDER
+from bearing_sim.levels.spatial_slices import SLICED
+
+Z = 18
+FIXED = "integration.fixed_step=20 us"
+MOMENT = ["operating.moment=2", FIXED]
+
+
+def simulation(*overrides, level="spatial", inputs=None):
+    return Simulation(load_scene("deng2017_table1", [f"level={level}", *overrides]), inputs)
+
+
+def border(state):
+    """View of the border: rows positions and speeds, columns ring y, z, its tilts, cage y, z, its tilts, angle."""
+    return state[: 2 * BORDER].reshape(2, BORDER)
+
+
+def by_roller(state):
+    """View of the rollers: rows r, phi, tilt, skew, their rates, w."""
+    return state[2 * BORDER :].reshape(BLOCK, -1)
+
+
+@pytest.mark.parametrize("overrides", [[], ["bearing.roller.slices=7", "bearing.roller.slices_per_traction=3"], ["operating.moment=0"]])
+def test_an_aligned_bearing_without_crown_runs_as_at_level_planar(overrides):
+    flat, full = simulation(FIXED, level="planar"), simulation(FIXED, *overrides)
+    flat.advance(1e-3), full.advance(1e-3)
+    planar, rollers = flat.state[10:].reshape(5, Z), by_roller(full.state)
+    for row, expected in zip((0, 1, 4, 5, 8), planar):
+        assert np.abs(rollers[row] - expected).max() <= 1e-9 * np.abs(expected).max()
+    found, expected = border(full.state)[:, [0, 1, 4, 5, 8]], flat.state[:10].reshape(2, 5)
+    for group in ([0, 1], [2, 3], [4]):
+        for kind in range(2):
+            assert np.abs(found[kind, group] - expected[kind, group]).max() <= 1e-9 * np.abs(expected[kind, group]).max()
+    # tilts are the round-off of sums over slices
+    assert np.abs(rollers[2:4]).max() < 1e-12 and np.abs(border(full.state)[0, [2, 3, 6, 7]]).max() < 1e-12
+    for name in ("shaft_power", "inner_sliding_power", "outer_sliding_power", "pocket_power", "land_power", "inner_load", "pocket_force"):
+        np.testing.assert_allclose(full.sample[name], flat.sample[name], rtol=1e-8, atol=1e-6, err_msg=name)
+
+
+def rough_start(run, seed=3):
+    """Set tilts and skews in motion."""
+    random = np.random.default_rng(seed)
+    state = run._state
+    border(state)[0, [2, 3, 6, 7]] += random.normal(size=4) * 3e-4
+    border(state)[1, [2, 3, 6, 7]] += random.normal(size=4)
+    by_roller(state)[2:4] += random.normal(size=(2, Z)) * np.array([[2e-4], [2e-3]])
+    by_roller(state)[6:8] += random.normal(size=(2, Z)) * 2.0
+
+
+def spread_of(run):
+    """Sizes by which to judge states of each kind."""
+    ideal = 2000.0
+    border_sizes = np.array([[1e-5, 1e-5, 1e-3, 1e-3, 1e-4, 1e-4, 1e-3, 1e-3, 1.0], [1e-2, 1e-2, 1.0, 1.0, 1e-1, 1e-1, 1.0, 1.0, ideal]])
+    roller_sizes = np.array([1e-5, 1.0, 1e-3, 1e-3, 1e-2, ideal, 1.0, 1.0, 4 * ideal])
+    return np.concatenate([border_sizes.ravel(), np.repeat(roller_sizes, Z)])
+
+
+def test_turning_load_contour_moment_and_start_turns_the_solution_and_nothing_else():
+    turn = math.radians(50.0)
+    here = simulation(*MOMENT)
+    there = simulation(*MOMENT, "operating.load_angle=50 deg", "operating.moment_angle=50 deg", "bearing.outer_raceway.installation_angle=50 deg")
+    rough_start(here)
+
+    def turned(state):
+        state = state.copy()
+        rotation = np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]])
+        for first in range(0, 8, 2):
+            border(state)[:, first : first + 2] = border(state)[:, first : first + 2] @ rotation.T
+        border(state)[0, 8] += turn
+        by_roller(state)[1] += turn
+        return state
+
+    there._state[:] = turned(here._state)
+    here.advance(1e-3), there.advance(1e-3)
+    assert (np.abs(there.state - turned(here.state)) / spread_of(here)).max() < 1e-8
+
+
+def test_a_moment_the_other_way_and_a_mirrored_start_mirror_the_tilts_and_nothing_else():
+    here, there = simulation(*MOMENT), simulation(*MOMENT, "operating.moment_angle=180 deg")
+    rough_start(here)
+
+    def mirrored(state):
+        state = state.copy()
+        border(state)[:, [2, 3, 6, 7]] *= -1.0
+        by_roller(state)[[2, 3, 6, 7]] *= -1.0
+        return state
+
+    there._state[:] = mirrored(here._state)
+    here.advance(1e-3), there.advance(1e-3)
+    assert (np.abs(there.state - mirrored(here.state)) / spread_of(here)).max() < 1e-8
+
+
+def test_running_backwards_mirrors_the_bearing_in_the_plane_of_load_and_shaft():
+    here, there = simulation(*MOMENT), simulation(*MOMENT, "operating.shaft_speed=-45000 rpm")
+    rough_start(here)
+    other = -np.arange(Z) % Z
+
+    def mirrored(state):
+        state = state.copy()
+        border(state)[:, [1, 3, 5, 7, 8]] *= -1.0
+        rollers = by_roller(state)
+        rollers[:] = rollers[:, other]
+        rollers[[1, 3, 5, 7, 8]] *= -1.0
+        rollers[1, 1:] += 2 * math.pi
+        return state
+
+    there._state[:] = mirrored(here._state)
+    here.advance(5e-4), there.advance(5e-4)
+    assert (np.abs(there.state - mirrored(here.state)) / spread_of(here)).max() < 1e-8
+
+
+def test_gyroscopic_moments_are_spin_momentum_times_the_axis_s_turning():
+    run, plain = simulation(*MOMENT), simulation(*MOMENT, "dynamics.gyroscopic=false")
+    rough_start(run)
+    state, rates = run.state, []
+    for which in (run, plain):
+        rate = np.zeros_like(state)
+        spatial.rhs(0.0, state, which._model(which.inputs, 1.0), which._work, rate)
+        rates.append(rate)
+    change, params = rates[0] - rates[1], run._params
+    _, _, tilt, skew, _, orbit, tilting, skewing, spin = by_roller(state)
+    ratio = params.rollers.inertia / params.tilts.roller_inertia
+    assert ratio == pytest.approx(6.0 / 7.0)  # of a cylinder as long as thick
+    # a roller spins at -w about its axis, which inclines at (tilt' - phi' skew, skew' + phi' tilt) in space
+    np.testing.assert_allclose(by_roller(change)[6], ratio * spin * (skewing + orbit * tilt), rtol=1e-6)
+    np.testing.assert_allclose(by_roller(change)[7], -ratio * spin * (tilting - orbit * skew), rtol=1e-6)
+    leaning = border(state)[1]
+    for first, momentum in ((2, 2.0 * run.inputs.shaft_speed), (6, 2.0 * leaning[8])):  # diametral inertias are half the polar ones
+        found = border(change)[1, first : first + 2]
+        np.testing.assert_allclose(found, [-momentum * leaning[first + 1], momentum * leaning[first]], rtol=1e-6)
+    assert np.abs(border(change)[1, [0, 1, 4, 5, 8]]).max() == 0.0
+
+
+def test_a_misaligned_ring_presses_one_end_of_the_rollers_and_tilts_them_halfway():
+    run = simulation("operating.misalignment=0.5 mrad", "operating.shaft_speed=5000 rpm", "bearing.outer_raceway.d_value=0")
+    run.advance(0.02)
+    rollers, blocks = by_roller(run.state), run._work.rollers.shape[0]
+    rows = {"load": SLICED.load, "tilting": SLICED.tilting}
+    inner, outer = ({name: by_lane(run._work.contacts[k * blocks : (k + 1) * blocks], row, Z) for name, row in rows.items()} for k in range(2))
+    cosine = np.cos(rollers[1])
+    steep = np.abs(cosine) > 0.3
+    assert (inner["load"] > 0).all()  # a round raceway at this radius is preloaded
+    # where the ring's +x end leans outwards it presses the rollers' +x end, which leans outwards half as far
+    assert (inner["tilting"] * cosine > 0)[steep].all() and (outer["tilting"] * cosine > 0)[steep].all()
+    np.testing.assert_allclose(rollers[2], 0.25e-3 * cosine, rtol=0.3, atol=3e-5)
+    straight = simulation("operating.shaft_speed=5000 rpm", "bearing.outer_raceway.d_value=0").advance(0.02)
+    assert run.sample["inner_load"].sum() == pytest.approx(straight[-1]["inner_load"].sum(), rel=0.1)
+
+
+def test_a_moment_tilts_the_ring_its_own_way_and_the_rollers_hold_it():
+    run = simulation("operating.moment=1", "operating.shaft_speed=5000 rpm", "bearing.outer_raceway.d_value=0")
+    run.advance(0.02)
+    course = []
+    for _ in range(20):
+        run.advance(1e-3)
+        course.append(border(run.state)[0, 2:4].copy())
+    tilt = np.mean(course, axis=0)
+    assert 1e-5 < tilt[0] < 5e-3 and abs(tilt[1]) < 0.3 * tilt[0]
+
+
+@pytest.mark.parametrize(
+    ("start", "end"),
+    [
+        (Inputs(0.0, 100.0, 0.0, 393.15), Inputs(4712.0, 800.0, 0.0, 393.15)),  # from rest
+        (Inputs(4712.0, 0.0, 0.0, 393.15), Inputs(4712.0, 5000.0, 0.0, 393.15)),  # load step
+        (Inputs(1000.0, 100.0, 0.0, 393.15), Inputs(-1000.0, 0.0, 100.0, 393.15)),  # reversal
+    ],
+)
+@pytest.mark.parametrize("tilted", ["operating.misalignment=3 mrad", "operating.moment=3"])
+def test_rough_courses_stay_finite(start, end, tilted):
+    run = simulation(tilted, "bearing.roller.slices=10", inputs=start)
+    for target in (end, end):
+        block = run.advance(0.02, target, samples=20)
+        for name in ("cage_speed", "cage_y", "roller_spin", "inner_load", "outer_load", "pocket_force", "damage"):
+            assert np.isfinite(block[name]).all(), name
+        assert (block["inner_load"] >= 0).all() and (block["outer_load"] >= 0).all()
+        assert math.hypot(block["cage_y"][-1], block["cage_z"][-1]) < 0.16e-3
+
+
+def test_a_moment_and_a_misalignment_together_are_refused():
+    with pytest.raises(SceneError, match="give the moment or the misalignment"):
+        simulation("operating.moment=1", "operating.misalignment=1 mrad")

@@ -1,0 +1,266 @@
+"""The spatial level against a plain NumPy model: its forces, its derivatives, its energy."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from reference_planar import Reference
+from reference_spatial import SpatialReference, State
+from scipy.integrate import solve_ivp
+
+from bearing_sim import Simulation, load_scene
+from bearing_sim.kernels.lanes import LANES
+from bearing_sim.levels import spatial, spatial_algebra
+from bearing_sim.levels.spatial_algebra import AT_CAGE, BLOCK, BORDER, CAGE_COLUMNS, CAGE_ROWS, LOCAL, RING, RING_COLUMNS, RING_ROWS
+
+BORDER_STATES = 2 * BORDER
+CROWN = np.array([3e-6, 1e-6, 0.0, 0.0, 1e-6, 3e-6])
+
+
+def simulation(*overrides, crown=None):
+    run = Simulation(load_scene("deng2017_table1", ["level=spatial", "bearing.roller.slices=6", *overrides]))
+    if crown is not None:
+        run._params.slices.crown[:] = crown
+    return run
+
+
+def by_roller(state):
+    """View of the rollers' part of a state vector: rows r, phi, tilt, skew, their rates, w, shape (9, Z)."""
+    return state[BORDER_STATES:].reshape(BLOCK, -1)
+
+
+def frame(phi):
+    return np.array([np.cos(phi), np.sin(phi)]), np.array([-np.sin(phi), np.cos(phi)])
+
+
+def plain(state):
+    """The state vector as the reference's record."""
+    radius, phi, tilt, skew, radius_speed, phi_speed, tilting, skewing, spin = by_roller(state)
+    outward, along = frame(phi)
+    q, v = state[:BORDER], state[BORDER:BORDER_STATES]
+    velocity = radius_speed * outward + radius * phi_speed * along
+    leaning = (tilting - phi_speed * skew) * outward + (skewing + phi_speed * tilt) * along
+    lean = tilt * outward + skew * along
+    return State(
+        q[0:2], v[0:2], q[2:4], v[2:4], q[4:6], v[4:6], q[6:8], v[6:8], q[8], v[8], radius * outward, velocity, lean, leaning, spin.copy()
+    )  # fmt: skip
+
+
+def rate_of(reference, state, forces=None):
+    """dy/dt of the state vector by the reference: Cartesian accelerations in each roller's own frame."""
+    radius, phi, tilt, skew, radius_speed, phi_speed, tilting, skewing, _ = by_roller(state)
+    ring, ring_lean, cage, cage_lean, turning, rollers, leans, spin = reference.accelerations(forces or reference.forces(plain(state)))
+    outward, along = frame(phi)
+    rate = np.zeros_like(state)
+    rate[:BORDER] = state[BORDER:BORDER_STATES]
+    rate[BORDER:BORDER_STATES] = np.concatenate([ring, ring_lean, cage, cage_lean, [turning]])
+    angular = ((rollers * along).sum(0) - 2 * radius_speed * phi_speed) / radius
+    by_roller(rate)[:] = (
+        radius_speed,
+        phi_speed,
+        tilting,
+        skewing,
+        (rollers * outward).sum(0) + radius * phi_speed**2,
+        angular,
+        (leans * outward).sum(0) + 2 * phi_speed * skewing + angular * skew + phi_speed**2 * tilt,
+        (leans * along).sum(0) - 2 * phi_speed * tilting - angular * tilt + phi_speed**2 * skew,
+        spin,
+    )
+    return rate
+
+
+def rough_state(run, seed, scale=1.0):
+    """Rollers pressed, parted and colliding, tilted and skewed, some against a pocket's wall, and the cage anywhere up to its land."""
+    random = np.random.default_rng(seed)
+    state = run._state.copy()
+    eccentricity, azimuth = random.uniform(0.0, 0.145e-3), random.uniform(0.0, 2 * math.pi)
+    state[0:2] += random.normal(size=2) * 3e-6
+    state[2:4] += random.normal(size=2) * 5e-4
+    state[4:6] = eccentricity * math.cos(azimuth), eccentricity * math.sin(azimuth)
+    state[6:8] = random.normal(size=2) * 1e-3
+    state[8] = random.uniform(-10.0, 10.0)
+    state[9:13] += random.normal(size=4) * [2e-2, 2e-2, 2.0, 2.0]
+    state[13:17] += random.normal(size=4) * [2e-2, 2e-2, 2.0, 2.0]
+    if run._params.tilts.ring_free == 0.0:
+        state[11:13] = 0.0
+    slowed = random.uniform(0.6, 1.05)
+    state[17] *= slowed
+    rollers = by_roller(state)
+    rollers[1] += state[8]
+    rollers[5] *= slowed
+    rough = np.array([2e-6, 3e-3, 5e-4, 2e-3, 2e-2, 0.5, 5.0, 5.0, 200.0])
+    rollers += random.normal(size=rollers.shape) * rough[:, None] * scale
+    return state
+
+
+def kinds(count):
+    """Which entries of a state vector are of one kind."""
+    which = np.zeros(BORDER_STATES + BLOCK * count, int)
+    which[:BORDER_STATES] = 0, 0, 1, 1, 2, 2, 3, 3, 4, 5, 5, 6, 6, 7, 7, 8, 8, 9
+    by_roller(which)[:] = np.arange(10, 19)[:, None]
+    return which
+
+
+MOMENT = ["operating.moment=2", "operating.moment_angle=30 deg"]
+VARIANTS = {
+    "free ring": (lambda: SpatialReference(moment=(2 * math.cos(math.pi / 6), 1.0)), MOMENT, None),
+    "held ring, crown, Deng's axes": (
+        lambda: SpatialReference(Reference(contour_slope=False), ring_free=False, gyroscopic=False, crown=CROWN, together=1),
+        [
+            "operating.misalignment=1 mrad",
+            "dynamics.gyroscopic=false",
+            "bearing.outer_raceway.contour_slope=false",
+            "bearing.roller.slices_per_traction=1",
+        ],
+        CROWN,
+    ),
+    "nine rollers backwards, crown": (
+        lambda: SpatialReference(
+            Reference(rollers=9, contact_damping=1.0, shaft_speed=-1500.0), crown=CROWN, moment=(2 * math.cos(math.pi / 6), 1.0)
+        ),
+        ["bearing.roller.count=9", "bearing.contact.damping=1", "operating.shaft_speed=-1500", *MOMENT],
+        CROWN,
+    ),
+}
+
+
+@pytest.mark.parametrize("variant", VARIANTS)
+def test_right_hand_side_is_that_of_the_plain_numpy_model(variant):
+    new_reference, overrides, crown = VARIANTS[variant]
+    reference, run = new_reference(), simulation(*overrides, crown=crown)
+    model, which = run._model(run.inputs, 1.0), kinds(run._params.rollers.count)
+    rate = np.zeros_like(run._state)
+
+    @settings(max_examples=40, deadline=None)
+    @given(st.integers(0, 2**32 - 1), st.sampled_from([0.03, 0.3, 1.0]))
+    def follows(seed, scale):
+        state = rough_state(run, seed, scale)
+        assert spatial.rhs(0.0, state, model, run._work, rate)
+        forces = reference.forces(plain(state))
+        expected, pocket, half = rate_of(reference, state, forces), np.abs(forces.pocket_whole).max(), reference.planar.length / 2
+        # what ring and cage feel is a sum over rollers: its terms, not what is left of them, say what round-off may be
+        pressed = forces.inner.sum(1).max()
+        terms = {5: pressed / reference.planar.ring_mass, 6: pressed * half / reference.ring_polar}
+        terms |= {7: pocket / reference.planar.cage_mass, 8: pocket * half / reference.cage_transverse}
+        terms |= {9: pocket * reference.planar.pitch_radius / reference.planar.cage_inertia}
+        for kind in range(19):
+            largest = max(np.abs(expected[which == kind]).max(), terms.get(kind, 0.0))
+            error = np.abs(rate - expected)[which == kind].max()
+            assert error <= 1e-9 * largest, (kind, error, largest)
+
+    follows()
+
+
+def dense_jacobian(run, state):
+    model, work, rate = run._model(run.inputs, 1.0), run._work, np.zeros_like(state)
+    spatial.rhs_and_jacobian(0.0, state, model, work, rate)
+    size, count = state.size, run._params.rollers.count
+    matrix = np.zeros((size, size))
+    matrix[:BORDER, BORDER:BORDER_STATES] = np.eye(BORDER)
+    matrix[BORDER:BORDER_STATES, :BORDER_STATES] = work.border_own
+    ring = np.concatenate([np.arange(RING), BORDER + np.arange(RING)])
+    cage = np.concatenate([np.arange(RING, BORDER), BORDER + np.arange(RING, BORDER)])
+    for j in range(count):
+        own = BORDER_STATES + j + count * np.arange(BLOCK)
+        slopes = work.slopes[j // LANES, :, j % LANES]
+        rows = slopes[:RING_ROWS].reshape(5, LOCAL)
+        matrix[own[:4], own[4:8]] = 1.0
+        matrix[own[4:, None], own] = rows[:, :BLOCK]
+        matrix[own[4:, None], ring] = rows[:, BLOCK:AT_CAGE]
+        matrix[own[4:, None], cage] = rows[:, AT_CAGE:]
+        for first, columns, border in ((RING_ROWS, RING_COLUMNS, ring), (CAGE_ROWS, CAGE_COLUMNS, cage)):
+            speeds = border[len(border) // 2 :]
+            rows = slopes[first : first + len(speeds) * columns].reshape(len(speeds), columns)
+            matrix[speeds[:, None], own] = rows[:, :BLOCK]
+            matrix[speeds[:, None], border] += rows[:, BLOCK:]
+    return matrix
+
+
+def complex_step_jacobian(reference, state):
+    matrix = np.zeros((state.size, state.size))
+    for i in range(state.size):
+        shifted = state.astype(complex)
+        shifted[i] += 1e-30j
+        matrix[:, i] = rate_of(reference, shifted).imag / 1e-30
+    return matrix
+
+
+@pytest.mark.parametrize("variant", VARIANTS)
+@pytest.mark.parametrize("seed", range(3))
+def test_jacobian_is_that_of_a_complex_step_through_the_plain_numpy_model(variant, seed):
+    new_reference, overrides, crown = VARIANTS[variant]
+    run = simulation(*overrides, crown=crown)
+    state = rough_state(run, seed, 0.3)
+    found, expected = dense_jacobian(run, state), complex_step_jacobian(new_reference(), state)
+    which = kinds(run._params.rollers.count)
+    round_off = np.abs(expected).max(1)  # some blocks are sums over slices that vanish
+    # each block of one kind of rate by one kind of state has a unit, and so a largest entry, of its own
+    for row in range(19):
+        for column in range(19):
+            block = np.ix_(which == row, which == column)
+            largest = np.abs(expected[block]).max() + 1e-9 * round_off[which == row].min()
+            error = np.abs(found - expected)[block].max()
+            assert error <= 1e-6 * largest, (row, column, error, largest)
+
+
+def test_block_arrow_solution_is_that_of_the_dense_matrix():
+    run = simulation(*MOMENT)
+    state, shift = rough_state(run, 1, 0.3), 2e-5
+    matrix = np.eye(state.size) - shift * dense_jacobian(run, state)
+    right = np.random.default_rng(2).normal(size=state.size)
+    x = right.copy()
+    assert spatial_algebra.factor(run._work.slopes, run._work.border_own, shift, run._work.factored)
+    spatial_algebra.solve(run._work.slopes, run._work.factored, x)
+    expected = np.linalg.solve(matrix, right)
+    np.testing.assert_allclose(x, expected, rtol=0, atol=1e-9 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("variant", VARIANTS)
+def test_powers_are_those_of_the_plain_numpy_model(variant):
+    new_reference, overrides, crown = VARIANTS[variant]
+    reference, run = new_reference(), simulation(*overrides, crown=crown)
+    for seed in range(3):
+        run._state[:] = rough_state(run, seed, 0.3)
+        run._observe_start()
+        work, heat = reference.powers(reference.forces(plain(run._state)))
+        expected = {
+            "shaft_power": work["shaft"],
+            "inner_sliding_power": heat["inner traction"],
+            "outer_sliding_power": heat["outer traction"],
+            "churning_power": heat["churning"],
+            "windage_power": heat["mixture on the cage"],
+        }
+        found = run.sample
+        for name, power in expected.items():
+            assert found[name] == pytest.approx(power, rel=1e-9), name
+        lost = sum(found[name] for name in ("land_power", "pocket_power", "damping_power"))
+        rest = sum(heat[name] for name in ("guide land film", "guide land contact", "pocket damping", "pocket friction", "normal damping"))
+        assert lost == pytest.approx(rest, rel=1e-9)
+
+
+@pytest.mark.parametrize("crown", [None, CROWN])
+def test_energy_is_kept(crown):
+    """An explicit method of order 8 through a run under a moment: work less heat is the gain, to the method's accuracy."""
+    reference, run, duration = SpatialReference(moment=(2 * math.cos(math.pi / 6), 1.0), crown=crown), simulation(*MOMENT, crown=crown), 1e-4
+    run.advance(5e-3)
+    state = run._state.copy()
+    by_roller(state)[3] += np.linspace(-1e-2, 1e-2, 18)  # and rollers skewed against their pockets
+    size = state.size
+
+    def rate(t, y):
+        forces = reference.forces(plain(y[:size]))
+        work, heat = reference.powers(forces)
+        return np.concatenate([rate_of(reference, y[:size], forces), list(work.values()), list(heat.values())])
+
+    absolute = np.full(size + 12, 1e-12)
+    absolute[BORDER_STATES + 8 * 18 : size] = 1e-6
+    absolute[BORDER_STATES + 4 * 18 : BORDER_STATES + 8 * 18] = 1e-9
+    with np.errstate(all="ignore"):
+        solution = solve_ivp(rate, (0.0, duration), np.concatenate([state, np.zeros(12)]), "DOP853", rtol=1e-9, atol=absolute, first_step=1e-8)
+    end = solution.y[:, -1]
+    work, heat = end[size : size + 3].sum(), end[size + 3 :]
+    before, after = (reference.forces(plain(y)) for y in (state, end[:size]))
+    gained = reference.energy(after) - reference.energy(before)
+    assert work - heat.sum() - gained == pytest.approx(0.0, abs=1e-8 * (abs(work) + np.abs(heat).sum()))
