@@ -18,7 +18,7 @@ from bearing_sim.kernels.traction import (
     thermal_eyring_constants,
 )
 from bearing_sim.oil import oil_at
-from bearing_sim.rating_life import CLEANLINESS, fatigue_limit, load_rating, reliability_factor, ring_ratings, static_rating
+from bearing_sim.rating_life import CLEANLINESS, fatigue_limit, load_rating, reliability_factor, ring_ratings, static_rating, stress_risers
 from bearing_sim.ring_growth import Growth, fit_growth, running_growth
 from bearing_sim.scene import Bearing, Lubricant, Scene
 from bearing_sim.scene_lubricant import ConstantTraction, EyringTraction, KragelskiiTraction
@@ -84,6 +84,7 @@ class Slices(NamedTuple):
     places: np.ndarray  # axial place of each slice's middle from the roller's, x_k [m], shape (N,)
     crown: np.ndarray  # drop of the profile there, C_k [m], shape (N,)
     together: int  # slices that share one evaluation of the traction law
+    risers: np.ndarray  # stress risers f(k) of a life by slices (ISO/TS 16281), shape (N,)
 
 
 class Tilts(NamedTuple):
@@ -212,7 +213,8 @@ def _slices(bearing: Bearing) -> Slices:
     places = (np.arange(count) - 0.5 * (count - 1)) * (length / count)
     roller = bearing.roller
     drops = crown_drops(roller.crown, roller.diameter, roller.length, roller.slices)
-    return Slices(places, np.ascontiguousarray(drops, np.float64), int(roller.slices_per_traction))
+    risers = stress_risers(count) if count > 1 else np.ones(1)
+    return Slices(places, np.ascontiguousarray(drops, np.float64), int(roller.slices_per_traction), risers)
 
 
 def _tilts(scene: Scene, roller_mass: float) -> Tilts:

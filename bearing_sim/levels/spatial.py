@@ -17,11 +17,12 @@ from bearing_sim.kernels.lanes import LANES, load, square_root, total
 from bearing_sim.kernels.load_balance import LOAD
 from bearing_sim.levels import slip, spatial_algebra, spatial_rollers
 from bearing_sim.levels.inputs import shaft_speed_at
-from bearing_sim.levels.observation import observe_course
+from bearing_sim.levels.observation import observe_course, observe_life
 from bearing_sim.levels.pitch import FIFTH_PITCH, pitch_step
 from bearing_sim.levels.planar import FAR, NEAR, TURNING, count_iterations, nothing
 from bearing_sim.levels.power import write_powers
 from bearing_sim.levels.spatial_algebra import BLOCK, BORDER
+from bearing_sim.levels.spatial_life import average_slices
 from bearing_sim.levels.spatial_power import spatial_powers
 from bearing_sim.levels.spatial_prediction import predict
 from bearing_sim.levels.spatial_slices import SLICED
@@ -45,7 +46,7 @@ from bearing_sim.levels.spatial_state import (
     TILT,
 )
 from bearing_sim.params import Params
-from bearing_sim.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT
+from bearing_sim.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT, lamina_life_revolutions, rating_life_revolutions
 from bearing_sim.sample import COLUMN, SCALARS
 
 _FIRST_ECCENTRICITY = 0.3  # as at level `planar`
@@ -156,6 +157,7 @@ def average_loads(h, y, model, work):
     share = 1.0 - math.exp(-abs(turned) / (2.0 * math.pi))
     work.load_means[0] += share * (inner / count - work.load_means[0])
     work.load_means[1] += share * (outer / count - work.load_means[1])
+    average_slices(share, model.params, work)
 
 
 @kernel
@@ -176,6 +178,9 @@ def observe(t, y, model, work, interval, previous, row, rate):
     rows, count = work.rollers, model.params.rollers.count
     inner, outer = work.load_means[0] ** (1.0 / ROTATING_EXPONENT), work.load_means[1] ** (1.0 / STATIONARY_EXPONENT)
     observe_course(t, y[THETA], y[OMEGA], inner, outer, model, interval, previous, row)
+    life = model.params.life
+    by_slices = lamina_life_revolutions(work.slice_means[0], work.slice_means[1], life)
+    observe_life(rating_life_revolutions(inner, outer, life), by_slices, model, interval, previous, row)
     row[COLUMN.ring_y], row[COLUMN.ring_z] = y[RING_Y], y[RING_Z]
     row[COLUMN.cage_y], row[COLUMN.cage_z] = y[CAGE_Y], y[CAGE_Z]
     row[COLUMN.land_eccentricity] = math.hypot(y[CAGE_Y], y[CAGE_Z]) / model.params.cage.guide_clearance

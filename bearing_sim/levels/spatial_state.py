@@ -96,6 +96,7 @@ class Work(NamedTuple):
     land_own: np.ndarray  # scratch of the guide lands, shape (2, 5, 10)
     factored: Factored  # of I - gamma h J
     load_means: np.ndarray  # running means of Q_i^4 and Q_e^4.5 over a cage turn, shape (2,)
+    slice_means: np.ndarray  # running means of the slices' loads to the powers 4 (inner) and 4.5, see `bearing_sim.rating_life`, shape (2, N)
     held: np.ndarray  # shift of the factorisation at hand and end of the last step [s], shape (2,)
     counts: np.ndarray  # right-hand sides, Jacobians and factorisations inside steps, int64
 
@@ -119,6 +120,7 @@ def new_work(params):
         land_own=np.zeros((2, 5, 10)),
         factored=new_factored(count),
         load_means=np.zeros(2),
+        slice_means=np.zeros((2, len(params.slices.places))),
         held=np.zeros(2),
         counts=np.zeros(3, np.int64),
     )
