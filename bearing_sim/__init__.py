@@ -4,6 +4,7 @@
 module                 responsibility
 =====================  ==================================================================================
 ``scene``              what to simulate: frozen records, one declaration per quantity
+``crown``              profiles of the rollers
 ``contour``            forms of the outer raceway; ``contour_file``, ``contour_scene``: measured ones
 ``methods``            by which integrators each level can be advanced
 ``scene_file``         YAML, presets, overrides; every fault of a file at once
@@ -14,12 +15,12 @@ module                 responsibility
 ``levels``             one complete model per file
 ``kernels``            scalar laws: contact, traction, cage, drag, raceway, load balance, linear algebra
 ``integrators``        stiff and explicit methods and their drive loops; they know no bearings
-``rating_life``        roller loads to rating life
+``rating_life``        roller loads to rating life: whole rollers, slices, oil and reliability
 ``oil``                oil properties at a temperature
 ``ring_growth``        how far rings grow by rotation, fits and heat
 ``runtime``            pacing, the solver's thread, the gate for inputs, health
 ``sinks``              MCAP and rerun
-``studies``            the bench: speed and error of every level and method
+``studies``            the bench: speed and error of every level and method; statics: the load distribution by slices
 ``topics``             the messages that samples and inputs become
 ``ros``                the ROS 2 node and player
 ``commands``, ``cli``  the command line

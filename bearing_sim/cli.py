@@ -12,6 +12,7 @@ _COMMANDS = {
     "run": "Run a scene under its constant conditions.",
     "replay": "Run the model on a recorded log of shaft speed and radial load.",
     "import-csv": "Turn a measured table into an MCAP log.",
+    "loads": "Show how a scene's load spreads over rollers and slices, and the lives.",
     "machine": "Compute the raceway that pre-deformation machining makes.",
     "bench": "Measure speed and error of every level and method.",
     "view": "Show a recording in rerun.",

@@ -6,7 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.contour import outer_contour
-from bearing_sim.kernels.contact import line_contact_stiffness
+from bearing_sim.crown import crown_drops
+from bearing_sim.kernels.contact import iso_contact_stiffness, line_contact_stiffness
 from bearing_sim.kernels.film import Pumping, pumping_constant
 from bearing_sim.kernels.raceway import tabulated
 from bearing_sim.kernels.traction import (
@@ -17,7 +18,7 @@ from bearing_sim.kernels.traction import (
     thermal_eyring_constants,
 )
 from bearing_sim.oil import oil_at
-from bearing_sim.rating_life import ring_ratings
+from bearing_sim.rating_life import CLEANLINESS, fatigue_limit, load_rating, reliability_factor, ring_ratings, static_rating
 from bearing_sim.ring_growth import Growth, fit_growth, running_growth
 from bearing_sim.scene import Bearing, Lubricant, Scene
 from bearing_sim.scene_lubricant import ConstantTraction, EyringTraction, KragelskiiTraction
@@ -31,6 +32,7 @@ class Rollers(NamedTuple):
     length: float  # L [m]
     mass: float  # m_r [kg]
     inertia: float  # J_r about its own axis [kg m^2]
+    crown: np.ndarray  # drop C_k of each slice, off the penetration of each contact [m], shape (N,)
 
 
 class Raceways(NamedTuple):
@@ -81,7 +83,7 @@ class Slices(NamedTuple):
     """The rollers' slices; level ``spatial`` alone looks at them."""
 
     places: np.ndarray  # axial place of each slice's middle from the roller's, x_k [m], shape (N,)
-    crown: np.ndarray  # drop of the profile there, C_k [m], shape (N,)
+    crown: np.ndarray  # that of the rollers, drop C_k [m], shape (N,)
     together: int  # slices that share one evaluation of the traction law
 
 
@@ -105,10 +107,16 @@ class Tilts(NamedTuple):
 
 
 class Life(NamedTuple):
-    """Load ratings of one roller contact (ISO/TS 16281)."""
+    """Load ratings of one roller contact (ISO/TS 16281), and what modifies the life (ISO 281)."""
 
     inner_rating: float  # Q_ci [N]
     outer_rating: float  # Q_ce [N]
+    reliability_factor: float  # a_1
+    modified: bool  # whether a_ISO is taken
+    cleanliness_slope: float  # of e_C, see `bearing_sim.rating_life.CLEANLINESS`
+    cleanliness_loss: float
+    fatigue_limit_ratio: float  # C_u/C_r
+    lamina: bool  # whether a level with slices takes the life by them
 
 
 class Params(NamedTuple):
@@ -134,6 +142,14 @@ class Lubrication(NamedTuple):
     temperature: float  # of the oil [K]
     pumping: Pumping  # resistance to rolling
     ring_growth: float  # of the inner raceway by heat [m]
+    kinematic_viscosity: float  # nu of the oil [m^2/s]
+
+
+def contact_stiffness(bearing: Bearing) -> float:
+    """Return K of Q = K delta^(10/9) [N/m^(10/9)] of one contact, by the scene's spring constant."""
+    if bearing.contact.spring == "iso":
+        return iso_contact_stiffness(bearing.roller.length)
+    return line_contact_stiffness(bearing.roller.length, bearing.material.youngs_modulus, bearing.material.poisson_ratio)
 
 
 def pack(scene: Scene) -> Params:
@@ -144,10 +160,17 @@ def pack(scene: Scene) -> Params:
     inner_growth, outer_growth = fit_growth(bearing)
     inner_radius, low_radius = bearing.inner_raceway.radius + inner_growth, bearing.outer_raceway.low_radius + outer_growth
     compliance = 2 * (1 - bearing.material.poisson_ratio**2) / bearing.material.youngs_modulus
-    inner_rating, outer_rating = ring_ratings(bearing.roller.count, bearing.roller.diameter, bearing.roller.length, bearing.diameter_ratio)
-    cage = bearing.cage
+    cage, roller = bearing.cage, bearing.roller
+    crown = np.ascontiguousarray(crown_drops(roller.crown, roller.diameter, roller.length, roller.slices), np.float64)
     return Params(
-        rollers=Rollers(int(bearing.roller.count), roller_radius, bearing.roller.length, mass, 0.5 * mass * roller_radius**2),
+        rollers=Rollers(
+            count=int(bearing.roller.count),
+            radius=roller_radius,
+            length=bearing.roller.length,
+            mass=mass,
+            inertia=0.5 * mass * roller_radius**2,
+            crown=crown,
+        ),
         raceways=Raceways(
             inner_radius=inner_radius,
             low_radius=low_radius,
@@ -155,7 +178,7 @@ def pack(scene: Scene) -> Params:
             diameter_ratio=bearing.diameter_ratio,
             contour=tabulated(lambda azimuth: outer_contour(bearing.outer_raceway, azimuth)) + [0.0, 0.0, 0.0, outer_growth],
             slope_factor=1.0 if bearing.outer_raceway.contour_slope else 0.0,
-            stiffness=line_contact_stiffness(bearing.roller.length, bearing.material.youngs_modulus, bearing.material.poisson_ratio),
+            stiffness=contact_stiffness(bearing),
             inner_curvature_radius=1 / (1 / roller_radius + 1 / inner_radius),
             outer_curvature_radius=1 / (1 / roller_radius - 1 / low_radius),
             reduced_modulus=2 / compliance,
@@ -180,17 +203,17 @@ def pack(scene: Scene) -> Params:
             width=cage.width,
         ),
         ring=Ring(bearing.inner_raceway.ring_mass + bearing.inner_raceway.supported_mass, bearing.contact.damping),
-        life=Life(inner_rating, outer_rating),
+        life=_life(scene),
         growth=running_growth(bearing),
-        slices=_slices(bearing),
+        slices=_slices(bearing, crown),
         tilts=_tilts(scene, mass),
     )
 
 
-def _slices(bearing: Bearing) -> Slices:
+def _slices(bearing: Bearing, crown: np.ndarray) -> Slices:
     count, length = bearing.roller.slices, bearing.roller.length
     places = (np.arange(count) - 0.5 * (count - 1)) * (length / count)
-    return Slices(places, np.zeros(count), int(bearing.roller.slices_per_traction))
+    return Slices(places, crown, int(bearing.roller.slices_per_traction))
 
 
 def _tilts(scene: Scene, roller_mass: float) -> Tilts:
@@ -215,6 +238,24 @@ def _tilts(scene: Scene, roller_mass: float) -> Tilts:
     )
 
 
+def _life(scene: Scene) -> Life:
+    bearing, choice = scene.bearing, scene.life
+    dimensions = (bearing.roller.count, bearing.roller.diameter, bearing.roller.length, bearing.diameter_ratio)
+    inner_rating, outer_rating = ring_ratings(*dimensions)
+    slope, loss = CLEANLINESS.get(choice.a_iso, (0.0, 0.0))
+    limit = fatigue_limit(static_rating(*dimensions), bearing.pitch_diameter)
+    return Life(
+        inner_rating=inner_rating,
+        outer_rating=outer_rating,
+        reliability_factor=reliability_factor(choice.reliability),
+        modified=choice.a_iso != "none",
+        cleanliness_slope=slope,
+        cleanliness_loss=loss,
+        fatigue_limit_ratio=limit / load_rating(*dimensions),
+        lamina=bool(choice.lamina),
+    )
+
+
 def lubricate(lubricant: Lubricant, params: Params, temperature: float) -> Lubrication:
     """Return what the lubricant does at a temperature [K].
 
@@ -233,6 +274,7 @@ def lubricate(lubricant: Lubricant, params: Params, temperature: float) -> Lubri
         temperature=oil.temperature,
         pumping=Pumping(int(lubricant.pumping), *pumped),
         ring_growth=growth.constant + growth.by_temperature * oil.temperature,
+        kinematic_viscosity=oil.viscosity / oil.density,
     )
 
 

@@ -20,8 +20,8 @@ from mcap.stream_reader import CRCValidationError, StreamReader
 
 from bearing_sim.contour import outer_contour
 from bearing_sim.events import Event, Level
-from bearing_sim.kernels.contact import line_contact_stiffness
 from bearing_sim.mcap_stream import WholeReads
+from bearing_sim.params import contact_stiffness
 from bearing_sim.sample import new_block
 from bearing_sim.scene import Scene
 from bearing_sim.scene_file import SceneError, scene_from_yaml
@@ -249,9 +249,9 @@ def complete(scene: Scene, block: np.ndarray, before: np.void | None = None) -> 
     block : samples with time, speeds, angles and loads, NaN where nothing was recorded; changed in place.
     before : the completed sample before the block.
     """
-    bearing, material = scene.bearing, scene.bearing.material
+    bearing = scene.bearing
     count, radius = bearing.roller.count, bearing.roller.diameter / 2
-    stiffness = line_contact_stiffness(bearing.roller.length, material.youngs_modulus, material.poisson_ratio)
+    stiffness = contact_stiffness(bearing)
     azimuth = block["cage_angle"][:, None] + 2 * math.pi / count * np.arange(count)
     approach = {ring: np.maximum(block[f"{ring}_load"] / stiffness, 0.0) ** 0.9 for ring in ("inner", "outer")}
     block["roller_angle"] = azimuth
@@ -264,6 +264,8 @@ def complete(scene: Scene, block: np.ndarray, before: np.void | None = None) -> 
     block["land_eccentricity"] = np.hypot(block["cage_y"], block["cage_z"]) / bearing.cage.guide_clearance
     _fill(block, "inner_equivalent_load", np.mean(block["inner_load"] ** 4, axis=1) ** (1 / 4))
     _fill(block, "outer_equivalent_load", np.mean(block["outer_load"] ** 4.5, axis=1) ** (1 / 4.5))
+    for life in ("lamina_life", "modified_rating_life"):
+        _fill(block, life, block["rating_life"])
     # A loaded roller touches the ring: e cos(phi - phi_e) = delta_i - (R_i + R_w - r); all of them together give e.
     if np.isnan(block["ring_y"]).any():
         wanted = approach["inner"] - (bearing.inner_raceway.radius + radius - block["roller_radius"])

@@ -32,6 +32,8 @@ OBSERVABLES = (
     Observable("ideal_cage_speed", "rad/s", "cage speed without slip, omega_i (1 - gamma)/2"),
     Observable("cage_slip", "", "cage slip, 1 - cage speed / ideal cage speed (Deng 2017, eq. 17); NaN at rest"),
     Observable("rating_life", "h", "rating life L10 at the present condition; infinite at rest"),
+    Observable("lamina_life", "h", "rating life by slices, L10r (ISO/TS 16281); the rating life at a level without slices"),
+    Observable("modified_rating_life", "h", "life with reliability and oil, L_nm = a_1 a_ISO L10 (ISO 281), by the scene's choice; damage counts it"),
     Observable("damage", "", "fraction of life used since the start (Miner)"),
     Observable("inner_equivalent_load", "N", "dynamic equivalent roller load of the rotating inner ring"),
     Observable("outer_equivalent_load", "N", "dynamic equivalent roller load of the stationary outer ring"),

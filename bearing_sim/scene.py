@@ -10,13 +10,15 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from bearing_sim.crown import Crown, NoCrown, crown_faults
 from bearing_sim.methods import FIXED_STEP, METHODS
 from bearing_sim.quantity import quantity
 from bearing_sim.scene_lubricant import CustomOil, Oil, Oil4109Traction, Traction
 from bearing_sim.scene_raceway import InnerRaceway, OuterRaceway, RingGrowth, growth_faults
 from bearing_sim.scene_record import record as _strict
 
-LEVELS_WITH_GROWTH = ("slip",)  # levels that compute pumping and rings that grow with speed and temperature
+LEVELS_WITH_GROWTH = ("slip", "planar")  # levels that compute pumping and rings that grow with speed and temperature
+_WHOLE_ROLLERS = ("slip", "planar")  # levels whose rollers have no slices
 
 
 @_strict
@@ -29,9 +31,16 @@ class Roller:
     count: Annotated[int, Field(ge=3, le=200)]
     diameter: quantity("m", "roller diameter, D_w", 0.5e-3, 0.5, "mm")
     length: quantity("m", "roller effective length, L", 0.5e-3, 0.5, "mm")
-    crown: Literal["none"] = "none"
-    slices: Annotated[int, Field(ge=1, le=400)] = 20
+    crown: Crown = field(default_factory=NoCrown)  # see `bearing_sim.crown`
+    slices: Annotated[int, Field(ge=5, le=400)] = 20  # of a roller where the level slices it; ISO/TS 16281 asks for 30 for a life
     slices_per_traction: Annotated[int, Field(ge=1, le=400)] = 4
+
+    @model_validator(mode="after")
+    def _crown_fits(self):
+        faults = crown_faults(self.crown, self.length)
+        if faults:
+            raise ValueError("; ".join(faults))
+        return self
 
 
 @_strict
@@ -61,8 +70,9 @@ class Cage:
 
 @_strict
 class Contact:
-    """Dissipation in normal contacts, after Hunt and Crossley: Q (1 + a d(delta)/dt), never pulling."""
+    """Normal contacts: the spring constant, and dissipation after Hunt and Crossley: Q (1 + a d(delta)/dt), never pulling."""
 
+    spring: Literal["palmgren", "iso"] = "palmgren"  # A_1 of the material, or c_L of ISO/TS 16281, which is for steel
     damping: quantity("", "a [s/m]; 0.104 is a viscous ratio of 0.05 for a 7 mm roller at 500 N", 0.0, 100.0) = 0.104
 
 
@@ -216,6 +226,33 @@ class Thresholds:
     life_warning: quantity("h", "rating life below which there is a warning (Deng 2017: 300 h)", 0.0, 1e9) = 300.0
 
 
+CLEANLINESS = Literal[
+    "none",
+    "filtered_13_10",
+    "filtered_15_12",
+    "filtered_17_14",
+    "filtered_19_16",
+    "bath_13_10",
+    "bath_15_12",
+    "bath_17_14",
+    "bath_19_16",
+    "bath_21_18",
+]
+
+
+@_strict
+class LifeRating:
+    """Which life the damage counts: L_nm = a_1 a_ISO L_10 (ISO 281); all defaults leave the basic life L_10 (Deng 2017).
+
+    a_iso names the oil's cleanliness by the class that its ISO 4406 code ends in: `filtered`, circulating through a filter in line,
+    or `bath`, without one or through one off the line; none takes a_ISO = 1.
+    """
+
+    reliability: quantity("", "probability of reaching the life", 0.9, 0.9995, "%") = 0.9
+    a_iso: CLEANLINESS = "none"
+    lamina: bool = False  # by slices, with stress risers (ISO/TS 16281)
+
+
 @_strict
 class Scene:
     """One bearing, its oil, its operating conditions, and how it is computed."""
@@ -230,6 +267,7 @@ class Scene:
     integration: Integration = field(default_factory=Integration)
     input_limits: InputLimits = field(default_factory=InputLimits)
     thresholds: Thresholds = field(default_factory=Thresholds)
+    life: LifeRating = field(default_factory=LifeRating)
 
     @property
     def cage_whirls(self) -> bool:
@@ -237,8 +275,21 @@ class Scene:
         return self.level != "slip"
 
     @model_validator(mode="after")
+    def _level_sees_what_the_scene_says(self):
+        crown, operating = self.bearing.roller.crown.law, self.operating
+        needs = [f"bearing.roller.crown: {crown} needs level spatial, which slices the rollers"] if crown != "none" else []
+        needs += ["operating.moment: needs level spatial, whose ring tilts"] if operating.moment is not None else []
+        needs += ["operating.misalignment: needs level spatial, whose ring tilts"] if operating.misalignment != 0.0 else []
+        needs += ["life.lamina: needs level spatial, which slices the rollers"] if self.life.lamina else []
+        if needs and self.level in _WHOLE_ROLLERS:
+            raise ValueError("; ".join(f"{need}; level {self.level} would ignore it" for need in needs))
+        return self
+
+    @model_validator(mode="after")
     def _method_is_one_of_the_level(self):
-        names = METHODS[self.level]
+        names = METHODS.get(self.level)
+        if names is None:  # known to statics only
+            return self
         method = self.integration.method or names[0]
         if method not in names:
             raise ValueError(f"integration.method: level {self.level} is integrated by {', '.join(names[:-1])} or {names[-1]}, not by {method}")

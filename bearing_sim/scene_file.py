@@ -14,10 +14,12 @@ import yaml
 from pydantic import TypeAdapter, ValidationError
 
 from bearing_sim.contour_scene import UNREAD, anchor_contour, drop_other_forms, with_contour_text
+from bearing_sim.crown import anchor_crown
 from bearing_sim.scene import Scene
 
 _UNION_TAGS = frozenset(
     {"oil_4109", "constant", "kragelskii", "eyring", "fitted", "custom", "double_exponential", "reference", "hyperbolic", "power"}
+    | {"none", "iso_log", "straight_arc", "table"}
 )
 
 
@@ -103,6 +105,7 @@ def scene_from_yaml(text: str, overrides: Iterable[str] = (), origin: str = "sce
     tree = yaml_mapping(text, origin, "bearing, lubricant, operating ...")
     if folder is not None:
         anchor_contour(tree, folder)
+        anchor_crown(tree, folder)
     for override in overrides:
         _apply_override(tree, override)
     return scene_from_mapping(tree, origin)

@@ -153,6 +153,13 @@ OUTPUTS = {
     for topic in (
         Topic("cage_slip", "std_msgs/msg/Float64", "cage slip [fraction]; NaN at rest", _number("cage_slip")),
         Topic("rating_life", "std_msgs/msg/Float64", "rating life at the present condition [h]; infinite at rest", _number("rating_life")),
+        Topic("lamina_life", "std_msgs/msg/Float64", "rating life by slices [h]; the rating life at a level without slices", _number("lamina_life")),
+        Topic(
+            "modified_rating_life",
+            "std_msgs/msg/Float64",
+            "life with reliability and oil, by the scene's choice [h]; damage counts it",
+            _number("modified_rating_life"),
+        ),
         Topic("damage", "std_msgs/msg/Float64", "fraction of life used since the start", _number("damage")),
         Topic("bearing_joints", "sensor_msgs/msg/JointState", "shaft, cage, cage_ideal: angle [rad], speed [rad/s]; no torque", _bearing_joints),
         Topic("equivalent_loads", _MULTI_ARRAY, "dynamic equivalent roller loads [N], ring (inner, outer)", _array("equivalent_loads")),

@@ -28,6 +28,7 @@ ALLOWED = {
     "events.py": (set(), set()),
     "quantity.py": ({"pint", "pydantic_core"}, set()),
     "methods.py": (set(), set()),
+    "crown.py": ({"numpy", "pydantic"}, {"quantity", "scene_record"}),
     "contour_file.py": ({"numpy", "scipy"}, {"quantity"}),
     "contour.py": ({"numpy"}, {"contour_file"}),
     "scene_record.py": ({"pydantic"}, set()),
@@ -35,11 +36,11 @@ ALLOWED = {
     "scene_lubricant.py": ({"pydantic"}, {"quantity", "scene_record"}),
     "ring_growth.py": (set(), {"scene"}),
     "contour_scene.py": (set(), {"contour", "scene_raceway"}),
-    "scene.py": ({"pydantic"}, {"methods", "quantity", "scene_lubricant", "scene_raceway", "scene_record"}),
-    "scene_file.py": ({"pydantic", "yaml"}, {"contour_scene", "scene", "quantity"}),
+    "scene.py": ({"pydantic"}, {"crown", "methods", "quantity", "scene_lubricant", "scene_raceway", "scene_record"}),
+    "scene_file.py": ({"pydantic", "yaml"}, {"contour_scene", "crown", "scene", "quantity"}),
     "oil.py": ({"numpy"}, {"scene_lubricant"}),
-    "params.py": ({"numpy"}, {"contour", "kernels", "oil", "rating_life", "ring_growth", "scene", "scene_lubricant"}),
-    "rating_life.py": (set(), {"kernels.compilation"}),
+    "params.py": ({"numpy"}, {"contour", "crown", "kernels", "oil", "rating_life", "ring_growth", "scene", "scene_lubricant"}),
+    "rating_life.py": ({"numpy"}, {"kernels.compilation"}),
     "simulation.py": ({"numpy"}, {"integrators.status", "levels", "params", "sample", "scene"}),
     "sinks": (
         {"numpy", "mcap", "rosbags", "rerun", "yaml"},
@@ -47,7 +48,7 @@ ALLOWED = {
     ),
     "studies": (
         NUMBERS | {"sksundae", "matplotlib"},
-        {"studies", "levels", "params", "sample", "scene", "scene_file", "simulation"},
+        {"studies", "levels", "params", "rating_life", "sample", "scene", "scene_file", "simulation"},
     ),
     "runtime": ({"numpy"}, {"runtime", "simulation", "scene", "events", "sample", "topics"}),
 }

@@ -129,3 +129,21 @@ def test_a_fit_of_one_micrometre_costs_life_at_any_level():
         for overrides in ([], [f"{GROWTH}.shaft_interference=4 um"])
     ]
     assert lives[1] < lives[0] and math.isfinite(lives[1])
+
+
+@pytest.mark.parametrize("level", ["slip", "planar"])
+def test_growth_by_heat_is_the_same_squeeze_as_a_larger_raceway(level):
+    inputs = Inputs(3000.0, 800.0, 0.0, 393.15)
+    growth = f"{GROWTH}={{thermal: true, inner_excess: 15 K}}"
+    by_heat = radii(growth)[1].ring_growth
+    overrides = [growth], [f"bearing.inner_raceway.radius={27.875e-3 + by_heat}"]
+    grown, larger = (Simulation(load_scene("deng2017_table1", [f"level={level}", *o]), inputs).advance(0.02, samples=100) for o in overrides)
+    np.testing.assert_allclose(grown["inner_load"][50:].mean(0), larger["inner_load"][50:].mean(0), rtol=0.02, atol=5.0)
+
+
+def test_pumping_makes_the_cage_slip_more_at_level_planar():
+    slips = [
+        Simulation(load_scene("deng2017_table1", ["level=planar", f"lubricant.pumping={pumping}"])).advance(0.05, samples=50)["cage_slip"][40:].mean()
+        for pumping in ("false", "true")
+    ]
+    assert slips[1] > slips[0] + 0.002

@@ -12,7 +12,7 @@ from bearing_sim.kernels.compilation import template
 GAMMA = 1.0 - 1.0 / math.sqrt(2.0)
 _ITERATIONS = 12
 _CONVERGED = 0.05  # of the error that a step may make
-_SETTLED = 0.3  # so small a first correction leaves, squared, less than that
+_SETTLED = 0.5  # so small a first correction leaves, squared, less than that
 _CONTRACTION = 0.4  # slower than this, an iteration wants new derivatives
 
 

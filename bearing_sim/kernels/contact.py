@@ -26,6 +26,19 @@ def line_contact_stiffness(length, youngs_modulus, poisson_ratio):
     return per_millimetre * 1e3**EXPONENT
 
 
+def iso_contact_stiffness(length):
+    """Return K of one contact [N/m^(10/9)] by ISO/TS 16281, for steel.
+
+    Its c_L = 35948 L^(8/9) N/mm^(10/9) counts the approach of both rings, Q = c_L (delta_i + delta_e)^(10/9): two equal
+    contacts in a row, so that each has K = 2^(10/9) c_L.
+
+    Parameters
+    ----------
+    length : effective contact length [m].
+    """
+    return 35948.0 * (length * 1e3) ** (8.0 / 9.0) * 2e3**EXPONENT
+
+
 @kernel
 def line_penetration(force, stiffness):
     """Return the penetration [m] that carries a normal force [N]: Palmgren's law the other way round."""

@@ -123,16 +123,6 @@ def _store(context, array, block, row, value):
 
 
 @intrinsic
-def _load_run(context, run, first):
-    def generate(context, builder, signature, arguments):
-        run = context.make_array(signature.args[0])(context, builder, arguments[0])
-        pointer = builder.gep(run.data, [_index(context, builder, arguments[1], signature.args[1])])
-        return builder.load(builder.bitcast(pointer, _VECTOR.as_pointer()), align=8)
-
-    return lanes_type(run, first), generate
-
-
-@intrinsic
 def _gather(context, table, index, column):
     def generate(context, builder, signature, arguments):
         table = context.make_array(signature.args[0])(context, builder, arguments[0])
@@ -164,6 +154,18 @@ def _sum(context, value):
             nothing = ir.Constant(value.type, ir.Undefined)
             value = builder.fadd(builder.shuffle_vector(value, nothing, low), builder.shuffle_vector(value, nothing, high))
         return builder.extract_element(value, ir.Constant(ir.IntType(32), 0))
+
+    return types.float64(value), generate
+
+
+@intrinsic
+def _highest(context, value):
+    def generate(context, builder, signature, arguments):
+        best = builder.extract_element(arguments[0], ir.Constant(ir.IntType(32), 0))
+        for lane in range(1, LANES):
+            other = builder.extract_element(arguments[0], ir.Constant(ir.IntType(32), lane))
+            best = builder.select(builder.fcmp_ordered(">", other, best), other, best)
+        return best
 
     return types.float64(value), generate
 
@@ -229,9 +231,6 @@ if numba.config.DISABLE_JIT:
     def store(array, block, row, value):
         array[block, row] = value
 
-    def load_run(run, first):
-        return run[first : first + LANES].copy()
-
     def gather(table, index, column):
         return table[index.astype(int), column]
 
@@ -241,12 +240,16 @@ if numba.config.DISABLE_JIT:
     def total(value):
         return value.sum()
 
+    def highest(value):
+        return value.max()
+
     def where_positive(condition, positive, otherwise):
         return np.where(condition > 0.0, positive, otherwise)
 
     square_root, floor, magnitude, larger, smaller = np.sqrt, np.floor, np.abs, np.maximum, np.minimum
 else:
-    load, store, load_run, gather, spread, total, where_positive = _load, _store, _load_run, _gather, _broadcast, _sum, _where_positive
+    load, store, gather = _load, _store, _gather
+    spread, total, highest, where_positive = _broadcast, _sum, _highest, _where_positive
     square_root, floor, magnitude = _unary("sqrt"), _unary("floor"), _unary("fabs")
     larger, smaller = _choice(">"), _choice("<")
 

@@ -4,7 +4,7 @@ import math
 
 from bearing_sim.kernels.compilation import kernel
 from bearing_sim.levels.inputs import load_at, shaft_speed_at
-from bearing_sim.rating_life import rating_life_revolutions
+from bearing_sim.rating_life import modified_life_revolutions, rating_life_revolutions
 from bearing_sim.sample import COLUMN
 
 _SLIP_FLOOR = 1.0  # rad/s of ideal cage speed; slip of a bearing at rest is not defined
@@ -39,7 +39,29 @@ def observe_course(t, cage_angle, cage_speed, inner_equivalent, outer_equivalent
     row[COLUMN.ideal_cage_speed] = ideal
     row[COLUMN.cage_slip] = 1.0 - cage_speed / ideal if abs(ideal) >= _SLIP_FLOOR else math.nan
     revolutions = rating_life_revolutions(inner_equivalent, outer_equivalent, model.params.life)
-    row[COLUMN.rating_life] = 2.0 * math.pi * revolutions / (3600.0 * abs(shaft_speed))
-    row[COLUMN.damage] = previous[COLUMN.damage] + abs(rotation) / (2.0 * math.pi * revolutions)
     row[COLUMN.inner_equivalent_load] = inner_equivalent
     row[COLUMN.outer_equivalent_load] = outer_equivalent
+    observe_life(revolutions, revolutions, model, interval, previous, row)
+
+
+@kernel
+def observe_life(revolutions, lamina_revolutions, model, interval, previous, row):
+    """Write the lives of one instant and the damage since the start; a level with slices calls it once more with its own.
+
+    Damage counts the modified life: of the lamina life where the scene wants that, of the basic life elsewhere.
+
+    Parameters
+    ----------
+    revolutions : basic life L10.
+    lamina_revolutions : life by slices; L10 at a level without slices.
+    model, interval, previous, row : as in `observe_course`, which has written the shaft's speed.
+    """
+    params, shaft_speed = model.params, row[COLUMN.shaft_speed]
+    chosen = lamina_revolutions if params.life.lamina else revolutions
+    modified = modified_life_revolutions(chosen, shaft_speed, model.lubrication.kinematic_viscosity, 2.0 * params.raceways.pitch_radius, params.life)
+    hours = 2.0 * math.pi / (3600.0 * abs(shaft_speed))
+    rotation = 0.5 * (shaft_speed + previous[COLUMN.shaft_speed]) * interval
+    row[COLUMN.rating_life] = hours * revolutions
+    row[COLUMN.lamina_life] = hours * lamina_revolutions
+    row[COLUMN.modified_rating_life] = hours * modified
+    row[COLUMN.damage] = previous[COLUMN.damage] + abs(rotation) / (2.0 * math.pi * modified)

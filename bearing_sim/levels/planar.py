@@ -43,6 +43,7 @@ def initial_state(params: Params, work, shaft_speed, load_y, load_z):
     """
     count = params.rollers.count
     balance, course = slip.new_work(params), slip.initial_state(params, None, shaft_speed, load_y, load_z)
+    balance.growth[0] = params.growth.by_square_speed * shaft_speed * shaft_speed  # heat, not known here, comes with the first step
     inner, outer = slip.equivalent_loads(0.0, course[slip.OMEGA], load_y, load_z, params, balance)
     work.load_means[:] = inner**ROTATING_EXPONENT, outer**STATIONARY_EXPONENT
     slip.balance_loads(0.0, course[slip.OMEGA], load_y, load_z, params, balance)

@@ -13,6 +13,7 @@ import math
 from bearing_sim.kernels.compilation import kernel
 from bearing_sim.kernels.lanes import LANES
 from bearing_sim.kernels.traction import CONTACT
+from bearing_sim.levels.growth import inner_growth
 from bearing_sim.levels.planar_algebra import BORDER
 from bearing_sim.levels.planar_border import LAND_SLIDING
 from bearing_sim.levels.planar_land import land_contact, land_film
@@ -103,7 +104,7 @@ def planar_powers(y, shaft_speed, model, work):
     pocket, walls = _pockets(y, params, work.rollers)
     land, touching = land_powers(y, model)
     return Powers(
-        shaft_traction_power(contacts, count, shaft_speed, params.raceways.inner_radius) + bore,
+        shaft_traction_power(contacts, count, shaft_speed, params.raceways.inner_radius + inner_growth(shaft_speed, model)) + bore,
         sliding_power(contacts, 0, count),
         sliding_power(contacts, work.rollers.shape[0], count),
         _churning(work.rollers, count),

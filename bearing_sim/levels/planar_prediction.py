@@ -9,14 +9,16 @@ import math
 
 from bearing_sim.kernels.compilation import kernel
 from bearing_sim.kernels.elementary import cosine_sine
-from bearing_sim.kernels.lanes import LANES, floor, load, square_root, store
+from bearing_sim.kernels.lanes import LANES, floor, highest, larger, load, magnitude, spread, square_root, store
 from bearing_sim.kernels.raceway import contour_lanes
 from bearing_sim.kernels.traction import CONTACT
+from bearing_sim.levels.growth import inner_growth
 from bearing_sim.levels.planar_algebra import BORDER
 from bearing_sim.levels.planar_rollers import normal_forces
 from bearing_sim.levels.planar_state import R_SPEED, RING_Y, RING_Z, ROLLER, ROLLERS, R
 
-_ITERATIONS = 2
+_ITERATIONS = 4
+_SETTLED = 5e-5  # m, times the tolerance: what one iteration more would change is left to the whole system's
 
 
 @kernel
@@ -55,21 +57,25 @@ def _start(known, shift, guess, count, raceways, rows):
 
 
 @kernel
-def _balance(guess, shift, params, rows, contacts):
-    """Take one Newton step of all radial equations: r = known + shift r', r' = known' + shift (r phi'^2 + (Q_i - Q_e)/m)."""
-    raceways, roller_radius, mass, blocks = params.raceways, params.rollers.radius, params.rollers.mass, rows.shape[0]
+def _balance(guess, shift, inner_radius, params, rows, contacts):
+    """Take one Newton step of all radial equations and return the largest change [m].
+
+    r = known + shift r', r' = known' + shift (r phi'^2 + (Q_i - Q_e)/m)
+    """
+    roller_radius, mass, blocks = params.rollers.radius, params.rollers.mass, rows.shape[0]
     per_shift = 1.0 / shift
     for block in range(blocks):
         radius, cosine, sine = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.cosine), load(rows, block, ROLLER.sine)
         along, across = guess[RING_Y] * cosine + guess[RING_Z] * sine, guess[RING_Z] * cosine - guess[RING_Y] * sine
         speed = (radius - load(rows, block, ROLLER.known_radius)) * per_shift
         distance = square_root((radius - along) * (radius - along) + across * across)
-        store(contacts, block, CONTACT.penetration, raceways.inner_radius + roller_radius - distance)
+        store(contacts, block, CONTACT.penetration, inner_radius + roller_radius - distance)
         store(contacts, block, CONTACT.rate, guess[BORDER + RING_Y] * cosine + guess[BORDER + RING_Z] * sine - speed)
         store(contacts, blocks + block, CONTACT.penetration, radius + roller_radius - load(rows, block, ROLLER.contour))
         rate = speed - load(rows, block, ROLLER.slope) * load(rows, block, ROLLER.orbital_speed)
         store(contacts, blocks + block, CONTACT.rate, rate)
     normal_forces(params, contacts)
+    largest = spread(0.0)
     for block in range(blocks):
         outer = blocks + block
         radius, orbital_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.orbital_speed)
@@ -78,7 +84,10 @@ def _balance(guess, shift, params, rows, contacts):
         damping = load(contacts, block, CONTACT.damping) + load(contacts, outer, CONTACT.damping)
         force = load(contacts, outer, CONTACT.load) - load(contacts, block, CONTACT.load)
         force += mass * ((speed - load(rows, block, ROLLER.known_speed)) * per_shift - radius * orbital_speed * orbital_speed)
-        store(rows, block, ROLLER.radius, radius - force / (mass * per_shift * per_shift + damping * per_shift + stiffness))
+        change = force / (mass * per_shift * per_shift + damping * per_shift + stiffness)
+        largest = larger(largest, magnitude(change))
+        store(rows, block, ROLLER.radius, radius - change)
+    return highest(largest)
 
 
 @kernel
@@ -95,10 +104,12 @@ def predict(known, shift, slope, model, work, guess):
     """
     params, rows = model.params, work.rollers
     count = params.rollers.count
+    inner_radius = params.raceways.inner_radius + inner_growth(model.drive.shaft_speed, model)  # of where the inputs begin: a guess needs no more
     _extrapolate(known, shift, slope, count, guess)
     _start(known, shift, guess, count, params.raceways, rows)
     for _ in range(_ITERATIONS):
-        _balance(guess, shift, params, rows, work.contacts)
+        if _balance(guess, shift, inner_radius, params, rows, work.contacts) < _SETTLED * model.tolerance:
+            break
     per_shift = 1.0 / shift
     for j in range(count):
         roller = ROLLERS + j

@@ -10,9 +10,11 @@ from bearing_sim.kernels.compilation import kernel
 from bearing_sim.kernels.contact import damped_line_contact, log_penetration
 from bearing_sim.kernels.drag import churning_force
 from bearing_sim.kernels.elementary import cosine_sine
+from bearing_sim.kernels.film import pump
 from bearing_sim.kernels.lanes import floor, larger, load, magnitude, spread, square_root, store, total, where_positive
 from bearing_sim.kernels.raceway import contour_lanes
 from bearing_sim.kernels.traction import CONTACT, traction
+from bearing_sim.levels.growth import inner_growth
 from bearing_sim.levels.inputs import shaft_speed_at
 from bearing_sim.levels.planar_algebra import BORDER
 from bearing_sim.levels.planar_border import border_accelerations
@@ -21,7 +23,7 @@ from bearing_sim.levels.planar_state import CAGE_Y, CAGE_Z, OMEGA, RING_Y, RING_
 
 
 @kernel
-def _place(y, shaft_speed, params, rows, contacts):
+def _place(y, shaft_speed, inner_radius, params, rows, contacts):
     """Write directions about the displaced ring, penetrations, rolling and sliding speeds of all rollers."""
     raceways, roller_radius = params.raceways, params.rollers.radius
     ring_y, ring_z, ring_y_speed, ring_z_speed = y[RING_Y], y[RING_Z], y[BORDER + RING_Y], y[BORDER + RING_Z]
@@ -53,10 +55,10 @@ def _place(y, shaft_speed, params, rows, contacts):
         store(rows, block, ROLLER.inverse_distance, inverse)
         store(rows, block, ROLLER.speed_normal, speed_normal)
         store(rows, block, ROLLER.speed_tangent, speed_tangent)
-        store(contacts, block, CONTACT.penetration, raceways.inner_radius + roller_radius - distance)
+        store(contacts, block, CONTACT.penetration, inner_radius + roller_radius - distance)
         store(contacts, block, CONTACT.rate, -speed_normal)
-        store(contacts, block, CONTACT.rolling, 0.5 * ((shaft_speed - orbital_speed) * raceways.inner_radius + rolling))
-        store(contacts, block, CONTACT.sliding, shaft_speed * raceways.inner_radius - speed_tangent - surface)
+        store(contacts, block, CONTACT.rolling, 0.5 * ((shaft_speed - orbital_speed) * inner_radius + rolling))
+        store(contacts, block, CONTACT.sliding, shaft_speed * inner_radius - speed_tangent - surface)
         outer = blocks + block
         store(contacts, outer, CONTACT.rate, radial_speed - load(rows, block, ROLLER.slope) * orbital_speed)
         store(contacts, outer, CONTACT.rolling, 0.5 * (orbital_speed * (radius + roller_radius) + rolling))
@@ -138,16 +140,26 @@ def _accelerate(y, churning, model, rows, contacts, rate):
         t_i, t_e = load(contacts, block, CONTACT.force), load(contacts, outer, CONTACT.force)
         force, friction = -load(rows, block, ROLLER.pocket_force), load(rows, block, ROLLER.pocket_friction)
         play_cosine, play_sine = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
-        radial, along = q_i * n_r - t_i * n_t, q_i * n_t + t_i * n_r
+        # Of the oil pumped back a roller feels what both surfaces and its centre feel: F_R (1 -/+ 2 gamma) along, F_R against its spin.
+        pumped_i, pumped_e = load(contacts, block, CONTACT.pumping), load(contacts, outer, CONTACT.pumping)
+        push_i = t_i + pumped_i * (1.0 - 2.0 * params.raceways.diameter_ratio)
+        radial, along = q_i * n_r - push_i * n_t, q_i * n_t + push_i * n_r
         pitch_speed = params.raceways.pitch_radius * y[OMEGA]
         drag = churning[0] + churning[1] * (radius * orbital_speed - pitch_speed)
         slope = params.raceways.slope_factor * load(rows, block, ROLLER.slope)
         f_r = radial - q_e - force * (play_sine + friction * play_cosine)
-        f_t = along + t_e + q_e * slope / radius - drag - force * (play_cosine - friction * play_sine)
+        f_t = (
+            along
+            + t_e
+            - pumped_e * (1.0 + 2.0 * params.raceways.diameter_ratio)
+            + q_e * slope / radius
+            - drag
+            - force * (play_cosine - friction * play_sine)
+        )
         store(rows, block, ROLLER.churning, drag)
         store(rows, block, ROLLER.radial_acceleration, radius * orbital_speed * orbital_speed + f_r * (1.0 / mass))
         store(rows, block, ROLLER.orbital_acceleration, (f_t * (1.0 / mass) - 2.0 * radial_speed * orbital_speed) / radius)
-        spin_acceleration = (t_i - t_e - friction * magnitude(force)) * (roller_radius / params.rollers.inertia)
+        spin_acceleration = (t_i - t_e - pumped_i - pumped_e - friction * magnitude(force)) * (roller_radius / params.rollers.inertia)
         store(rows, block, ROLLER.spin_acceleration, spin_acceleration)
         present, cosine, sine = load(rows, block, ROLLER.present), load(rows, block, ROLLER.cosine), load(rows, block, ROLLER.sine)
         pocket_cosine, pocket_sine = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
@@ -189,9 +201,11 @@ def equations(t, y, model, work, rate, with_jacobian):
     for k in range(BORDER):
         rate[k] = y[BORDER + k]
     cage_cosine, cage_sine = math.cos(y[THETA]), math.sin(y[THETA])
-    _place(y, shaft_speed, params, rows, contacts)
+    _place(y, shaft_speed, params.raceways.inner_radius + inner_growth(shaft_speed, model), params, rows, contacts)
     normal_forces(params, contacts)
     traction(contacts, model.lubrication.inner, model.lubrication.outer)
+    if model.lubrication.pumping.on:
+        pump(contacts, model.lubrication.pumping)
     _pocket_forces(y, cage_cosine, cage_sine, params, rows)
     _accelerate(y, churning, model, rows, contacts, rate)
     if with_jacobian:

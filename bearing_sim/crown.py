@@ -1,0 +1,157 @@
+"""Crown: how far a roller's profile drops from a straight cylinder towards its ends, and the drops of its slices."""
+
+import csv
+from pathlib import Path
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import BeforeValidator, Field, model_validator
+
+from bearing_sim.quantity import quantity
+from bearing_sim.scene_record import record as _strict
+
+_TABLE_HEADER = "expected a header of two columns, position and drop, each with its unit in brackets, such as position[mm],drop[um]"
+
+
+@_strict
+class NoCrown:
+    """A straight cylinder: no drop anywhere."""
+
+    law: Literal["none"] = "none"
+
+
+@_strict
+class IsoLogCrown:
+    """The logarithmic profile of ISO/TS 16281: P(x) = 0.00035 D_w ln(1/(1 - (2 x/L)^2)); endless at the very end, x = L/2."""
+
+    law: Literal["iso_log"] = "iso_log"
+
+
+@_strict
+class StraightArcCrown:
+    """Straight in the middle, then an arc: P(x) = R_c - sqrt(R_c^2 - s^2), s = |x| - straight_length/2, where s > 0."""
+
+    law: Literal["straight_arc"] = "straight_arc"
+    straight_length: quantity("m", "length of the straight middle part", 0.0, 0.5, "mm")
+    crown_radius: quantity("m", "radius of the arcs on both sides of it, R_c", 1e-3, 1e3, "mm")
+
+
+@_strict
+class TableCrown:
+    """A measured profile, straight lines between its points; positions count from the roller's middle along x."""
+
+    law: Literal["table"] = "table"
+    positions: tuple[quantity("m", "position along the roller, from its middle", -0.25, 0.25, "mm"), ...]
+    drops: tuple[quantity("m", "drop from the cylinder of the largest diameter", 0.0, 5e-3, "um"), ...]
+
+    @model_validator(mode="after")
+    def _points_pair_up(self):
+        if len(self.positions) != len(self.drops) or len(self.drops) < 2:
+            raise ValueError(f"drops: {len(self.drops)} values for {len(self.positions)} positions; expected as many, at least two")
+        if any(b <= a for a, b in zip(self.positions, self.positions[1:])):
+            raise ValueError("positions: expected rising positions")
+        return self
+
+
+def _from_shorthand(value):
+    """Return the record that a bare name or the path of a CSV file stands for."""
+    if isinstance(value, str):
+        return {"law": value.strip()}
+    if isinstance(value, dict) and "file" in value and value.get("law", "table") == "table":
+        if not isinstance(value["file"], (str, Path)) or "positions" in value or "drops" in value:
+            raise ValueError("file: expected the path of a CSV file, instead of positions and drops, not beside them")
+        return {"law": "table", **{key: item for key, item in value.items() if key != "file"}, **crown_points(value["file"])}
+    return value
+
+
+Crown = Annotated[
+    NoCrown | IsoLogCrown | StraightArcCrown | TableCrown,
+    Field(discriminator="law"),
+    BeforeValidator(_from_shorthand),
+]
+"""A crown in a scene: a record, or the bare name of one that needs no numbers (``none``, ``iso_log``)."""
+
+
+def anchor_crown(tree, folder: Path) -> None:
+    """Make a crown's file that a scene file names relative to that file's folder.
+
+    Parameters
+    ----------
+    tree : the scene as nested mappings; changed in place.
+    folder : of the scene file.
+    """
+    node = tree
+    for key in ("bearing", "roller", "crown"):
+        node = node.get(key) if isinstance(node, dict) else None
+    if isinstance(node, dict) and isinstance(node.get("file"), str):
+        node["file"] = str(folder / node["file"])
+
+
+def crown_points(path: str | Path) -> dict[str, list[str]]:
+    """Return the positions and drops of a CSV file as texts with their units.
+
+    Parameters
+    ----------
+    path : of a file whose first line names the columns with units, ``position[mm],drop[um]``; ``#`` begins a remark.
+
+    Raises
+    ------
+    ValueError
+        The file cannot be read, or is not of that form.
+    """
+    try:
+        with open(path, encoding="utf-8", newline="") as file:
+            rows = [row for row in csv.reader(line for line in file if not line.lstrip().startswith("#")) if any(cell.strip() for cell in row)]
+    except (OSError, UnicodeDecodeError, csv.Error) as fault:
+        raise ValueError(f"file {str(path)!r} cannot be read: {fault}") from None
+    names = [cell.strip().rstrip("]").split("[") for cell in rows[0]] if rows else []
+    units = {name[0].strip(): (place, name[1]) for place, name in enumerate(names) if len(name) == 2}
+    if len(names) != 2 or set(units) != {"position", "drop"}:
+        raise ValueError(f"file {str(path)!r}: {_TABLE_HEADER}")
+    short = next((number for number, row in enumerate(rows[1:], 1) if len(row) != 2), None)
+    if short is not None:
+        raise ValueError(f"file {str(path)!r}: row {short} has {len(rows[short])} columns, expected 2")
+    return {f"{name}s": [f"{row[place].strip()} {unit}" for row in rows[1:]] for name, (place, unit) in units.items()}
+
+
+def slice_middles(length: float, slices: int) -> np.ndarray:
+    """Return the middles of a roller's slices along x, x_k = (k - 1/2) L/N - L/2 [m], shape (slices,)."""
+    return (np.arange(slices) + 0.5) * (length / slices) - length / 2
+
+
+def crown_drops(crown, roller_diameter: float, length: float, slices: int) -> np.ndarray:
+    """Return the drop C_k of every slice at its middle [m], shape (slices,).
+
+    It is taken off the penetration of each of the two contacts: delta_k = delta - C_k + tilt x_k.  ISO/TS 16281, which counts
+    the approach of both rings as one, takes 2 P(x_k) off it; that is the same.
+
+    Parameters
+    ----------
+    crown : one of the records of this module.
+    roller_diameter, length : D_w and L [m].
+    slices : their number, N.
+    """
+    x = slice_middles(length, slices)
+    if isinstance(crown, IsoLogCrown):
+        return -0.00035 * roller_diameter * np.log1p(-((2.0 * x / length) ** 2))
+    if isinstance(crown, StraightArcCrown):
+        on_arc = np.maximum(np.abs(x) - crown.straight_length / 2, 0.0)
+        # R - sqrt(R^2 - s^2) without the difference of two large numbers
+        return on_arc**2 / (crown.crown_radius + np.sqrt(crown.crown_radius**2 - on_arc**2))
+    if isinstance(crown, TableCrown):
+        return np.interp(x, crown.positions, crown.drops)
+    return np.zeros(slices)
+
+
+def crown_faults(crown, length: float) -> list[str]:
+    """Return in words what about a crown does not fit a roller of a length [m]."""
+    half = length / 2
+    if isinstance(crown, StraightArcCrown):
+        if crown.straight_length > length:
+            return [f"crown.straight_length: {1e3 * crown.straight_length:.6g} mm is longer than the roller, {1e3 * length:.6g} mm"]
+        if crown.crown_radius <= half - crown.straight_length / 2:
+            return [f"crown.crown_radius: {1e3 * crown.crown_radius:.6g} mm is shorter than the arc, which then ends before the roller does"]
+    if isinstance(crown, TableCrown) and not (crown.positions[0] <= -half * (1 - 1e-9) and crown.positions[-1] >= half * (1 - 1e-9)):
+        reached = f"{1e3 * crown.positions[0]:.6g} to {1e3 * crown.positions[-1]:.6g} mm"
+        return [f"crown.positions: {reached} do not reach both ends of the roller, {-1e3 * half:.6g} and {1e3 * half:.6g} mm"]
+    return []

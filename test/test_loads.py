@@ -1,0 +1,81 @@
+"""Claims about the statics of a scene and the command that shows them."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from bearing_sim import Simulation, load_scene
+from bearing_sim.cli import main
+from bearing_sim.studies.statics import statics
+
+SPATIAL = ("level=spatial", "bearing.roller.crown=iso_log")
+
+
+def found(*overrides, slices=40):
+    return statics(load_scene("deng2017_table1", overrides), slices)
+
+
+def loads(*arguments):
+    return CliRunner().invoke(main, ["loads", *arguments])
+
+
+def test_straight_rollers_in_line_have_the_basic_life_of_level_slip():
+    sample = Simulation(load_scene("deng2017_table1", ["lubricant.traction_scale=5"])).advance(0.05)[-1]
+    assert found().rating_life == pytest.approx(float(sample["rating_life"]), rel=0.03)  # which slips a little there
+
+
+def test_life_in_hours_falls_with_speed_and_is_endless_at_rest():
+    assert math.isinf(found("operating.shaft_speed=0 rpm").lamina_life)
+    assert found("operating.shaft_speed=100 rpm").rating_life > 100 * found().rating_life
+    nothing = found("operating.shaft_speed=0 rpm", "operating.radial_load=0 N", "bearing.outer_raceway.low_radius=34.9 mm")
+    assert not nothing.inner.any() and math.isinf(nothing.modified_life) and not any(np.isnan(nothing.ring))
+
+
+def test_misalignment_moves_pressure_up_and_life_down():
+    cases = [found(*SPATIAL, f"operating.misalignment={tilt} mrad") for tilt in (0.0, 1.0, 2.0, 3.0)]
+    for before, after in zip(cases, cases[1:]):
+        assert after.inner_pressure > before.inner_pressure and after.lamina_life < before.lamina_life
+        assert after.moment[0] > before.moment[0]
+
+
+@pytest.mark.parametrize("azimuth", [0.0, 120.0])
+def test_a_ring_held_at_the_tilt_that_a_moment_gives_bears_that_moment(azimuth):
+    free = found(*SPATIAL, "operating.moment=0.6 N*m", f"operating.moment_angle={azimuth} deg")
+    angle = math.degrees(free.tilt[1])
+    held = found(*SPATIAL, f"operating.misalignment={free.tilt[0]}", f"operating.misalignment_angle={angle} deg")
+    assert free.moment == pytest.approx((0.6, math.radians(azimuth)), rel=1e-6)
+    assert held.moment == pytest.approx(free.moment, rel=1e-4, abs=1e-4)
+
+
+def test_a_roller_on_the_side_to_which_the_end_leans_is_pressed_there():
+    case = found(*SPATIAL, "operating.misalignment=1 mrad", "operating.misalignment_angle=0 deg")
+    assert case.inner_slices[0, 20:].sum() > 1.3 * case.inner_slices[0, :20].sum() and 0.0 < case.tilts[0] < 1e-3
+
+
+def test_the_scene_chooses_the_life_that_counts():
+    whole, sliced = found(*SPATIAL), found(*SPATIAL, "life.lamina=true")
+    assert whole.modified_life == whole.rating_life and sliced.modified_life == sliced.lamina_life
+    dirty = found(*SPATIAL, "life.lamina=true", "life.a_iso=bath_19_16", "life.reliability=99 %")
+    assert dirty.modified_life < 0.25 * sliced.lamina_life
+
+
+def test_the_command_reports_what_statics_finds(tmp_path):
+    picture = tmp_path / "loads.png"
+    shown = loads("deng2017_table1", "--json", "--slices", "30", "--picture", str(picture))
+    assert shown.exit_code == 0
+    report, case = json.loads(shown.stdout), found(slices=30)
+    assert report["inner_loads"] == pytest.approx(case.inner.tolist()) and report["lamina_life_hours"] == pytest.approx(case.lamina_life)
+    assert np.shape(report["outer_slice_loads"]) == (18, 30)
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    text = loads("deng2017_table1", *(part for override in SPATIAL for part in ("--set", override))).stdout
+    assert "3 of 18" in text and "lamina life" in text and "nan" not in text.lower()
+
+
+def test_the_command_tells_what_it_cannot_use():
+    assert loads("nowhere").exit_code == 2
+    refused = loads("deng2017_table1", "--set", "operating.moment=1 N*m")
+    assert refused.exit_code == 2 and "needs level spatial" in refused.stderr
+    assert loads("deng2017_table1", "--picture", "loads.gif").exit_code == 2
