@@ -160,7 +160,8 @@ def pack(scene: Scene) -> Params:
     inner_growth, outer_growth = fit_growth(bearing)
     inner_radius, low_radius = bearing.inner_raceway.radius + inner_growth, bearing.outer_raceway.low_radius + outer_growth
     compliance = 2 * (1 - bearing.material.poisson_ratio**2) / bearing.material.youngs_modulus
-    cage = bearing.cage
+    cage, roller = bearing.cage, bearing.roller
+    crown = np.ascontiguousarray(crown_drops(roller.crown, roller.diameter, roller.length, roller.slices), np.float64)
     return Params(
         rollers=Rollers(
             count=int(bearing.roller.count),
@@ -203,18 +204,16 @@ def pack(scene: Scene) -> Params:
         ring=Ring(bearing.inner_raceway.ring_mass + bearing.inner_raceway.supported_mass, bearing.contact.damping),
         life=_life(scene),
         growth=running_growth(bearing),
-        slices=_slices(bearing),
+        slices=_slices(bearing, crown),
         tilts=_tilts(scene, mass),
     )
 
 
-def _slices(bearing: Bearing) -> Slices:
+def _slices(bearing: Bearing, crown: np.ndarray) -> Slices:
     count, length = bearing.roller.slices, bearing.roller.length
     places = (np.arange(count) - 0.5 * (count - 1)) * (length / count)
-    roller = bearing.roller
-    drops = crown_drops(roller.crown, roller.diameter, roller.length, roller.slices)
     risers = stress_risers(count) if count > 1 else np.ones(1)
-    return Slices(places, np.ascontiguousarray(drops, np.float64), int(roller.slices_per_traction), risers)
+    return Slices(places, crown, int(bearing.roller.slices_per_traction), risers)
 
 
 def _tilts(scene: Scene, roller_mass: float) -> Tilts:

@@ -8,7 +8,7 @@ import math
 
 from bearing_sim.kernels.compilation import kernel
 from bearing_sim.kernels.elementary import cosine_sine
-from bearing_sim.kernels.lanes import LANES, floor, load, square_root, store
+from bearing_sim.kernels.lanes import LANES, floor, highest, larger, load, magnitude, spread, square_root, store
 from bearing_sim.kernels.raceway import contour_lanes
 from bearing_sim.levels.spatial_algebra import BORDER
 from bearing_sim.levels.spatial_slices import SLICED, normal_slices
@@ -30,7 +30,8 @@ from bearing_sim.levels.spatial_state import (
     R,
 )
 
-_ITERATIONS = 2
+_ITERATIONS = 4
+_SETTLED = 5e-5  # m, times the tolerance, as at level `planar`
 
 
 @kernel
@@ -98,7 +99,10 @@ def _place(block, guess, shift, params, rows, contacts):
 
 @kernel
 def _balance(block, shift, params, rows, contacts):
-    """Take one Newton step: r'' and tilt'' of the normal forces, the orbit and the spin as they are."""
+    """Take one Newton step and return how far it moves the rollers and their ends [m].
+
+    r'' and tilt'' are those of the normal forces, orbit and spin are as they are.
+    """
     mass, inertia, outer, per_shift = params.rollers.mass, params.tilts.roller_inertia, rows.shape[0] + block, 1.0 / shift
     radius, tilt, orbital_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.tilt), load(rows, block, ROLLER.orbital_speed)
     speed = (radius - load(rows, block, ROLLER.known_radius)) * per_shift
@@ -117,8 +121,10 @@ def _balance(block, shift, params, rows, contacts):
     d = inertia * per_shift * per_shift + load(contacts, outer, SLICED.stiffness + 2) + load(contacts, block, SLICED.stiffness + 2)
     d += per_shift * (load(contacts, outer, SLICED.damping + 2) + load(contacts, block, SLICED.damping + 2))
     inverse = 1.0 / (a * d - b * b)
-    store(rows, block, ROLLER.radius, radius - (d * force - b * moment) * inverse)
-    store(rows, block, ROLLER.tilt, tilt - (a * moment - b * force) * inverse)
+    outwards, tilting = (d * force - b * moment) * inverse, (a * moment - b * force) * inverse
+    store(rows, block, ROLLER.radius, radius - outwards)
+    store(rows, block, ROLLER.tilt, tilt - tilting)
+    return larger(magnitude(outwards), magnitude(tilting) * (0.5 * params.rollers.length))
 
 
 @kernel
@@ -138,11 +144,14 @@ def predict(known, shift, slope, model, work, guess):
     _extrapolate(known, shift, slope, count, guess)
     _start(known, shift, guess, count, params.raceways, rows)
     for _ in range(_ITERATIONS):
+        largest = spread(0.0)
         for block in range(blocks):
             _place(block, guess, shift, params, rows, contacts)
             normal_slices(block, contacts, params.slices, params.raceways.stiffness, params.ring.contact_damping)
             normal_slices(blocks + block, contacts, params.slices, params.raceways.stiffness, params.ring.contact_damping)
-            _balance(block, shift, params, rows, contacts)
+            largest = larger(largest, _balance(block, shift, params, rows, contacts))
+        if highest(largest) < _SETTLED * model.tolerance:
+            break
     per_shift = 1.0 / shift
     for j in range(count):
         block, lane = j // LANES, j % LANES
