@@ -32,7 +32,6 @@ class Rollers(NamedTuple):
     length: float  # L [m]
     mass: float  # m_r [kg]
     inertia: float  # J_r about its own axis [kg m^2]
-    crown: np.ndarray  # drop C_k of each slice, off the penetration of each contact [m], shape (N,)
 
 
 class Raceways(NamedTuple):
@@ -80,10 +79,10 @@ class Ring(NamedTuple):
 
 
 class Slices(NamedTuple):
-    """The rollers' slices; level ``spatial`` alone looks at them."""
+    """The rollers' slices; level ``spatial`` and the statics by slices look at them."""
 
     places: np.ndarray  # axial place of each slice's middle from the roller's, x_k [m], shape (N,)
-    crown: np.ndarray  # that of the rollers, drop C_k [m], shape (N,)
+    crown: np.ndarray  # drop of the profile there, C_k [m], shape (N,)
     together: int  # slices that share one evaluation of the traction law
 
 
@@ -160,8 +159,7 @@ def pack(scene: Scene) -> Params:
     inner_growth, outer_growth = fit_growth(bearing)
     inner_radius, low_radius = bearing.inner_raceway.radius + inner_growth, bearing.outer_raceway.low_radius + outer_growth
     compliance = 2 * (1 - bearing.material.poisson_ratio**2) / bearing.material.youngs_modulus
-    cage, roller = bearing.cage, bearing.roller
-    crown = np.ascontiguousarray(crown_drops(roller.crown, roller.diameter, roller.length, roller.slices), np.float64)
+    cage = bearing.cage
     return Params(
         rollers=Rollers(
             count=int(bearing.roller.count),
@@ -169,7 +167,6 @@ def pack(scene: Scene) -> Params:
             length=bearing.roller.length,
             mass=mass,
             inertia=0.5 * mass * roller_radius**2,
-            crown=crown,
         ),
         raceways=Raceways(
             inner_radius=inner_radius,
@@ -205,15 +202,17 @@ def pack(scene: Scene) -> Params:
         ring=Ring(bearing.inner_raceway.ring_mass + bearing.inner_raceway.supported_mass, bearing.contact.damping),
         life=_life(scene),
         growth=running_growth(bearing),
-        slices=_slices(bearing, crown),
+        slices=_slices(bearing),
         tilts=_tilts(scene, mass),
     )
 
 
-def _slices(bearing: Bearing, crown: np.ndarray) -> Slices:
+def _slices(bearing: Bearing) -> Slices:
     count, length = bearing.roller.slices, bearing.roller.length
     places = (np.arange(count) - 0.5 * (count - 1)) * (length / count)
-    return Slices(places, crown, int(bearing.roller.slices_per_traction))
+    roller = bearing.roller
+    drops = crown_drops(roller.crown, roller.diameter, roller.length, roller.slices)
+    return Slices(places, np.ascontiguousarray(drops, np.float64), int(roller.slices_per_traction))
 
 
 def _tilts(scene: Scene, roller_mass: float) -> Tilts:

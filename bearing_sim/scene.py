@@ -32,8 +32,8 @@ class Roller:
     diameter: quantity("m", "roller diameter, D_w", 0.5e-3, 0.5, "mm")
     length: quantity("m", "roller effective length, L", 0.5e-3, 0.5, "mm")
     crown: Crown = field(default_factory=NoCrown)  # see `bearing_sim.crown`
-    slices: Annotated[int, Field(ge=5, le=400)] = 20  # of a roller where the level slices it; ISO/TS 16281 asks for 30 for a life
-    slices_per_traction: Annotated[int, Field(ge=1, le=400)] = 4
+    slices: Annotated[int, Field(ge=1, le=400)] = 20  # of a roller where the level slices it; ISO/TS 16281 asks for 30 for a life
+    slices_per_traction: Annotated[int, Field(ge=1, le=400)] = 4  # that share one coefficient of traction
 
     @model_validator(mode="after")
     def _crown_fits(self):

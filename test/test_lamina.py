@@ -67,7 +67,7 @@ def test_the_published_load_distribution_under_a_moment():
 @pytest.mark.parametrize("count", [5, 20, 41])
 def test_slices_without_tilt_and_crown_are_palmgrens_line_contact(count):
     params = deng(f"bearing.roller.slices={count}")
-    slices, written = new_slices(18, params.rollers.crown, params.rollers.length, params.raceways.stiffness), np.zeros(count)
+    slices, written = new_slices(18, params.slices.crown, params.rollers.length, params.raceways.stiffness), np.zeros(count)
     load, moment, slope, slope_1, _ = sliced_contact(5e-6, 0.0, slices, written)
     assert load == pytest.approx(params.raceways.stiffness * 5e-6**EXPONENT, rel=1e-13)
     assert slope == pytest.approx(EXPONENT * load / 5e-6, rel=1e-13)
@@ -77,7 +77,7 @@ def test_slices_without_tilt_and_crown_are_palmgrens_line_contact(count):
 
 def test_slopes_of_a_sliced_contact_are_its_derivatives():
     params = deng("bearing.roller.crown=iso_log")
-    slices, written = new_slices(18, params.rollers.crown, params.rollers.length, params.raceways.stiffness), np.zeros(20)
+    slices, written = new_slices(18, params.slices.crown, params.rollers.length, params.raceways.stiffness), np.zeros(20)
     step = 1e-11
 
     def around(by, axis):

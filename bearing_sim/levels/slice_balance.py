@@ -67,7 +67,7 @@ def balance(
     if not all(map(math.isfinite, inputs)):
         raise ArithmeticError(f"no balance by slices of inputs that are not finite: {inputs}")
     if slices is None:
-        slices = new_slices(params.rollers.count, params.rollers.crown, params.rollers.length, params.raceways.stiffness)
+        slices = new_slices(params.rollers.count, params.slices.crown, params.rollers.length, params.raceways.stiffness)
     if tilts is not None:
         slices.ring[2:] = tilts
     place_rollers(float(cage_angle), float(cage_speed), float(growth), params, slices)
