@@ -160,8 +160,7 @@ def pack(scene: Scene) -> Params:
     inner_growth, outer_growth = fit_growth(bearing)
     inner_radius, low_radius = bearing.inner_raceway.radius + inner_growth, bearing.outer_raceway.low_radius + outer_growth
     compliance = 2 * (1 - bearing.material.poisson_ratio**2) / bearing.material.youngs_modulus
-    cage, roller = bearing.cage, bearing.roller
-    crown = np.ascontiguousarray(crown_drops(roller.crown, roller.diameter, roller.length, roller.slices), np.float64)
+    cage = bearing.cage
     return Params(
         rollers=Rollers(
             count=int(bearing.roller.count),
@@ -204,12 +203,12 @@ def pack(scene: Scene) -> Params:
         ring=Ring(bearing.inner_raceway.ring_mass + bearing.inner_raceway.supported_mass, bearing.contact.damping),
         life=_life(scene),
         growth=running_growth(bearing),
-        slices=_slices(bearing, crown),
+        slices=_slices(bearing),
         tilts=_tilts(scene, mass),
     )
 
 
-def _slices(bearing: Bearing, crown: np.ndarray) -> Slices:
+def _slices(bearing: Bearing) -> Slices:
     count, length = bearing.roller.slices, bearing.roller.length
     places = (np.arange(count) - 0.5 * (count - 1)) * (length / count)
     risers = stress_risers(count) if count > 1 else np.ones(1)
