@@ -209,10 +209,12 @@ def pack(scene: Scene) -> Params:
 
 
 def _slices(bearing: Bearing) -> Slices:
-    count, length = bearing.roller.slices, bearing.roller.length
-    places = (np.arange(count) - 0.5 * (count - 1)) * (length / count)
+    roller = bearing.roller
+    count = roller.slices
+    places = (np.arange(count) - 0.5 * (count - 1)) * (roller.length / count)
+    drops = np.ascontiguousarray(crown_drops(roller.crown, roller.diameter, roller.length, count), np.float64)
     risers = stress_risers(count) if count > 1 else np.ones(1)
-    return Slices(places, crown, int(bearing.roller.slices_per_traction), risers)
+    return Slices(places, drops, int(roller.slices_per_traction), risers)
 
 
 def _tilts(scene: Scene, roller_mass: float) -> Tilts:
