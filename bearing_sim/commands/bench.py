@@ -2,22 +2,28 @@
 
 import click
 
-from bearing_sim.commands.reporting import print_json, tell_compilation
+from bearing_sim.commands.reporting import BadInput, print_json, tell_compilation
 
 
 @click.command()
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 @click.option("--quick", is_flag=True, help="Measure next to nothing, to see that everything works.")
+@click.option("--level", "levels", multiple=True, metavar="LEVEL", help="Measure this level; may be repeated [default: all].")
 @click.option("--cold", is_flag=True, help="Measure the first start of all, which compiles, too.")
-def command(as_json, quick, cold):
+def command(as_json, quick, levels, cold):
     """Measure how fast each level and integration method is, how large its errors are, and what bounds it.
 
     Bearing deng2017_table1 at 800 N, 15,000 and 45,000 rpm.  Other solvers get the same compiled right-hand side.  Takes a few minutes.
     """
+    from bearing_sim.levels.level import LEVELS
     from bearing_sim.studies.bench import run_bench
 
+    for level in levels:
+        if level not in LEVELS:
+            raise BadInput(f"--level {level}: expected one of {', '.join(LEVELS)}")
+
     tell_compilation()
-    report = run_bench(quick, cold, lambda text: click.echo(f"{text} ...", err=True))
+    report = run_bench(quick, cold, lambda text: click.echo(f"{text} ...", err=True), levels)
     if as_json:
         print_json(report)
     else:

@@ -8,7 +8,7 @@ least is taken, because a disturbance can only add.
 import os
 import platform
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from importlib.metadata import PackageNotFoundError, version
 from typing import NamedTuple
@@ -74,7 +74,7 @@ def one_core() -> Iterator[int]:
         os.sched_setaffinity(0, before)
 
 
-def run_bench(quick: bool = False, cold: bool = False, tell: Callable[[str], None] = lambda text: None) -> dict:
+def run_bench(quick: bool = False, cold: bool = False, tell: Callable[[str], None] = lambda text: None, levels: Sequence[str] = ()) -> dict:
     """Measure and return the report.
 
     Parameters
@@ -82,6 +82,7 @@ def run_bench(quick: bool = False, cold: bool = False, tell: Callable[[str], Non
     quick : measure next to nothing, to see that it works.
     cold : measure the start of a process with an empty cache of machine code, too.
     tell : takes a word on what is being measured.
+    levels : which to measure; all where none is named.
 
     Returns
     -------
@@ -92,7 +93,8 @@ def run_bench(quick: bool = False, cold: bool = False, tell: Callable[[str], Non
         began, had = time.perf_counter(), time.process_time()
         report = {"bearing": BEARING, "radial_load": LOAD, "quick": quick, "machine": _machine(core)}
         cases, references, others, bounds = [], [], [], []
-        for level in LEVELS:
+        levels = levels or tuple(LEVELS)
+        for level in levels:
             for speed in SPEEDS:
                 tell(f"{level} at {speed:g} rpm: references and other solvers")
                 course, settled = _Course(level, speed, extent), _SettledReference(level, speed, STOCK_ROLLERS, extent.settled, extent.tight)
@@ -104,7 +106,7 @@ def run_bench(quick: bool = False, cold: bool = False, tell: Callable[[str], Non
                     cases.append(case)
                     bounds.append(bound)
         tell("scaling with the number of rollers")
-        scaling = [_scaling_case(level, rollers, extent) for level in LEVELS for rollers in extent.rollers]
+        scaling = [_scaling_case(level, rollers, extent) for level in levels for rollers in extent.rollers]
         cases += [case for case in scaling if case["rollers"] != STOCK_ROLLERS]
         report |= {"cases": cases, "others": others, "references": references, "bound": bounds, "scaling": _scaling(scaling)}
         report["machine"]["share_of_core"] = (time.process_time() - had) / (time.perf_counter() - began)
@@ -113,7 +115,7 @@ def run_bench(quick: bool = False, cold: bool = False, tell: Callable[[str], Non
             report["start_up"] = [
                 {"level": level, "cold": is_cold, **start_up(BEARING, level, is_cold)}
                 for is_cold in ([False, True] if cold else [False])
-                for level in LEVELS
+                for level in levels
             ]
     return report
 
@@ -316,7 +318,7 @@ def _scaling_case(level: str, rollers: int, extent: Extent) -> dict:
 def _scaling(cases: list[dict]) -> list[dict]:
     """Time that a simulated second takes by the number of rollers, and the power of Z that it grows with from 18 on."""
     found = []
-    for level in LEVELS:
+    for level in dict.fromkeys(case["level"] for case in cases):
         own = {case["rollers"]: 1.0 / case["real_time_factor"] for case in cases if case["level"] == level}
         first, last = STOCK_ROLLERS, max(own)
         exponent = np.log(own[last] / own[first]) / np.log(last / first) if last > first else None
