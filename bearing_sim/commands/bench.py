@@ -13,7 +13,8 @@ from bearing_sim.commands.reporting import BadInput, print_json, tell_compilatio
 def command(as_json, quick, levels, cold):
     """Measure how fast each level and integration method is, how large its errors are, and what bounds it.
 
-    Bearing deng2017_table1 at 800 N, 15,000 and 45,000 rpm.  Other solvers get the same compiled right-hand side.  Takes a few minutes.
+    Bearing deng2017_table1 at 800 N, 15,000 and 45,000 rpm.  Other solvers get the same compiled right-hand side.  Takes a minute or two for
+    each of the smaller levels once they are compiled, and longer for level spatial.
     """
     from bearing_sim.levels.level import LEVELS
     from bearing_sim.studies.bench import run_bench

@@ -49,5 +49,5 @@ def kernel(function):
 
 
 def template(function):
-    """Compile a function whose leading arguments are kernels; it is inlined where they are bound."""
+    """Compile a function whose leading arguments are kernels, or that wants to know constant arguments; it is inlined where it is called."""
     return _compiled(function, inline="always")

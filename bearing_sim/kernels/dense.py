@@ -5,7 +5,7 @@ from bearing_sim.kernels.compilation import kernel
 
 @kernel
 def decompose(matrix, order):
-    """Replace a matrix by its factors L (unit diagonal) and U; return False if it is singular or not finite.
+    """Replace a matrix by its factors L (unit diagonal) and U (its diagonal inverted); return False if it is singular or not finite.
 
     Parameters
     ----------
@@ -24,13 +24,13 @@ def decompose(matrix, order):
         if pivot != k:
             for j in range(n):
                 matrix[k, j], matrix[pivot, j] = matrix[pivot, j], matrix[k, j]
-        inverse = 1.0 / matrix[k, k]
+        inverse = 1.0 / matrix[k, k]  # what a solution wants, for it cannot wait for divisions
+        matrix[k, k] = inverse
         for i in range(k + 1, n):
             factor = matrix[i, k] * inverse
             matrix[i, k] = factor
-            if factor != 0.0:
-                for j in range(k + 1, n):
-                    matrix[i, j] -= factor * matrix[k, j]
+            for j in range(k + 1, n):
+                matrix[i, j] -= factor * matrix[k, j]
     return True
 
 
@@ -50,4 +50,4 @@ def back_substitute(matrix, order, x):
         value = x[i]
         for j in range(i + 1, n):
             value -= matrix[i, j] * x[j]
-        x[i] = value / matrix[i, i]
+        x[i] = value * matrix[i, i]

@@ -14,7 +14,7 @@ class Method(NamedTuple):
     Attributes
     ----------
     new_memory : number of states -> what the method keeps; ``scratch`` in it is free between calls.
-    advance : compiled, see `bearing_sim.levels.slip.advance_by`.
+    advance : compiled, see `bearing_sim.levels.advance.advance_by`.
     advance_fixed : the same without error control, in steps of the maximum step; None where the method lives by its estimates.
     """
 

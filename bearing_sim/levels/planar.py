@@ -11,13 +11,15 @@ import numpy as np
 
 from bearing_sim.integrators.drive import drive
 from bearing_sim.integrators.sdirk2 import sdirk2_step
-from bearing_sim.integrators.status import COUNT, OK
-from bearing_sim.kernels.compilation import kernel, template
-from bearing_sim.kernels.lanes import LANES, load, square_root, total
+from bearing_sim.integrators.status import COUNT
+from bearing_sim.kernels.compilation import kernel
+from bearing_sim.kernels.lanes import LANES
 from bearing_sim.kernels.load_balance import LOAD
 from bearing_sim.kernels.traction import CONTACT
 from bearing_sim.levels import planar_algebra, planar_rollers, slip
+from bearing_sim.levels.advance import advance_by
 from bearing_sim.levels.inputs import shaft_speed_at
+from bearing_sim.levels.load_means import average_powers
 from bearing_sim.levels.observation import observe_course
 from bearing_sim.levels.pitch import FIFTH_PITCH, pitch_step
 from bearing_sim.levels.planar_algebra import BLOCK, BORDER
@@ -147,16 +149,8 @@ def sdirk2(t, y, rate, h, model, work, stages, next_y, error):
 def average_loads(h, y, model, work):
     """Take the loads at the end of a step of length ``h`` [s] into the running means over a cage turn."""
     count, turned = model.params.rollers.count, h * y[OMEGA]
-    rows, contacts = work.rollers, work.contacts
-    blocks = rows.shape[0]
-    inner, outer = 0.0, 0.0
-    for block in range(blocks):
-        present, q_i, q_e = load(rows, block, ROLLER.present), load(contacts, block, CONTACT.load), load(contacts, blocks + block, CONTACT.load)
-        inner += total(present * (q_i * q_i) * (q_i * q_i))
-        outer += total(present * (q_e * q_e) * (q_e * q_e) * square_root(q_e))
     share = 1.0 - math.exp(-abs(turned) / (2.0 * math.pi))
-    work.load_means[0] += share * (inner / count - work.load_means[0])
-    work.load_means[1] += share * (outer / count - work.load_means[1])
+    average_powers(share, work.rollers, ROLLER.present, work.contacts, CONTACT.load, count, work.load_means)
 
 
 @kernel
@@ -209,28 +203,7 @@ def observe(t, y, model, work, interval, previous, row, rate):
         row[first + COLUMN.pocket_force * count] = rows[block, ROLLER.pocket_force, lane]
 
 
-@template
-def advance_by(drive_to, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
-    """Advance ``y`` in place by ``duration`` [s] and write evenly spaced samples into ``rows``, the last at the end.
-
-    Parameters and results as in `bearing_sim.levels.slip.advance_by`.
-    """
-    samples = rows.shape[0]
-    interval = duration / samples
-    before = previous
-    taken, stop = counts[COUNT.steps] + counts[COUNT.rejected_steps], t + samples * interval
-    for k in range(samples):
-        end = t + (k + 1) * interval
-        left = budget - (counts[COUNT.steps] + counts[COUNT.rejected_steps] - taken)
-        status, h = drive_to(t + k * interval, end, stop, y, h, model.tolerance, maximum_step, left, model, work, memory, counts)
-        if status != OK:
-            return status, h
-        observe(end, y, model, work, interval, before, rows[k], memory.scratch[0])
-        before = rows[k]
-    return OK, h
-
-
 @kernel
 def advance(t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
-    """Advance by the level's own method, adaptive; parameters and results as in `bearing_sim.levels.slip.advance_by`."""
-    return advance_by(_drive, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows)
+    """Advance by the level's own method, adaptive; parameters and results as in `bearing_sim.levels.advance.advance_by`."""
+    return advance_by(_drive, observe, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows)

@@ -8,7 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.kernels.compilation import kernel, template
+from bearing_sim.kernels.dense import back_substitute, decompose
 from bearing_sim.kernels.lanes import LANES, load, magnitude, new_rows, spread, store, total, where_positive
+from bearing_sim.kernels.runs import collect_runs, spread_runs
 
 BORDER = 5  # positions of ring and cage, and as many speeds
 _RING = 2  # of them the ring's
@@ -29,56 +31,13 @@ class Factored(NamedTuple):
     positions: np.ndarray  # d(border accelerations)/d(border positions), all rollers together, shape (5, 5)
     schur: np.ndarray  # Schur complement as L U, shape (5, 5)
     order: np.ndarray  # of its rows, shape (5,)
-    border: np.ndarray  # scratch, shape (5,)
 
 
 def new_factored(count):
     """Return a zeroed factorisation for ``count`` rollers."""
     square = (BORDER, BORDER)
     rows, right = new_rows(_FACTORED, count), new_rows(BLOCK, count)
-    return Factored(np.zeros(1), rows, right, np.zeros(square), np.zeros(square), np.zeros(BORDER, np.int64), np.zeros(BORDER))
-
-
-@kernel
-def _factor_border(matrix, order):
-    """Factor a small matrix in place into L U with rows in ``order`` (partial pivoting); return False if singular or not finite."""
-    n = matrix.shape[0]
-    for i in range(n):
-        order[i] = i
-    regular = True
-    for k in range(n):
-        pivot = k
-        for i in range(k + 1, n):
-            if abs(matrix[i, k]) > abs(matrix[pivot, k]):
-                pivot = i
-        if pivot != k:
-            order[k], order[pivot] = order[pivot], order[k]
-            for j in range(n):
-                matrix[k, j], matrix[pivot, j] = matrix[pivot, j], matrix[k, j]
-        regular = regular and abs(matrix[k, k]) > 0.0
-        matrix[k, k] = 1.0 / matrix[k, k]  # the inverse is what a solution wants
-        for i in range(k + 1, n):
-            share = matrix[i, k] * matrix[k, k]
-            matrix[i, k] = share
-            for j in range(k + 1, n):
-                matrix[i, j] -= share * matrix[k, j]
-    return regular
-
-
-@kernel
-def _solve_border(matrix, order, right, x):
-    """Write the solution of the factored border for ``right`` into ``x``."""
-    n = matrix.shape[0]
-    for i in range(n):
-        value = right[order[i]]
-        for j in range(i):
-            value -= matrix[i, j] * x[j]
-        x[i] = value
-    for i in range(n - 1, -1, -1):
-        value = x[i]
-        for j in range(i + 1, n):
-            value -= matrix[i, j] * x[j]
-        x[i] = value * matrix[i, i]
+    return Factored(np.zeros(1), rows, right, np.zeros(square), np.zeros(square), np.zeros(BORDER, np.int64))
 
 
 @template
@@ -177,25 +136,7 @@ def factor(slopes, border, s, factored):
                 by_position, by_speed = _passed_by_rollers(k, m, slopes)
                 corner[k, m] -= s * (by_speed + s * by_position)
                 factored.positions[k, m] += by_position
-    return _factor_border(corner, factored.order) and regular
-
-
-@kernel
-def _spread(x, count, right):
-    """Copy the rollers' part of a right side into lanes."""
-    for k in range(BLOCK):
-        first = 2 * BORDER + k * count
-        for j in range(count):
-            right[j // LANES, k, j % LANES] = x[first + j]
-
-
-@kernel
-def _collect(right, count, x):
-    """Copy the rollers' part of a solution out of lanes."""
-    for k in range(BLOCK):
-        first = 2 * BORDER + k * count
-        for j in range(count):
-            x[first + j] = right[j // LANES, k, j % LANES]
+    return decompose(corner, factored.order) and regular
 
 
 @kernel
@@ -245,7 +186,7 @@ def solve(slopes, factored, x):
     """Replace the right side ``x``, a whole state, by the solution of (I - s J) x = b."""
     s = factored.shift[0]
     count = (x.shape[0] - 2 * BORDER) // BLOCK
-    _spread(x, count, factored.right)
+    spread_runs(x, 2 * BORDER, BLOCK, count, factored.right)
     for k in range(BORDER):
         through = 0.0
         for m in range(BORDER):
@@ -253,11 +194,9 @@ def solve(slopes, factored, x):
         x[BORDER + k] += s * through
     for block in range(slopes.shape[0]):
         _eliminate(block, slopes, s, x, factored)
-    for k in range(BORDER):
-        factored.border[k] = x[BORDER + k]
-    _solve_border(factored.schur, factored.order, factored.border, x[BORDER : 2 * BORDER])
+    back_substitute(factored.schur, factored.order, x[BORDER : 2 * BORDER])
     for block in range(slopes.shape[0]):
         _substitute(block, s, x, factored)
     for k in range(BORDER):
         x[k] += s * x[BORDER + k]
-    _collect(factored.right, count, x)
+    collect_runs(factored.right, 0, BLOCK, count, x, 2 * BORDER)

@@ -5,13 +5,14 @@ from bearing_sim.integrators.fixed_step import fixed_step
 from bearing_sim.integrators.rk45 import rk45
 from bearing_sim.integrators.status import COUNT
 from bearing_sim.kernels.compilation import kernel
+from bearing_sim.levels.advance import advance_by
 from bearing_sim.levels.planar import (
-    advance_by,
     average_loads,
     count_iterations,
     error_norm,
     factor,
     nothing,
+    observe,
     rhs,
     rhs_and_jacobian,
     sdirk2,
@@ -52,16 +53,16 @@ def _drive_fixed(t, end, stop, y, h, tolerance, maximum_step, budget, model, wor
 @kernel
 def advance_bdf(t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
     """Advance by backward differentiation formulas (`bearing_sim.integrators.bdf`)."""
-    return advance_by(_drive_bdf, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows)
+    return advance_by(_drive_bdf, observe, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows)
 
 
 @kernel
 def advance_rk45(t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
     """Advance by an explicit method (`bearing_sim.integrators.rk45`)."""
-    return advance_by(_drive_rk45, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows)
+    return advance_by(_drive_rk45, observe, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows)
 
 
 @kernel
 def advance_fixed(t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
     """Advance by the level's own method with one step, ``maximum_step`` [s], and no error control (`bearing_sim.integrators.fixed_step`)."""
-    return advance_by(_drive_fixed, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows)
+    return advance_by(_drive_fixed, observe, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows)

@@ -12,6 +12,7 @@ import numpy as np
 
 from bearing_sim.kernels.compilation import kernel
 from bearing_sim.kernels.lanes import LANES, new_rows
+from bearing_sim.kernels.runs import collect_runs, fill_lanes, spread_runs
 from bearing_sim.kernels.traction import CONTACT
 from bearing_sim.levels.planar_algebra import BORDER, SLOPES, Factored, new_factored
 
@@ -99,22 +100,14 @@ def new_work(params):
 
 @kernel
 def spread_state(y, count, rollers):
-    """Copy the rollers' states from ``y`` into their lanes; lanes without a roller go with the last one, so as to stay finite."""
-    last = count - 1
-    for k in range(5):
-        first = ROLLERS + k * count
-        for j in range(count):
-            rollers[j // LANES, k, j % LANES] = y[first + j]
-        for j in range(count, rollers.shape[0] * LANES):
-            rollers[j // LANES, k, j % LANES] = y[first + last]
+    """Copy the rollers' states from ``y`` into their lanes."""
+    spread_runs(y, ROLLERS, 5, count, rollers)
+    fill_lanes(rollers, 5, count)
 
 
 @kernel
 def collect_rates(y, count, rollers, rate):
     """Copy the rollers' speeds and accelerations from their lanes into ``rate``."""
     for j in range(2 * count):
-        rate[ROLLERS + j] = y[ROLLERS + 2 * count + j]
-    for k in range(3):
-        first = ROLLERS + (2 + k) * count
-        for j in range(count):
-            rate[first + j] = rollers[j // LANES, ROLLER.radial_acceleration + k, j % LANES]
+        rate[ROLLERS + j] = y[ROLLERS + R_SPEED * count + j]
+    collect_runs(rollers, ROLLER.radial_acceleration, 3, count, rate, ROLLERS + R_SPEED * count)

@@ -14,7 +14,6 @@ import numpy as np
 
 from bearing_sim.integrators.drive import drive
 from bearing_sim.integrators.rosenbrock2 import rosenbrock2_step
-from bearing_sim.integrators.status import COUNT, OK
 from bearing_sim.kernels.arrow import ARROW, Arrow, factor_shifted, new_arrow, solve_factored
 from bearing_sim.kernels.cage import FRICTION_SPIN, land_torque, pocket_friction
 from bearing_sim.kernels.compilation import kernel, template
@@ -25,6 +24,7 @@ from bearing_sim.kernels.lanes import LANES, new_rows
 from bearing_sim.kernels.load_balance import LOAD, balance_ring
 from bearing_sim.kernels.raceway import contour_at
 from bearing_sim.kernels.traction import CONTACT, traction
+from bearing_sim.levels.advance import advance_by
 from bearing_sim.levels.growth import inner_growth
 from bearing_sim.levels.inputs import Drive, load_at, shaft_speed_at
 from bearing_sim.levels.mixture import mixture_torque
@@ -353,39 +353,7 @@ def _drive(t, end, stop, y, h, tolerance, maximum_step, budget, model, work, mem
     )  # fmt: skip
 
 
-@template
-def advance_by(drive_to, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
-    """Advance ``y`` in place by ``duration`` [s] and write evenly spaced samples into ``rows``, the last at the end.
-
-    Parameters
-    ----------
-    drive_to : kernel, a method's drive loop; takes ``stop`` after ``end``, which it may pass, but not ``stop``.
-    t : time [s].
-    h, maximum_step, counts : as in `bearing_sim.integrators.drive.drive`.
-    budget : steps for the whole call.
-    memory : of the method.
-    previous, rows : flat samples; see `observe`.
-
-    Returns
-    -------
-    status, next step to try [s]
-    """
-    samples = rows.shape[0]
-    interval = duration / samples
-    before = previous
-    taken, stop = counts[COUNT.steps] + counts[COUNT.rejected_steps], t + samples * interval
-    for k in range(samples):
-        start, end = t + k * interval, t + (k + 1) * interval
-        left = budget - (counts[COUNT.steps] + counts[COUNT.rejected_steps] - taken)
-        status, h = drive_to(start, end, stop, y, h, model.tolerance, maximum_step, left, model, work, memory, counts)
-        if status != OK:
-            return status, h
-        observe(end, y, model, work, interval, before, rows[k], memory.scratch[0])
-        before = rows[k]
-    return OK, h
-
-
 @kernel
 def advance(t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
     """Advance by the level's own method, adaptive; parameters and results as in `advance_by`."""
-    return advance_by(_drive, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows)
+    return advance_by(_drive, observe, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows)

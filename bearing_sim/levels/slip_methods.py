@@ -4,7 +4,8 @@ from bearing_sim.integrators.bdf import bdf
 from bearing_sim.integrators.fixed_step import fixed_step
 from bearing_sim.integrators.rk45 import rk45
 from bearing_sim.kernels.compilation import kernel
-from bearing_sim.levels.slip import advance_by, error_norm, factor, keep_nothing, rhs, rhs_and_jacobian, rosenbrock2, solve, step_limit
+from bearing_sim.levels.advance import advance_by
+from bearing_sim.levels.slip import error_norm, factor, keep_nothing, observe, rhs, rhs_and_jacobian, rosenbrock2, solve, step_limit
 
 
 @kernel
@@ -28,16 +29,16 @@ def _drive_fixed(t, end, stop, y, h, tolerance, maximum_step, budget, model, wor
 @kernel
 def advance_bdf(t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
     """Advance by backward differentiation formulas (`bearing_sim.integrators.bdf`)."""
-    return advance_by(_drive_bdf, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows)
+    return advance_by(_drive_bdf, observe, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows)
 
 
 @kernel
 def advance_rk45(t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
     """Advance by an explicit method (`bearing_sim.integrators.rk45`)."""
-    return advance_by(_drive_rk45, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows)
+    return advance_by(_drive_rk45, observe, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows)
 
 
 @kernel
 def advance_fixed(t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
     """Advance by the level's own method with one step, ``maximum_step`` [s], and no error control (`bearing_sim.integrators.fixed_step`)."""
-    return advance_by(_drive_fixed, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows)
+    return advance_by(_drive_fixed, observe, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows)

@@ -14,6 +14,7 @@ import numpy as np
 from bearing_sim.kernels.compilation import kernel, template
 from bearing_sim.kernels.dense import back_substitute, decompose
 from bearing_sim.kernels.lanes import LANES, load, magnitude, new_rows, store, total, where_positive
+from bearing_sim.kernels.runs import collect_runs, spread_runs
 
 RING, CAGE = 4, 5
 BORDER = RING + CAGE  # positions of ring and cage, and as many speeds
@@ -174,24 +175,6 @@ def factor(slopes, border, s, factored):
 
 
 @kernel
-def _spread(x, count, right):
-    """Copy the rollers' part of a right side into lanes."""
-    for k in range(BLOCK):
-        first = 2 * BORDER + k * count
-        for j in range(count):
-            right[j // LANES, k, j % LANES] = x[first + j]
-
-
-@kernel
-def _collect(right, count, x):
-    """Copy the rollers' part of a solution out of lanes."""
-    for k in range(BLOCK):
-        first = 2 * BORDER + k * count
-        for j in range(count):
-            x[first + j] = right[j // LANES, k, j % LANES]
-
-
-@kernel
 def _eliminate(block, slopes, s, x, factored):
     """Reduce a block's right side to speeds, solve for them without the border, and take what they do to it from its own."""
     rows, right, reduced = factored.rows, factored.right, factored.block
@@ -240,7 +223,7 @@ def solve(slopes, factored, x):
     """Replace the right side ``x``, a whole state, by the solution of (I - s J) x = b."""
     s = factored.shift[0]
     count = (x.shape[0] - 2 * BORDER) // BLOCK
-    _spread(x, count, factored.right)
+    spread_runs(x, 2 * BORDER, BLOCK, count, factored.right)
     for k in range(BORDER):
         through = 0.0
         for m in range(BORDER):
@@ -253,4 +236,4 @@ def solve(slopes, factored, x):
         _substitute(block, s, x, factored)
     for k in range(BORDER):
         x[k] += s * x[BORDER + k]
-    _collect(factored.right, count, x)
+    collect_runs(factored.right, 0, BLOCK, count, x, 2 * BORDER)
