@@ -9,9 +9,12 @@ from bearing_sim.integrators.status import COUNT, OK, REASONS, new_counts
 from bearing_sim.levels.inputs import Drive
 from bearing_sim.levels.level import LEVELS
 from bearing_sim.levels.slip import Model
+from bearing_sim.levels.steady_table import Table
+from bearing_sim.oil import kinematic_viscosities
 from bearing_sim.params import lubricate, pack
 from bearing_sim.sample import flat, new_block
 from bearing_sim.scene import Operating, Scene
+from bearing_sim.tables.store import cached_table
 
 
 class Inputs(NamedTuple):
@@ -52,12 +55,17 @@ class Simulation:
     ----------
     scene : what to simulate.
     inputs : conditions at time 0; the scene's operating block where absent.
+    table : of operating points, for level ``steady``; the one on disk where absent.  Without one each of them is solved.
     """
 
-    def __init__(self, scene: Scene, inputs: Inputs | None = None):
+    def __init__(self, scene: Scene, inputs: Inputs | None = None, table: Table | None = None):
         self.scene = scene
         self._params = pack(scene)
         self._level = LEVELS[scene.level]
+        self._tables = ()  # what the level's workspace is made of besides the parameters
+        if self._level.advance_course is not None:
+            kept = cached_table(scene) if table is None else (table,)
+            self._tables = kept[:1] if kept else ()
         self._method = self._level.method(scene.integration.method)
         self.reset(inputs)
 
@@ -71,7 +79,7 @@ class Simulation:
         """
         self.inputs = _checked(inputs if inputs is not None else scene_inputs(self.scene))
         self.time = 0.0
-        self._work = self._level.new_work(self._params)
+        self._work = self._new_work()
         self._state = self._level.initial_state(self._params, self._work, *self.inputs[:3])
         self._memory = self._method.new_memory(self._state.size)
         self._counts = new_counts()
@@ -79,6 +87,9 @@ class Simulation:
         self._lubrication = lubricate(self.scene.lubricant, self._params, self.inputs.oil_temperature)
         self._previous = new_block(1, self._params.rollers.count)
         self._observe_start()
+
+    def _new_work(self):
+        return self._level.new_work(self._params, *self._tables)
 
     def _observe_start(self) -> None:
         rows, zeros = flat(self._previous), flat(new_block(1, self._params.rollers.count))
@@ -158,7 +169,7 @@ class Simulation:
             flat(block),
         )
         if status != OK:
-            self._work = self._level.new_work(self._params)  # a failed search may have left nonsense to start the next one from
+            self._work = self._new_work()  # a failed search may have left nonsense to start the next one from
             self._memory = self._method.new_memory(state.size)
             self._step = float(integration.first_step)
             raise IntegrationError(
@@ -169,6 +180,54 @@ class Simulation:
         self.inputs, self._state, self._step = end, state, step
         self._previous = block[-1:].copy()
         return block
+
+
+    @property
+    def takes_courses(self) -> bool:
+        """Whether `advance_course` goes over many instants at once."""
+        return bool(self._tables)
+
+    def advance_course(self, stretches: np.ndarray, inputs: np.ndarray) -> np.ndarray:
+        """Advance from instant to instant of a course, as far as the level's table holds it, many times as fast as by `advance`.
+
+        Parameters
+        ----------
+        stretches : time from each instant to the next [s], positive, shape (n,).
+        inputs : conditions at the instants, columns as `Inputs`, shape (n, 4); linear in between.
+
+        Returns
+        -------
+        block : a sample at each instant that was reached, from none to n; time and state are those of the last.
+
+        Raises
+        ------
+        ValueError
+            The level takes no courses, a stretch is not positive and finite, or an input is not finite.
+        """
+        if not self.takes_courses:
+            raise ValueError(f"level {self.scene.level} without a table takes no courses of inputs; use advance")
+        if not (np.isfinite(inputs).all() and np.isfinite(stretches).all() and (stretches > 0.0).all()):
+            raise ValueError("advance_course takes positive finite stretches and finite inputs")
+        block = new_block(len(stretches), self._params.rollers.count)
+        reached = self._level.advance_course(
+            self.time,
+            self.time + np.cumsum(stretches),
+            np.ascontiguousarray(np.vstack([[*self.inputs], inputs]), float),
+            kinematic_viscosities(self.scene.lubricant.oil, np.ascontiguousarray(inputs[:, 3], float)),
+            self._state,
+            self._model(self.inputs, 1.0),
+            self._work,
+            self._counts,
+            flat(self._previous)[0],
+            flat(block),
+        )
+        if reached:
+            self.inputs = Inputs(*map(float, inputs[reached - 1]))
+            self.time = float(block["time"][reached - 1])
+            self._previous = block[reached - 1 : reached].copy()
+            if self.inputs.oil_temperature != self._lubrication.temperature:
+                self._lubrication = lubricate(self.scene.lubricant, self._params, self.inputs.oil_temperature)
+        return block[:reached]
 
 
 def _checked(inputs: Inputs) -> Inputs:

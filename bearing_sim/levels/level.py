@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from bearing_sim.integrators.history import new_history
 from bearing_sim.integrators.memory import new_memory
-from bearing_sim.levels import planar, planar_methods, planar_state, slip, slip_methods, spatial, spatial_methods, spatial_state
+from bearing_sim.levels import planar, planar_methods, planar_state, slip, slip_methods, spatial, spatial_methods, spatial_state, steady
 
 
 class Method(NamedTuple):
@@ -33,6 +33,7 @@ class Level(NamedTuple):
     observe : compiled, see `bearing_sim.levels.slip`.
     methods : by name (see `bearing_sim.methods`), the level's own first.
     leaves_out : what the level does not model, in words.
+    advance_course : compiled, goes over a whole course of inputs at once; None at a level that marches.
     """
 
     new_work: Callable
@@ -40,6 +41,7 @@ class Level(NamedTuple):
     observe: Callable
     methods: Mapping[str, Method]
     leaves_out: str
+    advance_course: Callable | None = None
 
     def method(self, name: str | None) -> Method:
         """Return the method of that name, or the level's own."""
@@ -47,6 +49,14 @@ class Level(NamedTuple):
 
 
 LEVELS = {
+    "steady": Level(
+        steady.new_work,
+        steady.initial_state,
+        steady.observe,
+        {"lag": Method(new_memory, steady.advance)},
+        "all that happens within a cage turn, and what slip leaves out",
+        steady.advance_course,
+    ),
     "slip": Level(
         slip.new_work,
         slip.initial_state,

@@ -100,14 +100,13 @@ def _bracket(ideal, sense, model, work, orbit):
 @kernel
 def _narrow(low, drive_low, high, drive_high, ideal, sense, model, work, orbit):
     """Return the slip between two at which the cage is in balance, by the Illinois rule; NaN where spins were not found."""
-    slip = high
+    slip, slope = high, (drive_high - drive_low) / (high - low)
     for _ in range(_HALVINGS):
-        before = slip
         slip = low - drive_low * (high - low) / (drive_high - drive_low)
         drive = _mean_drive(ideal * (1.0 - slip), sense, model, work, orbit, _FINE)
         if not math.isfinite(drive):
             return math.nan
-        if abs(slip - before) < _SLIP_TOLERANCE * (1e-2 + abs(slip)) or drive == 0.0:
+        if min(abs(drive / slope), abs(high - low)) < _SLIP_TOLERANCE * (1e-2 + abs(slip)):
             return slip
         if drive * drive_high > 0.0:
             drive_low *= 0.5
@@ -182,7 +181,7 @@ def solve_point(model, work, orbit, answer):
     sense = 1.0 if shaft_speed > 0.0 else -1.0
     ideal = 0.5 * shaft_speed * (1.0 - model.params.raceways.diameter_ratio)
     work.ring[0], work.ring[1] = 0.0, 0.0
-    for column in range(len(ANSWER)):
+    for column in range(answer.shape[0]):
         answer[column] = math.nan
     _roll(ideal, model.params, orbit)
     slip, drive, beyond, drive_beyond = _bracket(ideal, sense, model, work, orbit)
@@ -197,7 +196,7 @@ def solve_point(model, work, orbit, answer):
     speed = ideal * (1.0 - slip)
     if not math.isfinite(_mean_drive(speed, sense, model, work, orbit, _FINE)):
         return FAILED
-    answer[ANSWER.cage_slip] = slip
+    answer[ANSWER.cage_slip] = slip if status == SETTLED else 1.0
     _write_powers(speed, sense, model, work, orbit, answer)
     answer[ANSWER.inner_equivalent_load], answer[ANSWER.outer_equivalent_load] = equivalent_loads(
         0.0, speed, model.drive.load_y, model.drive.load_z, model.params, work
