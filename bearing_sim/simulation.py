@@ -181,7 +181,6 @@ class Simulation:
         self._previous = block[-1:].copy()
         return block
 
-
     @property
     def takes_courses(self) -> bool:
         """Whether `advance_course` goes over many instants at once."""

@@ -49,13 +49,10 @@ def solve_cyclic(slopes, x):
     for m in range(places):
         for c in range(columns, columns + STEPS):
             x[m, c] = 0.0
-    # Column ``columns + l`` answers to x = 1 at l + 1 places before the first, moved to the right side.
-    for l in range(STEPS):
-        x[0, columns + l] = -(ALPHA_1 if l == 0 else (ALPHA_2 if l == 1 else ALPHA_3))
-        if l + 1 < STEPS:
-            x[1, columns + l] = -(ALPHA_2 if l == 0 else ALPHA_3)
-        if l == 0:
-            x[2, columns] = -ALPHA_3
+    # One of the last columns each for x = 1 one, two and three places before the first, moved to the right side.
+    x[0, columns], x[1, columns], x[2, columns] = -ALPHA_1, -ALPHA_2, -ALPHA_3
+    x[0, columns + 1], x[1, columns + 1] = -ALPHA_2, -ALPHA_3
+    x[0, columns + 2] = -ALPHA_3
     _sweep(slopes, x)
     # (I - H) e = p: the three last numbers e (nearest the end first) are also those before the first.
     last = places - 1

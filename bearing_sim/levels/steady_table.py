@@ -184,7 +184,11 @@ def look_up(speed, load, temperature, angle, table, place, answer):
         for column in range(columns):
             value = node[0, column]
             answer[column] += (
-                weights[0] * value + weights[1] * node[1, column] + weights[2] * node[2, column] + weights[3] * node[3, column] + weights[4] * node[4, column]
+                weights[0] * value
+                + weights[1] * node[1, column]
+                + weights[2] * node[2, column]
+                + weights[3] * node[3, column]
+                + weights[4] * node[4, column]
             )
             bounds[0, column], bounds[1, column] = min(bounds[0, column], value), max(bounds[1, column], value)
     for column in range(columns):

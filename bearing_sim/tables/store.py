@@ -12,6 +12,9 @@ import numpy as np
 import platformdirs
 
 from bearing_sim.kernels.compilation import sources_hash
+from bearing_sim.levels.inputs import Drive
+from bearing_sim.levels.slip import Model
+from bearing_sim.levels.steady import new_work, solve_conditions
 from bearing_sim.levels.steady_point import ANSWER
 from bearing_sim.levels.steady_table import Table
 from bearing_sim.params import lubricate, pack
@@ -149,3 +152,17 @@ def holds(table: Table, shaft_speed: float, load: float, oil_temperature: float)
         and table.temperatures[0] <= oil_temperature <= table.temperatures[-1]
         and (shaft_speed >= 0.0 or not math.isnan(table.mirror) or table.nodes.shape[0] == 2)
     )
+
+
+def solve_scene(scene: Scene, shaft_speed: float, load: float, oil_temperature: float, load_angle: float) -> np.ndarray:
+    """Return the answer to one operating point of a scene's bearing, solved for; NaN where none was found, shape (len(ANSWER),).
+
+    Parameters
+    ----------
+    scene : its level does not matter.
+    shaft_speed, load, oil_temperature, load_angle : [rad/s, N, K, rad].
+    """
+    params, answers = pack(scene), np.empty((1, len(ANSWER)))
+    model = Model(params, lubricate(scene.lubricant, params, float(oil_temperature)), Drive(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), 1e-2)
+    solve_conditions(np.array([[shaft_speed, load, load_angle]], float), model, new_work(params), answers)
+    return answers[0]
