@@ -310,7 +310,8 @@ class Scene:
             return self
         method = self.integration.method or names[0]
         if method not in names:
-            raise ValueError(f"integration.method: level {self.level} is integrated by {' or '.join(names)}, not by {method}")
+            offered = " or ".join(filter(None, (", ".join(names[:-1]), names[-1])))
+            raise ValueError(f"integration.method: level {self.level} is integrated by {offered}, not by {method}")
         if self.integration.fixed_step is not None and method not in FIXED_STEP:
             raise ValueError(f"integration.fixed_step: {method} chooses its steps; {' and '.join(FIXED_STEP)} can keep to one")
         return self

@@ -15,8 +15,15 @@ from bearing_sim.commands.reporting import print_json, print_table, progress_bar
 @click.option(
     "--at", "points", multiple=True, metavar="RPM,N[,DEGC[,DEG]]", help="Show this operating point, of the table and solved for; may be repeated."
 )
+@click.option(
+    "--against-slip",
+    type=click.IntRange(1, 10_000),
+    metavar="N",
+    help="Instead, compare the solver with level slip at N operating points drawn by lot.",
+)
+@click.option("--seed", default=2017, show_default=True, help="Of the lot.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
-def command(scene_name, overrides, rebuild, workers, points, as_json):
+def command(scene_name, overrides, rebuild, workers, points, against_slip, seed, as_json):
     """Build the table of operating points for SCENE at level steady, or show the one that is kept.
 
     It spans what the scene's block `table` says (maximum_speed, maximum_load, minimum_temperature, maximum_temperature, tolerance),
@@ -26,6 +33,9 @@ def command(scene_name, overrides, rebuild, workers, points, as_json):
 
     with told_as_bad_input(SceneError):
         scene = load_scene(scene_name, [*overrides, "level=steady"])
+    if against_slip is not None:
+        _compare(scene, against_slip, seed, as_json)
+        return
     asked = [_condition(text, scene) for text in points]
     tell_compilation()
     table, quality = build_with_progress(scene, None, workers, rebuild)
@@ -101,6 +111,26 @@ def _report(scene, table, quality, answers) -> dict:
         **quality._asdict(),
         "points": answers,
     }
+
+
+def _compare(scene, count, seed, as_json) -> None:
+    from bearing_sim.studies.steady_check import compare
+
+    tell_compilation()
+    rows = []
+    with progress_bar(f"marching {scene.name}", count) as progress:
+        for row in compare(scene, count, seed):
+            rows.append(row._asdict() | {"agrees": row.agrees})
+            progress(len(rows))
+    if as_json:
+        print_json({"scene": scene.name, "agreeing": sum(row["agrees"] for row in rows), "points": rows})
+        return
+    for row in rows:
+        slip = f"slip {100 * row['marched_slip']:8.4f} % marched, {100 * row['solved_slip']:8.4f} % solved"
+        life = f"life {row['marched_life']:9.4g} h, {100 * (row['solved_life'] / row['marched_life'] - 1):+.2f} %"
+        where = f"{row['speed_rpm']:7.0f} rpm {row['load']:6.0f} N {row['load_angle_deg']:5.0f} deg {row['oil_temperature_c']:4.0f} degC"
+        click.echo(f"{where}: {slip}; {life}{'' if row['agrees'] else '; differs'}")
+    click.echo(f"{sum(row['agrees'] for row in rows)} of {count} agree: slip to 2 % of it or 0.05 points, and life to 2 %")
 
 
 def _print(report) -> None:
