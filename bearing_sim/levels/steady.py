@@ -22,6 +22,7 @@ from bearing_sim.levels.growth import inner_growth
 from bearing_sim.levels.inputs import Drive, load_at, shaft_speed_at
 from bearing_sim.levels.observation import observe_course
 from bearing_sim.levels.slip import OMEGA, THETA, Model
+from bearing_sim.levels.steady_march import March, march, new_march
 from bearing_sim.levels.steady_orbit import Orbit, new_orbit
 from bearing_sim.levels.steady_point import ANSWER, CREEP, FAILED, solve_point
 from bearing_sim.levels.steady_table import Place, Table, covers, empty_table, look_up, new_place
@@ -40,7 +41,8 @@ class Work(NamedTuple):
     inputs: np.ndarray  # scratch: speed, loads, temperature, shape (4,)
     asked: np.ndarray  # inputs that were last solved for: speed, loads, temperature, shape (4,)
     solved: np.ndarray  # the answer to them, shape (len(ANSWER),)
-    solutions: np.ndarray  # operating points solved so far, and how many of them failed, int64, shape (2,)
+    march: March  # for operating points without a periodic state
+    solutions: np.ndarray  # operating points solved so far, and how many of them by marching, int64, shape (2,)
 
 
 def new_work(params, table: Table | None = None):
@@ -54,6 +56,7 @@ def new_work(params, table: Table | None = None):
         inputs=np.zeros(4),
         asked=np.full(4, math.nan),
         solved=np.full(len(ANSWER), math.nan),
+        march=new_march(params.rollers.count),
         solutions=np.zeros(2, np.int64),
     )
 
@@ -85,7 +88,8 @@ def solve_condition(shaft_speed, load_y, load_z, model, work):
     work.solutions[0] += 1
     if status == FAILED:
         work.solutions[1] += 1
-        return False
+        if not march(constant, work.bearing, work.march, work.solved):
+            return False
     asked[0], asked[1], asked[2], asked[3] = shaft_speed, load_y, load_z, model.lubrication.temperature
     return True
 

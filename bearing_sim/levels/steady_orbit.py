@@ -27,6 +27,7 @@ from bearing_sim.levels.slip import OMEGA, SPIN, THETA, rhs_and_jacobian
 ANGLES = 11  # N
 _LEAST_SLOPE = 1e-6  # a spin that nothing brakes or drives keeps what it has
 _FALLING = -0.8  # of alpha_0; more than that of a falling traction curve would turn Newton's step round
+_SHORTER, _LONGER = 0.4, 1.6
 _LONGEST_CHANGE = 0.3  # of the spin of rolling, in an iteration
 
 
@@ -42,6 +43,8 @@ class Orbit(NamedTuple):
     slopes: np.ndarray  # of the differences' equations, shape (M,)
     column: np.ndarray  # a right side, and three for the closing of the orbit, shape (M, 1 + 3)
     beside: np.ndarray  # spins at a cage speed nearby, shape (M,)
+    missing: np.ndarray  # right side of the iteration before, shape (M,)
+    reach: np.ndarray  # how far each spin may go in an iteration [rad/s], shape (M,)
     state: np.ndarray  # of level slip, shape (Z + 2,)
     rate: np.ndarray  # shape (Z + 2,)
 
@@ -59,6 +62,8 @@ def new_orbit(count: int, angles: int = ANGLES) -> Orbit:
         slopes=np.zeros(places),
         column=np.zeros((places, 1 + STEPS)),
         beside=np.zeros(places),
+        missing=np.zeros(places),
+        reach=np.zeros(places),
         state=np.zeros(count + 2),
         rate=np.zeros(count + 2),
     )
@@ -129,7 +134,21 @@ def _largest(column):
 
 
 @kernel
-def solve_spins(speed, sense, model, work, orbit, tolerance, iterations, holding):
+def _adapt_reach(scale, iteration, orbit):
+    """Shorten the reach of a spin that was sent past its root, lengthen it where it was not."""
+    for m in range(orbit.spins.shape[0]):
+        left, longest = orbit.column[m, 0], _LONGEST_CHANGE * scale
+        if iteration == 0:
+            orbit.reach[m] = longest
+        elif left * orbit.missing[m] < 0.0:
+            orbit.reach[m] *= _SHORTER
+        else:
+            orbit.reach[m] = min(orbit.reach[m] * _LONGER, longest)
+        orbit.missing[m] = left
+
+
+@kernel
+def solve_spins(speed, sense, model, work, orbit, tolerance, iterations, careful):
     """Find the spin curve by Newton's method from ``orbit.spins`` on; ``orbit.accelerations`` are those of the last iterate but one.
 
     Parameters
@@ -139,30 +158,30 @@ def solve_spins(speed, sense, model, work, orbit, tolerance, iterations, holding
     model, work : of level slip, the inputs constant.
     tolerance : longest last change, a share of the spin of rolling.
     iterations : most of them.
-    holding : how much the iteration clings to where it is, 0 for Newton's; it lets go as the residual falls, and so goes in
-        small steps of pseudo-time to a stable curve where Newton's leaps about a falling traction curve.
+    careful : whether each spin has a reach of its own, which keeps the iteration together on traction curves that rise
+        steeply and are flat beyond, where Newton's leaps from one side to the other.
 
     Returns
     -------
     converged : bool
     """
+    places = orbit.spins.shape[0]
     scale = abs(speed) * model.params.raceways.pitch_radius / model.params.rollers.radius
-    first = 0.0
-    for _ in range(iterations):
+    for iteration in range(iterations):
         if not _linearise(speed, sense, model, work, orbit):
             return False
-        if holding > 0.0:
-            left = _largest(orbit.column)
-            first = max(first, left)
-            for m in range(orbit.spins.shape[0]):
-                orbit.slopes[m] += holding * left / first
+        if careful:
+            _adapt_reach(scale, iteration, orbit)
         if not solve_cyclic(orbit.slopes, orbit.column):
             return False
+        if careful:
+            for m in range(places):
+                orbit.column[m, 0] = min(max(orbit.column[m, 0], -orbit.reach[m]), orbit.reach[m])
         change = _largest(orbit.column)
         if not math.isfinite(change):
             return False
         share = min(1.0, _LONGEST_CHANGE * scale / max(change, 1e-300))
-        for m in range(orbit.spins.shape[0]):
+        for m in range(places):
             orbit.spins[m] += share * orbit.column[m, 0]
         if change <= tolerance * scale:
             return True

@@ -26,7 +26,7 @@ REASONS = {
 
 _SLIPS = np.array([0.0, 1e-3, 4e-3, 0.012, 0.03, 0.06, 0.1, 0.15, 0.2, 0.26, 0.33, 0.4, 0.48, 0.56, 0.64, 0.72, 0.8, 0.88, 0.94, 0.98, 0.995, 0.999])
 _ITERATIONS = 15
-_PATIENT_ITERATIONS, _HOLDING = 200, 3.0
+_CAREFUL_ITERATIONS = 150
 _ROUGH, _FINE = 1e-3, 1e-5  # of the spin of rolling
 _SLIP_TOLERANCE = 1e-5
 _HALVINGS = 40
@@ -71,9 +71,9 @@ def _mean_drive(speed, sense, model, work, orbit, tolerance):
     orbit.speed[0] = speed
     for m in range(orbit.spins.shape[0]):
         orbit.spins[m] *= ratio
-    if not solve_spins(speed, sense, model, work, orbit, tolerance, _ITERATIONS, 0.0):
+    if not solve_spins(speed, sense, model, work, orbit, tolerance, _ITERATIONS, False):
         _roll(speed, model.params, orbit)
-        if not solve_spins(speed, sense, model, work, orbit, tolerance, _PATIENT_ITERATIONS, _HOLDING):
+        if not solve_spins(speed, sense, model, work, orbit, tolerance, _CAREFUL_ITERATIONS, True):
             return math.nan
     total = 0.0
     for k in range(orbit.accelerations.shape[0]):
