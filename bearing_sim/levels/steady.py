@@ -2,7 +2,8 @@
 
 State: y = (theta_c, omega_c) in rad and rad/s.  The cage's speed goes to that of the operating point as exp(-t/T), T from the
 operating point, too; everything else is that of the operating point at once.  Operating points come from a table where there
-is one that holds the inputs, and from `bearing_sim.levels.steady_point` where not: nothing is extrapolated.
+is one that holds the inputs, and from `bearing_sim.levels.steady_point` where not, or from a march of level ``slip`` where that
+finds no periodic state: nothing is extrapolated.
 
 A sample has the loads, radii and ring position of level ``slip`` at the cage's angle and speed; equivalent loads, lives and
 powers are means over a roller pitch.  Roller spins, their angles and pocket forces are not given: they are NaN.  Left out,

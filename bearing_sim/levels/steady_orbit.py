@@ -28,6 +28,7 @@ ANGLES = 11  # N
 _LEAST_SLOPE = 1e-6  # a spin that nothing brakes or drives keeps what it has
 _FALLING = -0.8  # of alpha_0; more than that of a falling traction curve would turn Newton's step round
 _SHORTER, _LONGER = 0.4, 1.6
+_SHORTEST_CHANGE = 1e-9
 _LONGEST_CHANGE = 0.3  # of the spin of rolling, in an iteration
 
 
@@ -144,7 +145,10 @@ def _adapt_reach(scale, iteration, orbit):
             orbit.reach[m] *= _SHORTER
         else:
             orbit.reach[m] = min(orbit.reach[m] * _LONGER, longest)
+        orbit.reach[m] = max(orbit.reach[m], _SHORTEST_CHANGE * scale)
         orbit.missing[m] = left
+        # where traction falls with sliding, the root lies where the residual points to, not where the slope does
+        orbit.slopes[m] = max(orbit.slopes[m], _LEAST_SLOPE)
 
 
 @kernel
