@@ -29,6 +29,7 @@ _ITERATIONS = 15
 _CAREFUL_ITERATIONS = 150
 _ROUGH, _FINE = 1e-3, 1e-5  # of the spin of rolling
 _SLIP_TOLERANCE = 1e-5
+_LARGEST_LEAD = 0.1  # negative slip; a cage that seems to be driven beyond has spins that were not resolved
 _HALVINGS = 40
 _LAG_CHANGE = 1e-2  # of the slip
 
@@ -89,7 +90,7 @@ def _bracket(ideal, sense, model, work, orbit):
     for i in range(1, _SLIPS.shape[0]):
         slip = away * _SLIPS[i]
         drive = _mean_drive(ideal * (1.0 - slip), sense, model, work, orbit, _ROUGH)
-        if not math.isfinite(drive + drive_before):
+        if not math.isfinite(drive + drive_before) or slip < -_LARGEST_LEAD:
             return math.nan, math.nan, math.nan, math.nan
         if drive * away >= 0.0:
             return before, drive_before, slip, drive
