@@ -95,10 +95,35 @@ def _answers(scene, table, condition) -> dict:
     return {**where, "held": holds(table, speed, load, kelvin), "table_and_solution": named}
 
 
+def _look_up_times(table) -> tuple[float, float]:
+    """Return what a look-up anywhere in the table takes, from compiled code and as a call from Python [us]; the best of a few tries."""
+    import time
+
+    import numpy as np
+
+    from bearing_sim.tables.grid import look_up
+
+    count, tries = 20_000, 5
+    last = [table.speeds[-1], table.loads[-1], table.temperatures[-1] - table.temperatures[0], 2 * math.pi]
+    conditions = np.random.default_rng(1).random((count, 4)) * last + [0.0, 0.0, table.temperatures[0], 0.0]
+    compiled, called = math.inf, math.inf
+    for _ in range(tries):
+        began = time.perf_counter()
+        look_up(table, conditions)
+        middle = time.perf_counter()
+        for condition in conditions[:200]:
+            look_up(table, condition[None])
+        compiled, called = min(compiled, (middle - began) / count), min(called, (time.perf_counter() - middle) / 200)
+    return 1e6 * compiled, 1e6 * called
+
+
 def _report(scene, table, quality, answers) -> dict:
     from bearing_sim.tables.store import span_of, table_path
 
+    compiled, called = _look_up_times(table)
     return {
+        "look_up_us": compiled,
+        "look_up_from_python_us": called,
         "scene": scene.name,
         "file": str(table_path(scene, span_of(scene))),
         "megabytes": table.nodes.nbytes / 1e6,
@@ -146,6 +171,7 @@ def _print(report) -> None:
             ("load direction", f"all; {len(report['load_angles_deg'])} knots on {report['period_deg']:.6g} deg"),
             ("nodes", f"{report['nodes']}, {report['missing']} without an answer; {report['megabytes']:.3g} MB; {report['file']}"),
             ("built", f"from {report['solved']} operating points in {report['seconds']:.3g} s"),
+            ("a look-up takes", f"{report['look_up_us']:.3g} us in compiled code, {report['look_up_from_python_us']:.3g} us from Python"),
             ("asked for", f"{100 * report['tolerance']:.3g} % of life, and of slip besides 0.025 points"),
             ("kept", f"at {100 * report['within']:.4g} % of points drawn anywhere in it"),
             ("error of slip", f"{100 * report['slip_error']:.3f} points at most, 95 % below {100 * report['slip_error_95']:.3f}"),
