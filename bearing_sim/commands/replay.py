@@ -51,7 +51,7 @@ def command(log, scene_name, overrides, out, rrd, rate, speed_topic, load_topic,
     from bearing_sim.input_log import InputLogError, read_input_log
     from bearing_sim.replay import replay
     from bearing_sim.scene_file import SceneError, load_scene
-    from bearing_sim.simulation import Inputs, IntegrationError
+    from bearing_sim.simulation import Inputs, IntegrationError, Simulation
     from bearing_sim.sinks.mcap_sink import McapSink
 
     names = {"shaft_speed": speed_topic, "radial_load": load_topic, "oil_temperature": temperature_topic}
@@ -73,16 +73,16 @@ def command(log, scene_name, overrides, out, rrd, rate, speed_topic, load_topic,
 
                 watchers.append(stack.enter_context(RerunSink(scene, path=rrd, start_ns=course.start_ns, lossless=True, duration=seconds)))
             tell_compilation()
-            model = _model(scene, course)
+            choice = _choice(scene, course)
             started = time.perf_counter()
             with suppress(IntegrationError):  # the replay itself will tell
-                warm = model(scene, None)
+                warm = choice.get("model", Simulation)(scene)
                 warm.advance(1e-6)  # machine code is compiled or loaded here, and not timed with the run
                 if warm.takes_courses:
                     warm.advance_course(np.array([1e-6]), np.array([warm.inputs]))
             start_up = time.perf_counter() - started
             progress = stack.enter_context(progress_bar(f"replaying {log.name}", seconds))
-            result = replay(scene, course, recording, watchers, rate, progress, model)
+            result = replay(scene, course, recording, watchers, rate, progress, **choice)
     if as_json:
         print_json({**_report(result, course, recorded, scene, out), "start_up_seconds": start_up})
     else:
@@ -91,18 +91,17 @@ def command(log, scene_name, overrides, out, rrd, rate, speed_topic, load_topic,
         raise FailedRun(result.given_up)
 
 
-def _model(scene, course):
-    """Return what makes the simulation; for level steady with a table, at one oil temperature where the log has no other."""
+def _choice(scene, course) -> dict:
+    """Return what replay is told of the model: at level steady its table, for one oil temperature where the log has no other."""
+    if scene.level != "steady":
+        return {}
     from functools import partial
 
+    from bearing_sim.commands.table import build_with_progress
     from bearing_sim.simulation import Simulation
 
-    if scene.level != "steady":
-        return Simulation
-    from bearing_sim.commands.table import build_with_progress
-
     kelvin = scene.lubricant.temperature
-    return partial(Simulation, table=build_with_progress(scene, None if "oil_temperature" in course.stamps else (kelvin, kelvin))[0])
+    return {"model": partial(Simulation, table=build_with_progress(scene, None if "oil_temperature" in course.stamps else (kelvin, kelvin))[0])}
 
 
 def _report(result, course, recorded, scene, out) -> dict:
