@@ -14,7 +14,7 @@ from typing import NamedTuple
 from bearing_sim.kernels.compilation import kernel, template
 from bearing_sim.kernels.contact import EXPONENT, TINY
 from bearing_sim.kernels.contact_rows import CONTACT
-from bearing_sim.kernels.elementary import exponential, logarithm
+from bearing_sim.kernels.elementary import ninth_root
 from bearing_sim.kernels.lanes import larger, load, magnitude, spread, store, total, where_positive
 
 # rows of pieces behind those of a contact: slopes of a piece's normal force
@@ -58,7 +58,7 @@ def slice_force(depth, rate, stiffness, damping):
     stiffness : K/N [N/m^(10/9)].
     damping : a [s/m].
     """
-    root = stiffness * exponential(logarithm(larger(depth, TINY)) * (1.0 / 9.0))
+    root = stiffness * ninth_root(larger(depth, TINY))
     factor = 1.0 + damping * rate
     pressed = where_positive(factor, where_positive(depth, 1.0, 0.0), 0.0)
     return pressed * root * depth * factor, root, factor, pressed
