@@ -20,7 +20,10 @@ def average_slices(share, params, work):
     slices, contacts, means = params.slices, work.contacts, work.slice_means
     number, blocks = slices.places.shape[0], work.rollers.shape[0]
     part, damping = params.raceways.stiffness / number, params.ring.contact_damping
-    weight = share if means[0, 0] > 0.0 or means[1, 0] > 0.0 else 1.0
+    started = 0.0
+    for k in range(number):
+        started += means[0, k] + means[1, k]
+    weight = share if started > 0.0 else 1.0  # the end slices of a crowned roller may never be loaded
     for k in range(number):
         rotating, stationary = spread(0.0), spread(0.0)
         for block in range(blocks):
