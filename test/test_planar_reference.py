@@ -79,6 +79,10 @@ def kinds(count):
     return which
 
 
+# rho R^3/E omega^2 of the ring's mean radius, and alpha by 100 K of inner ring (5 K more), rollers and outer raceway
+GROWN = 7850 * ((25.0135e-3 + 27.875e-3) / 2) ** 3 / 2.06e11 * (45000 * math.pi / 30) ** 2
+GROWN += 1.2e-5 * (105 * 27.875e-3 + 100 * 7e-3 - 100 * 34.9115e-3)
+
 VARIANTS = {
     "stock": ({}, []),
     "flat land and no friction": (
@@ -95,6 +99,10 @@ VARIANTS = {
         ],
     ),
     "a film that knows no whirl": ({"land_squeeze": False}, ["bearing.cage.land_squeeze=false"]),
+    "pumping, and a raceway that grows": (
+        {"pumping": True, "growth": GROWN},
+        ["lubricant.pumping=true", "bearing.ring_growth={centrifugal: true, thermal: true, inner_excess: 5 K}"],
+    ),
     "nine rollers, damped": ({"rollers": 9, "contact_damping": 1.0}, ["bearing.roller.count=9", "bearing.contact.damping=1"]),
 }
 

@@ -15,6 +15,7 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from std_srvs.srv import SetBool, Trigger
 
 from bearing_sim import topics
+from bearing_sim.effects import hint
 from bearing_sim.events import Event, Level
 from bearing_sim.ros.messages import message, message_class
 from bearing_sim.ros.parameters import Settings, SettingsError, declare
@@ -54,13 +55,15 @@ class BearingNode(Node):
         name, ros_type = topics.DIAGNOSTICS
         self._diagnostics = self.create_publisher(message_class(ros_type), f"/{name}", _STATE_QOS)
         self._outputs = {
-            topic.name: self.create_publisher(message_class(topic.ros_type), topic.name, _STATE_QOS) for topic in topics.OUTPUTS.values()
+            topic.name: self.create_publisher(message_class(topic.ros_type), topic.name, _STATE_QOS) for topic in topics.outputs(self.scene).values()
         }
         # Compiling takes seconds: on its own thread, so that the node answers signals and says what it is doing.
         self._warm_up = threading.Thread(target=self._compile, name="warm-up", daemon=True)
         self._warm_up.start()
         self.create_timer(_REVIEW_PERIOD, self._review)
         self.get_logger().info(f"scene {self.scene.name!r}, bearing {self.scene.bearing.name!r}, level {self.scene.level!r}: warming up")
+        if cheaper := hint(self.scene):
+            self.get_logger().info(cheaper)
 
     def close(self) -> bool:
         """Stop the model and complete recordings.  Returns whether every thread ended."""
@@ -114,8 +117,9 @@ class BearingNode(Node):
             return
         self._published_time = float(sample["time"])
         stamp_ns = self.live.start_ns + round(self._published_time * 1e9)
-        for name, topic in topics.OUTPUTS.items():
-            self._outputs[name].publish(message(topic.ros_type, topic.message(stamp_ns, sample)))
+        for name, publisher in self._outputs.items():
+            topic = topics.OUTPUTS[name]
+            publisher.publish(message(topic.ros_type, topic.message(stamp_ns, sample)))
 
     def _review(self) -> None:
         """Feed the sinks, log what is new, and report when a second has passed or the level has changed."""

@@ -10,6 +10,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
+from bearing_sim import topics
 from bearing_sim.events import Event, Level
 from bearing_sim.runtime.health import Condition, Health
 from bearing_sim.runtime.input_gate import InputGate
@@ -179,13 +180,15 @@ class LiveModel:
 
     def condition(self, now_ns: int) -> Condition:
         """Return what holds now, with the numbers behind it."""
-        now, troubles, dropped = self.run_time(now_ns), list(self._given_up.values()), {}
+        now, troubles, values = self.run_time(now_ns), list(self._given_up.values()), {}
+        if self.runner.newest is not None:
+            values |= topics.further_condition(self.scene, self.runner.newest)
         for name, sink in self._sinks.items():
             if getattr(sink, "fault", None):
                 troubles.append(Event(now, Level.WARN, f"sink.failed.{name}", f"{name} has stopped: {sink.fault}"))
             if hasattr(sink, "dropped"):
-                dropped[f"{name}: blocks dropped"] = sink.dropped
-        return self.health.review(now, self.gate, self.runner, troubles, dropped)
+                values[f"{name}: blocks dropped"] = sink.dropped
+        return self.health.review(now, self.gate, self.runner, troubles, values)
 
     def record_diagnostics(self, condition: Condition, now_ns: int) -> None:
         """Let the recorders keep a diagnostics report."""
