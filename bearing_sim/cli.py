@@ -15,6 +15,7 @@ _COMMANDS = {
     "loads": "Show how a scene's load spreads over rollers and slices, and the lives.",
     "machine": "Compute the raceway that pre-deformation machining makes.",
     "bench": "Measure speed and error of every level and method.",
+    "study": "Study the model itself: the extremes.",
     "view": "Show a recording in rerun.",
     "mission": "Write the bundled synthetic mission as an MCAP log.",
     "scenes": "List the bundled scenes, bearings and oils.",
