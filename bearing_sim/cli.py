@@ -16,6 +16,7 @@ _COMMANDS = {
     "machine": "Compute the raceway that pre-deformation machining makes.",
     "trade": "Measure what speed costs in accuracy on a scene, and recommend a setting.",
     "bench": "Measure speed and error of every level and method.",
+    "study": "Study the model itself: the extremes.",
     "view": "Show a recording in rerun.",
     "mission": "Write the bundled synthetic mission as an MCAP log.",
     "scenes": "List the bundled scenes, bearings and oils.",

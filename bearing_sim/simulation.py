@@ -35,7 +35,16 @@ class Counters(NamedTuple):
 
 
 class IntegrationError(RuntimeError):
-    """Time could not be advanced; the simulation keeps the state from before the call."""
+    """Time could not be advanced; the simulation keeps the state from before the call.
+
+    Attributes
+    ----------
+    status : why, see `bearing_sim.integrators.status`; None where it is not known.
+    """
+
+    def __init__(self, message: str, status: int | None = None):
+        super().__init__(message)
+        self.status = status
 
 
 def scene_inputs(scene: Scene) -> Inputs:
@@ -163,7 +172,8 @@ class Simulation:
             self._step = float(integration.first_step)
             raise IntegrationError(
                 f"{REASONS[status]} between {self.time:.6g} and {self.time + duration:.6g} s (shaft {end.shaft_speed:.6g} rad/s, "
-                f"load {math.hypot(end.load_y, end.load_z):.6g} N, {end.oil_temperature:.6g} K); the state before is kept"
+                f"load {math.hypot(end.load_y, end.load_z):.6g} N, {end.oil_temperature:.6g} K); the state before is kept",
+                status,
             )
         self.time += duration
         self.inputs, self._state, self._step = end, state, step
