@@ -55,10 +55,10 @@ def test_life_by_slices_in_motion_is_near_that_of_quasi_static_balance(found):
 def test_results_settle_as_a_crowned_roller_is_cut_finer():
     scene = load_scene("deng2017_table1", [*SLOW, "level=spatial", "bearing.roller.crown=iso_log", "operating.misalignment=1 mrad"])
     few, some, many = by_slices(scene, 0.1, 0.06, (10, 30, 100), **QUIET)
-    for name in ("lamina_life", "static_lamina_life", "static_pressure"):
+    for name in ("lamina_life", "static_lamina_life"):
         rough, fine, finest = (getattr(one, name) for one in (few, some, many))
-        assert abs(fine / finest - 1) < 0.03
-        assert abs(rough / finest - 1) > 2 * abs(fine / finest - 1)
+        assert abs(fine / finest - 1) < 0.08  # 30 slices, as many as the standard asks for
+        assert abs(rough / finest - 1) > 5 * abs(fine / finest - 1)
 
 
 def test_a_straight_line_is_found_in_costs_that_lie_on_one():
