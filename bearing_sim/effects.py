@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 LEVELS = ("slip", "planar", "spatial")  # from the cheapest to the dearest
+NUMBERS = {"steady": 0, "slip": 1, "planar": 2, "spatial": 3}  # how a sample names the level that computed it
 WITHOUT_SLICES = {"spatial": "planar"}  # what a level is to round-off, several times faster, where nothing that it alone has is asked for
 
 
@@ -59,6 +60,12 @@ def _need(effect: Effect, scene) -> str:
 def levels_with(effects) -> list[str]:
     """Return the levels that have all of some effects, from the cheapest to the dearest."""
     return [level for level in LEVELS if all(level in effect.levels for effect in effects)]
+
+
+def cheaper_levels(scene) -> list[str]:
+    """Return the levels cheaper than a scene's own that have all it asks for, the dearest of them first."""
+    able = levels_with(asked_for(scene))
+    return [level for level in reversed(LEVELS[: LEVELS.index(scene.level)]) if level in able]
 
 
 def hint(scene) -> str | None:

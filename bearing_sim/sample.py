@@ -26,6 +26,7 @@ OBSERVABLES = (
     Observable("load_y", "N", "radial load on the inner ring along y"),
     Observable("load_z", "N", "radial load on the inner ring along z"),
     Observable("oil_temperature", "K", "oil temperature"),
+    Observable("level", "", "level that computed the sample: 0 steady, 1 slip, 2 planar, 3 spatial"),
     Observable("cage_angle", "rad", "cage rotation since the start"),
     Observable("cage_speed", "rad/s", "cage angular speed"),
     Observable("ideal_cage_angle", "rad", "rotation of a cage without slip since the start"),

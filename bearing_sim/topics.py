@@ -167,6 +167,7 @@ OUTPUTS = {
             "life with reliability and oil, by the scene's choice [h]; damage counts it",
             _number("modified_rating_life"),
         ),
+        Topic("level", "std_msgs/msg/Float64", "level that computed the sample: 0 steady, 1 slip, 2 planar, 3 spatial", _number("level")),
         Topic("damage", "std_msgs/msg/Float64", "fraction of life used since the start", _number("damage")),
         Topic("bearing_joints", "sensor_msgs/msg/JointState", "shaft, cage, cage_ideal: angle [rad], speed [rad/s]; no torque", _bearing_joints),
         Topic("equivalent_loads", _MULTI_ARRAY, "dynamic equivalent roller loads [N], ring (inner, outer)", _array("equivalent_loads")),

@@ -42,7 +42,7 @@ ALLOWED = {
     "oil.py": ({"numpy"}, {"scene_lubricant"}),
     "params.py": ({"numpy"}, {"contour", "crown", "kernels", "oil", "rating_life", "ring_growth", "scene", "scene_lubricant"}),
     "rating_life.py": ({"numpy"}, {"kernels.compilation"}),
-    "simulation.py": ({"numpy"}, {"integrators.status", "levels", "params", "sample", "scene"}),
+    "simulation.py": ({"numpy"}, {"effects", "integrators.status", "levels", "params", "sample", "scene"}),
     "sinks": (
         {"numpy", "mcap", "rosbags", "rerun", "yaml"},
         {"sinks", "contour", "sample", "scene", "scene_file", "events", "topics", "provenance", "simulation"},
@@ -51,7 +51,7 @@ ALLOWED = {
         NUMBERS | {"sksundae", "matplotlib"},
         {"studies", "levels", "params", "rating_life", "sample", "scene", "scene_file", "simulation"},
     ),
-    "runtime": ({"numpy"}, {"runtime", "simulation", "scene", "events", "sample", "topics"}),
+    "runtime": ({"numpy"}, {"runtime", "simulation", "scene", "effects", "events", "sample", "topics"}),
 }
 
 

@@ -22,7 +22,7 @@ from bearing_sim.ros.parameters import Settings, SettingsError, declare
 from bearing_sim.ros.process import CannotRun, run_node
 from bearing_sim.ros.recordings import fresh_path, open_recording, open_view, prepare
 from bearing_sim.runtime.health import Condition
-from bearing_sim.runtime.live import LiveModel, warmed_up
+from bearing_sim.runtime.live import LiveModel, governor_of, warmed_up
 from bearing_sim.scene import Scene
 from bearing_sim.scene_file import SceneError, load_scene
 from bearing_sim.simulation import IntegrationError, Simulation
@@ -74,6 +74,7 @@ class BearingNode(Node):
         try:
             prepare(view=bool(self.settings.rrd or self.settings.rerun_port))
             self._simulation: Simulation = warmed_up(self.scene, self.settings.sample_rate)
+            self._governor = governor_of(self._simulation, self.settings.sample_rate) if self.settings.governor else None
         except Exception as fault:  # handed over to the main thread, which raises it
             self._warm_up_fault = fault
 
@@ -81,7 +82,7 @@ class BearingNode(Node):
         """Begin: run time 0 is now; open recordings, subscriptions and services."""
         settings = self.settings
         start_ns = self._now_ns()
-        self.live = LiveModel(self.scene, self._simulation, start_ns, settings.sample_rate, settings.maximum_lag)
+        self.live = LiveModel(self.scene, self._simulation, start_ns, settings.sample_rate, settings.maximum_lag, governor=self._governor)
         try:
             if settings.record:
                 self._start_recording(Path(settings.record))
