@@ -62,6 +62,11 @@ def levels_with(effects) -> list[str]:
     return [level for level in LEVELS if all(level in effect.levels for effect in effects)]
 
 
+def level_of(sample) -> str:
+    """Return the name of the level that computed a sample."""
+    return {number: name for name, number in NUMBERS.items()}[int(sample["level"])]
+
+
 def cheaper_levels(scene) -> list[str]:
     """Return the levels cheaper than a scene's own that have all it asks for, the dearest of them first."""
     able = levels_with(asked_for(scene))

@@ -19,6 +19,7 @@ from mcap.records import Channel, Footer, Message, Metadata, Schema
 from mcap.stream_reader import CRCValidationError, StreamReader
 
 from bearing_sim.contour import outer_contour
+from bearing_sim.effects import NUMBERS
 from bearing_sim.events import Event, Level
 from bearing_sim.mcap_stream import WholeReads
 from bearing_sim.params import contact_stiffness
@@ -268,6 +269,7 @@ def complete(scene: Scene, block: np.ndarray, before: np.void | None = None) -> 
     if not scene.bodies_tilt:
         for field in _OF_TILTING_LEVELS:
             _fill(block, field, 0.0)
+    _fill(block, "level", NUMBERS[scene.level])
     for life in ("lamina_life", "modified_rating_life"):
         _fill(block, life, block["rating_life"])
     # A loaded roller touches the ring: e cos(phi - phi_e) = delta_i - (R_i + R_w - r); all of them together give e.

@@ -45,7 +45,7 @@ ALLOWED = {
     "simulation.py": ({"numpy"}, {"effects", "integrators.status", "levels", "params", "sample", "scene"}),
     "sinks": (
         {"numpy", "mcap", "rosbags", "rerun", "yaml"},
-        {"sinks", "contour", "sample", "scene", "scene_file", "events", "topics", "provenance", "simulation"},
+        {"sinks", "contour", "effects", "sample", "scene", "scene_file", "events", "topics", "provenance", "simulation"},
     ),
     "studies": (
         NUMBERS | {"sksundae", "matplotlib"},

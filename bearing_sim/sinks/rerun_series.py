@@ -5,6 +5,7 @@ import math
 import numpy as np
 import rerun as rr
 
+from bearing_sim.effects import level_of
 from bearing_sim.events import Event, Level
 from bearing_sim.scene import Scene
 from bearing_sim.sinks import colours, section
@@ -197,6 +198,7 @@ class RunSeries:
         limits = self._scene.thresholds
         slip, life = float(sample["cage_slip"]), float(sample["rating_life"])
         lines = [
+            ("level", level_of(sample)),
             ("cage slip", f"**{100 * slip:.2f} %**" if math.isfinite(slip) else "none (at rest)"),
             ("rating life", f"**{_hours(life)}**"),
             *self._further_readout(sample),
