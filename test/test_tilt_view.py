@@ -99,6 +99,8 @@ def test_a_recording_that_knows_no_tilts_is_drawn_upright(tmp_path):
         block[name] = np.nan
     chunks = written(tmp_path / "run.rrd", SPATIAL, block)
     np.testing.assert_array_equal(last_value(chunks, "/solid/rollers", "InstancePoses3D:quaternions"), np.tile([0.0, 0.0, 0.0, 1.0], (18, 1)))
+    text = last_value(chunks, "/now", "TextDocument:text")[0]
+    assert "| pressure | unknown |" in text and "| most tilt, skew | unknown |" in text
 
 
 def test_diagnostics_tell_further_lives_and_edges_where_the_scene_has_them():
