@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 LEVELS = ("slip", "planar", "spatial")  # from the cheapest to the dearest
 NUMBERS = {"steady": 0, "slip": 1, "planar": 2, "spatial": 3}  # how a sample names the level that computed it
-WITHOUT_SLICES = {"spatial": "planar"}  # what a level is to round-off, several times faster, where nothing that it alone has is asked for
+REDUCES_TO = {"spatial": "planar"}  # what a level moves and loads like, to round-off, where nothing that it alone has is asked for
 
 
 class Effect(NamedTuple):
@@ -75,8 +75,9 @@ def cheaper_levels(scene) -> list[str]:
 
 def hint(scene) -> str | None:
     """Return one line that names a cheaper level at which a scene computes the same, or None."""
-    cheaper = WITHOUT_SLICES.get(scene.level)
+    cheaper = REDUCES_TO.get(scene.level)
     if cheaper is None or cheaper not in levels_with(asked_for(scene)):
         return None
     missing = ", ".join(effect.field for effect in EFFECTS if scene.level in effect.levels and cheaper not in effect.levels)
-    return f"level {scene.level}: the scene has nothing that needs it ({missing}); level {cheaper} computes the same several times faster"
+    faster = f"level {cheaper} computes the same motion and loads several times faster"
+    return f"level {scene.level}: the scene has nothing that needs it ({missing}); {faster}"

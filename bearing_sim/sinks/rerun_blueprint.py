@@ -41,12 +41,6 @@ def _cage_factor(scene: Scene) -> str:
     return f", cage x{section.cage_magnification(scene)}" if scene.cage_whirls else ""
 
 
-def _tilt_factor(scene: Scene) -> str:
-    if not scene.bodies_tilt:
-        return ""
-    return f", tilt x{section.tilt_magnification(scene)}, skew x{section.skew_magnification(scene.bearing)}"
-
-
 def blueprint(scene: Scene, bounds, live: bool, extent: Extent | None = None) -> rrb.Blueprint:
     """Return the lay-out.
 
@@ -58,7 +52,7 @@ def blueprint(scene: Scene, bounds, live: bool, extent: Extent | None = None) ->
     extent : what the finished run covers; axes choose themselves where absent.
     """
     axes = _Axes(live, extent)
-    plots = rrb.Horizontal(_middle(scene, axes), _right(axes), column_shares=[0.58, 0.42])
+    plots = rrb.Horizontal(_middle(scene, axes), _right(scene, axes), column_shares=[0.58, 0.42])
     log = rrb.TextLogView(origin="/log", name="Log", columns=rrb.TextLogColumns(timeline_columns=[TIMELINE], text_log_columns=["loglevel", "body"]))
     return rrb.Blueprint(
         rrb.Horizontal(_left(scene, bounds), rrb.Vertical(plots, log, row_shares=[0.84, 0.16]), column_shares=[0.42, 0.58]),
@@ -137,7 +131,7 @@ def _left(scene: Scene, bounds) -> rrb.Vertical:
             rrb.Spatial3DView(
                 origin="/",
                 contents="/solid/**",
-                name=f"3D, x{section.magnification(scene.bearing)}{_cage_factor(scene)}{_tilt_factor(scene)}",
+                name=f"3D, x{section.magnification(scene.bearing)}{_cage_factor(scene)}",
                 background=BACKGROUND,
                 eye_controls=eye,
                 line_grid=False,
@@ -180,19 +174,19 @@ def _middle(scene: Scene, axes: _Axes) -> rrb.Vertical:
             active_tab=0,
         ),
         *tilts,
-        row_shares=[0.19, 0.18, 0.1, 0.17, 0.18, 0.18] if tilts else [0.23, 0.22, 0.12, 0.2, 0.23],
+        row_shares=[0.18, 0.18, 0.12, 0.17, 0.175, 0.175] if tilts else [0.23, 0.22, 0.12, 0.2, 0.23],
     )
 
 
 def _lives(scene: Scene, axes: _Axes) -> rrb.TimeSeriesView:
     """Return the plot of the basic life and of those that scene or level have besides."""
-    paths, said = ["/life/warning", "/life/log10_hours"], "yellow: warning"
+    paths, others = ["/life/warning", "/life/log10_hours"], []
     if scene.bodies_tilt:
-        paths, said = [*paths, "/life/lamina_log10_hours"], f"{said}, blue: lamina life"
+        paths, others = [*paths, "/life/lamina_log10_hours"], ["blue lamina"]
     if not scene.life.is_basic:
-        paths, said = [*paths, "/life/chosen_log10_hours"], f"{said}, purple: by the scene's choice"
-    scale = "log10 of hours" if len(paths) > 2 else "log10 of hours: 2 = 100 h, 3 = 1000 h"
-    return axes.plot(f"Rating life, {scale} ({said})", paths, from_zero=False)
+        paths, others = [*paths, "/life/chosen_log10_hours"], [*others, "purple by choice"]
+    title = "Rating life, log10 of hours: 2 = 100 h, 3 = 1000 h (yellow: warning)"
+    return axes.plot(f"Lives, log10 of hours (green basic, {', '.join(others)})" if others else title, paths, from_zero=False)
 
 
 def _tilts(axes: _Axes) -> rrb.Tabs:
@@ -205,7 +199,7 @@ def _tilts(axes: _Axes) -> rrb.Tabs:
     )
 
 
-def _right(axes: _Axes) -> rrb.Vertical:
+def _right(scene: Scene, axes: _Axes) -> rrb.Vertical:
     across, down = power_bounds()
     bars = rrb.Spatial2DView(
         origin="/power_now",
@@ -218,5 +212,5 @@ def _right(axes: _Axes) -> rrb.Vertical:
         rrb.Tabs(bars, axes.plot("Plot [W]", [f"/power/{cause}" for cause in CAUSES]), active_tab=0),
         axes.plot("Radial load [N]", ["/load/radial"]),
         rrb.Tabs(axes.plot("Damage [millionths of the life]", ["/damage/ppm"]), axes.plot("Oil [°C]", ["/oil/temperature"]), active_tab=0),
-        row_shares=[0.385, 0.285, 0.165, 0.165],
+        row_shares=[0.5, 0.26, 0.12, 0.12] if scene.bodies_tilt else [0.385, 0.285, 0.165, 0.165],
     )

@@ -225,8 +225,9 @@ class RunSeries:
             edge, largest = (1e-6 * max(float(sample[f"{ring}_{kind}"]) for ring in ("inner", "outer")) for kind in ("edge_pressure", "pressure"))
             tilt, skew = (1e3 * float(np.abs(sample[name]).max()) for name in ("roller_tilt", "roller_skew"))
             lines.append(("lamina life", f"{_hours(float(sample['lamina_life']))}"))
-            lines.append(("pressure", f"{largest:.0f} MPa, ends {edge:.0f} MPa"))
-            lines.append(("most tilt, skew", f"{tilt:.2f}, {skew:.2f} mrad"))
+            known = math.isfinite(largest + edge), math.isfinite(tilt + skew)  # an older recording holds neither
+            lines.append(("pressure", f"{largest:.0f} MPa, ends {edge:.0f} MPa" if known[0] else "unknown"))
+            lines.append(("most tilt, skew", f"{tilt:.2f}, {skew:.2f} mrad" if known[1] else "unknown"))
         return lines
 
     def write_dropped(self, time: float, dropped: int) -> None:

@@ -50,7 +50,18 @@ class SolidDrawing:
         ring = bearing.inner_raceway.radius / MILLIMETRE
         self._still("inner_ring/body", _band(0.6 * ring, ring, 1.2 * half))
         self._still("inner_ring/shaft_mark", rr.LineStrips3D.from_fields(radii=0.5, colors=colours.BLUE))
+        if self._tilts:
+            self._write_factors()
         self._still("cage/bars", rr.LineStrips3D.from_fields(radii=0.6 * section.cage_bar_stroke(bearing), colors=self._bar_colours()))
+
+    def _write_factors(self) -> None:
+        """Write under the bearing by what tilts and skews are drawn; the tab's title has no room for it."""
+        text = f"tilt of ring and rollers x{self._tilt_factor}, skew x{self._skew_factor}, tilt of cage x{self._cage_factor}"
+        below = [[0.0, -1.35 * self._bearing.outer_raceway.low_radius / MILLIMETRE, 0.0]]
+        # an arrow of no length: a point of no size would leave a dot
+        self._still(
+            "factors", rr.Arrows3D(origins=below, vectors=[[0.0, 0.0, 0.0]], radii=0.0, colors=colours.WHITE, labels=[text], show_labels=True)
+        )
 
     def draw(self, sample: np.void, load_scale: float) -> None:
         """Draw the moving parts of one sample, loads coloured up to ``load_scale`` [N]."""
