@@ -263,6 +263,9 @@ class Scene:
     name: str
     description: str = ""
     level: Literal["slip", "planar", "spatial"] = "slip"
+    # `level: auto` in a file: the cheapest that has these, and all else that the scene says; why, is then entered here.
+    wants: tuple[Literal[tuple(effects.WANTS)], ...] = ()
+    level_reason: str = ""
     bearing: Bearing
     lubricant: Lubricant
     operating: Operating

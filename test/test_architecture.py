@@ -38,7 +38,7 @@ ALLOWED = {
     "ring_growth.py": (set(), {"scene"}),
     "contour_scene.py": (set(), {"contour", "scene_raceway"}),
     "scene.py": ({"pydantic"}, {"crown", "effects", "methods", "quantity", "scene_lubricant", "scene_raceway", "scene_record"}),
-    "scene_file.py": ({"pydantic", "yaml"}, {"contour_scene", "crown", "scene", "quantity"}),
+    "scene_file.py": ({"pydantic", "pydantic_core", "yaml"}, {"contour_scene", "crown", "effects", "scene", "quantity"}),
     "oil.py": ({"numpy"}, {"scene_lubricant"}),
     "params.py": ({"numpy"}, {"contour", "crown", "kernels", "oil", "rating_life", "ring_growth", "scene", "scene_lubricant"}),
     "rating_life.py": ({"numpy"}, {"kernels.compilation"}),
