@@ -94,7 +94,7 @@ def test_what_no_single_level_has_is_an_error_that_names_who_has_what(monkeypatc
         found = choose(stock)
     assert found == (None, "no level has all of wants.a (slip); wants.b (planar, spatial)")
     monkeypatch.setattr("bearing_sim.scene_file.choose", lambda scene: found)
-    with pytest.raises(SceneError, match=r"level = auto: no level has all of wants.a \(slip\); wants.b"):
+    with pytest.raises(SceneError, match=r"level = 'auto': no level has all of wants.a \(slip\); wants.b"):
         scene("auto")
 
 
