@@ -59,7 +59,8 @@ def rough_state(run, seed, scale=1.0):
     state = run._state.copy()
     eccentricity, azimuth = random.uniform(0.0, 0.149e-3), random.uniform(0.0, 2 * math.pi)
     state[0:2] += random.normal(size=2) * 3e-6
-    state[2:4] = eccentricity * math.cos(azimuth), eccentricity * math.sin(azimuth)
+    state[2:4] = run._params.cage.guidance.turning * state[0:2]
+    state[2:4] += eccentricity * np.array([math.cos(azimuth), math.sin(azimuth)])
     state[4] = random.uniform(-10.0, 10.0)
     state[5:9] += random.normal(size=4) * 2e-2
     slowed = random.uniform(0.6, 1.05)
@@ -79,6 +80,8 @@ def kinds(count):
     return which
 
 
+INNER = ["bearing.cage.guidance=inner_ring", "bearing.cage.outer_radius=33.35 mm"]
+ROLLER_GUIDED = ["bearing.cage.guidance=roller", "bearing.cage.outer_radius=33.35 mm"]
 VARIANTS = {
     "stock": ({}, []),
     "flat land and no friction": (
@@ -95,6 +98,16 @@ VARIANTS = {
         ],
     ),
     "a film that knows no whirl": ({"land_squeeze": False}, ["bearing.cage.land_squeeze=false"]),
+    "guided on the inner ring": ({"guidance": "inner_ring"}, INNER),
+    "guided on the inner ring, backwards, by a film that knows no whirl": (
+        {"guidance": "inner_ring", "shaft_speed": -1500.0, "land_squeeze": False},
+        [*INNER, "operating.shaft_speed=-1500", "bearing.cage.land_squeeze=false"],
+    ),
+    "guided by rollers": ({"guidance": "roller"}, ROLLER_GUIDED),
+    "guided by rollers, tight and backwards": (
+        {"guidance": "roller", "shaft_speed": -1500.0, "pocket_radial_clearance": 0.06e-3},
+        [*ROLLER_GUIDED, "operating.shaft_speed=-1500", "bearing.cage.pocket_radial_clearance=0.06 mm"],
+    ),
     "nine rollers, damped": ({"rollers": 9, "contact_damping": 1.0}, ["bearing.roller.count=9", "bearing.contact.damping=1"]),
 }
 

@@ -70,6 +70,18 @@ def _pocket_powers(y, params, rows):
 
 
 @kernel
+def _land_powers(y, shaft_speed, model, lands):
+    """Return `bearing_sim.levels.planar_power.land_powers` of both guide lands together; each carries half."""
+    if not model.params.cage.guidance.lands:
+        return 0.0, 0.0, 0.0
+    place_land(y, model.params.tilts.land_place, lands[0])
+    place_land(y, -model.params.tilts.land_place, lands[1])
+    near_driven, near, near_touching = land_powers(lands[0], shaft_speed, model)
+    far_driven, far, far_touching = land_powers(lands[1], shaft_speed, model)
+    return 0.5 * (near_driven + far_driven), 0.5 * (near + far), 0.5 * (near_touching + far_touching)
+
+
+@kernel
 def spatial_powers(y, shaft_speed, model, work):
     """Return `bearing_sim.levels.power.Powers` of a state.
 
@@ -84,21 +96,18 @@ def spatial_powers(y, shaft_speed, model, work):
     inner, inner_damped, driving = _contact_powers(0, y, params, work)
     outer, outer_damped, _ = _contact_powers(rows.shape[0], y, params, work)
     pocket, walls = _pocket_powers(y, params, rows)
-    place_land(y, params.tilts.land_place, work.lands[0])
-    place_land(y, -params.tilts.land_place, work.lands[1])
-    near, near_touching = land_powers(work.lands[0], model)
-    far, far_touching = land_powers(work.lands[1], model)
+    driven, land, touching = _land_powers(y, shaft_speed, model, work.lands)
     churning = 0.0
     for block in range(rows.shape[0]):
         drag = load(rows, block, ROLLER.present) * load(rows, block, ROLLER.churning)
         churning += total(drag * load(rows, block, ROLLER.radius) * load(rows, block, ROLLER.orbital_speed))
     return Powers(
-        driving * params.raceways.inner_radius * shaft_speed + bore,
+        driving * params.raceways.inner_radius * shaft_speed + bore + driven,
         inner,
         outer,
         churning,
         windage,
-        0.5 * (near + far),
+        land,
         pocket,
-        inner_damped + outer_damped + walls + 0.5 * (near_touching + far_touching),
+        inner_damped + outer_damped + walls + touching,
     )
