@@ -55,7 +55,6 @@ class Guidance(NamedTuple):
     lands: bool  # whether lands guide it
     turning: float  # 1 where they are the inner ring's, which turns and moves, else 0
     pocket_radius: float  # of guiding pockets' middles, where rollers on the outer raceway are in the mean [m]
-    pocket_stiffness: float  # of guiding pockets' films, outwards and inwards [N/m]
 
 
 class CageBody(NamedTuple):
@@ -207,7 +206,6 @@ def pack(scene: Scene) -> Params:
                 lands=cage.has_lands,
                 turning=1.0 if cage.guidance == "inner_ring" else 0.0,
                 pocket_radius=float(contour[:, 3].mean()) - roller_radius,
-                pocket_stiffness=cage.pocket_film_force / cage.play,
             ),
             guide_radius=cage.land_radius if cage.has_lands else bearing.pitch_radius,
             guide_clearance=cage.play,

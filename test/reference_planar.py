@@ -140,11 +140,10 @@ class Reference:
         s = magnitude(sliding) / rolling
         return load * np.where(np.real(sliding) >= 0, 1, -1) * ((a + b * s) * np.exp(-c * s) - a)
 
-    def pocket(self, offset, rate, clearance=None):
+    def pocket(self, offset, rate, clearance, film_force):
         """Force of a pocket's walls against a roller's offset, its elastic part, and the energy of that."""
-        clearance = self.pocket_clearance if clearance is None else clearance
         way, sign = magnitude(offset), np.where(np.real(offset) >= 0, 1, -1)
-        film = self.pocket_film_force / clearance
+        film = film_force / clearance
         excess = larger(way - clearance, 0.0)
         in_film = way - excess
         wall, wall_elastic, wall_energy = self.normal_contact(excess, rate * sign)
@@ -271,7 +270,9 @@ class Reference:
         cage_there = state.cage_velocity[:, None] + state.cage_speed * ahead(f.from_cage)
         f.pocket_slide = dot(state.velocity - cage_there, f.pocket_outward)  # of the roller's centre past the wall
         f.pocket_rate = dot(state.velocity - cage_there, f.pocket_along)
-        f.pocket, f.pocket_elastic, f.pocket_energy = self.pocket(dot(f.from_cage, f.pocket_along), f.pocket_rate)
+        f.pocket, f.pocket_elastic, f.pocket_energy = self.pocket(
+            dot(f.from_cage, f.pocket_along), f.pocket_rate, self.pocket_clearance, self.pocket_film_force
+        )
         f.pocket_smooth = self.pocket_friction * state.spin / np.sqrt(state.spin**2 + 10.0**2)
 
         f.guide = f.guide_elastic = f.guide_energy = f.guide_rate = np.zeros(self.rollers)
@@ -280,7 +281,7 @@ class Reference:
             middle = self.low_radius + self.d_value / 2 - r_w
             f.guide_rate = f.pocket_slide
             offset = dot(f.from_cage, f.pocket_outward) - middle
-            f.guide, f.guide_elastic, f.guide_energy = self.pocket(offset, f.guide_rate, self.pocket_radial_clearance)
+            f.guide, f.guide_elastic, f.guide_energy = self.pocket(offset, f.guide_rate, self.pocket_radial_clearance, 0.0)
         else:
             f.land = self.land(state.cage, state.cage_velocity, state.cage_speed, state.ring, state.ring_velocity)
         f.bore_torque = self.couette(omega_i - state.cage_speed, self.inside, self.inside - r_i, self.inside_width)

@@ -123,13 +123,15 @@ class SpatialReference:
         moving = moving - state.cage_speed * ahead(f.from_cage)
         f.pocket_slide = dot(moving, f.pocket_outward[:, :, None])
         f.pocket_rate = dot(moving, f.pocket_along[:, :, None])
-        f.pocket, f.pocket_elastic, f.pocket_energy = p.pocket(dot(f.from_cage, f.pocket_along[:, :, None]), f.pocket_rate)
+        f.pocket, f.pocket_elastic, f.pocket_energy = p.pocket(
+            dot(f.from_cage, f.pocket_along[:, :, None]), f.pocket_rate, p.pocket_clearance, p.pocket_film_force
+        )
         f.pocket_smooth = p.pocket_friction * state.spin / np.sqrt(state.spin**2 + 10.0**2)
         guiding = p.guidance == "roller"
         middle = p.low_radius + p.d_value / 2 - r_w
         outwards = dot(f.from_cage, f.pocket_outward[:, :, None]) - middle if guiding else np.zeros((p.rollers, n))
         f.guide_rate = f.pocket_slide
-        f.guide, f.guide_elastic, f.guide_energy = p.pocket(outwards, f.guide_rate if guiding else 0 * f.guide_rate, p.pocket_radial_clearance)
+        f.guide, f.guide_elastic, f.guide_energy = p.pocket(outwards, f.pocket_slide if guiding else 0.0, p.pocket_radial_clearance, 0.0)
         # a slice has an N-th of everything
         for name in ("inner", "outer", "pocket", "guide"):
             for kind in ("", "_elastic", "_energy"):

@@ -57,7 +57,7 @@ def rough_state(run, seed, scale=1.0):
     """Rollers pressed, parted and colliding, some against a pocket's wall, and the cage anywhere up to its land."""
     random = np.random.default_rng(seed)
     state = run._state.copy()
-    eccentricity, azimuth = random.uniform(0.0, 0.149e-3), random.uniform(0.0, 2 * math.pi)
+    eccentricity, azimuth = random.choice([random.uniform(0.0, 0.149e-3), 0.1485e-3]), random.uniform(0.0, 2 * math.pi)
     state[0:2] += random.normal(size=2) * 3e-6
     state[2:4] = run._params.cage.guidance.turning * state[0:2]
     state[2:4] += eccentricity * np.array([math.cos(azimuth), math.sin(azimuth)])
@@ -154,11 +154,12 @@ def test_jacobian_is_that_of_a_complex_step_through_the_plain_numpy_model(varian
     state = rough_state(run, seed, 0.3)
     found, expected = dense_jacobian(run, state), complex_step_jacobian(Reference(**fields), state)
     which = kinds(run._params.rollers.count)
+    round_off = np.abs(expected).max(1)  # some blocks are sums over rollers that vanish
     # each block of one kind of rate by one kind of state has a unit, and so a largest entry, of its own
     for row in range(11):
         for column in range(11):
             block = np.ix_(which == row, which == column)
-            largest = np.abs(expected[block]).max()
+            largest = np.abs(expected[block]).max() + 1e-9 * round_off[which == row].min()
             assert np.abs(found - expected)[block].max() <= 1e-6 * largest, (row, column)
 
 

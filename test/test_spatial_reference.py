@@ -75,7 +75,7 @@ def rough_state(run, seed, scale=1.0):
     """Rollers pressed, parted and colliding, tilted and skewed, some against a pocket's wall, and the cage anywhere up to its land."""
     random = np.random.default_rng(seed)
     state = run._state.copy()
-    eccentricity, azimuth = random.uniform(0.0, 0.145e-3), random.uniform(0.0, 2 * math.pi)
+    eccentricity, azimuth = random.choice([random.uniform(0.0, 0.145e-3), 0.1485e-3]), random.uniform(0.0, 2 * math.pi)
     state[0:2] += random.normal(size=2) * 3e-6
     state[2:4] += random.normal(size=2) * 5e-4
     turning = run._params.cage.guidance.turning

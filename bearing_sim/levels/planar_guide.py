@@ -2,10 +2,12 @@
 
 Pockets with walls along the orbit alone do not hold a cage: rollers shift along the orbit with the pockets of a cage that turns off its
 centre, nothing pulls it back, and its own centrifugal force carries it away.  A cage guided by its rollers therefore has pockets that
-close around them.  Here a guiding pocket does outwards and inwards what every pocket does along the orbit, by the same law (the film's
-spring until the clearance is used up, then line contact on top of it; Deng 2017, eq. 10, made continuous) and with the same friction, as
-a cylindrical pocket does that leaves the same play all round (Gupta 1984, chapter 4); wall against wall, without the corner between.
-Its middle is where a roller on the outer raceway is in the mean.
+close around them.  Here a guiding pocket stops a roller outwards and inwards as every pocket does along the orbit, by line contact where
+the clearance is used up, with the same film damping and the same friction; wall against wall, without the corner between.  Within the
+clearance there is no spring: the one along the orbit (Deng 2017, eq. 10) stands for the oil between a roller and the wall that it drives
+or that drives it, whereas outwards every lobe moves every roller, and metal meets metal only where the play ends (Gupta 1979).  The play
+is that along the orbit, as in a cylindrical pocket, unless the scene says otherwise; its middle is where a roller on the outer raceway is
+in the mean.
 
 With mu the coefficient of friction that has the sign of the spin, a force f outwards on the wall is accompanied by mu f along the
 orbit: what the other walls do, turned by a right angle.
@@ -13,7 +15,7 @@ orbit: what the other walls do, turned by a right angle.
 
 from bearing_sim.kernels.compilation import kernel, template
 from bearing_sim.kernels.contact import damped_line_contact, log_penetration
-from bearing_sim.kernels.lanes import larger, load, magnitude, spread, store, total, where_positive
+from bearing_sim.kernels.lanes import load, magnitude, spread, store, total, where_positive
 from bearing_sim.levels.planar_algebra import AT_POSITIONS, AT_SPEEDS, BORDER, LOCAL
 from bearing_sim.levels.planar_state import CAGE_Y, CAGE_Z, OMEGA, PHI, PHI_SPEED, R_SPEED, ROLLER, SPIN, THETA, R
 
@@ -39,16 +41,15 @@ def guide_forces(y, params, rows):
         speed_r = y[BORDER + CAGE_Y] * p_c + y[BORDER + CAGE_Z] * p_s
         offset = radius * c - cage_r - cage.guidance.pocket_radius
         rate = load(rows, block, ROLLER.radial_speed) * c - radius * s * orbital_speed - speed_r + y[OMEGA] * load(rows, block, ROLLER.pocket_offset)
-        stiffness, damping = spread(cage.guidance.pocket_stiffness), spread(cage.pocket_damping)
-        force = stiffness * offset + damping * rate
+        stiffness, damping = spread(0.0), spread(cage.pocket_damping)
+        force = damping * rate
         excess = magnitude(offset) - cage.guide_clearance
         if total(where_positive(excess, 1.0, 0.0)) > 0.0:
             side = where_positive(offset, 1.0, -1.0)
-            wall, wall_stiffness, wall_damping = damped_line_contact(
+            wall, stiffness, wall_damping = damped_line_contact(
                 excess, log_penetration(excess), rate * side, params.raceways.stiffness, params.ring.contact_damping
             )
-            force += side * (wall - cage.guidance.pocket_stiffness * larger(excess, 0.0))
-            stiffness = where_positive(excess, wall_stiffness, stiffness)
+            force += side * wall
             damping += wall_damping
         store(rows, block, ROLLER.guide_offset, offset)
         store(rows, block, ROLLER.guide_rate, rate)

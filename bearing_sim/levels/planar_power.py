@@ -82,10 +82,9 @@ def _guiding_pockets(y, params, rows):
         # the wall's own sliding speed counts against the orbit
         sliding = rows[block, ROLLER.spin, lane] * side + omega * side - rows[block, ROLLER.pocket_rate, lane]
         film = cage.pocket_damping * rate
-        spring = cage.guidance.pocket_stiffness * min(max(offset, -cage.guide_clearance), cage.guide_clearance)
         wall = math.copysign(elastic_force(abs(offset) - cage.guide_clearance, params.raceways.stiffness), offset)
         lost += force * rows[block, ROLLER.pocket_friction, lane] * sliding + film * rate
-        damped += (force - film - spring - wall) * rate
+        damped += (force - film - wall) * rate
     return lost, damped
 
 

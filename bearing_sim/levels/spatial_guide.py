@@ -55,9 +55,7 @@ def guide_forces(block, y, params, rows):
     lean_rate = load(rows, block, ROLLER.tilt_speed) * c - load(rows, block, ROLLER.skew_speed) * s - orbital_speed * (tilt * s + skew * c)
     lean_rate += y[OMEGA] * load(rows, block, ROLLER.pocket_skew) - (y[BORDER + CAGE_TILT_Y] * p_c + y[BORDER + CAGE_TILT_Z] * p_s)
     lean = load(rows, block, ROLLER.pocket_lean)
-    force, moment, k_0, k_1, k_2, d_0, d_1, d_2 = hold_slices(
-        offset, rate, lean, lean_rate, cage.guide_clearance, cage.guidance.pocket_stiffness, params
-    )
+    force, moment, k_0, k_1, k_2, d_0, d_1, d_2 = hold_slices(offset, rate, lean, lean_rate, cage.guide_clearance, 0.0, params)
     store(rows, block, ROLLER.guide_offset, offset)
     store(rows, block, ROLLER.guide_rate, rate)
     store(rows, block, ROLLER.guide_lean_rate, lean_rate)

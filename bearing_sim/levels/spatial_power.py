@@ -89,7 +89,7 @@ def _guiding_pocket_powers(y, params, rows):
         lean, lean_rate = load(rows, block, ROLLER.pocket_lean), load(rows, block, ROLLER.guide_lean_rate)
         rubbed = magnitude(force) * (load(rows, block, ROLLER.spin) + omega) * params.rollers.radius
         rubbed -= force * load(rows, block, ROLLER.pocket_rate) + moment * load(rows, block, ROLLER.pocket_skew_rate)
-        film, kept = _kept_by_walls(offset, rate, lean, lean_rate, cage.guide_clearance, cage.guidance.pocket_stiffness, params)
+        film, kept = _kept_by_walls(offset, rate, lean, lean_rate, cage.guide_clearance, 0.0, params)
         lost += total(present * (friction * rubbed + film))
         damped += total(present * (force * rate + moment * lean_rate - film - kept))
     return lost, damped
