@@ -60,7 +60,7 @@ class SolidDrawing:
         self._log("inner_ring/body", rr.InstancePoses3D(translations=[[y, z, 0.0]]))
         mark = _ring(bearing.inner_raceway.radius / MILLIMETRE * np.array([0.6, 1.0]), sample["shaft_angle"], 1.22 * half) + [y, z, 0.0]
         self._log("inner_ring/shaft_mark", rr.LineStrips3D.from_fields(strips=mark[None]))
-        middle = (bearing.cage.inner_radius + bearing.cage.guide_radius - bearing.cage.guide_clearance) / 2 / MILLIMETRE
+        middle = (bearing.cage.bore + bearing.cage.outside) / 2 / MILLIMETRE
         azimuth = sample["cage_angle"] + (np.arange(bearing.roller.count) - 0.5) * 2 * math.pi / bearing.roller.count
         cage = [*section.cage_displacement(self._cage_factor, sample), 0.0]
         bars = np.stack([_ring(middle, azimuth, end) + cage for end in (-1.1 * half, 1.1 * half)], axis=1)
