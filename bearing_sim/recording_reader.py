@@ -32,6 +32,7 @@ METADATA = "bearing_sim"
 _REPEATS_WITHIN = 2.5  # [s] a lasting trouble is reported every second, and told once
 _TYPES = {f"/{topic.name}": topic.ros_type for topic in (*INPUTS.values(), *OUTPUTS.values())} | {f"/{DIAGNOSTICS[0]}": DIAGNOSTICS[1]}
 _OUTPUT_TOPICS = frozenset(f"/{name}" for name in OUTPUTS)
+_OF_TILTING_LEVELS = tuple(field for name, topic in OUTPUTS.items() if topic.of_tilting_levels for field in ARRAYS[name].fields)
 _BROKEN = (McapError, CRCValidationError, zstandard.ZstdError, struct.error, UnicodeDecodeError)
 
 
@@ -263,6 +264,9 @@ def complete(scene: Scene, block: np.ndarray, before: np.void | None = None) -> 
     block["roller_rotation"] = _rotation(block, before if before is not None else block[0], start) if len(block) else 0.0
     _fill(block, "inner_equivalent_load", np.mean(block["inner_load"] ** 4, axis=1) ** (1 / 4))
     _fill(block, "outer_equivalent_load", np.mean(block["outer_load"] ** 4.5, axis=1) ** (1 / 4.5))
+    if not scene.bodies_tilt:
+        for field in _OF_TILTING_LEVELS:
+            _fill(block, field, 0.0)
     for life in ("lamina_life", "modified_rating_life"):
         _fill(block, life, block["rating_life"])
     # A loaded roller touches the ring: e cos(phi - phi_e) = delta_i - (R_i + R_w - r); all of them together give e.
@@ -274,7 +278,7 @@ def complete(scene: Scene, block: np.ndarray, before: np.void | None = None) -> 
     block["land_eccentricity"] = np.hypot(block["cage_y"] - guide_y, block["cage_z"] - guide_z) / bearing.cage.play
 
 
-def _fill(block: np.ndarray, field: str, values: np.ndarray) -> None:
+def _fill(block: np.ndarray, field: str, values: np.ndarray | float) -> None:
     """Enter values where none were recorded."""
     block[field] = np.where(np.isnan(block[field]), values, block[field])
 

@@ -26,6 +26,7 @@ OBSERVABLES = (
     Observable("load_y", "N", "radial load on the inner ring along y"),
     Observable("load_z", "N", "radial load on the inner ring along z"),
     Observable("oil_temperature", "K", "oil temperature"),
+    Observable("level", "", "level that computed the sample: 0 steady, 1 slip, 2 planar, 3 spatial"),
     Observable("cage_angle", "rad", "cage rotation since the start"),
     Observable("cage_speed", "rad/s", "cage angular speed"),
     Observable("ideal_cage_angle", "rad", "rotation of a cage without slip since the start"),
@@ -39,8 +40,16 @@ OBSERVABLES = (
     Observable("outer_equivalent_load", "N", "dynamic equivalent roller load of the stationary outer ring"),
     Observable("ring_y", "m", "inner-ring centre displacement along y"),
     Observable("ring_z", "m", "inner-ring centre displacement along z"),
+    Observable("ring_tilt_y", "rad", "inclination of the inner ring's axis towards y; 0 at a level without tilts"),
+    Observable("ring_tilt_z", "rad", "inclination of the inner ring's axis towards z; 0 at a level without tilts"),
     Observable("cage_y", "m", "cage centre displacement along y; 0 at a level without whirl"),
     Observable("cage_z", "m", "cage centre displacement along z; 0 at a level without whirl"),
+    Observable("cage_tilt_y", "rad", "inclination of the cage's axis towards y; 0 at a level without tilts"),
+    Observable("cage_tilt_z", "rad", "inclination of the cage's axis towards z; 0 at a level without tilts"),
+    Observable("inner_pressure", "Pa", "largest Hertzian pressure of any slice on the inner raceway; 0 at a level without slices"),
+    Observable("outer_pressure", "Pa", "largest Hertzian pressure of any slice on the outer raceway; 0 at a level without slices"),
+    Observable("inner_edge_pressure", "Pa", "largest Hertzian pressure of a roller's end slices on the inner raceway; 0 at a level without slices"),
+    Observable("outer_edge_pressure", "Pa", "largest Hertzian pressure of a roller's end slices on the outer raceway; 0 at a level without slices"),
     Observable("land_eccentricity", "", "cage eccentricity in what guides it, over its clearance, e/c; 0 at a level without whirl"),
     Observable(
         "shaft_power",
@@ -62,6 +71,8 @@ OBSERVABLES = (
     Observable("outer_load", "N", "normal force between roller and outer raceway", True),
     Observable("orbital_speed", "rad/s", "angular speed of the roller centre about the outer-ring centre", True),
     Observable("pocket_force", "N", "force of the cage's pocket on the roller, positive where it drives the roller", True),
+    Observable("roller_tilt", "rad", "inclination of the roller's axis outwards; 0 at a level without tilts", True),
+    Observable("roller_skew", "rad", "inclination of the roller's axis along the orbit; 0 at a level without tilts", True),
 )
 
 

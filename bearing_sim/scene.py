@@ -10,6 +10,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from bearing_sim import effects
 from bearing_sim.crown import Crown, NoCrown, crown_faults
 from bearing_sim.methods import FIXED_STEP, METHODS
 from bearing_sim.quantity import quantity
@@ -17,9 +18,6 @@ from bearing_sim.scene_cage import Cage, cage_faults
 from bearing_sim.scene_lubricant import CustomOil, Oil, Oil4109Traction, Traction
 from bearing_sim.scene_raceway import InnerRaceway, OuterRaceway, RingGrowth, growth_faults
 from bearing_sim.scene_record import record as _strict
-
-LEVELS_WITH_GROWTH = ("slip", "planar")  # levels that compute pumping and rings that grow with speed and temperature
-_WHOLE_ROLLERS = ("slip", "planar")  # levels whose rollers have no slices
 
 
 @_strict
@@ -223,6 +221,11 @@ class LifeRating:
     a_iso: CLEANLINESS = "none"
     lamina: bool = False  # by slices, with stress risers (ISO/TS 16281)
 
+    @property
+    def is_basic(self) -> bool:
+        """Whether the life that counts is the basic one, L_10."""
+        return self.reliability == 0.9 and self.a_iso == "none" and not self.lamina
+
 
 @_strict
 class Scene:
@@ -245,15 +248,16 @@ class Scene:
         """Whether the level moves the cage's centre."""
         return self.level != "slip"
 
+    @property
+    def bodies_tilt(self) -> bool:
+        """Whether the level tilts rollers, ring and cage, and so tells what along a roller differs."""
+        return self.level == "spatial"
+
     @model_validator(mode="after")
     def _level_sees_what_the_scene_says(self):
-        crown, operating = self.bearing.roller.crown.law, self.operating
-        needs = [f"bearing.roller.crown: {crown} needs level spatial, which slices the rollers"] if crown != "none" else []
-        needs += ["operating.moment: needs level spatial, whose ring tilts"] if operating.moment is not None else []
-        needs += ["operating.misalignment: needs level spatial, whose ring tilts"] if operating.misalignment != 0.0 else []
-        needs += ["life.lamina: needs level spatial, which slices the rollers"] if self.life.lamina else []
-        if needs and self.level in _WHOLE_ROLLERS:
-            raise ValueError("; ".join(f"{need}; level {self.level} would ignore it" for need in needs))
+        faults = effects.refusals(self)
+        if faults:
+            raise ValueError("; ".join(faults))
         return self
 
     @model_validator(mode="after")
@@ -266,14 +270,4 @@ class Scene:
             raise ValueError(f"integration.method: level {self.level} is integrated by {', '.join(names[:-1])} or {names[-1]}, not by {method}")
         if self.integration.fixed_step is not None and method not in FIXED_STEP:
             raise ValueError(f"integration.fixed_step: {method} chooses its steps; {' and '.join(FIXED_STEP)} can keep to one")
-        return self
-
-    @model_validator(mode="after")
-    def _level_knows_every_effect(self):
-        growth = self.bearing.ring_growth
-        asked = {"lubricant.pumping": self.lubricant.pumping, "bearing.ring_growth.centrifugal": growth.centrifugal}
-        asked["bearing.ring_growth.thermal"] = growth.thermal
-        if self.level not in LEVELS_WITH_GROWTH and any(asked.values()):
-            names = ", ".join(name for name, wanted in asked.items() if wanted)
-            raise ValueError(f"{names}: level {self.level} leaves this out; {', '.join(LEVELS_WITH_GROWTH)} has it")
         return self

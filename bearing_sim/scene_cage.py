@@ -151,7 +151,7 @@ def cage_faults(bearing) -> list[str]:
             "points); make it smaller"
         )
     faults += _land_places(bearing) if cage.has_lands else _pocket_play(bearing)
-    if not faults and cage.play >= min(cage.bore - inner, low - cage.outside):
+    if not faults and cage.guidance != "outer_ring" and cage.play >= min(cage.bore - inner, low - cage.outside):
         name, room = "guide_clearance" if cage.has_lands else "pocket_radial_clearance", min(cage.bore - inner, low - cage.outside)
         faults.append(
             f"cage.{name}: {1e3 * cage.play:.6g} mm let the cage reach a raceway, {1e3 * room:.6g} mm away, before its guidance holds it; "

@@ -88,9 +88,13 @@ class Reference:
     guide_clearance: float = 0.15e-3
     guidance: str = "outer_ring"
     pocket_radial_clearance: float = 0.1e-3
+    pumping: bool = False  # resistance of the oil that inlets pump back
+    growth: float = 0.0  # of the inner raceway's radius while running [m]
 
     def __post_init__(self):
         self.pitch_radius = self.inner_radius + self.roller_radius
+        self.raceway = self.inner_radius + self.growth
+        self.pushing = 1 - 2 * self.roller_radius / self.pitch_radius, 1 + 2 * self.roller_radius / self.pitch_radius
         self.mass = np.pi * self.roller_radius**2 * self.length * 7850.0
         self.roller_inertia = 0.5 * self.mass * self.roller_radius**2
         self.cage_inertia = self.cage_mass * self.pitch_radius**2
@@ -139,6 +143,13 @@ class Reference:
         c = 6.826e5 * w**-0.170 * u**0.578 * t**0.373
         s = magnitude(sliding) / rolling
         return load * np.where(np.real(sliding) >= 0, 1, -1) * ((a + b * s) * np.exp(-c * s) - a)
+
+    def pumped(self, load, rolling, curvature_radius):
+        """Resistance of each surface to the oil pumped back; fades out below a load of 1 N, and linear in slow rolling."""
+        stiffness = self.modulus * curvature_radius
+        slow = np.sqrt(rolling**2 + 0.05**2)
+        force = 0.715 * stiffness * self.length * (self.viscosity * slow / (2 * stiffness)) ** 0.71 * rolling / slow
+        return (1.0 if self.pumping else 0.0) * force * load / (load + 1.0)
 
     def pocket(self, offset, rate, clearance, film_force):
         """Force of a pocket's walls against a roller's offset, its elastic part, and the energy of that."""
@@ -245,16 +256,18 @@ class Reference:
         f.distance = np.sqrt(dot(from_ring, from_ring))
         f.normal = from_ring / f.distance
         f.inner_rate = -dot(relative, f.normal)
-        f.inner, f.inner_elastic, f.inner_energy = self.normal_contact(r_i + r_w - f.distance, f.inner_rate)
+        f.inner, f.inner_elastic, f.inner_energy = self.normal_contact(self.raceway + r_w - f.distance, f.inner_rate)
         contour, slope = self.contour(azimuth_of(state.place))
         f.outer_rate = radial_speed - slope * turning
         f.outer, f.outer_elastic, f.outer_energy = self.normal_contact(f.radius + r_w - contour, f.outer_rate)
         f.lean = (slope if self.contour_slope else 0 * slope) / f.radius
 
-        f.inner_slide = omega_i * r_i - dot(relative, ahead(f.normal)) - state.spin * r_w
+        f.inner_slide = omega_i * self.raceway - dot(relative, ahead(f.normal)) - state.spin * r_w
         f.outer_slide = state.spin * r_w - f.orbit
-        roll_i = ((omega_i - turning) * r_i + (state.spin + turning) * r_w) / 2
-        roll_e = (turning * (f.radius + r_w) + (state.spin + turning) * r_w) / 2
+        f.roll_i = roll_i = ((omega_i - turning) * self.raceway + (state.spin + turning) * r_w) / 2
+        f.roll_e = roll_e = (turning * (f.radius + r_w) + (state.spin + turning) * r_w) / 2
+        f.inner_pumped = self.pumped(f.inner, roll_i, 1 / (1 / r_w + 1 / r_i))
+        f.outer_pumped = self.pumped(f.outer, roll_e, 1 / (1 / r_w - 1 / self.low_radius))
         f.inner_traction = self.traction(f.inner, roll_i, f.inner_slide, 1 / (1 / r_w + 1 / r_i))
         f.outer_traction = self.traction(f.outer, roll_e, f.outer_slide, 1 / (1 / r_w - 1 / self.low_radius))
         f.churning, _ = self.churning(f.orbit)
@@ -292,12 +305,13 @@ class Reference:
     def accelerations(self, f):
         """Of ring, cage, cage angle, rollers and spins, under the forces ``f``."""
         r_w = self.roller_radius
-        inner = f.inner * f.normal + f.inner_traction * ahead(f.normal)
-        outer = -f.outer * f.outward + (f.outer * f.lean + f.outer_traction) * f.along
+        inner = f.inner * f.normal + (f.inner_traction + self.pushing[0] * f.inner_pumped) * ahead(f.normal)
+        outer = -f.outer * f.outward + (f.outer * f.lean + f.outer_traction - self.pushing[1] * f.outer_pumped) * f.along
         # a wall pushes back along the orbit, and its friction drags along the wall, against the turning surface
         pocket = -f.pocket * (f.pocket_along + f.pocket_smooth * f.pocket_outward)
         guide = -f.guide * (f.pocket_outward - f.pocket_smooth * f.pocket_along)
-        spin_torque = r_w * (f.inner_traction - f.outer_traction - f.pocket_smooth * (magnitude(f.pocket) + magnitude(f.guide)))
+        rubbed = f.pocket_smooth * (magnitude(f.pocket) + magnitude(f.guide))
+        spin_torque = r_w * (f.inner_traction - f.outer_traction - f.inner_pumped - f.outer_pumped - rubbed)
         touch = f.from_cage + np.where(np.real(f.pocket) >= 0, r_w, -r_w) * f.pocket_along
         guide_touch = f.from_cage + np.where(np.real(f.guide) >= 0, r_w, -r_w) * f.pocket_outward
         cage_torque = f.land.torque + f.bore_torque + f.case_torque + np.sum(cross(touch, -pocket)) + np.sum(cross(guide_touch, -guide))
@@ -317,12 +331,12 @@ class Reference:
         wall_slide = wall_slide - f.guide * f.pocket_rate + magnitude(f.guide) * self.roller_radius * (state.spin + omega)
         turning = omega_i if self.guidance == "inner_ring" else 0.0
         work = {
-            "shaft": omega_i * (self.inner_radius * f.inner_traction.sum() + f.bore_torque) - turning * f.land.on_ring,
+            "shaft": omega_i * (self.raceway * (f.inner_traction + f.inner_pumped).sum() + f.bore_torque) - turning * f.land.on_ring,
             "load": dot(self.load, state.ring_velocity),
         }
         heat = {
-            "inner traction": np.sum(f.inner_traction * f.inner_slide),
-            "outer traction": np.sum(f.outer_traction * f.outer_slide),
+            "inner traction": np.sum(f.inner_traction * f.inner_slide + 2 * f.inner_pumped * f.roll_i),
+            "outer traction": np.sum(f.outer_traction * f.outer_slide + 2 * f.outer_pumped * f.roll_e),
             "normal damping": np.sum((f.inner - f.inner_elastic) * f.inner_rate + (f.outer - f.outer_elastic) * f.outer_rate),
             "pocket damping": np.sum((f.pocket - f.pocket_elastic) * f.pocket_rate + (f.guide - f.guide_elastic) * f.guide_rate),
             "pocket friction": np.sum(f.pocket_smooth * wall_slide),

@@ -33,6 +33,11 @@ class State:
     spin: np.ndarray  # shape (Z,)
 
 
+def sum_of_films(pieces):
+    """Heat in the films of one raceway: by sliding, and by pumping oil back with both surfaces."""
+    return np.sum(pieces.force * pieces.slide + 2 * pieces.pumped * pieces.roll)
+
+
 @dataclass
 class SpatialReference:
     """Composed of the planar reference, whose laws hold for a slice as for an N-th of a roller."""
@@ -55,7 +60,7 @@ class SpatialReference:
         self.land = (p.width - p.land_width) / 2
 
     def traction(self, load, rolling, sliding, curvature_radius):
-        """Tractions of pieces of some slices each, as shares of a whole contact with the piece's load per length.
+        """Tractions and resistances to rolling of pieces of some slices each, as shares of a whole contact with the piece's load per length.
 
         ``load`` is that of whole contacts with the slices' load per length; ``sliding`` a function of the place.
         """
@@ -65,7 +70,9 @@ class SpatialReference:
         loads = np.stack([load[:, part].mean(1) for part in parts], axis=1)
         shares = np.array([len(self.x[part]) / self.slices for part in parts])
         slides = sliding(places)
-        return SimpleNamespace(x=places, slide=slides, force=shares * self.planar.traction(loads, rolling[:, None], slides, curvature_radius))
+        force = shares * self.planar.traction(loads, rolling[:, None], slides, curvature_radius)
+        pumped = shares * self.planar.pumped(loads, rolling[:, None], curvature_radius)
+        return SimpleNamespace(x=places, slide=slides, roll=rolling[:, None], force=force, pumped=pumped)
 
     def forces(self, state):
         """All forces at a state, by name; those of slices have a last axis over slices."""
@@ -85,15 +92,15 @@ class SpatialReference:
         f.normal = apart / f.distance
         across = ahead(f.normal)
         passing = dot(relative, across) / f.distance  # angular speed of the normal
-        depth = (r_i + r_w - f.distance)[:, None] - dot(lean, f.normal)[:, None] * x - self.drop
+        depth = (p.raceway + r_w - f.distance)[:, None] - dot(lean, f.normal)[:, None] * x - self.drop
         f.inner_rate = -dot(relative, f.normal)[:, None] - (dot(leaning, f.normal) + dot(lean, across) * passing)[:, None] * x
         f.inner, f.inner_elastic, f.inner_energy = p.normal_contact(depth, f.inner_rate)
         f.inner_way = f.normal[:, :, None] + (across * dot(lean, across) / f.distance)[:, :, None] * x  # minus the gradient of the depth
 
         def inner_slide(x):
-            return (omega_i * r_i - state.spin * r_w)[:, None] - dot(relative, across)[:, None] - dot(leaning, across)[:, None] * x
+            return (omega_i * p.raceway - state.spin * r_w)[:, None] - dot(relative, across)[:, None] - dot(leaning, across)[:, None] * x
 
-        roll_i = ((omega_i - turning) * r_i + (state.spin + turning) * r_w) / 2
+        roll_i = ((omega_i - turning) * p.raceway + (state.spin + turning) * r_w) / 2
         f.inner_traction = self.traction(f.inner, roll_i, inner_slide, 1 / (1 / r_w + 1 / r_i))
         f.across = across
 
@@ -154,12 +161,15 @@ class SpatialReference:
         p, x, state, r_w = self.planar, self.x, f.state, self.planar.roller_radius
         dragged_i, dragged_e = f.inner_traction.force.sum(1), f.outer_traction.force.sum(1)
         skewed_i, skewed_e = (f.inner_traction.force * f.inner_traction.x).sum(1), (f.outer_traction.force * f.outer_traction.x).sum(1)
-        inner = (f.inner * f.inner_way).sum(2) + dragged_i * f.across
-        outer = -f.outer.sum(1) * f.outward + ((f.outer * f.outer_lean).sum(1) + dragged_e) * f.along
+        pumped_i, pumped_e = f.inner_traction.pumped.sum(1), f.outer_traction.pumped.sum(1)
+        skewed_i = skewed_i + p.pushing[0] * (f.inner_traction.pumped * f.inner_traction.x).sum(1)
+        skewed_e = skewed_e - p.pushing[1] * (f.outer_traction.pumped * f.outer_traction.x).sum(1)
+        inner = (f.inner * f.inner_way).sum(2) + (dragged_i + p.pushing[0] * pumped_i) * f.across
+        outer = -f.outer.sum(1) * f.outward + ((f.outer * f.outer_lean).sum(1) + dragged_e - p.pushing[1] * pumped_e) * f.along
         pocket = -f.pocket * (f.pocket_along + f.pocket_smooth * f.pocket_outward)[:, :, None]
         pocket = pocket - f.guide * (f.pocket_outward - f.pocket_smooth * f.pocket_along)[:, :, None]
         pressed_on = magnitude(f.pocket_whole) + magnitude(f.guide_whole)
-        spin_torque = r_w * (dragged_i - dragged_e - f.pocket_smooth * pressed_on)
+        spin_torque = r_w * (dragged_i - dragged_e - pumped_i - pumped_e - f.pocket_smooth * pressed_on)
         # both walls push at the roller's surface
         reach = np.where(np.real(f.pocket_whole) >= 0, r_w, -r_w) * cross(f.pocket_along, f.pocket_whole * f.pocket_smooth * f.pocket_outward)
         reach = reach + np.where(np.real(f.guide_whole) >= 0, r_w, -r_w) * cross(f.pocket_outward, -f.guide_whole * f.pocket_smooth * f.pocket_along)
@@ -201,13 +211,14 @@ class SpatialReference:
         wall_slide = (f.pocket * f.pocket_slide - f.guide * f.pocket_rate).sum(1) + pressed_on * p.roller_radius * (state.spin + omega)
         turning = omega_i if p.guidance == "inner_ring" else 0.0
         work = {
-            "shaft": omega_i * (p.inner_radius * f.inner_traction.force.sum() + f.bore_torque) - turning * sum(land.on_ring for land in f.lands) / 2,
+            "shaft": omega_i * (p.raceway * (f.inner_traction.force + f.inner_traction.pumped).sum() + f.bore_torque)
+            - turning * sum(land.on_ring for land in f.lands) / 2,
             "load": dot(p.load, state.ring_velocity),
             "moment": dot(self.moment, state.ring_leaning),
         }
         heat = {
-            "inner traction": np.sum(f.inner_traction.force * f.inner_traction.slide),
-            "outer traction": np.sum(f.outer_traction.force * f.outer_traction.slide),
+            "inner traction": sum_of_films(f.inner_traction),
+            "outer traction": sum_of_films(f.outer_traction),
             "normal damping": np.sum((f.inner - f.inner_elastic) * f.inner_rate + (f.outer - f.outer_elastic) * f.outer_rate),
             "pocket damping": np.sum((f.pocket - f.pocket_elastic) * f.pocket_rate + (f.guide - f.guide_elastic) * f.guide_rate),
             "pocket friction": np.sum(f.pocket_smooth * wall_slide),

@@ -82,6 +82,10 @@ def kinds(count):
 
 INNER = ["bearing.cage.guidance=inner_ring", "bearing.cage.outer_radius=33.35 mm"]
 ROLLER_GUIDED = ["bearing.cage.guidance=roller", "bearing.cage.outer_radius=33.35 mm"]
+# rho R^3/E omega^2 of the ring's mean radius, and alpha by 100 K of inner ring (5 K more), rollers and outer raceway
+GROWN = 7850 * ((25.0135e-3 + 27.875e-3) / 2) ** 3 / 2.06e11 * (45000 * math.pi / 30) ** 2
+GROWN += 1.2e-5 * (105 * 27.875e-3 + 100 * 7e-3 - 100 * 34.9115e-3)
+
 VARIANTS = {
     "stock": ({}, []),
     "flat land and no friction": (
@@ -107,6 +111,10 @@ VARIANTS = {
     "guided by rollers, tight and backwards": (
         {"guidance": "roller", "shaft_speed": -1500.0, "pocket_radial_clearance": 0.06e-3},
         [*ROLLER_GUIDED, "operating.shaft_speed=-1500", "bearing.cage.pocket_radial_clearance=0.06 mm"],
+    ),
+    "pumping, and a raceway that grows": (
+        {"pumping": True, "growth": GROWN},
+        ["lubricant.pumping=true", "bearing.ring_growth={centrifugal: true, thermal: true, inner_excess: 5 K}"],
     ),
     "nine rollers, damped": ({"rollers": 9, "contact_damping": 1.0}, ["bearing.roller.count=9", "bearing.contact.damping=1"]),
 }

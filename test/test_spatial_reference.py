@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from reference_planar import Reference
 from reference_spatial import SpatialReference, State
 from scipy.integrate import solve_ivp
+from test_planar_reference import GROWN
 
 from bearing_sim import Simulation, load_scene
 from bearing_sim.kernels.lanes import LANES
@@ -132,6 +133,11 @@ VARIANTS = {
             "bearing.outer_raceway.contour_slope=false",
             "bearing.roller.slices_per_traction=1",
         ],
+        CROWN,
+    ),
+    "pumping, and a raceway that grows": (
+        lambda: SpatialReference(Reference(pumping=True, growth=GROWN), moment=(2 * math.cos(math.pi / 6), 1.0), crown=CROWN),
+        [*MOMENT, "lubricant.pumping=true", "bearing.ring_growth={centrifugal: true, thermal: true, inner_excess: 5 K}"],
         CROWN,
     ),
     "nine rollers backwards, crown": (
@@ -282,3 +288,16 @@ def test_energy_is_kept(crown):
     before, after = (reference.forces(plain(y)) for y in (state, end[:size]))
     gained = reference.energy(after) - reference.energy(before)
     assert work - heat.sum() - gained == pytest.approx(0.0, abs=1e-8 * (abs(work) + np.abs(heat).sum()))
+
+
+@pytest.mark.parametrize("variant", VARIANTS)
+def test_pressures_are_those_of_hertz_under_the_plain_numpy_model_s_slices(variant):
+    new_reference, overrides, crown = VARIANTS[variant]
+    reference, run = new_reference(), simulation(*overrides, crown=crown)
+    run._state[:] = rough_state(run, 4, 0.3)
+    run._observe_start()
+    forces, plane = reference.forces(plain(run._state)), reference.planar
+    for ring, curvature in (("inner", 1 / plane.roller_radius + 1 / plane.inner_radius), ("outer", 1 / plane.roller_radius - 1 / plane.low_radius)):
+        pressure = np.sqrt(getattr(forces, ring) * reference.slices / plane.length * plane.modulus * curvature / (2 * np.pi))
+        assert run.sample[f"{ring}_pressure"] == pytest.approx(pressure.max(), rel=1e-9)
+        assert run.sample[f"{ring}_edge_pressure"] == pytest.approx(pressure[:, [0, -1]].max(), rel=1e-9)

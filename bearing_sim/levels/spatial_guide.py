@@ -26,7 +26,7 @@ from bearing_sim.levels.spatial_state import (
     R,
 )
 
-_RATES = 154  # row of ``chain`` where this module's part begins: changes of the offset's rate and the lean's, by variable
+_RATES = 170  # row of ``chain`` where this module's part begins: changes of the offset's rate and the lean's, by variable
 _AT_Y, _AT_TILT_Y, _AT_THETA = 9, 11, 13  # columns of the cage among the variables, its speeds are 5 further on
 
 

@@ -6,6 +6,7 @@ What a moment on the inner ring puts in stands beside the radial load's power: n
 
 from bearing_sim.kernels.compilation import kernel
 from bearing_sim.kernels.lanes import larger, load, magnitude, spread, total, where_positive
+from bearing_sim.levels.growth import inner_growth
 from bearing_sim.levels.planar_power import land_powers
 from bearing_sim.levels.power import Powers, windage_powers
 from bearing_sim.levels.spatial_algebra import BORDER
@@ -16,7 +17,7 @@ from bearing_sim.levels.spatial_state import CAGE_TILT_Y, CAGE_TILT_Z, CAGE_Y, C
 
 @kernel
 def _contact_powers(first, y, params, work):
-    """Return the power lost between one raceway and all rollers by sliding and by damping [W], and the tractions' sum [N]."""
+    """Return the power lost between one raceway and all rollers in the films and by damping [W], and what drives the raceway [N]."""
     contacts, places, crown = work.contacts, params.slices.places, params.slices.crown
     count = places.shape[0]
     part, damping = params.raceways.stiffness / count, params.ring.contact_damping
@@ -25,6 +26,8 @@ def _contact_powers(first, y, params, work):
         at, present = first + block, load(work.rollers, block, ROLLER.present)
         traction = load(contacts, at, SLICED.force)
         slid = traction * load(contacts, at, SLICED.sliding) + load(contacts, at, SLICED.skewing) * load(contacts, at, SLICED.sliding_lean)
+        pumped = load(contacts, at, SLICED.pumping)
+        slid += 2.0 * pumped * load(contacts, at, SLICED.rolling)
         lost = spread(0.0)
         for k in range(count):
             depth = load(contacts, at, SLICED.penetration) + load(contacts, at, SLICED.lean) * places[k] - crown[k]
@@ -33,7 +36,7 @@ def _contact_powers(first, y, params, work):
             lost += (q - root * larger(depth, 0.0)) * rate
         sliding += total(present * slid)
         damped += total(present * lost)
-        force += total(present * traction)
+        force += total(present * (traction + pumped))
     return sliding, damped, force
 
 
@@ -131,7 +134,7 @@ def spatial_powers(y, shaft_speed, model, work):
         drag = load(rows, block, ROLLER.present) * load(rows, block, ROLLER.churning)
         churning += total(drag * load(rows, block, ROLLER.radius) * load(rows, block, ROLLER.orbital_speed))
     return Powers(
-        driving * params.raceways.inner_radius * shaft_speed + bore + driven,
+        driving * (params.raceways.inner_radius + inner_growth(shaft_speed, model)) * shaft_speed + bore + driven,
         inner,
         outer,
         churning,

@@ -42,10 +42,15 @@ class SlicedRow(NamedTuple):
     of_skewing: int = 22  # slopes of its moment by the same
     by_sliding: int = 27  # sums of dT/d(du) times 1, x and x^2
     by_rolling: int = 30  # of dT/du times 1 and x
+    pumping: int = 32  # from here on written only where oil is pumped back: its resistance F_R [N]
+    pumping_moment: int = 33  # its moment [N m]
+    of_pumping: int = 34  # slopes by penetration and lean, three rows on by their rates
+    of_pumping_moment: int = 39
+    pumping_by_rolling: int = 44  # sums of dF_R/du times 1 and x
 
 
 SLICED = SlicedRow()
-SLICED_ROWS = 32
+SLICED_ROWS = 46
 
 
 @template
@@ -239,6 +244,33 @@ def sum_tractions(contacts, pieces, slices):
         _store_sums(block, contacts, SLICED.by_sliding, 1.0, s_0, s_1, s_2)
         store(contacts, block, SLICED.by_rolling, u_0)
         store(contacts, block, SLICED.by_rolling + 1, u_1)
+
+
+@kernel
+def sum_pumping(contacts, pieces, slices):
+    """Write resistances of pumped oil, their moments and slopes of all contacts from those of the pieces, which have been written."""
+    count, together, number = slices.places.shape[0], slices.together, pieces.shape[0] // contacts.shape[0]
+    for block in range(contacts.shape[0]):
+        for row in range(SLICED.pumping, SLICED_ROWS):
+            store(contacts, block, row, 0.0)
+        for which in range(number):
+            first, piece = which * together, block * number + which
+            end = min(first + together, count)
+            share, place = (end - first) / count, 0.5 * (slices.places[first] + slices.places[end - 1])
+            by_load = load(pieces, piece, CONTACT.pumping_by_load)
+            force, by_rolling = share * load(pieces, piece, CONTACT.pumping), share * load(pieces, piece, CONTACT.pumping_by_rolling)
+            _add_with_moment(block, contacts, SLICED.pumping, 1, force, place)
+            _add_with_moment(block, contacts, SLICED.pumping_by_rolling, 1, by_rolling, place)
+            _add_with_moment(block, contacts, SLICED.of_pumping, 5, by_load * load(pieces, piece, _BY_DEPTH), place)
+            _add_with_moment(block, contacts, SLICED.of_pumping + 1, 5, by_load * load(pieces, piece, _BY_LEAN), place)
+            _add_with_moment(block, contacts, SLICED.of_pumping + 3, 5, by_load * load(pieces, piece, _BY_RATE), place)
+            _add_with_moment(block, contacts, SLICED.of_pumping + 4, 5, by_load * load(pieces, piece, _BY_LEAN_RATE), place)
+
+
+@template
+def _add_with_moment(block, contacts, row, apart, value, place):
+    store(contacts, block, row, load(contacts, block, row) + value)
+    store(contacts, block, row + apart, load(contacts, block, row + apart) + value * place)
 
 
 @template

@@ -41,6 +41,12 @@ def _cage_factor(scene: Scene) -> str:
     return f", cage x{section.cage_magnification(scene)}" if scene.cage_whirls else ""
 
 
+def _tilt_factor(scene: Scene) -> str:
+    if not scene.bodies_tilt:
+        return ""
+    return f", tilt x{section.tilt_magnification(scene)}, skew x{section.skew_magnification(scene.bearing)}"
+
+
 def blueprint(scene: Scene, bounds, live: bool, extent: Extent | None = None) -> rrb.Blueprint:
     """Return the lay-out.
 
@@ -131,7 +137,7 @@ def _left(scene: Scene, bounds) -> rrb.Vertical:
             rrb.Spatial3DView(
                 origin="/",
                 contents="/solid/**",
-                name=f"3D, x{section.magnification(scene.bearing)}{_cage_factor(scene)}",
+                name=f"3D, x{section.magnification(scene.bearing)}{_cage_factor(scene)}{_tilt_factor(scene)}",
                 background=BACKGROUND,
                 eye_controls=eye,
                 line_grid=False,
@@ -155,6 +161,7 @@ def _orbit(scene: Scene) -> rrb.Spatial2DView:
 
 def _middle(scene: Scene, axes: _Axes) -> rrb.Vertical:
     whirl = [axes.plot("e/c", ["/cage/eccentricity"])] if scene.cage_whirls else []
+    tilts = [_tilts(axes)] if scene.bodies_tilt else []
     return rrb.Vertical(
         axes.plot("Speeds [rpm] (blue: shaft, orange: cage, grey: cage without slip)", ["/speed/shaft", "/speed/ideal_cage", "/speed/cage"]),
         rrb.Tabs(
@@ -164,14 +171,37 @@ def _middle(scene: Scene, axes: _Axes) -> rrb.Vertical:
             active_tab=0,
         ),
         rrb.StateTimelineView(origin="/regime", name="Regime by these thresholds", time_view=axes.time),
-        axes.plot("Rating life, log10 of hours: 2 = 100 h, 3 = 1000 h (yellow: warning)", ["/life/warning", "/life/log10_hours"], from_zero=False),
+        _lives(scene, axes),
         rrb.Tabs(
             axes.plot("Largest load [N]: blue inner, red outer", ["/loads/inner_largest", "/loads/outer_largest"]),
             axes.plot("Inner [N]", ["/loads/each/inner"]),
             axes.plot("Outer [N]", ["/loads/each/outer"]),
+            *([axes.plot("Pressure [MPa]", [f"/pressure/{place}" for place in ("inner", "outer", "inner_edge", "outer_edge")])] if tilts else []),
             active_tab=0,
         ),
-        row_shares=[0.23, 0.22, 0.12, 0.2, 0.23],
+        *tilts,
+        row_shares=[0.19, 0.18, 0.1, 0.17, 0.18, 0.18] if tilts else [0.23, 0.22, 0.12, 0.2, 0.23],
+    )
+
+
+def _lives(scene: Scene, axes: _Axes) -> rrb.TimeSeriesView:
+    """Return the plot of the basic life and of those that scene or level have besides."""
+    paths, said = ["/life/warning", "/life/log10_hours"], "yellow: warning"
+    if scene.bodies_tilt:
+        paths, said = [*paths, "/life/lamina_log10_hours"], f"{said}, blue: lamina life"
+    if not scene.life.is_basic:
+        paths, said = [*paths, "/life/chosen_log10_hours"], f"{said}, purple: by the scene's choice"
+    scale = "log10 of hours" if len(paths) > 2 else "log10 of hours: 2 = 100 h, 3 = 1000 h"
+    return axes.plot(f"Rating life, {scale} ({said})", paths, from_zero=False)
+
+
+def _tilts(axes: _Axes) -> rrb.Tabs:
+    return rrb.Tabs(
+        axes.plot("Roller tilt [mrad]", ["/tilt/each/tilt"]),
+        axes.plot("Roller skew [mrad]", ["/tilt/each/skew"]),
+        axes.plot("Ring [mrad]: blue y, green z", ["/tilt/ring_y", "/tilt/ring_z"]),
+        axes.plot("Cage [mrad]", ["/tilt/cage_y", "/tilt/cage_z"]),
+        active_tab=0,
     )
 
 

@@ -16,6 +16,7 @@ from bearing_sim.scene import Bearing, Scene
 
 MILLIMETRE = 1e-3  # [m]
 CONTOUR_POINTS = 361
+_FACTORS = (300, 200, 150, 100, 80, 50, 40, 30, 20, 15, 10, 8, 5, 4, 3, 2)
 
 
 def picture(y, z) -> np.ndarray:
@@ -54,7 +55,7 @@ def magnification(bearing: Bearing) -> int:
     ideal, raceway = ideal_outer_radius(bearing), bearing.outer_raceway
     departure = max(abs(raceway.low_radius - ideal), abs(raceway.low_radius + raceway.d_value - ideal), 1e-3 * bearing.roller.diameter)
     wanted = 0.4 * bearing.roller.diameter / departure
-    return next((factor for factor in (300, 200, 150, 100, 80, 50, 40, 30, 20, 15, 10, 8, 5, 4, 3, 2) if factor <= wanted), 1)
+    return next((factor for factor in _FACTORS if factor <= wanted), 1)
 
 
 def cage_magnification(scene: Scene) -> int:
@@ -72,6 +73,26 @@ def cage_magnification(scene: Scene) -> int:
     }
     room = 0.8 * beside[cage.guidance]() / cage.play + 1.0
     return next((factor for factor in (100, 50, 30, 20, 15, 10, 8, 5, 4, 3, 2) if factor <= room), 1)
+
+
+def tilt_magnification(scene: Scene) -> int:
+    """Return the factor for tilts of rollers and inner ring: that of other radial departures, less where it would turn the ring too far."""
+    most = min(magnification(scene.bearing), 0.3 / max(scene.operating.misalignment, 1e-9))
+    return next((factor for factor in _FACTORS if factor <= most), 1)
+
+
+def skew_magnification(bearing: Bearing) -> int:
+    """Return the factor for skews of rollers: an axis that lies as skewed in its pocket as it can is drawn at 0.6 rad."""
+    most = 0.6 / (2 * bearing.cage.pocket_clearance / bearing.roller.length)
+    return next((factor for factor in _FACTORS if factor <= most), 1)
+
+
+def leaning(towards_y, towards_z) -> np.ndarray:
+    """Return the turns that incline axes by these slopes towards y and z, quaternions (y, z, x, w), shape (..., 4); unknown ones stay upright."""
+    towards_y, towards_z = np.nan_to_num(towards_y), np.nan_to_num(towards_z)
+    half = 0.5 * np.arctan(np.hypot(towards_y, towards_z))
+    share = np.sin(half) / np.maximum(np.hypot(towards_y, towards_z), 1e-12)
+    return np.stack((-towards_z * share, towards_y * share, np.zeros(half.shape), np.cos(half)), axis=-1)
 
 
 def drawn_guide_radius(bearing: Bearing, cage_factor: float) -> float | None:

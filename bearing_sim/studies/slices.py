@@ -23,7 +23,7 @@ class Sliced(NamedTuple):
     slices: int
     slip: float  # mean cage slip
     inner_load: float  # mean of the largest load on the inner raceway [N]
-    rating_life: float  # [h], at the end of the run
+    rating_life: float  # [h]
     lamina_life: float
     static_pressure: float  # largest Hertzian pressure of a slice in quasi-static balance [Pa]
     static_lamina_life: float  # [h]
@@ -62,8 +62,7 @@ def by_slices(scene: Scene, settle: float, duration: float, counts: Sequence[int
                 count,
                 float(block["cage_slip"].mean()),
                 float(block["inner_load"].max(axis=1).mean()),
-                float(block["rating_life"][-1]),
-                float(block["lamina_life"][-1]),
+                *(float(1.0 / np.mean(1.0 / block[name])) for name in ("rating_life", "lamina_life")),  # as damage adds up
                 max(still.inner_pressure, still.outer_pressure),
                 still.lamina_life,
                 step_seconds,
