@@ -263,7 +263,6 @@ def complete(scene: Scene, block: np.ndarray, before: np.void | None = None) -> 
     _fill(block, "orbital_speed", block["cage_speed"][:, None])
     start = block["cage_angle"][:1, None] * rolling
     block["roller_rotation"] = _rotation(block, before if before is not None else block[0], start) if len(block) else 0.0
-    block["land_eccentricity"] = np.hypot(block["cage_y"], block["cage_z"]) / bearing.cage.guide_clearance
     _fill(block, "inner_equivalent_load", np.mean(block["inner_load"] ** 4, axis=1) ** (1 / 4))
     _fill(block, "outer_equivalent_load", np.mean(block["outer_load"] ** 4.5, axis=1) ** (1 / 4.5))
     if not scene.bodies_tilt:
@@ -277,6 +276,8 @@ def complete(scene: Scene, block: np.ndarray, before: np.void | None = None) -> 
         wanted = approach["inner"] - (bearing.inner_raceway.radius + radius - block["roller_radius"])
         for field, places in zip(("ring_y", "ring_z"), _ring_centre(azimuth, wanted, block["inner_load"] > 0)):
             _fill(block, field, places)
+    guide_y, guide_z = (block["ring_y"], block["ring_z"]) if scene.cage_whirls and bearing.cage.guidance == "inner_ring" else (0.0, 0.0)
+    block["land_eccentricity"] = np.hypot(block["cage_y"] - guide_y, block["cage_z"] - guide_z) / bearing.cage.play
 
 
 def _fill(block: np.ndarray, field: str, values: np.ndarray | float) -> None:

@@ -18,6 +18,7 @@ from bearing_sim.contour_scene import UNREAD, anchor_contour, drop_other_forms, 
 from bearing_sim.crown import anchor_crown
 from bearing_sim.effects import choose
 from bearing_sim.scene import Scene
+from bearing_sim.scene_cage import drop_other_lands
 
 _UNION_TAGS = frozenset(
     {"oil_4109", "constant", "kragelskii", "eyring", "fitted", "custom", "double_exponential", "reference", "hyperbolic", "power"}
@@ -239,6 +240,9 @@ def _with_presets(tree: Mapping) -> tuple[dict, list[Fault]]:
         raceway = bearing.get("outer_raceway")
         if isinstance(raceway, Mapping) and "outer_raceway" in preset:
             drop_other_forms(preset["outer_raceway"], raceway)
+        cage = bearing.get("cage")
+        if isinstance(cage, Mapping) and "cage" in preset:
+            drop_other_lands(preset["cage"], cage)
         tree["bearing"] = _merged(preset, {key: value for key, value in bearing.items() if key != "preset"})
         if unknown:  # its missing fields are consequences, not faults
             raise SceneError("scene", faults)

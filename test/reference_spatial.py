@@ -130,24 +130,30 @@ class SpatialReference:
         moving = moving - state.cage_speed * ahead(f.from_cage)
         f.pocket_slide = dot(moving, f.pocket_outward[:, :, None])
         f.pocket_rate = dot(moving, f.pocket_along[:, :, None])
-        f.pocket, f.pocket_elastic, f.pocket_energy = p.pocket(dot(f.from_cage, f.pocket_along[:, :, None]), f.pocket_rate)
+        f.pocket, f.pocket_elastic, f.pocket_energy = p.pocket(
+            dot(f.from_cage, f.pocket_along[:, :, None]), f.pocket_rate, p.pocket_clearance, p.pocket_film_force
+        )
         f.pocket_smooth = p.pocket_friction * state.spin / np.sqrt(state.spin**2 + 10.0**2)
+        guiding = p.guidance == "roller"
+        middle = p.low_radius + p.d_value / 2 - r_w
+        outwards = dot(f.from_cage, f.pocket_outward[:, :, None]) - middle if guiding else np.zeros((p.rollers, n))
+        f.guide_rate = f.pocket_slide
+        f.guide, f.guide_elastic, f.guide_energy = p.pocket(outwards, f.pocket_slide if guiding else 0.0, p.pocket_radial_clearance, 0.0)
         # a slice has an N-th of everything
-        for name in ("inner", "outer", "pocket"):
+        for name in ("inner", "outer", "pocket", "guide"):
             for kind in ("", "_elastic", "_energy"):
                 setattr(f, name + kind, getattr(f, name + kind) / n)
-        f.pocket_whole = f.pocket.sum(1)
+        f.pocket_whole, f.guide_whole = f.pocket.sum(1), f.guide.sum(1)
 
         f.lands = []
-        for place in (self.land, -self.land):
+        for place in (self.land, -self.land) if p.guidance != "roller" else ():
             at, velocity = state.cage + place * state.cage_lean, state.cage_velocity + place * state.cage_leaning
-            film, torque = p.land_film_force(at, velocity, state.cage_speed)
-            touch, friction, heat, energy = p.land_contact(at, velocity, state.cage_speed)
-            f.lands.append(SimpleNamespace(place=place, velocity=velocity, film=film, torque=torque, touch=touch, friction=friction, heat=heat))
-            f.lands[-1].energy = energy
-        f.bore_torque = p.couette(omega_i - state.cage_speed, p.inside, p.inside - r_i, p.width)
+            ring, ring_velocity = state.ring + place * state.ring_lean, state.ring_velocity + place * state.ring_leaning
+            f.lands.append(p.land(at, velocity, state.cage_speed, ring, ring_velocity))
+            f.lands[-1].place = place
+        f.bore_torque = p.couette(omega_i - state.cage_speed, p.inside, p.inside - r_i, p.inside_width)
         gap = p.low_radius - p.outside
-        f.case_torque = -p.couette(state.cage_speed, p.outside, gap, p.width - 2 * p.land_width) - p.end_faces(state.cage_speed)
+        f.case_torque = -p.couette(state.cage_speed, p.outside, gap, p.outside_width) - p.end_faces(state.cage_speed)
         return f
 
     def accelerations(self, f):
@@ -161,14 +167,20 @@ class SpatialReference:
         inner = (f.inner * f.inner_way).sum(2) + (dragged_i + p.pushing[0] * pumped_i) * f.across
         outer = -f.outer.sum(1) * f.outward + ((f.outer * f.outer_lean).sum(1) + dragged_e - p.pushing[1] * pumped_e) * f.along
         pocket = -f.pocket * (f.pocket_along + f.pocket_smooth * f.pocket_outward)[:, :, None]
-        spin_torque = r_w * (dragged_i - dragged_e - pumped_i - pumped_e - f.pocket_smooth * magnitude(f.pocket_whole))
-        touch = f.from_cage + (np.where(np.real(f.pocket_whole) >= 0, r_w, -r_w) * f.pocket_along)[:, :, None]
-        cage_torque = f.bore_torque + f.case_torque + np.sum(cross(touch, -pocket))
+        pocket = pocket - f.guide * (f.pocket_outward - f.pocket_smooth * f.pocket_along)[:, :, None]
+        pressed_on = magnitude(f.pocket_whole) + magnitude(f.guide_whole)
+        spin_torque = r_w * (dragged_i - dragged_e - pumped_i - pumped_e - f.pocket_smooth * pressed_on)
+        # both walls push at the roller's surface
+        reach = np.where(np.real(f.pocket_whole) >= 0, r_w, -r_w) * cross(f.pocket_along, f.pocket_whole * f.pocket_smooth * f.pocket_outward)
+        reach = reach + np.where(np.real(f.guide_whole) >= 0, r_w, -r_w) * cross(f.pocket_outward, -f.guide_whole * f.pocket_smooth * f.pocket_along)
+        cage_torque = f.bore_torque + f.case_torque + np.sum(cross(f.from_cage, -pocket)) + np.sum(reach)
         cage_force, cage_moment = -pocket.sum((1, 2)), -(pocket * x).sum((1, 2))
+        ring_force, ring_moment = np.array(p.load) - inner.sum(1), np.zeros(2)
         for land in f.lands:
-            force = (land.film + land.touch) / 2
-            cage_force, cage_moment = cage_force + force, cage_moment + land.place * force
-            cage_torque = cage_torque + (land.torque - land.friction * p.guide_radius) / 2
+            cage_force, cage_moment = cage_force + land.force / 2, cage_moment + land.place * land.force / 2
+            cage_torque = cage_torque + land.torque / 2
+            if p.guidance == "inner_ring":
+                ring_force, ring_moment = ring_force - land.force / 2, ring_moment - land.place * land.force / 2
         # the outer contact's pressure on a slice acts in the roller's own frame: outwards on its tilt, nothing on its skew
         pressed = -(f.outer * x).sum(1) * f.outward + skewed_e * f.along
         inner_moment = (f.inner * x).sum(1) * f.normal + skewed_i * f.across
@@ -178,9 +190,11 @@ class SpatialReference:
         def axis(moment, transverse, polar, speed, leaning):
             return (moment + g * polar * speed * ahead(leaning)) / transverse
 
-        ring = axis(np.array(self.moment) - inner_moment.sum(1), self.ring_polar / 2, self.ring_polar, p.shaft_speed, state.ring_leaning)
+        ring = axis(
+            np.array(self.moment) + ring_moment - inner_moment.sum(1), self.ring_polar / 2, self.ring_polar, p.shaft_speed, state.ring_leaning
+        )
         return (
-            (np.array(p.load) - inner.sum(1)) / p.ring_mass,
+            ring_force / p.ring_mass,
             ring if self.ring_free else 0 * ring,
             cage_force / p.cage_mass,
             axis(cage_moment, self.cage_transverse, p.cage_inertia, state.cage_speed, state.cage_leaning),
@@ -193,9 +207,12 @@ class SpatialReference:
     def powers(self, f):
         """Work done on the bearing, and heat by cause [W]."""
         p, state, omega_i, omega = self.planar, f.state, self.planar.shaft_speed, f.state.cage_speed
-        wall_slide = (f.pocket * f.pocket_slide).sum(1) + magnitude(f.pocket_whole) * p.roller_radius * (state.spin + omega)
+        pressed_on = magnitude(f.pocket_whole) + magnitude(f.guide_whole)
+        wall_slide = (f.pocket * f.pocket_slide - f.guide * f.pocket_rate).sum(1) + pressed_on * p.roller_radius * (state.spin + omega)
+        turning = omega_i if p.guidance == "inner_ring" else 0.0
         work = {
-            "shaft": omega_i * (p.raceway * (f.inner_traction.force + f.inner_traction.pumped).sum() + f.bore_torque),
+            "shaft": omega_i * (p.raceway * (f.inner_traction.force + f.inner_traction.pumped).sum() + f.bore_torque)
+            - turning * sum(land.on_ring for land in f.lands) / 2,
             "load": dot(p.load, state.ring_velocity),
             "moment": dot(self.moment, state.ring_leaning),
         }
@@ -203,11 +220,11 @@ class SpatialReference:
             "inner traction": sum_of_films(f.inner_traction),
             "outer traction": sum_of_films(f.outer_traction),
             "normal damping": np.sum((f.inner - f.inner_elastic) * f.inner_rate + (f.outer - f.outer_elastic) * f.outer_rate),
-            "pocket damping": np.sum((f.pocket - f.pocket_elastic) * f.pocket_rate),
+            "pocket damping": np.sum((f.pocket - f.pocket_elastic) * f.pocket_rate + (f.guide - f.guide_elastic) * f.guide_rate),
             "pocket friction": np.sum(f.pocket_smooth * wall_slide),
             "churning": np.sum(f.churning * f.orbit),
-            "guide land film": sum(-dot(land.film, land.velocity) - land.torque * omega for land in f.lands) / 2,
-            "guide land contact": sum(land.heat for land in f.lands) / 2,
+            "guide land film": sum(land.film_heat for land in f.lands) / 2,
+            "guide land contact": sum(land.touch_heat for land in f.lands) / 2,
             "mixture on the cage": f.bore_torque * (omega_i - omega) - f.case_torque * omega,
         }
         return work, heat
@@ -224,4 +241,4 @@ class SpatialReference:
             + np.sum(p.mass * dot(state.velocity, state.velocity) + self.transverse * dot(state.leaning, state.leaning))
             + np.sum(p.roller_inertia * state.spin**2)
         ) / 2
-        return kinetic + np.sum(f.inner_energy + f.outer_energy + f.pocket_energy) + sum(land.energy for land in f.lands) / 2
+        return kinetic + np.sum(f.inner_energy + f.outer_energy + f.pocket_energy + f.guide_energy) + sum(land.energy for land in f.lands) / 2

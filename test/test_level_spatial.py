@@ -14,6 +14,9 @@ from bearing_sim.levels.spatial_slices import SLICED
 Z = 18
 FIXED = "integration.fixed_step=20 us"
 MOMENT = ["operating.moment=2", FIXED]
+INNER = ["bearing.cage.guidance=inner_ring", "bearing.cage.outer_radius=33.35 mm"]
+ROLLER_GUIDED = ["bearing.cage.guidance=roller", "bearing.cage.outer_radius=33.35 mm"]
+GUIDANCES = pytest.mark.parametrize("guidance", [[], INNER, ROLLER_GUIDED], ids=["outer ring", "inner ring", "roller"])
 
 
 def simulation(*overrides, level="spatial", inputs=None):
@@ -41,6 +44,9 @@ GROWTH = "bearing.ring_growth={centrifugal: true, thermal: true, inner_excess: 1
         ([], ["operating.moment=0"]),
         (["lubricant.pumping=true"], []),
         ([GROWTH], []),
+        (INNER, ["operating.moment=0"]),
+        (ROLLER_GUIDED, ["operating.moment=0"]),
+        (["lubricant.pumping=true", GROWTH, *INNER], []),
         (["lubricant.pumping=true", GROWTH], ["bearing.roller.slices=7", "operating.moment=0"]),
     ],
 )
@@ -115,10 +121,13 @@ def spread_of(run):
     return np.concatenate([border_sizes.ravel(), np.repeat(roller_sizes, Z)])
 
 
-def test_turning_load_contour_moment_and_start_turns_the_solution_and_nothing_else():
+@GUIDANCES
+def test_turning_load_contour_moment_and_start_turns_the_solution_and_nothing_else(guidance):
     turn = math.radians(50.0)
-    here = simulation(*MOMENT)
-    there = simulation(*MOMENT, "operating.load_angle=50 deg", "operating.moment_angle=50 deg", "bearing.outer_raceway.installation_angle=50 deg")
+    here = simulation(*MOMENT, *guidance)
+    there = simulation(
+        *MOMENT, *guidance, "operating.load_angle=50 deg", "operating.moment_angle=50 deg", "bearing.outer_raceway.installation_angle=50 deg"
+    )
     rough_start(here)
 
     def turned(state):
@@ -135,8 +144,9 @@ def test_turning_load_contour_moment_and_start_turns_the_solution_and_nothing_el
     assert (np.abs(there.state - turned(here.state)) / spread_of(here)).max() < 1e-8
 
 
-def test_a_moment_the_other_way_and_a_mirrored_start_mirror_the_tilts_and_nothing_else():
-    here, there = simulation(*MOMENT), simulation(*MOMENT, "operating.moment_angle=180 deg")
+@GUIDANCES
+def test_a_moment_the_other_way_and_a_mirrored_start_mirror_the_tilts_and_nothing_else(guidance):
+    here, there = simulation(*MOMENT, *guidance), simulation(*MOMENT, *guidance, "operating.moment_angle=180 deg")
     rough_start(here)
 
     def mirrored(state):
@@ -150,8 +160,9 @@ def test_a_moment_the_other_way_and_a_mirrored_start_mirror_the_tilts_and_nothin
     assert (np.abs(there.state - mirrored(here.state)) / spread_of(here)).max() < 1e-8
 
 
-def test_running_backwards_mirrors_the_bearing_in_the_plane_of_load_and_shaft():
-    here, there = simulation(*MOMENT), simulation(*MOMENT, "operating.shaft_speed=-45000 rpm")
+@GUIDANCES
+def test_running_backwards_mirrors_the_bearing_in_the_plane_of_load_and_shaft(guidance):
+    here, there = simulation(*MOMENT, *guidance), simulation(*MOMENT, *guidance, "operating.shaft_speed=-45000 rpm")
     rough_start(here)
     other = -np.arange(Z) % Z
 

@@ -76,11 +76,12 @@ def rough_state(run, seed, scale=1.0):
     """Rollers pressed, parted and colliding, tilted and skewed, some against a pocket's wall, and the cage anywhere up to its land."""
     random = np.random.default_rng(seed)
     state = run._state.copy()
-    eccentricity, azimuth = random.uniform(0.0, 0.145e-3), random.uniform(0.0, 2 * math.pi)
+    eccentricity, azimuth = random.choice([random.uniform(0.0, 0.145e-3), 0.1485e-3]), random.uniform(0.0, 2 * math.pi)
     state[0:2] += random.normal(size=2) * 3e-6
     state[2:4] += random.normal(size=2) * 5e-4
-    state[4:6] = eccentricity * math.cos(azimuth), eccentricity * math.sin(azimuth)
-    state[6:8] = random.normal(size=2) * 1e-3
+    turning = run._params.cage.guidance.turning
+    state[4:6] = turning * state[0:2] + eccentricity * np.array([math.cos(azimuth), math.sin(azimuth)])
+    state[6:8] = turning * state[2:4] + random.normal(size=2) * 1e-3
     state[8] = random.uniform(-10.0, 10.0)
     state[9:13] += random.normal(size=4) * [2e-2, 2e-2, 2.0, 2.0]
     state[13:17] += random.normal(size=4) * [2e-2, 2e-2, 2.0, 2.0]
@@ -105,7 +106,24 @@ def kinds(count):
 
 
 MOMENT = ["operating.moment=2", "operating.moment_angle=30 deg"]
+INNER = ["bearing.cage.guidance=inner_ring", "bearing.cage.outer_radius=33.35 mm"]
+ROLLER_GUIDED = ["bearing.cage.guidance=roller", "bearing.cage.outer_radius=33.35 mm"]
 VARIANTS = {
+    "guided on the free inner ring": (
+        lambda: SpatialReference(Reference(guidance="inner_ring"), moment=(2 * math.cos(math.pi / 6), 1.0)),
+        [*INNER, *MOMENT],
+        None,
+    ),
+    "guided on the held inner ring": (
+        lambda: SpatialReference(Reference(guidance="inner_ring"), ring_free=False),
+        [*INNER, "operating.misalignment=1 mrad"],
+        None,
+    ),
+    "guided by rollers": (
+        lambda: SpatialReference(Reference(guidance="roller", pocket_radial_clearance=0.06e-3), moment=(2 * math.cos(math.pi / 6), 1.0)),
+        [*ROLLER_GUIDED, "bearing.cage.pocket_radial_clearance=0.06 mm", *MOMENT],
+        None,
+    ),
     "free ring": (lambda: SpatialReference(moment=(2 * math.cos(math.pi / 6), 1.0)), MOMENT, None),
     "held ring, crown, Deng's axes": (
         lambda: SpatialReference(Reference(contour_slope=False), ring_free=False, gyroscopic=False, crown=CROWN, together=1),

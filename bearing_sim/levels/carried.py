@@ -2,7 +2,7 @@
 
 Cage angle and speed, the rollers' places, orbital speeds and spins, and what tilts, come from the sample, whole.  What a sample does
 not tell begins at rest: radial speeds, those of the centres of ring and cage, and of all tilts; contacts damp these within a millisecond.
-Where the sample's level has no whirl its cage is in the centre, and begins to whirl as at the start of a run.
+Where the sample's level has no whirl its cage is in the centre of what guides it, and begins to whirl as at the start of a run.
 """
 
 import math
@@ -62,7 +62,8 @@ def spatial_state_at(params, work, sample) -> np.ndarray:
 def _cage_centre(params, sample):
     if math.hypot(sample["cage_y"], sample["cage_z"]) > 0.0:
         return sample["cage_y"], sample["cage_z"]
-    return FIRST_ECCENTRICITY * params.cage.guide_clearance, 0.0
+    turning = params.cage.guidance.turning  # lands of the inner ring are where the ring is
+    return turning * sample["ring_y"] + FIRST_ECCENTRICITY * params.cage.guide_clearance, turning * sample["ring_z"]
 
 
 def _roller_angles(sample):

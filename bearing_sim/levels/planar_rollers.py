@@ -18,6 +18,7 @@ from bearing_sim.levels.growth import inner_growth
 from bearing_sim.levels.inputs import shaft_speed_at
 from bearing_sim.levels.planar_algebra import BORDER
 from bearing_sim.levels.planar_border import border_accelerations
+from bearing_sim.levels.planar_guide import guide_accelerations, guide_forces, guide_slopes
 from bearing_sim.levels.planar_slopes import pumping_slopes, roller_slopes
 from bearing_sim.levels.planar_state import CAGE_Y, CAGE_Z, OMEGA, RING_Y, RING_Z, ROLLER, THETA, collect_rates, spread_state
 
@@ -209,9 +210,15 @@ def equations(t, y, model, work, rate, with_jacobian):
         pump(contacts, model.lubrication.pumping)
     _pocket_forces(y, cage_cosine, cage_sine, params, rows)
     _accelerate(y, churning, model, rows, contacts, rate)
+    pockets_guide = not params.cage.guidance.lands
+    if pockets_guide:
+        guide_forces(y, params, rows)
+        guide_accelerations(params, rows, rate)
     if with_jacobian:
         roller_slopes(y, inner_radius, churning, params, rows, contacts, work.slopes)
         if model.lubrication.pumping.on:
             pumping_slopes(y, inner_radius, params, rows, contacts, work.slopes)
+        if pockets_guide:
+            guide_slopes(y, params, rows, work.slopes)
     collect_rates(y, params.rollers.count, rows, rate)
     return True

@@ -74,7 +74,6 @@ def initial_state(params: Params, work, shaft_speed, load_y, load_z):
     slip.balance_loads(0.0, course[slip.OMEGA], load_y, load_z, params, balance)
     state = np.zeros(2 * BORDER + BLOCK * count)
     state[RING_Y], state[RING_Z] = balance.ring
-    state[CAGE_Y] = _FIRST_ECCENTRICITY * params.cage.guide_clearance
     state[OMEGA] = course[slip.OMEGA]
     rollers = state[ROLLERS:].reshape(BLOCK, count)
     rollers[0] = balance.loads[LOAD.radius]
@@ -83,6 +82,10 @@ def initial_state(params: Params, work, shaft_speed, load_y, load_z):
     rollers[SPIN] = course[slip.SPIN :]
     if has_slices_of_its_own(params):
         balance_by_slices(params, course[slip.OMEGA], (load_y, load_z), balance.growth[0], state)
+    turning = params.cage.guidance.turning
+    state[CAGE_Y] = turning * state[RING_Y] + _FIRST_ECCENTRICITY * params.cage.guide_clearance
+    state[CAGE_Z] = turning * state[RING_Z]
+    state[CAGE_TILT_Y], state[CAGE_TILT_Z] = turning * state[RING_TILT_Y], turning * state[RING_TILT_Z]
     return state
 
 
@@ -186,7 +189,9 @@ def observe(t, y, model, work, interval, previous, row, rate):
     row[COLUMN.cage_tilt_y], row[COLUMN.cage_tilt_z] = y[CAGE_TILT_Y], y[CAGE_TILT_Z]
     pressures = slice_pressures(model.params, work)
     row[COLUMN.inner_pressure], row[COLUMN.outer_pressure], row[COLUMN.inner_edge_pressure], row[COLUMN.outer_edge_pressure] = pressures
-    row[COLUMN.land_eccentricity] = math.hypot(y[CAGE_Y], y[CAGE_Z]) / model.params.cage.guide_clearance
+    turning = model.params.cage.guidance.turning
+    eccentricity = math.hypot(y[CAGE_Y] - turning * y[RING_Y], y[CAGE_Z] - turning * y[RING_Z])
+    row[COLUMN.land_eccentricity] = eccentricity / model.params.cage.guide_clearance
     write_powers(spatial_powers(y, shaft_speed_at(t, model.drive), model, work), row)
     for j in range(count):
         first, block, lane = SCALARS + j, j // LANES, j % LANES

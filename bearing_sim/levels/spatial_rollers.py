@@ -18,6 +18,7 @@ from bearing_sim.levels.growth import inner_growth
 from bearing_sim.levels.inputs import shaft_speed_at
 from bearing_sim.levels.spatial_algebra import BORDER
 from bearing_sim.levels.spatial_border import border_accelerations
+from bearing_sim.levels.spatial_guide import guide_accelerations, guide_forces
 from bearing_sim.levels.spatial_pockets import place_in_pockets, pocket_forces
 from bearing_sim.levels.spatial_slices import SLICED, load_pieces, sum_pumping, sum_tractions
 from bearing_sim.levels.spatial_slopes import roller_slopes
@@ -216,6 +217,10 @@ def equations(t, y, model, work, rate, with_jacobian):
         pocket_forces(block, params, rows)
     for block in range(rows.shape[0]):
         _accelerate(block, y, churning, model, rows, contacts, rate)
+    if not params.cage.guidance.lands:
+        for block in range(rows.shape[0]):
+            guide_forces(block, y, params, rows)
+            guide_accelerations(block, params, rows, rate)
     if with_jacobian:
         roller_slopes(y, inner_radius, churning, pumping, params, rows, contacts, work.chain, work.slopes)
     collect_rates(y, params.rollers.count, rows, rate)

@@ -7,6 +7,7 @@ torque of the spin first, from contact to contact; at the end they become accele
 from bearing_sim.kernels.compilation import kernel, template
 from bearing_sim.kernels.lanes import load, spread, store
 from bearing_sim.levels.spatial_algebra import AT_CAGE_SPEEDS, BORDER, LOCAL, RING_COLUMNS, RING_ROWS
+from bearing_sim.levels.spatial_guide import guide_slopes
 from bearing_sim.levels.spatial_pocket_slopes import pocket_slopes
 from bearing_sim.levels.spatial_slices import SLICED
 from bearing_sim.levels.spatial_state import (
@@ -329,6 +330,8 @@ def roller_slopes(y, inner_radius, churning, pumping, params, rows, contacts, ch
         _inner_slopes(block, y, inner_radius, pumping, params, rows, contacts, chain, slopes)
         _ring_slopes(block, pumping, params, rows, contacts, slopes)
         pocket_slopes(block, y, params, rows, chain, slopes)
+        if not params.cage.guidance.lands:
+            guide_slopes(block, y, params, rows, chain, slopes)
         _outer_slopes(block, y, churning, params, rows, contacts, slopes)
         if pumping:
             _outer_pumping(block, params, rows, contacts, slopes)

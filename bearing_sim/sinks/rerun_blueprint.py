@@ -144,7 +144,7 @@ def _left(scene: Scene, bounds) -> rrb.Vertical:
 
 
 def _orbit(scene: Scene) -> rrb.Spatial2DView:
-    edge = ORBIT_EDGE * scene.bearing.cage.guide_clearance * 1e6
+    edge = ORBIT_EDGE * scene.bearing.cage.play * 1e6
     return rrb.Spatial2DView(
         origin="/cage_orbit",
         name="Cage orbit",

@@ -256,9 +256,18 @@ def _newton(loads: np.ndarray) -> str:
     return f"{float(loads.max()):.0f} N" if np.isfinite(loads).any() else "unknown"
 
 
-_WHIRL = """The cage's displacement and its guide clearance have a factor of their own, which the title says; cage orbit: the place of
-its centre in the guide clearance and its path in the last turns, dots where samples are too far apart for a line.
+_WHIRL = """The cage's displacement and its {play} have a factor of their own, which the title says; cage orbit: the place of
+its centre in the {play}{seen} and its path in the last turns, dots where samples are too far apart for a line.
 """
+_GUIDES = {"outer_ring": "green: guide land on the outer ring. ", "inner_ring": "green: guide land on the inner ring. ", "roller": ""}
+
+
+def _whirl(scene: Scene) -> str:
+    if not scene.cage_whirls:
+        return ""
+    cage = scene.bearing.cage
+    seen = ", seen from the inner ring's centre," if cage.guidance == "inner_ring" else ""
+    return _WHIRL.format(play="guide clearance" if cage.has_lands else "play in the pockets that guide it", seen=seen)
 
 
 _TILTS = """The solid picture draws tilts of ring and rollers and skews by factors of their own, which its title says, and the cage's tilt by
@@ -287,11 +296,11 @@ traction law {oil.traction.law}.
 
 **Picture**: bodies to scale; every radial departure from the ideal bearing (lobes, play, elastic approach, ring displacement)
 is drawn x{factor}. Seen against the x axis: Y right, Z up; azimuth runs from +Y towards +Z. Red line: outer raceway; dashed: ideal
-round raceway; green: guide land. Rollers are coloured by inner contact load, grey ones carry none. Arrows at the raceways: contact
+round raceway; {_GUIDES[bearing.cage.guidance]}Rollers are coloured by inner contact load, grey ones carry none. Arrows at the raceways: contact
 forces on the rings, full scale of the colours = longest; yellow: radial load on the inner ring, twice that scale as far as there is room.
 The orange cage bar and the white marks show rotation. Purple arrows: forces of the pockets on the rollers, scale in the middle.
-{_WHIRL if scene.cage_whirls else ""}{_TILTS if scene.bodies_tilt else ""}
-**Power** by cause: what the shaft puts in by the tractions on the inner ring and by the mixture in the cage's bore is lost, or
+{_whirl(scene)}{_TILTS if scene.bodies_tilt else ""}
+**Power** by cause: what the shaft puts in by the tractions on the inner ring, the mixture in the cage's bore and guide lands of its own is lost, or
 stored for a moment in motion and elastic contacts; the bars are means of the newest samples.
 
 **Thresholds**: slip {100 * limits.slip_warning:g} % warning, {100 * limits.slip_error:g} % error; life below {limits.life_warning:g} h warning.

@@ -77,7 +77,7 @@ class SolidDrawing:
         mark[:, 2] -= mark[:, :2] @ ring_tilt
         mark += [y + 1.22 * half * ring_tilt[0], z + 1.22 * half * ring_tilt[1], 0.0]
         self._log("inner_ring/shaft_mark", rr.LineStrips3D.from_fields(strips=mark[None]))
-        middle = (bearing.cage.inner_radius + bearing.cage.guide_radius - bearing.cage.guide_clearance) / 2 / MILLIMETRE
+        middle = (bearing.cage.bore + bearing.cage.outside) / 2 / MILLIMETRE
         azimuth = sample["cage_angle"] + (np.arange(bearing.roller.count) - 0.5) * 2 * math.pi / bearing.roller.count
         cage = [*section.cage_displacement(self._cage_factor, sample), 0.0]
         leant = np.array([*cage_tilt, 0.0])

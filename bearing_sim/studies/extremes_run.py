@@ -238,6 +238,6 @@ def _clamps(samples: np.ndarray, simulation: Simulation) -> list[str]:
     if scene.integration.fixed_step is not None and simulation.counters.rejected_steps:
         clamps.append("fixed step divided")
     cage = scene.bearing.cage
-    if scene.cage_whirls and (samples["land_eccentricity"] > 1.0 - cage.land_film / cage.guide_clearance).any():
+    if scene.cage_whirls and cage.has_lands and (samples["land_eccentricity"] > 1.0 - cage.land_film / cage.guide_clearance).any():
         clamps.append("land film at its thinnest")
     return clamps
