@@ -247,7 +247,7 @@ def test_powers_are_those_of_the_plain_numpy_model(variant):
     reference, run = new_reference(), simulation(*overrides, crown=crown)
     for seed in range(3):
         run._state[:] = rough_state(run, seed, 0.3)
-        run._observe_start()
+        run._begin(run._state, run._previous)
         work, heat = reference.powers(reference.forces(plain(run._state)))
         expected = {
             "shaft_power": work["shaft"],
@@ -295,7 +295,7 @@ def test_pressures_are_those_of_hertz_under_the_plain_numpy_model_s_slices(varia
     new_reference, overrides, crown = VARIANTS[variant]
     reference, run = new_reference(), simulation(*overrides, crown=crown)
     run._state[:] = rough_state(run, 4, 0.3)
-    run._observe_start()
+    run._begin(run._state, run._previous)
     forces, plane = reference.forces(plain(run._state)), reference.planar
     for ring, curvature in (("inner", 1 / plane.roller_radius + 1 / plane.inner_radius), ("outer", 1 / plane.roller_radius - 1 / plane.low_radius)):
         pressure = np.sqrt(getattr(forces, ring) * reference.slices / plane.length * plane.modulus * curvature / (2 * np.pi))
