@@ -50,7 +50,7 @@ ALLOWED = {
     ),
     "studies": (
         NUMBERS | {"sksundae", "matplotlib"},
-        {"studies", "levels", "params", "rating_life", "sample", "scene", "scene_file", "simulation"},
+        {"studies", "integrators.status", "levels", "params", "rating_life", "sample", "scene", "scene_file", "simulation"},
     ),
     "runtime": ({"numpy"}, {"runtime", "simulation", "scene", "effects", "events", "sample", "topics"}),
 }
