@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.effects import NUMBERS
 from bearing_sim.integrators.status import COUNT, OK, REASONS, new_counts
 from bearing_sim.levels.inputs import Drive
 from bearing_sim.levels.level import LEVELS
@@ -38,7 +39,16 @@ class Counters(NamedTuple):
 
 
 class IntegrationError(RuntimeError):
-    """Time could not be advanced; the simulation keeps the state from before the call."""
+    """Time could not be advanced; the simulation keeps the state from before the call.
+
+    Attributes
+    ----------
+    status : why, see `bearing_sim.integrators.status`; None where it is not known.
+    """
+
+    def __init__(self, message: str, status: int | None = None):
+        super().__init__(message)
+        self.status = status
 
 
 def scene_inputs(scene: Scene) -> Inputs:
@@ -80,20 +90,42 @@ class Simulation:
         self.inputs = _checked(inputs if inputs is not None else scene_inputs(self.scene))
         self.time = 0.0
         self._work = self._new_work()
-        self._state = self._level.initial_state(self._params, self._work, *self.inputs[:3])
-        self._memory = self._method.new_memory(self._state.size)
         self._counts = new_counts()
+        self._begin(self._level.initial_state(self._params, self._work, *self.inputs[:3]), new_block(1, self._params.rollers.count))
+
+    def take_over(self, other: "Simulation") -> None:
+        """Go on from where another simulation of the same bearing is, at another level or with other settings.
+
+        Time, inputs, damage and the angles of all bodies go on without a jump, cage and rollers as fast as they are; see
+        `bearing_sim.levels.carried`.  Counters keep what this simulation has done itself.
+
+        Raises
+        ------
+        ValueError
+            The other bearing has another number of rollers.
+        """
+        if other._params.rollers.count != self._params.rollers.count:
+            raise ValueError(f"cannot go on from a bearing of {other._params.rollers.count} rollers with one of {self._params.rollers.count}")
+        self.inputs, self.time = other.inputs, other.time
+        self._work = self._new_work()
+        before = other._previous.copy()
+        for name in ("roller_spin", "roller_rotation"):  # of a level that does not follow them
+            before[name] = np.nan_to_num(before[name])
+        self._begin(self._level.state_at(self._params, self._work, other.sample), before)
+
+    def _begin(self, state: np.ndarray, previous: np.ndarray) -> None:
+        """Take a state as the present one; what adds up over time goes on from the sample before."""
+        self._state = state
+        self._memory = self._method.new_memory(state.size)
         self._step = float(self.scene.integration.first_step)
         self._lubrication = lubricate(self.scene.lubricant, self._params, self.inputs.oil_temperature)
         self._previous = new_block(1, self._params.rollers.count)
-        self._observe_start()
+        rows, before = flat(self._previous), flat(previous)
+        self._level.observe(self.time, state, self._model(self.inputs, 1.0), self._work, 0.0, before[0], rows[0], self._memory.scratch[0])
+        self._previous["level"] = NUMBERS[self.scene.level]
 
     def _new_work(self):
         return self._level.new_work(self._params, *self._tables)
-
-    def _observe_start(self) -> None:
-        rows, zeros = flat(self._previous), flat(new_block(1, self._params.rollers.count))
-        self._level.observe(0.0, self._state, self._model(self.inputs, 1.0), self._work, 0.0, zeros[0], rows[0], self._memory.scratch[0])
 
     def _model(self, end: Inputs, duration: float) -> Model:
         now = self.inputs
@@ -174,8 +206,10 @@ class Simulation:
             self._step = float(integration.first_step)
             raise IntegrationError(
                 f"{REASONS[status]} between {self.time:.6g} and {self.time + duration:.6g} s (shaft {end.shaft_speed:.6g} rad/s, "
-                f"load {math.hypot(end.load_y, end.load_z):.6g} N, {end.oil_temperature:.6g} K); the state before is kept"
+                f"load {math.hypot(end.load_y, end.load_z):.6g} N, {end.oil_temperature:.6g} K); the state before is kept",
+                status,
             )
+        block["level"] = NUMBERS[self.scene.level]
         self.time += duration
         self.inputs, self._state, self._step = end, state, step
         self._previous = block[-1:].copy()
@@ -223,6 +257,7 @@ class Simulation:
         if reached:
             self.inputs = Inputs(*map(float, inputs[reached - 1]))
             self.time = float(block["time"][reached - 1])
+            block["level"] = NUMBERS[self.scene.level]
             self._previous = block[reached - 1 : reached].copy()
             if self.inputs.oil_temperature != self._lubrication.temperature:
                 self._lubrication = lubricate(self.scene.lubricant, self._params, self.inputs.oil_temperature)

@@ -204,3 +204,18 @@ def test_what_the_level_would_ignore_is_refused():
     for overrides in (["bearing.roller.crown=iso_log"], ["operating.misalignment=1 mrad"], ["integration.fixed_step=10 us"]):
         with pytest.raises(SceneError):
             scene("level=steady", *overrides)
+
+
+@pytest.mark.parametrize("level", ["slip", "planar"])
+def test_handing_over_and_back_keeps_angle_speed_and_damage_and_loses_no_number(level):
+    run, other = direct(), Simulation(scene(f"level={level}"))
+    before = run.advance(0.2)[0]
+    other.take_over(run)
+    assert np.isfinite(other.state).all()
+    for name in ("time", "cage_angle", "cage_speed", "damage", "shaft_angle"):
+        assert other.sample[name] == before[name]
+    after = other.advance(2e-3)[0]
+    assert np.isfinite(after["roller_rotation"]).all() and np.isfinite(after["roller_spin"]).all()
+    assert after["cage_slip"] == pytest.approx(before["cage_slip"], abs=5e-3)
+    run.take_over(other)
+    assert run.sample["cage_speed"] == after["cage_speed"] and run.advance(0.01)["damage"][0] > after["damage"]
