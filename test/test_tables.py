@@ -298,7 +298,7 @@ def test_states_of_many_samples_change_when_their_events_do():
     block = new_block(300, 3)
     block["cage_slip"] = lot.choice([0.0, 0.06, -0.07, 0.2, math.nan], 300)
     block["shaft_speed"] = lot.choice([0.0, 4000.0, -4000.0], 300)
-    block["rating_life"] = lot.choice([100.0, 1000.0, math.inf], 300)
+    block["modified_rating_life"] = lot.choice([100.0, 1000.0, math.inf], 300)
     block["damage"] = lot.choice([0.0, 1.5], 300)
     states = bearing_states(block, thresholds)
     kinds = [tuple((event.code, event.level) for event in bearing_events(sample, thresholds)) for sample in block]

@@ -124,7 +124,7 @@ def bearing_states(samples: np.ndarray, thresholds: Thresholds) -> np.ndarray:
     judged = np.abs(samples["shaft_speed"]) >= thresholds.slip_from_speed
     warned = (slip >= thresholds.slip_warning) & judged
     state = warned.astype(int) + (warned & (slip >= thresholds.slip_error))
-    state += 3 * (samples["rating_life"] < thresholds.life_warning)
+    state += 3 * (samples["modified_rating_life"] < thresholds.life_warning)
     return state + 6 * (samples["damage"] >= 1.0)
 
 
