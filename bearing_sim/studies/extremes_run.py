@@ -26,6 +26,7 @@ _RIPPLE, _RIPPLE_LEGS = 1e3, 8  # Hz; legs of a period
 _TIGHT_TOLERANCE, _TIGHT_STEP, _EXPLICIT = 1e-4, 1e-5, ("rk45",)
 _LEAST_SLIP, _RISE_OF_LIFE = -0.05, 1.01
 _RUNNING = 10.0  # rad/s of the shaft; slower, slip and losses are not judged
+_NOT_TOLD = {"steady": ("roller_spin", "roller_rotation", "pocket_force")}  # by a level, which says NaN
 _MAY_BE_INFINITE = ("rating_life", "lamina_life", "modified_rating_life")  # without load or at rest
 _LOSSES = ("inner_sliding_power", "outer_sliding_power", "churning_power", "land_power", "pocket_power", "damping_power")
 
@@ -208,6 +209,8 @@ def _impossible(block: np.ndarray, state: np.ndarray, course: str, scene: Scene)
     turning = np.abs(block["shaft_speed"]) >= _RUNNING
     for name in block.dtype.names:
         values = block[name]
+        if name in _NOT_TOLD.get(scene.level, ()):
+            continue
         if name == "cage_slip":
             values = values[turning]
         good = ~np.isnan(values) & (values > 0.0) if name in _MAY_BE_INFINITE else np.isfinite(values)
