@@ -13,6 +13,7 @@ from pydantic import Field, model_validator
 from bearing_sim.crown import Crown, NoCrown, crown_faults
 from bearing_sim.methods import FIXED_STEP, METHODS
 from bearing_sim.quantity import quantity
+from bearing_sim.scene_bounds import cage_faults, step_faults
 from bearing_sim.scene_lubricant import CustomOil, Oil, Oil4109Traction, Traction
 from bearing_sim.scene_raceway import InnerRaceway, OuterRaceway, RingGrowth, growth_faults
 from bearing_sim.scene_record import record as _strict
@@ -134,12 +135,7 @@ class Bearing:
                 f"outer_raceway.low_radius: {1e3 * self.outer_raceway.low_radius:.6g} mm leaves {1e6 * clearance:.6g} um between inner "
                 f"raceway, roller and low point; expected {-2e4 * self.roller.diameter:.6g} to {5e5 * self.roller.diameter:.6g} um"
             )
-        if self.cage.guide_clearance >= self.cage.guide_radius - self.cage.inner_radius:
-            faults.append("cage.inner_radius: the bore lies outside the cage's outer surface (guide_radius less guide_clearance)")
-        if self.cage.inner_radius <= self.inner_raceway.radius:
-            faults.append("cage.inner_radius: the cage's bore cuts into the inner raceway")
-        if 2 * self.cage.guide_land_width > self.cage.width:
-            faults.append("cage.guide_land_width: the two lands together are wider than the cage")
+        faults += cage_faults(self)
         faults += growth_faults(self)
         if faults:
             raise ValueError("; ".join(faults))
@@ -295,6 +291,13 @@ class Scene:
             raise ValueError(f"integration.method: level {self.level} is integrated by {', '.join(names[:-1])} or {names[-1]}, not by {method}")
         if self.integration.fixed_step is not None and method not in FIXED_STEP:
             raise ValueError(f"integration.fixed_step: {method} chooses its steps; {' and '.join(FIXED_STEP)} can keep to one")
+        return self
+
+    @model_validator(mode="after")
+    def _steps_see_every_roller_pass(self):
+        faults = step_faults(self)
+        if faults:
+            raise ValueError("; ".join(faults))
         return self
 
     @model_validator(mode="after")

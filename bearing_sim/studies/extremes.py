@@ -1,8 +1,8 @@
 """The stability map: what becomes of scenes at the extremes of everything, on all cores.
 
 A case is *finished*; *clamped*, where it came to a good end or was going well but something other than the equations set a bound
-(a fixed step that had to be divided, the film in the guide land at its thinnest, the study's budget of steps where the case's own
-settings ask for so many); *refused*, by the scene's checks before it starts; or *failed*: not finite, an exception, a process that
+(a fixed step that had to be divided, the study's budget of steps where the case's own settings ask for so many: a tolerance, a
+step or an explicit method); *refused*, by the scene's checks before it starts; or *failed*: not finite, an exception, a process that
 died, a hang, too slow with settings that do not ask for it, or a value that no bearing can have.
 """
 

@@ -27,7 +27,10 @@ _TIGHT_TOLERANCE, _TIGHT_STEP, _EXPLICIT = 1e-4, 1e-5, ("rk45",)
 _LEAST_SLIP, _RISE_OF_LIFE = -0.05, 1.01
 _RUNNING = 10.0  # rad/s of the shaft; slower, slip and losses are not judged
 _MAY_BE_INFINITE = ("rating_life", "lamina_life", "modified_rating_life")  # without load or at rest
-_LOSSES = ("inner_sliding_power", "outer_sliding_power", "churning_power", "land_power", "pocket_power", "damping_power")
+# Those that cannot be gains at any instant, by the laws as they are: friction in the pockets goes by spin alone (Deng 2017, eq. 13), and
+# the published torque of the guide land's film leaves out what its eccentric force turns.
+_LOSSES = ("inner_sliding_power", "outer_sliding_power", "churning_power", "damping_power")
+_FIRST_SHARES = (1e-3, 9e-3, 9e-2, 0.9)  # of the first leg: what is stuck is told from what is slow
 
 
 class Outcome(NamedTuple):
@@ -61,7 +64,7 @@ def run_case(case: Case) -> Outcome:
     try:
         scene = load_scene(BEARING, case.overrides)
         scene = load_scene(BEARING, [*case.overrides, f"integration.step_budget={_step_budget(scene)}"])
-        legs = list(course_legs(case.course, case.seconds or _seconds(scene), scene_inputs(scene)))
+        legs = first_divided(list(course_legs(case.course, case.seconds or _seconds(scene), scene_inputs(scene))))
         simulation = Simulation(scene, legs[0].inputs)
     except SceneError as error:
         return Outcome(case, REFUSED, "; ".join(str(fault) for fault in error.faults))
@@ -128,6 +131,17 @@ def course_legs(course: str, seconds: float, inputs: Inputs) -> Iterator[Leg]:
             yield Leg((end - start) * seconds / pieces, at(speed + share * (next_speed - speed), load + share * (next_load - load)))
 
 
+def first_divided(legs: list[Leg]) -> list[Leg]:
+    """Return the legs with the first stretch of time cut into ever longer pieces."""
+    start, first, *rest = legs
+    pieces, passed = [], 0.0
+    for share in _FIRST_SHARES:
+        passed += share
+        between = Inputs(*(a + passed * (b - a) for a, b in zip(start.inputs, first.inputs)))
+        pieces.append(Leg(share * first.duration, between))
+    return [start, *pieces, *rest]
+
+
 def _run(case: Case, simulation: Simulation, legs: list[Leg]) -> Outcome:
     began, fault = time.perf_counter(), _rising_life(simulation, legs[0].inputs)
     worst, spent, blocks, stopped = _Worst(), 0.0, [simulation.sample.copy().reshape(1)], ""
@@ -146,14 +160,16 @@ def _run(case: Case, simulation: Simulation, legs: list[Leg]) -> Outcome:
         worst = worst.with_leg(leg.duration, before, after, core)
         if not stopped and after.steps + after.rejected_steps > budget:
             stopped = f"{budget} steps last for {simulation.time:.3g} s"
-        fault = fault or _impossible(np.concatenate(blocks[-1:]), simulation.state, case.course, simulation.scene)
+        if stopped and simulation.time == 0.0:
+            fault = fault or f"hang: {budget} steps do not last for {leg.duration:.3g} s"
+        fault = fault or _impossible(blocks[-1], simulation.state)
         if time.perf_counter() - began > _PATIENCE:
             fault = fault or f"hang: {simulation.time:.3g} s simulated in {_PATIENCE:g} s"
         if fault or stopped:
             break
     samples = np.concatenate(blocks)
     fault = fault or _unsteady_slip(samples, case.course)
-    clamps = _clamps(samples, simulation)
+    clamps = _clamps(simulation)
     if stopped:
         if _asks_for_small_steps(simulation.scene):
             clamps.append(f"step budget: {stopped}")
@@ -201,7 +217,7 @@ def _rising_life(simulation: Simulation, inputs: Inputs) -> str:
     return ""
 
 
-def _impossible(block: np.ndarray, state: np.ndarray, course: str, scene: Scene) -> str:
+def _impossible(block: np.ndarray, state: np.ndarray) -> str:
     """Return what no bearing can do in some samples, in words."""
     if not np.isfinite(state).all():
         return "the state is not finite"
@@ -218,7 +234,7 @@ def _impossible(block: np.ndarray, state: np.ndarray, course: str, scene: Scene)
             return f"{name} = {block[name].min():.6g} N pulls"
     scale = 1.0 + np.abs(block["shaft_power"])
     for name in _LOSSES:
-        if (block[name] < -1e-6 * scale).any():
+        if (turning & (block[name] < -1e-6 * scale)).any():
             return f"{name} = {block[name].min():.6g} W is a gain"
     return ""
 
@@ -232,12 +248,8 @@ def _unsteady_slip(samples: np.ndarray, course: str) -> str:
     return "" if _LEAST_SLIP <= slip <= 1.0 - _LEAST_SLIP else f"cage slip {100 * slip:.4g} % in steady drive"
 
 
-def _clamps(samples: np.ndarray, simulation: Simulation) -> list[str]:
+def _clamps(simulation: Simulation) -> list[str]:
     """Return what kept the run within bounds that the equations do not have."""
-    scene, clamps = simulation.scene, []
-    if scene.integration.fixed_step is not None and simulation.counters.rejected_steps:
-        clamps.append("fixed step divided")
-    cage = scene.bearing.cage
-    if scene.cage_whirls and (samples["land_eccentricity"] > 1.0 - cage.land_film / cage.guide_clearance).any():
-        clamps.append("land film at its thinnest")
-    return clamps
+    divided = simulation.scene.integration.fixed_step is not None and simulation.counters.rejected_steps > 0
+    clamps = ["fixed step divided"] if divided else []
+    return clamps + (["smallest step"] if simulation.counters.smallest_steps else [])

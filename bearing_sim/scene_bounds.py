@@ -1,0 +1,52 @@
+"""Bounds that no single field has: dimensions of the cage that contradict others, and steps too long for the speed."""
+
+import math
+
+LONGEST_SHARE = 0.5  # of a roller pitch of cage rotation that a fixed step may take
+
+
+def cage_faults(bearing) -> list[str]:
+    """Return what makes a bearing's cage impossible, in words: what, where, the bound, what to do."""
+    cage, roller, faults = bearing.cage, bearing.roller, []
+    if cage.guide_clearance >= cage.guide_radius - cage.inner_radius:
+        bound = 1e3 * (cage.guide_radius - cage.inner_radius)
+        faults.append(
+            f"cage.guide_clearance: {1e3 * cage.guide_clearance:.6g} mm leaves nothing of the cage between guide_radius and inner_radius; "
+            f"expected less than {bound:.6g} mm"
+        )
+    if cage.guide_clearance <= cage.land_film:
+        faults.append(
+            f"cage.guide_clearance: {1e6 * cage.guide_clearance:.6g} um is no more than cage.land_film, the film at which surfaces touch, so that "
+            f"the cage would touch its land all round; expected more than {1e6 * cage.land_film:.6g} um, or a smaller land_film"
+        )
+    if cage.guide_radius >= bearing.outer_raceway.low_radius:
+        faults.append(
+            f"cage.guide_radius: {1e3 * cage.guide_radius:.6g} mm puts the guide lands outside the raceway; expected less than "
+            f"outer_raceway.low_radius, {1e3 * bearing.outer_raceway.low_radius:.6g} mm"
+        )
+    bar = 2 * math.pi * bearing.pitch_radius / roller.count - roller.diameter - 2 * cage.pocket_clearance
+    if bar <= 0.0:
+        bound = cage.pocket_clearance + bar / 2
+        use = f"expected less than {1e3 * bound:.6g} mm" if bound > 0.0 else "use fewer or thinner rollers"
+        faults.append(
+            f"cage.pocket_clearance: {1e3 * cage.pocket_clearance:.6g} mm leaves no bar between the pockets of {roller.count} rollers of "
+            f"{1e3 * roller.diameter:.6g} mm; {use}"
+        )
+    if cage.inner_radius <= bearing.inner_raceway.radius:
+        faults.append("cage.inner_radius: the cage's bore cuts into the inner raceway")
+    if 2 * cage.guide_land_width > cage.width:
+        faults.append("cage.guide_land_width: the two lands together are wider than the cage")
+    return faults
+
+
+def step_faults(scene) -> list[str]:
+    """Return why a scene's fixed step is too long, in words; a step without error control must not jump over a lobe or a roller."""
+    step, bearing, speed = scene.integration.fixed_step, scene.bearing, abs(scene.operating.shaft_speed)
+    if step is None or speed == 0.0:
+        return []
+    pitch = 2 * math.pi / (bearing.roller.count * 0.5 * speed * (1 - bearing.diameter_ratio))
+    if step <= LONGEST_SHARE * pitch:
+        return []
+    bound = f"at most half a pitch, {1e6 * LONGEST_SHARE * pitch:.6g} us, or adaptive steps (leave fixed_step out)"
+    taken = f"{step / pitch:.3g} roller pitches of the cage at {speed * 30 / math.pi:.6g} rpm"
+    return [f"integration.fixed_step: {1e6 * step:.6g} us is {taken}; expected {bound}"]
