@@ -12,8 +12,7 @@ from bearing_sim.integrators.status import COUNT, NON_FINITE, NOT_EVALUATED, OK,
 from bearing_sim.kernels.compilation import kernel
 
 # model: (problem, parameter); work: rows of the Jacobian, then rows of I - shift J, shape (4, 2)
-OSCILLATOR, VAN_DER_POL, STIFF, KINK, ONSET = 0.0, 1.0, 2.0, 3.0, 4.0
-ONSET_TIME, ONSET_WIDTH = 0.7, 1e-9
+OSCILLATOR, VAN_DER_POL, STIFF, KINK = 0.0, 1.0, 2.0, 3.0
 
 
 @kernel
@@ -32,10 +31,6 @@ def rate_of(t, y, model, work, rate):
         # Prothero and Robinson 1974, twice: y' = -k (y - cos t) - sin t, solution cos t for any k
         rate[0] = -model[1] * (y[0] - math.cos(t)) - math.sin(t)
         rate[1] = -(y[1] - math.cos(t)) - math.sin(t)
-    elif model[0] == ONSET:
-        # a force that sets in steeply upon a smooth course; rate[0] is its integral's, rate[1] smooth
-        late = (t - ONSET_TIME) / ONSET_WIDTH
-        rate[0], rate[1] = math.cos(20.0 * t) + model[1] * (1.0 - math.exp(-late) if late > 0.0 else 0.0), math.cos(20.0 * t)
     else:
         rate[0], rate[1] = abs(t - model[1]), -1e3 * (y[1] - y[0])
     return True
@@ -50,9 +45,6 @@ def rate_and_jacobian(t, y, model, work, rate):
         work[1, 0], work[1, 1] = -2.0 * model[1] * y[0] * y[1] - 1.0, model[1] * (1.0 - y[0] * y[0])
     elif model[0] == STIFF:
         work[0, 0], work[0, 1], work[1, 0], work[1, 1] = -model[1], 0.0, 0.0, -1.0
-    elif model[0] == ONSET:
-        work[0, 1] = 0.0
-        work[1, 0], work[1, 1] = 0.0, 0.0
     else:
         work[0, 1], work[1, 0], work[1, 1] = 0.0, 1e3, -1e3
     return rate_of(t, y, model, work, rate)
@@ -285,15 +277,6 @@ def test_nan_and_kernels_that_fail_end_with_a_status_not_a_hang():
     run = Run(OSCILLATOR, 1.0, [0.0, 1.0], 1e-6, advance_nan)
     assert run.to(1.0) == NON_FINITE and run.counts[COUNT.non_finite_steps] > 0
     assert Run(OSCILLATOR, 1.0, [0.0, 1.0], 1e-6, advance_failing).to(1.0) == NOT_EVALUATED
-
-
-def test_a_history_that_has_failed_thrice_begins_anew_along_the_tangent():
-    # Along a secant of the past the error of the formula of order 1 goes with h, not h^2: no step would do but the very smallest.
-    run = Run(ONSET, 1.0, [0.0, 0.0], 1e-10)
-    assert run.to(1.0) == OK
-    assert run.counts[COUNT.smallest_steps] == 0 and run.counts[COUNT.rejected_steps] < 60
-    assert run.y[1] == pytest.approx(math.sin(20.0) / 20.0, abs=2e-8)
-    assert run.y[0] == pytest.approx(math.sin(20.0) / 20.0 + 0.3 - ONSET_WIDTH, abs=2e-8)
 
 
 def test_a_tolerance_that_cannot_be_met_takes_the_smallest_steps_and_counts_them():
