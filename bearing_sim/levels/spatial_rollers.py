@@ -10,7 +10,7 @@ import math
 from bearing_sim.kernels.compilation import kernel
 from bearing_sim.kernels.drag import churning_force
 from bearing_sim.kernels.elementary import cosine_sine
-from bearing_sim.kernels.lanes import floor, load, magnitude, square_root, store, total
+from bearing_sim.kernels.lanes import floor, load, magnitude, square_root, store, total, where_positive
 from bearing_sim.kernels.raceway import contour_lanes
 from bearing_sim.kernels.traction import traction
 from bearing_sim.levels.inputs import shaft_speed_at
