@@ -13,7 +13,7 @@ from pydantic import Field, model_validator
 from bearing_sim.crown import Crown, NoCrown, crown_faults
 from bearing_sim.methods import FIXED_STEP, METHODS
 from bearing_sim.quantity import quantity
-from bearing_sim.scene_bounds import cage_faults, step_faults
+from bearing_sim.scene_bounds import cage_faults, moment_faults, step_faults
 from bearing_sim.scene_lubricant import CustomOil, Oil, Oil4109Traction, Traction
 from bearing_sim.scene_raceway import InnerRaceway, OuterRaceway, RingGrowth, growth_faults
 from bearing_sim.scene_record import record as _strict
@@ -294,8 +294,8 @@ class Scene:
         return self
 
     @model_validator(mode="after")
-    def _steps_see_every_roller_pass(self):
-        faults = step_faults(self)
+    def _operation_is_within_bounds(self):
+        faults = step_faults(self) + moment_faults(self)
         if faults:
             raise ValueError("; ".join(faults))
         return self

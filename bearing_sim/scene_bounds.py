@@ -39,6 +39,20 @@ def cage_faults(bearing) -> list[str]:
     return faults
 
 
+def moment_faults(scene) -> list[str]:
+    """Return why a scene's moment is beyond any bearing of its size, in words."""
+    bearing, moment = scene.bearing, scene.operating.moment
+    # C_0r = 44 (1 - gamma) Z L D_w in N and mm (ISO 76), at a lever as long as a roller
+    static_rating = 44e6 * (1 - bearing.diameter_ratio) * bearing.roller.count * bearing.roller.length * bearing.roller.diameter
+    bound = static_rating * bearing.roller.length
+    if moment is None or moment <= bound:
+        return []
+    return [
+        f"operating.moment: {moment:.6g} N m would turn the ring over; expected at most {bound:.6g} N m, the static load rating at a lever of "
+        f"roller.length"
+    ]
+
+
 def step_faults(scene) -> list[str]:
     """Return why a scene's fixed step is too long, in words; a step without error control must not jump over a lobe or a roller."""
     step, bearing, speed = scene.integration.fixed_step, scene.bearing, abs(scene.operating.shaft_speed)
