@@ -227,4 +227,5 @@ def test_the_mixture_never_drives_a_roller():
     orbital_speeds[:] = np.linspace(-2000.0, 2000.0, count)
     planar.rhs(0.0, state, run._model(run.inputs, 1.0), run._work, np.zeros_like(state))
     drags = run._work.rollers[:, ROLLER.churning, :].ravel()[:count]
-    assert (drags * orbital_speeds >= 0.0).all() and drags[0] == 0.0 and drags[-1] > 1.0
+    slow = (orbital_speeds > 0.0) & (orbital_speeds < 800.0)
+    assert (drags * orbital_speeds >= 0.0).all() and (drags[slow] == 0.0).all() and slow.sum() == 3 and drags[0] < 0.0 < drags[-1]
