@@ -7,6 +7,7 @@ module                 responsibility
 ``crown``              profiles of the rollers
 ``contour``            forms of the outer raceway; ``contour_file``, ``contour_scene``: measured ones
 ``methods``            by which integrators each level can be advanced
+``effects``            which levels have what a scene may ask for
 ``scene_bounds``       bounds that no single field has
 ``scene_file``         YAML, presets, overrides; every fault of a file at once
 ``quantity``           units at the door

@@ -49,6 +49,14 @@ class Raceways(NamedTuple):
     reduced_modulus: float  # E' = 2 / sum((1 - nu^2)/E) [Pa]
 
 
+class Guidance(NamedTuple):
+    """What guides the cage: lands of a ring, or pockets that hold the rollers outwards and inwards too."""
+
+    lands: bool  # whether lands guide it
+    turning: float  # 1 where they are the inner ring's, which turns and moves, else 0
+    pocket_radius: float  # of guiding pockets' middles, where rollers on the outer raceway are in the mean [m]
+
+
 class CageBody(NamedTuple):
     """The cage."""
 
@@ -60,15 +68,17 @@ class CageBody(NamedTuple):
     pocket_clearance: float  # C_p [m]
     pocket_stiffness: float  # K_c of the film, until the clearance is used up [N/m]
     pocket_damping: float  # of the film [N s/m]
+    guidance: Guidance
     guide_radius: float  # R_g [m]
-    guide_clearance: float  # c [m]
-    guide_width: float  # L_g, all lands together [m]
+    guide_clearance: float  # c [m]; without lands the radial play of the pockets
+    guide_width: float  # L_g, all lands together [m]; 0 without lands
     land_film: float  # films in the guide land thinner than this touch [m]
     land_friction: float  # coefficient of boundary friction there
     land_squeeze: float  # 1 where the film knows how the cage's centre moves, 0 without (Deng 2017)
     outer_radius: float  # of the cage [m]
     inner_radius: float  # of the cage [m]
-    width: float  # of the cage [m]
+    outer_width: float  # of its outer surface, without what runs on lands [m]
+    inner_width: float  # of its bore, likewise [m]
 
 
 class Ring(NamedTuple):
@@ -161,6 +171,8 @@ def pack(scene: Scene) -> Params:
     inner_radius, low_radius = bearing.inner_raceway.radius + inner_growth, bearing.outer_raceway.low_radius + outer_growth
     compliance = 2 * (1 - bearing.material.poisson_ratio**2) / bearing.material.youngs_modulus
     cage = bearing.cage
+    land_width = 2 * cage.guide_land_width if cage.has_lands else 0.0
+    contour = tabulated(lambda azimuth: outer_contour(bearing.outer_raceway, azimuth)) + [0.0, 0.0, 0.0, outer_growth]
     return Params(
         rollers=Rollers(
             count=int(bearing.roller.count),
@@ -174,7 +186,7 @@ def pack(scene: Scene) -> Params:
             low_radius=low_radius,
             pitch_radius=bearing.pitch_radius,
             diameter_ratio=bearing.diameter_ratio,
-            contour=tabulated(lambda azimuth: outer_contour(bearing.outer_raceway, azimuth)) + [0.0, 0.0, 0.0, outer_growth],
+            contour=contour,
             slope_factor=1.0 if bearing.outer_raceway.contour_slope else 0.0,
             stiffness=contact_stiffness(bearing),
             inner_curvature_radius=1 / (1 / roller_radius + 1 / inner_radius),
@@ -190,15 +202,21 @@ def pack(scene: Scene) -> Params:
             pocket_clearance=cage.pocket_clearance,
             pocket_stiffness=cage.pocket_film_force / cage.pocket_clearance,
             pocket_damping=cage.pocket_film_damping,
-            guide_radius=cage.guide_radius,
-            guide_clearance=cage.guide_clearance,
-            guide_width=2 * cage.guide_land_width,
+            guidance=Guidance(
+                lands=cage.has_lands,
+                turning=1.0 if cage.guidance == "inner_ring" else 0.0,
+                pocket_radius=float(contour[:, 3].mean()) - roller_radius,
+            ),
+            guide_radius=cage.land_radius if cage.has_lands else bearing.pitch_radius,
+            guide_clearance=cage.play,
+            guide_width=land_width,
             land_film=cage.land_film,
             land_friction=cage.land_friction,
             land_squeeze=1.0 if cage.land_squeeze else 0.0,
-            outer_radius=cage.guide_radius - cage.guide_clearance,
-            inner_radius=cage.inner_radius,
-            width=cage.width,
+            outer_radius=cage.outside,
+            inner_radius=cage.bore,
+            outer_width=cage.width - (land_width if cage.guidance == "outer_ring" else 0.0),
+            inner_width=cage.width - (land_width if cage.guidance == "inner_ring" else 0.0),
         ),
         ring=Ring(bearing.inner_raceway.ring_mass + bearing.inner_raceway.supported_mass, bearing.contact.damping),
         life=_life(scene),
@@ -222,7 +240,8 @@ def _tilts(scene: Scene, roller_mass: float) -> Tilts:
     cage, inner = bearing.cage, bearing.inner_raceway
     polar = cage.polar_inertia if cage.polar_inertia is not None else cage.mass * bearing.pitch_radius**2
     ring_polar = inner.polar_inertia if inner.polar_inertia is not None else 0.5 * (inner.ring_mass + inner.supported_mass) * inner.radius**2
-    distance = cage.guide_land_distance if cage.guide_land_distance is not None else cage.width - cage.guide_land_width
+    at_edges = cage.width - cage.guide_land_width if cage.has_lands else cage.width
+    distance = cage.guide_land_distance if cage.guide_land_distance is not None else at_edges
     moment = operating.moment if operating.moment is not None else 0.0
     return Tilts(
         roller_inertia=roller_mass * (3 * (bearing.roller.diameter / 2) ** 2 + bearing.roller.length**2) / 12,

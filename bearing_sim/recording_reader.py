@@ -19,6 +19,7 @@ from mcap.records import Channel, Footer, Message, Metadata, Schema
 from mcap.stream_reader import CRCValidationError, StreamReader
 
 from bearing_sim.contour import outer_contour
+from bearing_sim.effects import NUMBERS
 from bearing_sim.events import Event, Level
 from bearing_sim.mcap_stream import WholeReads
 from bearing_sim.params import contact_stiffness
@@ -32,6 +33,7 @@ METADATA = "bearing_sim"
 _REPEATS_WITHIN = 2.5  # [s] a lasting trouble is reported every second, and told once
 _TYPES = {f"/{topic.name}": topic.ros_type for topic in (*INPUTS.values(), *OUTPUTS.values())} | {f"/{DIAGNOSTICS[0]}": DIAGNOSTICS[1]}
 _OUTPUT_TOPICS = frozenset(f"/{name}" for name in OUTPUTS)
+_OF_TILTING_LEVELS = tuple(field for name, topic in OUTPUTS.items() if topic.of_tilting_levels for field in ARRAYS[name].fields)
 _BROKEN = (McapError, CRCValidationError, zstandard.ZstdError, struct.error, UnicodeDecodeError)
 
 
@@ -261,9 +263,12 @@ def complete(scene: Scene, block: np.ndarray, before: np.void | None = None) -> 
     _fill(block, "orbital_speed", block["cage_speed"][:, None])
     start = block["cage_angle"][:1, None] * rolling
     block["roller_rotation"] = _rotation(block, before if before is not None else block[0], start) if len(block) else 0.0
-    block["land_eccentricity"] = np.hypot(block["cage_y"], block["cage_z"]) / bearing.cage.guide_clearance
     _fill(block, "inner_equivalent_load", np.mean(block["inner_load"] ** 4, axis=1) ** (1 / 4))
     _fill(block, "outer_equivalent_load", np.mean(block["outer_load"] ** 4.5, axis=1) ** (1 / 4.5))
+    if not scene.bodies_tilt:
+        for field in _OF_TILTING_LEVELS:
+            _fill(block, field, 0.0)
+    _fill(block, "level", NUMBERS[scene.level])
     for life in ("lamina_life", "modified_rating_life"):
         _fill(block, life, block["rating_life"])
     # A loaded roller touches the ring: e cos(phi - phi_e) = delta_i - (R_i + R_w - r); all of them together give e.
@@ -271,9 +276,11 @@ def complete(scene: Scene, block: np.ndarray, before: np.void | None = None) -> 
         wanted = approach["inner"] - (bearing.inner_raceway.radius + radius - block["roller_radius"])
         for field, places in zip(("ring_y", "ring_z"), _ring_centre(azimuth, wanted, block["inner_load"] > 0)):
             _fill(block, field, places)
+    guide_y, guide_z = (block["ring_y"], block["ring_z"]) if scene.cage_whirls and bearing.cage.guidance == "inner_ring" else (0.0, 0.0)
+    block["land_eccentricity"] = np.hypot(block["cage_y"] - guide_y, block["cage_z"] - guide_z) / bearing.cage.play
 
 
-def _fill(block: np.ndarray, field: str, values: np.ndarray) -> None:
+def _fill(block: np.ndarray, field: str, values: np.ndarray | float) -> None:
     """Enter values where none were recorded."""
     block[field] = np.where(np.isnan(block[field]), values, block[field])
 

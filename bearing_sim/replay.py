@@ -13,7 +13,7 @@ from bearing_sim.input_course import InputCourse
 from bearing_sim.runtime.health import bearing_events
 from bearing_sim.scene import Scene
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation
-from bearing_sim.topics import INPUTS, condition
+from bearing_sim.topics import INPUTS, condition, further_condition
 
 _REPORT_EVERY = 1.0  # [s] of simulated time between diagnostics
 _PROGRESS_EVERY = 50  # ticks
@@ -210,7 +210,7 @@ class _Run:
             # A hundredth early, so that reports keep to whole seconds where stamps jitter.
             self._next_report = (math.floor(moment / _REPORT_EVERY + 0.01) + 0.99) * _REPORT_EVERY
             worst_first = sorted(now.values(), key=lambda event: -event.level)
-            self._recording.write_diagnostics(moment, worst_first, condition(sample))
+            self._recording.write_diagnostics(moment, worst_first, condition(sample) | further_condition(self._scene, sample))
 
     def _show_watchers(self) -> None:
         if self._watched:

@@ -10,16 +10,15 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from bearing_sim import effects
 from bearing_sim.crown import Crown, NoCrown, crown_faults
 from bearing_sim.methods import FIXED_STEP, METHODS
 from bearing_sim.quantity import quantity
-from bearing_sim.scene_bounds import cage_faults, moment_faults, step_faults
+from bearing_sim.scene_bounds import moment_faults, play_faults, step_faults
+from bearing_sim.scene_cage import Cage, cage_faults
 from bearing_sim.scene_lubricant import CustomOil, Oil, Oil4109Traction, Traction
 from bearing_sim.scene_raceway import InnerRaceway, OuterRaceway, RingGrowth, growth_faults
 from bearing_sim.scene_record import record as _strict
-
-LEVELS_WITH_GROWTH = ("slip", "planar")  # levels that compute pumping and rings that grow with speed and temperature
-_WHOLE_ROLLERS = ("slip", "planar")  # levels whose rollers have no slices
 
 
 @_strict
@@ -42,31 +41,6 @@ class Roller:
         if faults:
             raise ValueError("; ".join(faults))
         return self
-
-
-@_strict
-class Cage:
-    """The cage, guided on two lands of the outer ring."""
-
-    mass: quantity("kg", "cage mass", 1e-6, 1e3, "g")
-    polar_inertia: quantity("kg*m^2", "cage inertia about the shaft axis", 1e-12, 1e3) | None = None
-    transverse_inertia: quantity("kg*m^2", "cage inertia about a diameter; None: half of the polar one", 1e-12, 1e3) | None = None
-    inner_radius: quantity("m", "radius of the cage's bore", 1e-3, 2.0, "mm")
-    width: quantity("m", "axial width of the cage", 1e-4, 1.0, "mm")
-    guide_radius: quantity("m", "radius of the outer-ring guide lands, R_g", 1e-3, 2.0, "mm")
-    guide_clearance: quantity("m", "radial clearance between cage and guide lands, c", 1e-6, 5e-3, "mm")
-    guide_land_width: quantity("m", "width of one of the two guide lands", 1e-6, 0.5, "mm")
-    guide_land_distance: quantity("m", "between the middles of both guide lands; None: at the cage's edges", 0.0, 1.0, "mm") | None = None
-    land_film: quantity("m", "film in the guide land below which surfaces touch", 0.0, 1e-4, "um") = 3e-6
-    land_friction: quantity("", "boundary friction coefficient of the guide land", 0.0, 1.0) = 0.08
-    land_squeeze: bool = True  # the film knows how the cage's centre moves; false is Deng's form, of a centre that rests
-    pocket_friction: quantity("", "friction coefficient between roller and pocket, mu_c", 0.0, 1.0) = 0.05
-    # Level slip has no pockets to act back from and no whirl: it is told what the cage feels of them.
-    pocket_reaction: bool = False  # whether at level slip pocket friction brakes the cage as it brakes the rollers
-    assumed_eccentricity: quantity("", "eccentricity of the cage at level slip, a fraction of the guide clearance", 0.0, 0.999) = 0.0
-    pocket_clearance: quantity("m", "clearance between roller and pocket along the orbit, C_p", 1e-6, 5e-3, "mm") = 1e-4
-    pocket_film_force: quantity("N", "force of the pocket's oil film when the clearance is used up", 0.0, 1e4) = 67.0
-    pocket_film_damping: quantity("", "damping of the pocket's oil film [N s/m]", 0.0, 1e4) = 5.0
 
 
 @_strict
@@ -135,8 +109,7 @@ class Bearing:
                 f"outer_raceway.low_radius: {1e3 * self.outer_raceway.low_radius:.6g} mm leaves {1e6 * clearance:.6g} um between inner "
                 f"raceway, roller and low point; expected {-2e4 * self.roller.diameter:.6g} to {5e5 * self.roller.diameter:.6g} um"
             )
-        faults += cage_faults(self)
-        faults += growth_faults(self)
+        faults += cage_faults(self) + play_faults(self) + growth_faults(self)
         if faults:
             raise ValueError("; ".join(faults))
         return self
@@ -248,6 +221,11 @@ class LifeRating:
     a_iso: CLEANLINESS = "none"
     lamina: bool = False  # by slices, with stress risers (ISO/TS 16281)
 
+    @property
+    def is_basic(self) -> bool:
+        """Whether the life that counts is the basic one, L_10."""
+        return self.reliability == 0.9 and self.a_iso == "none" and not self.lamina
+
 
 @_strict
 class Scene:
@@ -256,6 +234,9 @@ class Scene:
     name: str
     description: str = ""
     level: Literal["slip", "planar", "spatial"] = "slip"
+    # `level: auto` in a file: the cheapest that has these, and all else that the scene says; why, is then entered here.
+    wants: tuple[Literal[tuple(effects.WANTS)], ...] = ()
+    level_reason: str = ""
     bearing: Bearing
     lubricant: Lubricant
     operating: Operating
@@ -270,15 +251,16 @@ class Scene:
         """Whether the level moves the cage's centre."""
         return self.level != "slip"
 
+    @property
+    def bodies_tilt(self) -> bool:
+        """Whether the level tilts rollers, ring and cage, and so tells what along a roller differs."""
+        return self.level == "spatial"
+
     @model_validator(mode="after")
     def _level_sees_what_the_scene_says(self):
-        crown, operating = self.bearing.roller.crown.law, self.operating
-        needs = [f"bearing.roller.crown: {crown} needs level spatial, which slices the rollers"] if crown != "none" else []
-        needs += ["operating.moment: needs level spatial, whose ring tilts"] if operating.moment is not None else []
-        needs += ["operating.misalignment: needs level spatial, whose ring tilts"] if operating.misalignment != 0.0 else []
-        needs += ["life.lamina: needs level spatial, which slices the rollers"] if self.life.lamina else []
-        if needs and self.level in _WHOLE_ROLLERS:
-            raise ValueError("; ".join(f"{need}; level {self.level} would ignore it" for need in needs))
+        faults = effects.refusals(self)
+        if faults:
+            raise ValueError("; ".join(faults))
         return self
 
     @model_validator(mode="after")
@@ -298,14 +280,4 @@ class Scene:
         faults = step_faults(self) + moment_faults(self)
         if faults:
             raise ValueError("; ".join(faults))
-        return self
-
-    @model_validator(mode="after")
-    def _level_knows_every_effect(self):
-        growth = self.bearing.ring_growth
-        asked = {"lubricant.pumping": self.lubricant.pumping, "bearing.ring_growth.centrifugal": growth.centrifugal}
-        asked["bearing.ring_growth.thermal"] = growth.thermal
-        if self.level not in LEVELS_WITH_GROWTH and any(asked.values()):
-            names = ", ".join(name for name, wanted in asked.items() if wanted)
-            raise ValueError(f"{names}: level {self.level} leaves this out; {', '.join(LEVELS_WITH_GROWTH)} has it")
         return self

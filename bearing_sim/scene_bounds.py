@@ -1,27 +1,21 @@
-"""Bounds that no single field has: dimensions of the cage that contradict others, and steps too long for the speed."""
+"""Bounds that no single field has: plays of the cage, moments too large for the bearing, and steps too long for the speed."""
 
 import math
 
 LONGEST_SHARE = 0.5  # of a roller pitch of cage rotation that a fixed step may take
 
 
-def cage_faults(bearing) -> list[str]:
-    """Return what makes a bearing's cage impossible, in words: what, where, the bound, what to do."""
+def play_faults(bearing) -> list[str]:
+    """Return which plays of a bearing's cage are too small or too large for anything to be left, in words: what, where, the bound, what to do."""
     cage, roller, faults = bearing.cage, bearing.roller, []
-    if cage.guide_clearance >= cage.guide_radius - cage.inner_radius:
-        bound = 1e3 * (cage.guide_radius - cage.inner_radius)
-        faults.append(
-            f"cage.guide_clearance: {1e3 * cage.guide_clearance:.6g} mm leaves nothing of the cage between guide_radius and inner_radius; "
-            f"expected less than {bound:.6g} mm"
-        )
-    if cage.guide_clearance <= cage.land_film:
+    if cage.has_lands and cage.guide_clearance <= cage.land_film:
         faults.append(
             f"cage.guide_clearance: {1e6 * cage.guide_clearance:.6g} um is no more than cage.land_film, the film at which surfaces touch, so that "
             f"the cage would touch its land all round; expected more than {1e6 * cage.land_film:.6g} um, or a smaller land_film"
         )
-    if cage.guide_radius >= bearing.outer_raceway.low_radius:
+    if cage.guidance == "outer_ring" and cage.land_radius >= bearing.outer_raceway.low_radius:
         faults.append(
-            f"cage.guide_radius: {1e3 * cage.guide_radius:.6g} mm puts the guide lands outside the raceway; expected less than "
+            f"cage.guide_radius: {1e3 * cage.land_radius:.6g} mm puts the guide lands outside the raceway; expected less than "
             f"outer_raceway.low_radius, {1e3 * bearing.outer_raceway.low_radius:.6g} mm"
         )
     bar = 2 * math.pi * bearing.pitch_radius / roller.count - roller.diameter - 2 * cage.pocket_clearance
@@ -32,10 +26,6 @@ def cage_faults(bearing) -> list[str]:
             f"cage.pocket_clearance: {1e3 * cage.pocket_clearance:.6g} mm leaves no bar between the pockets of {roller.count} rollers of "
             f"{1e3 * roller.diameter:.6g} mm; {use}"
         )
-    if cage.inner_radius <= bearing.inner_raceway.radius:
-        faults.append("cage.inner_radius: the cage's bore cuts into the inner raceway")
-    if 2 * cage.guide_land_width > cage.width:
-        faults.append("cage.guide_land_width: the two lands together are wider than the cage")
     return faults
 
 

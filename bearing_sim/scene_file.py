@@ -12,10 +12,13 @@ from pathlib import Path
 
 import yaml
 from pydantic import TypeAdapter, ValidationError
+from pydantic_core import PydanticCustomError
 
 from bearing_sim.contour_scene import UNREAD, anchor_contour, drop_other_forms, with_contour_text
 from bearing_sim.crown import anchor_crown
+from bearing_sim.effects import choose
 from bearing_sim.scene import Scene
+from bearing_sim.scene_cage import drop_other_lands
 
 _UNION_TAGS = frozenset(
     {"oil_4109", "constant", "kragelskii", "eyring", "fitted", "custom", "double_exponential", "reference", "hyperbolic", "power"}
@@ -122,7 +125,7 @@ def scene_from_mapping(tree: Mapping, origin: str = "scene") -> Scene:
     resolved, faults = _with_presets(tree)
     resolved, unread = with_contour_text(resolved)
     try:
-        scene = TypeAdapter(Scene).validate_python(resolved)
+        scene = TypeAdapter(Scene).validate_python(_with_level(resolved))
     except ValidationError as error:
         faults += [fault for fault in faults_of(error, Scene, _UNION_TAGS) if not (unread and UNREAD in fault.reason)]
     if unread:
@@ -130,6 +133,25 @@ def scene_from_mapping(tree: Mapping, origin: str = "scene") -> Scene:
     if faults:
         raise SceneError(origin, faults)
     return scene
+
+
+def _with_level(tree: Mapping) -> Mapping:
+    """Return a scene's tree with a level where it says auto: the cheapest that has all that the scene asks for.
+
+    Raises
+    ------
+    ValidationError
+        The scene has faults at any level, or asks for what no level has.
+    """
+    if tree.get("level") != "auto":
+        return tree
+    # Asked at the level that refuses nothing; methods differ from level to level and are judged at the one chosen.
+    integration = {name: value for name, value in (tree.get("integration") or {}).items() if name not in ("method", "fixed_step")}
+    found = choose(TypeAdapter(Scene).validate_python({**tree, "level": "spatial", "integration": integration}))
+    if found.level is None:
+        detail = {"type": PydanticCustomError("no_level", "{reason}", {"reason": found.reason}), "loc": ("level",), "input": "auto"}
+        raise ValidationError.from_exception_data("Scene", [detail])
+    return {**tree, "level": found.level, "level_reason": found.reason}
 
 
 def scene_to_yaml(scene: Scene) -> str:
@@ -218,6 +240,9 @@ def _with_presets(tree: Mapping) -> tuple[dict, list[Fault]]:
         raceway = bearing.get("outer_raceway")
         if isinstance(raceway, Mapping) and "outer_raceway" in preset:
             drop_other_forms(preset["outer_raceway"], raceway)
+        cage = bearing.get("cage")
+        if isinstance(cage, Mapping) and "cage" in preset:
+            drop_other_lands(preset["cage"], cage)
         tree["bearing"] = _merged(preset, {key: value for key, value in bearing.items() if key != "preset"})
         if unknown:  # its missing fields are consequences, not faults
             raise SceneError("scene", faults)

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.effects import NUMBERS
 from bearing_sim.integrators.status import COUNT, OK, REASONS, new_counts
 from bearing_sim.levels.inputs import Drive
 from bearing_sim.levels.level import LEVELS
@@ -82,17 +83,36 @@ class Simulation:
         self.inputs = _checked(inputs if inputs is not None else scene_inputs(self.scene))
         self.time = 0.0
         self._work = self._level.new_work(self._params)
-        self._state = self._level.initial_state(self._params, self._work, *self.inputs[:3])
-        self._memory = self._method.new_memory(self._state.size)
         self._counts = new_counts()
+        self._begin(self._level.initial_state(self._params, self._work, *self.inputs[:3]), new_block(1, self._params.rollers.count))
+
+    def take_over(self, other: "Simulation") -> None:
+        """Go on from where another simulation of the same bearing is, at another level or with other settings.
+
+        Time, inputs, damage and the angles of all bodies go on without a jump, cage and rollers as fast as they are; see
+        `bearing_sim.levels.carried`.  Counters keep what this simulation has done itself.
+
+        Raises
+        ------
+        ValueError
+            The other bearing has another number of rollers.
+        """
+        if other._params.rollers.count != self._params.rollers.count:
+            raise ValueError(f"cannot go on from a bearing of {other._params.rollers.count} rollers with one of {self._params.rollers.count}")
+        self.inputs, self.time = other.inputs, other.time
+        self._work = self._level.new_work(self._params)
+        self._begin(self._level.state_at(self._params, self._work, other.sample), other._previous)
+
+    def _begin(self, state: np.ndarray, previous: np.ndarray) -> None:
+        """Take a state as the present one; what adds up over time goes on from the sample before."""
+        self._state = state
+        self._memory = self._method.new_memory(state.size)
         self._step = float(self.scene.integration.first_step)
         self._lubrication = lubricate(self.scene.lubricant, self._params, self.inputs.oil_temperature)
         self._previous = new_block(1, self._params.rollers.count)
-        self._observe_start()
-
-    def _observe_start(self) -> None:
-        rows, zeros = flat(self._previous), flat(new_block(1, self._params.rollers.count))
-        self._level.observe(0.0, self._state, self._model(self.inputs, 1.0), self._work, 0.0, zeros[0], rows[0], self._memory.scratch[0])
+        rows, before = flat(self._previous), flat(previous)
+        self._level.observe(self.time, state, self._model(self.inputs, 1.0), self._work, 0.0, before[0], rows[0], self._memory.scratch[0])
+        self._previous["level"] = NUMBERS[self.scene.level]
 
     def _model(self, end: Inputs, duration: float) -> Model:
         now = self.inputs
@@ -176,6 +196,7 @@ class Simulation:
                 f"load {math.hypot(end.load_y, end.load_z):.6g} N, {end.oil_temperature:.6g} K); the state before is kept",
                 status,
             )
+        block["level"] = NUMBERS[self.scene.level]
         self.time += duration
         self.inputs, self._state, self._step = end, state, step
         self._previous = block[-1:].copy()

@@ -31,12 +31,14 @@ class Topic(NamedTuple):
     meaning : what it carries, with units.
     message : ``message(stamp_ns, source) -> dict``, where ``source`` is an `bearing_sim.simulation.Inputs` for an input
         topic and one sample (see `bearing_sim.sample`) for an output topic.
+    of_tilting_levels : whether a level without tilts and slices leaves it out.
     """
 
     name: str
     ros_type: str
     meaning: str
     message: Callable[[int, Any], dict]
+    of_tilting_levels: bool = False
 
 
 def stamp(stamp_ns: int) -> dict:
@@ -103,6 +105,10 @@ class Rows(NamedTuple):
 ARRAYS = {
     "equivalent_loads": Rows("ring: inner, outer", ("inner_equivalent_load", "outer_equivalent_load")),
     "centre_positions": Rows("inner ring y, z, cage y, z", ("ring_y", "ring_z", "cage_y", "cage_z")),
+    "axis_tilts": Rows("inner ring y, z, cage y, z", ("ring_tilt_y", "ring_tilt_z", "cage_tilt_y", "cage_tilt_z")),
+    "slice_pressures": Rows(
+        "inner, outer, inner end slices, outer end slices", ("inner_pressure", "outer_pressure", "inner_edge_pressure", "outer_edge_pressure")
+    ),
     "power": Rows(
         "shaft, inner sliding, outer sliding, churning, windage, land, pocket, damping",
         (
@@ -118,6 +124,7 @@ ARRAYS = {
     ),
     "roller_speeds": Rows("speed: orbital, spin", ("orbital_speed", "roller_spin")),
     "pocket_forces": Rows("force on", ("pocket_force",)),
+    "roller_tilts": Rows("inclination: outwards, along the orbit", ("roller_tilt", "roller_skew")),
     "roller_loads": Rows("ring", ("inner_load", "outer_load")),
 }
 """The output topics that carry arrays, by name; a second dimension ``roller`` where there is a number for each."""
@@ -160,18 +167,34 @@ OUTPUTS = {
             "life with reliability and oil, by the scene's choice [h]; damage counts it",
             _number("modified_rating_life"),
         ),
+        Topic("level", "std_msgs/msg/Float64", "level that computed the sample: 0 steady, 1 slip, 2 planar, 3 spatial", _number("level")),
         Topic("damage", "std_msgs/msg/Float64", "fraction of life used since the start", _number("damage")),
         Topic("bearing_joints", "sensor_msgs/msg/JointState", "shaft, cage, cage_ideal: angle [rad], speed [rad/s]; no torque", _bearing_joints),
         Topic("equivalent_loads", _MULTI_ARRAY, "dynamic equivalent roller loads [N], ring (inner, outer)", _array("equivalent_loads")),
         Topic("centre_positions", _MULTI_ARRAY, "displacements [m]: inner ring y, z, cage y, z", _array("centre_positions")),
+        Topic("axis_tilts", _MULTI_ARRAY, "tilts [rad]: inner ring towards y, z, cage towards y, z", _array("axis_tilts"), True),
+        Topic(
+            "slice_pressures",
+            _MULTI_ARRAY,
+            "largest Hertzian pressures [Pa]: inner, outer raceway, and of the rollers' end slices alone",
+            _array("slice_pressures"),
+            True,
+        ),
         Topic("power", _MULTI_ARRAY, "power [W]: what the shaft puts in, then what is lost, by cause", _array("power")),
         Topic("roller_speeds", _MULTI_ARRAY, "speeds [rad/s], (orbital, spin) x roller", _array("roller_speeds")),
         Topic("pocket_forces", _MULTI_ARRAY, "forces of the pockets on the rollers [N], positive where they drive", _array("pocket_forces")),
+        Topic("roller_tilts", _MULTI_ARRAY, "inclinations [rad], (tilt outwards, skew along the orbit) x roller", _array("roller_tilts"), True),
         # the last of a sample: readers take it for complete where this has come
         Topic("roller_loads", _MULTI_ARRAY, "roller loads [N], ring (inner, outer) x roller", _array("roller_loads")),
     )
 }
-"""The output topics by name."""
+"""The output topics by name; a level has those of `outputs`."""
+
+
+def outputs(scene) -> dict[str, Topic]:
+    """Return the output topics that a scene's level has, by name."""
+    return {name: topic for name, topic in OUTPUTS.items() if scene.bodies_tilt or not topic.of_tilting_levels}
+
 
 DIAGNOSTICS = ("diagnostics", "diagnostic_msgs/msg/DiagnosticArray")
 """Name and type of the topic whose messages `diagnostics` makes."""
@@ -212,6 +235,20 @@ def condition(sample) -> dict[str, float]:
         "rating life [h]": float(sample["rating_life"]),
         "damage [% of life]": 100 * float(sample["damage"]),
     }
+
+
+def further_condition(scene, sample) -> dict[str, float]:
+    """Return what `condition` leaves out because only some scenes have it: lives beside the basic one, pressures and tilts by slices."""
+    numbers = {}
+    if not scene.life.is_basic:
+        numbers["life by the scene's choice [h]"] = float(sample["modified_rating_life"])
+    if scene.bodies_tilt:
+        numbers["lamina life [h]"] = float(sample["lamina_life"])
+        for name, fields in (("largest", ("inner_pressure", "outer_pressure")), ("largest edge", ("inner_edge_pressure", "outer_edge_pressure"))):
+            numbers[f"{name} pressure [MPa]"] = 1e-6 * max(float(sample[field]) for field in fields)
+        numbers["largest roller tilt [mrad]"] = 1e3 * float(np.abs(sample["roller_tilt"]).max())
+        numbers["largest roller skew [mrad]"] = 1e3 * float(np.abs(sample["roller_skew"]).max())
+    return numbers
 
 
 def input_types(channel: str) -> tuple[str, ...]:

@@ -86,9 +86,15 @@ class Reference:
     land_film: float = 3e-6
     land_squeeze: bool = True
     guide_clearance: float = 0.15e-3
+    guidance: str = "outer_ring"
+    pocket_radial_clearance: float = 0.1e-3
+    pumping: bool = False  # resistance of the oil that inlets pump back
+    growth: float = 0.0  # of the inner raceway's radius while running [m]
 
     def __post_init__(self):
         self.pitch_radius = self.inner_radius + self.roller_radius
+        self.raceway = self.inner_radius + self.growth
+        self.pushing = 1 - 2 * self.roller_radius / self.pitch_radius, 1 + 2 * self.roller_radius / self.pitch_radius
         self.mass = np.pi * self.roller_radius**2 * self.length * 7850.0
         self.roller_inertia = 0.5 * self.mass * self.roller_radius**2
         self.cage_inertia = self.cage_mass * self.pitch_radius**2
@@ -98,8 +104,10 @@ class Reference:
         self.temperature = 393.15
         self.viscosity = 9.997e-4 * (np.exp(np.exp(22.216 - 3.7048 * np.log(393.15))) - 0.87)
         self.density = 0.03 * (914 + (870 - 914) * (393.15 - 367) / (422 - 367))
-        self.guide_radius, self.land_width = 33.5e-3, 2.5e-3  # two lands
-        self.outside, self.inside, self.width = self.guide_radius - self.guide_clearance, 29.6e-3, 12e-3
+        self.outside, self.inside, self.width, self.land_width = 33.35e-3, 29.6e-3, 12e-3, 2.5e-3  # two lands
+        self.guide_radius = {"outer_ring": 33.5e-3, "inner_ring": 29.6e-3 - self.guide_clearance, "roller": np.nan}[self.guidance]
+        self.outside_width = self.width - (2 * self.land_width if self.guidance == "outer_ring" else 0.0)
+        self.inside_width = self.width - (2 * self.land_width if self.guidance == "inner_ring" else 0.0)
 
     def contour(self, azimuth):
         """R_e and its slope by azimuth."""
@@ -136,11 +144,18 @@ class Reference:
         s = magnitude(sliding) / rolling
         return load * np.where(np.real(sliding) >= 0, 1, -1) * ((a + b * s) * np.exp(-c * s) - a)
 
-    def pocket(self, offset, rate):
+    def pumped(self, load, rolling, curvature_radius):
+        """Resistance of each surface to the oil pumped back; fades out below a load of 1 N, and linear in slow rolling."""
+        stiffness = self.modulus * curvature_radius
+        slow = np.sqrt(rolling**2 + 0.05**2)
+        force = 0.715 * stiffness * self.length * (self.viscosity * slow / (2 * stiffness)) ** 0.71 * rolling / slow
+        return (1.0 if self.pumping else 0.0) * force * load / (load + 1.0)
+
+    def pocket(self, offset, rate, clearance, film_force):
         """Force of a pocket's walls against a roller's offset, its elastic part, and the energy of that."""
         way, sign = magnitude(offset), np.where(np.real(offset) >= 0, 1, -1)
-        film = self.pocket_film_force / self.pocket_clearance
-        excess = larger(way - self.pocket_clearance, 0.0)
+        film = film_force / clearance
+        excess = larger(way - clearance, 0.0)
         in_film = way - excess
         wall, wall_elastic, wall_energy = self.normal_contact(excess, rate * sign)
         elastic = sign * (film * in_film + wall_elastic)
@@ -169,33 +184,62 @@ class Reference:
         assert np.real(reynolds) < 2.5e5
         return 0.5 * self.density * omega * magnitude(omega) * (self.outside**5 - self.inside**5) * 3.87 * reynolds**-0.5
 
-    def land_film_force(self, cage, velocity, omega):
-        """Short journal bearing with half a film; a cage nearer to the land than its thinnest film finds the film no stiffer."""
+    def journal_film(self, place, velocity, speeds):
+        """Force on a journal in a short bearing with half a film; nearer to the bearing than its thinnest film it finds the film no stiffer.
+
+        Place and velocity of the journal's centre are seen from the bearing's; ``speeds`` is the sum of both angular speeds.
+        """
         c, radius = self.guide_clearance, self.guide_radius
-        eccentricity = np.sqrt(dot(cage, cage))
-        outward = cage / eccentricity
+        eccentricity = np.sqrt(dot(place, place))
+        outward = place / eccentricity
         eps, thinnest = eccentricity / c, 1 - self.land_film / c
         clipped = np.where(np.real(eps) > thinnest, thinnest, eps)
         rest = 1 - clipped**2
         scale = 2 * self.viscosity * radius * self.land_width**3 / c**2
         rate, along = (dot(velocity, outward) / c, dot(velocity, ahead(outward)) / c) if self.land_squeeze else (0.0, 0.0)
-        wedge = eps * omega - 2 * along
+        wedge = eps * speeds - 2 * along
         side = wedge / np.sqrt(wedge**2 + 10.0**2)
         inwards = clipped / rest**2 * wedge * side + np.pi / 2 * (1 + 2 * clipped**2) / rest**2.5 * rate
         across = np.pi / 4 / rest**1.5 * wedge + 2 * clipped / rest**2 * side * rate
-        torque = -2 * np.pi * self.viscosity * radius * omega * radius**2 * 2 * self.land_width / (c * np.sqrt(rest))
-        return scale * (across * ahead(outward) - inwards * outward), torque
+        friction = 2 * np.pi * self.viscosity * radius * radius**2 * 2 * self.land_width / (c * np.sqrt(rest))
+        return scale * (across * ahead(outward) - inwards * outward), friction
 
-    def land_contact(self, cage, velocity, omega):
-        """Force on the cage where it touches, the friction in it, heat of both, and the elastic energy."""
-        eccentricity = np.sqrt(dot(cage, cage))
-        outward = cage / eccentricity
+    def land(self, cage, cage_velocity, omega, ring, ring_velocity):
+        """What lands do to the cage where its axis and the inner ring's pass them: force, torque, torque on the ring, heats, energy."""
+        inner = self.guidance == "inner_ring"
+        if not inner:
+            ring, ring_velocity, turning = 0 * ring, 0 * ring_velocity, 0.0
+        else:
+            turning = self.shaft_speed
+        apart, velocity = cage - ring, cage_velocity - ring_velocity
+        land = SimpleNamespace()
+        if inner:  # the ring is the journal, the cage its bearing
+            on_ring, friction = self.journal_film(-apart, -velocity, omega + turning)
+            film = -on_ring
+        else:
+            film, friction = self.journal_film(apart, velocity, omega + turning)
+        torque = friction * (turning - omega)
+        on_ring = -torque - cross(apart, film)
+        land.film_heat = -dot(film, velocity) - torque * omega - on_ring * turning
+
+        eccentricity = np.sqrt(dot(apart, apart))
+        outward = apart / eccentricity
         depth, rate = eccentricity - (self.guide_clearance - self.land_film), dot(velocity, outward)
-        normal, elastic, energy = self.normal_contact(depth, rate)
-        surface = omega * self.guide_radius
-        friction = self.land_friction * normal * surface / np.sqrt(surface**2 + 0.1**2)
-        heat = (normal - elastic) * rate + friction * (surface + dot(velocity, ahead(outward)))
-        return -normal * outward - friction * ahead(outward), friction, heat, energy
+        normal, elastic, land.energy = self.normal_contact(depth, rate)
+        to_touch = -outward if inner else outward  # from either centre to where both surfaces meet
+        touch = cage + self.guide_radius * to_touch
+        surface = (omega - turning) * self.guide_radius
+        rubbing = self.land_friction * normal * surface / np.sqrt(surface**2 + 0.1**2)
+        force = -normal * outward - rubbing * ahead(to_touch)
+        slide = cage_velocity + omega * ahead(touch - cage) - ring_velocity - turning * ahead(touch - ring)
+        land.touch_heat = (normal - elastic) * rate + rubbing * dot(slide, ahead(to_touch))
+        land.force = film + force
+        land.torque = torque + cross(touch - cage, -rubbing * ahead(to_touch))
+        land.on_ring = on_ring + cross(touch - ring, rubbing * ahead(to_touch))
+        return land
+
+    def no_land(self, cage):
+        return SimpleNamespace(force=0 * cage, torque=0.0, on_ring=0.0, film_heat=0.0, touch_heat=0.0, energy=0.0)
 
     def forces(self, state):
         """All forces at a state, by name, with the speeds that they work at."""
@@ -212,16 +256,18 @@ class Reference:
         f.distance = np.sqrt(dot(from_ring, from_ring))
         f.normal = from_ring / f.distance
         f.inner_rate = -dot(relative, f.normal)
-        f.inner, f.inner_elastic, f.inner_energy = self.normal_contact(r_i + r_w - f.distance, f.inner_rate)
+        f.inner, f.inner_elastic, f.inner_energy = self.normal_contact(self.raceway + r_w - f.distance, f.inner_rate)
         contour, slope = self.contour(azimuth_of(state.place))
         f.outer_rate = radial_speed - slope * turning
         f.outer, f.outer_elastic, f.outer_energy = self.normal_contact(f.radius + r_w - contour, f.outer_rate)
         f.lean = (slope if self.contour_slope else 0 * slope) / f.radius
 
-        f.inner_slide = omega_i * r_i - dot(relative, ahead(f.normal)) - state.spin * r_w
+        f.inner_slide = omega_i * self.raceway - dot(relative, ahead(f.normal)) - state.spin * r_w
         f.outer_slide = state.spin * r_w - f.orbit
-        roll_i = ((omega_i - turning) * r_i + (state.spin + turning) * r_w) / 2
-        roll_e = (turning * (f.radius + r_w) + (state.spin + turning) * r_w) / 2
+        f.roll_i = roll_i = ((omega_i - turning) * self.raceway + (state.spin + turning) * r_w) / 2
+        f.roll_e = roll_e = (turning * (f.radius + r_w) + (state.spin + turning) * r_w) / 2
+        f.inner_pumped = self.pumped(f.inner, roll_i, 1 / (1 / r_w + 1 / r_i))
+        f.outer_pumped = self.pumped(f.outer, roll_e, 1 / (1 / r_w - 1 / self.low_radius))
         f.inner_traction = self.traction(f.inner, roll_i, f.inner_slide, 1 / (1 / r_w + 1 / r_i))
         f.outer_traction = self.traction(f.outer, roll_e, f.outer_slide, 1 / (1 / r_w - 1 / self.low_radius))
         f.churning, _ = self.churning(f.orbit)
@@ -237,31 +283,44 @@ class Reference:
         cage_there = state.cage_velocity[:, None] + state.cage_speed * ahead(f.from_cage)
         f.pocket_slide = dot(state.velocity - cage_there, f.pocket_outward)  # of the roller's centre past the wall
         f.pocket_rate = dot(state.velocity - cage_there, f.pocket_along)
-        f.pocket, f.pocket_elastic, f.pocket_energy = self.pocket(dot(f.from_cage, f.pocket_along), f.pocket_rate)
+        f.pocket, f.pocket_elastic, f.pocket_energy = self.pocket(
+            dot(f.from_cage, f.pocket_along), f.pocket_rate, self.pocket_clearance, self.pocket_film_force
+        )
         f.pocket_smooth = self.pocket_friction * state.spin / np.sqrt(state.spin**2 + 10.0**2)
 
-        f.film, f.film_torque = self.land_film_force(state.cage, state.cage_velocity, state.cage_speed)
-        f.land, f.land_friction, f.land_heat, f.land_energy = self.land_contact(state.cage, state.cage_velocity, state.cage_speed)
-        f.bore_torque = self.couette(omega_i - state.cage_speed, self.inside, self.inside - r_i, self.width)
+        f.guide = f.guide_elastic = f.guide_energy = f.guide_rate = np.zeros(self.rollers)
+        if self.guidance == "roller":
+            f.land = self.no_land(state.cage)
+            middle = self.low_radius + self.d_value / 2 - r_w
+            f.guide_rate = f.pocket_slide
+            offset = dot(f.from_cage, f.pocket_outward) - middle
+            f.guide, f.guide_elastic, f.guide_energy = self.pocket(offset, f.guide_rate, self.pocket_radial_clearance, 0.0)
+        else:
+            f.land = self.land(state.cage, state.cage_velocity, state.cage_speed, state.ring, state.ring_velocity)
+        f.bore_torque = self.couette(omega_i - state.cage_speed, self.inside, self.inside - r_i, self.inside_width)
         gap = self.low_radius - self.outside
-        f.case_torque = -self.couette(state.cage_speed, self.outside, gap, self.width - 2 * self.land_width) - self.end_faces(state.cage_speed)
+        f.case_torque = -self.couette(state.cage_speed, self.outside, gap, self.outside_width) - self.end_faces(state.cage_speed)
         return f
 
     def accelerations(self, f):
         """Of ring, cage, cage angle, rollers and spins, under the forces ``f``."""
         r_w = self.roller_radius
-        inner = f.inner * f.normal + f.inner_traction * ahead(f.normal)
-        outer = -f.outer * f.outward + (f.outer * f.lean + f.outer_traction) * f.along
+        inner = f.inner * f.normal + (f.inner_traction + self.pushing[0] * f.inner_pumped) * ahead(f.normal)
+        outer = -f.outer * f.outward + (f.outer * f.lean + f.outer_traction - self.pushing[1] * f.outer_pumped) * f.along
         # a wall pushes back along the orbit, and its friction drags along the wall, against the turning surface
         pocket = -f.pocket * (f.pocket_along + f.pocket_smooth * f.pocket_outward)
-        spin_torque = r_w * (f.inner_traction - f.outer_traction - f.pocket_smooth * magnitude(f.pocket))
+        guide = -f.guide * (f.pocket_outward - f.pocket_smooth * f.pocket_along)
+        rubbed = f.pocket_smooth * (magnitude(f.pocket) + magnitude(f.guide))
+        spin_torque = r_w * (f.inner_traction - f.outer_traction - f.inner_pumped - f.outer_pumped - rubbed)
         touch = f.from_cage + np.where(np.real(f.pocket) >= 0, r_w, -r_w) * f.pocket_along
-        cage_torque = f.film_torque + f.bore_torque + f.case_torque - f.land_friction * self.guide_radius + np.sum(cross(touch, -pocket))
+        guide_touch = f.from_cage + np.where(np.real(f.guide) >= 0, r_w, -r_w) * f.pocket_outward
+        cage_torque = f.land.torque + f.bore_torque + f.case_torque + np.sum(cross(touch, -pocket)) + np.sum(cross(guide_touch, -guide))
+        on_ring = f.land.force if self.guidance == "inner_ring" else 0 * f.land.force
         return (
-            (np.array(self.load) - inner.sum(1)) / self.ring_mass,
-            (f.film + f.land - pocket.sum(1)) / self.cage_mass,
+            (np.array(self.load) - inner.sum(1) - on_ring) / self.ring_mass,
+            (f.land.force - pocket.sum(1) - guide.sum(1)) / self.cage_mass,
             cage_torque / self.cage_inertia,
-            (inner + outer + pocket - f.churning * f.along) / self.mass,
+            (inner + outer + pocket + guide - f.churning * f.along) / self.mass,
             spin_torque / self.roller_inertia,
         )
 
@@ -269,19 +328,21 @@ class Reference:
         """Work done on the bearing, and heat by cause [W]."""
         state, omega_i, omega = f.state, self.shaft_speed, f.state.cage_speed
         wall_slide = f.pocket * f.pocket_slide + magnitude(f.pocket) * self.roller_radius * (state.spin + omega)
+        wall_slide = wall_slide - f.guide * f.pocket_rate + magnitude(f.guide) * self.roller_radius * (state.spin + omega)
+        turning = omega_i if self.guidance == "inner_ring" else 0.0
         work = {
-            "shaft": omega_i * (self.inner_radius * f.inner_traction.sum() + f.bore_torque),
+            "shaft": omega_i * (self.raceway * (f.inner_traction + f.inner_pumped).sum() + f.bore_torque) - turning * f.land.on_ring,
             "load": dot(self.load, state.ring_velocity),
         }
         heat = {
-            "inner traction": np.sum(f.inner_traction * f.inner_slide),
-            "outer traction": np.sum(f.outer_traction * f.outer_slide),
+            "inner traction": np.sum(f.inner_traction * f.inner_slide + 2 * f.inner_pumped * f.roll_i),
+            "outer traction": np.sum(f.outer_traction * f.outer_slide + 2 * f.outer_pumped * f.roll_e),
             "normal damping": np.sum((f.inner - f.inner_elastic) * f.inner_rate + (f.outer - f.outer_elastic) * f.outer_rate),
-            "pocket damping": np.sum((f.pocket - f.pocket_elastic) * f.pocket_rate),
+            "pocket damping": np.sum((f.pocket - f.pocket_elastic) * f.pocket_rate + (f.guide - f.guide_elastic) * f.guide_rate),
             "pocket friction": np.sum(f.pocket_smooth * wall_slide),
             "churning": np.sum(f.churning * f.orbit),
-            "guide land film": -dot(f.film, state.cage_velocity) - f.film_torque * omega,
-            "guide land contact": f.land_heat,
+            "guide land film": f.land.film_heat,
+            "guide land contact": f.land.touch_heat,
             "mixture on the cage": f.bore_torque * (omega_i - omega) - f.case_torque * omega,
         }
         return work, heat
@@ -295,7 +356,7 @@ class Reference:
             + self.cage_inertia * state.cage_speed**2
             + np.sum(self.mass * dot(state.velocity, state.velocity) + self.roller_inertia * state.spin**2)
         ) / 2
-        return kinetic + np.sum(f.inner_energy + f.outer_energy + f.pocket_energy) + f.land_energy
+        return kinetic + np.sum(f.inner_energy + f.outer_energy + f.pocket_energy + f.guide_energy) + f.land.energy
 
     def momentum(self, state):
         """Linear momentum, shape (2,), and angular momentum about the outer ring's centre of all that moves but the shaft's turning."""
@@ -315,8 +376,11 @@ class Reference:
         """
         state = f.state
         on_rollers = -f.outer * f.outward + (f.outer * f.lean + f.outer_traction - f.churning) * f.along
-        force = np.array(self.load) + on_rollers.sum(1) + f.film + f.land
+        inner_land = self.guidance == "inner_ring"
+        land_force = 0 * f.land.force if inner_land else f.land.force
+        force = np.array(self.load) + on_rollers.sum(1) + land_force
         shaft = np.sum(f.inner_traction * (f.distance - self.roller_radius)) + f.bore_torque
         moment = cross(state.ring, self.load) + np.sum(cross(state.place, on_rollers) + self.roller_radius * f.outer_traction)
-        cage = cross(state.cage, f.film + f.land) + f.film_torque + f.case_torque - f.land_friction * self.guide_radius
-        return force, moment + cage + shaft
+        # through lands of its own the shaft turns the cage and pushes it, and is pushed back
+        land = -f.land.on_ring if inner_land else cross(state.cage, land_force) + f.land.torque
+        return force, moment + land + f.case_torque + shaft

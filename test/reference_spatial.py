@@ -33,6 +33,11 @@ class State:
     spin: np.ndarray  # shape (Z,)
 
 
+def sum_of_films(pieces):
+    """Heat in the films of one raceway: by sliding, and by pumping oil back with both surfaces."""
+    return np.sum(pieces.force * pieces.slide + 2 * pieces.pumped * pieces.roll)
+
+
 @dataclass
 class SpatialReference:
     """Composed of the planar reference, whose laws hold for a slice as for an N-th of a roller."""
@@ -55,7 +60,7 @@ class SpatialReference:
         self.land = (p.width - p.land_width) / 2
 
     def traction(self, load, rolling, sliding, curvature_radius):
-        """Tractions of pieces of some slices each, as shares of a whole contact with the piece's load per length.
+        """Tractions and resistances to rolling of pieces of some slices each, as shares of a whole contact with the piece's load per length.
 
         ``load`` is that of whole contacts with the slices' load per length; ``sliding`` a function of the place.
         """
@@ -65,7 +70,9 @@ class SpatialReference:
         loads = np.stack([load[:, part].mean(1) for part in parts], axis=1)
         shares = np.array([len(self.x[part]) / self.slices for part in parts])
         slides = sliding(places)
-        return SimpleNamespace(x=places, slide=slides, force=shares * self.planar.traction(loads, rolling[:, None], slides, curvature_radius))
+        force = shares * self.planar.traction(loads, rolling[:, None], slides, curvature_radius)
+        pumped = shares * self.planar.pumped(loads, rolling[:, None], curvature_radius)
+        return SimpleNamespace(x=places, slide=slides, roll=rolling[:, None], force=force, pumped=pumped)
 
     def forces(self, state):
         """All forces at a state, by name; those of slices have a last axis over slices."""
@@ -85,15 +92,15 @@ class SpatialReference:
         f.normal = apart / f.distance
         across = ahead(f.normal)
         passing = dot(relative, across) / f.distance  # angular speed of the normal
-        depth = (r_i + r_w - f.distance)[:, None] - dot(lean, f.normal)[:, None] * x - self.drop
+        depth = (p.raceway + r_w - f.distance)[:, None] - dot(lean, f.normal)[:, None] * x - self.drop
         f.inner_rate = -dot(relative, f.normal)[:, None] - (dot(leaning, f.normal) + dot(lean, across) * passing)[:, None] * x
         f.inner, f.inner_elastic, f.inner_energy = p.normal_contact(depth, f.inner_rate)
         f.inner_way = f.normal[:, :, None] + (across * dot(lean, across) / f.distance)[:, :, None] * x  # minus the gradient of the depth
 
         def inner_slide(x):
-            return (omega_i * r_i - state.spin * r_w)[:, None] - dot(relative, across)[:, None] - dot(leaning, across)[:, None] * x
+            return (omega_i * p.raceway - state.spin * r_w)[:, None] - dot(relative, across)[:, None] - dot(leaning, across)[:, None] * x
 
-        roll_i = ((omega_i - turning) * r_i + (state.spin + turning) * r_w) / 2
+        roll_i = ((omega_i - turning) * p.raceway + (state.spin + turning) * r_w) / 2
         f.inner_traction = self.traction(f.inner, roll_i, inner_slide, 1 / (1 / r_w + 1 / r_i))
         f.across = across
 
@@ -123,24 +130,30 @@ class SpatialReference:
         moving = moving - state.cage_speed * ahead(f.from_cage)
         f.pocket_slide = dot(moving, f.pocket_outward[:, :, None])
         f.pocket_rate = dot(moving, f.pocket_along[:, :, None])
-        f.pocket, f.pocket_elastic, f.pocket_energy = p.pocket(dot(f.from_cage, f.pocket_along[:, :, None]), f.pocket_rate)
+        f.pocket, f.pocket_elastic, f.pocket_energy = p.pocket(
+            dot(f.from_cage, f.pocket_along[:, :, None]), f.pocket_rate, p.pocket_clearance, p.pocket_film_force
+        )
         f.pocket_smooth = p.pocket_friction * state.spin / np.sqrt(state.spin**2 + 10.0**2)
+        guiding = p.guidance == "roller"
+        middle = p.low_radius + p.d_value / 2 - r_w
+        outwards = dot(f.from_cage, f.pocket_outward[:, :, None]) - middle if guiding else np.zeros((p.rollers, n))
+        f.guide_rate = f.pocket_slide
+        f.guide, f.guide_elastic, f.guide_energy = p.pocket(outwards, f.pocket_slide if guiding else 0.0, p.pocket_radial_clearance, 0.0)
         # a slice has an N-th of everything
-        for name in ("inner", "outer", "pocket"):
+        for name in ("inner", "outer", "pocket", "guide"):
             for kind in ("", "_elastic", "_energy"):
                 setattr(f, name + kind, getattr(f, name + kind) / n)
-        f.pocket_whole = f.pocket.sum(1)
+        f.pocket_whole, f.guide_whole = f.pocket.sum(1), f.guide.sum(1)
 
         f.lands = []
-        for place in (self.land, -self.land):
+        for place in (self.land, -self.land) if p.guidance != "roller" else ():
             at, velocity = state.cage + place * state.cage_lean, state.cage_velocity + place * state.cage_leaning
-            film, torque = p.land_film_force(at, velocity, state.cage_speed)
-            touch, friction, heat, energy = p.land_contact(at, velocity, state.cage_speed)
-            f.lands.append(SimpleNamespace(place=place, velocity=velocity, film=film, torque=torque, touch=touch, friction=friction, heat=heat))
-            f.lands[-1].energy = energy
-        f.bore_torque = p.couette(omega_i - state.cage_speed, p.inside, p.inside - r_i, p.width)
+            ring, ring_velocity = state.ring + place * state.ring_lean, state.ring_velocity + place * state.ring_leaning
+            f.lands.append(p.land(at, velocity, state.cage_speed, ring, ring_velocity))
+            f.lands[-1].place = place
+        f.bore_torque = p.couette(omega_i - state.cage_speed, p.inside, p.inside - r_i, p.inside_width)
         gap = p.low_radius - p.outside
-        f.case_torque = -p.couette(state.cage_speed, p.outside, gap, p.width - 2 * p.land_width) - p.end_faces(state.cage_speed)
+        f.case_torque = -p.couette(state.cage_speed, p.outside, gap, p.outside_width) - p.end_faces(state.cage_speed)
         return f
 
     def accelerations(self, f):
@@ -148,17 +161,26 @@ class SpatialReference:
         p, x, state, r_w = self.planar, self.x, f.state, self.planar.roller_radius
         dragged_i, dragged_e = f.inner_traction.force.sum(1), f.outer_traction.force.sum(1)
         skewed_i, skewed_e = (f.inner_traction.force * f.inner_traction.x).sum(1), (f.outer_traction.force * f.outer_traction.x).sum(1)
-        inner = (f.inner * f.inner_way).sum(2) + dragged_i * f.across
-        outer = -f.outer.sum(1) * f.outward + ((f.outer * f.outer_lean).sum(1) + dragged_e) * f.along
+        pumped_i, pumped_e = f.inner_traction.pumped.sum(1), f.outer_traction.pumped.sum(1)
+        skewed_i = skewed_i + p.pushing[0] * (f.inner_traction.pumped * f.inner_traction.x).sum(1)
+        skewed_e = skewed_e - p.pushing[1] * (f.outer_traction.pumped * f.outer_traction.x).sum(1)
+        inner = (f.inner * f.inner_way).sum(2) + (dragged_i + p.pushing[0] * pumped_i) * f.across
+        outer = -f.outer.sum(1) * f.outward + ((f.outer * f.outer_lean).sum(1) + dragged_e - p.pushing[1] * pumped_e) * f.along
         pocket = -f.pocket * (f.pocket_along + f.pocket_smooth * f.pocket_outward)[:, :, None]
-        spin_torque = r_w * (dragged_i - dragged_e - f.pocket_smooth * magnitude(f.pocket_whole))
-        touch = f.from_cage + (np.where(np.real(f.pocket_whole) >= 0, r_w, -r_w) * f.pocket_along)[:, :, None]
-        cage_torque = f.bore_torque + f.case_torque + np.sum(cross(touch, -pocket))
+        pocket = pocket - f.guide * (f.pocket_outward - f.pocket_smooth * f.pocket_along)[:, :, None]
+        pressed_on = magnitude(f.pocket_whole) + magnitude(f.guide_whole)
+        spin_torque = r_w * (dragged_i - dragged_e - pumped_i - pumped_e - f.pocket_smooth * pressed_on)
+        # both walls push at the roller's surface
+        reach = np.where(np.real(f.pocket_whole) >= 0, r_w, -r_w) * cross(f.pocket_along, f.pocket_whole * f.pocket_smooth * f.pocket_outward)
+        reach = reach + np.where(np.real(f.guide_whole) >= 0, r_w, -r_w) * cross(f.pocket_outward, -f.guide_whole * f.pocket_smooth * f.pocket_along)
+        cage_torque = f.bore_torque + f.case_torque + np.sum(cross(f.from_cage, -pocket)) + np.sum(reach)
         cage_force, cage_moment = -pocket.sum((1, 2)), -(pocket * x).sum((1, 2))
+        ring_force, ring_moment = np.array(p.load) - inner.sum(1), np.zeros(2)
         for land in f.lands:
-            force = (land.film + land.touch) / 2
-            cage_force, cage_moment = cage_force + force, cage_moment + land.place * force
-            cage_torque = cage_torque + (land.torque - land.friction * p.guide_radius) / 2
+            cage_force, cage_moment = cage_force + land.force / 2, cage_moment + land.place * land.force / 2
+            cage_torque = cage_torque + land.torque / 2
+            if p.guidance == "inner_ring":
+                ring_force, ring_moment = ring_force - land.force / 2, ring_moment - land.place * land.force / 2
         # the outer contact's pressure on a slice acts in the roller's own frame: outwards on its tilt, nothing on its skew
         pressed = -(f.outer * x).sum(1) * f.outward + skewed_e * f.along
         inner_moment = (f.inner * x).sum(1) * f.normal + skewed_i * f.across
@@ -168,9 +190,11 @@ class SpatialReference:
         def axis(moment, transverse, polar, speed, leaning):
             return (moment + g * polar * speed * ahead(leaning)) / transverse
 
-        ring = axis(np.array(self.moment) - inner_moment.sum(1), self.ring_polar / 2, self.ring_polar, p.shaft_speed, state.ring_leaning)
+        ring = axis(
+            np.array(self.moment) + ring_moment - inner_moment.sum(1), self.ring_polar / 2, self.ring_polar, p.shaft_speed, state.ring_leaning
+        )
         return (
-            (np.array(p.load) - inner.sum(1)) / p.ring_mass,
+            ring_force / p.ring_mass,
             ring if self.ring_free else 0 * ring,
             cage_force / p.cage_mass,
             axis(cage_moment, self.cage_transverse, p.cage_inertia, state.cage_speed, state.cage_leaning),
@@ -183,21 +207,24 @@ class SpatialReference:
     def powers(self, f):
         """Work done on the bearing, and heat by cause [W]."""
         p, state, omega_i, omega = self.planar, f.state, self.planar.shaft_speed, f.state.cage_speed
-        wall_slide = (f.pocket * f.pocket_slide).sum(1) + magnitude(f.pocket_whole) * p.roller_radius * (state.spin + omega)
+        pressed_on = magnitude(f.pocket_whole) + magnitude(f.guide_whole)
+        wall_slide = (f.pocket * f.pocket_slide - f.guide * f.pocket_rate).sum(1) + pressed_on * p.roller_radius * (state.spin + omega)
+        turning = omega_i if p.guidance == "inner_ring" else 0.0
         work = {
-            "shaft": omega_i * (p.inner_radius * f.inner_traction.force.sum() + f.bore_torque),
+            "shaft": omega_i * (p.raceway * (f.inner_traction.force + f.inner_traction.pumped).sum() + f.bore_torque)
+            - turning * sum(land.on_ring for land in f.lands) / 2,
             "load": dot(p.load, state.ring_velocity),
             "moment": dot(self.moment, state.ring_leaning),
         }
         heat = {
-            "inner traction": np.sum(f.inner_traction.force * f.inner_traction.slide),
-            "outer traction": np.sum(f.outer_traction.force * f.outer_traction.slide),
+            "inner traction": sum_of_films(f.inner_traction),
+            "outer traction": sum_of_films(f.outer_traction),
             "normal damping": np.sum((f.inner - f.inner_elastic) * f.inner_rate + (f.outer - f.outer_elastic) * f.outer_rate),
-            "pocket damping": np.sum((f.pocket - f.pocket_elastic) * f.pocket_rate),
+            "pocket damping": np.sum((f.pocket - f.pocket_elastic) * f.pocket_rate + (f.guide - f.guide_elastic) * f.guide_rate),
             "pocket friction": np.sum(f.pocket_smooth * wall_slide),
             "churning": np.sum(f.churning * f.orbit),
-            "guide land film": sum(-dot(land.film, land.velocity) - land.torque * omega for land in f.lands) / 2,
-            "guide land contact": sum(land.heat for land in f.lands) / 2,
+            "guide land film": sum(land.film_heat for land in f.lands) / 2,
+            "guide land contact": sum(land.touch_heat for land in f.lands) / 2,
             "mixture on the cage": f.bore_torque * (omega_i - omega) - f.case_torque * omega,
         }
         return work, heat
@@ -214,4 +241,4 @@ class SpatialReference:
             + np.sum(p.mass * dot(state.velocity, state.velocity) + self.transverse * dot(state.leaning, state.leaning))
             + np.sum(p.roller_inertia * state.spin**2)
         ) / 2
-        return kinetic + np.sum(f.inner_energy + f.outer_energy + f.pocket_energy) + sum(land.energy for land in f.lands) / 2
+        return kinetic + np.sum(f.inner_energy + f.outer_energy + f.pocket_energy + f.guide_energy) + sum(land.energy for land in f.lands) / 2

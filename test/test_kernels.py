@@ -14,7 +14,7 @@ from bearing_sim.kernels.cage import land_torque
 from bearing_sim.kernels.compilation import kernel
 from bearing_sim.kernels.contact import line_contact_stiffness, line_penetration
 from bearing_sim.kernels.drag import churning_force, cylinder_torque, end_face_torque
-from bearing_sim.kernels.elementary import cosine_sine, exponential, logarithm
+from bearing_sim.kernels.elementary import cosine_sine, exponential, logarithm, ninth_root
 from bearing_sim.kernels.lanes import LANES, floor, larger, load, magnitude, smaller, spread, square_root, store, total, where_positive
 from bearing_sim.kernels.load_balance import LOAD, balance_ring, squeezed_roller
 from bearing_sim.kernels.raceway import TABLE_INTERVALS, contour_at, tabulated
@@ -28,18 +28,20 @@ STIFFNESS = line_contact_stiffness(7e-3, 2.06e11, 0.3)
 
 
 @kernel
-def _elementary(x, exponentials, logarithms):
+def _elementary(x, exponentials, logarithms, roots):
     for i in range(x.shape[0]):
         exponentials[i] = exponential(x[i])
         logarithms[i] = logarithm(exponentials[i])
+        roots[i] = ninth_root(exponentials[i])
 
 
 def test_elementary_functions_are_accurate_over_their_range():
     x = np.linspace(-699.0, 699.0, 100_001)
-    exponentials, logarithms = np.zeros_like(x), np.zeros_like(x)
-    _elementary(x, exponentials, logarithms)
+    exponentials, logarithms, roots = np.zeros_like(x), np.zeros_like(x), np.zeros_like(x)
+    _elementary(x, exponentials, logarithms, roots)
     np.testing.assert_allclose(exponentials, np.exp(x), rtol=1e-10)
     np.testing.assert_allclose(logarithms, x, rtol=0, atol=1e-10)
+    np.testing.assert_allclose(roots, exponentials ** (1 / 9), rtol=1e-11)
 
 
 @kernel
@@ -54,16 +56,17 @@ def _by_lanes(given, found):
         store(found, block, 4, where_positive(x - y, larger(x, y), -smaller(x, y)))
         store(found, block, 5, square_root(x * x + 2.0) / (1.0 - 0.5 * y * y * -1.0))
         store(found, block, 6, spread(total(x)))
+        store(found, block, 7, ninth_root(magnitude(x)))
 
 
 def test_laws_on_lanes_are_those_of_numbers():
     given = np.random.default_rng(3).normal(size=(5, 2, LANES))
-    found = np.zeros((5, 7, LANES))
+    found = np.zeros((5, 8, LANES))
     _by_lanes(given, found)
     x, y = given[:, 0], given[:, 1]
     expected = [np.exp(x), np.log(abs(x)), np.cos(2 * np.pi * x), np.sin(2 * np.pi * x), np.maximum(x, y)]
     expected[4] = np.where(x > y, x, -x)
-    expected += [np.sqrt(x**2 + 2) / (1 + y**2 / 2), np.repeat(x.sum(1, keepdims=True), LANES, axis=1)]
+    expected += [np.sqrt(x**2 + 2) / (1 + y**2 / 2), np.repeat(x.sum(1, keepdims=True), LANES, axis=1), abs(x) ** (1 / 9)]
     np.testing.assert_allclose(found, np.stack(expected, axis=1), rtol=1e-10, atol=1e-10)
 
 

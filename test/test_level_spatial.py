@@ -14,6 +14,9 @@ from bearing_sim.levels.spatial_slices import SLICED
 Z = 18
 FIXED = "integration.fixed_step=20 us"
 MOMENT = ["operating.moment=2", FIXED]
+INNER = ["bearing.cage.guidance=inner_ring", "bearing.cage.outer_radius=33.35 mm"]
+ROLLER_GUIDED = ["bearing.cage.guidance=roller", "bearing.cage.outer_radius=33.35 mm"]
+GUIDANCES = pytest.mark.parametrize("guidance", [[], INNER, ROLLER_GUIDED], ids=["outer ring", "inner ring", "roller"])
 
 
 def simulation(*overrides, level="spatial", inputs=None):
@@ -30,9 +33,25 @@ def by_roller(state):
     return state[2 * BORDER :].reshape(BLOCK, -1)
 
 
-@pytest.mark.parametrize("overrides", [[], ["bearing.roller.slices=7", "bearing.roller.slices_per_traction=3"], ["operating.moment=0"]])
-def test_an_aligned_bearing_without_crown_runs_as_at_level_planar(overrides):
-    flat, full = simulation(FIXED, level="planar"), simulation(FIXED, *overrides)
+GROWTH = "bearing.ring_growth={centrifugal: true, thermal: true, inner_excess: 10 K}"
+
+
+@pytest.mark.parametrize(
+    ("at_both", "overrides"),
+    [
+        ([], []),
+        ([], ["bearing.roller.slices=7", "bearing.roller.slices_per_traction=3"]),
+        ([], ["operating.moment=0"]),
+        (["lubricant.pumping=true"], []),
+        ([GROWTH], []),
+        (INNER, ["operating.moment=0"]),
+        (ROLLER_GUIDED, ["operating.moment=0"]),
+        (["lubricant.pumping=true", GROWTH, *INNER], []),
+        (["lubricant.pumping=true", GROWTH], ["bearing.roller.slices=7", "operating.moment=0"]),
+    ],
+)
+def test_an_aligned_bearing_without_crown_runs_as_at_level_planar(at_both, overrides):
+    flat, full = simulation(FIXED, *at_both, level="planar"), simulation(FIXED, *at_both, *overrides)
     flat.advance(1e-3), full.advance(1e-3)
     planar, rollers = flat.state[10:].reshape(5, Z), by_roller(full.state)
     for row, expected in zip((0, 1, 4, 5, 8), planar):
@@ -45,6 +64,43 @@ def test_an_aligned_bearing_without_crown_runs_as_at_level_planar(overrides):
     assert np.abs(rollers[2:4]).max() < 1e-12 and np.abs(border(full.state)[0, [2, 3, 6, 7]]).max() < 1e-12
     for name in ("shaft_power", "inner_sliding_power", "outer_sliding_power", "pocket_power", "land_power", "inner_load", "pocket_force"):
         np.testing.assert_allclose(full.sample[name], flat.sample[name], rtol=1e-8, atol=1e-6, err_msg=name)
+
+
+STARTS = {
+    "crown": ["bearing.roller.crown=iso_log"],
+    "misalignment": ["operating.misalignment=1 mrad", "operating.misalignment_angle=40 deg"],
+    "moment": ["operating.moment=2", "operating.moment_angle=40 deg"],
+    "crown, misalignment, a ring that has grown": [
+        "bearing.roller.crown=iso_log",
+        "operating.misalignment=1 mrad",
+        "bearing.ring_growth.centrifugal=true",
+    ],
+}
+
+
+@pytest.mark.parametrize("start", STARTS)
+@pytest.mark.parametrize("speed", [5000, 45000])
+def test_a_run_starts_in_balance_by_slices(start, speed):
+    run = simulation(*STARTS[start], f"operating.shaft_speed={speed} rpm")
+    rate = np.zeros_like(run._state)
+    spatial.rhs(0.0, run.state, run._model(run.inputs, 1.0), run._work, rate)
+    rollers, params, load = by_roller(rate), run._params, run.sample["inner_load"].max()
+    # what has no counterpart in the balance: the film of the pockets, the contour's curvature, gyroscopic moments
+    assert np.abs(rollers[4]).max() * params.rollers.mass < 2e-3 * load
+    assert np.abs(rollers[6]).max() * params.tilts.roller_inertia < 2e-3 * load * params.rollers.length / 2
+    assert np.abs(border(rate)[1, :2]).max() * params.ring.mass < 2e-3 * load
+    assert np.abs(border(rate)[1, 2:4]).max() * params.tilts.ring_inertia < 2e-3 * load * params.rollers.length / 2
+
+
+def test_a_sample_tells_tilts_and_skews():
+    run = simulation(*MOMENT)
+    rough_start(run)
+    sample = run.advance(1e-4)[0]
+    np.testing.assert_array_equal(sample["roller_tilt"], by_roller(run.state)[2])
+    np.testing.assert_array_equal(sample["roller_skew"], by_roller(run.state)[3])
+    found = [sample[name] for name in ("ring_tilt_y", "ring_tilt_z", "cage_tilt_y", "cage_tilt_z")]
+    np.testing.assert_array_equal(found, border(run.state)[0, [2, 3, 6, 7]])
+    assert np.abs(found).min() > 0
 
 
 def rough_start(run, seed=3):
@@ -65,10 +121,13 @@ def spread_of(run):
     return np.concatenate([border_sizes.ravel(), np.repeat(roller_sizes, Z)])
 
 
-def test_turning_load_contour_moment_and_start_turns_the_solution_and_nothing_else():
+@GUIDANCES
+def test_turning_load_contour_moment_and_start_turns_the_solution_and_nothing_else(guidance):
     turn = math.radians(50.0)
-    here = simulation(*MOMENT)
-    there = simulation(*MOMENT, "operating.load_angle=50 deg", "operating.moment_angle=50 deg", "bearing.outer_raceway.installation_angle=50 deg")
+    here = simulation(*MOMENT, *guidance)
+    there = simulation(
+        *MOMENT, *guidance, "operating.load_angle=50 deg", "operating.moment_angle=50 deg", "bearing.outer_raceway.installation_angle=50 deg"
+    )
     rough_start(here)
 
     def turned(state):
@@ -85,8 +144,9 @@ def test_turning_load_contour_moment_and_start_turns_the_solution_and_nothing_el
     assert (np.abs(there.state - turned(here.state)) / spread_of(here)).max() < 1e-8
 
 
-def test_a_moment_the_other_way_and_a_mirrored_start_mirror_the_tilts_and_nothing_else():
-    here, there = simulation(*MOMENT), simulation(*MOMENT, "operating.moment_angle=180 deg")
+@GUIDANCES
+def test_a_moment_the_other_way_and_a_mirrored_start_mirror_the_tilts_and_nothing_else(guidance):
+    here, there = simulation(*MOMENT, *guidance), simulation(*MOMENT, *guidance, "operating.moment_angle=180 deg")
     rough_start(here)
 
     def mirrored(state):
@@ -100,8 +160,9 @@ def test_a_moment_the_other_way_and_a_mirrored_start_mirror_the_tilts_and_nothin
     assert (np.abs(there.state - mirrored(here.state)) / spread_of(here)).max() < 1e-8
 
 
-def test_running_backwards_mirrors_the_bearing_in_the_plane_of_load_and_shaft():
-    here, there = simulation(*MOMENT), simulation(*MOMENT, "operating.shaft_speed=-45000 rpm")
+@GUIDANCES
+def test_running_backwards_mirrors_the_bearing_in_the_plane_of_load_and_shaft(guidance):
+    here, there = simulation(*MOMENT, *guidance), simulation(*MOMENT, *guidance, "operating.shaft_speed=-45000 rpm")
     rough_start(here)
     other = -np.arange(Z) % Z
 

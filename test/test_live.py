@@ -202,13 +202,19 @@ def test_time_lost_to_a_slow_solver_is_told_with_both_factors(bench):
     ],
 )
 def test_slip_and_life_are_judged_by_the_scenes_thresholds(slip, life, damage, expected):
-    sample = {"time": 1.0, "shaft_speed": 1000.0, "cage_slip": slip, "rating_life": life, "damage": damage}
+    sample = {"time": 1.0, "shaft_speed": 1000.0, "cage_slip": slip, "rating_life": life, "modified_rating_life": life, "damage": damage}
     events = bearing_events(sample, load_scene("deng2017_table1").thresholds)
     assert [(event.code, event.level) for event in events] == expected
 
 
+def test_the_life_that_the_scene_chose_is_judged_and_the_basic_one_told_beside_it():
+    sample = {"time": 1.0, "shaft_speed": 1000.0, "cage_slip": 0.01, "rating_life": 900.0, "modified_rating_life": 120.0, "damage": 0.0}
+    (event,) = bearing_events(sample, load_scene("deng2017_table1").thresholds)
+    assert event.code == "bearing.life" and "choice: 120 h (basic rating life 900 h)" in event.text
+
+
 def test_slip_of_a_shaft_that_hardly_turns_is_no_trouble():
-    sample = {"time": 1.0, "shaft_speed": 5.0, "cage_slip": 0.9, "rating_life": 1e6, "damage": 0.0}
+    sample = {"time": 1.0, "shaft_speed": 5.0, "cage_slip": 0.9, "rating_life": 1e6, "modified_rating_life": 1e6, "damage": 0.0}
     assert bearing_events(sample, load_scene("deng2017_table1").thresholds) == []
 
 

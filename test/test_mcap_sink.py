@@ -25,7 +25,7 @@ from bearing_sim.scene_file import load_scene, scene_from_yaml
 from bearing_sim.simulation import Inputs
 from bearing_sim.sinks.mcap_file import McapFile, message_type
 from bearing_sim.sinks.mcap_sink import METADATA, McapSink
-from bearing_sim.topics import ARRAYS, INPUTS, OUTPUTS
+from bearing_sim.topics import ARRAYS, INPUTS, OUTPUTS, outputs
 
 START = 1_700_000_000_000_000_000
 ROLLERS = 18
@@ -63,14 +63,14 @@ def messages(path):
         return [(channel.topic, message.log_time, decoded) for _, channel, message, decoded in reader.iter_decoded_messages()]
 
 
-def test_rosbags_deserialises_every_message(recording):
+def test_rosbags_deserialises_every_message(recording, scene):
     path, block = recording
     store = get_typestore(Stores.ROS2_JAZZY)
     seen = {}
     with Reader(path) as reader:
         for connection, stamp, raw in reader.messages():
             seen.setdefault(connection.topic, []).append((stamp, store.deserialize_cdr(raw, connection.msgtype)))
-    assert {topic.lstrip("/"): len(got) for topic, got in seen.items()} == {**dict.fromkeys([*INPUTS, *OUTPUTS], 3), "diagnostics": 1}
+    assert {topic.lstrip("/"): len(got) for topic, got in seen.items()} == {**dict.fromkeys([*INPUTS, *outputs(scene)], 3), "diagnostics": 1}
     assert [message.data for _, message in seen["/cage_slip"]] == list(block["cage_slip"])
     np.testing.assert_array_equal(seen["/roller_loads"][1][1].data, [*block["inner_load"][1], *block["outer_load"][1]])
     joints = seen["/bearing_joints"][2][1]
@@ -80,6 +80,16 @@ def test_rosbags_deserialises_every_message(recording):
         "cage_ideal": block["ideal_cage_speed"][2],
     }
     assert seen["/diagnostics"][0][1].status[0].level == 1
+
+
+def test_tilts_and_slices_are_recorded_where_the_level_has_them_and_only_there(tmp_path):
+    block = numbered_block(2)
+    for level in ("slip", "planar", "spatial"):
+        with McapSink(tmp_path / f"{level}.mcap", load_scene("deng2017_table1", [f"level={level}"]), START) as sink:
+            sink.write(block)
+        found = {topic: message for topic, _, message in messages(sink.path)}
+        assert set(OUTPUTS) - {topic[1:] for topic in found} == (set() if level == "spatial" else {"axis_tilts", "roller_tilts", "slice_pressures"})
+    np.testing.assert_array_equal(found["/roller_tilts"].data, [*block["roller_tilt"][1], *block["roller_skew"][1]])
 
 
 def test_mcap_ros2_decodes_every_message_at_its_sample_time(recording):
@@ -98,13 +108,13 @@ def test_header_stamps_agree_with_log_times(recording):
             assert message.header.stamp.sec * 10**9 + message.header.stamp.nanosec == log_time
 
 
-def test_rosbag2_metadata_counts_what_is_in_the_file(recording):
+def test_rosbag2_metadata_counts_what_is_in_the_file(recording, scene):
     with open(recording[0], "rb") as stream:
         reader = make_reader(stream)
         records = {record.name: record.metadata for record in reader.iter_metadata()}
         summary = reader.get_summary()
     bag = yaml.safe_load(records["rosbag2"]["serialized_metadata"])["rosbag2_bagfile_information"]
-    assert bag["version"] == 9 and bag["message_count"] == summary.statistics.message_count == 3 * (len(INPUTS) + len(OUTPUTS)) + 1
+    assert bag["version"] == 9 and bag["message_count"] == summary.statistics.message_count == 3 * (len(INPUTS) + len(outputs(scene))) + 1
     assert bag["duration"]["nanoseconds"] == 200_000_000
     hashes = {entry["topic_metadata"]["name"]: entry["topic_metadata"]["type_description_hash"] for entry in bag["topics_with_message_count"]}
     assert hashes == {channel.topic: channel.metadata["topic_type_hash"] for channel in summary.channels.values()}

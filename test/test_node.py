@@ -60,7 +60,7 @@ def test_speed_and_load_from_another_process_come_back_as_slip_and_life_and_as_a
     client.drive_until(lambda: client.received["cage_slip"], "the first slip arrives", process, shaft_speed=FAST)
     seen = {name: len(messages) for name, messages in client.received.items()}
     client.drive(3.0, shaft_speed=FAST)
-    for name in topics.OUTPUTS:
+    for name in topics.outputs(load_scene("deng2017_table1")):
         assert len(client.received[name]) - seen[name] > 3 * 50 * 0.4, f"{name} comes at about 50 Hz even on a busy machine"
     assert 2 <= len(client.received["diagnostics"]) - seen["diagnostics"] <= 20, "diagnostics come at 1 Hz and at changes"
     _check_last_outputs(client)
@@ -107,7 +107,7 @@ def _check_recording(path):
             reader.deserialize(raw, connection.msgtype)
             counts[connection.topic] = counts.get(connection.topic, 0) + 1
             times.setdefault(connection.topic, []).append(time_ns)
-    for name in [*topics.OUTPUTS, "shaft_speed", "radial_load", "diagnostics"]:
+    for name in [*topics.outputs(load_scene("deng2017_table1")), "shaft_speed", "radial_load", "diagnostics"]:
         assert counts.get(f"/{name}", 0) >= 2, f"{name} is in the recording: {counts}"
     slips = times["/cage_slip"]
     assert slips == sorted(slips) and counts["/cage_slip"] > 200

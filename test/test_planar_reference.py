@@ -57,9 +57,10 @@ def rough_state(run, seed, scale=1.0):
     """Rollers pressed, parted and colliding, some against a pocket's wall, and the cage anywhere up to its land."""
     random = np.random.default_rng(seed)
     state = run._state.copy()
-    eccentricity, azimuth = random.uniform(0.0, 0.149e-3), random.uniform(0.0, 2 * math.pi)
+    eccentricity, azimuth = random.choice([random.uniform(0.0, 0.149e-3), 0.1485e-3]), random.uniform(0.0, 2 * math.pi)
     state[0:2] += random.normal(size=2) * 3e-6
-    state[2:4] = eccentricity * math.cos(azimuth), eccentricity * math.sin(azimuth)
+    state[2:4] = run._params.cage.guidance.turning * state[0:2]
+    state[2:4] += eccentricity * np.array([math.cos(azimuth), math.sin(azimuth)])
     state[4] = random.uniform(-10.0, 10.0)
     state[5:9] += random.normal(size=4) * 2e-2
     slowed = random.uniform(0.6, 1.05)
@@ -79,6 +80,12 @@ def kinds(count):
     return which
 
 
+INNER = ["bearing.cage.guidance=inner_ring", "bearing.cage.outer_radius=33.35 mm"]
+ROLLER_GUIDED = ["bearing.cage.guidance=roller", "bearing.cage.outer_radius=33.35 mm"]
+# rho R^3/E omega^2 of the ring's mean radius, and alpha by 100 K of inner ring (5 K more), rollers and outer raceway
+GROWN = 7850 * ((25.0135e-3 + 27.875e-3) / 2) ** 3 / 2.06e11 * (45000 * math.pi / 30) ** 2
+GROWN += 1.2e-5 * (105 * 27.875e-3 + 100 * 7e-3 - 100 * 34.9115e-3)
+
 VARIANTS = {
     "stock": ({}, []),
     "flat land and no friction": (
@@ -95,6 +102,20 @@ VARIANTS = {
         ],
     ),
     "a film that knows no whirl": ({"land_squeeze": False}, ["bearing.cage.land_squeeze=false"]),
+    "guided on the inner ring": ({"guidance": "inner_ring"}, INNER),
+    "guided on the inner ring, backwards, by a film that knows no whirl": (
+        {"guidance": "inner_ring", "shaft_speed": -1500.0, "land_squeeze": False},
+        [*INNER, "operating.shaft_speed=-1500", "bearing.cage.land_squeeze=false"],
+    ),
+    "guided by rollers": ({"guidance": "roller"}, ROLLER_GUIDED),
+    "guided by rollers, tight and backwards": (
+        {"guidance": "roller", "shaft_speed": -1500.0, "pocket_radial_clearance": 0.06e-3},
+        [*ROLLER_GUIDED, "operating.shaft_speed=-1500", "bearing.cage.pocket_radial_clearance=0.06 mm"],
+    ),
+    "pumping, and a raceway that grows": (
+        {"pumping": True, "growth": GROWN},
+        ["lubricant.pumping=true", "bearing.ring_growth={centrifugal: true, thermal: true, inner_excess: 5 K}"],
+    ),
     "nine rollers, damped": ({"rollers": 9, "contact_damping": 1.0}, ["bearing.roller.count=9", "bearing.contact.damping=1"]),
 }
 
@@ -141,11 +162,12 @@ def test_jacobian_is_that_of_a_complex_step_through_the_plain_numpy_model(varian
     state = rough_state(run, seed, 0.3)
     found, expected = dense_jacobian(run, state), complex_step_jacobian(Reference(**fields), state)
     which = kinds(run._params.rollers.count)
+    round_off = np.abs(expected).max(1)  # some blocks are sums over rollers that vanish
     # each block of one kind of rate by one kind of state has a unit, and so a largest entry, of its own
     for row in range(11):
         for column in range(11):
             block = np.ix_(which == row, which == column)
-            largest = np.abs(expected[block]).max()
+            largest = np.abs(expected[block]).max() + 1e-9 * round_off[which == row].min()
             assert np.abs(found - expected)[block].max() <= 1e-6 * largest, (row, column)
 
 
@@ -191,15 +213,19 @@ def test_course_over_2_ms_is_that_of_an_explicit_method_of_order_8_and_comes_nea
     assert np.median(loose / tight) > 5
 
 
-@pytest.mark.parametrize("start", ["as it comes", "cage thrown against its land, rollers against their pockets"])
-def test_energy_and_momentum_are_kept(start):
-    reference, run, duration = Reference(), simulation("integration.relative_tolerance=1e-5"), 2e-4
+@pytest.mark.parametrize("guidance", ["outer_ring", "inner_ring", "roller"])
+@pytest.mark.parametrize("start", ["as it comes", "cage thrown against what guides it, rollers against their pockets"])
+def test_energy_and_momentum_are_kept(start, guidance):
+    reference, duration = Reference(guidance=guidance), 2e-4
+    guided = [f"bearing.cage.guidance={guidance}", "bearing.cage.outer_radius=33.35 mm"]
+    run = simulation("integration.relative_tolerance=1e-5", *guided)
     run.advance(5e-3)
     state = run._state
     if start != "as it comes":
         duration = 8e-5
-        outward = state[2:4] / np.hypot(*state[2:4])
-        state[2:4], state[7:9] = 0.1475e-3 * outward, 0.02 * outward
+        turning, outward = run._params.cage.guidance.turning, state[2:4] / np.hypot(*state[2:4])
+        reach = 0.066e-3 if guidance == "roller" else 0.1475e-3  # where some pockets, or the lands, touch
+        state[2:4], state[7:9] = turning * state[0:2] + reach * outward, 0.02 * outward
         pockets = state[4] + 2 * math.pi * np.arange(18) / 18
         across = state[3] * np.cos(pockets) - state[2] * np.sin(pockets)
         by_roller(state)[1] = pockets + (across + np.linspace(-1.02e-4, 1.02e-4, 18)) / reference.pitch_radius
@@ -218,7 +244,11 @@ def test_energy_and_momentum_are_kept(start):
     gained = reference.energy(after) - reference.energy(before)
     turned_over = abs(work) + np.abs(heat).sum()
     momentum = [np.array([*linear, angular]) for linear, angular in (reference.momentum(f.state) for f in (before, after))]
-    assert (heat > 0).sum() == (8 if start == "as it comes" else 9)  # the cage touches its land in one of them only
+    touched = start != "as it comes"  # the cage touches its land in one of them only
+    assert set(np.array(causes)[heat == 0.0]) == ({"guide land film"} if guidance == "roller" else set()) | (
+        {"guide land contact"} if guidance == "roller" or not touched else set()
+    )
+    assert (heat >= 0).all()
     assert work - heat.sum() - gained == pytest.approx(0.0, abs=1e-9 * turned_over)
     np.testing.assert_allclose(momentum[1] - momentum[0], impulse, rtol=0, atol=1e-12)
     # and the level's own course ends with the same energy

@@ -40,6 +40,7 @@ def rough_planar_state(run, seed):
     state = run._state.copy()
     angle = random.uniform(0, 2 * math.pi)
     state[2:4] = random.choice([0.1e-3, 0.149e-3]) * np.array([math.cos(angle), math.sin(angle)])
+    state[2:4] += run._params.cage.guidance.turning * state[0:2]
     state[5:9] += random.normal(size=4) * [1e-2, 1e-2, 0.5, 0.5]
     state[9] *= random.uniform(0.7, 1.1)
     rollers = rollers_of(state)
@@ -66,7 +67,10 @@ def planar_energy(run, state):
     offset = np.abs(np.sum((place - centre[:, None]) * np.stack([-np.sin(pocket), np.cos(pocket)]), axis=0))
     play = cage.pocket_clearance
     film = cage.pocket_stiffness * np.where(offset < play, offset**2 / 2, play * (offset - play / 2))
-    depth = np.hypot(*centre) - (cage.guide_clearance - cage.land_film)
+    if not cage.guidance.lands:
+        outward = np.sum((place - centre[:, None]) * np.stack([np.cos(pocket), np.sin(pocket)]), axis=0) - cage.guidance.pocket_radius
+        return kinetic + (contact(inner) + contact(outer) + film + contact(offset - play) + contact(np.abs(outward) - cage.guide_clearance)).sum()
+    depth = np.hypot(*(centre - cage.guidance.turning * ring)) - (cage.guide_clearance - cage.land_film)
     return kinetic + (contact(inner) + contact(outer) + film + contact(offset - play)).sum() + contact(depth)
 
 
@@ -96,12 +100,18 @@ def planar_gap(run, state):
     return powers.shaft + LOAD @ state[5:7] - sum(powers[1:]) - stored, max(*powers, abs(stored)), powers
 
 
+INNER = ["bearing.cage.guidance=inner_ring", "bearing.cage.outer_radius=33.35 mm"]
+ROLLER_GUIDED = ["bearing.cage.guidance=roller", "bearing.cage.outer_radius=33.35 mm"]
+
+
+@pytest.mark.parametrize("guidance", [[], INNER, ROLLER_GUIDED], ids=["outer ring", "inner ring", "roller"])
 @pytest.mark.parametrize("seed", range(12))
-def test_every_force_of_level_planar_stands_in_the_books(seed):
-    run = simulation("planar")
+def test_every_force_of_level_planar_stands_in_the_books(seed, guidance):
+    run = simulation("planar", *guidance)
     gap, largest, powers = planar_gap(run, rough_planar_state(run, seed))
     assert abs(gap) < 1e-8 * largest  # of finite differences; the powers go from 100 W to 10 MW
-    assert all(lost > 0.0 for lost in powers[1:])
+    assert all(lost > 0.0 for lost in powers[1:] if lost is not powers.land or guidance != ROLLER_GUIDED)
+    assert guidance != ROLLER_GUIDED or powers.land == 0.0
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -131,10 +141,14 @@ def test_what_the_shaft_gives_in_a_turn_of_the_cage_is_lost_or_stored():
     assert (given - lost).mean() * turn == pytest.approx(stored, abs=0.01 * work)
 
 
-OPTIONS = ["bearing.cage.pocket_friction=0.2"], ["lubricant.pumping=true", "bearing.ring_growth.centrifugal=true", "lubricant.traction.law=eyring"]
+OPTIONS = (
+    ["bearing.cage.pocket_friction=0.2"],
+    INNER,
+    ["lubricant.pumping=true", "bearing.ring_growth.centrifugal=true", "lubricant.traction.law=eyring"],
+)
 
 
-@pytest.mark.parametrize("options", OPTIONS, ids=["stock", "pumped and grown"])
+@pytest.mark.parametrize("options", OPTIONS, ids=["stock", "inner ring", "pumped and grown"])
 @pytest.mark.parametrize("seed", range(6))
 def test_every_force_of_level_slip_stands_in_the_books(seed, options):
     run = simulation("slip", *options)

@@ -72,7 +72,7 @@ def assert_ring_centre_follows_from_loads(block):
     np.testing.assert_allclose(block["ring_z"][three_touch], -1e-6, atol=1e-8)
 
 
-@pytest.mark.parametrize("level", ["slip", "planar"])
+@pytest.mark.parametrize("level", ["slip", "planar", "spatial"])
 def test_what_a_level_observes_comes_back_from_its_recording(level, tmp_path):
     from bearing_sim.simulation import Simulation
 

@@ -160,6 +160,28 @@ def test_cage_on_its_land_is_drawn_on_the_drawn_land_whose_place_is_inside_the_r
     assert f"cage x{factor}" in section_title(PLANAR)
 
 
+INNER = load_scene("deng2017_table1", ["level=planar", "bearing.cage.guidance=inner_ring", "bearing.cage.outer_radius=33.35 mm"])
+ROLLER_GUIDED = load_scene("deng2017_table1", ["level=planar", "bearing.cage.guidance=roller", "bearing.cage.outer_radius=33.35 mm"])
+
+
+def test_cage_on_the_inner_rings_land_is_drawn_on_the_drawn_land_which_goes_with_the_ring():
+    factor, one = section.cage_magnification(INNER), sample()
+    one["ring_y"], one["ring_z"] = 4e-6, -7e-6
+    one["cage_y"], one["cage_z"] = one["ring_y"] + 0.15e-3 * math.cos(1.0), one["ring_z"] + 0.15e-3 * math.sin(1.0)
+    land, cage = section.land_displacement(INNER.bearing, factor, one), section.cage_displacement(factor, one)
+    apart = math.hypot(cage[0] - land[0], cage[1] - land[1])
+    assert 29.6 - apart == pytest.approx(section.drawn_guide_radius(INNER.bearing, factor))  # the bore meets the land
+    assert factor > 1 and section.drawn_guide_radius(INNER.bearing, factor) > 27.875
+
+
+def test_a_cage_guided_by_its_rollers_is_drawn_without_land_and_clear_of_both_raceways():
+    factor, one = section.cage_magnification(ROLLER_GUIDED), sample()
+    assert section.drawn_guide_radius(ROLLER_GUIDED.bearing, factor) is None
+    one["cage_y"], one["cage_z"] = 0.1e-3, 0.0
+    away = math.hypot(*section.cage_displacement(factor, one))
+    assert factor > 1 and 33.35 + away < 34.875 and 29.6 - away > 27.875
+
+
 def test_level_without_whirl_draws_the_land_where_it_is():
     assert section.cage_magnification(SCENE) == 1
     assert section.drawn_guide_radius(BEARING, 1) == pytest.approx(33.5)

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from reference_planar import Reference
 from reference_spatial import SpatialReference, State
 from scipy.integrate import solve_ivp
+from test_planar_reference import GROWN
 
 from bearing_sim import Simulation, load_scene
 from bearing_sim.kernels.lanes import LANES
@@ -75,11 +76,12 @@ def rough_state(run, seed, scale=1.0):
     """Rollers pressed, parted and colliding, tilted and skewed, some against a pocket's wall, and the cage anywhere up to its land."""
     random = np.random.default_rng(seed)
     state = run._state.copy()
-    eccentricity, azimuth = random.uniform(0.0, 0.145e-3), random.uniform(0.0, 2 * math.pi)
+    eccentricity, azimuth = random.choice([random.uniform(0.0, 0.145e-3), 0.1485e-3]), random.uniform(0.0, 2 * math.pi)
     state[0:2] += random.normal(size=2) * 3e-6
     state[2:4] += random.normal(size=2) * 5e-4
-    state[4:6] = eccentricity * math.cos(azimuth), eccentricity * math.sin(azimuth)
-    state[6:8] = random.normal(size=2) * 1e-3
+    turning = run._params.cage.guidance.turning
+    state[4:6] = turning * state[0:2] + eccentricity * np.array([math.cos(azimuth), math.sin(azimuth)])
+    state[6:8] = turning * state[2:4] + random.normal(size=2) * 1e-3
     state[8] = random.uniform(-10.0, 10.0)
     state[9:13] += random.normal(size=4) * [2e-2, 2e-2, 2.0, 2.0]
     state[13:17] += random.normal(size=4) * [2e-2, 2e-2, 2.0, 2.0]
@@ -104,7 +106,24 @@ def kinds(count):
 
 
 MOMENT = ["operating.moment=2", "operating.moment_angle=30 deg"]
+INNER = ["bearing.cage.guidance=inner_ring", "bearing.cage.outer_radius=33.35 mm"]
+ROLLER_GUIDED = ["bearing.cage.guidance=roller", "bearing.cage.outer_radius=33.35 mm"]
 VARIANTS = {
+    "guided on the free inner ring": (
+        lambda: SpatialReference(Reference(guidance="inner_ring"), moment=(2 * math.cos(math.pi / 6), 1.0)),
+        [*INNER, *MOMENT],
+        None,
+    ),
+    "guided on the held inner ring": (
+        lambda: SpatialReference(Reference(guidance="inner_ring"), ring_free=False),
+        [*INNER, "operating.misalignment=1 mrad"],
+        None,
+    ),
+    "guided by rollers": (
+        lambda: SpatialReference(Reference(guidance="roller", pocket_radial_clearance=0.06e-3), moment=(2 * math.cos(math.pi / 6), 1.0)),
+        [*ROLLER_GUIDED, "bearing.cage.pocket_radial_clearance=0.06 mm", *MOMENT],
+        None,
+    ),
     "free ring": (lambda: SpatialReference(moment=(2 * math.cos(math.pi / 6), 1.0)), MOMENT, None),
     "held ring, crown, Deng's axes": (
         lambda: SpatialReference(Reference(contour_slope=False), ring_free=False, gyroscopic=False, crown=CROWN, together=1),
@@ -114,6 +133,11 @@ VARIANTS = {
             "bearing.outer_raceway.contour_slope=false",
             "bearing.roller.slices_per_traction=1",
         ],
+        CROWN,
+    ),
+    "pumping, and a raceway that grows": (
+        lambda: SpatialReference(Reference(pumping=True, growth=GROWN), moment=(2 * math.cos(math.pi / 6), 1.0), crown=CROWN),
+        [*MOMENT, "lubricant.pumping=true", "bearing.ring_growth={centrifugal: true, thermal: true, inner_excess: 5 K}"],
         CROWN,
     ),
     "nine rollers backwards, crown": (
@@ -222,8 +246,7 @@ def test_powers_are_those_of_the_plain_numpy_model(variant):
     new_reference, overrides, crown = VARIANTS[variant]
     reference, run = new_reference(), simulation(*overrides, crown=crown)
     for seed in range(3):
-        run._state[:] = rough_state(run, seed, 0.3)
-        run._observe_start()
+        run._begin(rough_state(run, seed, 0.3), run._previous)
         work, heat = reference.powers(reference.forces(plain(run._state)))
         expected = {
             "shaft_power": work["shaft"],
@@ -264,3 +287,15 @@ def test_energy_is_kept(crown):
     before, after = (reference.forces(plain(y)) for y in (state, end[:size]))
     gained = reference.energy(after) - reference.energy(before)
     assert work - heat.sum() - gained == pytest.approx(0.0, abs=1e-8 * (abs(work) + np.abs(heat).sum()))
+
+
+@pytest.mark.parametrize("variant", VARIANTS)
+def test_pressures_are_those_of_hertz_under_the_plain_numpy_model_s_slices(variant):
+    new_reference, overrides, crown = VARIANTS[variant]
+    reference, run = new_reference(), simulation(*overrides, crown=crown)
+    run._begin(rough_state(run, 4, 0.3), run._previous)
+    forces, plane = reference.forces(plain(run._state)), reference.planar
+    for ring, curvature in (("inner", 1 / plane.roller_radius + 1 / plane.inner_radius), ("outer", 1 / plane.roller_radius - 1 / plane.low_radius)):
+        pressure = np.sqrt(getattr(forces, ring) * reference.slices / plane.length * plane.modulus * curvature / (2 * np.pi))
+        assert run.sample[f"{ring}_pressure"] == pytest.approx(pressure.max(), rel=1e-9)
+        assert run.sample[f"{ring}_edge_pressure"] == pytest.approx(pressure[:, [0, -1]].max(), rel=1e-9)

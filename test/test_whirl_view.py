@@ -135,3 +135,23 @@ def test_line_and_dots_take_turns_as_the_sampling_does(tmp_path):
         chunks = written(tmp_path / f"{name}.rrd", PLANAR, block)
         assert bool(last_value(chunks, "/cage_orbit/path/line", "LineStrips2D:strips")) is line
         assert bool(last_value(chunks, "/cage_orbit/path/dots", "Points2D:positions")) is dots
+
+
+CAGE_OUTSIDE = "bearing.cage.outer_radius=33.35 mm"
+
+
+@pytest.mark.parametrize(
+    ("guidance", "where"), [("outer_ring", {"/section/outer_ring/guide_land"}), ("inner_ring", {"/section/inner_ring/guide_land"}), ("roller", set())]
+)
+def test_lands_are_drawn_on_the_ring_that_has_them_and_nowhere_else(tmp_path, guidance, where):
+    scene = load_scene("deng2017_table1", ["level=planar", f"bearing.cage.guidance={guidance}", CAGE_OUTSIDE])
+    chunks = written(tmp_path / "run.rrd", scene, whirling_block())
+    assert {chunk.entity_path for chunk in chunks if "guide_land" in chunk.entity_path} == where
+
+
+def test_orbit_on_the_inner_rings_lands_is_seen_from_the_ring(tmp_path):
+    scene = load_scene("deng2017_table1", ["level=planar", "bearing.cage.guidance=inner_ring", CAGE_OUTSIDE])
+    block = whirling_block()
+    (centre,) = last_value(written(tmp_path / "run.rrd", scene, block), "/cage_orbit/centre", "Points2D:positions")
+    expected = [1e6 * (block["cage_y"][-1] - block["ring_y"][-1]), -1e6 * (block["cage_z"][-1] - block["ring_z"][-1])]
+    np.testing.assert_allclose(centre, expected, atol=1e-3)

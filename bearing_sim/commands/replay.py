@@ -13,6 +13,7 @@ from bearing_sim.commands.reporting import (
     print_json,
     print_table,
     progress_bar,
+    tell_cheaper_level,
     tell_compilation,
     told_as_bad_input,
     told_file_faults,
@@ -57,6 +58,7 @@ def command(log, scene_name, overrides, out, rrd, rate, speed_topic, load_topic,
         if out.exists() and log.exists() and out.samefile(log):
             raise BadInput(f"{out} is the log itself; write to another file")
         scene = load_scene(scene_name, overrides)
+        tell_cheaper_level(scene)
         recorded = read_input_log(log, names, joint, stamps)
         held = Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature)
         course = judge(recorded, scene.input_limits, held, longest_gap)

@@ -64,6 +64,14 @@ def tell_compilation() -> None:
         click.echo("compiling the model, once for this version: about 20 s ...", err=True)
 
 
+def tell_cheaper_level(scene) -> None:
+    """Say on stderr where a cheaper level computes the same."""
+    from bearing_sim.effects import hint
+
+    if line := hint(scene):
+        click.echo(line, err=True)
+
+
 def print_json(report: Mapping) -> None:
     """Print one JSON object and nothing else; NaN and infinity become null."""
     click.echo(json.dumps(_finite(report), indent=2, allow_nan=False))

@@ -13,6 +13,7 @@ from bearing_sim.commands.reporting import (
     print_json,
     print_table,
     progress_bar,
+    tell_cheaper_level,
     tell_compilation,
     told_as_bad_input,
     told_file_faults,
@@ -45,6 +46,7 @@ def command(scene_name, overrides, duration, level, rate, out, rrd, as_json):
     seconds = _seconds(duration)
     with told_as_bad_input(SceneError):
         scene = load_scene(scene_name, [*overrides, *([f"level={level}"] if level else [])])
+    tell_cheaper_level(scene)
     samples = max(round(seconds * (rate or min(_RATE, _SAMPLES / seconds))), 5)
     with told_file_faults(), ExitStack() as stack:
         sinks = _sinks(stack, scene, seconds, out, rrd)
@@ -64,7 +66,7 @@ def command(scene_name, overrides, duration, level, rate, out, rrd, as_json):
     if as_json:
         print_json(report)
     else:
-        _print(report)
+        _print(report, scene)
 
 
 def _seconds(duration: str) -> float:
@@ -112,10 +114,16 @@ def _report(simulation, settled, seconds, wall, start_up) -> dict:
         "cage_slip_minimum": min(settled),
         "cage_slip_maximum": max(settled),
         "life_hours": float(last["rating_life"]),
+        "lamina_life_hours": float(last["lamina_life"]),
+        "modified_life_hours": float(last["modified_rating_life"]),
         "damage": float(last["damage"]),
         "cage_speed_rpm": float(last["cage_speed"]) * 30 / math.pi,
         "inner_load_maximum": float(last["inner_load"].max()),
         "outer_load_maximum": float(last["outer_load"].max()),
+        "inner_pressure_maximum_mpa": 1e-6 * float(last["inner_pressure"]) if simulation.scene.bodies_tilt else None,
+        "outer_pressure_maximum_mpa": 1e-6 * float(last["outer_pressure"]) if simulation.scene.bodies_tilt else None,
+        "inner_edge_pressure_maximum_mpa": 1e-6 * float(last["inner_edge_pressure"]) if simulation.scene.bodies_tilt else None,
+        "outer_edge_pressure_maximum_mpa": 1e-6 * float(last["outer_edge_pressure"]) if simulation.scene.bodies_tilt else None,
         "sim_seconds": seconds,
         "wall_seconds": wall,
         "start_up_seconds": start_up,
@@ -124,7 +132,7 @@ def _report(simulation, settled, seconds, wall, start_up) -> dict:
     }
 
 
-def _print(report) -> None:
+def _print(report, scene) -> None:
     rejected = f"{report['rejected_steps']} rejected, {report['non_finite_steps']} of them not finite"
     print_table(
         f"{report['scene']} at level {report['level']}",
@@ -134,10 +142,23 @@ def _print(report) -> None:
                 f"{100 * report['cage_slip']:.2f} % ({100 * report['cage_slip_minimum']:.2f} to {100 * report['cage_slip_maximum']:.2f} %)",
             ),
             ("cage speed", f"{report['cage_speed_rpm']:.6g} rpm"),
-            ("rating life", f"{report['life_hours']:.4g} h"),
+            *_lives(report, scene),
             ("largest roller load", f"inner {report['inner_load_maximum']:.4g} N, outer {report['outer_load_maximum']:.4g} N"),
             ("simulated", f"{report['sim_seconds']:.4g} s in {report['wall_seconds']:.3g} s, {report['real_time_factor']:.3g} times real time"),
             ("steps", f"{report['steps']}, {rejected}"),
             ("work", f"{report['right_hand_sides']} right-hand sides, {report['jacobians']} Jacobians, {report['factorisations']} factorisations"),
         ],
     )
+
+
+def _lives(report, scene) -> list[tuple[str, str]]:
+    """Return the rows of the basic life and, where the scene or its level has others, of these."""
+    rows = [("rating life", f"{report['life_hours']:.4g} h")]
+    if not scene.life.is_basic:
+        rows.append(("life by the scene's choice", f"{report['modified_life_hours']:.4g} h"))
+    if scene.bodies_tilt:
+        rows.append(("lamina life", f"{report['lamina_life_hours']:.4g} h"))
+        for ring in ("inner", "outer"):
+            whole, edge = report[f"{ring}_pressure_maximum_mpa"], report[f"{ring}_edge_pressure_maximum_mpa"]
+            rows.append((f"largest pressure, {ring} raceway", f"{whole:.4g} MPa, of the end slices {edge:.4g} MPa"))
+    return rows

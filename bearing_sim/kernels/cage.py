@@ -1,4 +1,4 @@
-"""The cage's guide lands: short journal bearings on the outer ring (Deng 2017, section 3.1.3)."""
+"""The cage's guide lands: short journal bearings between cage and guiding ring (Deng 2017, section 3.1.3)."""
 
 import math
 

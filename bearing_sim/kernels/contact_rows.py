@@ -52,7 +52,8 @@ class ContactRow(NamedTuple):
     damping: int = 17  # dQ by its rate [N s/m]
     log_penetration: int = 18
     pumping: int = 19  # F_R, against the motion of each surface through the contact [N]
-    pumping_by_rolling: int = 20  # its slope [N s/m]
+    pumping_by_rolling: int = 20  # its slopes [N s/m]
+    pumping_by_load: int = 21
 
 
 CONTACT = ContactRow()

@@ -1,8 +1,8 @@
-"""Exponential, logarithm, sine and cosine that a vector of numbers can go through.
+"""Exponential, logarithm, ninth root, sine and cosine that a vector of numbers can go through.
 
 The library calls of `math` take one number at a time.  These are free of branches and accurate to 1e-11 relative (exp,
-arguments within +-700), 2e-11 absolute (log, positive normal numbers) and 1e-15 (sine and cosine), far more than any law that
-they serve.  Each takes a number or `bearing_sim.kernels.lanes`.
+arguments within +-700; ninth root, positive normal numbers), 2e-11 absolute (log, the same) and 1e-15 (sine and cosine), far more
+than any law that they serve.  Each takes a number or `bearing_sim.kernels.lanes`.
 """
 
 import math
@@ -20,6 +20,8 @@ _TO_ROOT = _ONE_BITS - 0x3FE6A09E667F3BCD  # from 1/sqrt 2 to 1
 _LN2_HIGH, _LN2_LOW = 0.6931471803691238, 1.9082149292705877e-10
 _S = tuple((-1.0) ** k / math.factorial(2 * k + 1) for k in range(10))  # Taylor series, exact to rounding within a quarter turn
 _C = tuple((-1.0) ** k / math.factorial(2 * k) for k in range(11))
+_ROOT_BITS = _ROUND * (10.0 / 9.0) + ((10.0 / 9.0) * 1023 - 0.0584) * 2.0**32
+_P = (1.22126583, -0.3775729, 0.20234812, -0.04606227)  # w^(-1/9) to 2e-5 over that range
 
 
 @template
@@ -57,6 +59,26 @@ def _vector_logarithm(x):
 
 
 @template
+def _vector_ninth_root(x):
+    # Less a ninth of the bits of x, and a constant, are roughly those of z = x^(-1/9): x z^9 lies between 0.737 and 1.262.
+    counted = double((bits(x) >> 20) + _ROUND_BITS)
+    z = double(bits(_ROOT_BITS - counted * (1.0 / 9.0)) << 20)
+    z_2 = z * z
+    z_4 = z_2 * z_2
+    w = x * z * (z_4 * z_4)
+    p = w * _P[3] + _P[2]
+    p = p * w + _P[1]
+    p = p * w + _P[0]
+    z = z * p
+    z_2 = z * z
+    z_4 = z_2 * z_2
+    y = x * (z_4 * z_4)  # x^(1/9) (1 - e)^(8/9): Newton's step and the term behind it make it whole
+    e = 1.0 - y * z
+    p = e * (68.0 / 81.0) + 8.0 / 9.0
+    return y + y * (p * e)
+
+
+@template
 def cosine_sine(turn):
     """Return cosine and sine of an angle given in turns, from 0 to 1 (lanes)."""
     half = floor(2.0 * turn + 0.5)
@@ -86,3 +108,4 @@ def cosine_sine(turn):
 # The debugger's mode (NUMBA_DISABLE_JIT=1) has no bits to look at.
 exponential = np.exp if numba.config.DISABLE_JIT else _vector_exponential
 logarithm = np.log if numba.config.DISABLE_JIT else _vector_logarithm
+ninth_root = (lambda x: x ** (1.0 / 9.0)) if numba.config.DISABLE_JIT else _vector_ninth_root

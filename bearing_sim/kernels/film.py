@@ -96,8 +96,10 @@ def _pump(contacts, first, end, constant):
     for block in range(first, end):
         rolling, force = load(contacts, block, CONTACT.rolling), larger(load(contacts, block, CONTACT.load), 0.0)
         square = rolling * rolling + ROLLING_SPEED_FLOOR * ROLLING_SPEED_FLOOR
-        strength = exponential(constant + 0.5 * (_PUMPED - 1.0) * logarithm(square)) * (force / (force + _LOADED_FROM))
+        whole, share = exponential(constant + 0.5 * (_PUMPED - 1.0) * logarithm(square)), 1.0 / (force + _LOADED_FROM)
+        strength = whole * (force * share)
         store(contacts, block, CONTACT.pumping, strength * rolling)
+        store(contacts, block, CONTACT.pumping_by_load, whole * rolling * (_LOADED_FROM * share * share))
         store(contacts, block, CONTACT.pumping_by_rolling, strength * (1.0 + (_PUMPED - 1.0) * rolling * rolling / square))
 
 

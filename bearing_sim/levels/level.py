@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from bearing_sim.integrators.history import new_history
 from bearing_sim.integrators.memory import new_memory
-from bearing_sim.levels import planar, planar_methods, planar_state, slip, slip_methods, spatial, spatial_methods, spatial_state
+from bearing_sim.levels import carried, planar, planar_methods, planar_state, slip, slip_methods, spatial, spatial_methods, spatial_state
 
 
 class Method(NamedTuple):
@@ -30,6 +30,7 @@ class Level(NamedTuple):
     ----------
     new_work : params -> workspace.
     initial_state : (params, work, shaft speed, load y, load z) -> state of ideal rolling.
+    state_at : (params, work, sample of any level) -> state that goes on from there, see `bearing_sim.levels.carried`.
     observe : compiled, see `bearing_sim.levels.slip`.
     methods : by name (see `bearing_sim.methods`), the level's own first.
     leaves_out : what the level does not model, in words.
@@ -37,6 +38,7 @@ class Level(NamedTuple):
 
     new_work: Callable
     initial_state: Callable
+    state_at: Callable
     observe: Callable
     methods: Mapping[str, Method]
     leaves_out: str
@@ -50,6 +52,7 @@ LEVELS = {
     "slip": Level(
         slip.new_work,
         slip.initial_state,
+        carried.slip_state_at,
         slip.observe,
         {
             "rosenbrock2": Method(new_memory, slip.advance, slip_methods.advance_fixed),
@@ -61,6 +64,7 @@ LEVELS = {
     "planar": Level(
         planar_state.new_work,
         planar.initial_state,
+        carried.planar_state_at,
         planar.observe,
         {
             "sdirk2": Method(new_memory, planar.advance, planar_methods.advance_fixed),
@@ -72,6 +76,7 @@ LEVELS = {
     "spatial": Level(
         spatial_state.new_work,
         spatial.initial_state,
+        carried.spatial_state_at,
         spatial.observe,
         {
             "sdirk2": Method(new_memory, spatial.advance, spatial_methods.advance_fixed),

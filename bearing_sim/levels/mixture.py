@@ -12,14 +12,14 @@ def bore_torque(cage_speed, shaft_speed, params, lubrication):
     """
     radius = params.cage.inner_radius
     gap = radius - params.raceways.inner_radius
-    return cylinder_torque(shaft_speed - cage_speed, radius, gap, params.cage.width, lubrication.mixture_density, lubrication.viscosity)
+    return cylinder_torque(shaft_speed - cage_speed, radius, gap, params.cage.inner_width, lubrication.mixture_density, lubrication.viscosity)
 
 
 @kernel
 def mixture_torque(cage_speed, shaft_speed, params, lubrication):
     """Return the torque of the mixture on the cage [N m] and its slope by cage speed [N m s].
 
-    On the outer cylindrical face between the lands, on the bore, which the inner ring drives, and on both end faces
+    On the outer cylindrical face and on the bore, which the inner ring drives, both as far as they run on no lands, and on both end faces
     (Deng 2017, section 3.1.4).
 
     Parameters
@@ -29,7 +29,7 @@ def mixture_torque(cage_speed, shaft_speed, params, lubrication):
     """
     cage, density, viscosity = params.cage, lubrication.mixture_density, lubrication.viscosity
     outer_gap = params.raceways.low_radius - cage.outer_radius
-    outside, outside_slope = cylinder_torque(-cage_speed, cage.outer_radius, outer_gap, cage.width - cage.guide_width, density, viscosity)
+    outside, outside_slope = cylinder_torque(-cage_speed, cage.outer_radius, outer_gap, cage.outer_width, density, viscosity)
     inside, inside_slope = bore_torque(cage_speed, shaft_speed, params, lubrication)
     faces, faces_slope = end_face_torque(cage_speed, cage.outer_radius, cage.inner_radius, density, viscosity)
     return outside + inside - faces, -outside_slope - inside_slope - faces_slope

@@ -51,7 +51,9 @@ def initial_state(params: Params, work, shaft_speed, load_y, load_z):
     slip.balance_loads(0.0, course[slip.OMEGA], load_y, load_z, params, balance)
     state = np.zeros(2 * BORDER + BLOCK * count)
     state[RING_Y], state[RING_Z] = balance.ring
-    state[CAGE_Y] = _FIRST_ECCENTRICITY * params.cage.guide_clearance
+    turning = params.cage.guidance.turning
+    state[CAGE_Y] = turning * state[RING_Y] + _FIRST_ECCENTRICITY * params.cage.guide_clearance
+    state[CAGE_Z] = turning * state[RING_Z]
     state[OMEGA] = course[slip.OMEGA]
     radius, angle, _, orbital_speed, spin = state[ROLLERS:].reshape(BLOCK, count)
     radius[:] = balance.loads[LOAD.radius]
@@ -187,7 +189,9 @@ def observe(t, y, model, work, interval, previous, row, rate):
     observe_course(t, y[THETA], y[OMEGA], inner, outer, model, interval, previous, row)
     row[COLUMN.ring_y], row[COLUMN.ring_z] = y[RING_Y], y[RING_Z]
     row[COLUMN.cage_y], row[COLUMN.cage_z] = y[CAGE_Y], y[CAGE_Z]
-    row[COLUMN.land_eccentricity] = math.hypot(y[CAGE_Y], y[CAGE_Z]) / model.params.cage.guide_clearance
+    turning = model.params.cage.guidance.turning
+    eccentricity = math.hypot(y[CAGE_Y] - turning * y[RING_Y], y[CAGE_Z] - turning * y[RING_Z])
+    row[COLUMN.land_eccentricity] = eccentricity / model.params.cage.guide_clearance
     write_powers(planar_powers(y, shaft_speed_at(t, model.drive), model, work), row)
     for j in range(count):
         first, block, lane = SCALARS + j, j // LANES, j % LANES

@@ -5,7 +5,8 @@ contour's slope, by which an outer load pushes along the orbit what it is presse
 false``, Deng's form) nothing pays for the contour's squeeze, and the books are open by the sum of Q_e R_e' phi'.
 
 The film of the guide land pushes the cage across its eccentricity, and so feeds the whirl out of a rotation that pays no
-torque for it; ``land_power`` is net of that, what the land takes from the cage altogether.
+torque for it; ``land_power`` is net of that, what the land takes from the cage altogether.  Lands of the inner ring turn with the
+shaft, which pays for what they take and for what they give the cage.
 """
 
 import math
@@ -16,7 +17,7 @@ from bearing_sim.kernels.traction import CONTACT
 from bearing_sim.levels.growth import inner_growth
 from bearing_sim.levels.planar_algebra import BORDER
 from bearing_sim.levels.planar_border import LAND_SLIDING
-from bearing_sim.levels.planar_land import land_contact, land_film
+from bearing_sim.levels.planar_land import land_contact, land_film, place_in_lands
 from bearing_sim.levels.planar_state import CAGE_Y, CAGE_Z, OMEGA, ROLLER
 from bearing_sim.levels.power import Powers, elastic_force, shaft_traction_power, sliding_power, windage_powers
 
@@ -70,23 +71,49 @@ def _pockets(y, params, rows):
 
 
 @kernel
-def land_powers(y, model):
-    """Return the power that film and friction of the guide land take from the cage, and what damping takes where it touches [W]."""
-    cage = model.params.cage
-    omega, y_speed, z_speed = y[OMEGA], y[BORDER + CAGE_Y], y[BORDER + CAGE_Z]
-    film = land_film(y, model.params, model.lubrication.viscosity)
-    lost = -(film[0] * y_speed + film[1] * z_speed + film[2] * omega)
-    touching = land_contact(y, model.params)
-    contact, eccentricity = touching[0], touching[3]
+def _guiding_pockets(y, params, rows):
+    """Return what pockets that guide the cage lose outwards and inwards, as `_pockets` does along the orbit [W]."""
+    cage, omega = params.cage, y[OMEGA]
+    lost, damped = 0.0, 0.0
+    for j in range(params.rollers.count):
+        block, lane = j // LANES, j % LANES
+        offset, rate, force = rows[block, ROLLER.guide_offset, lane], rows[block, ROLLER.guide_rate, lane], -rows[block, ROLLER.guide_force, lane]
+        side = params.rollers.radius if force >= 0.0 else -params.rollers.radius
+        # the wall's own sliding speed counts against the orbit
+        sliding = rows[block, ROLLER.spin, lane] * side + omega * side - rows[block, ROLLER.pocket_rate, lane]
+        film = cage.pocket_damping * rate
+        wall = math.copysign(elastic_force(abs(offset) - cage.guide_clearance, params.raceways.stiffness), offset)
+        lost += force * rows[block, ROLLER.pocket_friction, lane] * sliding + film * rate
+        damped += (force - film - wall) * rate
+    return lost, damped
+
+
+@kernel
+def land_powers(y, shaft_speed, model):
+    """Return what the shaft puts into guide lands that turn with it, what film and friction of the lands lose, and what damping takes
+    where they touch [W].
+
+    Force and torque on the cage have their reaction on the ring's surface, so that the ring's torque about its own centre is that on
+    the cage and the force's moment across the eccentricity, the other way.
+    """
+    params = model.params
+    cage = params.cage
+    land = place_in_lands(y, shaft_speed, cage)
+    film = land_film(land, cage, model.lubrication.viscosity)
+    against_ring = film[2] + land.y * film[1] - land.z * film[0]
+    driven = against_ring * land.ring_speed
+    lost = driven - (film[0] * land.y_speed + film[1] * land.z_speed + film[2] * land.cage_speed)
+    contact, _, _, eccentricity, _ = land_contact(land, params)
     depth = eccentricity - (cage.guide_clearance - cage.land_film)
     if depth <= 0.0:
-        return lost, 0.0
-    n_y, n_z = y[CAGE_Y] / eccentricity, y[CAGE_Z] / eccentricity
-    approach = n_y * y_speed + n_z * z_speed
-    surface = omega * cage.guide_radius
-    friction = cage.land_friction * surface / math.sqrt(surface * surface + LAND_SLIDING * LAND_SLIDING)
-    lost += friction * contact * (surface + n_y * z_speed - n_z * y_speed)
-    return lost, (contact - elastic_force(depth, model.params.raceways.stiffness)) * approach
+        return driven, lost, 0.0
+    n_y, n_z = land.y / eccentricity, land.z / eccentricity
+    approach, along = n_y * land.y_speed + n_z * land.z_speed, n_y * land.z_speed - n_z * land.y_speed
+    side, surface = 1.0 - 2.0 * cage.guidance.turning, (land.cage_speed - land.ring_speed) * cage.guide_radius
+    rubbing = contact * cage.land_friction * surface / math.sqrt(surface * surface + LAND_SLIDING * LAND_SLIDING)
+    driven -= rubbing * (cage.guide_radius + side * eccentricity) * land.ring_speed
+    lost += rubbing * (surface + side * (along - eccentricity * land.ring_speed))
+    return driven, lost, (contact - elastic_force(depth, params.raceways.stiffness)) * approach
 
 
 @kernel
@@ -102,9 +129,14 @@ def planar_powers(y, shaft_speed, model, work):
     params, contacts, count = model.params, work.contacts, model.params.rollers.count
     bore, windage = windage_powers(y[OMEGA], shaft_speed, params, model.lubrication)
     pocket, walls = _pockets(y, params, work.rollers)
-    land, touching = land_powers(y, model)
+    driven, land, touching = 0.0, 0.0, 0.0
+    if params.cage.guidance.lands:
+        driven, land, touching = land_powers(y, shaft_speed, model)
+    else:
+        guided, touching = _guiding_pockets(y, params, work.rollers)
+        pocket += guided
     return Powers(
-        shaft_traction_power(contacts, count, shaft_speed, params.raceways.inner_radius + inner_growth(shaft_speed, model)) + bore,
+        shaft_traction_power(contacts, count, shaft_speed, params.raceways.inner_radius + inner_growth(shaft_speed, model)) + bore + driven,
         sliding_power(contacts, 0, count),
         sliding_power(contacts, work.rollers.shape[0], count),
         _churning(work.rollers, count),

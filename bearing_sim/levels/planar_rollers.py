@@ -18,7 +18,8 @@ from bearing_sim.levels.growth import inner_growth
 from bearing_sim.levels.inputs import shaft_speed_at
 from bearing_sim.levels.planar_algebra import BORDER
 from bearing_sim.levels.planar_border import border_accelerations
-from bearing_sim.levels.planar_slopes import roller_slopes
+from bearing_sim.levels.planar_guide import guide_accelerations, guide_forces, guide_slopes
+from bearing_sim.levels.planar_slopes import pumping_slopes, roller_slopes
 from bearing_sim.levels.planar_state import CAGE_Y, CAGE_Z, OMEGA, RING_Y, RING_Z, ROLLER, THETA, collect_rates, spread_state
 
 
@@ -202,14 +203,23 @@ def equations(t, y, model, work, rate, with_jacobian):
     for k in range(BORDER):
         rate[k] = y[BORDER + k]
     cage_cosine, cage_sine = math.cos(y[THETA]), math.sin(y[THETA])
-    _place(y, shaft_speed, params.raceways.inner_radius + inner_growth(shaft_speed, model), params, rows, contacts)
+    inner_radius = params.raceways.inner_radius + inner_growth(shaft_speed, model)
+    _place(y, shaft_speed, inner_radius, params, rows, contacts)
     normal_forces(params, contacts)
     traction(contacts, model.lubrication.inner, model.lubrication.outer)
     if model.lubrication.pumping.on:
         pump(contacts, model.lubrication.pumping)
     _pocket_forces(y, cage_cosine, cage_sine, params, rows)
     _accelerate(y, churning, model, rows, contacts, rate)
+    pockets_guide = not params.cage.guidance.lands
+    if pockets_guide:
+        guide_forces(y, params, rows)
+        guide_accelerations(params, rows, rate)
     if with_jacobian:
-        roller_slopes(y, churning, params, rows, contacts, work.slopes)
+        roller_slopes(y, inner_radius, churning, params, rows, contacts, work.slopes)
+        if model.lubrication.pumping.on:
+            pumping_slopes(y, inner_radius, params, rows, contacts, work.slopes)
+        if pockets_guide:
+            guide_slopes(y, params, rows, work.slopes)
     collect_rates(y, params.rollers.count, rows, rate)
     return True

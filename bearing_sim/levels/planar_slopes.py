@@ -50,7 +50,7 @@ def _store_ring(block, slopes, first, scale, by_apart_r, by_apart_t, by_speed_r,
 
 
 @kernel
-def _inner_slopes(y, params, rows, contacts, slopes):
+def _inner_slopes(y, inner_radius, params, rows, contacts, slopes):
     """Write all rows of ring and rollers as far as the inner contact makes them."""
     for block in range(rows.shape[0]):
         cosine, sine = load(rows, block, ROLLER.cosine), load(rows, block, ROLLER.sine)
@@ -71,7 +71,7 @@ def _inner_slopes(y, params, rows, contacts, slopes):
         f_r2, f_t2 = _in_frame(q_2, t_2, turn_2, n_r, n_t, radial, along)
         f_r3, f_t3 = q_3 * n_r - t_3 * n_t, q_3 * n_t + t_3 * n_r
         f_r4, f_t4 = q_4 * n_r - t_4 * n_t, q_4 * n_t + t_4 * n_r
-        t_rolling = 0.5 * by_rolling * (params.rollers.radius - params.raceways.inner_radius)
+        t_rolling = 0.5 * by_rolling * (params.rollers.radius - inner_radius)
         t_spin = (0.5 * by_rolling - by_sliding) * params.rollers.radius
         r_0, r_1, r_2, r_3 = _by_own(f_r1, f_r2, f_r3, f_r4, y, cosine, sine, radius, orbital_speed)
         a_0, a_1, a_2, a_3 = _by_own(f_t1, f_t2, f_t3, f_t4, y, cosine, sine, radius, orbital_speed)
@@ -238,18 +238,95 @@ def _cage_slopes(block, params, rows, slopes, own, at, with_speed, cage_t, lever
 
 
 @kernel
-def roller_slopes(y, churning, params, rows, contacts, slopes):
+def roller_slopes(y, inner_radius, churning, params, rows, contacts, slopes):
     """Write all derivatives through the rollers; their forces have been written.
 
     Parameters
     ----------
     y : state.
+    inner_radius : R_i, grown [m].
     churning : drag of the mixture on a roller, its slope by the roller's speed and the slope's by cage speed.
     params : of the bearing.
     rows : of the rollers, see `bearing_sim.levels.planar_state.ROLLER`.
     contacts : see `bearing_sim.kernels.traction.CONTACT`.
     slopes : takes the derivatives.
     """
-    _inner_slopes(y, params, rows, contacts, slopes)
+    _inner_slopes(y, inner_radius, params, rows, contacts, slopes)
     _outer_slopes(y, churning, params, rows, contacts, slopes)
     _pocket_slopes(y, params, rows, slopes)
+
+
+@template
+def _add_ring(block, slopes, first, scale, by_apart_r, by_apart_t, by_speed_r, by_speed_t, cosine, sine):
+    """Add to the columns by the ring's position and speed; see `_store_ring`."""
+    _add(block, slopes, first + AT_POSITIONS + RING_Y, scale * (by_apart_t * sine - by_apart_r * cosine))
+    _add(block, slopes, first + AT_POSITIONS + RING_Z, -scale * (by_apart_r * sine + by_apart_t * cosine))
+    _add(block, slopes, first + AT_SPEEDS + RING_Y, scale * (by_speed_t * sine - by_speed_r * cosine))
+    _add(block, slopes, first + AT_SPEEDS + RING_Z, -scale * (by_speed_r * sine + by_speed_t * cosine))
+
+
+@kernel
+def _inner_pumping(y, inner_radius, params, rows, contacts, slopes):
+    """Add what the inner contacts pump to the rows of ring and rollers."""
+    push, per_mass = 1.0 - 2.0 * params.raceways.diameter_ratio, 1.0 / params.rollers.mass
+    per_inertia = -params.rollers.radius / params.rollers.inertia
+    for block in range(rows.shape[0]):
+        cosine, sine = load(rows, block, ROLLER.cosine), load(rows, block, ROLLER.sine)
+        n_r, n_t, inverse = load(rows, block, ROLLER.normal_r), load(rows, block, ROLLER.normal_t), load(rows, block, ROLLER.inverse_distance)
+        radius, orbital_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.orbital_speed)
+        by_load, by_rolling = load(contacts, block, CONTACT.pumping_by_load), 0.5 * load(contacts, block, CONTACT.pumping_by_rolling)
+        stiffness, damping = by_load * load(contacts, block, CONTACT.stiffness), by_load * load(contacts, block, CONTACT.damping)
+        passing = damping * load(rows, block, ROLLER.speed_tangent)
+        turn_1, turn_2 = -n_t * inverse, n_r * inverse
+        p_1, p_2 = -(stiffness * n_r + turn_1 * passing), -(stiffness * n_t + turn_2 * passing)
+        p_3, p_4 = -(damping * n_r), -(damping * n_t)
+        pushed = push * load(contacts, block, CONTACT.pumping)
+        radial, along = -(pushed * n_t), pushed * n_r
+        f_r1, f_t1 = -(push * p_1 * n_t) - turn_1 * along, push * p_1 * n_r + turn_1 * radial
+        f_r2, f_t2 = -(push * p_2 * n_t) - turn_2 * along, push * p_2 * n_r + turn_2 * radial
+        f_r3, f_t3, f_r4, f_t4 = -(push * p_3 * n_t), push * p_3 * n_r, -(push * p_4 * n_t), push * p_4 * n_r
+        by_orbit, by_spin = by_rolling * (params.rollers.radius - inner_radius), by_rolling * params.rollers.radius
+        r_0, r_1, r_2, r_3 = _by_own(f_r1, f_r2, f_r3, f_r4, y, cosine, sine, radius, orbital_speed)
+        a_0, a_1, a_2, a_3 = _by_own(f_t1, f_t2, f_t3, f_t4, y, cosine, sine, radius, orbital_speed)
+        s_0, s_1, s_2, s_3 = _by_own(p_1, p_2, p_3, p_4, y, cosine, sine, radius, orbital_speed)
+        r_3, a_3 = r_3 - push * by_orbit * n_t, a_3 + push * by_orbit * n_r
+        r_4, a_4 = -(push * by_spin * n_t), push * by_spin * n_r
+        per_lever = per_mass / radius
+        _add_own(block, slopes, _RADIAL, per_mass, (r_0, r_1, r_2, r_3), per_mass * r_4)
+        _add_own(block, slopes, _ORBITAL, per_lever, (a_0, a_1, a_2, a_3), per_lever * a_4)
+        _add_own(block, slopes, _SPINNING, per_inertia, (s_0, s_1, s_2, s_3 + by_orbit), per_inertia * by_spin)
+        _add_ring(block, slopes, _RADIAL, per_mass, f_r1, f_r2, f_r3, f_r4, cosine, sine)
+        _add_ring(block, slopes, _ORBITAL, per_lever, f_t1, f_t2, f_t3, f_t4, cosine, sine)
+        _add_ring(block, slopes, _SPINNING, per_inertia, p_1, p_2, p_3, p_4, cosine, sine)
+        scale = load(rows, block, ROLLER.present) * (-1.0 / params.ring.mass)
+        c, s = scale * cosine, scale * sine
+        r_1, a_1 = r_1 - along, a_1 + radial
+        ring_y, ring_z = _PASSED + LOCAL * RING_Y, _PASSED + LOCAL * RING_Z
+        _add_own(block, slopes, ring_y, 1.0, (r_0 * c - a_0 * s, r_1 * c - a_1 * s, r_2 * c - a_2 * s, r_3 * c - a_3 * s), r_4 * c - a_4 * s)
+        _add_own(block, slopes, ring_z, 1.0, (r_0 * s + a_0 * c, r_1 * s + a_1 * c, r_2 * s + a_2 * c, r_3 * s + a_3 * c), r_4 * s + a_4 * c)
+        _add_ring(block, slopes, ring_y, 1.0, f_r1 * c - f_t1 * s, f_r2 * c - f_t2 * s, f_r3 * c - f_t3 * s, f_r4 * c - f_t4 * s, cosine, sine)
+        _add_ring(block, slopes, ring_z, 1.0, f_r1 * s + f_t1 * c, f_r2 * s + f_t2 * c, f_r3 * s + f_t3 * c, f_r4 * s + f_t4 * c, cosine, sine)
+
+
+@kernel
+def _outer_pumping(params, rows, contacts, slopes):
+    """Add what the outer contacts pump to the rows of the rollers."""
+    push, roller_radius = 1.0 + 2.0 * params.raceways.diameter_ratio, params.rollers.radius
+    per_mass, per_inertia = -push / params.rollers.mass, -roller_radius / params.rollers.inertia
+    for block in range(rows.shape[0]):
+        outer, radius, orbital_speed = rows.shape[0] + block, load(rows, block, ROLLER.radius), load(rows, block, ROLLER.orbital_speed)
+        by_load, by_rolling = load(contacts, outer, CONTACT.pumping_by_load), 0.5 * load(contacts, outer, CONTACT.pumping_by_rolling)
+        stiffness, damping = by_load * load(contacts, outer, CONTACT.stiffness), by_load * load(contacts, outer, CONTACT.damping)
+        slope, curvature = load(rows, block, ROLLER.slope), load(rows, block, ROLLER.curvature)
+        by_angle, by_orbit = -(stiffness * slope) - damping * curvature * orbital_speed, by_rolling * (radius + 2.0 * roller_radius)
+        columns = (stiffness + by_rolling * orbital_speed, by_angle, damping, by_orbit - damping * slope)
+        per_lever, by_spin = per_mass / radius, by_rolling * roller_radius
+        _add_own(block, slopes, _ORBITAL, per_lever, columns, per_lever * by_spin)
+        _add_own(block, slopes, _SPINNING, per_inertia, columns, per_inertia * by_spin)
+
+
+@kernel
+def pumping_slopes(y, inner_radius, params, rows, contacts, slopes):
+    """Add what the oil pumped back does to the derivatives of `roller_slopes`, which have been written; parameters as there."""
+    _inner_pumping(y, inner_radius, params, rows, contacts, slopes)
+    _outer_pumping(params, rows, contacts, slopes)

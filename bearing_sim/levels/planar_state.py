@@ -60,6 +60,11 @@ class RollerRow(NamedTuple):
     contour: int = 32  # from here on, steps of a prediction: R_e where the roller will be [m]
     known_radius: int = 33  # what its stage builds on [m, m/s]
     known_speed: int = 34
+    guide_offset: int = 35  # from here on pockets that guide: of the roller outwards from the pocket's middle [m]
+    guide_rate: int = 36  # its time derivative [m/s]
+    guide_force: int = 37  # of the pocket on the roller, outwards from the cage [N]
+    guide_stiffness: int = 38  # slopes of the force against the offset [N/m, N s/m]
+    guide_damping: int = 39
 
 
 ROLLER = RollerRow()

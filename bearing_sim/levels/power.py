@@ -5,7 +5,8 @@ At each instant, with exactly the forces of the level's equations of motion,
     shaft_power + (power of the radial load) = sum of the losses + d(kinetic + elastic energy)/dt.
 
 A loss is force times sliding speed, or force times rate of approach.  The shaft puts power in through the tractions on the inner
-ring and through the mixture in the cage's bore; what the ring and the shaft do to the mixture elsewhere is outside the model.
+ring, through the mixture in the cage's bore, and through guide lands where they are the inner ring's; what the ring and the shaft do to
+the mixture elsewhere is outside the model.
 """
 
 from typing import NamedTuple

@@ -162,7 +162,7 @@ def _churning(cage_speed, model):
 def _cage_torque(cage_speed, shaft_speed, model):
     """Torque of guide lands and mixture on the cage body [N m] and its slope by cage speed."""
     cage = model.params.cage
-    lands, lands_slope = land_torque(cage_speed, 0.0, cage.assumed_eccentricity, model.lubrication.viscosity, cage)
+    lands, lands_slope = land_torque(cage_speed, cage.guidance.turning * shaft_speed, cage.assumed_eccentricity, model.lubrication.viscosity, cage)
     mixture, mixture_slope = mixture_torque(cage_speed, shaft_speed, model.params, model.lubrication)
     return lands + mixture, lands_slope + mixture_slope
 

@@ -24,7 +24,9 @@ def slip_powers(cage_speed, cage_acceleration, spins, shaft_speed, model, work):
     model, work : of the level; the right-hand side at that state has been evaluated into ``work``.
     """
     params, lubrication, contacts, loads = model.params, model.lubrication, work.contacts, work.loads
-    rollers, count = params.rollers, params.rollers.count
+    rollers, count, cage = params.rollers, params.rollers.count, params.cage
+    guide_speed = cage.guidance.turning * shaft_speed
+    land = land_torque(cage_speed, guide_speed, cage.assumed_eccentricity, lubrication.viscosity, cage)[0]
     bore, windage = windage_powers(cage_speed, shaft_speed, params, lubrication)
     drag = churning_force(
         params.raceways.pitch_radius * cage_speed, lubrication.mixture_density, lubrication.viscosity, 2.0 * rollers.radius, rollers.length
@@ -34,16 +36,14 @@ def slip_powers(cage_speed, cage_acceleration, spins, shaft_speed, model, work):
         radius = loads[LOAD.radius, j]
         churning += drag * radius * cage_speed
         force = abs(rollers.mass * radius * cage_acceleration - work.tangential[j])
-        pocket += (
-            force * pocket_friction(spins[j], params.cage.pocket_friction) * rollers.radius * (spins[j] + params.cage.pocket_reaction * cage_speed)
-        )
+        pocket += force * pocket_friction(spins[j], cage.pocket_friction) * rollers.radius * (spins[j] + cage.pocket_reaction * cage_speed)
     return Powers(
-        shaft_traction_power(contacts, count, shaft_speed, params.raceways.inner_radius + work.growth[0]) + bore,
+        shaft_traction_power(contacts, count, shaft_speed, params.raceways.inner_radius + work.growth[0]) + bore + land * guide_speed,
         sliding_power(contacts, 0, count),
         sliding_power(contacts, contacts.shape[0] // 2, count),
         churning,
         windage,
-        -land_torque(cage_speed, 0.0, params.cage.assumed_eccentricity, lubrication.viscosity, params.cage)[0] * cage_speed,
+        land * (guide_speed - cage_speed),
         pocket,
         0.0,
     )

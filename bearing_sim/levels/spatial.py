@@ -24,10 +24,11 @@ from bearing_sim.levels.pitch import FIFTH_PITCH, pitch_step
 from bearing_sim.levels.planar import FAR, NEAR, TURNING, count_iterations, nothing
 from bearing_sim.levels.power import write_powers
 from bearing_sim.levels.spatial_algebra import BLOCK, BORDER
-from bearing_sim.levels.spatial_life import average_slices
+from bearing_sim.levels.spatial_life import average_slices, slice_pressures
 from bearing_sim.levels.spatial_power import spatial_powers
 from bearing_sim.levels.spatial_prediction import predict
 from bearing_sim.levels.spatial_slices import SLICED
+from bearing_sim.levels.spatial_start import balance_by_slices, has_slices_of_its_own
 from bearing_sim.levels.spatial_state import (
     CAGE_TILT_Y,
     CAGE_TILT_Z,
@@ -55,7 +56,10 @@ _FIRST_ECCENTRICITY = 0.3  # as at level `planar`
 
 
 def initial_state(params: Params, work, shaft_speed, load_y, load_z):
-    """Return ideal rolling with all rollers in the middle of their pockets, halfway between the tilts of both raceways.
+    """Return ideal rolling with all rollers in the middle of their pockets and in quasi-static balance.
+
+    Where crown, moment or misalignment tell slices apart, the balance is that by slices, and rollers move as it moves with the cage;
+    elsewhere it is the start of level ``planar``, to the last digit.
 
     Parameters
     ----------
@@ -64,20 +68,24 @@ def initial_state(params: Params, work, shaft_speed, load_y, load_z):
     """
     count = params.rollers.count
     balance, course = slip.new_work(params), slip.initial_state(params, None, shaft_speed, load_y, load_z)
+    balance.growth[0] = params.growth.by_square_speed * shaft_speed * shaft_speed  # as at level `planar`
     inner, outer = slip.equivalent_loads(0.0, course[slip.OMEGA], load_y, load_z, params, balance)
     work.load_means[:] = inner**ROTATING_EXPONENT, outer**STATIONARY_EXPONENT
     slip.balance_loads(0.0, course[slip.OMEGA], load_y, load_z, params, balance)
     state = np.zeros(2 * BORDER + BLOCK * count)
     state[RING_Y], state[RING_Z] = balance.ring
-    state[RING_TILT_Y], state[RING_TILT_Z] = params.tilts.misalignment_y, params.tilts.misalignment_z
-    state[CAGE_Y] = _FIRST_ECCENTRICITY * params.cage.guide_clearance
     state[OMEGA] = course[slip.OMEGA]
     rollers = state[ROLLERS:].reshape(BLOCK, count)
     rollers[0] = balance.loads[LOAD.radius]
     rollers[PHI] = 2.0 * math.pi * np.arange(count) / count
-    rollers[TILT] = 0.5 * (params.tilts.misalignment_y * np.cos(rollers[PHI]) + params.tilts.misalignment_z * np.sin(rollers[PHI]))
     rollers[PHI_SPEED] = course[slip.OMEGA]
     rollers[SPIN] = course[slip.SPIN :]
+    if has_slices_of_its_own(params):
+        balance_by_slices(params, course[slip.OMEGA], (load_y, load_z), balance.growth[0], state)
+    turning = params.cage.guidance.turning
+    state[CAGE_Y] = turning * state[RING_Y] + _FIRST_ECCENTRICITY * params.cage.guide_clearance
+    state[CAGE_Z] = turning * state[RING_Z]
+    state[CAGE_TILT_Y], state[CAGE_TILT_Z] = turning * state[RING_TILT_Y], turning * state[RING_TILT_Z]
     return state
 
 
@@ -177,7 +185,13 @@ def observe(t, y, model, work, interval, previous, row, rate):
     observe_life(rating_life_revolutions(inner, outer, life), by_slices, model, interval, previous, row)
     row[COLUMN.ring_y], row[COLUMN.ring_z] = y[RING_Y], y[RING_Z]
     row[COLUMN.cage_y], row[COLUMN.cage_z] = y[CAGE_Y], y[CAGE_Z]
-    row[COLUMN.land_eccentricity] = math.hypot(y[CAGE_Y], y[CAGE_Z]) / model.params.cage.guide_clearance
+    row[COLUMN.ring_tilt_y], row[COLUMN.ring_tilt_z] = y[RING_TILT_Y], y[RING_TILT_Z]
+    row[COLUMN.cage_tilt_y], row[COLUMN.cage_tilt_z] = y[CAGE_TILT_Y], y[CAGE_TILT_Z]
+    pressures = slice_pressures(model.params, work)
+    row[COLUMN.inner_pressure], row[COLUMN.outer_pressure], row[COLUMN.inner_edge_pressure], row[COLUMN.outer_edge_pressure] = pressures
+    turning = model.params.cage.guidance.turning
+    eccentricity = math.hypot(y[CAGE_Y] - turning * y[RING_Y], y[CAGE_Z] - turning * y[RING_Z])
+    row[COLUMN.land_eccentricity] = eccentricity / model.params.cage.guide_clearance
     write_powers(spatial_powers(y, shaft_speed_at(t, model.drive), model, work), row)
     for j in range(count):
         first, block, lane = SCALARS + j, j // LANES, j % LANES
@@ -191,6 +205,8 @@ def observe(t, y, model, work, interval, previous, row, rate):
         row[first + COLUMN.outer_load * count] = work.contacts[rows.shape[0] + block, SLICED.load, lane]
         row[first + COLUMN.orbital_speed * count] = rows[block, ROLLER.orbital_speed, lane]
         row[first + COLUMN.pocket_force * count] = rows[block, ROLLER.pocket_force, lane]
+        row[first + COLUMN.roller_tilt * count] = rows[block, ROLLER.tilt, lane]
+        row[first + COLUMN.roller_skew * count] = rows[block, ROLLER.skew, lane]
 
 
 @kernel

@@ -1,7 +1,7 @@
 """What acts on inner ring and cage besides the rollers: load, moment, guide lands, mixture, gyroscopic moments.
 
 Each of the two guide lands carries half of what both together would carry where that land stands; the cage's tilt sets them
-apart.  The law of a land is that of level ``planar``.
+apart, against the ring's where they are the inner ring's.  The law of a land is that of level ``planar``.
 """
 
 from typing import NamedTuple
@@ -36,7 +36,7 @@ class LandWork(NamedTuple):
 
 @kernel
 def place_land(y, place, land):
-    """Write the state of a planar cage that stands where the cage's axis passes a land.
+    """Write the state of a planar cage and ring that stand where their axes pass a land.
 
     Parameters
     ----------
@@ -44,6 +44,10 @@ def place_land(y, place, land):
     place : of the land along the axis [m].
     land : takes the planar border's positions and speeds, shape (10,) or longer.
     """
+    land[planar_state.RING_Y] = y[RING_Y] + place * y[RING_TILT_Y]
+    land[planar_state.RING_Z] = y[RING_Z] + place * y[RING_TILT_Z]
+    land[PLANAR + planar_state.RING_Y] = y[BORDER + RING_Y] + place * y[BORDER + RING_TILT_Y]
+    land[PLANAR + planar_state.RING_Z] = y[BORDER + RING_Z] + place * y[BORDER + RING_TILT_Z]
     land[planar_state.CAGE_Y] = y[CAGE_Y] + place * y[CAGE_TILT_Y]
     land[planar_state.CAGE_Z] = y[CAGE_Z] + place * y[CAGE_TILT_Z]
     land[planar_state.THETA] = y[THETA]
@@ -78,20 +82,28 @@ def border_accelerations(t, y, model, work, rate, with_jacobian):
     ring_precession = free * tilts.gyroscopic * tilts.ring_polar_inertia * shaft_speed_at(t, model.drive)
     rate[BORDER + RING_TILT_Y] = free * tilts.moment_y - ring_precession * y[BORDER + RING_TILT_Z]
     rate[BORDER + RING_TILT_Z] = free * tilts.moment_z + ring_precession * y[BORDER + RING_TILT_Y]
+    on_ring = params.cage.guidance.turning > 0.0
+    ring_lever = 0.5 * place * params.ring.mass * free
+    if on_ring:
+        rate[BORDER + RING_TILT_Y] += ring_lever * (near[PLANAR + planar_state.RING_Y] - far[PLANAR + planar_state.RING_Y])
+        rate[BORDER + RING_TILT_Z] += ring_lever * (near[PLANAR + planar_state.RING_Z] - far[PLANAR + planar_state.RING_Z])
     if not with_jacobian:
         return
     own = work.border_own
-    _land_slopes(place, lever, work.land_own, own)
+    _cage_slopes(place, lever, work.land_own, own)
+    own[RING_TILT_Y, BORDER + RING_TILT_Z], own[RING_TILT_Z, BORDER + RING_TILT_Y] = 0.0, 0.0
+    if on_ring:
+        _ring_slopes(place, lever, ring_lever, work.land_own, own)
     own[CAGE_TILT_Y, BORDER + CAGE_TILT_Z] -= precession
     own[CAGE_TILT_Z, BORDER + CAGE_TILT_Y] += precession
     own[CAGE_TILT_Y, OMEGA] -= cage_moment * y[BORDER + CAGE_TILT_Z]
     own[CAGE_TILT_Z, OMEGA] += cage_moment * y[BORDER + CAGE_TILT_Y]
-    own[RING_TILT_Y, BORDER + RING_TILT_Z] = -ring_precession
-    own[RING_TILT_Z, BORDER + RING_TILT_Y] = ring_precession
+    own[RING_TILT_Y, BORDER + RING_TILT_Z] -= ring_precession
+    own[RING_TILT_Z, BORDER + RING_TILT_Y] += ring_precession
 
 
 @kernel
-def _land_slopes(place, lever, lands, own):
+def _cage_slopes(place, lever, lands, own):
     """Write the derivatives of the cage's accelerations by its positions and speeds from those of both lands."""
     for which in range(2):
         first, planar_first = which * BORDER, which * PLANAR
@@ -111,3 +123,35 @@ def _land_slopes(place, lever, lands, own):
                 if column < 2:
                     own[CAGE_Y + row, first + CAGE_TILT_Y + column] = 0.5 * place * apart
                     own[CAGE_TILT_Y + row, first + CAGE_TILT_Y + column] = 2.0 * lever * place * mean
+
+
+@kernel
+def _ring_slopes(place, lever, ring_lever, lands, own):
+    """Write what the inner ring's motion does to the cage in its lands, and what both motions do to the ring."""
+    for which in range(2):
+        first, planar_first = which * BORDER, which * PLANAR
+        for axis in range(2):
+            for other in range(2):
+                _pair(CAGE_Y + axis, CAGE_TILT_Y + axis, planar_state.CAGE_Y + axis, lever,
+                      first + RING_Y + other, first + RING_TILT_Y + other, planar_first + planar_state.RING_Y + other, place, lands, own)  # fmt: skip
+                _pair(RING_Y + axis, RING_TILT_Y + axis, planar_state.RING_Y + axis, ring_lever,
+                      first + RING_Y + other, first + RING_TILT_Y + other, planar_first + planar_state.RING_Y + other, place, lands, own)  # fmt: skip
+                _pair(RING_Y + axis, RING_TILT_Y + axis, planar_state.RING_Y + axis, ring_lever,
+                      first + CAGE_Y + other, first + CAGE_TILT_Y + other, planar_first + planar_state.CAGE_Y + other, place, lands, own)  # fmt: skip
+            near, far = lands[0, planar_state.THETA, planar_first + axis], lands[1, planar_state.THETA, planar_first + axis]
+            own[THETA, first + RING_Y + axis] = 0.5 * (near + far)
+            own[THETA, first + RING_TILT_Y + axis] = 0.5 * place * (near - far)
+            near = lands[0, planar_state.RING_Y + axis, planar_first + planar_state.THETA]
+            far = lands[1, planar_state.RING_Y + axis, planar_first + planar_state.THETA]
+            own[RING_Y + axis, first + THETA] = 0.5 * (near + far)
+            own[RING_TILT_Y + axis, first + THETA] = ring_lever * (near - far)
+
+
+@kernel
+def _pair(row, tilt_row, planar_row, lever, column, tilt_column, planar_column, place, lands, own):
+    """Write the derivatives of a body's acceleration and tilting by a body's place and tilt, from those of both lands."""
+    near, far = lands[0, planar_row, planar_column], lands[1, planar_row, planar_column]
+    own[row, column] = 0.5 * (near + far)
+    own[row, tilt_column] = 0.5 * place * (near - far)
+    own[tilt_row, column] = lever * (near - far)
+    own[tilt_row, tilt_column] = lever * place * (near + far)

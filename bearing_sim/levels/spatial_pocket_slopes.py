@@ -25,15 +25,15 @@ from bearing_sim.levels.spatial_state import (
     R,
 )
 
-_CHAIN = 40  # row of ``chain`` where this module's part begins
-_OFFSET, _RATE, _SKEW, _SKEW_RATE, _LEVER, _LEAN, _KINDS = range(7)  # what depends on a variable: the last two are arms of the cage
+CHAIN = 40  # row of ``chain`` where this module's part begins
+OFFSET, _RATE, INCLINATION, _SKEW_RATE, LEVER, LEAN, KINDS = range(7)  # what depends on a variable: the last two are arms of the cage
 _AT_Y, _AT_Z, _AT_TILT_Y, _AT_TILT_Z, _AT_THETA = range(9, 14)  # columns of the cage among the variables, its speeds are 5 further on
-_VARIABLES = 19
+VARIABLES = 19
 
 
 @template
 def _put(chain, variable, kind, value):
-    store(chain, 0, _CHAIN + _KINDS * variable + kind, value)
+    store(chain, 0, CHAIN + KINDS * variable + kind, value)
 
 
 @kernel
@@ -53,21 +53,21 @@ def _variables(block, y, rows, chain):
     rise = radial_speed * c - radius * s * turning
     outwards, along = tilt * c - skew * s, tilt * s + skew * c
     inclining = tilt_speed * c - skew_speed * s - turning * along
-    _put(chain, R, _OFFSET, s)
+    _put(chain, R, OFFSET, s)
     _put(chain, R, _RATE, c * turning)
-    _put(chain, R, _LEVER, c)
-    _put(chain, PHI, _OFFSET, radius * c)
+    _put(chain, R, LEVER, c)
+    _put(chain, PHI, OFFSET, radius * c)
     _put(chain, PHI, _RATE, rise)
-    _put(chain, PHI, _LEVER, -(radius * s))
-    _put(chain, PHI, _SKEW, outwards)
+    _put(chain, PHI, LEVER, -(radius * s))
+    _put(chain, PHI, INCLINATION, outwards)
     _put(chain, PHI, _SKEW_RATE, inclining)
-    _put(chain, PHI, _LEAN, -along)
-    _put(chain, TILT, _SKEW, s)
+    _put(chain, PHI, LEAN, -along)
+    _put(chain, TILT, INCLINATION, s)
     _put(chain, TILT, _SKEW_RATE, c * turning)
-    _put(chain, TILT, _LEAN, c)
-    _put(chain, SKEW, _SKEW, c)
+    _put(chain, TILT, LEAN, c)
+    _put(chain, SKEW, INCLINATION, c)
     _put(chain, SKEW, _SKEW_RATE, -(s * turning))
-    _put(chain, SKEW, _LEAN, -s)
+    _put(chain, SKEW, LEAN, -s)
     _put(chain, R_SPEED, _RATE, s)
     _put(chain, PHI_SPEED, _RATE, radius * c)
     _put(chain, PHI_SPEED, _SKEW_RATE, outwards)
@@ -75,7 +75,7 @@ def _variables(block, y, rows, chain):
     _put(chain, SKEW_SPEED, _SKEW_RATE, c)
     for tilted in range(2):
         y_column, z_column = (_AT_TILT_Y, _AT_TILT_Z) if tilted else (_AT_Y, _AT_Z)
-        kind, arm = (_SKEW, _LEAN) if tilted else (_OFFSET, _LEVER)
+        kind, arm = (INCLINATION, LEAN) if tilted else (OFFSET, LEVER)
         _put(chain, y_column, kind, p_s)
         _put(chain, z_column, kind, -p_c)
         _put(chain, y_column, kind + 1, omega * p_c)
@@ -84,12 +84,12 @@ def _variables(block, y, rows, chain):
         _put(chain, z_column, arm, -p_s)
         _put(chain, y_column + 5, kind + 1, p_s)
         _put(chain, z_column + 5, kind + 1, -p_c)
-    _put(chain, _AT_THETA, _OFFSET, cage_r - radius * c)
+    _put(chain, _AT_THETA, OFFSET, cage_r - radius * c)
     _put(chain, _AT_THETA, _RATE, speed_r + omega * cage_t - rise)
-    _put(chain, _AT_THETA, _LEVER, radius * s - cage_t)
-    _put(chain, _AT_THETA, _SKEW, lean_r - outwards)
+    _put(chain, _AT_THETA, LEVER, radius * s - cage_t)
+    _put(chain, _AT_THETA, INCLINATION, lean_r - outwards)
     _put(chain, _AT_THETA, _SKEW_RATE, turn_r + omega * lean_t - inclining)
-    _put(chain, _AT_THETA, _LEAN, along - lean_t)
+    _put(chain, _AT_THETA, LEAN, along - lean_t)
     _put(chain, _AT_THETA + 5, _RATE, cage_r - radius * c)
     _put(chain, _AT_THETA + 5, _SKEW_RATE, lean_r - outwards)
 
@@ -127,11 +127,11 @@ def _rows(block, y, params, rows, chain, slopes):
     lean = load(rows, block, ROLLER.pocket_lean) - friction * load(rows, block, ROLLER.pocket_skew)
     braking = friction * where_positive(force, 1.0, -1.0)
     per_mass, per_tilt, per_turn = present * (1.0 / cage.mass), present * (1.0 / tilts.cage_inertia), present * (1.0 / cage.inertia)
-    for k in range(_VARIABLES):
-        first = _CHAIN + _KINDS * k
-        offset, rate = load(chain, 0, first + _OFFSET), load(chain, 0, first + _RATE)
-        skew, skew_rate = load(chain, 0, first + _SKEW), load(chain, 0, first + _SKEW_RATE)
-        lever, leaning = load(chain, 0, first + _LEVER), load(chain, 0, first + _LEAN)
+    for k in range(VARIABLES):
+        first = CHAIN + KINDS * k
+        offset, rate = load(chain, 0, first + OFFSET), load(chain, 0, first + _RATE)
+        skew, skew_rate = load(chain, 0, first + INCLINATION), load(chain, 0, first + _SKEW_RATE)
+        lever, leaning = load(chain, 0, first + LEVER), load(chain, 0, first + LEAN)
         by_f = k_0 * offset + k_1 * skew + d_0 * rate + d_1 * skew_rate
         by_m = k_1 * offset + k_2 * skew + d_1 * rate + d_2 * skew_rate
         column = k

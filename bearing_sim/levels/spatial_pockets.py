@@ -6,7 +6,7 @@ that slices on both walls rub on both (friction goes with the force of all slice
 """
 
 from bearing_sim.kernels.cage import FRICTION_SPIN
-from bearing_sim.kernels.compilation import kernel
+from bearing_sim.kernels.compilation import kernel, template
 from bearing_sim.kernels.contact import EXPONENT
 from bearing_sim.kernels.lanes import larger, load, magnitude, spread, square_root, store, total, where_positive
 from bearing_sim.levels.spatial_algebra import BORDER
@@ -50,32 +50,32 @@ def place_in_pockets(block, y, cage_cosine, cage_sine, rows):
     store(rows, block, ROLLER.pocket_skew_rate, rate - lean_speed_t + omega * lean_r)
 
 
-@kernel
-def pocket_forces(block, params, rows):
-    """Write what the pockets do to a block of rollers that has been placed in them.
+@template
+def hold_slices(offset, rate, skew, skew_rate, clearance, stiffness, params):
+    """Return force and moment of two opposite walls, then sums over slices of the force's slopes by offset and by rate, each times 1, x, x^2.
 
     Parameters
     ----------
+    offset, rate : of the roller's middle from the middle between the walls [m], and its time derivative (lanes).
+    skew, skew_rate : inclination of the roller between them, and its time derivative (lanes).
+    clearance : to either wall [m].
+    stiffness : of the film within it [N/m].
     params : of the bearing.
-    rows : of the rollers, see `bearing_sim.levels.spatial_state.ROLLER`.
     """
-    cage, places = params.cage, params.slices.places
+    places, damping = params.slices.places, params.cage.pocket_damping
     count = places.shape[0]
-    offset, rate = load(rows, block, ROLLER.pocket_offset), load(rows, block, ROLLER.pocket_rate)
-    skew, skew_rate, spin = load(rows, block, ROLLER.pocket_skew), load(rows, block, ROLLER.pocket_skew_rate), load(rows, block, ROLLER.spin)
     width = 2.0 * places[count - 1] / (count - 1) if count > 1 else 0.0
     square = width * width * (count * count - 1) / 12.0  # mean of x^2 over slices
-    stiffness, damping = cage.pocket_stiffness, cage.pocket_damping
     k_0, k_1, k_2 = spread(stiffness), spread(0.0), spread(stiffness * square)
     d_0, d_1, d_2 = spread(damping), spread(0.0), spread(damping * square)
     force, moment = stiffness * offset + damping * rate, square * (stiffness * skew + damping * skew_rate)
-    excess = magnitude(offset) + magnitude(skew) * places[count - 1] - cage.pocket_clearance
+    excess = magnitude(offset) + magnitude(skew) * places[count - 1] - clearance
     if total(where_positive(excess, 1.0, 0.0)) > 0.0:
         part, film = params.raceways.stiffness / count, stiffness / count
         for k in range(count):
             x = places[k]
             place = offset + skew * x
-            side, excess = where_positive(place, 1.0, -1.0), magnitude(place) - cage.pocket_clearance
+            side, excess = where_positive(place, 1.0, -1.0), magnitude(place) - clearance
             wall, root, factor, pressed = slice_force(excess, (rate + skew_rate * x) * side, part, params.ring.contact_damping)
             more = side * (wall - film * larger(excess, 0.0))
             stiffer = EXPONENT * pressed * root * factor - where_positive(excess, film, 0.0)
@@ -88,6 +88,22 @@ def pocket_forces(block, params, rows):
             d_0 += damped
             d_1 += damped * x
             d_2 += damped * x * x
+    return force, moment, k_0, k_1, k_2, d_0, d_1, d_2
+
+
+@kernel
+def pocket_forces(block, params, rows):
+    """Write what the pockets do to a block of rollers that has been placed in them.
+
+    Parameters
+    ----------
+    params : of the bearing.
+    rows : of the rollers, see `bearing_sim.levels.spatial_state.ROLLER`.
+    """
+    cage, spin = params.cage, load(rows, block, ROLLER.spin)
+    offset, rate = load(rows, block, ROLLER.pocket_offset), load(rows, block, ROLLER.pocket_rate)
+    skew, skew_rate = load(rows, block, ROLLER.pocket_skew), load(rows, block, ROLLER.pocket_skew_rate)
+    force, moment, k_0, k_1, k_2, d_0, d_1, d_2 = hold_slices(offset, rate, skew, skew_rate, cage.pocket_clearance, cage.pocket_stiffness, params)
     smooth = 1.0 / square_root(spin * spin + FRICTION_SPIN * FRICTION_SPIN)
     store(rows, block, ROLLER.pocket_force, -force)
     store(rows, block, ROLLER.pocket_moment, -moment)

@@ -6,6 +6,7 @@ What a moment on the inner ring puts in stands beside the radial load's power: n
 
 from bearing_sim.kernels.compilation import kernel
 from bearing_sim.kernels.lanes import larger, load, magnitude, spread, total, where_positive
+from bearing_sim.levels.growth import inner_growth
 from bearing_sim.levels.planar_power import land_powers
 from bearing_sim.levels.power import Powers, windage_powers
 from bearing_sim.levels.spatial_algebra import BORDER
@@ -16,7 +17,7 @@ from bearing_sim.levels.spatial_state import CAGE_TILT_Y, CAGE_TILT_Z, CAGE_Y, C
 
 @kernel
 def _contact_powers(first, y, params, work):
-    """Return the power lost between one raceway and all rollers by sliding and by damping [W], and the tractions' sum [N]."""
+    """Return the power lost between one raceway and all rollers in the films and by damping [W], and what drives the raceway [N]."""
     contacts, places, crown = work.contacts, params.slices.places, params.slices.crown
     count = places.shape[0]
     part, damping = params.raceways.stiffness / count, params.ring.contact_damping
@@ -25,6 +26,8 @@ def _contact_powers(first, y, params, work):
         at, present = first + block, load(work.rollers, block, ROLLER.present)
         traction = load(contacts, at, SLICED.force)
         slid = traction * load(contacts, at, SLICED.sliding) + load(contacts, at, SLICED.skewing) * load(contacts, at, SLICED.sliding_lean)
+        pumped = load(contacts, at, SLICED.pumping)
+        slid += 2.0 * pumped * load(contacts, at, SLICED.rolling)
         lost = spread(0.0)
         for k in range(count):
             depth = load(contacts, at, SLICED.penetration) + load(contacts, at, SLICED.lean) * places[k] - crown[k]
@@ -33,15 +36,30 @@ def _contact_powers(first, y, params, work):
             lost += (q - root * larger(depth, 0.0)) * rate
         sliding += total(present * slid)
         damped += total(present * lost)
-        force += total(present * traction)
+        force += total(present * (traction + pumped))
     return sliding, damped, force
+
+
+@kernel
+def _kept_by_walls(offset, rate, skew, skew_rate, clearance, stiffness, params):
+    """Return the power that the film of two opposite walls damps and the power that film and walls keep [W]; parameters as of `hold_slices`."""
+    places = params.slices.places
+    count = places.shape[0]
+    film, kept = spread(0.0), spread(0.0)
+    for k in range(count):
+        place, speed = offset + skew * places[k], rate + skew_rate * places[k]
+        side, excess = where_positive(place, 1.0, -1.0), magnitude(place) - clearance
+        _, root, _, _ = slice_force(excess, 0.0 * excess, params.raceways.stiffness / count, 0.0)
+        spring = stiffness / count * (magnitude(place) - larger(excess, 0.0)) + root * larger(excess, 0.0)
+        film += params.cage.pocket_damping / count * speed * speed
+        kept += side * spring * speed
+    return film, kept
 
 
 @kernel
 def _pocket_powers(y, params, rows):
     """Return the power lost to pocket friction and film damping, and to damping of the walls' contact [W]."""
-    cage, places, omega = params.cage, params.slices.places, y[OMEGA]
-    count = places.shape[0]
+    cage, omega = params.cage, y[OMEGA]
     lost, damped = 0.0, 0.0
     for block in range(rows.shape[0]):
         present, spin, orbital_speed = load(rows, block, ROLLER.present), load(rows, block, ROLLER.spin), load(rows, block, ROLLER.orbital_speed)
@@ -56,17 +74,38 @@ def _pocket_powers(y, params, rows):
         leans -= (load(rows, block, ROLLER.skew_speed) + orbital_speed * load(rows, block, ROLLER.tilt)) * s
         leans -= y[BORDER + CAGE_TILT_Y] * p_c + y[BORDER + CAGE_TILT_Z] * p_s
         rubbed = force * slides + moment * leans + magnitude(force) * (spin + omega) * params.rollers.radius
-        film, kept = spread(0.0), spread(0.0)
-        for k in range(count):
-            place, speed = offset + skew * places[k], rate + skew_rate * places[k]
-            side, excess = where_positive(place, 1.0, -1.0), magnitude(place) - cage.pocket_clearance
-            _, root, _, _ = slice_force(excess, 0.0 * excess, params.raceways.stiffness / count, 0.0)
-            spring = cage.pocket_stiffness / count * (magnitude(place) - larger(excess, 0.0)) + root * larger(excess, 0.0)
-            film += cage.pocket_damping / count * speed * speed
-            kept += side * spring * speed
+        film, kept = _kept_by_walls(offset, rate, skew, skew_rate, cage.pocket_clearance, cage.pocket_stiffness, params)
         lost += total(present * (load(rows, block, ROLLER.pocket_friction) * rubbed + film))
         damped += total(present * (force * rate + moment * skew_rate - film - kept))
     return lost, damped
+
+
+@kernel
+def _guiding_pocket_powers(y, params, rows):
+    """Return what pockets that guide the cage lose outwards and inwards, as `_pocket_powers` does along the orbit [W]."""
+    cage, omega = params.cage, y[OMEGA]
+    lost, damped = 0.0, 0.0
+    for block in range(rows.shape[0]):
+        present, friction = load(rows, block, ROLLER.present), load(rows, block, ROLLER.pocket_friction)
+        force, moment = -load(rows, block, ROLLER.guide_force), -load(rows, block, ROLLER.guide_moment)
+        offset, rate = load(rows, block, ROLLER.guide_offset), load(rows, block, ROLLER.guide_rate)
+        lean, lean_rate = load(rows, block, ROLLER.pocket_lean), load(rows, block, ROLLER.guide_lean_rate)
+        rubbed = magnitude(force) * (load(rows, block, ROLLER.spin) + omega) * params.rollers.radius
+        rubbed -= force * load(rows, block, ROLLER.pocket_rate) + moment * load(rows, block, ROLLER.pocket_skew_rate)
+        film, kept = _kept_by_walls(offset, rate, lean, lean_rate, cage.guide_clearance, 0.0, params)
+        lost += total(present * (friction * rubbed + film))
+        damped += total(present * (force * rate + moment * lean_rate - film - kept))
+    return lost, damped
+
+
+@kernel
+def _land_powers(y, shaft_speed, model, lands):
+    """Return `bearing_sim.levels.planar_power.land_powers` of both guide lands together; each carries half."""
+    place_land(y, model.params.tilts.land_place, lands[0])
+    place_land(y, -model.params.tilts.land_place, lands[1])
+    near_driven, near, near_touching = land_powers(lands[0], shaft_speed, model)
+    far_driven, far, far_touching = land_powers(lands[1], shaft_speed, model)
+    return 0.5 * (near_driven + far_driven), 0.5 * (near + far), 0.5 * (near_touching + far_touching)
 
 
 @kernel
@@ -84,21 +123,23 @@ def spatial_powers(y, shaft_speed, model, work):
     inner, inner_damped, driving = _contact_powers(0, y, params, work)
     outer, outer_damped, _ = _contact_powers(rows.shape[0], y, params, work)
     pocket, walls = _pocket_powers(y, params, rows)
-    place_land(y, params.tilts.land_place, work.lands[0])
-    place_land(y, -params.tilts.land_place, work.lands[1])
-    near, near_touching = land_powers(work.lands[0], model)
-    far, far_touching = land_powers(work.lands[1], model)
+    driven, land, touching = 0.0, 0.0, 0.0
+    if params.cage.guidance.lands:
+        driven, land, touching = _land_powers(y, shaft_speed, model, work.lands)
+    else:
+        guided, touching = _guiding_pocket_powers(y, params, rows)
+        pocket += guided
     churning = 0.0
     for block in range(rows.shape[0]):
         drag = load(rows, block, ROLLER.present) * load(rows, block, ROLLER.churning)
         churning += total(drag * load(rows, block, ROLLER.radius) * load(rows, block, ROLLER.orbital_speed))
     return Powers(
-        driving * params.raceways.inner_radius * shaft_speed + bore,
+        driving * (params.raceways.inner_radius + inner_growth(shaft_speed, model)) * shaft_speed + bore + driven,
         inner,
         outer,
         churning,
         windage,
-        0.5 * (near + far),
+        land,
         pocket,
-        inner_damped + outer_damped + walls + 0.5 * (near_touching + far_touching),
+        inner_damped + outer_damped + walls + touching,
     )

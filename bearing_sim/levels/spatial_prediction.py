@@ -10,6 +10,7 @@ from bearing_sim.kernels.compilation import kernel
 from bearing_sim.kernels.elementary import cosine_sine
 from bearing_sim.kernels.lanes import LANES, floor, highest, larger, load, magnitude, spread, square_root, store
 from bearing_sim.kernels.raceway import contour_lanes
+from bearing_sim.levels.growth import inner_growth
 from bearing_sim.levels.spatial_algebra import BORDER
 from bearing_sim.levels.spatial_slices import SLICED, normal_slices
 from bearing_sim.levels.spatial_state import (
@@ -75,9 +76,9 @@ def _start(known, shift, guess, count, raceways, rows):
 
 
 @kernel
-def _place(block, guess, shift, params, rows, contacts):
+def _place(block, guess, shift, inner_radius, params, rows, contacts):
     """Write penetrations, leans and their rates of a block of rollers."""
-    raceways, roller_radius, outer = params.raceways, params.rollers.radius, rows.shape[0] + block
+    roller_radius, outer = params.rollers.radius, rows.shape[0] + block
     per_shift = 1.0 / shift
     cosine, sine = load(rows, block, ROLLER.cosine), load(rows, block, ROLLER.sine)
     radius, tilt = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.tilt)
@@ -85,7 +86,7 @@ def _place(block, guess, shift, params, rows, contacts):
     speed = (radius - load(rows, block, ROLLER.known_radius)) * per_shift
     tilt_speed = (tilt - load(rows, block, ROLLER.known_tilt)) * per_shift
     distance = square_root((radius - along) * (radius - along) + across * across)
-    store(contacts, block, SLICED.penetration, raceways.inner_radius + roller_radius - distance)
+    store(contacts, block, SLICED.penetration, inner_radius + roller_radius - distance)
     store(contacts, block, SLICED.rate, guess[BORDER + RING_Y] * cosine + guess[BORDER + RING_Z] * sine - speed)
     store(contacts, block, SLICED.lean, guess[RING_TILT_Y] * cosine + guess[RING_TILT_Z] * sine - tilt)
     turning = load(rows, block, ROLLER.orbital_speed) * (guess[RING_TILT_Z] * cosine - guess[RING_TILT_Y] * sine)
@@ -141,12 +142,13 @@ def predict(known, shift, slope, model, work, guess):
     """
     params, rows, contacts = model.params, work.rollers, work.contacts
     count, blocks = params.rollers.count, work.rollers.shape[0]
+    inner_radius = params.raceways.inner_radius + inner_growth(model.drive.shaft_speed, model)  # as at level `planar`
     _extrapolate(known, shift, slope, count, guess)
     _start(known, shift, guess, count, params.raceways, rows)
     for _ in range(_ITERATIONS):
         largest = spread(0.0)
         for block in range(blocks):
-            _place(block, guess, shift, params, rows, contacts)
+            _place(block, guess, shift, inner_radius, params, rows, contacts)
             normal_slices(block, contacts, params.slices, params.raceways.stiffness, params.ring.contact_damping)
             normal_slices(blocks + block, contacts, params.slices, params.raceways.stiffness, params.ring.contact_damping)
             largest = larger(largest, _balance(block, shift, params, rows, contacts))

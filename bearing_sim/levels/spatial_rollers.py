@@ -10,14 +10,17 @@ import math
 from bearing_sim.kernels.compilation import kernel
 from bearing_sim.kernels.drag import churning_force
 from bearing_sim.kernels.elementary import cosine_sine
+from bearing_sim.kernels.film import pump
 from bearing_sim.kernels.lanes import floor, load, magnitude, square_root, store, total, where_positive
 from bearing_sim.kernels.raceway import contour_lanes
 from bearing_sim.kernels.traction import traction
+from bearing_sim.levels.growth import inner_growth
 from bearing_sim.levels.inputs import shaft_speed_at
 from bearing_sim.levels.spatial_algebra import BORDER
 from bearing_sim.levels.spatial_border import border_accelerations
+from bearing_sim.levels.spatial_guide import guide_accelerations, guide_forces
 from bearing_sim.levels.spatial_pockets import place_in_pockets, pocket_forces
-from bearing_sim.levels.spatial_slices import SLICED, load_pieces, sum_tractions
+from bearing_sim.levels.spatial_slices import SLICED, load_pieces, sum_pumping, sum_tractions
 from bearing_sim.levels.spatial_slopes import roller_slopes
 from bearing_sim.levels.spatial_state import (
     CAGE_TILT_Y,
@@ -37,13 +40,14 @@ from bearing_sim.levels.spatial_state import (
 
 
 @kernel
-def place_rollers(y, shaft_speed, params, rows, contacts):
+def place_rollers(y, shaft_speed, inner_radius, params, rows, contacts):
     """Write directions about the displaced ring, penetrations, rolling and sliding speeds of all rollers and how they lean.
 
     Parameters
     ----------
     y : state, spread over ``rows`` (see `bearing_sim.levels.spatial_state.ROLLER`).
     shaft_speed : [rad/s].
+    inner_radius : R_i, grown [m].
     contacts : rows `bearing_sim.levels.spatial_slices.SLICED`; takes what goes into the forces.
     """
     raceways, roller_radius, blocks = params.raceways, params.rollers.radius, rows.shape[0]
@@ -74,10 +78,10 @@ def place_rollers(y, shaft_speed, params, rows, contacts):
         store(rows, block, ROLLER.inverse_distance, inverse)
         store(rows, block, ROLLER.speed_normal, speed_normal)
         store(rows, block, ROLLER.speed_tangent, speed_tangent)
-        store(contacts, block, SLICED.penetration, raceways.inner_radius + roller_radius - distance)
+        store(contacts, block, SLICED.penetration, inner_radius + roller_radius - distance)
         store(contacts, block, SLICED.rate, -speed_normal)
-        store(contacts, block, SLICED.rolling, 0.5 * ((shaft_speed - orbital_speed) * raceways.inner_radius + rolling))
-        store(contacts, block, SLICED.sliding, shaft_speed * raceways.inner_radius - speed_tangent - surface)
+        store(contacts, block, SLICED.rolling, 0.5 * ((shaft_speed - orbital_speed) * inner_radius + rolling))
+        store(contacts, block, SLICED.sliding, shaft_speed * inner_radius - speed_tangent - surface)
         outer = blocks + block
         store(contacts, outer, SLICED.rate, radial_speed - load(rows, block, ROLLER.slope) * orbital_speed)
         store(contacts, outer, SLICED.rolling, 0.5 * (orbital_speed * (radius + roller_radius) + rolling))
@@ -128,18 +132,23 @@ def _accelerate(block, y, churning, model, rows, contacts, rate):
     t_i, t_e = load(contacts, block, SLICED.force), load(contacts, outer, SLICED.force)
     s_i, s_e = load(contacts, block, SLICED.tilting), load(contacts, outer, SLICED.tilting)
     m_i, m_e = load(contacts, block, SLICED.skewing), load(contacts, outer, SLICED.skewing)
+    # the oil pumped back, as at level `planar`
+    pumped_i, pumped_e = load(contacts, block, SLICED.pumping), load(contacts, outer, SLICED.pumping)
+    push_i, push_e = 1.0 - 2.0 * params.raceways.diameter_ratio, 1.0 + 2.0 * params.raceways.diameter_ratio
+    m_i += push_i * load(contacts, block, SLICED.pumping_moment)
+    m_e -= push_e * load(contacts, outer, SLICED.pumping_moment)
     force, moment = -load(rows, block, ROLLER.pocket_force), -load(rows, block, ROLLER.pocket_moment)
     friction = load(rows, block, ROLLER.pocket_friction)
     play_cosine, play_sine = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
     push_r, push_t = play_sine + friction * play_cosine, play_cosine - friction * play_sine
-    across = t_i + s_i * load(rows, block, ROLLER.lean_tangent) * load(rows, block, ROLLER.inverse_distance)
+    across = t_i + pumped_i * push_i + s_i * load(rows, block, ROLLER.lean_tangent) * load(rows, block, ROLLER.inverse_distance)
     radial, along = q_i * n_r - across * n_t, q_i * n_t + across * n_r
     tilting, skewing = s_i * n_r - m_i * n_t, s_i * n_t + m_i * n_r
     drag = churning[0] + churning[1] * (radius * orbital_speed - params.raceways.pitch_radius * y[OMEGA])
     drag = where_positive(drag * orbital_speed, drag, 0.0)  # a line through it would push a roller far slower than the cage
     slope = params.raceways.slope_factor * load(rows, block, ROLLER.slope)
     f_r = radial - q_e - force * push_r
-    f_t = along + t_e + (q_e * slope - s_e * skew) / radius - drag - force * push_t
+    f_t = along + t_e - pumped_e * push_e + (q_e * slope - s_e * skew) / radius - drag - force * push_t
     m_r, m_t = tilting - s_e - moment * push_r, skewing + m_e - moment * push_t
     orbital_acceleration = (f_t * (1.0 / mass) - 2.0 * radial_speed * orbital_speed) / radius
     store(rows, block, ROLLER.churning, drag)
@@ -152,7 +161,7 @@ def _accelerate(block, y, churning, model, rows, contacts, rate):
     store(rows, block, ROLLER.tilt_acceleration, m_r * (1.0 / tilts.roller_inertia) + bend)
     bend = carrying * skew - turning * load(rows, block, ROLLER.tilt_speed) - orbital_acceleration * tilt
     store(rows, block, ROLLER.skew_acceleration, m_t * (1.0 / tilts.roller_inertia) + bend)
-    spin_acceleration = (t_i - t_e - friction * magnitude(force)) * (roller_radius / params.rollers.inertia)
+    spin_acceleration = (t_i - t_e - pumped_i - pumped_e - friction * magnitude(force)) * (roller_radius / params.rollers.inertia)
     store(rows, block, ROLLER.spin_acceleration, spin_acceleration)
     present, cosine, sine = load(rows, block, ROLLER.present), load(rows, block, ROLLER.cosine), load(rows, block, ROLLER.sine)
     p_c, p_s = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
@@ -190,22 +199,30 @@ def equations(t, y, model, work, rate, with_jacobian):
     along the orbit, follows I A'' = M + J w (A_t', -A_r') in a frame that does not turn, with M the sums of forces times x.
     """
     params, rows, contacts = model.params, work.rollers, work.contacts
-    churning = _churning(y, model)
+    shaft_speed, churning = shaft_speed_at(t, model.drive), _churning(y, model)
+    inner_radius, pumping = params.raceways.inner_radius + inner_growth(shaft_speed, model), model.lubrication.pumping.on
     spread_state(y, params.rollers.count, rows)
     border_accelerations(t, y, model, work, rate, with_jacobian)
     for k in range(BORDER):
         rate[k] = y[BORDER + k]
     cage_cosine, cage_sine = math.cos(y[THETA]), math.sin(y[THETA])
-    place_rollers(y, shaft_speed_at(t, model.drive), params, rows, contacts)
+    place_rollers(y, shaft_speed, inner_radius, params, rows, contacts)
     load_pieces(contacts, work.pieces, params.slices, params.raceways.stiffness, params.ring.contact_damping)
     traction(work.pieces, model.lubrication.inner, model.lubrication.outer)
     sum_tractions(contacts, work.pieces, params.slices)
+    if pumping:
+        pump(work.pieces, model.lubrication.pumping)
+        sum_pumping(contacts, work.pieces, params.slices)
     for block in range(rows.shape[0]):
         place_in_pockets(block, y, cage_cosine, cage_sine, rows)
         pocket_forces(block, params, rows)
     for block in range(rows.shape[0]):
         _accelerate(block, y, churning, model, rows, contacts, rate)
+    if not params.cage.guidance.lands:
+        for block in range(rows.shape[0]):
+            guide_forces(block, y, params, rows)
+            guide_accelerations(block, params, rows, rate)
     if with_jacobian:
-        roller_slopes(y, churning, params, rows, contacts, work.chain, work.slopes)
+        roller_slopes(y, inner_radius, churning, pumping, params, rows, contacts, work.chain, work.slopes)
     collect_rates(y, params.rollers.count, rows, rate)
     return True

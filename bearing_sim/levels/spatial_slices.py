@@ -14,7 +14,7 @@ from typing import NamedTuple
 from bearing_sim.kernels.compilation import kernel, template
 from bearing_sim.kernels.contact import EXPONENT, TINY
 from bearing_sim.kernels.contact_rows import CONTACT
-from bearing_sim.kernels.elementary import exponential, logarithm
+from bearing_sim.kernels.elementary import ninth_root
 from bearing_sim.kernels.lanes import larger, load, magnitude, spread, store, total, where_positive
 
 # rows of pieces behind those of a contact: slopes of a piece's normal force
@@ -42,10 +42,15 @@ class SlicedRow(NamedTuple):
     of_skewing: int = 22  # slopes of its moment by the same
     by_sliding: int = 27  # sums of dT/d(du) times 1, x and x^2
     by_rolling: int = 30  # of dT/du times 1 and x
+    pumping: int = 32  # from here on written only where oil is pumped back: its resistance F_R [N]
+    pumping_moment: int = 33  # its moment [N m]
+    of_pumping: int = 34  # slopes by penetration and lean, three rows on by their rates
+    of_pumping_moment: int = 39
+    pumping_by_rolling: int = 44  # sums of dF_R/du times 1 and x
 
 
 SLICED = SlicedRow()
-SLICED_ROWS = 32
+SLICED_ROWS = 46
 
 
 @template
@@ -58,7 +63,7 @@ def slice_force(depth, rate, stiffness, damping):
     stiffness : K/N [N/m^(10/9)].
     damping : a [s/m].
     """
-    root = stiffness * exponential(logarithm(larger(depth, TINY)) * (1.0 / 9.0))
+    root = stiffness * ninth_root(larger(depth, TINY))
     factor = 1.0 + damping * rate
     pressed = where_positive(factor, where_positive(depth, 1.0, 0.0), 0.0)
     return pressed * root * depth * factor, root, factor, pressed
@@ -239,6 +244,33 @@ def sum_tractions(contacts, pieces, slices):
         _store_sums(block, contacts, SLICED.by_sliding, 1.0, s_0, s_1, s_2)
         store(contacts, block, SLICED.by_rolling, u_0)
         store(contacts, block, SLICED.by_rolling + 1, u_1)
+
+
+@kernel
+def sum_pumping(contacts, pieces, slices):
+    """Write resistances of pumped oil, their moments and slopes of all contacts from those of the pieces, which have been written."""
+    count, together, number = slices.places.shape[0], slices.together, pieces.shape[0] // contacts.shape[0]
+    for block in range(contacts.shape[0]):
+        for row in range(SLICED.pumping, SLICED_ROWS):
+            store(contacts, block, row, 0.0)
+        for which in range(number):
+            first, piece = which * together, block * number + which
+            end = min(first + together, count)
+            share, place = (end - first) / count, 0.5 * (slices.places[first] + slices.places[end - 1])
+            by_load = load(pieces, piece, CONTACT.pumping_by_load)
+            force, by_rolling = share * load(pieces, piece, CONTACT.pumping), share * load(pieces, piece, CONTACT.pumping_by_rolling)
+            _add_with_moment(block, contacts, SLICED.pumping, 1, force, place)
+            _add_with_moment(block, contacts, SLICED.pumping_by_rolling, 1, by_rolling, place)
+            _add_with_moment(block, contacts, SLICED.of_pumping, 5, by_load * load(pieces, piece, _BY_DEPTH), place)
+            _add_with_moment(block, contacts, SLICED.of_pumping + 1, 5, by_load * load(pieces, piece, _BY_LEAN), place)
+            _add_with_moment(block, contacts, SLICED.of_pumping + 3, 5, by_load * load(pieces, piece, _BY_RATE), place)
+            _add_with_moment(block, contacts, SLICED.of_pumping + 4, 5, by_load * load(pieces, piece, _BY_LEAN_RATE), place)
+
+
+@template
+def _add_with_moment(block, contacts, row, apart, value, place):
+    store(contacts, block, row, load(contacts, block, row) + value)
+    store(contacts, block, row + apart, load(contacts, block, row + apart) + value * place)
 
 
 @template

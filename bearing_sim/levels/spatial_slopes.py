@@ -7,6 +7,7 @@ torque of the spin first, from contact to contact; at the end they become accele
 from bearing_sim.kernels.compilation import kernel, template
 from bearing_sim.kernels.lanes import load, spread, store
 from bearing_sim.levels.spatial_algebra import AT_CAGE_SPEEDS, BORDER, LOCAL, RING_COLUMNS, RING_ROWS
+from bearing_sim.levels.spatial_guide import guide_slopes
 from bearing_sim.levels.spatial_pocket_slopes import pocket_slopes
 from bearing_sim.levels.spatial_slices import SLICED
 from bearing_sim.levels.spatial_state import (
@@ -29,6 +30,7 @@ from bearing_sim.levels.spatial_state import (
 
 # Rows of forces outwards and along, of moments outwards and along, of the spin's torque; in this order.
 _RADIAL, _ALONG, _TILTING, _SKEWING, _SPINNING = 0, LOCAL, 2 * LOCAL, 3 * LOCAL, 4 * LOCAL
+_PUMPED = 154  # row of ``chain`` behind those of the pockets, which rely on what they never write
 _SEEN = 8  # place, inclination, and their rates, of the roller against the ring: four pairs
 
 
@@ -71,7 +73,7 @@ def _chain_row(block, row, first, along, rows, contacts, chain):
 
 
 @kernel
-def _inner_chain(block, rows, contacts, chain):
+def _inner_chain(block, pumping, params, rows, contacts, chain):
     """Write the changes of the inner contact's force (2), moment (2) and spin torque in the roller's frame by what it sees, 5 x 8."""
     n_r, n_t, inverse = load(rows, block, ROLLER.normal_r), load(rows, block, ROLLER.normal_t), load(rows, block, ROLLER.inverse_distance)
     b_n, b_p = load(rows, block, ROLLER.lean_normal), load(rows, block, ROLLER.lean_tangent) * inverse
@@ -84,6 +86,17 @@ def _inner_chain(block, rows, contacts, chain):
     # the normal forces' own lever, where slices stand apart along the orbit
     for k in range(_SEEN):
         store(chain, 0, _SEEN + k, load(chain, 0, 4 * _SEEN + k) + load(chain, 0, 2 * _SEEN + k) * b_p)
+    if pumping:
+        push = 1.0 - 2.0 * params.raceways.diameter_ratio
+        t += push * load(contacts, block, SLICED.pumping)
+        m += push * load(contacts, block, SLICED.pumping_moment)
+        _chain_row(block, _PUMPED, SLICED.of_pumping, -1, rows, contacts, chain)
+        _chain_row(block, _PUMPED + _SEEN, SLICED.of_pumping_moment, -1, rows, contacts, chain)
+        for k in range(_SEEN):
+            pumped, turned = load(chain, 0, _PUMPED + k), load(chain, 0, _PUMPED + _SEEN + k)
+            _add(0, chain, _SEEN + k, push * pumped)
+            _add(0, chain, 3 * _SEEN + k, push * turned)
+            _add(0, chain, 4 * _SEEN + k, -pumped)
     _add(0, chain, _SEEN, -(s * b_p * inverse))
     _add(0, chain, _SEEN + 1, -(s * b_n * inverse * inverse))
     _add(0, chain, _SEEN + 3, s * inverse)
@@ -105,9 +118,9 @@ def _inner_chain(block, rows, contacts, chain):
 
 
 @kernel
-def _inner_slopes(block, y, params, rows, contacts, chain, slopes):
+def _inner_slopes(block, y, inner_radius, pumping, params, rows, contacts, chain, slopes):
     """Write a roller's rows as far as the inner contact makes them."""
-    _inner_chain(block, rows, contacts, chain)
+    _inner_chain(block, pumping, params, rows, contacts, chain)
     c, s = load(rows, block, ROLLER.cosine), load(rows, block, ROLLER.sine)
     radius, orbital_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.orbital_speed)
     tilt, skew = load(rows, block, ROLLER.tilt), load(rows, block, ROLLER.skew)
@@ -138,7 +151,7 @@ def _inner_slopes(block, y, params, rows, contacts, chain, slopes):
     n_r, n_t = load(rows, block, ROLLER.normal_r), load(rows, block, ROLLER.normal_t)
     by_rolling, by_rolling_x = load(contacts, block, SLICED.by_rolling), load(contacts, block, SLICED.by_rolling + 1)
     by_sliding, by_sliding_x = load(contacts, block, SLICED.by_sliding), load(contacts, block, SLICED.by_sliding + 1)
-    carried = 0.5 * (params.rollers.radius - params.raceways.inner_radius)
+    carried = 0.5 * (params.rollers.radius - inner_radius)
     for k in range(2):
         column = PHI_SPEED if k == 0 else SPIN
         force = by_rolling * carried if k == 0 else (0.5 * by_rolling - by_sliding) * params.rollers.radius
@@ -148,16 +161,28 @@ def _inner_slopes(block, y, params, rows, contacts, chain, slopes):
         _add(block, slopes, _TILTING + column, -(moment * n_t))
         _add(block, slopes, _SKEWING + column, moment * n_r)
         _add(block, slopes, _SPINNING + column, force)
+        if pumping:
+            push, rate = 1.0 - 2.0 * params.raceways.diameter_ratio, carried if k == 0 else 0.5 * params.rollers.radius
+            pumped, turned = rate * load(contacts, block, SLICED.pumping_by_rolling), rate * load(contacts, block, SLICED.pumping_by_rolling + 1)
+            _add(block, slopes, _RADIAL + column, -(push * pumped * n_t))
+            _add(block, slopes, _ALONG + column, push * pumped * n_r)
+            _add(block, slopes, _TILTING + column, -(push * turned * n_t))
+            _add(block, slopes, _SKEWING + column, push * turned * n_r)
+            _add(block, slopes, _SPINNING + column, -pumped)
 
 
 @kernel
-def _ring_slopes(block, params, rows, contacts, slopes):
+def _ring_slopes(block, pumping, params, rows, contacts, slopes):
     """Write the rows of the ring from those of a roller, which hold nothing but the inner contact yet."""
     c, s, inverse = load(rows, block, ROLLER.cosine), load(rows, block, ROLLER.sine), load(rows, block, ROLLER.inverse_distance)
     n_r, n_t = load(rows, block, ROLLER.normal_r), load(rows, block, ROLLER.normal_t)
     q, tilting = load(contacts, block, SLICED.load), load(contacts, block, SLICED.tilting)
     across, skewing = load(contacts, block, SLICED.force), load(contacts, block, SLICED.skewing)
     across += tilting * load(rows, block, ROLLER.lean_tangent) * inverse
+    if pumping:
+        push = 1.0 - 2.0 * params.raceways.diameter_ratio
+        across += push * load(contacts, block, SLICED.pumping)
+        skewing += push * load(contacts, block, SLICED.pumping_moment)
     present = load(rows, block, ROLLER.present)
     for pair in range(2):
         first = 2 * pair * LOCAL
@@ -233,6 +258,22 @@ def _outer_slopes(block, y, churning, params, rows, contacts, slopes):
 
 
 @kernel
+def _outer_pumping(block, params, rows, contacts, slopes):
+    """Add the oil that the outer contact pumps back to a roller's rows."""
+    outer, push = rows.shape[0] + block, -(1.0 + 2.0 * params.raceways.diameter_ratio)
+    _outer_row(block, _ALONG, push, SLICED.of_pumping, -1, rows, contacts, params, slopes)
+    _outer_row(block, _SKEWING, push, SLICED.of_pumping_moment, -1, rows, contacts, params, slopes)
+    _outer_row(block, _SPINNING, -1.0, SLICED.of_pumping, -1, rows, contacts, params, slopes)
+    radius, orbital_speed, roller_radius = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.orbital_speed), params.rollers.radius
+    for k in range(3):
+        column, rate = (R, orbital_speed) if k == 0 else ((PHI_SPEED, radius + 2.0 * roller_radius) if k == 1 else (SPIN, spread(roller_radius)))
+        pumped = 0.5 * rate * load(contacts, outer, SLICED.pumping_by_rolling)
+        _add(block, slopes, _ALONG + column, push * pumped)
+        _add(block, slopes, _SKEWING + column, push * 0.5 * rate * load(contacts, outer, SLICED.pumping_by_rolling + 1))
+        _add(block, slopes, _SPINNING + column, -pumped)
+
+
+@kernel
 def _accelerations(block, params, rows, slopes):
     """Make accelerations of a roller's rows of forces, and add what the motion of its frame and its spin add to them."""
     tilts = params.tilts
@@ -270,13 +311,15 @@ def _accelerations(block, params, rows, slopes):
 
 
 @kernel
-def roller_slopes(y, churning, params, rows, contacts, chain, slopes):
+def roller_slopes(y, inner_radius, churning, pumping, params, rows, contacts, chain, slopes):
     """Write all derivatives through the rollers; their forces have been written.
 
     Parameters
     ----------
     y : state.
+    inner_radius : R_i, grown [m].
     churning : drag of the mixture on a roller, its slope by the roller's speed and the slope's by cage speed.
+    pumping : whether the contacts pump oil back.
     params : of the bearing.
     rows : of the rollers, see `bearing_sim.levels.spatial_state.ROLLER`.
     contacts : see `bearing_sim.levels.spatial_slices.SLICED`.
@@ -284,8 +327,12 @@ def roller_slopes(y, churning, params, rows, contacts, chain, slopes):
     slopes : takes the derivatives.
     """
     for block in range(rows.shape[0]):
-        _inner_slopes(block, y, params, rows, contacts, chain, slopes)
-        _ring_slopes(block, params, rows, contacts, slopes)
+        _inner_slopes(block, y, inner_radius, pumping, params, rows, contacts, chain, slopes)
+        _ring_slopes(block, pumping, params, rows, contacts, slopes)
         pocket_slopes(block, y, params, rows, chain, slopes)
+        if not params.cage.guidance.lands:
+            guide_slopes(block, y, params, rows, chain, slopes)
         _outer_slopes(block, y, churning, params, rows, contacts, slopes)
+        if pumping:
+            _outer_pumping(block, params, rows, contacts, slopes)
         _accelerations(block, params, rows, slopes)

@@ -78,10 +78,17 @@ class RollerRow(NamedTuple):
     known_speed: int = 52
     known_tilt: int = 53
     known_tilt_speed: int = 54
+    guide_offset: int = 55  # from here on pockets that guide: of the roller outwards from the pocket's middle [m]
+    guide_rate: int = 56  # its time derivative [m/s]
+    guide_lean_rate: int = 57  # that of ``pocket_lean`` [rad/s]
+    guide_force: int = 58  # of the pocket on the roller, outwards from the cage [N]
+    guide_moment: int = 59  # sum of force times place along the axis [N m]
+    guide_stiffness: int = 60  # as ``pocket_stiffness``
+    guide_damping: int = 63
 
 
 ROLLER = RollerRow()
-ROLLER_ROWS = 55
+ROLLER_ROWS = 66
 
 
 class Work(NamedTuple):
@@ -91,7 +98,7 @@ class Work(NamedTuple):
     contacts: np.ndarray  # rows `bearing_sim.levels.spatial_slices.SLICED`, those with the inner raceway first
     pieces: np.ndarray  # of contacts, see `bearing_sim.levels.spatial_slices.load_pieces`
     slopes: np.ndarray  # derivatives through each roller, see `bearing_sim.levels.spatial_algebra`
-    chain: np.ndarray  # scratch for derivatives of one block of rollers, shape (1, 154, LANES)
+    chain: np.ndarray  # scratch for derivatives of one block of rollers, shape (1, 208, LANES)
     border_own: np.ndarray  # derivatives of the border's accelerations by border positions and speeds, shape (9, 18)
     lands: np.ndarray  # scratch of the guide lands, shape (4, 18)
     land_own: np.ndarray  # scratch of the guide lands, shape (2, 5, 10)
@@ -115,7 +122,7 @@ def new_work(params):
         contacts=np.zeros((2 * rollers.shape[0], SLICED_ROWS, LANES)),
         pieces=np.zeros((2 * rollers.shape[0] * -(-len(params.slices.places) // params.slices.together), PIECE_ROWS, LANES)),
         slopes=new_rows(SLOPES, count),
-        chain=np.zeros((1, 154, LANES)),
+        chain=np.zeros((1, 208, LANES)),
         border_own=np.zeros((BORDER, 2 * BORDER)),
         lands=np.zeros((4, 2 * BORDER)),
         land_own=np.zeros((2, 5, 10)),

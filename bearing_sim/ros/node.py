@@ -15,13 +15,14 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from std_srvs.srv import SetBool, Trigger
 
 from bearing_sim import topics
+from bearing_sim.effects import hint
 from bearing_sim.events import Event, Level
 from bearing_sim.ros.messages import message, message_class
 from bearing_sim.ros.parameters import Settings, SettingsError, declare
 from bearing_sim.ros.process import CannotRun, run_node
 from bearing_sim.ros.recordings import fresh_path, open_recording, open_view, prepare
 from bearing_sim.runtime.health import Condition
-from bearing_sim.runtime.live import LiveModel, warmed_up
+from bearing_sim.runtime.live import LiveModel, governor_of, warmed_up
 from bearing_sim.scene import Scene
 from bearing_sim.scene_file import SceneError, load_scene
 from bearing_sim.simulation import IntegrationError, Simulation
@@ -54,13 +55,15 @@ class BearingNode(Node):
         name, ros_type = topics.DIAGNOSTICS
         self._diagnostics = self.create_publisher(message_class(ros_type), f"/{name}", _STATE_QOS)
         self._outputs = {
-            topic.name: self.create_publisher(message_class(topic.ros_type), topic.name, _STATE_QOS) for topic in topics.OUTPUTS.values()
+            topic.name: self.create_publisher(message_class(topic.ros_type), topic.name, _STATE_QOS) for topic in topics.outputs(self.scene).values()
         }
         # Compiling takes seconds: on its own thread, so that the node answers signals and says what it is doing.
         self._warm_up = threading.Thread(target=self._compile, name="warm-up", daemon=True)
         self._warm_up.start()
         self.create_timer(_REVIEW_PERIOD, self._review)
         self.get_logger().info(f"scene {self.scene.name!r}, bearing {self.scene.bearing.name!r}, level {self.scene.level!r}: warming up")
+        if cheaper := hint(self.scene):
+            self.get_logger().info(cheaper)
 
     def close(self) -> bool:
         """Stop the model and complete recordings.  Returns whether every thread ended."""
@@ -71,6 +74,7 @@ class BearingNode(Node):
         try:
             prepare(view=bool(self.settings.rrd or self.settings.rerun_port))
             self._simulation: Simulation = warmed_up(self.scene, self.settings.sample_rate)
+            self._governor = governor_of(self._simulation, self.settings.sample_rate) if self.settings.governor else None
         except Exception as fault:  # handed over to the main thread, which raises it
             self._warm_up_fault = fault
 
@@ -78,7 +82,7 @@ class BearingNode(Node):
         """Begin: run time 0 is now; open recordings, subscriptions and services."""
         settings = self.settings
         start_ns = self._now_ns()
-        self.live = LiveModel(self.scene, self._simulation, start_ns, settings.sample_rate, settings.maximum_lag)
+        self.live = LiveModel(self.scene, self._simulation, start_ns, settings.sample_rate, settings.maximum_lag, governor=self._governor)
         try:
             if settings.record:
                 self._start_recording(Path(settings.record))
@@ -114,8 +118,9 @@ class BearingNode(Node):
             return
         self._published_time = float(sample["time"])
         stamp_ns = self.live.start_ns + round(self._published_time * 1e9)
-        for name, topic in topics.OUTPUTS.items():
-            self._outputs[name].publish(message(topic.ros_type, topic.message(stamp_ns, sample)))
+        for name, publisher in self._outputs.items():
+            topic = topics.OUTPUTS[name]
+            publisher.publish(message(topic.ros_type, topic.message(stamp_ns, sample)))
 
     def _review(self) -> None:
         """Feed the sinks, log what is new, and report when a second has passed or the level has changed."""

@@ -37,6 +37,7 @@ DECLARATIONS = (
     Declaration("publish_rate", 50.0, "rate of the output topics [Hz]", 0.1, 200.0),
     Declaration("sample_rate", 100.0, "samples recorded for each simulated second [Hz]", 1.0, 10_000.0),
     Declaration("maximum_lag", 0.2, "lag behind real time that is caught up [s]; more is given up, counted and told", 0.02, 10.0),
+    Declaration("governor", True, "whether to compute at a cheaper level while the machine is too slow for the scene's"),
     Declaration("record", "", "MCAP file to record from the start; empty for none until ~/start_recording is called"),
     Declaration("rrd", "", "rerun recording (.rrd) to write from the start; empty for none"),
     Declaration("rerun_port", 0, "port on 127.0.0.1 at which a rerun viewer can watch live; 0 for none", 0, 65535),
@@ -57,6 +58,7 @@ class Settings:
     publish_rate: float
     sample_rate: float
     maximum_lag: float
+    governor: bool
     record: str
     rrd: str
     rerun_port: int
@@ -103,7 +105,7 @@ def _checked(declaration: Declaration, value: object) -> object:
         if isinstance(value, str) or not all(isinstance(item, str) for item in value or []):
             raise ValueError(f"{name} = {value!r}: expected a list of texts, such as ['level=slip']")
         return list(value or [""])
-    if not isinstance(value, kind) or isinstance(value, bool):
+    if not isinstance(value, kind) or isinstance(value, bool) != (kind is bool):
         raise ValueError(f"{name} = {value!r}: expected {_KINDS[kind]}; {declaration.meaning}")
     if declaration.choices and value not in declaration.choices:
         raise ValueError(f"{name} = {value!r}: expected {' or '.join(declaration.choices)}{did_you_mean(value, declaration.choices)}")
@@ -112,7 +114,7 @@ def _checked(declaration: Declaration, value: object) -> object:
     return value
 
 
-_KINDS = {float: "a number", int: "a whole number", str: "a text"}
+_KINDS = {float: "a number", int: "a whole number", str: "a text", bool: "true or false"}
 
 
 def _descriptor(declaration: Declaration) -> ParameterDescriptor:
@@ -121,7 +123,7 @@ def _descriptor(declaration: Declaration) -> ParameterDescriptor:
         descriptor.additional_constraints = f"one of {', '.join(declaration.choices)}"
     if isinstance(declaration.default, float):
         descriptor.floating_point_range = [FloatingPointRange(from_value=declaration.low, to_value=declaration.high)]
-    if isinstance(declaration.default, int):
+    if isinstance(declaration.default, int) and not isinstance(declaration.default, bool):
         descriptor.integer_range = [IntegerRange(from_value=int(declaration.low), to_value=int(declaration.high))]
     descriptor.type = Parameter.Type.from_parameter_value(declaration.default).value
     return descriptor

@@ -20,7 +20,7 @@ class Summary(NamedTuple):
     samples: int
     largest_speed: float  # [rad/s]
     slips: tuple[float, float, float]  # mean, 95 % quantile and largest, above a hundredth of the largest speed
-    shortest_life: float  # [h] rating life at the worst condition
+    shortest_life: float  # [h] life at the worst condition, by the scene's choice
     damage: float
     warnings: dict[str, int]  # code of warnings and errors -> how often told
     lost: float  # [s] time that the solver did not hold
@@ -34,7 +34,7 @@ class Summary(NamedTuple):
             ("recorded", f"{self.seconds:.1f} s, {self.samples} samples"),
             ("largest shaft speed", f"{self.largest_speed * 30 / math.pi:.0f} rpm"),
             ("cage slip while turning", f"mean {100 * mean:.2f} %, 95 % of the time below {100 * mostly:.2f} %, largest {100 * most:.2f} %"),
-            ("rating life at the worst condition", f"{self.shortest_life:.4g} h"),
+            ("life at the worst condition", f"{self.shortest_life:.4g} h"),
             ("life used", f"{100 * self.damage:.3g} %"),
             ("real time", f"{self.lost:.2f} s lost; the solver alone: {median:.1f} times as fast (median), {least:.1f} times (least)"),
             ("warnings and errors (times told)", told),
@@ -60,7 +60,7 @@ def summarize(path: Path) -> Summary:
             continue
         slips.append(item["cage_slip"])
         speeds.append(item["shaft_speed"])
-        lives.append(item["rating_life"])
+        lives.append(item["modified_rating_life"])
         damages.append(item["damage"])
     reports = _numbers(path)
     factors = [report["real-time factor possible"] for report in reports if math.isfinite(report.get("real-time factor possible", math.nan))]

@@ -99,7 +99,7 @@ class Health:
 
 def bearing_events(sample, thresholds: Thresholds) -> list[Event]:
     """Return the warnings and errors about the bearing that one sample calls for."""
-    time, slip, life = float(sample["time"]), float(sample["cage_slip"]), float(sample["rating_life"])
+    time, slip, life = float(sample["time"]), float(sample["cage_slip"]), float(sample["modified_rating_life"])
     events = []
     if abs(slip) >= thresholds.slip_warning and abs(float(sample["shaft_speed"])) >= thresholds.slip_from_speed:  # NaN, at rest, is no slip
         error = abs(slip) >= thresholds.slip_error
@@ -107,7 +107,9 @@ def bearing_events(sample, thresholds: Thresholds) -> list[Event]:
         text = f"cage slip: {100 * slip:.3g} % has reached {100 * limit:.3g} %"
         events.append(Event(time, Level.ERROR if error else Level.WARN, "bearing.slip", text))
     if life < thresholds.life_warning:
-        text = f"rating life: {life:.4g} h at the present condition is below {thresholds.life_warning:.4g} h"
+        basic = float(sample["rating_life"])
+        said = f"rating life: {life:.4g} h" if life == basic else f"life by the scene's choice: {life:.4g} h (basic rating life {basic:.4g} h)"
+        text = f"{said} at the present condition is below {thresholds.life_warning:.4g} h"
         events.append(Event(time, Level.WARN, "bearing.life", text))
     if float(sample["damage"]) >= 1.0:
         events.append(Event(time, Level.ERROR, "bearing.life_used", f"damage: {float(sample['damage']):.3g} of the rating life is used up"))

@@ -3,6 +3,7 @@
 The node is a thin door to this; another door (a socket, a test) would use it the same way.
 """
 
+import dataclasses
 import math
 import time
 from collections.abc import Callable
@@ -10,7 +11,10 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
+from bearing_sim import topics
+from bearing_sim.effects import cheaper_levels
 from bearing_sim.events import Event, Level
+from bearing_sim.runtime.governor import Governor
 from bearing_sim.runtime.health import Condition, Health
 from bearing_sim.runtime.input_gate import InputGate
 from bearing_sim.runtime.pacer import Pacer
@@ -66,6 +70,21 @@ def warmed_up(scene: Scene, sample_rate: float) -> Simulation:
     return simulation
 
 
+def governor_of(simulation: Simulation, sample_rate: float) -> Governor | None:
+    """Return a governor over a simulation's level and the cheaper ones that have all its scene asks for; None where there are none.
+
+    Their code is compiled or loaded here.  Lower levels take their own methods, with the scene's tolerance.
+
+    Raises
+    ------
+    IntegrationError
+        The scene's own operating conditions cannot be computed at one of them.
+    """
+    scene, own = simulation.scene, dataclasses.replace(simulation.scene.integration, method=None, fixed_step=None)
+    below = [warmed_up(dataclasses.replace(scene, level=level, integration=own), sample_rate) for level in cheaper_levels(scene)]
+    return Governor([simulation, *below]) if below else None
+
+
 class LiveModel:
     """One bearing, driven by messages as they come, in real time.
 
@@ -79,6 +98,7 @@ class LiveModel:
     sample_rate : samples for each simulated second that sinks get [Hz].
     maximum_lag : lag behind wall time that is caught up [s]; more is given up and counted.
     clock : wall clock of the runner [s], monotonic.
+    governor : see `governor_of`; without one the level stays, and time is given up where it is too slow.
     """
 
     def __init__(
@@ -89,12 +109,15 @@ class LiveModel:
         sample_rate: float = 100.0,
         maximum_lag: float = 0.2,
         clock: Callable[[], float] = time.monotonic,
+        governor: Governor | None = None,
     ):
+        self._governor = governor
         self.scene, self.start_ns = scene, start_ns
         self.gate = InputGate(scene.input_limits, simulation.inputs)
         self.health = Health(scene.thresholds)
         beat = cadence(sample_rate)
-        self.runner = Runner(simulation, Pacer(1.0, maximum_lag), beat.tick, beat.samples, capacity=round(_SLACK / beat.tick), clock=clock)
+        pacer, capacity = Pacer(1.0, maximum_lag), round(_SLACK / beat.tick)
+        self.runner = Runner(simulation, pacer, beat.tick, beat.samples, capacity, clock, governor)
         self._every, self._blocks = beat.every, 0
         self._sinks: dict[str, Sink] = {}
         self._recorders: dict[str, Recorder] = {}
@@ -179,13 +202,20 @@ class LiveModel:
 
     def condition(self, now_ns: int) -> Condition:
         """Return what holds now, with the numbers behind it."""
-        now, troubles, dropped = self.run_time(now_ns), list(self._given_up.values()), {}
+        now, troubles = self.run_time(now_ns), list(self._given_up.values())
+        running = self._governor.level if self._governor is not None else self.scene.level
+        values = {"level": running}
+        if running != self.scene.level:
+            text = f"computing at level {running} instead of {self.scene.level}, which this machine is too slow for"
+            troubles.append(Event(now, Level.WARN, "governor.level", text))
+        if self.runner.newest is not None:
+            values |= topics.further_condition(self.scene, self.runner.newest)
         for name, sink in self._sinks.items():
             if getattr(sink, "fault", None):
                 troubles.append(Event(now, Level.WARN, f"sink.failed.{name}", f"{name} has stopped: {sink.fault}"))
             if hasattr(sink, "dropped"):
-                dropped[f"{name}: blocks dropped"] = sink.dropped
-        return self.health.review(now, self.gate, self.runner, troubles, dropped)
+                values[f"{name}: blocks dropped"] = sink.dropped
+        return self.health.review(now, self.gate, self.runner, troubles, values)
 
     def record_diagnostics(self, condition: Condition, now_ns: int) -> None:
         """Let the recorders keep a diagnostics report."""

@@ -14,6 +14,7 @@ from enum import Enum
 import numpy as np
 
 from bearing_sim.events import Event, Level
+from bearing_sim.runtime.governor import Governor
 from bearing_sim.runtime.pacer import Pace, Pacer
 from bearing_sim.simulation import Inputs, IntegrationError
 
@@ -43,11 +44,21 @@ class Runner:
     samples : samples in the block of one tick.
     capacity : blocks and events that the output queue holds; when it is full the oldest goes and is counted.
     clock : wall clock [s], monotonic.
+    governor : where given, changes the simulation for that of another level when the solver is too slow or fast enough; its wanted level
+        is that of ``simulation``.
     """
 
     def __init__(
-        self, simulation, pacer: Pacer, tick: float = 0.01, samples: int = 1, capacity: int = 512, clock: Callable[[], float] = time.monotonic
+        self,
+        simulation,
+        pacer: Pacer,
+        tick: float = 0.01,
+        samples: int = 1,
+        capacity: int = 512,
+        clock: Callable[[], float] = time.monotonic,
+        governor: Governor | None = None,
     ):
+        self._governor = governor
         self._simulation, self._pacer, self._clock = simulation, pacer, clock
         self.tick, self._samples = tick, samples
         self._changed = threading.Condition()  # guards all that follows
@@ -166,7 +177,7 @@ class Runner:
         with self._changed:
             inputs = self._latest
         try:
-            self._simulation.reset(inputs)
+            self._restart(inputs)
         except IntegrationError as error:
             self._fail(error)
             return False
@@ -225,6 +236,20 @@ class Runner:
             self._failed_ticks = 0
         self._newest = block[-1]
         self._put(block)
+        self._govern(float(block["time"][-1]), ended - began)
+
+    def _govern(self, now: float, spent: float) -> None:
+        """Let the governor judge a tick that took ``spent`` [s of wall time]."""
+        change = self._governor.consider(self.tick / self._pacer.rate, spent) if self._governor is not None else None
+        if change is not None:
+            self._simulation = change.simulation
+            self._put(Event(now, Level.WARN if change.down else Level.OK, "governor.change", change.text))
+
+    def _restart(self, inputs: Inputs) -> None:
+        """Return the model to ideal rolling at inputs, at the wanted level."""
+        if self._governor is not None:
+            self._simulation = self._governor.restart()
+        self._simulation.reset(inputs)
 
     def _fail(self, error: IntegrationError) -> None:
         """Say the first failure of a row, hold the state, and let this tick's wall time go by before the next try."""
@@ -237,7 +262,7 @@ class Runner:
 
     def _reset(self, inputs: Inputs) -> None:
         try:
-            self._simulation.reset(inputs)
+            self._restart(inputs)
         except IntegrationError as error:
             self._fail(error)
         else:

@@ -33,6 +33,7 @@ class McapSink:
     ):
         self.start_ns = int(start_ns)
         self._bearing = scene.bearing.name
+        self._outputs = tuple(topics.outputs(scene).values())
         origin = {"package_version": package_version(), "git_hash": git_hash()}
         record = {"scene": scene_to_yaml(scene), "level": scene.level, "start_ns": str(self.start_ns), **origin}
         self._file = McapFile(path, {METADATA: record, **(metadata or {})}, {"generator": "bearing_sim", **origin}, flush_every)
@@ -57,7 +58,7 @@ class McapSink:
     def write(self, block: np.ndarray) -> None:
         """Write a block of samples (see `bearing_sim.sample`)."""
         for sample in block:
-            for topic in topics.OUTPUTS.values():
+            for topic in self._outputs:
                 self._write(topic, float(sample["time"]), sample)
 
     def write_event(self, event: Event) -> None:

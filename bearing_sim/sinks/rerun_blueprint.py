@@ -52,7 +52,7 @@ def blueprint(scene: Scene, bounds, live: bool, extent: Extent | None = None) ->
     extent : what the finished run covers; axes choose themselves where absent.
     """
     axes = _Axes(live, extent)
-    plots = rrb.Horizontal(_middle(scene, axes), _right(axes), column_shares=[0.58, 0.42])
+    plots = rrb.Horizontal(_middle(scene, axes), _right(scene, axes), column_shares=[0.58, 0.42])
     log = rrb.TextLogView(origin="/log", name="Log", columns=rrb.TextLogColumns(timeline_columns=[TIMELINE], text_log_columns=["loglevel", "body"]))
     return rrb.Blueprint(
         rrb.Horizontal(_left(scene, bounds), rrb.Vertical(plots, log, row_shares=[0.84, 0.16]), column_shares=[0.42, 0.58]),
@@ -144,7 +144,7 @@ def _left(scene: Scene, bounds) -> rrb.Vertical:
 
 
 def _orbit(scene: Scene) -> rrb.Spatial2DView:
-    edge = ORBIT_EDGE * scene.bearing.cage.guide_clearance * 1e6
+    edge = ORBIT_EDGE * scene.bearing.cage.play * 1e6
     return rrb.Spatial2DView(
         origin="/cage_orbit",
         name="Cage orbit",
@@ -155,6 +155,7 @@ def _orbit(scene: Scene) -> rrb.Spatial2DView:
 
 def _middle(scene: Scene, axes: _Axes) -> rrb.Vertical:
     whirl = [axes.plot("e/c", ["/cage/eccentricity"])] if scene.cage_whirls else []
+    tilts = [_tilts(axes)] if scene.bodies_tilt else []
     return rrb.Vertical(
         axes.plot("Speeds [rpm] (blue: shaft, orange: cage, grey: cage without slip)", ["/speed/shaft", "/speed/ideal_cage", "/speed/cage"]),
         rrb.Tabs(
@@ -164,18 +165,41 @@ def _middle(scene: Scene, axes: _Axes) -> rrb.Vertical:
             active_tab=0,
         ),
         rrb.StateTimelineView(origin="/regime", name="Regime by these thresholds", time_view=axes.time),
-        axes.plot("Rating life, log10 of hours: 2 = 100 h, 3 = 1000 h (yellow: warning)", ["/life/warning", "/life/log10_hours"], from_zero=False),
+        _lives(scene, axes),
         rrb.Tabs(
             axes.plot("Largest load [N]: blue inner, red outer", ["/loads/inner_largest", "/loads/outer_largest"]),
             axes.plot("Inner [N]", ["/loads/each/inner"]),
             axes.plot("Outer [N]", ["/loads/each/outer"]),
+            *([axes.plot("Pressure [MPa]", [f"/pressure/{place}" for place in ("inner", "outer", "inner_edge", "outer_edge")])] if tilts else []),
             active_tab=0,
         ),
-        row_shares=[0.23, 0.22, 0.12, 0.2, 0.23],
+        *tilts,
+        row_shares=[0.18, 0.18, 0.12, 0.17, 0.175, 0.175] if tilts else [0.23, 0.22, 0.12, 0.2, 0.23],
     )
 
 
-def _right(axes: _Axes) -> rrb.Vertical:
+def _lives(scene: Scene, axes: _Axes) -> rrb.TimeSeriesView:
+    """Return the plot of the basic life and of those that scene or level have besides."""
+    paths, others = ["/life/warning", "/life/log10_hours"], []
+    if scene.bodies_tilt:
+        paths, others = [*paths, "/life/lamina_log10_hours"], ["blue lamina"]
+    if not scene.life.is_basic:
+        paths, others = [*paths, "/life/chosen_log10_hours"], [*others, "purple by choice"]
+    title = "Rating life, log10 of hours: 2 = 100 h, 3 = 1000 h (yellow: warning)"
+    return axes.plot(f"Lives, log10 of hours (green basic, {', '.join(others)})" if others else title, paths, from_zero=False)
+
+
+def _tilts(axes: _Axes) -> rrb.Tabs:
+    return rrb.Tabs(
+        axes.plot("Roller tilt [mrad]", ["/tilt/each/tilt"]),
+        axes.plot("Roller skew [mrad]", ["/tilt/each/skew"]),
+        axes.plot("Ring [mrad]: blue y, green z", ["/tilt/ring_y", "/tilt/ring_z"]),
+        axes.plot("Cage [mrad]", ["/tilt/cage_y", "/tilt/cage_z"]),
+        active_tab=0,
+    )
+
+
+def _right(scene: Scene, axes: _Axes) -> rrb.Vertical:
     across, down = power_bounds()
     bars = rrb.Spatial2DView(
         origin="/power_now",
@@ -188,5 +212,5 @@ def _right(axes: _Axes) -> rrb.Vertical:
         rrb.Tabs(bars, axes.plot("Plot [W]", [f"/power/{cause}" for cause in CAUSES]), active_tab=0),
         axes.plot("Radial load [N]", ["/load/radial"]),
         rrb.Tabs(axes.plot("Damage [millionths of the life]", ["/damage/ppm"]), axes.plot("Oil [°C]", ["/oil/temperature"]), active_tab=0),
-        row_shares=[0.385, 0.285, 0.165, 0.165],
+        row_shares=[0.5, 0.26, 0.12, 0.12] if scene.bodies_tilt else [0.385, 0.285, 0.165, 0.165],
     )

@@ -1,4 +1,7 @@
-"""The cage's orbit in its guide clearance: where its centre is, and where it has been in the last turns."""
+"""The cage's orbit in its play: where its centre is, and where it has been in the last turns.
+
+Seen from the centre of what guides it: that of the inner ring where the ring's lands do.
+"""
 
 import math
 
@@ -12,7 +15,7 @@ from bearing_sim.sinks.section import picture, polar
 
 ROOT = "/cage_orbit"
 TURNS = 5.0  # of the cage that the path covers
-ORBIT_EDGE = 1.42  # half the picture's width, in guide clearances
+ORBIT_EDGE = 1.42  # half the picture's width, in plays of the cage
 _MICROMETRE = 1e-6  # [m]
 _POINTS = (40, 600)  # fewest and most of the path
 _LINE_FROM = 24  # samples a cage turn: fewer are dots, since a line between them would be no path
@@ -22,12 +25,13 @@ _TURN = np.linspace(0.0, 2 * math.pi, 181)
 class OrbitPath:
     """The newest places of the cage's centre: those of the last `TURNS` of the cage, but no fewer and no more than can be drawn well."""
 
-    def __init__(self):
+    def __init__(self, guidance: str = "outer_ring"):
+        self._guidance = guidance
         self._rows = np.empty((0, 3))  # cage angle [rad], y, z [m]
 
     def add(self, block: np.ndarray) -> None:
         """Enter the samples of a block, which must not be older than those before."""
-        rows = np.stack((block["cage_angle"], block["cage_y"], block["cage_z"]), axis=1)[-_POINTS[1] :]
+        rows = np.stack((block["cage_angle"], *eccentricity(self._guidance, block)), axis=1)[-_POINTS[1] :]
         self._rows = np.concatenate((self._rows, rows[np.isfinite(rows).all(axis=1)]))[-_POINTS[1] :]
 
     def places(self) -> np.ndarray:
@@ -43,6 +47,13 @@ class OrbitPath:
         return bool(len(steps)) and float(steps.mean()) <= 2 * math.pi / _LINE_FROM
 
 
+def eccentricity(guidance: str, samples) -> tuple[np.ndarray, np.ndarray]:
+    """Return y, z [m] of the cage's centre seen from that of what guides it."""
+    if guidance != "inner_ring":
+        return samples["cage_y"], samples["cage_z"]
+    return samples["cage_y"] - samples["ring_y"], samples["cage_z"] - samples["ring_z"]
+
+
 class CageDrawing:
     """The orbit of one bearing's cage, in micrometres.
 
@@ -54,9 +65,9 @@ class CageDrawing:
 
     def __init__(self, recording: rr.RecordingStream, scene: Scene):
         self._recording = recording
-        self._clearance = scene.bearing.cage.guide_clearance / _MICROMETRE
-        self._film = scene.bearing.cage.land_film / _MICROMETRE
-        self._path = OrbitPath()
+        self._guidance = scene.bearing.cage.guidance
+        self._clearance = scene.bearing.cage.play / _MICROMETRE
+        self._path = OrbitPath(self._guidance)
         self._line_drawn = False
 
     def draw_still_parts(self) -> None:
@@ -86,7 +97,7 @@ class CageDrawing:
         if not dense or not self._line_drawn:
             self._log("path/dots", rr.Points2D.from_fields(positions=points[:0] if dense else points, colors=fade[:0] if dense else fade))
         self._line_drawn = dense
-        y, z = (float(sample[field]) / _MICROMETRE for field in ("cage_y", "cage_z"))
+        y, z = (float(place) / _MICROMETRE for place in eccentricity(self._guidance, sample))
         known = math.isfinite(y) and math.isfinite(z)
         self._log("centre", rr.Points2D.from_fields(positions=[picture(y, z)] if known else np.empty((0, 2))))
         text = f"e/c = {sample['land_eccentricity']:.3f}, c = {self._clearance:g} µm" if known else "not recorded"

@@ -29,6 +29,7 @@ class SectionDrawing:
         self._recording = recording
         self._bearing = scene.bearing
         self._cage_factor = section.cage_magnification(scene)
+        self._guide, self._guiding_ring = section.drawn_guide_radius(scene.bearing, self._cage_factor), scene.bearing.cage.guidance
         self._pocket_scale, self._pocket_legend_scale = FIRST_POCKET_SCALE, 0.0
         self.factor = section.magnification(scene.bearing)
         self.load_scale = load_scale
@@ -47,8 +48,8 @@ class SectionDrawing:
         self._still("outer_ring/raceway", rr.LineStrips2D([polar(contour, _TURN)], radii=0.22, colors=colours.VERMILION, draw_order=8.0))
         round_radius = section.ideal_outer_radius(bearing) / MILLIMETRE
         self._still("outer_ring/round_reference", rr.LineStrips2D(_dashes(round_radius, 120), radii=0.06, colors=colours.GREY, draw_order=7.0))
-        guide = section.drawn_guide_radius(bearing, self._cage_factor)
-        self._still("outer_ring/guide_land", rr.LineStrips2D(_dashes(guide, 240), radii=0.08, colors=colours.GREEN, draw_order=-2.0))
+        if self._guide is not None and self._guiding_ring == "outer_ring":
+            self._still("outer_ring/guide_land", rr.LineStrips2D(_dashes(self._guide, 240), radii=0.08, colors=colours.GREEN, draw_order=-2.0))
         self._draw_axes()
         self._style_moving_parts()
 
@@ -61,9 +62,11 @@ class SectionDrawing:
         self._still("inner_ring/body", rr.Ellipses2D.from_fields(**ring, colors=[colours.DARK_STEEL, colours.BLUE], draw_order=0.0))
         self._still("inner_ring/shaft_mark", rr.LineStrips2D.from_fields(radii=0.45, colors=colours.BLUE, draw_order=2.0))
         cage = bearing.cage
-        rims = [cage.inner_radius / MILLIMETRE, (cage.guide_radius - cage.guide_clearance) / MILLIMETRE]
+        rims = [cage.bore / MILLIMETRE, cage.outside / MILLIMETRE]
         sizes = [[rim, rim] for rim in rims]
         self._still("cage/rims", rr.Ellipses2D.from_fields(half_sizes=sizes, line_radii=0.12, colors=colours.DARK_BRONZE, draw_order=-1.0))
+        if self._guiding_ring == "inner_ring":
+            self._still("inner_ring/guide_land", rr.LineStrips2D.from_fields(radii=0.08, colors=colours.GREEN, draw_order=1.0))
         bars = np.full((bearing.roller.count, 4), colours.BRONZE, np.uint8)
         bars[0] = colours.ORANGE
         self._still("cage/bars", rr.LineStrips2D.from_fields(radii=section.cage_bar_stroke(bearing), colors=bars, draw_order=3.0))
@@ -99,6 +102,9 @@ class SectionDrawing:
         self._log("inner_ring/body", rr.Ellipses2D.from_fields(centers=np.tile(picture(*centre), (2, 1))))
         mark = polar(raceway * np.array([0.84, 1.0]), sample["shaft_angle"], centre)
         self._log("inner_ring/shaft_mark", rr.LineStrips2D.from_fields(strips=mark[None]))
+        if self._guiding_ring == "inner_ring":
+            land = _dashes(self._guide, 240, section.land_displacement(self._bearing, self._cage_factor, sample))
+            self._log("inner_ring/guide_land", rr.LineStrips2D.from_fields(strips=land))
 
     def _draw_forces(self, sample, fill: np.ndarray) -> None:
         per_newton = self._arrow / self.load_scale
@@ -183,7 +189,7 @@ def labels(places, texts: list[str]) -> rr.Arrows2D:
     )
 
 
-def _dashes(radius: float, count: int) -> np.ndarray:
-    """Return a dashed circle as ``count`` short strips, shape (count, 3, 2)."""
+def _dashes(radius: float, count: int, centre=(0.0, 0.0)) -> np.ndarray:
+    """Return a dashed circle about a centre (y, z) as ``count`` short strips, shape (count, 3, 2)."""
     starts = np.arange(count) * 2 * math.pi / count
-    return polar(radius, starts[:, None] + np.linspace(0.0, 0.55 * 2 * math.pi / count, 3)[None, :])
+    return polar(radius, starts[:, None] + np.linspace(0.0, 0.55 * 2 * math.pi / count, 3)[None, :], centre)

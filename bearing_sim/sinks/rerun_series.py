@@ -5,6 +5,7 @@ import math
 import numpy as np
 import rerun as rr
 
+from bearing_sim.effects import level_of
 from bearing_sim.events import Event, Level
 from bearing_sim.scene import Scene
 from bearing_sim.sinks import colours, section
@@ -31,6 +32,8 @@ _LINES = {
     "/slip/warning": ("warning", colours.YELLOW, 1.0),
     "/slip/error": ("error", colours.VERMILION, 1.0),
     "/life/log10_hours": ("life", colours.GREEN, 2.5),
+    "/life/lamina_log10_hours": ("lamina life", colours.BLUE, 2.0),
+    "/life/chosen_log10_hours": ("life by the scene's choice", colours.PURPLE, 2.0),
     "/life/warning": ("warning", colours.YELLOW, 1.0),
     "/damage/ppm": ("damage", colours.PURPLE, 2.5),
     "/load/radial": ("radial load", colours.YELLOW, 2.0),
@@ -39,6 +42,14 @@ _LINES = {
     "/loads/outer_largest": ("outer, largest", colours.VERMILION, 2.0),
     "/cage/eccentricity": ("cage eccentricity e/c", colours.ORANGE, 2.0),
     "/loads/pocket_largest": ("on a roller by its pocket, largest", colours.PURPLE, 2.0),
+    "/pressure/inner": ("inner, largest", colours.BLUE, 2.0),
+    "/pressure/outer": ("outer, largest", colours.VERMILION, 2.0),
+    "/pressure/inner_edge": ("inner, end slices", colours.WHITE, 1.0),
+    "/pressure/outer_edge": ("outer, end slices", colours.YELLOW, 1.0),
+    "/tilt/ring_y": ("ring towards y", colours.BLUE, 2.0),
+    "/tilt/ring_z": ("ring towards z", colours.GREEN, 2.0),
+    "/tilt/cage_y": ("cage towards y", colours.ORANGE, 2.0),
+    "/tilt/cage_z": ("cage towards z", colours.YELLOW, 2.0),
     "/sink/dropped": ("blocks dropped", colours.WHITE, 1.5),
 } | {f"/power/{cause}": (name, colour, 2.0) for cause, (name, colour) in CAUSES.items()}
 
@@ -84,6 +95,19 @@ def series(block: np.ndarray) -> dict[str, np.ndarray]:
     } | {f"/power/{cause}": block[f"{cause}_power"] for cause in CAUSES}
 
 
+def further_series(scene: Scene, block: np.ndarray) -> dict[str, np.ndarray]:
+    """Return what is plotted besides `series` because only some scenes have it: lives, tilts, pressures by slices."""
+    lines = {}
+    if not scene.life.is_basic:
+        lines["/life/chosen_log10_hours"] = log10_hours(block["modified_rating_life"])
+    if scene.bodies_tilt:
+        lines["/life/lamina_log10_hours"] = log10_hours(block["lamina_life"])
+        lines |= {f"/tilt/{body}_{axis}": 1e3 * block[f"{body}_tilt_{axis}"] for body in ("ring", "cage") for axis in "yz"}
+        lines |= {f"/tilt/each/{name}": 1e3 * block[f"roller_{name}"] for name in ("tilt", "skew")}
+        lines |= {f"/pressure/{place}": 1e-6 * block[f"{place}_pressure"] for place in ("inner", "outer", "inner_edge", "outer_edge")}
+    return lines
+
+
 class RunSeries:
     """Series of one run into one recording.
 
@@ -110,13 +134,16 @@ class RunSeries:
         for force in ("inner", "outer", "pocket"):
             names = [f"{force} {j + 1}" for j in range(count)]
             self._recording.log(f"/loads/each/{force}", rr.SeriesLines(names=names, colors=around, widths=np.full(count, 1.0)), static=True)
+        for name in ("tilt", "skew") if self._scene.bodies_tilt else ():
+            names = [f"{name} {j + 1}" for j in range(count)]
+            self._recording.log(f"/tilt/each/{name}", rr.SeriesLines(names=names, colors=around, widths=np.full(count, 1.0)), static=True)
         states = rr.StateConfiguration(values=list(REGIMES), labels=list(REGIMES), colors=np.array(list(REGIMES.values()), np.uint32))
         self._recording.log("/regime", states, static=True)
 
     def write(self, block: np.ndarray) -> None:
         """Send the columns of a block, in one piece per series."""
         index = [rr.TimeColumn(TIMELINE, duration=block["time"])]
-        for path, values in series(block).items():
+        for path, values in (series(block) | further_series(self._scene, block)).items():
             self._send(path, index, plottable(values))
         self._note_slip(block)
         self._write_thresholds(block["time"][[0, -1]])
@@ -171,8 +198,10 @@ class RunSeries:
         limits = self._scene.thresholds
         slip, life = float(sample["cage_slip"]), float(sample["rating_life"])
         lines = [
+            ("level", level_of(sample)),
             ("cage slip", f"**{100 * slip:.2f} %**" if math.isfinite(slip) else "none (at rest)"),
             ("rating life", f"**{_hours(life)}**"),
+            *self._further_readout(sample),
             ("damage", f"{1e6 * float(sample['damage']):.3g} millionths of the life"),
             ("shaft", f"{round(RPM * float(sample['shaft_speed'])):,} rpm"),
             ("cage", f"{round(RPM * float(sample['cage_speed'])):,} rpm"),
@@ -186,6 +215,20 @@ class RunSeries:
         regime = section.regime(slip, limits.slip_warning, limits.slip_error)
         table = "\n".join([f"| cage is | {regime} |", "|---|---|"] + [f"| {name} | {value} |" for name, value in lines])
         self._recording.log("/now", rr.TextDocument(table, media_type=rr.MediaType.MARKDOWN))
+
+    def _further_readout(self, sample: np.void) -> list[tuple[str, str]]:
+        """Return the readout's lines that only some scenes have."""
+        lines = []
+        if not self._scene.life.is_basic:
+            lines.append(("life by choice", f"**{_hours(float(sample['modified_rating_life']))}**"))
+        if self._scene.bodies_tilt:
+            edge, largest = (1e-6 * max(float(sample[f"{ring}_{kind}"]) for ring in ("inner", "outer")) for kind in ("edge_pressure", "pressure"))
+            tilt, skew = (1e3 * float(np.abs(sample[name]).max()) for name in ("roller_tilt", "roller_skew"))
+            lines.append(("lamina life", f"{_hours(float(sample['lamina_life']))}"))
+            known = math.isfinite(largest + edge), math.isfinite(tilt + skew)  # an older recording holds neither
+            lines.append(("pressure", f"{largest:.0f} MPa, ends {edge:.0f} MPa" if known[0] else "unknown"))
+            lines.append(("most tilt, skew", f"{tilt:.2f}, {skew:.2f} mrad" if known[1] else "unknown"))
+        return lines
 
     def write_dropped(self, time: float, dropped: int) -> None:
         """Log how many blocks the view has missed so far."""
@@ -213,8 +256,23 @@ def _newton(loads: np.ndarray) -> str:
     return f"{float(loads.max()):.0f} N" if np.isfinite(loads).any() else "unknown"
 
 
-_WHIRL = """The cage's displacement and its guide clearance have a factor of their own, which the title says; cage orbit: the place of
-its centre in the guide clearance and its path in the last turns, dots where samples are too far apart for a line.
+_WHIRL = """The cage's displacement and its {play} have a factor of their own, which the title says; cage orbit: the place of
+its centre in the {play}{seen} and its path in the last turns, dots where samples are too far apart for a line.
+"""
+_GUIDES = {"outer_ring": "green: guide land on the outer ring. ", "inner_ring": "green: guide land on the inner ring. ", "roller": ""}
+
+
+def _whirl(scene: Scene) -> str:
+    if not scene.cage_whirls:
+        return ""
+    cage = scene.bearing.cage
+    seen = ", seen from the inner ring's centre," if cage.guidance == "inner_ring" else ""
+    return _WHIRL.format(play="guide clearance" if cage.has_lands else "play in the pockets that guide it", seen=seen)
+
+
+_TILTS = """The solid picture draws tilts of ring and rollers and skews by factors of their own, which its title says, and the cage's tilt by
+the cage's factor. Pressures are Hertz's of slices, largest
+of all rollers; those of the end slices say how hard edges press, without the rise at a sharp edge.
 """
 
 
@@ -238,11 +296,11 @@ traction law {oil.traction.law}.
 
 **Picture**: bodies to scale; every radial departure from the ideal bearing (lobes, play, elastic approach, ring displacement)
 is drawn x{factor}. Seen against the x axis: Y right, Z up; azimuth runs from +Y towards +Z. Red line: outer raceway; dashed: ideal
-round raceway; green: guide land. Rollers are coloured by inner contact load, grey ones carry none. Arrows at the raceways: contact
+round raceway; {_GUIDES[bearing.cage.guidance]}Rollers are coloured by inner contact load, grey ones carry none. Arrows at the raceways: contact
 forces on the rings, full scale of the colours = longest; yellow: radial load on the inner ring, twice that scale as far as there is room.
 The orange cage bar and the white marks show rotation. Purple arrows: forces of the pockets on the rollers, scale in the middle.
-{_WHIRL if scene.cage_whirls else ""}
-**Power** by cause: what the shaft puts in by the tractions on the inner ring and by the mixture in the cage's bore is lost, or
+{_whirl(scene)}{_TILTS if scene.bodies_tilt else ""}
+**Power** by cause: what the shaft puts in by the tractions on the inner ring, the mixture in the cage's bore and guide lands of its own is lost, or
 stored for a moment in motion and elastic contacts; the bars are means of the newest samples.
 
 **Thresholds**: slip {100 * limits.slip_warning:g} % warning, {100 * limits.slip_error:g} % error; life below {limits.life_warning:g} h warning.

@@ -16,6 +16,7 @@ from bearing_sim.scene import Bearing, Scene
 
 MILLIMETRE = 1e-3  # [m]
 CONTOUR_POINTS = 361
+_FACTORS = (300, 200, 150, 100, 80, 50, 40, 30, 20, 15, 10, 8, 5, 4, 3, 2)
 
 
 def picture(y, z) -> np.ndarray:
@@ -54,24 +55,58 @@ def magnification(bearing: Bearing) -> int:
     ideal, raceway = ideal_outer_radius(bearing), bearing.outer_raceway
     departure = max(abs(raceway.low_radius - ideal), abs(raceway.low_radius + raceway.d_value - ideal), 1e-3 * bearing.roller.diameter)
     wanted = 0.4 * bearing.roller.diameter / departure
-    return next((factor for factor in (300, 200, 150, 100, 80, 50, 40, 30, 20, 15, 10, 8, 5, 4, 3, 2) if factor <= wanted), 1)
+    return next((factor for factor in _FACTORS if factor <= wanted), 1)
 
 
 def cage_magnification(scene: Scene) -> int:
-    """Return the factor for the cage's displacement and its guide clearance: the land stays well inside the raceway; 1 without whirl.
+    """Return the factor for the cage's displacement and its play in what guides it: nothing then leaves the space between the raceways.
 
-    The cage has a factor of its own, because its clearance is several times that of the rollers.
+    The cage has a factor of its own, because its play is several times that of the rollers; 1 without whirl.
     """
     if not scene.cage_whirls:
         return 1
-    cage = scene.bearing.cage
-    room = 0.8 * (ideal_outer_radius(scene.bearing) - cage.guide_radius) / cage.guide_clearance + 1.0
+    cage, inner, outer = scene.bearing.cage, scene.bearing.inner_raceway.radius, ideal_outer_radius(scene.bearing)
+    beside = {
+        "outer_ring": lambda: outer - cage.land_radius,
+        "inner_ring": lambda: cage.land_radius - inner,
+        "roller": lambda: min(outer - cage.outside, cage.bore - inner),
+    }
+    room = 0.8 * beside[cage.guidance]() / cage.play + 1.0
     return next((factor for factor in (100, 50, 30, 20, 15, 10, 8, 5, 4, 3, 2) if factor <= room), 1)
 
 
-def drawn_guide_radius(bearing: Bearing, cage_factor: float) -> float:
-    """Return the drawn radius [mm] of the guide land: the clearance is drawn ``cage_factor`` times."""
-    return (bearing.cage.guide_radius + (cage_factor - 1) * bearing.cage.guide_clearance) / MILLIMETRE
+def tilt_magnification(scene: Scene) -> int:
+    """Return the factor for tilts of rollers and inner ring: that of other radial departures, less where it would turn the ring too far."""
+    most = min(magnification(scene.bearing), 0.3 / max(scene.operating.misalignment, 1e-9))
+    return next((factor for factor in _FACTORS if factor <= most), 1)
+
+
+def skew_magnification(bearing: Bearing) -> int:
+    """Return the factor for skews of rollers: an axis that lies as skewed in its pocket as it can is drawn at 0.6 rad."""
+    most = 0.6 / (2 * bearing.cage.pocket_clearance / bearing.roller.length)
+    return next((factor for factor in _FACTORS if factor <= most), 1)
+
+
+def leaning(towards_y, towards_z) -> np.ndarray:
+    """Return the turns that incline axes by these slopes towards y and z, quaternions (y, z, x, w), shape (..., 4); unknown ones stay upright."""
+    towards_y, towards_z = np.nan_to_num(towards_y), np.nan_to_num(towards_z)
+    half = 0.5 * np.arctan(np.hypot(towards_y, towards_z))
+    share = np.sin(half) / np.maximum(np.hypot(towards_y, towards_z), 1e-12)
+    return np.stack((-towards_z * share, towards_y * share, np.zeros(half.shape), np.cos(half)), axis=-1)
+
+
+def drawn_guide_radius(bearing: Bearing, cage_factor: float) -> float | None:
+    """Return the drawn radius [mm] of the guide land, None without lands: the clearance is drawn ``cage_factor`` times."""
+    cage = bearing.cage
+    if not cage.has_lands:
+        return None
+    outwards = 1 if cage.guidance == "outer_ring" else -1
+    return (cage.land_radius + outwards * (cage_factor - 1) * cage.guide_clearance) / MILLIMETRE
+
+
+def land_displacement(bearing: Bearing, cage_factor: float, sample) -> tuple[float, float]:
+    """Return the drawn displacement (y, z) [mm] of the guide land's centre: the inner ring's goes with the ring, by the cage's factor."""
+    return ring_displacement(cage_factor, sample) if bearing.cage.guidance == "inner_ring" else (0.0, 0.0)
 
 
 def cage_displacement(cage_factor: float, sample) -> tuple[float, float]:
@@ -131,7 +166,7 @@ def cage_bar_stroke(bearing: Bearing) -> float:
 
 def _cage_bar(bearing: Bearing) -> tuple[float, float, float]:
     """Return middle radius, half depth and half width [mm] of a bar: what cage and pockets leave on the pitch circle."""
-    inner, outer = bearing.cage.inner_radius / MILLIMETRE, (bearing.cage.guide_radius - bearing.cage.guide_clearance) / MILLIMETRE
+    inner, outer = bearing.cage.bore / MILLIMETRE, bearing.cage.outside / MILLIMETRE
     room = math.pi * bearing.pitch_radius / bearing.roller.count - 1.03 * bearing.roller.diameter / 2
     return (inner + outer) / 2, (outer - inner) / 2, max(room, 0.02 * bearing.roller.diameter) / MILLIMETRE
 

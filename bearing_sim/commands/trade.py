@@ -1,0 +1,130 @@
+"""``bearing-sim trade``: what speed costs in accuracy on one scene."""
+
+import csv
+from pathlib import Path
+
+import click
+
+from bearing_sim.commands.reporting import BadInput, FailedRun, print_json, progress_bar, tell_compilation, told_as_bad_input, told_file_faults
+
+_PICTURES = (".png", ".svg", ".pdf")
+_COLUMNS = ("level", "method", "setting", "real_time_factor", "slip_error_points", "load_error", "life_error", "on_front", "fault")
+_FACTORS, _ERRORS = (1.0, 3.0, 10.0, 100.0, 1000.0), (0.01, 0.1, 1.0)
+
+
+@click.command()
+@click.argument("scene_name", metavar="SCENE")
+@click.option("--set", "overrides", multiple=True, metavar="FIELD=VALUE", help="Override a field of the scene; may be repeated.")
+@click.option("--level", "levels", multiple=True, metavar="LEVEL", help="Measure this level; may be repeated [default: all].")
+@click.option("--factor", type=click.FloatRange(min=0.0, min_open=True), help="Recommend the most accurate setting at this many times real time.")
+@click.option(
+    "--error", type=click.FloatRange(min=0.0, min_open=True), help="Recommend the fastest setting within this error of slip [percentage points]."
+)
+@click.option("--csv", "table", type=click.Path(path_type=Path), metavar="PATH.csv", help="Write all settings as a table.")
+@click.option("--picture", type=click.Path(path_type=Path), metavar="PATH.png", help="Draw errors over speed (.png, .svg or .pdf).")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+@click.option("--quick", is_flag=True, help="Measure next to nothing, to see that everything works.")
+def command(scene_name, overrides, levels, factor, error, table, picture, as_json, quick):
+    """Measure every level, integrator and tolerance or step on SCENE: real-time factor against errors in slip, largest roller load and life.
+
+    All run the same manoeuvre from the scene's conditions (the load is halved and restored, the shaft slowed by a fifth) and are compared with a
+    tight reference.  Processor time of one core: other programs beside it do not count, but they slow the memory down.
+    """
+    from bearing_sim.levels.level import LEVELS
+    from bearing_sim.scene_file import SceneError
+    from bearing_sim.simulation import IntegrationError
+
+    for level in levels:
+        if level not in LEVELS:
+            raise BadInput(f"--level {level}: expected one of {', '.join(LEVELS)}")
+    if picture is not None and picture.suffix.lower() not in _PICTURES:
+        raise BadInput(f"--picture {picture}: expected a name that ends in {', '.join(_PICTURES)}")
+    tell_compilation()
+    from bearing_sim.studies.trade import recommend, settings_of, trade
+
+    total = 1 + sum(len(settings_of(level, quick)) for level in levels or LEVELS)
+    with progress_bar("settings", total) as show, told_as_bad_input(SceneError, ValueError):
+        done = iter(range(total + 1))
+        try:
+            found = trade(scene_name, overrides, levels, quick, lambda name: show(next(done)))
+        except IntegrationError as fault:
+            raise FailedRun(f"the reference: {fault}") from None
+    with told_file_faults():
+        if table is not None:
+            _write(table, found)
+        if picture is not None:
+            from bearing_sim.studies.trade_picture import draw
+
+            draw(picture, scene_name, found)
+    best = recommend(found, factor, error) if factor is not None or error is not None else None
+    if as_json:
+        print_json(_report(found) | {"recommended": best and best.setting.name})
+    else:
+        _print(scene_name, found)
+        _print_advice(found, factor, error, best)
+
+
+def _row(found, k):
+    one = found.measured[k]
+    setting = one.setting
+    measured = one.real_time_factor, one.slip_error, one.load_error, one.life_error
+    return dict(zip(_COLUMNS, (setting.level, setting.method, setting.detail, *measured, k in found.front, one.fault)))
+
+
+def _write(path, found) -> None:
+    with open(path, "w", newline="") as file:
+        writer = csv.DictWriter(file, _COLUMNS)
+        writer.writeheader()
+        writer.writerows(_row(found, k) for k in range(len(found.measured)))
+
+
+def _report(found) -> dict:
+    slip, load, life = found.own_error
+    return {
+        "reference": found.reference,
+        "reference_error": {"slip_error_points": slip, "load_error": load, "life_error": life},
+        "simulated_seconds": found.simulated,
+        "left_out": found.left_out,
+        "settings": [_row(found, k) for k in range(len(found.measured))],
+    }
+
+
+def _print(name, found) -> None:
+    import sys
+
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table(title=f"{name}: against {found.reference}, over {found.simulated:.3g} s", title_justify="left")
+    for column in ("", "level", "method", "setting", "x real time", "slip, points", "load, %", "life, %", ""):
+        table.add_column(column, justify="right" if "," in column or "x " in column else "left")
+    for k in sorted(range(len(found.measured)), key=lambda k: -found.measured[k].real_time_factor):
+        row = _row(found, k)
+        told = f"{row['real_time_factor']:.3g}", f"{row['slip_error_points']:.3f}", f"{100 * row['load_error']:.2g}", f"{100 * row['life_error']:.2g}"
+        table.add_row("*" if row["on_front"] else "", row["level"], row["method"], row["setting"], *told, row["fault"])
+    Console(width=None if sys.stdout.isatty() else 150).print(table)
+    slip, load, life = found.own_error
+    click.echo(
+        f"* nothing is both faster and closer in slip; the reference itself is good to {slip:.2g} points, {100 * load:.2g} %, {100 * life:.2g} %"
+    )
+    for level, reason in found.left_out.items():
+        click.echo(f"left out: {level} ({reason})")
+
+
+def _print_advice(found, factor, error, best) -> None:
+    from bearing_sim.studies.trade import recommend
+
+    if factor is not None or error is not None:
+        click.echo(f"recommended: {_told(best)}" if best else "no setting is that fast and that accurate at once")
+        return
+    for factor in _FACTORS:
+        click.echo(f"for {factor:g} x real time: {_told(recommend(found, factor=factor))}")
+    for error in _ERRORS:
+        click.echo(f"for {error:g} points of slip: {_told(recommend(found, error=error))}")
+
+
+def _told(one) -> str:
+    if one is None:
+        return "nothing"
+    options = " ".join(f'--set "{item}"' for item in (f"level={one.setting.level}", *one.setting.overrides))
+    return f"{one.setting.name} ({one.real_time_factor:.3g} x real time, {one.slip_error:.2g} points): {options}"

@@ -1,0 +1,82 @@
+"""Studies of level spatial: misalignment against what the literature says, and what slices change and cost."""
+
+import json
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from bearing_sim import load_scene
+from bearing_sim.cli import main
+from bearing_sim.studies.misalignment import misalign
+from bearing_sim.studies.slices import by_slices, line
+
+SLOW = ["operating.shaft_speed=5000 rpm", "operating.radial_load=2 kN"]
+QUIET = {"tell": lambda text: None}
+
+
+@pytest.fixture(scope="module")
+def found():
+    points = misalign("deng2017_table1", SLOW, [0.0, 1e-3, 3e-3], turns=(6.0, 4.0), **QUIET)
+    return {(one.crown, round(1e3 * one.misalignment)): one for one in points}
+
+
+@pytest.mark.parametrize("crown", ["none", "iso_log"])
+def test_edges_bear_more_and_the_life_falls_as_the_ring_is_misaligned(found, crown):
+    at = [found[crown, amount] for amount in (0, 1, 3)]
+    assert np.all(np.diff([one.inner_edge_pressure for one in at]) > 0)
+    assert np.all(np.diff([one.outer_edge_pressure for one in at]) > 0)
+    assert np.all(np.diff([one.lamina_life for one in at]) < 0)
+
+
+def test_a_crown_softens_the_edges_and_keeps_more_of_the_life(found):
+    for amount in (1, 3):
+        flat, crowned = found["none", amount], found["iso_log", amount]
+        assert crowned.inner_edge_pressure < 0.8 * flat.inner_edge_pressure
+        assert crowned.lamina_life / found["iso_log", 0].lamina_life > flat.lamina_life / found["none", 0].lamina_life
+
+
+def test_heaviest_rollers_stand_halfway_between_both_raceways(found):
+    for one in found.values():
+        assert one.tilt == pytest.approx(one.misalignment / 2, rel=0.1, abs=1e-6)
+        assert one.tilt == pytest.approx(np.abs(one.still.tilts).max(), rel=0.1, abs=1e-6)
+
+
+def test_skew_grows_with_misalignment_at_moderate_speed(found):
+    for crown in ("none", "iso_log"):
+        assert found[crown, 0].skew < 0.1 * found[crown, 1].skew < 0.05 * found[crown, 3].skew
+
+
+def test_life_by_slices_in_motion_is_near_that_of_quasi_static_balance(found):
+    for one in found.values():
+        assert one.lamina_life == pytest.approx(one.still.lamina_life, rel=0.15)
+
+
+def test_results_settle_as_a_crowned_roller_is_cut_finer():
+    scene = load_scene("deng2017_table1", [*SLOW, "level=spatial", "bearing.roller.crown=iso_log", "operating.misalignment=1 mrad"])
+    few, some, many = by_slices(scene, 0.1, 0.06, (10, 30, 100), **QUIET)
+    for name in ("lamina_life", "static_lamina_life"):
+        rough, fine, finest = (getattr(one, name) for one in (few, some, many))
+        assert abs(fine / finest - 1) < 0.08  # 30 slices, as many as the standard asks for
+        assert abs(rough / finest - 1) > 5 * abs(fine / finest - 1)
+
+
+def test_a_straight_line_is_found_in_costs_that_lie_on_one():
+    cost = line((10, 20, 50), (25e-6, 35e-6, 65e-6))
+    assert (cost.fixed, cost.each, cost.misfit) == pytest.approx((15e-6, 1e-6, 0.0), abs=1e-12)
+
+
+def test_command_prints_and_draws(tmp_path):
+    picture, table = tmp_path / "m.png", tmp_path / "m.csv"
+    words = ["study", "misalignment", *(word for item in SLOW for word in ("--set", item)), "--points", "2", "--slices", "10", "--json"]
+    result = CliRunner().invoke(main, [*words, "--picture", str(picture), "--csv", str(table)])
+    assert result.exit_code == 0, result.output
+    assert [point["crown"] for point in json.loads(result.stdout)["points"]] == ["none", "none", "iso_log", "iso_log"]
+    assert picture.stat().st_size > 10_000
+    assert len(table.read_text().splitlines()) == 5
+
+
+def test_a_scene_at_rest_is_refused_with_what_to_do():
+    result = CliRunner().invoke(main, ["study", "misalignment", "--set", "operating.shaft_speed=0 rpm"])
+    assert result.exit_code == 2
+    assert "bearing-sim loads" in result.output
