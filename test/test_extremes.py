@@ -18,6 +18,7 @@ from bearing_sim.levels.planar_state import ROLLER, ROLLERS
 from bearing_sim.params import lubricate, pack
 from bearing_sim.simulation import scene_inputs
 from bearing_sim.studies.extremes import kinds_of_reason
+from bearing_sim.studies.extremes_long import long_run
 from bearing_sim.studies.extremes_run import CLAMPED, FAILED, FINISHED, REFUSED, course_legs, run_case
 from bearing_sim.studies.extremes_scenes import BEARING, DIMENSIONS, Case, oil_of, sampled_cases
 
@@ -228,3 +229,9 @@ def test_the_mixture_never_drives_a_roller():
     drags = run._work.rollers[:, ROLLER.churning, :].ravel()[:count]
     slow = (orbital_speeds > 0.0) & (orbital_speeds < 800.0)
     assert (drags * orbital_speeds >= 0.0).all() and (drags[slow] == 0.0).all() and slow.sum() == 3 and drags[0] < 0.0 < drags[-1]
+
+
+def test_a_long_run_drifts_in_nothing():
+    found = long_run(("slip", 1.0))
+    assert found.fault == "" and found.simulated == pytest.approx(1.0)
+    assert abs(found.shaft_angle_error) < 1e-12 and abs(found.slip_drift) < 1e-4 and abs(found.damage_drift) < 1e-3 and found.cage_slip > 0.0

@@ -51,15 +51,15 @@ def run_extremes(
     for level in levels:
         tell(f"compiling level {level} by all its methods, once for this version")
         _compile(level)
-    tell(f"{len(cases)} scenes")
-    outcomes, total = [], len(cases) + len(runs)
-    # Long runs first: nothing else should wait for them at the end.
+    if runs:
+        tell(f"{len(runs)} long runs")
     with _pool() as pool:
-        pending = [pool.submit(long_run, run) for run in runs]
-        for outcome in _outcomes(cases):
-            outcomes.append(outcome)
-            progress(len(outcomes) / total)
-        long_outcomes = [future.result() for future in pending]
+        long_outcomes = list(pool.map(long_run, runs))
+    tell(f"{len(cases)} scenes")
+    outcomes = []
+    for outcome in _outcomes(cases):
+        outcomes.append(outcome)
+        progress(len(outcomes) / len(cases))
     order = {(case.level, case.name): place for place, case in enumerate(cases)}
     outcomes.sort(key=lambda outcome: order[outcome.case.level, outcome.case.name])
     return _report(levels, samples, seed, outcomes, long_outcomes), outcomes
