@@ -7,6 +7,7 @@ died, a hang, too slow with settings that do not ask for it, or a value that no 
 """
 
 import os
+import re
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
@@ -18,6 +19,8 @@ from bearing_sim.studies.extremes_long import LongRun, long_run, long_runs
 from bearing_sim.studies.extremes_run import FAILED, FINISHED, OUTCOMES, Outcome, run_case
 from bearing_sim.studies.extremes_scenes import Case, sampled_cases
 
+# A field that a fault names: where a fault begins, or behind the record that found it.
+_NAMED = re.compile(r"(?:(?<=^)|(?<=; )|(?<=bearing: )|(?<=scene: ))([a-z_]+(?:\.[a-z_0-9]+)*)(?: = [^:;]*)?(?=: )")
 _COSTS = ("steps_per_ms", "right_hand_sides_per_ms", "core_ms_per_ms", "step_us")
 
 
@@ -153,5 +156,5 @@ def _counted(outcomes: Sequence[Outcome], status: str) -> dict[str, int]:
 
 def kinds_of_reason(reason: str) -> list[str]:
     """Return the fields that a refusal names, or the bounds that clamped a run, without their numbers."""
-    parts = reason.split("; ") if "; " in reason or " = " in reason.split(":")[0] else reason.split(", ")
-    return list(dict.fromkeys(part.split(":")[0].split(" = ")[0] for part in parts))
+    named = [name for name in _NAMED.findall(reason) if name not in ("bearing", "scene")]
+    return list(dict.fromkeys(named or [part.split(":")[0] for part in reason.split(", ")]))
