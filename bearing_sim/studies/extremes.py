@@ -123,16 +123,13 @@ def _totals(outcomes, long_outcomes) -> dict[str, int]:
 
 
 def _level_report(outcomes: Sequence[Outcome], long_outcomes: Sequence[LongRun]) -> dict:
-    worst = {}
-    for name in _COSTS:
-        dearest = max(outcomes, key=lambda outcome: getattr(outcome, name))
-        worst[name] = {"case": dearest.case.name, "value": getattr(dearest, name)}
     return {
         **_totals(outcomes, long_outcomes),
         "clamped_by": _counted(outcomes, "clamped"),
         "refused_by": _counted(outcomes, "refused"),
         "failures": [{"case": o.case.name, "reason": o.reason, "overrides": list(o.case.overrides)} for o in outcomes if o.status == FAILED],
-        "worst": worst,
+        "worst": _worst(outcomes),
+        "worst_by_the_model": _worst([outcome for outcome in outcomes if not outcome.asks_for_small_steps]),
         "core_seconds": sum(outcome.core_seconds for outcome in outcomes),
         "non_finite_steps": sum(outcome.non_finite_steps for outcome in outcomes),
         "long_runs": [run._asdict() for run in long_outcomes],
@@ -142,6 +139,12 @@ def _level_report(outcomes: Sequence[Outcome], long_outcomes: Sequence[LongRun])
             if not o.case.name.startswith("sample ")
         ],
     }
+
+
+def _worst(outcomes: Sequence[Outcome]) -> dict[str, dict]:
+    """Return the dearest case by each measure of cost."""
+    dearest = {name: max(outcomes, key=lambda outcome: getattr(outcome, name), default=None) for name in _COSTS}
+    return {name: {"case": found.case.name, "value": getattr(found, name)} for name, found in dearest.items() if found is not None}
 
 
 def _counted(outcomes: Sequence[Outcome], status: str) -> dict[str, int]:
