@@ -15,7 +15,8 @@ from bearing_sim.integrators.history import CONVERGED, FAILED, FIGURE, HIGHEST_O
 from bearing_sim.integrators.status import COUNT, NON_FINITE, NOT_EVALUATED, OK, SMALLEST_STEP, STEP_BUDGET, STEP_TOO_SMALL
 from bearing_sim.kernels.compilation import kernel, template
 
-_ITERATIONS = 6
+_ITERATIONS, _DAMPED_ITERATIONS = 6, 30
+_STALLED = 0.8  # of the correction before, as in `bearing_sim.integrators.sdirk2.solve_stage`
 _ENOUGH = 0.1  # of the error that a step may make: an iteration ends there
 _CONTRACTION = 0.4  # slower than this, an iteration wants new derivatives
 _SHIFT_CHANGE = 0.3  # relative; further off, the matrix is factored anew with the derivatives at hand
@@ -62,7 +63,10 @@ def solve_step(rhs, rhs_and_jacobian, factor, solve, error_norm, tolerance, mode
     order, shift = history.order[0], predict(history)
     after, enough = figures[FIGURE.time] + figures[FIGURE.step], _ENOUGH * (order + 1.0)
     before, slow = 0.0, False
-    for iteration in range(_ITERATIONS):
+    share, calm, patience = 1.0, 0, 1
+    for iteration in range(_DAMPED_ITERATIONS):
+        if iteration >= _ITERATIONS and patience == 1:
+            break
         derive = slow or figures[FIGURE.shift] == 0.0
         counts[COUNT.right_hand_sides] += 1
         if derive:
@@ -95,6 +99,16 @@ def solve_step(rhs, rhs_and_jacobian, factor, solve, error_norm, tolerance, mode
             figures[FIGURE.contraction] = max(0.3 * figures[FIGURE.contraction], size / before) if before > 0.0 else 0.0
         if size * min(1.0, figures[FIGURE.contraction]) < enough:
             return CONVERGED
+        if iteration > 0 and size > _STALLED * before:  # corrections that go to and fro: part of each
+            share, calm, patience = 0.5 * share, 0, 2 * patience
+        else:
+            calm += 1
+            if calm >= patience:
+                share, calm = min(2.0 * share, 1.0), 0
+        if share < 1.0:
+            for i in range(y.shape[0]):
+                correction[i] -= (1.0 - share) * change[i]
+                y[i] -= (1.0 - share) * change[i]
         before = size
     return FAILED
 
