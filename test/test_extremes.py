@@ -85,7 +85,7 @@ def test_a_scene_that_cannot_be_is_refused_with_the_bound_it_broke():
 def test_a_tight_tolerance_runs_out_of_steps_by_its_own_fault_and_a_loose_one_by_the_models(monkeypatch):
     monkeypatch.setattr("bearing_sim.studies.extremes_run._step_budget", lambda scene: 20)
     assert run_case(case("integration.relative_tolerance=1e-8")).status == CLAMPED
-    outcome = run_case(case("integration.relative_tolerance=1e-3"))
+    outcome = run_case(case("integration.relative_tolerance=2e-3"))
     assert outcome.status == FAILED and outcome.reason.startswith("too slow: 20 steps last for ")
 
 
