@@ -15,6 +15,7 @@ module                 responsibility
 ``simulation``         owns time and state; ``advance`` returns a block of samples
 ``sample``             the sample record: names, units and meanings of all observables
 ``levels``             one complete model per file
+``tables``             tables of operating points of level ``steady``: refined until they are good, kept on disk
 ``kernels``            scalar laws: contact, traction, cage, drag, raceway, load balance, linear algebra
 ``integrators``        stiff and explicit methods and their drive loops; they know no bearings
 ``rating_life``        roller loads to rating life: whole rollers, slices, oil and reliability

@@ -14,6 +14,7 @@ _COMMANDS = {
     "import-csv": "Turn a measured table into an MCAP log.",
     "loads": "Show how a scene's load spreads over rollers and slices, and the lives.",
     "machine": "Compute the raceway that pre-deformation machining makes.",
+    "table": "Build or look into the table of operating points of level steady.",
     "trade": "Measure what speed costs in accuracy on a scene, and recommend a setting.",
     "bench": "Measure speed and error of every level and method.",
     "study": "Study the model itself: the extremes.",

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-LEVELS = ("slip", "planar", "spatial")  # from the cheapest to the dearest
+LEVELS = ("steady", "slip", "planar", "spatial")  # from the cheapest to the dearest
 NUMBERS = {"steady": 0, "slip": 1, "planar": 2, "spatial": 3}  # how a sample names the level that computed it
 REDUCES_TO = {"spatial": "planar"}  # what a level moves and loads like, to round-off, where nothing that it alone has is asked for
 

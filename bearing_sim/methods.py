@@ -5,6 +5,7 @@ Names only, so that a scene can be read without the models; `bearing_sim.levels.
 
 # The first of a level is its own, taken where the scene names none.
 METHODS = {
+    "steady": ("lag",),
     "slip": ("rosenbrock2", "bdf", "rk45"),
     "planar": ("sdirk2", "bdf", "rk45"),
     "spatial": ("sdirk2", "bdf", "rk45"),

@@ -39,6 +39,13 @@ def oil_at(oil: Oil | CustomOil, temperature: float) -> OilState:
     return OilState(float(temperature), viscosity, density, alpha, oil.thermal_conductivity, thinning)
 
 
+def kinematic_viscosities(oil: Oil | CustomOil, temperatures: np.ndarray) -> np.ndarray:
+    """Return nu of an oil at many temperatures [m^2/s, K], both of one shape; between whole kelvins by its logarithm, to 1e-4."""
+    kelvins = np.arange(math.floor(temperatures.min()), math.ceil(temperatures.max()) + 1, dtype=float)
+    at = [_viscosity_and_density(oil, kelvin) for kelvin in kelvins.tolist()]
+    return np.exp(np.interp(temperatures, kelvins, [math.log(viscosity / density) for viscosity, density in at]))
+
+
 def _viscosity_and_density(oil: Oil | CustomOil, temperature: float) -> tuple[float, float]:
     """Return eta_0 [Pa s] and density [kg/m^3]."""
     if isinstance(oil, CustomOil):

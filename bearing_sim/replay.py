@@ -10,13 +10,14 @@ import numpy as np
 
 from bearing_sim.events import Event, Level
 from bearing_sim.input_course import InputCourse
-from bearing_sim.runtime.health import bearing_events
+from bearing_sim.runtime.health import bearing_events, bearing_states
 from bearing_sim.scene import Scene
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation
 from bearing_sim.topics import INPUTS, condition, further_condition
 
 _REPORT_EVERY = 1.0  # [s] of simulated time between diagnostics
 _PROGRESS_EVERY = 50  # ticks
+_COURSE = 2000  # instants in one go, at a level that takes them so
 _WATCHED_BLOCK = 100  # samples: views take long blocks far more cheaply than single samples
 _FAILURES_IN_A_ROW = 10  # then the run is given up
 _TURNING = 0.01  # of the largest speed of the run: slip means nothing on a shaft that hardly turns
@@ -90,7 +91,7 @@ class Replay:
 def replay(
     scene: Scene,
     course: InputCourse,
-    recording,
+    recording=None,
     watchers: Iterable = (),
     rate: float | None = None,
     progress: Callable[[float], None] = lambda seconds: None,
@@ -102,7 +103,7 @@ def replay(
     ----------
     scene : what to simulate; the operating block counts only for an oil temperature that the log does not hold.
     course : the inputs (see `bearing_sim.input_course.judge`); linear between their stamps.
-    recording : a `bearing_sim.sinks.mcap_sink.McapSink`, or alike.
+    recording : a `bearing_sim.sinks.mcap_sink.McapSink`, or alike; None writes nothing.
     watchers : further sinks, which get samples and events.
     rate : outputs per simulated second [Hz]; by default one at each stamp of speed or load.
     progress : called now and then with the time that has been reached [s].
@@ -116,11 +117,29 @@ def replay(
     return _Run(scene, course, recording, tuple(watchers), rate, progress).run(model)
 
 
+class _Nowhere:
+    """A recording that is none."""
+
+    def write(self, block) -> None:
+        """Drop samples."""
+
+    def write_inputs(self, time, inputs, channels) -> None:
+        """Drop inputs."""
+
+    def write_event(self, event) -> None:
+        """Drop an event."""
+
+    def write_diagnostics(self, time, events, values) -> None:
+        """Drop diagnostics."""
+
+
 class _Run:
     """One replay under way."""
 
     def __init__(self, scene: Scene, course: InputCourse, recording, watchers: tuple, rate: float | None, progress: Callable):
-        self._scene, self._course, self._recording, self._watchers, self._progress = scene, course, recording, watchers, progress
+        self._scene, self._course, self._watchers, self._progress = scene, course, watchers, progress
+        self._recording = recording if recording is not None else _Nowhere()
+        self._unseen = recording is None and not watchers
         stamps = course.instants
         wanted = stamps if rate is None else np.round(np.arange(int(course.end * 1e-9 * rate * (1 + 1e-12)) + 1) * (1e9 / rate)).astype(np.int64)
         self._grid = np.unique(np.concatenate((stamps, wanted[wanted <= course.end])))
@@ -155,7 +174,13 @@ class _Run:
 
     def _advance_over_grid(self, simulation: Simulation, inputs: np.ndarray) -> None:
         times = self._grid * 1e-9
+        takes_courses = getattr(simulation, "takes_courses", False)
+        done = 1  # instants before this one are
         for place in range(1, len(times)):
+            if takes_courses and place >= done:
+                done = place + self._advance_course(simulation, times, inputs, place)
+            if place < done:
+                continue
             moment, stretch = float(times[place]), float(times[place] - times[place - 1])
             reached = Inputs(*inputs[place].tolist())
             self._tell_events_until(moment)
@@ -177,6 +202,53 @@ class _Run:
             if self._is_output[place]:
                 self._take(block, moment)
         self._progress(float(times[-1]))
+
+    def _advance_course(self, simulation: Simulation, times: np.ndarray, inputs: np.ndarray, first: int) -> int:
+        """Advance over many instants at once; return how many, none where the next one needs a closer look."""
+        end = min(first + _COURSE, len(times))
+        gaps = np.flatnonzero(self._in_gap[first:end])
+        end = first + int(gaps[0]) if len(gaps) else end
+        if end == first:
+            return 0
+        stretches = np.diff(times[first - 1 : end])
+        block = simulation.advance_course(stretches, inputs[first:end])
+        reached = len(block)
+        if not reached:
+            return 0
+        self._recover(float(times[first]))
+        self._result.sim_seconds += float(stretches[:reached].sum())
+        if self._unseen:
+            self._take_unseen(block, times[first : first + reached], stretches[:reached], self._is_output[first : first + reached])
+        else:
+            for k in range(reached):
+                moment = float(times[first + k])
+                self._tell_events_until(moment)
+                self._write_inputs(first + k, Inputs(*inputs[first + k].tolist()))
+                self._unweighed += float(stretches[k])
+                if self._is_output[first + k]:
+                    self._take(block[k : k + 1], moment)
+        self._progress(float(times[first + reached - 1]))
+        return reached
+
+    def _take_unseen(self, block: np.ndarray, moments: np.ndarray, stretches: np.ndarray, is_output: np.ndarray) -> None:
+        """Take many outputs that nobody wants to see one by one."""
+        self._tell_events_until(float(moments[-1]))
+        waited = self._unweighed + np.cumsum(stretches)
+        block, moments, waited, total = block[is_output], moments[is_output], waited[is_output], float(waited[-1])
+        self._unweighed = total - float(waited[-1]) if len(waited) else total
+        if not len(block):
+            return
+        result = self._result
+        result.samples += len(block)
+        result.weight += np.diff(waited, prepend=0.0).tolist()
+        for kept, name in ((result.slip, "cage_slip"), (result.speed, "shaft_speed"), (result.life, "rating_life")):
+            kept += block[name].tolist()
+        result.damage = float(block["damage"][-1])
+        states = bearing_states(block, self._scene.thresholds)
+        for k in np.flatnonzero(np.diff(states, prepend=-1)).tolist():  # the first of them, too: what held before it is not known here
+            sample = block[k : k + 1].copy()
+            sample["time"] = moments[k]
+            self._report(sample[0], float(moments[k]))
 
     def _take(self, block: np.ndarray, moment: float) -> None:
         """Write one output."""

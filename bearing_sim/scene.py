@@ -228,12 +228,29 @@ class LifeRating:
 
 
 @_strict
+class SteadyTable:
+    """The table of operating points of level ``steady``: all load directions, and what it spans besides."""
+
+    tolerance: quantity("", "error allowed in slip, over 0.025 points of it, and in life, relative", 1e-4, 0.5, "%") = 0.02
+    maximum_speed: quantity("rad/s", "highest shaft speed; None: a fifth above the operating speed", 1.0, 12000.0, "rpm") | None = None
+    maximum_load: quantity("N", "largest radial load; None: half the bearing's dynamic load rating", 1.0, 1e6) | None = None
+    minimum_temperature: quantity("K", "lowest oil temperature", 220.0, 600.0, "degC") = 313.15
+    maximum_temperature: quantity("K", "highest oil temperature", 220.0, 600.0, "degC") = 453.15
+
+    @model_validator(mode="after")
+    def _spans_something(self):
+        if self.maximum_temperature < self.minimum_temperature:
+            raise ValueError(f"minimum_temperature: {self.minimum_temperature:g} K is above the maximum_temperature, {self.maximum_temperature:g} K")
+        return self
+
+
+@_strict
 class Scene:
     """One bearing, its oil, its operating conditions, and how it is computed."""
 
     name: str
     description: str = ""
-    level: Literal["slip", "planar", "spatial"] = "slip"
+    level: Literal["steady", "slip", "planar", "spatial"] = "slip"
     # `level: auto` in a file: the cheapest that has these, and all else that the scene says; why, is then entered here.
     wants: tuple[Literal[tuple(effects.WANTS)], ...] = ()
     level_reason: str = ""
@@ -245,11 +262,12 @@ class Scene:
     input_limits: InputLimits = field(default_factory=InputLimits)
     thresholds: Thresholds = field(default_factory=Thresholds)
     life: LifeRating = field(default_factory=LifeRating)
+    table: SteadyTable = field(default_factory=SteadyTable)
 
     @property
     def cage_whirls(self) -> bool:
         """Whether the level moves the cage's centre."""
-        return self.level != "slip"
+        return self.level not in ("steady", "slip")
 
     @property
     def bodies_tilt(self) -> bool:
@@ -270,7 +288,8 @@ class Scene:
             return self
         method = self.integration.method or names[0]
         if method not in names:
-            raise ValueError(f"integration.method: level {self.level} is integrated by {', '.join(names[:-1])} or {names[-1]}, not by {method}")
+            offered = " or ".join(filter(None, (", ".join(names[:-1]), names[-1])))
+            raise ValueError(f"integration.method: level {self.level} is integrated by {offered}, not by {method}")
         if self.integration.fixed_step is not None and method not in FIXED_STEP:
             raise ValueError(f"integration.fixed_step: {method} chooses its steps; {' and '.join(FIXED_STEP)} can keep to one")
         return self

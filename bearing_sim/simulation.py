@@ -10,9 +10,12 @@ from bearing_sim.integrators.status import COUNT, OK, REASONS, new_counts
 from bearing_sim.levels.inputs import Drive
 from bearing_sim.levels.level import LEVELS
 from bearing_sim.levels.slip import Model
+from bearing_sim.levels.steady_table import Table
+from bearing_sim.oil import kinematic_viscosities
 from bearing_sim.params import lubricate, pack
 from bearing_sim.sample import flat, new_block
 from bearing_sim.scene import Operating, Scene
+from bearing_sim.tables.store import cached_table
 
 
 class Inputs(NamedTuple):
@@ -63,12 +66,17 @@ class Simulation:
     ----------
     scene : what to simulate.
     inputs : conditions at time 0; the scene's operating block where absent.
+    table : of operating points, for level ``steady``; the one on disk where absent.  Without one each of them is solved.
     """
 
-    def __init__(self, scene: Scene, inputs: Inputs | None = None):
+    def __init__(self, scene: Scene, inputs: Inputs | None = None, table: Table | None = None):
         self.scene = scene
         self._params = pack(scene)
         self._level = LEVELS[scene.level]
+        self._tables = ()  # what the level's workspace is made of besides the parameters
+        if self._level.advance_course is not None:
+            kept = cached_table(scene) if table is None else (table,)
+            self._tables = kept[:1] if kept else ()
         self._method = self._level.method(scene.integration.method)
         self.reset(inputs)
 
@@ -82,7 +90,7 @@ class Simulation:
         """
         self.inputs = _checked(inputs if inputs is not None else scene_inputs(self.scene))
         self.time = 0.0
-        self._work = self._level.new_work(self._params)
+        self._work = self._new_work()
         self._counts = new_counts()
         self._begin(self._level.initial_state(self._params, self._work, *self.inputs[:3]), new_block(1, self._params.rollers.count))
 
@@ -100,8 +108,11 @@ class Simulation:
         if other._params.rollers.count != self._params.rollers.count:
             raise ValueError(f"cannot go on from a bearing of {other._params.rollers.count} rollers with one of {self._params.rollers.count}")
         self.inputs, self.time = other.inputs, other.time
-        self._work = self._level.new_work(self._params)
-        self._begin(self._level.state_at(self._params, self._work, other.sample), other._previous)
+        self._work = self._new_work()
+        before = other._previous.copy()
+        for name in ("roller_spin", "roller_rotation"):  # of a level that does not follow them
+            before[name] = np.nan_to_num(before[name])
+        self._begin(self._level.state_at(self._params, self._work, other.sample), before)
 
     def _begin(self, state: np.ndarray, previous: np.ndarray) -> None:
         """Take a state as the present one; what adds up over time goes on from the sample before."""
@@ -113,6 +124,9 @@ class Simulation:
         rows, before = flat(self._previous), flat(previous)
         self._level.observe(self.time, state, self._model(self.inputs, 1.0), self._work, 0.0, before[0], rows[0], self._memory.scratch[0])
         self._previous["level"] = NUMBERS[self.scene.level]
+
+    def _new_work(self):
+        return self._level.new_work(self._params, *self._tables)
 
     def _model(self, end: Inputs, duration: float) -> Model:
         now = self.inputs
@@ -188,7 +202,7 @@ class Simulation:
             flat(block),
         )
         if status != OK:
-            self._work = self._level.new_work(self._params)  # a failed search may have left nonsense to start the next one from
+            self._work = self._new_work()  # a failed search may have left nonsense to start the next one from
             self._memory = self._method.new_memory(state.size)
             self._step = float(integration.first_step)
             raise IntegrationError(
@@ -201,6 +215,54 @@ class Simulation:
         self.inputs, self._state, self._step = end, state, step
         self._previous = block[-1:].copy()
         return block
+
+    @property
+    def takes_courses(self) -> bool:
+        """Whether `advance_course` goes over many instants at once."""
+        return bool(self._tables)
+
+    def advance_course(self, stretches: np.ndarray, inputs: np.ndarray) -> np.ndarray:
+        """Advance from instant to instant of a course, as far as the level's table holds it, many times as fast as by `advance`.
+
+        Parameters
+        ----------
+        stretches : time from each instant to the next [s], positive, shape (n,).
+        inputs : conditions at the instants, columns as `Inputs`, shape (n, 4); linear in between.
+
+        Returns
+        -------
+        block : a sample at each instant that was reached, from none to n; time and state are those of the last.
+
+        Raises
+        ------
+        ValueError
+            The level takes no courses, a stretch is not positive and finite, or an input is not finite.
+        """
+        if not self.takes_courses:
+            raise ValueError(f"level {self.scene.level} without a table takes no courses of inputs; use advance")
+        if not (np.isfinite(inputs).all() and np.isfinite(stretches).all() and (stretches > 0.0).all()):
+            raise ValueError("advance_course takes positive finite stretches and finite inputs")
+        block = new_block(len(stretches), self._params.rollers.count)
+        reached = self._level.advance_course(
+            self.time,
+            self.time + np.cumsum(stretches),
+            np.ascontiguousarray(np.vstack([[*self.inputs], inputs]), float),
+            kinematic_viscosities(self.scene.lubricant.oil, np.ascontiguousarray(inputs[:, 3], float)),
+            self._state,
+            self._model(self.inputs, 1.0),
+            self._work,
+            self._counts,
+            flat(self._previous)[0],
+            flat(block),
+        )
+        if reached:
+            self.inputs = Inputs(*map(float, inputs[reached - 1]))
+            self.time = float(block["time"][reached - 1])
+            block["level"] = NUMBERS[self.scene.level]
+            self._previous = block[reached - 1 : reached].copy()
+            if self.inputs.oil_temperature != self._lubrication.temperature:
+                self._lubrication = lubricate(self.scene.lubricant, self._params, self.inputs.oil_temperature)
+        return block[:reached]
 
 
 def _checked(inputs: Inputs) -> Inputs:

@@ -47,14 +47,15 @@ ALLOWED = {
     "oil.py": ({"numpy"}, {"scene_lubricant"}),
     "params.py": ({"numpy"}, {"contour", "crown", "kernels", "oil", "rating_life", "ring_growth", "scene", "scene_lubricant"}),
     "rating_life.py": ({"numpy"}, {"kernels.compilation"}),
-    "simulation.py": ({"numpy"}, {"effects", "integrators.status", "levels", "params", "sample", "scene"}),
+    "tables": ({"numpy", "platformdirs"}, {"tables", "kernels.compilation", "levels", "params", "rating_life", "scene"}),
+    "simulation.py": ({"numpy"}, {"effects", "integrators.status", "levels", "oil", "params", "sample", "scene", "tables"}),
     "sinks": (
         {"numpy", "mcap", "rosbags", "rerun", "yaml"},
         {"sinks", "contour", "effects", "sample", "scene", "scene_file", "events", "topics", "provenance", "simulation"},
     ),
     "studies": (
         NUMBERS | {"sksundae", "matplotlib"},
-        {"studies", "integrators.status", "levels", "params", "rating_life", "sample", "scene", "scene_file", "simulation"},
+        {"studies", "integrators.status", "levels", "params", "rating_life", "sample", "scene", "scene_file", "simulation", "tables"},
     ),
     "runtime": ({"numpy"}, {"runtime", "simulation", "scene", "effects", "events", "sample", "topics"}),
 }

@@ -99,7 +99,7 @@ def test_what_no_single_level_has_is_an_error_that_names_who_has_what(monkeypatc
 
 
 def test_an_integration_method_of_another_level_is_refused_at_the_chosen_one():
-    with pytest.raises(SceneError, match="level slip is integrated by rosenbrock2"):
+    with pytest.raises(SceneError, match="level steady is integrated by lag"):
         scene("auto", "integration.method=sdirk2")
 
 

@@ -251,3 +251,12 @@ def test_rough_courses_stay_finite(start, end, tilted):
 def test_a_moment_and_a_misalignment_together_are_refused():
     with pytest.raises(SceneError, match="give the moment or the misalignment"):
         simulation("operating.moment=1", "operating.misalignment=1 mrad")
+
+
+def test_a_held_ring_is_inclined_from_the_start_even_where_no_balance_is_found(monkeypatch):
+    def lost(*arguments):
+        raise ArithmeticError
+
+    monkeypatch.setattr("bearing_sim.levels.spatial_start.balance", lost)
+    run = Simulation(load_scene("deng2017_table1", ["level=spatial", "operating.misalignment=1 mrad", "operating.misalignment_angle=90 deg"]))
+    assert run.sample["ring_tilt_z"] == pytest.approx(1e-3)

@@ -7,6 +7,7 @@ import sys
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 pytest.importorskip("rclpy", reason="the node needs ROS 2 (pip install 'bearing_sim[ros]', or a ROS installation)")
@@ -17,7 +18,9 @@ from rosbags.highlevel import AnyReader  # noqa: E402
 from std_srvs.srv import SetBool, Trigger  # noqa: E402
 
 from bearing_sim import topics  # noqa: E402
+from bearing_sim.events import Event  # noqa: E402
 from bearing_sim.input_log import read_input_log  # noqa: E402
+from bearing_sim.recording_reader import Recording  # noqa: E402
 from bearing_sim.scene_file import load_scene  # noqa: E402
 
 pytestmark = pytest.mark.timeout(180)
@@ -314,3 +317,24 @@ def test_wrong_parameters_and_scenes_end_with_one_clear_message_and_code_2(tmp_p
         assert process.wait() == 2, process.text
         assert "Traceback" not in process.text
         assert all(words in process.text for words in expected), process.text
+
+
+def test_a_level_that_the_machine_is_too_slow_for_gives_way_and_everybody_is_told(launch, tmp_path):
+    recording = tmp_path / "run.mcap"
+    slow = "overrides:=['level=spatial','bearing.roller.slices=400','bearing.roller.slices_per_traction=1']"
+    process, client = launch(slow, f"record:={recording}")
+    client.wait_until_matched(process)
+    client.drive_until(lambda: client.received["level"] and client.received["level"][-1].data < 3, "a cheaper level runs", process, shaft_speed=FAST)
+    seen = len(client.received["diagnostics"])
+    client.drive(3.0, shaft_speed=FAST)
+    level = int(client.received["level"][-1].data)
+    assert any(number == 1 and name.endswith("governor.level") and "instead of spatial" in text for number, name, text in client.statuses(seen))
+    assert client.values()["level"] == {0: "steady", 1: "slip", 2: "planar"}[level]
+    assert "governor.change: level spatial holds" in process.text
+    assert 0.04 < client.received["cage_slip"][-1].data < 0.11  # slip 6.2 %, planar 8.4 %
+    assert ended_well(process, signal.SIGTERM)
+    items = list(Recording(recording))
+    told = [item.text for item in items if isinstance(item, Event) and item.code == "governor.level"]
+    assert told and "instead of spatial" in told[0]
+    levels = np.concatenate([item["level"] for item in items if not isinstance(item, Event)])
+    assert set(levels) <= {0, 1, 2, 3} and levels[-1] == level < 3

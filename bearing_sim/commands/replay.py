@@ -24,7 +24,7 @@ from bearing_sim.commands.reporting import (
 @click.argument("log", type=click.Path(path_type=Path), metavar="IN.mcap")
 @click.option("--scene", "scene_name", required=True, metavar="SCENE", help="Bundled scene or YAML file.")
 @click.option("--set", "overrides", multiple=True, metavar="FIELD=VALUE", help="Override a field of the scene; may be repeated.")
-@click.option("-o", "--out", required=True, type=click.Path(path_type=Path), metavar="OUT.mcap", help="Recording of inputs and outputs.")
+@click.option("-o", "--out", type=click.Path(path_type=Path), metavar="OUT.mcap", help="Recording of inputs and outputs [default: none].")
 @click.option("--rrd", type=click.Path(path_type=Path), metavar="RUN.rrd", help="Write a view for rerun, too.")
 @click.option("--rate", type=click.FloatRange(min=0, min_open=True), metavar="HZ", help="Outputs per simulated second [default: one at each stamp].")
 @click.option("--speed-topic", metavar="TOPIC", help="Topic of the shaft speed [default: /shaft_speed].")
@@ -46,6 +46,8 @@ def command(log, scene_name, overrides, out, rrd, rate, speed_topic, load_topic,
     Float64) and radial load (WrenchStamped, or Float64 along +y). Needs no ROS. Inputs go linearly from stamp to stamp; bad
     messages are refused, told and counted as in a live run.
     """
+    import numpy as np
+
     from bearing_sim.input_course import judge
     from bearing_sim.input_log import InputLogError, read_input_log
     from bearing_sim.replay import replay
@@ -55,7 +57,7 @@ def command(log, scene_name, overrides, out, rrd, rate, speed_topic, load_topic,
 
     names = {"shaft_speed": speed_topic, "radial_load": load_topic, "oil_temperature": temperature_topic}
     with told_as_bad_input(SceneError, InputLogError), told_file_faults(), orderly_end():
-        if out.exists() and log.exists() and out.samefile(log):
+        if out is not None and out.exists() and log.exists() and out.samefile(log):
             raise BadInput(f"{out} is the log itself; write to another file")
         scene = load_scene(scene_name, overrides)
         tell_cheaper_level(scene)
@@ -64,19 +66,25 @@ def command(log, scene_name, overrides, out, rrd, rate, speed_topic, load_topic,
         course = judge(recorded, scene.input_limits, held, longest_gap)
         seconds = course.end * 1e-9
         with ExitStack() as stack:
-            recording = stack.enter_context(McapSink(out, scene, course.start_ns, {"bearing_sim_replay": {"log": log.name}}))
+            recording = None
+            if out is not None:
+                recording = stack.enter_context(McapSink(out, scene, course.start_ns, {"bearing_sim_replay": {"log": log.name}}))
             watchers = []
             if rrd is not None:
                 from bearing_sim.sinks.rerun_sink import RerunSink
 
                 watchers.append(stack.enter_context(RerunSink(scene, path=rrd, start_ns=course.start_ns, lossless=True, duration=seconds)))
             tell_compilation()
+            choice = _choice(scene, course)
             started = time.perf_counter()
             with suppress(IntegrationError):  # the replay itself will tell
-                Simulation(scene).advance(1e-6)  # machine code is compiled or loaded here, and not timed with the run
+                warm = choice.get("model", Simulation)(scene)
+                warm.advance(1e-6)  # machine code is compiled or loaded here, and not timed with the run
+                if warm.takes_courses:
+                    warm.advance_course(np.array([1e-6]), np.array([warm.inputs]))
             start_up = time.perf_counter() - started
             progress = stack.enter_context(progress_bar(f"replaying {log.name}", seconds))
-            result = replay(scene, course, recording, watchers, rate, progress)
+            result = replay(scene, course, recording, watchers, rate, progress, **choice)
     if as_json:
         print_json({**_report(result, course, recorded, scene, out), "start_up_seconds": start_up})
     else:
@@ -85,13 +93,26 @@ def command(log, scene_name, overrides, out, rrd, rate, speed_topic, load_topic,
         raise FailedRun(result.given_up)
 
 
+def _choice(scene, course) -> dict:
+    """Return what replay is told of the model: at level steady its table, for one oil temperature where the log has no other."""
+    if scene.level != "steady":
+        return {}
+    from functools import partial
+
+    from bearing_sim.commands.table import build_with_progress
+    from bearing_sim.simulation import Simulation
+
+    kelvin = scene.lubricant.temperature
+    return {"model": partial(Simulation, table=build_with_progress(scene, None if "oil_temperature" in course.stamps else (kelvin, kelvin))[0])}
+
+
 def _report(result, course, recorded, scene, out) -> dict:
     slip = result.slip_figures()
     return {
         "scene": scene.name,
         "level": scene.level,
         "log": str(recorded.path),
-        "out": str(out),
+        "out": out and str(out),
         "cage_slip": slip["mean"],
         "cage_slip_median": slip["median"],
         "cage_slip_p95": slip["p95"],
@@ -143,6 +164,6 @@ def _print(result, course, recorded, scene, out) -> None:
         ("took", f"{result.wall_seconds:.3g} s ({result.cpu_seconds:.3g} s of processor), {result.real_time_factor:.3g} times real time"),
         ("steps", f"{result.steps}, {rejected}; {result.failed_ticks} stretches left out"),
         ("events", ", ".join(f"{count} x {code}" for code, count in sorted(result.events.items())) or "none"),
-        ("recording", str(out)),
+        ("recording", str(out or "none")),
     ]
     print_table(f"replay of {recorded.path.name} on {scene.name}", rows)

@@ -2,7 +2,8 @@
 
 Cage angle and speed, the rollers' places, orbital speeds and spins, and what tilts, come from the sample, whole.  What a sample does
 not tell begins at rest: radial speeds, those of the centres of ring and cage, and of all tilts; contacts damp these within a millisecond.
-Where the sample's level has no whirl its cage is in the centre of what guides it, and begins to whirl as at the start of a run.
+Spins that a level does not follow (``steady``) begin rolling on the outer raceway.  Where the sample's level has no whirl its cage is in
+the centre of what guides it, and begins to whirl as at the start of a run.
 """
 
 import math
@@ -15,6 +16,12 @@ from bearing_sim.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT
 FIRST_ECCENTRICITY = 0.3  # of the guide clearance; a cage exactly in the centre would have no direction to whirl from
 
 
+def steady_state_at(params, work, sample) -> np.ndarray:
+    """Return the state of level ``steady`` at a sample; parameters as of `slip_state_at`."""
+    work.bearing.ring[:] = sample["ring_y"], sample["ring_z"]
+    return np.array([sample["cage_angle"], sample["cage_speed"]])
+
+
 def slip_state_at(params, work, sample) -> np.ndarray:
     """Return the state of level ``slip`` at a sample.
 
@@ -25,7 +32,7 @@ def slip_state_at(params, work, sample) -> np.ndarray:
     sample : of any level, see `bearing_sim.sample`.
     """
     work.ring[:] = sample["ring_y"], sample["ring_z"]
-    return np.concatenate([[sample["cage_angle"], sample["cage_speed"]], sample["roller_spin"]])
+    return np.concatenate([[sample["cage_angle"], sample["cage_speed"]], _spins(params, sample)])
 
 
 def planar_state_at(params, work, sample) -> np.ndarray:
@@ -37,7 +44,7 @@ def planar_state_at(params, work, sample) -> np.ndarray:
     state[at.THETA], state[at.OMEGA] = sample["cage_angle"], sample["cage_speed"]
     rollers = state[at.ROLLERS :].reshape(planar_algebra.BLOCK, count)
     rollers[at.R], rollers[at.PHI] = sample["roller_radius"], _roller_angles(sample)
-    rollers[at.PHI_SPEED], rollers[at.SPIN] = sample["orbital_speed"], sample["roller_spin"]
+    rollers[at.PHI_SPEED], rollers[at.SPIN] = sample["orbital_speed"], _spins(params, sample)
     _carry_means(work, sample)
     return state
 
@@ -54,9 +61,15 @@ def spatial_state_at(params, work, sample) -> np.ndarray:
     rollers = state[at.ROLLERS :].reshape(spatial_algebra.BLOCK, count)
     rollers[at.R], rollers[at.PHI] = sample["roller_radius"], _roller_angles(sample)
     rollers[at.TILT], rollers[at.SKEW] = sample["roller_tilt"], sample["roller_skew"]
-    rollers[at.PHI_SPEED], rollers[at.SPIN] = sample["orbital_speed"], sample["roller_spin"]
+    rollers[at.PHI_SPEED], rollers[at.SPIN] = sample["orbital_speed"], _spins(params, sample)
     _carry_means(work, sample)
     return state
+
+
+def _spins(params, sample):
+    """Return the rollers' spins; those of a level that does not follow them are of rolling on the outer raceway, as the drags let them."""
+    rolling = sample["orbital_speed"] * params.raceways.pitch_radius / params.rollers.radius
+    return np.where(np.isfinite(sample["roller_spin"]), sample["roller_spin"], rolling)
 
 
 def _cage_centre(params, sample):

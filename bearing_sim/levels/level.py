@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from bearing_sim.integrators.history import new_history
 from bearing_sim.integrators.memory import new_memory
-from bearing_sim.levels import carried, planar, planar_methods, planar_state, slip, slip_methods, spatial, spatial_methods, spatial_state
+from bearing_sim.levels import carried, planar, planar_methods, planar_state, slip, slip_methods, spatial, spatial_methods, spatial_state, steady
 
 
 class Method(NamedTuple):
@@ -34,6 +34,7 @@ class Level(NamedTuple):
     observe : compiled, see `bearing_sim.levels.slip`.
     methods : by name (see `bearing_sim.methods`), the level's own first.
     leaves_out : what the level does not model, in words.
+    advance_course : compiled, goes over a whole course of inputs at once; None at a level that marches.
     """
 
     new_work: Callable
@@ -42,6 +43,7 @@ class Level(NamedTuple):
     observe: Callable
     methods: Mapping[str, Method]
     leaves_out: str
+    advance_course: Callable | None = None
 
     def method(self, name: str | None) -> Method:
         """Return the method of that name, or the level's own."""
@@ -49,6 +51,15 @@ class Level(NamedTuple):
 
 
 LEVELS = {
+    "steady": Level(
+        steady.new_work,
+        steady.initial_state,
+        carried.steady_state_at,
+        steady.observe,
+        {"lag": Method(new_memory, steady.advance)},
+        "all that happens within a cage turn, and what slip leaves out",
+        steady.advance_course,
+    ),
     "slip": Level(
         slip.new_work,
         slip.initial_state,

@@ -20,7 +20,8 @@ def has_slices_of_its_own(params) -> bool:
 def balance_by_slices(params, cage_speed, load, growth, state) -> None:
     """Enter places and tilts of ring and rollers in balance into a state, and the speeds at which the rollers follow it.
 
-    The ring stays at rest: it is too heavy to follow every roller that passes.  A balance that is not found leaves the state as it is.
+    The ring stays at rest: it is too heavy to follow every roller that passes.  Where no balance is found only a ring that is held is
+    inclined, and all else starts as it is.
 
     Parameters
     ----------
@@ -40,6 +41,7 @@ def balance_by_slices(params, cage_speed, load, growth, state) -> None:
         contour = params.raceways.inner_radius + growth + 2.0 * params.rollers.radius - row[ROLLER_ROW.squeeze]
         return found, np.stack([contour - params.rollers.radius + row[ROLLER_ROW.penetration], roller_tilts(found)])
 
+    state[RING_TILT_Y], state[RING_TILT_Z] = tilts.misalignment_y, tilts.misalignment_z  # 0 where the ring is free
     try:
         found, places = rollers_at(0.0)
         ring = found.ring.copy()

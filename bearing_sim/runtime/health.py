@@ -8,6 +8,8 @@ from collections.abc import Iterable, Mapping
 from types import MappingProxyType
 from typing import NamedTuple
 
+import numpy as np
+
 from bearing_sim import topics
 from bearing_sim.events import Event, Level
 from bearing_sim.runtime.input_gate import InputGate
@@ -114,6 +116,16 @@ def bearing_events(sample, thresholds: Thresholds) -> list[Event]:
     if float(sample["damage"]) >= 1.0:
         events.append(Event(time, Level.ERROR, "bearing.life_used", f"damage: {float(sample['damage']):.3g} of the rating life is used up"))
     return events
+
+
+def bearing_states(samples: np.ndarray, thresholds: Thresholds) -> np.ndarray:
+    """Return a number for each sample, shape (n,): where it stays the same, codes and levels of `bearing_events` do."""
+    slip = np.abs(samples["cage_slip"])
+    judged = np.abs(samples["shaft_speed"]) >= thresholds.slip_from_speed
+    warned = (slip >= thresholds.slip_warning) & judged
+    state = warned.astype(int) + (warned & (slip >= thresholds.slip_error))
+    state += 3 * (samples["modified_rating_life"] < thresholds.life_warning)
+    return state + 6 * (samples["damage"] >= 1.0)
 
 
 def run_events(now: float, runner: Runner) -> list[Event]:

@@ -15,6 +15,7 @@ from bearing_sim.studies.statics import statics
 SLICES = (10, 20, 30, 50, 100, 200)
 ROLLERS = (18, 36, 72, 144)
 _RATE = 2000.0  # Hz, of samples
+_PARTS = 6  # of a run, each timed by itself
 
 
 class Sliced(NamedTuple):
@@ -95,12 +96,12 @@ def _cut(scene, count):
 
 
 def _timed(run, settle, duration):
-    """Return samples after settling, processor time of a step, the best of three parts, and the real-time factor at that cost."""
+    """Return samples after settling, processor time of a step, the best of some parts, and the real-time factor at that cost."""
     run.advance(settle)
     blocks, costs = [], []
-    for _ in range(3):
+    for _ in range(_PARTS):
         steps, start = run.counters.steps, time.process_time()
-        blocks.append(run.advance(duration / 3, samples=max(round(_RATE * duration / 3), 1)))
+        blocks.append(run.advance(duration / _PARTS, samples=max(round(_RATE * duration / _PARTS), 1)))
         costs.append((time.process_time() - start) / (run.counters.steps - steps))
-        mean_step = duration / 3 / (run.counters.steps - steps)
+        mean_step = duration / _PARTS / (run.counters.steps - steps)
     return np.concatenate(blocks), min(costs), mean_step / min(costs)

@@ -1,0 +1,289 @@
+"""Level ``steady``: the periodic state of level ``slip`` at the present inputs, and the cage's first-order lag behind it.
+
+State: y = (theta_c, omega_c) in rad and rad/s.  The cage's speed goes to that of the operating point as exp(-t/T), T from the
+operating point, too; everything else is that of the operating point at once.  Operating points come from a table where there
+is one that holds the inputs, and from `bearing_sim.levels.steady_point` where not, or from a march of level ``slip`` where that
+finds no periodic state: nothing is extrapolated.
+
+A sample has the loads, radii and ring position of level ``slip`` at the cage's angle and speed; equivalent loads, lives and
+powers are means over a roller pitch.  Roller spins, their angles and pocket forces are not given: they are NaN.  Left out,
+besides what level ``slip`` leaves out: all that happens within a cage turn, and the spins' own lag.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from bearing_sim.integrators.status import COUNT, NOT_EVALUATED, OK
+from bearing_sim.kernels.compilation import kernel
+from bearing_sim.kernels.load_balance import LOAD
+from bearing_sim.levels import slip
+from bearing_sim.levels.growth import inner_growth
+from bearing_sim.levels.inputs import Drive, load_at, shaft_speed_at
+from bearing_sim.levels.observation import observe_course
+from bearing_sim.levels.slip import OMEGA, THETA, Model
+from bearing_sim.levels.steady_march import March, march, new_march
+from bearing_sim.levels.steady_orbit import Orbit, new_orbit
+from bearing_sim.levels.steady_point import ANSWER, CREEP, FAILED, solve_point
+from bearing_sim.levels.steady_table import Place, Table, covers, empty_table, look_up, new_place
+from bearing_sim.params import Lubrication
+from bearing_sim.sample import COLUMN, SCALARS
+
+
+class Work(NamedTuple):
+    """Memory that the level writes while it computes."""
+
+    bearing: slip.Work  # of level slip
+    orbit: Orbit
+    table: Table
+    place: Place
+    answer: np.ndarray  # at the newest inputs, shape (len(ANSWER),)
+    inputs: np.ndarray  # scratch: speed, loads, temperature, shape (4,)
+    asked: np.ndarray  # inputs that were last solved for: speed, loads, temperature, shape (4,)
+    solved: np.ndarray  # the answer to them, shape (len(ANSWER),)
+    march: March  # for operating points without a periodic state
+    solutions: np.ndarray  # operating points solved so far, and how many of them by marching, int64, shape (2,)
+
+
+def new_work(params, table: Table | None = None):
+    """Return the level's workspace for a bearing; without a table every operating point is solved."""
+    return Work(
+        bearing=slip.new_work(params),
+        orbit=new_orbit(params.rollers.count),
+        table=table if table is not None else empty_table(),
+        place=new_place(),
+        answer=np.full(len(ANSWER), math.nan),
+        inputs=np.zeros(4),
+        asked=np.full(4, math.nan),
+        solved=np.full(len(ANSWER), math.nan),
+        march=new_march(params.rollers.count),
+        solutions=np.zeros(2, np.int64),
+    )
+
+
+def initial_state(params, work, shaft_speed, load_y, load_z):
+    """Return the state of ideal rolling: the cage at omega_i (1 - gamma)/2."""
+    return np.array([0.0, 0.5 * shaft_speed * (1 - params.raceways.diameter_ratio)])
+
+
+@kernel
+def solve_condition(shaft_speed, load_y, load_z, model, work):
+    """Solve for an operating point into ``work.solved``, unless it was the last one; return whether it was found.
+
+    Parameters
+    ----------
+    shaft_speed : [rad/s]; a shaft slower than `CREEP` is taken to turn so fast.
+    load_y, load_z : [N].
+    model : of the level, its lubrication that of the condition; its drive goes unused.
+    work : `Work`.
+    """
+    if abs(shaft_speed) < CREEP:
+        shaft_speed = -CREEP if shaft_speed < 0.0 else CREEP
+    asked = work.asked
+    if asked[0] == shaft_speed and asked[1] == load_y and asked[2] == load_z and asked[3] == model.lubrication.temperature:
+        return True
+    asked[0] = math.nan
+    constant = Model(model.params, model.lubrication, Drive(0.0, shaft_speed, 0.0, load_y, 0.0, load_z, 0.0), model.tolerance)
+    status = solve_point(constant, work.bearing, work.orbit, work.solved)
+    work.solutions[0] += 1
+    if status == FAILED:
+        work.solutions[1] += 1
+        if not march(constant, work.bearing, work.march, work.solved):
+            return False
+    asked[0], asked[1], asked[2], asked[3] = shaft_speed, load_y, load_z, model.lubrication.temperature
+    return True
+
+
+@kernel
+def _from_table(inputs, work):
+    """Write the table's answer to speed, loads and temperature into ``work.answer``; return whether it has one."""
+    speed, load, temperature = inputs[0], math.hypot(inputs[1], inputs[2]), inputs[3]
+    if not covers(speed, load, temperature, work.table):
+        return False
+    look_up(speed, load, temperature, math.atan2(inputs[2], inputs[1]), work.table, work.place, work.answer)
+    return math.isfinite(work.answer[ANSWER.cage_slip])
+
+
+@kernel
+def answer_at(shaft_speed, load_y, load_z, model, work):
+    """Write the operating point of a condition into ``work.answer``; return whether there is one.  Parameters as of `solve_condition`."""
+    inputs = work.inputs
+    inputs[0], inputs[1], inputs[2], inputs[3] = shaft_speed, load_y, load_z, model.lubrication.temperature
+    if _from_table(inputs, work):
+        return True
+    if not solve_condition(shaft_speed, load_y, load_z, model, work):
+        return False
+    for column in range(work.answer.shape[0]):
+        work.answer[column] = work.solved[column]
+    return True
+
+
+@kernel
+def _write_sample(t, y, model, work, interval, previous, row):
+    """Write the sample of a state; ``work.answer`` is that of the inputs at the time."""
+    params, loads, answer = model.params, work.bearing.loads, work.answer
+    count, cage_angle, cage_speed = params.rollers.count, y[THETA], y[OMEGA]
+    observe_course(
+        t, cage_angle, cage_speed, answer[ANSWER.inner_equivalent_load], answer[ANSWER.outer_equivalent_load], model, interval, previous, row
+    )
+    for column in range(ANSWER.damping_power - ANSWER.shaft_power + 1):
+        row[COLUMN.shaft_power + column] = answer[ANSWER.shaft_power + column]
+    load_y, load_z = load_at(t, model.drive)
+    work.bearing.growth[0] = inner_growth(shaft_speed_at(t, model.drive), model)
+    slip.balance_loads(cage_angle, cage_speed, load_y, load_z, params, work.bearing)
+    row[COLUMN.ring_y] = work.bearing.ring[0]
+    row[COLUMN.ring_z] = work.bearing.ring[1]
+    for j in range(count):
+        first = SCALARS + j
+        row[first + COLUMN.roller_angle * count] = cage_angle + 2.0 * math.pi * j / count
+        row[first + COLUMN.roller_radius * count] = loads[LOAD.radius, j]
+        row[first + COLUMN.roller_spin * count] = math.nan
+        row[first + COLUMN.roller_rotation * count] = math.nan
+        row[first + COLUMN.inner_load * count] = loads[LOAD.inner, j]
+        row[first + COLUMN.outer_load * count] = loads[LOAD.outer, j]
+        row[first + COLUMN.orbital_speed * count] = cage_speed
+        row[first + COLUMN.pocket_force * count] = math.nan
+
+
+@kernel
+def observe(t, y, model, work, interval, previous, row, rate):
+    """Write the sample of state ``y``; parameters as of `bearing_sim.levels.slip.observe`."""
+    load_y, load_z = load_at(t, model.drive)
+    if not answer_at(shaft_speed_at(t, model.drive), load_y, load_z, model, work):
+        for column in range(work.answer.shape[0]):
+            work.answer[column] = math.nan
+    _write_sample(t, y, model, work, interval, previous, row)
+
+
+@kernel
+def _follow(before, after, lag, duration, y):
+    """Let the cage follow a speed that goes linearly from one to another, exactly; a lag that is not known counts as none."""
+    rise = (after - before) / duration
+    if not lag > 0.0:
+        y[THETA] += 0.5 * (before + after) * duration
+        y[OMEGA] = after
+        return
+    gone = -math.expm1(-duration / lag)
+    away = y[OMEGA] - before + rise * lag
+    y[THETA] += before * duration + 0.5 * rise * duration * duration - rise * lag * duration + away * lag * gone
+    y[OMEGA] = after - rise * lag + away * (1.0 - gone)
+
+
+@kernel
+def _settled_speed(shaft_speed, model, work):
+    return 0.5 * shaft_speed * (1.0 - model.params.raceways.diameter_ratio) * (1.0 - work.answer[ANSWER.cage_slip])
+
+
+@kernel
+def advance(t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
+    """Advance sample by sample; parameters and results as in `bearing_sim.levels.advance.advance_by`.
+
+    A step is a sample: the inputs change linearly between samples, and so does the speed that the cage follows.
+    """
+    samples = rows.shape[0]
+    interval = duration / samples
+    load_y, load_z = load_at(t, model.drive)
+    shaft_speed = shaft_speed_at(t, model.drive)
+    if not answer_at(shaft_speed, load_y, load_z, model, work):
+        return NOT_EVALUATED, h
+    before, settled = previous, _settled_speed(shaft_speed, model, work)
+    for k in range(samples):
+        end = t + (k + 1) * interval
+        load_y, load_z = load_at(end, model.drive)
+        shaft_speed = shaft_speed_at(end, model.drive)
+        if not answer_at(shaft_speed, load_y, load_z, model, work):
+            return NOT_EVALUATED, h
+        reached = _settled_speed(shaft_speed, model, work)
+        _follow(settled, reached, work.answer[ANSWER.lag], interval, y)
+        counts[COUNT.steps] += 1
+        _write_sample(end, y, model, work, interval, before, rows[k])
+        before, settled = rows[k], reached
+    return OK, h
+
+
+@kernel
+def advance_course(start, times, inputs, kinematic_viscosities, y, model, work, counts, previous, rows):
+    """Advance from instant to instant of a course of inputs, for as long as the table holds them.
+
+    Parameters
+    ----------
+    start : time of the state [s].
+    times : instants, rising [s], shape (n,).
+    inputs : shaft speed [rad/s], load y, load z [N], oil temperature [K] before the first instant and at each, shape (n + 1, 4).
+    kinematic_viscosities : of the oil at each instant [m^2/s], shape (n,).
+    y : state, advanced in place.
+    model : of the level; its drive goes unused, and of its lubrication what depends on temperature.
+    work, counts, previous : as in `advance`.
+    rows : flat samples, shape (n, SCALARS + runs * Z).
+
+    Returns
+    -------
+    how many instants were reached; the state is that of the last of them.
+    """
+    growth, lubrication = model.params.growth, model.lubrication
+    if not _from_table(inputs[0], work):
+        return 0
+    settled, before, now = _settled_speed(inputs[0, 0], model, work), previous, start
+    for k in range(times.shape[0]):
+        if not _from_table(inputs[k + 1], work):
+            return k
+        speed, load_y, load_z, temperature = inputs[k + 1, 0], inputs[k + 1, 1], inputs[k + 1, 2], inputs[k + 1, 3]
+        reached = _settled_speed(speed, model, work)
+        interval = times[k] - now
+        _follow(settled, reached, work.answer[ANSWER.lag], interval, y)
+        counts[COUNT.steps] += 1
+        there = Model(
+            model.params,
+            Lubrication(
+                lubrication.inner,
+                lubrication.outer,
+                lubrication.viscosity,
+                lubrication.mixture_density,
+                temperature,
+                lubrication.pumping,
+                growth.constant + growth.by_temperature * temperature,
+                kinematic_viscosities[k],
+            ),
+            Drive(times[k], speed, 0.0, load_y, 0.0, load_z, 0.0),
+            model.tolerance,
+        )
+        _write_sample(times[k], y, there, work, interval, before, rows[k])
+        settled, before, now = reached, rows[k], times[k]
+    return times.shape[0]
+
+
+@kernel
+def solve_conditions(conditions, model, work, answers):
+    """Solve for operating points one after the other; an answer that was not found is NaN.
+
+    Parameters
+    ----------
+    conditions : shaft speed [rad/s], load [N] and its direction [rad] of each, shape (n, 3).
+    model : of the level; its drive goes unused.
+    work : `Work`, of the calling thread alone.
+    answers : result, shape (n, len(ANSWER)).
+    """
+    for k in range(conditions.shape[0]):
+        speed, load, angle = conditions[k, 0], conditions[k, 1], conditions[k, 2]
+        found = solve_condition(speed, load * math.cos(angle), load * math.sin(angle), model, work)
+        for column in range(answers.shape[1]):
+            answers[k, column] = work.solved[column] if found else math.nan
+
+
+@kernel
+def look_up_conditions(conditions, table, place, answers):
+    """Interpolate in a table; an answer outside of it is NaN.
+
+    Parameters
+    ----------
+    conditions : shaft speed [rad/s], load [N], oil temperature [K] and direction of the load [rad] of each, shape (n, 4).
+    table, place : as in `bearing_sim.levels.steady_table.look_up`.
+    answers : result, shape (n, len(ANSWER)).
+    """
+    for k in range(conditions.shape[0]):
+        if covers(conditions[k, 0], conditions[k, 1], conditions[k, 2], table):
+            look_up(conditions[k, 0], conditions[k, 1], conditions[k, 2], conditions[k, 3], table, place, answers[k])
+        else:
+            for column in range(answers.shape[1]):
+                answers[k, column] = math.nan

@@ -1,0 +1,253 @@
+"""A table of operating points, refined until its interpolant agrees with the solver at new points.
+
+Knots are added along one axis at a time: between two neighbours, where the interpolant in the middle misses the solver on any
+of some lines of the grid drawn by lot.  What is reported in the end comes from points drawn anywhere in the table.
+"""
+
+import itertools
+import math
+import os
+import threading
+import time
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import NamedTuple
+
+import numpy as np
+
+from bearing_sim.levels.inputs import Drive
+from bearing_sim.levels.slip import Model
+from bearing_sim.levels.steady import look_up_conditions, new_work, solve_conditions
+from bearing_sim.levels.steady_point import ANSWER
+from bearing_sim.levels.steady_table import AXES, Table, monotone_slopes, new_place
+from bearing_sim.params import Lubrication, Params
+from bearing_sim.rating_life import rating_life_revolutions
+from bearing_sim.tables.symmetry import contour_period, mirror_axis
+
+_SLIP_FLOOR = 2.5e-4  # absolute error of slip that is allowed besides
+_SHARE = 0.5  # of the error allowed in all, for one axis
+_LAG_FLOOR, _LAG_LENIENCE = 2e-3, 10.0  # s, and times as much error: a lag shows only while the inputs change
+_LINES = 24  # drawn for each interval
+_ROUNDS = 7  # an interval is halved so many times at most
+_MOST_NODES = 60_000
+_CHECKS = 400
+_CHUNK = 16  # conditions solved in one go by a thread
+_FIRST_SPEEDS, _FIRST_LOADS = (0.0, 0.08, 0.2, 0.4, 0.6, 0.8, 1.0), (0.0, 0.005, 0.03, 0.08, 0.15, 0.25, 0.5, 1.0)
+_FIRST_TEMPERATURES, _FIRST_ANGLES = 4, 6
+
+
+class Span(NamedTuple):
+    """What a table spans."""
+
+    maximum_speed: float  # [rad/s]
+    maximum_load: float  # [N]
+    minimum_temperature: float  # [K]
+    maximum_temperature: float  # [K]
+    reverse: bool  # whether reverse rotation is wanted, too
+
+
+class Quality(NamedTuple):
+    """How a table came out, at points drawn anywhere in it."""
+
+    nodes: int
+    missing: int  # of them without an answer
+    solved: int  # operating points solved for
+    seconds: float
+    tolerance: float
+    within: float  # share of the points checked that keep the tolerance
+    slip_error: float  # the largest, absolute
+    slip_error_95: float  # 95th percentile
+    life_error: float  # relative
+    life_error_95: float
+
+
+class Solver:
+    """Solves for operating points on several threads and remembers them."""
+
+    def __init__(self, params: Params, lubrication: Callable[[float], Lubrication], workers: int | None, progress: Callable[[int], None]):
+        self._params, self._lubrication, self._progress = params, lubrication, progress
+        self._lubrications: dict[float, Lubrication] = {}
+        self._known: dict[tuple, np.ndarray] = {}
+        self._local = threading.local()
+        self._pool = ThreadPoolExecutor(workers or os.cpu_count() or 1)
+
+    def __enter__(self) -> "Solver":
+        return self
+
+    def __exit__(self, *_) -> None:
+        self._pool.shutdown(cancel_futures=True)
+
+    @property
+    def solved(self) -> int:
+        """Operating points solved for so far."""
+        return len(self._known)
+
+    def solve(self, conditions: np.ndarray) -> np.ndarray:
+        """Return the answers to conditions (speed, load, temperature, angle), shapes (n, 4) and (n, len(ANSWER))."""
+        keys = [tuple(row) for row in conditions.tolist()]
+        new = sorted({key for key in keys if key not in self._known}, key=lambda key: (key[2], key[1], key[3], key[0]))
+        chunks = []
+        for _, same in itertools.groupby(new, key=lambda key: key[2]):
+            same = list(same)
+            chunks += [same[begin : begin + _CHUNK] for begin in range(0, len(same), _CHUNK)]
+        for temperature in {chunk[0][2] for chunk in chunks} - self._lubrications.keys():
+            self._lubrications[temperature] = self._lubrication(temperature)
+        for chunk, answers in zip(chunks, self._pool.map(self._solve_chunk, chunks)):
+            self._known.update(zip(chunk, answers))
+            self._progress(self.solved)
+        return np.array([self._known[key] for key in keys])
+
+    def _solve_chunk(self, chunk: list[tuple]) -> np.ndarray:
+        if not hasattr(self._local, "work"):
+            self._local.work = new_work(self._params)
+        model = Model(self._params, self._lubrications[chunk[0][2]], Drive(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), 1e-2)
+        answers = np.empty((len(chunk), len(ANSWER)))
+        solve_conditions(np.ascontiguousarray([[key[0], key[1], key[3]] for key in chunk]), model, self._local.work, answers)
+        return answers
+
+
+def build_table(
+    params: Params,
+    lubrication: Callable[[float], Lubrication],
+    span: Span,
+    tolerance: float,
+    workers: int | None = None,
+    progress: Callable[[int], None] = lambda solved: None,
+    most_nodes: int = _MOST_NODES,
+) -> tuple[Table, Quality]:
+    """Build a table.
+
+    Parameters
+    ----------
+    params : of the bearing.
+    lubrication : oil temperature [K] -> `bearing_sim.params.Lubrication`.
+    span : what it shall hold.
+    tolerance : relative error allowed in slip (besides 0.025 points) and in life.
+    workers : threads; as many as the machine has cores where absent.
+    progress : called now and then with the number of operating points solved for.
+    most_nodes : refinement ends before a grid of more.
+
+    Returns
+    -------
+    table, quality
+    """
+    began = time.perf_counter()
+    with Solver(params, lubrication, workers, progress) as solver:
+        grid = _Grid(params, solver, span, tolerance)
+        grid.refine(most_nodes)
+        table = grid.table()
+        checks = grid.drawn(_CHECKS)
+        exact, found = solver.solve(checks), look_up(table, checks)
+        shares = grid.shares(exact, found)
+        slip, life = np.abs(found - exact)[:, ANSWER.cage_slip], np.abs(_lives(found, params) / _lives(exact, params) - 1.0)
+        nodes = table.nodes[..., 0, ANSWER.cage_slip]
+        quality = Quality(
+            nodes.size,
+            int(np.isnan(nodes).sum()),
+            solver.solved,
+            time.perf_counter() - began,
+            tolerance,
+            float(np.mean(shares <= 1.0)),
+            *(float(np.nanquantile(error, q)) for error in (slip, life) for q in (1.0, 0.95)),
+        )
+    return table, quality
+
+
+def look_up(table: Table, conditions: np.ndarray) -> np.ndarray:
+    """Return the table's answers to conditions (speed, load, temperature, angle), shapes (n, 4) and (n, len(ANSWER)); NaN outside."""
+    answers = np.empty((len(conditions), len(ANSWER)))
+    look_up_conditions(np.ascontiguousarray(conditions, float), table, new_place(), answers)
+    return answers
+
+
+def assembled(knots: list[np.ndarray], period: float, mirror: float, values: np.ndarray) -> Table:
+    """Return the table of values on a grid of knots, shape (senses, *grid, len(ANSWER)), with slopes along all axes."""
+    slopes = [monotone_slopes(knots[axis], values, axis + 1, period if axis == 3 else 0.0) for axis in range(len(AXES))]
+    return Table(*knots, period, mirror, np.ascontiguousarray(np.stack([values, *slopes], axis=-2)))
+
+
+def _lives(answers: np.ndarray, params: Params) -> np.ndarray:
+    inner, outer = (answers[:, column] for column in (ANSWER.inner_equivalent_load, ANSWER.outer_equivalent_load))
+    return np.array([rating_life_revolutions(a, b, params.life) for a, b in zip(inner.tolist(), outer.tolist())])
+
+
+class _Grid:
+    """The grid while it is refined."""
+
+    def __init__(self, params: Params, solver: Solver, span: Span, tolerance: float):
+        self._params, self._solver, self._tolerance = params, solver, tolerance
+        turn = contour_period(params.raceways.contour)
+        self.period = turn or 2.0 * math.pi
+        self.mirror = mirror_axis(params.raceways.contour)
+        self._senses = (1.0, -1.0) if span.reverse and math.isnan(self.mirror) else (1.0,)
+        warm = span.maximum_temperature > span.minimum_temperature
+        self.knots = [
+            span.maximum_speed * np.array(_FIRST_SPEEDS),
+            span.maximum_load * np.array(_FIRST_LOADS),
+            np.linspace(span.minimum_temperature, span.maximum_temperature, _FIRST_TEMPERATURES if warm else 1),
+            np.arange(_FIRST_ANGLES) * self.period / _FIRST_ANGLES if turn else np.zeros(1),
+        ]
+        self._random = np.random.default_rng(1)
+
+    def values(self) -> np.ndarray:
+        points = np.stack(np.meshgrid(*self.knots, indexing="ij"), axis=-1).reshape(-1, len(AXES))
+        shape = (len(self._senses), *map(len, self.knots), len(ANSWER))
+        return np.concatenate([self._solver.solve(points * [sense, 1.0, 1.0, 1.0]) for sense in self._senses]).reshape(shape)
+
+    def table(self) -> Table:
+        return assembled(self.knots, self.period, self.mirror, self.values())
+
+    def refine(self, most_nodes: int) -> None:
+        """Halve intervals until none misses, each was halved often enough, or the grid would hold too many nodes."""
+        for _ in range(_ROUNDS):
+            table = self.table()
+            missed = [self._missed(axis, table) for axis in range(len(AXES))]
+            if not any(len(intervals) for intervals in missed):
+                return
+            for axis, intervals in enumerate(missed):
+                nodes = math.prod(map(len, self.knots))
+                if nodes // len(self.knots[axis]) * (len(self.knots[axis]) + len(intervals)) > most_nodes:
+                    return
+                self._halve(axis, intervals)
+
+    def _ends(self, axis: int) -> np.ndarray:
+        """Return the upper end of each interval of an axis."""
+        knots = self.knots[axis]
+        return np.append(knots[1:], knots[0] + self.period) if axis == 3 and len(knots) > 1 else knots[1:]
+
+    def _missed(self, axis: int, table: Table) -> np.ndarray:
+        """Return in which intervals of an axis the middle is off."""
+        ends = self._ends(axis)
+        middles = 0.5 * (self.knots[axis][: len(ends)] + ends)
+        if not len(middles):
+            return np.zeros(0, int)
+        points = np.empty((len(middles), _LINES, len(AXES)))
+        for other in range(len(AXES)):
+            points[..., other] = self._random.choice(self.knots[other], (len(middles), _LINES))
+        points[..., axis] = middles[:, None]
+        points[..., 0] *= self._random.choice(self._senses, (len(middles), _LINES))
+        points = points.reshape(-1, len(AXES))
+        shares = self.shares(self._solver.solve(points), look_up(table, points)).reshape(len(middles), _LINES)
+        return np.flatnonzero(np.nanmax(shares, axis=1, initial=0.0) > _SHARE)
+
+    def _halve(self, axis: int, intervals: np.ndarray) -> None:
+        middles = 0.5 * (self.knots[axis][intervals] + self._ends(axis)[intervals])
+        self.knots[axis] = np.sort(np.concatenate((self.knots[axis], middles)))
+
+    def shares(self, exact: np.ndarray, found: np.ndarray) -> np.ndarray:
+        """Return the largest share of what is allowed that the errors of each answer take; NaN where one is missing."""
+        with np.errstate(invalid="ignore"):
+            slip = np.abs(found - exact)[:, ANSWER.cage_slip] / (_SLIP_FLOOR + self._tolerance * np.abs(exact[:, ANSWER.cage_slip]))
+            life = np.abs(_lives(found, self._params) / _lives(exact, self._params) - 1.0) / self._tolerance
+            lag = np.abs(found - exact)[:, ANSWER.lag] / (_LAG_FLOOR + _LAG_LENIENCE * self._tolerance * exact[:, ANSWER.lag])
+        return np.fmax(np.maximum(slip, life), lag)  # the lag of a stopped cage is not known
+
+    def drawn(self, count: int) -> np.ndarray:
+        """Return conditions drawn evenly in speed, temperature and direction and in the square root of the load, shape (count, 4)."""
+        low, high = (np.array([knots[end] for knots in self.knots]) for end in (0, -1))
+        high[3] = self.period
+        places = self._random.random((count, len(AXES)))
+        places[:, 1] **= 2
+        points = low + places * (high - low)
+        points[:, 0] *= self._random.choice(self._senses, count)
+        return points

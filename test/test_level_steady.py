@@ -1,0 +1,221 @@
+"""Level steady: its periodic states against level slip marched until it settles, closed forms, symmetries and the books of power."""
+
+import math
+
+import numpy as np
+import pytest
+
+from bearing_sim import Inputs, SceneError, Simulation, load_scene
+from bearing_sim.kernels.cyclic import ALPHA_0, ALPHA_1, ALPHA_2, ALPHA_3, solve_cyclic
+from bearing_sim.levels import slip
+from bearing_sim.levels.inputs import Drive
+from bearing_sim.levels.slip import Model
+from bearing_sim.levels.steady_orbit import new_orbit
+from bearing_sim.levels.steady_point import ANSWER, SETTLED, STOPPED, solve_point
+from bearing_sim.levels.steady_table import empty_table
+from bearing_sim.params import lubricate, pack
+from bearing_sim.studies.steady_check import compare, marched, solved
+from bearing_sim.tables.store import solve_scene
+
+RPM = math.pi / 30
+
+
+def scene(*overrides):
+    return load_scene("deng2017_table1", overrides)
+
+
+def direct(*overrides, inputs=None):
+    """A simulation that solves for every operating point."""
+    return Simulation(scene("level=steady", *overrides), inputs, empty_table())
+
+
+def answer(of, rpm=45000.0, load=800.0, kelvin=393.15, angle=0.0):
+    found = solve_scene(of, rpm * RPM, load, kelvin, angle)
+    return type(ANSWER)(*found.tolist())
+
+
+def problem(of, rpm=45000.0, load=800.0, kelvin=393.15, angles=11):
+    """Model, workspace and orbit of an operating point."""
+    params = pack(of)
+    drive = Drive(0.0, rpm * RPM, 0.0, load, 0.0, 0.0, 0.0)
+    return Model(params, lubricate(of.lubricant, params, kelvin), drive, 1e-2), slip.new_work(params), new_orbit(params.rollers.count, angles)
+
+
+def test_cyclic_differences_are_solved_as_by_a_dense_matrix():
+    lot, places = np.random.default_rng(1), 23
+    slopes, right = lot.uniform(-0.5, 3.0, places), lot.normal(size=(places, 2))
+    matrix = np.diag(ALPHA_0 + slopes)
+    for m in range(places):
+        for back, alpha in ((1, ALPHA_1), (2, ALPHA_2), (3, ALPHA_3)):
+            matrix[m, m - back] += alpha
+    columns = np.hstack([right, np.zeros((places, 3))])
+    assert solve_cyclic(slopes, columns)
+    np.testing.assert_allclose(columns[:, :2], np.linalg.solve(matrix, right), rtol=1e-10, atol=1e-12)
+
+
+@pytest.mark.parametrize("name", ["deng2017_table1", "deng2017_table2"])
+def test_slip_and_life_are_those_of_the_marched_level_at_points_drawn_by_lot(name):
+    # Slip to 2 % or 0.05 points, life to 2 %; 25 points of each preset: bearing-sim table SCENE --against-slip 25.
+    for row in compare(load_scene(name), 4, 2017):
+        assert row.agrees, row
+
+
+@pytest.mark.parametrize(
+    "overrides",
+    [
+        ["bearing.outer_raceway.low_radius=34.8675 mm"],  # slips by a quarter
+        ["lubricant.pumping=true", "bearing.cage.pocket_reaction=true", "bearing.cage.assumed_eccentricity=0.9"],
+        ["bearing.ring_growth.centrifugal=true", "bearing.outer_raceway.contour_slope=false"],
+        ["bearing.outer_raceway.roundness=8 um", "bearing.outer_raceway.installation_angle=17 deg"],
+        ["bearing.outer_raceway.lobes=2", "lubricant.traction={law: kragelskii}"],
+        ["bearing.outer_raceway.d_value=0 mm", "lubricant.mixture_fraction=0.01", "bearing.outer_raceway.low_radius=34.87 mm"],
+    ],
+)
+def test_everything_that_level_slip_models_counts(overrides):
+    of, inputs = scene(*overrides), Inputs(42000 * RPM, 700.0, 500.0, 383.15)
+    found, life, lag = solved(of, inputs)
+    expected, expected_life = marched(of, inputs, lag)
+    assert found == pytest.approx(expected, rel=0.02, abs=5e-4)
+    assert life == pytest.approx(expected_life, rel=0.02)
+
+
+def test_more_angles_a_pitch_change_slip_by_less_than_half_a_percent():
+    of, found = scene(), []
+    for angles in (11, 31):
+        model, work, orbit = problem(of, angles=angles)
+        result = np.zeros(len(ANSWER))
+        assert solve_point(model, work, orbit, result) == SETTLED
+        found.append(result[ANSWER.cage_slip])
+    assert found[0] == pytest.approx(found[1], rel=5e-3)
+
+
+@pytest.mark.parametrize("rpm", [300.0, 5000.0, 45000.0])
+def test_ripple_of_the_cage_speed_within_a_pitch_is_next_to_nothing(rpm):
+    # What the accelerations left over within a pitch do to an even speed that is held back by tractions: a first-order lag.
+    model, work, orbit = problem(scene(), rpm)
+    result = np.zeros(len(ANSWER))
+    assert solve_point(model, work, orbit, result) == SETTLED
+    damped = math.hypot(18 * orbit.speed[0], 1 / result[ANSWER.lag])
+    ripple = 2.0 / len(orbit.accelerations) * np.abs(np.fft.rfft(orbit.accelerations)[1]) / damped / abs(orbit.speed[0])
+    assert abs(orbit.accelerations.mean()) < 0.05 * np.abs(orbit.accelerations).max()
+    assert ripple < 1.5e-3  # its square, two millionths, is what moves a mean
+
+
+@pytest.mark.parametrize(("rpm", "load"), [(45000.0, 800.0), (-30000.0, 3000.0), (8000.0, 100.0)])
+def test_what_the_shaft_puts_in_is_what_the_losses_take(rpm, load):
+    found = answer(scene("lubricant.pumping=true", "bearing.cage.pocket_reaction=true"), rpm, load)
+    # the bearing turns evenly: nothing is stored, and the load moves nothing in the mean
+    assert found.shaft_power == pytest.approx(sum(found[ANSWER.inner_sliding_power :]), rel=5e-3)
+
+
+def test_reverse_rotation_with_the_mirrored_load_is_the_same():
+    forward, backward = answer(scene(), 40000.0, 1500.0, angle=0.4), answer(scene(), -40000.0, 1500.0, angle=-0.4)
+    np.testing.assert_allclose(backward, forward, rtol=1e-6, atol=1e-9)
+
+
+def test_turning_load_and_contour_together_changes_nothing():
+    # by no whole number of pitches: to the error of eleven angles in one
+    turned = answer(scene("bearing.outer_raceway.installation_angle=0.3"), 45000.0, 1500.0, angle=0.5)
+    np.testing.assert_allclose(turned, answer(scene(), 45000.0, 1500.0, angle=0.2), rtol=1e-2)
+
+
+def test_cage_turns_at_epicyclic_speed_when_nothing_drags():
+    free = ["lubricant.mixture_fraction=0", "bearing.cage.guide_land_width=1 um", "bearing.cage.pocket_friction=0"]
+    assert abs(answer(scene(*free, "bearing.outer_raceway.low_radius=34.86 mm", "lubricant.traction_scale=5")).cage_slip) < 2e-4
+
+
+def test_cage_that_nothing_drives_stops():
+    loose = scene("bearing.outer_raceway.d_value=0 mm", "bearing.outer_raceway.low_radius=34.9 mm", "lubricant.mixture_fraction=0")
+    model, work, orbit = problem(loose, load=0.0)
+    result = np.zeros(len(ANSWER))
+    assert solve_point(model, work, orbit, result) in (SETTLED, STOPPED)
+    assert 0.6 < result[ANSWER.cage_slip] <= 1.0 and result[ANSWER.inner_equivalent_load] == 0.0
+
+
+def test_bearing_at_rest_has_no_slip_an_endless_life_and_a_standing_cage():
+    sample = direct("operating.shaft_speed=0").advance(1.0)[0]
+    assert math.isnan(sample["cage_slip"]) and math.isinf(sample["rating_life"]) and sample["damage"] == 0.0
+    assert abs(sample["cage_speed"]) < 1e-9 and sample["inner_load"].max() > 100.0
+
+
+@pytest.mark.parametrize("rpm", [1e-3, 1.0, 100.0, -100.0, 100_000.0])
+@pytest.mark.parametrize("load", [0.0, 10.0, 50_000.0])
+def test_extreme_conditions_have_an_answer(rpm, load):
+    found = answer(scene(), rpm, load)
+    assert all(map(math.isfinite, found[: ANSWER.outer_equivalent_load + 1])) and -0.05 < found.cage_slip <= 1.0
+
+
+def test_oil_at_frost_whose_spins_jump_has_an_answer():
+    found = answer(scene("lubricant.traction={law: eyring}", "lubricant.mixture_fraction=0.1"), 1000.0, 0.0, 251.6)
+    assert math.isfinite(found.cage_slip) and abs(found.cage_slip) < 0.05
+
+
+def test_disturbed_cage_of_level_slip_comes_back_with_the_lag():
+    of = scene("integration.relative_tolerance=1e-4")
+    lag, settled = answer(of).lag, answer(of).cage_slip
+    run = Simulation(of)
+    run.advance(0.15)
+    run._state[slip.OMEGA] *= 1.004
+    run.advance(0.25 * lag)  # the spins are there before
+    offs = [run.advance(0.1 * lag, samples=20)["cage_slip"].mean() - settled for _ in range(16)]
+    slope = np.polyfit(0.1 * lag * np.arange(16), np.log(-np.array(offs)), 1)[0]
+    assert -1.0 / slope == pytest.approx(lag, rel=0.12)
+
+
+def test_cage_goes_to_the_operating_point_as_an_exponential():
+    run = direct()
+    found = answer(run.scene)
+    ideal = run.sample["ideal_cage_speed"]
+    block = run.advance(3 * found.lag, samples=30)
+    left = np.exp(-block["time"] / found.lag)
+    np.testing.assert_allclose(block["cage_speed"], ideal * (1 - found.cage_slip * (1 - left)), rtol=1e-9)
+    turned = ideal * ((1 - found.cage_slip) * block["time"] + found.cage_slip * found.lag * (1 - left))
+    np.testing.assert_allclose(block["cage_angle"], turned, rtol=1e-9)
+
+
+def test_many_short_advances_are_one_long_one_on_a_ramp_of_nothing_but_time():
+    one, many = direct(), direct()
+    long = one.advance(0.05, samples=5)[-1]
+    for _ in range(5):
+        short = many.advance(0.01)[0]
+    assert short["cage_angle"] == pytest.approx(long["cage_angle"], rel=1e-12)
+    assert short["damage"] == pytest.approx(long["damage"], rel=1e-12)
+
+
+def test_sample_has_the_loads_of_level_slip_and_no_spins():
+    of = scene()
+    run = direct()
+    sample = run.advance(0.2)[0]
+    params, work = pack(of), slip.new_work(pack(of))
+    assert slip.balance_loads(sample["cage_angle"], sample["cage_speed"], 800.0, 0.0, params, work)
+    np.testing.assert_allclose(sample["inner_load"], work.loads[8], rtol=1e-5, atol=1e-3)
+    for name in ("roller_spin", "roller_rotation", "pocket_force"):
+        assert np.isnan(sample[name]).all()
+    assert sample["rating_life"] == pytest.approx(388.0, rel=0.01)
+
+
+def test_one_operating_point_is_solved_for_once():
+    run = direct()
+    run.advance(0.1, samples=50)
+    assert run._work.solutions.tolist() == [1, 0]
+
+
+def test_what_the_level_would_ignore_is_refused():
+    for overrides in (["bearing.roller.crown=iso_log"], ["operating.misalignment=1 mrad"], ["integration.fixed_step=10 us"]):
+        with pytest.raises(SceneError):
+            scene("level=steady", *overrides)
+
+
+@pytest.mark.parametrize("level", ["slip", "planar"])
+def test_handing_over_and_back_keeps_angle_speed_and_damage_and_loses_no_number(level):
+    run, other = direct(), Simulation(scene(f"level={level}"))
+    before = run.advance(0.2)[0]
+    other.take_over(run)
+    assert np.isfinite(other.state).all()
+    for name in ("time", "cage_angle", "cage_speed", "damage", "shaft_angle"):
+        assert other.sample[name] == before[name]
+    after = other.advance(2e-3)[0]
+    assert np.isfinite(after["roller_rotation"]).all() and np.isfinite(after["roller_spin"]).all()
+    assert after["cage_slip"] == pytest.approx(before["cage_slip"], abs=5e-3)
+    run.take_over(other)
+    assert run.sample["cage_speed"] == after["cage_speed"] and run.advance(0.01)["damage"][0] > after["damage"]

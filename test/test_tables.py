@@ -1,0 +1,342 @@
+"""Tables of operating points: their interpolant, their error, their place on disk, and what happens beyond them."""
+
+import json
+import math
+from functools import partial
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from scipy.interpolate import PchipInterpolator
+
+from bearing_sim import Inputs, Simulation, load_scene
+from bearing_sim.cli import main
+from bearing_sim.contour import outer_contour
+from bearing_sim.kernels.raceway import tabulated
+from bearing_sim.levels.steady_point import ANSWER
+from bearing_sim.levels.steady_table import empty_table, monotone_slopes
+from bearing_sim.params import lubricate, pack
+from bearing_sim.runtime.health import bearing_events, bearing_states
+from bearing_sim.sample import new_block
+from bearing_sim.scene import Thresholds
+from bearing_sim.tables import store
+from bearing_sim.tables.grid import Span, assembled, build_table, look_up
+from bearing_sim.tables.store import cached_table, obtain_table, read_table, solve_scene, span_of, table_hash, table_path, write_table
+from bearing_sim.tables.symmetry import contour_period, mirror_axis, radius_at
+
+RPM = math.pi / 30
+SMALL = [
+    "level=steady",
+    "table.maximum_speed=46000 rpm",
+    "table.maximum_load=1.2 kN",
+    "table.minimum_temperature=120 degC",
+    "table.maximum_temperature=120 degC",
+]
+
+
+@pytest.fixture(scope="module", autouse=True)
+def folder(tmp_path_factory):
+    """Keep the tables of these tests apart from the user's."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(store, "FOLDER", tmp_path_factory.mktemp("tables"))
+        yield
+
+
+@pytest.fixture(scope="module")
+def small():
+    scene = load_scene("deng2017_table1", SMALL)
+    return scene, *obtain_table(scene, workers=1)
+
+
+def drawn(table, count, seed=5):
+    lot = np.random.default_rng(seed)
+    return np.column_stack(
+        [
+            lot.uniform(-table.speeds[-1], table.speeds[-1], count),
+            table.loads[-1] * lot.random(count) ** 2,
+            lot.uniform(table.temperatures[0], table.temperatures[-1], count),
+            lot.uniform(-math.pi, math.pi, count),
+        ]
+    )
+
+
+def synthetic(values_of, knots):
+    """A table of the same numbers in every column."""
+    grid = values_of(*np.meshgrid(*knots, indexing="ij"))
+    return assembled(knots, 2 * math.pi / 3, 0.0, np.repeat(grid[None, ..., None], len(ANSWER), -1))
+
+
+def uneven_knots(n):
+    even = np.linspace(0.0, 1.0, n)
+    return [5 * even**1.3, 3 * even**1.5, 300 + 100 * even, np.arange(n) * (2 * math.pi / 3 / n)]
+
+
+def test_slopes_along_an_axis_are_those_of_scipys_monotone_cubic():
+    knots = np.array([0.0, 0.3, 1.0, 1.1, 2.5, 4.0])
+    values = np.random.default_rng(3).normal(size=(6, 4))
+    np.testing.assert_allclose(monotone_slopes(knots, values, 0), PchipInterpolator(knots, values).derivative()(knots), rtol=1e-12, atol=1e-12)
+
+
+def test_interpolant_follows_scipys_monotone_cubic_along_every_line_of_the_grid():
+    lot, knots = np.random.default_rng(4), uneven_knots(5)
+    grid = lot.normal(size=(5, 5, 5, 5))
+    table = assembled(knots, 2 * math.pi / 3, 0.0, np.repeat(grid[None, ..., None], len(ANSWER), -1))
+    for axis in range(3):
+        where = np.tile([knots[other][2] for other in range(4)], (50, 1))
+        where[:, axis] = np.linspace(knots[axis][0], knots[axis][-1], 50)
+        line = grid[tuple(slice(None) if other == axis else 2 for other in range(4))]
+        np.testing.assert_allclose(look_up(table, where)[:, 0], PchipInterpolator(knots[axis], line)(where[:, axis]), rtol=1e-9, atol=1e-9)
+
+
+def test_interpolant_never_leaves_what_the_corners_of_its_cell_hold():
+    lot, knots = np.random.default_rng(6), uneven_knots(4)
+    grid = lot.normal(size=(4, 4, 4, 4)) ** 3
+    table = assembled(knots, 2 * math.pi / 3, 0.0, np.repeat(grid[None, ..., None], len(ANSWER), -1))
+    points = drawn(table, 3000)
+    points[:, 0] = np.abs(points[:, 0])
+    found = look_up(table, points)[:, 0]
+    corners = []
+    for axis, place in enumerate(points.T):
+        place = np.mod(place, table.period) if axis == 3 else place
+        low = np.clip(np.searchsorted(knots[axis], place, "right") - 1, 0, 3 if axis == 3 else 2)
+        corners.append((low, (low + 1) % 4))
+    values = np.array([grid[tuple(corners[axis][(corner >> axis) & 1] for axis in range(4))] for corner in range(16)])
+    assert np.all(found >= values.min(axis=0) - 1e-12) and np.all(found <= values.max(axis=0) + 1e-12)
+
+
+def test_interpolant_is_monotone_where_the_knots_are():
+    table = synthetic(lambda a, b, c, d: np.tanh(2 * a - 3) + 0.3 * a + np.sqrt(b + 0.01) + 0.01 * c + 0 * d, uneven_knots(6))
+    points = drawn(table, 400)
+    points[:, 0] = np.abs(points[:, 0])
+    for axis in range(3):
+        lines = np.repeat(points[:, None, :], 40, axis=1)
+        lines[..., axis] = np.linspace(
+            (table.speeds, table.loads, table.temperatures)[axis][0], (table.speeds, table.loads, table.temperatures)[axis][-1], 40
+        )
+        rises = np.diff(look_up(table, lines.reshape(-1, 4))[:, 0].reshape(400, 40), axis=1)
+        assert rises.min() > -1e-9
+
+
+def test_error_falls_by_more_than_the_third_power_of_the_spacing():
+    def smooth(a, b, c, d):
+        return np.exp(0.3 * a) * (1 + 0.1 * np.sin(b)) + (c / 300) ** 2
+
+    errors = []
+    for n in (9, 17):
+        table = synthetic(smooth, uneven_knots(n))
+        points = drawn(table, 2000)
+        points[:, 0] = np.abs(points[:, 0])
+        errors.append(np.abs(look_up(table, points)[:, 0] - smooth(*points.T)).mean())
+    assert errors[1] < errors[0] / 6
+
+
+def test_table_keeps_its_tolerance_at_points_that_it_has_not_seen(small):
+    scene, table, quality = small
+    points = drawn(table, 120)
+    found = look_up(table, points)
+    exact = np.array([solve_scene(scene, *point) for point in points])
+    off = np.abs(found - exact)[:, ANSWER.cage_slip]
+    assert np.mean(off <= 2.5e-4 + 0.02 * np.abs(exact[:, ANSWER.cage_slip])) > 0.97
+    for column in (ANSWER.inner_equivalent_load, ANSWER.outer_equivalent_load):
+        assert np.abs(found[:, column] / exact[:, column] - 1).max() < 0.01
+    assert quality.within > 0.97 and quality.missing == 0
+
+
+def test_life_never_rises_with_load_nor_shows_negative_slip_at_speed(small):
+    _, table, _ = small
+    loads = np.linspace(0.0, table.loads[-1], 200)
+    for speed, angle in ((20000 * RPM, 0.3), (45000 * RPM, 1.0), (-45000 * RPM, 2.0)):
+        found = look_up(table, np.column_stack([np.full(200, speed), loads, np.full(200, 393.15), np.full(200, angle)]))
+        assert found[:, ANSWER.cage_slip].min() > 0.0
+        assert found[-1, ANSWER.inner_equivalent_load] > found[0, ANSWER.inner_equivalent_load]
+
+
+def test_simulation_with_a_table_is_the_one_that_solves_to_its_tolerance(small):
+    scene, table, _ = small
+    with_table, without = Simulation(scene, table=table), Simulation(scene, table=empty_table())
+    a, b = (run.advance(0.3)[0] for run in (with_table, without))
+    assert with_table._work.solutions[0] == 0 and without._work.solutions[0] == 1
+    for name in ("cage_slip", "rating_life", "shaft_power"):
+        assert a[name] == pytest.approx(b[name], rel=0.02)
+
+
+@pytest.mark.parametrize("inputs", [(47000 * RPM, 800.0, 0.0, 393.15), (4000.0, 0.0, 1300.0, 393.15), (4000.0, 100.0, 0.0, 394.0)])
+def test_condition_outside_the_table_is_solved_for_and_not_extrapolated(small, inputs):
+    scene, table, _ = small
+    run = Simulation(scene, Inputs(*inputs), table)
+    sample = run.advance(1.0)[0]
+    found = solve_scene(scene, inputs[0], math.hypot(*inputs[1:3]), inputs[3], math.atan2(inputs[2], inputs[1]))
+    assert sample["cage_slip"] == pytest.approx(found[ANSWER.cage_slip], rel=1e-9)
+    assert np.isnan(look_up(table, [(inputs[0], math.hypot(*inputs[1:3]), inputs[3], 0.0)])).all()
+
+
+def test_course_of_inputs_is_the_same_as_one_advance_after_the_other(small):
+    scene, table, _ = small
+    times = np.linspace(0.1, 4.0, 40)
+    inputs = np.column_stack([3000 + 400 * times, 500 + 100 * np.sin(times), 200 * np.cos(times), np.full(40, 393.15)])
+    one, other = Simulation(scene, table=table), Simulation(scene, table=table)
+    block = one.advance_course(np.full(40, 0.1), inputs)
+    singles = np.concatenate([other.advance(0.1, Inputs(*row)) for row in inputs])
+    for name in ("time", "cage_slip", "cage_angle", "damage", "inner_load", "rating_life", "shaft_angle", "oil_temperature"):
+        np.testing.assert_allclose(block[name], singles[name], rtol=1e-9, atol=1e-9)
+    assert one.time == pytest.approx(other.time) and one.counters.steps == other.counters.steps == 40
+
+
+def test_course_ends_where_the_table_does(small):
+    scene, table, _ = small
+    inputs = np.column_stack([np.linspace(3000, 6000, 30), np.full(30, 500.0), np.zeros(30), np.full(30, 393.15)])
+    reached = Simulation(scene, table=table).advance_course(np.full(30, 0.1), inputs)
+    assert 0 < len(reached) < 30 and reached["shaft_speed"].max() <= table.speeds[-1]
+
+
+def test_table_comes_back_from_disk_as_it_was(small):
+    scene, table, quality = small
+    again, its_quality = cached_table(scene)
+    for a, b in zip(table, again):
+        np.testing.assert_array_equal(a, b)
+    assert its_quality == quality
+
+
+@pytest.mark.parametrize(
+    "spoil",
+    [
+        lambda data: b"",
+        lambda data: data[:100],
+        lambda data: data[: len(data) // 2],
+        lambda data: np.random.default_rng(1).bytes(5000),
+        lambda data: data[:500] + bytes(16) + data[516:],
+        lambda data: data[:-1] + bytes([data[-1] ^ 1]),
+    ],
+)
+def test_broken_file_is_as_good_as_none(small, tmp_path, spoil):
+    _, table, quality = small
+    path = tmp_path / "table.npz"
+    write_table(path, table, quality)
+    assert read_table(path) is not None
+    path.write_bytes(spoil(path.read_bytes()))
+    assert read_table(path) is None
+
+
+def test_broken_file_is_built_anew(small, monkeypatch):
+    scene, table, quality = small
+    path = table_path(scene, span_of(scene))
+    whole = path.read_bytes()
+    path.write_bytes(whole[:1000])
+    monkeypatch.setattr(store, "build_table", lambda *_: (table, quality))
+    assert Simulation(scene).takes_courses is False
+    assert obtain_table(scene)[1] == quality and read_table(path) is not None
+    assert Simulation(scene).takes_courses is True
+
+
+def test_table_belongs_to_bearing_oil_and_span_and_to_nothing_else():
+    def of(*overrides):
+        scene = load_scene("deng2017_table1", [*SMALL, *overrides])
+        return table_hash(scene, span_of(scene))
+
+    same = ["name=other", "operating.radial_load=500 N", "life.reliability=99 %", "thresholds.life_warning=10 h", "level=slip"]
+    other = ["bearing.outer_raceway.low_radius=34.861 mm", "lubricant.oil=mil_l_23699", "lubricant.pumping=true", "table.maximum_load=1 kN"]
+    other += ["bearing.cage.pocket_friction=0.04", "table.tolerance=3 %", "bearing.outer_raceway.roundness=2 um"]
+    assert {of(change) for change in same} == {of()}
+    assert len({of(), *map(of, other)}) == len(other) + 1
+
+
+def raceway(*overrides):
+    scene = load_scene("deng2017_table1", overrides)
+    return pack(scene).raceways.contour, scene.bearing.outer_raceway
+
+
+@pytest.mark.parametrize(
+    ("overrides", "period", "mirrored"),
+    [
+        ([], 120.0, True),
+        (["bearing.outer_raceway.installation_angle=13.7 deg"], 120.0, True),
+        (["bearing.outer_raceway.lobes=5"], 72.0, True),
+        (["bearing.outer_raceway.d_value=0 mm"], 0.0, True),
+        (["bearing.outer_raceway.roundness=6 um"], 360.0, False),
+    ],
+)
+def test_symmetry_of_the_contour_is_found(overrides, period, mirrored):
+    contour, outer = raceway(*overrides)
+    assert math.degrees(contour_period(contour)) == pytest.approx(period)
+    axis = mirror_axis(contour)
+    assert math.isfinite(axis) == mirrored
+    azimuths = np.linspace(0.0, 7.0, 50)
+    np.testing.assert_allclose(radius_at(contour, azimuths), outer_contour(outer, azimuths)[0], atol=1e-9)
+    if mirrored:
+        np.testing.assert_allclose(outer_contour(outer, axis + azimuths)[0], outer_contour(outer, axis - azimuths)[0], atol=2e-9)
+
+
+def test_contour_without_symmetry_gets_nodes_for_both_senses_only_where_wanted():
+    def table(reverse):
+        scene = load_scene("deng2017_table1", ["bearing.outer_raceway.roundness=6 um"])
+        params = pack(scene)
+        span = Span(4000.0, 1000.0, 393.15, 393.15, reverse)
+        return build_table(params, lambda kelvin: lubricate(scene.lubricant, params, kelvin), span, 0.5, 1)[0]
+
+    backwards = [(-3000.0, 500.0, 393.15, 0.7)]
+    assert np.isnan(look_up(table(False), backwards)).all()
+    exact = solve_scene(load_scene("deng2017_table1", ["bearing.outer_raceway.roundness=6 um"]), *backwards[0])
+    assert look_up(table(True), backwards)[0, ANSWER.cage_slip] == pytest.approx(exact[ANSWER.cage_slip], rel=0.1)
+
+
+def test_round_bearing_needs_one_direction():
+    scene = load_scene("deng2017_table1", ["bearing.outer_raceway.d_value=0 mm", "bearing.outer_raceway.low_radius=34.86 mm"])
+    params = pack(scene)
+    table, _ = build_table(params, lambda kelvin: lubricate(scene.lubricant, params, kelvin), Span(4000.0, 1000.0, 393.15, 393.15, False), 0.3, 1)
+    assert len(table.angles) == 1
+    ahead, aside = look_up(table, [(3000.0, 700.0, 393.15, 0.0), (-3000.0, 700.0, 393.15, 2.0)])
+    np.testing.assert_allclose(ahead, aside)
+
+
+def test_tabulated_contour_is_the_one_that_the_symmetry_is_looked_for_in():
+    table = tabulated(lambda azimuth: (1.0 + 0.1 * np.cos(4 * azimuth), -0.4 * np.sin(4 * azimuth)))
+    assert contour_period(table) == pytest.approx(math.pi / 2)
+
+
+def test_states_of_many_samples_change_when_their_events_do():
+    lot, thresholds = np.random.default_rng(2), Thresholds()
+    block = new_block(300, 3)
+    block["cage_slip"] = lot.choice([0.0, 0.06, -0.07, 0.2, math.nan], 300)
+    block["shaft_speed"] = lot.choice([0.0, 4000.0, -4000.0], 300)
+    block["modified_rating_life"] = lot.choice([100.0, 1000.0, math.inf], 300)
+    block["damage"] = lot.choice([0.0, 1.5], 300)
+    states = bearing_states(block, thresholds)
+    kinds = [tuple((event.code, event.level) for event in bearing_events(sample, thresholds)) for sample in block]
+    assert len(set(zip(states.tolist(), kinds))) == len(set(kinds)) == len(set(states.tolist()))
+
+
+def test_replay_without_a_recording_comes_to_the_same_as_with_one(small, tmp_path):
+    from recordings import steady_log
+
+    from bearing_sim.input_course import judge
+    from bearing_sim.input_log import read_input_log
+    from bearing_sim.replay import replay
+    from bearing_sim.sinks.mcap_sink import McapSink
+
+    scene, table, _ = small
+    names = {"shaft_speed": None, "radial_load": None, "oil_temperature": None}
+    log = steady_log(tmp_path / "log.mcap", duration=6.0, speed=4600.0)
+    course = judge(read_input_log(log, names, "shaft", "header"), scene.input_limits, Inputs(0.0, 0.0, 0.0, 393.15))
+    make = partial(Simulation, table=table)
+    silent = replay(scene, course, None, model=make)
+    with McapSink(tmp_path / "out.mcap", scene, course.start_ns) as recording:
+        told = replay(scene, course, recording, model=make)
+    one_by_one = replay(scene, course, None, model=lambda *given: Simulation(*given, empty_table()))
+    assert silent.samples == told.samples == one_by_one.samples > 50
+    assert silent.events == told.events == one_by_one.events
+    np.testing.assert_allclose(silent.slip, told.slip)
+    np.testing.assert_allclose(silent.weight, told.weight)
+    assert silent.damage == pytest.approx(told.damage) and silent.damage == pytest.approx(one_by_one.damage, rel=0.02)
+
+
+def test_command_builds_shows_and_asks(small):
+    scene, _, quality = small
+    arguments = ["table", "deng2017_table1", *(part for change in SMALL[1:] for part in ("--set", change)), "--workers", "1"]
+    done = CliRunner().invoke(main, [*arguments, "--at", "40000,700,120,30", "--json"])
+    assert done.exit_code == 0, done.output
+    report = json.loads(done.stdout)
+    assert report["nodes"] == quality.nodes and report["points"][0]["held"]
+    of_table, exact = report["points"][0]["table_and_solution"]["cage_slip"]
+    assert of_table == pytest.approx(exact, rel=0.03)
+    assert "built" in CliRunner().invoke(main, arguments).output
+    assert CliRunner().invoke(main, ["table", "deng2017_table1", "--at", "fast"]).exit_code == 2
