@@ -8,6 +8,7 @@ module                 responsibility
 ``contour``            forms of the outer raceway; ``contour_file``, ``contour_scene``: measured ones
 ``methods``            by which integrators each level can be advanced
 ``effects``            which levels have what a scene may ask for
+``scene_bounds``       bounds that no single field has
 ``scene_file``         YAML, presets, overrides; every fault of a file at once
 ``quantity``           units at the door
 ``params``             what compiled code sees; `pack` is the only bridge from a scene
@@ -22,7 +23,8 @@ module                 responsibility
 ``ring_growth``        how far rings grow by rotation, fits and heat
 ``runtime``            pacing, the solver's thread, the gate for inputs, health
 ``sinks``              MCAP and rerun
-``studies``            the bench: speed and error of every level and method; statics: the load distribution by slices
+``studies``            the bench: speed and error of every level and method; statics: the load distribution by slices;
+                       extremes: the stability map
 ``topics``             the messages that samples and inputs become
 ``ros``                the ROS 2 node and player
 ``commands``, ``cli``  the command line

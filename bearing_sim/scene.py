@@ -14,6 +14,7 @@ from bearing_sim import effects
 from bearing_sim.crown import Crown, NoCrown, crown_faults
 from bearing_sim.methods import FIXED_STEP, METHODS
 from bearing_sim.quantity import quantity
+from bearing_sim.scene_bounds import moment_faults, play_faults, step_faults
 from bearing_sim.scene_cage import Cage, cage_faults
 from bearing_sim.scene_lubricant import CustomOil, Oil, Oil4109Traction, Traction
 from bearing_sim.scene_raceway import InnerRaceway, OuterRaceway, RingGrowth, growth_faults
@@ -108,8 +109,7 @@ class Bearing:
                 f"outer_raceway.low_radius: {1e3 * self.outer_raceway.low_radius:.6g} mm leaves {1e6 * clearance:.6g} um between inner "
                 f"raceway, roller and low point; expected {-2e4 * self.roller.diameter:.6g} to {5e5 * self.roller.diameter:.6g} um"
             )
-        faults += cage_faults(self)
-        faults += growth_faults(self)
+        faults += cage_faults(self) + play_faults(self) + growth_faults(self)
         if faults:
             raise ValueError("; ".join(faults))
         return self
@@ -292,4 +292,11 @@ class Scene:
             raise ValueError(f"integration.method: level {self.level} is integrated by {offered}, not by {method}")
         if self.integration.fixed_step is not None and method not in FIXED_STEP:
             raise ValueError(f"integration.fixed_step: {method} chooses its steps; {' and '.join(FIXED_STEP)} can keep to one")
+        return self
+
+    @model_validator(mode="after")
+    def _operation_is_within_bounds(self):
+        faults = step_faults(self) + moment_faults(self)
+        if faults:
+            raise ValueError("; ".join(faults))
         return self

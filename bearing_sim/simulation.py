@@ -36,6 +36,7 @@ class Counters(NamedTuple):
     right_hand_sides: int
     jacobians: int
     factorisations: int
+    smallest_steps: int = 0  # taken at the smallest length whatever their error
 
 
 class IntegrationError(RuntimeError):

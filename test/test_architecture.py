@@ -38,7 +38,11 @@ ALLOWED = {
     "scene_lubricant.py": ({"pydantic"}, {"quantity", "scene_record"}),
     "ring_growth.py": (set(), {"scene"}),
     "contour_scene.py": (set(), {"contour", "scene_raceway"}),
-    "scene.py": ({"pydantic"}, {"crown", "effects", "methods", "quantity", "scene_cage", "scene_lubricant", "scene_raceway", "scene_record"}),
+    "scene.py": (
+        {"pydantic"},
+        {"crown", "effects", "methods", "quantity", "scene_bounds", "scene_cage", "scene_lubricant", "scene_raceway", "scene_record"},
+    ),
+    "scene_bounds.py": (set(), set()),
     "scene_file.py": ({"pydantic", "pydantic_core", "yaml"}, {"contour_scene", "crown", "effects", "scene", "scene_cage", "quantity"}),
     "oil.py": ({"numpy"}, {"scene_lubricant"}),
     "params.py": ({"numpy"}, {"contour", "crown", "kernels", "oil", "rating_life", "ring_growth", "scene", "scene_lubricant"}),

@@ -60,10 +60,13 @@ def _print(level, told) -> None:
     worst = {
         "steps_per_ms": "most steps in a simulated ms",
         "right_hand_sides_per_ms": "most right-hand sides in a simulated ms",
-        "core_ms_per_ms": "most core time for a simulated ms [ms]",
-        "step_us": "longest step [us of core time]",
+        "core_ms_per_ms": "most core time for a simulated ms, in ms",
+        "step_us": "longest step, in us of core time",
     }
-    rows += [(text, f"{told['worst'][name]['value']:.4g} ({told['worst'][name]['case']})") for name, text in worst.items()]
+    for kind, whose in (("worst_by_the_model", ""), ("worst", ", settings that ask for small steps included")):
+        rows += [
+            (text + whose, f"{told[kind][name]['value']:.4g} ({told[kind][name]['case']})") for name, text in worst.items() if name in told[kind]
+        ]
     rows += [
         (
             f"{run['simulated']:g} s at {run['speed_rpm']:g} rpm",

@@ -12,16 +12,17 @@ the system from outside may have a kink there.  The history outlives the call.
 import math
 
 from bearing_sim.integrators.history import CONVERGED, FAILED, FIGURE, HIGHEST_ORDER, INFINITE, accept, change_step, interpolate, predict, remember
-from bearing_sim.integrators.status import COUNT, NON_FINITE, NOT_EVALUATED, OK, STEP_BUDGET, STEP_TOO_SMALL
+from bearing_sim.integrators.status import COUNT, NON_FINITE, NOT_EVALUATED, OK, SMALLEST_STEP, STEP_BUDGET, STEP_TOO_SMALL
 from bearing_sim.kernels.compilation import kernel, template
 
-_SMALLEST_STEP = 1e-12  # s
-_ITERATIONS = 6
+_ITERATIONS, _DAMPED_ITERATIONS = 6, 30
+_STALLED = 0.8  # of the correction before, as in `bearing_sim.integrators.sdirk2.solve_stage`
 _ENOUGH = 0.1  # of the error that a step may make: an iteration ends there
 _CONTRACTION = 0.4  # slower than this, an iteration wants new derivatives
 _SHIFT_CHANGE = 0.3  # relative; further off, the matrix is factored anew with the derivatives at hand
 _LOWER, _SAME, _HIGHER = 1.3, 1.2, 1.4  # safety in the step of the order below, at hand and above (Shampine and Reichelt)
 _WORTH_CHANGING, _LARGEST_GROWTH, _LARGEST_SHRINK = 1.5, 10.0, 0.2
+_DOUBTFUL = 2  # failures in succession that a history outlives
 _BELOW_LIMIT = 0.9  # of a limit that wanders; following it would change the step each time
 
 
@@ -62,7 +63,10 @@ def solve_step(rhs, rhs_and_jacobian, factor, solve, error_norm, tolerance, mode
     order, shift = history.order[0], predict(history)
     after, enough = figures[FIGURE.time] + figures[FIGURE.step], _ENOUGH * (order + 1.0)
     before, slow = 0.0, False
-    for iteration in range(_ITERATIONS):
+    share, calm, patience = 1.0, 0, 1
+    for iteration in range(_DAMPED_ITERATIONS):
+        if iteration >= _ITERATIONS and patience == 1:
+            break
         derive = slow or figures[FIGURE.shift] == 0.0
         counts[COUNT.right_hand_sides] += 1
         if derive:
@@ -95,6 +99,16 @@ def solve_step(rhs, rhs_and_jacobian, factor, solve, error_norm, tolerance, mode
             figures[FIGURE.contraction] = max(0.3 * figures[FIGURE.contraction], size / before) if before > 0.0 else 0.0
         if size * min(1.0, figures[FIGURE.contraction]) < enough:
             return CONVERGED
+        if iteration > 0 and size > _STALLED * before:  # corrections that go to and fro: part of each
+            share, calm, patience = 0.5 * share, 0, 2 * patience
+        else:
+            calm += 1
+            if calm >= patience:
+                share, calm = min(2.0 * share, 1.0), 0
+        if share < 1.0:
+            for i in range(y.shape[0]):
+                correction[i] -= (1.0 - share) * change[i]
+                y[i] -= (1.0 - share) * change[i]
         before = size
     return FAILED
 
@@ -146,7 +160,7 @@ def retreat(error_norm, share, failures, tolerance, model, history):
         candidate = 1.0 / (_LOWER * lower ** (1.0 / order) + 1e-10)
         if candidate > shrink:
             shrink, history.order[0] = candidate, order - 1
-    if failures > 2:
+    if failures > _DOUBTFUL:
         history.order[0] = 1  # what lies behind is no guide
     history.order[1] = 0
     figures[FIGURE.wanted] = figures[FIGURE.step] * max(_LARGEST_SHRINK, min(shrink, 0.9 if failures < 2 else 0.5))
@@ -195,8 +209,11 @@ def bdf(
         if outcome == CONVERGED:
             after = figures[FIGURE.time] + figures[FIGURE.step]
             share = error_norm(after, history.scratch[1], history.scratch[3], tolerance, model) / (history.order[0] + 1.0)
-        if share <= 1.0:
+        smallest = outcome == CONVERGED and math.isfinite(share) and figures[FIGURE.step] <= SMALLEST_STEP
+        if share <= 1.0 or smallest:
             counts[COUNT.steps] += 1
+            if share > 1.0:
+                counts[COUNT.smallest_steps] += 1
             failures = 0
             accepted(figures[FIGURE.step], history.scratch[1], model, work)
             accept(stop, history)
@@ -212,7 +229,18 @@ def bdf(
         else:
             figures[FIGURE.shift], history.order[1] = 0.0, 0
             figures[FIGURE.wanted] = figures[FIGURE.step] * (0.5 if outcome == FAILED else 0.1)
-        if figures[FIGURE.wanted] < _SMALLEST_STEP:
+        if math.isfinite(share):
+            figures[FIGURE.wanted] = max(figures[FIGURE.wanted], SMALLEST_STEP)
+        if failures > _DOUBTFUL:
+            # A secant of the past would leave an error that goes with the step, not with its square: begin anew along the tangent.
+            counts[COUNT.right_hand_sides] += 1
+            history.order[0], history.order[1] = 1, 0
+            if not rhs(figures[FIGURE.time], history.differences[0], model, work, history.differences[1]):
+                history.order[0] = 0
+                return NOT_EVALUATED, h
+            for i in range(y.shape[0]):
+                history.differences[1, i] *= figures[FIGURE.step]
+        if figures[FIGURE.wanted] < SMALLEST_STEP:
             history.order[0] = 0
             if outcome == NOT_EVALUATED:
                 return NOT_EVALUATED, h

@@ -5,10 +5,9 @@ Knows no bearings and no method: both come in as kernels.
 
 import math
 
-from bearing_sim.integrators.status import COUNT, NON_FINITE, NOT_EVALUATED, OK, STEP_BUDGET, STEP_TOO_SMALL
+from bearing_sim.integrators.status import COUNT, NON_FINITE, NOT_EVALUATED, OK, SMALLEST_STEP, STEP_BUDGET
 from bearing_sim.kernels.compilation import template
 
-_SMALLEST_STEP = 1e-12  # s
 _BEARABLE = 3.0  # times the tolerance: the estimate is a pessimist, and a repeated step costs as much as a whole one
 _GOAL, _GAIN = 0.7, 0.2
 _SAFETY, _LARGEST_GROWTH, _LARGEST_SHRINK = 0.85, 4.0, 0.2
@@ -59,22 +58,24 @@ def drive(
         counts[COUNT.right_hand_sides] += 1
         counts[COUNT.factorisations] += 1
         share = error_norm(t, y, error, tolerance, model) if evaluated else math.inf
-        if share <= _BEARABLE:
+        finite = math.isfinite(share)
+        if share <= _BEARABLE or (finite and this <= SMALLEST_STEP):
             counts[COUNT.steps] += 1
+            if share > _BEARABLE:
+                counts[COUNT.smallest_steps] += 1
             for i in range(size):
                 y[i] = next_y[i]
             t = end if this == left else t + this
             accepted(this, y, model, work)
             fresh = False
             growth = min(_LARGEST_GROWTH, (_GOAL / (share + 1e-10)) ** (_GAIN / order))
-            h = max(this * growth, h) if this < wanted else wanted * growth
+            h = max(this * growth, h) if this < wanted else max(wanted * growth, SMALLEST_STEP)
         else:
             counts[COUNT.rejected_steps] += 1
-            finite = math.isfinite(share)
             if not finite and evaluated:
                 counts[COUNT.non_finite_steps] += 1
             shrink = max(_LARGEST_SHRINK, _SAFETY * share ** (-1.0 / order)) if finite else 0.1
-            h = this * shrink
-            if h < _SMALLEST_STEP:
-                return STEP_TOO_SMALL if finite else (NON_FINITE if evaluated else NOT_EVALUATED), h
+            h = max(this * shrink, SMALLEST_STEP) if finite else this * shrink
+            if h < SMALLEST_STEP:
+                return NON_FINITE if evaluated else NOT_EVALUATED, h
     return OK, h

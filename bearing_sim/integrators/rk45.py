@@ -9,10 +9,9 @@ import math
 
 import numpy as np
 
-from bearing_sim.integrators.status import COUNT, NON_FINITE, NOT_EVALUATED, OK, STEP_BUDGET, STEP_TOO_SMALL
+from bearing_sim.integrators.status import COUNT, NON_FINITE, NOT_EVALUATED, OK, SMALLEST_STEP, STEP_BUDGET
 from bearing_sim.kernels.compilation import kernel, template
 
-_SMALLEST_STEP = 1e-12  # s
 _SAFETY, _LARGEST_GROWTH, _LARGEST_SHRINK, _MEMORY = 0.9, 5.0, 0.2, 0.04
 _STAGES = 7
 
@@ -94,8 +93,11 @@ def rk45(rhs, error_norm, step_limit, accepted, t, end, y, h, tolerance, maximum
         this = left if wanted >= left else (0.5 * left if wanted > 0.5 * left else wanted)
         evaluated = rk45_step(rhs, t, y, this, model, work, stages, next_y, error, counts)
         share = error_norm(t, y, error, tolerance, model) if evaluated else math.inf
-        if share <= 1.0:
+        finite = math.isfinite(share)
+        if share <= 1.0 or (finite and this <= SMALLEST_STEP):
             counts[COUNT.steps] += 1
+            if share > 1.0:
+                counts[COUNT.smallest_steps] += 1
             growth = _SAFETY * (share + 1e-10) ** (0.75 * _MEMORY - 0.2) * before**_MEMORY
             growth = max(_LARGEST_SHRINK, min(1.0 if rejected else _LARGEST_GROWTH, growth))
             before, rejected = max(share, 1e-4), False
@@ -104,13 +106,14 @@ def rk45(rhs, error_norm, step_limit, accepted, t, end, y, h, tolerance, maximum
                 stages[0, i] = stages[_STAGES - 1, i]
             t = end if this == left else t + this
             accepted(this, y, model, work)
-            h = max(this * growth, h) if this < wanted else wanted * growth
+            h = max(this * growth, h) if this < wanted else max(wanted * growth, SMALLEST_STEP)
             continue
         counts[COUNT.rejected_steps] += 1
-        rejected, finite = True, math.isfinite(share)
+        rejected = True
         if not finite and evaluated:
             counts[COUNT.non_finite_steps] += 1
-        h = this * (max(_LARGEST_SHRINK, _SAFETY * share**-0.2) if finite else 0.1)
-        if h < _SMALLEST_STEP:
-            return STEP_TOO_SMALL if finite else (NON_FINITE if evaluated else NOT_EVALUATED), h
+        shrink = max(_LARGEST_SHRINK, _SAFETY * share**-0.2) if finite else 0.1
+        h = max(this * shrink, SMALLEST_STEP) if finite else this * shrink
+        if h < SMALLEST_STEP:
+            return NON_FINITE if evaluated else NOT_EVALUATED, h
     return OK, h

@@ -10,7 +10,8 @@ import math
 from bearing_sim.kernels.compilation import template
 
 GAMMA = 1.0 - 1.0 / math.sqrt(2.0)
-_ITERATIONS = 12
+_ITERATIONS, _DAMPED_ITERATIONS = 12, 40
+_STALLED = 0.8  # of the correction before: an iteration that hardly contracts goes to and fro
 _CONVERGED = 0.05  # of the error that a step may make
 _SETTLED = 0.5  # so small a first correction leaves, squared, less than that
 _CONTRACTION = 0.4  # slower than this, an iteration wants new derivatives
@@ -22,7 +23,9 @@ def solve_stage(rhs, rhs_and_jacobian, factor, solve, norm, t, known, shift, tol
 
     Derivatives are taken where the iteration starts: the guess is so good that with them one iteration is most often enough,
     while those of an earlier stage, where other contacts were loaded, leave several to do.  Later iterations keep them for as
-    long as each more than halves what is left.
+    long as each more than halves what is left.  Where corrections go to and fro across a bend of f, such as between both flat
+    ends of a law of traction, half of each is taken, then a quarter and so on, and longer each time before
+    a whole one is tried again: the middle is where the bend is.
 
     Parameters
     ----------
@@ -40,7 +43,10 @@ def solve_stage(rhs, rhs_and_jacobian, factor, solve, norm, t, known, shift, tol
     converged : bool
     """
     before, outdated = math.inf, True
-    for _ in range(_ITERATIONS):
+    share, calm, patience = 1.0, 0, 1
+    for iteration in range(_DAMPED_ITERATIONS):
+        if iteration >= _ITERATIONS and patience == 1:
+            break
         fresh = outdated or held[0] == 0.0
         if fresh:
             evaluated = rhs_and_jacobian(t, y, model, work, rate)
@@ -68,6 +74,15 @@ def solve_stage(rhs, rhs_and_jacobian, factor, solve, norm, t, known, shift, tol
         if size < (_SETTLED if fresh else _CONVERGED):
             return True
         outdated = size > _CONTRACTION * before or size > 1.0
+        if size > _STALLED * before:
+            share, calm, patience = 0.5 * share, 0, 2 * patience
+        else:
+            calm += 1
+            if calm >= patience:
+                share, calm = min(2.0 * share, 1.0), 0
+        if share < 1.0:
+            for i in range(y.shape[0]):
+                y[i] -= (1.0 - share) * change[i]
         before = size
     held[0] = 0.0
     return False

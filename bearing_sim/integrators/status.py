@@ -13,10 +13,10 @@ NOT_CONVERGED = 5
 
 REASONS = {
     STEP_BUDGET: "the step budget was used up before the end of the interval",
-    STEP_TOO_SMALL: "the error could not be kept within tolerance at the smallest step",
+    STEP_TOO_SMALL: "no step converged, down to the smallest",
     NON_FINITE: "the state stopped being finite",
     NOT_EVALUATED: "the right-hand side could not be evaluated",
-    NOT_CONVERGED: "the iteration of a step did not converge, nor that of its eighth part",
+    NOT_CONVERGED: "the iteration of a step did not converge, nor that of its thousandth part",
 }
 
 
@@ -29,9 +29,11 @@ class Count(NamedTuple):
     right_hand_sides: int = 3
     jacobians: int = 4
     factorisations: int = 5
+    smallest_steps: int = 6  # taken although their error was too large, because no step is smaller
 
 
 COUNT = Count()
+SMALLEST_STEP = 1e-12  # s; a step this small is taken whatever its error, which is then that of a jump, or round-off
 
 
 def new_counts() -> np.ndarray:

@@ -14,8 +14,8 @@ from bearing_sim.kernels.contact import EXPONENT
 
 # A ring that no roller holds (clearance, no load) has no position: this spring, a millionth of a contact's, gives it one.
 _CENTRING_STIFFNESS = 1e3  # N/m
-_LONGEST_STEP = 2e-5  # m, a few contact penetrations
-_ITERATIONS = 100
+_FIRST_LONGEST_STEP = 2e-5  # m, a few contact penetrations; longer from step to step while all goes well, as across a wide play
+_ITERATIONS = 400  # a ring in a wide play rolls from roller to roller before it has found its place
 _RELATIVE_RESIDUAL = 1e-7
 
 
@@ -135,6 +135,7 @@ def balance_ring(load_y, load_z, stiffness, loads, ring):
     y, z = ring[0], ring[1]
     force_y, force_z, k_yy, k_yz, k_zz = _ring_forces(y, z, load_y, load_z, stiffness, loads)
     tolerance = _RELATIVE_RESIDUAL * (math.hypot(load_y, load_z) + 1.0)
+    longest = _FIRST_LONGEST_STEP
     for _ in range(_ITERATIONS):
         residual = math.hypot(force_y, force_z)
         if residual <= tolerance:
@@ -144,14 +145,16 @@ def balance_ring(load_y, load_z, stiffness, loads, ring):
         step_y = (k_zz * force_y - k_yz * force_z) / determinant
         step_z = (k_yy * force_z - k_yz * force_y) / determinant
         length = math.hypot(step_y, step_z)
-        scale = 1.0 if length <= _LONGEST_STEP else _LONGEST_STEP / length
+        scale = 1.0 if length <= longest else longest / length
         for _ in range(30):
             next_y, next_z = y + scale * step_y, z + scale * step_z
             next_force_y, next_force_z, next_yy, next_yz, next_zz = _ring_forces(next_y, next_z, load_y, load_z, stiffness, loads)
             # Downhill in the convex potential: the remaining force must not push back past the step by more than it pushed on.
             if next_force_y * step_y + next_force_z * step_z >= -0.5 * (force_y * step_y + force_z * step_z):
+                longest *= 2.0
                 break
             scale *= 0.5
+            longest = max(0.5 * longest, _FIRST_LONGEST_STEP)
         y, z = next_y, next_z
         force_y, force_z, k_yy, k_yz, k_zz = next_force_y, next_force_z, next_yy, next_yz, next_zz
     ring[0], ring[1] = y, z

@@ -147,6 +147,7 @@ def _accelerate(y, churning, model, rows, contacts, rate):
         radial, along = q_i * n_r - push_i * n_t, q_i * n_t + push_i * n_r
         pitch_speed = params.raceways.pitch_radius * y[OMEGA]
         drag = churning[0] + churning[1] * (radius * orbital_speed - pitch_speed)
+        drag = where_positive(drag * orbital_speed, drag, 0.0)  # a line through it would push a roller far slower than the cage
         slope = params.raceways.slope_factor * load(rows, block, ROLLER.slope)
         f_r = radial - q_e - force * (play_sine + friction * play_cosine)
         f_t = (

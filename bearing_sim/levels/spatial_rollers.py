@@ -11,7 +11,7 @@ from bearing_sim.kernels.compilation import kernel
 from bearing_sim.kernels.drag import churning_force
 from bearing_sim.kernels.elementary import cosine_sine
 from bearing_sim.kernels.film import pump
-from bearing_sim.kernels.lanes import floor, load, magnitude, square_root, store, total
+from bearing_sim.kernels.lanes import floor, load, magnitude, square_root, store, total, where_positive
 from bearing_sim.kernels.raceway import contour_lanes
 from bearing_sim.kernels.traction import traction
 from bearing_sim.levels.growth import inner_growth
@@ -145,6 +145,7 @@ def _accelerate(block, y, churning, model, rows, contacts, rate):
     radial, along = q_i * n_r - across * n_t, q_i * n_t + across * n_r
     tilting, skewing = s_i * n_r - m_i * n_t, s_i * n_t + m_i * n_r
     drag = churning[0] + churning[1] * (radius * orbital_speed - params.raceways.pitch_radius * y[OMEGA])
+    drag = where_positive(drag * orbital_speed, drag, 0.0)  # a line through it would push a roller far slower than the cage
     slope = params.raceways.slope_factor * load(rows, block, ROLLER.slope)
     f_r = radial - q_e - force * push_r
     f_t = along + t_e - pumped_e * push_e + (q_e * slope - s_e * skew) / radius - drag - force * push_t

@@ -1,12 +1,13 @@
 """The stability map: what becomes of scenes at the extremes of everything, on all cores.
 
 A case is *finished*; *clamped*, where it came to a good end or was going well but something other than the equations set a bound
-(a fixed step that had to be divided, the film in the guide land at its thinnest, the study's budget of steps where the case's own
-settings ask for so many); *refused*, by the scene's checks before it starts; or *failed*: not finite, an exception, a process that
+(a fixed step that had to be divided, the study's budget of steps where the case's own settings ask for so many: a tolerance, a
+step or an explicit method); *refused*, by the scene's checks before it starts; or *failed*: not finite, an exception, a process that
 died, a hang, too slow with settings that do not ask for it, or a value that no bearing can have.
 """
 
 import os
+import re
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
@@ -18,6 +19,8 @@ from bearing_sim.studies.extremes_long import LongRun, long_run, long_runs
 from bearing_sim.studies.extremes_run import FAILED, FINISHED, OUTCOMES, Outcome, run_case
 from bearing_sim.studies.extremes_scenes import Case, sampled_cases
 
+# A field that a fault names: where a fault begins, or behind the record that found it.
+_NAMED = re.compile(r"(?:(?<=^)|(?<=; )|(?<=bearing: )|(?<=scene: ))([a-z_]+(?:\.[a-z_0-9]+)*)(?: = [^:;]*)?(?=: )")
 _COSTS = ("steps_per_ms", "right_hand_sides_per_ms", "core_ms_per_ms", "step_us")
 
 
@@ -51,15 +54,15 @@ def run_extremes(
     for level in levels:
         tell(f"compiling level {level} by all its methods, once for this version")
         _compile(level)
-    tell(f"{len(cases)} scenes")
-    outcomes, total = [], len(cases) + len(runs)
-    # Long runs first: nothing else should wait for them at the end.
+    if runs:
+        tell(f"{len(runs)} long runs")
     with _pool() as pool:
-        pending = [pool.submit(long_run, run) for run in runs]
-        for outcome in _outcomes(cases):
-            outcomes.append(outcome)
-            progress(len(outcomes) / total)
-        long_outcomes = [future.result() for future in pending]
+        long_outcomes = list(pool.map(long_run, runs))
+    tell(f"{len(cases)} scenes")
+    outcomes = []
+    for outcome in _outcomes(cases):
+        outcomes.append(outcome)
+        progress(len(outcomes) / len(cases))
     order = {(case.level, case.name): place for place, case in enumerate(cases)}
     outcomes.sort(key=lambda outcome: order[outcome.case.level, outcome.case.name])
     return _report(levels, samples, seed, outcomes, long_outcomes), outcomes
@@ -120,16 +123,13 @@ def _totals(outcomes, long_outcomes) -> dict[str, int]:
 
 
 def _level_report(outcomes: Sequence[Outcome], long_outcomes: Sequence[LongRun]) -> dict:
-    worst = {}
-    for name in _COSTS:
-        dearest = max(outcomes, key=lambda outcome: getattr(outcome, name))
-        worst[name] = {"case": dearest.case.name, "value": getattr(dearest, name)}
     return {
         **_totals(outcomes, long_outcomes),
         "clamped_by": _counted(outcomes, "clamped"),
         "refused_by": _counted(outcomes, "refused"),
         "failures": [{"case": o.case.name, "reason": o.reason, "overrides": list(o.case.overrides)} for o in outcomes if o.status == FAILED],
-        "worst": worst,
+        "worst": _worst(outcomes),
+        "worst_by_the_model": _worst([outcome for outcome in outcomes if not outcome.asks_for_small_steps]),
         "core_seconds": sum(outcome.core_seconds for outcome in outcomes),
         "non_finite_steps": sum(outcome.non_finite_steps for outcome in outcomes),
         "long_runs": [run._asdict() for run in long_outcomes],
@@ -139,6 +139,12 @@ def _level_report(outcomes: Sequence[Outcome], long_outcomes: Sequence[LongRun])
             if not o.case.name.startswith("sample ")
         ],
     }
+
+
+def _worst(outcomes: Sequence[Outcome]) -> dict[str, dict]:
+    """Return the dearest case by each measure of cost."""
+    dearest = {name: max(outcomes, key=lambda outcome: getattr(outcome, name), default=None) for name in _COSTS}
+    return {name: {"case": found.case.name, "value": getattr(found, name)} for name, found in dearest.items() if found is not None}
 
 
 def _counted(outcomes: Sequence[Outcome], status: str) -> dict[str, int]:
@@ -153,5 +159,5 @@ def _counted(outcomes: Sequence[Outcome], status: str) -> dict[str, int]:
 
 def kinds_of_reason(reason: str) -> list[str]:
     """Return the fields that a refusal names, or the bounds that clamped a run, without their numbers."""
-    parts = reason.split("; ") if "; " in reason or " = " in reason.split(":")[0] else reason.split(", ")
-    return list(dict.fromkeys(part.split(":")[0].split(" = ")[0] for part in parts))
+    named = [name for name in _NAMED.findall(reason) if name not in ("bearing", "scene")]
+    return list(dict.fromkeys(named or [part.split(":")[0] for part in reason.split(", ")]))

@@ -70,7 +70,7 @@ def long_run(run: tuple[str, float]) -> LongRun:
         return LongRun(level, _SPEED, simulation.time, *done, *nothing, fault)
     means = np.array(windows)
     early, late, last = means[1], means[-1], simulation.sample
-    slip, damage, surplus, shaft = (late - early)[:4] * (1.0, 1.0 / early[1], 1.0 / early[3], 1.0)
+    slip, damage, surplus = (late - early)[:3] / (1.0, early[1], early[3])
     turned = float(means[:, 4].sum())
     drifts = {
         "slip_drift": float(slip),

@@ -14,21 +14,27 @@ from bearing_sim.simulation import Inputs, IntegrationError, Simulation, scene_i
 from bearing_sim.studies.extremes_scenes import BEARING, Case
 
 FINISHED, CLAMPED, REFUSED, FAILED = OUTCOMES = ("finished", "clamped", "refused", "failed")
-STEPS = 20_000  # allowed to one run
+STEPS = 20_000  # allowed to one run whose settings ask for small steps
+_PATIENT = 5  # times as many to one whose settings do not: what needs more, a step each 0.2 us of 20 ms, is too slow
 _FEWEST_STEPS, _STOCK_SLICES = 2_000, 18 * 20  # of a run whose steps are dear, because it has more rollers times slices than this
 _SHORTEST, _LONGEST, _PITCHES = 2e-3, 20e-3, 20.0  # simulated [s], and in roller pitches
 _PATIENCE = 300.0  # s on the wall; what takes longer hangs
 _LEGS = 12  # at least, of a run: inputs go straight within each
 _SAMPLES = 4  # of a leg
+_LEG_TO_TIME = 2e-5  # s; shorter legs are not asked what they cost
 _STEP_LEG = 1e-6  # s, that a step of the load takes
 _RIPPLE, _RIPPLE_LEGS = 1e3, 8  # Hz; legs of a period
-# A run that uses up its steps is too slow by its own settings where these are tight, and by the model's fault where they are not.
-_TIGHT_TOLERANCE, _TIGHT_STEP, _EXPLICIT = 1e-4, 1e-5, ("rk45",)
+# A run that uses up its steps is too slow by its own settings where these are tight, and by the model's fault where they are not.  Tight is what the
+# bench takes for its references, a tenth of the usual tolerance or less.
+_TIGHT_TOLERANCE, _TIGHT_STEP, _EXPLICIT = 1e-3, 1e-5, ("rk45",)
 _LEAST_SLIP, _RISE_OF_LIFE = -0.05, 1.01
 _RUNNING = 10.0  # rad/s of the shaft; slower, slip and losses are not judged
 _NOT_TOLD = {"steady": ("roller_spin", "roller_rotation", "pocket_force")}  # by a level, which says NaN
 _MAY_BE_INFINITE = ("rating_life", "lamina_life", "modified_rating_life")  # without load or at rest
-_LOSSES = ("inner_sliding_power", "outer_sliding_power", "churning_power", "land_power", "pocket_power", "damping_power")
+# Those that cannot be gains at any instant, by the laws as they are: friction in the pockets goes by spin alone (Deng 2017, eq. 13), and
+# the published torque of the guide land's film leaves out what its eccentric force turns.
+_LOSSES = ("inner_sliding_power", "outer_sliding_power", "churning_power", "damping_power")
+_FIRST_SHARES = (1e-3, 9e-3, 9e-2, 0.9)  # of the first leg: what is stuck is told from what is slow
 
 
 class Outcome(NamedTuple):
@@ -48,6 +54,7 @@ class Outcome(NamedTuple):
     right_hand_sides_per_ms: float = 0.0  # likewise
     core_ms_per_ms: float = 0.0  # likewise
     step_us: float = 0.0  # core time of a step, in the leg where steps took longest
+    asks_for_small_steps: bool = False  # whether the case's own tolerance, step or method does
 
 
 class Leg(NamedTuple):
@@ -62,7 +69,7 @@ def run_case(case: Case) -> Outcome:
     try:
         scene = load_scene(BEARING, case.overrides)
         scene = load_scene(BEARING, [*case.overrides, f"integration.step_budget={_step_budget(scene)}"])
-        legs = list(course_legs(case.course, case.seconds or _seconds(scene), scene_inputs(scene)))
+        legs = first_divided(list(course_legs(case.course, case.seconds or _seconds(scene), scene_inputs(scene))))
         simulation = Simulation(scene, legs[0].inputs)
     except SceneError as error:
         return Outcome(case, REFUSED, "; ".join(str(fault) for fault in error.faults))
@@ -76,7 +83,7 @@ def run_case(case: Case) -> Outcome:
 
 def _step_budget(scene: Scene) -> int:
     slices = scene.bearing.roller.count * (scene.bearing.roller.slices if scene.level == "spatial" else 1)
-    return max(_FEWEST_STEPS, round(STEPS * min(1.0, _STOCK_SLICES / slices)))
+    return max(_FEWEST_STEPS, round(STEPS * min(1.0, _STOCK_SLICES / slices))) * (1 if _asks_for_small_steps(scene) else _PATIENT)
 
 
 def _seconds(scene: Scene) -> float:
@@ -129,7 +136,19 @@ def course_legs(course: str, seconds: float, inputs: Inputs) -> Iterator[Leg]:
             yield Leg((end - start) * seconds / pieces, at(speed + share * (next_speed - speed), load + share * (next_load - load)))
 
 
+def first_divided(legs: list[Leg]) -> list[Leg]:
+    """Return the legs with the first stretch of time cut into ever longer pieces."""
+    start, first, *rest = legs
+    pieces, passed = [], 0.0
+    for share in _FIRST_SHARES:
+        passed += share
+        between = Inputs(*(a + passed * (b - a) for a, b in zip(start.inputs, first.inputs)))
+        pieces.append(Leg(share * first.duration, between))
+    return [start, *pieces, *rest]
+
+
 def _run(case: Case, simulation: Simulation, legs: list[Leg]) -> Outcome:
+    _load_machine_code(simulation)
     began, fault = time.perf_counter(), _rising_life(simulation, legs[0].inputs)
     worst, spent, blocks, stopped = _Worst(), 0.0, [simulation.sample.copy().reshape(1)], ""
     budget = simulation.scene.integration.step_budget
@@ -139,7 +158,7 @@ def _run(case: Case, simulation: Simulation, legs: list[Leg]) -> Outcome:
             blocks.append(simulation.advance(leg.duration, leg.inputs, _SAMPLES))
         except IntegrationError as error:
             if error.status == STEP_BUDGET:
-                stopped = f"{budget} steps last for {simulation.time:.3g} s"
+                stopped = f"{budget} steps last for {simulation.time:.3g} s and less than {leg.duration:.3g} s more"
             else:
                 fault = fault or str(error)
         core, after = time.process_time() - started, simulation.counters
@@ -147,14 +166,14 @@ def _run(case: Case, simulation: Simulation, legs: list[Leg]) -> Outcome:
         worst = worst.with_leg(leg.duration, before, after, core)
         if not stopped and after.steps + after.rejected_steps > budget:
             stopped = f"{budget} steps last for {simulation.time:.3g} s"
-        fault = fault or _impossible(np.concatenate(blocks[-1:]), simulation.state, case.course, simulation.scene)
+        fault = fault or _impossible(blocks[-1], simulation.state)
         if time.perf_counter() - began > _PATIENCE:
             fault = fault or f"hang: {simulation.time:.3g} s simulated in {_PATIENCE:g} s"
         if fault or stopped:
             break
     samples = np.concatenate(blocks)
     fault = fault or _unsteady_slip(samples, case.course)
-    clamps = _clamps(samples, simulation)
+    clamps = _clamps(simulation)
     if stopped:
         if _asks_for_small_steps(simulation.scene):
             clamps.append(f"step budget: {stopped}")
@@ -164,8 +183,16 @@ def _run(case: Case, simulation: Simulation, legs: list[Leg]) -> Outcome:
     counters = simulation.counters
     return Outcome(
         case, status, fault or ", ".join(clamps), simulation.time, spent, counters.steps, counters.rejected_steps, counters.non_finite_steps,
-        counters.right_hand_sides, counters.jacobians, *worst,
+        counters.right_hand_sides, counters.jacobians, *worst, _asks_for_small_steps(simulation.scene),
     )  # fmt: skip
+
+
+def _load_machine_code(simulation: Simulation) -> None:
+    """Go a billionth of a second, so that no leg is charged with it."""
+    try:
+        simulation.advance(1e-9)
+    except IntegrationError:
+        pass  # the run will say so, too
 
 
 class _Worst(NamedTuple):
@@ -180,8 +207,8 @@ class _Worst(NamedTuple):
         steps = after.steps + after.rejected_steps - before.steps - before.rejected_steps
         evaluated = after.right_hand_sides - before.right_hand_sides
         now = (1e-3 * steps / duration, 1e-3 * evaluated / duration, core / duration, 1e6 * core / max(steps, 1))
-        # The clock's resolution and a start from cold are no cost of a step; a step of the load takes a microsecond.
-        return _Worst(*map(max, self, now)) if duration > 2 * _STEP_LEG else self
+        # What a call costs besides its steps counts in a short leg more than they do.
+        return _Worst(*map(max, self, now)) if duration >= _LEG_TO_TIME else self
 
 
 def _asks_for_small_steps(scene: Scene) -> bool:
@@ -202,7 +229,7 @@ def _rising_life(simulation: Simulation, inputs: Inputs) -> str:
     return ""
 
 
-def _impossible(block: np.ndarray, state: np.ndarray, course: str, scene: Scene) -> str:
+def _impossible(block: np.ndarray, state: np.ndarray) -> str:
     """Return what no bearing can do in some samples, in words."""
     if not np.isfinite(state).all():
         return "the state is not finite"
@@ -221,7 +248,7 @@ def _impossible(block: np.ndarray, state: np.ndarray, course: str, scene: Scene)
             return f"{name} = {block[name].min():.6g} N pulls"
     scale = 1.0 + np.abs(block["shaft_power"])
     for name in _LOSSES:
-        if (block[name] < -1e-6 * scale).any():
+        if (turning & (block[name] < -1e-6 * scale)).any():
             return f"{name} = {block[name].min():.6g} W is a gain"
     return ""
 
@@ -235,12 +262,8 @@ def _unsteady_slip(samples: np.ndarray, course: str) -> str:
     return "" if _LEAST_SLIP <= slip <= 1.0 - _LEAST_SLIP else f"cage slip {100 * slip:.4g} % in steady drive"
 
 
-def _clamps(samples: np.ndarray, simulation: Simulation) -> list[str]:
+def _clamps(simulation: Simulation) -> list[str]:
     """Return what kept the run within bounds that the equations do not have."""
-    scene, clamps = simulation.scene, []
-    if scene.integration.fixed_step is not None and simulation.counters.rejected_steps:
-        clamps.append("fixed step divided")
-    cage = scene.bearing.cage
-    if scene.cage_whirls and cage.has_lands and (samples["land_eccentricity"] > 1.0 - cage.land_film / cage.guide_clearance).any():
-        clamps.append("land film at its thinnest")
-    return clamps
+    divided = simulation.scene.integration.fixed_step is not None and simulation.counters.rejected_steps > 0
+    clamps = ["fixed step divided"] if divided else []
+    return clamps + (["smallest step"] if simulation.counters.smallest_steps else [])

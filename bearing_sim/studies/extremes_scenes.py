@@ -18,6 +18,7 @@ COURSES = ("steady", "steady", "reversal", "stop", "start", "load_step", "ripple
 _TRACTIONS = ("oil_4109", "constant", "kragelskii", "eyring")
 _CROWNS = ("none", "iso_log", "{law: straight_arc, straight_length: 4 mm, crown_radius: 1 m}")
 _DIAMETER, _INNER_RADIUS, _CAGE_BORE, _GUIDE_RADIUS = 7e-3, 27.875e-3, 29.6e-3, 33.5e-3  # of the bearing [m]
+_LARGEST_PLAY = 1.3  # times what leaves no bar between pockets
 _ROLLERS_THAT_FIT = 24  # with bars of the cage between them; for more of them the bearing grows
 
 
@@ -68,8 +69,8 @@ DIMENSIONS: Mapping[str, Callable] = {
     "clearance": _clearance,
     "d_value": _or_nothing(0.15, lambda u: 0.5e-3 * u * u),
     "rollers": lambda u: 3 + min(int(58 * u), 57),
-    "pocket_clearance": _logarithmic(1e-6, 5e-3),
-    "guide_clearance": _logarithmic(1e-6, 5e-3),
+    "pocket_clearance": lambda u: u,  # a share, because what is large hangs on the number of rollers
+    "guide_clearance": _logarithmic(2.5e-6, 5e-3),
     "cage_mass": _logarithmic(2e-3, 2.0),
     "supported_mass": _or_nothing(0.1, _logarithmic(1e-2, 100.0)),
     "viscosity": _logarithmic(1e-4, 1.0),
@@ -112,10 +113,20 @@ def sampled_cases(level: str, samples: int, seed: int) -> list[Case]:
         place = {name: law(float(u)) for (name, law), u in zip(DIMENSIONS.items(), point)}
         for name in ignored:
             del place[name]
+        place["pocket_clearance"] = _logarithmic(1e-6, _LARGEST_PLAY * _room(place["rollers"]))(place["pocket_clearance"])
         method, fixed = _method(level, place.pop("method"))
         place |= {"method": method, "fixed": fixed}
         cases.append(Case(f"sample {number}", level, tuple(overrides_of(level, place)), place["course"], place))
     return cases
+
+
+def _room(rollers: int) -> float:
+    """Return the pocket clearance at which no bar is left between the pockets [m]."""
+    return 0.5 * (2.0 * math.pi * _pitch_radius(rollers) / rollers - _DIAMETER)
+
+
+def _pitch_radius(rollers: int) -> float:
+    return (_INNER_RADIUS + _DIAMETER / 2) * max(rollers / _ROLLERS_THAT_FIT, 1.0)
 
 
 def takes(level: str, override: str) -> bool:
@@ -145,7 +156,7 @@ def overrides_of(level: str, place: Mapping) -> list[str]:
     level : level of the scene.
     place : values by dimension, see `DIMENSIONS`, with ``method`` by name and ``fixed``.
     """
-    outward = (_INNER_RADIUS + _DIAMETER / 2) * (max(place["rollers"] / _ROLLERS_THAT_FIT, 1.0) - 1.0)
+    outward = _pitch_radius(place["rollers"]) - _pitch_radius(1)
     inner = _INNER_RADIUS + outward
     overrides = [
         f"level={level}",

@@ -1,0 +1,240 @@
+"""The study of extremes: its scenes, its judgement, and the causes of failure that it found, each kept repaired."""
+
+import csv
+import json
+import math
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from bearing_sim import SceneError, Simulation, load_scene
+from bearing_sim.cli import main
+from bearing_sim.kernels.lanes import LANES
+from bearing_sim.kernels.load_balance import LOAD
+from bearing_sim.kernels.traction import CONTACT, traction
+from bearing_sim.levels import planar, slip
+from bearing_sim.levels.planar_state import ROLLER, ROLLERS
+from bearing_sim.params import lubricate, pack
+from bearing_sim.simulation import scene_inputs
+from bearing_sim.studies.extremes import kinds_of_reason
+from bearing_sim.studies.extremes_long import long_run
+from bearing_sim.studies.extremes_run import CLAMPED, FAILED, FINISHED, REFUSED, course_legs, run_case
+from bearing_sim.studies.extremes_scenes import BEARING, DIMENSIONS, Case, oil_of, sampled_cases
+
+
+def case(*overrides, level="slip", course="steady", seconds=1e-3):
+    return Case("a case", level, (f"level={level}", *overrides), course, {}, seconds)
+
+
+def refusal(*overrides):
+    with pytest.raises(SceneError) as told:
+        load_scene(BEARING, overrides)
+    return str(told.value)
+
+
+def test_the_hypercube_fills_every_dimension_evenly_and_again_the_same():
+    cases = sampled_cases("slip", 40, 3)
+    assert cases == sampled_cases("slip", 40, 3)
+    rollers = sorted(case.place["rollers"] for case in cases)
+    assert all(DIMENSIONS["rollers"](k / 40) <= count <= DIMENSIONS["rollers"]((k + 1) / 40) for k, count in enumerate(rollers))
+    speeds = np.sort([case.place["shaft_speed_rpm"] for case in cases])
+    assert (np.abs(speeds - np.linspace(-97_500, 97_500, 40)) <= 5_001).all()
+    assert {case.course for case in cases} >= {"steady", "reversal", "stop", "start", "load_step", "ripple"}
+    assert "misalignment" not in cases[0].place and "misalignment" in sampled_cases("spatial", 1, 0)[0].place
+
+
+@pytest.mark.parametrize("course", ["steady", "reversal", "stop", "start", "load_step", "ripple"])
+def test_courses_last_as_long_as_asked_and_go_where_their_names_say(course):
+    inputs = scene_inputs(load_scene(BEARING))
+    legs = list(course_legs(course, 10e-3, inputs))
+    assert math.fsum(leg.duration for leg in legs) == pytest.approx(10e-3) and len(legs) > 12
+    speeds, loads = ([getattr(leg.inputs, name) for leg in legs] for name in ("shaft_speed", "load_y"))
+    full, load = inputs.shaft_speed, inputs.load_y
+    expected = {
+        "steady": (full, full, load, load),
+        "reversal": (full, -full, load, load),
+        "stop": (full, 0.0, load, load),
+        "start": (0.0, full, load, load),
+        "load_step": (full, full, 0.0, 0.0),
+        "ripple": (full, full, load, load),
+    }[course]
+    assert (speeds[0], speeds[-1], loads[0]) == pytest.approx(expected[:3]) and loads[-1] == pytest.approx(expected[3])
+    if course == "ripple":
+        assert max(loads) == pytest.approx(1.9 * load) and min(loads) == pytest.approx(0.1 * load) and len(legs) == 81
+    if course == "load_step":
+        assert max(loads) == load and min(leg.duration for leg in legs[1:]) == pytest.approx(1e-6)
+
+
+def test_a_stock_case_finishes_and_counts_its_work():
+    outcome = run_case(case())
+    assert outcome.status == FINISHED and outcome.reason == "" and outcome.simulated == pytest.approx(1e-3)
+    assert outcome.steps > 10 and outcome.right_hand_sides >= 2 * outcome.steps and outcome.steps_per_ms >= outcome.steps and outcome.step_us > 0
+
+
+def test_a_scene_that_cannot_be_is_refused_with_the_bound_it_broke():
+    outcome = run_case(case("operating.radial_load=-1 N", "bearing.roller.count=2"))
+    assert outcome.status == REFUSED and outcome.steps == 0
+    assert "operating.radial_load" in outcome.reason and "outside 0 N to 1e+06 N" in outcome.reason
+    found = "bearing: cage.guide_radius: 35 mm puts it outside; expected less than low_radius, 34 mm; cage.pocket_clearance: 2 mm leaves no bar"
+    assert kinds_of_reason(found) == ["cage.guide_radius", "cage.pocket_clearance"]
+    assert kinds_of_reason("fixed step divided, step budget: 20 steps last for 3 s") == ["fixed step divided", "step budget"]
+    assert kinds_of_reason(outcome.reason) == ["bearing.roller.count", "operating.radial_load"]
+
+
+def test_a_tight_tolerance_runs_out_of_steps_by_its_own_fault_and_a_loose_one_by_the_models(monkeypatch):
+    monkeypatch.setattr("bearing_sim.studies.extremes_run._step_budget", lambda scene: 20)
+    assert run_case(case("integration.relative_tolerance=1e-8")).status == CLAMPED
+    outcome = run_case(case("integration.relative_tolerance=2e-3"))
+    assert outcome.status == FAILED and outcome.reason.startswith("too slow: 20 steps last for ")
+
+
+@pytest.mark.parametrize(
+    ("column", "value", "told"),
+    [
+        ("inner_load", -1.0, "inner_load = -1 N pulls"),
+        ("ring_y", math.nan, "ring_y = nan"),
+        ("rating_life", math.nan, "rating_life = nan"),
+        ("churning_power", -5.0, "churning_power = -5 W is a gain"),
+        ("cage_slip", -0.06, "cage slip -6 % in steady drive"),
+    ],
+)
+def test_what_no_bearing_can_do_is_a_failure(monkeypatch, column, value, told):
+    advance = Simulation.advance
+
+    def spoiled(self, *arguments):
+        block = advance(self, *arguments)
+        block[column] = value
+        return block
+
+    monkeypatch.setattr(Simulation, "advance", spoiled)
+    outcome = run_case(case())
+    assert outcome.status == FAILED and outcome.reason == told
+
+
+def test_a_life_that_rises_with_load_is_a_failure(monkeypatch):
+    reset = Simulation.reset
+
+    def spoiled(self, inputs=None):
+        reset(self, inputs)
+        self._previous["rating_life"] = math.hypot(self.inputs.load_y, self.inputs.load_z)
+
+    monkeypatch.setattr(Simulation, "reset", spoiled)
+    assert run_case(case()).reason.startswith("life rises with load: ")
+
+
+def test_an_exception_is_a_failure_that_tells_what_it_was(monkeypatch):
+    monkeypatch.setattr(Simulation, "advance", lambda *arguments: 1 / 0)
+    assert run_case(case()).reason == "ZeroDivisionError: division by zero"
+
+
+def test_the_command_writes_totals_a_table_and_a_picture(tmp_path, monkeypatch):
+    corners = [case(), case("bearing.roller.count=2")._replace(name="another")]
+    monkeypatch.setattr("bearing_sim.studies.extremes.corner_cases", lambda level: corners)
+    monkeypatch.setattr("bearing_sim.studies.extremes._compile", lambda level: None)
+    table, picture = tmp_path / "map.csv", tmp_path / "map.png"
+    result = CliRunner().invoke(
+        main, ["study", "extremes", "--samples", "4", "--level", "slip", "--no-long", "--json", "--csv", str(table), "--picture", str(picture)]
+    )
+    report = json.loads(result.stdout)
+    assert result.exit_code == (1 if report["failed"] else 0)
+    assert sum(report[name] for name in ("finished", "clamped", "refused", "failed")) == 6 and report["failed"] == 0
+    assert report["levels"]["slip"]["refused_by"]["bearing.roller.count"] == 1
+    rows = list(csv.DictReader(table.open()))
+    assert len(rows) == 6 and rows[0]["status"] == "finished" and "--set 'bearing.roller.count=2'" in rows[1]["overrides"]
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+# What the study found, and its repairs
+
+
+@pytest.mark.parametrize(
+    ("override", "told"),
+    [
+        (
+            "bearing.cage.pocket_clearance=2 mm",
+            "cage.pocket_clearance: 2 mm leaves no bar between the pockets of 18 rollers of 7 mm; expected less than 1.97",
+        ),
+        ("bearing.cage.guide_clearance=3 um", "cage.guide_clearance: 3 um is no more than cage.land_film"),
+        ("bearing.cage.guide_radius=35 mm", "cage.guide_radius: 35 mm puts the guide lands outside the raceway; expected less than"),
+        (
+            "integration.fixed_step=1 ms",
+            "integration.fixed_step: 1000 us is 6 roller pitches of the cage at 45000 rpm; expected at most half a pitch",
+        ),
+    ],
+)
+def test_scenes_without_sense_are_refused_before_they_start(override, told):
+    assert told in refusal(override, "level=spatial")
+
+
+def test_a_fixed_step_may_be_long_where_the_shaft_is_slow():
+    load_scene(BEARING, ["integration.fixed_step=1 ms", "operating.shaft_speed=1000 rpm"])
+
+
+def test_a_ring_finds_its_place_across_a_wide_play():
+    # 44 rollers, 0.9 mm loose, under next to no load, and the search begins 2 mm away: it rolls from roller to roller
+    scene = load_scene(
+        BEARING, ["bearing.roller={count: 27, diameter: 7 mm, length: 7 mm}", "bearing.outer_raceway={low_radius: 35.775 mm, d_value: 0.27 mm}"]
+    )
+    params = pack(scene)
+    for number, place in enumerate(np.random.default_rng(0).normal(scale=1.5e-3, size=(300, 2))):
+        work = slip.new_work(params)
+        work.ring[:] = place
+        load = 0.9 * np.array([math.cos(number), math.sin(number)])
+        assert slip.balance_loads(0.1 * number, 500.0, *load, params, work), place
+        carried = [(work.loads[LOAD.inner] * work.loads[row]).sum() for row in (LOAD.cosine, LOAD.sine)]
+        np.testing.assert_allclose(carried, load - 1e3 * work.ring, atol=1e-3)
+
+
+@pytest.mark.parametrize("viscosity", [1e-4, 1e-2, 1.0])
+@pytest.mark.parametrize("load", [10.0, 2e4])
+def test_an_eyring_film_is_never_stiffer_than_the_surfaces_creep(viscosity, load):
+    # Carter 1926: mu = (pi/8) E'/p of the slide-to-roll ratio while little slips, p the mean pressure
+    scene = load_scene(BEARING, ["lubricant.traction.law=eyring", oil_of(viscosity, 393.15)])
+    params = pack(scene)
+    lubrication = lubricate(scene.lubricant, params, scene.lubricant.temperature)
+    raceways, length, rolling = params.raceways, params.rollers.length, 20.0
+    pressure = math.sqrt(math.pi * raceways.reduced_modulus * load / (32 * raceways.inner_curvature_radius * length))
+    stiffest = load * math.pi * raceways.reduced_modulus / (8 * pressure * rolling)
+    contacts = np.zeros((2, len(CONTACT), LANES))
+    slides = np.geomspace(1e-12, 10.0, LANES)
+    contacts[:, CONTACT.load], contacts[:, CONTACT.rolling], contacts[:, CONTACT.sliding] = load, rolling, slides
+    traction(contacts, lubrication.inner, lubrication.outer)
+    assert (contacts[0, CONTACT.by_sliding] <= 1.001 * stiffest).all()
+    assert (contacts[0, CONTACT.force] <= 1.001 * stiffest * slides).all()
+    if viscosity == 1.0 and load == 2e4:  # solid: all of the sliding is creep
+        assert contacts[0, CONTACT.by_sliding, 0] == pytest.approx(stiffest, rel=0.01)
+
+
+def test_backward_differences_keep_the_tightest_tolerance_through_vibrating_contacts():
+    # A history of order 5 that failed thrice went on along its last secant, whose error goes with the step and not with its square.
+    run = Simulation(load_scene(BEARING, ["level=planar", "integration.method=bdf", "integration.relative_tolerance=1e-10"]))
+    for _ in range(10):
+        run.advance(1e-5)
+    assert run.counters.smallest_steps == 0 and run.counters.rejected_steps < 0.2 * run.counters.steps
+
+
+def test_a_fixed_step_gets_over_rollers_that_go_from_sliding_one_way_to_the_other():
+    # A thick Eyring film lets go of all sliding at a thousandth of the rolling speed: plain Newton corrections go to and fro for ever.
+    overrides = ["integration.fixed_step=50 us", "operating.shaft_speed=-12000 rpm", "operating.radial_load=16 kN", "lubricant.pumping=true"]
+    overrides += ["bearing.outer_raceway={low_radius: 34.853 mm, d_value: 0}", "lubricant.traction.law=eyring", oil_of(0.5, 335.0)]
+    outcome = run_case(case(*overrides, "lubricant.temperature=335 K", "bearing.cage.pocket_clearance=15 um", level="planar", course="ripple"))
+    assert outcome.status in (FINISHED, CLAMPED), outcome.reason
+
+
+def test_the_mixture_never_drives_a_roller():
+    # Its drag is linear in what a roller is slower than the cage, and a line goes through zero at about half the speed.
+    run = Simulation(load_scene(BEARING, ["level=planar"]))
+    state, count = run.state, run.scene.bearing.roller.count
+    orbital_speeds = state[ROLLERS + 3 * count : ROLLERS + 4 * count]
+    orbital_speeds[:] = np.linspace(-2000.0, 2000.0, count)
+    planar.rhs(0.0, state, run._model(run.inputs, 1.0), run._work, np.zeros_like(state))
+    drags = run._work.rollers[:, ROLLER.churning, :].ravel()[:count]
+    slow = (orbital_speeds > 0.0) & (orbital_speeds < 800.0)
+    assert (drags * orbital_speeds >= 0.0).all() and (drags[slow] == 0.0).all() and slow.sum() == 3 and drags[0] < 0.0 < drags[-1]
+
+
+def test_a_long_run_drifts_in_nothing():
+    found = long_run(("slip", 1.0))
+    assert found.fault == "" and found.simulated == pytest.approx(1.0)
+    assert abs(found.shaft_angle_error) < 1e-12 and abs(found.slip_drift) < 1e-4 and abs(found.damage_drift) < 1e-3 and found.cage_slip > 0.0
