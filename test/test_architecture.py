@@ -55,7 +55,7 @@ ALLOWED = {
     ),
     "studies": (
         NUMBERS | {"sksundae", "matplotlib"},
-        {"studies", "integrators.status", "levels", "params", "rating_life", "sample", "scene", "scene_file", "simulation", "tables"},
+        {"studies", "effects", "integrators.status", "levels", "params", "rating_life", "sample", "scene", "scene_file", "simulation", "tables"},
     ),
     "runtime": ({"numpy"}, {"runtime", "simulation", "scene", "effects", "events", "sample", "topics"}),
 }

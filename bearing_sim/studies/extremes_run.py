@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.integrators.status import STEP_BUDGET
+from bearing_sim.effects import level_of
 from bearing_sim.scene import Scene
 from bearing_sim.scene_file import SceneError, load_scene
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation, scene_inputs
@@ -236,7 +237,7 @@ def _impossible(block: np.ndarray, state: np.ndarray) -> str:
     turning = np.abs(block["shaft_speed"]) >= _RUNNING
     for name in block.dtype.names:
         values = block[name]
-        if name in _NOT_TOLD.get(scene.level, ()):
+        if name in _NOT_TOLD.get(level_of(block[0]), ()):
             continue
         if name == "cage_slip":
             values = values[turning]
