@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.integrators.status import STEP_BUDGET
 from bearing_sim.effects import level_of
+from bearing_sim.integrators.status import STEP_BUDGET
 from bearing_sim.scene import Scene
 from bearing_sim.scene_file import SceneError, load_scene
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation, scene_inputs
