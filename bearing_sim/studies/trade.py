@@ -17,6 +17,7 @@ from bearing_sim.levels.level import LEVELS
 from bearing_sim.scene import Scene
 from bearing_sim.scene_file import SceneError, load_scene
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation, scene_inputs
+from bearing_sim.tables.store import obtain_table
 
 TURNS = 160  # of the cage in a manoeuvre
 _SETTLING = 48  # of them not judged
@@ -75,7 +76,9 @@ class Trade(NamedTuple):
 
 
 def settings_of(level: str, quick: bool = False) -> list[Setting]:
-    """Return the settings of a level that are compared: its methods at tolerances, fixed steps, numbers of slices."""
+    """Return the settings of a level that are compared: methods at tolerances, fixed steps, numbers of slices; a table has one."""
+    if LEVELS[level].advance_course is not None:
+        return [Setting(level, "", "table", ())]
     methods, found = LEVELS[level].methods, []
     for method in list(methods)[: 1 if quick else None]:
         by = f"integration.method={method}"
@@ -177,7 +180,7 @@ def _measure(scene, setting, reference, turns):
     nothing = math.nan
     try:
         Simulation(scene).advance(1e-6)  # compiles
-        course, spent = _run(scene, turns)
+        course, spent = _run(scene, turns)  # a table that has to be built is built here, and not counted
         for _ in range(_REPEATS - 1):
             if spent > _ENOUGH:
                 break
@@ -194,17 +197,9 @@ def _turn(scene) -> float:
 
 def _run(scene, turns):
     """Run the manoeuvre; return its course and the processor time spent."""
-    run, start, turn = Simulation(scene), scene_inputs(scene), _turn(scene)
+    start, turn = scene_inputs(scene), _turn(scene)
     edges = sorted({*np.arange(0.0, turns + 1e-9, _BIN).tolist(), *(at for at, _, _ in _COURSE if at < turns), float(turns)})
-    blocks, spent = [], 0.0
-    for begin, end in zip(edges, edges[1:]):
-        samples = max(round(_PER_BIN * (end - begin) / _BIN), 1)
-        inputs = _inputs_at(end, start)
-        clock = time.process_time()
-        block = run.advance((end - begin) * turn, inputs, samples=samples)
-        spent += time.process_time() - clock
-        blocks.append(block)
-    whole = np.concatenate(blocks)
+    whole, spent = (_look_up if LEVELS[scene.level].advance_course is not None else _march)(scene, start, turn, edges)
     settled = whole["time"] > (_SETTLING + 1e-6) * turn
     bins = np.floor(whole["time"][settled] / (_BIN * turn) - 1e-6).astype(int)
     _, bins = np.unique(bins, return_inverse=True)
@@ -212,6 +207,30 @@ def _run(scene, turns):
     load = np.maximum(whole["inner_load"], whole["outer_load"]).max(axis=1)[settled]
     damage = whole["damage"][-1] - whole["damage"][~settled][-1]
     return Course(_means(slip, bins), _means(load, bins), float(damage)), spent
+
+
+def _look_up(scene, start, turn, edges):
+    """Run a level that looks up operating points: a sample at each edge, all at once, for it has nothing to tell in between."""
+    run = Simulation(scene, table=obtain_table(scene, (start.oil_temperature, start.oil_temperature))[0])
+    inputs, stretches = np.array([_inputs_at(edge, start) for edge in edges[1:]]), np.diff(edges) * turn
+    run.advance_course(stretches[:1] * 1e-6, inputs[:1])  # compiles
+    run.reset()
+    clock = time.process_time()
+    whole = run.advance_course(stretches, inputs)
+    return whole, time.process_time() - clock
+
+
+def _march(scene, start, turn, edges):
+    """Run a level that marches; return samples and the processor time spent."""
+    run, blocks, spent = Simulation(scene), [], 0.0
+    for begin, end in zip(edges, edges[1:]):
+        samples = max(round(_PER_BIN * (end - begin) / _BIN), 1)
+        inputs = _inputs_at(end, start)
+        clock = time.process_time()
+        block = run.advance((end - begin) * turn, inputs, samples=samples)
+        spent += time.process_time() - clock
+        blocks.append(block)
+    return np.concatenate(blocks), spent
 
 
 def _means(values, bins):
