@@ -37,6 +37,7 @@ class Counters(NamedTuple):
     jacobians: int
     factorisations: int
     smallest_steps: int = 0  # taken at the smallest length whatever their error
+    unsettled_points: int = 0  # operating points of level steady that have no steady state, taken as far as marching came
 
 
 class IntegrationError(RuntimeError):

@@ -78,7 +78,7 @@ def test_ticks_go_on_from_the_history():
 def test_fixed_steps_are_as_many_as_the_scene_says():
     run = simulation("slip", "rosenbrock2", "1e-2", "integration.fixed_step=20 us")
     run.advance(0.01)
-    assert run.counters == (500, 0, 0, 1000, 500, 500, 0)
+    assert run.counters == (500, 0, 0, 1000, 500, 500, 0, 0)
     run = simulation("planar", "sdirk2", "1e-2", "integration.fixed_step=20 us")
     run.advance(0.01)
     assert run.counters.steps == 500

@@ -30,6 +30,7 @@ class Count(NamedTuple):
     jacobians: int = 4
     factorisations: int = 5
     smallest_steps: int = 6  # taken although their error was too large, because no step is smaller
+    unsettled_points: int = 7  # operating points of level steady that were taken as far as marching came
 
 
 COUNT = Count()

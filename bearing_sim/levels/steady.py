@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.integrators.status import COUNT, NOT_EVALUATED, OK
+from bearing_sim.integrators.status import COUNT, NOT_EVALUATED, OK, STEP_BUDGET
 from bearing_sim.kernels.compilation import kernel
 from bearing_sim.kernels.load_balance import LOAD
 from bearing_sim.levels import slip
@@ -43,7 +43,7 @@ class Work(NamedTuple):
     asked: np.ndarray  # inputs that were last solved for: speed, loads, temperature, shape (4,)
     solved: np.ndarray  # the answer to them, shape (len(ANSWER),)
     march: March  # for operating points without a periodic state
-    solutions: np.ndarray  # operating points solved so far, and how many of them by marching, int64, shape (2,)
+    solutions: np.ndarray  # operating points solved so far, and how many of them by marching, and without an end to it, int64, shape (3,)
 
 
 def new_work(params, table: Table | None = None):
@@ -58,7 +58,7 @@ def new_work(params, table: Table | None = None):
         asked=np.full(4, math.nan),
         solved=np.full(len(ANSWER), math.nan),
         march=new_march(params.rollers.count),
-        solutions=np.zeros(2, np.int64),
+        solutions=np.zeros(3, np.int64),
     )
 
 
@@ -89,7 +89,10 @@ def solve_condition(shaft_speed, load_y, load_z, model, work):
     work.solutions[0] += 1
     if status == FAILED:
         work.solutions[1] += 1
-        if not march(constant, work.bearing, work.march, work.solved):
+        marched = march(constant, work.bearing, work.march, work.solved)
+        if marched == STEP_BUDGET:
+            work.solutions[2] += 1
+        elif marched != OK:
             return False
     asked[0], asked[1], asked[2], asked[3] = shaft_speed, load_y, load_z, model.lubrication.temperature
     return True
@@ -197,6 +200,7 @@ def advance(t, duration, y, h, maximum_step, budget, model, work, memory, counts
         reached = _settled_speed(shaft_speed, model, work)
         _follow(settled, reached, work.answer[ANSWER.lag], interval, y)
         counts[COUNT.steps] += 1
+        counts[COUNT.unsettled_points] = work.solutions[2]
         _write_sample(end, y, model, work, interval, before, rows[k])
         before, settled = rows[k], reached
     return OK, h

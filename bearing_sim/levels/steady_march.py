@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.integrators.memory import Memory, new_memory
-from bearing_sim.integrators.status import OK, new_counts
+from bearing_sim.integrators.status import OK, STEP_BUDGET, new_counts
 from bearing_sim.kernels.compilation import kernel
 from bearing_sim.levels import slip
 from bearing_sim.levels.slip import OMEGA, THETA
@@ -23,6 +23,7 @@ _WINDOWS = 12  # each twice as long as the one before from the second on
 _AGREED, _AGREED_FLOOR = 2e-3, 5e-5  # of slips of two windows
 _BUDGET = 60_000  # steps of all windows together
 _FIRST_STEP, _LONGEST_STEP = 1e-6, 1.0  # s
+_AN_INSTANT = 1e-6  # of an ideal cage turn
 
 
 class March(NamedTuple):
@@ -41,9 +42,10 @@ def new_march(count: int) -> March:
 
 @kernel
 def march(model, work, memory, answer):
-    """March from ideal rolling until two windows agree; write the means over the last; return whether time could be advanced.
+    """March from ideal rolling until two windows agree; write the means over the last.
 
-    The lag is the area between the cage's speed and its end, over their first distance.
+    The lag is the area between the cage's speed and its end, over their first distance.  A march that runs out of steps, because spins
+    jump all the time, is taken as far as it came.
 
     Parameters
     ----------
@@ -51,6 +53,10 @@ def march(model, work, memory, answer):
     work : of level slip.
     memory : `March`.
     answer : result, shape (len(ANSWER),).
+
+    Returns
+    -------
+    status : OK, or STEP_BUDGET where the answer is no settled one; anything else means that there is none.
     """
     params, y, rows = model.params, memory.state, memory.rows
     shaft_speed = model.drive.shaft_speed
@@ -62,24 +68,35 @@ def march(model, work, memory, answer):
         memory.counts[i] = 0
     work.ring[0], work.ring[1] = 0.0, 0.0
     time, window, step, before = 0.0, _TURNS * math.tau / abs(ideal), _FIRST_STEP, math.inf
-    mean = ideal
+    mean, turned, status = ideal, 0.0, OK
     for _ in range(_WINDOWS):
         angle = y[THETA]
         status, step = slip.advance(
             time, window, y, step, _LONGEST_STEP, _BUDGET, model, work, memory.memory, memory.counts, rows[rows.shape[0] - 1], rows
         )
+        if status == STEP_BUDGET:
+            break
         if status != OK:
-            return False
+            return status
         time += window
+        turned = y[THETA]
         mean = (y[THETA] - angle) / window
         slipped = 1.0 - mean / ideal
         if abs(slipped - before) < _AGREED_FLOOR + _AGREED * abs(slipped):
             break
         before = slipped
         window *= 2.0
+    if status == STEP_BUDGET and time == 0.0:
+        mean = y[OMEGA]
+        instant = _AN_INSTANT * window
+        again, step = slip.advance(
+            time, instant, y, _FIRST_STEP, _LONGEST_STEP, _BUDGET, model, work, memory.memory, memory.counts, rows[rows.shape[0] - 1], rows
+        )
+        if again != OK:
+            return again
     answer[ANSWER.cage_slip] = 1.0 - mean / ideal
     away = ideal - mean
-    lag = (y[THETA] - mean * time) / away if abs(away) > 1e-6 * abs(ideal) else 0.0
+    lag = (turned - mean * time) / away if abs(away) > 1e-6 * abs(ideal) else 0.0
     answer[ANSWER.lag] = min(max(lag, 0.0), time)
     for column in range(ANSWER.inner_equivalent_load, answer.shape[0]):
         source = COLUMN.inner_equivalent_load + column - ANSWER.inner_equivalent_load
@@ -89,4 +106,4 @@ def march(model, work, memory, answer):
         for k in range(rows.shape[0]):
             total += rows[k, source]
         answer[column] = total / rows.shape[0]
-    return True
+    return status

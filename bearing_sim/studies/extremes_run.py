@@ -267,4 +267,5 @@ def _clamps(simulation: Simulation) -> list[str]:
     """Return what kept the run within bounds that the equations do not have."""
     divided = simulation.scene.integration.fixed_step is not None and simulation.counters.rejected_steps > 0
     clamps = ["fixed step divided"] if divided else []
-    return clamps + (["smallest step"] if simulation.counters.smallest_steps else [])
+    clamps += ["smallest step"] if simulation.counters.smallest_steps else []
+    return clamps + (["operating point without a steady state"] if simulation.counters.unsettled_points else [])
