@@ -1,0 +1,21 @@
+"""Start bearing_node with a recording from the start: ``ros2 launch bearing_sim record.launch.py record:=run.mcap``."""
+
+from datetime import datetime
+
+from launch import LaunchDescription
+from launch.actions import LogInfo, OpaqueFunction
+
+from bearing_sim.ros.launching import bearing_node, declared, value
+
+
+def generate_launch_description():
+    """Return the launch description."""
+    fresh = f"recordings/{datetime.now():%Y-%m-%d_%H%M%S}.mcap"
+    return LaunchDescription([*declared(record=fresh), OpaqueFunction(function=_start)])
+
+
+def _start(context):
+    record = value(context, "record")
+    if not record:
+        raise RuntimeError("record is empty: name the MCAP file to write, or use live.launch.py to run without a recording")
+    return [LogInfo(msg=f"recording to {record}; complete when this launch is ended by Ctrl-C"), bearing_node(context)]
