@@ -86,7 +86,7 @@ class Bearing:
 
     @property
     def diameter_ratio(self) -> float:
-        """gamma = D_w / d_m."""
+        """The ratio gamma = D_w / d_m."""
         return self.roller.diameter / self.pitch_diameter
 
     @property

@@ -133,7 +133,7 @@ class Reference:
         return elastic * larger(1 + self.contact_damping * rate, 0.0), elastic, energy
 
     def traction(self, load, rolling, sliding, curvature_radius):
-        """mu Q, odd in the sliding speed (Deng 2017, ref. 17); load and rolling speed kept off zero, where the powers run away."""
+        """The force mu Q, odd in the sliding speed (Deng 2017, ref. 17); load and rolling speed kept off zero, where the powers run away."""
         rolling = np.sqrt(rolling**2 + 0.05**2)
         w = larger(load, 1e-3) / (self.modulus * curvature_radius**2)
         u = self.viscosity * rolling / (self.modulus * curvature_radius)

@@ -50,7 +50,6 @@ def constant_constants(scale, b, c, d):
 
     A given A other than -D would be a jump at zero sliding; it is taken as -D, which changes mu only where it rises.
     """
-
     return TractionConstants(scale, _log(d), 0.0, 0.0, _log(b), 0.0, 0.0, _log(c), 0.0, 0.0, FITTED, np.zeros(SPECIAL))
 
 

@@ -90,8 +90,7 @@ def _guiding_pockets(y, params, rows):
 
 @kernel
 def land_powers(y, shaft_speed, model):
-    """Return what the shaft puts into guide lands that turn with it, what film and friction of the lands lose, and what damping takes
-    where they touch [W].
+    """Return powers of the guide lands [W]: in by the shaft where they turn with it, lost by film and friction, taken by damping.
 
     Force and torque on the cage have their reaction on the ring's surface, so that the ring's torque about its own centre is that on
     the cage and the force's moment across the eccentricity, the other way.
