@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Cage slip and rating life of high-speed roller bearings with lobed raceways.
 
 =====================  ==================================================================================

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The scene: everything a run needs, as frozen records in SI.
 
 One record per block of the YAML file.  Each quantity is declared once, with unit, bounds and meaning;

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Start several bearings, one node process each: ``ros2 launch bearing_sim fleet.launch.py bearings:="front=a.yaml rear=b.yaml"``."""
 
 import re

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Start bearing_node, and a rerun viewer of it if wanted: ``ros2 launch bearing_sim live.launch.py view:=true``."""
 
 import shutil

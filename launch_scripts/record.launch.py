@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Start bearing_node with a recording from the start: ``ros2 launch bearing_sim record.launch.py record:=run.mcap``."""
 
 from datetime import datetime

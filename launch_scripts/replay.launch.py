@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Play the inputs of a recording to bearing_node and end with it: ``ros2 launch bearing_sim replay.launch.py log:=mission.mcap``."""
 
 from launch import LaunchDescription

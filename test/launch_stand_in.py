@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Stands in for launch and launch_ros, which pip does not have: the few names of them that launch files here may use.
 
 Written from their documentation. It keeps what it is given, declares arguments and performs substitutions as launch

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """A plain NumPy model of level ``planar``, for comparison: one file, no code shared with the package, written from the equations.
 
 Everything is a Cartesian vector in the radial plane, rollers too: places and velocities in y and z, shape (2, Z).  Each force is

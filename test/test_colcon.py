@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """colcon builds, installs and tests the package, with the environment that these tests run in as the only underlay."""
 
 import os

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The demonstration end to end, on a shortened mission and in this environment: node, player, recording, view, summary."""
 
 import os

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The code is as ament_flake8 wants it, by the project's configuration."""
 
 from pathlib import Path

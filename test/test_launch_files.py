@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The launch files: what they declare, start and hand over; loaded by launch where it is installed, else by a stand-in."""
 
 import ast

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The package's papers agree: package.xml, setup.py, setup.cfg, the changelog, and what lies at the top."""
 
 import ast

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The docstrings are as ament_pep257 wants them, by the numpy convention in which they are written."""
 
 from pathlib import Path

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Tangential force of the oil film between roller and raceway (Deng 2017, eq. 7).
 
 Every law here is odd in the sliding speed and zero without sliding.  All but one are written in one form,

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Power by cause at level ``planar`` (see `bearing_sim.levels.power`), with the forces of `planar_border` and `planar_rollers`.
 
 What gives back what it takes, so is no loss: Palmgren's part of every normal force, the spring of the pockets' films, and the

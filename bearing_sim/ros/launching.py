@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """What the launch files share: arguments made from the node's own table of parameters, and the node as launch starts it.
 
 Only ``launch_scripts/*.launch.py`` import this: it needs launch and launch_ros of a ROS 2 installation, which pip does not have.
