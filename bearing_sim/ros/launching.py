@@ -83,8 +83,9 @@ def bearing_node(context, name: str = "bearing_node", namespace: str | None = No
 def _typed(row: Declaration, text: str | None) -> ParameterValue:
     # Without its type launch reads a text as YAML: a scene that is called 1.50 would become a number.
     kind = type(row.default)
+    kind = List[type(row.default[0])] if kind is list else kind  # noqa: UP006 - launch knows typing's lists alone
     source = LaunchConfiguration(row.name) if text is None else TextSubstitution(text=text)
-    return ParameterValue(source, value_type=List[str] if kind is list else kind)  # noqa: UP006 - launch knows typing's alone
+    return ParameterValue(source, value_type=kind)
 
 
 def _text(default: object) -> str:
