@@ -8,7 +8,7 @@ from pathlib import Path
 from launch import LaunchDescription
 from launch.actions import OpaqueFunction
 
-from bearing_sim.ros.launching import Argument, bearing_node, declared, value
+from bearing_sim.ros.launching import Argument, bearing_node, declared, now, value
 
 FLEET = (
     Argument(
@@ -16,7 +16,7 @@ FLEET = (
         "front=deng2017_table1 rear=deng2017_table2",
         "NAME=SCENE of each bearing; topics are NAME/cage_slip and so on, the node is NAME/bearing_NAME",
     ),
-    Argument("record_folder", "", "folder for a recording NAME.mcap of each bearing; empty for none"),
+    Argument("record_folder", "", "folder for a recording of each bearing, NAME and time of the start; empty for none"),
     Argument("first_rerun_port", "0", "port on 127.0.0.1 for viewers of the first bearing, the next ones follow; 0 for none"),
 )
 SET_FOR_EACH = ("scene", "record", "rrd", "rerun_port")
@@ -28,7 +28,7 @@ def generate_launch_description():
 
 
 def _start(context):
-    folder, port = value(context, "record_folder"), int(value(context, "first_rerun_port"))
+    folder, port, start = value(context, "record_folder"), int(value(context, "first_rerun_port")), now()
     return [
         bearing_node(
             context,
@@ -36,7 +36,7 @@ def _start(context):
             name=f"bearing_{name}",
             namespace="/".join(part for part in (value(context, "namespace").rstrip("/"), name) if part),
             scene=scene,
-            record=str(Path(folder) / f"{name}.mcap") if folder else "",
+            record=str(Path(folder) / f"{name}_{start}.mcap") if folder else "",
             rrd="",
             rerun_port=str(port + index if port else 0),
         )

@@ -1,18 +1,15 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Start bearing_node with a recording from the start: ``ros2 launch bearing_sim record.launch.py record:=run.mcap``."""
 
-from datetime import datetime
-
 from launch import LaunchDescription
 from launch.actions import LogInfo, OpaqueFunction
 
-from bearing_sim.ros.launching import bearing_node, declared, value
+from bearing_sim.ros.launching import bearing_node, declared, now, value
 
 
 def generate_launch_description():
     """Return the launch description."""
-    fresh = f"recordings/{datetime.now():%Y-%m-%d_%H%M%S}.mcap"
-    return LaunchDescription([*declared(record=fresh), OpaqueFunction(function=_start)])
+    return LaunchDescription([*declared(record=f"recordings/{now()}.mcap"), OpaqueFunction(function=_start)])
 
 
 def _start(context):

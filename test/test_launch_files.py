@@ -3,6 +3,7 @@
 
 import ast
 import importlib.util
+import re
 import shlex
 from pathlib import Path
 from types import SimpleNamespace
@@ -184,9 +185,10 @@ def test_a_fleet_gives_every_bearing_its_scene_namespace_name_recording_and_port
     run = launched("fleet", bearings="front=deng2017_table1 'rear=my scenes/b.yaml'", record_folder="out", first_rerun_port="9900", namespace="/ship")
     front, rear = nodes(run)
     assert (front.namespace, front.name) == ("/ship/front", "bearing_front") and (rear.namespace, rear.name) == ("/ship/rear", "bearing_rear")
-    wanted = ("scene", "record", "rerun_port")
-    assert [handed_over(front, run.context)[name] for name in wanted] == ["deng2017_table1", "out/front.mcap", 9900]
-    assert [handed_over(rear, run.context)[name] for name in wanted] == ["my scenes/b.yaml", "out/rear.mcap", 9901]
+    first, second = handed_over(front, run.context), handed_over(rear, run.context)
+    assert (first["scene"], first["rerun_port"], second["scene"], second["rerun_port"]) == ("deng2017_table1", 9900, "my scenes/b.yaml", 9901)
+    moment = r"\d{4}-\d\d-\d\d_\d{6}"
+    assert re.fullmatch(rf"out/front_{moment}\.mcap", first["record"]) and re.fullmatch(rf"out/rear_{moment}\.mcap", second["record"])
 
 
 def test_a_fleets_default_bearings_are_bundled_scenes_without_recordings_and_viewers(launched):

@@ -4,6 +4,7 @@
 Only ``launch_scripts/*.launch.py`` import this: it needs launch and launch_ros of a ROS 2 installation, which pip does not have.
 """
 
+from datetime import datetime
 from typing import List, NamedTuple  # noqa: UP035
 
 from launch.actions import DeclareLaunchArgument, SetEnvironmentVariable
@@ -48,6 +49,11 @@ def declared(*arguments: Argument, leave_out: tuple[str, ...] = (), **defaults: 
         DeclareLaunchArgument(row.name, default_value=row.default, description=row.meaning, **({"choices": list(row.choices)} if row.choices else {}))
         for row in (*arguments, *SHARED, *parameters)
     ] + [SetEnvironmentVariable("ROS_AUTOMATIC_DISCOVERY_RANGE", LaunchConfiguration("discovery_range"))]
+
+
+def now() -> str:
+    """Return this moment for the name of a recording, so that no launch replaces what another has recorded."""
+    return f"{datetime.now():%Y-%m-%d_%H%M%S}"
 
 
 def value(context, name: str) -> str:
