@@ -18,7 +18,6 @@ SOURCES = [
 
 @pytest.mark.linter
 def test_every_source_file_begins_with_the_copyright_statement():
-    for path in SOURCES:
-        lines = path.read_text().splitlines() if path.is_file() else []
-        if lines:
-            assert STATEMENT in lines[:2], f"{path.relative_to(ROOT)}: begin with the line (after #! if there is one)\n{STATEMENT}"
+    texts = {path: path.read_text() for path in SOURCES if path.is_file()}
+    without = [str(path.relative_to(ROOT)) for path, text in texts.items() if text and STATEMENT not in text.splitlines()[:2]]
+    assert not without, f"begin these files (after #! if there is one) with\n{STATEMENT}\n" + "\n".join(without)
