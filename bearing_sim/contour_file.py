@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Measured contours as text: azimuth and radius in two columns, one turn; every fault of a file at once.
 
 The text of the file is what a scene keeps, so that a recording says what was measured, comments and all.

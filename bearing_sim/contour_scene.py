@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The outer raceway's contour in a scene's tree of mappings: which form counts, and where its file is read."""
 
 from collections.abc import Iterable, Mapping

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Crown: how far a roller's profile drops from a straight cylinder towards its ends, and the drops of its slices."""
 
 import csv

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Measured tables into input logs: every row that becomes a message, and by line number why the others do not.
 
 A bad time loses its row; a bad cell loses the one message that needs it.  Nothing is filled in, sorted or smoothed.

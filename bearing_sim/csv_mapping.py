@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Mappings: which columns of a measured table are time, shaft speed, radial load and oil temperature, and in which units.
 
 A mapping is a YAML file of these records.  Nothing in it is evaluated: each input is one of a few fixed laws of columns.

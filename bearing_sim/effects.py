@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """What a scene may ask for that not every level has: one table, for refusals, for hints, and for choosing a level."""
 
 from collections.abc import Callable

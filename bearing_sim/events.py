@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Events: what a person should be told, with level, code, reason and time."""
 
 from enum import IntEnum

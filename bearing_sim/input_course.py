@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The course of the inputs over a run: the messages of a log that passed the gate, and what was wrong with the others."""
 
 import re

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Input logs: shaft speed, radial load and oil temperature out of a rosbag2 MCAP recording, also one cut short by a kill.
 
 Reading takes what is there; judging (`judge`) passes every message through the same gate as a live run

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Read MCAP files that may have been cut short."""
 
 from mcap.exceptions import EndOfFile

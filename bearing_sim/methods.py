@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """By which methods each level can be integrated; the names that a scene may give.
 
 Names only, so that a scene can be read without the models; `bearing_sim.levels.level` binds them.

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The bundled mission: a synthetic engine cycle, made up for demonstrations.  It was measured nowhere.
 
 Start, idle, take-off at 45,000 rpm, cruise, descent under light load with a gust, stop.

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """What compiled code sees: plain numbers in nested named tuples; `pack` is the only bridge from a scene."""
 
 import math

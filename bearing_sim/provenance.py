@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Where a result comes from: version and git hash of this package, nothing of the machine it ran on."""
 
 import subprocess

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Physical quantities at the door: text with a unit in, SI numbers out.
 
 The only module that knows units.  Inside the package every number is SI; here ``7.0 mm`` becomes

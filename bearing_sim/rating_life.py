@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Rating life from roller loads: by whole rollers, by slices, and modified by oil and reliability (ISO 281, ISO/TS 16281)."""
 
 import math

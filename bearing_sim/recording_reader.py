@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Read our own recordings back: MCAP messages to blocks of samples and events, as the sinks take them.
 
 What a recording does not hold follows from the scene and from what it does hold: rollers stand at equal steps behind the

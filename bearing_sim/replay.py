@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Replay: the model driven by the inputs of a log, from stamp to stamp, as fast as it can."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """How much rings grow by rotation, fits and heat: elastic rings, Lame's thick cylinders, thermal expansion."""
 
 from typing import NamedTuple

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The sample record: everything that a level observes at one instant.
 
 One line per observable (name, unit, meaning, shape).  MCAP topics, rerun paths, CSV headers and ROS

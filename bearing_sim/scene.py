@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The scene: everything a run needs, as frozen records in SI.
 
 One record per block of the YAML file.  Each quantity is declared once, with unit, bounds and meaning;
@@ -86,7 +87,7 @@ class Bearing:
 
     @property
     def diameter_ratio(self) -> float:
-        """gamma = D_w / d_m."""
+        """The ratio gamma = D_w / d_m."""
         return self.roller.diameter / self.pitch_diameter
 
     @property

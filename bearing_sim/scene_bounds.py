@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Bounds that no single field has: plays of the cage, moments too large for the bearing, and steps too long for the speed."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The cage of a scene: its body, its pockets, and what guides it."""
 
 from typing import Literal

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Read scenes: YAML, presets, command-line overrides; every fault of a file reported at once."""
 
 import dataclasses

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The lubricant of a scene: laws of viscosity, oils, laws of traction."""
 
 from typing import Annotated, Literal

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The raceways of a scene: contour of the outer one, the inner one, and what makes rings grow."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Pictures of a rerun recording without a display: rerun's own headless viewer, steered over a local port.
 
 Needs a Vulkan driver; a software one will do.

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Simulation: owns time, state and workspace of one bearing; ``advance`` returns a block of samples."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Topics: which ROS messages an input, a sample and a list of events become, and which numbers an input message holds.
 
 One table for recordings and for the node, free of ROS.  A message is a plain nested dict of field to value: dict for a

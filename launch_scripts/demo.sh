@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 # Run the ROS 2 node on the bundled synthetic mission, record it and show what came of it.
 #
 #   launch_scripts/demo.sh [--duration S] [--scene SCENE] [--set FIELD=VALUE] [--no-open] [--help]

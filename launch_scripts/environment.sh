@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 # What demo.sh and test.sh share; sourced, not run. Needs $here, the folder of the checkout.
 #
 # Makes .venv if absent and installs the package there, again when its sources have changed.

@@ -1,40 +1,47 @@
-"""Start bearing_node: ``ros2 launch bearing_sim live.launch.py scene:=deng2017_table1 record:=run.mcap``."""
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Start bearing_node, and a rerun viewer of it if wanted: ``ros2 launch bearing_sim live.launch.py view:=true``."""
+
+import shutil
+import sys
+from pathlib import Path
 
 from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument
-from launch.substitutions import LaunchConfiguration
-from launch_ros.actions import Node
-from launch_ros.parameter_descriptions import ParameterValue
+from launch.actions import ExecuteProcess, OpaqueFunction, RegisterEventHandler
+from launch.event_handlers import OnProcessIO
 
-# Name, default, type as the node declares it, and meaning.
-ARGUMENTS = (
-    ("scene", "deng2017_table1", str, "name of a bundled scene, or path of a scene file"),
-    ("overrides", "['']", list[str], "scene fields to change, such as \"['lubricant.temperature=100degC']\""),
-    ("joint", "shaft", str, "name of the shaft's joint in shaft_speed messages"),
-    ("input_type", "stamped", str, "stamped: JointState and WrenchStamped; scalar: Float64 for both"),
-    ("publish_rate", "50.0", float, "rate of the output topics [Hz]"),
-    ("sample_rate", "100.0", float, "samples recorded for each simulated second [Hz]"),
-    ("maximum_lag", "0.2", float, "lag behind real time that is caught up [s]; more is given up, counted and told"),
-    ("record", "", str, "MCAP file to record from the start; empty for none"),
-    ("rrd", "", str, "rerun recording to write from the start; empty for none"),
-    ("rerun_port", "0", int, "port on 127.0.0.1 at which a rerun viewer can watch live; 0 for none"),
-)
+from bearing_sim.ros.launching import READY, Argument, bearing_node, declared, value
+
+VIEW = Argument("view", "false", "whether to open a rerun viewer; where rerun_port is 0, at port 9876", ("true", "false"))
 
 
 def generate_launch_description():
     """Return the launch description."""
-    parameters = {name: ParameterValue(LaunchConfiguration(name), value_type=kind) for name, _, kind, _ in ARGUMENTS}
-    return LaunchDescription(
-        [DeclareLaunchArgument(name, default_value=default, description=meaning) for name, default, _, meaning in ARGUMENTS]
-        + [
-            DeclareLaunchArgument("namespace", default_value="", description="namespace of the node and its topics"),
-            Node(
-                package="bearing_sim",
-                executable="bearing_node",
-                name="bearing_node",
-                namespace=LaunchConfiguration("namespace"),
-                parameters=[parameters],
-                output="screen",
-            ),
-        ]
-    )
+    return LaunchDescription([*declared(VIEW), OpaqueFunction(function=_start)])
+
+
+def _start(context):
+    if value(context, "view") != "true":
+        return [bearing_node(context)]
+    port = value(context, "rerun_port")
+    port = "9876" if port == "0" else port
+    node = bearing_node(context, rerun_port=port)
+    return [_viewer_when_ready(node, port), node]
+
+
+def _viewer_when_ready(node, port):
+    """Return the handler that opens the viewer once the node serves it: before, there is nothing to connect to."""
+    viewer = ExecuteProcess(cmd=[_rerun(), f"rerun+http://127.0.0.1:{port}/proxy"], output="log")
+    waiting = [viewer]
+
+    def heard(event):
+        return waiting.pop() if READY in event.text and waiting else None
+
+    return RegisterEventHandler(OnProcessIO(target_action=node, on_stdout=heard, on_stderr=heard))
+
+
+def _rerun():
+    beside = Path(sys.executable).with_name("rerun")
+    found = str(beside) if beside.is_file() else shutil.which("rerun")
+    if found is None:
+        raise RuntimeError("view:=true needs the rerun viewer: install it with pip install rerun-sdk==0.41.0")
+    return found

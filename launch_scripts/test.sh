@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 # Set up what the tests need in .venv and run them all; arguments go to pytest.
 #
 #   launch_scripts/test.sh [pytest arguments]

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """A stand-in with the interface of `bearing_sim.simulation.Simulation` whose faults and costs a test can dictate."""
 
 import time

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """A plain NumPy model of level ``planar``, for comparison: one file, no code shared with the package, written from the equations.
 
 Everything is a Cartesian vector in the radial plane, rollers too: places and velocities in y and z, shape (2, Z).  Each force is
@@ -133,7 +134,7 @@ class Reference:
         return elastic * larger(1 + self.contact_damping * rate, 0.0), elastic, energy
 
     def traction(self, load, rolling, sliding, curvature_radius):
-        """mu Q, odd in the sliding speed (Deng 2017, ref. 17); load and rolling speed kept off zero, where the powers run away."""
+        """The force mu Q, odd in the sliding speed (Deng 2017, ref. 17); load and rolling speed kept off zero, where the powers run away."""
         rolling = np.sqrt(rolling**2 + 0.05**2)
         w = larger(load, 1e-3) / (self.modulus * curvature_radius**2)
         u = self.viscosity * rolling / (self.modulus * curvature_radius)

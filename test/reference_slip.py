@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """A plain NumPy model of level ``slip``, for comparison: one file, no code shared with the package, written from the equations.
 
 Slow and readable: loads by root finding on one roller at a time and a general equation solver for the ring, traction by the

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """A plain NumPy model of level ``spatial``, for comparison; written from the equations, with the laws of `reference_planar`.
 
 Everything is a Cartesian vector in the radial plane.  A body is its centre and the inclination of its axis, both in a frame that

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """A running bearing_node and a client of it in this process, connected over DDS on the loopback interface only."""
 
 import os

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """A made-up run of plausible physics for tests of what comes after the solver: no dynamics, only quasi-static shapes."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The rooms keep to their rules: read from the syntax trees, not from good intentions."""
 
 import ast

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Backward differentiation formulas on problems with closed forms and against scipy; they know no bearings."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The bench measures every level by every method, and its report can be read by a program."""
 
 import json

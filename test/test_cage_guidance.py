@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """What guides the cage: which scenes fit, what each guidance does to slip, and that pockets which guide hold the cage."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Contours of the outer raceway: forms, measured files, and the one table that they all become."""
 
 import math

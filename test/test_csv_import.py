@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Claims about imported tables: each row becomes what the mapping says, or is refused by line number; nothing is filled in."""
 
 import csv

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Claims about mappings: units at the door, every fault at once with its place, the bundled ones sound."""
 
 import pytest

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Which level a scene needs, and which would do: one table for refusals and hints."""
 
 import pytest

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The study of extremes: its scenes, its judgement, and the causes of failure that it found, each kept repaired."""
 
 import csv

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Oil films: thickness against the published formulas, resistance to rolling against its energy, custom oils against ASTM D341."""
 
 import math

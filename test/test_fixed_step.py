@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The drive loop for hard real time: equal steps, a bound on the work of each; it knows no bearings."""
 
 import math

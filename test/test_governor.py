@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The governor: when it steps down and up, and that a change of level carries the bearing on without a jump."""
 
 import dataclasses

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Claims about judging a log: the gate's verdicts, linear between good messages, gaps and the common time told."""
 
 import math

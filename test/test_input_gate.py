@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The gate accepts what the scene allows, refuses the rest with a reason, and holds the last good value."""
 
 import math

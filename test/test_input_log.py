@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Claims about reading logs: any rosbag2 MCAP, whole or cut short; clocks and faults are said, nothing is guessed."""
 
 import random

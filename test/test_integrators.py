@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The stiff method and the drive loop on problems with closed forms; they know no bearings."""
 
 import math

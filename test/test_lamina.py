@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Claims about the balance by slices: closed forms, symmetry, and the digits of independent lamina codes."""
 
 import math

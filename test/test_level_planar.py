@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The planar level: its derivatives, its algebra, an independent calculation, its limit, rough courses."""
 
 import math

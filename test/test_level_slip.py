@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The slip level against an independent model, published values, limits and symmetries."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The spatial level: its planar limit, its symmetries, gyroscopic moments, misalignment, rough courses."""
 
 import math

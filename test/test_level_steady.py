@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Level steady: its periodic states against level slip marched until it settles, closed forms, symmetries and the books of power."""
 
 import math

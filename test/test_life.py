@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Claims about lives: by slices, and modified by reliability and oil, against values computed by hand."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The live model: messages in, samples and news out, sinks fed and survived; without ROS and with a stand-in for the physics."""
 
 import math

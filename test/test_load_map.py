@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The load map: loads stand where they act, whatever the run's length."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Pre-deformation machining: the ring against closed forms and textbooks, the contour against Deng 2017, Fig. 3, and its file in a scene."""
 
 import json

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Claims about recordings: strict readers decode every message, the file says where it comes from, a killed run loses little."""
 
 import os

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Every method that a scene may name, on the bearing: they agree with each other, keep their history, end with a reason."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Studies of level spatial: misalignment against what the literature says, and what slices change and cost."""
 
 import json

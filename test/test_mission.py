@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Claims about the synthetic mission: smooth, through its phases in order, within the bundled scene's limits, said to be synthetic."""
 
 import json

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The node as a process of its own, spoken to over DDS: outputs, recordings, bad input, services, signals."""
 
 import math

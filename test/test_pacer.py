@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The pacer keeps (wall, sim) in step, gives up what it cannot catch up, and measures; all on made-up clocks."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The guide land: its film against Reynolds' equation integrated by quadrature, its derivatives, its power."""
 
 import math

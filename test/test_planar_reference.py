@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The planar level against a plain NumPy model: its forces, its derivatives, its course in time, its conservation laws."""
 
 import math

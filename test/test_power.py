@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Power by cause: the books of energy close, and each loss is what a plain calculation gives."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Claims about provenance: the hash is that of the package's own checkout, or nothing."""
 
 import shutil

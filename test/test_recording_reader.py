@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Reading our recordings back: what was recorded, and what follows from it."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Claims about the replay: it visits every stamp, writes inputs and outputs, survives what cannot be integrated."""
 
 import json

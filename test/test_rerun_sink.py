@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The rerun sink: what it writes, and that it never holds up the run."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Growth of the rings by rotation, fits and heat: closed forms, and what it does to the bearing."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The explicit method on problems with closed forms and against scipy; it knows no bearings."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Roundness of the low points and life (Deng 2017, Fig. 22): what a free inner ring makes of it, and what a held one would."""
 
 from dataclasses import dataclass

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The runner on its own thread: paced ticks, held inputs, bounded output, faults told and survived, prompt stop."""
 
 import threading

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The cross-section's geometry: one factor for every radial departure, sizes to scale, axes as stated."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Life by slices at level spatial: what misalignment and crown do to it."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The spatial level against a plain NumPy model: its forces, its derivatives, its energy."""
 
 import math

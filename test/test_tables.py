@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Tables of operating points: their interpolant, their error, their place on disk, and what happens beyond them."""
 
 import json

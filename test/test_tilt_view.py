@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """What the view shows of tilts, of slices' pressures and of lives besides the basic one, and where."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Claims about the message table: every array filled, names and units where readers look for them."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Laws of traction beside the default one: Kragelskii from the properties of its course, the thermal Eyring film from its equations."""
 
 import math

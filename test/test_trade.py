@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The trade: front and recommendation against brute force, errors against known ones, and the command."""
 
 import csv

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """What the view shows of cage and powers: the orbit where there is one, the sample's own numbers everywhere."""
 
 import math

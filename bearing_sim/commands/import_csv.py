@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """``bearing-sim import-csv``: turn a measured table into an MCAP log."""
 
 from pathlib import Path

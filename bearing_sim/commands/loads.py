@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """``bearing-sim loads``: how a scene's load spreads over its rollers and along them."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """``bearing-sim mission``: write the bundled synthetic mission as an MCAP log."""
 
 from datetime import UTC

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """``bearing-sim replay``: run the model on a recorded log of shaft speed and radial load."""
 
 import time

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """What commands share in talking to people and to programs: faults, JSON, tables, progress."""
 
 import errno

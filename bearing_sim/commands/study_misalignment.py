@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """``bearing-sim study misalignment``: edges, tilts, skews and life over the misalignment of the inner ring."""
 
 import csv

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """``bearing-sim study slices``: how results settle with the number of slices, and what slices and rollers cost."""
 
 import click

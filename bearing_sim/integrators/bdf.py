@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Backward differentiation formulas of orders 1 to 5 with variable step and order (Gear's method), as a drive loop.
 
 Quasi-constant steps in backward differences: L. F. Shampine, M. W. Reichelt: The MATLAB ODE suite, SIAM J. Sci. Comput. 18

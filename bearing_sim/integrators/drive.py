@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The drive loop: accepts or rejects steps, chooses their size, counts work, and always ends.
 
 Knows no bearings and no method: both come in as kernels.

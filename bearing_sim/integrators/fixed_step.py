@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """A drive loop for hard real time: steps of one length, no error control, a bound on the work of each step."""
 
 import math

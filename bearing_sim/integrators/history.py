@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """What backward differentiation formulas keep from step to step: backward differences of the state, and their algebra.
 
 The polynomial of order k through the last k + 1 states, h apart, is y(t + s h) = sum_j D_j s (s + 1) ... (s + j - 1)/j!, where

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """What one-step methods write in a step; nothing in it outlives one."""
 
 from typing import NamedTuple

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Explicit Runge-Kutta method of order 5 with an embedded one of order 4, as a drive loop.
 
 J. R. Dormand, P. J. Prince: A family of embedded Runge-Kutta formulae, J. Comput. Appl. Math. 6 (1980), RK5(4)7M.  Its last stage

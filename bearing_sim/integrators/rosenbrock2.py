@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Two-stage linearly implicit W-method of order 2 (ROS2).
 
 J. G. Verwer, E. J. Spee, J. G. Blom, W. Hundsdorfer: A second-order Rosenbrock method applied to photochemical

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Two-stage singly diagonally implicit Runge-Kutta method of order 2 with Newton's method in each stage.
 
 R. Alexander: Diagonally implicit Runge-Kutta methods for stiff O.D.E.'s, SIAM J. Numer. Anal. 14 (1977), theorem 5.  L-stable

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """How an advance ended: values, because compiled code raises nothing."""
 
 from typing import NamedTuple

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Arrow linear algebra: many scalar equations that couple only through a border of two.
 
     [ C    L_1 ... L_Z ] [x_c]   [b_c]

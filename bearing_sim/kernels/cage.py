@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The cage's guide lands: short journal bearings between cage and guiding ring (Deng 2017, section 3.1.3)."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """How compiled code is made: two decorators and where their machine code is cached.
 
 ``@kernel`` is a leaf law or a concrete entry point.  ``@template`` takes kernels as leading positional

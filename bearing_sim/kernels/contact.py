@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Normal contact of rollers and raceways: Palmgren's line contact (Deng 2017, eq. 3 to 5)."""
 
 from bearing_sim.kernels.compilation import kernel, template

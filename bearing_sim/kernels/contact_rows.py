@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """What laws of contacts share: the rows of a contacts array, and the constants of a traction law."""
 
 from typing import NamedTuple

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Periodic scalar differential equations along an orbit: backward differences that close upon themselves.
 
     alpha_0 x_m + alpha_1 x_(m-1) + alpha_2 x_(m-2) + alpha_3 x_(m-3) + slope_m x_m = b_m,   m modulo M.

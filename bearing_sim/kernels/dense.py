@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Small dense systems: LU decomposition with row pivoting, in place."""
 
 from bearing_sim.kernels.compilation import kernel

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Drag of the oil-air mixture on cage and rollers (Deng 2017, section 3.1.4, and the general literature)."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Exponential, logarithm, ninth root, sine and cosine that a vector of numbers can go through.
 
 The library calls of `math` take one number at a time.  These are free of branches and accurate to 1e-11 relative (exp,

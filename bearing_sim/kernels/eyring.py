@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Traction of a thermal Eyring film with a limiting shear stress.
 
 Film by Dowson and Toyoda, thinned by its heated inlet (`bearing_sim.kernels.film`); viscosity in the contact by Roelands at the

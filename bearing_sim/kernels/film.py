@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Oil film of a line contact and what follows from it: thickness and the resistance to rolling.
 
 U = eta_0 u/(E' R), G = alpha E', W = q/(E' R), all lengths in units of R; u is the mean speed of both surfaces relative to the

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Quasi-static balance of the whole bearing by slices: ring displacement and tilt, roller positions and tilts.
 
 Every roller is cut into N slices, each an independent spring K/N delta^(10/9) on either raceway.  Unknown are the place of

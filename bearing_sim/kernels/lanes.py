@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Several rollers at once: a value that is a whole vector of doubles, one lane for each of ``LANES`` rollers.
 
 The compiler vectorises loops by itself only where it can prove that arrays do not overlap, and gives up after a few rows.

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Quasi-static radial balance: which roller carries what, and where the inner ring is.
 
 Each roller is held by Q_e = Q_i + F_c, a monotone scalar equation; the ring by two force balances, whose

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The outer raceway contour R_e(phi), in the one form that every contour takes: a periodic cubic table."""
 
 import math

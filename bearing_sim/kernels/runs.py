@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Between a state, where each quantity of all rollers is one run of numbers, and lanes."""
 
 from bearing_sim.kernels.compilation import template

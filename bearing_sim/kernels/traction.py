@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Tangential force of the oil film between roller and raceway (Deng 2017, eq. 7).
 
 Every law here is odd in the sliding speed and zero without sliding.  All but one are written in one form,
@@ -50,7 +51,6 @@ def constant_constants(scale, b, c, d):
 
     A given A other than -D would be a jump at zero sliding; it is taken as -D, which changes mu only where it rises.
     """
-
     return TractionConstants(scale, _log(d), 0.0, 0.0, _log(b), 0.0, 0.0, _log(c), 0.0, 0.0, FITTED, np.zeros(SPECIAL))
 
 

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """How every level goes through an interval: a method's drive loop from sample to sample."""
 
 from bearing_sim.integrators.status import COUNT, OK

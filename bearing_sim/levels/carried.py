@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The state of a level that goes on where another level's sample is.
 
 Cage angle and speed, the rollers' places, orbital speeds and spins, and what tilts, come from the sample, whole.  What a sample does

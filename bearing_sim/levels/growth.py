@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """How far the inner raceway has grown against rollers and outer raceway, the same at every level."""
 
 from bearing_sim.kernels.compilation import template

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Inputs as compiled levels see them: straight lines in time."""
 
 from typing import NamedTuple

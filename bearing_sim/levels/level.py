@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The levels of fidelity, each a record of functions."""
 
 from collections.abc import Callable, Mapping

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Running means of the rollers' loads, for lives at levels whose loads follow the dynamics."""
 
 from bearing_sim.kernels.compilation import kernel

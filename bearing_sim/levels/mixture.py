@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Drag of the oil-air mixture on the cage body, the same at every level."""
 
 from bearing_sim.kernels.compilation import kernel

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """What every level observes in the same way: inputs, slip, life and damage."""
 
 import math

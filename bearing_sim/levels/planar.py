@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Level ``planar``: every roller, the cage and the inner ring move in the plane.
 
 State: `bearing_sim.levels.planar_state`; equations: `planar_rollers` and `planar_border`, their derivatives: `planar_slopes`;

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Block-arrow algebra of the planar level: a 3x3 block for each roller and one 5x5 border; ``LANES`` rollers at a time.
 
 (I - s J) x = b for the whole first-order state, reduced to speeds: every position is x = b + s v.  Cost O(Z).

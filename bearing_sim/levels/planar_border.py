@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """What acts on inner ring and cage in the plane besides the rollers: the load, the guide lands, the mixture."""
 
 import math

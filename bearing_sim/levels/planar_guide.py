@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Pockets that guide the cage: what they do to rollers and cage outwards and inwards; ``LANES`` rollers at a time (a block).
 
 Pockets with walls along the orbit alone do not hold a cage: rollers shift along the orbit with the pockets of a cage that turns off its

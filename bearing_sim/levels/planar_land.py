@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The guide land of a cage that rotates and whirls: the film of a short journal bearing, and contact where it ends.
 
 Lands of the outer ring lie around the cage and rest; those of the inner ring lie in its bore, turn with the shaft and move with the

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Level ``planar`` advanced by methods other than its own; the scene names which."""
 
 from bearing_sim.integrators.bdf import bdf

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Power by cause at level ``planar`` (see `bearing_sim.levels.power`), with the forces of `planar_border` and `planar_rollers`.
 
 What gives back what it takes, so is no loss: Palmgren's part of every normal force, the spring of the pockets' films, and the
@@ -90,8 +91,7 @@ def _guiding_pockets(y, params, rows):
 
 @kernel
 def land_powers(y, shaft_speed, model):
-    """Return what the shaft puts into guide lands that turn with it, what film and friction of the lands lose, and what damping takes
-    where they touch [W].
+    """Return powers of the guide lands [W]: in by the shaft where they turn with it, lost by film and friction, taken by damping.
 
     Force and torque on the cage have their reaction on the ring's surface, so that the ring's torque about its own centre is that on
     the cage and the force's moment across the eccentricity, the other way.

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Where a stage's solution is looked for first: so near that one Newton iteration is most often enough.
 
 Almost all of a stage's nonlinearity is in the normal contacts of each roller, which open and close within a step.  With ring

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """What each roller feels and passes on, in the plane; ``LANES`` rollers at a time (a block).
 
 Deng 2017, eq. 14 to 16, with the exact directions about the displaced inner ring.

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Derivatives of what a roller feels and passes on, by the 15 variables that it sees; ``LANES`` rollers at a time (a block).
 
 Rows of `bearing_sim.levels.planar_algebra.SLOPES`: those of r'', phi'' and w' first, then those that the border's accelerations

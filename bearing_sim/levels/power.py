@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Power by cause: where the work of the shaft goes, the same books at every level.
 
 At each instant, with exactly the forces of the level's equations of motion,

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The bearing of a scene in quasi-static balance by slices: where ring and rollers are and what every slice carries.
 
 Rollers stand at even steps behind the cage and turn with it; of their motion only the centrifugal force is felt.  This is

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Level ``slip``: the cage's angle and speed, Z roller spins, everything radial quasi-static.
 
 Rollers are locked to their pockets, so all orbit with the cage; each is held radially by Q_e = Q_i + F_c and the

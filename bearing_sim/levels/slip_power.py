@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Power by cause at level ``slip`` (see `bearing_sim.levels.power`).
 
 Rollers are locked to their pockets and everything radial is quasi-static: nothing is damped, no land is eccentric, and the

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Resistance to rolling at level ``slip``: what the oil that the inlets pump back does to the rollers."""
 
 from bearing_sim.kernels.arrow import ARROW

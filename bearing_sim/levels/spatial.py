@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Level ``spatial``: every roller in slices, with tilt and skew; tilting cage and inner ring.
 
 State: `bearing_sim.levels.spatial_state`; equations: `spatial_rollers` and `spatial_border`, contacts: `spatial_slices` and

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Block-arrow algebra of the spatial level: a 5x5 block for each roller and one 9x9 border; ``LANES`` rollers at a time.
 
 (I - s J) x = b for the whole first-order state, reduced to speeds: every position is x = b + s v.  Cost O(Z).

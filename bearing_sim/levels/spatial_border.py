@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """What acts on inner ring and cage besides the rollers: load, moment, guide lands, mixture, gyroscopic moments.
 
 Each of the two guide lands carries half of what both together would carry where that land stands; the cage's tilt sets them

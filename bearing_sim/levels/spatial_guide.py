@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Pockets that guide the cage in space (see `bearing_sim.levels.planar_guide`), sliced; ``LANES`` rollers at a time (a block).
 
 A slice at x stands ``guide_offset + pocket_lean x`` outwards from the middle of its pocket.

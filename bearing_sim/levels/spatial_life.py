@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """What the slices' loads at level ``spatial`` say: running means for a life (ISO/TS 16281, `bearing_sim.rating_life`), and pressures."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Derivatives of what pockets do to rollers and cage in space; ``LANES`` rollers at a time (a block).
 
 Force and moment of a pocket depend on four numbers: how far the roller stands off its middle, how it is skewed there, and both

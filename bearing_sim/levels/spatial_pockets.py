@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """A roller in its pocket, sliced (Deng 2017, eq. 9 to 12); ``LANES`` rollers at a time (a block).
 
 A slice at x stands s + skew x off the middle of its pocket.  Within the clearance the film's spring is linear, so that its sums

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Power by cause at level ``spatial`` (see `bearing_sim.levels.power` and `bearing_sim.levels.planar_power`), summed over slices.
 
 Speeds of slices are straight lines along the axis, so that most sums are a force times a speed and a moment times how it changes.

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Where a stage's solution is looked for first, as at level ``planar`` (see `bearing_sim.levels.planar_prediction`).
 
 With ring, cage, orbit and skew as extrapolation leaves them, each roller's place and tilt follow from two scalar equations of its

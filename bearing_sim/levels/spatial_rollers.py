@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """What each roller feels and passes on in space, but for its way along its axis; ``LANES`` rollers at a time (a block).
 
 Deng 2017, eq. 3 to 16, with gyroscopic moments.  Slices are places (x, centre + x tilt): each feels forces in its own plane, along

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Contact of sliced rollers and raceways: normal force and traction of every slice, summed with their moments.
 
 Deng 2017, eq. 3 to 8: a slice of width L/N carries q = (K/N) delta_k^(10/9), delta_k = delta - C_k + lean x_k, damped as a whole

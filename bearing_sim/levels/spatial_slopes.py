@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Derivatives of what a roller feels and passes on in space; ``LANES`` rollers at a time (a block).
 
 Rows and columns as `bearing_sim.levels.spatial_algebra` says.  The rows of a roller's accelerations gather forces, moments and the

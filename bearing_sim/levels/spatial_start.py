@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Where level ``spatial`` begins: in the balance by slices, and moving as that balance moves with the cage."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """What the spatial level keeps: the order of its state, and the memory that it writes while it computes.
 
 State: y = (positions of the border, speeds of the border, r of all rollers, phi, tilt, skew, r', phi', tilt', skew', w); the

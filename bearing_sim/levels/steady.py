@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Level ``steady``: the periodic state of level ``slip`` at the present inputs, and the cage's first-order lag behind it.
 
 State: y = (theta_c, omega_c) in rad and rad/s.  The cage's speed goes to that of the operating point as exp(-t/T), T from the

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """An operating point of level ``steady`` by marching level ``slip`` until it has settled: where the search for a periodic state ends without one.
 
 A traction curve that falls steeply (oil at frost, a loaded bearing that creeps) lets spins jump: they have no smooth periodic

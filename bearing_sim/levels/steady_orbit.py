@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The spins of all rollers while a cage of level ``slip`` turns evenly under constant inputs: one periodic curve around the bearing.
 
 After a roller pitch of cage rotation every roller stands where the one ahead of it stood, and so do loads and spins.  Along the

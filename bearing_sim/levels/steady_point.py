@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """One operating point of level ``steady``: which periodic state a bearing settles in, and what it is like there.
 
 Several states may be in balance where slip is large.  A run from ideal rolling settles in the one whose slip comes first: the

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """A table of operating points of level ``steady`` over shaft speed, load, oil temperature and load direction, and its interpolant.
 
 Along each line of the grid the interpolant is the monotone cubic of Fritsch and Carlson (SIAM J. Numer. Anal. 17, 1980) with the

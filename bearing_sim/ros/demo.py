@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The demonstration: the node on the bundled mission, with a player publishing the inputs on real topics.
 
 Run by ``launch_scripts/demo.sh`` or ``python -m bearing_sim.ros.demo``.  Everything stays on this machine's loopback

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Fill ROS message objects from the plain dicts of `bearing_sim.topics`."""
 
 import array

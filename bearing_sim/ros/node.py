@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """`bearing_node`: the bearing as a ROS 2 node.
 
 Subscribes to shaft speed and radial load, advances the model in real time on its own thread, publishes cage slip, life

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The node's parameters: one table with meaning and bounds, checked all at once."""
 
 import dataclasses

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """`bearing_player`: publish the inputs of an MCAP log on the real topics, with the log's timing.
 
 Run by ``bearing_player LOG.mcap`` or ``python -m bearing_sim.ros.player LOG.mcap``; remappings follow ``--ros-args``.

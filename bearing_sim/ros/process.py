@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Run a node as a process: start, spin, end in order on SIGINT and SIGTERM, say what is wrong in one message."""
 
 import os

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Open the node's recordings; what a view needs is imported only when one is wanted."""
 
 import importlib

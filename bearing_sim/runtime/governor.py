@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Keep real time by giving up fidelity: step down to a cheaper level when the solver is too slow, and up again when it is fast enough.
 
 It judges by what ticks cost: simulated over wall seconds, lately.  How many times dearer the level above is was measured when it last

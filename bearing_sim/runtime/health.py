@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """What a person should be told about a running model: events that hold now, and the numbers behind them.
 
 Pure: it reads the newest sample, the input gate and the runner, and knows no ROS.

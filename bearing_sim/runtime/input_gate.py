@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The door for input messages: what is not a usable value is refused, named and counted, and the last good value is held.
 
 Pure arithmetic on numbers and times that the caller brings along; no clock, no ROS.  The node and the replay of

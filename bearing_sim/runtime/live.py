@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """A model that listens and tells while time goes by: gate, runner, health and sinks put together, free of ROS.
 
 The node is a thin door to this; another door (a socket, a test) would use it the same way.

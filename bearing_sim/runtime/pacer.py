@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Keep simulated time in step with wall time, without ever chasing it.
 
 Pure arithmetic: the caller brings every clock reading along and does the sleeping.

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Run a simulation on its own thread, tick by tick, paced against wall time.
 
 The thread that solves does nothing else: inputs come in through a mailbox that holds the latest value, blocks of samples

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Colours of the view: a map for loads and a palette for lines, both readable with any kind of colour blindness."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The load map: inner contact load by azimuth and time, as a small picture that grows or rolls with the run."""
 
 import math

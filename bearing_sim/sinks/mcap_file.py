@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """An MCAP file of ROS 2 messages, written so that rosbag2, Foxglove and rerun read it and a killed process loses little.
 
 Knows message types by the ROS-free definitions of the rosbags library; needs no ROS.

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The MCAP sink: inputs, samples and events of a run as ROS 2 messages in one file that says where it comes from."""
 
 from collections.abc import Iterable, Mapping

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Lay-out of the view: which panel shows what, with the unit in every title."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The cage's orbit in its play: where its centre is, and where it has been in the last turns.
 
 Seen from the centre of what guides it: that of the inner ring where the ring's lands do.

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Power by cause as bars: what the shaft puts in, and where it is lost."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Drawing of the cross-section in rerun: the still parts once, the moving parts frame by frame."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Series of the view: numbers over time as columns, regime lane, log, and the texts beside them."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The rerun sink: shows a run while it goes on, or writes it to an .rrd file, without ever holding up the run.
 
 Logging to rerun may block without end once a viewer stops reading.  So the producer only puts blocks into a bounded

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The bearing as a solid in rerun: the same picture as the cross-section, to be turned and looked into."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """What one run looks like in one rerun recording; everything here is called from one thread."""
 
 import time as wall

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The cross-section as numbers: which points a picture of the bearing is made of, free of any drawing library.
 
 One rule draws everything to scale and the play too: bodies keep their size, while every radial departure from the

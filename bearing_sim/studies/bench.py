@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The bench: how fast each level and method is, how far off, against which other solvers, and what bounds it.
 
 One process on one core measures everything, so that its figures compare with each other.  All times are those that the process

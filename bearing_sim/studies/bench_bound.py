@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """What bounds a level's speed: each kernel measured alone, in a compiled loop, and its share in a step."""
 
 import functools

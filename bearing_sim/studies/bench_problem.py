@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """What the bench measures on: scenes by level, method, speed and number of rollers, and a level's kernels laid bare."""
 
 import functools

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """What a settled run is judged by: trajectories with impacts part in phase, means and quantiles do not."""
 
 from typing import NamedTuple

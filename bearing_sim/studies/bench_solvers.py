@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The bench's problem through the solvers that everybody has: scipy's and SUNDIALS'.
 
 All get the same compiled right-hand side and nothing else, one relative tolerance, and an absolute tolerance of each state that

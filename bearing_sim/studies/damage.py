@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The damage that levels give one measured course: ``steady`` and ``slip`` over the whole of it, ``planar`` in windows."""
 
 from collections.abc import Callable, Sequence

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The stability map: what becomes of scenes at the extremes of everything, on all cores.
 
 A case is *finished*; *clamped*, where it came to a good end or was going well but something other than the equations set a bound

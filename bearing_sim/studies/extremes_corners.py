@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The corners of the study of extremes: one thing at a time driven to its bound, by name."""
 
 from bearing_sim.levels.level import LEVELS

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Picture of the stability map: what became of the sampled scenes, level by level, in four views of the space they fill."""
 
 from collections.abc import Sequence

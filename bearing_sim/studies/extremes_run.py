@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """One scene at the extremes: run it, and judge what came out."""
 
 import math

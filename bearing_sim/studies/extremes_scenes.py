@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Scenes at the extremes: a Latin hypercube over everything a scene may be, and corners with names.
 
 All are the bearing ``deng2017_table1`` with fields overridden, so that a row of the study can be run again by

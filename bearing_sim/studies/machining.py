@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Pre-deformation machining of a lobed raceway (Deng 2017, eq. 1, Fig. 1 to 3): press the blank, grind it round, release it.
 
 Where the pressed arcs were the raceway springs back outwards and makes high points.  Deng computes the deformation by finite

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Picture of a machined raceway: its shape with departures magnified, and its radius over the turn."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """What a misaligned inner ring does to edges, tilts, skews and life, with and without a crown.
 
 Each point is a run of level ``spatial`` after settling; the quasi-static balance by slices stands beside it.

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Picture of the study of misalignment: pressures, lives, slip, tilts and skews over it, and the load along the heaviest roller."""
 
 from pathlib import Path

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """How results of level ``spatial`` settle as rollers are cut into more slices, and what the slices cost."""
 
 import dataclasses

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Statics of a scene: how the load spreads over rollers and slices at its constant conditions, and the lives that follow."""
 
 import dataclasses

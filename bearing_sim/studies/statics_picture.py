@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Picture of a scene's statics: loads around the bearing, and along its rollers."""
 
 from pathlib import Path

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Level ``steady``'s solver against level ``slip``, marched until it has settled, at operating points drawn by lot."""
 
 import math

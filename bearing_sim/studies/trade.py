@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Speed against accuracy: every level, integrator and tolerance or step on the same manoeuvre, against a tight reference.
 
 The manoeuvre starts at a scene's conditions, halves the load, restores it, and slows the shaft by a fifth: what a level leaves out of

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Picture of the trade: errors of slip, load and life over the real-time factor."""
 
 from pathlib import Path

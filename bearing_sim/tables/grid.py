@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """A table of operating points, refined until its interpolant agrees with the solver at new points.
 
 Knots are added along one axis at a time: between two neighbours, where the interpolant in the middle misses the solver on any

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Tables on disk, each under a hash of all that its numbers depend on; a file that cannot be read is as good as none."""
 
 import hashlib

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Symmetry of an outer raceway's contour, which spares a table of operating points directions and the reverse sense of rotation."""
 
 import math

@@ -1,0 +1,59 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Start several bearings, one node process each: ``ros2 launch bearing_sim fleet.launch.py bearings:="front=a.yaml rear=b.yaml"``."""
+
+import re
+import shlex
+from pathlib import Path
+
+from launch import LaunchDescription
+from launch.actions import OpaqueFunction
+
+from bearing_sim.ros.launching import Argument, bearing_node, declared, now, value
+
+FLEET = (
+    Argument(
+        "bearings",
+        "front=deng2017_table1 rear=deng2017_table2",
+        "NAME=SCENE of each bearing; topics are NAME/cage_slip and so on, the node is NAME/bearing_NAME",
+    ),
+    Argument("record_folder", "", "folder for a recording of each bearing, NAME and time of the start; empty for none"),
+    Argument("first_rerun_port", "0", "port on 127.0.0.1 for viewers of the first bearing, the next ones follow; 0 for none"),
+)
+SET_FOR_EACH = ("scene", "record", "rrd", "rerun_port")
+
+
+def generate_launch_description():
+    """Return the launch description."""
+    return LaunchDescription([*declared(*FLEET, leave_out=SET_FOR_EACH), OpaqueFunction(function=_start)])
+
+
+def _start(context):
+    folder, port, start = value(context, "record_folder"), int(value(context, "first_rerun_port")), now()
+    return [
+        bearing_node(
+            context,
+            # Names differ too: /diagnostics is one topic for all, and tells bearings apart by the node's name.
+            name=f"bearing_{name}",
+            namespace="/".join(part for part in (value(context, "namespace").rstrip("/"), name) if part),
+            scene=scene,
+            record=str(Path(folder) / f"{name}_{start}.mcap") if folder else "",
+            rrd="",
+            rerun_port=str(port + index if port else 0),
+        )
+        for index, (name, scene) in enumerate(_bearings(value(context, "bearings")).items())
+    ]
+
+
+def _bearings(text):
+    """Return scenes by the bearings' names."""
+    scenes = {}
+    for word in shlex.split(text):
+        name, _, scene = word.partition("=")
+        if not re.fullmatch(r"[a-z][a-z0-9_]*", name) or not scene:
+            raise RuntimeError(f"bearings: {word!r} is not NAME=SCENE with a NAME of small letters, digits and underscores")
+        if name in scenes:
+            raise RuntimeError(f"bearings: {name!r} stands twice; every bearing needs a name of its own")
+        scenes[name] = scene
+    if not scenes:
+        raise RuntimeError("bearings is empty: give NAME=SCENE of each bearing")
+    return scenes

@@ -1,0 +1,19 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Start bearing_node with a recording from the start: ``ros2 launch bearing_sim record.launch.py record:=run.mcap``."""
+
+from launch import LaunchDescription
+from launch.actions import LogInfo, OpaqueFunction
+
+from bearing_sim.ros.launching import bearing_node, declared, now, value
+
+
+def generate_launch_description():
+    """Return the launch description."""
+    return LaunchDescription([*declared(record=f"recordings/{now()}.mcap"), OpaqueFunction(function=_start)])
+
+
+def _start(context):
+    record = value(context, "record")
+    if not record:
+        raise RuntimeError("record is empty: name the MCAP file to write, or use live.launch.py to run without a recording")
+    return [LogInfo(msg=f"recording to {record}; complete when this launch is ended by Ctrl-C"), bearing_node(context)]

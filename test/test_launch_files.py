@@ -1,0 +1,231 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""The launch files: what they declare, start and hand over; loaded by launch where it is installed, else by a stand-in."""
+
+import ast
+import importlib.util
+import re
+import shlex
+from pathlib import Path
+from types import SimpleNamespace
+
+import launch_stand_in as stand_in
+import pytest
+import yaml
+
+pytest.importorskip("rclpy", reason="the launch files take their arguments from the node's parameters, which need rclpy of ROS 2")
+
+from bearing_sim.ros.parameters import DECLARATIONS  # noqa: E402
+from bearing_sim.ros.player import command as player_command  # noqa: E402
+from bearing_sim.scene_file import load_scene  # noqa: E402
+
+ROOT = Path(__file__).resolve().parent.parent
+FILES = sorted((ROOT / "launch_scripts").glob("*.launch.py"))
+EVERY_FILE = pytest.mark.parametrize("path", FILES, ids=lambda path: path.name.partition(".")[0])
+PARAMETERS = {row.name: row for row in DECLARATIONS}
+
+
+def load(path):
+    spec = importlib.util.spec_from_file_location(path.name.replace(".", "_"), path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module.generate_launch_description()
+
+
+@pytest.fixture
+def launched(monkeypatch):
+    """Return a function that launches a file with arguments; it returns the declarations, the actions and the context."""
+    stand_in.install(monkeypatch)
+
+    def launch(name, **arguments):
+        context, declarations, actions = stand_in.LaunchContext(**arguments), [], []
+        for entity in load(ROOT / "launch_scripts" / f"{name}.launch.py").entities:
+            if isinstance(entity, stand_in.DeclareLaunchArgument):
+                declarations.append(entity)
+            actions += entity.execute(context) or []
+        return SimpleNamespace(declarations=declarations, actions=actions, context=context)
+
+    return launch
+
+
+def nodes(run, executable="bearing_node"):
+    return [action for action in run.actions if isinstance(action, stand_in.Node) and action.executable == executable]
+
+
+def handed_over(node, context):
+    """Return the parameters as the node gets them: as launch writes them into a YAML file."""
+    values = {}
+    for name, parameter in node.parameters[0].items():
+        text = parameter.value.perform(context)
+        kind = parameter.value_type
+        values[name] = text if kind is str else kind(text) if kind in (int, float) else yaml.safe_load(text)
+    return values
+
+
+def test_the_four_launch_files_are_there():
+    assert [path.name for path in FILES] == ["fleet.launch.py", "live.launch.py", "record.launch.py", "replay.launch.py"]
+
+
+@EVERY_FILE
+def test_every_argument_has_a_description_and_a_default_and_one_name(launched, path):
+    declarations = launched(path.name.partition(".")[0]).declarations
+    for argument in declarations:
+        assert isinstance(argument.default_value, str) and isinstance(argument.description, str) and len(argument.description) > 10, argument.name
+    names = [argument.name for argument in declarations]
+    assert len(set(names)) == len(names)
+
+
+@EVERY_FILE
+def test_the_nodes_get_every_parameter_that_they_declare_and_no_other(launched, path):
+    run = launched(path.name.partition(".")[0])
+    assert nodes(run)
+    for node in nodes(run):
+        values = handed_over(node, run.context)
+        assert set(values) == set(PARAMETERS)
+        for name, value in values.items():
+            assert type(value) is type(PARAMETERS[name].default), f"{name} = {value!r}"
+
+
+@EVERY_FILE
+def test_defaults_are_the_nodes_own_but_for_what_the_file_is_for(launched, path):
+    run = launched(path.name.partition(".")[0])
+    own = {"fleet": {"scene"}, "live": set(), "record": {"record"}, "replay": set()}[path.name.partition(".")[0]]
+    for node in nodes(run):
+        differing = {name for name, value in handed_over(node, run.context).items() if value != PARAMETERS[name].default}
+        assert differing <= own
+
+
+@EVERY_FILE
+def test_processes_keep_to_this_machine_unless_told_otherwise(launched, path):
+    name = path.name.partition(".")[0]
+    assert launched(name).context.environment == {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+    assert launched(name, discovery_range="SUBNET").context.environment == {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}
+    with pytest.raises(AssertionError, match="not one of"):
+        launched(name, discovery_range="EVERYWHERE")
+
+
+@EVERY_FILE
+def test_what_is_started_is_what_setup_installs(launched, path):
+    points = {name.split(" = ")[0] for name in _literal_of_setup("console_scripts")}
+    for action in launched(path.name.partition(".")[0]).actions:
+        if isinstance(action, stand_in.Node):
+            assert action.package == "bearing_sim" and action.executable in points and action.output == "screen"
+
+
+def _literal_of_setup(key):
+    for node in ast.walk(ast.parse((ROOT / "setup.py").read_text())):
+        if isinstance(node, ast.Dict):
+            for name, value in zip(node.keys, node.values):
+                if isinstance(name, ast.Constant) and name.value == key:
+                    return ast.literal_eval(value)
+    raise AssertionError(f"setup.py has no {key}")
+
+
+@EVERY_FILE
+def test_arguments_reach_the_node_in_their_own_types(launched, path):
+    given = {"publish_rate": "20", "overrides": "['level=slip', 'lubricant.temperature=100degC']", "governor": "false", "joint": "17"}
+    run = launched(path.name.partition(".")[0], **given)
+    values = handed_over(nodes(run)[0], run.context)
+    assert values["publish_rate"] == 20.0 and isinstance(values["publish_rate"], float)
+    assert values["overrides"] == ["level=slip", "lubricant.temperature=100degC"]
+    assert values["governor"] is False and values["joint"] == "17"
+
+
+@EVERY_FILE
+def test_a_file_of_parameters_comes_after_the_arguments_and_so_counts_more(launched, path):
+    name = path.name.partition(".")[0]
+    assert len(nodes(launched(name))[0].parameters) == 1
+    assert nodes(launched(name, parameters_file="mine.yaml"))[0].parameters[1:] == ["mine.yaml"]
+
+
+def test_a_live_launch_opens_a_viewer_once_when_the_node_is_ready(launched):
+    assert [type(action) for action in launched("live", rerun_port="9900").actions] == [stand_in.Node], "no viewer unless wanted"
+    run = launched("live", view="true")
+    assert handed_over(nodes(run)[0], run.context)["rerun_port"] == 9876
+    run = launched("live", view="true", rerun_port="9900")
+    assert handed_over(nodes(run)[0], run.context)["rerun_port"] == 9900
+    (handler,) = [action.event_handler for action in run.actions if isinstance(action, stand_in.RegisterEventHandler)]
+    assert handler.target_action is nodes(run)[0]
+    assert handler.on_stderr(SimpleNamespace(text=b"warming up")) is None
+    viewer = handler.on_stderr(SimpleNamespace(text=b"[INFO] [bearing_node]: ready: listening to shaft_speed"))
+    assert Path(viewer.cmd[0]).name == "rerun" and viewer.cmd[1] == "rerun+http://127.0.0.1:9900/proxy"
+    assert handler.on_stderr(SimpleNamespace(text=b"ready: listening")) is None, "one viewer only"
+
+
+def test_the_words_that_open_the_viewer_are_logged_by_the_node(launched):
+    launched("live")
+    from bearing_sim.ros.launching import READY
+
+    sources = "".join(path.read_text() for path in (ROOT / "bearing_sim" / "ros").glob("*.py") if path.name != "launching.py")
+    assert f'"{READY.decode()}' in sources
+
+
+def test_a_recording_launch_records_to_a_fresh_file_and_says_where(launched):
+    run = launched("record")
+    (said,) = [action for action in run.actions if isinstance(action, stand_in.LogInfo)]
+    record = handed_over(nodes(run)[0], run.context)["record"]
+    assert record.endswith(".mcap") and record in said.msg
+    run = launched("record", record="mine.mcap")
+    assert handed_over(nodes(run)[0], run.context)["record"] == "mine.mcap"
+    with pytest.raises(RuntimeError, match="record is empty"):
+        launched("record", record="")
+
+
+def test_a_replay_plays_the_log_to_the_node_and_ends_when_either_has_ended(launched):
+    run = launched("replay", log="flights/a 1.mcap", rate="2", input_type="scalar", joint="rotor", namespace="/m1")
+    (node,), (player,) = nodes(run), nodes(run, "bearing_player")
+    assert isinstance(node.on_exit, stand_in.Shutdown) and isinstance(player.on_exit, stand_in.Shutdown)
+    assert node.namespace == player.namespace == "/m1"
+    taken = player_command.make_context("bearing_player", list(player.arguments)).params
+    assert str(taken["log"]) == "flights/a 1.mcap" and taken["rate"] == 2.0 and taken["wait_limit"] == 600.0
+    assert taken["input_type"] == handed_over(node, run.context)["input_type"] == "scalar"
+    assert taken["joint"] == handed_over(node, run.context)["joint"] == "rotor"
+
+
+def test_a_fleet_gives_every_bearing_its_scene_namespace_name_recording_and_port(launched):
+    run = launched("fleet", bearings="front=deng2017_table1 'rear=my scenes/b.yaml'", record_folder="out", first_rerun_port="9900", namespace="/ship")
+    front, rear = nodes(run)
+    assert (front.namespace, front.name) == ("/ship/front", "bearing_front") and (rear.namespace, rear.name) == ("/ship/rear", "bearing_rear")
+    first, second = handed_over(front, run.context), handed_over(rear, run.context)
+    assert (first["scene"], first["rerun_port"], second["scene"], second["rerun_port"]) == ("deng2017_table1", 9900, "my scenes/b.yaml", 9901)
+    moment = r"\d{4}-\d\d-\d\d_\d{6}"
+    assert re.fullmatch(rf"out/front_{moment}\.mcap", first["record"]) and re.fullmatch(rf"out/rear_{moment}\.mcap", second["record"])
+
+
+def test_a_fleets_default_bearings_are_bundled_scenes_without_recordings_and_viewers(launched):
+    run = launched("fleet")
+    for node in nodes(run):
+        values = handed_over(node, run.context)
+        assert load_scene(values["scene"]) and values["record"] == values["rrd"] == "" and values["rerun_port"] == 0
+    assert [node.namespace for node in nodes(run)] == ["front", "rear"]
+
+
+@pytest.mark.parametrize(
+    ("bearings", "reason"),
+    [("", "is empty"), ("front", "not NAME=SCENE"), ("front=", "not NAME=SCENE"), ("2nd=a", "not NAME=SCENE"), ("a=x a=y", "stands twice")],
+)
+def test_bearings_that_cannot_be_a_fleet_are_refused_with_the_reason(launched, bearings, reason):
+    with pytest.raises(RuntimeError, match=reason):
+        launched("fleet", bearings=bearings)
+
+
+@EVERY_FILE
+def test_each_launch_file_tells_a_command_that_exists(path):
+    text = ast.get_docstring(ast.parse(path.read_text()))
+    words = shlex.split(text.split("``")[1])
+    assert words[:4] == ["ros2", "launch", "bearing_sim", path.name]
+
+
+@EVERY_FILE
+def test_launch_itself_loads_each_file_where_it_is_installed(path):
+    pytest.importorskip("launch_ros", reason="launch and launch_ros are no wheels; apt has them with ROS 2")
+    from launch import LaunchContext
+    from launch.actions import DeclareLaunchArgument, OpaqueFunction
+    from launch_ros.actions import Node
+
+    context, started = LaunchContext(), []
+    for entity in load(path).entities:
+        if isinstance(entity, DeclareLaunchArgument):
+            assert entity.description and entity.default_value is not None
+        found = entity.execute(context) or []
+        started += found if isinstance(entity, OpaqueFunction) else []
+    assert any(isinstance(action, Node) for action in started)

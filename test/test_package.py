@@ -1,0 +1,104 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""The package's papers agree: package.xml, setup.py, setup.cfg, the changelog, and what lies at the top."""
+
+import ast
+import configparser
+import fnmatch
+import re
+from pathlib import Path
+
+import pytest
+
+catkin_package = pytest.importorskip("catkin_pkg.package", reason="catkin_pkg reads package.xml and the changelog; it comes with colcon")
+from catkin_pkg.changelog import get_changelog_from_path  # noqa: E402
+
+ROOT = Path(__file__).resolve().parent.parent
+TOP_LEVEL = {
+    *("package.xml", "setup.py", "setup.cfg", "bearing_sim", "launch_scripts", "test", "resource"),
+    *("README.md", "LICENSE", "CHANGELOG.rst", "QUALITY_DECLARATION.md"),
+}
+KEYS = {"PyYAML": "python3-yaml", "mcap": "mcap-ros2-support", "mcap-ros2-support": "mcap-ros2-support", "rosbags": "python3-rosbags-pip"}
+STANDARD_ROS = {"rclpy", "rcl_interfaces", "launch", "launch_ros"}
+
+
+@pytest.fixture(scope="module")
+def package():
+    warnings = []
+    found = catkin_package.parse_package(str(ROOT / "package.xml"), warnings=warnings)
+    found.validate(warnings=warnings)
+    assert warnings == []
+    return found
+
+
+def _setup(keyword):
+    """Return the value of a keyword of setup() in setup.py."""
+    (call,) = [
+        node
+        for node in ast.walk(ast.parse((ROOT / "setup.py").read_text()))
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "setup"
+    ]
+    return {argument.arg: argument.value for argument in call.keywords}[keyword]
+
+
+def test_package_xml_is_of_format_3_and_known_as_a_ros_package(package):
+    assert package.package_format == 3 and package.get_build_type() == "ament_python"
+    # colcon takes a package with an address that it does not like for plain Python, without a word
+    assert all(re.fullmatch(r"[\w.+-]+@[\w-]+(\.[\w-]+)*\.[a-z]{2,}", maintainer.email) for maintainer in package.maintainers)
+
+
+def test_versions_names_and_licences_agree(package):
+    assert package.version == ast.literal_eval(_setup("version"))
+    assert package.name == "bearing_sim" and (ROOT / "resource" / package.name).is_file()
+    assert package.licenses == [ast.literal_eval(_setup("license"))] == ["Apache-2.0"]
+    assert "Apache License" in (ROOT / "LICENSE").read_text()
+    assert package.description == ast.literal_eval(_setup("description"))
+    assert [maintainer.email for maintainer in package.maintainers] == [ast.literal_eval(_setup("maintainer_email"))]
+
+
+def test_the_changelog_can_be_read_and_its_newest_version_is_the_packages(package):
+    changelog = get_changelog_from_path(str(ROOT), package.name)
+    versions = [version for version, _, _ in changelog.foreach_version()]
+    assert versions[0] == package.version and len(set(versions)) == len(versions)
+    for version, date, entries in changelog.foreach_version():
+        assert date is not None and entries, version
+
+
+def test_every_ros_package_that_is_imported_or_spoken_is_declared(package):
+    declared = {dependency.name for dependency in package.exec_depends}
+    used = set()
+    for path in [*(ROOT / "bearing_sim").rglob("*.py"), *(ROOT / "launch_scripts").glob("*.py")]:
+        text = path.read_text()
+        used |= set(re.findall(r"\b([a-z_]+)/(?:msg|srv)/[A-Z]", text))
+        for node in ast.walk(ast.parse(text)):
+            names = [node.module or ""] if isinstance(node, ast.ImportFrom) else [n.name for n in node.names] if isinstance(node, ast.Import) else []
+            tops = {name.partition(".")[0] for name in names}
+            used |= {top for top in tops if top in STANDARD_ROS or top.endswith(("_msgs", "_srvs"))}
+    used -= {"builtin_interfaces", "package"}  # part of every message; the word of a docstring
+    assert {"rclpy", "sensor_msgs", "launch_ros"} <= used <= declared
+
+
+def test_every_python_requirement_has_its_key_or_is_told_to_have_none(package):
+    requirements = [item.value for item in _setup("install_requires").elts if isinstance(item, ast.Constant)]
+    (without,) = re.findall(r"Without a rosdep key[^:]*: ([^.]*)\.", (ROOT / "package.xml").read_text())
+    keys, without = {dependency.name for dependency in package.exec_depends}, set(without.split(", "))
+    for requirement in requirements:
+        name = re.match(r"[\w-]+", requirement)[0]
+        assert (KEYS.get(name, f"python3-{name}") in keys) != (name in without), f"{name}: declare its rosdep key, or say that it has none"
+
+
+def test_scripts_go_where_ros_looks_for_them_and_are_set_with_underscores():
+    config = configparser.ConfigParser()
+    config.read(ROOT / "setup.cfg")
+    assert dict(config["develop"]) == {"script_dir": "$base/lib/bearing_sim"}
+    assert dict(config["install"]) == {"install_scripts": "$base/lib/bearing_sim"}
+
+
+def test_nothing_else_lies_at_the_top():
+    ignored = [line.strip("/") for line in (ROOT / ".gitignore").read_text().split()]
+    found = {path.name for path in ROOT.iterdir() if not path.name.startswith(".")}
+    assert {name for name in found if not any(fnmatch.fnmatch(name, pattern) for pattern in ignored)} == TOP_LEVEL
+
+
+def test_the_quality_declaration_claims_no_more_than_level_4():
+    text = (ROOT / "QUALITY_DECLARATION.md").read_text()
+    assert "**Quality Level 4**" in text and not re.search(r"claims \*\*Quality Level [123]", text)
