@@ -6,6 +6,7 @@ and roller loads, tells its health on ``/diagnostics``, and records when asked t
 `bearing_sim.runtime.live`.  Run by ``bearing_node``, ``python -m bearing_sim.ros.node`` or ``ros2 run bearing_sim bearing_node``.
 """
 
+import subprocess
 import sys
 import threading
 from functools import partial
@@ -18,10 +19,12 @@ from std_srvs.srv import SetBool, Trigger
 from bearing_sim import topics
 from bearing_sim.effects import hint
 from bearing_sim.events import Event, Level
+from bearing_sim.ros.cheaper_levels import levels_to_compile, start_compiling
 from bearing_sim.ros.messages import message, message_class
 from bearing_sim.ros.parameters import Settings, SettingsError, declare
 from bearing_sim.ros.process import CannotRun, run_node
 from bearing_sim.ros.recordings import fresh_path, open_recording, open_view, prepare
+from bearing_sim.runtime.governor import Governor
 from bearing_sim.runtime.health import Condition
 from bearing_sim.runtime.live import LiveModel, governor_of, warmed_up
 from bearing_sim.scene import Scene
@@ -50,6 +53,8 @@ class BearingNode(Node):
         self.scene: Scene = load_scene(self.settings.scene, self.settings.overrides)
         self.live: LiveModel | None = None
         self._warm_up_fault: Exception | None = None
+        self._governor: Governor | None = None
+        self._compiling: subprocess.Popen | None = None
         self._last_level: Level | None = None
         self._next_report_ns = 0
         self._published_time = float("-inf")
@@ -68,6 +73,8 @@ class BearingNode(Node):
 
     def close(self) -> bool:
         """Stop the model and complete recordings.  Returns whether every thread ended."""
+        if self._compiling is not None:
+            self._compiling.kill()
         stopped = self.live.close() if self.live is not None else True
         return stopped and not self._warm_up.is_alive()
 
@@ -75,9 +82,26 @@ class BearingNode(Node):
         try:
             prepare(view=bool(self.settings.rrd or self.settings.rerun_port))
             self._simulation: Simulation = warmed_up(self.scene, self.settings.sample_rate)
-            self._governor = governor_of(self._simulation, self.settings.sample_rate) if self.settings.governor else None
+            if self.settings.governor and levels_to_compile(self.scene):
+                self._compiling = start_compiling(self.scene, self.settings.sample_rate)
+            elif self.settings.governor:
+                self._governor = governor_of(self._simulation, self.settings.sample_rate)
         except Exception as fault:  # handed over to the main thread, which raises it
             self._warm_up_fault = fault
+
+    def _join_governor(self) -> None:
+        """Let the governor begin once the cheaper levels are compiled; until then time is given up where the machine is too slow."""
+        if self._compiling is None or self._compiling.poll() is None:
+            return
+        self._compiling = None
+        try:
+            governor = governor_of(self._simulation, self.settings.sample_rate)
+        except IntegrationError as fault:
+            self.get_logger().warning(f"no cheaper level can take over: {fault}")
+            return
+        if governor is not None:
+            self.live.govern(governor)
+            self.get_logger().info("the cheaper levels are compiled: the governor can fall back on them")
 
     def _open(self) -> None:
         """Begin: run time 0 is now; open recordings, subscriptions and services."""
@@ -102,6 +126,8 @@ class BearingNode(Node):
         self.create_service(SetBool, "~/pause", self._serve_pause)
         self.create_timer(1.0 / settings.publish_rate, self._publish)
         self.get_logger().info("ready: listening to shaft_speed and radial_load")
+        if self._compiling is not None:
+            self.get_logger().info("compiling cheaper levels for the governor beside this, once for this version")
 
     def _take(self, channel: str, ros_type: str, incoming) -> None:
         now_ns = self._now_ns()
@@ -137,6 +163,7 @@ class BearingNode(Node):
                 return
             self._open()
             now_ns = self._now_ns()
+        self._join_governor()
         for event in self.live.collect(now_ns):
             self._log(event)
         self._report(now_ns, self.live.condition(now_ns))

@@ -170,6 +170,11 @@ class LiveModel:
         if hasattr(sink, "write_inputs"):
             self._recorders[name] = sink
 
+    def govern(self, governor: Governor) -> None:
+        """Let a governor change levels from now on; its wanted level is that of the simulation that runs."""
+        self._governor = governor
+        self.runner.govern(governor)
+
     def has(self, name: str) -> bool:
         """Return whether there is a sink of that name."""
         return name in self._sinks

@@ -82,6 +82,10 @@ class Runner:
         self._phase = Phase.WAITING
         self._thread.start()
 
+    def govern(self, governor: Governor) -> None:
+        """Let a governor change the simulation from the next tick on; its wanted level is that of the present one."""
+        self._governor = governor
+
     def post(self, inputs: Inputs) -> None:
         """Set the inputs that the next tick shall reach.  The first ones start the model, in ideal rolling at these inputs."""
         with self._changed:
