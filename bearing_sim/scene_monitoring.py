@@ -22,7 +22,9 @@ class ResidualDetection:
     """How measured slip is held against the predicted one (see `bearing_sim.runtime.residual`)."""
 
     false_alarm_time: quantity("s", "mean time between false alarms", 60.0, 1e10, "h") = 3.6e6
-    tolerance: quantity("", "lasting change of the residual that is no fault: the model's own error from condition to condition", 1e-6, 1.0, "%") = 0.002
+    tolerance: quantity("", "lasting change of the residual that is no fault: the model's own error from condition to condition", 1e-6, 1.0, "%") = (
+        0.002
+    )
     batch: quantity("s", "time over which residuals are averaged before they are judged", 0.01, 3600.0) = 1.0
     learning: quantity("s", "measured time from which the residual's usual mean and scatter are known well enough to judge", 1.0, 1e6) = 120.0
     settling: quantity("s", "time after rest or a change of speed that is not judged", 0.0, 3600.0) = 5.0

@@ -71,7 +71,7 @@ ALLOWED = {
         NUMBERS | {"sksundae", "matplotlib"},
         {"studies", "effects", "integrators.status", "levels", "params", "rating_life", "sample", "scene", "scene_file", "simulation", "tables"},
     ),
-    "runtime": ({"numpy", "scipy"}, {"runtime", "film_ratio", "simulation", "scene", "effects", "events", "sample", "topics"}),
+    "runtime": ({"numpy", "scipy"}, {"runtime", "film_ratio", "simulation", "scene", "scene_monitoring", "effects", "events", "sample", "topics"}),
 }
 
 

@@ -56,9 +56,9 @@ def test_false_alarms_come_as_often_as_stated():
 FAULTS = {
     "drag up": ["lubricant.mixture_fraction=0.06"],
     "traction down": ["lubricant.traction_scale=0.7"],
-    "load loss": ["operating.radial_load=200 N"],
+    "load loss": ["operating.radial_load=400 N"],
 }
-LOW_PRELOAD = ["bearing.outer_raceway.low_radius=34.865mm"]
+LOW_PRELOAD = ["bearing.outer_raceway.low_radius=34.8675mm"]  # where lobes squeeze more, a radial load lost changes slip less
 
 
 def settled_slip(overrides):
@@ -103,14 +103,14 @@ def test_fading_mean_and_deviation_are_those_of_the_noise():
 def test_rest_start_up_and_changes_of_speed_are_not_judged():
     one, lot, now = monitor(), np.random.default_rng(14), 0.0
     for _ in range(20):  # starts and stops, where sensor and model disagree as they like
-        for k in range(50):
+        for _ in range(50):
             now += 1 / RATE
             one.take(now, 0.0, math.nan, math.nan)
         assert one.verdict(now).startswith("not judged")
         for k in range(50):
             now += 1 / RATE
             one.take(now, SPEED * (k + 1) / 50, lot.uniform(-0.5, 0.5), 0.05)
-        for k in range(30):  # and while the bearing settles after the ramp
+        for _ in range(30):  # and while the bearing settles after the ramp
             now += 1 / RATE
             one.take(now, SPEED, lot.uniform(-0.5, 0.5), 0.05)
         now += 2.0

@@ -18,7 +18,7 @@ _STEEPEST_TAIL = 8.0  # beyond it Student's distribution is only told apart from
 def run_length(threshold: float, reference: float = _REFERENCE) -> float:
     """Return the mean number of standard normal steps from 0 until a two-sided CUSUM passes its threshold.
 
-    One side: (exp(2 k b) - 2 k b - 1)/(2 k^2) with b = h + 1.166 (Siegmund, Sequential Analysis, 1985, equation 2.56, for a drift of
+    One side: (exp(2 k b) - 2 k b - 1)/(2 k^2) with b = h + 1.166 (Siegmund, Sequential Analysis, 1985; Montgomery 2009, eq. 9.6, for a drift of
     -k); both sides together half of it.
 
     Parameters
@@ -58,7 +58,7 @@ class Whitener:
     """Turns batch means whose mean, scatter and correlation nobody knows into standard normal numbers, independent while nothing changes.
 
     Each is held against the mean and scatter of all before it, u = Phi^-1(F(t)) with Student's t of as many degrees of freedom, so
-    that the false-alarm rate holds from early on although nothing is known beforehand (Hawkins, The Statistician 36, 1987, 299-315).
+    that the false-alarm rate holds from early on although nothing is known beforehand (Hawkins, The Statistician 36, 1987, 299).
     Neighbours that resemble each other are told apart first: of each is taken what the one before lets expect, by the lag-1
     correlation of all so far (a first-order autoregression; Alwan and Roberts, J. Bus. Econ. Stat. 6, 1988, 87-95).
 
@@ -113,10 +113,12 @@ class Whitener:
         scatter = math.sqrt(self._surprises / self._surprised) if self._surprised else 0.0
         deviation = max(scatter, self._tolerance * (1.0 - correlation) / _REFERENCE)
         number = _normal(surprise / (deviation * math.sqrt(1.0 + 1.0 / self.count)), max(self._surprised, 1))
+        # a wild reading shall not be what is usual, nor make the next one look wild
+        farthest = _FARTHEST * deviation if self._surprised >= _SCATTER_KNOWN else math.inf
+        kept = min(max(surprise, -farthest), farthest)
+        self._before = value + kept - surprise
         if learn:
-            farthest = _FARTHEST * deviation if self._surprised >= _SCATTER_KNOWN else math.inf  # a wild reading shall not be what is usual
-            kept = min(max(surprise, -farthest), farthest)
-            self._learn(value + kept - surprise, before, kept)
+            self._learn(self._before, before, kept)
         return number
 
     def _learn(self, value: float, before: float, surprise: float) -> None:

@@ -28,7 +28,9 @@ class Watch:
     below : whether it is small values that are beyond the limits.
     """
 
-    def __init__(self, code: str, subject: str, unit: str, factor: float, warning: float | None, error: float | None, hold: Hold, below: bool = False):
+    def __init__(
+        self, code: str, subject: str, unit: str, factor: float, warning: float | None, error: float | None, hold: Hold, below: bool = False
+    ):
         self.code, self._subject, self._unit, self._factor, self._below = code, subject, unit, factor, below
         self._alarms = ((Level.ERROR, Alarm(error, hold, below)), (Level.WARN, Alarm(warning, hold, below)))
         self._value = math.nan
@@ -143,8 +145,9 @@ class Monitor:
         share = 1.0 - math.exp(-elapsed / self._thresholds.remaining_life_memory) if elapsed >= 0.0 else 1.0
         self._rate = rate if math.isnan(self._rate) else self._rate + share * (rate - self._rate)
         self._time, self._damage = now, damage
-        left = max(1.0 - damage, 0.0)
-        return left / (_HOUR * self._rate) if self._rate > 0.0 else math.inf
+        if damage >= 1.0:
+            return 0.0
+        return (1.0 - damage) / (_HOUR * self._rate) if self._rate > 0.0 else math.inf
 
 
 def _largest(values: np.ndarray) -> float:

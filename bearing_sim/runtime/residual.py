@@ -95,10 +95,10 @@ class ResidualMonitor:
         if not side:
             return []
         steps, height = (self._cusum.rising_for, self._cusum.up) if side > 0 else (self._cusum.falling_for, self._cusum.down)
+        lasted, rarity = steps * self._detection.batch, self._detection.false_alarm_time / _HOUR
         text = (
-            f"residual slip: the cage {_SIDES[side]} for about {steps * self._detection.batch:.3g} s of measurement: now {100 * self._newest_mean:+.3g} "
-            f"points, usually {100 * self._whitener.mean:+.3g} (CUSUM {height:.3g} over {self._cusum.threshold:.3g}, one false alarm in "
-            f"{self._detection.false_alarm_time / _HOUR:.4g} h)"
+            f"residual slip: the cage {_SIDES[side]} for about {lasted:.3g} s of measurement: now {100 * self._newest_mean:+.3g} points, "
+            f"usually {100 * self._whitener.mean:+.3g} (CUSUM {height:.3g} over {self._cusum.threshold:.3g}, one false alarm in {rarity:.4g} h)"
         )
         return [Event(now, Level.WARN, "residual.shift", text)]
 
