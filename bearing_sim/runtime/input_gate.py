@@ -12,9 +12,9 @@ from dataclasses import dataclass
 from bearing_sim.events import Event, Level
 from bearing_sim.scene import InputLimits
 from bearing_sim.simulation import Inputs
+from bearing_sim.topics import MEASURED
 
-MEASURED = "cage_speed_measured"  # held against the model, not an input of it
-CHANNELS = ("shaft_speed", "radial_load", "oil_temperature", MEASURED)
+CHANNELS = ("shaft_speed", "radial_load", "oil_temperature", MEASURED)  # the last is held against the model, no input of it
 _OPTIONAL = ("oil_temperature", MEASURED)
 _RATE_WINDOW = 1.0  # [s] a rate is the count of messages over at least this long
 _RATE_TOLERANCE = 0.1  # relative: timers jitter

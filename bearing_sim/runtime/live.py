@@ -17,7 +17,7 @@ from bearing_sim.effects import cheaper_levels
 from bearing_sim.events import Event, Level
 from bearing_sim.runtime.governor import Governor
 from bearing_sim.runtime.health import Condition, Health
-from bearing_sim.runtime.input_gate import MEASURED, InputGate
+from bearing_sim.runtime.input_gate import InputGate
 from bearing_sim.runtime.monitor import Monitor
 from bearing_sim.runtime.pacer import Pacer
 from bearing_sim.runtime.residual import ResidualMonitor
@@ -38,9 +38,10 @@ class Sink(Protocol):
 
 
 class Recorder(Sink, Protocol):
-    """A sink that also keeps the inputs and the diagnostics."""
+    """A sink that also keeps the inputs, the measured cage speed and the diagnostics."""
 
     def write_inputs(self, time: float, inputs: Inputs, channels) -> None: ...
+    def write_measurement(self, time: float, cage_speed: float, residual: float) -> None: ...
     def write_diagnostics(self, time: float, events, values) -> None: ...
 
 
@@ -145,8 +146,8 @@ class LiveModel:
         if event is not None:
             self.health.note(event)
             return event
-        if channel == MEASURED:
-            self._compare()
+        if channel == topics.MEASURED:
+            self._compare(now)
             return None
         # Speed starts the model: load and temperature have sensible values in the scene, a wrong speed would be a false jolt.
         if self.gate.accepted["shaft_speed"]:
@@ -256,14 +257,16 @@ class LiveModel:
             self._guarded(name, 0.0, lambda: self.detach(name))
         return stopped
 
-    def _compare(self) -> None:
+    def _compare(self, now: float) -> None:
         """Hold the measured cage speed against the newest sample, which is a tick old at most."""
-        sample = self.runner.newest
-        if sample is None or self.runner.phase is not Phase.RUNNING:
-            return
-        ideal = float(sample["ideal_cage_speed"])
-        measured = 1.0 - self.gate.measured / ideal if ideal else math.nan
-        self.residual.take(float(sample["time"]), float(sample["shaft_speed"]), measured, float(sample["cage_slip"]))
+        sample, residual = self.runner.newest, math.nan
+        if sample is not None and self.runner.phase is Phase.RUNNING:
+            ideal = float(sample["ideal_cage_speed"])
+            measured, predicted = 1.0 - self.gate.measured / ideal if ideal else math.nan, float(sample["cage_slip"])
+            self.residual.take(float(sample["time"]), float(sample["shaft_speed"]), measured, predicted)
+            residual = measured - predicted
+        for name, recorder in list(self._recorders.items()):
+            self._guarded(name, now, lambda: recorder.write_measurement(now, self.gate.measured, residual))
 
     def _write(self, now: float, block: np.ndarray) -> None:
         self._blocks += 1

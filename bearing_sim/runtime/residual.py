@@ -89,6 +89,11 @@ class ResidualMonitor:
             self._batch_start = now
         self._batch_count, self._batch_total = self._batch_count + 1, self._batch_total + residual
 
+    @property
+    def time(self) -> float:
+        """When slip was compared last [s]; NaN before that."""
+        return self._measured_at
+
     def events(self, now: float) -> list[Event]:
         """Return the change that holds, as of ``now`` [s]."""
         side = self._cusum.side
