@@ -5,6 +5,7 @@ import random
 import time
 
 import pytest
+from fake_simulation import FakeSimulation
 from test_live import Bench, ListRecorder
 
 from bearing_sim.events import Level
@@ -18,8 +19,8 @@ IDEAL = 40.0  # rad/s, of the stand-in's cage at 100 rad/s; it predicts a slip o
 class Measured(Bench):
     """A bench whose cage is measured, with noise."""
 
-    def __init__(self):
-        super().__init__(scene=QUICK)
+    def __init__(self, **options):
+        super().__init__(scene=QUICK, **options)
         self.lot = random.Random(1)
 
     def measure(self, seconds, slip):
@@ -76,6 +77,31 @@ def test_a_measurement_alone_starts_no_model(bench):
     bench.live.offer("cage_speed_measured", (40.0,), None, bench.now_ns)
     bench.run(0.2, drive=False)
     assert bench.live.runner.newest is None and bench.live.condition(bench.now_ns).level is Level.OK
+
+
+class Fallen:
+    """A governor that has fallen to a cheaper level."""
+
+    level, wanted = "slip", "planar"
+
+    def __init__(self, simulation):
+        self._simulation = simulation
+
+    def consider(self, simulated, spent):
+        return None
+
+    def restart(self):
+        return self._simulation
+
+
+def test_a_cage_is_not_held_against_the_prediction_of_a_cheaper_level():
+    simulation = FakeSimulation()
+    bench = Measured(simulation=simulation, governor=Fallen(simulation))
+    try:
+        bench.measure(0.5, slip=0.03)
+        assert bench.verdict.startswith("not judged") and math.isnan(bench.live.residual.residual)
+    finally:
+        assert bench.live.close()
 
 
 def test_a_threshold_changed_in_mid_run_holds_and_a_reset_forgets_what_was_raised(bench):

@@ -124,7 +124,7 @@ def rolling_block(shaft_speed, force=500.0, count=1):
 
 
 def test_lambda_is_the_inner_contacts_least_film_over_the_composite_roughness():
-    """Against the film kernels, with the entrainment speed of pure rolling, omega_i R_i (1 - gamma)/2 (1 + gamma)/(1 - gamma) ... by hand."""
+    """Against the compiled film laws, in pure rolling: there both surfaces run through the contact as fast as the inner one."""
     scene, block = rolling_block(1000.0)
     params, oil = pack(scene), oil_at(scene.lubricant.oil, 393.15)
     radius, modulus = params.raceways.inner_curvature_radius, params.raceways.reduced_modulus

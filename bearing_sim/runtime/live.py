@@ -262,7 +262,10 @@ class LiveModel:
         sample, residual = self.runner.newest, math.nan
         if sample is not None and self.runner.phase is Phase.RUNNING:
             ideal = float(sample["ideal_cage_speed"])
-            measured, predicted = 1.0 - self.gate.measured / ideal if ideal else math.nan, float(sample["cage_slip"])
+            measured = 1.0 - self.gate.measured / ideal if ideal else math.nan
+            # Levels predict slips that are points apart: what is usual at one says nothing about another.
+            own = self._governor is None or self._governor.level == self._governor.wanted
+            predicted = float(sample["cage_slip"]) if own else math.nan
             self.residual.take(float(sample["time"]), float(sample["shaft_speed"]), measured, predicted)
             residual = measured - predicted
         for name, recorder in list(self._recorders.items()):

@@ -14,6 +14,7 @@ from bearing_sim.scene import Scene
 from bearing_sim.scene_monitoring import Hold, Thresholds
 
 _HOUR = 3600.0  # [s]
+_FILM_EVERY = 0.1  # [s] a film is told no more often: of all that is judged it costs the most, and its temperature is slow
 
 
 class Watch:
@@ -103,10 +104,11 @@ class Monitor:
 
     def _forget(self) -> None:
         self._time, self._rate, self._damage = math.nan, math.nan, 0.0
+        self._film = self._film_at = math.nan
         self._latest: dict[str, float] = {}
 
     def take(self, block: np.ndarray) -> None:
-        """Judge a block of samples by its worst values, as of its last instant.
+        """Judge a block of samples by its worst values, as of its last instant; the film by its last sample.
 
         Parameters
         ----------
@@ -122,7 +124,10 @@ class Monitor:
             "pocket": _largest(np.abs(block["pocket_force"])),
         }
         if self._films is not None:
-            latest["lambda"] = -_largest(-self._films.least(block[turning])) if turning.any() else math.nan
+            if not abs(now - self._film_at) < _FILM_EVERY * (1 - 1e-9):
+                self._film = float(self._films.least(block[-1:])[0]) if turning[-1] else math.nan
+                self._film_at = now
+            latest["lambda"] = self._film
         for name, value in latest.items():
             self._watches[name].judge(now, value)
 

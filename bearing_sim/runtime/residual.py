@@ -66,7 +66,7 @@ class ResidualMonitor:
         ----------
         now : its time [s]; one that does not lie after the last one's is left out.
         shaft_speed : [rad/s].
-        measured, predicted : cage slip as fractions; NaN at rest.
+        measured, predicted : cage slip as fractions; NaN at rest, or where there is nothing to compare.
         """
         if now <= self._time:
             return
@@ -127,7 +127,7 @@ class ResidualMonitor:
         if self._cusum.side:
             return _SIDES[self._cusum.side]
         if self._time != self._measured_at or self._time < self._settled_from:
-            return "not judged: at rest, or the speed changes"
+            return "not judged: at rest, at a changing speed, or predicted by another level"
         known = self._whitener.count * self._detection.batch
         if known < self._detection.learning:
             return f"learning what is usual: {known:.3g} of {self._detection.learning:.3g} s"
