@@ -79,6 +79,14 @@ def test_a_measurement_alone_starts_no_model(bench):
     assert bench.live.runner.newest is None and bench.live.condition(bench.now_ns).level is Level.OK
 
 
+def test_after_a_reset_the_cage_is_not_judged_until_the_prediction_has_settled(bench):
+    bench.measure(0.5, slip=0.01)
+    assert bench.live.runner.reset()
+    bench.live.residual.adjust(load_scene("deng2017_table1", [*QUICK, "thresholds.residual.settling=10 s"]).thresholds.residual, 20.0)
+    bench.measure(0.3, slip=0.01)
+    assert bench.verdict.startswith("not judged")
+
+
 class Fallen:
     """A governor that has fallen to a cheaper level."""
 

@@ -209,6 +209,7 @@ class LiveModel:
                 self.health.note(item._replace(time=now))
                 if item.code == "run.reset":
                     self.monitor.restart()
+                    self.residual.interrupt(item.time)
             else:
                 self.monitor.take(item)
                 self._write(now, item)

@@ -75,11 +75,9 @@ class ResidualMonitor:
         if not math.isfinite(residual) or speed < self._from_speed:
             self._disturb(now, 0.0)
             return
-        if elapsed > _GAP * self._detection.batch:  # what was measured before is no neighbour
-            self._abandon_batch()
         self._measured_at = now
         self._fade(elapsed, residual)
-        if abs(speed - self._speed) > _SPEED_CHANGE * self._speed:
+        if abs(speed - self._speed) > _SPEED_CHANGE * self._speed or elapsed > _GAP * self._detection.batch:
             self._disturb(now, speed)
         if now < self._settled_from:
             return
@@ -88,6 +86,10 @@ class ResidualMonitor:
         if not self._batch_count:
             self._batch_start = now
         self._batch_count, self._batch_total = self._batch_count + 1, self._batch_total + residual
+
+    def interrupt(self, now: float) -> None:
+        """Leave out what follows ``now`` [s] until the bearing has settled: the prediction has begun anew."""
+        self._disturb(now, self._speed)
 
     @property
     def time(self) -> float:
@@ -139,7 +141,7 @@ class ResidualMonitor:
         if math.isnan(self.mean):
             self.mean, self.deviation = residual, 0.0
             return
-        share = 1.0 - math.exp(-min(elapsed, self._detection.batch) / self._detection.memory) if elapsed == elapsed else 1.0
+        share = 1.0 - math.exp(-min(elapsed, self._detection.batch) / self._detection.memory)
         step = residual - self.mean
         self.mean += share * step
         self._variance = (1.0 - share) * (self._variance + share * step * step)
