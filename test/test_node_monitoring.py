@@ -27,7 +27,7 @@ def node(tmp_path):
     """A node that records, and a client of it."""
     domain = fresh_domain()
     words = ", ".join(f"'thresholds.residual.{word}'" for word in QUICK)
-    arguments = ("-p", f"overrides:=[{words}]", "-p", "cage_joint:=m1_cage", "-p", f"record:={tmp_path / 'run.mcap'}")
+    arguments = ("-p", f"overrides:=[{words}]", "-p", "governor:=false", "-p", "cage_joint:=m1_cage", "-p", f"record:={tmp_path / 'run.mcap'}")
     process, client = NodeProcess(tmp_path, domain, "--ros-args", *arguments), Client(domain)
     yield process, client
     client.close()
