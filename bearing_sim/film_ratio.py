@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Lambda ratio: how far the oil film keeps the surfaces of rollers and raceways apart."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The thresholds of a scene: from where on the condition of a bearing is a warning or an error, and how a change is told from noise."""
 
 from dataclasses import field

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """An alarm tells a trouble once, however the value flickers, and only after it has lasted."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The change detector: its false-alarm rate by simulation, correlated noise, wild readings, and how soon it finds a change."""
 
 import math

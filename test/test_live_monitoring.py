@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Monitoring in the live model: a measured cage against the predicted one, thresholds changed in mid-run, and a reset."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The monitor judges slip, life, remaining life, film and pocket force of courses of samples, each trouble once."""
 
 import math

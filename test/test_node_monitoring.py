@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The node with a measured cage: residual published, recorded and judged, over DDS."""
 
 import math

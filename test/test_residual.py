@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Residual slip: synthetic faults are found, made with the model itself; noise, rest, start-up and lost sensors are none."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """A limit with hysteresis and hold times: one piece of news for one trouble, however much the value flickers.
 
 Two stages.  With hysteresis, a value counts as beyond from its limit on, and as back only when it has come back by a share of the

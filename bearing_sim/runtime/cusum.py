@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """A change told from noise: numbers made standard normal while nothing changes, and a two-sided CUSUM with a known false-alarm rate.
 
 All numbers are batch means that come at even intervals, so that a run length is a time.

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """What the bearing itself calls for: slip, life, remaining life, lambda ratio and pocket force against the scene's thresholds.
 
 Pure: samples in, events out; the times are those of the samples.

@@ -1,3 +1,4 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Residual slip: what a measured cage slips more than the model says, its fading statistics, and whether it has changed.
 
 A model that is a little wrong gives a residual that is not zero; a machine that changes gives one that changes.  So the usual
