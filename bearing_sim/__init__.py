@@ -5,6 +5,7 @@
 module                 responsibility
 =====================  ==================================================================================
 ``scene``              what to simulate: frozen records, one declaration per quantity
+``scene_monitoring``   from where on a condition is told
 ``crown``              profiles of the rollers
 ``contour``            forms of the outer raceway; ``contour_file``, ``contour_scene``: measured ones
 ``methods``            by which integrators each level can be advanced
@@ -21,8 +22,9 @@ module                 responsibility
 ``integrators``        stiff and explicit methods and their drive loops; they know no bearings
 ``rating_life``        roller loads to rating life: whole rollers, slices, oil and reliability
 ``oil``                oil properties at a temperature
+``film_ratio``         lambda ratio: oil film over roughness
 ``ring_growth``        how far rings grow by rotation, fits and heat
-``runtime``            pacing, the solver's thread, the gate for inputs, health
+``runtime``            pacing, the solver's thread, the gate for inputs, health, alarms, residual slip
 ``sinks``              MCAP and rerun
 ``studies``            the bench: speed and error of every level and method; statics: the load distribution by slices;
                        extremes: the stability map

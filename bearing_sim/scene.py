@@ -18,6 +18,7 @@ from bearing_sim.quantity import quantity
 from bearing_sim.scene_bounds import moment_faults, play_faults, step_faults
 from bearing_sim.scene_cage import Cage, cage_faults
 from bearing_sim.scene_lubricant import CustomOil, Oil, Oil4109Traction, Traction
+from bearing_sim.scene_monitoring import Thresholds
 from bearing_sim.scene_raceway import InnerRaceway, OuterRaceway, RingGrowth, growth_faults
 from bearing_sim.scene_record import record as _strict
 
@@ -62,6 +63,19 @@ class Material:
 
 
 @_strict
+class Roughness:
+    """Root-mean-square roughness of the surfaces that roll on each other; only the lambda ratio of the monitoring knows it."""
+
+    roller: quantity("m", "roughness of the rollers, R_q", 1e-10, 1e-4, "um")
+    raceway: quantity("m", "roughness of the raceways, R_q", 1e-10, 1e-4, "um")
+
+    @property
+    def composite(self) -> float:
+        """sigma = sqrt(R_q1^2 + R_q2^2) [m]."""
+        return math.hypot(self.roller, self.raceway)
+
+
+@_strict
 class Bearing:
     """One cylindrical roller bearing."""
 
@@ -74,6 +88,7 @@ class Bearing:
     material: Material = field(default_factory=Material)
     contact: Contact = field(default_factory=Contact)
     ring_growth: RingGrowth = field(default_factory=RingGrowth)
+    roughness: Roughness | None = None  # None: no lambda ratio is told or judged
 
     @property
     def pitch_radius(self) -> float:
@@ -183,17 +198,6 @@ class InputLimits:
     stale_after: quantity("s", "age at which an input counts as stale", 1e-3, 3600.0) = 1.0
     minimum_rate: quantity("Hz", "lowest message rate expected", 0.0, 1e5) = 1.0
     maximum_rate: quantity("Hz", "highest message rate expected", 0.0, 1e5) = 2000.0
-
-
-@_strict
-class Thresholds:
-    """When the condition is a warning or an error."""
-
-    slip_warning: quantity("", "cage slip that is a warning", 0.0, 1.0, "%") = 0.05
-    slip_error: quantity("", "cage slip that is an error (Deng 2017: 10 %)", 0.0, 1.0, "%") = 0.10
-    # Leaving rest a cage may slip by any fraction of next to nothing, which harms no surface.
-    slip_from_speed: quantity("rad/s", "shaft speed from which slip is judged", 0.0, 12000.0, "rpm") = 20.0
-    life_warning: quantity("h", "rating life below which there is a warning (Deng 2017: 300 h)", 0.0, 1e9) = 300.0
 
 
 CLEANLINESS = Literal[

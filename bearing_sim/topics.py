@@ -17,7 +17,7 @@ import numpy as np
 
 from bearing_sim.events import Event, Level
 
-SHAFT_JOINT = "shaft"
+SHAFT_JOINT, CAGE_JOINT = "shaft", "cage"
 FRAME = "bearing"  # x along the shaft
 ZERO_CELSIUS = 273.15  # [K]
 
@@ -75,6 +75,10 @@ def _radial_load(stamp_ns: int, inputs) -> dict:
 
 def _oil_temperature(stamp_ns: int, inputs) -> dict:
     return {"header": header(stamp_ns, FRAME), "temperature": float(inputs.oil_temperature) - ZERO_CELSIUS, "variance": 0.0}
+
+
+def _cage_speed(stamp_ns: int, speed: float) -> dict:
+    return _joints(stamp_ns, [CAGE_JOINT], [math.nan], [speed])
 
 
 def _number(field: str) -> Callable[[int, Any], dict]:
@@ -153,6 +157,21 @@ INPUTS = {
     )
 }
 """The input topics by channel (`bearing_sim.runtime.input_gate` uses the same channel names)."""
+
+MEASURED = "cage_speed_measured"
+MEASUREMENTS = {
+    topic.name: topic
+    for topic in (
+        Topic(MEASURED, "sensor_msgs/msg/JointState", "optional: measured velocity of the joint 'cage' [rad/s]", _cage_speed),
+        Topic(
+            "cage_slip_residual",
+            "std_msgs/msg/Float64",
+            "measured less predicted cage slip [fraction]",
+            lambda stamp_ns, residual: {"data": residual},
+        ),
+    )
+}
+"""What there is only where the cage is measured, by name: the measurement, and what it differs by from the prediction; each of a number."""
 
 _MULTI_ARRAY = "std_msgs/msg/Float64MultiArray"
 
@@ -254,6 +273,8 @@ def further_condition(scene, sample) -> dict[str, float]:
 
 def input_types(channel: str) -> tuple[str, ...]:
     """Return the message types from which `input_values` can read a channel."""
+    if channel == MEASURED:
+        return (MEASUREMENTS[channel].ros_type,)
     scalar = ("std_msgs/msg/Float64",) if channel != "oil_temperature" else ()
     return (INPUTS[channel].ros_type, *scalar)
 
@@ -263,10 +284,11 @@ def input_values(channel: str, ros_type: str, message, joint: str = SHAFT_JOINT)
 
     Parameters
     ----------
-    channel : ``"shaft_speed"`` -> (speed,), ``"radial_load"`` -> (force_y, force_z), ``"oil_temperature"`` -> (kelvin,).
+    channel : ``"shaft_speed"`` -> (speed,), ``"radial_load"`` -> (force_y, force_z), ``"oil_temperature"`` -> (kelvin,),
+        ``"cage_speed_measured"`` -> (speed,).
     ros_type : one of `input_types`; a scalar load gives (force,), a magnitude along +y.
     message : any object with the fields of that type as attributes.
-    joint : name of the shaft's joint in a JointState.
+    joint : name of the joint in a JointState, the shaft's or the cage's.
 
     Raises
     ------

@@ -37,11 +37,24 @@ ALLOWED = {
     "scene_cage.py": ({"pydantic"}, {"quantity", "scene_record"}),
     "scene_raceway.py": ({"pydantic"}, {"contour", "quantity", "scene_record"}),
     "scene_lubricant.py": ({"pydantic"}, {"quantity", "scene_record"}),
+    "scene_monitoring.py": ({"pydantic"}, {"quantity", "scene_record"}),
     "ring_growth.py": (set(), {"scene"}),
+    "film_ratio.py": ({"numpy"}, {"kernels.film", "oil", "params", "scene"}),
     "contour_scene.py": (set(), {"contour", "scene_raceway"}),
     "scene.py": (
         {"pydantic"},
-        {"crown", "effects", "methods", "quantity", "scene_bounds", "scene_cage", "scene_lubricant", "scene_raceway", "scene_record"},
+        {
+            "crown",
+            "effects",
+            "methods",
+            "quantity",
+            "scene_bounds",
+            "scene_cage",
+            "scene_lubricant",
+            "scene_monitoring",
+            "scene_raceway",
+            "scene_record",
+        },
     ),
     "scene_bounds.py": (set(), set()),
     "scene_file.py": ({"pydantic", "pydantic_core", "yaml"}, {"contour_scene", "crown", "effects", "scene", "scene_cage", "quantity"}),
@@ -58,7 +71,7 @@ ALLOWED = {
         NUMBERS | {"sksundae", "matplotlib"},
         {"studies", "effects", "integrators.status", "levels", "params", "rating_life", "sample", "scene", "scene_file", "simulation", "tables"},
     ),
-    "runtime": ({"numpy"}, {"runtime", "simulation", "scene", "effects", "events", "sample", "topics"}),
+    "runtime": ({"numpy", "scipy"}, {"runtime", "film_ratio", "simulation", "scene", "scene_monitoring", "effects", "events", "sample", "topics"}),
 }
 
 

@@ -20,7 +20,7 @@ class ListSink:
     """Keeps what it is given; fails on demand."""
 
     def __init__(self, fails=False):
-        self.blocks, self.events, self.inputs, self.closed, self.fails = [], [], [], 0, fails
+        self.blocks, self.events, self.inputs, self.measurements, self.closed, self.fails = [], [], [], [], 0, fails
 
     def write(self, block):
         if self.fails:
@@ -40,6 +40,9 @@ class ListRecorder(ListSink):
     def write_inputs(self, time, inputs, channels):
         self.inputs.append((time, inputs, list(channels)))
 
+    def write_measurement(self, time, cage_speed, residual):
+        self.measurements.append((cage_speed, residual))
+
     def write_diagnostics(self, time, events, values):
         self.events += events
 
@@ -47,8 +50,8 @@ class ListRecorder(ListSink):
 class Bench:
     """A live model, a made-up receiver's clock, and every piece of news so far."""
 
-    def __init__(self, simulation=None, **options):
-        overrides = ["input_limits.stale_after=0.5s", "input_limits.minimum_rate=0Hz"]
+    def __init__(self, simulation=None, scene=(), **options):
+        overrides = ["input_limits.stale_after=0.5s", "input_limits.minimum_rate=0Hz", *scene]
         self.simulation = simulation or FakeSimulation()
         self.live = LiveModel(load_scene("deng2017_table1", overrides), self.simulation, START_NS, **options)
         self.began = time.monotonic()

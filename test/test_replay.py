@@ -154,7 +154,7 @@ def test_condition_is_told_when_it_changes_and_reported_every_second(tmp_path, m
     assert all(float(values["shaft speed [rpm]"]) == pytest.approx(4000 * 30 / math.pi) for _, _, values in sink.diagnostics)
 
 
-def test_slip_above_its_limit_is_told_by_the_judgement_of_the_live_run(tmp_path):
+def test_slip_above_its_limit_is_told_by_the_scenes_thresholds(tmp_path):
     scene = load_scene("deng2017_table1", ["thresholds.slip_warning=0.1%", "thresholds.slip_error=0.5%"])
     _, sink, _ = run(steady_log(tmp_path / "log.mcap", duration=1.0), scene=scene)
     assert [(event.code, event.level) for event in sink.events] == [("bearing.slip", Level.ERROR)]

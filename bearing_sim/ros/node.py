@@ -63,6 +63,8 @@ class BearingNode(Node):
         self._outputs = {
             topic.name: self.create_publisher(message_class(topic.ros_type), topic.name, _STATE_QOS) for topic in topics.outputs(self.scene).values()
         }
+        residual = topics.MEASUREMENTS["cage_slip_residual"]
+        self._residual, self._residual_time = self.create_publisher(message_class(residual.ros_type), residual.name, _STATE_QOS), float("-inf")
         # Compiling takes seconds: on its own thread, so that the node answers signals and says what it is doing.
         self._warm_up = threading.Thread(target=self._compile, name="warm-up", daemon=True)
         self._warm_up.start()
@@ -120,6 +122,8 @@ class BearingNode(Node):
             if settings.input_type == "scalar" and "std_msgs/msg/Float64" in topics.input_types(channel):
                 ros_type = "std_msgs/msg/Float64"
             self.create_subscription(message_class(ros_type), channel, partial(self._take, channel, ros_type), _INPUT_QOS)
+        ros_type = topics.MEASUREMENTS[topics.MEASURED].ros_type
+        self.create_subscription(message_class(ros_type), topics.MEASURED, partial(self._take, topics.MEASURED, ros_type), _INPUT_QOS)
         self.create_service(Trigger, "~/reset", self._serve_reset)
         self.create_service(Trigger, "~/start_recording", self._serve_start_recording)
         self.create_service(Trigger, "~/stop_recording", self._serve_stop_recording)
@@ -132,7 +136,8 @@ class BearingNode(Node):
     def _take(self, channel: str, ros_type: str, incoming) -> None:
         now_ns = self._now_ns()
         try:
-            values = topics.input_values(channel, ros_type, incoming, self.settings.joint)
+            joint = self.settings.cage_joint if channel == topics.MEASURED else self.settings.joint
+            values = topics.input_values(channel, ros_type, incoming, joint)
         except ValueError as fault:
             self.live.refuse(channel, "input.malformed", str(fault), now_ns)
             return
@@ -148,6 +153,10 @@ class BearingNode(Node):
         for name, publisher in self._outputs.items():
             topic = topics.OUTPUTS[name]
             publisher.publish(message(topic.ros_type, topic.message(stamp_ns, sample)))
+        compared = self.live.residual
+        if compared.time > self._residual_time:
+            self._residual_time, topic = compared.time, topics.MEASUREMENTS["cage_slip_residual"]
+            self._residual.publish(message(topic.ros_type, topic.message(stamp_ns, compared.residual)))
 
     def _review(self) -> None:
         """Feed the sinks, log what is new, and report when a second has passed or the level has changed."""

@@ -32,6 +32,7 @@ DECLARATIONS = (
     Declaration("scene", "deng2017_table1", "name of a bundled scene, or path of a scene file"),
     Declaration("overrides", [""], "scene fields to change, each FIELD=VALUE, such as bearing.outer_raceway.low_radius=34.865mm"),
     Declaration("joint", "shaft", "name of the shaft's joint in shaft_speed messages"),
+    Declaration("cage_joint", "cage", "name of the cage's joint in cage_speed_measured messages"),
     Declaration(
         "input_type", "stamped", "stamped: JointState and WrenchStamped; scalar: Float64 [rad/s] and [N] along +y", choices=("stamped", "scalar")
     ),
@@ -55,6 +56,7 @@ class Settings:
     scene: str
     overrides: tuple[str, ...]
     joint: str
+    cage_joint: str
     input_type: str
     publish_rate: float
     sample_rate: float

@@ -13,11 +13,11 @@ import numpy as np
 
 from bearing_sim import topics
 from bearing_sim.events import Event, Level
-from bearing_sim.runtime.input_gate import InputGate
+from bearing_sim.runtime.input_gate import CHANNELS, InputGate
 from bearing_sim.runtime.runner import Phase, Runner
 from bearing_sim.scene import Thresholds
 
-_LINGER = 2.0  # [s] a momentary event is shown this long: a report at 1 Hz cannot miss it, a value at its limit does not flicker
+_LINGER = 2.0  # [s] a momentary event is shown this long: a report at 1 Hz cannot miss it
 
 
 class Condition(NamedTuple):
@@ -33,17 +33,10 @@ class Condition(NamedTuple):
 
 
 class Health:
-    """Collects momentary events and judges lasting ones.
+    """Collects momentary events and those that hold."""
 
-    Parameters
-    ----------
-    thresholds : from which slip and life on there is a warning or an error.
-    """
-
-    def __init__(self, thresholds: Thresholds):
-        self._thresholds = thresholds
+    def __init__(self):
         self._momentary: dict[str, tuple[Event, int]] = {}
-        self._bearing: dict[tuple[str, Level], tuple[float, Event]] = {}
         self._holding: set[tuple[str, Level]] = set()
         self._seen = {"lost": 0.0, "dropped": 0}
         self._news: list[Event] = []
@@ -64,7 +57,6 @@ class Health:
         self._note_losses(now, runner)
         events = [_counted(event, count) for event, count in self._momentary.values()]
         events += [*others, *gate.check(now), *run_events(now, runner)]
-        events += self._bearing_events(now, runner)
         known = {}
         for event in sorted(events, key=lambda event: -event.level):
             known.setdefault(_kind(event), event)
@@ -77,13 +69,6 @@ class Health:
         self._holding = set(lasting)
         noted, self._news = self._news, []
         return noted + begun
-
-    def _bearing_events(self, now: float, runner: Runner) -> list[Event]:
-        """Return what the newest sample calls for, and what others called for a moment ago."""
-        if runner.newest is not None:
-            self._bearing |= {(event.code, event.level): (now, event) for event in bearing_events(runner.newest, self._thresholds)}
-        self._bearing = {key: (seen, event) for key, (seen, event) in self._bearing.items() if now - seen < _LINGER}
-        return [event for _, event in self._bearing.values()]
 
     def _note_losses(self, now: float, runner: Runner) -> None:
         """Turn growing loss counters into momentary events."""
@@ -101,7 +86,7 @@ class Health:
 
 
 def bearing_events(sample, thresholds: Thresholds) -> list[Event]:
-    """Return the warnings and errors about the bearing that one sample calls for."""
+    """Return the warnings and errors about the bearing that one sample calls for by itself, without hold times (see `monitor` for those)."""
     time, slip, life = float(sample["time"]), float(sample["cage_slip"]), float(sample["modified_rating_life"])
     events = []
     if abs(slip) >= thresholds.slip_warning and abs(float(sample["shaft_speed"])) >= thresholds.slip_from_speed:  # NaN, at rest, is no slip
@@ -155,7 +140,7 @@ def _numbers(gate: InputGate, runner: Runner) -> dict[str, object]:
         "blocks dropped": runner.dropped,
         "messages refused": gate.refused.total(),
     }
-    for channel, rate in ((channel, gate.rate(channel)) for channel in topics.INPUTS):
+    for channel, rate in ((channel, gate.rate(channel)) for channel in CHANNELS):
         if not math.isnan(rate):
             numbers[f"{channel} rate [Hz]"] = rate
     numbers |= {f"refused: {code}": count for code, count in sorted(gate.refused.items())}

@@ -12,8 +12,10 @@ from dataclasses import dataclass
 from bearing_sim.events import Event, Level
 from bearing_sim.scene import InputLimits
 from bearing_sim.simulation import Inputs
+from bearing_sim.topics import MEASURED
 
-CHANNELS = ("shaft_speed", "radial_load", "oil_temperature")
+CHANNELS = ("shaft_speed", "radial_load", "oil_temperature", MEASURED)  # the last is held against the model, no input of it
+_OPTIONAL = ("oil_temperature", MEASURED)
 _RATE_WINDOW = 1.0  # [s] a rate is the count of messages over at least this long
 _RATE_TOLERANCE = 0.1  # relative: timers jitter
 _SLOW_CHANNEL = {"oil_temperature": 10.0}  # oil warms up in minutes: its messages may be that much rarer
@@ -46,6 +48,8 @@ class InputGate:
     ----------
     held : Inputs
         The last good values.
+    measured : float
+        The last good cage speed [rad/s]; NaN before the first.
     refused, accepted : collections.Counter
         Messages refused by event code, and accepted by channel.
     """
@@ -53,6 +57,7 @@ class InputGate:
     def __init__(self, limits: InputLimits, held: Inputs):
         self.limits = limits
         self.held = held
+        self.measured = math.nan
         self.refused: Counter[str] = Counter()
         self.accepted: Counter[str] = Counter()
         self._channels = {name: _Channel() for name in CHANNELS}
@@ -63,9 +68,9 @@ class InputGate:
 
         Parameters
         ----------
-        channel : ``"shaft_speed"``, ``"radial_load"`` or ``"oil_temperature"``.
+        channel : one of `CHANNELS`.
         stamp : the sender's time [s since the start]; must rise from message to message of a channel.
-        values : ``(speed,)`` [rad/s]; ``(force_y, force_z)`` [N], or ``(force,)`` [N] for a magnitude along +y, which cannot
+        values : ``(speed,)`` [rad/s], of shaft or cage; ``(force_y, force_z)`` [N], or ``(force,)`` [N] for a magnitude along +y, which cannot
             be negative; ``(temperature,)`` [K].
         arrival : the receiver's time [s since the start], by which age and rate are judged; ``stamp`` where absent (replay).
             Where it is given, a sender whose clock was set back is followed after a few messages, else never.
@@ -93,19 +98,22 @@ class InputGate:
         state.stamp, state.earlier_count = stamp, 0
         state.arrival = max(state.arrival, received)
         self.accepted[channel] += 1
-        self.held = _with_values(self.held, channel, values)
+        if channel == MEASURED:
+            self.measured = float(values[0])
+        else:
+            self.held = _with_values(self.held, channel, values)
         return None
 
     def refuse(self, channel: str, time: float, code: str, reason: str, level: Level = Level.ERROR) -> Event:
         """Count a refused message and return its event; for faults that only the caller can see, such as a missing joint."""
         self.refused[code] += 1
-        return Event(time, level, code, f"{channel}: {reason}; message refused, holding {_held_text(self.held, channel)}")
+        return Event(time, level, code, f"{channel}: {reason}; message refused, holding {self._held_text(channel)}")
 
     def check(self, now: float) -> list[Event]:
         """Return what is wrong at ``now`` [s since the start] with the flow of messages, as long as it is wrong.
 
         Codes ``input.stale`` (no good message for ``limits.stale_after``) and ``input.rate`` (outside ``minimum_rate`` to
-        ``maximum_rate``, with a tenth of tolerance).  The optional oil temperature is judged only once a message of it came.
+        ``maximum_rate``, with a tenth of tolerance).  An optional channel is judged only once a message of it came.
         """
         events = []
         for channel, state in self._channels.items():
@@ -139,11 +147,21 @@ class InputGate:
     def _stale_event(self, channel: str, state: _Channel, now: float) -> Event | None:
         patience = self.limits.stale_after * _SLOW_CHANNEL.get(channel, 1.0)
         age = now - max(state.arrival, 0.0)
-        if age <= patience or (channel in _SLOW_CHANNEL and not state.seen):
+        if age <= patience or (channel in _OPTIONAL and not state.seen):
             return None
         since = f"no good message for {age:.3g} s" if state.arrival > -math.inf else f"no good message since the start {age:.3g} s ago"
-        text = f"{channel}: {since}, expected one within {patience:.3g} s; holding {_held_text(self.held, channel)}"
+        text = f"{channel}: {since}, expected one within {patience:.3g} s; holding {self._held_text(channel)}"
         return Event(now, Level.WARN, "input.stale", text)
+
+    def _held_text(self, channel: str) -> str:
+        held = self.held
+        if channel == MEASURED:
+            return f"{self.measured:.6g} rad/s"
+        if channel == "shaft_speed":
+            return f"{held.shaft_speed:.6g} rad/s"
+        if channel == "radial_load":
+            return f"({held.load_y:.6g}, {held.load_z:.6g}) N"
+        return f"{held.oil_temperature:.6g} K"
 
     def _rate_event(self, channel: str, state: _Channel, now: float) -> Event | None:
         slowest = self.limits.minimum_rate / _SLOW_CHANNEL.get(channel, 1.0)
@@ -169,11 +187,12 @@ def _value_fault(channel: str, values: tuple[float, ...], limits: InputLimits) -
             code = "input.too_small" if values[0] < low else "input.too_large"
             return code, f"{shown} K is outside {low:.6g} to {high:.6g} K"
         return None
-    signed = len(values) == 2 or (channel == "shaft_speed" and limits.reverse_rotation)
+    speed = channel in ("shaft_speed", MEASURED)
+    signed = len(values) == 2 or (speed and limits.reverse_rotation)
     if values[0] < 0.0 and not signed:
-        hint = " (input_limits.reverse_rotation is off)" if channel == "shaft_speed" else ""
+        hint = " (input_limits.reverse_rotation is off)" if speed else ""
         return "input.negative", f"{shown} {unit} is negative, expected zero or more{hint}"
-    magnitude, largest = math.hypot(*values), limits.maximum_speed if channel == "shaft_speed" else limits.maximum_load
+    magnitude, largest = math.hypot(*values), limits.maximum_speed if speed else limits.maximum_load
     if magnitude > largest:
         return "input.too_large", f"{magnitude:.6g} {unit} is above the largest accepted, {largest:.6g} {unit}"
     return None
@@ -198,7 +217,7 @@ def _clock_set_anew(state: _Channel, stamp: float) -> bool:
     return math.isfinite(stamp) and state.earlier_count > _RISING_TO_FOLLOW
 
 
-_UNITS = {"shaft_speed": "rad/s", "radial_load": "N", "oil_temperature": "K"}
+_UNITS = {"shaft_speed": "rad/s", "radial_load": "N", "oil_temperature": "K", MEASURED: "rad/s"}
 
 
 def _with_values(held: Inputs, channel: str, values: tuple[float, ...]) -> Inputs:
@@ -208,11 +227,3 @@ def _with_values(held: Inputs, channel: str, values: tuple[float, ...]) -> Input
     if channel == "radial_load":
         return held._replace(load_y=numbers[0], load_z=numbers[1] if len(numbers) == 2 else 0.0)
     return held._replace(oil_temperature=numbers[0])
-
-
-def _held_text(held: Inputs, channel: str) -> str:
-    if channel == "shaft_speed":
-        return f"{held.shaft_speed:.6g} rad/s"
-    if channel == "radial_load":
-        return f"({held.load_y:.6g}, {held.load_z:.6g}) N"
-    return f"{held.oil_temperature:.6g} K"

@@ -18,9 +18,11 @@ from bearing_sim.events import Event, Level
 from bearing_sim.runtime.governor import Governor
 from bearing_sim.runtime.health import Condition, Health
 from bearing_sim.runtime.input_gate import InputGate
+from bearing_sim.runtime.monitor import Monitor
 from bearing_sim.runtime.pacer import Pacer
-from bearing_sim.runtime.runner import Runner
-from bearing_sim.scene import Scene
+from bearing_sim.runtime.residual import ResidualMonitor
+from bearing_sim.runtime.runner import Phase, Runner
+from bearing_sim.scene import Scene, Thresholds
 from bearing_sim.simulation import Inputs, Simulation
 
 LONGEST_TICK = 0.005  # [s] inputs act this late at most; outputs can be published at 200 Hz
@@ -36,9 +38,10 @@ class Sink(Protocol):
 
 
 class Recorder(Sink, Protocol):
-    """A sink that also keeps the inputs and the diagnostics."""
+    """A sink that also keeps the inputs, the measured cage speed and the diagnostics."""
 
     def write_inputs(self, time: float, inputs: Inputs, channels) -> None: ...
+    def write_measurement(self, time: float, cage_speed: float, residual: float) -> None: ...
     def write_diagnostics(self, time: float, events, values) -> None: ...
 
 
@@ -115,7 +118,8 @@ class LiveModel:
         self._governor = governor
         self.scene, self.start_ns = scene, start_ns
         self.gate = InputGate(scene.input_limits, simulation.inputs)
-        self.health = Health(scene.thresholds)
+        self.health, self.monitor = Health(), Monitor(scene)
+        self.residual = ResidualMonitor(scene.thresholds.residual, scene.thresholds.slip_from_speed)
         beat = cadence(sample_rate)
         pacer, capacity = Pacer(1.0, maximum_lag), round(_SLACK / beat.tick)
         self.runner = Runner(simulation, pacer, beat.tick, beat.samples, capacity, clock, governor)
@@ -142,12 +146,21 @@ class LiveModel:
         if event is not None:
             self.health.note(event)
             return event
+        if channel == topics.MEASURED:
+            self._compare(now)
+            return None
         # Speed starts the model: load and temperature have sensible values in the scene, a wrong speed would be a false jolt.
         if self.gate.accepted["shaft_speed"]:
             self.runner.post(self.gate.held)
         for name, recorder in list(self._recorders.items()):
             self._guarded(name, now, lambda: recorder.write_inputs(now, self.gate.held, [channel]))
         return None
+
+    def adjust(self, thresholds: Thresholds) -> None:
+        """Judge the bearing by other thresholds from now on; what the comparison with the measured cage has learned stays."""
+        self.scene = dataclasses.replace(self.scene, thresholds=thresholds)
+        self.monitor.adjust(thresholds)
+        self.residual.adjust(thresholds.residual, thresholds.slip_from_speed)
 
     def refuse(self, channel: str, code: str, reason: str, now_ns: int) -> Event:
         """Take in a message that could not even be read."""
@@ -199,7 +212,11 @@ class LiveModel:
         for item in self.runner.take():
             if isinstance(item, Event):
                 self.health.note(item._replace(time=now))
+                if item.code == "run.reset":
+                    self.monitor.restart()
+                    self.residual.interrupt(item.time)
             else:
+                self.monitor.take(item)
                 self._write(now, item)
         news = self.health.news(self.condition(now_ns).events)
         for event in news:
@@ -216,6 +233,8 @@ class LiveModel:
             troubles.append(Event(now, Level.WARN, "governor.level", text))
         if self.runner.newest is not None:
             values |= topics.further_condition(self.scene, self.runner.newest)
+        values |= self.monitor.values | self.residual.values(now)
+        troubles += [*self.monitor.events(now), *self.residual.events(now)]
         for name, sink in self._sinks.items():
             if getattr(sink, "fault", None):
                 troubles.append(Event(now, Level.WARN, f"sink.failed.{name}", f"{name} has stopped: {sink.fault}"))
@@ -243,6 +262,20 @@ class LiveModel:
         for name in sorted(self._sinks, key=lambda name: name not in self._recorders):  # recordings first: a view may take its time
             self._guarded(name, 0.0, lambda: self.detach(name))
         return stopped
+
+    def _compare(self, now: float) -> None:
+        """Hold the measured cage speed against the newest sample, which is a tick old at most."""
+        sample, residual = self.runner.newest, math.nan
+        if sample is not None and self.runner.phase is Phase.RUNNING:
+            ideal = float(sample["ideal_cage_speed"])
+            measured = 1.0 - self.gate.measured / ideal if ideal else math.nan
+            # Levels predict slips that are points apart: what is usual at one says nothing about another.
+            own = self._governor is None or self._governor.level == self._governor.wanted
+            predicted = float(sample["cage_slip"]) if own else math.nan
+            self.residual.take(float(sample["time"]), float(sample["shaft_speed"]), measured, predicted)
+            residual = measured - predicted
+        for name, recorder in list(self._recorders.items()):
+            self._guarded(name, now, lambda: recorder.write_measurement(now, self.gate.measured, residual))
 
     def _write(self, now: float, block: np.ndarray) -> None:
         self._blocks += 1

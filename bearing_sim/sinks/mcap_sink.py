@@ -56,6 +56,11 @@ class McapSink:
         for channel in channels:
             self._write(topics.INPUTS[channel], time, inputs)
 
+    def write_measurement(self, time: float, cage_speed: float, residual: float) -> None:
+        """Write a measured cage speed [rad/s] that came at ``time`` [s], and by how much its slip is more than the predicted one."""
+        for topic, number in zip(topics.MEASUREMENTS.values(), (cage_speed, residual)):
+            self._write(topic, time, number)
+
     def write(self, block: np.ndarray) -> None:
         """Write a block of samples (see `bearing_sim.sample`)."""
         for sample in block:

@@ -1,0 +1,68 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""The thresholds of a scene: from where on the condition of a bearing is a warning or an error, and how a change is told from noise."""
+
+from dataclasses import field
+
+from pydantic import model_validator
+
+from bearing_sim.quantity import quantity
+from bearing_sim.scene_record import record
+
+
+@record
+class Hold:
+    """How firmly a value must be beyond its limit, and back, before that is told (see `bearing_sim.runtime.alarm`)."""
+
+    hysteresis: quantity("", "share of the limit by which a value must come back", 0.0, 0.9, "%") = 0.1
+    raise_after: quantity("s", "time beyond the limit after which it is told", 0.0, 86400.0) = 0.5
+    clear_after: quantity("s", "time back after which it is over", 0.0, 86400.0) = 2.0
+
+
+@record
+class ResidualDetection:
+    """How measured slip is held against the predicted one (see `bearing_sim.runtime.residual`)."""
+
+    false_alarm_time: quantity("s", "mean time between false alarms", 60.0, 1e10, "h") = 3.6e6
+    tolerance: quantity("", "lasting change of the residual that is no fault: the model's own error from condition to condition", 1e-6, 1.0, "%") = (
+        0.002
+    )
+    batch: quantity("s", "time over which residuals are averaged before they are judged", 0.01, 3600.0) = 1.0
+    learning: quantity("s", "measured time from which the residual's usual mean and scatter are known well enough to judge", 1.0, 1e6) = 120.0
+    settling: quantity("s", "time after rest or a change of speed that is not judged", 0.0, 3600.0) = 5.0
+    memory: quantity("s", "time constant of the fading mean and standard deviation that are shown", 0.1, 1e6) = 60.0
+
+    @model_validator(mode="after")
+    def _times_fit_together(self):
+        faults = []
+        if self.learning < 30 * self.batch:
+            faults.append(f"learning: {self.learning:g} s are {self.learning / self.batch:.3g} batches of {self.batch:g} s; expected 30 or more")
+        if self.false_alarm_time < 20 * self.batch:
+            faults.append(f"false_alarm_time: {self.false_alarm_time:g} s is less than 20 batches of {self.batch:g} s")
+        if faults:
+            raise ValueError("; ".join(faults))
+        return self
+
+
+@record
+class Thresholds:
+    """When the condition is a warning or an error."""
+
+    slip_warning: quantity("", "cage slip that is a warning", 0.0, 1.0, "%") = 0.05
+    slip_error: quantity("", "cage slip that is an error (Deng 2017: 10 %)", 0.0, 1.0, "%") = 0.10
+    # Leaving rest a cage may slip by any fraction of next to nothing, which harms no surface.
+    slip_from_speed: quantity("rad/s", "shaft speed from which slip and film are judged", 0.0, 12000.0, "rpm") = 20.0
+    slip_hold: Hold = field(default_factory=Hold)
+    life_warning: quantity("h", "rating life below which there is a warning (Deng 2017: 300 h)", 0.0, 1e9) = 300.0
+    life_error: quantity("h", "rating life below which there is an error; 0: never", 0.0, 1e9) = 0.0
+    life_hold: Hold = field(default_factory=Hold)
+    remaining_life_warning: quantity("h", "remaining life below which there is a warning (Deng 2017: 300 h)", 0.0, 1e9) = 300.0
+    remaining_life_error: quantity("h", "remaining life below which there is an error; 0: never", 0.0, 1e9) = 0.0
+    remaining_life_memory: quantity("s", "time constant of the mean rate of damage by which remaining life is told", 1e-3, 1e9) = 60.0
+    remaining_life_hold: Hold = field(default_factory=Hold)
+    lambda_warning: quantity("", "film thickness over roughness below which there is a warning", 0.0, 100.0) = 1.0
+    lambda_error: quantity("", "film thickness over roughness below which there is an error; 0: never", 0.0, 100.0) = 0.0
+    lambda_hold: Hold = field(default_factory=Hold)
+    pocket_force_warning: quantity("N", "pocket force that is a warning; None: none is", 0.0, 1e6) | None = None
+    pocket_force_error: quantity("N", "pocket force that is an error; None: none is", 0.0, 1e6) | None = None
+    pocket_force_hold: Hold = field(default_factory=Hold)
+    residual: ResidualDetection = field(default_factory=ResidualDetection)

@@ -1,0 +1,187 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""The monitor judges slip, life, remaining life, film and pocket force of courses of samples, each trouble once."""
+
+import math
+
+import numpy as np
+import pytest
+
+from bearing_sim.events import Level
+from bearing_sim.film_ratio import FilmRatio
+from bearing_sim.kernels.film import minimum_film, thermal_factor
+from bearing_sim.oil import oil_at
+from bearing_sim.params import pack
+from bearing_sim.runtime.monitor import Monitor
+from bearing_sim.sample import new_block
+from bearing_sim.scene_file import SceneError, load_scene
+
+STEP = 0.1  # s
+ROUGH = ["bearing.roughness={roller: 0.1 um, raceway: 0.2 um}"]
+
+
+def course(count, **values):
+    """Return samples at even times; values are numbers or one for each sample."""
+    block = new_block(count, 18)
+    block["time"] = STEP * np.arange(1, count + 1)
+    block["shaft_speed"], block["oil_temperature"], block["cage_slip"] = 1000.0, 393.15, 0.01
+    block["rating_life"] = block["modified_rating_life"] = 1000.0
+    for name, value in values.items():
+        value = np.asarray(value, float)
+        block[name] = value[:, None] if block[name].ndim == 2 and value.ndim else value
+    return block
+
+
+def told(monitor, block, size=1):
+    """Return (time, code, level) of each event when it begins, feeding ``size`` samples at a time."""
+    found, holding = [], set()
+    for k in range(0, len(block), size):
+        monitor.take(block[k : k + size])
+        now = float(block["time"][k : k + size][-1])
+        events = {(event.code, event.level) for event in monitor.events(now)}
+        found += [(round(now, 6), *event) for event in sorted(events - holding)]
+        holding = events
+    return found
+
+
+def monitor(*overrides):
+    return Monitor(load_scene("deng2017_table1", [*overrides]))
+
+
+def test_a_slip_that_lasts_is_a_warning_then_an_error_and_over_when_it_is_back():
+    slip = np.repeat([0.01, 0.06, 0.12, 0.01], 50)
+    one = monitor()
+    assert told(one, course(200, cage_slip=slip)) == [(5.6, "bearing.slip", Level.WARN), (10.6, "bearing.slip", Level.ERROR)]
+    assert one.events(20.0) == []
+
+
+def test_a_slip_that_flickers_around_its_limit_is_one_event():
+    slip = 0.05 + 0.004 * np.random.default_rng(1).uniform(-1, 1, 5000)
+    assert [event[1:] for event in told(monitor(), course(5000, cage_slip=slip))] == [("bearing.slip", Level.WARN)]
+
+
+def test_backward_slip_counts_and_a_shaft_that_hardly_turns_or_rests_does_not():
+    assert told(monitor(), course(20, cage_slip=-0.2))[-1][2] is Level.ERROR
+    assert told(monitor(), course(100, cage_slip=0.9, shaft_speed=5.0)) == []
+    assert told(monitor(), course(100, cage_slip=math.nan, shaft_speed=0.0, modified_rating_life=math.inf)) == []
+
+
+def test_of_a_block_the_worst_sample_counts():
+    slip = np.tile([0.01, 0.01, 0.01, 0.06], 25)
+    assert [event[1] for event in told(monitor(), course(100, cage_slip=slip), size=4)] == ["bearing.slip"]
+    assert told(monitor(), course(100, cage_slip=slip), size=1) == [], "alone it does not last"
+
+
+def test_a_short_life_is_a_warning_with_hours_in_its_text_and_an_error_where_asked_for():
+    one = monitor("thresholds.life_error=100")
+    life = np.repeat([1000.0, 250.0, 50.0], 30)
+    assert [event[1:] for event in told(one, course(90, modified_rating_life=life)) if event[1] == "bearing.life"] == [
+        ("bearing.life", Level.WARN),
+        ("bearing.life", Level.ERROR),
+    ]
+    assert "50 h is below 100 h" in next(event.text for event in one.events(9.0) if event.code == "bearing.life")
+
+
+def test_remaining_life_is_what_damage_leaves_at_the_present_rate():
+    one = monitor("thresholds.remaining_life_memory=1 ms")
+    one.take(course(1, modified_rating_life=2000.0, damage=0.75))
+    assert one.values["remaining life [h]"] == pytest.approx(500.0)
+    assert [event[1] for event in told(one, course(30, modified_rating_life=1000.0, damage=0.75))] == ["bearing.remaining_life"]
+
+
+def test_the_rate_of_damage_is_a_mean_of_rates_not_of_lives():
+    """A life that swings between 100 and 300 h uses up a bearing in 150 h."""
+    one = monitor()
+    told(one, course(6000, modified_rating_life=np.tile([100.0, 300.0], 3000)))
+    assert one.values["remaining life [h]"] == pytest.approx(150.0, rel=0.01)
+
+
+def test_a_bearing_that_rests_lives_for_ever_and_a_used_up_one_is_told():
+    one = monitor()
+    one.take(course(1, modified_rating_life=math.inf))
+    assert one.values["remaining life [h]"] == math.inf
+    one.take(course(1, modified_rating_life=1e4, damage=1.2))
+    assert [(event.code, event.level) for event in one.events(1.0)] == [("bearing.life_used", Level.ERROR)]
+    assert one.values["remaining life [h]"] == 0.0
+
+
+def test_pocket_forces_of_either_sign_are_judged_where_a_limit_is_set():
+    force = np.repeat([1.0, -30.0], 20)
+    assert told(monitor(), course(40, pocket_force=force)) == []
+    one = monitor("thresholds.pocket_force_warning=20 N", "thresholds.pocket_force_error=50 N")
+    assert told(one, course(40, pocket_force=force)) == [(2.6, "bearing.pocket_force", Level.WARN)]
+    assert one.values["largest pocket force [N]"] == 30.0
+    assert told(one, course(5, pocket_force=math.nan)) == [(0.1, "bearing.pocket_force", Level.WARN)], "not told at this level: clears in its time"
+
+
+def rolling_block(shaft_speed, force=500.0, count=1):
+    scene = load_scene("deng2017_table1", ROUGH)
+    bearing = scene.bearing
+    block = course(count, shaft_speed=shaft_speed)
+    block["roller_radius"] = bearing.pitch_radius
+    block["orbital_speed"] = 0.5 * shaft_speed * (1 - bearing.diameter_ratio)
+    block["roller_spin"] = block["orbital_speed"] * bearing.pitch_radius / (bearing.roller.diameter / 2)
+    block["inner_load"], block["outer_load"] = force, 1.2 * force
+    return scene, block
+
+
+def test_lambda_is_the_inner_contacts_least_film_over_the_composite_roughness():
+    """Against the compiled film laws, in pure rolling: there both surfaces run through the contact as fast as the inner one."""
+    scene, block = rolling_block(1000.0)
+    params, oil = pack(scene), oil_at(scene.lubricant.oil, 393.15)
+    radius, modulus = params.raceways.inner_curvature_radius, params.raceways.reduced_modulus
+    rolling = (1000.0 - block["orbital_speed"][0, 0]) * scene.bearing.inner_raceway.radius  # of the inner surface, seen from the contact
+    film = radius * minimum_film(
+        oil.viscosity * rolling / (modulus * radius), oil.pressure_viscosity * modulus, 500.0 / (modulus * radius * scene.bearing.roller.length)
+    )
+    film *= thermal_factor(0.0, oil.viscosity * oil.temperature_viscosity * rolling**2 / oil.conductivity)
+    assert FilmRatio(scene).least(block)[0] == pytest.approx(film / math.hypot(0.1e-6, 0.2e-6), rel=0.01)
+
+
+def test_lambda_grows_with_speed_and_falls_with_load_heat_and_sliding():
+    ratio = lambda scene, block: FilmRatio(scene).least(block)[0]  # noqa: E731
+    usual = ratio(*rolling_block(1000.0))
+    assert ratio(*rolling_block(500.0)) < usual < ratio(*rolling_block(1000.0, force=100.0))
+    scene, block = rolling_block(1000.0)
+    block["oil_temperature"] = 450.0
+    assert ratio(scene, block) < 0.7 * usual
+    scene, block = rolling_block(1000.0)
+    block["roller_spin"] *= 0.5
+    assert ratio(scene, block) < usual
+
+
+def test_spins_that_a_level_does_not_tell_are_those_of_rolling_and_unloaded_rollers_have_no_film():
+    scene, block = rolling_block(1000.0)
+    usual = FilmRatio(scene).least(block)[0]
+    block["roller_spin"] = math.nan
+    assert FilmRatio(scene).least(block)[0] == pytest.approx(usual)
+    block["inner_load"] = block["outer_load"] = 0.0
+    assert math.isnan(FilmRatio(scene).least(block)[0])
+
+
+def test_a_thin_film_is_a_warning_where_the_bearing_has_a_roughness():
+    scene, slow = rolling_block(21.0, count=50)
+    assert [event[1] for event in told(Monitor(scene), slow)] == ["bearing.lambda"]
+    assert told(monitor(), slow) == []
+    _, resting = rolling_block(0.0, count=50)
+    assert told(Monitor(scene), resting) == [], "at rest there is no film, and nothing rubs"
+
+
+def test_other_thresholds_in_mid_run_hold_from_then_on():
+    one, block = monitor(), course(100, cage_slip=0.03)
+    assert told(one, block[:50]) == []
+    one.adjust(load_scene("deng2017_table1", ["thresholds.slip_warning=2 %"]).thresholds)
+    assert told(one, block[50:]) == [(5.6, "bearing.slip", Level.WARN)]
+
+
+def test_a_restart_forgets_troubles_and_damage():
+    one = monitor()
+    told(one, course(50, cage_slip=0.2, damage=2.0))
+    one.restart()
+    assert one.events(5.0) == [] and one.values == {}
+
+
+def test_thresholds_take_units_and_faults_are_told():
+    limits = load_scene("deng2017_table1", ["thresholds.residual.false_alarm_time=100 h", "thresholds.slip_hold={raise_after: 100 ms}"]).thresholds
+    assert (limits.residual.false_alarm_time, limits.slip_hold.raise_after, limits.slip_hold.clear_after) == (3.6e5, 0.1, 2.0)
+    with pytest.raises(SceneError, match="raise_after"):
+        load_scene("deng2017_table1", ["thresholds.slip_hold.raise_after=-1 s"])

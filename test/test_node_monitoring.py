@@ -1,0 +1,94 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""The node with a measured cage: residual published, recorded and judged, over DDS."""
+
+import math
+import signal
+import time
+
+import numpy as np
+import pytest
+
+pytest.importorskip("rclpy", reason="the node needs ROS 2 (pip install 'bearing_sim[ros]', or a ROS installation)")
+
+from rclpy.qos import qos_profile_sensor_data  # noqa: E402
+from ros_bench import Client, NodeProcess, fresh_domain  # noqa: E402
+from rosbags.highlevel import AnyReader  # noqa: E402
+
+from bearing_sim import topics  # noqa: E402
+from bearing_sim.input_log import read_input_log  # noqa: E402
+from bearing_sim.recording_reader import Recording  # noqa: E402
+from bearing_sim.ros.messages import message, message_class  # noqa: E402
+
+pytestmark = pytest.mark.timeout(180)
+QUICK = ("batch=40ms", "learning=1.5s", "settling=0.2s", "tolerance=0.2%")
+
+
+@pytest.fixture
+def node(tmp_path):
+    """A node that records, and a client of it."""
+    domain = fresh_domain()
+    words = ", ".join(f"'thresholds.residual.{word}'" for word in QUICK)
+    arguments = ("-p", f"overrides:=[{words}]", "-p", "governor:=false", "-p", "cage_joint:=m1_cage", "-p", f"record:={tmp_path / 'run.mcap'}")
+    process, client = NodeProcess(tmp_path, domain, "--ros-args", *arguments), Client(domain)
+    yield process, client
+    client.close()
+    process.end(signal.SIGKILL)
+
+
+class Cage:
+    """Publishes what a sensor at the cage would, told from the node's own prediction."""
+
+    def __init__(self, client):
+        self.client = client
+        self.publisher = client.node.create_publisher(
+            message_class(topics.MEASUREMENTS[topics.MEASURED].ros_type), topics.MEASURED, qos_profile_sensor_data
+        )
+        self.residuals = []
+        client.node.create_subscription(message_class("std_msgs/msg/Float64"), "cage_slip_residual", lambda got: self.residuals.append(got.data), 200)
+
+    def send(self, speed, name="m1_cage"):
+        topic = topics.MEASUREMENTS[topics.MEASURED]
+        self.publisher.publish(message(topic.ros_type, topic.message(self.client.node.get_clock().now().nanoseconds, speed) | {"name": [name]}))
+
+    def drive_until(self, condition, extra, patience=40.0):
+        """Drive the node, with a cage that slips by ``extra`` more than the node says, until the condition holds."""
+        end = time.monotonic() + patience
+        while not condition():
+            assert time.monotonic() < end, f"{self.client.values()}"
+            self.client.drive(0.02)
+            if joints := self.client.received["bearing_joints"]:
+                _, cage, ideal = joints[-1].velocity
+                self.send(cage - extra * ideal)
+
+
+def test_a_measured_cage_is_compared_judged_published_and_recorded(node, tmp_path):
+    process, client = node
+    cage = Cage(client)
+    client.wait_until_matched(process)
+    client.drive_until(lambda: client.received["cage_slip"], "the node runs", process)
+    assert not any("residual" in key for key in client.values()) and not cage.residuals
+
+    def verdict():
+        return client.values().get("residual slip, verdict")
+
+    cage.drive_until(lambda: verdict() == "as predicted", extra=0.01)
+    assert cage.residuals[-1] == pytest.approx(0.01, abs=3e-3)
+    assert float(client.values()["residual slip, usual mean [points]"]) == pytest.approx(1.0, abs=0.3)
+    cage.drive_until(lambda: verdict() == "slips more than predicted", extra=0.05)
+    (told,) = {(level, text.partition(" for about")[0]) for level, name, text in client.statuses() if name.endswith("residual.shift")}
+    assert told == (1, "residual slip: the cage slips more than predicted")
+    assert process.text.count("residual.shift") == 1, "logged once"
+
+    cage.send(math.nan)
+    cage.send(100.0, name="propeller")
+    for words in ("nan rad/s is not finite", "no joint 'm1_cage'"):
+        client.drive_until(lambda words=words: any(words in text for _, _, text in client.statuses()), "the fault is told", process)
+
+    assert process.end(signal.SIGINT) == 0, process.text
+    with AnyReader([tmp_path / "run.mcap"]) as reader:
+        found = {connection.topic: reader.deserialize(data, connection.msgtype) for connection, _, data in reader.messages()}
+    assert found["/cage_slip_residual"].data == pytest.approx(0.05, abs=0.01)
+    assert found["/cage_speed_measured"].name == ["cage"] and found["/cage_speed_measured"].velocity[0] > 100.0
+    assert len(read_input_log(tmp_path / "run.mcap").series["shaft_speed"].log_times) > 100
+    samples = sum(len(item) for item in Recording(tmp_path / "run.mcap") if isinstance(item, np.ndarray))
+    assert samples > 100, "readers of runs are not troubled by what they do not know"

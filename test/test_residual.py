@@ -1,0 +1,162 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Residual slip: synthetic faults are found, made with the model itself; noise, rest, start-up and lost sensors are none."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.signal import lfilter
+
+from bearing_sim.runtime.residual import ResidualMonitor
+from bearing_sim.scene_file import load_scene
+from bearing_sim.scene_monitoring import ResidualDetection
+from bearing_sim.simulation import Simulation
+
+SPEED = 4712.0  # rad/s
+RATE = 10.0  # Hz
+READING = 0.003  # standard deviation of a slip from a cage speed sensor
+
+
+def monitor(**settings):
+    return ResidualMonitor(ResidualDetection(**settings), from_speed=20.0)
+
+
+def feed(one, seconds, residual, start, lot, correlation=0.0, predicted=0.05):
+    """Give a monitor noisy residuals; return when it told a change first, and its time at the end."""
+    count = round(seconds * RATE)
+    noise = READING * lfilter([math.sqrt(1 - correlation**2)], [1, -correlation], lot.normal(size=count))
+    told = math.nan
+    for k, wobble in enumerate(noise.tolist()):
+        now = start + (k + 1) / RATE
+        one.take(now, SPEED, predicted + residual + wobble, predicted)
+        if math.isnan(told) and one.events(now):
+            told = now - start
+    return told, start + seconds
+
+
+@pytest.mark.parametrize("correlation", [0.0, 0.95])
+def test_24_hours_of_noise_give_no_false_alarm_at_one_in_1000_hours(correlation):
+    """86,400 batches; the chance of a false alarm is 2.4 %, and the noise always the same.  Readings of 0.95 resemble each other over 2 s."""
+    one, lot = monitor(), np.random.default_rng(24)
+    told, end = feed(one, 24 * 3600.0, 0.01, 0.0, lot, correlation)
+    assert math.isnan(told) and one.verdict(end) == "as predicted"
+    assert one.values(end)["residual slip, usual mean [points]"] == pytest.approx(1.0, abs=0.02)
+    told, _ = feed(one, 60.0, 0.02, end, lot, correlation)
+    assert told < 60.0, "and a point of slip is found after that day"
+
+
+def test_false_alarms_come_as_often_as_stated():
+    """Of an hour's noise where one false alarm in 100 s is asked for: the detector is no deaf one."""
+    one, lot, alarms, before = monitor(false_alarm_time=100.0, tolerance=1e-6), np.random.default_rng(7), 0, False
+    for k, wobble in enumerate((READING * lot.normal(size=200_000)).tolist()):
+        one.take(k / RATE, SPEED, wobble, 0.0)
+        alarms, before = alarms + (bool(one.events(0.0)) and not before), bool(one.events(0.0))
+    assert 0.5 < 20_000 / alarms / 100.0 < 2.5, "an alarm lasts for a while, in which there is no other"
+
+
+FAULTS = {
+    "drag up": ["lubricant.mixture_fraction=0.06"],
+    "traction down": ["lubricant.traction_scale=0.7"],
+    "load loss": ["operating.radial_load=400 N"],
+}
+LOW_PRELOAD = ["bearing.outer_raceway.low_radius=34.8675mm"]  # where lobes squeeze more, a radial load lost changes slip less
+
+
+def settled_slip(overrides):
+    return float(Simulation(load_scene("deng2017_table1", LOW_PRELOAD + overrides)).advance(0.5, samples=500)["cage_slip"][250:].mean())
+
+
+@pytest.fixture(scope="module")
+def predicted():
+    return settled_slip([])
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_a_fault_is_found_within_20_seconds_and_over_after_the_repair(fault, predicted):
+    """The measured machine is the model with a changed scene; a constant error of the model (1 point) is no fault."""
+    change = settled_slip(FAULTS[fault]) - predicted
+    assert change > 0.004, "all of these make the cage slip more"
+    one, lot = monitor(), np.random.default_rng(11)
+    told, now = feed(one, 600.0, 0.01, 0.0, lot, predicted=predicted)
+    assert math.isnan(told)
+    told, now = feed(one, 120.0, 0.01 + change, now, lot, predicted=predicted)
+    assert told < 20.0
+    (event,) = one.events(now)
+    assert event.code == "residual.shift" and "slips more than predicted" in event.text and "one false alarm in 1000 h" in event.text
+    assert one.verdict(now) == "slips more than predicted"
+    told, now = feed(one, 120.0, 0.01, now, lot, predicted=predicted)
+    assert not one.events(now) and one.verdict(now) == "as predicted"
+
+
+def test_less_slip_than_predicted_is_found_too():
+    one, lot = monitor(), np.random.default_rng(12)
+    _, now = feed(one, 300.0, 0.0, 0.0, lot)
+    feed(one, 60.0, -0.01, now, lot)
+    assert "slips less than predicted" in one.events(now)[0].text
+
+
+def test_fading_mean_and_deviation_are_those_of_the_noise():
+    one, lot = monitor(memory=100.0), np.random.default_rng(13)
+    feed(one, 1000.0, 0.02, 0.0, lot)
+    assert one.mean == pytest.approx(0.02, abs=3e-4) and one.deviation == pytest.approx(READING, rel=0.1)
+
+
+def test_rest_start_up_and_changes_of_speed_are_not_judged():
+    one, lot, now = monitor(), np.random.default_rng(14), 0.0
+    for _ in range(20):  # starts and stops, where sensor and model disagree as they like
+        for _ in range(50):
+            now += 1 / RATE
+            one.take(now, 0.0, math.nan, math.nan)
+        assert one.verdict(now).startswith("not judged")
+        for k in range(50):
+            now += 1 / RATE
+            one.take(now, SPEED * (k + 1) / 50, lot.uniform(-0.5, 0.5), 0.05)
+        for _ in range(30):  # and while the bearing settles after the ramp
+            now += 1 / RATE
+            one.take(now, SPEED, lot.uniform(-0.5, 0.5), 0.05)
+        now += 2.0
+        told, now = feed(one, 30.0, 0.0, now, lot)
+        assert math.isnan(told)
+    assert one.values(now)["residual slip, usual mean [points]"] == pytest.approx(0.0, abs=0.05)
+    assert one.verdict(now) == "as predicted"
+
+
+@pytest.mark.parametrize(("change", "found"), [(0.0015, False), (0.005, True)])
+def test_a_lasting_change_within_the_tolerance_is_no_fault_and_one_well_beyond_it_is(change, found):
+    one, lot = monitor(tolerance=0.002), np.random.default_rng(18)
+    _, now = feed(one, 300.0, 0.0, 0.0, lot)
+    told, _ = feed(one, 600.0, change, now, lot)
+    assert math.isnan(told) != found
+
+
+def test_verdicts_before_during_and_after_a_measurement():
+    one, lot = monitor(), np.random.default_rng(15)
+    assert one.values(5.0) == {} and one.verdict(5.0) == "no measurement"
+    _, now = feed(one, 40.0, 0.0, 5.0, lot)
+    assert one.verdict(now).startswith("learning what is usual: 3") and "of 120 s" in one.verdict(now)
+    assert one.verdict(now + 10.0) == "no measurement"
+    told, now = feed(one, 300.0, 0.0, now + 3600.0, lot)
+    assert math.isnan(told) and one.verdict(now) == "as predicted"
+
+
+def test_measurements_rarer_than_batches_are_judged_one_by_one():
+    one, lot = monitor(), np.random.default_rng(16)
+    for k in range(400):
+        one.take(2.0 * k, SPEED, READING * lot.normal() + (0.02 if k > 300 else 0.0), 0.0)
+    assert one.verdict(799.0) == "slips more than predicted"
+
+
+def test_settings_that_cannot_be_are_refused():
+    with pytest.raises(ValueError, match="30 or more"):
+        ResidualDetection(batch=10.0)
+    with pytest.raises(ValueError, match="20 batches"):
+        ResidualDetection(batch=4.0, false_alarm_time=60.0)
+
+
+def test_other_settings_in_mid_run_keep_what_was_learned_unless_batches_change():
+    one, lot = monitor(), np.random.default_rng(17)
+    _, now = feed(one, 200.0, 0.01, 0.0, lot)
+    one.adjust(ResidualDetection(false_alarm_time=3600.0), 20.0)
+    assert one.verdict(now) == "as predicted"
+    one.adjust(ResidualDetection(batch=2.0), 20.0)
+    assert one.verdict(now) == "no measurement"
