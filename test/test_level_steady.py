@@ -198,7 +198,7 @@ def test_sample_has_the_loads_of_level_slip_and_no_spins():
 def test_one_operating_point_is_solved_for_once():
     run = direct()
     run.advance(0.1, samples=50)
-    assert run._work.solutions.tolist() == [1, 0]
+    assert run._work.solutions.tolist() == [1, 0, 0]
 
 
 def test_what_the_level_would_ignore_is_refused():

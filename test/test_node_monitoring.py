@@ -65,7 +65,7 @@ def test_a_measured_cage_is_compared_judged_published_and_recorded(node, tmp_pat
     process, client = node
     cage = Cage(client)
     client.wait_until_matched(process)
-    client.drive_until(lambda: client.received["cage_slip"], "the node runs", process)
+    client.drive_until(lambda: client.received["cage_slip"] and client.received["diagnostics"], "the node runs", process)
     assert not any("residual" in key for key in client.values()) and not cage.residuals
 
     def verdict():
