@@ -15,6 +15,7 @@ SELECTION = ["test/test_package.py", "test/test_topics.py", "test/test_pacer.py"
 LEFT_BEHIND = (".git", ".venv", ".*_cache", ".hypothesis", "__pycache__", "*.egg-info", "build", "install", "log", "runs")
 
 pytestmark = [
+    pytest.mark.skipif(" " in sys.executable, reason=f"colcon's own scripts cannot hold a path with a space: {sys.executable}"),
     pytest.mark.skipif(COLCON is None, reason="colcon is not installed: pip install colcon-common-extensions"),
     pytest.mark.timeout(180),
 ]
