@@ -73,7 +73,8 @@ class Demo:
 
     @contextmanager
     def _node(self) -> Iterator[subprocess.Popen]:
-        parameters = {"scene": self._scene, "record": str(self.recording)}
+        # One level throughout, so that every demonstration shows the same; nor is a second level compiled beside a first start.
+        parameters = {"scene": self._scene, "record": str(self.recording), "governor": "false"}
         if self._overrides:
             parameters["overrides"] = "[" + ", ".join(f"'{text}'" for text in self._overrides) + "]"
         words = [word for name, value in parameters.items() for word in ("-p", f"{name}:={value}")]
