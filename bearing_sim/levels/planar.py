@@ -19,6 +19,7 @@ from bearing_sim.kernels.load_balance import LOAD
 from bearing_sim.kernels.traction import CONTACT
 from bearing_sim.levels import planar_algebra, planar_rollers, slip
 from bearing_sim.levels.advance import advance_by
+from bearing_sim.levels.carried import FIRST_ECCENTRICITY
 from bearing_sim.levels.inputs import shaft_speed_at
 from bearing_sim.levels.load_means import average_powers
 from bearing_sim.levels.observation import observe_course
@@ -33,7 +34,6 @@ from bearing_sim.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT
 from bearing_sim.sample import COLUMN, SCALARS
 
 NEAR, FAR, TURNING = 8.5e-5, 1.7e-4, 4.25  # what a tolerance of 1 allows: positions, pockets and the cage [m], speeds against ideal rolling
-_FIRST_ECCENTRICITY = 0.3  # of the guide clearance; a cage exactly in the centre would have no direction to whirl from
 
 
 def initial_state(params: Params, work, shaft_speed, load_y, load_z):
@@ -53,7 +53,7 @@ def initial_state(params: Params, work, shaft_speed, load_y, load_z):
     state = np.zeros(2 * BORDER + BLOCK * count)
     state[RING_Y], state[RING_Z] = balance.ring
     turning = params.cage.guidance.turning
-    state[CAGE_Y] = turning * state[RING_Y] + _FIRST_ECCENTRICITY * params.cage.guide_clearance
+    state[CAGE_Y] = turning * state[RING_Y] + FIRST_ECCENTRICITY * params.cage.guide_clearance
     state[CAGE_Z] = turning * state[RING_Z]
     state[OMEGA] = course[slip.OMEGA]
     radius, angle, _, orbital_speed, spin = state[ROLLERS:].reshape(BLOCK, count)

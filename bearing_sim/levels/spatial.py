@@ -18,6 +18,7 @@ from bearing_sim.kernels.lanes import LANES
 from bearing_sim.kernels.load_balance import LOAD
 from bearing_sim.levels import slip, spatial_algebra, spatial_rollers
 from bearing_sim.levels.advance import advance_by
+from bearing_sim.levels.carried import FIRST_ECCENTRICITY
 from bearing_sim.levels.inputs import shaft_speed_at
 from bearing_sim.levels.load_means import average_powers
 from bearing_sim.levels.observation import observe_course, observe_life
@@ -53,8 +54,6 @@ from bearing_sim.params import Params
 from bearing_sim.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT, lamina_life_revolutions, rating_life_revolutions
 from bearing_sim.sample import COLUMN, SCALARS
 
-_FIRST_ECCENTRICITY = 0.3  # as at level `planar`
-
 
 def initial_state(params: Params, work, shaft_speed, load_y, load_z):
     """Return ideal rolling with all rollers in the middle of their pockets and in quasi-static balance.
@@ -84,7 +83,7 @@ def initial_state(params: Params, work, shaft_speed, load_y, load_z):
     if has_slices_of_its_own(params):
         balance_by_slices(params, course[slip.OMEGA], (load_y, load_z), balance.growth[0], state)
     turning = params.cage.guidance.turning
-    state[CAGE_Y] = turning * state[RING_Y] + _FIRST_ECCENTRICITY * params.cage.guide_clearance
+    state[CAGE_Y] = turning * state[RING_Y] + FIRST_ECCENTRICITY * params.cage.guide_clearance
     state[CAGE_Z] = turning * state[RING_Z]
     state[CAGE_TILT_Y], state[CAGE_TILT_Z] = turning * state[RING_TILT_Y], turning * state[RING_TILT_Z]
     return state
