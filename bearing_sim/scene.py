@@ -71,7 +71,7 @@ class Roughness:
 
     @property
     def composite(self) -> float:
-        """sigma = sqrt(R_q1^2 + R_q2^2) [m]."""
+        """Root of the sum of squares, sigma = sqrt(R_q1^2 + R_q2^2) [m]."""
         return math.hypot(self.roller, self.raceway)
 
 

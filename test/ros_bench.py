@@ -4,6 +4,7 @@
 import os
 import random
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -25,9 +26,28 @@ _COMPILING = 100.0  # [s] how long the node may take to its start when its code 
 _REPOSITORY = Path(__file__).resolve().parent.parent
 
 
+_DOMAINS = list(range(1, 101))  # higher ones collide with ports that the system hands out
+random.SystemRandom().shuffle(_DOMAINS)
+
+
 def fresh_domain() -> int:
-    """Return a ROS_DOMAIN_ID of one's own (of 1 to 100: higher ones collide with ports that the system hands out)."""
-    return random.SystemRandom().randint(1, 100)
+    """Return a ROS_DOMAIN_ID that no test of this process has had and in which nobody is heard: two nodes in one answer for each other."""
+    while _DOMAINS:
+        domain = _DOMAINS.pop()
+        if not _inhabited(domain):
+            return domain
+    raise RuntimeError("every ROS_DOMAIN_ID of 1 to 100 has been used")
+
+
+def _inhabited(domain: int) -> bool:
+    """Return whether some participant has one of the first ports of a domain (DDSI-RTPS 2.5, section 9.6.2.3)."""
+    for port in (0, 10, 11, 12, 13):
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+            try:
+                probe.bind(("", 7400 + 250 * domain + port))
+            except OSError:
+                return True
+    return False
 
 
 class NodeProcess:

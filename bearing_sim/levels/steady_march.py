@@ -22,7 +22,7 @@ _SAMPLES = 24  # in a window
 _TURNS = 3.37  # of an ideal cage in the first window, no whole number of pitches
 _WINDOWS = 12  # each twice as long as the one before from the second on
 _AGREED, _AGREED_FLOOR = 2e-3, 5e-5  # of slips of two windows
-_BUDGET = 60_000  # steps of all windows together
+_BUDGET = np.int64(60_000)  # steps of a window; a Python number would be a literal type, and with it a second compilation of the march
 _FIRST_STEP, _LONGEST_STEP = 1e-6, 1.0  # s
 _AN_INSTANT = 1e-6  # of an ideal cage turn
 
