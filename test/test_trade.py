@@ -21,12 +21,12 @@ PAIRS = st.lists(st.tuples(st.floats(0.01, 1e5), st.floats(0.0, 10.0)), min_size
 
 
 def measured(pairs):
-    return [Traded(SETTING, factor, error, 0.0, 0.0, "") for factor, error in pairs]
+    return [Traded(SETTING, factor, error, error, 0.0, 0.0, "") for factor, error in pairs]
 
 
 def found(pairs):
     ones = measured(pairs)
-    return Trade(ones, front_of(ones), "", (0.0, 0.0, 0.0), 1.0, {})
+    return Trade(ones, front_of(ones), "", (0.0, 0.0, 0.0, 0.0), 1.0, {})
 
 
 @given(PAIRS)
@@ -54,18 +54,19 @@ def test_errors_that_the_reference_cannot_tell_apart_do_not_lengthen_the_front()
 
 
 def test_a_setting_with_a_fault_is_on_no_front():
-    ones = [*measured([(1.0, 0.1)]), Traded(SETTING, math.nan, math.nan, math.nan, math.nan, "ran out of steps")]
+    ones = [*measured([(1.0, 0.1)]), Traded(SETTING, *[math.nan] * 5, "ran out of steps")]
     assert front_of(ones) == [0]
 
 
-def test_errors_are_root_mean_squares_over_bins_and_the_life_that_damage_means():
+def test_errors_are_root_mean_squares_over_bins_with_the_largest_of_slip_and_the_life_that_damage_means():
     reference = Course(np.array([6.0, 8.0]), np.array([900.0, 1100.0]), 1e-6)
     other = Course(np.array([6.3, 8.4]), np.array([930.0, 1060.0]), 2e-6)
-    slip, load, life = errors(other, reference)
+    slip, largest, load, life = errors(other, reference)
     assert slip == pytest.approx(math.sqrt((0.3**2 + 0.4**2) / 2))
+    assert largest == pytest.approx(0.4)
     assert load == pytest.approx(math.sqrt((30**2 + 40**2) / 2) / 1000)
     assert life == pytest.approx(0.5)  # half the life
-    assert errors(reference, reference) == (0.0, 0.0, 0.0)
+    assert errors(reference, reference) == (0.0, 0.0, 0.0, 0.0)
 
 
 def test_every_setting_of_every_level_is_a_scene():

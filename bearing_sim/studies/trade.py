@@ -60,6 +60,7 @@ class Traded(NamedTuple):
     setting: Setting
     real_time_factor: float
     slip_error: float  # root mean square over bins [percentage points]
+    largest_slip_error: float  # of any bin [percentage points]: what an instant may be off
     load_error: float  # root mean square over bins, relative to the mean
     life_error: float  # relative, of the life that the damage of the manoeuvre means
     fault: str  # why there is nothing, or empty
@@ -71,7 +72,7 @@ class Trade(NamedTuple):
     measured: list[Traded]
     front: list[int]  # of slip error over real-time factor, fastest first
     reference: str
-    own_error: tuple[float, float, float]  # of the reference: slip [percentage points], load, life
+    own_error: tuple[float, float, float, float]  # of the reference: slip and its largest [percentage points], load, life
     simulated: float  # s
     left_out: dict[str, str]  # levels that cannot compute the scene, and why
 
@@ -178,7 +179,6 @@ def _with_tolerance(scene: Scene, tolerance: float) -> Scene:
 
 
 def _measure(scene, setting, reference, turns):
-    nothing = math.nan
     try:
         Simulation(scene).advance(1e-6)  # compiles
         course, spent = _run(scene, turns)  # a table that has to be built is built here, and not counted
@@ -187,7 +187,7 @@ def _measure(scene, setting, reference, turns):
                 break
             spent = min(spent, _run(scene, turns)[1])
     except IntegrationError as fault:
-        return Traded(setting, nothing, nothing, nothing, nothing, str(fault))
+        return Traded(setting, *[math.nan] * 5, str(fault))
     return Traded(setting, turns * _turn(scene) / spent, *_errors(course, reference), "")
 
 
@@ -245,7 +245,7 @@ def _inputs_at(turn, start: Inputs) -> Inputs:
 
 
 def _errors(course, reference):
-    slip = np.sqrt(np.mean((course.slip - reference.slip) ** 2))
+    away = np.abs(course.slip - reference.slip)
     load = np.sqrt(np.mean((course.load - reference.load) ** 2)) / reference.load.mean()
     life = abs(reference.damage / course.damage - 1.0) if course.damage > 0.0 else math.inf
-    return float(slip), float(load), float(life)
+    return float(np.sqrt(np.mean(away**2))), float(away.max()), float(load), float(life)

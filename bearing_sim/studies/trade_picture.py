@@ -22,7 +22,8 @@ def draw(path: Path, title: str, found: Trade) -> None:
     FigureCanvasAgg(figure)
     names = ("slip_error", "load_error", "life_error")
     labels = ("error of cage slip [percentage points]", "error of the largest roller load", "error of the life")
-    for axes, name, label, own, floor in zip(figure.subplots(1, 3, sharex=True), names, labels, found.own_error, _FLOORS):
+    own_errors = found.own_error[0], *found.own_error[2:]
+    for axes, name, label, own, floor in zip(figure.subplots(1, 3, sharex=True), names, labels, own_errors, _FLOORS):
         _draw_errors(axes, found, name, floor)
         axes.axhspan(floor / 2, max(own, floor), color="0.88", zorder=0, label="the reference's own")
         axes.set(xscale="log", yscale="log", xlabel="times real time, one core", ylabel=label)
