@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from one_equation import factor, kept, norm, nothing, solve, stay
 
 from bearing_sim.integrators.fixed_step import fixed_step
 from bearing_sim.integrators.rosenbrock2 import rosenbrock2_step
@@ -13,11 +14,6 @@ from bearing_sim.integrators.status import COUNT, NON_FINITE, NOT_CONVERGED, NOT
 from bearing_sim.kernels.compilation import kernel
 
 # model: (stiffness, time from which all is NaN, longest step that converges); work: jacobian, factored, held shift, counts
-
-
-@kernel
-def kept(h, y, model, work):
-    pass
 
 
 @kernel
@@ -36,34 +32,8 @@ def rate_and_jacobian(t, y, model, work, rate):
 
 
 @kernel
-def nothing(t, y, model, work, rate):
-    return True
-
-
-@kernel
 def failing(t, y, model, work, rate):
     return False
-
-
-@kernel
-def factor(shift, work):
-    work[1] = 1.0 - shift * work[0]
-    return work[1] != 0.0
-
-
-@kernel
-def solve(work, x):
-    x[0] /= work[1]
-
-
-@kernel
-def norm(t, y, change, tolerance, model):
-    return abs(change[0]) / tolerance
-
-
-@kernel
-def stay(known, shift, slope, model, work, guess):
-    guess[0] = known[0]
 
 
 @kernel

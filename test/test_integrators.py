@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from one_equation import factor, kept, norm, nothing, solve, stay
 
 from bearing_sim.integrators.drive import drive
 from bearing_sim.integrators.rosenbrock2 import rosenbrock2_step
@@ -41,27 +42,6 @@ def nan_rate(t, y, model, work, rate):
 
 
 @kernel
-def factor(shift, work):
-    work[1] = 1.0 - shift * work[0]
-    return work[1] != 0.0
-
-
-@kernel
-def solve(work, x):
-    x[0] /= work[1]
-
-
-@kernel
-def norm(t, y, change, tolerance, model):
-    return abs(change[0]) / tolerance
-
-
-@kernel
-def kept(h, y, model, work):
-    pass
-
-
-@kernel
 def no_limit(t, y, model):
     return 1e9
 
@@ -74,16 +54,6 @@ def step(t, y, rate, h, model, work, stages, next_y, error):
 @kernel
 def nan_step(t, y, rate, h, model, work, stages, next_y, error):
     return rosenbrock2_step(nan_rate, factor, solve, t, y, rate, h, model, work, stages, next_y, error)
-
-
-@kernel
-def nothing(t, y, model, work, rate):
-    return True
-
-
-@kernel
-def stay(known, shift, slope, model, work, guess):
-    guess[0] = known[0]
 
 
 @kernel
