@@ -179,7 +179,9 @@ class Integration:
     """
 
     method: str | None = None  # see `bearing_sim.methods`; None is the level's own
-    relative_tolerance: quantity("", "error allowed in a step, relative to the state", 1e-10, 0.1) = 1e-2
+    relative_tolerance: quantity(
+        "", "error allowed in a step, relative to the state; with a fixed step, what ends an iteration, 1e-7 or more", 1e-10, 0.1
+    ) = 1e-2
     maximum_step: quantity("s", "longest step", 1e-9, 1.0, "us") = 1e-2
     first_step: quantity("s", "first step", 1e-12, 1.0, "us") = 1e-5
     fixed_step: quantity("s", "step without error control, for hard real time", 1e-9, 1e-2, "us") | None = None

@@ -15,8 +15,10 @@ from bearing_sim.levels.steady_table import Table
 from bearing_sim.oil import kinematic_viscosities
 from bearing_sim.params import lubricate, pack
 from bearing_sim.sample import flat, new_block
-from bearing_sim.scene import Operating, Scene
+from bearing_sim.scene import Integration, Operating, Scene
 from bearing_sim.tables.store import cached_table
+
+_FINEST_WITH_FIXED_STEP = 1e-7
 
 
 class Inputs(NamedTuple):
@@ -141,7 +143,7 @@ class Simulation:
             now.load_z,
             (end.load_z - now.load_z) / duration,
         )
-        return Model(self._params, self._lubrication, drive, float(self.scene.integration.relative_tolerance))
+        return Model(self._params, self._lubrication, drive, _tolerance(self.scene.integration))
 
     @property
     def sample(self) -> np.void:
@@ -265,6 +267,16 @@ class Simulation:
             if self.inputs.oil_temperature != self._lubrication.temperature:
                 self._lubrication = lubricate(self.scene.lubricant, self._params, self.inputs.oil_temperature)
         return block[:reached]
+
+
+def _tolerance(integration: Integration) -> float:
+    """Return the tolerance of a method.
+
+    With a fixed step it only says when the iteration of a stage has ended, and at a bend of a law of friction an iteration need not come
+    much closer than the finest one here, however the step is divided.
+    """
+    tolerance = float(integration.relative_tolerance)
+    return tolerance if integration.fixed_step is None else max(tolerance, _FINEST_WITH_FIXED_STEP)
 
 
 def _checked(inputs: Inputs) -> Inputs:
