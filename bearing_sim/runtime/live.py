@@ -17,10 +17,11 @@ from bearing_sim.effects import cheaper_levels
 from bearing_sim.events import Event, Level
 from bearing_sim.runtime.governor import Governor
 from bearing_sim.runtime.health import Condition, Health
-from bearing_sim.runtime.input_gate import InputGate
+from bearing_sim.runtime.input_gate import UNITS, InputGate
 from bearing_sim.runtime.monitor import Monitor
 from bearing_sim.runtime.pacer import Pacer
 from bearing_sim.runtime.residual import ResidualMonitor
+from bearing_sim.runtime.rivals import Rivals
 from bearing_sim.runtime.runner import Phase, Runner
 from bearing_sim.scene import Scene, Thresholds
 from bearing_sim.simulation import Inputs, Simulation
@@ -120,6 +121,7 @@ class LiveModel:
         self.gate = InputGate(scene.input_limits, simulation.inputs)
         self.health, self.monitor = Health(), Monitor(scene)
         self.residual = ResidualMonitor(scene.thresholds.residual, scene.thresholds.slip_from_speed)
+        self._rivals = {channel: Rivals(channel, unit) for channel, unit in UNITS.items()}
         beat = cadence(sample_rate)
         pacer, capacity = Pacer(1.0, maximum_lag), round(_SLACK / beat.tick)
         self.runner = Runner(simulation, pacer, beat.tick, beat.samples, capacity, clock, governor)
@@ -146,14 +148,11 @@ class LiveModel:
         if event is not None:
             self.health.note(event)
             return event
+        self._rivals[channel].take(values)
         if channel == topics.MEASURED:
             self._compare(now)
             return None
-        # Speed starts the model: load and temperature have sensible values in the scene, a wrong speed would be a false jolt.
-        if self.gate.accepted["shaft_speed"]:
-            self.runner.post(self.gate.held)
-        for name, recorder in list(self._recorders.items()):
-            self._guarded(name, now, lambda: recorder.write_inputs(now, self.gate.held, [channel]))
+        self._inputs_changed(channel, now)
         return None
 
     def adjust(self, thresholds: Thresholds) -> None:
@@ -162,11 +161,20 @@ class LiveModel:
         self.monitor.adjust(thresholds)
         self.residual.adjust(thresholds.residual, thresholds.slip_from_speed)
 
+    def hold_oil_temperature(self, temperature: float, now_ns: int) -> None:
+        """Let the oil have another temperature [K] than the scene's, where no message tells it."""
+        self.gate.hold_oil_temperature(temperature)
+        self._inputs_changed("oil_temperature", self.run_time(now_ns))
+
     def refuse(self, channel: str, code: str, reason: str, now_ns: int) -> Event:
         """Take in a message that could not even be read."""
         event = self.gate.refuse(channel, self.run_time(now_ns), code, reason)
         self.health.note(event)
         return event
+
+    def note_senders(self, channel: str, count: int) -> None:
+        """Take in how many send a channel's messages; more than one is told."""
+        self._rivals[channel].senders = count
 
     def attach(self, name: str, sink: Sink) -> None:
         """Let a sink have the samples and events from now on; one with ``write_inputs`` gets the inputs and diagnostics too.
@@ -183,8 +191,8 @@ class LiveModel:
         if hasattr(sink, "write_inputs"):
             self._recorders[name] = sink
 
-    def govern(self, governor: Governor) -> None:
-        """Let a governor change levels from now on; its wanted level is that of the simulation that runs."""
+    def govern(self, governor: Governor | None) -> None:
+        """Let a governor change levels from now on; its wanted level is that of the simulation that runs.  None: the level stays the scene's."""
         self._governor = governor
         self.runner.govern(governor)
 
@@ -235,6 +243,7 @@ class LiveModel:
             values |= topics.further_condition(self.scene, self.runner.newest)
         values |= self.monitor.values | self.residual.values(now)
         troubles += [*self.monitor.events(now), *self.residual.events(now)]
+        troubles += [event for rivals in self._rivals.values() if (event := rivals.event(now)) is not None]
         for name, sink in self._sinks.items():
             if getattr(sink, "fault", None):
                 troubles.append(Event(now, Level.WARN, f"sink.failed.{name}", f"{name} has stopped: {sink.fault}"))
@@ -262,6 +271,13 @@ class LiveModel:
         for name in sorted(self._sinks, key=lambda name: name not in self._recorders):  # recordings first: a view may take its time
             self._guarded(name, 0.0, lambda: self.detach(name))
         return stopped
+
+    def _inputs_changed(self, channel: str, now: float) -> None:
+        # Speed starts the model: load and temperature have sensible values in the scene, a wrong speed would be a false jolt.
+        if self.gate.accepted["shaft_speed"]:
+            self.runner.post(self.gate.held)
+        for name, recorder in list(self._recorders.items()):
+            self._guarded(name, now, lambda: recorder.write_inputs(now, self.gate.held, [channel]))
 
     def _compare(self, now: float) -> None:
         """Hold the measured cage speed against the newest sample, which is a tick old at most."""

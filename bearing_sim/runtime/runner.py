@@ -66,6 +66,7 @@ class Runner:
         self._queue: deque[np.ndarray | Event] = deque()
         self._capacity = capacity
         self._dropped = 0
+        self._governors: deque[Governor | None] = deque()  # that are to take over at the next tick
         self._latest: Inputs | None = None
         self._newest: np.void | None = None
         self._stopping = self._paused = self._reset_wanted = False
@@ -82,9 +83,13 @@ class Runner:
         self._phase = Phase.WAITING
         self._thread.start()
 
-    def govern(self, governor: Governor) -> None:
-        """Let a governor change the simulation from the next tick on; its wanted level is that of the present one."""
-        self._governor = governor
+    def govern(self, governor: Governor | None) -> None:
+        """Let a governor change the simulation from the next tick on; its wanted level is that of the present one.
+
+        With None, nothing changes it any more, and the level that the last governor wanted goes on.
+        """
+        with self._changed:
+            self._governors.append(governor)
 
     def post(self, inputs: Inputs) -> None:
         """Set the inputs that the next tick shall reach.  The first ones start the model, in ideal rolling at these inputs."""
@@ -208,6 +213,9 @@ class Runner:
         if self._sleep_until_due():
             with self._changed:
                 inputs = self._latest
+                governors, self._governors = self._governors, deque()
+            for governor in governors:
+                self._change_governor(governor)
             self._advance(inputs)
         return True
 
@@ -249,6 +257,15 @@ class Runner:
         if change is not None:
             self._simulation = change.simulation
             self._put(Event(now, Level.WARN if change.down else Level.OK, "governor.change", change.text))
+
+    def _change_governor(self, governor: Governor | None) -> None:
+        if governor is None and self._governor is not None:
+            left = self._governor.level
+            self._simulation = self._governor.leave()
+            if left != self._governor.wanted:
+                text = f"level {self._governor.wanted} goes on from {left}: the governor is switched off"
+                self._put(Event(self._run_time(), Level.OK, "governor.change", text))
+        self._governor = governor
 
     def _restart(self, inputs: Inputs) -> None:
         """Return the model to ideal rolling at inputs, at the wanted level."""
