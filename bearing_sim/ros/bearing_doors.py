@@ -62,7 +62,6 @@ class BearingDoors:
         self._last_level: Level | None = None
         self._next_report_ns = 0
         self._published_time = self._residual_time = float("-inf")
-        self._runs = 0
         self._subscriptions = {}
         component = node.get_fully_qualified_name().lstrip("/")
         self.component = f"{component}/{settings.name}" if settings.name else component
@@ -112,10 +111,10 @@ class BearingDoors:
         self._published_time = self._residual_time = float("-inf")
         governor = self._governor if self._shared.governor else None
         self.live = LiveModel(self.scene, self._simulation, start_ns, self._shared.sample_rate, self._shared.maximum_lag, governor=governor)
-        self._runs += 1
         if settings.record:
             path = Path(settings.record)
-            self._start_recording(path if self._runs == 1 else fresh_path(path))
+            self._start_recording(fresh_path(path) if path in self._node.recorded else path)
+            self._node.recorded.add(path)
         if settings.rrd or settings.rerun_port:
             self.live.attach("view", open_view(self.scene, start_ns, settings.rrd, settings.rerun_port))
         for channel, topic in topics.INPUTS.items():

@@ -17,6 +17,7 @@ import numpy as np
 from bearing_sim.events import Event, Level
 from bearing_sim.runtime.governor import Governor
 from bearing_sim.runtime.pacer import Pace, Pacer
+from bearing_sim.runtime.threads import SOLVER, name_this_thread
 from bearing_sim.simulation import Inputs, IntegrationError
 
 
@@ -74,7 +75,7 @@ class Runner:
         self._phase = Phase.READY
         self._failed_ticks = 0
         self._pace = pacer.pace
-        self._thread = threading.Thread(target=self._work, name="bearing-solver", daemon=True)
+        self._thread = threading.Thread(target=self._work, name=SOLVER, daemon=True)
         self._origin = self._shift = 0.0  # run time = simulated time + shift; worker thread only
 
     def start(self, origin: float | None = None) -> None:
@@ -159,6 +160,7 @@ class Runner:
         return self._failed_ticks
 
     def _work(self) -> None:
+        name_this_thread(SOLVER)
         phase = Phase.STOPPED
         try:
             while self._wait_for_first_input() and not self._begin():
