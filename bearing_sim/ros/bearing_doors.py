@@ -6,6 +6,7 @@ import subprocess
 from functools import partial
 from pathlib import Path
 
+from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.lifecycle import LifecycleNode
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from std_srvs.srv import SetBool, Trigger
@@ -14,7 +15,8 @@ from bearing_sim import topics
 from bearing_sim.effects import hint
 from bearing_sim.events import Event, Level
 from bearing_sim.ros.cheaper_levels import levels_to_compile, start_compiling
-from bearing_sim.ros.messages import message, message_class
+from bearing_sim.ros.messages import message_class
+from bearing_sim.ros.outputs import Output
 from bearing_sim.ros.parameters import OIL_TEMPERATURE, BearingSettings, NodeSettings, scene_value
 from bearing_sim.ros.recordings import fresh_path, open_recording, open_view, prepare
 from bearing_sim.ros.warm_up import WarmUp
@@ -66,8 +68,8 @@ class BearingDoors:
         component = node.get_fully_qualified_name().lstrip("/")
         self.component = f"{component}/{settings.name}" if settings.name else component
         self.hardware_id = f"{settings.name}/{self.scene.bearing.name}" if settings.name else self.scene.bearing.name
-        self._outputs = {topic.name: self._publisher(topic) for topic in topics.outputs(self.scene).values()}
-        self._residual = self._publisher(topics.MEASUREMENTS["cage_slip_residual"])
+        self._outputs = [self._output(topic) for topic in topics.outputs(self.scene).values()]
+        self._residual = self._output(topics.MEASUREMENTS["cage_slip_residual"])
         self._services = [
             node.create_service(Trigger, self._service_name("reset"), self._serve_reset),
             node.create_service(Trigger, self._service_name("start_recording"), self._serve_start_recording),
@@ -146,8 +148,8 @@ class BearingDoors:
             self._compiling.wait()
         for service in self._services:
             self._node.destroy_service(service)
-        for publisher in (*self._outputs.values(), self._residual):
-            self._node.destroy_lifecycle_publisher(publisher)
+        for output in (*self._outputs, self._residual):
+            output.destroy()
         return stopped
 
     def publish(self) -> None:
@@ -157,13 +159,12 @@ class BearingDoors:
             return
         self._published_time = float(sample["time"])
         stamp_ns = self.live.start_ns + round(self._published_time * 1e9)
-        for name, publisher in self._outputs.items():
-            topic = topics.OUTPUTS[name]
-            publisher.publish(message(topic.ros_type, topic.message(stamp_ns, sample)))
+        for output in self._outputs:
+            output.publish(stamp_ns, sample)
         compared = self.live.residual
         if compared.time > self._residual_time:
-            self._residual_time, topic = compared.time, topics.MEASUREMENTS["cage_slip_residual"]
-            self._residual.publish(message(topic.ros_type, topic.message(stamp_ns, compared.residual)))
+            self._residual_time = compared.time
+            self._residual.publish(stamp_ns, compared.residual)
 
     def review(self, now_ns: int, state: Event, warm_up: WarmUp) -> None:
         """Feed the sinks, log what is new, and report when a second has passed or the level has changed.
@@ -233,12 +234,14 @@ class BearingDoors:
         """Log something about this bearing."""
         self._logger.info(f"{self.settings.name}: {text}" if self.settings.name else text)
 
-    def _publisher(self, topic):
-        return self._node.create_lifecycle_publisher(message_class(topic.ros_type), self._topic_name(topic.name), STATE_QOS)
+    def _output(self, topic: topics.Topic) -> Output:
+        return Output(self._node, topic, self._topic_name(topic.name), STATE_QOS)
 
     def _subscribe(self, channel: str, ros_type: str) -> None:
         taking = partial(self._take, channel, ros_type)
-        self._subscriptions[channel] = self._node.create_subscription(message_class(ros_type), self._topic_name(channel), taking, _INPUT_QOS)
+        name, quiet = self._topic_name(channel), SubscriptionEventCallbacks(use_default_callbacks=False)  # any publisher matches: nothing to watch
+        subscription = self._node.create_subscription(message_class(ros_type), name, taking, _INPUT_QOS, event_callbacks=quiet)
+        self._subscriptions[channel] = subscription
 
     def _topic_name(self, name: str) -> str:
         return f"{self.settings.name}/{name}" if self.settings.name else name
