@@ -71,10 +71,13 @@ class BearingDoors:
         self._outputs = [self._output(topic) for topic in topics.outputs(self.scene).values()]
         self._residual = self._output(topics.MEASUREMENTS["cage_slip_residual"])
         self._services = [
-            node.create_service(Trigger, self._service_name("reset"), self._serve_reset),
-            node.create_service(Trigger, self._service_name("start_recording"), self._serve_start_recording),
-            node.create_service(Trigger, self._service_name("stop_recording"), self._serve_stop_recording),
-            node.create_service(SetBool, self._service_name("pause"), self._serve_pause),
+            node.create_service(kind, self._service_name(name), serve, callback_group=node.office_hours)
+            for kind, name, serve in (
+                (Trigger, "reset", self._serve_reset),
+                (Trigger, "start_recording", self._serve_start_recording),
+                (Trigger, "stop_recording", self._serve_stop_recording),
+                (SetBool, "pause", self._serve_pause),
+            )
         ]
         self.say(f"scene {self.scene.name!r}, bearing {self.scene.bearing.name!r}, level {self.scene.level!r}: warming up")
         if cheaper := hint(self.scene):

@@ -27,6 +27,7 @@ from bearing_sim import topics
 from bearing_sim.events import Event, Level
 from bearing_sim.ros.bearing_doors import STATE_QOS, BearingDoors
 from bearing_sim.ros.messages import message, message_class
+from bearing_sim.ros.office_hours import OfficeHours
 from bearing_sim.ros.parameter_server import ParameterServer
 from bearing_sim.ros.parameters import NodeSettings, SettingsError
 from bearing_sim.ros.process import CannotRun, run_node
@@ -93,6 +94,7 @@ class BearingNode(LifecycleNode):
         self.create_timer(self.REVIEW_PERIOD, self._review)
         self.manages_itself = bool(self.parameters.value("autostart"))
         _refuse_impossible_transitions(self)
+        self.office_hours = OfficeHours(self)  # open from each review to the next time something is published
 
     def start(self) -> None:
         """Configure and activate, as ``autostart`` asks for.
@@ -231,11 +233,13 @@ class BearingNode(LifecycleNode):
         self.bearings = []
 
     def _publish(self) -> None:
+        self.office_hours.is_open = False
         for bearing in self.bearings:
             bearing.publish()
 
     def _review(self) -> None:
         """Open what has become warm, let every bearing review itself, and say what the node waits for where none does."""
+        self.office_hours.is_open = True
         if self._state == "active":
             self._begin_late()
         now_ns = self.now_ns()
