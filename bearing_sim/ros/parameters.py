@@ -125,8 +125,8 @@ def _declarations_of(record: type, path: str, default: object) -> Iterator[tuple
 
 
 def _declaration(name: str, quantity: Quantity, default: float | None, optional: bool) -> Declaration:
-    shown, unit = quantity.shown_in or quantity.unit, quantity.unit or "fraction"
-    meaning = f"{quantity.meaning} [{unit}]"
+    shown, unit = quantity.shown_in or quantity.unit, quantity.unit or ("fraction" if quantity.shown_in else "")
+    meaning = f"{quantity.meaning} [{unit}]" if unit else quantity.meaning
     if shown not in ("", quantity.unit):
         meaning += f", {quantity.show(quantity.minimum)} to {quantity.show(quantity.maximum)}"
     if optional:
