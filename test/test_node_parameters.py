@@ -214,7 +214,7 @@ def test_the_example_file_holds_every_parameter_at_its_default_and_the_node_take
 
     defaults = {row.name: row.default for row in (*DECLARATIONS, *SCENE_DECLARATIONS)}
     assert dict(flat(given)) == defaults
-    process, client = start(tmp_path, "scene:=deng2017_tabel1", arguments=["--params-file", str(EXAMPLE)])
+    process, client = start(tmp_path, arguments=["--params-file", str(EXAMPLE), "-p", "scene:=deng2017_tabel1"])
     assert process.wait() == 2 and "deng2017_tabel1" in process.text and "unknown" not in process.text, "what comes later counts more"
     client.close()
 

@@ -3,6 +3,7 @@
 
 import click
 
+from bearing_sim.commands import bench_fleet
 from bearing_sim.commands.reporting import BadInput, print_json, tell_compilation
 
 
@@ -11,7 +12,8 @@ from bearing_sim.commands.reporting import BadInput, print_json, tell_compilatio
 @click.option("--quick", is_flag=True, help="Measure next to nothing, to see that everything works.")
 @click.option("--level", "levels", multiple=True, metavar="LEVEL", help="Measure this level; may be repeated [default: all].")
 @click.option("--cold", is_flag=True, help="Measure the first start of all, which compiles, too.")
-def command(as_json, quick, levels, cold):
+@click.option("--fleet", is_flag=True, help="Measure instead how many bearings one core holds in real time, by running them.")
+def command(as_json, quick, levels, cold, fleet):
     """Measure how fast each level and integration method is, how large its errors are, and what bounds it.
 
     Bearing deng2017_table1 at 800 N, 15,000 and 45,000 rpm.  Other solvers get the same compiled right-hand side.  Takes a minute or two for
@@ -25,6 +27,9 @@ def command(as_json, quick, levels, cold):
             raise BadInput(f"--level {level}: expected one of {', '.join(LEVELS)}")
 
     tell_compilation()
+    if fleet:
+        bench_fleet.run(as_json, quick, levels)
+        return
     report = run_bench(quick, cold, lambda text: click.echo(f"{text} ...", err=True), levels)
     if as_json:
         print_json(report)
