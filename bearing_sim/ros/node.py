@@ -20,6 +20,7 @@ from collections.abc import Callable
 from functools import wraps
 from pathlib import Path
 
+from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.lifecycle import LifecycleNode, TransitionCallbackReturn
 
@@ -90,7 +91,8 @@ class BearingNode(LifecycleNode):
         self.parameters = ParameterServer(self, self)
         self._shared: NodeSettings | None = None
         name, ros_type = topics.DIAGNOSTICS
-        self._diagnostics = self.create_publisher(message_class(ros_type), f"/{name}", STATE_QOS)
+        quiet = PublisherEventCallbacks(use_default_callbacks=False)
+        self._diagnostics = self.create_publisher(message_class(ros_type), f"/{name}", STATE_QOS, event_callbacks=quiet)
         self.create_timer(self.REVIEW_PERIOD, self._review)
         self.manages_itself = bool(self.parameters.value("autostart"))
         _refuse_impossible_transitions(self)
