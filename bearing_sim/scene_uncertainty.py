@@ -219,7 +219,9 @@ def written(ranges: Iterable[Mapping]) -> dict[str, dict]:
     """Return ranges, as plain mappings, as a file has them; what is left at its default is left out."""
     plain = {}
     for one in ranges:
-        kept = {name: value for name, value in one.items() if name != "field" and value not in (None, "") and (name, value) != ("distribution", "uniform")}
+        kept = {
+            name: value for name, value in one.items() if name != "field" and value not in (None, "") and (name, value) != ("distribution", "uniform")
+        }
         plain[one["field"]] = kept
     return plain
 
