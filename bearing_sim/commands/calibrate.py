@@ -176,7 +176,7 @@ def _print(log, scene, found, lines, out) -> None:
             f"{100 * blocks.slip.mean():.3f} % in the mean; the model {100 * found.after.mean():.3f} %, before {100 * found.before.mean():.3f} %",
         ),
         ("residuals, root mean square", f"{after:.3f} points, before {before:.3f}"),
-        ("data", f"{len(blocks.slip)} blocks of {blocks.length:.3g} s at {len(found.points.conditions)} operating points; left out: {left_out}"),
+        ("data", f"{len(blocks.slip)} blocks of {blocks.length:.3g} s at {_points(found)}; left out: {left_out}"),
         ("worth", f"{found.effective:.0f} independent blocks: residuals resemble each other over {found.resemblance * blocks.length:.2g} s"),
         ("model", _misfit(found)),
         ("to use it", " ".join(f'--set "{item}"' for item in _override(found)) + (f", or the scene {out}" if out else "")),
@@ -186,6 +186,11 @@ def _print(log, scene, found, lines, out) -> None:
             ("level", f"fitted at level steady; level {scene.level}, which the scene asks for, slips otherwise by what `bearing-sim trade` tells")
         )
     print_table(f"{scene.name} calibrated by {log.name}", rows)
+
+
+def _points(found) -> str:
+    count = len(found.points.conditions)
+    return "one operating point" if count == 1 else f"{count} operating points"
 
 
 def _dependence(scene, found) -> list[tuple[str, str]]:

@@ -41,7 +41,7 @@ def command(scene_name, overrides, samples, seed, level, log, stretches, workers
         raise BadInput(f"--picture {picture}: expected a name that ends in {', '.join(PICTURES)}")
     with told_as_bad_input(SceneError):
         scene = load_scene(scene_name, overrides)
-    course = _course(log, scene, stretches) if log is not None else None
+    scene, course = _course(log, scene, stretches) if log is not None else (scene, None)
     found, report = bands_of(scene, samples, seed, level, course, workers)
     with told_file_faults():
         if table is not None:
@@ -79,7 +79,8 @@ def bands_of(scene, samples, seed=SEED, level=None, course=None, workers=None):
 
 
 def _course(log, scene, count):
-    """Return the course of a log in stretches."""
+    """Return the scene, without a range of what the log says itself, and the log's course in stretches."""
+    import dataclasses
     import math
 
     import numpy as np
@@ -91,11 +92,14 @@ def _course(log, scene, count):
 
     with told_as_bad_input(InputLogError), told_file_faults():
         course = judge(read_input_log(log), scene.input_limits, Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature))
-    kelvin = 0.0 if "oil_temperature" in course.stamps else math.nan  # NaN: the scene's own, which may be uncertain
+    kelvin = math.nan  # the scene's own, which may be uncertain
+    if "oil_temperature" in course.stamps and any(one.field == "lubricant.temperature" for one in scene.uncertainty):
+        click.echo("the log says the oil temperature: its range in the scene goes unused", err=True)
+        scene = dataclasses.replace(scene, uncertainty=tuple(one for one in scene.uncertainty if one.field != "lubricant.temperature"))
     in_gap = np.zeros(len(course.instants), bool)
     for begin, end in course.gaps:
         in_gap |= (course.instants > begin) & (course.instants <= end)
-    return stretches(course.instants * 1e-9, course.at(course.instants, kelvin), in_gap, count)
+    return scene, stretches(course.instants * 1e-9, course.at(course.instants, kelvin), in_gap, count)
 
 
 def _report(found, seed, seconds, course) -> dict:

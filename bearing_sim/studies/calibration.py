@@ -5,10 +5,12 @@ The model is level ``steady``: at each operating point the slip that the bearing
 the cage's lag adds.  Each field is scaled to its range in the scene, 0 to 1, by the logarithm where the range is log-uniform.
 
 Residuals of neighbouring blocks resemble each other: sensors drift, and so do conditions that nobody measured.  n residuals are
-worth n/tau independent ones, tau their integrated autocorrelation time (Sokal, "Monte Carlo methods in statistical mechanics",
-1997, eq. 3.16, window of 5 tau), and
+worth n/tau independent ones, tau their integrated autocorrelation time, summed over a window of W steps and corrected for its bias
+(Wolff, Comput. Phys. Commun. 156, 2004, 143, eqs. 35, 42, 49):
 
-    cov = tau s^2 (J^T J)^-1,   s^2 = RSS/(n - p tau).
+    cov = tau s^2 (J^T J)^-1,   s^2 = RSS/(n - p),   nu = n/(2 W + 1),
+
+nu the degrees of freedom of Student's t: as well as tau is known itself, whose relative variance is 2/nu.
 
 An interval knows of scatter alone.  What else is uncertain in the scene and was not fitted shifts the result: `Calibration.depends`.
 """
@@ -31,7 +33,8 @@ from bearing_sim.tables.store import solve_points
 _STEP = 0.02  # of the range, for the slopes; the solver's own error of slip is 1e-5 of it
 _EDGE = 1e-3
 _STARTS = (0.15, 0.5, 0.85)
-_WINDOW = 5.0  # tau
+_WINDOW = 3.0  # tau
+_LEAST_LEFT = 0.2  # of tau that the correction of its bias may leave
 
 
 class Fitted(NamedTuple):
@@ -56,6 +59,7 @@ class Calibration(NamedTuple):
     blocks, points : what was fitted to.
     before, after : predicted slip of each block with the scene as it was and as fitted, shape (n,).
     resemblance : tau, how many neighbouring residuals are worth one.
+    spare : degrees of freedom of the intervals.
     misfit : mean square of the residuals' means at operating points, over what their scatter alone would leave; NaN with no spare points.
     misfit_chance : of a misfit so large by scatter alone.
     depends : by field that was not fitted, what each fitted field would be with that one at the low and the high end of its range,
@@ -71,6 +75,7 @@ class Calibration(NamedTuple):
     before: np.ndarray
     after: np.ndarray
     resemblance: float
+    spare: float
     misfit: float
     misfit_chance: float
     depends: dict[str, np.ndarray]
@@ -174,8 +179,9 @@ def calibrate(
     slopes = model.slopes(places)
     check_fit(scene, ranges, found, slopes, blocks, after, points)
     residuals = blocks.slip - after
-    tau = resemblance(residuals)
-    deviations, correlation, spare = _spread(slopes, residuals, tau, len(ranges))
+    tau, spare = resemblance(residuals)
+    spare = max(spare - len(ranges) + 1, 1.0)
+    deviations, correlation = _spread(slopes, residuals, tau)
     reach = stats.t.ppf(0.5 + confidence / 2, spare) * deviations
     ends = np.array([places - reach, places + reach])
     check_interval(scene, ranges, ends, confidence, blocks, tau)
@@ -187,7 +193,7 @@ def calibrate(
     misfit, chance = _misfit(residuals, points.place, tau, len(ranges))
     depends = _dependence(model, places, slopes, blocks)
     return Calibration(
-        fitted, _fitted_scene(scene, fitted, confidence), confidence, correlation, blocks, points, before, after, tau, misfit, chance, depends
+        fitted, _fitted_scene(scene, fitted, confidence), confidence, correlation, blocks, points, before, after, tau, spare, misfit, chance, depends
     )
 
 
@@ -197,29 +203,29 @@ def _start(model: _Model, own: np.ndarray, measured: np.ndarray) -> np.ndarray:
     return min(tried, key=lambda places: float(((model(places) - measured) ** 2).sum()))
 
 
-def resemblance(residuals: np.ndarray) -> float:
-    """Return the integrated autocorrelation time of residuals, in steps; 1 where neighbours do not resemble each other."""
+def resemblance(residuals: np.ndarray) -> tuple[float, float]:
+    """Return the integrated autocorrelation time of residuals, in steps, no less than 1, and the degrees of freedom it is known with."""
     count = len(residuals)
     waves = np.fft.rfft(residuals - residuals.mean(), 2 * count)
     products = np.fft.irfft(np.abs(waves) ** 2)[:count]
     if products[0] <= 0.0:
-        return 1.0
+        return 1.0, count / (2 * _WINDOW + 1)
     times = 1.0 + 2.0 * np.cumsum(products[1:] / products[0])
-    inside = np.flatnonzero(np.arange(1, count) >= _WINDOW * times)
-    return float(max(times[inside[0]] if len(inside) else times.max(initial=1.0), 1.0))
+    wide_enough = np.flatnonzero(np.arange(1, count) >= _WINDOW * times)
+    window = int(wide_enough[0]) + 1 if len(wide_enough) else count - 1
+    known = (2 * window + 1) / count
+    return float(max(times[window - 1], 1.0) / max(1.0 - known, _LEAST_LEFT)), 1.0 / known
 
 
-def _spread(slopes: np.ndarray, residuals: np.ndarray, tau: float, fields: int) -> tuple[np.ndarray, np.ndarray, float]:
-    """Return standard deviations of the places, their correlation, and the degrees of freedom."""
-    count = len(residuals)
-    spare = max(count / tau - fields, 1.0)
-    variance = float(residuals @ residuals) / (tau * spare)
+def _spread(slopes: np.ndarray, residuals: np.ndarray, tau: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return standard deviations of the places, and their correlation."""
+    variance = float(residuals @ residuals) / (len(residuals) - slopes.shape[1])
     covariance = tau * variance * np.linalg.inv(slopes.T @ slopes)
     deviations = np.sqrt(np.diag(covariance))
     with np.errstate(invalid="ignore", divide="ignore"):
         correlation = np.nan_to_num(covariance / np.outer(deviations, deviations))
     np.fill_diagonal(correlation, 1.0)
-    return deviations, correlation, spare
+    return deviations, correlation
 
 
 def _misfit(residuals: np.ndarray, place: np.ndarray, tau: float, fields: int) -> tuple[float, float]:
@@ -232,7 +238,7 @@ def _misfit(residuals: np.ndarray, place: np.ndarray, tau: float, fields: int) -
     inner = float(((residuals - means[place]) ** 2).sum()) / (len(residuals) - len(sizes))
     if inner <= 0.0:
         return math.nan, math.nan
-    own = resemblance(residuals - means[place])
+    own, _ = resemblance(residuals - means[place])
     ratio = float((sizes * means**2).sum()) / spare / (own * inner)
     return ratio, float(stats.f.sf(ratio, spare, max(within, 1.0)))
 

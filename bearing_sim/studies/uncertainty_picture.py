@@ -8,7 +8,7 @@ import numpy as np
 from bearing_sim.studies.uncertainty import Study
 
 _SLIP, _LIFE, _FIRST, _TOTAL = "#0072b2", "#009e73", "#56b4e9", "#0072b2"  # Okabe and Ito: told apart by the colour-blind
-_BINS = 40
+_FEWEST_BINS, _MOST_BINS = 8, 40
 
 
 def draw(path: Path, title: str, found: Study, times: np.ndarray | None = None) -> None:
@@ -24,20 +24,17 @@ def draw(path: Path, title: str, found: Study, times: np.ndarray | None = None) 
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    rows = 2 if times is None else 3
-    figure = Figure(figsize=(12, 4 * rows), layout="constrained")
+    layout = [["slip", "life"], ["slip shares", "life shares"]] + ([["course", "course"]] if times is not None else [])
+    figure = Figure(figsize=(12, 4 * len(layout)), layout="constrained")
     FigureCanvasAgg(figure)
-    axes = figure.subplots(rows, 2)
-    mean = "" if times is None else "mean "
-    _spread(axes[0, 0], 100 * found.answers["cage_slip"], found, "cage_slip", 100.0, f"{mean}cage slip [%]", _SLIP)
-    _spread(
-        axes[0, 1], found.answers["life_hours"], found, "life_hours", 1.0, "rating life [h]" if times is None else "life under the course [h]", _LIFE
-    )
-    _shares(axes[1, 0], found, "cage_slip", "of the variance of slip")
-    _shares(axes[1, 1], found, "life_hours", "of the variance of life")
+    axes = figure.subplot_mosaic(layout)
+    slip, life = ("cage slip [%]", "rating life [h]") if times is None else ("mean cage slip [%]", "life under the course [h]")
+    _spread(axes["slip"], 100 * found.answers["cage_slip"], found, "cage_slip", 100.0, slip, _SLIP)
+    _spread(axes["life"], found.answers["life_hours"], found, "life_hours", 1.0, life, _LIFE)
+    _shares(axes["slip shares"], found, "cage_slip", "of the variance of slip")
+    _shares(axes["life shares"], found, "life_hours", "of the variance of life")
     if times is not None:
-        _over_time(axes[2, 0], found, times)
-        axes[2, 1].axis("off")
+        _over_time(axes["course"], found, times)
     figure.suptitle(title)
     figure.savefig(path, dpi=130)
 
@@ -45,7 +42,7 @@ def draw(path: Path, title: str, found: Study, times: np.ndarray | None = None) 
 def _spread(axes, values, found, name, scale, label, colour) -> None:
     values = values[: 2 * found.design.base]
     values, band, own = values[np.isfinite(values)], found.bands[name], scale * found.own[name]
-    axes.hist(values, bins=_BINS, density=True, color=colour, alpha=0.6)
+    axes.hist(values, bins=int(np.clip(1.5 * np.sqrt(len(values)), _FEWEST_BINS, _MOST_BINS)), density=True, color=colour, alpha=0.6)
     axes.axvspan(scale * band.low, scale * band.high, color=colour, alpha=0.12, lw=0)
     for end, text in ((band.low, "5 %"), (band.middle, "50 %"), (band.high, "95 %")):
         axes.axvline(scale * end, color=colour, lw=1.5, ls="-" if text == "50 %" else "--", label=f"{text} below {scale * end:.4g}")
@@ -76,9 +73,7 @@ def _shares(axes, found, name, label) -> None:
 
 def _over_time(axes, found, times) -> None:
     bands = found.slip_bands()
-    axes.fill_between(
-        times, [100 * one.low for one in bands], [100 * one.high for one in bands], color=_SLIP, alpha=0.25, label="5 to 95 %", step=None
-    )
+    axes.fill_between(times, [100 * one.low for one in bands], [100 * one.high for one in bands], color=_SLIP, alpha=0.25, label="5 to 95 %")
     axes.plot(times, [100 * one.middle for one in bands], color=_SLIP, label="50 %")
     axes.set(xlabel="time [s]", ylabel="cage slip [%]", ylim=(0, None))
     axes.legend(frameon=False, fontsize=9)
