@@ -92,7 +92,7 @@ class _Scale(NamedTuple):
     range: Range
 
     def value(self, place: float) -> float:
-        low, high = self.range.low, self.range.high
+        low, high, place = self.range.low, self.range.high, float(place)
         return low * (high / low) ** place if self.range.distribution == "log_uniform" else low + place * (high - low)
 
     def place(self, value: float) -> float:

@@ -12,7 +12,8 @@ from bearing_sim.studies.calibration_blocks import Blocks, Points
 
 _LEAST_BLOCKS, _BLOCKS_PER_FIELD = 10, 5
 _NO_EFFECT = 1e-5  # of slip, over the whole range: the solver's own error
-_CONDITION = 50.0  # of the slopes, each scaled to length 1: two fields with a correlation of 0.9992
+_CONDITION = 100.0  # of the slopes at the end, each scaled to length 1: two fields with a correlation of 0.9998
+_CONDITION_BEFORE = 1e4  # where the search begins, slopes are not yet those that count
 _ALIKE = 0.99  # cosine of the slopes of two fields from which on they are named
 _BOUND = 2e-3  # of the range
 _NARROWED = 0.5  # an interval wider than this share of the range says too little
@@ -70,20 +71,20 @@ def check_before(scene: Scene, ranges: Sequence[Range], slopes: np.ndarray, bloc
                 f"{one.field} cannot be identified: over its whole range it changes slip by no more than {100 * effect:.2g} points at "
                 f"{_where(points)}; record where it matters, or fit something else"
             )
-    _check_told_apart(ranges, slopes, points)
+    _check_told_apart(ranges, slopes, points, _CONDITION_BEFORE)
 
 
-def _check_told_apart(ranges: Sequence[Range], slopes: np.ndarray, points: Points) -> None:
+def _check_told_apart(ranges: Sequence[Range], slopes: np.ndarray, points: Points, worst: float) -> None:
     scaled = slopes / np.linalg.norm(slopes, axis=0)
     strengths = np.linalg.svd(scaled, compute_uv=False)
-    if len(ranges) <= len(points.conditions) and strengths[-1] * _CONDITION >= strengths[0]:
+    if len(ranges) <= len(points.conditions) and strengths[-1] * worst >= strengths[0]:
         return
     likeness = np.abs(scaled.T @ scaled) - np.eye(len(ranges))
     alike = sorted({k for pair in np.argwhere(likeness > _ALIKE) for k in pair}) or range(len(ranges))
     condition = strengths[0] / strengths[-1] if strengths[-1] > 0.0 else math.inf
     raise CalibrationError(
         f"{' and '.join(ranges[k].field for k in alike)} cannot be told apart: at {_where(points)} they change slip alike (condition of the scaled "
-        f"Jacobian {condition:.3g}, expected below {_CONDITION:g}); record at other speeds and loads, or fit one of them alone"
+        f"Jacobian {condition:.3g}, expected below {worst:g}); record at other speeds and loads, or fit one of them alone"
     )
 
 
@@ -97,6 +98,7 @@ def _where(points: Points) -> str:
 
 def check_fit(scene: Scene, ranges: Sequence[Range], found, slopes: np.ndarray, blocks: Blocks, after: np.ndarray, points: Points) -> None:
     """Refuse a search that did not end, one that ended at a bound, and fields that nothing tells apart where it ended."""
+    _check_told_apart(ranges, slopes, points, _CONDITION)
     if not found.success:
         raise CalibrationError(f"the search did not end: {found.message}; narrow the ranges, or fit fewer fields")
     known = quantities(type(scene))
@@ -110,7 +112,6 @@ def check_fit(scene: Scene, ranges: Sequence[Range], found, slopes: np.ndarray, 
             f"(another field, the scene, the sensor), or the range is too narrow "
             f'(--set "uncertainty.{one.field}=[LOW, HIGH]")'
         )
-    _check_told_apart(ranges, slopes, points)
 
 
 def check_interval(scene: Scene, ranges: Sequence[Range], ends: np.ndarray, confidence: float, blocks: Blocks, tau: float) -> None:
