@@ -119,7 +119,7 @@ def test_what_was_not_fitted_shifts_the_result_as_another_fit_with_it_changed_sa
 
 def test_an_error_of_the_model_shows_where_there_are_more_points_than_fields_and_none_shows_where_there_is_none():
     right = fit(measured(4, FIVE_POINTS, 20.0))
-    wrong = fit(measured(4, FIVE_POINTS, 20.0, overrides=("bearing.outer_raceway.low_radius=34.8635 mm",)))
+    wrong = fit(measured(4, FIVE_POINTS, 20.0, overrides=("bearing.outer_raceway.low_radius=34.8628 mm",)))
     assert right.misfit_chance > 0.01 and wrong.misfit_chance < 1e-6 and wrong.misfit > 10 * right.misfit
     assert math.isnan(fit(measured(4)).misfit)
 

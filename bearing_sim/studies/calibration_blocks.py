@@ -31,7 +31,7 @@ class Blocks(NamedTuple):
     slip : mean measured cage slip, shape (n,).
     scatter : standard deviation of the slips of single messages in a block, shape (n,).
     lead : shaft acceleration over shaft speed [1/s], shape (n,); times the cage's lag it is how much slip the lag adds.
-    conditions : mean inputs, columns as `bearing_sim.simulation.Inputs`, shape (n, 4); a temperature of NaN stands for the scene's.
+    conditions : mean inputs at the times of the messages, columns as `bearing_sim.simulation.Inputs`, shape (n, 4); a temperature of NaN stands for the scene's.
     left_out : how many blocks were, by reason.
     """
 
@@ -95,9 +95,9 @@ def cut(measured: Measured, diameter_ratio: float, from_speed: float, length: fl
     for first, last in measured.gaps:
         inside &= ~((measured.cage_times > first) & (measured.cage_times < last))
     times, speeds = measured.cage_times[inside], measured.cage_speeds[inside]
-    shaft = np.interp(times, measured.times, measured.inputs[:, 0])
+    inputs = np.stack([np.interp(times, measured.times, column) for column in measured.inputs.T], axis=-1)  # as the cage was measured, then
     with np.errstate(divide="ignore", invalid="ignore"):
-        slips = 1.0 - speeds / (0.5 * shaft * (1.0 - diameter_ratio))
+        slips = 1.0 - speeds / (0.5 * inputs[:, 0] * (1.0 - diameter_ratio))
     numbers = np.floor((times - begin) / length).astype(int)
     usual = np.median(np.unique(numbers, return_counts=True)[1]) if len(numbers) else 0.0
     resets = [begin, *(last for _, last in measured.gaps)]
@@ -109,23 +109,23 @@ def cut(measured: Measured, diameter_ratio: float, from_speed: float, length: fl
         if why:
             left_out[why] += 1
             continue
-        kept.append((times[mine].mean(), slips[mine].mean(), slips[mine].std(), _lead(measured, edges), _means(measured, edges)))
+        kept.append((times[mine].mean(), slips[mine].mean(), slips[mine].std(), _lead(measured, edges), inputs[mine].mean(axis=0)))
     middles, slip, scatter, lead = (np.array([row[column] for row in kept]) for column in range(4))
     return Blocks(length, middles, slip, scatter, lead, np.array([row[4] for row in kept]).reshape(-1, len(Inputs._fields)), left_out)
 
 
-def _within(measured: Measured, edges: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
-    """Return times and conditions between two times, both ends included."""
+def _within(measured: Measured, edges: tuple[float, float]) -> np.ndarray:
+    """Return conditions between two times, both ends included."""
     first, last = np.searchsorted(measured.times, edges)
     times = np.concatenate([edges[:1], measured.times[first:last], edges[1:]])
-    return times, np.stack([np.interp(times, measured.times, column) for column in measured.inputs.T], axis=-1)
+    return np.stack([np.interp(times, measured.times, column) for column in measured.inputs.T], axis=-1)
 
 
 def _unsettled(measured: Measured, edges: tuple[float, float], from_speed: float, resets: list[float]) -> str:
     before = edges[0] - _SETTLING
     if any(before < reset <= edges[1] for reset in resets):
         return "at the start or after a gap"
-    _, seen = _within(measured, (before, edges[1]))
+    seen = _within(measured, (before, edges[1]))
     speed, load = np.abs(seen[:, 0]), np.hypot(seen[:, 1], seen[:, 2])
     if speed.min() < from_speed:
         return "at rest"
@@ -140,11 +140,6 @@ def _lead(measured: Measured, edges: tuple[float, float]) -> float:
     """Return mean shaft acceleration over mean shaft speed [1/s]."""
     first, last = (np.interp(edge, measured.times, measured.inputs[:, 0]) for edge in edges)
     return 2.0 * (last - first) / (edges[1] - edges[0]) / (first + last)
-
-
-def _means(measured: Measured, edges: tuple[float, float]) -> np.ndarray:
-    times, seen = _within(measured, edges)
-    return np.trapezoid(seen, times, axis=0) / (times[-1] - times[0])
 
 
 def shared_points(conditions: np.ndarray) -> Points:
