@@ -32,6 +32,7 @@ from bearing_sim.tables.store import solve_points
 
 _STEP = 0.02  # of the range, for the slopes; the solver's own error of slip is 1e-5 of it
 _EDGE = 1e-3
+_EVEN, _NEARBY = 1e-4, 0.01  # 1/s, below which a shaft's speed does not change; relative, how far to look for the slope of slip by it
 _STARTS = (0.15, 0.5, 0.85)
 _WINDOW = 3.0  # tau
 _LEAST_LEFT = 0.2  # of tau that the correction of its bias may leave
@@ -130,12 +131,21 @@ class _Model:
         inputs = self._points.conditions
         kelvin = np.where(np.isnan(inputs[:, 3]), scene.lubricant.temperature, inputs[:, 3])
         load, angle = np.hypot(inputs[:, 1], inputs[:, 2]), np.arctan2(inputs[:, 2], inputs[:, 1])
-        answers = solve_points(scene, np.stack([inputs[:, 0], load, kelvin, angle], axis=-1))
+        asked = np.stack([inputs[:, 0], load, kelvin, angle], axis=-1)
+        answers = solve_points(scene, asked)
         slip, lag = answers[:, ANSWER.cage_slip], np.nan_to_num(answers[:, ANSWER.lag])
         if np.isnan(slip).any():
-            missing = inputs[np.flatnonzero(np.isnan(slip))[0]]
-            raise CalibrationError(f"no steady state was found at {30 / math.pi * missing[0]:.6g} rpm, {np.hypot(*missing[1:3]):.6g} N with {values}")
-        return slip[self._points.place] + (lag * (1.0 - slip))[self._points.place] * self._blocks.lead
+            missing = asked[np.flatnonzero(np.isnan(slip))[0]]
+            raise CalibrationError(f"no steady state was found at {30 / math.pi * missing[0]:.6g} rpm, {missing[1]:.6g} N with {values}")
+        return slip[self._points.place] + self._behind(scene, asked, slip, lag)
+
+    def _behind(self, scene: Scene, asked: np.ndarray, slip: np.ndarray, lag: np.ndarray) -> np.ndarray | float:
+        """Return what the lag adds to slip where the shaft's speed changes: lag times the rate of the settled cage speed, over ideal speed."""
+        lead, place = self._blocks.lead, self._points.place
+        if np.abs(lead).max() < _EVEN:
+            return 0.0
+        nearby = solve_points(scene, asked * [1.0 + _NEARBY, 1.0, 1.0, 1.0])[:, ANSWER.cage_slip]
+        return (lag * (1.0 - slip - np.nan_to_num((nearby - slip) / _NEARBY)))[place] * lead
 
     def slopes(self, places: np.ndarray) -> np.ndarray:
         """Return d slip/d place by differences within the ranges, shape (n, p)."""

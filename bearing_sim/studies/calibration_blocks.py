@@ -15,7 +15,7 @@ from bearing_sim.simulation import Inputs
 SPEED_CHANGE, LOAD_CHANGE = 0.02, 0.25  # relative, over a block and what settles before it
 _SETTLING = 0.5  # s; lags of settled cages are below a third of it
 _SHORTEST, _LONGEST, _BLOCKS = 0.1, 1.0, 120  # s, and how many blocks a short recording should give
-_FULL = 0.5  # of the usual number of messages: a block with less is left out
+_FULL = 0.5  # of the usual number of messages: a block with less, or cut short by the end, is left out
 _MOST_POINTS = 400
 _NEAR = (0.01, 0.02, 0.02, 1.0)  # speed and loads, of the largest, and temperature [K]: so near, blocks share an operating point
 _COARSER = 1.5
@@ -31,7 +31,8 @@ class Blocks(NamedTuple):
     slip : mean measured cage slip, shape (n,).
     scatter : standard deviation of the slips of single messages in a block, shape (n,).
     lead : shaft acceleration over shaft speed [1/s], shape (n,); times the cage's lag it is how much slip the lag adds.
-    conditions : mean inputs at the times of the messages, columns as `bearing_sim.simulation.Inputs`, shape (n, 4); a temperature of NaN stands for the scene's.
+    conditions : mean inputs at the times of the messages, columns as `bearing_sim.simulation.Inputs`, shape (n, 4); a temperature of NaN
+        stands for the scene's.
     left_out : how many blocks were, by reason.
     """
 
@@ -105,7 +106,8 @@ def cut(measured: Measured, diameter_ratio: float, from_speed: float, length: fl
     for number in np.unique(numbers):
         mine = numbers == number
         edges = begin + length * number, min(begin + length * (number + 1), end)
-        why = _unsettled(measured, edges, from_speed, resets) or ("with few messages" if mine.sum() < _FULL * usual else "")
+        part = edges[1] - edges[0] < _FULL * length or mine.sum() < _FULL * usual
+        why = "with few messages" if part else _unsettled(measured, edges, from_speed, resets)
         if why:
             left_out[why] += 1
             continue

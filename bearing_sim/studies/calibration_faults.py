@@ -66,7 +66,7 @@ def check_before(scene: Scene, ranges: Sequence[Range], slopes: np.ndarray, bloc
     """Refuse fields that slip does not depend on here, and fields that nothing here tells apart; ``slopes`` as of a start, shape (n, p)."""
     effects = np.abs(slopes).max(axis=0)
     for one, effect in zip(ranges, effects):
-        if effect < _NO_EFFECT:
+        if not effect >= _NO_EFFECT:
             raise CalibrationError(
                 f"{one.field} cannot be identified: over its whole range it changes slip by no more than {100 * effect:.2g} points at "
                 f"{_where(points)}; record where it matters, or fit something else"
