@@ -73,8 +73,21 @@ ALLOWED = {
         {"sinks", "contour", "effects", "sample", "scene", "scene_file", "events", "topics", "provenance", "simulation"},
     ),
     "studies": (
-        NUMBERS | {"sksundae", "matplotlib"},
-        {"studies", "effects", "integrators.status", "levels", "params", "rating_life", "sample", "scene", "scene_file", "simulation", "tables"},
+        NUMBERS | {"sksundae", "matplotlib", "pydantic"},
+        {
+            "studies",
+            "effects",
+            "integrators.status",
+            "levels",
+            "params",
+            "rating_life",
+            "sample",
+            "scene",
+            "scene_file",
+            "scene_uncertainty",
+            "simulation",
+            "tables",
+        },
     ),
     "runtime": ({"numpy", "scipy"}, {"runtime", "film_ratio", "simulation", "scene", "scene_monitoring", "effects", "events", "sample", "topics"}),
 }

@@ -116,7 +116,7 @@ def test_sobol_indices_of_the_ishigami_function_are_the_known_ones():
 
 
 def test_bands_of_a_linear_function_are_those_of_its_closed_form():
-    """x + y of two even ones on 0 to 1: F(s) = s^2/2 below 1; each brings half of the variance."""
+    """Sum of two even ones on 0 to 1: F(s) = s^2/2 below 1; each brings half of the variance."""
     lot = design([stats.uniform(0, 1)] * 2, 1024, seed=3)
     values = lot.points.sum(axis=1)
     found = band(values[:2048])
