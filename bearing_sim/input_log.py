@@ -76,15 +76,22 @@ class InputLog:
     unfinished: str
 
 
-def read_input_log(path: str | Path, names: Mapping[str, str] | None = None, joint: str = topics.SHAFT_JOINT, stamps: str = "header") -> InputLog:
+def read_input_log(
+    path: str | Path,
+    names: Mapping[str, str] | None = None,
+    joint: str = topics.SHAFT_JOINT,
+    stamps: str = "header",
+    cage_joint: str | None = None,
+) -> InputLog:
     """Read the inputs of a recording.
 
     Parameters
     ----------
     path : an MCAP file, finished or not (``*.mcap.active``), or the folder of a bag of MCAP files.
-    names : topic by channel where it is not ``/shaft_speed``, ``/radial_load``, ``/oil_temperature``.
+    names : topic by channel where it is not ``/shaft_speed``, ``/radial_load``, ``/oil_temperature``, ``/cage_speed_measured``.
     joint : name of the shaft's joint in JointState messages.
     stamps : ``"header"`` takes header stamps where the type has them and they are set, else log times; ``"log"`` log times only.
+    cage_joint : name of the cage's joint; where given, the measured cage speed is read, too, and must be there.
 
     Raises
     ------
@@ -92,22 +99,25 @@ def read_input_log(path: str | Path, names: Mapping[str, str] | None = None, joi
         No such recording, no MCAP, or not the topics that are needed; the message lists those there are.
     """
     path = Path(path)
-    wanted = {topic if topic.startswith("/") else f"/{topic}": channel for channel, topic in _topic_names(names).items()}
+    channels = (*topics.INPUTS, topics.MEASURED) if cage_joint is not None else tuple(topics.INPUTS)
+    required = (*REQUIRED, topics.MEASURED) if cage_joint is not None else REQUIRED
+    joints = {"shaft_speed": joint, topics.MEASURED: cage_joint}
+    wanted = {topic if topic.startswith("/") else f"/{topic}": channel for channel, topic in _topic_names(channels, names).items()}
     found: dict[str, Series] = {}
     present: dict[str, str] = {}
     unfinished = []
     for file in _files(path):
-        why = _read_file(file, wanted, joint, stamps, found, present)
+        why = _read_file(file, wanted, joints, stamps, found, present)
         if why:
             unfinished.append(f"{file.name}: {why}")
-    _check_found(path, wanted, found, present, names or {})
+    _check_found(path, wanted, required, found, present, names or {})
     for series in found.values():
         _sort_by_log_time(series)
     return InputLog(path, found, "; ".join(unfinished))
 
 
-def _topic_names(names: Mapping[str, str] | None) -> dict[str, str]:
-    return {channel: (names or {}).get(channel) or channel for channel in topics.INPUTS}
+def _topic_names(channels: Iterable[str], names: Mapping[str, str] | None) -> dict[str, str]:
+    return {channel: (names or {}).get(channel) or channel for channel in channels}
 
 
 def _files(path: Path) -> list[Path]:
@@ -136,7 +146,9 @@ def _records(file: Path) -> Iterator[McapRecord]:
         yield from StreamReader(WholeReads(stream), validate_crcs=True, record_size_limit=size).records
 
 
-def _read_file(file: Path, wanted: Mapping[str, str], joint: str, stamps: str, found: dict[str, Series], present: dict[str, str]) -> str:
+def _read_file(
+    file: Path, wanted: Mapping[str, str], joints: Mapping[str, str], stamps: str, found: dict[str, Series], present: dict[str, str]
+) -> str:
     """Add a file's messages to ``found`` and its topics to ``present``; return why it ended early, or ``""``."""
     schemas: dict[int, Schema] = {}
     readers: dict[int, Callable[[Message], None] | None] = {}
@@ -153,7 +165,7 @@ def _read_file(file: Path, wanted: Mapping[str, str], joint: str, stamps: str, f
             elif isinstance(record, Channel) and record.id not in readers:
                 schema = schemas.get(record.schema_id)
                 present[record.topic] = schema.name if schema else "?"
-                readers[record.id] = _message_reader(record, schema, wanted, joint, stamps, found)
+                readers[record.id] = _message_reader(record, schema, wanted, joints, stamps, found)
             finished = finished or isinstance(record, Footer)
     except _BROKEN as fault:
         if not started:
@@ -168,7 +180,7 @@ def _words(fault: Exception) -> str:
 
 
 def _message_reader(
-    channel: Channel, schema: Schema | None, wanted: Mapping[str, str], joint: str, stamps: str, found: dict[str, Series]
+    channel: Channel, schema: Schema | None, wanted: Mapping[str, str], joints: Mapping[str, str], stamps: str, found: dict[str, Series]
 ) -> Callable[[Message], None] | None:
     """Return what takes a channel's messages into its series, or None for a channel that nobody wants."""
     name = wanted.get(channel.topic)
@@ -189,7 +201,7 @@ def _message_reader(
             series.faults.append(Fault(message.log_time, "input.unreadable", f"cannot be decoded ({type(fault).__name__}: {fault})"))
             return
         try:
-            values = topics.input_values(name, ros_type, decoded, joint)
+            values = topics.input_values(name, ros_type, decoded, joints.get(name, ""))
         except ValueError as fault:
             series.faults.append(Fault(message.log_time, "input.malformed", str(fault)))
             return
@@ -219,13 +231,15 @@ def _decoder(channel: Channel, schema: Schema) -> Callable[[bytes], object]:
     return lambda data: store.deserialize_cdr(data, schema.name)
 
 
-def _check_found(path: Path, wanted: Mapping[str, str], found: Mapping[str, Series], present: Mapping[str, str], named: Mapping[str, str]) -> None:
+def _check_found(
+    path: Path, wanted: Mapping[str, str], required: Iterable[str], found: Mapping[str, Series], present: Mapping[str, str], named: Mapping[str, str]
+) -> None:
     listing = ", ".join(f"{topic} ({kind})" for topic, kind in sorted(present.items())) or "no topics"
-    absent = [topic for topic, channel in wanted.items() if channel not in found and (channel in REQUIRED or named.get(channel))]
+    absent = [topic for topic, channel in wanted.items() if channel not in found and (channel in required or named.get(channel))]
     if absent:
         hints = "; ".join(f"no {topic}{did_you_mean(topic, present)}" for topic in absent)
         raise InputLogError(f"{path}: {hints}; the file has {listing}")
-    empty = [series.topic for channel, series in found.items() if channel in REQUIRED and not series.stamps]
+    empty = [series.topic for channel, series in found.items() if channel in required and not series.stamps]
     if empty:
         first = [fault.reason for series in found.values() for fault in series.faults[:1]]
         raise InputLogError(f"{path}: no usable message on {', '.join(empty)}{' (' + first[0] + ')' if first else ''}")
