@@ -10,19 +10,19 @@ from heapq import merge
 import numpy as np
 
 from bearing_sim.events import Event, Level
-from bearing_sim.input_log import REQUIRED, Fault, InputLog, InputLogError
+from bearing_sim.input_log import Fault, InputLog, InputLogError
 from bearing_sim.runtime.input_gate import InputGate
+from bearing_sim.runtime.leg import REQUIRED, Leg, Messages, gaps_of, inputs_at, leg
 from bearing_sim.scene import InputLimits
 from bearing_sim.simulation import Inputs
 from bearing_sim.topics import MEASURED
 
 _EVENTS_TOLD = 5  # of one code and channel; all are counted
-_GAP_IN_SPACINGS = 10
 
 
 @dataclass(frozen=True)
 class InputCourse:
-    """Inputs as functions of time, linear between accepted messages.
+    """Inputs as functions of time, speed and load linear between accepted messages, the oil temperature held.
 
     Time 0 is the first instant at which shaft speed and radial load are both known; the course ends with the first of them
     that ends.
@@ -37,6 +37,7 @@ class InputCourse:
     events : what a person should be told, in order of time; of one kind only the first few.
     refused : messages refused, by event code.
     messages : messages offered.
+    limits : by which they were judged.
     """
 
     start_ns: int
@@ -47,6 +48,7 @@ class InputCourse:
     events: list[Event]
     refused: Counter
     messages: int
+    limits: InputLimits
 
     @property
     def instants(self) -> np.ndarray:
@@ -55,17 +57,19 @@ class InputCourse:
         return together[(together >= 0) & (together <= self.end)]
 
     def at(self, instants: np.ndarray, oil_temperature: float) -> np.ndarray:
-        """Return the inputs at instants [ns since time 0], shape (instants, 4), columns as `bearing_sim.simulation.Inputs`.
+        """Return the inputs at instants [ns since time 0] (see `bearing_sim.runtime.leg.inputs_at`), ``oil_temperature`` [K] where none is known."""
+        return inputs_at(instants, Messages(self.stamps, self.values), self.limits, oil_temperature)
 
-        The oil temperature is held before its first and after its last message; ``oil_temperature`` [K] where there is none.
-        """
-        columns = np.empty((len(instants), 4))
-        columns[:, 0] = np.interp(instants, self.stamps["shaft_speed"], self.values["shaft_speed"])
-        for axis in range(2):
-            columns[:, 1 + axis] = np.interp(instants, self.stamps["radial_load"], self.values["radial_load"][:, axis])
-        temperatures = self.stamps.get("oil_temperature", ())
-        columns[:, 3] = np.interp(instants, temperatures, self.values["oil_temperature"]) if len(temperatures) else oil_temperature
-        return columns
+    def leg(self, rate: float | None, oil_temperature: float) -> Leg:
+        """Return the whole course as one leg (see `bearing_sim.runtime.leg.leg`), with ``rate`` outputs a second [Hz]."""
+        return leg(Messages(self.stamps, self.values), self.gaps, -1, self.end, rate, self.limits, oil_temperature)
+
+    @property
+    def measured(self) -> list[tuple[float, float]]:
+        """Measured cage speeds [rad/s] with their times [s], in order."""
+        if MEASURED not in self.stamps:
+            return []
+        return list(zip((self.stamps[MEASURED] * 1e-9).tolist(), self.values[MEASURED].tolist()))
 
 
 def judge(log: InputLog, limits: InputLimits, held: Inputs, longest_gap: float | None = None) -> InputCourse:
@@ -77,7 +81,7 @@ def judge(log: InputLog, limits: InputLimits, held: Inputs, longest_gap: float |
     limits : what a message may be.
     held : inputs before the first message.
     longest_gap : spacing of good messages [s] above which the time between them counts as a gap; by default ten times the
-        channel's median spacing, and no less than ``limits.stale_after``.
+        channel's median spacing so far, and no less than ``limits.stale_after`` (`bearing_sim.runtime.leg.is_gap`).
 
     Raises
     ------
@@ -105,29 +109,21 @@ def judge(log: InputLog, limits: InputLimits, held: Inputs, longest_gap: float |
             events.add(fault)
             continue
         stamps[channel].append(stamp)
-        values[channel].append(_accepted(gate, channel))
+        values[channel].append(gate.latest(channel))
     start, end = _overlap(log, stamps, gate.refused)
     if log.unfinished:
         events.add(Event((end - epoch) * 1e-9, Level.WARN, "log.unfinished", log.unfinished))
     rising = {channel: np.array(times, np.int64) - start for channel, times in stamps.items()}
     gaps = []
     for channel in REQUIRED:
-        for gap in _gaps(rising[channel], limits.stale_after, longest_gap):
+        for gap in gaps_of(rising[channel], limits, longest_gap):
             gaps.append(gap)
             text = f"{channel}: no good message for {(gap[1] - gap[0]) * 1e-9:.3g} s; this time is not simulated, the state is held"
             events.add(Event((gap[0] + start - epoch) * 1e-9, Level.WARN, "input.gap", text))
     shift = (epoch - start) * 1e-9
     told = sorted((event._replace(time=event.time + shift) for event in events.told()), key=lambda event: event.time)
     arrays = {channel: np.array(given, float) for channel, given in values.items()}
-    return InputCourse(start, rising, arrays, end - start, gaps, told, gate.refused, messages)
-
-
-def _accepted(gate: InputGate, channel: str) -> float | tuple[float, float]:
-    """Return what a channel's last good message said."""
-    if channel == MEASURED:
-        return gate.measured
-    held = gate.held
-    return held.shaft_speed if channel == "shaft_speed" else (held.load_y, held.load_z) if channel == "radial_load" else held.oil_temperature
+    return InputCourse(start, rising, arrays, end - start, gaps, told, gate.refused, messages, limits)
 
 
 def _in_order(log: InputLog) -> Iterator[tuple[str, int, tuple | Fault]]:
@@ -196,11 +192,3 @@ def _overlap(log: InputLog, stamps: dict[str, list[int]], refused: Counter) -> t
 
 def _counted(refused: Counter) -> str:
     return ", ".join(f"{count} x {code}" for code, count in sorted(refused.items())) or "no reason given"
-
-
-def _gaps(stamps: np.ndarray, stale_after: float, longest_gap: float | None) -> list[tuple[int, int]]:
-    spacings = np.diff(stamps)
-    if len(spacings) == 0:
-        return []
-    longest = 1e9 * longest_gap if longest_gap is not None else max(1e9 * stale_after, _GAP_IN_SPACINGS * float(np.median(spacings)))
-    return [(int(stamps[place]), int(stamps[place + 1])) for place in np.flatnonzero(spacings > longest)]

@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Input logs: shaft speed, radial load and oil temperature out of a rosbag2 MCAP recording, also one cut short by a kill.
+"""Input logs: shaft speed, radial load, oil temperature and measured cage speed out of a rosbag2 MCAP recording, also one cut short by a kill.
 
 Reading takes what is there; judging (`judge`) passes every message through the same gate as a live run
 (`bearing_sim.runtime.input_gate`), so nothing is repaired or guessed: a bad message is refused, named and counted.
@@ -20,9 +20,10 @@ from mcap_ros2.decoder import DecoderFactory
 
 from bearing_sim import topics
 from bearing_sim.mcap_stream import WholeReads
+from bearing_sim.runtime.leg import REQUIRED
 from bearing_sim.scene_file import did_you_mean
 
-REQUIRED = ("shaft_speed", "radial_load")
+_CHANNELS = (*topics.INPUTS, topics.MEASURED)
 _BROKEN = (McapError, CRCValidationError, zstandard.ZstdError, struct.error, UnicodeDecodeError, RuntimeError)  # lz4 raises RuntimeError
 
 
@@ -67,7 +68,7 @@ class InputLog:
     Attributes
     ----------
     path : the recording.
-    series : by channel (``shaft_speed``, ``radial_load`` and, where recorded, ``oil_temperature``).
+    series : by channel (``shaft_speed``, ``radial_load`` and, where recorded, ``oil_temperature`` and ``cage_speed_measured``).
     unfinished : why reading ended before the file's proper end, or ``""``.
     """
 
@@ -81,7 +82,8 @@ def read_input_log(
     names: Mapping[str, str] | None = None,
     joint: str = topics.SHAFT_JOINT,
     stamps: str = "header",
-    cage_joint: str | None = None,
+    cage_joint: str = topics.CAGE_JOINT,
+    required: Iterable[str] = REQUIRED,
 ) -> InputLog:
     """Read the inputs of a recording.
 
@@ -89,9 +91,9 @@ def read_input_log(
     ----------
     path : an MCAP file, finished or not (``*.mcap.active``), or the folder of a bag of MCAP files.
     names : topic by channel where it is not ``/shaft_speed``, ``/radial_load``, ``/oil_temperature``, ``/cage_speed_measured``.
-    joint : name of the shaft's joint in JointState messages.
+    joint, cage_joint : names of the joints of shaft and cage in JointState messages.
     stamps : ``"header"`` takes header stamps where the type has them and they are set, else log times; ``"log"`` log times only.
-    cage_joint : name of the cage's joint; where given, the measured cage speed is read, too, and must be there.
+    required : channels that must be there.
 
     Raises
     ------
@@ -99,10 +101,8 @@ def read_input_log(
         No such recording, no MCAP, or not the topics that are needed; the message lists those there are.
     """
     path = Path(path)
-    channels = (*topics.INPUTS, topics.MEASURED) if cage_joint is not None else tuple(topics.INPUTS)
-    required = (*REQUIRED, topics.MEASURED) if cage_joint is not None else REQUIRED
-    joints = {"shaft_speed": joint, topics.MEASURED: cage_joint}
-    wanted = {topic if topic.startswith("/") else f"/{topic}": channel for channel, topic in _topic_names(channels, names).items()}
+    wanted = {topic if topic.startswith("/") else f"/{topic}": channel for channel, topic in _topic_names(names).items()}
+    joints = dict.fromkeys(_CHANNELS, joint) | {topics.MEASURED: cage_joint}
     found: dict[str, Series] = {}
     present: dict[str, str] = {}
     unfinished = []
@@ -110,14 +110,14 @@ def read_input_log(
         why = _read_file(file, wanted, joints, stamps, found, present)
         if why:
             unfinished.append(f"{file.name}: {why}")
-    _check_found(path, wanted, required, found, present, names or {})
+    _check_found(path, wanted, tuple(required), found, present, names or {})
     for series in found.values():
         _sort_by_log_time(series)
     return InputLog(path, found, "; ".join(unfinished))
 
 
-def _topic_names(channels: Iterable[str], names: Mapping[str, str] | None) -> dict[str, str]:
-    return {channel: (names or {}).get(channel) or channel for channel in channels}
+def _topic_names(names: Mapping[str, str] | None) -> dict[str, str]:
+    return {channel: (names or {}).get(channel) or channel for channel in _CHANNELS}
 
 
 def _files(path: Path) -> list[Path]:
@@ -201,7 +201,7 @@ def _message_reader(
             series.faults.append(Fault(message.log_time, "input.unreadable", f"cannot be decoded ({type(fault).__name__}: {fault})"))
             return
         try:
-            values = topics.input_values(name, ros_type, decoded, joints.get(name, ""))
+            values = topics.input_values(name, ros_type, decoded, joints[name])
         except ValueError as fault:
             series.faults.append(Fault(message.log_time, "input.malformed", str(fault)))
             return

@@ -44,8 +44,17 @@ def test_oil_temperature_is_followed_where_recorded_and_else_the_scenes(tmp_path
     speeds, loads = [(0.0, 1.0), (1.0, 1.0)], [(0.0, 1.0, 0.0), (1.0, 1.0, 0.0)]
     with_it = course_of(write_log(tmp_path / "a.mcap", speeds, loads, [(0.0, 20.0), (1.0, 40.0)]))
     without = course_of(write_log(tmp_path / "b.mcap", speeds, loads))
-    assert with_it.at(np.array([500_000_000]), 393.15)[0, 3] == pytest.approx(303.15)
+    assert with_it.at(np.array([500_000_000, 1_000_000_000]), 393.15)[:, 3] == pytest.approx([293.15, 313.15]), "held, as a live run must"
     assert without.at(np.array([500_000_000]), 393.15)[0, 3] == 393.15
+
+
+def test_first_oil_temperature_counts_from_the_start_where_it_comes_soon_and_else_from_its_stamp(tmp_path):
+    times = [t / 2 for t in range(31)]
+    speeds, loads = [(t, 1.0) for t in times], [(t, 1.0, 0.0) for t in times]
+    soon = course_of(write_log(tmp_path / "a.mcap", speeds, loads, [(9.0, 20.0)]))
+    late = course_of(write_log(tmp_path / "b.mcap", speeds, loads, [(11.0, 20.0)]))
+    assert soon.at(np.array([0, 8, 12]) * SECOND, 393.15)[:, 3] == pytest.approx([293.15, 293.15, 293.15])
+    assert late.at(np.array([0, 8, 12]) * SECOND, 393.15)[:, 3] == pytest.approx([393.15, 393.15, 293.15])
 
 
 def test_oil_topic_without_one_readable_message_leaves_the_scenes_temperature(tmp_path):

@@ -25,6 +25,7 @@ from bearing_sim.events import Event, Level
 from bearing_sim.input_course import judge
 from bearing_sim.input_log import read_input_log
 from bearing_sim.replay import Replay, replay
+from bearing_sim.runtime.monitor import Monitor
 from bearing_sim.scene_file import load_scene
 from bearing_sim.simulation import Counters, Inputs
 from bearing_sim.sinks.mcap_sink import McapSink
@@ -139,11 +140,10 @@ def test_run_that_fails_ten_times_in_a_row_is_given_up(tmp_path):
 def test_condition_is_told_when_it_changes_and_reported_every_second(tmp_path, monkeypatch):
     """A judgement that finds the life too short from 2 s to 3.5 s."""
 
-    def judged(sample, thresholds):
-        time = float(sample["time"])
+    def judged(monitor, time):
         return [Event(time, Level.WARN, "bearing.life", "short")] if 1.99 < time < 3.51 else []
 
-    monkeypatch.setattr("bearing_sim.replay.bearing_events", judged)
+    monkeypatch.setattr(Monitor, "events", judged)
     _, sink, _ = run(steady_log(tmp_path / "log.mcap", duration=5.0))
     assert [(round(event.time, 6), event.level, event.code) for event in sink.events] == [
         (2.0, Level.WARN, "bearing.life"),

@@ -91,13 +91,13 @@ def _measured(log, scene, names, joint, stamps, cage_joint):
     import math
 
     from bearing_sim.input_course import judge
-    from bearing_sim.input_log import InputLogError, read_input_log, summary_lines
+    from bearing_sim.input_log import REQUIRED, InputLogError, read_input_log, summary_lines
     from bearing_sim.simulation import Inputs
     from bearing_sim.studies.calibration_blocks import Measured
     from bearing_sim.topics import MEASURED
 
     with told_as_bad_input(InputLogError), told_file_faults():
-        recorded = read_input_log(log, names, joint, stamps, cage_joint)
+        recorded = read_input_log(log, names, joint, stamps, cage_joint, (*REQUIRED, MEASURED))
         course = judge(recorded, scene.input_limits, Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature))
     inputs = course.at(course.instants, math.nan)  # NaN: the scene's own temperature, which may be one to fit
     gaps = [(begin * 1e-9, end * 1e-9) for begin, end in course.gaps]

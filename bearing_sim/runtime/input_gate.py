@@ -113,6 +113,14 @@ class InputGate:
         self.refused[code] += 1
         return Event(time, level, code, f"{channel}: {reason}; message refused, holding {self._held_text(channel)}")
 
+    def latest(self, channel: str) -> float | tuple[float, float]:
+        """Return the last good value of a channel, of the load both forces, in SI."""
+        if channel == MEASURED:
+            return self.measured
+        if channel == "radial_load":
+            return (self.held.load_y, self.held.load_z)
+        return getattr(self.held, channel)
+
     def check(self, now: float) -> list[Event]:
         """Return what is wrong at ``now`` [s since the start] with the flow of messages, as long as it is wrong.
 
