@@ -8,7 +8,6 @@ import pytest
 from fake_simulation import FakeSimulation
 
 from bearing_sim.events import Event, Level
-from bearing_sim.runtime.health import bearing_events
 from bearing_sim.runtime.live import LONGEST_TICK, LiveModel, cadence
 from bearing_sim.runtime.runner import Phase
 from bearing_sim.scene_file import load_scene
@@ -192,34 +191,6 @@ def test_time_lost_to_a_slow_solver_is_told_with_both_factors(bench):
     assert condition.values["time lost [s]"] > 0.2
     assert condition.values["real-time factor held"] == pytest.approx(0.25, abs=0.1)
     assert condition.values["real-time factor possible"] == pytest.approx(0.25, abs=0.1)
-
-
-@pytest.mark.parametrize(
-    "slip, life, damage, expected",
-    [
-        (0.01, 1000.0, 0.0, []),
-        (math.nan, math.inf, 0.0, []),
-        (0.05, 1000.0, 0.0, [("bearing.slip", Level.WARN)]),
-        (0.10, 1000.0, 0.0, [("bearing.slip", Level.ERROR)]),
-        (0.01, 299.0, 0.0, [("bearing.life", Level.WARN)]),
-        (0.2, 100.0, 1.5, [("bearing.slip", Level.ERROR), ("bearing.life", Level.WARN), ("bearing.life_used", Level.ERROR)]),
-    ],
-)
-def test_slip_and_life_are_judged_by_the_scenes_thresholds(slip, life, damage, expected):
-    sample = {"time": 1.0, "shaft_speed": 1000.0, "cage_slip": slip, "rating_life": life, "modified_rating_life": life, "damage": damage}
-    events = bearing_events(sample, load_scene("deng2017_table1").thresholds)
-    assert [(event.code, event.level) for event in events] == expected
-
-
-def test_the_life_that_the_scene_chose_is_judged_and_the_basic_one_told_beside_it():
-    sample = {"time": 1.0, "shaft_speed": 1000.0, "cage_slip": 0.01, "rating_life": 900.0, "modified_rating_life": 120.0, "damage": 0.0}
-    (event,) = bearing_events(sample, load_scene("deng2017_table1").thresholds)
-    assert event.code == "bearing.life" and "choice: 120 h (basic rating life 900 h)" in event.text
-
-
-def test_slip_of_a_shaft_that_hardly_turns_is_no_trouble():
-    sample = {"time": 1.0, "shaft_speed": 5.0, "cage_slip": 0.9, "rating_life": 1e6, "modified_rating_life": 1e6, "damage": 0.0}
-    assert bearing_events(sample, load_scene("deng2017_table1").thresholds) == []
 
 
 def test_a_slip_that_flickers_around_its_limit_is_told_once_and_its_rise_to_an_error_again(bench):

@@ -17,9 +17,6 @@ from bearing_sim.kernels.raceway import tabulated
 from bearing_sim.levels.steady_point import ANSWER
 from bearing_sim.levels.steady_table import empty_table, monotone_slopes
 from bearing_sim.params import lubricate, pack
-from bearing_sim.runtime.health import bearing_events, bearing_states
-from bearing_sim.sample import new_block
-from bearing_sim.scene import Thresholds
 from bearing_sim.tables import store
 from bearing_sim.tables.grid import Span, assembled, build_table, look_up
 from bearing_sim.tables.store import cached_table, obtain_table, read_table, solve_scene, span_of, table_hash, table_path, write_table
@@ -292,18 +289,6 @@ def test_round_bearing_needs_one_direction():
 def test_tabulated_contour_is_the_one_that_the_symmetry_is_looked_for_in():
     table = tabulated(lambda azimuth: (1.0 + 0.1 * np.cos(4 * azimuth), -0.4 * np.sin(4 * azimuth)))
     assert contour_period(table) == pytest.approx(math.pi / 2)
-
-
-def test_states_of_many_samples_change_when_their_events_do():
-    lot, thresholds = np.random.default_rng(2), Thresholds()
-    block = new_block(300, 3)
-    block["cage_slip"] = lot.choice([0.0, 0.06, -0.07, 0.2, math.nan], 300)
-    block["shaft_speed"] = lot.choice([0.0, 4000.0, -4000.0], 300)
-    block["modified_rating_life"] = lot.choice([100.0, 1000.0, math.inf], 300)
-    block["damage"] = lot.choice([0.0, 1.5], 300)
-    states = bearing_states(block, thresholds)
-    kinds = [tuple((event.code, event.level) for event in bearing_events(sample, thresholds)) for sample in block]
-    assert len(set(zip(states.tolist(), kinds))) == len(set(kinds)) == len(set(states.tolist()))
 
 
 def test_replay_without_a_recording_comes_to_the_same_as_with_one(small, tmp_path):

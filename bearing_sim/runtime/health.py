@@ -9,13 +9,11 @@ from collections.abc import Iterable, Mapping
 from types import MappingProxyType
 from typing import NamedTuple
 
-import numpy as np
-
 from bearing_sim import topics
 from bearing_sim.events import Event, Level
+from bearing_sim.runtime.clock_runner import ClockRunner
 from bearing_sim.runtime.input_gate import CHANNELS, InputGate
 from bearing_sim.runtime.runner import Phase, Runner
-from bearing_sim.scene import Thresholds
 
 _LINGER = 2.0  # [s] a momentary event is shown this long: a report at 1 Hz cannot miss it
 
@@ -36,27 +34,48 @@ class Health:
     """Collects momentary events and those that hold."""
 
     def __init__(self):
-        self._momentary: dict[str, tuple[Event, int]] = {}
+        self._momentary: dict[str, tuple[Event, int, float]] = {}
         self._holding: set[tuple[str, Level]] = set()
         self._seen = {"lost": 0.0, "dropped": 0}
         self._news: list[Event] = []
 
-    def note(self, event: Event) -> None:
-        """Take in a momentary event (a refused message, a failure); while one of its kind is shown it is only counted."""
+    def note(self, event: Event, at: float | None = None) -> None:
+        """Take in a momentary event (a refused message, a failure); while one of its kind is shown it is only counted.
+
+        Parameters
+        ----------
+        event : that has happened.
+        at : when, by the clock of the people who shall see it [s]; the event's own time where absent.
+        """
         kind = _kind(event)
-        _, count = self._momentary.get(kind, (None, 0))
-        self._momentary[kind] = (event, count + 1)
+        count = self._momentary[kind][1] if kind in self._momentary else 0
+        self._momentary[kind] = (event, count + 1, event.time if at is None else at)
         if count == 0:
             self._news.append(event)
 
     def review(
-        self, now: float, gate: InputGate, runner: Runner, others: Iterable[Event] = (), values: Mapping[str, object] = MappingProxyType({})
+        self,
+        now: float,
+        gate: InputGate,
+        runner: Runner | ClockRunner,
+        others: Iterable[Event] = (),
+        values: Mapping[str, object] = MappingProxyType({}),
+        flow: Iterable[Event] | None = None,
     ) -> Condition:
-        """Return what holds at ``now`` [s since the start]; ``others`` are added to the events, ``values`` to the numbers."""
-        self._momentary = {kind: (event, count) for kind, (event, count) in self._momentary.items() if now - event.time < _LINGER}
+        """Return what holds at ``now``.
+
+        Parameters
+        ----------
+        now : [s], of the clock by which events are noted.
+        gate, runner : of the model.
+        others : added to the events.
+        values : added to the numbers.
+        flow : what is wrong with the flow of messages; what the gate says as of ``now`` where absent.
+        """
+        self._momentary = {kind: noted for kind, noted in self._momentary.items() if now - noted[2] < _LINGER}
         self._note_losses(now, runner)
-        events = [_counted(event, count) for event, count in self._momentary.values()]
-        events += [*others, *gate.check(now), *run_events(now, runner)]
+        events = [_counted(event, count) for event, count, _ in self._momentary.values()]
+        events += [*others, *(gate.check(now) if flow is None else flow), *run_events(now, runner)]
         known = {}
         for event in sorted(events, key=lambda event: -event.level):
             known.setdefault(_kind(event), event)
@@ -70,7 +89,7 @@ class Health:
         noted, self._news = self._news, []
         return noted + begun
 
-    def _note_losses(self, now: float, runner: Runner) -> None:
+    def _note_losses(self, now: float, runner: Runner | ClockRunner) -> None:
         """Turn growing loss counters into momentary events."""
         pace = runner.pace
         if pace.lost > self._seen["lost"]:
@@ -85,36 +104,7 @@ class Health:
             self.note(Event(now, Level.WARN, "output.dropped", f"{runner.dropped} blocks of samples were dropped because nobody took them in time"))
 
 
-def bearing_events(sample, thresholds: Thresholds) -> list[Event]:
-    """Return the warnings and errors about the bearing that one sample calls for by itself, without hold times (see `monitor` for those)."""
-    time, slip, life = float(sample["time"]), float(sample["cage_slip"]), float(sample["modified_rating_life"])
-    events = []
-    if abs(slip) >= thresholds.slip_warning and abs(float(sample["shaft_speed"])) >= thresholds.slip_from_speed:  # NaN, at rest, is no slip
-        error = abs(slip) >= thresholds.slip_error
-        limit = thresholds.slip_error if error else thresholds.slip_warning
-        text = f"cage slip: {100 * slip:.3g} % has reached {100 * limit:.3g} %"
-        events.append(Event(time, Level.ERROR if error else Level.WARN, "bearing.slip", text))
-    if life < thresholds.life_warning:
-        basic = float(sample["rating_life"])
-        said = f"rating life: {life:.4g} h" if life == basic else f"life by the scene's choice: {life:.4g} h (basic rating life {basic:.4g} h)"
-        text = f"{said} at the present condition is below {thresholds.life_warning:.4g} h"
-        events.append(Event(time, Level.WARN, "bearing.life", text))
-    if float(sample["damage"]) >= 1.0:
-        events.append(Event(time, Level.ERROR, "bearing.life_used", f"damage: {float(sample['damage']):.3g} of the rating life is used up"))
-    return events
-
-
-def bearing_states(samples: np.ndarray, thresholds: Thresholds) -> np.ndarray:
-    """Return a number for each sample, shape (n,): where it stays the same, codes and levels of `bearing_events` do."""
-    slip = np.abs(samples["cage_slip"])
-    judged = np.abs(samples["shaft_speed"]) >= thresholds.slip_from_speed
-    warned = (slip >= thresholds.slip_warning) & judged
-    state = warned.astype(int) + (warned & (slip >= thresholds.slip_error))
-    state += 3 * (samples["modified_rating_life"] < thresholds.life_warning)
-    return state + 6 * (samples["damage"] >= 1.0)
-
-
-def run_events(now: float, runner: Runner) -> list[Event]:
+def run_events(now: float, runner: Runner | ClockRunner) -> list[Event]:
     """Return what the runner's phase calls for."""
     if runner.phase is Phase.CRASHED:
         return [Event(now, Level.ERROR, "solver.crashed", "the solver thread ended by a program fault; outputs are held, restart the node")]
@@ -128,7 +118,7 @@ def run_events(now: float, runner: Runner) -> list[Event]:
     return []
 
 
-def _numbers(gate: InputGate, runner: Runner) -> dict[str, object]:
+def _numbers(gate: InputGate, runner: Runner | ClockRunner) -> dict[str, object]:
     pace = runner.pace
     numbers = topics.condition(runner.newest) if runner.newest is not None else {}
     numbers |= {

@@ -1,0 +1,432 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""A model that listens and tells while a clock that somebody else keeps goes by: what `bearing_sim.runtime.live` is to wall time.
+
+Inputs act at their stamps, as in a replay of a recording, and what comes out depends on nothing else: not on the pace of the clock, its
+steps and stops, the order in which topics arrive, nor the speed of the machine.  Nothing is given up.
+
+**The clock jumps back.**  With ``reset`` the model begins anew at the first messages after the jump.  With ``error`` the last good state is
+held until the clock has passed where it was, or a reset is asked for.  Messages and clock come on different topics, so messages from after
+the jump may come before it is known, and leftovers from before it afterwards: the first are set aside for a second of wall time, the
+others are left out until their channel has come back too.
+"""
+
+import dataclasses
+import math
+import re
+import time
+from collections import deque
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from bearing_sim import topics
+from bearing_sim.events import Event, Level
+from bearing_sim.runtime.clock_runner import ClockRunner, Start
+from bearing_sim.runtime.clock_watch import ClockWatch, Step
+from bearing_sim.runtime.comparison import Comparison
+from bearing_sim.runtime.growing_course import OIL, GrowingCourse
+from bearing_sim.runtime.health import Condition, Health
+from bearing_sim.runtime.input_gate import InputGate
+from bearing_sim.runtime.leg import Arrival
+from bearing_sim.runtime.monitor import Monitor
+from bearing_sim.runtime.outlets import Outlets, Sink
+from bearing_sim.runtime.residual import ResidualMonitor
+from bearing_sim.runtime.walk import Output
+from bearing_sim.scene import Scene, Thresholds
+from bearing_sim.simulation import Simulation
+
+_SET_ASIDE = 1.0  # [s of wall time] for which a message from before the others of its channel may be from after a jump of the clock
+_BEHIND = 2.0  # [s of wall time] of catching up without a pause from which on it is told
+
+
+class Aside(NamedTuple):
+    """A message that may be from after a jump of the clock that is not known yet."""
+
+    wall: float
+    channel: str
+    values: tuple[float, ...]
+    stamp: int
+
+
+class Published(NamedTuple):
+    """An output to be published."""
+
+    stamp_ns: int  # [ns since the epoch]
+    sample: np.void
+
+
+class SimTimeModel:
+    """One bearing, driven by stamped messages, as far as a clock has come.
+
+    All methods belong to one thread (the node's); the model itself runs on the runner's.
+
+    Parameters
+    ----------
+    scene : what is simulated; its limits judge the messages, its thresholds the bearing.
+    simulation : the warmed-up model of that scene.
+    sample_rate : outputs for each simulated second that sinks get [Hz], counted from the first instant at which speed and load are known.
+    publish_rate : how many of them are published for each simulated second [Hz].
+    jump_back : ``"reset"`` or ``"error"``.
+    wall : wall clock [s], monotonic; outputs do not depend on it.
+
+    Attributes
+    ----------
+    start_ns : int
+        Run time 0 [ns since the epoch]: where the course of inputs has begun; before that, where the clock was first.
+    publish_rate : float
+        May be changed.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        simulation: Simulation,
+        sample_rate: float = 100.0,
+        publish_rate: float = 50.0,
+        jump_back: str = "reset",
+        wall: Callable[[], float] = time.monotonic,
+    ):
+        self.scene, self.start_ns, self.publish_rate = scene, 0, publish_rate
+        self._rate, self._jump_back, self._wall, self._wall_start = sample_rate, jump_back, wall, wall()
+        self._first_inputs = simulation.inputs
+        self.gate = InputGate(scene.input_limits, self._first_inputs)
+        self.health, self.monitor = Health(), Monitor(scene)
+        self.residual = ResidualMonitor(scene.thresholds.residual, scene.thresholds.slip_from_speed)
+        self._comparison = Comparison(self.residual)
+        self._clock = ClockWatch()
+        self._epoch: int | None = None  # of the gate's times
+        self._held_until: int | None = None  # while a jump back is an error
+        self._aside: deque[Aside] = deque()
+        self._newest: dict[str, int] = {}
+        self._left: dict[str, int] = {}  # stamps beyond which a channel's messages are leftovers from before a jump
+        self._measured: list[tuple[int, float]] = []  # until the course begins
+        self._started = self._expects_oil = False
+        self._late = self._gaps = 0
+        self._outlets = Outlets()
+        self._openers: dict[str, Callable[[int], Sink]] = {}
+        self._published: list[Published] = []
+        self._residuals: list[tuple[int, float]] = []
+        self.runner = ClockRunner(simulation, self._new_course(), wall=wall)
+        self.runner.start()
+
+    def run_time(self, now_ns: int) -> float:
+        """Return the run time [s] of an instant of the clock."""
+        return (now_ns - self.start_ns) * 1e-9
+
+    def tick(self, clock_ns: int) -> None:
+        """Take in a reading of the clock [ns since the epoch]; 0 says that there is none."""
+        if clock_ns <= 0:
+            return
+        step = self._clock.read(clock_ns, self._wall())
+        if self._epoch is None:
+            self._epoch = clock_ns
+        if step is Step.FIRST and not self._started:
+            self.start_ns = clock_ns
+        if step is Step.BACK:
+            self._come_back()
+        elif step is Step.LEAP:
+            ahead = (clock_ns - self._clock.before) * 1e-9
+            text = f"the clock leapt {ahead:.4g} s ahead; time between messages that is a gap is not simulated, the state is held over it"
+            self._note(Event(self.run_time(clock_ns), Level.WARN, "clock.leapt_ahead", text))
+        if self._held_until is not None and clock_ns >= self._held_until:
+            self._held_until = None
+            self._note(Event(self.run_time(clock_ns), Level.OK, "clock.passed", "the clock has passed where it was; the model goes on"))
+        self._show_clock()
+
+    def offer(self, channel: str, values: tuple[float, ...], stamp_ns: int | None, now_ns: int) -> Event | None:
+        """Take in one message (see `bearing_sim.runtime.input_gate.InputGate.offer`).
+
+        Parameters
+        ----------
+        stamp_ns : the sender's stamp; the clock's newest reading stands in for the stamp of a message without one.
+        now_ns : the clock.
+        """
+        self.tick(now_ns)
+        stamp = self._clock.now if stamp_ns is None else stamp_ns
+        if stamp is None:
+            return self.refuse(channel, "input.not_stamped", "it has no stamp, and there is no clock yet whose time could stand in", now_ns)
+        if self._epoch is None:
+            self._epoch = stamp
+        if stamp > self._left.get(channel, stamp):
+            self.gate.refused["input.leftover"] += 1
+            return None
+        if stamp < self._newest.get(channel, stamp):
+            self._aside.append(Aside(self._wall(), channel, values, stamp))
+            return None
+        return self._accept(channel, values, stamp)
+
+    def expect(self, channel: str, expected: bool) -> None:
+        """Take in whether somebody publishes a channel: a first oil temperature is waited for where somebody does."""
+        if channel == OIL and expected != self._expects_oil:
+            self._expects_oil = expected
+            self._show_clock()
+
+    def refuse(self, channel: str, code: str, reason: str, now_ns: int) -> Event:
+        """Take in a message that could not even be read."""
+        event = self.gate.refuse(channel, self.run_time(now_ns), code, reason)
+        self._note(event)
+        return event
+
+    def adjust(self, thresholds: Thresholds) -> None:
+        """Judge the bearing by other thresholds from now on; what the comparison with the measured cage has learned stays."""
+        self.scene = dataclasses.replace(self.scene, thresholds=thresholds)
+        self.monitor.adjust(thresholds)
+        self.residual.adjust(thresholds.residual, thresholds.slip_from_speed)
+
+    def open(self, name: str, open_sink: Callable[[int], Sink], anew: bool) -> None:
+        """Let a sink have what comes from the start of the course on, or from now on.
+
+        Parameters
+        ----------
+        name : of the sink.
+        open_sink : makes it, told run time 0 [ns since the epoch].
+        anew : whether to complete it and make another one where the course begins anew, since times would overlap in one.
+
+        Raises
+        ------
+        OSError
+            It cannot be made.
+        """
+        if self._started:
+            self._outlets.attach(name, open_sink(self.start_ns))
+        if anew or not self._started:
+            self._openers[name] = open_sink
+
+    def has(self, name: str) -> bool:
+        """Return whether there is, or will be, a sink of that name."""
+        return self._outlets.has(name) or name in self._openers
+
+    def detach(self, name: str) -> Sink | None:
+        """Close a sink and return it; None when there is none of that name (see `bearing_sim.runtime.outlets.Outlets.detach`)."""
+        self._openers.pop(name, None)
+        return self._outlets.detach(name)
+
+    def reset(self, timeout: float = 2.0) -> bool:
+        """Return state and damage to the start; where a jump of the clock is held as an error, begin anew at the clock.
+
+        Returns
+        -------
+        Whether it was done within ``timeout`` [s]; if not, it will be done after the running stretch.
+        """
+        if self._held_until is not None:
+            self._held_until = None
+            self._begin_anew()
+            return True
+        return self.runner.reset(timeout)
+
+    def published(self) -> list[Published]:
+        """Return the outputs that are to be published since the last call."""
+        published, self._published = self._published, []
+        return published
+
+    def residuals(self) -> list[tuple[int, float]]:
+        """Return the residual slips since the last call, each with the stamp of its measurement [ns since the epoch]."""
+        residuals, self._residuals = self._residuals, []
+        return residuals
+
+    def collect(self, now_ns: int) -> list[Event]:
+        """Hand what has come of the walk to sinks and monitors and review the health.  Returns the events that are news."""
+        self.tick(now_ns)
+        self._show_clock()
+        self._judge_those_aside()
+        for item in self.runner.take():
+            self._handle(item)
+        self._tell_compared(self._comparison.due())
+        now = self.run_time(now_ns)
+        news = self.health.news(self.condition(now_ns).events)
+        for event in news:
+            self._outlets.to_all(now, lambda sink, event=event: sink.write_event(event._replace(time=max(event.time, 0.0))))
+        return news
+
+    def condition(self, now_ns: int) -> Condition:
+        """Return what holds now, with the numbers behind it."""
+        now, values = self.run_time(now_ns), {"level": self.scene.level}
+        if self.runner.newest is not None:
+            values |= topics.further_condition(self.scene, self.runner.newest)
+        values |= self.monitor.values | self.residual.values(now) | self._progress() | self._outlets.values
+        troubles = [*self._clock_events(now), *self._runner_events(now), *self._outlets.troubles(now)]
+        troubles += [*self.monitor.events(now), *self.residual.events(now)]
+        return self.health.review(self._seen_at(), self.gate, self.runner, troubles, values, self._flow_events())
+
+    def record_diagnostics(self, condition: Condition, now_ns: int) -> None:
+        """Let the recorders keep a diagnostics report."""
+        now = self.run_time(now_ns)
+        self._outlets.to_recorders(now, lambda recorder: recorder.write_diagnostics(now, condition.events, condition.values))
+
+    def close(self, timeout: float = 2.0) -> bool:
+        """Stop the runner, empty its queue into the sinks and complete them.
+
+        Returns
+        -------
+        whether the solver's thread ended within ``timeout`` [s].
+        """
+        stopped = self.runner.stop(timeout)
+        for item in self.runner.take():
+            self._handle(item)
+        self._outlets.close(0.0)
+        return stopped
+
+    def _accept(self, channel: str, values: tuple[float, ...], stamp: int) -> Event | None:
+        event = self.gate.offer(channel, (stamp - self._epoch) * 1e-9, values)
+        if event is not None:
+            self._note(event)
+            return event
+        self._newest[channel] = stamp
+        self._left.pop(channel, None)
+        if channel == topics.MEASURED:
+            if self._started:
+                self._comparison.measure(self.run_time(stamp), self.gate.measured)
+            else:
+                self._measured.append((stamp, self.gate.measured))
+            return None
+        try:
+            gap = self.runner.add(channel, stamp, self.gate.latest(channel))
+        except ValueError as fault:
+            self._late += 1
+            self.gate.refused["input.late"] += 1
+            event = Event(self.run_time(stamp), Level.WARN, "input.late", f"{channel}: {fault}; message refused, what was known before is held")
+            self._note(event)
+            return event
+        if gap is not None:
+            self._gaps += 1
+            text = f"{channel}: no good message for {(gap[1] - gap[0]) * 1e-9:.4g} s; this time is not simulated, the state is held"
+            self._note(Event(self.run_time(gap[0]), Level.WARN, "input.gap", text))
+        return None
+
+    def _come_back(self) -> None:
+        """Act on a clock that has jumped back."""
+        before, now = self._clock.before, self._clock.now
+        back = f"the clock jumped back by {(before - now) * 1e-9:.4g} s to {now * 1e-9:.3f} s"
+        if self._jump_back == "error":
+            self._held_until = max(before, self._held_until or 0)
+            return
+        self._note(Event(self.run_time(now), Level.WARN, "clock.jumped_back", f"{back}; state and damage begin anew there"))
+        self._begin_anew()
+
+    def _begin_anew(self) -> None:
+        """Leave the course and begin another one at the clock, with the messages that were set aside."""
+        clock, before = self._clock.now, max([self._clock.now, *self._newest.values()])
+        self._left = {channel: stamp for channel, stamp in self._newest.items() if stamp > clock}
+        gate, self.gate = self.gate, InputGate(self.scene.input_limits, self._first_inputs)
+        self.gate.refused = gate.refused
+        self._newest, self._measured, self._started = {}, [], False
+        self.runner.follow(self._new_course())
+        aside, self._aside = self._aside, deque()
+        for message in aside:
+            if message.stamp < 0.5 * (clock + before):
+                self._accept(message.channel, message.values, message.stamp)
+        self._show_clock()
+
+    def _new_course(self) -> GrowingCourse:
+        return GrowingCourse(self._rate, self.scene.input_limits, self.scene.lubricant.temperature)
+
+    def _judge_those_aside(self) -> None:
+        """Refuse messages that went back in time although the clock did not."""
+        wall = self._wall()
+        while self._aside and wall - self._aside[0].wall > _SET_ASIDE:
+            message = self._aside.popleft()
+            self._accept(message.channel, message.values, message.stamp)
+
+    def _show_clock(self) -> None:
+        """Tell the runner how far it may go."""
+        if self._clock.now is not None and self._held_until is None:
+            for channel in [channel for channel, stamp in self._left.items() if stamp <= self._clock.now]:
+                del self._left[channel]
+            self.runner.see(self._clock.now, self._clock.settled(self._wall()), self._expects_oil)
+
+    def _handle(self, item) -> None:
+        if isinstance(item, Start):
+            self._start(item.start_ns)
+        elif isinstance(item, Output):
+            self._take(item.block)
+        elif isinstance(item, Arrival):
+            self._outlets.to_recorders(item.time, lambda recorder: recorder.write_inputs(*item))
+        else:
+            self._note(item)
+            if item.code == "run.reset":
+                self.monitor.restart()
+                self.residual.interrupt(item.time)
+
+    def _start(self, start_ns: int) -> None:
+        """Begin a course: run time 0 is its start."""
+        self.start_ns, self._started = start_ns, True
+        self.monitor.restart()
+        self.residual.interrupt(-math.inf)
+        self._comparison.restart()
+        measured, self._measured = self._measured, []
+        for stamp, speed in measured:
+            self._comparison.measure(self.run_time(stamp), speed)
+        for name, open_sink in self._openers.items():
+            self._outlets.guard(name, 0.0, lambda name=name: self._outlets.detach(name))
+            self._outlets.guard(name, 0.0, lambda name=name, open_sink=open_sink: self._outlets.attach(name, open_sink(start_ns)))
+
+    def _take(self, block: np.ndarray) -> None:
+        """Judge, record and publish outputs."""
+        now = float(block["time"][-1])
+        self.monitor.take(block)
+        self._outlets.to_all(now, lambda sink: sink.write(block))
+        self._tell_compared(self._comparison.predict(block))
+        share = min(self.publish_rate / self._rate, 1.0)
+        for sample in block:
+            number = round(float(sample["time"]) * self._rate)
+            if math.floor(number * share + 1e-9) > math.floor((number - 1) * share + 1e-9):
+                self._published.append(Published(self.start_ns + round(float(sample["time"]) * 1e9), sample))
+
+    def _tell_compared(self, compared) -> None:
+        for one in compared:
+            self._outlets.to_recorders(one.time, lambda recorder, one=one: recorder.write_measurement(*one))
+            self._residuals.append((self.start_ns + round(one.time * 1e9), one.residual))
+
+    def _note(self, event: Event) -> None:
+        self.health.note(event, self._seen_at())
+
+    def _seen_at(self) -> float:
+        return self._wall() - self._wall_start
+
+    def _clock_events(self, now: float) -> list[Event]:
+        if self._clock.now is None:
+            text = "no /clock: use_sim_time is set, and nothing is computed before its first message; publish it, or set use_sim_time to false"
+            return [Event(0.0, Level.WARN, "clock.absent", text)]
+        if self._held_until is not None:
+            text = (
+                f"the clock jumped back to {self._clock.now * 1e-9:.3f} s and clock_jump_back is error: the last good state is held until "
+                f"it has passed {self._held_until * 1e-9:.3f} s again, or until ~/reset begins anew"
+            )
+            return [Event(now, Level.ERROR, "clock.jumped_back", text)]
+        if self._clock.stands_still(self._wall()):
+            return [Event(now, Level.OK, "clock.stands_still", f"paused: the clock stands still at {self._clock.now * 1e-9:.3f} s")]
+        return []
+
+    def _runner_events(self, now: float) -> list[Event]:
+        events = []
+        if self.runner.given_up:
+            text = f"the model is given up until ~/reset or a jump back of the clock: {self.runner.given_up}"
+            events.append(Event(now, Level.ERROR, "run.given_up", text))
+        if self.runner.reached is None:
+            text = f"waiting for the first {' and '.join(self.runner.awaited()) or 'instant'}; nothing is computed yet"
+            events.append(Event(now, Level.OK, "run.waiting", text))
+        elif self.runner.busy_for > _BEHIND:
+            behind = (self._clock.now - self.runner.reached) * 1e-9
+            pace = self.runner.pace.solver_factor
+            text = f"the model is {behind:.3g} s behind the clock and catches up at {pace:.3g} times real time; nothing is lost"
+            events.append(Event(now, Level.WARN, "run.behind", text))
+        return events
+
+    def _flow_events(self) -> list[Event]:
+        """Return what is wrong with the flow of messages, judged in the clock's time, when there was time for them to come."""
+        settled = self._clock.settled(self._wall())
+        if settled < 0 or self._epoch is None or self._held_until is not None:
+            return []
+        events = self.gate.check((settled - self._epoch) * 1e-9)
+        return [event._replace(text=re.sub(r"holding .*$", "the model waits where it is", event.text)) for event in events]
+
+    def _progress(self) -> dict[str, object]:
+        """Return the numbers that only a run by a clock has."""
+        reached, clock = self.runner.reached, self._clock.now
+        numbers = {"clock [s]": clock * 1e-9 if clock is not None else math.nan}
+        if reached is not None and clock is not None:
+            numbers["behind the clock [s]"] = (clock - reached) * 1e-9
+        awaited = self.runner.awaited() if clock is not None else []
+        numbers |= {"waits for": ", ".join(awaited) or "nothing", "messages waiting": self.runner.waiting}
+        return numbers | {"late inputs": self._late, "gaps": self._gaps}
