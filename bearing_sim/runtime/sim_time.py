@@ -5,16 +5,12 @@ Inputs act at their stamps, as in a replay of a recording, and what comes out de
 steps and stops, the order in which topics arrive, nor the speed of the machine.  Nothing is given up.
 
 **The clock jumps back.**  With ``reset`` the model begins anew at the first messages after the jump.  With ``error`` the last good state is
-held until the clock has passed where it was, or a reset is asked for.  Messages and clock come on different topics, so messages from after
-the jump may come before it is known, and leftovers from before it afterwards: the first are set aside for a second of wall time, the
-others are left out until their channel has come back too.
+held until the clock has passed where it was, or a reset is asked for (see `bearing_sim.runtime.stragglers` for messages around the jump).
 """
 
 import dataclasses
 import math
-import re
 import time
-from collections import deque
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -22,6 +18,7 @@ import numpy as np
 
 from bearing_sim import topics
 from bearing_sim.events import Event, Level
+from bearing_sim.runtime.clock_report import clock_events, flow_events, progress, walk_events
 from bearing_sim.runtime.clock_runner import ClockRunner, Start
 from bearing_sim.runtime.clock_watch import ClockWatch, Step
 from bearing_sim.runtime.comparison import Comparison
@@ -32,21 +29,10 @@ from bearing_sim.runtime.leg import Arrival
 from bearing_sim.runtime.monitor import Monitor
 from bearing_sim.runtime.outlets import Outlets, Sink
 from bearing_sim.runtime.residual import ResidualMonitor
+from bearing_sim.runtime.stragglers import Message, Side, Stragglers
 from bearing_sim.runtime.walk import Output
 from bearing_sim.scene import Scene, Thresholds
 from bearing_sim.simulation import Simulation
-
-_SET_ASIDE = 1.0  # [s of wall time] for which a message from before the others of its channel may be from after a jump of the clock
-_BEHIND = 2.0  # [s of wall time] of catching up without a pause from which on it is told
-
-
-class Aside(NamedTuple):
-    """A message that may be from after a jump of the clock that is not known yet."""
-
-    wall: float
-    channel: str
-    values: tuple[float, ...]
-    stamp: int
 
 
 class Published(NamedTuple):
@@ -97,9 +83,8 @@ class SimTimeModel:
         self._clock = ClockWatch()
         self._epoch: int | None = None  # of the gate's times
         self._held_until: int | None = None  # while a jump back is an error
-        self._aside: deque[Aside] = deque()
+        self._stragglers = Stragglers()
         self._newest: dict[str, int] = {}
-        self._left: dict[str, int] = {}  # stamps beyond which a channel's messages are leftovers from before a jump
         self._measured: list[tuple[int, float]] = []  # until the course begins
         self._started = self._expects_oil = False
         self._late = self._gaps = 0
@@ -148,13 +133,11 @@ class SimTimeModel:
             return self.refuse(channel, "input.not_stamped", "it has no stamp, and there is no clock yet whose time could stand in", now_ns)
         if self._epoch is None:
             self._epoch = stamp
-        if stamp > self._left.get(channel, stamp):
+        message = Message(channel, values, stamp)
+        side = self._stragglers.sort(message, self._newest.get(channel), self._wall())
+        if side is Side.BEYOND:
             self.gate.refused["input.leftover"] += 1
-            return None
-        if stamp < self._newest.get(channel, stamp):
-            self._aside.append(Aside(self._wall(), channel, values, stamp))
-            return None
-        return self._accept(channel, values, stamp)
+        return self._accept(message) if side is Side.HERE else None
 
     def expect(self, channel: str, expected: bool) -> None:
         """Take in whether somebody publishes a channel: a first oil temperature is waited for where somebody does."""
@@ -229,7 +212,8 @@ class SimTimeModel:
         """Hand what has come of the walk to sinks and monitors and review the health.  Returns the events that are news."""
         self.tick(now_ns)
         self._show_clock()
-        self._judge_those_aside()
+        for message in self._stragglers.faulty(self._wall()):
+            self._accept(message)
         for item in self.runner.take():
             self._handle(item)
         self._tell_compared(self._comparison.due())
@@ -244,10 +228,12 @@ class SimTimeModel:
         now, values = self.run_time(now_ns), {"level": self.scene.level}
         if self.runner.newest is not None:
             values |= topics.further_condition(self.scene, self.runner.newest)
-        values |= self.monitor.values | self.residual.values(now) | self._progress() | self._outlets.values
-        troubles = [*self._clock_events(now), *self._runner_events(now), *self._outlets.troubles(now)]
+        values |= self.monitor.values | self.residual.values(now) | self._outlets.values
+        values |= progress(self._clock, self.runner) | {"late inputs": self._late, "gaps": self._gaps}
+        troubles = [*clock_events(now, self._wall(), self._clock, self._held_until), *walk_events(now, self._clock, self.runner)]
+        troubles += self._outlets.troubles(now)
         troubles += [*self.monitor.events(now), *self.residual.events(now)]
-        return self.health.review(self._seen_at(), self.gate, self.runner, troubles, values, self._flow_events())
+        return self.health.review(self._seen_at(), self.gate, self.runner, troubles, values, self._flow())
 
     def record_diagnostics(self, condition: Condition, now_ns: int) -> None:
         """Let the recorders keep a diagnostics report."""
@@ -267,13 +253,13 @@ class SimTimeModel:
         self._outlets.close(0.0)
         return stopped
 
-    def _accept(self, channel: str, values: tuple[float, ...], stamp: int) -> Event | None:
+    def _accept(self, message: Message) -> Event | None:
+        channel, values, stamp = message
         event = self.gate.offer(channel, (stamp - self._epoch) * 1e-9, values)
         if event is not None:
             self._note(event)
             return event
         self._newest[channel] = stamp
-        self._left.pop(channel, None)
         if channel == topics.MEASURED:
             if self._started:
                 self._comparison.measure(self.run_time(stamp), self.gate.measured)
@@ -306,33 +292,22 @@ class SimTimeModel:
 
     def _begin_anew(self) -> None:
         """Leave the course and begin another one at the clock, with the messages that were set aside."""
-        clock, before = self._clock.now, max([self._clock.now, *self._newest.values()])
-        self._left = {channel: stamp for channel, stamp in self._newest.items() if stamp > clock}
+        early = self._stragglers.jump(self._clock.now, self._newest)
         gate, self.gate = self.gate, InputGate(self.scene.input_limits, self._first_inputs)
         self.gate.refused = gate.refused
         self._newest, self._measured, self._started = {}, [], False
         self.runner.follow(self._new_course())
-        aside, self._aside = self._aside, deque()
-        for message in aside:
-            if message.stamp < 0.5 * (clock + before):
-                self._accept(message.channel, message.values, message.stamp)
+        for message in early:
+            self._accept(message)
         self._show_clock()
 
     def _new_course(self) -> GrowingCourse:
         return GrowingCourse(self._rate, self.scene.input_limits, self.scene.lubricant.temperature)
 
-    def _judge_those_aside(self) -> None:
-        """Refuse messages that went back in time although the clock did not."""
-        wall = self._wall()
-        while self._aside and wall - self._aside[0].wall > _SET_ASIDE:
-            message = self._aside.popleft()
-            self._accept(message.channel, message.values, message.stamp)
-
     def _show_clock(self) -> None:
         """Tell the runner how far it may go."""
         if self._clock.now is not None and self._held_until is None:
-            for channel in [channel for channel, stamp in self._left.items() if stamp <= self._clock.now]:
-                del self._left[channel]
+            self._stragglers.pass_by(self._clock.now)
             self.runner.see(self._clock.now, self._clock.settled(self._wall()), self._expects_oil)
 
     def _handle(self, item) -> None:
@@ -384,49 +359,9 @@ class SimTimeModel:
     def _seen_at(self) -> float:
         return self._wall() - self._wall_start
 
-    def _clock_events(self, now: float) -> list[Event]:
-        if self._clock.now is None:
-            text = "no /clock: use_sim_time is set, and nothing is computed before its first message; publish it, or set use_sim_time to false"
-            return [Event(0.0, Level.WARN, "clock.absent", text)]
-        if self._held_until is not None:
-            text = (
-                f"the clock jumped back to {self._clock.now * 1e-9:.3f} s and clock_jump_back is error: the last good state is held until "
-                f"it has passed {self._held_until * 1e-9:.3f} s again, or until ~/reset begins anew"
-            )
-            return [Event(now, Level.ERROR, "clock.jumped_back", text)]
-        if self._clock.stands_still(self._wall()):
-            return [Event(now, Level.OK, "clock.stands_still", f"paused: the clock stands still at {self._clock.now * 1e-9:.3f} s")]
-        return []
-
-    def _runner_events(self, now: float) -> list[Event]:
-        events = []
-        if self.runner.given_up:
-            text = f"the model is given up until ~/reset or a jump back of the clock: {self.runner.given_up}"
-            events.append(Event(now, Level.ERROR, "run.given_up", text))
-        if self.runner.reached is None:
-            text = f"waiting for the first {' and '.join(self.runner.awaited()) or 'instant'}; nothing is computed yet"
-            events.append(Event(now, Level.OK, "run.waiting", text))
-        elif self.runner.busy_for > _BEHIND:
-            behind = (self._clock.now - self.runner.reached) * 1e-9
-            pace = self.runner.pace.solver_factor
-            text = f"the model is {behind:.3g} s behind the clock and catches up at {pace:.3g} times real time; nothing is lost"
-            events.append(Event(now, Level.WARN, "run.behind", text))
-        return events
-
-    def _flow_events(self) -> list[Event]:
-        """Return what is wrong with the flow of messages, judged in the clock's time, when there was time for them to come."""
+    def _flow(self) -> list[Event]:
+        """Return what is wrong with the flow of messages; of a clock that counts as an error nothing can be said."""
         settled = self._clock.settled(self._wall())
         if settled < 0 or self._epoch is None or self._held_until is not None:
             return []
-        events = self.gate.check((settled - self._epoch) * 1e-9)
-        return [event._replace(text=re.sub(r"holding .*$", "the model waits where it is", event.text)) for event in events]
-
-    def _progress(self) -> dict[str, object]:
-        """Return the numbers that only a run by a clock has."""
-        reached, clock = self.runner.reached, self._clock.now
-        numbers = {"clock [s]": clock * 1e-9 if clock is not None else math.nan}
-        if reached is not None and clock is not None:
-            numbers["behind the clock [s]"] = (clock - reached) * 1e-9
-        awaited = self.runner.awaited() if clock is not None else []
-        numbers |= {"waits for": ", ".join(awaited) or "nothing", "messages waiting": self.runner.waiting}
-        return numbers | {"late inputs": self._late, "gaps": self._gaps}
+        return flow_events((settled - self._epoch) * 1e-9, self.gate)
