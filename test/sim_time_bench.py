@@ -162,14 +162,7 @@ class Player:
 
     def until_idle(self):
         """Let the model compute all that it can."""
-        runner = self.model.runner
-
-        def idle():
-            with runner._changed:
-                known = runner._course.known_until(runner._clock, runner._settled, runner._expects_oil)
-                return runner._busy_since is None and known <= runner._course.claimed and not runner._queue
-
-        self.until(idle, "the model has computed all that it can")
+        self.until(lambda: self.model.runner.is_idle, "the model has computed all that it can")
         self.collect()
 
 

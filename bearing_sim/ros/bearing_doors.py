@@ -3,7 +3,9 @@
 
 import dataclasses
 import subprocess
+import time
 from functools import partial
+from itertools import chain, repeat
 from pathlib import Path
 
 from rclpy.event_handler import SubscriptionEventCallbacks
@@ -19,10 +21,12 @@ from bearing_sim.ros.messages import message_class
 from bearing_sim.ros.outputs import Output
 from bearing_sim.ros.parameters import OIL_TEMPERATURE, BearingSettings, NodeSettings, scene_value
 from bearing_sim.ros.recordings import fresh_path, open_recording, open_view, prepare
+from bearing_sim.ros.sim_time import OUTPUT_QOS, follows_clock, subscribe_to_all
 from bearing_sim.ros.warm_up import WarmUp
 from bearing_sim.runtime.governor import Governor
 from bearing_sim.runtime.health import Condition
 from bearing_sim.runtime.live import LiveModel, governor_of, warmed_up
+from bearing_sim.runtime.sim_time import SimTimeModel
 from bearing_sim.scene import Scene
 from bearing_sim.scene_file import load_scene
 from bearing_sim.scene_monitoring import with_thresholds
@@ -63,7 +67,6 @@ class BearingDoors:
         self._compiling: subprocess.Popen | None = None
         self._last_level: Level | None = None
         self._next_report_ns = 0
-        self._published_time = self._residual_time = float("-inf")
         self._subscriptions = {}
         component = node.get_fully_qualified_name().lstrip("/")
         self.component = f"{component}/{settings.name}" if settings.name else component
@@ -94,9 +97,10 @@ class BearingDoors:
         try:
             prepare(view=bool(settings.rrd or settings.rerun_port))
             simulation = warmed_up(self.scene, rate)
-            if self._shared.governor and levels_to_compile(self.scene):
+            governs = self._shared.governor and not follows_clock(self._node)  # by sim time nothing is given up
+            if governs and levels_to_compile(self.scene):
                 self._compiling = start_compiling(self.scene, rate)
-            elif self._shared.governor:
+            elif governs:
                 self._governor = governor_of(simulation, rate)
             self._simulation = simulation
         except IntegrationError as fault:
@@ -105,23 +109,21 @@ class BearingDoors:
             self.fault, self._fault_cause = f"the model could not be made: {fault!r}", fault
 
     def open(self) -> None:
-        """Begin a run: run time 0 is now; open recordings and subscriptions.
+        """Begin a run: run time 0 is now, or with sim time where the inputs begin; open recordings and subscriptions.
 
         Raises
         ------
         OSError
             A recording or a view cannot be opened.
         """
-        settings, start_ns = self.settings, self._node.now_ns()
-        self._published_time = self._residual_time = float("-inf")
-        governor = self._governor if self._shared.governor else None
-        self.live = LiveModel(self.scene, self._simulation, start_ns, self._shared.sample_rate, self._shared.maximum_lag, governor=governor)
+        settings = self.settings
+        self.live = self._sim_time_model() if follows_clock(self._node) else self._wall_time_model()
         if settings.record:
             path = Path(settings.record)
             self._start_recording(fresh_path(path) if path in self._node.recorded else path)
             self._node.recorded.add(path)
         if settings.rrd or settings.rerun_port:
-            self.live.attach("view", open_view(self.scene, start_ns, settings.rrd, settings.rerun_port))
+            self.live.open("view", lambda start_ns: open_view(self.scene, start_ns, settings.rrd, settings.rerun_port))
         for channel, topic in topics.INPUTS.items():
             ros_type = topic.ros_type
             if self._shared.input_type == "scalar" and "std_msgs/msg/Float64" in topics.input_types(channel):
@@ -131,6 +133,22 @@ class BearingDoors:
         self.say("ready: listening to shaft_speed and radial_load")
         if self._compiling is not None:
             self.say("compiling cheaper levels for the governor beside this, once for this version")
+
+    def _wall_time_model(self) -> LiveModel:
+        governor = self._governor if self._shared.governor else None
+        rate, lag = self._shared.sample_rate, self._shared.maximum_lag
+        return LiveModel(self.scene, self._simulation, self._node.now_ns(), rate, lag, governor=governor)
+
+    def _sim_time_model(self) -> SimTimeModel:
+        shared = self._shared
+        model = SimTimeModel(self.scene, self._simulation, shared.sample_rate, shared.publish_rate, shared.clock_jump_back)
+        model.tick(self._node.now_ns())
+        return model
+
+    def tick(self, now_ns: int) -> None:
+        """Take in a reading of /clock, where the model follows it."""
+        if isinstance(self.live, SimTimeModel):
+            self.live.tick(now_ns)
 
     def close(self) -> bool:
         """End the run, complete recordings.  Returns whether the solver's thread ended; else the model must be warmed up anew."""
@@ -156,18 +174,14 @@ class BearingDoors:
         return stopped
 
     def publish(self) -> None:
-        """Publish the newest sample, if it is new."""
-        sample = self.live.runner.newest if self.live is not None else None
-        if sample is None or sample["time"] <= self._published_time:
+        """Publish what is new: with sim time every output at its stamp, else the newest."""
+        if self.live is None:
             return
-        self._published_time = float(sample["time"])
-        stamp_ns = self.live.start_ns + round(self._published_time * 1e9)
-        for output in self._outputs:
-            output.publish(stamp_ns, sample)
-        compared = self.live.residual
-        if compared.time > self._residual_time:
-            self._residual_time = compared.time
-            self._residual.publish(stamp_ns, compared.residual)
+        for stamp_ns, sample in self.live.published():
+            for output in self._outputs:
+                output.publish(stamp_ns, sample)
+        for stamp_ns, residual in self.live.residuals():
+            self._residual.publish(stamp_ns, residual)
 
     def review(self, now_ns: int, state: Event, warm_up: WarmUp) -> None:
         """Feed the sinks, log what is new, and report when a second has passed or the level has changed.
@@ -188,13 +202,14 @@ class BearingDoors:
 
     def report(self, now_ns: int, condition: Condition) -> None:
         """Publish the condition on /diagnostics if it is time."""
-        if now_ns < self._next_report_ns and condition.level == self._last_level:
+        steady_ns = time.monotonic_ns()  # /clock may stand still
+        if steady_ns < self._next_report_ns and condition.level == self._last_level:
             return
         if self.live is not None:  # now and then is enough
             for channel, subscription in self._subscriptions.items():
                 self.live.note_senders(channel, self._node.count_publishers(subscription.topic_name))
         self._last_level = condition.level
-        self._next_report_ns = now_ns + round((_DIAGNOSTICS_PERIOD - self._node.REVIEW_PERIOD / 2) * 1e9)
+        self._next_report_ns = steady_ns + round((_DIAGNOSTICS_PERIOD - self._node.REVIEW_PERIOD / 2) * 1e9)
         self._node.tell(now_ns, condition, self.component, self.hardware_id)
         if self.live is not None:
             self.live.record_diagnostics(condition, now_ns)
@@ -221,9 +236,17 @@ class BearingDoors:
             if self.live is not None:
                 self.live.hold_oil_temperature(changes[OIL_TEMPERATURE], self._node.now_ns())
 
+    def publish_at(self, rate: float) -> None:
+        """Publish so often from now on [Hz], with sim time for each simulated second."""
+        self._shared = dataclasses.replace(self._shared, publish_rate=rate)
+        if self.live is not None:
+            self.live.publish_rate = rate
+
     def govern(self, wanted: bool, warm_up: WarmUp) -> None:
         """Let a governor change levels from now on, made by ``warm_up`` where there is none yet, or let none."""
         self._shared = dataclasses.replace(self._shared, governor=wanted)
+        if follows_clock(self._node):
+            return
         if wanted and self._governor is None and self._compiling is None and self.is_warm:
             warm_up.ask(self._make_governor)
         elif self.live is not None:
@@ -238,13 +261,21 @@ class BearingDoors:
         self._logger.info(f"{self.settings.name}: {text}" if self.settings.name else text)
 
     def _output(self, topic: topics.Topic) -> Output:
-        return Output(self._node, topic, self._topic_name(topic.name), STATE_QOS)
+        return Output(self._node, topic, self._topic_name(topic.name), OUTPUT_QOS if follows_clock(self._node) else STATE_QOS)
 
     def _subscribe(self, channel: str, ros_type: str) -> None:
         taking = partial(self._take, channel, ros_type)
-        name, quiet = self._topic_name(channel), SubscriptionEventCallbacks(use_default_callbacks=False)  # any publisher matches: nothing to watch
-        subscription = self._node.create_subscription(message_class(ros_type), name, taking, _INPUT_QOS, event_callbacks=quiet)
-        self._subscriptions[channel] = subscription
+        kind, name = message_class(ros_type), self._topic_name(channel)
+        if follows_clock(self._node):
+            replaced = partial(self._subscriptions.__setitem__, channel)
+            self._subscriptions[channel] = subscribe_to_all(self._node, kind, name, taking, replaced, self._tell_loss)
+            return
+        quiet = SubscriptionEventCallbacks(use_default_callbacks=False)  # any publisher matches: nothing to watch
+        self._subscriptions[channel] = self._node.create_subscription(kind, name, taking, _INPUT_QOS, event_callbacks=quiet)
+
+    def _tell_loss(self, text: str) -> None:
+        if self.live is not None:
+            self.live.note_loss(text)
 
     def _topic_name(self, name: str) -> str:
         return f"{self.settings.name}/{name}" if self.settings.name else name
@@ -304,7 +335,8 @@ class BearingDoors:
             self._logger.info(line)
 
     def _start_recording(self, path: Path) -> None:
-        self.live.attach("record", open_recording(path, self.scene, self.live.start_ns))
+        paths = chain([path], map(fresh_path, repeat(path)))  # no recording shall replace one that this run has made
+        self.live.open("record", lambda start_ns: open_recording(next(paths), self.scene, start_ns), anew=True)
         self.say(f"recording {path}")
 
     def _refused(self, response) -> bool:
@@ -344,7 +376,7 @@ class BearingDoors:
     def _serve_reset(self, _, response):
         if self._refused(response):
             return response
-        response.success = self.live.runner.reset()
+        response.success = self.live.reset()
         late = "not done within two seconds; it is done after the running tick"
         response.message = "state and damage are at the start" if response.success else late
         return response

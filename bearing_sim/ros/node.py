@@ -16,6 +16,7 @@ activates itself.
 
 import dataclasses
 import sys
+import time
 from collections.abc import Callable
 from functools import wraps
 from pathlib import Path
@@ -32,6 +33,7 @@ from bearing_sim.ros.office_hours import OfficeHours
 from bearing_sim.ros.parameter_server import ParameterServer
 from bearing_sim.ros.parameters import NodeSettings, SettingsError
 from bearing_sim.ros.process import CannotRun, run_node
+from bearing_sim.ros.sim_time import create_steady_timer, watch_clock
 from bearing_sim.ros.warm_up import WarmUp
 from bearing_sim.runtime.health import Condition
 from bearing_sim.scene_file import SceneError
@@ -93,7 +95,8 @@ class BearingNode(LifecycleNode):
         name, ros_type = topics.DIAGNOSTICS
         quiet = PublisherEventCallbacks(use_default_callbacks=False)
         self._diagnostics = self.create_publisher(message_class(ros_type), f"/{name}", STATE_QOS, event_callbacks=quiet)
-        self.create_timer(self.REVIEW_PERIOD, self._review)
+        create_steady_timer(self, self.REVIEW_PERIOD, self._review)
+        self._clock_watch = watch_clock(self, self._tick)
         self.manages_itself = bool(self.parameters.value("autostart"))
         _refuse_impossible_transitions(self)
         self.office_hours = OfficeHours(self)  # open from each review to the next time something is published
@@ -144,7 +147,7 @@ class BearingNode(LifecycleNode):
             self._close()
             raise
         self._state = "active"
-        self._publish_timer = self.create_timer(1.0 / self._shared.publish_rate, self._publish)
+        self._publish_timer = create_steady_timer(self, 1.0 / self._shared.publish_rate, self._publish)
         return super().on_activate(state)
 
     @_told
@@ -191,9 +194,11 @@ class BearingNode(LifecycleNode):
             self.parameters.show_scene(bearing.settings.name, bearing.scene)
         if "publish_rate" in changes and self._shared is not None:
             self._shared = dataclasses.replace(self._shared, publish_rate=changes["publish_rate"])
+            for bearing in self.bearings:
+                bearing.publish_at(changes["publish_rate"])
             if self._publish_timer is not None:
                 self.destroy_timer(self._publish_timer)
-                self._publish_timer = self.create_timer(1.0 / self._shared.publish_rate, self._publish)
+                self._publish_timer = create_steady_timer(self, 1.0 / self._shared.publish_rate, self._publish)
         if "governor" in changes:
             for bearing in self.bearings:
                 bearing.govern(changes["governor"], self._warm_up)
@@ -234,6 +239,10 @@ class BearingNode(LifecycleNode):
             bearing.destroy()
         self.bearings = []
 
+    def _tick(self, now_ns: int) -> None:
+        for bearing in self.bearings:
+            bearing.tick(now_ns)
+
     def _publish(self) -> None:
         self.office_hours.is_open = False
         for bearing in self.bearings:
@@ -247,8 +256,9 @@ class BearingNode(LifecycleNode):
         now_ns = self.now_ns()
         for bearing in self.bearings:
             bearing.review(now_ns, self._state_event(bearing), self._warm_up)
-        if not self.bearings and now_ns >= self._next_report_ns:
-            self._next_report_ns = now_ns + 1_000_000_000
+        steady_ns = time.monotonic_ns()  # /clock may stand still
+        if not self.bearings and steady_ns >= self._next_report_ns:
+            self._next_report_ns = steady_ns + 1_000_000_000
             self.tell(now_ns, Condition([self._state_event(None)], {}), self.get_fully_qualified_name().lstrip("/"), "")
 
     def _begin_late(self) -> None:

@@ -162,6 +162,8 @@ class ParameterServer:
         changes = {}
         for parameter in parameters:
             row, name = self._known.get(parameter.name), parameter.name
+            if name == "use_sim_time" and self._owner.is_running and parameter.value != self._node.get_parameter(name).value:
+                return SetParametersResult(successful=False, reason=self._needs_configure(name))
             if row is None:
                 continue
             try:

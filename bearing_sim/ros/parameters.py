@@ -62,6 +62,12 @@ DECLARATIONS = (
     ),
     Declaration("publish_rate", 50.0, "rate of the output topics [Hz]", 0.1, 200.0, running=True),
     Declaration("sample_rate", 100.0, "samples recorded for each simulated second [Hz]", 1.0, 10_000.0),
+    Declaration(
+        "clock_jump_back",
+        "reset",
+        "with use_sim_time, what a /clock that jumps back does: reset: state and damage begin anew there; error: the last state is held",
+        choices=("reset", "error"),
+    ),
     Declaration("maximum_lag", 0.2, "lag behind real time that is caught up [s]; more is given up, counted and told", 0.02, 10.0),
     Declaration("governor", True, "whether to compute at a cheaper level while the machine is too slow for the scene's", running=True),
     Declaration("record", "", "MCAP file to record from the start; empty for none until ~/start_recording is called", per_bearing=True),
@@ -106,6 +112,7 @@ class NodeSettings:
     publish_rate: float
     sample_rate: float
     maximum_lag: float
+    clock_jump_back: str
     governor: bool
 
 

@@ -6,49 +6,21 @@ Run by ``bearing_player LOG.mcap`` or ``python -m bearing_sim.ros.player LOG.mca
 
 import signal
 import sys
-import time
-from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import NamedTuple
+from threading import Thread
 
 import click
 import rclpy
-from rclpy.duration import Duration
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
-from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args
 
 from bearing_sim import topics
-from bearing_sim.input_log import REQUIRED, InputLog, InputLogError, read_input_log
-from bearing_sim.ros.messages import message, message_class
-from bearing_sim.simulation import Inputs
-
-_SLICE = 0.05  # [s] a sleep is cut into such slices, so that a signal is obeyed
-_DELIVERY = 0.2  # [s] best-effort subscribers acknowledge nothing, and a message of a publisher that is gone is lost
-_COURTESY = 1.0  # [s] how long the optional channels are waited for once the required ones are heard
-_SCALAR = "std_msgs/msg/Float64"
-
-
-class Play(NamedTuple):
-    """One message to be published."""
-
-    time: float  # [s] since the first message of the log
-    channel: str
-    values: tuple[float, ...]
-
-
-def plays(log: InputLog) -> list[Play]:
-    """Return a log's messages in the order of their log times."""
-    first = min(series.log_times[0] for series in log.series.values() if series.log_times)
-    merged = [
-        Play((log_ns - first) * 1e-9, channel, values)
-        for channel, series in log.series.items()
-        for log_ns, values in zip(series.log_times, series.values)
-    ]
-    return sorted(merged, key=lambda play: play.time)
+from bearing_sim.input_log import InputLogError, read_input_log
+from bearing_sim.ros.playback import Player, Timeline, plays
 
 
 class Stop:
@@ -71,85 +43,6 @@ def stop_on_signals() -> Iterator[Stop]:
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
-
-
-class Player:
-    """Publishes plays through a node.
-
-    Parameters
-    ----------
-    node : the node whose names and remappings count.
-    stop : tells when to end early.
-    channels : the channels that will be published.
-    scalar : publish shaft speed and radial load as Float64.
-    """
-
-    def __init__(self, node: Node, stop: Stop, channels, scalar: bool = False):
-        self._node, self._stop = node, stop
-        self.sent: Counter[str] = Counter()
-        self.lateness = 0.0  # [s] summed over all messages
-        self.reached = 0.0  # [s] time in the log
-        self._types = {
-            channel: _SCALAR if scalar and _SCALAR in topics.input_types(channel) else topics.INPUTS[channel].ros_type for channel in channels
-        }
-        # Offered reliable, so that any subscriber matches.
-        qos = QoSProfile(depth=100, reliability=ReliabilityPolicy.RELIABLE)
-        self._publishers = {channel: node.create_publisher(message_class(kind), channel, qos) for channel, kind in self._types.items()}
-
-    def unheard(self, channels=REQUIRED) -> list[str]:
-        """Return those of the channels that nobody listens to."""
-        return [channel for channel in channels if self._publishers[channel].get_subscription_count() == 0]
-
-    def wait_until_heard(self, limit: float) -> bool:
-        """Wait for a subscriber of every required channel; False when ``limit`` [s] passed or a signal came."""
-        if not self._wait(REQUIRED, limit):
-            return False
-        self._wait(self._publishers, _COURTESY)
-        return not self._stop.wanted
-
-    def _wait(self, channels, limit: float) -> bool:
-        deadline = time.monotonic() + limit
-        while self.unheard(channels):
-            if time.monotonic() > deadline or self._stop.wanted:
-                return False
-            time.sleep(_SLICE)
-        return True
-
-    def play(self, plays: list[Play], rate: float, progress) -> bool:
-        """Publish all, ``rate`` times as fast as recorded; ``progress(time)`` is called as time goes.  False after a signal."""
-        start_ns, start = self._node.get_clock().now().nanoseconds, time.monotonic()
-        for play in plays:
-            due = start + play.time / rate
-            while (rest := due - time.monotonic()) > 0.0:
-                progress(play.time - rest * rate)
-                if self._stop.wanted:
-                    return False
-                time.sleep(min(rest, _SLICE))
-            if self._stop.wanted:
-                return False
-            self.lateness += max(0.0, time.monotonic() - due)
-            self.reached = play.time
-            self._publish(play, start_ns + round(play.time / rate * 1e9))
-        progress(plays[-1].time)
-        for publisher in self._publishers.values():
-            publisher.wait_for_all_acked(Duration(seconds=1))
-        time.sleep(_DELIVERY)
-        return True
-
-    def _publish(self, play: Play, stamp_ns: int) -> None:
-        kind = self._types[play.channel]
-        if kind == _SCALAR:
-            fields = {"data": float(play.values[0])}
-        else:
-            fields = topics.INPUTS[play.channel].message(stamp_ns, _inputs(play))
-        self._publishers[play.channel].publish(message(kind, fields))
-        self.sent[play.channel] += 1
-
-
-def _inputs(play: Play) -> Inputs:
-    """Return inputs that hold the play's values; the message of its channel reads no others."""
-    values = (*play.values, 0.0)
-    return Inputs(shaft_speed=values[0], load_y=values[0], load_z=values[1], oil_temperature=values[0])
 
 
 class Progress:
@@ -179,40 +72,80 @@ class Progress:
             self._bar.stop()
 
 
+@contextmanager
+def served(node: Node) -> Iterator[None]:
+    """Answer the node's services on a thread of their own."""
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+
+    def spin() -> None:
+        try:
+            executor.spin()
+        except ExternalShutdownException:
+            pass
+
+    thread = Thread(target=spin, name="services", daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        executor.shutdown(1.0)
+        thread.join(1.0)
+
+
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
 @click.argument("log", type=click.Path(path_type=Path))
 @click.option("--rate", type=click.FloatRange(1e-3, 1e3), default=1.0, show_default=True, help="How many times as fast as recorded.")
+@click.option(
+    "--clock",
+    "clock_rate",
+    type=click.FloatRange(0.1, 1000.0),
+    metavar="HZ",
+    help="Show the log's time on /clock so often a second, and keep the log's stamps: for nodes with use_sim_time [default: no clock].",
+)
+@click.option("--stamps", type=click.Choice(["header", "log"]), default="header", show_default=True, help="With --clock: which stamps, as in replay.")
+@click.option("--start-paused", is_flag=True, help="Wait for the service ~/pause (std_srvs/SetBool, data: false).")
+@click.option("--loop", is_flag=True, help="Begin again at the end, until a signal comes; with --clock its time jumps back.")
+@click.option(
+    "--wait-until-used",
+    "use_limit",
+    type=click.FloatRange(0.0),
+    default=0.0,
+    metavar="S",
+    help="With --clock: stay at the end until followers say that they have used all, so long at most [default: 0].",
+)
 @click.option("--wait-for-subscribers/--no-wait", default=True, show_default=True, help="Start when somebody listens to speed and load.")
 @click.option("--wait-limit", type=click.FloatRange(0.0), default=60.0, show_default=True, help="Give up waiting after so many seconds.")
 @click.option("--input-type", type=click.Choice(["stamped", "scalar"]), default="stamped", show_default=True, help="As the node's parameter.")
-@click.option("--joint", default=topics.SHAFT_JOINT, show_default=True, help="Name of the shaft's joint in the log.")
+@click.option("--joint", default=topics.SHAFT_JOINT, show_default=True, help="Name of the shaft's joint, in the log and as it is played.")
+@click.option("--cage-joint", default=topics.CAGE_JOINT, show_default=True, help="Name of the cage's joint likewise.")
 @click.pass_context
-def command(context, log, rate, wait_for_subscribers, wait_limit, input_type, joint):
-    """Publish the shaft speed, radial load and oil temperature of the MCAP recording LOG, with its timing.
+def command(context, log, rate, clock_rate, stamps, start_paused, loop, use_limit, wait_for_subscribers, wait_limit, input_type, joint, cage_joint):
+    """Publish the inputs of the MCAP recording LOG with its timing: shaft speed, radial load, oil temperature, measured cage speed.
 
     ROS arguments (remappings, namespace) follow --ros-args.
     """
     try:
-        recording = read_input_log(log, joint=joint)
+        recording = read_input_log(log, joint=joint, stamps=stamps, cage_joint=cage_joint)
     except InputLogError as fault:
         click.echo(f"bearing_player: {fault}", err=True)
         context.exit(2)
     if recording.unfinished:
         click.echo(f"bearing_player: {recording.unfinished}", err=True)
-    messages = plays(recording)
-    node = rclpy.create_node("bearing_player", start_parameter_services=False)
+    messages = plays(recording, by_stamps=clock_rate is not None)
     stop: Stop = context.obj
-    player = Player(node, stop, recording.series, input_type == "scalar")
+    node = rclpy.create_node("bearing_player", start_parameter_services=False)
+    joints = {"shaft_speed": joint, topics.MEASURED: cage_joint}
+    player = Player(node, lambda: stop.wanted, recording.series, Timeline(rate, start_paused), input_type == "scalar", clock_rate, joints)
     try:
-        if wait_for_subscribers and not player.wait_until_heard(wait_limit):
-            if not stop.wanted:
-                click.echo(f"bearing_player: nobody listens to {', '.join(player.unheard())} after {wait_limit:g} s", err=True)
-            context.exit(130 if stop.wanted else 1)
-        progress = Progress(f"playing {log.name}", messages[-1].time)
-        try:
-            complete = player.play(messages, rate, progress)
-        finally:
-            progress.close()
+        with served(node):
+            if wait_for_subscribers and not player.wait_until_heard(wait_limit):
+                if not stop.wanted:
+                    click.echo(f"bearing_player: nobody listens to {', '.join(player.unheard())} after {wait_limit:g} s", err=True)
+                context.exit(130 if stop.wanted else 1)
+            complete = _play(player, messages, log.name, loop)
+            if complete and use_limit and clock_rate and not player.wait_until_used(messages, use_limit) and not stop.wanted:
+                click.echo(f"bearing_player: no follower of /clock has said within {use_limit:g} s that it has used all", err=True)
         counts = ", ".join(f"{count} {channel}" for channel, count in player.sent.items())
         late = 1e3 * player.lateness / max(1, player.sent.total())
         ending = "played" if complete else "stopped by a signal after"
@@ -220,6 +153,18 @@ def command(context, log, rate, wait_for_subscribers, wait_limit, input_type, jo
         context.exit(0 if complete else 130)
     finally:
         node.destroy_node()
+
+
+def _play(player: Player, messages, name: str, loop: bool) -> bool:
+    """Play all, in a loop again and again; False after a signal."""
+    while True:
+        progress = Progress(f"playing {name}", messages[-1].time)
+        try:
+            complete = player.play(messages, progress)
+        finally:
+            progress.close()
+        if not (complete and loop):
+            return complete
 
 
 def main(args: list[str] | None = None) -> int:

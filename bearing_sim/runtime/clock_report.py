@@ -12,6 +12,8 @@ from bearing_sim.runtime.clock_runner import ClockRunner
 from bearing_sim.runtime.clock_watch import ClockWatch
 from bearing_sim.runtime.input_gate import InputGate
 
+CAUGHT_UP = "all known is computed and passed on"
+"""Key of whether the model has come as far as the clock and the messages allow, and everybody has been told."""
 _BEHIND = 2.0  # [s of wall time] of catching up without a pause from which on it is told
 
 
@@ -63,10 +65,11 @@ def flow_events(now: float, gate: InputGate) -> list[Event]:
     return [event._replace(text=re.sub(r"holding .*$", "the model waits where it is", event.text)) for event in gate.check(now)]
 
 
-def progress(clock: ClockWatch, runner: ClockRunner) -> dict[str, object]:
-    """Return the numbers that only a run by a clock has, the unit in each key."""
+def progress(wall: float, clock: ClockWatch, runner: ClockRunner) -> dict[str, object]:
+    """Return the numbers that only a run by a clock has, as of a wall time [s], the unit in each key."""
     reached = runner.reached
     numbers: dict[str, object] = {"clock [s]": clock.now * 1e-9 if clock.now is not None else math.nan}
     if reached is not None and clock.now is not None:
         numbers["behind the clock [s]"] = (clock.now - reached) * 1e-9
-    return numbers | {"waits for": ", ".join(runner.awaited()) or "nothing", "messages waiting": runner.waiting}
+    caught_up = clock.now is not None and clock.settled(wall) == clock.now and runner.is_idle
+    return numbers | {CAUGHT_UP: caught_up, "waits for": ", ".join(runner.awaited()) or "nothing", "messages waiting": runner.waiting}

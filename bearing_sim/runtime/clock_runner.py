@@ -161,6 +161,13 @@ class ClockRunner:
         began = self._busy_since
         return 0.0 if began is None else self._wall() - began
 
+    @property
+    def is_idle(self) -> bool:
+        """Whether everything that is known is computed and taken."""
+        with self._changed:
+            known = self._course.known_until(self._clock, self._settled, self._expects_oil)
+            return self._busy_since is None and known <= self._course.claimed and not self._queue
+
     def awaited(self) -> list[str]:
         """Return the channels whose messages hold the model back."""
         with self._changed:

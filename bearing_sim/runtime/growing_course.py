@@ -103,6 +103,8 @@ class GrowingCourse:
         known = min(clock, *(self._stamps[channel][-1] for channel in REQUIRED))
         if expects_oil or self._stamps[OIL]:
             known = min(known, self._oil_until(settled))
+        elif settled < self.start:  # whoever publishes it may not have been found yet
+            return -1
         return known if known >= self.start else -1
 
     def _oil_until(self, settled: int) -> int:

@@ -8,7 +8,7 @@ import dataclasses
 import math
 import time
 from collections.abc import Callable
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,31 +19,23 @@ from bearing_sim.runtime.governor import Governor
 from bearing_sim.runtime.health import Condition, Health
 from bearing_sim.runtime.input_gate import UNITS, InputGate
 from bearing_sim.runtime.monitor import Monitor
+from bearing_sim.runtime.outlets import Outlets, Sink
 from bearing_sim.runtime.pacer import Pacer
 from bearing_sim.runtime.residual import ResidualMonitor
 from bearing_sim.runtime.rivals import Rivals
 from bearing_sim.runtime.runner import Phase, Runner
 from bearing_sim.scene import Scene, Thresholds
-from bearing_sim.simulation import Inputs, Simulation
+from bearing_sim.simulation import Simulation
 
 LONGEST_TICK = 0.005  # [s] inputs act this late at most; outputs can be published at 200 Hz
 _SLACK = 4.0  # [s] how long blocks wait to be collected before the oldest are dropped
 
 
-class Sink(Protocol):
-    """Where samples and events go (see `bearing_sim.sinks`)."""
+class Published(NamedTuple):
+    """An output to be published."""
 
-    def write(self, block: np.ndarray) -> None: ...
-    def write_event(self, event: Event) -> None: ...
-    def close(self) -> None: ...
-
-
-class Recorder(Sink, Protocol):
-    """A sink that also keeps the inputs, the measured cage speed and the diagnostics."""
-
-    def write_inputs(self, time: float, inputs: Inputs, channels) -> None: ...
-    def write_measurement(self, time: float, cage_speed: float, residual: float) -> None: ...
-    def write_diagnostics(self, time: float, events, values) -> None: ...
+    stamp_ns: int  # [ns since the epoch]
+    sample: np.void
 
 
 class Cadence(NamedTuple):
@@ -126,9 +118,8 @@ class LiveModel:
         pacer, capacity = Pacer(1.0, maximum_lag), round(_SLACK / beat.tick)
         self.runner = Runner(simulation, pacer, beat.tick, beat.samples, capacity, clock, governor)
         self._every, self._blocks = beat.every, 0
-        self._sinks: dict[str, Sink] = {}
-        self._recorders: dict[str, Recorder] = {}
-        self._given_up: dict[str, Event] = {}
+        self._outlets = Outlets()
+        self._published_time = self._residual_time = -math.inf
         self.runner.start()
 
     def run_time(self, now_ns: int) -> float:
@@ -176,20 +167,44 @@ class LiveModel:
         """Take in how many send a channel's messages; more than one is told."""
         self._rivals[channel].senders = count
 
-    def attach(self, name: str, sink: Sink) -> None:
-        """Let a sink have the samples and events from now on; one with ``write_inputs`` gets the inputs and diagnostics too.
+    def open(self, name: str, open_sink: Callable[[int], Sink], anew: bool = False) -> None:
+        """Let a sink have the samples and events from now on (see `bearing_sim.runtime.outlets.Outlets.attach`).
+
+        Parameters
+        ----------
+        name : of the sink.
+        open_sink : makes it, told run time 0 [ns since the epoch].
+        anew : what to do where time begins anew, which it does not here.
 
         Raises
         ------
-        ValueError
-            There is a sink of that name.
+        OSError
+            It cannot be made.
         """
-        if name in self._sinks:
-            raise ValueError(f"there is a sink {name!r} already")
-        self._sinks[name] = sink
-        self._given_up.pop(name, None)
-        if hasattr(sink, "write_inputs"):
-            self._recorders[name] = sink
+        self.attach(name, open_sink(self.start_ns))
+
+    def attach(self, name: str, sink: Sink) -> None:
+        """Let a sink have the samples and events from now on (see `bearing_sim.runtime.outlets.Outlets.attach`)."""
+        self._outlets.attach(name, sink)
+
+    def published(self) -> list[Published]:
+        """Return the newest sample, where it was not returned before."""
+        sample = self.runner.newest
+        if sample is None or sample["time"] <= self._published_time:
+            return []
+        self._published_time = float(sample["time"])
+        return [Published(self.start_ns + round(self._published_time * 1e9), sample)]
+
+    def residuals(self) -> list[tuple[int, float]]:
+        """Return the newest residual slip with its stamp [ns since the epoch], where it was not returned before."""
+        if not self.residual.time > self._residual_time:
+            return []
+        self._residual_time = self.residual.time
+        return [(self.start_ns + round(self._residual_time * 1e9), self.residual.residual)]
+
+    def reset(self, timeout: float = 2.0) -> bool:
+        """Return state and damage to the start (see `bearing_sim.runtime.runner.Runner.reset`)."""
+        return self.runner.reset(timeout)
 
     def govern(self, governor: Governor | None) -> None:
         """Let a governor change levels from now on; its wanted level is that of the simulation that runs.  None: the level stays the scene's."""
@@ -198,21 +213,11 @@ class LiveModel:
 
     def has(self, name: str) -> bool:
         """Return whether there is a sink of that name."""
-        return name in self._sinks
+        return self._outlets.has(name)
 
     def detach(self, name: str) -> Sink | None:
-        """Close a sink and return it; None when there is none of that name.
-
-        Raises
-        ------
-        OSError
-            It could not be completed; it is detached all the same.
-        """
-        sink = self._sinks.pop(name, None)
-        self._recorders.pop(name, None)
-        if sink is not None:
-            sink.close()
-        return sink
+        """Close a sink and return it; None when there is none of that name (see `bearing_sim.runtime.outlets.Outlets.detach`)."""
+        return self._outlets.detach(name)
 
     def collect(self, now_ns: int) -> list[Event]:
         """Hand blocks and events to the sinks and review the health.  Returns the events that are news."""
@@ -228,12 +233,12 @@ class LiveModel:
                 self._write(now, item)
         news = self.health.news(self.condition(now_ns).events)
         for event in news:
-            self._to_sinks(now, lambda sink, event=event: sink.write_event(event))
+            self._outlets.to_all(now, lambda sink, event=event: sink.write_event(event))
         return news
 
     def condition(self, now_ns: int) -> Condition:
         """Return what holds now, with the numbers behind it."""
-        now, troubles = self.run_time(now_ns), list(self._given_up.values())
+        now, troubles = self.run_time(now_ns), [*self._outlets.troubles(self.run_time(now_ns))]
         running = self._governor.level if self._governor is not None else self.scene.level
         values = {"level": running}
         if running != self.scene.level:
@@ -241,21 +246,15 @@ class LiveModel:
             troubles.append(Event(now, Level.WARN, "governor.level", text))
         if self.runner.newest is not None:
             values |= topics.further_condition(self.scene, self.runner.newest)
-        values |= self.monitor.values | self.residual.values(now)
+        values |= self.monitor.values | self.residual.values(now) | self._outlets.values
         troubles += [*self.monitor.events(now), *self.residual.events(now)]
         troubles += [event for rivals in self._rivals.values() if (event := rivals.event(now)) is not None]
-        for name, sink in self._sinks.items():
-            if getattr(sink, "fault", None):
-                troubles.append(Event(now, Level.WARN, f"sink.failed.{name}", f"{name} has stopped: {sink.fault}"))
-            if hasattr(sink, "dropped"):
-                values[f"{name}: blocks dropped"] = sink.dropped
         return self.health.review(now, self.gate, self.runner, troubles, values)
 
     def record_diagnostics(self, condition: Condition, now_ns: int) -> None:
         """Let the recorders keep a diagnostics report."""
         now = self.run_time(now_ns)
-        for name, recorder in list(self._recorders.items()):
-            self._guarded(name, now, lambda: recorder.write_diagnostics(now, condition.events, condition.values))
+        self._outlets.to_recorders(now, lambda recorder: recorder.write_diagnostics(now, condition.events, condition.values))
 
     def close(self, timeout: float = 2.0) -> bool:
         """Stop the runner, empty its queue into the sinks and complete them.
@@ -268,16 +267,14 @@ class LiveModel:
         for item in self.runner.take():
             if not isinstance(item, Event):
                 self._write(0.0, item)
-        for name in sorted(self._sinks, key=lambda name: name not in self._recorders):  # recordings first: a view may take its time
-            self._guarded(name, 0.0, lambda: self.detach(name))
+        self._outlets.close(0.0)
         return stopped
 
     def _inputs_changed(self, channel: str, now: float) -> None:
         # Speed starts the model: load and temperature have sensible values in the scene, a wrong speed would be a false jolt.
         if self.gate.accepted["shaft_speed"]:
             self.runner.post(self.gate.held)
-        for name, recorder in list(self._recorders.items()):
-            self._guarded(name, now, lambda: recorder.write_inputs(now, self.gate.held, [channel]))
+        self._outlets.to_recorders(now, lambda recorder: recorder.write_inputs(now, self.gate.held, [channel]))
 
     def _compare(self, now: float) -> None:
         """Hold the measured cage speed against the newest sample, which is a tick old at most."""
@@ -290,25 +287,9 @@ class LiveModel:
             predicted = float(sample["cage_slip"]) if own else math.nan
             self.residual.take(float(sample["time"]), float(sample["shaft_speed"]), measured, predicted)
             residual = measured - predicted
-        for name, recorder in list(self._recorders.items()):
-            self._guarded(name, now, lambda: recorder.write_measurement(now, self.gate.measured, residual))
+        self._outlets.to_recorders(now, lambda recorder: recorder.write_measurement(now, self.gate.measured, residual))
 
     def _write(self, now: float, block: np.ndarray) -> None:
         self._blocks += 1
         if self._blocks % self._every == 0:
-            self._to_sinks(now, lambda sink: sink.write(block))
-
-    def _to_sinks(self, now: float, action: Callable[[Sink], None]) -> None:
-        for name, sink in list(self._sinks.items()):
-            self._guarded(name, now, lambda: action(sink))
-
-    def _guarded(self, name: str, now: float, action: Callable[[], object]) -> None:
-        """Do something with a sink; a sink that cannot write (a full disk) is given up and named, the model goes on."""
-        try:
-            action()
-        except (OSError, ValueError) as fault:
-            self._given_up[name] = Event(now, Level.ERROR, f"sink.failed.{name}", f"{name} failed and is given up: {fault}")
-            try:
-                self.detach(name)
-            except (OSError, ValueError):
-                pass  # the same fault once more: it is on record already
+            self._outlets.to_all(now, lambda sink: sink.write(block))

@@ -12,7 +12,6 @@ import dataclasses
 import math
 import time
 from collections.abc import Callable
-from typing import NamedTuple
 
 import numpy as np
 
@@ -24,22 +23,17 @@ from bearing_sim.runtime.clock_watch import ClockWatch, Step
 from bearing_sim.runtime.comparison import Comparison
 from bearing_sim.runtime.growing_course import OIL, GrowingCourse
 from bearing_sim.runtime.health import Condition, Health
-from bearing_sim.runtime.input_gate import InputGate
+from bearing_sim.runtime.input_gate import UNITS, InputGate
 from bearing_sim.runtime.leg import Arrival
+from bearing_sim.runtime.live import Published
 from bearing_sim.runtime.monitor import Monitor
 from bearing_sim.runtime.outlets import Outlets, Sink
 from bearing_sim.runtime.residual import ResidualMonitor
+from bearing_sim.runtime.rivals import Rivals
 from bearing_sim.runtime.stragglers import Message, Side, Stragglers
 from bearing_sim.runtime.walk import Output
 from bearing_sim.scene import Scene, Thresholds
 from bearing_sim.simulation import Simulation
-
-
-class Published(NamedTuple):
-    """An output to be published."""
-
-    stamp_ns: int  # [ns since the epoch]
-    sample: np.void
 
 
 class SimTimeModel:
@@ -88,6 +82,7 @@ class SimTimeModel:
         self._measured: list[tuple[int, float]] = []  # until the course begins
         self._started = self._expects_oil = False
         self._late = self._gaps = 0
+        self._rivals = {channel: Rivals(channel, unit) for channel, unit in UNITS.items()}
         self._outlets = Outlets()
         self._openers: dict[str, Callable[[int], Sink]] = {}
         self._published: list[Published] = []
@@ -139,11 +134,22 @@ class SimTimeModel:
             self.gate.refused["input.leftover"] += 1
         return self._accept(message) if side is Side.HERE else None
 
-    def expect(self, channel: str, expected: bool) -> None:
-        """Take in whether somebody publishes a channel: a first oil temperature is waited for where somebody does."""
-        if channel == OIL and expected != self._expects_oil:
-            self._expects_oil = expected
-            self._show_clock()
+    def note_senders(self, channel: str, count: int) -> None:
+        """Take in how many publish a channel; more than one is told, and a first oil temperature is waited for where somebody does."""
+        self._rivals[channel].senders = count
+        if channel == OIL:
+            self._expects_oil = count > 0
+
+    def note_loss(self, text: str) -> None:
+        """Take in that messages may have been, or were, lost on the way; ``text`` says of which channel."""
+        self._note(Event(self.run_time(self._clock.now or self.start_ns), Level.WARN, "input.lost", text))
+
+    def hold_oil_temperature(self, temperature: float, now_ns: int) -> None:
+        """Let the oil have another temperature [K] from now on, where no message tells it."""
+        self.offer(OIL, (temperature,), None, now_ns)
+
+    def govern(self, governor) -> None:
+        """Let the level stay: nothing is given up here, so there is nothing to govern."""
 
     def refuse(self, channel: str, code: str, reason: str, now_ns: int) -> Event:
         """Take in a message that could not even be read."""
@@ -157,7 +163,7 @@ class SimTimeModel:
         self.monitor.adjust(thresholds)
         self.residual.adjust(thresholds.residual, thresholds.slip_from_speed)
 
-    def open(self, name: str, open_sink: Callable[[int], Sink], anew: bool) -> None:
+    def open(self, name: str, open_sink: Callable[[int], Sink], anew: bool = False) -> None:
         """Let a sink have what comes from the start of the course on, or from now on.
 
         Parameters
@@ -229,10 +235,11 @@ class SimTimeModel:
         if self.runner.newest is not None:
             values |= topics.further_condition(self.scene, self.runner.newest)
         values |= self.monitor.values | self.residual.values(now) | self._outlets.values
-        values |= progress(self._clock, self.runner) | {"late inputs": self._late, "gaps": self._gaps}
+        values |= progress(self._wall(), self._clock, self.runner) | {"late inputs": self._late, "gaps": self._gaps}
         troubles = [*clock_events(now, self._wall(), self._clock, self._held_until), *walk_events(now, self._clock, self.runner)]
         troubles += self._outlets.troubles(now)
         troubles += [*self.monitor.events(now), *self.residual.events(now)]
+        troubles += [event for rivals in self._rivals.values() if (event := rivals.event(now)) is not None]
         return self.health.review(self._seen_at(), self.gate, self.runner, troubles, values, self._flow())
 
     def record_diagnostics(self, condition: Condition, now_ns: int) -> None:
@@ -260,6 +267,7 @@ class SimTimeModel:
             self._note(event)
             return event
         self._newest[channel] = stamp
+        self._rivals[channel].take(values)
         if channel == topics.MEASURED:
             if self._started:
                 self._comparison.measure(self.run_time(stamp), self.gate.measured)
