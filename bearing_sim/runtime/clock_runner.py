@@ -165,8 +165,19 @@ class ClockRunner:
     def is_idle(self) -> bool:
         """Whether everything that is known is computed and taken."""
         with self._changed:
-            known = self._course.known_until(self._clock, self._settled, self._expects_oil)
-            return self._busy_since is None and known <= self._course.claimed and not self._queue
+            return self._busy_since is None and not self._queue and (bool(self._walk.given_up) or self._unclaimed <= 0)
+
+    @property
+    def unfinished(self) -> float:
+        """How much of the course is known and not computed [s]."""
+        with self._changed:
+            passed_over = self._course.claimed - self._course.start - self._walk.reached if self._walk.reached >= 0 else 0
+            return max(self._unclaimed + passed_over, 0) * 1e-9
+
+    @property
+    def _unclaimed(self) -> int:
+        known = self._course.known_until(self._clock, self._settled, self._expects_oil)
+        return known - max(self._course.claimed, (self._course.start or 0) - 1) if known >= 0 else 0
 
     def awaited(self) -> list[str]:
         """Return the channels whose messages hold the model back."""

@@ -8,6 +8,7 @@ from collections import deque
 from enum import Enum
 
 _SETTLING = 0.5  # [s of wall time] after which every message stamped before a reading is taken to have come
+_OVERDUE = 2.0  # [s of wall time] after which a message that is not here is told: played fast, messages queue up for that long
 _STANDING = 1.0  # [s of wall time]
 _LEAP = 10.0  # times the step before, and seconds: a step further ahead than both is told
 
@@ -37,8 +38,9 @@ class ClockWatch:
         self.before: int | None = None
         self._step = 0
         self._changed_at = 0.0
-        self._readings: deque[tuple[float, int]] = deque()
-        self._settled = -1
+        self._unsettled: deque[tuple[float, int]] = deque()
+        self._pending: deque[tuple[float, int]] = deque()
+        self._settled = self._overdue = -1
 
     def read(self, clock: int, wall: float) -> Step | None:
         """Take in a reading [ns since the epoch] at a wall time [s]; None where the clock stands still."""
@@ -46,9 +48,11 @@ class ClockWatch:
             return None
         self.before, self.now, self._changed_at = self.now, clock, wall
         if self.before is not None and clock < self.before:
-            self._readings.clear()
-            self._settled = -1
-        self._readings.append((wall, clock))
+            self._unsettled.clear()
+            self._pending.clear()
+            self._settled = self._overdue = -1
+        self._unsettled.append((wall, clock))
+        self._pending.append((wall, clock))
         if self.before is None:
             return Step.FIRST
         step, usual = clock - self.before, self._step
@@ -59,9 +63,15 @@ class ClockWatch:
 
     def settled(self, wall: float) -> int:
         """Return the newest reading that is half a second of wall time old or more [ns since the epoch]; -1 where there is none."""
-        while self._readings and wall - self._readings[0][0] >= _SETTLING:
-            self._settled = self._readings.popleft()[1]
+        while self._unsettled and wall - self._unsettled[0][0] >= _SETTLING:
+            self._settled = self._unsettled.popleft()[1]
         return self._settled
+
+    def overdue(self, wall: float) -> int:
+        """Return likewise the newest reading up to which a message that is not here is missing."""
+        while self._pending and wall - self._pending[0][0] >= _OVERDUE:
+            self._overdue = self._pending.popleft()[1]
+        return self._overdue
 
     def stands_still(self, wall: float) -> bool:
         """Return whether there was a reading, and no other for a second of wall time."""

@@ -84,10 +84,12 @@ class GrowingCourse:
 
     def awaited(self, settled: int, expects_oil: bool) -> list[str]:
         """Return the channels that an advance to the instant ``settled`` waits for (see `known_until`)."""
-        missing = [channel for channel in REQUIRED if not self._stamps[channel] or self._stamps[channel][-1] < settled]
-        if not missing and expects_oil and self._oil_until(settled) < settled:
-            missing.append(OIL)
-        return missing
+        if unheard := [channel for channel in REQUIRED if not self._stamps[channel]]:
+            return unheard
+        last = min(REQUIRED, key=lambda channel: self._stamps[channel][-1])
+        if self._stamps[last][-1] < settled:
+            return [last]
+        return [OIL] if expects_oil and self._oil_until(settled) < settled else []
 
     def known_until(self, clock: int, settled: int, expects_oil: bool) -> int:
         """Return the last instant of which everything is known [ns since the epoch]; -1 for none.

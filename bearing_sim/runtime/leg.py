@@ -122,7 +122,7 @@ def is_gap(spacings: Sequence[int], limits: InputLimits, longest_gap: float | No
         return False
     if len(spacings) <= _FEW_SPACINGS and last > 1e9 * _LONGEST_UNKNOWN:
         return True
-    known = sorted(spacings[-_SPACINGS_KNOWN:])
+    known = sorted(list(spacings)[-_SPACINGS_KNOWN:])
     return last > _GAP_IN_SPACINGS * known[(len(known) - 1) // 2]
 
 

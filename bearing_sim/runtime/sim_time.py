@@ -295,6 +295,8 @@ class SimTimeModel:
         if self._jump_back == "error":
             self._held_until = max(before, self._held_until or 0)
             return
+        if (left := self.runner.unfinished) > 0.0:
+            back += f", {left:.3g} s before that are left uncomputed"
         self._note(Event(self.run_time(now), Level.WARN, "clock.jumped_back", f"{back}; state and damage begin anew there"))
         self._begin_anew()
 
@@ -369,7 +371,7 @@ class SimTimeModel:
 
     def _flow(self) -> list[Event]:
         """Return what is wrong with the flow of messages; of a clock that counts as an error nothing can be said."""
-        settled = self._clock.settled(self._wall())
-        if settled < 0 or self._epoch is None or self._held_until is not None:
+        overdue = self._clock.overdue(self._wall())
+        if overdue < 0 or self._epoch is None or self._held_until is not None:
             return []
-        return flow_events((settled - self._epoch) * 1e-9, self.gate)
+        return flow_events((overdue - self._epoch) * 1e-9, self.gate)

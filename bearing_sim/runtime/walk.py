@@ -75,6 +75,8 @@ class Walk:
                 done = place + 1
             self.reached = int(leg.instants[done - 1])
             place = done
+        if self.given_up and len(leg.instants):  # whoever revives it goes on with the next leg
+            self.reached = int(leg.instants[-1])
 
     def _start(self, leg: Leg) -> Iterator[Event]:
         try:

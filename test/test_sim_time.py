@@ -1,0 +1,322 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Claims about runs that follow a clock: the same as a replay of the same messages, whatever the clock and the order of topics do."""
+
+import random
+
+import numpy as np
+import pytest
+from fake_simulation import FakeSimulation
+from rosbags.highlevel import AnyReader
+from sim_time_bench import RATE, SCENE, START_NS, FalseWall, ListSink, Message, Player, assert_same_samples, course, replayed, write
+
+from bearing_sim import topics
+from bearing_sim.events import Level
+from bearing_sim.input_course import judge
+from bearing_sim.input_log import read_input_log
+from bearing_sim.replay import replay
+from bearing_sim.runtime.leg import is_gap
+from bearing_sim.runtime.sim_time import SimTimeModel
+from bearing_sim.scene_file import load_scene
+from bearing_sim.simulation import Inputs, Simulation
+from bearing_sim.sinks.mcap_sink import McapSink
+
+pytestmark = pytest.mark.timeout(180)
+SECONDS = 1.2
+
+
+class FakeReset(FakeSimulation):
+    """The stand-in as `Simulation` is made and reset."""
+
+    def __init__(self, scene=SCENE, inputs=None):
+        super().__init__(*([inputs] if inputs is not None else []))
+        self.scene, self.counters = scene, (0, 0, 0)
+
+
+class Run:
+    """A model under a false wall clock, its player and what it has recorded."""
+
+    def __init__(self, simulation=None, scene=SCENE, publish_rate=RATE, **options):
+        self.wall, self.recordings = FalseWall(), []
+        self.model = SimTimeModel(scene, simulation or FakeReset(), RATE, publish_rate, wall=self.wall, **options)
+        self.player = Player(self.model, self.wall)
+        self.model.open("record", self._record, anew=True)
+
+    def _record(self, start_ns):
+        self.recordings.append(ListSink(start_ns))
+        return self.recordings[-1]
+
+    def finish(self):
+        """Let the clock's end settle, and the model compute all."""
+        self.player.stand(1.0)
+        self.player.until_idle()
+        return self.recordings[-1]
+
+    def events(self):
+        return {event.code: event for event in self.model.condition(self.player.now_ns).events}
+
+    def values(self):
+        return self.model.condition(self.player.now_ns).values
+
+
+@pytest.fixture
+def make():
+    """Return a function that makes runs; all are closed at the end."""
+    runs = []
+
+    def made(*given, **named):
+        runs.append(Run(*given, **named))
+        return runs[-1]
+
+    yield made
+    for run in runs:
+        assert run.model.close()
+
+
+def ticks(end, step, begin=0.0):
+    return [*np.arange(begin, end, step).tolist(), end]
+
+
+@pytest.fixture(scope="module")
+def manoeuvre(tmp_path_factory):
+    """Messages, and what an offline replay of them writes."""
+    messages = course(SECONDS, cage=True)
+    return messages, replayed(write(tmp_path_factory.mktemp("log") / "log.mcap", messages))
+
+
+@pytest.mark.parametrize("step, pace", [(0.01, 0.1), (0.1, 1.0), (2.0, 20.0)])
+def test_any_pace_of_the_clock_and_any_order_of_topics_give_what_a_replay_gives_to_the_last_bit(make, manoeuvre, step, pace):
+    messages, expected = manoeuvre
+    run = make(Simulation(SCENE))
+    run.model.note_senders("oil_temperature", 1)
+    run.player.play(messages, ticks(SECONDS, step), random.Random(3), pace)
+    got = run.finish()
+    assert_same_samples(got.samples, expected.samples)
+    assert len(got.samples) == 58 and got.start_ns == expected.start_ns == START_NS + 7_100_000
+    assert got.inputs == expected.inputs
+    np.testing.assert_array_equal(got.measurements, expected.measurements)
+    assert len(got.measurements) == 12 and run.values()["late inputs"] == 0 and run.values()["messages refused"] == 0
+
+
+def test_a_pause_of_the_clock_and_of_the_model_and_a_machine_that_lags_change_nothing(make, manoeuvre):
+    messages, expected = manoeuvre
+    run = make(Simulation(SCENE))
+    run.model.note_senders("oil_temperature", 1)
+    rest = run.player.play(messages, ticks(0.5, 0.05))
+    run.player.stand(60.0)
+    assert "clock.stands_still" in run.events() and "input.stale" not in run.events(), "paused is not stale"
+    run.player.until_idle()
+    run.model.runner.pause()
+    rest = run.player.play(rest, ticks(0.9, 0.05, 0.5))
+    run.player.stand(5.0)
+    assert run.events()["run.paused"].level == Level.OK
+    assert float(run.values()["behind the clock [s]"]) == pytest.approx(0.4, abs=0.05)
+    run.model.runner.pause(False)
+    run.player.play(rest, ticks(SECONDS, 0.05, 0.9))
+    assert_same_samples(run.finish().samples, expected.samples)
+
+
+def test_a_recording_replayed_twice_is_equal_to_the_byte_in_every_message_and_log_time(tmp_path):
+    path = write(tmp_path / "log.mcap", course(SECONDS, cage=True))
+    judged = judge(read_input_log(path), SCENE.input_limits, Inputs(0.0, 0.0, 0.0, SCENE.lubricant.temperature))
+    found = []
+    for name in ("first", "second"):
+        with McapSink(tmp_path / f"{name}.mcap", SCENE, judged.start_ns) as recording:
+            replay(SCENE, judged, recording, rate=RATE)
+        with AnyReader([tmp_path / f"{name}.mcap"]) as reader:
+            found.append([(connection.topic, time, bytes(data)) for connection, time, data in reader.messages()])
+    assert found[0] == found[1]
+    assert {topic for topic, _, _ in found[0]} >= {"/cage_slip", "/damage", "/diagnostics", "/cage_slip_residual", "/oil_temperature"}
+
+
+def test_only_what_is_known_is_computed_and_the_model_waits_for_a_load_that_stops(make):
+    run = make()
+    messages = [message for message in course(4.0, oil=False) if message.channel == "shaft_speed" or message.stamp < 1.0]
+    run.player.play(messages, ticks(4.0, 0.1))
+    run.player.stand(3.0)
+    got = run.finish()
+    last_load = max(message.stamp_ns for message in messages if message.channel == "radial_load")
+    assert last_load - 1e9 / RATE < max(got.samples) <= last_load
+    stale = run.events()["input.stale"]
+    assert stale.text.startswith("radial_load: no good message for 3.01 s") and stale.text.endswith("the model waits where it is")
+    assert run.values()["waits for"] == "radial_load"
+
+
+def test_time_without_messages_is_a_gap_as_in_a_replay_however_long(make, tmp_path):
+    year = 3.2e7
+    messages = [*course(1.0, oil=False), *course(1.0, 10.0, oil=False), *course(1.0, year, oil=False)]
+    expected = replayed(write(tmp_path / "log.mcap", messages), model=FakeReset)
+    run = make()
+    run.player.play(messages, [*ticks(1.0, 0.1), *ticks(11.0, 0.1, 10.0), *ticks(year + 1.0, 0.1, year)])
+    assert {"clock.leapt_ahead", "input.gap"} <= {event.code for event in run.player.news}
+    got = run.finish()
+    assert list(got.samples) == list(expected.samples) and len(got.samples) < 160
+    assert got.samples[max(got.samples)]["shaft_angle"] == expected.samples[max(got.samples)]["shaft_angle"]
+    assert run.values()["gaps"] == 4
+
+
+def test_clock_that_jumps_back_begins_anew_with_a_recording_of_its_own(make, manoeuvre):
+    messages, expected = manoeuvre
+    run = make(Simulation(SCENE))
+    run.model.note_senders("oil_temperature", 1)
+    for _ in range(2):
+        run.player.play(messages, ticks(SECONDS, 0.1))
+        run.finish()
+    assert [event.level for event in run.player.news if event.code == "clock.jumped_back"] == [Level.WARN]
+    assert len(run.recordings) == 2 and run.recordings[0].closed
+    assert_same_samples(run.recordings[1].samples, expected.samples)
+    assert_same_samples(run.recordings[0].samples, expected.samples)
+    assert run.values()["messages refused"] == 0
+
+
+def test_messages_around_a_jump_back_may_come_on_its_wrong_side(make, tmp_path):
+    messages = course(SECONDS, oil=False)
+    expected = replayed(write(tmp_path / "log.mcap", messages), model=FakeReset)
+    run = make()
+    late = [message for message in messages if message.stamp > 1.15]
+    run.player.play(messages[: -len(late)], ticks(1.15, 0.1))
+    early = [message for message in messages if message.stamp < 0.2]
+    for message in early:
+        run.player.offer(message)
+    run.player.tick(0.0)
+    for message in late:
+        run.player.offer(message)
+    run.player.play(messages[len(early) :], ticks(SECONDS, 0.1, 0.2))
+    got = run.finish()
+    assert_same_samples(got.samples, expected.samples)
+    assert run.model.gate.refused == {"input.leftover": len(late)}
+
+
+def test_clock_that_jumps_back_is_an_error_where_that_is_asked_for_and_ends_when_it_has_passed(make, tmp_path):
+    messages = course(SECONDS, oil=False)
+    expected = replayed(write(tmp_path / "log.mcap", messages), model=FakeReset)
+    run = make(jump_back="error")
+    first, rest = [m for m in messages if m.stamp <= 0.8], [m for m in messages if m.stamp > 0.8]
+    run.player.play(first, ticks(0.8, 0.1))
+    run.player.until_idle()
+    held = run.model.runner.newest["time"]
+    run.player.play([m for m in messages if 0.3 < m.stamp <= 0.7], ticks(0.7, 0.1, 0.3))
+    run.player.stand(2.0)
+    event = run.events()["clock.jumped_back"]
+    assert event.level == Level.ERROR and "jumped back to 1700000000.700 s" in event.text and "passed 1700000000.800 s" in event.text
+    assert run.model.runner.newest["time"] == held
+    assert run.model.gate.refused["input.time_backwards"] > 10, "none is used silently"
+    run.player.play(rest, ticks(SECONDS, 0.1, 0.8))
+    got = run.finish()
+    assert "clock.jumped_back" not in run.events() and len(run.recordings) == 1
+    assert_same_samples(got.samples, expected.samples)
+
+
+def test_reset_ends_the_error_of_a_jump_back_and_begins_anew(make, tmp_path):
+    messages = course(SECONDS, oil=False)
+    later = [message for message in messages if message.stamp > 0.3]
+    expected = replayed(write(tmp_path / "log.mcap", later), model=FakeReset)
+    run = make(jump_back="error")
+    run.player.play([m for m in messages if m.stamp <= 0.8], ticks(0.8, 0.1))
+    run.finish()
+    run.player.play(later, ticks(0.5, 0.1, 0.3))
+    assert run.events()["clock.jumped_back"].level == Level.ERROR
+    assert run.model.reset()
+    rest = [message for message in later if message.stamp > 0.5]
+    run.player.play(rest, ticks(SECONDS, 0.1, 0.5))
+    got = run.finish()
+    assert "clock.jumped_back" not in run.events() and len(run.recordings) == 2
+    assert_same_samples(got.samples, expected.samples)
+
+
+def test_late_oil_temperature_is_refused_counted_and_told(make):
+    run = make()
+    messages = course(SECONDS, oil=False)
+    run.player.play(messages, ticks(1.0, 0.1))
+    run.finish()
+    run.player.offer(Message(0.5, "oil_temperature", (350.0,)))
+    run.player.collect()
+    assert run.values()["late inputs"] == 1 and run.values()["refused: input.late"] == 1
+    event = run.events()["input.late"]
+    assert event.level == Level.WARN and event.text.startswith("oil_temperature: stamped 1700000000.500000 s, which the model has passed by")
+    got = run.recordings[-1]
+    assert {float(sample["oil_temperature"]) for sample in got.samples.values()} == {SCENE.lubricant.temperature}
+
+
+def test_without_a_clock_nothing_is_computed_and_that_is_said(make):
+    run = make()
+    for message in course(0.5):
+        run.player.offer(message)
+    run.wall.now += 10.0
+    run.player.collect()
+    event = run.events()["clock.absent"]
+    assert event.level == Level.WARN and "/clock" in event.text
+    assert run.model.runner.newest is None and run.values()["phase"] == "waiting for the first input"
+    run.player.tick(0.5)
+    run.finish()
+    assert "clock.absent" not in run.events() and run.model.runner.newest["time"] > 0.4
+
+
+def test_outputs_are_published_at_their_stamps_at_the_publish_rate(make):
+    run = make(publish_rate=10.0)
+    run.player.play(course(SECONDS, oil=False), ticks(SECONDS, 0.3))
+    start = run.finish().start_ns
+    assert [round((one.stamp_ns - start) * 1e-9, 9) for one in run.model.published()] == [round(0.1 * k, 9) for k in range(1, 12)]
+    assert run.model.published() == []
+
+
+def test_a_machine_too_slow_loses_nothing_and_says_how_far_behind_it_is(make, tmp_path):
+    messages = course(SECONDS, oil=False)
+    expected = replayed(write(tmp_path / "log.mcap", messages), model=FakeReset)
+    slow = FakeReset()
+    slow.seconds_per_tick = 0.01
+    run = make(slow)
+    run.player.play(messages, ticks(SECONDS, 0.4), pace=20.0)
+    run.player.stand(1.0, 1)
+    run.player.until(lambda: run.model.runner.busy_for >= 0.0 and run.model.runner.reached is not None, "it has begun")
+    run.wall.now += 3.0
+    event = run.events()["run.behind"]
+    assert event.level == Level.WARN and "behind the clock and catches up; nothing is lost" in event.text
+    run.player.until_idle()
+    assert_same_samples(run.recordings[-1].samples, expected.samples)
+    assert "run.behind" not in run.events()
+
+
+def test_model_that_cannot_go_on_is_given_up_as_in_a_replay_and_a_reset_revives_it(make):
+    broken = FakeReset()
+    broken.fails_at = lambda time, inputs: time > 0.3
+    run = make(broken)
+    messages = course(2.0, oil=False)
+    rest = run.player.play(messages, ticks(1.5, 0.1))
+    run.finish()
+    assert run.events()["run.given_up"].level == Level.ERROR and "10 stretches in a row" in run.events()["run.given_up"].text
+    broken.fails_at = lambda time, inputs: False
+    assert run.model.reset()
+    run.player.play(rest, ticks(2.0, 0.1, 1.5))
+    got = run.finish()
+    run.player.stand(3.0)
+    assert "run.given_up" not in run.events() and (max(got.samples) - START_NS) * 1e-9 > 1.9
+
+
+def test_gaps_are_told_by_the_spacings_so_far():
+    limits, second = SCENE.input_limits, 1_000_000_000
+    assert is_gap([second // 10] * 5 + [2 * second], limits)
+    assert not is_gap([second // 10] * 5 + [second // 2], limits), "no spacing that is not stale is one"
+    assert not is_gap([10 * second] * 5 + [90 * second], limits)
+    assert not is_gap([60 * second], limits) and is_gap([5000 * second], limits), "a first one an hour long at most"
+    assert is_gap([second, 7 * second], limits, longest_gap=5.0) and not is_gap([second // 10, 3 * second], limits, longest_gap=5.0)
+
+
+def test_replay_compares_the_measured_cage_of_the_log_at_its_own_stamps(manoeuvre):
+    messages, expected = manoeuvre
+    by_stamp = {message.stamp_ns: message.values[0] for message in messages if message.channel == topics.MEASURED}
+    assert [stamp for stamp, _, _ in expected.measurements] == [stamp for stamp in by_stamp if stamp >= expected.start_ns][
+        : len(expected.measurements)
+    ]
+    stamps = np.array(list(expected.samples))
+    slips = np.array([sample["cage_slip"] for sample in expected.samples.values()])
+    ideal = np.array([sample["ideal_cage_speed"] for sample in expected.samples.values()])
+    for stamp, speed, residual in expected.measurements[2:]:
+        assert speed == by_stamp[stamp]
+        assert residual == pytest.approx(1.0 - speed / np.interp(stamp, stamps, ideal) - np.interp(stamp, stamps, slips), abs=1e-6)
+
+
+def test_replay_holds_slip_for_its_hold_time_before_it_is_told(tmp_path):
+    scene = load_scene("deng2017_table1", ["thresholds.slip_warning=0.5%", "thresholds.slip_error=50%", "thresholds.slip_hold.raise_after=0.4s"])
+    sink = replayed(write(tmp_path / "log.mcap", course(SECONDS, oil=False)), scene, model=FakeReset)
+    (event,) = [event for event in sink.events if event.code == "bearing.slip"]
+    assert event.time == pytest.approx(0.42) and event.level == Level.WARN
