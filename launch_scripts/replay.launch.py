@@ -9,8 +9,12 @@ from bearing_sim.ros.launching import Argument, bearing_node, declared, value
 
 PLAYER = (
     Argument("log", "mission.mcap", "MCAP recording whose inputs are played; bearing-sim mission -o mission.mcap writes one"),
-    Argument("rate", "1.0", "how many times as fast as recorded; the model keeps to the wall clock, so other rates are another run"),
+    Argument("rate", "1.0", "how many times as fast as recorded, such as 0.1 to 20"),
+    Argument("clock", "100.0", "readings of /clock a second, which the node follows: outputs do not depend on the rate; 0: none, wall time counts"),
+    Argument("start_paused", "false", "whether to wait for the player's service bearing_player/pause", ("false", "true")),
+    Argument("loop", "false", "whether to begin again at the end, each time with the bearing and the recording anew", ("false", "true")),
     Argument("wait_limit", "600", "how long the player waits for the node, which compiles at its first start [s]"),
+    Argument("use_limit", "3600", "how long the player waits at the end for the node to have computed all [s]"),
 )
 
 
@@ -20,8 +24,12 @@ def generate_launch_description():
 
 
 def _start(context):
-    words = ["--rate", value(context, "rate"), "--wait-limit", value(context, "wait_limit")]
-    words += ["--input-type", value(context, "input_type"), "--joint", value(context, "joint")]
+    follows_clock = float(value(context, "clock")) > 0.0
+    words = ["--rate", value(context, "rate"), "--wait-limit", value(context, "wait_limit"), "--input-type", value(context, "input_type")]
+    words += ["--joint", value(context, "joint"), "--cage-joint", value(context, "cage_joint")]
+    if follows_clock:
+        words += ["--clock", value(context, "clock"), "--wait-until-used", value(context, "use_limit")]
+    words += [f"--{name.replace('_', '-')}" for name in ("start_paused", "loop") if value(context, name) == "true"]
     player = Node(
         package="bearing_sim",
         executable="bearing_player",
@@ -31,4 +39,4 @@ def _start(context):
         output="screen",
         on_exit=Shutdown(reason="the player has ended"),
     )
-    return [bearing_node(context, on_exit=Shutdown(reason="the node has ended")), player]
+    return [bearing_node(context, on_exit=Shutdown(reason="the node has ended"), sim_time=follows_clock), player]

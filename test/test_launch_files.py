@@ -133,7 +133,7 @@ def test_arguments_reach_the_node_in_their_own_types(launched, path):
 @EVERY_FILE
 def test_a_file_of_parameters_comes_after_the_arguments_and_so_counts_more(launched, path):
     name = path.name.partition(".")[0]
-    assert len(nodes(launched(name))[0].parameters) == 1
+    assert not [one for one in nodes(launched(name))[0].parameters if isinstance(one, str)]
     assert nodes(launched(name, parameters_file="mine.yaml"))[0].parameters[1:] == ["mine.yaml"]
 
 
@@ -179,6 +179,17 @@ def test_a_replay_plays_the_log_to_the_node_and_ends_when_either_has_ended(launc
     assert str(taken["log"]) == "flights/a 1.mcap" and taken["rate"] == 2.0 and taken["wait_limit"] == 600.0
     assert taken["input_type"] == handed_over(node, run.context)["input_type"] == "scalar"
     assert taken["joint"] == handed_over(node, run.context)["joint"] == "rotor"
+
+
+def test_a_replay_goes_by_the_clock_of_its_player_unless_none_is_wanted(launched):
+    run = launched("replay", log="a.mcap", cage_joint="m1_cage", loop="true", start_paused="true")
+    (node,), (player,) = nodes(run), nodes(run, "bearing_player")
+    taken = player_command.make_context("bearing_player", list(player.arguments)).params
+    assert taken["clock_rate"] == 100.0 and taken["use_limit"] == 3600.0 and taken["loop"] and taken["start_paused"]
+    assert {"use_sim_time": True} in node.parameters and taken["cage_joint"] == "m1_cage"
+    run = launched("replay", log="a.mcap", clock="0")
+    taken = player_command.make_context("bearing_player", list(nodes(run, "bearing_player")[0].arguments)).params
+    assert taken["clock_rate"] is None and {"use_sim_time": True} not in nodes(run)[0].parameters and not taken["loop"]
 
 
 def test_a_fleet_gives_every_bearing_its_scene_namespace_name_recording_and_port(launched):

@@ -69,6 +69,7 @@ def bearing_node(
     namespace: str | None = None,
     on_exit=None,
     fleet: Mapping[str, Mapping[str, str]] = MappingProxyType({}),
+    sim_time: bool = False,
     **texts: str,
 ) -> Node:
     """Return the action that starts one bearing_node, which by the node's own parameter ``autostart`` configures and activates itself.
@@ -80,6 +81,7 @@ def bearing_node(
     namespace : where it is not the argument's.
     on_exit : action when the process has ended.
     fleet : where the node hosts several: their names, and of each the parameters that are its own.
+    sim_time : whether the node follows /clock.
     texts : parameters that take another value than the argument of their name.
     """
     if fleet:
@@ -87,6 +89,8 @@ def bearing_node(
     rows = {row.name: row for row in DECLARATIONS}
     parameters = [{row.name: _typed(row, texts.get(row.name)) for row in DECLARATIONS}]
     parameters[0] |= {f"{bearing}.{key}": _typed(rows[key], text) for bearing, own in fleet.items() for key, text in own.items()}
+    if sim_time:
+        parameters.append({"use_sim_time": True})
     if path := value(context, "parameters_file"):
         parameters.append(path)
     return Node(

@@ -20,6 +20,7 @@ from bearing_sim.runtime.clock_report import CAUGHT_UP
 from bearing_sim.simulation import Inputs
 
 SLICE = 0.05  # [s] a sleep is cut into such slices, so that a signal is obeyed
+_ACKNOWLEDGED = 1.0  # [s] how long acknowledgements are waited for
 _DELIVERY = 0.2  # [s] best-effort subscribers acknowledge nothing, and a message of a publisher that is gone is lost
 _COURTESY = 1.0  # [s] how long the optional channels are waited for once the required ones are heard
 _SETTLED = 1.0  # [s] after the end in which a follower of the clock cannot yet know that everything has come
@@ -124,6 +125,11 @@ class Player:
             name, kind = topics.DIAGNOSTICS
             node.create_subscription(message_class(kind), f"/{name}", self._note_diagnostics, 100)
 
+    @property
+    def wants_end(self) -> bool:
+        """Whether to end early."""
+        return self._wants_end()
+
     def unheard(self, channels=REQUIRED) -> list[str]:
         """Return those of the channels that nobody listens to."""
         return [channel for channel in channels if self._publishers[channel].get_subscription_count() == 0]
@@ -133,12 +139,12 @@ class Player:
         if not self._wait(REQUIRED, limit):
             return False
         self._wait(self._publishers, _COURTESY)
-        return not self._wants_end()
+        return not self.wants_end
 
     def _wait(self, channels, limit: float) -> bool:
         deadline = time.monotonic() + limit
         while self.unheard(channels):
-            if time.monotonic() > deadline or self._wants_end():
+            if time.monotonic() > deadline or self.wants_end:
                 return False
             time.sleep(SLICE)
         return True
@@ -152,10 +158,10 @@ class Player:
             while (rest := play.time - line.position) > 0.0 or line.is_paused:
                 self._show_clock(first_ns + round(min(line.position, play.time) * 1e9))
                 progress(line.position)
-                if self._wants_end():
+                if self.wants_end:
                     return False
                 time.sleep(min(SLICE if line.is_paused else rest / line.rate, SLICE, self._clock_period or SLICE))
-            if self._wants_end():
+            if self.wants_end:
                 return False
             self.lateness += -rest / line.rate
             self.reached = play.time
@@ -164,8 +170,9 @@ class Player:
         progress(plays[-1].time)
         end_ns = first_ns + round(plays[-1].time * 1e9)
         self._show_clock(end_ns, at_once=True)
+        deadline = time.monotonic() + _ACKNOWLEDGED
         for publisher in self._publishers.values():
-            publisher.wait_for_all_acked(Duration(seconds=1))
+            publisher.wait_for_all_acked(Duration(seconds=max(deadline - time.monotonic(), 0.0)))
         for _ in range(4):  # a clock that is not heard to have come to the end would leave the last messages unused
             self._show_clock(end_ns, at_once=True)
             time.sleep(_DELIVERY / 4)
@@ -174,7 +181,7 @@ class Player:
     def wait_until_used(self, plays: list[Play], limit: float) -> bool:
         """Show the end of what was played until every follower says that it has used all; False after ``limit`` [s] or a signal."""
         began, end_ns = time.monotonic(), plays[0].stamp_ns + round(plays[-1].time * 1e9)
-        while time.monotonic() - began < limit and not self._wants_end():
+        while time.monotonic() - began < limit and not self.wants_end:
             self._show_clock(end_ns)
             known = [caught_up for at, caught_up in self._caught_up.values() if at - began > _SETTLED]
             if known and all(known) and len(known) == len(self._caught_up):
@@ -188,7 +195,7 @@ class Player:
         if play.channel in self._joints and "name" in fields:
             fields["name"] = [self._joints[play.channel]]
         filled = message(kind, fields)
-        while not self._wants_end():
+        while not self.wants_end:
             try:
                 self._publishers[play.channel].publish(filled)
             except rclpy_implementation.RCLError:  # the queue is full of what a slow subscriber has not acknowledged

@@ -20,7 +20,7 @@ from rclpy.utilities import remove_ros_args
 
 from bearing_sim import topics
 from bearing_sim.input_log import InputLogError, read_input_log
-from bearing_sim.ros.playback import Player, Timeline, plays
+from bearing_sim.ros.playback import Play, Player, Timeline, plays
 
 
 class Stop:
@@ -143,9 +143,9 @@ def command(context, log, rate, clock_rate, stamps, start_paused, loop, use_limi
                 if not stop.wanted:
                     click.echo(f"bearing_player: nobody listens to {', '.join(player.unheard())} after {wait_limit:g} s", err=True)
                 context.exit(130 if stop.wanted else 1)
-            complete = _play(player, messages, log.name, loop)
-            if complete and use_limit and clock_rate and not player.wait_until_used(messages, use_limit) and not stop.wanted:
-                click.echo(f"bearing_player: no follower of /clock has said within {use_limit:g} s that it has used all", err=True)
+            complete = _play(player, messages, log.name, use_limit if clock_rate else 0.0)
+            while complete and loop:
+                complete = _play(player, messages, log.name, use_limit if clock_rate else 0.0)
         counts = ", ".join(f"{count} {channel}" for channel, count in player.sent.items())
         late = 1e3 * player.lateness / max(1, player.sent.total())
         ending = "played" if complete else "stopped by a signal after"
@@ -155,16 +155,20 @@ def command(context, log, rate, clock_rate, stamps, start_paused, loop, use_limi
         node.destroy_node()
 
 
-def _play(player: Player, messages, name: str, loop: bool) -> bool:
-    """Play all, in a loop again and again; False after a signal."""
-    while True:
-        progress = Progress(f"playing {name}", messages[-1].time)
-        try:
-            complete = player.play(messages, progress)
-        finally:
-            progress.close()
-        if not (complete and loop):
-            return complete
+def _play(player: Player, messages: list[Play], name: str, use_limit: float) -> bool:
+    """Play all and let followers of the clock use it, for so long at most [s]; False after a signal."""
+    progress = Progress(f"playing {name}", messages[-1].time)
+    try:
+        complete = player.play(messages, progress)
+    finally:
+        progress.close()
+    if not (complete and use_limit):
+        return complete
+    if player.wait_until_used(messages, use_limit):
+        return True
+    if not player.wants_end:
+        click.echo(f"bearing_player: no follower of /clock has said within {use_limit:g} s that it has used all", err=True)
+    return not player.wants_end
 
 
 def main(args: list[str] | None = None) -> int:
