@@ -17,6 +17,7 @@ from bearing_sim import topics  # noqa: E402
 from bearing_sim.input_course import judge  # noqa: E402
 from bearing_sim.input_log import read_input_log  # noqa: E402
 from bearing_sim.replay import replay  # noqa: E402
+from bearing_sim.runtime.clock_report import CAUGHT_UP  # noqa: E402
 from bearing_sim.simulation import Inputs  # noqa: E402
 from bearing_sim.sinks.mcap_sink import McapSink  # noqa: E402
 
@@ -112,7 +113,11 @@ def test_a_log_played_at_any_rate_with_a_pause_and_again_is_what_its_replay_is(b
     client.spin_until(lambda: len(joints_of) > 20, "the first outputs come", node, 60.0)
     _pause(client, slow, True)
     client.spin_until(lambda: events(client, "clock.stands_still"), "the pause is told", node)
-    client.spin(0.5)
+    told = len(client.received["diagnostics"]) + 1
+    client.spin_until(
+        lambda: len(client.received["diagnostics"]) > told and client.values()[CAUGHT_UP] == "True", "the node has caught up", node, 60.0
+    )
+    client.spin(1.0)  # what is on its way
     held = len(joints_of)
     client.spin(1.0)
     assert len(joints_of) == held < len(expected) and slow.process.poll() is None and not events(client, "input.stale")
