@@ -258,7 +258,7 @@ def test_the_command_calibrates_a_table_that_was_imported(tmp_path):
     assert "name the scene to calibrate with --scene" in invoke("calibrate", log).output
     found = invoke("calibrate", log, "--scene", "deng2017_table1", "--json")
     assert json.loads(found.stdout)["fitted"][MIXTURE]["value"] == pytest.approx(TRUTH, rel=0.02)
-    assert set(read_input_log(log).series) == {"shaft_speed", "radial_load"}, "a replay has no use for what was measured"
+    assert set(read_input_log(log).series) == {"shaft_speed", "radial_load", "cage_speed_measured"}, "a replay compares what was measured"
 
 
 def test_the_command_says_what_is_missing_in_one_line(tmp_path):
