@@ -31,7 +31,13 @@ def git_hash() -> str:
     return described.stdout.strip() if described.returncode == 0 else ""
 
 
-_PACKAGES = {"numpy": ("numpy",), "numba": ("numba",), "scipy": ("scipy",), "mcap": ("mcap",), "rclpy": ("rclpy", "ros-jazzy-rclpy", "ros-kilted-rclpy")}
+_PACKAGES = {
+    "numpy": ("numpy",),
+    "numba": ("numba",),
+    "scipy": ("scipy",),
+    "mcap": ("mcap",),
+    "rclpy": ("rclpy", "ros-jazzy-rclpy", "ros-kilted-rclpy"),
+}
 
 
 @cache

@@ -12,7 +12,7 @@ from bearing_sim.provenance import git_hash, package_version, versions
 from bearing_sim.scene import Scene
 from bearing_sim.scene_file import scene_to_yaml
 from bearing_sim.sinks.mcap_rows import RowLayout
-from bearing_sim.sinks.parts import Limits, Parts
+from bearing_sim.sinks.parts import UNPARTED, Limits, Parts
 
 METADATA = "bearing_sim"
 """Name of the metadata record: scene (YAML), level, start_ns, package_version, git_hash, part, and versions of packages by name."""
@@ -43,7 +43,7 @@ class McapSink:
         metadata: Mapping[str, Mapping[str, str]] | None = None,
         flush_every: float = 0.5,
         replace: bool = False,
-        limits: Limits = Limits(),
+        limits: Limits = UNPARTED,
         seed: int | None = None,
     ):
         self.start_ns = int(start_ns)

@@ -30,6 +30,9 @@ class Limits(NamedTuple):
     keep_free: float = 100e6
 
 
+UNPARTED = Limits()
+
+
 class Parts:
     """The files of a recording, one after the other; each can be read alone.
 
@@ -53,7 +56,7 @@ class Parts:
         custom_data: Mapping[str, str],
         flush_every: float = 0.5,
         replace: bool = False,
-        limits: Limits = Limits(),
+        limits: Limits = UNPARTED,
     ):
         self.path, self.limits = Path(path), limits
         self._is_bag = self.path.suffix != ".mcap"
