@@ -119,7 +119,7 @@ class Recording:
             present.add(topic)
             if topic == loads_topic:
                 times.add(message.log_time)
-                values = _trailing_doubles(message.data)
+                values = trailing_doubles(message.data)
                 largest = max(largest, float(values.max(initial=0.0))) if np.isfinite(values).all() else largest
         return metadata, times, largest, present
 
@@ -177,7 +177,7 @@ class Recording:
                 yield Received(topic, ros_type, message.log_time, message.publish_time, message.data)
             if topic not in _TYPES:
                 continue
-            decoded = _trailing_doubles(message.data) if topic[1:] in ARRAYS else decode(message.data, _TYPES[topic])
+            decoded = trailing_doubles(message.data) if topic[1:] in ARRAYS else decode(message.data, _TYPES[topic])
             if topic == f"/{DIAGNOSTICS[0]}":
                 yield from _news(decoded, (message.log_time - self.start_ns) * 1e-9, told)
                 continue
@@ -189,7 +189,7 @@ class Recording:
             yield last
 
 
-def _trailing_doubles(data: bytes) -> np.ndarray:
+def trailing_doubles(data: bytes) -> np.ndarray:
     """Return the numbers of a Float64MultiArray, the last thing in its CDR: their count, padding to eight bytes, the numbers."""
     words = np.frombuffer(data, "<u4", offset=4, count=(len(data) - 4) // 4)
     for start in range(2, len(words) + 1, 2):

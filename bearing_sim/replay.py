@@ -13,7 +13,7 @@ from bearing_sim.events import Event, Level
 from bearing_sim.input_course import InputCourse
 from bearing_sim.runtime.health import bearing_events, bearing_states
 from bearing_sim.scene import Scene
-from bearing_sim.simulation import Inputs, IntegrationError, Simulation
+from bearing_sim.simulation import Inputs, IntegrationError, Simulation, start_sample
 from bearing_sim.topics import INPUTS, condition, further_condition
 
 _REPORT_EVERY = 1.0  # [s] of simulated time between diagnostics
@@ -166,6 +166,7 @@ class _Run:
         except IntegrationError as error:
             self._give_up(0.0, f"the model has no state at the first inputs: {error}")
         else:
+            self._recording.write(start_sample(simulation))
             self._advance_over_grid(simulation, inputs)
             self._result.steps, self._result.rejected_steps, self._result.non_finite_steps = simulation.counters[:3]
         self._tell_events_until(math.inf)

@@ -16,6 +16,7 @@ from bearing_sim.commands.reporting import (
     progress_bar,
     tell_cheaper_level,
     tell_compilation,
+    tell_replacement,
     told_as_bad_input,
     told_file_faults,
 )
@@ -42,7 +43,7 @@ def command(scene_name, overrides, duration, level, rate, out, rrd, as_json):
     Cage slip is the mean over the last fifth of the run, after it has settled.
     """
     from bearing_sim.scene_file import SceneError, load_scene
-    from bearing_sim.simulation import IntegrationError, Simulation
+    from bearing_sim.simulation import IntegrationError, Simulation, start_sample
 
     seconds = _seconds(duration)
     with told_as_bad_input(SceneError):
@@ -58,6 +59,8 @@ def command(scene_name, overrides, duration, level, rate, out, rrd, as_json):
             simulation = Simulation(scene)
             simulation.advance(1e-6)  # machine code is compiled or loaded here, and not timed with the run
             simulation.reset()
+            for sink in sinks[: out is not None]:
+                sink.write(start_sample(simulation))
             first = time.perf_counter()
             settled = _advance(simulation, seconds, samples, sinks, progress)
         except IntegrationError as error:
@@ -85,7 +88,8 @@ def _sinks(stack, scene, seconds, out, rrd) -> list:
     if out is not None:
         from bearing_sim.sinks.mcap_sink import McapSink
 
-        sinks.append(stack.enter_context(McapSink(out, scene, start_ns)))
+        tell_replacement(out)
+        sinks.append(stack.enter_context(McapSink(out, scene, start_ns, replace=True)))
     if rrd is not None:
         from bearing_sim.sinks.rerun_sink import RerunSink
 
