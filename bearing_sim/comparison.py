@@ -35,6 +35,7 @@ class TopicDifference:
     largest : the largest difference of each number; infinite where one of them is not a number and the other is.
     magnitude : the largest magnitude of the field to which each number belongs.
     where_ns : log time of each number's largest difference [ns since the epoch].
+    first_ns : log time of the first message of all [ns since the epoch].
     """
 
     topic: str
@@ -48,6 +49,7 @@ class TopicDifference:
     largest: np.ndarray = field(default_factory=lambda: np.zeros(0))
     magnitude: np.ndarray = field(default_factory=lambda: np.zeros(0))
     where_ns: np.ndarray = field(default_factory=lambda: np.zeros(0, np.int64))
+    first_ns: int = 0
 
     @property
     def relative(self) -> np.ndarray:
@@ -89,13 +91,15 @@ def compare(
     """
     found: dict[str, _Pairing] = {}
     skipped: set[str] = set()
+    first_ns = None
     for side, topic, ros_type, message in _alternating(first, second):
+        first_ns = message.log_time if first_ns is None else min(first_ns, message.log_time)
         if ros_type == _TEXT:
             skipped.add(topic)
             continue
         if topic not in found:
             own = (tolerances or {}).get(topic, (tolerances or {}).get(topic.lstrip("/"), tolerance))
-            found[topic] = _Pairing(TopicDifference(topic, ros_type, own))
+            found[topic] = _Pairing(TopicDifference(topic, ros_type, own, first_ns=first_ns))
         found[topic].take(side, message)
     return [found[topic].finished() for topic in sorted(found)], sorted(skipped)
 

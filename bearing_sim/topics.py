@@ -345,3 +345,9 @@ def header_stamp_ns(message) -> int | None:
     # Jazzy calls the field nanosec; ROS 1 style bindings say nsec.
     nanoseconds = int(time.sec) * 1_000_000_000 + int(time.nanosec if hasattr(time, "nanosec") else time.nsec)
     return nanoseconds or None
+
+
+def frame_of(message) -> str:
+    """Return the frame that a message's header names; ``""`` for a message without one."""
+    stamped = getattr(message, "header", None)
+    return "" if stamped is None else str(stamped.frame_id)

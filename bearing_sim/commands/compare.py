@@ -85,9 +85,9 @@ def _print(first, second, differences, skipped, agree) -> None:
     from rich.table import Table
 
     table = Table(title=f"{first} against {second}", title_justify="left")
-    for name in ("topic", "messages", "alone", "differing", "largest", "over magnitude", "tolerance", "in", "at [s]", ""):
+    for name in ("topic", "messages", "alone", "differing", "largest", "over magnitude", "tolerance", "in", "after [s]", ""):
         table.add_column(name, justify="left" if name in ("topic", "in", "") else "right", no_wrap=name == "topic")
-    start = min((int(difference.where_ns[difference.where_ns > 0].min()) for difference in differences if (difference.where_ns > 0).any()), default=0)
+    start = min(difference.first_ns for difference in differences)
     for difference in differences:
         told = _told(difference)
         alone = f"{difference.only_first} / {difference.only_second}"
@@ -98,8 +98,6 @@ def _print(first, second, differences, skipped, agree) -> None:
             difference.topic, str(difference.matched), alone, str(difference.differing), *numbers, f"{difference.tolerance:g}", *where, verdict
         )
     Console(width=None if sys.stdout.isatty() else 170).print(table)
-    if start:
-        click.echo(f"times count from {start} ns, the first of them")
     if skipped:
         click.echo(f"not compared: {', '.join(skipped)}")
     click.echo("the recordings agree" if agree else "the recordings differ")

@@ -141,7 +141,7 @@ class BearingNode(Node):
         except ValueError as fault:
             self.live.refuse(channel, "input.malformed", str(fault), now_ns)
             return
-        self.live.offer(channel, values, topics.header_stamp_ns(incoming), now_ns)
+        self.live.offer(channel, values, topics.header_stamp_ns(incoming), now_ns, topics.frame_of(incoming))
 
     def _publish(self) -> None:
         """Publish the newest sample, if it is new."""
@@ -198,8 +198,10 @@ class BearingNode(Node):
             logger.info(line)
 
     def _start_recording(self, path: Path) -> None:
-        self.live.attach("record", open_recording(path, self.scene, self.live.start_ns))
-        self.get_logger().info(f"recording {path}")
+        sink = open_recording(path, self.scene, self.live.start_ns)
+        self.live.attach("record", sink)
+        taken = "" if sink.path == path else f" ({path} exists and stays as it is)"
+        self.get_logger().info(f"recording {sink.path}{taken}")
 
     def _serve_start_recording(self, _, response):
         if self.live.has("record"):

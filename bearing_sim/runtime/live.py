@@ -26,6 +26,7 @@ from bearing_sim.scene import Scene, Thresholds
 from bearing_sim.simulation import Inputs, Simulation
 
 LONGEST_TICK = 0.005  # [s] inputs act this late at most; outputs can be published at 200 Hz
+_CLOCK_JUMP = 1.0  # [s] of the receiver's clock against the monotonic one, from one look to the next
 _SLACK = 4.0  # [s] how long blocks wait to be collected before the oldest are dropped
 
 
@@ -40,8 +41,8 @@ class Sink(Protocol):
 class Recorder(Sink, Protocol):
     """A sink that also keeps the inputs, the measured cage speed and the diagnostics."""
 
-    def write_inputs(self, time: float, inputs: Inputs, channels) -> None: ...
-    def write_measurement(self, time: float, cage_speed: float, residual: float) -> None: ...
+    def write_inputs(self, time: float, inputs: Inputs, channels, origin: topics.Origin) -> None: ...
+    def write_measurement(self, time: float, cage_speed: float, residual: float, origin: topics.Origin) -> None: ...
     def write_diagnostics(self, time: float, events, values) -> None: ...
 
 
@@ -124,6 +125,7 @@ class LiveModel:
         pacer, capacity = Pacer(1.0, maximum_lag), round(_SLACK / beat.tick)
         self.runner = Runner(simulation, pacer, beat.tick, beat.samples, capacity, clock, governor)
         self._every, self._blocks = beat.every, 0
+        self._clock, self._clock_ahead = clock, start_ns * 1e-9 - clock()
         self._sinks: dict[str, Sink] = {}
         self._recorders: dict[str, Recorder] = {}
         self._given_up: dict[str, Event] = {}
@@ -133,27 +135,31 @@ class LiveModel:
         """Return the run time [s] of an instant of the receiver's clock."""
         return (now_ns - self.start_ns) * 1e-9
 
-    def offer(self, channel: str, values: tuple[float, ...], stamp_ns: int | None, now_ns: int) -> Event | None:
-        """Take in one message (see `bearing_sim.runtime.input_gate.InputGate.offer`).
+    def offer(self, channel: str, values: tuple[float, ...], stamp_ns: int | None, now_ns: int, frame_id: str = "") -> Event | None:
+        """Take in one message (see `bearing_sim.runtime.input_gate.InputGate.offer`); recorders get it as it came, refused or not.
 
         Parameters
         ----------
         stamp_ns : the sender's stamp, or None for a message without one.
         now_ns : the receiver's clock.
+        frame_id : the frame that the message names.
         """
-        now = self.run_time(now_ns)
+        self._follow_clock(now_ns)
+        now, origin = self.run_time(now_ns), topics.Origin(stamp_ns, frame_id)
+        if channel != topics.MEASURED:
+            received = _as_received(self.gate.held, channel, values)
+            for name, recorder in list(self._recorders.items()):
+                self._guarded(name, now, lambda: recorder.write_inputs(now, received, [channel], origin))
         event = self.gate.offer(channel, now if stamp_ns is None else self.run_time(stamp_ns), values, arrival=now)
         if event is not None:
             self.health.note(event)
             return event
         if channel == topics.MEASURED:
-            self._compare(now)
+            self._compare(now, origin)
             return None
         # Speed starts the model: load and temperature have sensible values in the scene, a wrong speed would be a false jolt.
         if self.gate.accepted["shaft_speed"]:
             self.runner.post(self.gate.held)
-        for name, recorder in list(self._recorders.items()):
-            self._guarded(name, now, lambda: recorder.write_inputs(now, self.gate.held, [channel]))
         return None
 
     def adjust(self, thresholds: Thresholds) -> None:
@@ -208,6 +214,7 @@ class LiveModel:
 
     def collect(self, now_ns: int) -> list[Event]:
         """Hand blocks and events to the sinks and review the health.  Returns the events that are news."""
+        self._follow_clock(now_ns)
         now = self.run_time(now_ns)
         for item in self.runner.take():
             if isinstance(item, Event):
@@ -218,6 +225,8 @@ class LiveModel:
             else:
                 self.monitor.take(item)
                 self._write(now, item)
+        for level, code, text in [told for sink in self._sinks.values() if hasattr(sink, "news") for told in sink.news()]:
+            self.health.note(Event(now, level, code, text))
         news = self.health.news(self.condition(now_ns).events)
         for event in news:
             self._to_sinks(now, lambda sink, event=event: sink.write_event(event))
@@ -263,7 +272,7 @@ class LiveModel:
             self._guarded(name, 0.0, lambda: self.detach(name))
         return stopped
 
-    def _compare(self, now: float) -> None:
+    def _compare(self, now: float, origin: topics.Origin) -> None:
         """Hold the measured cage speed against the newest sample, which is a tick old at most."""
         sample, residual = self.runner.newest, math.nan
         if sample is not None and self.runner.phase is Phase.RUNNING:
@@ -275,12 +284,21 @@ class LiveModel:
             self.residual.take(float(sample["time"]), float(sample["shaft_speed"]), measured, predicted)
             residual = measured - predicted
         for name, recorder in list(self._recorders.items()):
-            self._guarded(name, now, lambda: recorder.write_measurement(now, self.gate.measured, residual))
+            self._guarded(name, now, lambda: recorder.write_measurement(now, self.gate.measured, residual, origin))
+
+    def _follow_clock(self, now_ns: int) -> None:
+        """Let run time go on evenly where the receiver's clock jumps, as when it is set: its stamps count from another start then."""
+        ahead = now_ns * 1e-9 - self._clock()
+        jump, self._clock_ahead = ahead - self._clock_ahead, ahead
+        if abs(jump) > _CLOCK_JUMP:
+            self.start_ns += round(jump * 1e9)
+            text = f"the clock jumped by {jump:+.6g} s; the run and its recording go on evenly, by the clock from before"
+            self.health.note(Event(self.run_time(now_ns), Level.WARN, "clock.jumped", text))
 
     def _write(self, now: float, block: np.ndarray) -> None:
-        self._blocks += 1
-        if self._blocks % self._every == 0:
+        if self._blocks % self._every == 0:  # the first block is the state at the start
             self._to_sinks(now, lambda sink: sink.write(block))
+        self._blocks += 1
 
     def _to_sinks(self, now: float, action: Callable[[Sink], None]) -> None:
         for name, sink in list(self._sinks.items()):
@@ -296,3 +314,11 @@ class LiveModel:
                 self.detach(name)
             except (OSError, ValueError):
                 pass  # the same fault once more: it is on record already
+
+
+def _as_received(held: Inputs, channel: str, values: tuple[float, ...]) -> Inputs:
+    """Return the inputs that a message states, for those of other channels the held ones."""
+    if channel == "radial_load":
+        load_y, load_z = (*values, 0.0)[:2]
+        return held._replace(load_y=load_y, load_z=load_z)
+    return held._replace(**{"shaft_speed" if channel == "shaft_speed" else "oil_temperature": values[0]})

@@ -188,8 +188,15 @@ class Runner:
             return False
         self._failed_ticks = 0
         self._anchor()
+        self._put(self._start())
         self._phase = Phase.RUNNING
         return True
+
+    def _start(self) -> np.ndarray:
+        """Return the sample that the model starts from, as a block: what a recording begins with so that it can be repeated."""
+        block = np.array([self._simulation.sample])
+        block["time"] += self._shift
+        return block
 
     def _next_tick(self) -> bool:
         """Obey requests, sleep until the tick is due, run it; False to end."""

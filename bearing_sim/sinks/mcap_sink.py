@@ -77,18 +77,20 @@ class McapSink:
         origin : the sender's stamp and frame; stamped with ``time`` where absent.
         """
         for channel in channels:
-            topic, received_ns = topics.INPUTS[channel], self._time_ns(time)
-            sent_ns = received_ns if origin is None or origin.stamp_ns is None else origin.stamp_ns
-            message = topic.message(sent_ns, inputs)
-            if origin is not None and "header" in message:
-                message["header"]["frame_id"] = origin.frame_id
-            self._parts.write(f"/{topic.name}", topic.ros_type, received_ns, message)
+            self._write_received(topics.INPUTS[channel], time, inputs, origin)
 
-    def write_measurement(self, time: float, cage_speed: float, residual: float) -> None:
+    def write_measurement(self, time: float, cage_speed: float, residual: float, origin: topics.Origin | None = None) -> None:
         """Write a measured cage speed [rad/s] that came at ``time`` [s], and by how much its slip is more than the predicted one."""
         for topic, number in zip(topics.MEASUREMENTS.values(), (cage_speed, residual)):
-            time_ns = self._time_ns(time)
-            self._parts.write(f"/{topic.name}", topic.ros_type, time_ns, topic.message(time_ns, number))
+            self._write_received(topic, time, number, origin)
+
+    def _write_received(self, topic: topics.Topic, time: float, source, origin: topics.Origin | None) -> None:
+        received_ns = self._time_ns(time)
+        sent_ns = received_ns if origin is None or origin.stamp_ns is None else origin.stamp_ns
+        message = topic.message(sent_ns, source)
+        if origin is not None and "header" in message:
+            message["header"]["frame_id"] = origin.frame_id
+        self._parts.write(f"/{topic.name}", topic.ros_type, received_ns, message)
 
     def write_received(self, topic: str, ros_type: str, time_ns: int, data: bytes, publish_ns: int | None = None) -> None:
         """Write a serialised message of another recording as it is; times are [ns since the epoch]."""
