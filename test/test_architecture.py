@@ -69,7 +69,21 @@ ALLOWED = {
     ),
     "studies": (
         NUMBERS | {"sksundae", "matplotlib"},
-        {"studies", "effects", "integrators.status", "levels", "params", "rating_life", "sample", "scene", "scene_file", "simulation", "tables"},
+        {
+            "studies",
+            "effects",
+            "integrators.status",
+            "levels",
+            "params",
+            "rating_life",
+            "runtime",
+            "sample",
+            "scene",
+            "scene_file",
+            "simulation",
+            "sinks",
+            "tables",
+        },
     ),
     "runtime": ({"numpy", "scipy"}, {"runtime", "film_ratio", "simulation", "scene", "scene_monitoring", "effects", "events", "sample", "topics"}),
 }

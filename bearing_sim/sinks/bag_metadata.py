@@ -116,3 +116,7 @@ class _PlainDumper(yaml.SafeDumper):
 def to_yaml(tree) -> str:
     """Return plain YAML without anchors, in the order given."""
     return yaml.dump(tree, Dumper=_PlainDumper, sort_keys=False)
+
+
+QOS_TEXT = to_yaml(QOS)
+"""The same as the metadata of a channel have it."""

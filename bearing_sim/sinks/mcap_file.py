@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from bearing_sim.events import Level
-from bearing_sim.sinks.bag_metadata import QOS, Part, TopicCount, part_metadata, to_yaml
+from bearing_sim.sinks.bag_metadata import QOS_TEXT, Part, TopicCount, part_metadata
 from bearing_sim.sinks.growing_file import GrowingFile
 from bearing_sim.sinks.mcap_rows import RowLayout, RowWriter
 from bearing_sim.sinks.ros_types import message_type
@@ -221,7 +221,7 @@ class McapFile:
         kind = message_type(ros_type)
         if ros_type not in self._schemas:
             self._schemas[ros_type] = self._writer.register_schema(ros_type, "ros2msg", kind.definition.encode())
-        metadata = {"offered_qos_profiles": to_yaml(QOS), "topic_type_hash": kind.hash}
+        metadata = {"offered_qos_profiles": QOS_TEXT, "topic_type_hash": kind.hash}
         channel_id = self._writer.register_channel(topic, "cdr", self._schemas[ros_type], metadata)
         self._channels[topic] = _Channel(channel_id, ros_type)
         return self._channels[topic]
