@@ -100,7 +100,7 @@ def recover(source: str | Path, target: str | Path, progress: Callable[[float], 
     Raises
     ------
     RecoveryError
-        The source is no MCAP file or holds no message, or the target exists.
+        The source is no MCAP file or holds nothing complete, or the target exists.
     OSError
         A file cannot be read or written.
     """
@@ -115,8 +115,8 @@ def recover(source: str | Path, target: str | Path, progress: Callable[[float], 
         with open(draft, "xb") as stream:
             copy = _Copy(Writer(stream, chunk_size=_CHUNK_SIZE, compression=CompressionType.ZSTD))
             found = _walk(source, progress, copy.take)
-            if not found.messages:
-                raise RecoveryError(f"{source}: no complete message in its {found.size} bytes")
+            if not found.messages and not found.metadata:
+                raise RecoveryError(f"{source}: nothing complete in its {found.size} bytes")
             if found.profile == "ros2" and _BAG not in found.metadata:
                 copy.writer.add_metadata(_BAG, {"serialized_metadata": _bag_metadata(found, target.name)})
             copy.writer.finish()

@@ -76,6 +76,8 @@ ALLOWED = {
             "levels",
             "params",
             "rating_life",
+            "recording_reader",
+            "recovery",
             "runtime",
             "sample",
             "scene",
