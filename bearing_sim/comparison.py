@@ -18,6 +18,8 @@ from bearing_sim.recording_reader import trailing_doubles
 from bearing_sim.topics import ARRAYS
 
 _MULTI_ARRAY, _FLOAT = "std_msgs/msg/Float64MultiArray", "std_msgs/msg/Float64"
+_TOGETHER = 256  # messages
+_EQUAL_LOOKED_INTO = 32  # of so many equal messages one, for the magnitude
 _TEXT = "diagnostic_msgs/msg/DiagnosticArray"  # says things in words and at moments of its own
 
 
@@ -129,12 +131,14 @@ def _messages(path: str | Path) -> Iterator[tuple[str, str, Message]]:
 
 
 class _Pairing:
-    """Finds the messages of one topic that belong together."""
+    """Finds the messages of one topic that belong together, and compares many at once."""
 
     def __init__(self, difference: TopicDifference):
         self._difference = difference
         self._waiting: tuple[dict, dict] = (defaultdict(list), defaultdict(list))
         self._numbers = _numbers_of(difference.topic, difference.ros_type)
+        self._parts: list[int] = []  # how many numbers each field has
+        self._pairs: list[tuple[int, np.ndarray, np.ndarray]] = []
 
     def take(self, side: int, message: Message) -> None:
         others = self._waiting[1 - side]
@@ -145,42 +149,52 @@ class _Pairing:
         partner = partners.pop(0)
         if not partners:
             del others[message.log_time]
-        pair = (message.data, partner) if side == 0 else (partner, message.data)
-        self._compare(message.log_time, *map(self._numbers, pair), identical=message.data == partner)
+        self._pair(message.log_time, *((message.data, partner) if side == 0 else (partner, message.data)))
 
     def finished(self) -> TopicDifference:
+        self._compare()
         told, alone = self._difference, [sum(map(len, waiting.values())) for waiting in self._waiting]
         told.only_first, told.only_second = told.only_first + alone[0], told.only_second + alone[1]
         return told
 
-    def _compare(self, log_ns: int, first: dict[str, np.ndarray], second: dict[str, np.ndarray], identical: bool) -> None:
+    def _pair(self, log_ns: int, first: bytes, second: bytes) -> None:
         told = self._difference
-        a, b = (np.concatenate([*numbers.values(), np.zeros(0)]) for numbers in (first, second))
-        if len(a) != len(b) or (told.matched and len(a) != len(told.largest)):
+        if told.matched and first == second and told.matched % _EQUAL_LOOKED_INTO:
+            told.matched += 1
+            return
+        mine, other = self._numbers(first), self._numbers(second)
+        if not told.matched:
+            mine = {name: part for name, part in mine.items() if len(part)}
+            self._parts = [len(part) for part in mine.values()]
+            told.numbers = [f"{name}[{k}]" if len(part) > 1 else name for name, part in mine.items() for k in range(len(part))]
+            size = len(told.numbers)
+            told.largest, told.magnitude, told.where_ns = np.zeros(size), np.zeros(size), np.zeros(size, np.int64)
+        a, b = (np.concatenate([*numbers.values(), np.zeros(0)]) for numbers in (mine, other))
+        if not len(a) == len(b) == len(told.largest):
             told.only_first, told.only_second = told.only_first + 1, told.only_second + 1
             return
-        if not told.matched:
-            told.numbers = [f"{name}[{k}]" if len(part) > 1 else name for name, part in first.items() for k in range(len(part))]
-            told.largest, told.magnitude, told.where_ns = np.zeros(len(a)), np.zeros(len(a)), np.zeros(len(a), np.int64)
         told.matched += 1
-        magnitude = _spread(first, np.maximum(np.where(np.isfinite(a), abs(a), 0.0), np.where(np.isfinite(b), abs(b), 0.0)))
-        np.maximum(told.magnitude, magnitude, out=told.magnitude)
-        if identical:
+        self._pairs.append((log_ns, a, b))
+        if len(self._pairs) == _TOGETHER:
+            self._compare()
+
+    def _compare(self) -> None:
+        if not self._pairs or not self._parts:
             return
+        told = self._difference
+        times, a, b = (np.array(column) for column in zip(*self._pairs))
+        self._pairs = []
+        finite = np.maximum(np.where(np.isfinite(a), abs(a), 0.0), np.where(np.isfinite(b), abs(b), 0.0)).max(axis=0)
+        starts = np.cumsum([0, *self._parts[:-1]])
+        np.maximum(told.magnitude, np.repeat(np.maximum.reduceat(finite, starts), self._parts), out=told.magnitude)
         with np.errstate(invalid="ignore"):
             gap = np.where((a == b) | (np.isnan(a) & np.isnan(b)), 0.0, np.abs(a - b))
         gap = np.where(np.isnan(gap), math.inf, gap)
-        told.differing += bool(gap.any())
-        larger = gap > told.largest
-        told.largest[larger], told.where_ns[larger] = gap[larger], log_ns
-
-
-def _spread(parts: Mapping[str, np.ndarray], magnitudes: np.ndarray) -> np.ndarray:
-    """Return for each number the largest magnitude of the field it belongs to."""
-    starts = np.cumsum([0, *(len(part) for part in parts.values())])
-    return np.concatenate(
-        [np.full(end - start, magnitudes[start:end].max(initial=0.0)) for start, end in zip(starts[:-1], starts[1:])] or [magnitudes]
-    )
+        told.differing += int(gap.any(axis=1).sum())
+        worst = gap.argmax(axis=0)
+        largest = gap[worst, np.arange(gap.shape[1])]
+        larger = largest > told.largest
+        told.largest[larger], told.where_ns[larger] = largest[larger], times[worst][larger]
 
 
 def _numbers_of(topic: str, ros_type: str) -> Callable[[bytes], dict[str, np.ndarray]]:

@@ -84,7 +84,7 @@ def _number(message, path: str) -> float:
         try:
             found = found[int(place)] if place else getattr(found, name)
         except AttributeError:
-            there = [field for field in getattr(found, "__slots__", None) or vars(found) if not field.startswith("_")]
+            there = [field for field in getattr(found, "__slots__", None) or getattr(found, "__dict__", ()) if not field.startswith("_")]
             raise ValueError(f"no field {name!r} in the message ({path}); it has {', '.join(there) or 'none'}") from None
         except IndexError:
             raise ValueError(f"the message has {len(found)} numbers at {path}, no number {place}") from None
