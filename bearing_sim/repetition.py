@@ -5,6 +5,10 @@ Every sample of a recording says which inputs the model had at that instant, so 
 although its inputs came late, were held, or were refused.  How much time was simulated from one sample to the next is told by
 the shaft's angle, which is the integral of its speed; so time that a live run gave up or spent paused is not simulated here
 either.
+
+Rollers that hit their pockets multiply the smallest difference a millionfold within milliseconds.  So the model is advanced by
+the very calls of the recorded run, where the recording tells them: then the same machine computes the same bits, as long as inputs
+do not change.
 """
 
 import dataclasses
@@ -18,7 +22,8 @@ import numpy as np
 from bearing_sim.effects import NUMBERS
 from bearing_sim.events import Event, Level
 from bearing_sim.recording_reader import Received, Recording
-from bearing_sim.simulation import Inputs, IntegrationError, Simulation
+from bearing_sim.sample import new_block
+from bearing_sim.simulation import Inputs, IntegrationError, Simulation, start_sample
 
 _SKIPPED = 0.25  # share of a spacing by which angle and stamps may disagree before time counts as skipped
 _LEVELS = {number: name for name, number in NUMBERS.items()}
@@ -72,8 +77,9 @@ def repeat(recording: Recording, sink, progress: Callable[[float], None] = lambd
             sink.write_received(item.topic, item.ros_type, item.log_ns, item.data, item.publish_ns)
             run.result.received += 1
         elif isinstance(item, np.ndarray):
-            sink.write(run.block(item))
+            sink.write(run.take(item))
             progress(float(item["time"][-1]) - recording.first_time)
+    sink.write(run.rest())
     run.finish()
     run.result.wall_seconds = time.perf_counter() - began
     return run.result
@@ -86,18 +92,67 @@ class _Run:
         self.result = Repetition()
         self._scene, self._sink = recording.scene, sink
         self._interval = recording.duration / max(recording.samples - 1, 1)
+        self._duration = float(recording.metadata.get("advance_seconds") or 0.0)  # of one call of the recorded run
+        self._together = int(recording.metadata.get("advance_samples") or 1)  # samples that it gave
+        self._next_together = self._together
         self._simulation: Simulation | None = None
         self._last: np.void | None = None
+        self._waiting = new_block(0, recording.scene.bearing.roller.count)
 
-    def block(self, recorded: np.ndarray) -> np.ndarray:
-        """Return the samples of a block, computed again."""
-        computed = recorded.copy()
-        for k, sample in enumerate(recorded):
-            computed[k] = self._advance_to(sample)
-            computed[k]["time"] = sample["time"]
-            self._last = sample.copy()
+    def take(self, recorded: np.ndarray) -> np.ndarray:
+        """Return samples computed again; those of a call that is not complete yet wait."""
+        rows, done, computed = np.concatenate((self._waiting, recorded)), 0, []
+        while done < len(rows):
+            begins = self._simulation is None or rows["damage"][done] < self._last["damage"]
+            size = 1 if begins else self._next_together
+            if done + size > len(rows):
+                break
+            group = rows[done : done + size]
+            computed += [self._call(group)] if not begins and self._is_call(group) else [self._one(sample) for sample in group]
+            done += size
+            # A sample that is not the state at a start is the first of its call.
+            self._next_together = self._together - 1 if begins and group["shaft_angle"][0] and self._together > 1 else self._together
+        self._waiting = rows[done:].copy()
+        return self._written(rows[:done], computed)
+
+    def rest(self) -> np.ndarray:
+        """Return the last samples, computed one by one."""
+        rows, self._waiting = self._waiting, self._waiting[:0]
+        return self._written(rows, [self._one(sample) for sample in rows])
+
+    def _written(self, recorded: np.ndarray, computed: list[np.ndarray]) -> np.ndarray:
         self.result.samples += len(recorded)
-        return computed
+        block = np.concatenate(computed) if computed else recorded.copy()
+        block["time"] = recorded["time"]
+        return block
+
+    def _is_call(self, group: np.ndarray) -> bool:
+        """Return whether these samples come from one call of the recorded run."""
+        if not self._duration or (group["level"] != NUMBERS[self._simulation.scene.level]).any() or (np.diff(group["damage"]) < 0.0).any():
+            return False
+        rows = np.concatenate((np.array([self._last]), group))
+        return abs(sum(map(self._lead, rows[:-1], rows[1:])) - self._duration) <= 0.01 * self._duration
+
+    def _call(self, group: np.ndarray) -> np.ndarray:
+        inputs = _inputs(group[-1])
+        stamped = float(group["time"][-1]) - float(self._last["time"])
+        if stamped > (1.0 + _SKIPPED) * self._duration:
+            self.result.skipped_seconds += stamped - self._duration
+        try:
+            block = self._simulation.advance(self._duration, inputs, len(group))
+        except IntegrationError as fault:
+            return self._give_up(group[-1], fault, group)
+        self.result.sim_seconds += self._duration
+        self._last = group[-1].copy()
+        return block
+
+    def _give_up(self, sample: np.void, fault: IntegrationError, recorded: np.ndarray) -> np.ndarray:
+        """Tell what could not be computed, return what was recorded there, and go on from it."""
+        self.result.failed += len(recorded)
+        self._sink.write_event(Event(float(sample["time"]), Level.ERROR, "repetition.failed", f"{fault}; going on from the recorded sample"))
+        self._simulation.resume(sample)
+        self._last = sample.copy()
+        return recorded.copy()
 
     def finish(self) -> None:
         """Count the work of the last simulation."""
@@ -105,27 +160,24 @@ class _Run:
             self.result.steps += self._simulation.counters.steps
             self.result.rejected_steps += self._simulation.counters.rejected_steps
 
-    def _advance_to(self, sample: np.void) -> np.void:
-        """Return the sample at a recorded one's instant and inputs."""
-        inputs = Inputs(*(float(sample[name]) for name in Inputs._fields))
-        if not all(map(math.isfinite, inputs)):
-            raise ValueError("the recording does not say which inputs the model had at every sample; replay its inputs with --scene instead")
+    def _one(self, sample: np.void) -> np.ndarray:
+        """Return the sample at a recorded one's instant and inputs, as a block."""
+        inputs = _inputs(sample)
         if self._simulation is None or sample["damage"] < self._last["damage"]:  # damage falls at nothing but a reset
             lead = self._begin(sample, inputs)
         else:
-            lead = self._simulated(sample)
+            lead = self._lead(self._last, sample)
+            self.result.skipped_seconds += float(sample["time"]) - float(self._last["time"]) - lead
         self._follow_level(sample)
+        self._last = sample.copy()
         if lead <= 0.0:
-            return self._simulation.sample
+            return start_sample(self._simulation)
         try:
-            computed = self._simulation.advance(lead, inputs)[-1]
+            block = self._simulation.advance(lead, inputs)
         except IntegrationError as fault:
-            self.result.failed += 1
-            self._sink.write_event(Event(float(sample["time"]), Level.ERROR, "repetition.failed", f"{fault}; going on from the recorded sample"))
-            self._simulation.resume(sample)
-            return self._simulation.sample
+            return self._give_up(sample, fault, np.array([sample]))
         self.result.sim_seconds += lead
-        return computed
+        return block
 
     def _begin(self, sample: np.void, inputs: Inputs) -> float:
         """Start at the run's own start, if it is no more than an interval or two before the sample; return the time to it [s]."""
@@ -143,17 +195,13 @@ class _Run:
         self.result.starts.append("sample")
         return 0.0
 
-    def _simulated(self, sample: np.void) -> float:
-        """Return the time that was simulated since the sample before [s]."""
-        stamped = float(sample["time"]) - float(self._last["time"])
-        stamped = round(stamped * 1e9) * 1e-9  # stamps are whole nanoseconds
-        speeds = float(sample["shaft_speed"]) + float(self._last["shaft_speed"])
-        turned = float(sample["shaft_angle"]) - float(self._last["shaft_angle"])
-        by_angle = 2.0 * turned / speeds if speeds else stamped
-        if abs(by_angle - stamped) <= _SKIPPED * stamped:
-            return stamped
-        self.result.skipped_seconds += stamped - by_angle
-        return max(by_angle, 0.0)
+    @staticmethod
+    def _lead(before: np.void, sample: np.void) -> float:
+        """Return the time that was simulated from one sample to the next [s]."""
+        stamped = float(sample["time"]) - float(before["time"])
+        speeds = float(sample["shaft_speed"]) + float(before["shaft_speed"])
+        by_angle = 2.0 * (float(sample["shaft_angle"]) - float(before["shaft_angle"])) / speeds if speeds else stamped
+        return stamped if abs(by_angle - stamped) <= _SKIPPED * stamped else max(by_angle, 0.0)
 
     def _follow_level(self, sample: np.void) -> None:
         level = _LEVELS.get(int(sample["level"]), self._simulation.scene.level)
@@ -165,3 +213,10 @@ class _Run:
         other = Simulation(dataclasses.replace(self._scene, level=level, integration=own), self._simulation.inputs)
         other.take_over(self._simulation)
         self._simulation = other
+
+
+def _inputs(sample: np.void) -> Inputs:
+    inputs = Inputs(*(float(sample[name]) for name in Inputs._fields))
+    if not all(map(math.isfinite, inputs)):
+        raise ValueError("the recording does not say which inputs the model had at every sample; replay its inputs with --scene instead")
+    return inputs

@@ -51,7 +51,7 @@ def command(scene_name, overrides, duration, level, rate, out, rrd, as_json):
     tell_cheaper_level(scene)
     samples = max(round(seconds * (rate or min(_RATE, _SAMPLES / seconds))), 5)
     with told_file_faults(), ExitStack() as stack:
-        sinks = _sinks(stack, scene, seconds, out, rrd)
+        sinks = _sinks(stack, scene, seconds, samples, out, rrd)
         progress = stack.enter_context(progress_bar(f"running {scene.name}", seconds))
         started = time.perf_counter()
         tell_compilation()
@@ -83,13 +83,13 @@ def _seconds(duration: str) -> float:
     return seconds
 
 
-def _sinks(stack, scene, seconds, out, rrd) -> list:
+def _sinks(stack, scene, seconds, samples, out, rrd) -> list:
     start_ns, sinks = time.time_ns(), []
     if out is not None:
         from bearing_sim.sinks.mcap_sink import McapSink
 
         tell_replacement(out)
-        sinks.append(stack.enter_context(McapSink(out, scene, start_ns, replace=True)))
+        sinks.append(stack.enter_context(McapSink(out, scene, start_ns, replace=True, advance=(_BLOCK * (seconds / samples), _BLOCK))))
     if rrd is not None:
         from bearing_sim.sinks.rerun_sink import RerunSink
 

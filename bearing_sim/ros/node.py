@@ -198,7 +198,7 @@ class BearingNode(Node):
             logger.info(line)
 
     def _start_recording(self, path: Path) -> None:
-        sink = open_recording(path, self.scene, self.live.start_ns)
+        sink = open_recording(path, self.scene, self.live.start_ns, sample_rate=self.settings.sample_rate)
         self.live.attach("record", sink)
         taken = "" if sink.path == path else f" ({path} exists and stays as it is)"
         self.get_logger().info(f"recording {sink.path}{taken}")

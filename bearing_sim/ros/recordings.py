@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bearing_sim import topics
+from bearing_sim.runtime.live import cadence
 from bearing_sim.scene import Scene
 
 if TYPE_CHECKING:
@@ -25,8 +26,15 @@ def prepare(view: bool) -> None:
         importlib.import_module("bearing_sim.sinks.rerun_sink")
 
 
-def open_recording(path: Path, scene: Scene, start_ns: int, limits: "Limits | None" = None):
+def open_recording(path: Path, scene: Scene, start_ns: int, limits: "Limits | None" = None, sample_rate: float | None = None):
     """Return an MCAP sink (see `bearing_sim.sinks.mcap_sink.McapSink`); its ``path`` is a fresh one where ``path`` is taken.
+
+    Parameters
+    ----------
+    path : what is asked for, a file or the folder of a bag.
+    scene, start_ns : what is simulated, and time 0 of the samples [ns since the epoch].
+    limits : where files end; one file where absent.
+    sample_rate : of the live model [Hz].
 
     Raises
     ------
@@ -36,7 +44,9 @@ def open_recording(path: Path, scene: Scene, start_ns: int, limits: "Limits | No
     from bearing_sim.sinks.mcap_sink import McapSink
     from bearing_sim.sinks.parts import UNPARTED
 
-    return McapSink(fresh_path(path), scene, start_ns, limits=limits or UNPARTED)
+    beat = cadence(sample_rate) if sample_rate else None
+    advance = (beat.tick, beat.samples) if beat is not None and beat.every == 1 else None
+    return McapSink(fresh_path(path), scene, start_ns, limits=limits or UNPARTED, advance=advance)
 
 
 def fresh_path(path: Path) -> Path:

@@ -33,6 +33,8 @@ class McapSink:
     replace : whether a finished file of that name is replaced.
     limits : where a file ends and the next one begins, and the free space that the disk shall keep.
     seed : of the random numbers in the run, if there are any; goes into the metadata.
+    advance : duration [s] and number of samples of each of the run's calls of the model, where they are always the same; goes into the metadata,
+        so that the run can be repeated by the very same calls.
     """
 
     def __init__(
@@ -45,6 +47,7 @@ class McapSink:
         replace: bool = False,
         limits: Limits = UNPARTED,
         seed: int | None = None,
+        advance: tuple[float, int] | None = None,
     ):
         self.start_ns = int(start_ns)
         self._bearing = scene.bearing.name
@@ -54,6 +57,8 @@ class McapSink:
         record = {"scene": scene_to_yaml(scene), "level": scene.level, "start_ns": str(self.start_ns), **origin, **packages}
         if seed is not None:
             record["seed"] = str(seed)
+        if advance is not None:
+            record |= {"advance_seconds": repr(float(advance[0])), "advance_samples": str(advance[1])}
         self._parts = Parts(path, {METADATA: record, **(metadata or {})}, {"generator": "bearing_sim", **origin}, flush_every, replace, limits)
 
     @property
