@@ -23,7 +23,7 @@ from bearing_sim.ros.cheaper_levels import levels_to_compile, start_compiling
 from bearing_sim.ros.messages import message, message_class
 from bearing_sim.ros.parameters import Settings, SettingsError, declare
 from bearing_sim.ros.process import CannotRun, run_node
-from bearing_sim.ros.recordings import fresh_path, open_recording, open_view, prepare
+from bearing_sim.ros.recordings import fresh_path, limits_of, open_recording, open_view, prepare
 from bearing_sim.runtime.governor import Governor
 from bearing_sim.runtime.health import Condition
 from bearing_sim.runtime.live import LiveModel, governor_of, warmed_up
@@ -198,7 +198,7 @@ class BearingNode(Node):
             logger.info(line)
 
     def _start_recording(self, path: Path) -> None:
-        sink = open_recording(path, self.scene, self.live.start_ns, sample_rate=self.settings.sample_rate)
+        sink = open_recording(path, self.scene, self.live.start_ns, limits_of(self.settings), self.settings.sample_rate)
         self.live.attach("record", sink)
         taken = "" if sink.path == path else f" ({path} exists and stays as it is)"
         self.get_logger().info(f"recording {sink.path}{taken}")

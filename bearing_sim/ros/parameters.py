@@ -40,7 +40,10 @@ DECLARATIONS = (
     Declaration("sample_rate", 100.0, "samples recorded for each simulated second [Hz]", 1.0, 10_000.0),
     Declaration("maximum_lag", 0.2, "lag behind real time that is caught up [s]; more is given up, counted and told", 0.02, 10.0),
     Declaration("governor", True, "whether to compute at a cheaper level while the machine is too slow for the scene's"),
-    Declaration("record", "", "MCAP file to record from the start; empty for none until ~/start_recording is called"),
+    Declaration("record", "", "to record from the start: an MCAP file, or a bag's folder (a name without .mcap); empty for none yet"),
+    Declaration("record_part_size", 0.0, "size of a file of the recording beyond which the next one begins [MB]; 0 for none", 0.0, 1e6),
+    Declaration("record_part_duration", 0.0, "time in a file of the recording beyond which the next one begins [s]; 0 for none", 0.0, 1e7),
+    Declaration("record_keep_free", 100.0, "free space that the disk shall keep [MB]; below it the recording stops", 0.0, 1e7),
     Declaration("rrd", "", "rerun recording (.rrd) to write from the start; empty for none"),
     Declaration("rerun_port", 0, "port on 127.0.0.1 at which a rerun viewer can watch live; 0 for none", 0, 65535),
 )
@@ -63,6 +66,9 @@ class Settings:
     maximum_lag: float
     governor: bool
     record: str
+    record_part_size: float
+    record_part_duration: float
+    record_keep_free: float
     rrd: str
     rerun_port: int
 

@@ -2,6 +2,7 @@
 """Open the node's recordings; what a view needs is imported only when one is wanted."""
 
 import importlib
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,6 +11,7 @@ from bearing_sim.runtime.live import cadence
 from bearing_sim.scene import Scene
 
 if TYPE_CHECKING:
+    from bearing_sim.ros.parameters import Settings
     from bearing_sim.sinks.parts import Limits
 
 
@@ -47,6 +49,14 @@ def open_recording(path: Path, scene: Scene, start_ns: int, limits: "Limits | No
     beat = cadence(sample_rate) if sample_rate else None
     advance = (beat.tick, beat.samples) if beat is not None and beat.every == 1 else None
     return McapSink(fresh_path(path), scene, start_ns, limits=limits or UNPARTED, advance=advance)
+
+
+def limits_of(settings: "Settings") -> "Limits":
+    """Return the limits of recordings that the node's parameters set; 0 stands for none."""
+    from bearing_sim.sinks.parts import Limits
+
+    size, duration = settings.record_part_size or math.inf, settings.record_part_duration or math.inf
+    return Limits(1e6 * size, duration, 1e6 * settings.record_keep_free)
 
 
 def fresh_path(path: Path) -> Path:
