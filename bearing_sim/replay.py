@@ -166,7 +166,8 @@ class _Run:
         except IntegrationError as error:
             self._give_up(0.0, f"the model has no state at the first inputs: {error}")
         else:
-            self._recording.write(start_sample(simulation))
+            if hasattr(self._recording, "write_start"):
+                self._recording.write_start(start_sample(simulation))
             self._advance_over_grid(simulation, inputs)
             self._result.steps, self._result.rejected_steps, self._result.non_finite_steps = simulation.counters[:3]
         self._tell_events_until(math.inf)

@@ -38,7 +38,7 @@ class RowLayout:
     Parameters
     ----------
     topics : output topics whose messages hold numbers of the sample as they are.
-    rollers : number of rollers.
+    rollers : number of rollers, as many as the samples have.
 
     Attributes
     ----------
@@ -52,7 +52,7 @@ class RowLayout:
     """
 
     def __init__(self, topics: Sequence[Topic], rollers: int):
-        self.topics = tuple(topics)
+        self.topics, self.rollers = tuple(topics), rollers
         probe = new_block(1, rollers)
         numbers = flat(probe)
         numbers[0] = np.random.default_rng(1).uniform(1.0, 2.0, numbers.shape[1])  # nobody's numbers, each told from the others

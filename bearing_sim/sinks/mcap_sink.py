@@ -51,7 +51,8 @@ class McapSink:
     ):
         self.start_ns = int(start_ns)
         self._bearing = scene.bearing.name
-        self._layout = RowLayout(tuple(topics.recorded(scene).values()), scene.bearing.roller.count)
+        self._topics, self._layout = tuple(topics.recorded(scene).values()), None
+        self._lay_out(scene.bearing.roller.count)
         origin = {"package_version": package_version(), "git_hash": git_hash()}
         packages = {f"version_{name}": version for name, version in versions().items()}
         record = {"scene": scene_to_yaml(scene), "level": scene.level, "start_ns": str(self.start_ns), **origin, **packages}
@@ -103,7 +104,12 @@ class McapSink:
 
     def write(self, block: np.ndarray) -> None:
         """Write a block of samples (see `bearing_sim.sample`)."""
+        self._lay_out(block["roller_angle"].shape[1])
         self._parts.write_rows(self._layout, block, np.uint64(self.start_ns) + np.rint(block["time"] * 1e9).astype(np.int64).astype(np.uint64))
+
+    def write_start(self, block: np.ndarray) -> None:
+        """Write the state from which the run starts, a block of one sample, so that the run can be repeated; it is no output of the run."""
+        self.write(block)
 
     def write_event(self, event: Event) -> None:
         """Write one event as diagnostics."""
@@ -132,6 +138,10 @@ class McapSink:
 
     def __exit__(self, *_) -> None:
         self.close()
+
+    def _lay_out(self, rollers: int) -> None:
+        if self._layout is None or self._layout.rollers != rollers:
+            self._layout = RowLayout(self._topics, rollers)
 
     def _time_ns(self, time: float) -> int:
         return self.start_ns + round(time * 1e9)

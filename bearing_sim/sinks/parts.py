@@ -62,7 +62,8 @@ class Parts:
         self._is_bag = self.path.suffix != ".mcap"
         self._parted = math.isfinite(limits.part_size) or math.isfinite(limits.part_duration)
         if self._is_bag and self.path.exists():
-            raise FileExistsError(f"{self.path} exists; a recording does not replace another one (a name that ends in .mcap makes a single file)")
+            what = "is a folder" if self.path.is_dir() else "exists"
+            raise FileExistsError(f"{self.path} {what}; a recording does not replace another one (a name that ends in .mcap makes a single file)")
         self._metadata, self._custom_data, self._flush_every, self._replace = metadata, custom_data, flush_every, replace
         self._done: list[tuple[Part, list[TopicCount]]] = []
         self._news: list[tuple[Level, str, str]] = []
