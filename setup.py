@@ -28,6 +28,7 @@ setup(
         ("share/ament_index/resource_index/packages", [f"resource/{package_name}"]),
         (f"share/{package_name}", ["package.xml"]),
         (f"share/{package_name}/launch", glob("launch_scripts/*.launch.py")),
+        (f"share/{package_name}/config", glob("launch_scripts/*.yaml")),
     ],
     python_requires=">=3.11",
     install_requires=[

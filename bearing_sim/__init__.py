@@ -6,6 +6,7 @@ module                 responsibility
 =====================  ==================================================================================
 ``scene``              what to simulate: frozen records, one declaration per quantity
 ``scene_monitoring``   from where on a condition is told
+``scene_uncertainty``  what nobody knows for sure: ranges of fields, fields by their paths
 ``crown``              profiles of the rollers
 ``contour``            forms of the outer raceway; ``contour_file``, ``contour_scene``: measured ones
 ``methods``            by which integrators each level can be advanced
@@ -27,7 +28,8 @@ module                 responsibility
 ``runtime``            pacing, the solver's thread, the gate for inputs, health, alarms, residual slip
 ``sinks``              MCAP and rerun
 ``studies``            the bench: speed and error of every level and method; statics: the load distribution by slices;
-                       extremes: the stability map
+                       extremes: the stability map; uncertainty and sensitivity: bands of slip and life, and which field they
+                       come from; calibration: fields fitted to a measured cage speed
 ``topics``             the messages that samples and inputs become
 ``ros``                the ROS 2 node and player, and what the launch files share
 ``commands``, ``cli``  the command line

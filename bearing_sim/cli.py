@@ -16,6 +16,8 @@ _COMMANDS = {
     "loads": "Show how a scene's load spreads over rollers and slices, and the lives.",
     "machine": "Compute the raceway that pre-deformation machining makes.",
     "table": "Build or look into the table of operating points of level steady.",
+    "uncertainty": "Tell what slip and life may be where nobody knows some fields, and which it comes from.",
+    "calibrate": "Fit fields of a scene to the measured cage speed of a recording.",
     "trade": "Measure what speed costs in accuracy on a scene, and recommend a setting.",
     "bench": "Measure speed and error of every level and method.",
     "study": "Study the model itself: the extremes.",

@@ -139,8 +139,8 @@ class _RowReader:
         self._speed = (places[mapping.shaft_speed.column], mapping.shaft_speed.column, *mapping.shaft_speed.line())
         self._load_columns = [(places[record.column], record.column, *record.line()) for record in mapping.load_columns()]
         self._load = _load_law(mapping)
-        oil = mapping.oil_temperature
-        self._oil = (places[oil.column], oil.column, *oil.line()) if oil else None
+        optional = {"oil_temperature": mapping.oil_temperature, topics.MEASURED: mapping.cage_speed}
+        self._optional = {channel: (places[one.column], one.column, *one.line()) for channel, one in optional.items() if one}
         self.newest: int | None = None
 
     def take(self, line: int, cells: list[str]) -> bool:
@@ -155,8 +155,8 @@ class _RowReader:
         self.newest = time_ns
         speed = self._number("shaft_speed", line, time_ns, lambda: self._cell(cells, *self._speed))
         self._number("radial_load", line, time_ns, lambda: self._load(speed, [self._cell(cells, *column) for column in self._load_columns]))
-        if self._oil:
-            self._number("oil_temperature", line, time_ns, lambda: self._cell(cells, *self._oil))
+        for channel, column in self._optional.items():
+            self._number(channel, line, time_ns, lambda column=column: self._cell(cells, *column))
         return True
 
     def _time_of(self, line: int, cells: list[str]) -> int | None:
@@ -270,8 +270,9 @@ def write_log(table: Table, mapping_text: str, source: str | Path, out: str | Pa
     messages = sorted((stamp, channel, place) for channel, stamps in table.stamps.items() for place, stamp in enumerate(stamps))
     with McapFile(out, {METADATA: record}, {"generator": "bearing_sim", **origin}, replace=True) as recording:
         for done, (stamp, channel, place) in enumerate(messages):
-            topic, value = topics.INPUTS[channel], table.values[channel][place]
-            # A topic's message takes its own channel out of the inputs; the others do not matter.
-            recording.write(f"/{topic.name}", topic.ros_type, stamp, topic.message(stamp, Inputs(value, value, 0.0, value)))
+            topic, value = (topics.INPUTS | topics.MEASUREMENTS)[channel], table.values[channel][place]
+            # An input's message takes its own channel out of the inputs; the others do not matter.
+            source = value if channel == topics.MEASURED else Inputs(value, value, 0.0, value)
+            recording.write(f"/{topic.name}", topic.ros_type, stamp, topic.message(stamp, source))
             if done % 1000 == 0:
                 progress(done)

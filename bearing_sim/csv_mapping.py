@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Mappings: which columns of a measured table are time, shaft speed, radial load and oil temperature, and in which units.
+"""Mappings: which columns of a measured table are time, shaft speed, radial load, oil temperature and cage speed, and in which units.
 
 A mapping is a YAML file of these records.  Nothing in it is evaluated: each input is one of a few fixed laws of columns.
 """
@@ -161,6 +161,7 @@ class Mapping:
     shaft_speed: SpeedColumn
     radial_load: Annotated[SumLoad | NormLoad | MassTimesAcceleration | GearForce, Field(discriminator="law")]
     oil_temperature: TemperatureColumn | None = None
+    cage_speed: SpeedColumn | None = None  # as measured; no input of the model, but what it is held against
 
     @model_validator(mode="after")
     def _is_complete(self):
@@ -182,7 +183,8 @@ class Mapping:
         named = [(f"only.{name}", name) for name in self.only]
         named += [("time.column", self.time.column), ("shaft_speed.column", self.shaft_speed.column)]
         named += [("radial_load", record.column) for record in self.load_columns()]
-        return named + ([("oil_temperature.column", self.oil_temperature.column)] if self.oil_temperature else [])
+        optional = {"oil_temperature": self.oil_temperature, "cage_speed": self.cage_speed}
+        return named + [(f"{name}.column", record.column) for name, record in optional.items() if record]
 
 
 def mapping_names() -> list[str]:

@@ -14,6 +14,7 @@ from bearing_sim.input_log import REQUIRED, Fault, InputLog, InputLogError
 from bearing_sim.runtime.input_gate import InputGate
 from bearing_sim.scene import InputLimits
 from bearing_sim.simulation import Inputs
+from bearing_sim.topics import MEASURED
 
 _EVENTS_TOLD = 5  # of one code and channel; all are counted
 _GAP_IN_SPACINGS = 10
@@ -104,10 +105,7 @@ def judge(log: InputLog, limits: InputLimits, held: Inputs, longest_gap: float |
             events.add(fault)
             continue
         stamps[channel].append(stamp)
-        held = gate.held
-        values[channel].append(
-            held.shaft_speed if channel == "shaft_speed" else (held.load_y, held.load_z) if channel == "radial_load" else held.oil_temperature
-        )
+        values[channel].append(_accepted(gate, channel))
     start, end = _overlap(log, stamps, gate.refused)
     if log.unfinished:
         events.add(Event((end - epoch) * 1e-9, Level.WARN, "log.unfinished", log.unfinished))
@@ -122,6 +120,14 @@ def judge(log: InputLog, limits: InputLimits, held: Inputs, longest_gap: float |
     told = sorted((event._replace(time=event.time + shift) for event in events.told()), key=lambda event: event.time)
     arrays = {channel: np.array(given, float) for channel, given in values.items()}
     return InputCourse(start, rising, arrays, end - start, gaps, told, gate.refused, messages)
+
+
+def _accepted(gate: InputGate, channel: str) -> float | tuple[float, float]:
+    """Return what a channel's last good message said."""
+    if channel == MEASURED:
+        return gate.measured
+    held = gate.held
+    return held.shaft_speed if channel == "shaft_speed" else (held.load_y, held.load_z) if channel == "radial_load" else held.oil_temperature
 
 
 def _in_order(log: InputLog) -> Iterator[tuple[str, int, tuple | Fault]]:

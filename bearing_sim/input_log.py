@@ -87,6 +87,7 @@ def read_input_log(
     names: Mapping[str, str | Source | None] | None = None,
     joint: str = topics.SHAFT_JOINT,
     stamps: str = "header",
+    cage_joint: str | None = None,
 ) -> InputLog:
     """Read the inputs of a recording, or of several that belong together.
 
@@ -94,9 +95,10 @@ def read_input_log(
     ----------
     path : an MCAP file, finished or not (``*.mcap.active``), an sqlite3 file or a bag's folder; or a sequence of them.
     names : by channel, topic or topic and field (see `bearing_sim.input_source.source`), where it is not ``/shaft_speed``,
-        ``/radial_load``, ``/oil_temperature``.
+        ``/radial_load``, ``/oil_temperature``, ``/cage_speed_measured``.
     joint : name of the shaft's joint in JointState messages.
     stamps : ``"header"`` takes header stamps where the type has them and they are set, else log times; ``"log"`` log times only.
+    cage_joint : name of the cage's joint; where given, the measured cage speed is read, too, and must be there.
 
     Raises
     ------
@@ -104,7 +106,9 @@ def read_input_log(
         No such recording, or not the topics that are needed; the message lists those there are.
     """
     paths = [Path(path)] if isinstance(path, (str, Path)) else [Path(each) for each in path]
-    wanted = _Wanted(_sources(names), joint, stamps, {}, {})
+    channels = (*topics.INPUTS, topics.MEASURED) if cage_joint is not None else tuple(topics.INPUTS)
+    joints = {"shaft_speed": joint, topics.MEASURED: cage_joint or ""}
+    wanted = _Wanted(_sources(channels, names), joints, stamps, {}, {})
     unfinished = []
     for each in paths:
         if _is_foreign(each):
@@ -129,7 +133,7 @@ class _Wanted(NamedTuple):
     """What is looked for and what was found."""
 
     sources: dict[str, Source]  # by channel
-    joint: str
+    joints: dict[str, str]  # by channel
     stamps: str
     found: dict[str, Series]
     present: dict[str, str]  # type by topic
@@ -143,8 +147,8 @@ class _Wanted(NamedTuple):
         return lambda log_time, data: [read(log_time, data) for read in readers]
 
 
-def _sources(names: Mapping[str, str | Source | None] | None) -> dict[str, Source]:
-    given = {channel: (names or {}).get(channel) for channel in topics.INPUTS}
+def _sources(channels: Iterable[str], names: Mapping[str, str | Source | None] | None) -> dict[str, Source]:
+    given = {channel: (names or {}).get(channel) for channel in channels}
     try:
         return {channel: named if isinstance(named, Source) else source(channel, named) for channel, named in given.items()}
     except ValueError as fault:
@@ -235,7 +239,7 @@ def _message_reader(channel: str, where: Source, ros_type: str, decode: Callable
             series.faults.append(Fault(log_time, "input.unreadable", f"cannot be decoded ({type(fault).__name__}: {fault})"))
             return
         try:
-            values = source_values(channel, where, ros_type, decoded, wanted.joint)
+            values = source_values(channel, where, ros_type, decoded, wanted.joints.get(channel, ""))
         except ValueError as fault:
             series.faults.append(Fault(log_time, "input.malformed", str(fault)))
             return
@@ -275,12 +279,13 @@ def _decoder(topic: str, message_encoding: str, name: str, encoding: str, defini
 
 def _check_found(path: Path, wanted: _Wanted, named: Mapping[str, str | Source | None]) -> None:
     found, present = wanted.found, wanted.present
+    required = (*REQUIRED, topics.MEASURED) if topics.MEASURED in wanted.sources else REQUIRED
     listing = ", ".join(f"{topic} ({kind})" for topic, kind in sorted(present.items())) or "no topics"
-    absent = [where.topic for channel, where in wanted.sources.items() if channel not in found and (channel in REQUIRED or named.get(channel))]
+    absent = [where.topic for channel, where in wanted.sources.items() if channel not in found and (channel in required or named.get(channel))]
     if absent:
         hints = "; ".join(f"no {topic}{did_you_mean(topic, present)}" for topic in absent)
         raise InputLogError(f"{path}: {hints}; the file has {listing}")
-    empty = [series.topic for channel, series in found.items() if channel in REQUIRED and not series.stamps]
+    empty = [series.topic for channel, series in found.items() if channel in required and not series.stamps]
     if empty:
         first = [fault.reason for series in found.values() for fault in series.faults[:1]]
         raise InputLogError(f"{path}: no usable message on {', '.join(empty)}{' (' + first[0] + ')' if first else ''}")

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from bearing_sim import topics
 from bearing_sim.quantity import to_si
 
-UNITS = {"shaft_speed": "rad/s", "radial_load": "N", "oil_temperature": "K"}
+UNITS = {"shaft_speed": "rad/s", "radial_load": "N", "oil_temperature": "K", topics.MEASURED: "rad/s"}
 _STEP = re.compile(r"\.?([A-Za-z_]\w*)|\[(-?\d+)\]")
 
 
@@ -32,7 +32,7 @@ def source(channel: str, text: str | None = None, unit: str | None = None) -> So
 
     Parameters
     ----------
-    channel : ``shaft_speed``, ``radial_load`` or ``oil_temperature``.
+    channel : ``shaft_speed``, ``radial_load``, ``oil_temperature`` or ``cage_speed_measured``.
     text : ``/topic`` (its slash may be left out), or ``/topic.path.to[0].number``; a load may have two, ``/topic.force.y,force.z``. The
         channel's own name where absent.
     unit : of the numbers, such as ``rpm``; rad/s, N or degC where absent.  With standard types too.

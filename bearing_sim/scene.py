@@ -21,6 +21,7 @@ from bearing_sim.scene_lubricant import CustomOil, Oil, Oil4109Traction, Tractio
 from bearing_sim.scene_monitoring import Thresholds
 from bearing_sim.scene_raceway import InnerRaceway, OuterRaceway, RingGrowth, growth_faults
 from bearing_sim.scene_record import record as _strict
+from bearing_sim.scene_uncertainty import Range, range_faults
 
 
 @_strict
@@ -270,6 +271,7 @@ class Scene:
     thresholds: Thresholds = field(default_factory=Thresholds)
     life: LifeRating = field(default_factory=LifeRating)
     table: SteadyTable = field(default_factory=SteadyTable)
+    uncertainty: tuple[Range, ...] = ()  # in a file a mapping of field to range, see `bearing_sim.scene_uncertainty`
 
     @property
     def cage_whirls(self) -> bool:
@@ -303,7 +305,7 @@ class Scene:
 
     @model_validator(mode="after")
     def _operation_is_within_bounds(self):
-        faults = step_faults(self) + moment_faults(self)
+        faults = step_faults(self) + moment_faults(self) + range_faults(self)
         if faults:
             raise ValueError("; ".join(faults))
         return self

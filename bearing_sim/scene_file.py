@@ -20,6 +20,7 @@ from bearing_sim.crown import anchor_crown
 from bearing_sim.effects import choose
 from bearing_sim.scene import Scene
 from bearing_sim.scene_cage import drop_other_lands
+from bearing_sim.scene_uncertainty import drop_ranges_of_lands, override_range, read_ranges, written
 
 _UNION_TAGS = frozenset(
     {"oil_4109", "constant", "kragelskii", "eyring", "fitted", "custom", "double_exponential", "reference", "hyperbolic", "power"}
@@ -125,6 +126,9 @@ def scene_from_mapping(tree: Mapping, origin: str = "scene") -> Scene:
     """
     resolved, faults = _with_presets(tree)
     resolved, unread = with_contour_text(resolved)
+    ranges, wrong = read_ranges(resolved.get("uncertainty"), Scene)
+    resolved["uncertainty"] = ranges
+    faults += [Fault(*fault) for fault in wrong]
     try:
         scene = TypeAdapter(Scene).validate_python(_with_level(resolved))
     except ValidationError as error:
@@ -157,7 +161,8 @@ def _with_level(tree: Mapping) -> Mapping:
 
 def scene_to_yaml(scene: Scene) -> str:
     """Return the whole scene as YAML in SI; `scene_from_yaml` reads it back equal."""
-    return yaml.dump(_plain(dataclasses.asdict(scene)), Dumper=_LineDumper, sort_keys=False, allow_unicode=True)
+    tree = _plain(dataclasses.asdict(scene))
+    return yaml.dump({**tree, "uncertainty": written(tree["uncertainty"])}, Dumper=_LineDumper, sort_keys=False, allow_unicode=True)
 
 
 class _LineDumper(yaml.SafeDumper):
@@ -201,6 +206,9 @@ def _apply_override(tree: dict, override: str) -> None:
         value = yaml.load(text, Loader=_UniqueKeyLoader)
     except yaml.YAMLError:
         value = text.strip()
+    if keys[0] == "uncertainty" and len(keys) > 1:
+        override_range(tree, keys, value)
+        return
     node = tree
     for depth, key in enumerate(keys[:-1]):
         child = node.get(key)
@@ -215,6 +223,8 @@ def _apply_override(tree: dict, override: str) -> None:
     node[keys[-1]] = value
     if keys[:-1] == ["bearing", "outer_raceway"]:
         drop_other_forms(node, (keys[-1],))
+    if keys == ["bearing", "cage", "guidance"] and value == "roller":
+        drop_ranges_of_lands(tree)
 
 
 def catalog_names(kind: str) -> list[str]:

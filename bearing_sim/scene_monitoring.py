@@ -1,9 +1,11 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The thresholds of a scene: from where on the condition of a bearing is a warning or an error, and how a change is told from noise."""
 
+import dataclasses
+from collections.abc import Mapping
 from dataclasses import field
 
-from pydantic import model_validator
+from pydantic import TypeAdapter, ValidationError, model_validator
 
 from bearing_sim.quantity import quantity
 from bearing_sim.scene_record import record
@@ -66,3 +68,35 @@ class Thresholds:
     pocket_force_error: quantity("N", "pocket force that is an error; None: none is", 0.0, 1e6) | None = None
     pocket_force_hold: Hold = field(default_factory=Hold)
     residual: ResidualDetection = field(default_factory=ResidualDetection)
+
+
+def with_thresholds(thresholds: Thresholds, changes: Mapping[str, float | None]) -> Thresholds:
+    """Return thresholds some of which are others.
+
+    Parameters
+    ----------
+    thresholds : what holds where nothing is changed.
+    changes : numbers in SI by their place, such as ``slip_warning`` or ``slip_hold.raise_after``.
+
+    Raises
+    ------
+    ValueError
+        A number is outside its bounds, or they do not fit together; all faults are told.
+    KeyError
+        There is no such place.
+    """
+    tree = dataclasses.asdict(thresholds)
+    for place, value in changes.items():
+        *blocks, last = place.split(".")
+        node = tree
+        for block in blocks:
+            node = node[block]
+        if last not in node:
+            raise KeyError(place)
+        node[last] = value
+    try:
+        return TypeAdapter(Thresholds).validate_python(tree)
+    except ValidationError as error:
+        raise ValueError(
+            "; ".join(f"thresholds.{'.'.join(map(str, fault['loc']))}: {fault['msg'].removeprefix('Value error, ')}" for fault in error.errors())
+        ) from None

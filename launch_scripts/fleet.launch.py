@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Start several bearings, one node process each: ``ros2 launch bearing_sim fleet.launch.py bearings:="front=a.yaml rear=b.yaml"``."""
+"""Start several bearings, in a process each or all in one: ``ros2 launch bearing_sim fleet.launch.py bearings:="front=a.yaml rear=b.yaml"``."""
 
 import re
 import shlex
@@ -16,10 +16,13 @@ FLEET = (
         "front=deng2017_table1 rear=deng2017_table2",
         "NAME=SCENE of each bearing; topics are NAME/cage_slip and so on, the node is NAME/bearing_NAME",
     ),
+    Argument(
+        "one_process", "false", "whether one node, bearing_node, hosts them all; topics are the same, services NAME/reset ...", ("true", "false")
+    ),
     Argument("record_folder", "", "folder for a recording of each bearing, NAME and time of the start; empty for none"),
     Argument("first_rerun_port", "0", "port on 127.0.0.1 for viewers of the first bearing, the next ones follow; 0 for none"),
 )
-SET_FOR_EACH = ("scene", "record", "rrd", "rerun_port")
+SET_FOR_EACH = ("bearings", "scene", "record", "rrd", "rerun_port")
 
 
 def generate_launch_description():
@@ -29,18 +32,27 @@ def generate_launch_description():
 
 def _start(context):
     folder, port, start = value(context, "record_folder"), int(value(context, "first_rerun_port")), now()
+    own = {
+        name: {
+            "scene": scene,
+            "record": str(Path(folder) / f"{name}_{start}.mcap") if folder else "",
+            "rrd": "",
+            "rerun_port": str(port + index if port else 0),
+        }
+        for index, (name, scene) in enumerate(_bearings(value(context, "bearings")).items())
+    }
+    if value(context, "one_process") == "true":
+        return [bearing_node(context, fleet=own, scene=next(iter(own.values()))["scene"], record="", rrd="", rerun_port="0")]
     return [
         bearing_node(
             context,
             # Names differ too: /diagnostics is one topic for all, and tells bearings apart by the node's name.
             name=f"bearing_{name}",
             namespace="/".join(part for part in (value(context, "namespace").rstrip("/"), name) if part),
-            scene=scene,
-            record=str(Path(folder) / f"{name}_{start}.mcap") if folder else "",
-            rrd="",
-            rerun_port=str(port + index if port else 0),
+            bearings="['']",
+            **texts,
         )
-        for index, (name, scene) in enumerate(_bearings(value(context, "bearings")).items())
+        for name, texts in own.items()
     ]
 
 

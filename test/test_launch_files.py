@@ -191,6 +191,24 @@ def test_a_fleet_gives_every_bearing_its_scene_namespace_name_recording_and_port
     assert re.fullmatch(rf"out/front_{moment}\.mcap", first["record"]) and re.fullmatch(rf"out/rear_{moment}\.mcap", second["record"])
 
 
+def test_a_fleet_in_one_process_is_one_node_that_gets_each_bearings_own_parameters_by_its_name(launched):
+    given = {"bearings": "front=deng2017_table1 'rear=my scenes/b.yaml'", "record_folder": "out", "first_rerun_port": "9900", "namespace": "/ship"}
+    run = launched("fleet", one_process="true", publish_rate="20", **given)
+    (node,) = nodes(run)
+    assert (node.namespace, node.name) == ("/ship", "bearing_node")
+    values = handed_over(node, run.context)
+    assert values["bearings"] == ["front", "rear"] and values["publish_rate"] == 20.0
+    assert set(values) == set(PARAMETERS) | {f"{name}.{key}" for name in ("front", "rear") for key in ("scene", "record", "rrd", "rerun_port")}
+    assert (values["front.scene"], values["rear.scene"], values["rear.rerun_port"]) == ("deng2017_table1", "my scenes/b.yaml", 9901)
+    assert values["front.record"] != values["rear.record"] and values["record"] == ""
+
+
+def test_a_node_that_others_manage_is_told_so_by_an_argument(launched):
+    assert handed_over(nodes(launched("live"))[0], launched("live").context)["autostart"] is True
+    run = launched("live", autostart="false")
+    assert handed_over(nodes(run)[0], run.context)["autostart"] is False
+
+
 def test_a_fleets_default_bearings_are_bundled_scenes_without_recordings_and_viewers(launched):
     run = launched("fleet")
     for node in nodes(run):

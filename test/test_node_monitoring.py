@@ -44,7 +44,7 @@ class Cage:
             message_class(topics.MEASUREMENTS[topics.MEASURED].ros_type), topics.MEASURED, qos_profile_sensor_data
         )
         self.residuals = []
-        client.node.create_subscription(message_class("std_msgs/msg/Float64"), "cage_slip_residual", lambda got: self.residuals.append(got.data), 200)
+        client.listen("std_msgs/msg/Float64", "cage_slip_residual", lambda got: self.residuals.append(got.data))
 
     def send(self, speed, name="m1_cage"):
         topic = topics.MEASUREMENTS[topics.MEASURED]

@@ -3,6 +3,7 @@
 
 import click
 
+from bearing_sim.commands import bench_fleet
 from bearing_sim.commands.reporting import BadInput, print_json, tell_compilation
 
 
@@ -15,7 +16,8 @@ from bearing_sim.commands.reporting import BadInput, print_json, tell_compilatio
 @click.option("--seconds", type=click.FloatRange(min=2), default=20.0, show_default=True, metavar="S", help="With --recording: length of a run.")
 @click.option("--rate", type=click.FloatRange(min=1), default=1000.0, show_default=True, metavar="HZ", help="With --recording: samples a second.")
 @click.option("--repetitions", type=click.IntRange(min=1), default=3, show_default=True, metavar="N", help="With --recording: runs of each kind.")
-def command(as_json, quick, levels, cold, recording, seconds, rate, repetitions):
+@click.option("--fleet", is_flag=True, help="Measure instead how many bearings one core holds in real time, by running them.")
+def command(as_json, quick, levels, cold, recording, seconds, rate, repetitions, fleet):
     """Measure how fast each level and integration method is, how large its errors are, and what bounds it.
 
     Bearing deng2017_table1 at 800 N, 15,000 and 45,000 rpm.  Other solvers get the same compiled right-hand side.  Takes a minute or two for
@@ -31,6 +33,9 @@ def command(as_json, quick, levels, cold, recording, seconds, rate, repetitions)
     tell_compilation()
     if recording:
         _recording(levels or ("slip", "planar"), 2.0 if quick else seconds, rate, 1 if quick else repetitions, as_json)
+        return
+    if fleet:
+        bench_fleet.run(as_json, quick, levels)
         return
     report = run_bench(quick, cold, lambda text: click.echo(f"{text} ...", err=True), levels)
     if as_json:

@@ -36,11 +36,15 @@ _RATE = 1000.0  # Hz, of a short one
 )
 @click.option("--out", type=click.Path(path_type=Path), metavar="RUN.mcap", help="Record the run.")
 @click.option("--rrd", type=click.Path(path_type=Path), metavar="RUN.rrd", help="Write a view for rerun, too.")
+@click.option(
+    "--uncertainty", type=click.IntRange(2, 65536), metavar="N", help="Tell bands of slip and life, too, by N samples of the scene's ranges."
+)
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
-def command(scene_name, overrides, duration, level, rate, out, rrd, as_json):
+def command(scene_name, overrides, duration, level, rate, out, rrd, uncertainty, as_json):
     """Run SCENE (a bundled scene or a YAML file) under its constant conditions, from ideal rolling on.
 
-    Cage slip is the mean over the last fifth of the run, after it has settled.
+    Cage slip is the mean over the last fifth of the run, after it has settled. Bands are those of the settled bearing at the cheapest
+    level that has all that the scene asks for; `bearing-sim uncertainty` has more of them.
     """
     from bearing_sim.scene_file import SceneError, load_scene
     from bearing_sim.simulation import IntegrationError, Simulation, start_sample
@@ -67,10 +71,17 @@ def command(scene_name, overrides, duration, level, rate, out, rrd, as_json):
             raise FailedRun(str(error)) from None
         wall = time.perf_counter() - first
     report = _report(simulation, settled, seconds, wall, first - started)
+    bands = _bands(scene, uncertainty) if uncertainty else None
     if as_json:
-        print_json(report)
+        print_json({**report, "uncertainty": bands} if bands else report)
     else:
-        _print(report, scene)
+        _print(report, scene, bands)
+
+
+def _bands(scene, samples) -> dict:
+    from bearing_sim.commands.uncertainty import bands_of
+
+    return bands_of(scene, samples)[1]
 
 
 def _seconds(duration: str) -> float:
@@ -137,7 +148,9 @@ def _report(simulation, settled, seconds, wall, start_up) -> dict:
     }
 
 
-def _print(report, scene) -> None:
+def _print(report, scene, bands) -> None:
+    from bearing_sim.commands.uncertainty import band_rows
+
     rejected = f"{report['rejected_steps']} rejected, {report['non_finite_steps']} of them not finite"
     print_table(
         f"{report['scene']} at level {report['level']}",
@@ -152,6 +165,12 @@ def _print(report, scene) -> None:
             ("simulated", f"{report['sim_seconds']:.4g} s in {report['wall_seconds']:.3g} s, {report['real_time_factor']:.3g} times real time"),
             ("steps", f"{report['steps']}, {rejected}"),
             ("work", f"{report['right_hand_sides']} right-hand sides, {report['jacobians']} Jacobians, {report['factorisations']} factorisations"),
+            *(band_rows(bands) if bands else []),
+            *(
+                [("bands", f"{bands['evaluations']} times level {bands['level']}, seed {bands['seed']}; in parentheses the sampling error")]
+                if bands
+                else []
+            ),
         ],
     )
 

@@ -4,7 +4,9 @@
 Only ``launch_scripts/*.launch.py`` import this: it needs launch and launch_ros of a ROS 2 installation, which pip does not have.
 """
 
+from collections.abc import Mapping
 from datetime import datetime
+from types import MappingProxyType
 from typing import List, NamedTuple  # noqa: UP035
 
 from launch.actions import DeclareLaunchArgument, SetEnvironmentVariable
@@ -61,8 +63,15 @@ def value(context, name: str) -> str:
     return LaunchConfiguration(name).perform(context).strip()
 
 
-def bearing_node(context, name: str = "bearing_node", namespace: str | None = None, on_exit=None, **texts: str) -> Node:
-    """Return the action that starts one bearing_node.
+def bearing_node(
+    context,
+    name: str = "bearing_node",
+    namespace: str | None = None,
+    on_exit=None,
+    fleet: Mapping[str, Mapping[str, str]] = MappingProxyType({}),
+    **texts: str,
+) -> Node:
+    """Return the action that starts one bearing_node, which by the node's own parameter ``autostart`` configures and activates itself.
 
     Parameters
     ----------
@@ -70,9 +79,14 @@ def bearing_node(context, name: str = "bearing_node", namespace: str | None = No
     name : of the node.
     namespace : where it is not the argument's.
     on_exit : action when the process has ended.
+    fleet : where the node hosts several: their names, and of each the parameters that are its own.
     texts : parameters that take another value than the argument of their name.
     """
+    if fleet:
+        texts["bearings"] = f"[{', '.join(fleet)}]"
+    rows = {row.name: row for row in DECLARATIONS}
     parameters = [{row.name: _typed(row, texts.get(row.name)) for row in DECLARATIONS}]
+    parameters[0] |= {f"{bearing}.{key}": _typed(rows[key], text) for bearing, own in fleet.items() for key, text in own.items()}
     if path := value(context, "parameters_file"):
         parameters.append(path)
     return Node(

@@ -11,7 +11,7 @@ from bearing_sim.runtime.live import cadence
 from bearing_sim.scene import Scene
 
 if TYPE_CHECKING:
-    from bearing_sim.ros.parameters import Settings
+    from bearing_sim.ros.parameters import NodeSettings
     from bearing_sim.sinks.parts import Limits
 
 
@@ -51,7 +51,7 @@ def open_recording(path: Path, scene: Scene, start_ns: int, limits: "Limits | No
     return McapSink(fresh_path(path), scene, start_ns, limits=limits or UNPARTED, advance=advance)
 
 
-def limits_of(settings: "Settings") -> "Limits":
+def limits_of(settings: "NodeSettings") -> "Limits":
     """Return the limits of recordings that the node's parameters set; 0 stands for none."""
     from bearing_sim.sinks.parts import Limits
 

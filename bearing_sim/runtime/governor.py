@@ -63,6 +63,13 @@ class Governor:
         self._wait, self._came_up = self._patience, False
         return self._ladder[0]
 
+    def leave(self) -> Simulation:
+        """Return to the wanted level, from the same cage angle and speed, for a run that goes on without a governor."""
+        if self._rung:
+            self._change(0)
+        self._wait, self._came_up = self._patience, False
+        return self._ladder[0]
+
     def consider(self, simulated: float, spent: float) -> Change | None:
         """Take in one tick and return the change that it calls for, or None.
 

@@ -104,6 +104,10 @@ class InputGate:
             self.held = _with_values(self.held, channel, values)
         return None
 
+    def hold_oil_temperature(self, temperature: float) -> None:
+        """Hold another oil temperature [K], which has come by another way than a message."""
+        self.held = self.held._replace(oil_temperature=float(temperature))
+
     def refuse(self, channel: str, time: float, code: str, reason: str, level: Level = Level.ERROR) -> Event:
         """Count a refused message and return its event; for faults that only the caller can see, such as a missing joint."""
         self.refused[code] += 1
@@ -177,7 +181,7 @@ def _value_fault(channel: str, values: tuple[float, ...], limits: InputLimits) -
     expected_count = (1, 2) if channel == "radial_load" else (1,)
     if len(values) not in expected_count:
         return "input.malformed", f"{len(values)} values, expected {' or '.join(map(str, expected_count))}"
-    unit = _UNITS[channel]
+    unit = UNITS[channel]
     shown = ", ".join(f"{value:.6g}" for value in values)
     if not all(map(math.isfinite, values)):
         return "input.not_finite", f"{shown} {unit} is not finite"
@@ -217,7 +221,8 @@ def _clock_set_anew(state: _Channel, stamp: float) -> bool:
     return math.isfinite(stamp) and state.earlier_count > _RISING_TO_FOLLOW
 
 
-_UNITS = {"shaft_speed": "rad/s", "radial_load": "N", "oil_temperature": "K", MEASURED: "rad/s"}
+UNITS = {"shaft_speed": "rad/s", "radial_load": "N", "oil_temperature": "K", MEASURED: "rad/s"}
+"""In which SI unit the values of a channel are."""
 
 
 def _with_values(held: Inputs, channel: str, values: tuple[float, ...]) -> Inputs:

@@ -17,10 +17,11 @@ from bearing_sim.effects import cheaper_levels
 from bearing_sim.events import Event, Level
 from bearing_sim.runtime.governor import Governor
 from bearing_sim.runtime.health import Condition, Health
-from bearing_sim.runtime.input_gate import InputGate
+from bearing_sim.runtime.input_gate import UNITS, InputGate
 from bearing_sim.runtime.monitor import Monitor
 from bearing_sim.runtime.pacer import Pacer
 from bearing_sim.runtime.residual import ResidualMonitor
+from bearing_sim.runtime.rivals import Rivals
 from bearing_sim.runtime.runner import Phase, Runner
 from bearing_sim.scene import Scene, Thresholds
 from bearing_sim.simulation import Inputs, Simulation
@@ -121,6 +122,7 @@ class LiveModel:
         self.gate = InputGate(scene.input_limits, simulation.inputs)
         self.health, self.monitor = Health(), Monitor(scene)
         self.residual = ResidualMonitor(scene.thresholds.residual, scene.thresholds.slip_from_speed)
+        self._rivals = {channel: Rivals(channel, unit) for channel, unit in UNITS.items()}
         beat = cadence(sample_rate)
         pacer, capacity = Pacer(1.0, maximum_lag), round(_SLACK / beat.tick)
         self.runner = Runner(simulation, pacer, beat.tick, beat.samples, capacity, clock, governor)
@@ -147,19 +149,16 @@ class LiveModel:
         self._follow_clock(now_ns)
         now, origin = self.run_time(now_ns), topics.Origin(stamp_ns, frame_id)
         if channel != topics.MEASURED:
-            received = _as_received(self.gate.held, channel, values)
-            for name, recorder in list(self._recorders.items()):
-                self._guarded(name, now, lambda: recorder.write_inputs(now, received, [channel], origin))
+            self._record_input(channel, now, _as_received(self.gate.held, channel, values), origin)
         event = self.gate.offer(channel, now if stamp_ns is None else self.run_time(stamp_ns), values, arrival=now)
         if event is not None:
             self.health.note(event)
             return event
+        self._rivals[channel].take(values)
         if channel == topics.MEASURED:
             self._compare(now, origin)
             return None
-        # Speed starts the model: load and temperature have sensible values in the scene, a wrong speed would be a false jolt.
-        if self.gate.accepted["shaft_speed"]:
-            self.runner.post(self.gate.held)
+        self._inputs_changed()
         return None
 
     def adjust(self, thresholds: Thresholds) -> None:
@@ -168,11 +167,21 @@ class LiveModel:
         self.monitor.adjust(thresholds)
         self.residual.adjust(thresholds.residual, thresholds.slip_from_speed)
 
+    def hold_oil_temperature(self, temperature: float, now_ns: int) -> None:
+        """Let the oil have another temperature [K] than the scene's, where no message tells it."""
+        self.gate.hold_oil_temperature(temperature)
+        self._inputs_changed()
+        self._record_input("oil_temperature", self.run_time(now_ns), self.gate.held, topics.Origin(None, ""))
+
     def refuse(self, channel: str, code: str, reason: str, now_ns: int) -> Event:
         """Take in a message that could not even be read."""
         event = self.gate.refuse(channel, self.run_time(now_ns), code, reason)
         self.health.note(event)
         return event
+
+    def note_senders(self, channel: str, count: int) -> None:
+        """Take in how many send a channel's messages; more than one is told."""
+        self._rivals[channel].senders = count
 
     def attach(self, name: str, sink: Sink) -> None:
         """Let a sink have the samples and events from now on; one with ``write_inputs`` gets the inputs and diagnostics too.
@@ -189,8 +198,8 @@ class LiveModel:
         if hasattr(sink, "write_inputs"):
             self._recorders[name] = sink
 
-    def govern(self, governor: Governor) -> None:
-        """Let a governor change levels from now on; its wanted level is that of the simulation that runs."""
+    def govern(self, governor: Governor | None) -> None:
+        """Let a governor change levels from now on; its wanted level is that of the simulation that runs.  None: the level stays the scene's."""
         self._governor = governor
         self.runner.govern(governor)
 
@@ -245,6 +254,7 @@ class LiveModel:
             values |= topics.further_condition(self.scene, self.runner.newest)
         values |= self.monitor.values | self.residual.values(now)
         troubles += [*self.monitor.events(now), *self.residual.events(now)]
+        troubles += [event for rivals in self._rivals.values() if (event := rivals.event(now)) is not None]
         for name, sink in self._sinks.items():
             if getattr(sink, "fault", None):
                 troubles.append(Event(now, Level.WARN, f"sink.failed.{name}", f"{name} has stopped: {sink.fault}"))
@@ -270,6 +280,15 @@ class LiveModel:
         for name in sorted(self._sinks, key=lambda name: name not in self._recorders):  # recordings first: a view may take its time
             self._guarded(name, 0.0, lambda: self.detach(name))
         return stopped
+
+    def _inputs_changed(self) -> None:
+        # Speed starts the model: load and temperature have sensible values in the scene, a wrong speed would be a false jolt.
+        if self.gate.accepted["shaft_speed"]:
+            self.runner.post(self.gate.held)
+
+    def _record_input(self, channel: str, now: float, inputs: Inputs, origin: topics.Origin) -> None:
+        for name, recorder in list(self._recorders.items()):
+            self._guarded(name, now, lambda: recorder.write_inputs(now, inputs, [channel], origin))
 
     def _compare(self, now: float, origin: topics.Origin) -> None:
         """Hold the measured cage speed against the newest sample, which is a tick old at most."""

@@ -18,6 +18,7 @@ import numpy as np
 from bearing_sim.events import Event, Level
 from bearing_sim.runtime.governor import Governor
 from bearing_sim.runtime.pacer import Pace, Pacer
+from bearing_sim.runtime.threads import SOLVER, name_this_thread
 from bearing_sim.simulation import Inputs, IntegrationError
 
 _GIVE_WAY = 0.0005  # [s]
@@ -69,6 +70,7 @@ class Runner:
         self._queue: deque[np.ndarray | Event] = deque()
         self._capacity = capacity
         self._dropped = 0
+        self._governors: deque[Governor | None] = deque()  # that are to take over at the next tick
         self._latest: Inputs | None = None
         self._newest: np.void | None = None
         self._stopping = self._paused = self._reset_wanted = False
@@ -76,7 +78,7 @@ class Runner:
         self._phase = Phase.READY
         self._failed_ticks = 0
         self._pace = pacer.pace
-        self._thread = threading.Thread(target=self._work, name="bearing-solver", daemon=True)
+        self._thread = threading.Thread(target=self._work, name=SOLVER, daemon=True)
         self._origin = self._shift = 0.0  # run time = simulated time + shift; worker thread only
 
     def start(self, origin: float | None = None) -> None:
@@ -87,9 +89,13 @@ class Runner:
         self._phase = Phase.WAITING
         self._thread.start()
 
-    def govern(self, governor: Governor) -> None:
-        """Let a governor change the simulation from the next tick on; its wanted level is that of the present one."""
-        self._governor = governor
+    def govern(self, governor: Governor | None) -> None:
+        """Let a governor change the simulation from the next tick on; its wanted level is that of the present one.
+
+        With None, nothing changes it any more, and the level that the last governor wanted goes on.
+        """
+        with self._changed:
+            self._governors.append(governor)
 
     def post(self, inputs: Inputs) -> None:
         """Set the inputs that the next tick shall reach.  The first ones start the model, in ideal rolling at these inputs."""
@@ -159,6 +165,7 @@ class Runner:
         return self._failed_ticks
 
     def _work(self) -> None:
+        name_this_thread(SOLVER)
         phase = Phase.STOPPED
         try:
             while self._wait_for_first_input() and not self._begin():
@@ -220,6 +227,9 @@ class Runner:
         if self._sleep_until_due():
             with self._changed:
                 inputs = self._latest
+                governors, self._governors = self._governors, deque()
+            for governor in governors:
+                self._change_governor(governor)
             self._advance(inputs)
         return True
 
@@ -261,6 +271,15 @@ class Runner:
         if change is not None:
             self._simulation = change.simulation
             self._put(Event(now, Level.WARN if change.down else Level.OK, "governor.change", change.text))
+
+    def _change_governor(self, governor: Governor | None) -> None:
+        if governor is None and self._governor is not None:
+            left = self._governor.level
+            self._simulation = self._governor.leave()
+            if left != self._governor.wanted:
+                text = f"level {self._governor.wanted} goes on from {left}: the governor is switched off"
+                self._put(Event(self._run_time(), Level.OK, "governor.change", text))
+        self._governor = governor
 
     def _restart(self, inputs: Inputs) -> None:
         """Return the model to ideal rolling at inputs, at the wanted level."""

@@ -163,7 +163,23 @@ def solve_scene(scene: Scene, shaft_speed: float, load: float, oil_temperature: 
     scene : its level does not matter.
     shaft_speed, load, oil_temperature, load_angle : [rad/s, N, K, rad].
     """
-    params, answers = pack(scene), np.empty((1, len(ANSWER)))
-    model = Model(params, lubricate(scene.lubricant, params, float(oil_temperature)), Drive(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), 1e-2)
-    solve_conditions(np.array([[shaft_speed, load, load_angle]], float), model, new_work(params), answers)
-    return answers[0]
+    return solve_points(scene, np.array([[shaft_speed, load, oil_temperature, load_angle]], float))[0]
+
+
+def solve_points(scene: Scene, conditions: np.ndarray) -> np.ndarray:
+    """Return the answers to operating points of a scene's bearing, solved for; NaN where none was found, shape (n, len(ANSWER)).
+
+    Parameters
+    ----------
+    scene : its level does not matter.
+    conditions : shaft speed [rad/s], load [N], oil temperature [K] and direction of the load [rad] of each, shape (n, 4).
+    """
+    params, answers = pack(scene), np.empty((len(conditions), len(ANSWER)))
+    work = new_work(params)
+    for temperature in np.unique(conditions[:, 2]):
+        same = np.flatnonzero(conditions[:, 2] == temperature)
+        model = Model(params, lubricate(scene.lubricant, params, float(temperature)), Drive(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), 1e-2)
+        found = np.empty((len(same), len(ANSWER)))
+        solve_conditions(np.ascontiguousarray(conditions[same][:, [0, 1, 3]], float), model, work, found)
+        answers[same] = found
+    return answers

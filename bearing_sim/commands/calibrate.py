@@ -1,0 +1,217 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""``bearing-sim calibrate``: fit fields of a scene to the measured cage speed of a recording."""
+
+from pathlib import Path
+
+import click
+
+from bearing_sim.commands.reporting import BadInput, print_json, print_table, progress_bar, tell_compilation, told_as_bad_input, told_file_faults
+from bearing_sim.commands.uncertainty import PICTURES
+
+_EXPECTED = 30  # evaluations of an ordinary search, for the bar
+_UNLIKELY = 0.01
+
+
+@click.command()
+@click.argument("log", type=click.Path(path_type=Path), metavar="RUN.mcap")
+@click.option("--scene", "scene_name", metavar="SCENE", help="Bundled scene or YAML file [default: the scene in the recording].")
+@click.option("--set", "overrides", multiple=True, metavar="FIELD=VALUE", help="Override a field of the scene, or a range; may be repeated.")
+@click.option("--fit", "fields", multiple=True, metavar="FIELD", help="Fit this field; may be repeated [default: lubricant.mixture_fraction].")
+@click.option("--batch", type=click.FloatRange(min=0.01), metavar="S", help="Length of the blocks averaged over [default: 1 s, less in a short run].")
+@click.option(
+    "--confidence", default=0.95, show_default=True, type=click.FloatRange(0.5, 0.999), metavar="SHARE", help="Of the confidence intervals."
+)
+@click.option(
+    "-o", "--out", type=click.Path(path_type=Path), metavar="SCENE.yaml", help="Write the scene with the fitted values and their intervals."
+)
+@click.option("--picture", type=click.Path(path_type=Path), metavar="PATH.png", help="Draw measured and predicted slip (.png, .svg or .pdf).")
+@click.option("--speed-topic", metavar="TOPIC", help="Topic of the shaft speed [default: /shaft_speed].")
+@click.option("--load-topic", metavar="TOPIC", help="Topic of the radial load [default: /radial_load].")
+@click.option("--temperature-topic", metavar="TOPIC", help="Topic of the oil temperature [default: /oil_temperature, where there is one].")
+@click.option("--cage-topic", metavar="TOPIC", help="Topic of the measured cage speed [default: /cage_speed_measured].")
+@click.option("--joint", default="shaft", show_default=True, metavar="NAME", help="The shaft's joint in JointState messages.")
+@click.option("--cage-joint", default="cage", show_default=True, metavar="NAME", help="The cage's joint in JointState messages.")
+@click.option("--stamps", type=click.Choice(["header", "log"]), default="header", show_default=True, help="Go by header stamps, or by log times.")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+def command(
+    log, scene_name, overrides, fields, batch, confidence, out, picture, speed_topic, load_topic, temperature_topic, cage_topic, joint, cage_joint,
+    stamps, as_json,
+):  # fmt: skip
+    """Fit fields of a scene to the cage speed that was measured in RUN.mcap, within their ranges in the scene's block `uncertainty`.
+
+    Any rosbag2 recording in MCAP with shaft speed, radial load and measured cage speed will do: one of ours, a bag, or what
+    `bearing-sim import-csv` makes of a table. Only what has settled counts. What the measurement cannot tell is refused.
+    """
+    if picture is not None and picture.suffix.lower() not in PICTURES:
+        raise BadInput(f"--picture {picture}: expected a name that ends in {', '.join(PICTURES)}")
+    if out is not None and out.suffix.lower() not in (".yaml", ".yml"):
+        raise BadInput(f"--out {out}: expected a name that ends in .yaml")
+    scene = _scene(log, scene_name, overrides)
+    names = {"shaft_speed": speed_topic, "radial_load": load_topic, "oil_temperature": temperature_topic, "cage_speed_measured": cage_topic}
+    measured, lines = _measured(log, scene, names, joint, stamps, cage_joint)
+    tell_compilation()
+    from bearing_sim.studies.calibration import CalibrationError, calibrate
+    from bearing_sim.studies.calibration_blocks import block_length, cut
+
+    length = batch or block_length(measured.times[-1] - measured.times[0])
+    blocks = cut(measured, scene.bearing.diameter_ratio, scene.thresholds.slip_from_speed, length)
+    asked = fields or ("lubricant.mixture_fraction",)
+    with progress_bar(f"calibrating {scene.name}", _EXPECTED) as show, told_as_bad_input(CalibrationError):
+        found = calibrate(scene, asked, blocks, confidence=confidence, progress=show)
+    with told_file_faults():
+        if out is not None:
+            _write(out, log, found)
+        if picture is not None:
+            from bearing_sim.studies.calibration_picture import draw
+
+            draw(picture, f"{scene.name} calibrated by {log.name}", found)
+    if as_json:
+        print_json(_report(log, scene, found))
+    else:
+        _print(log, scene, found, lines, out)
+
+
+def _scene(log, scene_name, overrides):
+    """Return the scene to calibrate: the one asked for, or that of the recording, with what is overridden."""
+    from bearing_sim.recording_reader import Recording, RecordingError
+    from bearing_sim.scene_file import SceneError, load_scene, scene_from_yaml, scene_to_yaml
+
+    with told_as_bad_input(SceneError), told_file_faults():
+        if scene_name is not None:
+            return load_scene(scene_name, overrides)
+        try:
+            recorded = Recording(log).scene
+        except RecordingError as fault:
+            raise BadInput(f"{fault}; name the scene to calibrate with --scene") from None
+        return scene_from_yaml(scene_to_yaml(recorded), overrides, origin=f"{log}: scene in the metadata")
+
+
+def _measured(log, scene, names, joint, stamps, cage_joint):
+    """Return what was measured, and lines of text on where it was found."""
+    import math
+
+    from bearing_sim.input_course import judge
+    from bearing_sim.input_log import InputLogError, read_input_log, summary_lines
+    from bearing_sim.simulation import Inputs
+    from bearing_sim.studies.calibration_blocks import Measured
+    from bearing_sim.topics import MEASURED
+
+    with told_as_bad_input(InputLogError), told_file_faults():
+        recorded = read_input_log(log, names, joint, stamps, cage_joint)
+        course = judge(recorded, scene.input_limits, Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature))
+    inputs = course.at(course.instants, math.nan)  # NaN: the scene's own temperature, which may be one to fit
+    gaps = [(begin * 1e-9, end * 1e-9) for begin, end in course.gaps]
+    refused = [("refused messages", ", ".join(f"{count} x {code}" for code, count in sorted(course.refused.items())))] if course.refused else []
+    lines = [("log", line) for line in summary_lines(recorded)] + refused
+    return Measured(course.instants * 1e-9, inputs, gaps, course.stamps[MEASURED] * 1e-9, course.values[MEASURED]), lines
+
+
+def _override(found) -> list[str]:
+    return [f"{one.range.field}={one.value:.9g}" for one in found.fitted]
+
+
+def _write(path, log, found) -> None:
+    from bearing_sim.provenance import package_version
+    from bearing_sim.scene_file import scene_to_yaml
+
+    fields = ", ".join(one.range.field for one in found.fitted)
+    head = f"# Calibrated by bearing_sim {package_version()}: {fields} fitted to the cage speed in {log.name}, {len(found.blocks.slip)} blocks.\n"
+    path.write_text(head + scene_to_yaml(found.scene))
+
+
+def _root_mean_square(values) -> float:
+    return float((values**2).mean() ** 0.5)
+
+
+def _report(log, scene, found) -> dict:
+    fields = [one.range.field for one in found.fitted]
+    blocks = found.blocks
+    return {
+        "log": log.name,
+        "scene": scene.name,
+        "level": "steady",
+        "confidence": found.confidence,
+        "fitted": {
+            one.range.field: {"value": one.value, "interval": [one.low, one.high], "before": one.before, "range": [one.range.low, one.range.high]}
+            for one in found.fitted
+        },
+        "overrides": _override(found),
+        "correlation": found.correlation.tolist(),
+        "depends_on": {other: {"low": dict(zip(fields, row[0])), "high": dict(zip(fields, row[1]))} for other, row in found.depends.items()},
+        "blocks": len(blocks.slip),
+        "block_seconds": blocks.length,
+        "blocks_left_out": dict(blocks.left_out),
+        "independent_blocks": found.effective,
+        "operating_points": len(found.points.conditions),
+        "slip_measured": float(blocks.slip.mean()),
+        "slip_before": float(found.before.mean()),
+        "slip_after": float(found.after.mean()),
+        "residual_before": _root_mean_square(blocks.slip - found.before),
+        "residual_after": _root_mean_square(blocks.slip - found.after),
+        "misfit": found.misfit,
+        "misfit_chance": found.misfit_chance,
+    }
+
+
+def _print(log, scene, found, lines, out) -> None:
+    from bearing_sim.scene_uncertainty import quantities
+
+    known, blocks = quantities(type(scene)), found.blocks
+    percent = f"{100 * found.confidence:g} %"
+    rows = [*lines]
+    for one in found.fitted:
+        show = known[one.range.field].show
+        told = f"{show(one.value)}, {percent} interval {show(one.low)} to {show(one.high)}"
+        rows.append((one.range.field, f"{told}\n(the scene says {show(one.before)}, searched from {show(one.range.low)} to {show(one.range.high)})"))
+    if len(found.fitted) > 1:
+        pairs = [(a, b) for a in range(len(found.fitted)) for b in range(a)]
+        names = [one.range.field.rpartition(".")[2] for one in found.fitted]
+        rows.append(("correlation", "\n".join(f"{names[b]} and {names[a]}: {found.correlation[a, b]:+.2f}" for a, b in pairs)))
+    rows += _dependence(scene, found)
+    left_out = ", ".join(f"{count} {why}" for why, count in blocks.left_out.items()) or "none"
+    after, before = (100 * _root_mean_square(blocks.slip - predicted) for predicted in (found.after, found.before))
+    rows += [
+        (
+            "measured slip",
+            f"{100 * blocks.slip.mean():.3f} % in the mean; the model {100 * found.after.mean():.3f} %, before {100 * found.before.mean():.3f} %",
+        ),
+        ("residuals, root mean square", f"{after:.3f} points, before {before:.3f}"),
+        ("data", f"{len(blocks.slip)} blocks of {blocks.length:.3g} s at {_points(found)}; left out: {left_out}"),
+        ("worth", f"{found.effective:.0f} independent blocks: residuals resemble each other over {found.resemblance * blocks.length:.2g} s"),
+        ("model", _misfit(found)),
+        ("to use it", " ".join(f'--set "{item}"' for item in _override(found)) + (f", or the scene {out}" if out else "")),
+    ]
+    if scene.level not in ("steady", "slip"):
+        rows.append(
+            ("level", f"fitted at level steady; level {scene.level}, which the scene asks for, slips otherwise by what `bearing-sim trade` tells")
+        )
+    print_table(f"{scene.name} calibrated by {log.name}", rows)
+
+
+def _points(found) -> str:
+    count = len(found.points.conditions)
+    return "one operating point" if count == 1 else f"{count} operating points"
+
+
+def _dependence(scene, found) -> list[tuple[str, str]]:
+    from bearing_sim.scene_uncertainty import quantities
+
+    known, told = quantities(type(scene)), []
+    for other, ends in found.depends.items():
+        one = next(each for each in scene.uncertainty if each.field == other)
+        for place, fitted in enumerate(found.fitted):
+            name, show = fitted.range.field.rpartition(".")[2], known[fitted.range.field].show
+            low, high = (known[other].show(end) for end in (one.low, one.high))
+            told.append(f"{name} about {show(ends[0, place])} with {other} {low}, {show(ends[1, place])} with {high}")
+    return [("the rest as uncertain as the scene says", "\n".join(told))] if told else []
+
+
+def _misfit(found) -> str:
+    import math
+
+    if not math.isfinite(found.misfit):
+        return "no more operating points than fields: whether the model holds cannot be told"
+    share = f"means at operating points are off by {math.sqrt(found.misfit):.2g} times what scatter explains"
+    if found.misfit_chance < _UNLIKELY:
+        return f"{share}: the model's own error shows, intervals do not know of it"
+    return f"{share}: no error of the model shows"

@@ -1,0 +1,362 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""The ROS doors of one bearing: its topics, services, diagnostics and recordings, in front of its `LiveModel`."""
+
+import dataclasses
+import subprocess
+from functools import partial
+from pathlib import Path
+
+from rclpy.event_handler import SubscriptionEventCallbacks
+from rclpy.lifecycle import LifecycleNode
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from std_srvs.srv import SetBool, Trigger
+
+from bearing_sim import topics
+from bearing_sim.effects import hint
+from bearing_sim.events import Event, Level
+from bearing_sim.ros.cheaper_levels import levels_to_compile, start_compiling
+from bearing_sim.ros.messages import message_class
+from bearing_sim.ros.outputs import Output
+from bearing_sim.ros.parameters import OIL_TEMPERATURE, BearingSettings, NodeSettings, scene_value
+from bearing_sim.ros.recordings import fresh_path, limits_of, open_recording, open_view, prepare
+from bearing_sim.ros.warm_up import WarmUp
+from bearing_sim.runtime.governor import Governor
+from bearing_sim.runtime.health import Condition
+from bearing_sim.runtime.live import LiveModel, governor_of, warmed_up
+from bearing_sim.scene import Scene
+from bearing_sim.scene_file import load_scene
+from bearing_sim.scene_monitoring import with_thresholds
+from bearing_sim.simulation import IntegrationError, Simulation
+
+_DIAGNOSTICS_PERIOD = 1.0  # [s] (REP 107)
+STATE_QOS = QoSProfile(depth=10, reliability=ReliabilityPolicy.RELIABLE)
+# As sensor data, so that any publisher matches, but deeper: a recording shall not miss inputs when the machine stalls.
+_INPUT_QOS = QoSProfile(depth=200, reliability=ReliabilityPolicy.BEST_EFFORT)
+
+
+class BearingDoors:
+    """One bearing of a node, from the node's configure to its cleanup.
+
+    All methods belong to the node's thread but for `warm_up`.
+
+    Parameters
+    ----------
+    node : on which topics and services are made.
+    settings : of this bearing; one with a name has topics and services below it.
+    shared : settings of the node.
+
+    Raises
+    ------
+    SceneError
+        The scene cannot be used.
+    """
+
+    def __init__(self, node: LifecycleNode, settings: BearingSettings, shared: NodeSettings):
+        self._node, self._logger, self.settings, self._shared = node, node.get_logger(), settings, shared
+        self.scene: Scene = load_scene(settings.scene, settings.scene_overrides)
+        self.live: LiveModel | None = None
+        self.fault = ""  # why the model cannot run; told until the next configure
+        self._fault_cause: Exception | None = None
+        self._simulation: Simulation | None = None
+        self._governor: Governor | None = None
+        self._joining: Governor | None = None  # made on the thread of warm_up, to be taken over
+        self._compiling: subprocess.Popen | None = None
+        self._last_level: Level | None = None
+        self._next_report_ns = 0
+        self._published_time = self._residual_time = float("-inf")
+        self._subscriptions = {}
+        component = node.get_fully_qualified_name().lstrip("/")
+        self.component = f"{component}/{settings.name}" if settings.name else component
+        self.hardware_id = f"{settings.name}/{self.scene.bearing.name}" if settings.name else self.scene.bearing.name
+        self._outputs = [self._output(topic) for topic in topics.outputs(self.scene).values()]
+        self._residual = self._output(topics.MEASUREMENTS["cage_slip_residual"])
+        self._services = [
+            node.create_service(kind, self._service_name(name), serve, callback_group=node.office_hours)
+            for kind, name, serve in (
+                (Trigger, "reset", self._serve_reset),
+                (Trigger, "start_recording", self._serve_start_recording),
+                (Trigger, "stop_recording", self._serve_stop_recording),
+                (SetBool, "pause", self._serve_pause),
+            )
+        ]
+        self.say(f"scene {self.scene.name!r}, bearing {self.scene.bearing.name!r}, level {self.scene.level!r}: warming up")
+        if cheaper := hint(self.scene):
+            self.say(cheaper)
+
+    @property
+    def is_warm(self) -> bool:
+        """Whether the model is compiled."""
+        return self._simulation is not None
+
+    def warm_up(self) -> None:
+        """Compile or load the model; takes seconds to minutes.  Belongs to a thread of its own, see `warm_up`."""
+        settings, rate = self.settings, self._shared.sample_rate
+        try:
+            prepare(view=bool(settings.rrd or settings.rerun_port))
+            simulation = warmed_up(self.scene, rate)
+            if self._shared.governor and levels_to_compile(self.scene):
+                self._compiling = start_compiling(self.scene, rate)
+            elif self._shared.governor:
+                self._governor = governor_of(simulation, rate)
+            self._simulation = simulation
+        except IntegrationError as fault:
+            self.fault, self._fault_cause = f"the scene's own operating conditions cannot be computed: {fault}", fault
+        except Exception as fault:  # a fault of the program: told by the node, which is where people look
+            self.fault, self._fault_cause = f"the model could not be made: {fault!r}", fault
+
+    def open(self) -> None:
+        """Begin a run: run time 0 is now; open recordings and subscriptions.
+
+        Raises
+        ------
+        OSError
+            A recording or a view cannot be opened.
+        """
+        settings, start_ns = self.settings, self._node.now_ns()
+        self._published_time = self._residual_time = float("-inf")
+        governor = self._governor if self._shared.governor else None
+        self.live = LiveModel(self.scene, self._simulation, start_ns, self._shared.sample_rate, self._shared.maximum_lag, governor=governor)
+        if settings.record:
+            path = Path(settings.record)
+            self._start_recording(fresh_path(path) if path in self._node.recorded else path)
+            self._node.recorded.add(path)
+        if settings.rrd or settings.rerun_port:
+            self.live.attach("view", open_view(self.scene, start_ns, settings.rrd, settings.rerun_port))
+        for channel, topic in topics.INPUTS.items():
+            ros_type = topic.ros_type
+            if self._shared.input_type == "scalar" and "std_msgs/msg/Float64" in topics.input_types(channel):
+                ros_type = "std_msgs/msg/Float64"
+            self._subscribe(channel, ros_type)
+        self._subscribe(topics.MEASURED, topics.MEASUREMENTS[topics.MEASURED].ros_type)
+        self.say("ready: listening to shaft_speed and radial_load")
+        if self._compiling is not None:
+            self.say("compiling cheaper levels for the governor beside this, once for this version")
+
+    def close(self) -> bool:
+        """End the run, complete recordings.  Returns whether the solver's thread ended; else the model must be warmed up anew."""
+        for subscription in self._subscriptions.values():
+            self._node.destroy_subscription(subscription)
+        self._subscriptions = {}
+        live, self.live = self.live, None
+        stopped = live.close() if live is not None else True
+        if not stopped:
+            self._simulation = self._governor = None
+        return stopped
+
+    def destroy(self) -> bool:
+        """Take the doors away.  Returns whether the solver's thread ended."""
+        stopped = self.close()
+        if self._compiling is not None:
+            self._compiling.kill()
+            self._compiling.wait()
+        for service in self._services:
+            self._node.destroy_service(service)
+        for output in (*self._outputs, self._residual):
+            output.destroy()
+        return stopped
+
+    def publish(self) -> None:
+        """Publish the newest sample, if it is new."""
+        sample = self.live.runner.newest if self.live is not None else None
+        if sample is None or sample["time"] <= self._published_time:
+            return
+        self._published_time = float(sample["time"])
+        stamp_ns = self.live.start_ns + round(self._published_time * 1e9)
+        for output in self._outputs:
+            output.publish(stamp_ns, sample)
+        compared = self.live.residual
+        if compared.time > self._residual_time:
+            self._residual_time = compared.time
+            self._residual.publish(stamp_ns, compared.residual)
+
+    def review(self, now_ns: int, state: Event, warm_up: WarmUp) -> None:
+        """Feed the sinks, log what is new, and report when a second has passed or the level has changed.
+
+        Parameters
+        ----------
+        state : what the node's lifecycle calls for; told while the model does not run.
+        warm_up : makes a governor when its levels are compiled.
+        """
+        if self.live is None:
+            told = Event(0.0, Level.ERROR, "run.failed", self.fault) if self.fault else state
+            self.report(now_ns, Condition([told], {}))
+            return
+        self._join_governor(warm_up)
+        for event in self.live.collect(now_ns):
+            self._log(event)
+        self.report(now_ns, self.live.condition(now_ns))
+
+    def report(self, now_ns: int, condition: Condition) -> None:
+        """Publish the condition on /diagnostics if it is time."""
+        if now_ns < self._next_report_ns and condition.level == self._last_level:
+            return
+        if self.live is not None:  # now and then is enough
+            for channel, subscription in self._subscriptions.items():
+                self.live.note_senders(channel, self._node.count_publishers(subscription.topic_name))
+        self._last_level = condition.level
+        self._next_report_ns = now_ns + round((_DIAGNOSTICS_PERIOD - self._node.REVIEW_PERIOD / 2) * 1e9)
+        self._node.tell(now_ns, condition, self.component, self.hardware_id)
+        if self.live is not None:
+            self.live.record_diagnostics(condition, now_ns)
+
+    def objection(self, changes: dict[str, object]) -> str:
+        """Return why parameters of this bearing cannot be changed so; empty where they can."""
+        if OIL_TEMPERATURE in changes and self.live is not None and self.live.gate.accepted["oil_temperature"]:
+            return f"{OIL_TEMPERATURE}: the topic oil_temperature has given the temperature in this run, and counts instead"
+        try:
+            with_thresholds(self.scene.thresholds, _thresholds(changes))
+        except ValueError as fault:
+            return str(fault)
+        return ""
+
+    def apply(self, changes: dict[str, object]) -> None:
+        """Change parameters of this bearing from now on."""
+        if found := _thresholds(changes):
+            thresholds = with_thresholds(self.scene.thresholds, found)
+            self.scene = dataclasses.replace(self.scene, thresholds=thresholds)
+            if self.live is not None:
+                self.live.adjust(thresholds)
+        if OIL_TEMPERATURE in changes:
+            self.scene = dataclasses.replace(self.scene, lubricant=dataclasses.replace(self.scene.lubricant, temperature=changes[OIL_TEMPERATURE]))
+            if self.live is not None:
+                self.live.hold_oil_temperature(changes[OIL_TEMPERATURE], self._node.now_ns())
+
+    def govern(self, wanted: bool, warm_up: WarmUp) -> None:
+        """Let a governor change levels from now on, made by ``warm_up`` where there is none yet, or let none."""
+        self._shared = dataclasses.replace(self._shared, governor=wanted)
+        if wanted and self._governor is None and self._compiling is None and self.is_warm:
+            warm_up.ask(self._make_governor)
+        elif self.live is not None:
+            self.live.govern(self._governor if wanted else None)
+
+    def report_soon(self) -> None:
+        """Publish diagnostics at the next review, whenever the last were."""
+        self._next_report_ns = 0
+
+    def say(self, text: str) -> None:
+        """Log something about this bearing."""
+        self._logger.info(f"{self.settings.name}: {text}" if self.settings.name else text)
+
+    def _output(self, topic: topics.Topic) -> Output:
+        return Output(self._node, topic, self._topic_name(topic.name), STATE_QOS)
+
+    def _subscribe(self, channel: str, ros_type: str) -> None:
+        taking = partial(self._take, channel, ros_type)
+        name, quiet = self._topic_name(channel), SubscriptionEventCallbacks(use_default_callbacks=False)  # any publisher matches: nothing to watch
+        subscription = self._node.create_subscription(message_class(ros_type), name, taking, _INPUT_QOS, event_callbacks=quiet)
+        self._subscriptions[channel] = subscription
+
+    def _topic_name(self, name: str) -> str:
+        return f"{self.settings.name}/{name}" if self.settings.name else name
+
+    def _service_name(self, name: str) -> str:
+        return f"{self.settings.name}/{name}" if self.settings.name else f"~/{name}"
+
+    def _make_governor(self) -> None:
+        """Make a governor; belongs to the thread of `warm_up`."""
+        try:
+            self._joining = governor_of(self._simulation, self._shared.sample_rate)
+        except IntegrationError as fault:
+            self._logger.warning(f"no cheaper level can take over: {fault}")
+
+    def _join_governor(self, warm_up: WarmUp) -> None:
+        """Let the governor begin once the cheaper levels are compiled; until then time is given up where the machine is too slow."""
+        if self._compiling is not None and self._compiling.poll() is not None:
+            self._compiling = None
+            warm_up.ask(self._make_governor)
+        if self._joining is not None:
+            self._governor, self._joining = self._joining, None
+            if self._shared.governor:
+                self.live.govern(self._governor)
+                self.say("the cheaper levels are compiled: the governor can fall back on them")
+
+    def _take(self, channel: str, ros_type: str, incoming) -> None:
+        if self.live is None:  # a message that was on its way when the run ended
+            return
+        now_ns = self._node.now_ns()
+        if reason := self._frame_fault(channel, incoming):
+            self.live.refuse(channel, "input.frame", reason, now_ns)
+            return
+        try:
+            joint = self.settings.cage_joint if channel == topics.MEASURED else self.settings.joint
+            values = topics.input_values(channel, ros_type, incoming, joint)
+        except ValueError as fault:
+            self.live.refuse(channel, "input.malformed", str(fault), now_ns)
+            return
+        self.live.offer(channel, values, topics.header_stamp_ns(incoming), now_ns, topics.frame_of(incoming))
+
+    def _frame_fault(self, channel: str, incoming) -> str:
+        """Return what is wrong with the frame of a load; the direction of a load counts, of the other inputs none has one."""
+        expected, found = self.settings.frame_id, incoming.header.frame_id if channel == "radial_load" and hasattr(incoming, "header") else ""
+        if not expected or found in ("", expected):
+            return ""
+        return f"frame {found!r}, expected {expected!r} (parameter frame_id), for the force's direction would be another"
+
+    def _log(self, event: Event) -> None:
+        line = f"{event.code}: {event.text}"
+        line = f"{self.settings.name}: {line}" if self.settings.name else line
+        # rclpy refuses a line of code that logs at more than one severity.
+        if event.level == Level.ERROR:
+            self._logger.error(line)
+        elif event.level == Level.WARN:
+            self._logger.warning(line)
+        else:
+            self._logger.info(line)
+
+    def _start_recording(self, path: Path) -> None:
+        sink = open_recording(path, self.scene, self.live.start_ns, limits_of(self._shared), self._shared.sample_rate)
+        self.live.attach("record", sink)
+        self.say(f"recording {sink.path}" + ("" if sink.path == path else f" ({path} exists and stays as it is)"))
+
+    def _refused(self, response) -> bool:
+        """Fill the response where there is no run to serve; return whether so."""
+        if self.live is None:
+            response.success, response.message = False, f"not running: {self.fault or 'activate the node first, and let it warm up'}"
+        return self.live is None
+
+    def _serve_start_recording(self, _, response):
+        if self._refused(response):
+            return response
+        if self.live.has("record"):
+            response.success, response.message = False, "a recording is going on; stop it first"
+            return response
+        name = f"run_{self.settings.name}" if self.settings.name else "run"
+        path = fresh_path(Path(self.settings.record or f"recordings/{name}.mcap"))
+        try:
+            self._start_recording(path)
+        except OSError as fault:
+            response.success, response.message = False, str(fault)
+        else:
+            response.success, response.message = True, str(path.resolve())
+        return response
+
+    def _serve_stop_recording(self, _, response):
+        if self._refused(response):
+            return response
+        try:
+            sink = self.live.detach("record")
+        except OSError as fault:
+            response.success, response.message = False, str(fault)
+        else:
+            response.success = sink is not None
+            response.message = f"{sink.path} is complete" if sink is not None else "there is no recording to stop"
+        return response
+
+    def _serve_reset(self, _, response):
+        if self._refused(response):
+            return response
+        response.success = self.live.runner.reset()
+        late = "not done within two seconds; it is done after the running tick"
+        response.message = "state and damage are at the start" if response.success else late
+        return response
+
+    def _serve_pause(self, request, response):
+        if self._refused(response):
+            return response
+        self.live.runner.pause(request.data)
+        response.success, response.message = True, "paused" if request.data else "running"
+        return response
+
+
+def _thresholds(changes: dict[str, object]) -> dict[str, object]:
+    return {name.removeprefix("thresholds."): scene_value(name, value) for name, value in changes.items() if name.startswith("thresholds.")}

@@ -1,0 +1,295 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Measure a running bearing_node from outside: ``python -m bearing_sim.ros.measure``.
+
+Two processes over DDS on the loopback interface: the node, and this one, which sends speed and load and listens.  Every speed sent is
+another by a millionth, so that an output tells which input it reflects; and the shaft's angle tells how much time was simulated,
+whatever the node says of it.
+"""
+
+import json
+import math
+import os
+import random
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import NamedTuple
+
+import click
+
+from bearing_sim.runtime.threads import SOLVER
+
+_DOMAINS = range(60, 100)  # above what people pick by hand, below where ports collide with those the system hands out
+_START_LIMIT = 600.0  # [s] for the first start, which compiles
+_SETTLING = 10.0  # [s] after which the memory shall not grow
+_STEP = 1e-6  # by which one speed sent differs from the next, relative
+_DISTINCT = 1000  # speeds sent until they repeat; an output is never that late
+
+
+class Cost(NamedTuple):
+    """What a process has used so far."""
+
+    by_thread: dict[str, float]  # thread's name -> [s] of a core
+    memory: float  # resident [bytes]
+
+
+def cost_of(pid: int) -> Cost:
+    """Return what a process has used, by the names of its threads (Linux)."""
+    ticks, spent = os.sysconf("SC_CLK_TCK"), {}
+    for task in Path(f"/proc/{pid}/task").iterdir():
+        try:
+            fields = (task / "stat").read_text()
+        except OSError:  # it has ended meanwhile
+            continue
+        name, numbers = fields[fields.index("(") + 1 : fields.rindex(")")], fields[fields.rindex(")") + 2 :].split()
+        spent[name] = spent.get(name, 0.0) + (int(numbers[11]) + int(numbers[12])) / ticks
+    pages = int(Path(f"/proc/{pid}/statm").read_text().split()[1])
+    return Cost(spent, float(pages * os.sysconf("SC_PAGE_SIZE")))
+
+
+class Heard(NamedTuple):
+    """One bearing_joints message."""
+
+    arrival: float  # monotonic [s]
+    speed: float  # of the shaft [rad/s]
+    angle: float  # of the shaft [rad]
+
+
+class Driver:
+    """Sends inputs at a rate and takes what comes, without an executor, whose own cost would disturb the measurement.
+
+    Parameters
+    ----------
+    speed : of the shaft [rad/s].
+    load : [N].
+    topics_heard : names of the output topics to listen to besides bearing_joints, so that the node has somebody to publish to.
+    """
+
+    def __init__(self, speed: float, load: float, topics_heard: list[str]):
+        import rclpy
+        from rclpy.qos import qos_profile_sensor_data
+
+        from bearing_sim import topics
+        from bearing_sim.ros.messages import message, message_class
+        from bearing_sim.simulation import Inputs
+
+        self._node = rclpy.create_node("bearing_measure", start_parameter_services=False, enable_rosout=False)
+        self._speed, self._message, self._topics = speed, message, topics
+        self._inputs = Inputs(shaft_speed=speed, load_y=load, load_z=0.0, oil_temperature=393.15)
+        self._publishers = {
+            name: self._node.create_publisher(message_class(topics.INPUTS[name].ros_type), name, qos_profile_sensor_data)
+            for name in ("shaft_speed", "radial_load")
+        }
+        self._joints = self._node.create_subscription(
+            message_class(topics.OUTPUTS["bearing_joints"].ros_type), "bearing_joints", lambda _: None, 1000
+        )
+        self._others = [
+            self._node.create_subscription(message_class(topics.OUTPUTS[name].ros_type), name, lambda _: None, 1000) for name in topics_heard
+        ]
+        self._reports = self._node.create_subscription(message_class(topics.DIAGNOSTICS[1]), f"/{topics.DIAGNOSTICS[0]}", lambda _: None, 100)
+        self.sent: list[float] = []
+        self.heard: list[Heard] = []
+        self.values: dict[str, str] = {}
+
+    def close(self) -> None:
+        """Take the node away."""
+        self._node.destroy_node()
+
+    @property
+    def is_matched(self) -> bool:
+        """Whether the node listens."""
+        return all(publisher.get_subscription_count() for publisher in self._publishers.values())
+
+    def send(self) -> None:
+        """Send both inputs now."""
+        place = len(self.sent) % _DISTINCT
+        inputs = self._inputs._replace(shaft_speed=self._speed * (1.0 + _STEP * place))
+        stamp_ns = self._node.get_clock().now().nanoseconds
+        for name, publisher in self._publishers.items():
+            topic = self._topics.INPUTS[name]
+            filled = self._message(topic.ros_type, topic.message(stamp_ns, inputs))
+            if name == "shaft_speed":
+                self.sent.append(time.monotonic())
+            publisher.publish(filled)
+
+    def take(self) -> None:
+        """Take all that has come."""
+        for taken in _taken(self._joints):
+            self.heard.append(Heard(time.monotonic(), taken.velocity[0], taken.position[0]))
+        for report in _taken(self._reports):
+            self.values = {pair.key: pair.value for pair in report.status[0].values}
+        for subscription in self._others:
+            for _ in _taken(subscription):
+                pass
+
+    def drive(self, seconds: float, rate: float) -> None:
+        """Send at a rate [Hz] and take, for a while."""
+        start = due = time.monotonic()
+        while (now := time.monotonic()) < start + seconds:
+            if now >= due:
+                self.send()
+                due = max(due + 1.0 / rate, now - 1.0 / rate)
+            self.take()
+            time.sleep(min(1e-3, max(0.0, due - time.monotonic())))
+
+    def latencies(self, since: float) -> list[float]:
+        """Return the age of the input that each output after an instant reflects, when it came [s]."""
+        found = []
+        for heard in self.heard:
+            place = round((heard.speed / self._speed - 1.0) / _STEP) % _DISTINCT
+            sent = [self.sent[k] for k in range(place, len(self.sent), _DISTINCT) if self.sent[k] <= heard.arrival]
+            if heard.arrival >= since and sent:
+                found.append(heard.arrival - sent[-1])
+        return found
+
+
+def _taken(subscription):
+    with subscription.handle:
+        while (taken := subscription.handle.take_message(subscription.msg_type, False)) is not None:
+            yield taken[0]
+
+
+def measure(level: str, speed_rpm: float, duration: float, rate: float, listen: str = "all") -> dict:
+    """Measure a node and return plain numbers.
+
+    Parameters
+    ----------
+    level : of the model, bearing deng2017_table1 at 800 N.
+    speed_rpm : of the shaft.
+    duration : of the measurement after the start [s], longer than the first ten seconds.
+    rate : of the node's output topics and of the inputs [Hz].
+    listen : ``all`` output topics or ``joints`` alone.
+
+    Raises
+    ------
+    RuntimeError
+        The node does not begin.
+    """
+    from bearing_sim import topics
+    from bearing_sim.scene_file import load_scene
+
+    overrides = [f"level={level}", f"operating.shaft_speed={speed_rpm} rpm"]
+    names = [name for name in topics.outputs(load_scene("deng2017_table1", overrides)) if name != "bearing_joints" and listen == "all"]
+    words = {"overrides": str(overrides), "publish_rate": str(float(rate)), "governor": "false"}
+    command = [sys.executable, "-m", "bearing_sim.ros.node", "--ros-args"] + [w for key, value in words.items() for w in ("-p", f"{key}:={value}")]
+    with tempfile.TemporaryFile() as log:
+        node = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT, start_new_session=True)
+        driver = Driver(speed_rpm * math.pi / 30, 800.0, names)
+        try:
+            _wait_until_heard(driver, node)
+            driver.drive(2.0, rate)
+            began, first = time.monotonic(), cost_of(node.pid)
+            driver.drive(min(_SETTLING, duration / 2), rate)
+            settled = cost_of(node.pid)
+            driver.drive(duration - (time.monotonic() - began), rate)
+            ended, last = time.monotonic(), cost_of(node.pid)
+        finally:
+            driver.close()
+            node.terminate()
+            try:
+                node.wait(10.0)
+            except subprocess.TimeoutExpired:
+                node.kill()
+                node.wait()
+    found = _figures(driver, began, ended, rate) | _costs(first, settled, last, ended - began)
+    return {"level": level, "speed_rpm": speed_rpm, "rate_hz": rate, "topics_heard": len(names) + 1, "exit_code": node.returncode, **found}
+
+
+def _wait_until_heard(driver: Driver, node: subprocess.Popen) -> None:
+    end = time.monotonic() + _START_LIMIT
+    while not (driver.is_matched and driver.heard):
+        if node.poll() is not None or time.monotonic() > end:
+            raise RuntimeError("the node did not begin")
+        if driver.is_matched:
+            driver.send()
+        driver.take()
+        time.sleep(0.02)
+
+
+def _figures(driver: Driver, began: float, ended: float, rate: float) -> dict:
+    heard = [message for message in driver.heard if message.arrival >= began]
+    span = heard[-1].arrival - heard[0].arrival
+    latencies = sorted(driver.latencies(began))
+    speed = sum(message.speed for message in heard) / len(heard)
+    values = driver.values
+    return {
+        "seconds": ended - began,
+        "messages": len(heard),
+        "period_ms": 1e3 * span / (len(heard) - 1),
+        "period_error_percent": 100 * (span / (len(heard) - 1) * rate - 1.0),
+        "latency_p50_ms": 1e3 * latencies[len(latencies) // 2],
+        "latency_p99_ms": 1e3 * latencies[int(0.99 * (len(latencies) - 1))],
+        "real_time_factor": (heard[-1].angle - heard[0].angle) / (speed * span),
+        "time_lost_s": float(values.get("time lost [s]", "nan")),
+        "solver_factor": float(values.get("real-time factor possible", "nan")),
+    }
+
+
+def _costs(first: Cost, settled: Cost, last: Cost, seconds: float) -> dict:
+    spent = {name: last.by_thread[name] - first.by_thread.get(name, 0.0) for name in last.by_thread}
+    solver = sum(cost for name, cost in spent.items() if name.startswith(SOLVER[:15]))
+    return {
+        "memory_at_10_s_mb": settled.memory / 1e6,
+        "memory_at_end_mb": last.memory / 1e6,
+        "cpu_solver_percent": 100 * solver / seconds,
+        "cpu_without_solver_percent": 100 * (sum(spent.values()) - solver) / seconds,
+        "cpu_by_thread_percent": {name: round(100 * cost / seconds, 3) for name, cost in sorted(spent.items()) if cost > 0.0},
+    }
+
+
+_COLUMNS = {
+    "level": "level",
+    "topics_heard": "topics",
+    "period_ms": "period [ms]",
+    "period_error_percent": "off [%]",
+    "latency_p50_ms": "latency p50 [ms]",
+    "latency_p99_ms": "p99 [ms]",
+    "real_time_factor": "real-time factor",
+    "time_lost_s": "lost [s]",
+    "memory_at_10_s_mb": "memory at 10 s [MB]",
+    "memory_at_end_mb": "at the end [MB]",
+    "cpu_without_solver_percent": "CPU without solver [%]",
+    "cpu_solver_percent": "solver [%]",
+}
+
+
+def _print_table(cases: list[dict]) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table(title="bearing_node, from another process", title_justify="left")
+    for title in _COLUMNS.values():
+        table.add_column(title, justify="right")
+    for case in cases:
+        table.add_row(*(value if isinstance(value := case[name], str) else f"{value:.5g}" for name in _COLUMNS))
+    Console(width=None if sys.stdout.isatty() else 170).print(table)
+
+
+@click.command(context_settings={"help_option_names": ["-h", "--help"]})
+@click.option("--level", "levels", multiple=True, default=("slip", "planar"), show_default=True, help="Level; may be repeated.")
+@click.option("--speed", "speed_rpm", default=15_000.0, show_default=True, help="Shaft speed [rpm].")
+@click.option("--duration", default=60.0, type=click.FloatRange(1.0), show_default=True, help="Seconds for each level.")
+@click.option("--rate", default=100.0, type=click.FloatRange(1.0, 200.0), show_default=True, help="Rate of inputs and outputs [Hz].")
+@click.option("--listen", type=click.Choice(["all", "joints"]), default="all", show_default=True, help="Which output topics have a subscriber.")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON list.")
+def command(levels, speed_rpm, duration, rate, listen, as_json):
+    """Measure period, latency, real-time factor, memory and CPU of a bearing_node from another process."""
+    os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+    os.environ.setdefault("ROS_DOMAIN_ID", str(random.SystemRandom().choice(_DOMAINS)))
+    import rclpy
+
+    rclpy.init(args=[])
+    try:
+        cases = [measure(level, speed_rpm, duration, rate, listen) for level in levels]
+    finally:
+        rclpy.try_shutdown()
+    if as_json:
+        click.echo(json.dumps(cases, indent=1))
+    else:
+        _print_table(cases)
+
+
+if __name__ == "__main__":
+    command(prog_name="measure")

@@ -1,0 +1,250 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""What nobody knows for sure: ranges of scene fields, and reading and changing fields by their paths.
+
+In a file the block ``uncertainty`` maps a field to its range, by dotted path or in nested blocks:
+
+    uncertainty:
+      lubricant.mixture_fraction: [0.015, 0.05]
+      lubricant.temperature: {low: 100 degC, high: 150 degC, distribution: triangular, source: where that comes from}
+
+A range says what is held possible; the scene's own value stays what is computed with.
+"""
+
+import dataclasses
+import difflib
+import math
+import types
+import typing
+from collections.abc import Iterable, Iterator, Mapping
+from functools import cache
+from typing import Any, Literal
+
+from pydantic import ValidationError, model_validator
+from pydantic_core import PydanticCustomError
+
+from bearing_sim.quantity import Quantity
+from bearing_sim.scene_record import record
+
+BLOCKS = ("bearing", "lubricant", "operating")  # of a scene, whose quantities may have ranges
+_ENDS, _WORDS = ("low", "high", "mode"), ("distribution", "source")
+_CLOSE_ENOUGH = 0.6  # of difflib's ratio
+
+
+@record
+class Range:
+    """What one quantity of the scene may be, in its SI unit.
+
+    Attributes
+    ----------
+    field : dotted path in the scene.
+    low, high : the ends.
+    distribution : ``uniform``; ``log_uniform``, even in the logarithm, for what is known to a factor; ``triangular``, with its peak at the mode.
+    mode : of a triangular distribution; None: the scene's own value, or the middle where that lies outside.
+    source : where the range comes from.
+    """
+
+    field: str
+    low: float
+    high: float
+    distribution: Literal["uniform", "log_uniform", "triangular"] = "uniform"
+    mode: float | None = None
+    source: str = ""
+
+    @model_validator(mode="after")
+    def _is_a_range(self):
+        faults = []
+        if not (math.isfinite(self.low) and math.isfinite(self.high) and self.low < self.high):
+            faults.append(f"low: {self.low:g} is not below high, {self.high:g}")
+        if self.distribution == "log_uniform" and self.low <= 0.0:
+            faults.append(f"low: {self.low:g}; a log_uniform range lies above 0")
+        if self.mode is not None and self.distribution != "triangular":
+            faults.append(f"mode: only a triangular distribution has one, this one is {self.distribution}")
+        elif self.mode is not None and not self.low <= self.mode <= self.high:
+            faults.append(f"mode: {self.mode:g} lies outside {self.low:g} to {self.high:g}")
+        if faults:
+            raise ValueError("; ".join(faults))
+        return self
+
+
+@cache
+def quantities(scene_type: type) -> Mapping[str, Quantity]:
+    """Return the declarations of all quantities that may have a range, by dotted path; those of alternative records, too."""
+    hints = typing.get_type_hints(scene_type, include_extras=True)
+    return types.MappingProxyType({path: found for name in BLOCKS for path, found in _declared(name, hints[name])})
+
+
+def _declared(path: str, hint) -> Iterator[tuple[str, Quantity]]:
+    declared = [note for note in getattr(hint, "__metadata__", ()) if isinstance(note, Quantity)]
+    if declared:
+        yield path, declared[0]
+        return
+    if typing.get_origin(hint) is typing.Annotated:
+        hint = typing.get_args(hint)[0]
+    if isinstance(hint, types.UnionType) or typing.get_origin(hint) is typing.Union:
+        for option in typing.get_args(hint):
+            yield from _declared(path, option)
+    elif dataclasses.is_dataclass(hint):
+        for name, inner in typing.get_type_hints(hint, include_extras=True).items():
+            yield from _declared(f"{path}.{name}", inner)
+
+
+def nearest(path: str, known: Iterable[str]) -> str:
+    """Return ``" (did you mean ...?)"`` for the known path that is nearest, by its last word or as a whole, or nothing."""
+    known, word = list(known), path.rpartition(".")[2]
+
+    def likeness(other: str) -> float:
+        compare = difflib.SequenceMatcher
+        return compare(None, path, other).ratio() + compare(None, word, other.rpartition(".")[2]).ratio()
+
+    best = max(known, key=likeness, default="")
+    return f" (did you mean {best!r}?)" if best and likeness(best) > 2 * _CLOSE_ENOUGH else ""
+
+
+def flattened(block: Mapping, path: str = "") -> dict[str, Any]:
+    """Return a block ``uncertainty`` by dotted paths, whether it was written so or nested."""
+    flat = {}
+    for key, value in block.items():
+        inner = f"{path}.{key}" if path else str(key)
+        if isinstance(value, Mapping) and not set(map(str, value)) & {*_ENDS, *_WORDS}:
+            flat |= flattened(value, inner)
+        else:
+            flat[inner] = value
+    return flat
+
+
+def override_range(tree: dict, keys: list[str], value) -> None:
+    """Enter ``uncertainty.FIELD=RANGE`` or ``uncertainty.FIELD.low=VALUE`` into a scene's tree, in place."""
+    given = tree.get("uncertainty") or {}
+    block = flattened(given) if isinstance(given, Mapping) else {}
+    path = ".".join(keys[1:])
+    if keys[-1] in (*_ENDS, *_WORDS) and (inner := ".".join(keys[1:-1])) in block:
+        known = block[inner]
+        known = dict(zip(("low", "high"), known)) if isinstance(known, (list, tuple)) else dict(known)
+        block[inner] = known | {keys[-1]: value}
+    else:
+        block |= flattened({path: value})
+    tree["uncertainty"] = block
+
+
+def drop_ranges_of_lands(tree: dict) -> None:
+    """Take out of a scene's tree the ranges of guide lands, which an override has just taken away from the cage."""
+    given = tree.get("uncertainty")
+    if isinstance(given, Mapping):
+        tree["uncertainty"] = {path: value for path, value in flattened(given).items() if not path.startswith("bearing.cage.guide_")}
+
+
+def read_ranges(given, scene_type: type) -> tuple[list[dict], list[tuple[str, str, str]]]:
+    """Read a block ``uncertainty`` into records in SI.
+
+    Parameters
+    ----------
+    given : what the file has there.
+    scene_type : whose quantities may have ranges.
+
+    Returns
+    -------
+    ranges : fields of each `Range`.
+    faults : (path, value, reason) of all that is wrong.
+    """
+    if given is None:
+        return [], []
+    if not isinstance(given, Mapping):
+        return [], [("uncertainty", repr(given), "expected a mapping of field to range, such as lubricant.mixture_fraction: [0.015, 0.05]")]
+    known, ranges, faults = quantities(scene_type), [], []
+    for path, value in flattened(given).items():
+        if value is None:  # --set uncertainty.FIELD=null takes a range away
+            continue
+        where = f"uncertainty.{path}"
+        if path not in known:
+            reason = f"unknown field{nearest(path, known)}; a range is for a quantity of {', '.join(BLOCKS[:-1])} or {BLOCKS[-1]}"
+            faults.append((where, "", reason))
+            continue
+        entered, wrong = _entered(where, value, known[path])
+        faults += wrong
+        if wrong:
+            continue
+        try:
+            Range(field=path, **entered)
+        except ValidationError as error:
+            faults += [(".".join([where, *map(str, fault["loc"])]), "", fault["msg"].removeprefix("Value error, ")) for fault in error.errors()]
+        else:
+            ranges.append({"field": path, **entered})
+    return ranges, faults
+
+
+def _entered(where: str, value, declared: Quantity) -> tuple[dict, list[tuple[str, str, str]]]:
+    """Return the fields of one range in SI, and what is wrong with it."""
+    if isinstance(value, (list, tuple)):
+        if len(value) != 2:
+            return {}, [(where, repr(value), "expected [low, high]")]
+        value = dict(zip(("low", "high"), value))
+    if not isinstance(value, Mapping):
+        return {}, [(where, repr(value), "expected [low, high], or a block with low, high and perhaps distribution, mode, source")]
+    faults = [
+        (f"{where}.{name}", "", f"unknown field{nearest(str(name), (*_ENDS, *_WORDS))}; known here: {', '.join((*_ENDS, *_WORDS))}")
+        for name in value
+        if name not in (*_ENDS, *_WORDS)
+    ]
+    faults += [(f"{where}.{name}", "", "missing") for name in ("low", "high") if value.get(name) is None]
+    entered = dict(value)
+    for name in _ENDS:
+        if value.get(name) is None:
+            continue
+        try:
+            entered[name] = declared.read(value[name])
+        except PydanticCustomError as fault:
+            faults.append((f"{where}.{name}", repr(value[name]), fault.message()))
+    return entered, faults
+
+
+def range_faults(scene) -> list[str]:
+    """Return which ranges of a scene are of no quantity that it has, go beyond what that may be, or are given twice, in words."""
+    known, faults, seen = quantities(type(scene)), [], set()
+    for one in scene.uncertainty:
+        where, declared = f"uncertainty.{one.field}", known.get(one.field)
+        if declared is None:
+            faults.append(f"{where}: unknown field{nearest(one.field, known)}")
+        elif value_at(scene, one.field) is None:
+            faults.append(f"{where}: this scene has no {one.field}, so its range means nothing; leave it out")
+        elif not declared.minimum <= one.low <= one.high <= declared.maximum:
+            bounds = f"{declared.show(declared.minimum)} to {declared.show(declared.maximum)}"
+            faults.append(f"{where}: {declared.show(one.low)} to {declared.show(one.high)} goes beyond {bounds}")
+        if one.field in seen:
+            faults.append(f"{where}: given twice")
+        seen.add(one.field)
+    return faults
+
+
+def written(ranges: Iterable[Mapping]) -> dict[str, dict]:
+    """Return ranges, as plain mappings, as a file has them; what is left at its default is left out."""
+    plain = {}
+    for one in ranges:
+        kept = {
+            name: value for name, value in one.items() if name != "field" and value not in (None, "") and (name, value) != ("distribution", "uniform")
+        }
+        plain[one["field"]] = kept
+    return plain
+
+
+def value_at(scene, path: str):
+    """Return what a scene has at a dotted path; None where it has nothing there."""
+    for name in path.split("."):
+        scene = getattr(scene, name, None)
+    return scene
+
+
+def with_values(scene, values: Mapping[str, float]):
+    """Return a scene with other numbers [SI] at dotted paths; everything is checked anew.
+
+    Raises
+    ------
+    pydantic.ValidationError
+        The numbers do not fit together, or one is out of its bounds.
+    """
+    changed: dict[str, dict[str, float]] = {}
+    for path, value in values.items():
+        name, _, rest = path.partition(".")
+        changed.setdefault(name, {})[rest] = float(value)
+    return dataclasses.replace(
+        scene, **{name: inner[""] if "" in inner else with_values(getattr(scene, name), inner) for name, inner in changed.items()}
+    )

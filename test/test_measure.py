@@ -1,0 +1,58 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""The command that measures a node from another process: its figures are there, hang together, and mean what they say."""
+
+import json
+import os
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("rclpy", reason="the node needs ROS 2 (pip install 'bearing_sim[ros]', or a ROS installation)")
+
+from ros_bench import fresh_domain  # noqa: E402
+
+from bearing_sim.ros.measure import cost_of  # noqa: E402
+from bearing_sim.runtime.threads import name_this_thread  # noqa: E402
+
+pytestmark = pytest.mark.timeout(240)
+ROOT = Path(__file__).resolve().parents[1]
+
+
+def test_the_cost_of_a_thread_is_found_under_its_name():
+    busy = threading.Event()
+
+    def work():
+        name_this_thread("a-busy-thread-with-a-long-name")
+        end = time.thread_time() + 0.3
+        while time.thread_time() < end:
+            pass
+        busy.set()
+        time.sleep(1.0)
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    assert busy.wait(60.0)
+    cost = cost_of(os.getpid())
+    assert cost.by_thread["a-busy-thread-w"] == pytest.approx(0.3, abs=0.05)
+    assert cost.memory > 1e7
+    thread.join()
+
+
+def test_a_node_is_measured_over_dds_and_the_figures_hang_together():
+    words = [sys.executable, "-m", "bearing_sim.ros.measure", "--level", "slip", "--duration", "4", "--rate", "50", "--json"]
+    environment = {**os.environ, "ROS_DOMAIN_ID": str(fresh_domain()), "PYTHONPATH": str(ROOT)}
+    found = subprocess.run(words, capture_output=True, text=True, timeout=200, check=True, env=environment)
+    (case,) = json.loads(found.stdout)
+    assert (case["level"], case["rate_hz"], case["exit_code"]) == ("slip", 50.0, 0) and case["topics_heard"] == 13
+    assert case["period_ms"] > 19.0, "no faster than asked for, however busy the machine"
+    assert case["period_error_percent"] == pytest.approx(100 * (case["period_ms"] / 20.0 - 1.0))
+    assert 0.0 < case["latency_p50_ms"] <= case["latency_p99_ms"]
+    # What the shaft's angle says of the simulated time and what the node says to have lost are told apart by nothing else.
+    assert case["real_time_factor"] + case["time_lost_s"] / case["seconds"] > 0.9 and case["real_time_factor"] < 1.05
+    assert case["cpu_solver_percent"] > 0.0 and case["cpu_without_solver_percent"] > 0.0
+    assert sum(case["cpu_by_thread_percent"].values()) == pytest.approx(case["cpu_solver_percent"] + case["cpu_without_solver_percent"], abs=0.1)
+    assert 50.0 < case["memory_at_10_s_mb"] < 1000.0

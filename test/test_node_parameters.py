@@ -1,0 +1,274 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""The node's parameters: descriptors from the scene's declarations, refusals with reasons, changes in mid-run, files; several bearings."""
+
+import re
+import signal
+from pathlib import Path
+
+import pytest
+import yaml
+
+pytest.importorskip("rclpy", reason="the node needs ROS 2 (pip install 'bearing_sim[ros]', or a ROS installation)")
+
+from lifecycle_msgs.msg import Transition  # noqa: E402
+from lifecycle_msgs.srv import ChangeState  # noqa: E402
+from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParameters  # noqa: E402
+from rclpy.parameter import Parameter, parameter_value_to_python  # noqa: E402
+from ros_bench import Client, NodeProcess, fresh_domain  # noqa: E402
+from std_srvs.srv import SetBool, Trigger  # noqa: E402
+
+from bearing_sim import topics  # noqa: E402
+from bearing_sim.ros.messages import message  # noqa: E402
+from bearing_sim.ros.parameter_file import parameter_file  # noqa: E402
+from bearing_sim.ros.parameters import DECLARATIONS, SCENE_DECLARATIONS, parameter_value, scene_value  # noqa: E402
+from bearing_sim.scene import Thresholds  # noqa: E402
+from bearing_sim.scene_file import load_scene  # noqa: E402
+from bearing_sim.scene_monitoring import with_thresholds  # noqa: E402
+
+pytestmark = pytest.mark.timeout(240)
+EXAMPLE = Path(__file__).resolve().parents[1] / "launch_scripts" / "bearing_node.yaml"
+
+
+class Parameters:
+    """Reads and sets the parameters of a node."""
+
+    def __init__(self, client, process):
+        self.client, self.process = client, process
+
+    def set(self, name, value):
+        """Set one; return the reason of the refusal, empty where it was taken."""
+        request = SetParameters.Request(parameters=[Parameter(name, value=value).to_parameter_msg()])
+        (result,) = self.client.call(SetParameters, "set_parameters", request, self.process).results
+        assert result.successful or result.reason
+        return result.reason
+
+    def value(self, name):
+        """Return the value of one."""
+        (value,) = self.client.call(GetParameters, "get_parameters", GetParameters.Request(names=[name]), self.process).values
+        return parameter_value_to_python(value)
+
+    def names(self):
+        """Return all names."""
+        return set(self.client.call(ListParameters, "list_parameters", ListParameters.Request(), self.process).result.names)
+
+    def change(self, label):
+        """Ask for a transition; return whether it was made."""
+        return self.client.call(ChangeState, "change_state", ChangeState.Request(transition=Transition(label=label)), self.process).success
+
+
+def start(folder, *parameters, namespace="", arguments=()):
+    domain = fresh_domain()
+    pairs = [word for parameter in parameters for word in ("-p", parameter)]
+    process = NodeProcess(folder, domain, "--ros-args", *pairs, *arguments, limit=220)
+    return process, Client(domain, namespace)
+
+
+@pytest.fixture(scope="module")
+def running(tmp_path_factory):
+    """A node that runs, and its parameters."""
+    process, client = start(tmp_path_factory.mktemp("parameters"), "governor:=false", "publish_rate:=20")
+    client.wait_until_matched(process)
+    client.drive_until(lambda: client.received["cage_slip"], "the node runs", process)
+    yield Parameters(client, process)
+    assert process.end(signal.SIGTERM) == 0 and "Traceback" not in process.text
+    client.close()
+
+
+def test_every_quantity_of_the_thresholds_is_a_parameter_with_its_bounds_unit_and_meaning():
+    rows = {row.name: row for row in SCENE_DECLARATIONS}
+    slip = rows["thresholds.slip_warning"]
+    assert (slip.low, slip.high, slip.default) == (0.0, 1.0, 0.05) and slip.meaning.startswith("cage slip that is a warning")
+    assert "[s]" in rows["thresholds.slip_hold.raise_after"].meaning and "degC" in rows["lubricant.temperature"].meaning
+    assert "0: none is" in rows["thresholds.pocket_force_error"].meaning
+    scene = load_scene("deng2017_table1")
+
+    def leaves(record, path):
+        for name in record.__dataclass_fields__:
+            value = getattr(record, name)
+            yield from leaves(value, f"{path}.{name}") if hasattr(value, "__dataclass_fields__") else [f"{path}.{name}"]
+
+    assert set(leaves(scene.thresholds, "thresholds")) | {"lubricant.temperature"} == set(rows)
+    for name in rows:
+        assert rows[name].low <= parameter_value(name, scene) <= rows[name].high
+
+
+def test_zero_stands_for_none_where_the_scene_allows_none_and_for_zero_elsewhere():
+    assert scene_value("thresholds.pocket_force_warning", 0.0) is None and scene_value("thresholds.pocket_force_warning", 3.0) == 3.0
+    assert scene_value("thresholds.life_error", 0.0) == 0.0
+
+
+def test_thresholds_are_changed_by_their_place_and_faults_are_told():
+    changed = with_thresholds(Thresholds(), {"slip_warning": 0.02, "slip_hold.raise_after": 3.0, "pocket_force_error": None})
+    assert (changed.slip_warning, changed.slip_hold.raise_after, changed.slip_error) == (0.02, 3.0, 0.10)
+    with pytest.raises(ValueError, match="slip_warning.*outside"):
+        with_thresholds(Thresholds(), {"slip_warning": 2.0})
+    with pytest.raises(ValueError, match="expected 30 or more"):
+        with_thresholds(Thresholds(), {"residual.learning": 2.0})
+    with pytest.raises(KeyError):
+        with_thresholds(Thresholds(), {"slip_waning": 0.1})
+
+
+def test_each_parameter_is_described_with_range_and_with_when_a_change_counts(running):
+    names = [row.name for row in (*DECLARATIONS, *SCENE_DECLARATIONS)]
+    assert running.names() >= set(names)
+    answer = running.client.call(DescribeParameters, "describe_parameters", DescribeParameters.Request(names=names), running.process)
+    for row, told in zip((*DECLARATIONS, *SCENE_DECLARATIONS), answer.descriptors):
+        assert told.description.startswith(row.meaning) and not told.read_only
+        assert ("can be changed while the node runs" in told.description) == row.running
+        assert ("needs a re-configure" in told.description) == (not row.running)
+        if isinstance(row.default, float):
+            (bounds,) = told.floating_point_range
+            assert (bounds.from_value, bounds.to_value) == (row.low, row.high)
+    assert {row.name for row in DECLARATIONS if row.running} == {"publish_rate", "governor"}
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "reason"),
+    [
+        ("scene", "deng2017_table2", "scene cannot change while the node is active.*deactivate.*cleanup.*configure and activate"),
+        ("joint", "rotor", "joint cannot change while the node is active"),
+        ("publish_rate", 1000.0, "out of range.*200"),
+        ("publish_rate", "fast", "[Tt]ype"),
+        ("thresholds.slip_warning", 1.5, "out of range"),
+        ("thresholds.slip_warning", float("nan"), "out of range"),
+        ("thresholds.residual.learning", 2.0, "2 s are 2 batches of 1 s; expected 30 or more"),
+        ("lubricant.temperature", 120.0, "out of range.*220"),
+        ("no_such_parameter", 1.0, "."),
+    ],
+)
+def test_what_cannot_be_taken_is_refused_with_the_reason_and_changes_nothing(running, name, value, reason):
+    before = running.value(name) if name in running.names() else None
+    assert re.search(reason, running.set(name, value))
+    if before is not None:
+        assert running.value(name) == before
+
+
+def test_a_threshold_changes_in_mid_run_and_the_warning_comes_and_goes(running):
+    client = running.client
+    report = len(client.received["diagnostics"])
+    assert running.set("thresholds.life_warning", 1e8) == "" and running.set("thresholds.life_hold.clear_after", 0.1) == ""
+    told = lambda: [status for status in client.statuses(report) if status[1] == "bearing_node: bearing.life"]  # noqa: E731
+    client.drive_until(told, "the life is told", running.process)
+    level, _, text = told()[0]
+    assert level == 1 and text.endswith("is below 1e+08 h")
+    assert running.set("thresholds.life_warning", 300) == "", "a whole number will do"
+    report = len(client.received["diagnostics"])
+    over = lambda: any(report.status[0].level[0] == 0 for report in client.received["diagnostics"][report:])  # noqa: E731
+    client.drive_until(over, "the warning is over", running.process)
+    assert running.value("thresholds.life_warning") == 300.0
+
+
+def test_the_oil_temperature_changes_in_mid_run_until_the_topic_has_given_it(running):
+    client = running.client
+    assert running.set("lubricant.temperature", 373.15) == ""
+    client.drive_until(lambda: client.values().get("oil temperature [degC]") == "100", "the oil is cooler", running.process)
+    topic = topics.INPUTS["oil_temperature"]
+    publisher = client.node.create_publisher(type(message(topic.ros_type, {})), "oil_temperature", 10)
+    client.spin_until(publisher.get_subscription_count, "the node listens", running.process)
+    from ros_bench import GOOD
+
+    publisher.publish(message(topic.ros_type, topic.message(client.node.get_clock().now().nanoseconds, GOOD._replace(oil_temperature=383.15))))
+    client.drive_until(lambda: client.values().get("oil temperature [degC]") == "110", "the topic counts", running.process)
+    assert "the topic oil_temperature has given the temperature" in running.set("lubricant.temperature", 373.15)
+
+
+def test_the_publish_rate_and_the_governor_change_in_mid_run(running):
+    client = running.client
+    assert running.set("publish_rate", 2.0) == "" and running.set("governor", True) == "" and running.set("governor", False) == ""
+    client.drive(0.5)
+    seen = len(client.received["cage_slip"])
+    client.drive(3.0)
+    assert 1 <= len(client.received["cage_slip"]) - seen <= 12
+    assert running.set("publish_rate", 50) == ""
+    seen = len(client.received["cage_slip"])
+    client.drive_until(lambda: len(client.received["cage_slip"]) > seen + 20, "it comes faster", running.process)
+
+
+def test_what_is_set_while_unconfigured_counts_at_the_next_configure(tmp_path):
+    process, client = start(tmp_path, "autostart:=false", "governor:=false", "publish_rate:=fast")
+    parameters = Parameters(client, process)
+    try:
+        assert not parameters.change("configure")
+        told = lambda: [status for status in client.statuses() if "publish_rate = 'fast': expected a number" in status[2]]  # noqa: E731
+        client.spin_until(told, "the parameter's fault is told", process)
+        assert parameters.set("publish_rate", 20.0) == "" and parameters.set("joint", "rotor") == ""
+        assert parameters.set("thresholds.slip_warning", 0.03) == "" and parameters.change("configure")
+        assert parameters.set("joint", "rotor_2") == "", "inactive: for the next configure"
+        assert parameters.change("activate") and parameters.value("thresholds.slip_warning") == 0.03
+        client.wait_until_matched(process)
+        client.send("shaft_speed")
+        refused = lambda: [status for status in client.statuses() if "no joint 'rotor' in the message" in status[2]]  # noqa: E731
+        client.drive_until(refused, "the joint of the configure is looked for", process)
+    finally:
+        client.close()
+        process.end(signal.SIGKILL)
+
+
+def test_the_example_file_holds_every_parameter_at_its_default_and_the_node_takes_it(tmp_path):
+    assert EXAMPLE.read_text() == parameter_file(), "python -m bearing_sim.ros.parameter_file > launch_scripts/bearing_node.yaml"
+    given = yaml.safe_load(EXAMPLE.read_text())["/**"]["ros__parameters"]
+
+    def flat(tree, path=""):
+        for key, value in tree.items():
+            yield from flat(value, f"{path}{key}.") if isinstance(value, dict) else [(f"{path}{key}", value)]
+
+    defaults = {row.name: row.default for row in (*DECLARATIONS, *SCENE_DECLARATIONS)}
+    assert dict(flat(given)) == defaults
+    process, client = start(tmp_path, arguments=["--params-file", str(EXAMPLE), "-p", "scene:=deng2017_tabel1"])
+    assert process.wait() == 2 and "deng2017_tabel1" in process.text and "unknown" not in process.text, "what comes later counts more"
+    client.close()
+
+
+def test_two_bearings_in_one_process_have_their_own_topics_services_parameters_diagnostics_and_recordings(tmp_path):
+    scenes = ["front.scene:=deng2017_table1", "rear.scene:=deng2017_table2", "front.thresholds.life_warning:=1e8"]
+    process, front = start(
+        tmp_path, "bearings:=[front, rear]", *scenes, "governor:=false", f"record:={tmp_path / 'run.mcap'}", namespace="ship/front",
+        arguments=["-r", "__ns:=/ship"],
+    )  # fmt: skip
+    rear = Client(front.context.get_domain_id(), "ship/rear")
+    try:
+        front.wait_until_matched(process)
+        rear.wait_until_matched(process)
+
+        def both():
+            front.drive(0.1, shaft_speed=1000.0)
+            rear.drive(0.1, shaft_speed=500.0)
+            return front.received["bearing_joints"] and rear.received["bearing_joints"]
+
+        front.spin_until(both, "both run", process)
+        assert front.received["bearing_joints"][-1].velocity[0] == pytest.approx(1000.0)
+        assert rear.received["bearing_joints"][-1].velocity[0] == pytest.approx(500.0)
+        names = lambda: {status.name: status for report in front.received["diagnostics"] for status in report.status}  # noqa: E731
+        front.drive_until(lambda: "ship/bearing_node/front: bearing.life" in names(), "the front's threshold counts", process)
+        assert names()["ship/bearing_node/front: condition"].hardware_id == "front/deng2017_table1"
+        assert names()["ship/bearing_node/rear: condition"].hardware_id == "rear/deng2017_table2"
+        pausing = rear.node.create_client(SetBool, "pause")
+        rear.spin_until(pausing.service_is_ready, "the rear's service is there", process)
+        answer = pausing.call_async(SetBool.Request(data=True))
+        rear.spin_until(answer.done, "the rear pauses", process)
+        rear.drive(0.3, shaft_speed=500.0)
+        held, seen = len(rear.received["cage_slip"]), len(front.received["cage_slip"])
+        rear.drive(0.3, shaft_speed=500.0)
+        front.drive_until(lambda: len(front.received["cage_slip"]) > seen, "the front goes on", process)
+        rear.spin(0.1)
+        assert len(rear.received["cage_slip"]) == held
+        stopping = front.node.create_client(Trigger, "stop_recording")
+        front.spin_until(stopping.service_is_ready, "the front's service is there", process)
+        answer = stopping.call_async(Trigger.Request())
+        front.spin_until(answer.done, "the front's recording ends", process)
+        assert answer.result().success and (tmp_path / "run_front.mcap").is_file() and not (tmp_path / "run_rear.mcap").exists()
+        assert process.end(signal.SIGINT) == 0 and "Traceback" not in process.text
+        assert sorted(path.name for path in tmp_path.glob("run*")) == ["run_front.mcap", "run_rear.mcap"]
+    finally:
+        rear.close()
+        front.close()
+        process.end(signal.SIGKILL)
+
+
+@pytest.mark.parametrize(
+    ("names", "words"), [("[Front]", "is no name"), ("[front, front]", "stands 2 times"), ("[scene]", "is the name of a parameter")]
+)
+def test_names_that_cannot_be_a_fleet_are_refused_with_the_reason(tmp_path, names, words):
+    process, client = start(tmp_path, f"bearings:={names}")
+    assert process.wait() == 2 and words in process.text and "Traceback" not in process.text
+    client.close()

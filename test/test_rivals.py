@@ -1,0 +1,49 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Several senders on one input: when they are told, and when they disagree."""
+
+import math
+
+from bearing_sim.events import Level
+from bearing_sim.runtime.rivals import Rivals
+
+
+def watched(values, senders=2):
+    rivals = Rivals("shaft_speed", "rad/s")
+    rivals.senders = senders
+    for value in values:
+        rivals.take((value,))
+    return rivals
+
+
+def test_one_sender_is_never_told_however_its_values_jump():
+    rivals = watched([1000.0, 2000.0] * 20, senders=1)
+    assert rivals.disagreement and rivals.event(0.0) is None
+
+
+def test_two_senders_of_the_same_value_are_a_warning():
+    event = watched([1000.0, 1001.0] * 20).event(3.0)
+    assert event.level is Level.WARN and event.time == 3.0 and "2 publishers, expected one" in event.text
+
+
+def test_two_senders_whose_values_jump_to_and_fro_are_an_error_that_names_both():
+    event = watched([1000.0, 1000.0, 1500.0] * 8).event(0.0)
+    assert event.level is Level.ERROR and "values jump between 1000 and 1500 rad/s" in event.text
+
+
+def test_a_manoeuvre_is_no_disagreement():
+    ramp = [1000.0 + 100.0 * k for k in range(20)]
+    assert not watched(ramp).disagreement and not watched(ramp + ramp[::-1]).disagreement
+    assert not watched([1000.0 * math.sin(0.2 * k) for k in range(60)]).disagreement
+    assert not watched([1000.0] * 30 + [2000.0] * 8).disagreement
+
+
+def test_loads_that_differ_in_direction_alone_disagree():
+    rivals = Rivals("radial_load", "N")
+    rivals.senders = 2
+    for values in [(800.0, 0.0), (0.0, 800.0)] * 10:
+        rivals.take(values)
+    assert "radial_load: 2 publishers" in rivals.event(0.0).text and "between 0 and 800 N" in rivals.event(0.0).text
+
+
+def test_too_few_messages_say_nothing():
+    assert not watched([1000.0, 2000.0] * 3).disagreement
