@@ -54,6 +54,14 @@ def test_a_level_that_holds_real_time_stays():
     assert machine.changes == []
 
 
+def test_a_governor_that_is_switched_off_leaves_the_wanted_level_going_on_from_where_the_cheaper_one_was():
+    machine = Machine(planar=1.5, slip=0.1)
+    assert machine.run(1.0) == "slip"
+    machine.rungs["slip"].time, machine.rungs["slip"].angle = 12.5, 3.25
+    left = machine.governor.leave()
+    assert left is machine.rungs["planar"] and (left.time, left.angle) == (12.5, 3.25) and machine.governor.level == "planar"
+
+
 def test_a_level_that_is_too_slow_gives_way_before_the_lag_is_given_up():
     machine = Machine(planar=1.5, slip=0.1)
     machine.run(1.0)

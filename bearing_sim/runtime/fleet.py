@@ -25,7 +25,7 @@ class FleetRun(NamedTuple):
     """What came of bearings that ran beside each other."""
 
     bearings: int
-    core_seconds: float  # of the whole process, for each bearing and second [s]
+    core_seconds: float  # of the whole process, for each simulated second of a bearing [s]
     lost: float  # largest time that one of them has lost [s]
     real_time_factor: float  # least
 
@@ -52,12 +52,9 @@ def run_fleet(scene: Scene, bearings: int, seconds: float) -> FleetRun:
         began, had = time.monotonic(), time.process_time()
         _drive(models, seconds)
         elapsed, spent = time.monotonic() - began, time.process_time() - had
-        return FleetRun(
-            bearings,
-            spent / (elapsed * bearings),
-            max(model.runner.pace.lost - before for model, before in zip(models, lost)),
-            min((_simulated(model) - before) / elapsed for model, before in zip(models, times)),
-        )
+        simulated = [_simulated(model) - before for model, before in zip(models, times)]
+        given_up = max(model.runner.pace.lost - before for model, before in zip(models, lost))
+        return FleetRun(bearings, spent / sum(simulated), given_up, min(simulated) / elapsed)
     finally:
         for model in models:
             model.close()
