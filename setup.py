@@ -34,12 +34,13 @@ setup(
     install_requires=[
         "click>=8.1",
         "matplotlib>=3.9",
-        "mcap>=1.6",  # Writer.flush
+        "mcap>=1.6,<2",  # Writer.flush, and its chunk builder by name
         "mcap-ros2-support>=0.5",
         "numba>=0.61",
         "numpy>=2.0",
         "pint>=0.24",
         "platformdirs>=4",
+        "pyarrow>=18",
         "pydantic>=2.9",
         "PyYAML>=6",
         "rerun-sdk==0.41.0",
@@ -55,6 +56,7 @@ setup(
             "colcon-common-extensions==0.3.0",
             "flake8>=7",
             "hypothesis>=6",
+            "pymcap-cli>=0.34",
             "pydocstyle>=6.3",
             "pytest>=8",
             "pytest-timeout>=2.3",

@@ -268,7 +268,7 @@ def write_log(table: Table, mapping_text: str, source: str | Path, out: str | Pa
     checksum = hashlib.sha256(Path(source).read_bytes()).hexdigest()
     record = {"mapping": mapping_text, "file": Path(source).name, "sha256": checksum, **origin}
     messages = sorted((stamp, channel, place) for channel, stamps in table.stamps.items() for place, stamp in enumerate(stamps))
-    with McapFile(out, {METADATA: record}, {"generator": "bearing_sim", **origin}) as recording:
+    with McapFile(out, {METADATA: record}, {"generator": "bearing_sim", **origin}, replace=True) as recording:
         for done, (stamp, channel, place) in enumerate(messages):
             topic, value = (topics.INPUTS | topics.MEASUREMENTS)[channel], table.values[channel][place]
             # An input's message takes its own channel out of the inputs; the others do not matter.

@@ -91,7 +91,7 @@ def write_mission(
     origin = {"package_version": package_version(), "git_hash": git_hash()}
     record = {"synthetic": "true", "duration": repr(duration), "rate": repr(rate), **origin}
     ticks, written = round(duration * rate), 0
-    with McapFile(path, {METADATA: record}, {"generator": "bearing_sim", "synthetic": "true", **origin}) as recording:
+    with McapFile(path, {METADATA: record}, {"generator": "bearing_sim", "synthetic": "true", **origin}, replace=True) as recording:
         next_oil = 0.0
         for tick in range(ticks + 1):
             time = tick / rate

@@ -1,6 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Where a result comes from: version and git hash of this package, nothing of the machine it ran on."""
 
+import platform
 import subprocess
 from functools import cache
 from importlib import metadata
@@ -28,3 +29,26 @@ def git_hash() -> str:
     except (OSError, subprocess.TimeoutExpired):  # no git here: the hash is not known
         return ""
     return described.stdout.strip() if described.returncode == 0 else ""
+
+
+_PACKAGES = {
+    "numpy": ("numpy",),
+    "numba": ("numba",),
+    "scipy": ("scipy",),
+    "mcap": ("mcap",),
+    "rclpy": ("rclpy", "ros-jazzy-rclpy", "ros-kilted-rclpy"),
+}
+
+
+@cache
+def versions() -> dict[str, str]:
+    """Return the versions of Python and of the packages that a result may depend on, by name; without those that are not installed."""
+    found = {"python": platform.python_version()}
+    for name, distributions in _PACKAGES.items():
+        for distribution in distributions:
+            try:
+                found[name] = metadata.version(distribution)
+                break
+            except metadata.PackageNotFoundError:
+                continue
+    return found

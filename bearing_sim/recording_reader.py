@@ -1,16 +1,17 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Read our own recordings back: MCAP messages to blocks of samples and events, as the sinks take them.
 
-What a recording does not hold follows from the scene and from what it does hold: rollers stand at equal steps behind the
-cage's angle (their play in the pockets is left out), an outer load says how deep a roller sits in the outer raceway, and
-rotations follow from spins.  Of a recording from before some observables were recorded, the inner loads together say where
-the inner ring is, rollers are taken to roll on the outer ring, and what cannot be known is NaN.
+Of a recording from before all observables were recorded, what it does not hold follows from the scene and from what it does:
+rollers stand at equal steps behind the cage's angle (their play in the pockets is left out), an outer load says how deep a
+roller sits in the outer raceway, rotations follow from spins, the inner loads together say where the inner ring is, rollers
+are taken to roll on the outer ring, and what cannot be known is NaN.
 """
 
 import math
 import struct
 from collections.abc import Iterator
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import yaml
@@ -19,6 +20,7 @@ from mcap.exceptions import McapError
 from mcap.records import Channel, Footer, Message, Metadata, Schema
 from mcap.stream_reader import CRCValidationError, StreamReader
 
+from bearing_sim.bag_files import BagError, mcap_files
 from bearing_sim.contour import outer_contour
 from bearing_sim.effects import NUMBERS
 from bearing_sim.events import Event, Level
@@ -27,13 +29,16 @@ from bearing_sim.params import contact_stiffness
 from bearing_sim.sample import new_block
 from bearing_sim.scene import Scene
 from bearing_sim.scene_file import SceneError, scene_from_yaml
-from bearing_sim.topics import ARRAYS, DIAGNOSTICS, INPUTS, OUTPUTS, ZERO_CELSIUS
+from bearing_sim.topics import ARRAYS, DIAGNOSTICS, INPUTS, MEASUREMENTS, OUTPUTS, RECORDED, ZERO_CELSIUS
 
 ROWS_PER_BLOCK = 1000
 METADATA = "bearing_sim"
 _REPEATS_WITHIN = 2.5  # [s] a lasting trouble is reported every second, and told once
-_TYPES = {f"/{topic.name}": topic.ros_type for topic in (*INPUTS.values(), *OUTPUTS.values())} | {f"/{DIAGNOSTICS[0]}": DIAGNOSTICS[1]}
-_OUTPUT_TOPICS = frozenset(f"/{name}" for name in OUTPUTS)
+_TYPES = {f"/{topic.name}": topic.ros_type for topic in (*INPUTS.values(), *RECORDED.values(), *OUTPUTS.values())} | {
+    f"/{DIAGNOSTICS[0]}": DIAGNOSTICS[1]
+}
+_OUTPUT_TOPICS = frozenset(f"/{name}" for name in (*RECORDED, *OUTPUTS))
+_RECEIVED = {f"/{name}" for name in (*INPUTS, *MEASUREMENTS)}
 _OF_TILTING_LEVELS = tuple(field for name, topic in OUTPUTS.items() if topic.of_tilting_levels for field in ARRAYS[name].fields)
 _BROKEN = (McapError, CRCValidationError, zstandard.ZstdError, struct.error, UnicodeDecodeError)
 
@@ -42,15 +47,27 @@ class RecordingError(ValueError):
     """A file that is no recording of ours; the message says what is missing."""
 
 
+class Received(NamedTuple):
+    """A message of an input or a measurement as it was recorded; times are [ns since the epoch]."""
+
+    topic: str
+    ros_type: str
+    log_ns: int
+    publish_ns: int
+    data: bytes
+
+
 class Recording:
     """A recording of one run.
 
     Parameters
     ----------
-    path : an MCAP file that `bearing_sim.sinks.mcap_sink.McapSink` wrote, finished or not.
+    path : what `bearing_sim.sinks.mcap_sink.McapSink` wrote, finished or not: an MCAP file or the folder of a bag.
 
     Attributes
     ----------
+    files : the files of the recording, in order.
+    metadata : what its writer said of it, by name (see `bearing_sim.sinks.mcap_sink.METADATA`).
     scene : what was simulated.
     start_ns : wall time of sample time 0 [ns since the epoch].
     samples : number of samples.
@@ -67,9 +84,12 @@ class Recording:
     def __init__(self, path: str | Path):
         self.path = Path(path)
         self.unfinished = ""
-        if not self.path.is_file():
-            raise RecordingError(f"{self.path}: no such file")
+        try:
+            self.files = mcap_files(self.path)
+        except BagError as fault:
+            raise RecordingError(str(fault)) from None
         metadata, times, self.largest_load, present = self._scan()
+        self.metadata: dict[str, str] = metadata or {}
         listing = ", ".join(sorted(present)) or "no topics"
         if metadata is None:
             raise RecordingError(f"{self.path}: no metadata record {METADATA!r}, so this is no recording of bearing_sim; it has {listing}")
@@ -99,17 +119,21 @@ class Recording:
             present.add(topic)
             if topic == loads_topic:
                 times.add(message.log_time)
-                values = _trailing_doubles(message.data)
+                values = trailing_doubles(message.data)
                 largest = max(largest, float(values.max(initial=0.0))) if np.isfinite(values).all() else largest
         return metadata, times, largest, present
 
     def _messages(self) -> Iterator[tuple[str, Message | Metadata]]:
         """Yield (topic, message) in file order, and metadata records with topic ``""``; end quietly where a file was cut short."""
+        for file in self.files:
+            yield from self._messages_of(file)
+
+    def _messages_of(self, file: Path) -> Iterator[tuple[str, Message | Metadata]]:
         topics: dict[int, str] = {}
         schemas: dict[int, str] = {}
         started = finished = False
-        with open(self.path, "rb") as stream:
-            records = StreamReader(WholeReads(stream), validate_crcs=True, record_size_limit=max(self.path.stat().st_size, 1)).records
+        with open(file, "rb") as stream:
+            records = StreamReader(WholeReads(stream), validate_crcs=True, record_size_limit=max(file.stat().st_size, 1)).records
             try:
                 for record in records:
                     started = True
@@ -125,9 +149,10 @@ class Recording:
                     finished = finished or isinstance(record, Footer)
             except _BROKEN as fault:
                 if not started:
-                    raise RecordingError(f"{self.path}: not an MCAP file ({fault or type(fault).__name__})") from None
+                    raise RecordingError(f"{file}: not an MCAP file ({fault or type(fault).__name__})") from None
                 if not finished:
-                    self.unfinished = f"the file ends early ({str(fault) or type(fault).__name__}); what was complete before that is shown"
+                    name = "the file" if len(self.files) == 1 else file.name
+                    self.unfinished = f"{name} ends early ({str(fault) or type(fault).__name__}); what was complete before that is shown"
 
     def _require_type(self, topic: str, ros_type: str) -> None:
         expected = _TYPES.get(topic)
@@ -136,13 +161,23 @@ class Recording:
 
     def __iter__(self) -> Iterator[np.ndarray | Event]:
         """Yield blocks of at most `ROWS_PER_BLOCK` samples, and events, in the order of the file."""
+        return self._items()
+
+    def with_received(self) -> Iterator["np.ndarray | Event | Received"]:
+        """Yield what iterating yields, and the messages of inputs and measurements as they were recorded."""
+        return self._items(with_received=True)
+
+    def _items(self, with_received: bool = False) -> Iterator["np.ndarray | Event | Received"]:
         rows = _Rows(self.scene, self.start_ns)
         told: dict[tuple[str, Level], float] = {}
         decode = _decoder()
         for topic, message in self._messages():
+            if with_received and topic in _RECEIVED:
+                ros_type = _TYPES.get(topic) or MEASUREMENTS[topic[1:]].ros_type
+                yield Received(topic, ros_type, message.log_time, message.publish_time, message.data)
             if topic not in _TYPES:
                 continue
-            decoded = decode(message.data, _TYPES[topic])
+            decoded = trailing_doubles(message.data) if topic[1:] in ARRAYS else decode(message.data, _TYPES[topic])
             if topic == f"/{DIAGNOSTICS[0]}":
                 yield from _news(decoded, (message.log_time - self.start_ns) * 1e-9, told)
                 continue
@@ -154,7 +189,7 @@ class Recording:
             yield last
 
 
-def _trailing_doubles(data: bytes) -> np.ndarray:
+def trailing_doubles(data: bytes) -> np.ndarray:
     """Return the numbers of a Float64MultiArray, the last thing in its CDR: their count, padding to eight bytes, the numbers."""
     words = np.frombuffer(data, "<u4", offset=4, count=(len(data) - 4) // 4)
     for start in range(2, len(words) + 1, 2):
@@ -226,7 +261,7 @@ class _Rows:
                 row[f"{field}_angle"], row[f"{field}_speed"] = message.position[places[joint]], message.velocity[places[joint]]
         elif topic[1:] in ARRAYS:
             fields = ARRAYS[topic[1:]].fields
-            for field, values in zip(fields, np.reshape(message.data, (len(fields), -1))):
+            for field, values in zip(fields, np.reshape(message, (len(fields), -1))):
                 row[field] = values if row[field].ndim else values[0]
         else:
             row[topic[1:]] = message.data
@@ -257,13 +292,15 @@ def complete(scene: Scene, block: np.ndarray, before: np.void | None = None) -> 
     stiffness = contact_stiffness(bearing)
     azimuth = block["cage_angle"][:, None] + 2 * math.pi / count * np.arange(count)
     approach = {ring: np.maximum(block[f"{ring}_load"] / stiffness, 0.0) ** 0.9 for ring in ("inner", "outer")}
-    block["roller_angle"] = azimuth
-    block["roller_radius"] = outer_contour(bearing.outer_raceway, azimuth)[0] - radius + approach["outer"]
+    _fill(block, "roller_angle", azimuth)
+    if np.isnan(block["roller_radius"]).any():
+        _fill(block, "roller_radius", outer_contour(bearing.outer_raceway, azimuth)[0] - radius + approach["outer"])
     rolling = bearing.pitch_radius / radius
     _fill(block, "roller_spin", (block["cage_speed"] * rolling)[:, None])
     _fill(block, "orbital_speed", block["cage_speed"][:, None])
     start = block["cage_angle"][:1, None] * rolling
-    block["roller_rotation"] = _rotation(block, before if before is not None else block[0], start) if len(block) else 0.0
+    if np.isnan(block["roller_rotation"]).any():
+        _fill(block, "roller_rotation", _rotation(block, before if before is not None else block[0], start))
     _fill(block, "inner_equivalent_load", np.mean(block["inner_load"] ** 4, axis=1) ** (1 / 4))
     _fill(block, "outer_equivalent_load", np.mean(block["outer_load"] ** 4.5, axis=1) ** (1 / 4.5))
     if not scene.bodies_tilt:
@@ -278,7 +315,8 @@ def complete(scene: Scene, block: np.ndarray, before: np.void | None = None) -> 
         for field, places in zip(("ring_y", "ring_z"), _ring_centre(azimuth, wanted, block["inner_load"] > 0)):
             _fill(block, field, places)
     guide_y, guide_z = (block["ring_y"], block["ring_z"]) if scene.cage_whirls and bearing.cage.guidance == "inner_ring" else (0.0, 0.0)
-    block["land_eccentricity"] = np.hypot(block["cage_y"] - guide_y, block["cage_z"] - guide_z) / bearing.cage.play
+    eccentricity = np.hypot(block["cage_y"] - guide_y, block["cage_z"] - guide_z) / bearing.cage.play
+    _fill(block, "land_eccentricity", eccentricity)
 
 
 def _fill(block: np.ndarray, field: str, values: np.ndarray | float) -> None:

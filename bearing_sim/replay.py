@@ -14,7 +14,7 @@ from bearing_sim.input_course import InputCourse
 from bearing_sim.runtime.comparison import Comparison
 from bearing_sim.runtime.monitor import Monitor
 from bearing_sim.runtime.residual import ResidualMonitor
-from bearing_sim.runtime.walk import Output, Walk
+from bearing_sim.runtime.walk import Begun, Output, Walk
 from bearing_sim.scene import Scene
 from bearing_sim.simulation import Inputs, Simulation
 from bearing_sim.topics import condition, further_condition
@@ -168,6 +168,9 @@ class _Run:
                 self._tell_events_until(moment)
                 if isinstance(item, Event):
                     self._tell(item)
+                elif isinstance(item, Begun):
+                    if hasattr(self._recording, "write_start"):
+                        self._recording.write_start(item.block)
                 else:
                     self._recording.write_inputs(*item)
             if place % _PROGRESS_EVERY == 0:

@@ -118,6 +118,24 @@ class Simulation:
             before[name] = np.nan_to_num(before[name])
         self._begin(self._level.state_at(self._params, self._work, other.sample), before)
 
+    def resume(self, sample: np.void) -> None:
+        """Go on from a recorded sample, at its inputs, with bodies where they were and as fast as they were (see `take_over`).
+
+        What a sample does not hold, such as the radial speeds of rollers, begins at rest.
+
+        Parameters
+        ----------
+        sample : all observables of an instant (see `bearing_sim.sample`); its time becomes the simulation's.
+        """
+        self.inputs = _checked(Inputs(*(sample[name] for name in Inputs._fields)))
+        self.time = float(sample["time"])
+        self._work = self._new_work()
+        before = new_block(1, self._params.rollers.count)
+        before[0] = sample
+        for name in ("roller_spin", "roller_rotation"):  # of a level that does not follow them
+            before[name] = np.nan_to_num(before[name])
+        self._begin(self._level.state_at(self._params, self._work, before[0]), before)
+
     def _begin(self, state: np.ndarray, previous: np.ndarray) -> None:
         """Take a state as the present one; what adds up over time goes on from the sample before."""
         self._state = state
@@ -277,6 +295,11 @@ def _tolerance(integration: Integration) -> float:
     """
     tolerance = float(integration.relative_tolerance)
     return tolerance if integration.fixed_step is None else max(tolerance, _FINEST_WITH_FIXED_STEP)
+
+
+def start_sample(simulation: Simulation) -> np.ndarray:
+    """Return the newest sample as a block of its own: at the start, what a recording begins with so that it can be repeated."""
+    return np.array([simulation.sample])
 
 
 def _checked(inputs: Inputs) -> Inputs:

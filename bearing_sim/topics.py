@@ -48,6 +48,13 @@ def stamp(stamp_ns: int) -> dict:
     return {"sec": seconds, "nanosec": nanoseconds}
 
 
+class Origin(NamedTuple):
+    """What an input message said of itself: its stamp [ns since the epoch], None for a message without one, and its frame."""
+
+    stamp_ns: int | None
+    frame_id: str
+
+
 def header(stamp_ns: int, frame_id: str = "") -> dict:
     """Return std_msgs/Header."""
     return {"stamp": stamp(stamp_ns), "frame_id": frame_id}
@@ -131,8 +138,10 @@ ARRAYS = {
     "pocket_forces": Rows("force on", ("pocket_force",)),
     "roller_tilts": Rows("inclination: outwards, along the orbit", ("roller_tilt", "roller_skew")),
     "roller_loads": Rows("ring", ("inner_load", "outer_load")),
+    "operating_point": Rows("load y, z, oil temperature, land eccentricity", ("load_y", "load_z", "oil_temperature", "land_eccentricity")),
+    "roller_places": Rows("angle, radius, rotation", ("roller_angle", "roller_radius", "roller_rotation")),
 }
-"""The output topics that carry arrays, by name; a second dimension ``roller`` where there is a number for each."""
+"""The topics of samples that carry arrays, by name; a second dimension ``roller`` where there is a number for each."""
 
 
 def _array(name: str) -> Callable[[int, Any], dict]:
@@ -209,6 +218,21 @@ OUTPUTS = {
     )
 }
 """The output topics by name; a level has those of `outputs`."""
+
+
+RECORDED = {
+    topic.name: topic
+    for topic in (
+        Topic("operating_point", _MULTI_ARRAY, "inputs as the model had them: load y, z [N], oil [K]; land eccentricity", _array("operating_point")),
+        Topic("roller_places", _MULTI_ARRAY, "(azimuth [rad], distance from the centre [m], rotation [rad]) x roller", _array("roller_places")),
+    )
+}
+"""What a recording holds besides `OUTPUTS`, so that every observable of `bearing_sim.sample` is in it, by name."""
+
+
+def recorded(scene) -> dict[str, Topic]:
+    """Return the topics that hold all observables of a scene's level, by name, in the order in which a recording has them."""
+    return {**RECORDED, **outputs(scene)}
 
 
 def outputs(scene) -> dict[str, Topic]:
@@ -321,3 +345,9 @@ def header_stamp_ns(message) -> int | None:
     # Jazzy calls the field nanosec; ROS 1 style bindings say nsec.
     nanoseconds = int(time.sec) * 1_000_000_000 + int(time.nanosec if hasattr(time, "nanosec") else time.nsec)
     return nanoseconds or None
+
+
+def frame_of(message) -> str:
+    """Return the frame that a message's header names; ``""`` for a message without one."""
+    stamped = getattr(message, "header", None)
+    return "" if stamped is None else str(stamped.frame_id)

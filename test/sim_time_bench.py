@@ -79,6 +79,9 @@ class ListSink:
         for sample in block:
             self.samples[self._ns(sample["time"])] = sample.copy()
 
+    def write_start(self, block):
+        self.write(block)
+
     def write_inputs(self, time, inputs, channels):
         self.inputs.append((self._ns(time), inputs, tuple(channels)))
 

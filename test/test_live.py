@@ -36,10 +36,10 @@ class ListSink:
 class ListRecorder(ListSink):
     """A sink that wants inputs too."""
 
-    def write_inputs(self, time, inputs, channels):
+    def write_inputs(self, time, inputs, channels, origin):
         self.inputs.append((time, inputs, list(channels)))
 
-    def write_measurement(self, time, cage_speed, residual):
+    def write_measurement(self, time, cage_speed, residual, origin):
         self.measurements.append((cage_speed, residual))
 
     def write_diagnostics(self, time, events, values):
@@ -139,7 +139,7 @@ def test_sinks_get_every_sample_once_in_order_and_recorders_the_inputs_too(bench
     one.run(0.5)
     assert one.live.close()
     times = [t for block in sink.blocks for t in block["time"]]
-    assert len(times) == len(one.simulation.calls) and times == sorted(times)
+    assert len(times) == 1 + len(one.simulation.calls) and times == sorted(times)  # the first is the state at the start
     assert [t for block in recorder.blocks for t in block["time"]] == times
     assert sink.closed == recorder.closed == 1 and not sink.inputs
     assert {tuple(channels) for _, _, channels in recorder.inputs} == {("shaft_speed",), ("radial_load",)}
@@ -234,6 +234,6 @@ def test_a_low_sample_rate_thins_what_sinks_get_not_what_the_model_does(bench):
     one.run(1.0)
     assert one.live.close()
     assert len(one.simulation.calls) > 50
-    assert len(sink.blocks) == len(one.simulation.calls) // cadence(10.0).every
+    assert len(sink.blocks) == 1 + len(one.simulation.calls) // cadence(10.0).every
     steps = sorted(b["time"][0] - a["time"][0] for a, b in zip(sink.blocks, sink.blocks[1:]))
     assert steps[len(steps) // 2] == pytest.approx(0.1)

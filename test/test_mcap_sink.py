@@ -26,7 +26,7 @@ from bearing_sim.scene_file import load_scene, scene_from_yaml
 from bearing_sim.simulation import Inputs
 from bearing_sim.sinks.mcap_file import McapFile, message_type
 from bearing_sim.sinks.mcap_sink import METADATA, McapSink
-from bearing_sim.topics import ARRAYS, INPUTS, OUTPUTS, outputs
+from bearing_sim.topics import ARRAYS, INPUTS, OUTPUTS, RECORDED, Origin, recorded
 
 START = 1_700_000_000_000_000_000
 ROLLERS = 18
@@ -71,7 +71,7 @@ def test_rosbags_deserialises_every_message(recording, scene):
     with Reader(path) as reader:
         for connection, stamp, raw in reader.messages():
             seen.setdefault(connection.topic, []).append((stamp, store.deserialize_cdr(raw, connection.msgtype)))
-    assert {topic.lstrip("/"): len(got) for topic, got in seen.items()} == {**dict.fromkeys([*INPUTS, *outputs(scene)], 3), "diagnostics": 1}
+    assert {topic.lstrip("/"): len(got) for topic, got in seen.items()} == {**dict.fromkeys([*INPUTS, *recorded(scene)], 3), "diagnostics": 1}
     assert [message.data for _, message in seen["/cage_slip"]] == list(block["cage_slip"])
     np.testing.assert_array_equal(seen["/roller_loads"][1][1].data, [*block["inner_load"][1], *block["outer_load"][1]])
     joints = seen["/bearing_joints"][2][1]
@@ -115,7 +115,7 @@ def test_rosbag2_metadata_counts_what_is_in_the_file(recording, scene):
         records = {record.name: record.metadata for record in reader.iter_metadata()}
         summary = reader.get_summary()
     bag = yaml.safe_load(records["rosbag2"]["serialized_metadata"])["rosbag2_bagfile_information"]
-    assert bag["version"] == 9 and bag["message_count"] == summary.statistics.message_count == 3 * (len(INPUTS) + len(outputs(scene))) + 1
+    assert bag["version"] == 9 and bag["message_count"] == summary.statistics.message_count == 3 * (len(INPUTS) + len(recorded(scene))) + 1
     assert bag["duration"]["nanoseconds"] == 200_000_000
     hashes = {entry["topic_metadata"]["name"]: entry["topic_metadata"]["type_description_hash"] for entry in bag["topics_with_message_count"]}
     assert hashes == {channel.topic: channel.metadata["topic_type_hash"] for channel in summary.channels.values()}
@@ -183,17 +183,30 @@ def test_message_written_before_a_pause_reaches_the_file_without_a_further_write
     assert [(topic, message.log_time) for topic, message in found] == [("/cage_slip", 5)]
 
 
-def test_a_fault_of_the_timer_reaches_the_writer(tmp_path):
+def test_a_fault_of_the_disk_reaches_the_writer(tmp_path):
     recording = McapFile(tmp_path / "run.mcap", flush_every=0.01)
     recording.write("/cage_slip", "std_msgs/msg/Float64", 5, {"data": 0.25})
 
-    def full_disk():
-        raise OSError(28, "No space left on device")
-
-    recording._writer.flush = full_disk
-    recording._flusher.join(20)
+    recording._disk.fault = OSError(28, "No space left on device")
     with pytest.raises(OSError, match="No space left"):
         recording.write("/cage_slip", "std_msgs/msg/Float64", 6, {"data": 0.25})
+
+
+def test_inputs_keep_the_stamps_and_frames_of_their_senders(tmp_path, scene):
+    with McapSink(tmp_path / "run.mcap", scene, START) as sink:
+        inputs = Inputs(4000.0, 800.0, -50.0, 393.15)
+        sink.write_inputs(1.0, inputs, ["radial_load"], Origin(START + 990_000_000, "dyno"))
+        sink.write_inputs(1.0, inputs, ["shaft_speed"], Origin(None, ""))
+        sink.write_measurement(1.5, 1800.0, 0.01, Origin(START + 1_490_000_000, "laser"))
+    decoded = {topic: (log_time, message) for topic, log_time, message in messages(sink.path)}
+    for topic, log_time, stamp_ns, frame in (
+        ("/radial_load", 1_000_000_000, 990_000_000, "dyno"),
+        ("/shaft_speed", 1_000_000_000, 1_000_000_000, ""),
+        ("/cage_speed_measured", 1_500_000_000, 1_490_000_000, "laser"),
+    ):
+        logged, message = decoded[topic]
+        stamp = message.header.stamp
+        assert (logged - START, stamp.sec * 10**9 + stamp.nanosec - START, message.header.frame_id) == (log_time, stamp_ns, frame)
 
 
 def streamed(path):
@@ -245,10 +258,11 @@ def test_sigkill_loses_at_most_the_last_second(tmp_path):
 
 @pytest.mark.parametrize("topic", ARRAYS)
 def test_arrays_are_serialised_as_the_general_way_does(topic):
-    ros_type = OUTPUTS[topic].ros_type
+    one = {**OUTPUTS, **RECORDED}[topic]
+    ros_type = one.ros_type
     store = get_typestore(Stores.ROS2_JAZZY)
     for sample in numbered_block(2):
-        message = OUTPUTS[topic].message(START, sample)
+        message = one.message(START, sample)
         read = store.deserialize_cdr(message_type(ros_type).serialize(message), ros_type)
         np.testing.assert_array_equal(read.data, message["data"])
         assert [(d.label, d.size, d.stride) for d in read.layout.dim] == [tuple(d.values()) for d in message["layout"]["dim"]]

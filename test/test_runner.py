@@ -115,7 +115,7 @@ def test_a_queue_that_nobody_empties_loses_the_oldest_and_counts_them(rig):
     time.sleep(0.1)
     blocks = one.runner.take()
     assert len(blocks) == 10
-    assert one.runner.dropped == len(one.simulation.calls) - 10
+    assert one.runner.dropped == 1 + len(one.simulation.calls) - 10  # the first block is the state at the start
     assert blocks[-1]["time"][-1] == one.runner.newest["time"]
 
 

@@ -12,8 +12,12 @@ from bearing_sim.commands.reporting import BadInput, print_json, tell_compilatio
 @click.option("--quick", is_flag=True, help="Measure next to nothing, to see that everything works.")
 @click.option("--level", "levels", multiple=True, metavar="LEVEL", help="Measure this level; may be repeated [default: all].")
 @click.option("--cold", is_flag=True, help="Measure the first start of all, which compiles, too.")
+@click.option("--recording", is_flag=True, help="Measure instead what recording all observables costs a live run (levels slip and planar).")
+@click.option("--seconds", type=click.FloatRange(min=2), default=20.0, show_default=True, metavar="S", help="With --recording: length of a run.")
+@click.option("--rate", type=click.FloatRange(min=1), default=1000.0, show_default=True, metavar="HZ", help="With --recording: samples a second.")
+@click.option("--repetitions", type=click.IntRange(min=1), default=3, show_default=True, metavar="N", help="With --recording: runs of each kind.")
 @click.option("--fleet", is_flag=True, help="Measure instead how many bearings one core holds in real time, by running them.")
-def command(as_json, quick, levels, cold, fleet):
+def command(as_json, quick, levels, cold, recording, seconds, rate, repetitions, fleet):
     """Measure how fast each level and integration method is, how large its errors are, and what bounds it.
 
     Bearing deng2017_table1 at 800 N, 15,000 and 45,000 rpm.  Other solvers get the same compiled right-hand side.  Takes a minute or two for
@@ -27,6 +31,9 @@ def command(as_json, quick, levels, cold, fleet):
             raise BadInput(f"--level {level}: expected one of {', '.join(LEVELS)}")
 
     tell_compilation()
+    if recording:
+        _recording(levels or ("slip", "planar"), 2.0 if quick else seconds, rate, 1 if quick else repetitions, as_json)
+        return
     if fleet:
         bench_fleet.run(as_json, quick, levels)
         return
@@ -35,6 +42,34 @@ def command(as_json, quick, levels, cold, fleet):
         print_json(report)
     else:
         _print(report)
+
+
+def _recording(levels, seconds, rate, repetitions, as_json) -> None:
+    from bearing_sim.scene_file import load_scene
+    from bearing_sim.studies.bench_recording import at_level, recording_cost
+
+    scene = load_scene("deng2017_table1")
+    reports = [
+        recording_cost(at_level(scene, level), seconds, rate, repetitions, lambda text, level=level: click.echo(f"{level}: {text} ...", err=True))
+        for level in levels
+    ]
+    if as_json:
+        print_json({"recording": reports})
+        return
+    columns = ("level", "recording", "times real time", "tick [ms]", "late p50", "p99", "p99.9", "worst [ms]", "processor")
+    rows = []
+    for report in reports:
+        for kind in ("without", "with"):
+            told = report[kind]
+            names = ("solver_rate", "spent_median_ms", "late_p50_ms", "late_p99_ms", "late_p999_ms", "late_worst_ms")
+            rows.append([report["level"], kind, *(_number(told[name]) for name in names), f"{100 * told['processor_share']:.0f} %"])
+    _table(f"live runs of {seconds:g} s at {rate:g} samples a second, medians of {repetitions} of each kind", columns, rows)
+    for report in reports:
+        click.echo(
+            f"{report['level']}: recording costs {100 * (1 - report['rate_ratio']):.2f} % of the solver's rate "
+            f"({100 * (1 - report['processor_rate_ratio']):.2f} % by its thread's processor time); worst stall {report['worst_stall_ms']:+.2f} ms, "
+            f"p99.9 {report['p999_stall_ms']:+.2f} ms beyond the runs without; {report['recording_mb_per_second']:.3g} MB/s written"
+        )
 
 
 def _print(report) -> None:
@@ -62,7 +97,7 @@ def _table(title, columns, rows) -> None:
 
     table = Table(title=title, title_justify="left")
     for name in columns:
-        table.add_column(name, justify="left" if name in {"level", "integrator", "solver"} else "right")
+        table.add_column(name, justify="left" if name in {"level", "integrator", "solver", "recording"} else "right")
     for row in rows:
         table.add_row(*row)
     Console(width=None if sys.stdout.isatty() else 170).print(table)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.commands.reporting import BadInput, print_json, print_table, progress_bar, told_as_bad_input, told_file_faults
+from bearing_sim.commands.reporting import BadInput, print_json, print_table, progress_bar, tell_replacement, told_as_bad_input, told_file_faults
 
 
 @click.command("import-csv")
@@ -26,6 +26,7 @@ def command(data, mapping_name, out, as_json):
     with told_as_bad_input(MappingError, TableError), told_file_faults():
         if out.exists() and data.exists() and out.samefile(data):
             raise BadInput(f"{out} is the table itself; write to another file")
+        tell_replacement(out)
         mapping, text = load_mapping(mapping_name)
         table = read_table(data, mapping)
         with progress_bar(f"importing {data.name}", sum(map(len, table.stamps.values()))) as progress:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.commands.reporting import print_json, progress_bar, told_file_faults
+from bearing_sim.commands.reporting import print_json, progress_bar, tell_replacement, told_file_faults
 
 
 @click.command()
@@ -25,6 +25,7 @@ def command(out, duration, rate, start, as_json):
     from bearing_sim.mission import write_mission
 
     start_ns = time.time_ns() if start is None else int(start.replace(tzinfo=UTC).timestamp()) * 1_000_000_000
+    tell_replacement(out)
     with told_file_faults(), progress_bar("writing the mission", duration) as progress:
         messages = write_mission(out, start_ns, duration, rate, progress)
     if as_json:

@@ -16,21 +16,38 @@ from bearing_sim.commands.reporting import (
     progress_bar,
     tell_cheaper_level,
     tell_compilation,
+    tell_replacement,
     told_as_bad_input,
     told_file_faults,
 )
 
 
 @click.command()
-@click.argument("log", type=click.Path(path_type=Path), metavar="IN.mcap")
-@click.option("--scene", "scene_name", required=True, metavar="SCENE", help="Bundled scene or YAML file.")
+@click.argument("logs", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="IN.mcap...")
+@click.option("--scene", "scene_name", metavar="SCENE", help="Bundled scene or YAML file.")
+@click.option(
+    "--from-recording", is_flag=True, help="Compute the run of a recording again, from it alone: its scene, start and inputs, sample by sample."
+)
 @click.option("--set", "overrides", multiple=True, metavar="FIELD=VALUE", help="Override a field of the scene; may be repeated.")
 @click.option("-o", "--out", type=click.Path(path_type=Path), metavar="OUT.mcap", help="Recording of inputs and outputs [default: none].")
 @click.option("--rrd", type=click.Path(path_type=Path), metavar="RUN.rrd", help="Write a view for rerun, too.")
 @click.option("--rate", type=click.FloatRange(min=0, min_open=True), metavar="HZ", help="Outputs per simulated second [default: one at each stamp].")
-@click.option("--speed-topic", metavar="TOPIC", help="Topic of the shaft speed [default: /shaft_speed].")
-@click.option("--load-topic", metavar="TOPIC", help="Topic of the radial load [default: /radial_load].")
-@click.option("--temperature-topic", metavar="TOPIC", help="Topic of the oil temperature [default: /oil_temperature, where there is one].")
+@click.option(
+    "--speed", "--speed-topic", "speed", metavar="TOPIC", help="Shaft speed: /topic, or /topic.field[0] of any type [default: /shaft_speed]."
+)
+@click.option(
+    "--load", "--load-topic", "load", metavar="TOPIC", help="Radial load, likewise; /topic.y,z for both components [default: /radial_load]."
+)
+@click.option(
+    "--temperature",
+    "--temperature-topic",
+    "temperature",
+    metavar="TOPIC",
+    help="Oil temperature, likewise [default: /oil_temperature, where there is one].",
+)
+@click.option("--speed-unit", metavar="UNIT", help="Unit of the shaft speed in the log, such as rpm [default: rad/s].")
+@click.option("--load-unit", metavar="UNIT", help="Unit of the load in the log, such as kN [default: N].")
+@click.option("--temperature-unit", metavar="UNIT", help="Unit of the oil temperature in the log [default: degC].")
 @click.option("--joint", default="shaft", show_default=True, metavar="NAME", help="The shaft's joint in JointState messages.")
 @click.option("--stamps", type=click.Choice(["header", "log"]), default="header", show_default=True, help="Go by header stamps, or by log times.")
 @click.option(
@@ -40,36 +57,77 @@ from bearing_sim.commands.reporting import (
     help="Longer times between messages are not simulated [default: ten times their median spacing, at least input_limits.stale_after of the scene].",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
-def command(log, scene_name, overrides, out, rrd, rate, speed_topic, load_topic, temperature_topic, joint, stamps, longest_gap, as_json):
+def command(
+    logs,
+    scene_name,
+    from_recording,
+    overrides,
+    out,
+    rrd,
+    rate,
+    speed,
+    load,
+    temperature,
+    speed_unit,
+    load_unit,
+    temperature_unit,
+    joint,
+    stamps,
+    longest_gap,
+    as_json,
+):
     """Run the model on IN.mcap and write inputs and outputs to OUT.mcap.
 
-    IN.mcap is any rosbag2 recording in MCAP (a file, also an unfinished one, or a bag's folder) with shaft speed (JointState or
-    Float64) and radial load (WrenchStamped, or Float64 along +y). Needs no ROS. Inputs go linearly from stamp to stamp; bad
-    messages are refused, told and counted as in a live run.
+    IN.mcap is any rosbag2 recording, MCAP or sqlite3 (a file, also an unfinished one, or a bag's folder; several that belong together)
+    with shaft speed (JointState or Float64) and radial load (WrenchStamped, or Float64 along +y), or with such numbers in messages of
+    any other type whose definition is in the recording. Needs no ROS. Inputs go linearly from stamp to stamp; bad messages are refused,
+    told and counted as in a live run.
     """
+    if from_recording == bool(scene_name):
+        raise BadInput("give either --scene, or --from-recording for a recording of bearing-sim")
+    if from_recording:
+        from bearing_sim.commands.from_recording import repeat_recording
+
+        if len(logs) > 1 or overrides or rate or rrd or speed or load or temperature:
+            raise BadInput("--from-recording takes one recording, all of it as it was; only -o and --json go with it")
+        repeat_recording(logs[0], out, as_json)
+        return
     import numpy as np
 
     from bearing_sim.input_course import judge
     from bearing_sim.input_log import InputLogError, read_input_log
+    from bearing_sim.input_source import source
     from bearing_sim.replay import replay
     from bearing_sim.scene_file import SceneError, load_scene
     from bearing_sim.simulation import Inputs, IntegrationError, Simulation
     from bearing_sim.sinks.mcap_sink import McapSink
 
-    names = {"shaft_speed": speed_topic, "radial_load": load_topic, "oil_temperature": temperature_topic}
+    with told_as_bad_input(ValueError):
+        names = {
+            channel: source(channel, text, unit)
+            for channel, text, unit in (
+                ("shaft_speed", speed, speed_unit),
+                ("radial_load", load, load_unit),
+                ("oil_temperature", temperature, temperature_unit),
+            )
+            if text or unit
+        }
     with told_as_bad_input(SceneError, InputLogError), told_file_faults(), orderly_end():
-        if out is not None and out.exists() and log.exists() and out.samefile(log):
+        if out is not None and out.exists() and any(log.exists() and out.samefile(log) for log in logs):
             raise BadInput(f"{out} is the log itself; write to another file")
         scene = load_scene(scene_name, overrides)
         tell_cheaper_level(scene)
-        recorded = read_input_log(log, names, joint, stamps)
+        recorded = read_input_log(logs, names, joint, stamps)
         held = Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature)
         course = judge(recorded, scene.input_limits, held, longest_gap)
         seconds = course.end * 1e-9
         with ExitStack() as stack:
-            recording = None
+            recording, names_of = None, [log.name for log in logs]
             if out is not None:
-                recording = stack.enter_context(McapSink(out, scene, course.start_ns, {"bearing_sim_replay": {"log": log.name}}))
+                tell_replacement(out)
+                recording = stack.enter_context(
+                    McapSink(out, scene, course.start_ns, {"bearing_sim_replay": {"log": " ".join(names_of)}}, replace=True)
+                )
             watchers = []
             if rrd is not None:
                 from bearing_sim.sinks.rerun_sink import RerunSink
@@ -84,7 +142,7 @@ def command(log, scene_name, overrides, out, rrd, rate, speed_topic, load_topic,
                 if warm.takes_courses:
                     warm.advance_course(np.array([1e-6]), np.array([warm.inputs]))
             start_up = time.perf_counter() - started
-            progress = stack.enter_context(progress_bar(f"replaying {log.name}", seconds))
+            progress = stack.enter_context(progress_bar(f"replaying {', '.join(names_of)}", seconds))
             result = replay(scene, course, recording, watchers, rate, progress, **choice)
     if as_json:
         print_json({**_report(result, course, recorded, scene, out), "start_up_seconds": start_up})
@@ -108,6 +166,8 @@ def _choice(scene, course) -> dict:
 
 
 def _report(result, course, recorded, scene, out) -> dict:
+    from bearing_sim.input_log import anomalies
+
     slip = result.slip_figures()
     return {
         "scene": scene.name,
@@ -137,6 +197,7 @@ def _report(result, course, recorded, scene, out) -> dict:
         "inputs": course.messages,
         "inputs_refused": course.refused.total(),
         "inputs_refused_by_reason": dict(course.refused),
+        "inputs_anomalies": {channel: anomalies(series)._asdict() for channel, series in recorded.series.items()},
         "inputs_stamped_by": {channel: series.stamped_by for channel, series in recorded.series.items()},
         "events": dict(result.events),
         "log_unfinished": recorded.unfinished,

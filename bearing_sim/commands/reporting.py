@@ -9,6 +9,7 @@ import sys
 import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from pathlib import Path
 
 import click
 
@@ -63,6 +64,12 @@ def tell_compilation() -> None:
 
     if not any(CACHE_FOLDER.rglob("*.nbi")):
         click.echo("compiling the model, once for this version: about 20 s ...", err=True)
+
+
+def tell_replacement(out: Path) -> None:
+    """Say on stderr that a finished file will be replaced."""
+    if out.is_file():
+        click.echo(f"{out} exists and is replaced when the new one is complete", err=True)
 
 
 def tell_cheaper_level(scene) -> None:

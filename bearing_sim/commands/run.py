@@ -16,6 +16,7 @@ from bearing_sim.commands.reporting import (
     progress_bar,
     tell_cheaper_level,
     tell_compilation,
+    tell_replacement,
     told_as_bad_input,
     told_file_faults,
 )
@@ -46,7 +47,7 @@ def command(scene_name, overrides, duration, level, rate, out, rrd, uncertainty,
     level that has all that the scene asks for; `bearing-sim uncertainty` has more of them.
     """
     from bearing_sim.scene_file import SceneError, load_scene
-    from bearing_sim.simulation import IntegrationError, Simulation
+    from bearing_sim.simulation import IntegrationError, Simulation, start_sample
 
     seconds = _seconds(duration)
     with told_as_bad_input(SceneError):
@@ -54,7 +55,7 @@ def command(scene_name, overrides, duration, level, rate, out, rrd, uncertainty,
     tell_cheaper_level(scene)
     samples = max(round(seconds * (rate or min(_RATE, _SAMPLES / seconds))), 5)
     with told_file_faults(), ExitStack() as stack:
-        sinks = _sinks(stack, scene, seconds, out, rrd)
+        sinks = _sinks(stack, scene, seconds, samples, out, rrd)
         progress = stack.enter_context(progress_bar(f"running {scene.name}", seconds))
         started = time.perf_counter()
         tell_compilation()
@@ -62,6 +63,8 @@ def command(scene_name, overrides, duration, level, rate, out, rrd, uncertainty,
             simulation = Simulation(scene)
             simulation.advance(1e-6)  # machine code is compiled or loaded here, and not timed with the run
             simulation.reset()
+            for sink in sinks[: out is not None]:
+                sink.write(start_sample(simulation))
             first = time.perf_counter()
             settled = _advance(simulation, seconds, samples, sinks, progress)
         except IntegrationError as error:
@@ -91,12 +94,13 @@ def _seconds(duration: str) -> float:
     return seconds
 
 
-def _sinks(stack, scene, seconds, out, rrd) -> list:
+def _sinks(stack, scene, seconds, samples, out, rrd) -> list:
     start_ns, sinks = time.time_ns(), []
     if out is not None:
         from bearing_sim.sinks.mcap_sink import McapSink
 
-        sinks.append(stack.enter_context(McapSink(out, scene, start_ns)))
+        tell_replacement(out)
+        sinks.append(stack.enter_context(McapSink(out, scene, start_ns, replace=True, advance=(_BLOCK * (seconds / samples), _BLOCK))))
     if rrd is not None:
         from bearing_sim.sinks.rerun_sink import RerunSink
 

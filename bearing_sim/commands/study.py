@@ -10,6 +10,7 @@ _STUDIES = {
     "misalignment": "Edges, tilts, skews and life over the misalignment of the inner ring.",
     "slices": "How results settle with the number of slices, and what slices and rollers cost.",
     "extremes": "Map where the model finishes, is clamped, refuses or fails.",
+    "kills": "How much a killed recorder loses.",
 }
 
 

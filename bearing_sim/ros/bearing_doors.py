@@ -5,7 +5,6 @@ import dataclasses
 import subprocess
 import time
 from functools import partial
-from itertools import chain, repeat
 from pathlib import Path
 
 from rclpy.event_handler import SubscriptionEventCallbacks
@@ -20,7 +19,7 @@ from bearing_sim.ros.cheaper_levels import levels_to_compile, start_compiling
 from bearing_sim.ros.messages import message_class
 from bearing_sim.ros.outputs import Output
 from bearing_sim.ros.parameters import OIL_TEMPERATURE, BearingSettings, NodeSettings, scene_value
-from bearing_sim.ros.recordings import fresh_path, open_recording, open_view, prepare
+from bearing_sim.ros.recordings import fresh_path, limits_of, open_recording, open_view, prepare
 from bearing_sim.ros.sim_time import OUTPUT_QOS, follows_clock, subscribe_to_all
 from bearing_sim.ros.warm_up import WarmUp
 from bearing_sim.runtime.governor import Governor
@@ -119,9 +118,7 @@ class BearingDoors:
         settings = self.settings
         self.live = self._sim_time_model() if follows_clock(self._node) else self._wall_time_model()
         if settings.record:
-            path = Path(settings.record)
-            self._start_recording(fresh_path(path) if path in self._node.recorded else path)
-            self._node.recorded.add(path)
+            self._start_recording(Path(settings.record))
         if settings.rrd or settings.rerun_port:
             self.live.open("view", lambda start_ns: open_view(self.scene, start_ns, settings.rrd, settings.rerun_port))
         for channel, topic in topics.INPUTS.items():
@@ -314,7 +311,7 @@ class BearingDoors:
         except ValueError as fault:
             self.live.refuse(channel, "input.malformed", str(fault), now_ns)
             return
-        self.live.offer(channel, values, topics.header_stamp_ns(incoming), now_ns)
+        self.live.offer(channel, values, topics.header_stamp_ns(incoming), now_ns, topics.frame_of(incoming))
 
     def _frame_fault(self, channel: str, incoming) -> str:
         """Return what is wrong with the frame of a load; the direction of a load counts, of the other inputs none has one."""
@@ -335,9 +332,13 @@ class BearingDoors:
             self._logger.info(line)
 
     def _start_recording(self, path: Path) -> None:
-        paths = chain([path], map(fresh_path, repeat(path)))  # no recording shall replace one that this run has made
-        self.live.open("record", lambda start_ns: open_recording(next(paths), self.scene, start_ns), anew=True)
-        self.say(f"recording {path}")
+        def opened(start_ns: int):
+            own_clock = None if follows_clock(self._node) else self._shared.sample_rate
+            sink = open_recording(path, self.scene, start_ns, limits_of(self._shared), own_clock)
+            self.say(f"recording {sink.path}" + (f" ({path} exists and stays as it is)" if sink.path != path else ""))
+            return sink
+
+        self.live.open("record", opened, anew=True)
 
     def _refused(self, response) -> bool:
         """Fill the response where there is no run to serve; return whether so."""

@@ -19,7 +19,6 @@ import sys
 import time
 from collections.abc import Callable
 from functools import wraps
-from pathlib import Path
 
 from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.impl.implementation_singleton import rclpy_implementation
@@ -87,7 +86,6 @@ class BearingNode(LifecycleNode):
         super().__init__("bearing_node", automatically_declare_parameters_from_overrides=True)
         self.fault = ""  # why the last transition did not succeed
         self.bearings: list[BearingDoors] = []
-        self.recorded: set[Path] = set()  # files of earlier runs of this process, which later ones shall not replace
         self._state, self._next_report_ns = "unconfigured", 0
         self._warm_up, self._publish_timer = WarmUp(), None
         self.parameters = ParameterServer(self, self)

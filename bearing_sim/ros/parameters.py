@@ -70,7 +70,12 @@ DECLARATIONS = (
     ),
     Declaration("maximum_lag", 0.2, "lag behind real time that is caught up [s]; more is given up, counted and told", 0.02, 10.0),
     Declaration("governor", True, "whether to compute at a cheaper level while the machine is too slow for the scene's", running=True),
-    Declaration("record", "", "MCAP file to record from the start; empty for none until ~/start_recording is called", per_bearing=True),
+    Declaration(
+        "record", "", "MCAP file, or bag's folder (no .mcap), to record from the start; empty for none until ~/start_recording", per_bearing=True
+    ),
+    Declaration("record_part_size", 0.0, "size of a recording's file beyond which the next one begins [MB]; 0 for none", 0.0, 1e6),
+    Declaration("record_part_duration", 0.0, "time in a recording's file beyond which the next one begins [s]; 0 for none", 0.0, 1e7),
+    Declaration("record_keep_free", 100.0, "free space that the disk shall keep [MB]; below it recording stops", 0.0, 1e7),
     Declaration("rrd", "", "rerun recording (.rrd) to write from the start; empty for none", per_bearing=True),
     Declaration("rerun_port", 0, "port on 127.0.0.1 at which a rerun viewer can watch live; 0 for none", 0, 65535, per_bearing=True),
 )
@@ -114,6 +119,9 @@ class NodeSettings:
     maximum_lag: float
     clock_jump_back: str
     governor: bool
+    record_part_size: float
+    record_part_duration: float
+    record_keep_free: float
 
 
 def _declarations_of(record: type, path: str, default: object) -> Iterator[tuple[Declaration, bool]]:

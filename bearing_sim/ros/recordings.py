@@ -2,10 +2,17 @@
 """Open the node's recordings; what a view needs is imported only when one is wanted."""
 
 import importlib
+import math
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from bearing_sim import topics
+from bearing_sim.runtime.live import cadence
 from bearing_sim.scene import Scene
+
+if TYPE_CHECKING:
+    from bearing_sim.ros.parameters import NodeSettings
+    from bearing_sim.sinks.parts import Limits
 
 
 def prepare(view: bool) -> None:
@@ -13,32 +20,56 @@ def prepare(view: bool) -> None:
     from bearing_sim.sinks.mcap_file import message_type
 
     importlib.import_module("bearing_sim.sinks.mcap_sink")
-    for ros_type in {topic.ros_type for topic in (*topics.INPUTS.values(), *topics.OUTPUTS.values())} | {topics.DIAGNOSTICS[1]}:
+    for ros_type in {topic.ros_type for topic in (*topics.INPUTS.values(), *topics.RECORDED.values(), *topics.OUTPUTS.values())} | {
+        topics.DIAGNOSTICS[1]
+    }:
         message_type(ros_type)
     if view:
         importlib.import_module("bearing_sim.sinks.rerun_sink")
 
 
-def open_recording(path: Path, scene: Scene, start_ns: int):
-    """Return an MCAP sink (see `bearing_sim.sinks.mcap_sink.McapSink`).
+def open_recording(path: Path, scene: Scene, start_ns: int, limits: "Limits | None" = None, sample_rate: float | None = None):
+    """Return an MCAP sink (see `bearing_sim.sinks.mcap_sink.McapSink`); its ``path`` is a fresh one where ``path`` is taken.
+
+    Parameters
+    ----------
+    path : what is asked for, a file or the folder of a bag.
+    scene, start_ns : what is simulated, and time 0 of the samples [ns since the epoch].
+    limits : where files end; one file where absent.
+    sample_rate : of the live model [Hz].
 
     Raises
     ------
     OSError
-        The file cannot be made; FileExistsError where another run is writing it.
+        The file cannot be made.
     """
     from bearing_sim.sinks.mcap_sink import McapSink
+    from bearing_sim.sinks.parts import UNPARTED
 
-    return McapSink(path, scene, start_ns)
+    beat = cadence(sample_rate) if sample_rate else None
+    advance = (beat.tick, beat.samples) if beat is not None and beat.every == 1 else None
+    return McapSink(fresh_path(path), scene, start_ns, limits=limits or UNPARTED, advance=advance)
+
+
+def limits_of(settings: "NodeSettings") -> "Limits":
+    """Return the limits of recordings that the node's parameters set; 0 stands for none."""
+    from bearing_sim.sinks.parts import Limits
+
+    size, duration = settings.record_part_size or math.inf, settings.record_part_duration or math.inf
+    return Limits(1e6 * size, duration, 1e6 * settings.record_keep_free)
 
 
 def fresh_path(path: Path) -> Path:
-    """Return ``path``, or the first of ``path_2``, ``path_3`` ... that no recording has, finished or not."""
+    """Return ``path``, or the first of ``path_2``, ``path_3`` ... that no recording has, finished or not, whole or in parts."""
     number, candidate = 1, path
-    while candidate.exists() or candidate.with_name(candidate.name + ".active").exists():
+    while any(_is_taken(candidate.with_stem(f"{candidate.stem}{part}")) for part in ("", "_0")):
         number += 1
         candidate = path.with_stem(f"{path.stem}_{number}")
     return candidate
+
+
+def _is_taken(path: Path) -> bool:
+    return path.exists() or path.with_name(path.name + ".active").exists()
 
 
 def open_view(scene: Scene, start_ns: int, path: str, port: int):

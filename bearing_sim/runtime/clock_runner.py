@@ -19,7 +19,7 @@ from bearing_sim.runtime.growing_course import GrowingCourse
 from bearing_sim.runtime.leg import Arrival, Leg
 from bearing_sim.runtime.pacer import Pace, Pacer
 from bearing_sim.runtime.runner import Phase
-from bearing_sim.runtime.walk import Output, Walk
+from bearing_sim.runtime.walk import Begun, Output, Walk
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation
 
 
@@ -29,7 +29,7 @@ class Start(NamedTuple):
     start_ns: int  # [ns since the epoch]
 
 
-Item = Start | Arrival | Output | Event
+Item = Start | Begun | Arrival | Output | Event
 
 
 class ClockRunner:

@@ -25,9 +25,10 @@ from bearing_sim.runtime.residual import ResidualMonitor
 from bearing_sim.runtime.rivals import Rivals
 from bearing_sim.runtime.runner import Phase, Runner
 from bearing_sim.scene import Scene, Thresholds
-from bearing_sim.simulation import Simulation
+from bearing_sim.simulation import Inputs, Simulation
 
 LONGEST_TICK = 0.005  # [s] inputs act this late at most; outputs can be published at 200 Hz
+_CLOCK_JUMP = 1.0  # [s] of the receiver's clock against the monotonic one, from one look to the next
 _SLACK = 4.0  # [s] how long blocks wait to be collected before the oldest are dropped
 
 
@@ -118,6 +119,7 @@ class LiveModel:
         pacer, capacity = Pacer(1.0, maximum_lag), round(_SLACK / beat.tick)
         self.runner = Runner(simulation, pacer, beat.tick, beat.samples, capacity, clock, governor)
         self._every, self._blocks = beat.every, 0
+        self._clock, self._clock_ahead = clock, start_ns * 1e-9 - clock()
         self._outlets = Outlets()
         self._published_time = self._residual_time = -math.inf
         self.runner.start()
@@ -126,24 +128,29 @@ class LiveModel:
         """Return the run time [s] of an instant of the receiver's clock."""
         return (now_ns - self.start_ns) * 1e-9
 
-    def offer(self, channel: str, values: tuple[float, ...], stamp_ns: int | None, now_ns: int) -> Event | None:
-        """Take in one message (see `bearing_sim.runtime.input_gate.InputGate.offer`).
+    def offer(self, channel: str, values: tuple[float, ...], stamp_ns: int | None, now_ns: int, frame_id: str = "") -> Event | None:
+        """Take in one message (see `bearing_sim.runtime.input_gate.InputGate.offer`); recorders get it as it came, refused or not.
 
         Parameters
         ----------
         stamp_ns : the sender's stamp, or None for a message without one.
         now_ns : the receiver's clock.
+        frame_id : the frame that the message names.
         """
-        now = self.run_time(now_ns)
+        self._follow_clock(now_ns)
+        now, origin = self.run_time(now_ns), topics.Origin(stamp_ns, frame_id)
+        if channel != topics.MEASURED:
+            received = _as_received(self.gate.held, channel, values)
+            self._outlets.to_recorders(now, lambda recorder: recorder.write_inputs(now, received, [channel], origin))
         event = self.gate.offer(channel, now if stamp_ns is None else self.run_time(stamp_ns), values, arrival=now)
         if event is not None:
             self.health.note(event)
             return event
         self._rivals[channel].take(values)
         if channel == topics.MEASURED:
-            self._compare(now)
+            self._compare(now, origin)
             return None
-        self._inputs_changed(channel, now)
+        self._inputs_changed()
         return None
 
     def adjust(self, thresholds: Thresholds) -> None:
@@ -155,7 +162,9 @@ class LiveModel:
     def hold_oil_temperature(self, temperature: float, now_ns: int) -> None:
         """Let the oil have another temperature [K] than the scene's, where no message tells it."""
         self.gate.hold_oil_temperature(temperature)
-        self._inputs_changed("oil_temperature", self.run_time(now_ns))
+        now = self.run_time(now_ns)
+        self._inputs_changed()
+        self._outlets.to_recorders(now, lambda recorder: recorder.write_inputs(now, self.gate.held, ["oil_temperature"], topics.Origin(None, "")))
 
     def refuse(self, channel: str, code: str, reason: str, now_ns: int) -> Event:
         """Take in a message that could not even be read."""
@@ -221,7 +230,8 @@ class LiveModel:
 
     def collect(self, now_ns: int) -> list[Event]:
         """Hand blocks and events to the sinks and review the health.  Returns the events that are news."""
-        now = self.run_time(now_ns)
+        self._follow_clock(now_ns)
+        now, blocks = self.run_time(now_ns), []
         for item in self.runner.take():
             if isinstance(item, Event):
                 self.health.note(item._replace(time=now))
@@ -230,7 +240,10 @@ class LiveModel:
                     self.residual.interrupt(item.time)
             else:
                 self.monitor.take(item)
-                self._write(now, item)
+                blocks.append(item)
+        self._write(now, blocks)
+        for event in self._outlets.news(now):
+            self.health.note(event)
         news = self.health.news(self.condition(now_ns).events)
         for event in news:
             self._outlets.to_all(now, lambda sink, event=event: sink.write_event(event))
@@ -264,19 +277,16 @@ class LiveModel:
         whether the solver's thread ended within ``timeout`` [s].
         """
         stopped = self.runner.stop(timeout)
-        for item in self.runner.take():
-            if not isinstance(item, Event):
-                self._write(0.0, item)
+        self._write(0.0, [item for item in self.runner.take() if not isinstance(item, Event)])
         self._outlets.close(0.0)
         return stopped
 
-    def _inputs_changed(self, channel: str, now: float) -> None:
+    def _inputs_changed(self) -> None:
         # Speed starts the model: load and temperature have sensible values in the scene, a wrong speed would be a false jolt.
         if self.gate.accepted["shaft_speed"]:
             self.runner.post(self.gate.held)
-        self._outlets.to_recorders(now, lambda recorder: recorder.write_inputs(now, self.gate.held, [channel]))
 
-    def _compare(self, now: float) -> None:
+    def _compare(self, now: float, origin: topics.Origin) -> None:
         """Hold the measured cage speed against the newest sample, which is a tick old at most."""
         sample, residual = self.runner.newest, math.nan
         if sample is not None and self.runner.phase is Phase.RUNNING:
@@ -287,9 +297,29 @@ class LiveModel:
             predicted = float(sample["cage_slip"]) if own else math.nan
             self.residual.take(float(sample["time"]), float(sample["shaft_speed"]), measured, predicted)
             residual = measured - predicted
-        self._outlets.to_recorders(now, lambda recorder: recorder.write_measurement(now, self.gate.measured, residual))
+        self._outlets.to_recorders(now, lambda recorder: recorder.write_measurement(now, self.gate.measured, residual, origin))
 
-    def _write(self, now: float, block: np.ndarray) -> None:
-        self._blocks += 1
-        if self._blocks % self._every == 0:
-            self._outlets.to_all(now, lambda sink: sink.write(block))
+    def _follow_clock(self, now_ns: int) -> None:
+        """Let run time go on evenly where the receiver's clock jumps, as when it is set: its stamps count from another start then."""
+        ahead = now_ns * 1e-9 - self._clock()
+        jump, self._clock_ahead = ahead - self._clock_ahead, ahead
+        if abs(jump) > _CLOCK_JUMP:
+            self.start_ns += round(jump * 1e9)
+            text = f"the clock jumped by {jump:+.6g} s; the run and its recording go on evenly, by the clock from before"
+            self.health.note(Event(self.run_time(now_ns), Level.WARN, "clock.jumped", text))
+
+    def _write(self, now: float, blocks: list[np.ndarray]) -> None:
+        """Hand blocks to the sinks, all at once: for many samples together they hold the interpreter's lock far shorter."""
+        kept = [block for place, block in enumerate(blocks, self._blocks) if place % self._every == 0]  # the first is the state at the start
+        self._blocks += len(blocks)
+        if kept:
+            together = np.concatenate(kept)
+            self._outlets.to_all(now, lambda sink: sink.write(together))
+
+
+def _as_received(held: Inputs, channel: str, values: tuple[float, ...]) -> Inputs:
+    """Return the inputs that a message states, for those of other channels the held ones."""
+    if channel == "radial_load":
+        load_y, load_z = (*values, 0.0)[:2]
+        return held._replace(load_y=load_y, load_z=load_z)
+    return held._replace(**{"shaft_speed" if channel == "shaft_speed" else "oil_temperature": values[0]})

@@ -8,6 +8,7 @@ import numpy as np
 
 from bearing_sim.events import Event, Level
 from bearing_sim.simulation import Inputs
+from bearing_sim.topics import Origin
 
 
 class Sink(Protocol):
@@ -21,8 +22,9 @@ class Sink(Protocol):
 class Recorder(Sink, Protocol):
     """A sink that also keeps the inputs, the measured cage speed and the diagnostics."""
 
-    def write_inputs(self, time: float, inputs: Inputs, channels) -> None: ...
-    def write_measurement(self, time: float, cage_speed: float, residual: float) -> None: ...
+    def write_start(self, block: np.ndarray) -> None: ...
+    def write_inputs(self, time: float, inputs: Inputs, channels, origin: Origin | None = None) -> None: ...
+    def write_measurement(self, time: float, cage_speed: float, residual: float, origin: Origin | None = None) -> None: ...
     def write_diagnostics(self, time: float, events, values) -> None: ...
 
 
@@ -94,6 +96,11 @@ class Outlets:
         for name, sink in self._sinks.items():
             if getattr(sink, "fault", None):
                 yield Event(now, Level.WARN, f"sink.failed.{name}", f"{name} has stopped: {sink.fault}")
+
+    def news(self, now: float) -> list[Event]:
+        """Return what has happened to sinks since the last call, as of ``now`` [s]."""
+        told = [one for sink in self._sinks.values() if hasattr(sink, "news") for one in sink.news()]
+        return [Event(now, level, code, text) for level, code, text in told]
 
     @property
     def values(self) -> dict[str, int]:

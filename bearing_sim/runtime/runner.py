@@ -5,6 +5,7 @@ The thread that solves does nothing else: inputs come in through a mailbox that 
 go out through a bounded queue whose oldest entries give way.  Whatever the readers do, the solver never waits for them.
 """
 
+import sys
 import threading
 import time
 import traceback
@@ -19,6 +20,8 @@ from bearing_sim.runtime.governor import Governor
 from bearing_sim.runtime.pacer import Pace, Pacer
 from bearing_sim.runtime.threads import SOLVER, name_this_thread
 from bearing_sim.simulation import Inputs, IntegrationError
+
+_GIVE_WAY = 0.0005  # [s]
 
 
 class Phase(Enum):
@@ -80,6 +83,8 @@ class Runner:
 
     def start(self, origin: float | None = None) -> None:
         """Start the thread.  Run time 0 is wall time ``origin`` (now where absent); simulated time waits for the first input."""
+        # Solved without the interpreter's lock, a tick wants it back at its end: Python's 5 ms until a busy thread must give it up are too long.
+        sys.setswitchinterval(min(sys.getswitchinterval(), _GIVE_WAY))
         self._origin = self._clock() if origin is None else origin
         self._phase = Phase.WAITING
         self._thread.start()
@@ -195,8 +200,15 @@ class Runner:
             return False
         self._failed_ticks = 0
         self._anchor()
+        self._put(self._start())
         self._phase = Phase.RUNNING
         return True
+
+    def _start(self) -> np.ndarray:
+        """Return the sample that the model starts from, as a block: what a recording begins with so that it can be repeated."""
+        block = np.array([self._simulation.sample])
+        block["time"] += self._shift
+        return block
 
     def _next_tick(self) -> bool:
         """Obey requests, sleep until the tick is due, run it; False to end."""

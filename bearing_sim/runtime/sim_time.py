@@ -31,7 +31,7 @@ from bearing_sim.runtime.outlets import Outlets, Sink
 from bearing_sim.runtime.residual import ResidualMonitor
 from bearing_sim.runtime.rivals import Rivals
 from bearing_sim.runtime.stragglers import Message, Side, Stragglers
-from bearing_sim.runtime.walk import Output
+from bearing_sim.runtime.walk import Begun, Output
 from bearing_sim.scene import Scene, Thresholds
 from bearing_sim.simulation import Simulation
 
@@ -114,13 +114,14 @@ class SimTimeModel:
             self._note(Event(self.run_time(clock_ns), Level.OK, "clock.passed", "the clock has passed where it was; the model goes on"))
         self._show_clock()
 
-    def offer(self, channel: str, values: tuple[float, ...], stamp_ns: int | None, now_ns: int) -> Event | None:
+    def offer(self, channel: str, values: tuple[float, ...], stamp_ns: int | None, now_ns: int, frame_id: str = "") -> Event | None:
         """Take in one message (see `bearing_sim.runtime.input_gate.InputGate.offer`).
 
         Parameters
         ----------
         stamp_ns : the sender's stamp; the clock's newest reading stands in for the stamp of a message without one.
         now_ns : the clock.
+        frame_id : the frame that the message names; recordings say the scene's.
         """
         self.tick(now_ns)
         stamp = self._clock.now if stamp_ns is None else stamp_ns
@@ -223,6 +224,8 @@ class SimTimeModel:
         for item in self.runner.take():
             self._handle(item)
         self._tell_compared(self._comparison.due())
+        for event in self._outlets.news(self.run_time(now_ns)):
+            self._note(event)
         now = self.run_time(now_ns)
         news = self.health.news(self.condition(now_ns).events)
         for event in news:
@@ -323,6 +326,8 @@ class SimTimeModel:
     def _handle(self, item) -> None:
         if isinstance(item, Start):
             self._start(item.start_ns)
+        elif isinstance(item, Begun):
+            self._outlets.to_recorders(item.time, lambda recorder: recorder.write_start(item.block))
         elif isinstance(item, Output):
             self._take(item.block)
         elif isinstance(item, Arrival):

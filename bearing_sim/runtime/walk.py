@@ -11,7 +11,7 @@ import numpy as np
 
 from bearing_sim.events import Event, Level
 from bearing_sim.runtime.leg import Arrival, Leg
-from bearing_sim.simulation import Inputs, IntegrationError, Simulation
+from bearing_sim.simulation import Inputs, IntegrationError, Simulation, start_sample
 
 _COURSE = 2000  # instants in one go, at a level that takes them so
 _FAILURES_IN_A_ROW = 10  # then the walk is given up
@@ -22,6 +22,13 @@ class Output(NamedTuple):
 
     block: np.ndarray  # see `bearing_sim.sample`, shape (n,)
     weights: np.ndarray  # time that was simulated since the output before [s], shape (n,)
+
+
+class Begun(NamedTuple):
+    """The model stands at the first instant."""
+
+    time: float  # [s] since the start of the course
+    block: np.ndarray  # its sample there, shape (1,): what a recording begins with so that it can be repeated
 
 
 class Walk:
@@ -55,7 +62,7 @@ class Walk:
         self.given_up = ""
         self._unweighed = 0.0  # [s] simulated since the last output
 
-    def over(self, leg: Leg) -> Iterator[Arrival | Output | Event]:
+    def over(self, leg: Leg) -> Iterator[Arrival | Begun | Output | Event]:
         """Advance over a leg, which follows on the last one, and yield what happens, in order of time; nothing once the walk is given up.
 
         A stretch that cannot be integrated is left out, told and counted; the next one is tried from the last good state.
@@ -78,11 +85,13 @@ class Walk:
         if self.given_up and len(leg.instants):  # whoever revives it goes on with the next leg
             self.reached = int(leg.instants[-1])
 
-    def _start(self, leg: Leg) -> Iterator[Event]:
+    def _start(self, leg: Leg) -> Iterator[Begun | Event]:
         try:
             self.simulation = self._begin(Inputs(*leg.inputs[0].tolist()))
         except IntegrationError as error:
             yield self._give_up(float(leg.instants[0] * 1e-9), f"the model has no state at the first inputs: {error}")
+        else:
+            yield Begun(float(leg.instants[0] * 1e-9), start_sample(self.simulation))
         self.reached = int(leg.instants[0])
 
     def _go(self, leg: Leg, stretch: float, place: int) -> Iterator[Arrival | Output | Event]:

@@ -1,130 +1,47 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""An MCAP file of ROS 2 messages, written so that rosbag2, Foxglove and rerun read it and a killed process loses little.
-
-Knows message types by the ROS-free definitions of the rosbags library; needs no ROS.
-"""
+"""An MCAP file of ROS 2 messages, written so that rosbag2, Foxglove and rerun read it and a killed process loses little."""
 
 import os
 import threading
-from collections.abc import Callable, Mapping
-from functools import cache
+from collections.abc import Mapping
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
-import yaml
-from mcap.writer import CompressionType, Writer
-from rosbags.interfaces import Nodetype
-from rosbags.typesys import Stores, get_typestore
+
+from bearing_sim.events import Level
+from bearing_sim.sinks.bag_metadata import QOS_TEXT, Part, TopicCount, part_metadata
+from bearing_sim.sinks.growing_file import GrowingFile
+from bearing_sim.sinks.mcap_rows import RowLayout, RowWriter
+from bearing_sim.sinks.ros_types import message_type
 
 _CHUNK_SIZE = 64 * 1024  # [byte] the writer holds one chunk in memory: small chunks keep each write and each loss short
-_ACTIVE = ".active"
-_ARRAY = "std_msgs/msg/Float64MultiArray"
-_FOREVER = {"sec": 9223372036, "nsec": 854775807}
-_QOS = [
-    {
-        "history": "keep_last",
-        "depth": 10,
-        "reliability": "reliable",  # offered reliable, a played-back topic suits best-effort subscribers too
-        "durability": "volatile",
-        "deadline": _FOREVER,
-        "lifespan": _FOREVER,
-        "liveliness": "automatic",
-        "liveliness_lease_duration": _FOREVER,
-        "avoid_ros_namespace_conventions": False,
-    }
-]
-
-
-class MessageType(NamedTuple):
-    """What a recording needs to know of one ROS type."""
-
-    definition: str  # ros2msg text
-    hash: str  # RIHS01
-    serialize: Callable[[dict], bytes]  # nested dict -> CDR
-
-
-@cache
-def _typestore():
-    return get_typestore(Stores.ROS2_JAZZY)
-
-
-@cache
-def message_type(ros_type: str) -> MessageType:
-    """Return definition, hash and serialiser of a ROS type such as ``"std_msgs/msg/Float64"``.
-
-    Raises
-    ------
-    KeyError
-        The type is not among ROS 2 Jazzy's standard messages.
-    """
-    store = _typestore()
-    fill = _filler(ros_type)
-    definition, _ = store.generate_msgdef(ros_type, ros_version=2)
-
-    def serialize(message: dict) -> bytes:
-        return bytes(store.serialize_cdr(fill(message), ros_type))
-
-    return MessageType(definition, store.hash_rihs01(ros_type), _array_serializer(serialize) if ros_type == _ARRAY else serialize)
-
-
-def _array_serializer(serialize: Callable[[dict], bytes]) -> Callable[[dict], bytes]:
-    """Return a serialiser of arrays that keeps the bytes before the numbers: most of a sample are arrays of unchanging lay-out."""
-    heads: dict[tuple, bytes] = {}
-
-    def serialize_array(message: dict) -> bytes:
-        layout, data = message["layout"], np.asarray(message["data"], "<f8")
-        key = (layout["data_offset"], data.size, *[(dim["label"], dim["size"], dim["stride"]) for dim in layout["dim"]])
-        if key not in heads:
-            whole = serialize(message)
-            heads[key] = whole[: len(whole) - data.nbytes]
-        return heads[key] + data.tobytes()
-
-    return serialize_array
-
-
-@cache
-def _filler(ros_type: str) -> Callable[[dict], object]:
-    store = _typestore()
-    message_class = store.types[ros_type]
-    fields = [(name, _field_filler(*kind)) for name, kind in store.fielddefs[ros_type][1]]
-
-    def fill(message: dict) -> object:
-        return message_class(**{name: convert(message[name]) for name, convert in fields})
-
-    return fill
-
-
-def _field_filler(node: Nodetype, detail) -> Callable:
-    if node == Nodetype.NAME:
-        return _filler(detail)
-    if node == Nodetype.BASE:
-        return (lambda value: value[0]) if detail[0] == "byte" else (lambda value: value)
-    (item_node, item_detail), _ = detail
-    if item_node == Nodetype.NAME:
-        fill = _filler(item_detail)
-        return lambda values: [fill(value) for value in values]
-    return list if item_detail[0] == "string" else (lambda values: np.asarray(values, item_detail[0]))
+_HASTE = 4 * 1024 * 1024  # [byte] waiting for the disk, beyond which the timer is not waited for
+ACTIVE = ".active"
+"""What the name of an unfinished file ends in."""
 
 
 class McapFile:
     """An MCAP file being written, profile ``ros2``.
 
-    While it is written it is called ``<path>.active``; `close` completes it and takes the suffix away.  What was written
-    more than ``flush_every`` ago is in the hands of the operating system, so that killing the process loses no more (there
-    is no fsync: a power cut may lose more).  Methods may be called from several threads.
+    While it is written it is called ``<path>.active``; `close` completes it and takes the suffix away.  Writing never waits for
+    the disk, which a thread of its own serves.  What was written more than ``flush_every`` ago is in the hands of the operating
+    system, so that killing the process loses no more (there is no fsync: a power cut may lose more).  Methods may be called
+    from several threads.
 
     Parameters
     ----------
-    path : the finished file; its folder is made if absent, a file of that name is replaced at `close`.
+    path : the finished file; its folder is made if absent.
     metadata : metadata records by name, each a flat mapping of str to str.
     custom_data : entries of rosbag2's own metadata record, shown by ``ros2 bag info``.
     flush_every : longest time that data stay in this process [s]; at most half a second keeps the promise of the readme.
+    replace : whether a finished file of that name is replaced at `close`.
+    keep_free : free space that the disk shall keep [byte]; below it writing stops with an OSError.
 
     Raises
     ------
     OSError
-        The file cannot be written there; FileExistsError if ``<path>.active`` exists: a run that writes it now, or the remains of a killed one.
+        The file cannot be written there; FileExistsError where it exists and is not to be replaced, or if ``<path>.active`` exists: a
+        run that writes it now, or the remains of a killed one.
     """
 
     def __init__(
@@ -133,19 +50,23 @@ class McapFile:
         metadata: Mapping[str, Mapping[str, str]] | None = None,
         custom_data: Mapping[str, str] | None = None,
         flush_every: float = 0.5,
+        replace: bool = False,
+        keep_free: float = 0.0,
     ):
-        self.path = Path(path)
-        self.active_path = self.path.with_name(self.path.name + _ACTIVE)
+        self.path, self._replace = Path(path), replace
         if self.path.is_dir():
             raise IsADirectoryError(f"{self.path} is a folder; expected the name of a file to write")
+        if self.path.exists() and not replace:
+            raise FileExistsError(f"{self.path} exists; a recording does not replace another one")
         self.path.parent.mkdir(parents=True, exist_ok=True)
         try:
-            self._stream = open(self.active_path, "xb")
+            self._disk = GrowingFile(self.path.with_name(self.path.name + ACTIVE), keep_free)
         except FileExistsError:
             raise FileExistsError(
-                f"{self.active_path} exists: another run is writing it, or a killed run left it; read it, rename it or remove it first"
+                f"{self.active_path_of(self.path)} exists: another run is writing it, or a killed run left it; "
+                "bearing-sim recover completes it, or rename or remove it first"
             ) from None
-        self._writer = Writer(self._stream, chunk_size=_CHUNK_SIZE, compression=CompressionType.ZSTD)
+        self._writer = RowWriter(self._disk, _CHUNK_SIZE)
         self._writer.start(profile="ros2", library="bearing_sim")
         for name, record in (metadata or {}).items():
             self._writer.add_metadata(name, dict(record))
@@ -153,14 +74,41 @@ class McapFile:
         self._schemas: dict[str, int] = {}
         self._channels: dict[str, _Channel] = {}
         self._span: tuple[int, int] | None = None
-        self._lock = threading.Lock()
+        self._lock = threading.RLock()
         self._closing = threading.Event()
-        self._fault: OSError | None = None
+        self._closed = False
         self._flush_every = flush_every
         self._writer.flush()
+        self._disk.drain()
+        self._disk.watch()
+        if self._disk.fault is not None:
+            self._disk.close()
+            self.active_path.unlink(missing_ok=True)
+            raise self._fault()
         # A timer, not a check at each write: the last messages before a pause are to be safe too.
-        self._flusher = threading.Thread(target=self._flush_on_timer, name="mcap-flush", daemon=True)
+        self._wake = threading.Event()
+        self._flusher = threading.Thread(target=self._serve_disk, name="mcap-disk", daemon=True)
         self._flusher.start()
+
+    @staticmethod
+    def active_path_of(path: Path) -> Path:
+        """Return what a file is called while it is written."""
+        return path.with_name(path.name + ACTIVE)
+
+    @property
+    def active_path(self) -> Path:
+        """What the file is called while it is written."""
+        return self._disk.path
+
+    @property
+    def length(self) -> int:
+        """Length up to now [byte], without the chunk in progress."""
+        return self._disk.tell()
+
+    @property
+    def span(self) -> tuple[int, int]:
+        """First and last log time [ns since the epoch]; zeros before the first message."""
+        return self._span or (0, 0)
 
     def write(self, topic: str, ros_type: str, time_ns: int, message: dict) -> None:
         """Write one message.
@@ -175,19 +123,45 @@ class McapFile:
         Raises
         ------
         OSError
-            The file could not be written, now or by the timer since the last call.
+            The file could not be written, by the thread that serves the disk, since the last call.
         ValueError
-            The file is closed.
+            The file is closed, or the time lies before the epoch.
         """
-        data = message_type(ros_type).serialize(message)
+        self.write_cdr(topic, ros_type, time_ns, message_type(ros_type).serialize(message))
+
+    def write_cdr(self, topic: str, ros_type: str, time_ns: int, data: bytes, publish_ns: int | None = None) -> None:
+        """Write one message that is serialised already; ``publish_ns`` where its publish time differs from its log time."""
+        if time_ns < 0:
+            raise ValueError(f"{topic}: a message {-time_ns * 1e-9:.6g} s before 1970 cannot be recorded")
         with self._lock:
-            self._raise_fault()
-            if self._stream.closed:
-                raise ValueError(f"{self.path} is closed")
+            self._require_open()
             channel = self._channels.get(topic) or self._register(topic, ros_type)
             channel.count += 1
-            self._span = (time_ns, time_ns) if self._span is None else (min(self._span[0], time_ns), max(self._span[1], time_ns))
-            self._writer.add_message(channel.id, time_ns, data, time_ns, sequence=channel.count)
+            self._extend_span(time_ns, time_ns)
+            self._writer.add_message(channel.id, time_ns, data, time_ns if publish_ns is None else publish_ns, sequence=channel.count)
+        self._hurry()
+
+    def write_rows(self, layout: RowLayout, block: np.ndarray, times_ns: np.ndarray) -> None:
+        """Write the messages of all topics of a lay-out for a block of samples; faults as of `write`.
+
+        Parameters
+        ----------
+        layout : of the topics; they are written in no other way.
+        block : samples, shape (n,).
+        times_ns : log, publish and header time of each [ns since the epoch], uint64.
+        """
+        if not len(block):
+            return
+        with self._lock:
+            self._require_open()
+            channels = [self._channels.get(f"/{topic.name}") or self._register(f"/{topic.name}", topic.ros_type) for topic in layout.topics]
+            ids = [channel.id for channel in channels]
+            rows = layout.rows(block, times_ns, ids, channels[0].count + 1)
+            self._writer.add_rows(layout, rows, times_ns, ids)
+            for channel in channels:
+                channel.count += len(block)
+            self._extend_span(int(times_ns.min()), int(times_ns.max()))
+        self._hurry()
 
     def __enter__(self) -> "McapFile":
         return self
@@ -198,78 +172,107 @@ class McapFile:
     def flush(self) -> None:
         """Hand everything written so far to the operating system."""
         with self._lock:
-            self._raise_fault()
+            self._require_open()
             self._writer.flush()
+            self._disk.drain()
+            self._raise_fault()
+
+    def news(self) -> list[tuple[Level, str, str]]:
+        """Return (level, code, text) of what a person should be told of the file since the last call."""
+        return [self._disk.news.popleft() for _ in range(len(self._disk.news))]
 
     def close(self) -> None:
-        """Complete the file and give it its name; a second call does nothing."""
+        """Complete the file and give it its name; a second call does nothing.
+
+        Raises
+        ------
+        OSError
+            It could not be completed; what could be written is in ``<path>.active``.
+        """
         self._closing.set()
+        self._wake.set()
         self._flusher.join()
         with self._lock:
-            if self._stream.closed:
+            if self._closed:
                 return
+            self._closed = True
+            written = self._disk.tell() == self._disk.saved + self._disk.backlog  # nothing was given up
             try:
-                self._writer.add_metadata("rosbag2", {"serialized_metadata": self._rosbag2_metadata()})
+                self._writer.add_metadata("rosbag2", {"serialized_metadata": part_metadata(self.part(), self.topic_counts(), self._custom_data)})
                 self._writer.finish()
+                self._disk.drain(despite_fault=True)
+                complete = written and not self._disk.backlog
             finally:
-                self._stream.close()
-            self._raise_fault()
-            os.replace(self.active_path, self.path)
+                self._disk.close()
+            if not complete:
+                raise self._fault() or OSError(f"{self.active_path} could not be completed")
+            _rename(self.active_path, self.path, self._replace)
+
+    def part(self) -> Part:
+        """Return what metadata say of this file."""
+        start, end = self.span
+        return Part(self.path.name, start, end, sum(channel.count for channel in self._channels.values()))
+
+    def topic_counts(self) -> list[TopicCount]:
+        """Return what metadata say of its topics."""
+        return [TopicCount(topic, channel.ros_type, message_type(channel.ros_type).hash, channel.count) for topic, channel in self._channels.items()]
 
     def _register(self, topic: str, ros_type: str) -> "_Channel":
         kind = message_type(ros_type)
         if ros_type not in self._schemas:
             self._schemas[ros_type] = self._writer.register_schema(ros_type, "ros2msg", kind.definition.encode())
-        metadata = {"offered_qos_profiles": _yaml(_QOS), "topic_type_hash": kind.hash}
+        metadata = {"offered_qos_profiles": QOS_TEXT, "topic_type_hash": kind.hash}
         channel_id = self._writer.register_channel(topic, "cdr", self._schemas[ros_type], metadata)
         self._channels[topic] = _Channel(channel_id, ros_type)
         return self._channels[topic]
 
-    def _flush_on_timer(self) -> None:
-        while not self._closing.wait(self._flush_every):
-            with self._lock:
-                try:
+    def _extend_span(self, first: int, last: int) -> None:
+        self._span = (first, last) if self._span is None else (min(self._span[0], first), max(self._span[1], last))
+
+    def _hurry(self) -> None:
+        if self._disk.backlog > _HASTE:
+            self._wake.set()
+
+    def _serve_disk(self) -> None:
+        while not self._closing.is_set():
+            hurried = self._wake.wait(self._flush_every)
+            self._wake.clear()
+            if not hurried:
+                with self._lock:
                     self._writer.flush()
-                except OSError as fault:  # a full disk must reach the one who writes, who is in another thread
-                    self._fault = fault
-                    return
+            self._disk.drain()
+            self._disk.watch()
+
+    def _require_open(self) -> None:
+        if self._closed:
+            raise ValueError(f"{self.path} is closed")
+        self._raise_fault()
 
     def _raise_fault(self) -> None:
-        if self._fault is not None:
-            raise OSError(self._fault.errno, f"{self.active_path} could not be written: {self._fault.strerror}") from self._fault
+        if self._disk.fault is not None:
+            raise self._fault()
 
-    def _rosbag2_metadata(self) -> str:
-        start, end = self._span or (0, 0)
-        times = {
-            "duration": {"nanoseconds": end - start},
-            "starting_time": {"nanoseconds_since_epoch": start},
-            "message_count": sum(channel.count for channel in self._channels.values()),
-        }
-        bag = {
-            "version": 9,
-            "storage_identifier": "mcap",
-            **times,
-            "topics_with_message_count": [
-                {
-                    "topic_metadata": {
-                        "name": topic,
-                        "type": channel.ros_type,
-                        "serialization_format": "cdr",
-                        "offered_qos_profiles": _QOS,
-                        "type_description_hash": message_type(channel.ros_type).hash,
-                    },
-                    "message_count": channel.count,
-                }
-                for topic, channel in self._channels.items()
-            ],
-            "compression_format": "",
-            "compression_mode": "",
-            "relative_file_paths": [self.path.name],
-            "files": [{"path": self.path.name, **times}],
-            "custom_data": self._custom_data,
-            "ros_distro": "jazzy",
-        }
-        return _yaml({"rosbag2_bagfile_information": bag})
+    def _fault(self) -> OSError | None:
+        fault = self._disk.fault
+        return OSError(fault.errno, fault.strerror) if fault is not None else None
+
+
+def _rename(active: Path, path: Path, replace: bool) -> None:
+    """Give a complete file its name, which may have been taken meanwhile."""
+    try:
+        if replace:
+            os.replace(active, path)
+            return
+        try:
+            os.link(active, path)  # unlike a renaming, this replaces nothing
+        except FileExistsError:
+            raise FileExistsError(f"{path} was made by another program meanwhile; the complete recording is {active}") from None
+        except OSError:
+            os.rename(active, path)  # a file system without links
+        else:
+            os.unlink(active)
+    except PermissionError as fault:
+        raise PermissionError(fault.errno, f"{active} is complete, but cannot be renamed to {path.name}: {fault.strerror}") from None
 
 
 class _Channel:
@@ -279,14 +282,3 @@ class _Channel:
         self.id = channel_id
         self.ros_type = ros_type
         self.count = 0
-
-
-class _PlainDumper(yaml.SafeDumper):
-    """SafeDumper without anchors, which not every reader of bag metadata follows."""
-
-    def ignore_aliases(self, data):
-        return True
-
-
-def _yaml(tree) -> str:
-    return yaml.dump(tree, Dumper=_PlainDumper, sort_keys=False)

@@ -1,0 +1,130 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""A recording as one table: a row for each sample, a column for each observable, and one for each roller where rollers have their own.
+
+Columns are called as the observables of `bearing_sim.sample`, those of rollers with the roller's number after them
+(``inner_load_07``).  Parquet keeps unit and meaning of each column in the schema; CSV has the unit in the header, such as
+``shaft_speed [rad/s]``.  Besides ``time`` there is ``stamp``, the wall time.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.csv
+import pyarrow.parquet
+
+from bearing_sim.recording_reader import Recording
+from bearing_sim.sample import OBSERVABLES
+from bearing_sim.scene_file import did_you_mean
+
+
+class Excerpt(NamedTuple):
+    """What of a recording goes into a table.
+
+    Attributes
+    ----------
+    columns : names of observables; all where empty.
+    rollers : whether observables of single rollers are among them.
+    every : one sample of so many.
+    first, last : simulated times between which samples are taken [s].
+    """
+
+    columns: tuple[str, ...] = ()
+    rollers: bool = True
+    every: int = 1
+    first: float = -np.inf
+    last: float = np.inf
+
+
+class TableError(ValueError):
+    """An excerpt that names what is not there."""
+
+
+WHOLE = Excerpt()
+
+
+def write_csv(recording: Recording, path: Path, excerpt: Excerpt = WHOLE, progress: Callable[[float], None] = lambda seconds: None) -> int:
+    """Write a recording as CSV and return the number of rows.
+
+    Parameters
+    ----------
+    recording : of a run.
+    path : the file; replaced if it exists.
+    excerpt : what of the recording.
+    progress : called now and then with the time that has been reached [s].
+
+    Raises
+    ------
+    TableError
+        The excerpt names no observable, or no sample lies in it.
+    """
+    schema = _schema(recording, excerpt, units_in_names=True)
+    with pa.OSFile(str(path), "wb") as stream, pa.csv.CSVWriter(stream, schema) as writer:
+        return _write(recording, excerpt, schema, writer.write_table, progress)
+
+
+def write_parquet(recording: Recording, path: Path, excerpt: Excerpt = WHOLE, progress: Callable[[float], None] = lambda seconds: None) -> int:
+    """Write a recording as Parquet and return the number of rows; see `write_csv`.  The scene is in the file's metadata."""
+    schema = _schema(recording, excerpt, units_in_names=False)
+    kept = {name: text for name, text in recording.metadata.items() if text}
+    with pa.parquet.ParquetWriter(str(path), schema.with_metadata(kept), compression="zstd") as writer:
+        return _write(recording, excerpt, schema, writer.write_table, progress)
+
+
+def _write(recording: Recording, excerpt: Excerpt, schema: pa.Schema, write: Callable, progress: Callable[[float], None]) -> int:
+    rows, seen = 0, 0
+    for block in recording:
+        if not isinstance(block, np.ndarray):
+            continue
+        kept = block[-seen % excerpt.every :: excerpt.every]
+        seen += len(block)
+        kept = kept[(kept["time"] >= excerpt.first) & (kept["time"] <= excerpt.last)]
+        if len(kept):
+            write(pa.Table.from_arrays(list(_arrays(recording, kept, excerpt)), schema=schema))
+            rows += len(kept)
+        progress(float(block["time"][-1]) - recording.first_time)
+    if not rows:
+        raise TableError(
+            f"{recording.path}: no sample between {excerpt.first:g} and {excerpt.last:g} s; there are some from "
+            f"{recording.first_time:g} to {recording.last_time:g} s"
+        )
+    return rows
+
+
+def _observables(excerpt: Excerpt) -> list:
+    known = {observable.name for observable in OBSERVABLES}
+    for name in excerpt.columns:
+        if name not in known:
+            raise TableError(f"no observable {name!r}{did_you_mean(name, known)}; there are {', '.join(sorted(known))}")
+    wanted = {"time", *(excerpt.columns or known)}
+    return [observable for observable in OBSERVABLES if observable.name in wanted and (excerpt.rollers or not observable.per_roller)]
+
+
+def _schema(recording: Recording, excerpt: Excerpt, units_in_names: bool) -> pa.Schema:
+    digits = len(str(recording.scene.bearing.roller.count - 1))
+
+    def field(name: str, unit: str, meaning: str) -> pa.Field:
+        title = f"{name} [{unit}]" if units_in_names and unit else name
+        return pa.field(title, pa.float64(), metadata={"unit": unit, "meaning": meaning})
+
+    fields = []
+    for observable in _observables(excerpt):
+        if observable.per_roller:
+            names: Sequence[str] = [f"{observable.name}_{roller:0{digits}}" for roller in range(recording.scene.bearing.roller.count)]
+        else:
+            names = [observable.name]
+        fields += [field(name, observable.unit, observable.meaning) for name in names]
+    stamp = pa.field("stamp", pa.timestamp("ns", tz="UTC"), metadata={"unit": "ns", "meaning": "wall time of the sample"})
+    return pa.schema([fields[0], stamp, *fields[1:]])
+
+
+def _arrays(recording: Recording, block: np.ndarray, excerpt: Excerpt) -> Iterator[pa.Array]:
+    for observable in _observables(excerpt):
+        numbers = block[observable.name]
+        for column in numbers.T if observable.per_roller else (numbers,):
+            yield pa.array(np.ascontiguousarray(column))
+        if observable.name == "time":
+            stamps = recording.start_ns + np.rint(numbers * 1e9).astype(np.int64)
+            yield pa.array(stamps, pa.timestamp("ns", tz="UTC"))

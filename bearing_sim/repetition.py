@@ -1,0 +1,222 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Repeat a recorded run from its recording alone: the scene, the start, the inputs as the model had them, sample by sample.
+
+Every sample of a recording says which inputs the model had at that instant, so a run in real time can be computed again
+although its inputs came late, were held, or were refused.  How much time was simulated from one sample to the next is told by
+the shaft's angle, which is the integral of its speed; so time that a live run gave up or spent paused is not simulated here
+either.
+
+Rollers that hit their pockets multiply the smallest difference a millionfold within milliseconds.  So the model is advanced by
+the very calls of the recorded run, where the recording tells them: then the same machine computes the same bits, as long as inputs
+do not change.
+"""
+
+import dataclasses
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from bearing_sim.effects import NUMBERS
+from bearing_sim.events import Event, Level
+from bearing_sim.recording_reader import Received, Recording
+from bearing_sim.sample import new_block
+from bearing_sim.simulation import Inputs, IntegrationError, Simulation, start_sample
+
+_SKIPPED = 0.25  # share of a spacing by which angle and stamps may disagree before time counts as skipped
+_LEVELS = {number: name for name, number in NUMBERS.items()}
+
+
+@dataclass
+class Repetition:
+    """What came of a repetition.
+
+    Attributes
+    ----------
+    samples : computed and written; ``received`` messages of inputs copied.
+    sim_seconds, wall_seconds : simulated time, and what it took.
+    starts : how it began and began anew after a reset: ``"ideal rolling"`` or ``"sample"`` (in the middle of a run).
+    level_changes : of a governor.
+    skipped_seconds : time of the recording that its run did not simulate.
+    failed : samples that could not be computed; the run goes on from what was recorded.
+    steps, rejected_steps : the integrator's work.
+    """
+
+    samples: int = 0
+    received: int = 0
+    sim_seconds: float = 0.0
+    wall_seconds: float = 0.0
+    starts: list[str] = dataclasses.field(default_factory=list)
+    level_changes: int = 0
+    skipped_seconds: float = 0.0
+    failed: int = 0
+    steps: int = 0
+    rejected_steps: int = 0
+
+
+def repeat(recording: Recording, sink, progress: Callable[[float], None] = lambda seconds: None) -> Repetition:
+    """Compute a recorded run again.
+
+    Parameters
+    ----------
+    recording : of a run, with all observables.
+    sink : a `bearing_sim.sinks.mcap_sink.McapSink`, or alike; gets samples at the recorded times, and the received inputs as they are.
+    progress : called now and then with the time that has been reached [s].
+
+    Raises
+    ------
+    ValueError
+        The recording is from before the inputs of every sample were recorded.
+    """
+    run = _Run(recording, sink)
+    began = time.perf_counter()
+    for item in recording.with_received():
+        if isinstance(item, Received):
+            sink.write_received(item.topic, item.ros_type, item.log_ns, item.data, item.publish_ns)
+            run.result.received += 1
+        elif isinstance(item, np.ndarray):
+            sink.write(run.take(item))
+            progress(float(item["time"][-1]) - recording.first_time)
+    sink.write(run.rest())
+    run.finish()
+    run.result.wall_seconds = time.perf_counter() - began
+    return run.result
+
+
+class _Run:
+    """One repetition under way."""
+
+    def __init__(self, recording: Recording, sink):
+        self.result = Repetition()
+        self._scene, self._sink = recording.scene, sink
+        self._interval = recording.duration / max(recording.samples - 1, 1)
+        self._duration = float(recording.metadata.get("advance_seconds") or 0.0)  # of one call of the recorded run
+        self._together = int(recording.metadata.get("advance_samples") or 1)  # samples that it gave
+        self._next_together = self._together
+        self._simulation: Simulation | None = None
+        self._last: np.void | None = None
+        self._waiting = new_block(0, recording.scene.bearing.roller.count)
+
+    def take(self, recorded: np.ndarray) -> np.ndarray:
+        """Return samples computed again; those of a call that is not complete yet wait."""
+        rows, done, computed = np.concatenate((self._waiting, recorded)), 0, []
+        while done < len(rows):
+            begins = self._simulation is None or rows["damage"][done] < self._last["damage"]
+            size = 1 if begins else self._next_together
+            if done + size > len(rows):
+                break
+            group = rows[done : done + size]
+            computed += [self._call(group)] if not begins and self._is_call(group) else [self._one(sample) for sample in group]
+            done += size
+            # A sample that is not the state at a start is the first of its call.
+            self._next_together = self._together - 1 if begins and group["shaft_angle"][0] and self._together > 1 else self._together
+        self._waiting = rows[done:].copy()
+        return self._written(rows[:done], computed)
+
+    def rest(self) -> np.ndarray:
+        """Return the last samples, computed one by one."""
+        rows, self._waiting = self._waiting, self._waiting[:0]
+        return self._written(rows, [self._one(sample) for sample in rows])
+
+    def _written(self, recorded: np.ndarray, computed: list[np.ndarray]) -> np.ndarray:
+        self.result.samples += len(recorded)
+        block = np.concatenate(computed) if computed else recorded.copy()
+        block["time"] = recorded["time"]
+        return block
+
+    def _is_call(self, group: np.ndarray) -> bool:
+        """Return whether these samples come from one call of the recorded run."""
+        if not self._duration or (group["level"] != NUMBERS[self._simulation.scene.level]).any() or (np.diff(group["damage"]) < 0.0).any():
+            return False
+        rows = np.concatenate((np.array([self._last]), group))
+        return abs(sum(map(self._lead, rows[:-1], rows[1:])) - self._duration) <= 0.01 * self._duration
+
+    def _call(self, group: np.ndarray) -> np.ndarray:
+        inputs = _inputs(group[-1])
+        stamped = float(group["time"][-1]) - float(self._last["time"])
+        if stamped > (1.0 + _SKIPPED) * self._duration:
+            self.result.skipped_seconds += stamped - self._duration
+        try:
+            block = self._simulation.advance(self._duration, inputs, len(group))
+        except IntegrationError as fault:
+            return self._give_up(group[-1], fault, group)
+        self.result.sim_seconds += self._duration
+        self._last = group[-1].copy()
+        return block
+
+    def _give_up(self, sample: np.void, fault: IntegrationError, recorded: np.ndarray) -> np.ndarray:
+        """Tell what could not be computed, return what was recorded there, and go on from it."""
+        self.result.failed += len(recorded)
+        self._sink.write_event(Event(float(sample["time"]), Level.ERROR, "repetition.failed", f"{fault}; going on from the recorded sample"))
+        self._simulation.resume(sample)
+        self._last = sample.copy()
+        return recorded.copy()
+
+    def finish(self) -> None:
+        """Count the work of the last simulation."""
+        if self._simulation is not None:
+            self.result.steps += self._simulation.counters.steps
+            self.result.rejected_steps += self._simulation.counters.rejected_steps
+
+    def _one(self, sample: np.void) -> np.ndarray:
+        """Return the sample at a recorded one's instant and inputs, as a block."""
+        inputs = _inputs(sample)
+        if self._simulation is None or sample["damage"] < self._last["damage"]:  # damage falls at nothing but a reset
+            lead = self._begin(sample, inputs)
+        else:
+            lead = self._lead(self._last, sample)
+            self.result.skipped_seconds += float(sample["time"]) - float(self._last["time"]) - lead
+        self._follow_level(sample)
+        self._last = sample.copy()
+        if lead <= 0.0:
+            return start_sample(self._simulation)
+        try:
+            block = self._simulation.advance(lead, inputs)
+        except IntegrationError as fault:
+            return self._give_up(sample, fault, np.array([sample]))
+        self.result.sim_seconds += lead
+        return block
+
+    def _begin(self, sample: np.void, inputs: Inputs) -> float:
+        """Start at the run's own start, if it is no more than an interval or two before the sample; return the time to it [s]."""
+        self.finish()
+        self._simulation = Simulation(self._scene, inputs)
+        angle, speed = float(sample["shaft_angle"]), inputs.shaft_speed
+        if angle == 0.0:
+            self.result.starts.append("ideal rolling")
+            return 0.0
+        since = angle / speed if speed else math.inf
+        if 0.0 < since <= 2.5 * self._interval:
+            self.result.starts.append("ideal rolling")
+            return since
+        self._simulation.resume(sample)
+        self.result.starts.append("sample")
+        return 0.0
+
+    @staticmethod
+    def _lead(before: np.void, sample: np.void) -> float:
+        """Return the time that was simulated from one sample to the next [s]."""
+        stamped = float(sample["time"]) - float(before["time"])
+        speeds = float(sample["shaft_speed"]) + float(before["shaft_speed"])
+        by_angle = 2.0 * (float(sample["shaft_angle"]) - float(before["shaft_angle"])) / speeds if speeds else stamped
+        return stamped if abs(by_angle - stamped) <= _SKIPPED * stamped else max(by_angle, 0.0)
+
+    def _follow_level(self, sample: np.void) -> None:
+        level = _LEVELS.get(int(sample["level"]), self._simulation.scene.level)
+        if level == self._simulation.scene.level:
+            return
+        self.result.level_changes += 1
+        own = self._scene.integration if level == self._scene.level else dataclasses.replace(self._scene.integration, method=None, fixed_step=None)
+        self.finish()
+        other = Simulation(dataclasses.replace(self._scene, level=level, integration=own), self._simulation.inputs)
+        other.take_over(self._simulation)
+        self._simulation = other
+
+
+def _inputs(sample: np.void) -> Inputs:
+    inputs = Inputs(*(float(sample[name]) for name in Inputs._fields))
+    if not all(map(math.isfinite, inputs)):
+        raise ValueError("the recording does not say which inputs the model had at every sample; replay its inputs with --scene instead")
+    return inputs

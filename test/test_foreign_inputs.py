@@ -1,0 +1,195 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Inputs that others recorded: other formats, topics, types, units; and what is odd about them counted."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from mcap.writer import Writer
+from recordings import JOINTS, SECOND, WRENCH, joint_state, steady_log, wrench, write_log
+from rosbags.rosbag2 import StoragePlugin
+from rosbags.rosbag2 import Writer as BagWriter
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+from bearing_sim.cli import main
+from bearing_sim.input_log import Anomalies, InputLogError, anomalies, read_input_log
+from bearing_sim.input_source import source, source_values
+from bearing_sim.sinks.mcap_file import McapFile
+
+T0 = 1_700_000_000 * SECOND
+SERVO = "drive_msgs/msg/ServoState"
+DEFINITION = "std_msgs/Header header\nfloat64[] velocity\nfloat32 torque\ndrive_msgs/Cell[2] cells\n"
+CELL = "float64 y\nint16 z\n"
+SPLIT = "=" * 80 + "\n"
+HEADER = "MSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n"
+TIME = "MSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n"
+
+
+def typestore():
+    store = get_typestore(Stores.ROS2_JAZZY)
+    store.register(get_types_from_msg(CELL, "drive_msgs/msg/Cell") | get_types_from_msg(DEFINITION, SERVO))
+    return store
+
+
+def servo(store, stamp_ns, rpm, load_y=0.5, load_z=-2):
+    types = store.types
+    header = types["std_msgs/msg/Header"](types["builtin_interfaces/msg/Time"](stamp_ns // SECOND, stamp_ns % SECOND), "")
+    cells = [types["drive_msgs/msg/Cell"](load_y, load_z), types["drive_msgs/msg/Cell"](0.0, 7)]
+    return types[SERVO](header, np.array([rpm, -1.0]), 3.0, cells)
+
+
+def course(count=21):
+    """(stamp, speed in rpm) at 10 Hz."""
+    return [(T0 + place * SECOND // 10, 30_000.0 + place) for place in range(count)]
+
+
+def servo_mcap(path):
+    store = typestore()
+    with open(path, "wb") as stream:
+        writer = Writer(stream)
+        writer.start(profile="ros2", library="another")
+        text = DEFINITION + SPLIT + HEADER + SPLIT + TIME + SPLIT + "MSG: drive_msgs/Cell\n" + CELL
+        channel = writer.register_channel("/servo/state", "cdr", writer.register_schema(SERVO, "ros2msg", text.encode()))
+        for stamp, rpm in course():
+            writer.add_message(channel, stamp, bytes(store.serialize_cdr(servo(store, stamp, rpm), SERVO)), stamp)
+        writer.finish()
+    return path
+
+
+def servo_sqlite(path):
+    store = typestore()
+    with BagWriter(path, version=9, storage_plugin=StoragePlugin.SQLITE3) as writer:
+        connection = writer.add_connection("/servo/state", SERVO, typestore=store)
+        for stamp, rpm in course():
+            writer.write(connection, stamp, store.serialize_cdr(servo(store, stamp, rpm), SERVO))
+    return path
+
+
+@pytest.mark.parametrize("make", [servo_mcap, servo_sqlite], ids=["mcap", "sqlite3"])
+def test_a_type_that_the_recording_itself_defines_is_read_by_field_paths_and_units(tmp_path, make):
+    path = make(tmp_path / ("log.mcap" if make is servo_mcap else "bag"))
+    names = {
+        "shaft_speed": source("shaft_speed", "/servo/state.velocity[0]", "rpm"),
+        "radial_load": source("radial_load", "/servo/state.cells[0].y,cells[0].z", "kN"),
+        "oil_temperature": source("oil_temperature", "/servo/state.torque", "degF"),
+    }
+    log = read_input_log(path, names)
+    assert log.series["shaft_speed"].stamps == [stamp for stamp, _ in course()] and log.series["shaft_speed"].stamped_by == "header"
+    assert log.series["shaft_speed"].values == [(pytest.approx(rpm * math.pi / 30, rel=1e-12),) for _, rpm in course()]
+    assert log.series["radial_load"].values[5] == (500.0, -2000.0)
+    assert log.series["oil_temperature"].values[0] == (pytest.approx((3.0 - 32) / 1.8 + 273.15),)
+
+
+def test_a_single_sqlite_file_without_its_folder_is_read(tmp_path):
+    bag = servo_sqlite(tmp_path / "bag")
+    [file] = bag.glob("*.db3")
+    names = {"shaft_speed": "/servo/state.velocity[0]", "radial_load": "/servo/state.cells[1].z"}
+    assert read_input_log(file, names).series["radial_load"].values == [(7.0,)] * 21
+
+
+def test_standard_types_of_an_sqlite_bag_are_read_as_those_of_mcap(tmp_path):
+    store = get_typestore(Stores.ROS2_JAZZY)
+    with McapFile(tmp_path / "log.mcap") as recording, BagWriter(tmp_path / "bag", version=9, storage_plugin=StoragePlugin.SQLITE3) as writer:
+        connections = {
+            kind: writer.add_connection(topic, kind, typestore=store) for topic, kind in (("/shaft_speed", JOINTS), ("/radial_load", WRENCH))
+        }
+        for stamp, speed in course():
+            for topic, kind, message in (("/shaft_speed", JOINTS, joint_state(stamp, speed)), ("/radial_load", WRENCH, wrench(stamp, 800.0, 3.0))):
+                recording.write(topic, kind, stamp, message)
+        recording.flush()
+        for topic, series in read_input_log(recording.active_path).series.items():
+            assert len(series.values) == 21, topic
+        from bearing_sim.mcap_stream import Salvage
+
+        kinds = {}
+        for record in Salvage(recording.active_path):
+            if type(record).__name__ == "Channel":
+                kinds[record.id] = JOINTS if record.topic == "/shaft_speed" else WRENCH
+            elif type(record).__name__ == "Message":
+                writer.write(connections[kinds[record.channel_id]], record.log_time, record.data)
+    ours, theirs = read_input_log(tmp_path / "log.mcap"), read_input_log(tmp_path / "bag")
+    for channel in ("shaft_speed", "radial_load"):
+        assert ours.series[channel] == theirs.series[channel]
+
+
+def test_an_absent_field_is_told_with_those_there_are(tmp_path):
+    path = servo_mcap(tmp_path / "log.mcap")
+    for field, words in (
+        ("speed", "no field 'speed'.*it has header, velocity, torque, cells"),
+        ("velocity[7]", "has 2 numbers"),
+        ("cells", "is no number"),
+        ("torque.y", r"no field 'y' in the message \(torque.y\); it has none"),
+    ):
+        with pytest.raises(InputLogError, match=words):
+            read_input_log(path, {"shaft_speed": f"/servo/state.{field}", "radial_load": "/servo/state.torque"})
+    with pytest.raises(InputLogError, match="needs sensor_msgs/msg/JointState or std_msgs/msg/Float64, or the field to take"):
+        read_input_log(path, {"shaft_speed": "/servo/state", "radial_load": "/servo/state.torque"})
+
+
+@pytest.mark.parametrize("text", ["/a.b[", "/a.b c", "/a.y,z", "/a..[x]"])
+def test_a_path_that_cannot_be_read_is_refused(text):
+    with pytest.raises(ValueError, match="field"):
+        source("shaft_speed", text)
+
+
+def test_a_unit_of_another_dimension_is_refused():
+    with pytest.raises(ValueError, match="such as '45000 rpm'"):
+        source("shaft_speed", "/a.b", "kN")
+
+
+def test_units_hold_for_standard_types_too():
+    class Number:
+        data = 3000.0
+
+    assert source_values("shaft_speed", source("shaft_speed", "/n", "rpm"), "std_msgs/msg/Float64", Number, "shaft") == (
+        pytest.approx(100 * math.pi),
+    )
+
+
+def test_several_recordings_are_read_as_one(tmp_path):
+    speeds = write_log(tmp_path / "speed.mcap", [(k / 10, 100.0 + k) for k in range(11)], [])
+    loads = write_log(tmp_path / "load.mcap", [], [(k / 10, 800.0, 0.0) for k in range(11)])
+    later = steady_log(tmp_path / "later.mcap", duration=1.0, speed=7.0, start_ns=T0 + 2 * SECOND)
+    log = read_input_log([later, speeds, loads])
+    assert [value for (value,) in log.series["shaft_speed"].values] == [100.0 + k for k in range(11)] + [7.0] * 11
+    assert len(log.series["radial_load"].values) == 22
+
+
+def odd_log(path):
+    """Speeds at 10 Hz: one stamped before its predecessor, two repeated, a gap of 3 s, and the last five logged in a burst."""
+    stamps = [k / 10 for k in range(20)]
+    stamps[7] = stamps[5] + 0.01
+    stamps[12] = stamps[13] = stamps[11]
+    stamps += [5.0 + k / 10 for k in range(10)]
+    with McapFile(path) as recording:
+        for place, stamp in enumerate(stamps):
+            arrival = T0 + (round(stamp * SECOND) if place < 25 else 6 * SECOND + place)
+            stamped = T0 + round(stamp * SECOND)
+            recording.write("/shaft_speed", JOINTS, max(arrival, T0 + place * SECOND // 10), joint_state(stamped, 4000.0))
+            recording.write("/radial_load", WRENCH, stamped, wrench(stamped, 800.0))
+    return path
+
+
+def test_oddities_are_counted(tmp_path):
+    log = read_input_log(odd_log(tmp_path / "log.mcap"))
+    assert anomalies(log.series["shaft_speed"]) == Anomalies(out_of_order=1, repeated=2, in_bursts=4, gaps=1)
+    clean = read_input_log(write_log(tmp_path / "clean.mcap", [(k / 10, 1.0) for k in range(9)], [(0.0, 1.0, 0.0), (0.8, 1.0, 0.0)]), stamps="log")
+    assert anomalies(clean.series["shaft_speed"]) == Anomalies(0, 0, 0, 0)
+
+
+def test_replay_takes_what_others_recorded_and_sums_up_what_is_odd(tmp_path):
+    options = ["--scene", "deng2017_table1", "--json"]
+
+    def replayed(*arguments):
+        done = CliRunner().invoke(main, ["replay", *map(str, arguments), *options])
+        assert done.exit_code == 0, done.output
+        return json.loads(done.stdout)
+
+    speed = ["--speed", "/servo/state.velocity[0]", "--speed-unit", "rpm", "--load", "/servo/state.cells[0].y,cells[0].z", "--load-unit", "kN"]
+    told = replayed(servo_sqlite(tmp_path / "bag"), *speed, "-o", tmp_path / "run.mcap")
+    assert told["inputs"] == 42 and told["inputs_refused"] == 0 and told["sim_seconds"] == pytest.approx(2.0)
+    told = replayed(odd_log(tmp_path / "odd.mcap"))
+    assert told["inputs_anomalies"]["shaft_speed"] == {"out_of_order": 1, "repeated": 2, "in_bursts": 4, "gaps": 1}
+    assert told["inputs_refused_by_reason"]["input.time_backwards"] >= 1 and told["inputs_refused_by_reason"]["input.time_repeated"] >= 2

@@ -1,0 +1,95 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Blocks written as rows: the same file as message by message."""
+
+import numpy as np
+import pytest
+from mcap.reader import make_reader
+
+from bearing_sim.sample import OBSERVABLES, new_block
+from bearing_sim.scene_file import load_scene
+from bearing_sim.sinks.mcap_file import McapFile
+from bearing_sim.sinks.mcap_rows import RowLayout
+from bearing_sim.topics import INPUTS, RECORDED, Topic, outputs, recorded
+
+START = 1_700_000_000_000_000_000
+LEVELS = ("slip", "spatial")
+
+
+def random_block(samples, rollers):
+    block = new_block(samples, rollers)
+    noise = np.random.default_rng(7)
+    for name in block.dtype.names:
+        block[name] = noise.normal(size=block[name].shape)
+    block["cage_slip"][:2], block["rating_life"][1:3] = np.nan, np.inf
+    return block
+
+
+def contents(path):
+    """Every message by the file's own index, so that chunk and message indexes are put to use; and the statistics."""
+    with open(path, "rb") as stream:
+        reader = make_reader(stream, validate_crcs=True)
+        found = {}
+        for schema, channel, message in reader.iter_messages(log_time_order=True):
+            told = (message.log_time, message.publish_time, message.sequence, message.data)
+            found.setdefault((channel.topic, schema.name), []).append(told)
+        return found, reader.get_summary().statistics
+
+
+@pytest.mark.parametrize("level", LEVELS)
+def test_rows_make_the_same_messages_as_one_by_one(tmp_path, level):
+    scene = load_scene("deng2017_table1", [f"level={level}"])
+    topics = tuple(recorded(scene).values())
+    block = random_block(333, scene.bearing.roller.count)
+    times = np.uint64(START) + np.arange(len(block), dtype=np.uint64) * np.uint64(1_000_003)
+    with McapFile(tmp_path / "one_by_one.mcap") as single:
+        for sample, time_ns in zip(block, times.tolist()):
+            for topic in topics:
+                single.write(f"/{topic.name}", topic.ros_type, time_ns, topic.message(time_ns, sample))
+    with McapFile(tmp_path / "rows.mcap") as rows:
+        layout = RowLayout(topics, scene.bearing.roller.count)
+        for part in np.split(np.arange(len(block)), [1, 2, 40, 300]):
+            rows.write_rows(layout, block[part], times[part])
+    expected, wanted = contents(tmp_path / "one_by_one.mcap")
+    found, statistics = contents(tmp_path / "rows.mcap")
+    assert found == expected and len(found) == len(topics)
+    assert statistics.chunk_count > 5
+    for figure in ("message_count", "channel_message_counts", "message_start_time", "message_end_time", "schema_count", "channel_count"):
+        assert getattr(statistics, figure) == getattr(wanted, figure), figure
+
+
+def test_a_recording_holds_every_observable_of_a_sample():
+    """Change one observable at a time: some message must change with it (time is in the stamps, the guide's shaft speed in the joints)."""
+    scene = load_scene("deng2017_table1", ["level=spatial"])
+    topics = recorded(scene).values()
+    plain = random_block(1, scene.bearing.roller.count)
+    before = [repr(topic.message(START, plain[0])) for topic in topics]
+    for observable in OBSERVABLES[1:]:
+        changed = plain.copy()
+        changed[observable.name] += 1.0
+        changed[observable.name] = np.nan_to_num(changed[observable.name], nan=0.5)
+        assert [repr(topic.message(START, changed[0])) for topic in topics] != before, observable.name
+
+
+def test_what_is_only_recorded_is_not_published():
+    scene = load_scene("deng2017_table1")
+    assert set(recorded(scene)) - set(outputs(scene)) == set(RECORDED)
+    assert not set(RECORDED) & {*outputs(scene), *INPUTS}
+
+
+def test_rows_and_single_messages_mix_in_one_file(tmp_path):
+    scene = load_scene("deng2017_table1")
+    layout = RowLayout(tuple(recorded(scene).values()), scene.bearing.roller.count)
+    block, times = random_block(3, scene.bearing.roller.count), np.uint64(START) + np.arange(3, dtype=np.uint64)
+    with McapFile(tmp_path / "run.mcap") as recording:
+        for k in range(3):
+            recording.write("/other", "std_msgs/msg/Float64", START + k, {"data": float(k)})
+            recording.write_rows(layout, block[k : k + 1], times[k : k + 1])
+    found, statistics = contents(tmp_path / "run.mcap")
+    assert [len(messages) for messages in found.values()] == [3] * (len(layout.topics) + 1)
+    assert statistics.message_count == 3 * (len(layout.topics) + 1)
+
+
+def test_a_topic_that_changes_its_numbers_is_refused():
+    kelvin = Topic("celsius", "std_msgs/msg/Float64", "", lambda stamp_ns, sample: {"data": float(sample["oil_temperature"]) - 273.15})
+    with pytest.raises(ValueError, match="celsius"):
+        RowLayout([kelvin], 6)

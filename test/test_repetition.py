@@ -1,0 +1,161 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""A recorded run is computed again from its recording alone; killed recorders lose little; a clock that is set does no harm."""
+
+import json
+import time
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from fake_simulation import FakeSimulation
+from recordings import steady_log
+
+from bearing_sim.cli import main
+from bearing_sim.comparison import compare
+from bearing_sim.recording_reader import Recording
+from bearing_sim.recovery import contents
+from bearing_sim.runtime.live import LiveModel, cadence
+from bearing_sim.scene_file import load_scene
+from bearing_sim.simulation import Inputs, Simulation, start_sample
+from bearing_sim.sinks.mcap_sink import McapSink
+from bearing_sim.studies.kills import kill_recorders
+
+START = 1_700_000_000_000_000_000
+
+
+def invoke(*arguments, code=0):
+    done = CliRunner().invoke(main, [str(argument) for argument in arguments])
+    assert done.exit_code == code, done.output + repr(done.exception)
+    return done.stdout
+
+
+def live_run(scene, path, rate=1000.0, from_start=True, steady=False, reset_at=(), skip_at=(), ticks=120):
+    """Record a run as a live one makes it: tick by tick to inputs that step, in pieces of a cadence, with time that is given up."""
+    simulation, beat, shift = Simulation(scene, Inputs(3000.0, 700.0, 0.0, 393.15)), cadence(rate), 0.5
+    with McapSink(path, scene, START, advance=(beat.tick, beat.samples)) as sink:
+        if from_start:
+            block = start_sample(simulation)
+            block["time"] += shift
+            sink.write(block)
+        for tick in range(ticks):
+            inputs = (
+                Inputs(3000.0, 700.0, 0.0, 393.15)
+                if steady
+                else Inputs(3000.0 + 40.0 * (tick // 7), 700.0 - 3.0 * tick, 2.0 * tick, 393.15 + 0.1 * (tick // 40))
+            )
+            if tick in skip_at:
+                shift += 0.3
+            if tick in reset_at:
+                shift += simulation.time
+                simulation.reset(inputs)
+            block = simulation.advance(beat.tick, inputs, beat.samples)
+            block["time"] += shift
+            if from_start or tick >= ticks // 2:
+                sink.write(block)
+                sink.write_inputs(float(block["time"][-1]), inputs)
+    return path
+
+
+def worst(differences, *topics):
+    return max(float(difference.relative.max()) for difference in differences if not topics or difference.topic[1:] in topics)
+
+
+def repeated(path, folder):
+    told = json.loads(invoke("replay", path, "--from-recording", "-o", folder / "again.mcap", "--json"))
+    return told, compare(path, folder / "again.mcap", 1e-6)[0]
+
+
+@pytest.mark.parametrize(("level", "steady", "tolerance"), [("slip", False, 1e-9), ("slip", True, 0.0), ("planar", True, 0.0)])
+def test_a_run_from_its_start_is_repeated_to_round_off_and_to_the_bit_under_constant_inputs(tmp_path, level, steady, tolerance):
+    scene = load_scene("deng2017_table1", [f"level={level}"])
+    told, differences = repeated(live_run(scene, tmp_path / "run.mcap", steady=steady, ticks=60), tmp_path)
+    assert told["starts"] == ["ideal rolling"] and told["failed"] == 0 and told["skipped_seconds"] == pytest.approx(0.0, abs=1e-9)
+    assert all(not (difference.only_first or difference.only_second) for difference in differences)
+    assert worst(differences) <= tolerance and {d.topic for d in differences} > {"/shaft_speed", "/roller_loads", "/roller_places"}
+
+
+def test_time_that_a_live_run_gave_up_and_its_resets_are_repeated(tmp_path):
+    scene = load_scene("deng2017_table1")
+    told, differences = repeated(live_run(scene, tmp_path / "run.mcap", reset_at=(60,), skip_at=(20, 90)), tmp_path)
+    assert told["starts"] == ["ideal rolling", "ideal rolling"] and told["skipped_seconds"] == pytest.approx(0.6, rel=1e-6)
+    assert worst(differences) < 1e-3  # the tick of the reset began at inputs that no sample has
+
+
+def test_a_recording_that_begins_in_the_middle_of_a_run_is_gone_on_from(tmp_path):
+    scene = load_scene("deng2017_table1")
+    told, differences = repeated(live_run(scene, tmp_path / "run.mcap", from_start=False), tmp_path)
+    assert told["starts"] == ["sample"] and told["samples"] == 300
+    assert worst(differences, "bearing_joints", "damage", "roller_places") < 1e-4
+    assert worst(differences, "cage_slip", "roller_loads") < 1e-2  # goes on from observables, not from the whole state
+
+
+def test_a_run_of_the_command_line_needs_no_other_file_to_be_repeated(tmp_path):
+    invoke("run", "deng2017_table1", "--set", "operating.shaft_speed=20000 rpm", "--duration", "0.05", "--out", tmp_path / "run.mcap")
+    invoke("replay", tmp_path / "run.mcap", "--from-recording", "-o", tmp_path / "again.mcap")
+    assert "the recordings agree" in invoke("compare", tmp_path / "run.mcap", tmp_path / "again.mcap", "--tolerance", "1e-9")
+    assert Recording(tmp_path / "again.mcap").scene.operating.shaft_speed == pytest.approx(20000 * np.pi / 30)
+
+
+def test_a_replayed_log_is_repeated_with_its_messages(tmp_path):
+    log = steady_log(tmp_path / "log.mcap", duration=0.3, rate=50, speed=2000.0)
+    invoke("replay", log, "--scene", "deng2017_table1", "--rate", "200", "-o", tmp_path / "run.mcap")
+    told, differences = repeated(tmp_path / "run.mcap", tmp_path)
+    assert told["received"] == 32 and all(difference.agrees for difference in differences)
+
+
+def test_a_repetition_of_another_model_differs(tmp_path, monkeypatch):
+    """What compare is for: a change of the model shows."""
+    scene = load_scene("deng2017_table1")
+    path = live_run(scene, tmp_path / "run.mcap", ticks=30)
+    heavier = load_scene("deng2017_table1", ["bearing.roller.length=8mm"])
+    monkeypatch.setattr("bearing_sim.repetition.Recording.scene", heavier, raising=False)
+    real = Simulation.__init__
+    monkeypatch.setattr(Simulation, "__init__", lambda self, scene, *rest, **more: real(self, heavier, *rest, **more))
+    invoke("replay", path, "--from-recording", "-o", tmp_path / "again.mcap")
+    assert "DIFFERS" in invoke("compare", path, tmp_path / "again.mcap", code=1)
+
+
+def test_from_recording_refuses_what_does_not_go_with_it(tmp_path):
+    log = steady_log(tmp_path / "log.mcap", duration=0.3)
+    for arguments, code in (
+        (["--from-recording", "--scene", "deng2017_table1"], 2),
+        ([], 2),
+        (["--from-recording"], 2),
+        (["--from-recording", "--rate", 5], 2),
+    ):
+        invoke("replay", log, *arguments, code=code)
+
+
+def test_killed_recorders_lose_less_than_a_second_each(tmp_path):
+    """A few of the many that `bearing-sim study kills` ends."""
+    for kill in kill_recorders(tmp_path, 3, seed=11):
+        assert kill.lost <= 1.0 and kill.gaps == 0, kill
+
+
+def test_a_clock_that_is_set_is_told_and_the_recording_goes_on_evenly(tmp_path):
+    scene = load_scene("deng2017_table1", ["input_limits.minimum_rate=0Hz"])
+    simulation, ahead_ns = FakeSimulation(), 0
+    began = time.monotonic()
+    live = LiveModel(scene, simulation, START, 200.0)
+    sink = McapSink(tmp_path / "run.mcap", load_scene("deng2017_table1", ["bearing.roller.count=6"]), START)
+    live.attach("record", sink)
+    news = []
+    for step in range(60):
+        if step == 20:
+            ahead_ns = 3600 * 10**9
+        if step == 40:
+            ahead_ns = -7200 * 10**9
+        now_ns = START + ahead_ns + round((time.monotonic() - began) * 1e9)
+        live.offer("shaft_speed", (100.0,), now_ns, now_ns, "shaft")
+        live.offer("radial_load", (800.0, 0.0), None, now_ns)
+        news += live.collect(now_ns)
+        time.sleep(0.02)
+    elapsed = time.monotonic() - began
+    live.close()
+    jumps = [event.text for event in news if event.code == "clock.jumped"]
+    assert len(jumps) >= 1 and "+3600" in jumps[0]
+    found = contents(tmp_path / "run.mcap")
+    assert found.is_sound and 0 <= found.first_ns - START and found.last_ns - START < (elapsed + 1.0) * 1e9
+    assert found.messages["/shaft_speed"] == 60 and found.messages["/roller_loads"] > 50
+    times = np.concatenate([item["time"] for item in Recording(tmp_path / "run.mcap") if isinstance(item, np.ndarray)])
+    assert (np.diff(times) > 0).all() and np.diff(times).max() < 1.0
