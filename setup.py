@@ -40,6 +40,7 @@ setup(
         "numpy>=2.0",
         "pint>=0.24",
         "platformdirs>=4",
+        "pyarrow>=18",
         "pydantic>=2.9",
         "PyYAML>=6",
         "rerun-sdk==0.41.0",
@@ -50,6 +51,7 @@ setup(
         *ros_wheels,
     ],
     extras_require={
+        "dask": ["distributed>=2024.8"],
         "test": [
             "catkin-pkg>=1.0",
             "colcon-common-extensions==0.3.0",
@@ -60,7 +62,7 @@ setup(
             "pytest-timeout>=2.3",
             "scikit-sundae>=1.1",
             *ros_tests,
-        ]
+        ],
     },
     zip_safe=False,
     maintainer="bearing_sim maintainers",

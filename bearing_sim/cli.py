@@ -18,6 +18,8 @@ _COMMANDS = {
     "table": "Build or look into the table of operating points of level steady.",
     "uncertainty": "Tell what slip and life may be where nobody knows some fields, and which it comes from.",
     "calibrate": "Fit fields of a scene to the measured cage speed of a recording.",
+    "sweep": "Run a scene at all combinations of values of its fields, as a table.",
+    "plot": "Draw the table of a sweep.",
     "trade": "Measure what speed costs in accuracy on a scene, and recommend a setting.",
     "bench": "Measure speed and error of every level and method.",
     "study": "Study the model itself: the extremes.",

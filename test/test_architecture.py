@@ -72,6 +72,10 @@ ALLOWED = {
         {"numpy", "mcap", "rosbags", "rerun", "yaml"},
         {"sinks", "contour", "effects", "sample", "scene", "scene_file", "events", "topics", "provenance", "simulation"},
     ),
+    "sweep": (
+        {"numpy", "pyarrow", "distributed", "matplotlib"},
+        {"sweep", "kernels.compilation", "levels.steady_table", "provenance", "quantity", "sample", "scene", "scene_file", "simulation"},
+    ),
     "studies": (
         NUMBERS | {"sksundae", "matplotlib", "pydantic"},
         {
