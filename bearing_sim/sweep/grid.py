@@ -2,7 +2,8 @@
 """A sweep: all combinations of the values of its axes, each a run of a scene, as one table."""
 
 import itertools
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from typing import NamedTuple
 
 from bearing_sim.provenance import git_hash, package_version
 from bearing_sim.scene import Scene
@@ -48,18 +49,63 @@ def sweep(
     ClusterError
         See `bearing_sim.sweep.executor.run_tasks`.
     """
-    places = list(itertools.product(*(axis.values for axis in axes)))
-    scenes = [_scene_at(name, overrides, axes, place) for place in places]
-    possible = [point_task(scene, duration) for scene in scenes if isinstance(scene, Scene)]
-    if not possible:
+    plan = plan_sweep(name, overrides, axes, duration)
+    return plan.table(run_tasks(plan.tasks, journal, workers, dask, tell))
+
+
+class Plan(NamedTuple):
+    """A sweep before it is computed: what each combination of values means.
+
+    Attributes
+    ----------
+    name, overrides, axes, duration : see `sweep`.
+    places : the combinations, one value of each axis.
+    scenes : what is run at each of them, or why there is no such scene.
+    """
+
+    name: str
+    overrides: tuple[str, ...]
+    axes: tuple[Axis, ...]
+    duration: float
+    places: tuple[tuple, ...]
+    scenes: tuple[Scene | SceneError, ...]
+
+    @property
+    def tasks(self) -> list[Task]:
+        """What there is to compute: a task for each point that can be."""
+        return [point_task(scene, self.duration) for scene in self.scenes if isinstance(scene, Scene)]
+
+    def table(self, results: Iterable[dict]) -> Table:
+        """Return the table of all points from the results of `tasks`."""
+        results, rows = iter(results), []
+        for place, scene in zip(self.places, self.scenes):
+            shown = {axis.field.path: axis.field.shown(value) for axis, value in zip(self.axes, place)}
+            rows.append(shown | (_complete(next(results)) if isinstance(scene, Scene) else empty_row(REFUSED, _one_line(scene))))
+        columns = tuple(Column(axis.field.path, axis.field.unit, axis.field.meaning) for axis in self.axes) + RESULTS + TEXTS
+        return Table(columns, rows, self._about())
+
+    def _about(self) -> dict:
+        scene = next(scene for scene in self.scenes if isinstance(scene, Scene))
+        return {
+            "kind": "sweep",
+            "scene": self.name,
+            "overrides": list(self.overrides),
+            "level": scene.level if all(axis.field.path != "level" for axis in self.axes) else "varied",
+            "axes": [{"field": axis.field.path, "unit": axis.field.unit, "values": axis.shown} for axis in self.axes],
+            "duration": self.duration,
+            "version": package_version(),
+            "commit": git_hash(),
+            "scene_of_first_point": scene_to_yaml(scene),
+        }
+
+
+def plan_sweep(name: str, overrides: Sequence[str], axes: Sequence[Axis], duration: float = DURATION) -> Plan:
+    """Return what a sweep will compute; parameters and faults as of `sweep`."""
+    places = tuple(itertools.product(*(axis.values for axis in axes)))
+    scenes = tuple(_scene_at(name, overrides, axes, place) for place in places)
+    if not any(isinstance(scene, Scene) for scene in scenes):
         raise scenes[0]
-    results = iter(run_tasks(possible, journal, workers, dask, tell))
-    rows = []
-    for place, scene in zip(places, scenes):
-        shown = {axis.field.path: axis.field.shown(value) for axis, value in zip(axes, place)}
-        rows.append(shown | (_complete(next(results)) if isinstance(scene, Scene) else empty_row(REFUSED, _one_line(scene))))
-    columns = tuple(Column(axis.field.path, axis.field.unit, axis.field.meaning) for axis in axes) + RESULTS + TEXTS
-    return Table(columns, rows, _about(name, overrides, axes, duration, next(scene for scene in scenes if isinstance(scene, Scene))))
+    return Plan(name, tuple(overrides), tuple(axes), float(duration), places, scenes)
 
 
 def point_task(scene: Scene, duration: float = DURATION) -> Task:
@@ -81,17 +127,3 @@ def _complete(result: dict) -> dict:
 
 def _one_line(fault: SceneError) -> str:
     return "; ".join(map(str, fault.faults))
-
-
-def _about(name, overrides, axes, duration, scene) -> dict:
-    return {
-        "kind": "sweep",
-        "scene": name,
-        "overrides": list(overrides),
-        "level": scene.level if all(axis.field.path != "level" for axis in axes) else "varied",
-        "axes": [{"field": axis.field.path, "unit": axis.field.unit, "values": axis.shown} for axis in axes],
-        "duration": duration,
-        "version": package_version(),
-        "commit": git_hash(),
-        "scene_of_first_point": scene_to_yaml(scene),
-    }

@@ -113,7 +113,7 @@ def point_row(scene: Scene, duration: float = DURATION) -> dict:
     except IntegrationError as fault:
         return empty_row(FAILED, str(fault))
     slip = window["cage_slip"]
-    found = {"cage_slip": slip.mean(), "cage_slip_minimum": slip.min(), "cage_slip_maximum": slip.max(), "simulated": simulated}
+    found = {"cage_slip": slip.mean(), "cage_slip_minimum": slip.min(), "cage_slip_maximum": slip.max(), "simulated": round(simulated, 9)}
     for ring in ("inner", "outer"):
         found[f"{ring}_load_maximum"] = window[f"{ring}_load"].max()
     found["loaded_rollers"] = (window["inner_load"] > 0.0).sum(axis=1).mean()
