@@ -20,6 +20,7 @@ _COMMANDS = {
     "calibrate": "Fit fields of a scene to the measured cage speed of a recording.",
     "sweep": "Run a scene at all combinations of values of its fields, as a table.",
     "plot": "Draw the table of a sweep.",
+    "design": "Map which outer raceways keep slip and life within limits.",
     "report": "Make one HTML page of a study.",
     "trade": "Measure what speed costs in accuracy on a scene, and recommend a setting.",
     "bench": "Measure speed and error of every level and method.",

@@ -87,7 +87,8 @@ def _tell(steps: Sequence[tuple[Course, int]], unit: str) -> tuple[str, str]:
     """Return which steps go wrong by how much, and whether a vibrating ring is at each of them."""
     worst, at = max(steps, key=lambda step: abs(_share(*step)))
     between = f"between {worst.x[at]:.7g} and {worst.x[at + 1]:.7g} {unit}"
-    off = f"{len(steps)} step{'s' * (len(steps) > 1)} the wrong way, the largest {100 * _share(worst, at):+.0f} % {between}"
+    counted = f"{len(steps)} steps from point to point go" if len(steps) > 1 else "1 step from point to point goes"
+    off = f"{counted} the wrong way, the largest {100 * _share(worst, at):+.0f} % {between}"
     shaken = sum(bool(each.vibrating[k] or each.vibrating[k + 1]) for each, k in steps)
     if shaken == len(steps):
         return off, VIBRATION

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.scene_file import load_scene
 from bearing_sim.studies.deng2017 import ANGLE, D_VALUE, LOAD, LOW, LOW_RADII, MASS, MIXTURE, ROUNDNESS, SPEED
 from bearing_sim.studies.machining import Machined
 from bearing_sim.sweep.picture import COLOURS, MARKERS, label, new_figure, on_grid
@@ -55,7 +56,7 @@ def draw_contours(path: Path, rings: Mapping[float, Machined]) -> None:
     _finish(figure, path, (contours, points))
 
 
-def draw_lines(path: Path, tables: Tables, name: str, x: str, profiles: Sequence[tuple[str, dict]] = (), bottom: bool = True) -> None:
+def draw_lines(path: Path, tables: Tables, name: str, x: str, profiles: Sequence[tuple[str, dict]] = ()) -> None:
     """Write slip and life along one variable at both levels and, where there are some, load distributions at level slip.
 
     Parameters
@@ -64,7 +65,6 @@ def draw_lines(path: Path, tables: Tables, name: str, x: str, profiles: Sequence
     tables : by sweep and level.
     name, x : the sweep, and the column along which it goes.
     profiles : value in words, and what `bearing_sim.studies.deng2017.load_profile` returned.
-    bottom : whether axes begin at zero.
     """
     figure = new_figure(15 if profiles else 10, 4.2)
     axes = figure.subplots(1, 3 if profiles else 2)
@@ -74,8 +74,7 @@ def draw_lines(path: Path, tables: Tables, name: str, x: str, profiles: Sequence
             each.plot(*_pair(rows, x, quantity), color=COLOURS[k], marker=MARKERS[k], ms=4, label=f"level {level}", **_LOOKS[level])
         table = tables[name, "slip"]
         each.set(xlabel=label(table.column(x)), ylabel=label(table.column(quantity)))
-        if bottom:
-            each.set_ylim(bottom=0)
+        _from_zero(each)
         each.legend(frameon=False)
     if profiles:
         _draw_profiles(axes[2], profiles)
@@ -118,7 +117,7 @@ def draw_families(path: Path, tables: Tables, name: str, x: str, quantities: Seq
         if quantity == "rating_life":
             each.set_yscale("log")
         else:
-            each.set_ylim(bottom=0)
+            _from_zero(each)
     axes[0].legend(frameon=False, fontsize=8, title="solid: slip, dashed: planar", title_fontsize=8)
     _finish(figure, path, axes)
 
@@ -137,6 +136,8 @@ def draw_map(path: Path, tables: Tables, slip_below: float = 10.0, life_above: f
     tables : by sweep and level.
     slip_below, life_above : limits [%], [h].
     """
+    from matplotlib.ticker import MaxNLocator
+
     levels = [level for sweep, level in tables if sweep == "map"]
     figure = new_figure(11, 4.3 * len(levels))
     axes = figure.subplots(len(levels), 2, squeeze=False)
@@ -148,35 +149,39 @@ def draw_map(path: Path, tables: Tables, slip_below: float = 10.0, life_above: f
             lines = each.contour(across, up, field, 8, colors="white", linewidths=0.6, alpha=0.8)
             each.clabel(lines, fontsize=8, fmt="%g")
             border = each.contour(across, up, field, [limit], colors="#d55e00", linewidths=2.2)
-            each.clabel(border, fontsize=9, fmt=lambda value, unit=table.column(quantity).unit: f"{value:g} {unit}")
+            each.clabel(border, fontsize=9, fmt={limit: f"{limit:g} {table.column(quantity).unit}"})
             (left, right), (low, high) = DENG_REGION
             each.plot([left, right, right, left, left], [low, low, high, high, low], color="black", lw=1.6, label="recommended by Deng 2017")
             each.set(xlabel=label(table.column(D_VALUE)), ylabel=label(table.column(LOW)), title=f"level {level}")
             each.ticklabel_format(useOffset=False)
+            each.xaxis.set_major_locator(MaxNLocator(5))
             figure.colorbar(mesh, ax=each, label=label(table.column(quantity)))
     axes[0, 0].legend(loc="upper left", fontsize=8)
     figure.savefig(path, dpi=_DPI)
 
 
-def draw_trajectories(path: Path, found: Mapping[float, dict]) -> None:
+def draw_trajectories(path: Path, found: Mapping[float, dict], guide_clearance: float) -> None:
     """Write the orbits of the cage's centre and the spin of a roller around the bearing.
 
     Parameters
     ----------
     path : of the picture.
     found : by low-point radius [mm], what `bearing_sim.studies.deng2017.trajectory` returned.
+    guide_clearance : radial, of the cage in its guide [um].
     """
     figure = new_figure(3.6 * len(found), 7)
     axes = figure.subplots(2, len(found), squeeze=False)
     spins = [value for one in found.values() for value in one["spin_ratio"]]
     for k, (low, one) in enumerate(found.items()):
         orbit, spin = axes[0, k], axes[1, k]
-        orbit.plot(one["cage_y"], one["cage_z"], color=COLOURS[k], lw=0.5)
+        orbit.plot(one["cage_y"], one["cage_z"], color=COLOURS[k], lw=0.7, marker=".", ms=4)
+        around = np.linspace(0, 2 * np.pi, 200)
+        orbit.plot(guide_clearance * np.cos(around), guide_clearance * np.sin(around), ":", color="black", lw=0.8)
         orbit.set(aspect="equal", title=f"R_low = {low:.4f} mm", xlabel="cage centre y [µm]", ylabel="cage centre z [µm]")
         spin.plot(one["roller_angle"], one["spin_ratio"], ".", color=COLOURS[k], ms=2)
         spin.set(xlabel="azimuth of the roller [deg]", ylabel="spin / spin of pure rolling", xlim=(0, 360), xticks=range(0, 361, 90))
         spin.set_ylim(min(spins) - 0.02, max(spins) + 0.02)
-    limit = 1.08 * max(abs(value) for one in found.values() for name in ("cage_y", "cage_z") for value in one[name])
+    limit = 1.08 * guide_clearance
     for each in axes[0]:
         each.set(xlim=(-limit, limit), ylim=(-limit, limit))
     _finish(figure, path, axes.flat)
@@ -193,18 +198,26 @@ def draw_reasons(path: Path, tables: Tables) -> None:
             )
         table = tables[name, "slip"]
         each.set(xlabel=label(table.column(x)), ylabel=label(table.column("cage_slip")))
-        each.set_ylim(bottom=0)
+        _from_zero(each)
         each.legend(frameon=False)
     axes[0].set_title("R_low = 34.8650 mm, D = 0.105 mm", fontsize=10)
     axes[1].set_title("R_low = 34.8675 mm, D = 0.098 mm", fontsize=10)
     _finish(figure, path, axes)
 
 
+def _from_zero(axes) -> None:
+    axes.set_ylim(0, 1.15 * axes.dataLim.y1)
+
+
 def _finish(figure, path, axes) -> None:
+    from matplotlib.ticker import MaxNLocator
+
     for each in axes:
         each.grid(alpha=0.3)
         if each.get_yscale() == "linear" and each.get_xscale() == "linear":
             each.ticklabel_format(useOffset=False)
+            if len(each.get_xticks()) > 7 and not each.get_xlabel().startswith("azimuth"):
+                each.xaxis.set_major_locator(MaxNLocator(5))
     figure.savefig(path, dpi=_DPI)
 
 
@@ -235,7 +248,8 @@ def draw_study(folder: Path, tables: Tables, profiles: Mapping, trajectories: Ma
     draw_lines(folder / "fig23.png", tables, "table2", SPEED)
     moving = {low: one for low, one in trajectories.items() if one["status"] == "ok"}
     if moving:
-        draw_trajectories(folder / "trajectories.png", moving)
+        cage = load_scene("deng2017_table1").bearing.cage
+        draw_trajectories(folder / "trajectories.png", moving, 1e6 * cage.guide_clearance)
     draw_reasons(folder / "reasons.png", tables)
     conditions = "45,000 rpm, 800 N, D = 0.098 mm unless varied"
     shown = [
@@ -257,7 +271,7 @@ def draw_study(folder: Path, tables: Tables, profiles: Mapping, trajectories: Ma
         Pictured(
             "fig15_16.png",
             "Figures 15, 16: shaft speed",
-            f"Slip and largest loads at an instant. {both} Around 25,000 rpm, and above 42,000 where R_low is large, the inner ring vibrates (planar).",
+            f"Slip, largest loads. {both} The inner ring vibrates (planar) around 25,000 rpm, and above 42,000 where R_low is large.",
             ("speed_slip", "speed_planar"),
         ),
         Pictured("fig17_18.png", "Figures 17, 18: radial load", f"Slip, life and largest inner load. {both}", ("load_slip", "load_planar")),
@@ -278,7 +292,7 @@ def draw_study(folder: Path, tables: Tables, profiles: Mapping, trajectories: Ma
         Pictured(
             "trajectories.png",
             "Trajectories: cage centre and roller spin",
-            "Twelve cage turns at level planar, 45,000 rpm and 800 N, after settling; spin of one roller around the bearing.",
+            "Twelve cage turns at level planar, 45,000 rpm, 800 N. Dotted: clearance of the guide; a dot is a cage that leans and stands.",
             ("trajectories",),
         ),
         Pictured(

@@ -22,6 +22,10 @@ table { border-collapse: collapse; width: 100%; font-size: .9rem; }
 th, td { text-align: left; vertical-align: top; padding: .45rem .6rem; border-bottom: 1px solid var(--line); }
 th { background: var(--shade); font-weight: 600; }
 tr.first td { border-top: 2px solid #b8c0cb; }
+td p { margin: 0 0 .4rem; }
+td:nth-child(2) { width: 21%; } td:nth-child(5) { width: 31%; } td:nth-child(6) { width: 31%; }
+table.plain td { width: auto; }
+code { overflow-wrap: anywhere; }
 td.verdict { white-space: nowrap; font-weight: 600; }
 .holds { color: var(--good); } .part { color: var(--part); } .fails { color: var(--bad); }
 .counts { display: flex; gap: 2rem; flex-wrap: wrap; margin: 1rem 0; }
@@ -32,7 +36,10 @@ figcaption b { display: block; }
 img { max-width: 100%; height: auto; border: 1px solid var(--line); }
 code, pre { font: .85em/1.45 ui-monospace, monospace; }
 pre { background: var(--shade); padding: .8rem; overflow-x: auto; }
-@media (max-width: 50rem) { table, tbody, tr, td { display: block; } thead { display: none; } td { border: 0; padding: .15rem 0; } tr { padding: .6rem 0; border-bottom: 1px solid var(--line); } }
+@media (max-width: 50rem) {
+  table, tbody, tr, td { display: block; width: auto !important; } thead { display: none; }
+  td { border: 0; padding: .15rem 0; } tr { padding: .6rem 0; border-bottom: 1px solid var(--line); }
+}
 @media print { body { max-width: none; padding: 0; } figure, tr { break-inside: avoid; } }
 """
 _CLASSES = {"holds": "holds", "holds in part": "part", "does not hold": "fails"}
@@ -81,17 +88,15 @@ def _page(folder: Path, about: Mapping) -> str:
 
 
 def _opening(about) -> str:
-    quick = (
-        "<p><b>A quick run: few points and short runs, to see that everything works. Its verdicts are not those of the study.</b></p>"
-        if about["quick"]
-        else ""
-    )
+    warning = "A quick run: few points and short runs, to see that everything works. Its verdicts are not those of the study."
+    quick = f"<p><b>{warning}</b></p>" if about["quick"] else ""
     levels = "; ".join(f"<b>{escape(level)}</b> {escape(told)}" for level, told in about["levels"].items())
     doi = escape(about["doi"], quote=True)
     statuses = ", ".join(f"{count} {escape(status)}" for status, count in about["statuses"].items())
     return (
         f"{quick}<p>All parameters are those of the bundled scenes, the same for every figure: nothing is tuned. Every sweep ran at two levels of "
-        f"fidelity: {levels}.</p><p class=soft>{about['points']} runs; points of sweeps: {statuses}. Made by <code>{escape(about['command'])}</code>. "
+        f'fidelity: {levels}.</p><p class="soft">{about["points"]} runs; points of sweeps: {statuses}. '
+        f"Made by <code>{escape(about['command'])}</code>. "
         f'The paper: <a href="https://doi.org/{doi}">doi {doi}</a>.</p>'
     )
 
@@ -119,10 +124,9 @@ def _claims(claims: Sequence[Mapping]) -> str:
         says = f"{escape(each['says'])}{figures}" if first else ""
         off = f'<p class="off">{escape(each["off"])}</p>' if each["off"] else ""
         why = f'<p class="soft">Why: {escape(each["why"])}</p>' if each["why"] else ""
-        rows.append(
-            f"<tr{' class=first' if first else ''}><td>{escape(str(each['claim'] or '')) if first else ''}</td><td>{says}</td><td>{escape(each['level'])}</td>"
-            f'<td class="verdict {_CLASSES[each["verdict"]]}">{escape(each["verdict"])}</td><td>{escape(each["gives"])}</td><td>{off}{why}</td></tr>'
-        )
+        opening = '<tr class="first"><td>' + escape(str(each["claim"] or "")) if first else "<tr><td>"
+        verdict = f'<td class="verdict {_CLASSES[each["verdict"]]}">{escape(each["verdict"])}</td>'
+        rows.append(f"{opening}</td><td>{says}</td><td>{escape(each['level'])}</td>{verdict}<td>{escape(each['gives'])}</td><td>{off}{why}</td></tr>")
     head = "<thead><tr><th></th><th>Deng 2017 says</th><th>level</th><th>verdict</th><th>this code gives</th><th>off by, and why</th></tr></thead>"
     return f"<table>{head}<tbody>{''.join(rows)}</tbody></table>"
 
@@ -140,20 +144,23 @@ def _figure(folder: Path, each: Mapping) -> str:
 
 
 def _settings(about) -> str:
-    rows = "".join(
-        f"<tr><td>{escape(each['figures'])}</td><td>{escape(each['title'])}</td><td>{escape(each['scene'])}</td>"
-        f"<td><code>{'<br>'.join(escape(text) for text in [*(f'--set {item}' for item in each['set']), *(f'--vary {item}' for item in each['vary'])])}</code></td></tr>"
-        for each in about["sweeps"]
-    )
+    rows = []
+    for each in about["sweeps"]:
+        options = [*(f"--set {item}" for item in each["set"]), *(f"--vary {item}" for item in each["vary"])]
+        told = "<br>".join(map(escape, options))
+        cells = "".join(f"<td>{escape(each[name])}</td>" for name in ("figures", "title", "scene"))
+        rows.append(f"<tr>{cells}<td><code>{told}</code></td></tr>")
+    head = "<thead><tr><th>figures</th><th>varied</th><th>scene</th><th>as options of <code>bearing-sim sweep</code></th></tr></thead>"
     scenes = "".join(
         f"<details><summary>scene <code>{escape(name)}</code>, all values in SI</summary><pre>{escape(text)}</pre></details>"
         for name, text in about["scenes"].items()
     )
     return (
-        f"<p>Each point starts from ideal rolling and runs {about['duration']:g} s, longer where slip has not settled by then; results are means over the last fifth.</p>"
-        f"<table><thead><tr><th>figures</th><th>varied</th><th>scene</th><th>as options of <code>bearing-sim sweep</code></th></tr></thead><tbody>{rows}</tbody></table>{scenes}"
+        f"<p>Each point starts from ideal rolling and runs {about['duration']:g} s, longer where slip has not settled by then; "
+        f'results are means over the last fifth.</p><table class="plain">{head}<tbody>{"".join(rows)}</tbody></table>{scenes}'
     )
 
 
 def _pairs(values: Mapping) -> str:
-    return f"<table><tbody>{''.join(f'<tr><td>{escape(str(name))}</td><td>{escape(str(value)) or chr(8211)}</td></tr>' for name, value in values.items())}</tbody></table>"
+    rows = "".join(f"<tr><td>{escape(str(name))}</td><td>{escape(str(value)) or chr(8211)}</td></tr>" for name, value in values.items())
+    return f'<table class="plain"><tbody>{rows}</tbody></table>'

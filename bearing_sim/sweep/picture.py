@@ -18,6 +18,8 @@ _LABELS = {
     "rating_life": "rating life",
     "inner_load_maximum": "largest inner load",
     "outer_load_maximum": "largest outer load",
+    "low_radius": "low-point radius R_low",
+    "d_value": "D value",
 }
 
 
@@ -27,7 +29,8 @@ class NotDrawable(ValueError):
 
 def label(column: Column) -> str:
     """Return what an axis of a plot calls a column, with its unit."""
-    name = _LABELS.get(column.name) or column.name.rpartition(".")[2].replace("_", " ")
+    last = column.name.rpartition(".")[2]
+    name = _LABELS.get(last, last.replace("_", " "))
     return f"{name} [{column.unit}]" if column.unit else name
 
 
