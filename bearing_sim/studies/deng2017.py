@@ -101,6 +101,15 @@ STUDIES += (
         (f"{MIXTURE}=1.5%:5%:3",),
     ),
     Study(
+        "neighbours",
+        "",
+        "shaft speed next to 45,000 rpm, at R_low = 34.8675 mm",
+        _TABLE1,
+        (f"{LOW}=34.8675mm",),
+        (f"{SPEED}=44980rpm:45020rpm:9",),
+        (f"{SPEED}=44990rpm:45010rpm:2",),
+    ),
+    Study(
         "supported_mass",
         "",
         "mass of the shaft that moves with the inner ring, at R_low = 34.8675 mm",

@@ -20,8 +20,6 @@ DENG_TEN_PERCENT = 0.105  # mm: D value over which Deng's slip is over 10 % at R
 INDEPENDENT_SLIP = {0.085: 9.2, 0.095: 10.5, 0.098: 10.9, 0.105: 11.8, 0.12: 14.1}
 VIBRATION = f"the inner ring vibrates there: its equivalent load is over {VIBRATES} times that of level slip, which has no vibration"
 AT_RADII = f"at R_low = {', '.join(f'{low:.4f}' for low in LOW_RADII)} mm"
-# One operating point in two sweeps: speeds read from text and from a scene differ in the last digit.
-_SAME_POINT = (("low_radius", {"low_radius": 34.8675}), ("speed", {"low_radius": 34.8675, "shaft_speed": 45000.0}))
 Tables = Mapping[tuple[str, str], Table]
 
 
@@ -138,10 +136,12 @@ def _by_mass(tables, level) -> str:
     rows = tables["supported_mass", level].rows
     told = ", ".join(f"{row[MASS]:g} kg {row['cage_slip']:.1f} % and {row['rating_life']:.0f} h" for row in rows)
     said = f"it hangs on the mass that moves with it, at 34.8675 mm {told}"
-    one, other = (select_fixed(tables[name, level], fixed) for name, fixed in _SAME_POINT)
-    if one and other and abs(one[0]["cage_slip"] - other[0]["cage_slip"]) > 1.0:
-        slips = " or ".join(f"{each[0]['cage_slip']:.1f} %" for each in (one, other))
-        said += f"; two states are possible there, of {slips} slip, and the last digit of the shaft speed decides between them"
+    near = tables["neighbours", level].rows
+    slips = np.sort([row["cage_slip"] for row in near])
+    widest = int(np.argmax(np.diff(slips)))
+    if slips[widest + 1] - slips[widest] > 2.0:
+        states = f"{slips[: widest + 1].mean():.1f} % slip at {widest + 1} of {len(slips)} speeds, {slips[widest + 1 :].mean():.1f} % at the others"
+        said += f"; two states are possible: from {near[0][SPEED]:.0f} to {near[-1][SPEED]:.0f} rpm {states}"
     return said
 
 

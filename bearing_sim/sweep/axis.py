@@ -72,13 +72,14 @@ def _range(text, field, given) -> tuple:
     ends = [_value(text, field, part) for part in parts[:2]]
     if not all(isinstance(end, (int, float)) and not isinstance(end, bool) for end in ends):
         raise FieldError(f"{text!r}: only numbers have a range; list values as FIELD=a,b,c")
-    values = np.linspace(*ends, int(parts[2]))
     if field.quantity is None:
+        values = np.linspace(*ends, int(parts[2]))
         if not np.allclose(values, np.rint(values)):
             raise FieldError(f"{text!r}: {field.path} takes whole numbers, and {parts[2]} even steps from {parts[0]} to {parts[1]} are none")
         return tuple(dict.fromkeys(np.rint(values).astype(int).tolist()))
-    # Rounded to what a person would write, so that the same point has the same name in every sweep.
-    return tuple(dict.fromkeys(float(f"{value:.12g}") for value in values.tolist()))
+    # Stepped in the unit that people read and read back from what they would write: to the last digit the point that a scene file says.
+    values = np.linspace(*map(field.shown, ends), int(parts[2])).tolist()
+    return tuple(dict.fromkeys(to_si(f"{value:.11g} {field.unit}", field.quantity.unit) for value in values))
 
 
 def _value(text, field, part) -> float | int | str:
@@ -88,7 +89,7 @@ def _value(text, field, part) -> float | int | str:
         return int(part)
     if field.quantity is not None:
         try:
-            return float(f"{to_si(part, field.quantity.unit):.12g}")
+            return to_si(part, field.quantity.unit)
         except ValueError as fault:
             raise FieldError(f"{text!r}: {field.path}: {fault}") from None
     if str in field.kinds and part:

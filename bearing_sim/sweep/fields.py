@@ -54,11 +54,11 @@ class Field(NamedTuple):
 
 
 def in_unit(value: float, unit: str, shown_in: str) -> float:
-    """Return a number in one unit converted to another, rounded to the 12 digits that survive it."""
+    """Return a number in one unit converted to another, rounded to the 11 digits that survive it."""
     if unit == shown_in:
         return value
     registry = unit_registry()
-    return float(f"{registry.Quantity(value, registry.Unit(unit or 'dimensionless')).to(shown_in or 'dimensionless').magnitude:.12g}")
+    return float(f"{registry.Quantity(value, registry.Unit(unit or 'dimensionless')).to(shown_in or 'dimensionless').magnitude:.11g}")
 
 
 def field_of(path: str) -> Field:
