@@ -55,6 +55,7 @@ setup(
         "test": [
             "catkin-pkg>=1.0",
             "colcon-common-extensions==0.3.0",
+            "distributed>=2024.8",
             "flake8>=7",
             "hypothesis>=6",
             "pydocstyle>=6.3",
