@@ -69,7 +69,10 @@ def test_tolerances_shrink_the_region_and_none_leave_it_as_it_is(designed):
     for d_value in (0.095, 0.105):
         nominal, worst = (border_of(exact, kind, d_value) for kind in (NOMINAL, WORST))
         assert nominal[2:] == worst[2:]
-        assert nominal[2:] == pytest.approx(border_of(designed, NOMINAL, d_value)[2:], abs=1e-6) or nominal[2:] == border_of(designed, NOMINAL, d_value)[2:]
+        assert (
+            nominal[2:] == pytest.approx(border_of(designed, NOMINAL, d_value)[2:], abs=1e-6)
+            or nominal[2:] == border_of(designed, NOMINAL, d_value)[2:]
+        )
 
 
 def test_the_map_says_of_every_raceway_whether_it_meets_the_limits(designed):
@@ -85,6 +88,14 @@ def test_borders_do_not_hang_on_the_grid_they_were_found_from(designed):
     coarse = found(radii="34.859mm:34.868mm:4", d_values="0.105mm")
     for kind in (NOMINAL, WORST):
         assert border_of(coarse, kind, 0.105)[2:4] == pytest.approx(border_of(designed, kind, 0.105)[2:4], abs=5e-5)
+
+
+def test_a_region_thinner_than_the_steps_of_the_grid_is_found():
+    coarse = found(radii="34.86mm:34.868mm:2", d_values="0.105mm")
+    fine = found(radii="34.861mm:34.865mm:9", d_values="0.105mm")
+    assert not any(row["meets_nominal"] for row in coarse.grid.rows)
+    for kind in (NOMINAL, WORST):
+        assert border_of(coarse, kind, 0.105)[2:4] == pytest.approx(border_of(fine, kind, 0.105)[2:4], abs=5e-5)
 
 
 def test_a_region_that_goes_on_beyond_the_range_says_so_and_raceways_that_cannot_be_end_it():

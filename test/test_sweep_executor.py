@@ -11,8 +11,10 @@ import time
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 from sweep_tasks import deadly, noted, tasks
 
+from bearing_sim.cli import main
 from bearing_sim.sweep.executor import ClusterError, run_tasks
 from bearing_sim.sweep.journal import Journal, JournalInUse
 from bearing_sim.sweep.tasks import task
@@ -168,6 +170,19 @@ def test_a_dask_cluster_computes_the_same_though_one_of_its_workers_is_killed_in
     assert len(lines(tmp_path / "j")) == count
     with Journal(tmp_path / "j") as journal:
         assert run_tasks(cluster_tasks, journal, workers=1) == found  # and another executor goes on from there
+
+
+def test_the_command_sweeps_on_a_cluster_what_it_sweeps_alone(tmp_path, cluster):
+    words = ["sweep", "deng2017_table1", "--level", "steady", "--vary", "bearing.outer_raceway.low_radius=34.86mm:34.865mm:5", "--json"]
+
+    def points(name, *more):
+        result = CliRunner().invoke(main, [*words, "-o", str(tmp_path / name), *more], catch_exceptions=False)
+        assert result.exit_code == 0, result.output
+        report = json.loads(result.stdout)
+        assert report["computed"] == 5
+        return report["points"]
+
+    assert points("cluster", "--dask", cluster.scheduler_address) == points("alone", "--workers", "1")
 
 
 def test_a_scheduler_that_is_not_there_is_told(tmp_path, monkeypatch):

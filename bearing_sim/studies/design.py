@@ -168,18 +168,16 @@ def design(
     SceneError
         No raceway of the grid can be: the faults are those of the first.
     """
-
     executor = workers, dask, tell
     places = list(itertools.product(sorted(radii.values), sorted(d_values.values)))
     scenes = {place: _scene_at(name, overrides, place) for place in places}
-    rows = _computed(wanted, scenes, journal, duration, executor)
-    if all(row["status"] == REFUSED for row in rows.values()):
+    grid = _computed(wanted, scenes, journal, duration, executor)
+    if all(row["status"] == REFUSED for row in grid.values()):
         raise scenes[places[0]]
-
-    def narrow(edges):
-        return _narrowed(wanted, scenes, edges, journal, duration, executor)
-
-    borders = _borders(wanted, sorted(radii.values), sorted(d_values.values), rows, narrow)
+    thin = {place: _scene_at(name, overrides, place) for place in _within_gaps(wanted, scenes, grid, journal, duration, executor)}
+    rows = grid | _computed(wanted, thin, journal, duration, executor)
+    ends = [end for kind in KINDS for d_value in sorted(d_values.values) for end in _ends(kind, d_value, rows, wanted)]
+    borders = _borders(ends, _narrowed(wanted, scenes | thin, [edge for end in ends for edge in end], journal, duration, executor))
     about = {
         "kind": "design",
         "scene": name,
@@ -188,7 +186,7 @@ def design(
         "wanted": wanted._asdict(),
         "axes": [{"field": each.field.path, "unit": each.field.unit, "values": each.shown} for each in (radii, d_values)],
     }
-    return Designed(Table(COLUMNS, [_told(place, row, wanted) for place, row in rows.items()], about), borders)
+    return Designed(Table(COLUMNS, [_told(place, row, wanted) for place, row in grid.items()], about), borders)
 
 
 def _scene_at(name, overrides, place) -> Scene | SceneError:
@@ -264,19 +262,58 @@ def narrowed(scene: Scene, duration: float, wanted: Wanted, kind: str, inside: f
     return {"inside": inside, "outside": outside, "broken_by": broken_by}
 
 
-def _borders(wanted, radii, d_values, rows, narrow) -> list[Border]:
-    """Return the borders; ``narrow`` takes edges and returns them narrowed, each as its radius and what breaks the limits beyond."""
-    ends = [end for kind in KINDS for d_value in d_values for end in _ends(kind, d_value, radii, rows, wanted)]
-    found = iter(narrow([edge for end in ends for edge in end]))
-    borders = []
+def met_between(scene: Scene, duration: float, wanted: Wanted, kind: str, left: float, right: float) -> dict:
+    """Return a radius between two that meets the limits, or None, where one of the two breaks one limit and the other breaks the other.
+
+    Parameters
+    ----------
+    scene, duration, wanted, kind : as of `narrowed`.
+    left, right : radii [m]; the first breaks the life's limit alone, the second that of slip.
+    """
+    tolerances = (wanted.speed_tolerance, wanted.load_tolerance) if kind == WORST else (0.0, 0.0)
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (left + right)
+        raceway = dataclasses.replace(scene.bearing.outer_raceway, low_radius=middle)
+        row = raceway_row(dataclasses.replace(scene, bearing=dataclasses.replace(scene.bearing, outer_raceway=raceway)), duration, *tolerances)
+        if wanted.met(row, kind):
+            return {"inside": middle}
+        broken_by = wanted.broken_by(row, kind)
+        if broken_by == "life":
+            left = middle
+        elif broken_by == "slip":
+            right = middle
+        else:
+            break
+    return {"inside": None}
+
+
+def _within_gaps(wanted, scenes, rows, journal, duration, executor) -> list[tuple]:
+    """Return places between those of the grid that meet the limits where the region is thinner than the grid's steps."""
+    gaps = []
+    for kind, d_value in itertools.product(KINDS, sorted({place[1] for place in rows})):
+        radii = sorted(radius for radius, d in rows if d == d_value)
+        for left, right in itertools.pairwise(radii):
+            breaks = [wanted.broken_by(rows[radius, d_value], kind) for radius in (left, right)]
+            if breaks == ["life", "slip"]:
+                gaps.append((kind, d_value, left, right))
+    workers, dask, tell = executor
+    tasks = [task("gap", met_between, scenes[left, d_value], duration, wanted, kind, left, right) for kind, d_value, left, right in gaps]
+    results = run_tasks(tasks, journal, workers, dask, tell)
+    return [(result["inside"], gap[1]) for gap, result in zip(gaps, results) if result.get("inside") is not None]
+
+
+def _borders(ends, narrowed_edges) -> list[Border]:
+    """Return the borders from the ends of the region's stretches and, in their order, radius and what breaks the limits beyond each edge."""
+    found, borders = iter(narrowed_edges), []
     for low, _ in ends:
         (low_from, below_by), (low_to, above_by) = next(found), next(found)
         borders.append(Border(low.kind, float(f"{1e3 * low.d_value:.9g}"), round(1e3 * low_from, 6), round(1e3 * low_to, 6), below_by, above_by))
     return borders
 
 
-def _ends(kind, d_value, radii, rows, wanted) -> list[tuple[_Edge, _Edge]]:
-    """Return the ends of every stretch of radii that meets the limits at a D value, as far as the grid tells them."""
+def _ends(kind, d_value, rows, wanted) -> list[tuple[_Edge, _Edge]]:
+    """Return the ends of every stretch of radii that meets the limits at a D value, as far as the rows tell them."""
+    radii = sorted(radius for radius, d in rows if d == d_value)
     met = [wanted.met(rows[radius, d_value], kind) for radius in radii]
     found = []
     for is_met, stretch in itertools.groupby(range(len(radii)), key=lambda k: met[k]):
