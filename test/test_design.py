@@ -134,6 +134,16 @@ def test_command_answers_beside_deng_writes_tables_and_picture_and_computes_noth
     assert (tmp_path / "d.png").stat().st_size > 20_000
 
 
+def test_what_stands_beside_the_paper_spans_its_d_values_whatever_the_grid(tmp_path):
+    def within(d_values):
+        words = [*WORDS, "--d-value", d_values, "-o", str(tmp_path / "w.parquet"), "--json"]
+        return json.loads(CliRunner().invoke(main, words, catch_exceptions=False).stdout)["nominal_within_deng"]
+
+    ours, other = within("0.095mm:0.105mm:2"), within("0.09mm:0.11mm:2")
+    assert [other[end] for end in ours] == pytest.approx([ours[end] for end in ours], abs=1e-4)
+    assert within("0.098mm:0.102mm:2") is None
+
+
 @pytest.mark.parametrize(
     ("words", "told"),
     [

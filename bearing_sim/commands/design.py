@@ -136,13 +136,17 @@ def _report(scene, designed, beside, files) -> dict:
 
 
 def _within(borders, beside) -> dict | None:
-    """Return which radii meet the limits at every D value that the other answer spans, as far as the map has them; None where none do."""
+    """Return which radii meet the limits at every D value that the other answer spans, linearly between those of the map; None where none do."""
+    import numpy as np
+
     left, right = beside[1]
-    ours = [border for border in borders if left - 1e-9 <= border["d_value"] <= right + 1e-9]
-    if not ours:
-        return None
-    low, high = max(border["low_from"] for border in ours), min(border["low_to"] for border in ours)
-    return {"low_from": low, "low_to": high} if low <= high else None
+    ours = sorted(borders, key=lambda border: border["d_value"])
+    d_values = [border["d_value"] for border in ours]
+    if not ours or len(set(d_values)) < len(d_values) or d_values[0] > left + 1e-9 or d_values[-1] < right - 1e-9:
+        return None  # the map has nothing, or several stretches, or does not reach so far
+    places = [left, right, *(d for d in d_values if left < d < right)]
+    low, high = (np.interp(places, d_values, [border[end] for border in ours]) for end in ("low_from", "low_to"))
+    return {"low_from": round(float(low.max()), 6), "low_to": round(float(high.min()), 6)} if low.max() <= high.min() else None
 
 
 def _print(report) -> None:
@@ -159,6 +163,6 @@ def _print(report) -> None:
             click.echo(f"  D = {border['d_value']:.4f} mm: R_low {ends}")
         if report["deng2017"]:
             found, (left, right), (low, high) = report[f"{kind}_within_deng"], report["deng2017"]["d_value"], report["deng2017"]["low_radius"]
-            span = f"R_low {found['low_from']:.5f} to {found['low_to']:.5f} mm" if found else "none"
+            span = f"R_low {found['low_from']:.5f} to {found['low_to']:.5f} mm" if found else "none that the map shows"
             click.echo(f"  for every D from {left} to {right} mm: {span}; Deng 2017 has {low:.4f} to {high:.4f} mm")
     click.echo(", ".join(report["files"]))
