@@ -78,7 +78,6 @@ ALLOWED = {
     ),
     "studies": (
         NUMBERS | {"sksundae", "matplotlib", "pydantic"},
-        NUMBERS | {"sksundae", "matplotlib"},
         {
             "studies",
             "effects",
@@ -91,7 +90,6 @@ ALLOWED = {
             "scene",
             "scene_file",
             "scene_uncertainty",
-            "simulation",
             "simulation",
             "sweep",
             "tables",
