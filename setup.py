@@ -51,9 +51,11 @@ setup(
         *ros_wheels,
     ],
     extras_require={
+        "dask": ["distributed>=2024.8"],
         "test": [
             "catkin-pkg>=1.0",
             "colcon-common-extensions==0.3.0",
+            "distributed>=2024.8",
             "flake8>=7",
             "hypothesis>=6",
             "pymcap-cli>=0.34",
@@ -62,7 +64,7 @@ setup(
             "pytest-timeout>=2.3",
             "scikit-sundae>=1.1",
             *ros_tests,
-        ]
+        ],
     },
     zip_safe=False,
     maintainer="bearing_sim maintainers",

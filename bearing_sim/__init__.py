@@ -25,6 +25,7 @@ module                 responsibility
 ``oil``                oil properties at a temperature
 ``film_ratio``         lambda ratio: oil film over roughness
 ``ring_growth``        how far rings grow by rotation, fits and heat
+``sweep``              a scene at many points: tasks on all cores or a Dask cluster, a journal of them, tables, pictures
 ``runtime``            pacing, the solver's thread, the gate for inputs, health, alarms, residual slip
 ``sinks``              MCAP and rerun
 ``studies``            the bench: speed and error of every level and method; statics: the load distribution by slices;

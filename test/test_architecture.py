@@ -72,6 +72,10 @@ ALLOWED = {
         {"numpy", "mcap", "rosbags", "rerun", "yaml"},
         {"sinks", "contour", "effects", "sample", "scene", "scene_file", "events", "topics", "provenance", "simulation"},
     ),
+    "sweep": (
+        {"numpy", "pyarrow", "distributed", "matplotlib"},
+        {"sweep", "kernels.compilation", "levels.steady_table", "provenance", "quantity", "sample", "scene", "scene_file", "simulation"},
+    ),
     "studies": (
         NUMBERS | {"sksundae", "matplotlib", "pydantic"},
         {
@@ -80,6 +84,7 @@ ALLOWED = {
             "integrators.status",
             "levels",
             "params",
+            "provenance",
             "rating_life",
             "recording_reader",
             "recovery",
@@ -90,6 +95,7 @@ ALLOWED = {
             "scene_uncertainty",
             "simulation",
             "sinks",
+            "sweep",
             "tables",
         },
     ),

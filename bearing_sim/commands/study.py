@@ -6,6 +6,7 @@ import importlib
 import click
 
 _STUDIES = {
+    "deng2017": "The results of Deng 2017 with this code, claim by claim.",
     "damage": "The damage of a measured course by levels, side by side.",
     "misalignment": "Edges, tilts, skews and life over the misalignment of the inner ring.",
     "slices": "How results settle with the number of slices, and what slices and rollers cost.",

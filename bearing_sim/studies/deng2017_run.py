@@ -1,0 +1,144 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""The study of Deng 2017 in a folder: tables, figures and claims, and a file that says what made them."""
+
+import json
+import platform
+import time
+from collections.abc import Callable
+from importlib import metadata
+from pathlib import Path
+
+from bearing_sim.levels.level import LEVELS as ALL_LEVELS
+from bearing_sim.provenance import git_hash, package_version
+from bearing_sim.scene_file import load_scene, scene_to_yaml
+from bearing_sim.studies.deng2017 import LEVELS, STUDIES, plan_study
+from bearing_sim.studies.deng2017_claims import Finding, judge
+from bearing_sim.studies.deng2017_contours import contour_finding, machined_rings, machining_table
+from bearing_sim.studies.deng2017_pictures import draw_study
+from bearing_sim.sweep.executor import run_tasks
+from bearing_sim.sweep.journal import Journal
+from bearing_sim.sweep.point import Column
+from bearing_sim.sweep.table import Table, write_table
+
+STUDY_FILE = "study.json"
+_PACKAGES = ("numba", "numpy", "scipy", "pyarrow", "matplotlib")
+_FINDING_MEANINGS = {
+    "claim": "number; 0 is that of the machined contours",
+    "figures": "of the paper",
+    "says": "what Deng 2017 claims",
+    "level": "of this code",
+    "verdict": "holds, holds in part, does not hold",
+    "gives": "what this code gives",
+    "off": "by how much it does not hold",
+    "why": "why not, where the numbers show it",
+}
+
+
+def run_study(
+    folder: Path,
+    quick: bool = False,
+    workers: int | None = None,
+    dask: str | None = None,
+    tell: Callable[[int, int], None] = lambda done, total: None,
+) -> list[Finding]:
+    """Compute the study into a folder, or what of it is not there yet, and return the claims.
+
+    Parameters
+    ----------
+    folder : made where absent; its journal holds every finished point.
+    quick : few points and short runs, to see that everything works.
+    workers, dask, tell : see `bearing_sim.sweep.executor.run_tasks`.
+
+    Raises
+    ------
+    ClusterError
+        See `bearing_sim.sweep.executor.run_tasks`.
+    JournalInUse
+        Another process is computing into this folder.
+    """
+    began = time.monotonic()
+    for part in (folder / "tables", folder / "figures"):
+        part.mkdir(parents=True, exist_ok=True)
+    planned, counts = plan_study(quick), [0, 0]
+
+    def counted(done, total):
+        counts[:] = done, total
+        tell(done, total)
+
+    with Journal(folder / "study.journal") as journal:
+        results = iter(run_tasks(planned.tasks, journal, workers, dask, counted))
+    tables = {key: plan.table([next(results) for _ in plan.tasks]) for key, plan in planned.sweeps.items()}
+    profiles = {key: next(results) for key in planned.profiles}
+    trajectories = {low: next(results) for low in planned.trajectories}
+    rings = machined_rings()
+    findings = [contour_finding(rings), *judge(tables, LEVELS)]
+    _write_tables(folder / "tables", tables, profiles, trajectories, rings, findings)
+    pictured = draw_study(folder / "figures", tables, profiles, trajectories, rings)
+    about = {
+        "title": "Deng et al. 2017, Cage slip characteristics of a cylindrical roller bearing with a trilobe-raceway: the results with bearing_sim",
+        "doi": "10.1016/j.cja.2017.07.001",
+        "command": f"bearing-sim study deng2017 -o {folder.name}{' --quick' if quick else ''}",
+        "quick": quick,
+        "points": len(planned.tasks),
+        "computed": counts[0],
+        "seconds": round(time.monotonic() - began, 1),
+        "duration": planned.duration,
+        "levels": {level: f"leaves out {ALL_LEVELS[level].leaves_out}" for level in LEVELS},
+        "sweeps": [
+            {
+                "name": each.name,
+                "figures": each.figures,
+                "title": each.title,
+                "scene": each.scene,
+                "set": [*each.overrides],
+                "vary": list(each.quick_axes if quick else each.axes),
+            }
+            for each in STUDIES
+        ],
+        "scenes": {name: scene_to_yaml(load_scene(name)) for name in dict.fromkeys(each.scene for each in STUDIES)},
+        "versions": {"bearing_sim": package_version(), "commit": git_hash(), "python": platform.python_version()}
+        | {name: metadata.version(name) for name in _PACKAGES},
+        "statuses": _statuses(tables),
+        "claims": [finding._asdict() for finding in findings],
+        "figures": [each._asdict() for each in pictured],
+    }
+    (folder / STUDY_FILE).write_text(json.dumps(about, indent=2))
+    return findings
+
+
+def _statuses(tables) -> dict:
+    counts: dict = {}
+    for table in tables.values():
+        for status in table.values("status"):
+            counts[status] = counts.get(status, 0) + 1
+    return counts
+
+
+def _write_tables(folder, tables, profiles, trajectories, rings, findings) -> None:
+    for (name, level), table in tables.items():
+        write_table(folder / f"{name}_{level}", table)
+    shown = {"azimuth": "deg", "inner_load": "N", "outer_load": "N"}
+    rows = [
+        {"sweep": sweep, "value": value, "level": level} | dict(zip(shown, numbers))
+        for (sweep, value, level), one in profiles.items()
+        if one["status"] == "ok"
+        for numbers in zip(*(one[name] for name in shown))
+    ]
+    columns = [Column("sweep", "", "which field is varied"), Column("value", "", "of that field"), Column("level", "", "of fidelity")]
+    columns += [
+        Column(name, unit, f"{name.replace('_', ' ')}, mean at that azimuth" if name != "azimuth" else "from the load line")
+        for name, unit in shown.items()
+    ]
+    write_table(folder / "load_distributions", Table(tuple(columns), rows, {"kind": "load distributions"}))
+    shown = {"time": "s", "cage_y": "um", "cage_z": "um", "roller_angle": "deg", "spin_ratio": ""}
+    rows = [
+        {"low_radius": low} | dict(zip(shown, numbers))
+        for low, one in trajectories.items()
+        if one["status"] == "ok"
+        for numbers in zip(*(one[name] for name in shown))
+    ]
+    columns = [Column("low_radius", "mm", "R_low")] + [Column(name, unit, name.replace("_", " ")) for name, unit in shown.items()]
+    write_table(folder / "trajectories", Table(tuple(columns), rows, {"kind": "trajectories"}))
+    write_table(folder / "machining", machining_table(rings))
+    columns = tuple(Column(name, "", meaning) for name, meaning in _FINDING_MEANINGS.items())
+    write_table(folder / "claims", Table(columns, [finding._asdict() for finding in findings], {"kind": "claims"}))

@@ -1,0 +1,159 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""The design: its borders are where single runs begin to break a limit, tolerances shrink its region, and what ends it is told."""
+
+import json
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from bearing_sim import Simulation, load_scene
+from bearing_sim.cli import main
+from bearing_sim.studies.design import D_VALUE, LOW, NOMINAL, WORST, Wanted, default_axes, design
+from bearing_sim.sweep.axis import read_axis
+from bearing_sim.sweep.journal import Journal
+from bearing_sim.sweep.table import read_table
+
+WANTED = Wanted(10.0, 300.0, 0.02, 0.1)
+
+
+def found(radii="34.86mm:34.8675mm:6", d_values="0.095mm,0.105mm", wanted=WANTED, overrides=("level=steady",)):
+    axes = read_axis(f"{LOW}={radii}"), read_axis(f"{D_VALUE}={d_values}")
+    with Journal() as journal:
+        return design("deng2017_table1", overrides, wanted, *axes, journal, 0.5, workers=1)
+
+
+@pytest.fixture(scope="module")
+def designed():
+    return found()
+
+
+def single_run(low, d_value, level, speed=1.0, load=1.0):
+    """Return slip [%] and life [h] of a run at a share of speed and load, computed here."""
+    words = [f"level={level}", f"{LOW}={low!r}mm", f"{D_VALUE}={d_value}mm"]
+    words += [f"operating.shaft_speed={45000 * speed!r}rpm", f"operating.radial_load={800 * load!r}"]
+    run = Simulation(load_scene("deng2017_table1", words))
+    run.advance(0.5)
+    block = run.advance(0.1, samples=100)
+    return 100 * block["cage_slip"].mean(), block["rating_life"].mean()
+
+
+def border_of(designed, kind, d_value):
+    (border,) = [each for each in designed.borders if (each.kind, each.d_value) == (kind, d_value)]
+    return border
+
+
+@pytest.mark.parametrize("d_value", [0.095, 0.105])
+def test_single_runs_at_level_slip_break_the_limits_just_outside_the_border_and_keep_them_inside(designed, d_value):
+    border = border_of(designed, NOMINAL, d_value)
+    assert (border.below_by, border.above_by) == ("life", "slip")
+    apart = 8e-5  # mm, some 0.2 points of slip: levels steady and slip may differ by half of that
+    assert single_run(border.low_from - apart, d_value, "slip")[1] < 300 < single_run(border.low_from + apart, d_value, "slip")[1]
+    assert single_run(border.low_to - apart, d_value, "slip")[0] < 10 < single_run(border.low_to + apart, d_value, "slip")[0]
+
+
+def test_at_the_border_with_tolerances_the_worst_of_the_corners_is_at_the_limit(designed):
+    border = border_of(designed, WORST, 0.105)
+    corners = [(1 + a * 0.02, 1 + b * 0.1) for a in (-1, 0, 1) for b in (-1, 0, 1)]
+    lives = [single_run(border.low_from, 0.105, "steady", *corner)[1] for corner in corners]
+    slips = [single_run(border.low_to, 0.105, "steady", *corner)[0] for corner in corners]
+    assert min(lives) == pytest.approx(300, rel=5e-3) and max(slips) == pytest.approx(10, rel=5e-3)
+    assert np.argmin(lives) == 8 and np.argmax(slips) == 6  # fast and heavy for the life, fast and light for the slip
+
+
+def test_tolerances_shrink_the_region_and_none_leave_it_as_it_is(designed):
+    for d_value in (0.095, 0.105):
+        whole, kept = (border_of(designed, kind, d_value) for kind in (NOMINAL, WORST))
+        assert whole.low_from < kept.low_from < kept.low_to < whole.low_to
+    exact = found(wanted=Wanted(10.0, 300.0))
+    for d_value in (0.095, 0.105):
+        nominal, worst = (border_of(exact, kind, d_value) for kind in (NOMINAL, WORST))
+        assert nominal[2:] == worst[2:]
+        assert (
+            nominal[2:] == pytest.approx(border_of(designed, NOMINAL, d_value)[2:], abs=1e-6)
+            or nominal[2:] == border_of(designed, NOMINAL, d_value)[2:]
+        )
+
+
+def test_the_map_says_of_every_raceway_whether_it_meets_the_limits(designed):
+    assert len(designed.grid.rows) == 12
+    for row in designed.grid.rows:
+        assert row["meets_nominal"] == (row["nominal_slip"] < 10 and row["nominal_life"] > 300)
+        assert row["worst_slip"] >= row["nominal_slip"] and row["worst_life"] <= row["nominal_life"]
+        border = border_of(designed, NOMINAL, row[D_VALUE])
+        assert row["meets_nominal"] == (border.low_from <= row[LOW] <= border.low_to)
+
+
+def test_borders_do_not_hang_on_the_grid_they_were_found_from(designed):
+    coarse = found(radii="34.859mm:34.868mm:4", d_values="0.105mm")
+    for kind in (NOMINAL, WORST):
+        assert border_of(coarse, kind, 0.105)[2:4] == pytest.approx(border_of(designed, kind, 0.105)[2:4], abs=5e-5)
+
+
+def test_a_region_thinner_than_the_steps_of_the_grid_is_found():
+    coarse = found(radii="34.86mm:34.868mm:2", d_values="0.105mm")
+    fine = found(radii="34.861mm:34.865mm:9", d_values="0.105mm")
+    assert not any(row["meets_nominal"] for row in coarse.grid.rows)
+    for kind in (NOMINAL, WORST):
+        assert border_of(coarse, kind, 0.105)[2:4] == pytest.approx(border_of(fine, kind, 0.105)[2:4], abs=5e-5)
+
+
+def test_a_region_that_goes_on_beyond_the_range_says_so_and_raceways_that_cannot_be_end_it():
+    inside = found(radii="34.863mm:34.864mm:2", d_values="0.1mm")
+    assert {(each.below_by, each.above_by) for each in inside.borders} == {("range", "range")}
+    refused = found(radii="34.7mm,34.863mm", d_values="0.1mm")
+    assert [row["status"] for row in refused.grid.rows] == ["refused", "ok"]
+    assert border_of(refused, NOMINAL, 0.1).below_by in ("life", "no result")
+
+
+def test_limits_that_nothing_meets_leave_no_border():
+    assert found(radii="34.862mm:34.864mm:2", d_values="0.1mm", wanted=Wanted(1.0, 1e6)).borders == []
+
+
+def test_the_default_range_is_about_the_scene():
+    radii, d_values = default_axes(load_scene("deng2017_table1"))
+    assert radii.shown[0] == 34.86 and radii.shown[-1] == 34.8675 and 34.8625 in radii.shown
+    assert d_values.shown[0] == pytest.approx(0.0784) and d_values.shown[-1] == pytest.approx(0.1176)
+
+
+WORDS = ["design", "deng2017_table1", "--slip-below", "10%", "--life-above", "300h", "--low-radius", "34.86mm:34.866mm:4", "--workers", "1"]
+
+
+def test_command_answers_beside_deng_writes_tables_and_picture_and_computes_nothing_twice(tmp_path):
+    words = [*WORDS, "--d-value", "0.095mm:0.105mm:2", "-o", str(tmp_path / "d.parquet"), "--picture", str(tmp_path / "d.png")]
+    told = CliRunner().invoke(main, words, catch_exceptions=False)
+    assert told.exit_code == 0 and "Deng 2017 has 34.8625 to 34.8650 mm" in told.output and "bound by slip" in told.output
+    entries = (tmp_path / "d.journal").read_text().count("\n")
+    report = json.loads(CliRunner().invoke(main, [*words, "--json"]).stdout)
+    assert (tmp_path / "d.journal").read_text().count("\n") == entries
+    within = report["nominal_within_deng"]
+    assert 34.861 < within["low_from"] < 34.8625 < within["low_to"] < 34.8655
+    assert len(read_table(tmp_path / "d.parquet").rows) == 8
+    borders = read_table(tmp_path / "d_borders.parquet")
+    assert borders.column("low_radius_from").unit == "mm" and len(borders.rows) == 4
+    assert (tmp_path / "d.png").stat().st_size > 20_000
+
+
+def test_what_stands_beside_the_paper_spans_its_d_values_whatever_the_grid(tmp_path):
+    def within(d_values):
+        words = [*WORDS, "--d-value", d_values, "-o", str(tmp_path / "w.parquet"), "--json"]
+        return json.loads(CliRunner().invoke(main, words, catch_exceptions=False).stdout)["nominal_within_deng"]
+
+    ours, other = within("0.095mm:0.105mm:2"), within("0.09mm:0.11mm:2")
+    assert [other[end] for end in ours] == pytest.approx([ours[end] for end in ours], abs=1e-4)
+    assert within("0.098mm:0.102mm:2") is None
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["--set", "bearing.outer_raceway.d_value=0"], "is round"),
+        (["--set", "operating.shaft_speed=0"], "nothing slips"),
+        (["--speed-tolerance", "80%"], "--speed-tolerance 80%"),
+        (["--slip-below", "10 N"], "wrong dimension"),
+        (["--d-value", "0.1"], "d_value"),
+    ],
+)
+def test_command_refuses_what_it_cannot_mean(tmp_path, words, told):
+    result = CliRunner().invoke(main, [*WORDS, *words, "-o", str(tmp_path / "d.parquet")])
+    assert result.exit_code == 2 and told in result.output
