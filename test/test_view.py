@@ -117,6 +117,7 @@ def test_live_view_reaches_a_viewer_that_comes_late():
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
     with RerunSink(SCENE, serve_port=port) as sink:
+        assert sink.wait_until_ready()
         for part in np.array_split(synthetic_block(SCENE, 0.005 * np.arange(1, 61)), 20):
             sink.write(part)
         try:

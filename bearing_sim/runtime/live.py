@@ -31,18 +31,18 @@ _SLACK = 4.0  # [s] how long blocks wait to be collected before the oldest are d
 
 
 class Sink(Protocol):
-    """Where samples and events go (see `bearing_sim.sinks`)."""
+    """Where samples, events and measured cage speeds go (see `bearing_sim.sinks`)."""
 
     def write(self, block: np.ndarray) -> None: ...
     def write_event(self, event: Event) -> None: ...
+    def write_measurement(self, time: float, cage_speed: float, residual: float) -> None: ...
     def close(self) -> None: ...
 
 
 class Recorder(Sink, Protocol):
-    """A sink that also keeps the inputs, the measured cage speed and the diagnostics."""
+    """A sink that also keeps the inputs and the diagnostics."""
 
     def write_inputs(self, time: float, inputs: Inputs, channels) -> None: ...
-    def write_measurement(self, time: float, cage_speed: float, residual: float) -> None: ...
     def write_diagnostics(self, time: float, events, values) -> None: ...
 
 
@@ -290,8 +290,7 @@ class LiveModel:
             predicted = float(sample["cage_slip"]) if own else math.nan
             self.residual.take(float(sample["time"]), float(sample["shaft_speed"]), measured, predicted)
             residual = measured - predicted
-        for name, recorder in list(self._recorders.items()):
-            self._guarded(name, now, lambda: recorder.write_measurement(now, self.gate.measured, residual))
+        self._to_sinks(now, lambda sink: sink.write_measurement(now, self.gate.measured, residual))
 
     def _write(self, now: float, block: np.ndarray) -> None:
         self._blocks += 1

@@ -11,6 +11,7 @@ from bearing_sim.scene import Scene
 from bearing_sim.sinks import section
 from bearing_sim.sinks.load_map import map_bounds
 from bearing_sim.sinks.rerun_cage import ORBIT_EDGE
+from bearing_sim.sinks.rerun_lines import range_path
 from bearing_sim.sinks.rerun_power import CAUSES, SAMPLES
 from bearing_sim.sinks.rerun_power import bounds as power_bounds
 from bearing_sim.sinks.rerun_series import TIMELINE
@@ -42,7 +43,7 @@ def _cage_factor(scene: Scene) -> str:
     return f", cage x{section.cage_magnification(scene)}" if scene.cage_whirls else ""
 
 
-def blueprint(scene: Scene, bounds, live: bool, extent: Extent | None = None) -> rrb.Blueprint:
+def blueprint(scene: Scene, bounds, live: bool, extent: Extent | None = None, measured: bool = False) -> rrb.Blueprint:
     """Return the lay-out.
 
     Parameters
@@ -51,9 +52,10 @@ def blueprint(scene: Scene, bounds, live: bool, extent: Extent | None = None) ->
     bounds : horizontal and vertical range of the cross-section [mm] (`SectionDrawing.bounds`).
     live : True follows the newest data and shows the last seconds only.
     extent : what the finished run covers; axes choose themselves where absent.
+    measured : whether the cage is measured, and its residual slip has a plot.
     """
     axes = _Axes(live, extent)
-    plots = rrb.Horizontal(_middle(scene, axes), _right(scene, axes), column_shares=[0.58, 0.42])
+    plots = rrb.Horizontal(_middle(scene, axes, measured), _right(scene, axes), column_shares=[0.58, 0.42])
     log = rrb.TextLogView(origin="/log", name="Log", columns=rrb.TextLogColumns(timeline_columns=[TIMELINE], text_log_columns=["loglevel", "body"]))
     return rrb.Blueprint(
         rrb.Horizontal(_left(scene, bounds), rrb.Vertical(plots, log, row_shares=[0.84, 0.16]), column_shares=[0.42, 0.58]),
@@ -76,7 +78,7 @@ class _Axes:
         """Return a plot of some series; ``from_zero`` keeps zero on the axis.  The title is the legend: it hides no line."""
         return rrb.TimeSeriesView(
             origin="/",
-            contents=contents,
+            contents=[*map(range_path, contents), *contents],
             name=title,
             axis_x=self.time,
             axis_y=self._value_axis(contents, from_zero),
@@ -115,12 +117,20 @@ def _left(scene: Scene, bounds) -> rrb.Vertical:
     map_x, map_y = map_bounds(narrow=scene.cage_whirls)
     reach = bounds[0][1]
     eye = rrb.EyeControls3D(position=(2.0 * reach, 1.1 * reach, 0.8 * reach), look_target=(0.0, 0.0, 0.0), eye_up=(0.0, 0.0, 1.0))
-    chart = rrb.Spatial2DView(
-        origin="/load_map",
-        name="Load map, colours as above" if scene.cage_whirls else "Load map: load on the inner ring by azimuth and time, colours as above",
-        visual_bounds=rrb.VisualBounds2D(x_range=map_x, y_range=map_y),
-        background=BACKGROUND,
-    )
+    titles = {
+        "/load_map": "Load map, colours as above" if scene.cage_whirls else "Load map: load on the inner ring by azimuth and time, colours as above",
+        "/load_map_by_roller": "By roller",
+    }
+    charts = [
+        rrb.Spatial2DView(
+            origin=root,
+            name=title,
+            visual_bounds=rrb.VisualBounds2D(x_range=map_x, y_range=map_y),
+            background=BACKGROUND,
+        )
+        for root, title in titles.items()
+    ]
+    chart = rrb.Tabs(*charts, active_tab=0)
     return rrb.Vertical(
         rrb.Tabs(
             rrb.Spatial2DView(
@@ -154,34 +164,66 @@ def _orbit(scene: Scene) -> rrb.Spatial2DView:
     )
 
 
-def _middle(scene: Scene, axes: _Axes) -> rrb.Vertical:
-    whirl = [axes.plot("e/c", ["/cage/eccentricity"])] if scene.cage_whirls else []
-    tilts = [_tilts(axes)] if scene.bodies_tilt else []
-    return rrb.Vertical(
-        axes.plot("Speeds [rpm] (blue: shaft, orange: cage, grey: cage without slip)", ["/speed/shaft", "/speed/ideal_cage", "/speed/cage"]),
-        rrb.Tabs(
-            axes.plot("Cage slip [%] (yellow: warning, red: error)", ["/slip/warning", "/slip/error", "/slip/cage"]),
-            axes.plot("Pocket [N]", ["/loads/pocket_largest"]),
-            *whirl,
-            active_tab=0,
-        ),
-        rrb.StateTimelineView(origin="/regime", name="Regime by these thresholds", time_view=axes.time),
-        _lives(scene, axes),
-        rrb.Tabs(
-            axes.plot("Largest load [N]: blue inner, red outer", ["/loads/inner_largest", "/loads/outer_largest"]),
-            axes.plot("Inner [N]", ["/loads/each/inner"]),
-            axes.plot("Outer [N]", ["/loads/each/outer"]),
-            *([axes.plot("Pressure [MPa]", [f"/pressure/{place}" for place in ("inner", "outer", "inner_edge", "outer_edge")])] if tilts else []),
-            active_tab=0,
-        ),
-        *tilts,
-        row_shares=[0.18, 0.18, 0.12, 0.17, 0.175, 0.175] if tilts else [0.23, 0.22, 0.12, 0.2, 0.23],
+def _middle(scene: Scene, axes: _Axes, measured: bool) -> rrb.Vertical:
+    lanes = rrb.StateTimelineView(origin="/", contents=["/regime", "/level"], name="Regime by these thresholds, level", time_view=axes.time)
+    rows = [
+        (0.2, _speeds(axes, measured)),
+        (0.2, _slips(scene, axes, measured)),
+        (0.15, lanes),
+        (0.17, _lives(scene, axes)),
+        (0.2, _loads(scene, axes)),
+    ]
+    if measured:
+        residual = axes.plot("Residual slip [points]: measured less predicted (grey: as predicted)", ["/slip/no_residual", "/slip/residual"])
+        rows.insert(2, (0.17, residual))
+    if scene.bodies_tilt:
+        rows.append((0.18, _tilts(axes)))
+    return rrb.Vertical(*(view for _, view in rows), row_shares=[share for share, _ in rows])
+
+
+def _speeds(axes: _Axes, measured: bool) -> rrb.TimeSeriesView:
+    paths = ["/speed/shaft", "/speed/ideal_cage", "/speed/cage"]
+    title = "Speeds [rpm] (blue: shaft, orange: cage, grey: cage without slip)"
+    if measured:
+        title, paths = "Speeds [rpm] (blue: shaft, orange: cage, white: measured, grey: without slip)", [*paths, "/speed/cage_measured"]
+    return axes.plot(title, paths)
+
+
+def _slips(scene: Scene, axes: _Axes, measured: bool) -> rrb.Tabs:
+    whirl = [axes.plot("e/c [-]", ["/cage/eccentricity"])] if scene.cage_whirls else []
+    title, paths = "Cage slip [%] (yellow: warning, red: error)", ["/slip/warning", "/slip/error", "/slip/cage"]
+    if measured:
+        title, paths = (
+            "Cage slip [%] (blue: predicted, white: measured, yellow, red: limits)",
+            ["/slip/warning", "/slip/error", "/slip/measured", "/slip/cage"],
+        )
+    return rrb.Tabs(
+        axes.plot(title, paths),
+        axes.plot("Roller slip, inner [m/s]", ["/rollers/inner_sliding"]),
+        axes.plot("Outer [m/s]", ["/rollers/outer_sliding"]),
+        axes.plot("Spin [rpm]", ["/rollers/spin"]),
+        *whirl,
+        active_tab=0,
+    )
+
+
+def _loads(scene: Scene, axes: _Axes) -> rrb.Tabs:
+    places = ("inner", "outer", "inner_edge", "outer_edge")
+    pressure = [axes.plot("Pressure [MPa]", [f"/pressure/{place}" for place in places])] if scene.bodies_tilt else []
+    return rrb.Tabs(
+        axes.plot("Largest load [N]: blue inner, red outer", ["/loads/inner_largest", "/loads/outer_largest"]),
+        axes.plot("Inner [N]", ["/loads/each/inner"]),
+        axes.plot("Outer [N]", ["/loads/each/outer"]),
+        axes.plot("Pocket [N]", ["/loads/pocket_warning", "/loads/pocket_error", "/loads/pocket_largest"]),
+        axes.plot("Each pocket [N]", ["/loads/each/pocket"]),
+        *pressure,
+        active_tab=0,
     )
 
 
 def _lives(scene: Scene, axes: _Axes) -> rrb.TimeSeriesView:
     """Return the plot of the basic life and of those that scene or level have besides."""
-    paths, others = ["/life/warning", "/life/log10_hours"], []
+    paths, others = ["/life/warning", "/life/error", "/life/log10_hours"], []
     if scene.bodies_tilt:
         paths, others = [*paths, "/life/lamina_log10_hours"], ["blue lamina"]
     if not scene.life.is_basic:
