@@ -8,6 +8,7 @@ import click
 _STUDIES = {
     "damage": "The damage of a measured course by levels, side by side.",
     "misalignment": "Edges, tilts, skews and life over the misalignment of the inner ring.",
+    "situations": "Pictures of six situations, from start to fault, in rerun.",
     "slices": "How results settle with the number of slices, and what slices and rollers cost.",
     "extremes": "Map where the model finishes, is clamped, refuses or fails.",
 }

@@ -14,7 +14,7 @@ from bearing_sim.sinks.rerun_cage import ORBIT_EDGE
 from bearing_sim.sinks.rerun_lines import range_path
 from bearing_sim.sinks.rerun_power import CAUSES, SAMPLES
 from bearing_sim.sinks.rerun_power import bounds as power_bounds
-from bearing_sim.sinks.rerun_series import TIMELINE
+from bearing_sim.sinks.rerun_series import END, TIMELINE
 
 LIVE_WINDOW = 30.0  # [s] of history that a live view shows
 _LINKED_UP_TO = 50.0  # [s]
@@ -55,10 +55,12 @@ def blueprint(scene: Scene, bounds, live: bool, extent: Extent | None = None, me
     measured : whether the cage is measured, and its residual slip has a plot.
     """
     axes = _Axes(live, extent)
-    plots = rrb.Horizontal(_middle(scene, axes, measured), _right(scene, axes), column_shares=[0.58, 0.42])
     log = rrb.TextLogView(origin="/log", name="Log", columns=rrb.TextLogColumns(timeline_columns=[TIMELINE], text_log_columns=["loglevel", "body"]))
+    lanes = rrb.StateTimelineView(origin="/", contents=["/regime", "/level"], name="Regime by the slip's thresholds, level", time_view=axes.time)
+    plots = rrb.Horizontal(_middle(scene, axes, measured), _right(scene, axes), column_shares=[0.58, 0.42])
+    below = rrb.Horizontal(lanes, log, column_shares=[0.58, 0.42])
     return rrb.Blueprint(
-        rrb.Horizontal(_left(scene, bounds), rrb.Vertical(plots, log, row_shares=[0.84, 0.16]), column_shares=[0.42, 0.58]),
+        rrb.Horizontal(_left(scene, bounds), rrb.Vertical(plots, below, row_shares=[0.815, 0.185]), column_shares=[0.42, 0.58]),
         rrb.BlueprintPanel(state="collapsed"),
         rrb.SelectionPanel(state="collapsed"),
         rrb.TimePanel(state="collapsed", timeline=TIMELINE, play_state="following"),
@@ -78,7 +80,7 @@ class _Axes:
         """Return a plot of some series; ``from_zero`` keeps zero on the axis.  The title is the legend: it hides no line."""
         return rrb.TimeSeriesView(
             origin="/",
-            contents=[*map(range_path, contents), *contents],
+            contents=[END, *map(range_path, contents), *contents],
             name=title,
             axis_x=self.time,
             axis_y=self._value_axis(contents, from_zero),
@@ -92,11 +94,11 @@ class _Axes:
         low, high = min(low for low, _ in known), max(high for _, high in known)
         if from_zero:
             low, high = min(low, 0.0), max(high, 0.0)
-        margin = 0.08 * (high - low) or 0.05 * abs(high) or 1.0
+        margin = 0.1 * (high - low) or 0.05 * abs(high) or 1.0
         decade = 10.0 ** math.ceil(math.log10(high)) if from_zero and high > 0 else math.inf
         if 0.45 * decade < high < decade:  # ticks are labelled at powers of ten first: keep one in sight
-            return rrb.ScalarAxis(range=(low - margin if low < 0 else 0.0, 1.04 * decade))
-        return rrb.ScalarAxis(range=(low if from_zero and low == 0.0 else low - margin, high + margin))
+            high, margin = decade, 0.14 * decade
+        return rrb.ScalarAxis(range=(low - 0.5 * margin, high + margin))  # with room for the labels at both ends
 
 
 def _time_axis(live: bool, extent: Extent | None) -> rrb.TimeAxis:
@@ -115,7 +117,7 @@ def _window(start: rr.TimeRangeBoundary, end: rr.TimeRangeBoundary) -> rrb.TimeA
 
 def _left(scene: Scene, bounds) -> rrb.Vertical:
     map_x, map_y = map_bounds(narrow=scene.cage_whirls)
-    reach = bounds[0][1]
+    reach = (0.75 if scene.bodies_tilt else 1.0) * bounds[0][1]  # closer where the solid has less room
     eye = rrb.EyeControls3D(position=(2.0 * reach, 1.1 * reach, 0.8 * reach), look_target=(0.0, 0.0, 0.0), eye_up=(0.0, 0.0, 1.0))
     titles = {
         "/load_map": "Load map, colours as above" if scene.cage_whirls else "Load map: load on the inner ring by azimuth and time, colours as above",
@@ -130,27 +132,26 @@ def _left(scene: Scene, bounds) -> rrb.Vertical:
         )
         for root, title in titles.items()
     ]
-    chart = rrb.Tabs(*charts, active_tab=0)
+    across = rrb.Spatial2DView(
+        origin="/section",
+        name=section_title(scene),
+        visual_bounds=rrb.VisualBounds2D(x_range=bounds[0], y_range=bounds[1]),
+        background=BACKGROUND,
+    )
+    solid = rrb.Spatial3DView(
+        origin="/",
+        contents="/solid/**",
+        name=f"3D, x{section.magnification(scene.bearing)}{_cage_factor(scene)}",
+        background=BACKGROUND,
+        eye_controls=eye,
+        line_grid=False,
+    )
+    above = across if scene.bodies_tilt else rrb.Tabs(across, solid, active_tab=0)
+    chart = rrb.Tabs(*([solid] if scene.bodies_tilt else []), *charts, active_tab=0)
     return rrb.Vertical(
-        rrb.Tabs(
-            rrb.Spatial2DView(
-                origin="/section",
-                name=section_title(scene),
-                visual_bounds=rrb.VisualBounds2D(x_range=bounds[0], y_range=bounds[1]),
-                background=BACKGROUND,
-            ),
-            rrb.Spatial3DView(
-                origin="/",
-                contents="/solid/**",
-                name=f"3D, x{section.magnification(scene.bearing)}{_cage_factor(scene)}",
-                background=BACKGROUND,
-                eye_controls=eye,
-                line_grid=False,
-            ),
-            active_tab=0,
-        ),
+        above,
         rrb.Horizontal(chart, _orbit(scene), column_shares=[0.64, 0.36]) if scene.cage_whirls else chart,
-        row_shares=[0.71, 0.29],
+        row_shares=[0.69, 0.31],
     )
 
 
@@ -165,27 +166,18 @@ def _orbit(scene: Scene) -> rrb.Spatial2DView:
 
 
 def _middle(scene: Scene, axes: _Axes, measured: bool) -> rrb.Vertical:
-    lanes = rrb.StateTimelineView(origin="/", contents=["/regime", "/level"], name="Regime by these thresholds, level", time_view=axes.time)
-    rows = [
-        (0.2, _speeds(axes, measured)),
-        (0.2, _slips(scene, axes, measured)),
-        (0.15, lanes),
-        (0.17, _lives(scene, axes)),
-        (0.2, _loads(scene, axes)),
-    ]
+    rows = [_speeds(axes, measured), _slips(scene, axes, measured), _rollers(axes), _lives(scene, axes), _loads(scene, axes)]
     if measured:
-        residual = axes.plot("Residual slip [points]: measured less predicted (grey: as predicted)", ["/slip/no_residual", "/slip/residual"])
-        rows.insert(2, (0.17, residual))
-    if scene.bodies_tilt:
-        rows.append((0.18, _tilts(axes)))
-    return rrb.Vertical(*(view for _, view in rows), row_shares=[share for share, _ in rows])
+        title = "Residual slip [points]: measured less predicted (grey: none)"
+        rows.insert(2, axes.plot(title, ["/slip/no_residual", "/slip/residual"]))
+    return rrb.Vertical(*rows, *([_tilts(axes)] if scene.bodies_tilt else []))
 
 
 def _speeds(axes: _Axes, measured: bool) -> rrb.TimeSeriesView:
     paths = ["/speed/shaft", "/speed/ideal_cage", "/speed/cage"]
     title = "Speeds [rpm] (blue: shaft, orange: cage, grey: cage without slip)"
     if measured:
-        title, paths = "Speeds [rpm] (blue: shaft, orange: cage, white: measured, grey: without slip)", [*paths, "/speed/cage_measured"]
+        title, paths = "Speeds [rpm] (blue: shaft, orange: cage, white: measured)", [*paths, "/speed/cage_measured"]
     return axes.plot(title, paths)
 
 
@@ -197,12 +189,16 @@ def _slips(scene: Scene, axes: _Axes, measured: bool) -> rrb.Tabs:
             "Cage slip [%] (blue: predicted, white: measured, yellow, red: limits)",
             ["/slip/warning", "/slip/error", "/slip/measured", "/slip/cage"],
         )
+    pocket = axes.plot("Pocket [N]", ["/loads/pocket_warning", "/loads/pocket_error", "/loads/pocket_largest"])
+    return rrb.Tabs(axes.plot(title, paths), pocket, *whirl, active_tab=0)
+
+
+def _rollers(axes: _Axes) -> rrb.Tabs:
+    """Return the plots with a line for each roller's slip and spin, coloured around the bearing."""
     return rrb.Tabs(
-        axes.plot(title, paths),
-        axes.plot("Roller slip, inner [m/s]", ["/rollers/inner_sliding"]),
+        axes.plot("Slip of each roller on inner ring [m/s]", ["/rollers/inner_sliding"]),
         axes.plot("Outer [m/s]", ["/rollers/outer_sliding"]),
         axes.plot("Spin [rpm]", ["/rollers/spin"]),
-        *whirl,
         active_tab=0,
     )
 
@@ -214,8 +210,7 @@ def _loads(scene: Scene, axes: _Axes) -> rrb.Tabs:
         axes.plot("Largest load [N]: blue inner, red outer", ["/loads/inner_largest", "/loads/outer_largest"]),
         axes.plot("Inner [N]", ["/loads/each/inner"]),
         axes.plot("Outer [N]", ["/loads/each/outer"]),
-        axes.plot("Pocket [N]", ["/loads/pocket_warning", "/loads/pocket_error", "/loads/pocket_largest"]),
-        axes.plot("Each pocket [N]", ["/loads/each/pocket"]),
+        axes.plot("Pockets [N]", ["/loads/each/pocket"]),
         *pressure,
         active_tab=0,
     )
@@ -250,10 +245,10 @@ def _right(scene: Scene, axes: _Axes) -> rrb.Vertical:
         visual_bounds=rrb.VisualBounds2D(x_range=across, y_range=down),
         background=BACKGROUND,
     )
-    return rrb.Vertical(
-        rrb.Tabs(rrb.TextDocumentView(origin="/now", name="Now"), rrb.TextDocumentView(origin="/about", name="About")),
-        rrb.Tabs(bars, axes.plot("Plot [W]", [f"/power/{cause}" for cause in CAUSES]), active_tab=0),
-        axes.plot("Radial load [N]", ["/load/radial"]),
-        rrb.Tabs(axes.plot("Damage [millionths of the life]", ["/damage/ppm"]), axes.plot("Oil [°C]", ["/oil/temperature"]), active_tab=0),
-        row_shares=[0.5, 0.26, 0.12, 0.12] if scene.bodies_tilt else [0.385, 0.285, 0.165, 0.165],
-    )
+    load, damage = axes.plot("Radial load [N]", ["/load/radial"]), axes.plot("Damage [millionths of the life]", ["/damage/ppm"])
+    oil = axes.plot("Oil [°C]", ["/oil/temperature"])
+    texts = rrb.Tabs(rrb.TextDocumentView(origin="/now", name="Now"), rrb.TextDocumentView(origin="/about", name="About"))
+    powers = rrb.Tabs(bars, axes.plot("Plot [W]", [f"/power/{cause}" for cause in CAUSES]), active_tab=0)
+    if scene.bodies_tilt:  # with so many numbers now
+        return rrb.Vertical(texts, powers, rrb.Tabs(load, damage, oil, active_tab=0), row_shares=[0.53, 0.27, 0.2])
+    return rrb.Vertical(texts, powers, load, rrb.Tabs(damage, oil, active_tab=0), row_shares=[0.36, 0.28, 0.18, 0.18])

@@ -29,6 +29,7 @@ from bearing_sim.sinks.rerun_lines import (
 )
 
 TIMELINE = "sim_time"
+END = "/end"  # a point out of sight, a little later than the run: time axes reach it, and their last label has room
 REGIMES = {
     "at rest": 0x4A4F5AFF,
     "rolling": 0x0A7F62FF,
@@ -106,14 +107,14 @@ class RunSeries:
         self._measured.append((time, cage_speed, residual))
 
     def finish(self) -> None:
-        """Send what waits, and let all threshold lines end a little later than the run, so that labels of time axes have room."""
+        """Send what waits, and mark the end of the run."""
         self._write_measured()
         for overview in filter(None, (self._overview, self._measured_overview)):
             if (rest := overview.finish()) is not None:
                 self._send(rest)
         if self._before is not None:
             last = float(self._before["time"][-1])
-            self._write_thresholds(np.array([last, last + 0.04 * (last - self._started)]))
+            self._send_level(END, np.array([last + 0.04 * (last - self._started)]), math.nan)
 
     def _choose_thinning(self, times: np.ndarray) -> None:
         """Choose at the first block with an interval in it whether, and how, the run is thinned out."""
