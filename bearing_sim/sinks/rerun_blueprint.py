@@ -98,6 +98,9 @@ class _Axes:
         decade = 10.0 ** math.ceil(math.log10(high)) if from_zero and high > 0 else math.inf
         if 0.45 * decade < high < decade:  # ticks are labelled at powers of ten first: keep one in sight
             high, margin = decade, 0.14 * decade
+        step = 10.0 ** math.floor(math.log10(high - low)) if high > low else math.inf
+        if (tick := math.ceil(high / step - 1e-9) * step if math.isfinite(step) else high) < high + 1.4 * margin:
+            high, margin = tick, max(margin, 0.12 * (tick - low))  # the last label in full, too
         return rrb.ScalarAxis(range=(low - 0.5 * margin, high + margin))  # with room for the labels at both ends
 
 
@@ -117,7 +120,7 @@ def _window(start: rr.TimeRangeBoundary, end: rr.TimeRangeBoundary) -> rrb.TimeA
 
 def _left(scene: Scene, bounds) -> rrb.Vertical:
     map_x, map_y = map_bounds(narrow=scene.cage_whirls)
-    reach = (0.75 if scene.bodies_tilt else 1.0) * bounds[0][1]  # closer where the solid has less room
+    reach = (0.83 if scene.bodies_tilt else 1.0) * bounds[0][1]  # closer where the solid has less room
     eye = rrb.EyeControls3D(position=(2.0 * reach, 1.1 * reach, 0.8 * reach), look_target=(0.0, 0.0, 0.0), eye_up=(0.0, 0.0, 1.0))
     titles = {
         "/load_map": "Load map, colours as above" if scene.cage_whirls else "Load map: load on the inner ring by azimuth and time, colours as above",
@@ -186,7 +189,7 @@ def _slips(scene: Scene, axes: _Axes, measured: bool) -> rrb.Tabs:
     title, paths = "Cage slip [%] (yellow: warning, red: error)", ["/slip/warning", "/slip/error", "/slip/cage"]
     if measured:
         title, paths = (
-            "Cage slip [%] (blue: predicted, white: measured, yellow, red: limits)",
+            "Cage slip [%] (blue: predicted, white: measured)",
             ["/slip/warning", "/slip/error", "/slip/measured", "/slip/cage"],
         )
     pocket = axes.plot("Pocket [N]", ["/loads/pocket_warning", "/loads/pocket_error", "/loads/pocket_largest"])
@@ -251,4 +254,4 @@ def _right(scene: Scene, axes: _Axes) -> rrb.Vertical:
     powers = rrb.Tabs(bars, axes.plot("Plot [W]", [f"/power/{cause}" for cause in CAUSES]), active_tab=0)
     if scene.bodies_tilt:  # with so many numbers now
         return rrb.Vertical(texts, powers, rrb.Tabs(load, damage, oil, active_tab=0), row_shares=[0.53, 0.27, 0.2])
-    return rrb.Vertical(texts, powers, load, rrb.Tabs(damage, oil, active_tab=0), row_shares=[0.36, 0.28, 0.18, 0.18])
+    return rrb.Vertical(texts, powers, load, rrb.Tabs(damage, oil, active_tab=0), row_shares=[0.43, 0.255, 0.1575, 0.1575])

@@ -114,7 +114,7 @@ class RunSeries:
                 self._send(rest)
         if self._before is not None:
             last = float(self._before["time"][-1])
-            self._send_level(END, np.array([last + 0.04 * (last - self._started)]), math.nan)
+            self._send_level(END, np.array([last + 0.07 * (last - self._started)]), math.nan)
 
     def _choose_thinning(self, times: np.ndarray) -> None:
         """Choose at the first block with an interval in it whether, and how, the run is thinned out."""

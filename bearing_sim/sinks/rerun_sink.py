@@ -88,6 +88,11 @@ class RerunSink:
         """Why nothing is shown any more, or None."""
         return self._view.fault
 
+    @property
+    def pid(self) -> int | None:
+        """Number of the view's process; None in lossless mode, which has none."""
+        return None if self._lossless else self._view.pid
+
     def write(self, block: np.ndarray) -> None:
         """Take a block of samples; returns at once, except in lossless mode."""
         if len(block):

@@ -132,7 +132,7 @@ SITUATIONS = (
     ),
     Situation(
         "fault_injected",
-        "The guide land of the machine closes from 150 to 10 um and brakes the cage; the model does not know, and measured less predicted slip says so.",
+        "The guide land of the machine closes from 150 to 10 um and brakes the cage; the model does not know: measured slip departs.",
         ("level=slip", "operating.shaft_speed=30000 rpm"),
         2.2,
         500.0,
