@@ -24,10 +24,18 @@ def folder(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def told(folder):
-    result = CliRunner().invoke(study_situations.command, ["--out", str(folder), "--no-pictures", "--json"])
+def command_output(folder):
+    """Return the output of the command, with pictures where there is a driver; it fails where a view or the viewer complains."""
+    result = CliRunner().invoke(study_situations.command, ["--out", str(folder), "--json"])
+    if HOW_TO_GET_VULKAN in result.output:
+        result = CliRunner().invoke(study_situations.command, ["--out", str(folder), "--no-pictures", "--json"])
     assert result.exit_code == 0, result.output
-    return json.loads(result.stdout)
+    return result.stdout
+
+
+@pytest.fixture(scope="module")
+def told(command_output):
+    return json.loads(command_output)
 
 
 def test_there_are_six(told):
@@ -50,7 +58,8 @@ def test_under_a_light_load_the_lobes_keep_the_cage_steady(told):
 
 def test_slip_rises_beyond_its_error_limit_in_the_gust_and_falls_after_it(told):
     found = told["skid_in_a_gust"]
-    assert found["slip_at_first"] < 0.05 < 0.10 < found["slip"] and found["slip_at_last"] < 0.05
+    assert found["slip_at_first"] < 0.10 < found["slip"] and found["slip_at_last"] < 0.10
+    assert found["slip"] > 1.5 * max(found["slip_at_first"], found["slip_at_last"])
     assert found["events"].count("bearing.slip") >= 2
 
 
@@ -71,15 +80,13 @@ def test_the_injected_fault_shows_in_the_residual_alone(told, folder):
     assert found["residual"] > 0.005 and found["slip"] == pytest.approx(found["slip_at_first"], abs=1e-3), "the model knows nothing of it"
     assert found["events"].index("study.fault") < found["events"].index("residual.shift")
     residuals = [value for (value,) in _column(folder / "fault_injected.rrd", "/slip/residual", "Scalars:scalars")]
-    assert abs(sum(residuals[200:700]) / 500) < 0.05 < 0.5 < sum(residuals[-100:]) / 100, "points, before and after"
+    assert abs(sum(residuals[100:350]) / 250) < 0.05 < 0.5 < sum(residuals[-50:]) / 50, "points, before and after"
 
 
 @pytest.mark.parametrize("name", [situation.name for situation in SITUATIONS])
-def test_every_picture_is_drawn_and_no_view_complains(name, folder):
-    result = CliRunner().invoke(study_situations.command, ["--out", str(folder), "--only", name])
-    if HOW_TO_GET_VULKAN in result.output:
+def test_every_picture_is_drawn(name, folder, told):
+    if not (folder / f"{name}.png").exists():
         pytest.skip(f"needs a Vulkan driver: {HOW_TO_GET_VULKAN}")
-    assert result.exit_code == 0, result.output  # the command itself fails where a view or the viewer complains
     picture = (folder / f"{name}.png").read_bytes()
     assert picture.startswith(b"\x89PNG") and len(picture) > 100_000, "an empty window is a tenth of that"
 
@@ -95,5 +102,5 @@ def _column(path, entity, component):
     for chunk in RrdReader(str(path)).stream():
         table = chunk.to_record_batch()
         if chunk.entity_path == entity and not chunk.is_static and component in table.schema.names:
-            rows += zip(table.column("sim_time").to_pylist(), table.column(component).to_pylist())
+            rows += zip(table.column("sim_time").cast("int64").to_pylist(), table.column(component).to_pylist())
     return [value for _, value in sorted(rows, key=lambda row: row[0])]

@@ -82,7 +82,7 @@ def _figures(situation, block, residuals, codes) -> dict:
     def around(time):
         return block[np.abs(block["time"] - time) <= 0.02 * situation.duration]
 
-    then, first = around(situation.picture_at), around(0.2 * situation.duration)
+    then, first = around(situation.picture_at), around(0.35 * situation.duration)
     late = [residual for time, _, residual in residuals if time > situation.duration - 0.3]
     return {
         "level": situation.scene().level,

@@ -77,7 +77,7 @@ def _run_up(time: float, inputs: Inputs) -> Inputs:
 
 
 def _gust(time: float, inputs: Inputs) -> Inputs:
-    share = 1.0 - 0.95 * (_smooth((time - 0.15) / 0.03) - _smooth((time - 0.3) / 0.03))
+    share = 1.0 - 0.95 * (_smooth((time - 0.3) / 0.03) - _smooth((time - 0.45) / 0.03))
     return inputs._replace(load_y=inputs.load_y * share, load_z=inputs.load_z * share)
 
 
@@ -95,17 +95,17 @@ SITUATIONS = (
         "steady_light_load",
         "30,000 rpm and 100 N: the preload of the lobes alone keeps the cage near its speed.",
         ("level=planar", "operating.shaft_speed=30000 rpm", "operating.radial_load=100 N"),
-        0.2,
-        5000.0,
-        0.2,
+        0.1,
+        6000.0,
+        0.1,
     ),
     Situation(
         "skid_in_a_gust",
         "A gust takes nearly all of the load off for 0.15 s at 30,000 rpm and little preload: the cage skids, and is caught when the load is back.",
         ("level=planar", _LOOSE, "operating.shaft_speed=30000 rpm", "operating.radial_load=1200 N"),
-        0.5,
-        2000.0,
-        0.3,
+        0.7,
+        1200.0,
+        0.45,
         course=_gust,
     ),
     Situation(
@@ -127,7 +127,7 @@ SITUATIONS = (
         "6 kN at 15,000 rpm: the loaded rollers drive the cage at its ideal speed, and wear out in hours.",
         ("level=planar", "operating.shaft_speed=15000 rpm", "operating.radial_load=6 kN"),
         0.1,
-        5000.0,
+        3000.0,
         0.1,
     ),
     Situation(
@@ -135,7 +135,7 @@ SITUATIONS = (
         "The guide land of the machine closes from 150 to 10 um and brakes the cage; the model does not know: measured slip departs.",
         ("level=slip", "operating.shaft_speed=30000 rpm"),
         2.2,
-        500.0,
+        250.0,
         2.2,
         fault=(1.5, ("bearing.cage.guide_clearance=10 um", "bearing.cage.outer_radius=null")),
     ),
