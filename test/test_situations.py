@@ -58,8 +58,7 @@ def test_under_a_light_load_the_lobes_keep_the_cage_steady(told):
 
 def test_slip_rises_beyond_its_error_limit_in_the_gust_and_falls_after_it(told):
     found = told["skid_in_a_gust"]
-    assert found["slip_at_first"] < 0.10 < found["slip"] and found["slip_at_last"] < 0.10
-    assert found["slip"] > 1.5 * max(found["slip_at_first"], found["slip_at_last"])
+    assert found["slip_at_first"] < 0.08 and found["slip_at_last"] < 0.08 and found["slip"] > 0.10
     assert found["events"].count("bearing.slip") >= 2
 
 
