@@ -7,7 +7,6 @@ import struct
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from recordings import steady_log
 from rerun.chunk import RrdReader
 from synthetic_run import synthetic_block
 
@@ -73,13 +72,6 @@ def test_file_for_rerun_lies_beside_the_recording_unless_told_otherwise(recordin
 def test_senseless_options_are_told_with_exit_code_2(recording, tmp_path, arguments, reason):
     result = run(recording, "-o", tmp_path / "run.rrd", *arguments)
     assert result.exit_code == 2 and reason in result.output
-
-
-def test_other_files_are_told_with_exit_code_2(tmp_path):
-    for path, reason in ((steady_log(tmp_path / "log.mcap"), "no recording of bearing_sim"), (tmp_path / "absent.mcap", "no such file")):
-        result = run(path, "-o", tmp_path / "run.rrd")
-        assert result.exit_code == 2 and reason in result.output
-        assert "Traceback" not in result.output
 
 
 def test_missing_graphics_driver_is_told_with_the_way_to_get_one(recording, tmp_path, monkeypatch):

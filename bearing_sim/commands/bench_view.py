@@ -50,6 +50,6 @@ def _print(report) -> None:
     click.echo("rates for the time in which a core was to be had; a wait is what a tick neither worked nor waited for a core")
     hour = report["hour"]
     click.echo(
-        f"{hour['simulated_seconds']:g} s at 1 kHz: {hour['samples']} samples, {hour['bytes'] / 1e6:.1f} MB, written in {hour['writing_seconds']:.0f} s, "
-        f"opened in {hour['opening_seconds']:.1f} s with {hour['viewer_bytes'] / 1e6:.0f} MB in the viewer"
+        f"{hour['simulated_seconds']:g} s at 1 kHz: {hour['samples']} samples, {hour['bytes'] / 1e6:.1f} MB, made "
+        f"in {hour['writing_seconds']:.0f} s, opened in {hour['opening_seconds']:.1f} s with {hour['viewer_bytes'] / 1e6:.0f} MB in the viewer"
     )

@@ -39,7 +39,7 @@ REGIMES = {
 }
 _LEVEL_COLOURS = {"steady": 0x4A4F5AFF, "slip": 0x2B5C8AFF, "planar": 0x2A7F9EFF, "spatial": 0x3B9C8CFF}
 _FALLEN = 0xC8501AFF  # a level that is not the wanted one
-_LOG_LEVELS = {Level.OK: rr.TextLogLevel.INFO, Level.WARN: rr.TextLogLevel.WARN, Level.ERROR: rr.TextLogLevel.ERROR}
+LOG_LEVELS = {Level.OK: rr.TextLogLevel.INFO, Level.WARN: rr.TextLogLevel.WARN, Level.ERROR: rr.TextLogLevel.ERROR}
 
 
 class RunSeries:
@@ -99,7 +99,7 @@ class RunSeries:
         self._send(self._overview.add(lines) if self._overview is not None else _whole(lines))
         self._write_thresholds(block["time"][[0, -1]])
         self._write_lanes(block)
-        self._before = block[-1:] if self._before is None else np.concatenate((self._before[-1:], block))
+        self._before = block if self._before is None else np.concatenate((self._before[-1:], block))
         self._write_measured()
 
     def note_measurement(self, time: float, cage_speed: float, residual: float) -> None:
@@ -201,7 +201,7 @@ class RunSeries:
     def write_event(self, event: Event) -> None:
         """Log an event at its own time."""
         self._recording.set_time(TIMELINE, duration=float(event.time))
-        self._recording.log("/log", rr.TextLog(f"{event.text}  [{event.code}]", level=_LOG_LEVELS[Level(event.level)]))
+        self._recording.log("/log", rr.TextLog(f"{event.text}  [{event.code}]", level=LOG_LEVELS[Level(event.level)]))
         self._keep_around(event.time)
 
     def write_readout(self, sample: np.void, dropped: int) -> None:
