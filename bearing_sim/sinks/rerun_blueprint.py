@@ -223,7 +223,7 @@ def _lives(scene: Scene, axes: _Axes) -> rrb.TimeSeriesView:
     """Return the plot of the basic life and of those that scene or level have besides."""
     paths, others = ["/life/warning", "/life/error", "/life/log10_hours"], []
     if scene.bodies_tilt:
-        paths, others = [*paths, "/life/lamina_log10_hours"], ["blue lamina"]
+        paths, others = [*paths, "/life/lamina_log10_hours"], ["white lamina"]
     if not scene.life.is_basic:
         paths, others = [*paths, "/life/chosen_log10_hours"], [*others, "purple by choice"]
     title = "Rating life, log10 of hours: 2 = 100 h, 3 = 1000 h (yellow: warning)"
@@ -234,7 +234,7 @@ def _tilts(axes: _Axes) -> rrb.Tabs:
     return rrb.Tabs(
         axes.plot("Roller tilt [mrad]", ["/tilt/each/tilt"]),
         axes.plot("Roller skew [mrad]", ["/tilt/each/skew"]),
-        axes.plot("Ring [mrad]: blue y, green z", ["/tilt/ring_y", "/tilt/ring_z"]),
+        axes.plot("Ring [mrad]: blue y, orange z", ["/tilt/ring_y", "/tilt/ring_z"]),
         axes.plot("Cage [mrad]", ["/tilt/cage_y", "/tilt/cage_z"]),
         active_tab=0,
     )
