@@ -17,6 +17,7 @@ from bearing_sim.scene_file import load_scene
 from bearing_sim.sinks.overview import AROUND
 from bearing_sim.sinks.rerun_blueprint import blueprint
 from bearing_sim.sinks.rerun_lines import LINES, roller_series, threshold_lines
+from bearing_sim.sinks.rerun_series import RunSeries
 from bearing_sim.sinks.rerun_sink import RerunSink
 
 SCENES = {level: load_scene("deng2017_table1", [f"level={level}"]) for level in ("steady", "slip", "planar", "spatial")}
@@ -160,15 +161,19 @@ def test_a_long_run_is_thinned_out_but_for_what_happened(tmp_path):
     seconds, rate, event = 260.0, 400.0, 200.0
     block = synthetic_block(SLIP, np.arange(1, round(seconds * rate) + 1) / rate, slips=(0.01, 0.02))
     block["cage_slip"][30_000] = 0.04
-    with RerunSink(SLIP, path=tmp_path / "run.rrd", lossless=True, duration=seconds) as sink:
-        for part in np.array_split(block, 260):
-            sink.write(part)
-            if part["time"][0] <= event <= part["time"][-1]:
-                sink.write_event(Event(event, Level.WARN, "test", "something happened"))
+    recording = rr.RecordingStream("test")
+    recording.save(tmp_path / "run.rrd")
+    series = RunSeries(recording, SLIP, thin=True, duration=seconds)
+    for part in np.array_split(block, 260):
+        series.write(part)
+        if part["time"][0] <= event <= part["time"][-1]:
+            series.write_event(Event(event, Level.WARN, "test", "something happened"))
+    series.finish()
+    recording.disconnect()
     times, slips = column(tmp_path / "run.rrd", "/slip/cage")
     assert len(times) < 12_000 and times[0] == pytest.approx(1 / rate) and times[-1] == pytest.approx(seconds, abs=0.1)
-    within = np.abs(block["time"] - event) < 0.99 * AROUND
-    kept = np.abs(times - event) < 0.99 * AROUND
+    within = np.abs(block["time"] - event) < 0.9713 * AROUND
+    kept = np.abs(times - event) < 0.9713 * AROUND
     np.testing.assert_allclose(times[kept], block["time"][within], atol=1e-6)
     np.testing.assert_allclose(slips[kept], 100 * block["cage_slip"][within], rtol=1e-5)
     assert max(high for _, high in column_of_pairs(tmp_path / "run.rrd", "/slip/cage/range")) == pytest.approx(4.0)

@@ -13,6 +13,7 @@ FULL_ROWS = 100_000  # a run of no more is kept in full
 _BUCKETS = 8000  # of a run whose length is known: four for each pixel of a wide screen
 _LEAST_ROWS = 8  # of a bucket: fewer are not worth it
 _BUCKET_WITHOUT_END = 0.2  # [s], of a run of unknown length
+_PIECE = 256  # rows that are worth sending: a viewer's memory and time go with the number of pieces
 _ROWS_AROUND_EVENTS = 150_000  # kept in full at most; later events are seen in the buckets only
 
 
@@ -66,24 +67,34 @@ class Overview:
         self._allowed = _ROWS_AROUND_EVENTS
         self._marks: list[float] = []
         self._waiting: list[Lines] = []  # not decided yet: an event may follow
+        self._decided: list[Thinned] = []  # not handed on yet: too few
 
     def mark(self, time: float) -> None:
         """Keep in full what lies around an event at ``time`` [s]."""
         self._marks.append(time)
 
     def add(self, lines: Lines) -> Thinned | None:
-        """Take in rows that follow those before; return what can be decided by now."""
+        """Take in rows that follow those before; return what is decided by now, once it is enough to be worth sending."""
         if self._whole > 0:
             self._whole -= len(lines.times)
             return Thinned(lines, Lines(lines.times[:0], {}))
         self._waiting.append(lines)
         newest, oldest = float(lines.times[-1]), float(self._waiting[0].times[0])
         limit = np.floor((newest - AROUND) / self._bucket) * self._bucket
-        return self._decide(limit) if limit - oldest > max(AROUND, self._bucket) else None
+        if limit - oldest > max(AROUND, 8 * self._bucket):
+            self._decided.append(self._decide(limit))
+        return self._handed_on() if sum(len(part.lines.times) for part in self._decided) >= _PIECE else None
 
     def finish(self) -> Thinned | None:
         """Return what is left of the rows that waited."""
-        return self._decide(np.inf) if self._waiting else None
+        if self._waiting:
+            self._decided.append(self._decide(np.inf))
+        return self._handed_on() if self._decided else None
+
+    def _handed_on(self) -> Thinned:
+        parts, self._decided = self._decided, []
+        ranges = [part.ranges for part in parts if len(part.ranges.times)]
+        return Thinned(_joined([part.lines for part in parts]), _joined(ranges) if ranges else parts[0].ranges)
 
     def _decide(self, limit: float) -> Thinned:
         whole = _joined(self._waiting)

@@ -2,6 +2,7 @@
 """Series of the view: numbers over time as columns, regime lane, log, and the texts beside them."""
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import rerun as rr
@@ -96,8 +97,7 @@ class RunSeries:
             _widen(self._ranges, path, rows)
         self._note_slip(block)
         self._choose_thinning(block["time"])
-        self._send(self._overview.add(lines) if self._overview is not None else _whole(lines))
-        self._write_thresholds(block["time"][[0, -1]])
+        self._send(lines, self._overview)
         self._write_lanes(block)
         self._before = block if self._before is None else np.concatenate((self._before[-1:], block))
         self._write_measured()
@@ -110,8 +110,7 @@ class RunSeries:
         """Send what waits, and mark the end of the run."""
         self._write_measured()
         for overview in filter(None, (self._overview, self._measured_overview)):
-            if (rest := overview.finish()) is not None:
-                self._send(rest)
+            self._send_thinned(overview.finish())
         if self._before is not None:
             last = float(self._before["time"][-1])
             self._send_level(END, np.array([last + 0.07 * (last - self._started)]), math.nan)
@@ -130,16 +129,26 @@ class RunSeries:
                 names = [f"{name}, lowest", f"{name}, highest"]
                 self._recording.log(range_path(path), rr.SeriesLines(names=names, colors=[dim(colour)] * 2, widths=[1.0, 1.0]), static=True)
 
-    def _send(self, thinned: Thinned | None) -> None:
-        if thinned is None:
+    def _send(self, lines: Lines, overview: Overview | None) -> None:
+        """Send series, or in a long run what is left of them by now."""
+        if overview is not None:
+            self._send_thinned(overview.add(lines))
             return
-        for part, named in ((thinned.lines, str), (thinned.ranges, range_path)):
-            if not len(part.times):
-                continue
-            index = [rr.TimeColumn(TIMELINE, duration=part.times)]
-            for path, values in part.values.items():
-                columns = rr.Scalars.columns(scalars=values.astype(np.float32))
-                self._recording.send_columns(named(path), indexes=index, columns=columns)
+        self._send_columns(lines, str)
+
+    def _send_thinned(self, thinned: Thinned | None) -> None:
+        if thinned is not None:
+            self._send_columns(thinned.lines, str)
+            self._send_columns(thinned.ranges, range_path)
+
+    def _send_columns(self, lines: Lines, named: Callable[[str], str]) -> None:
+        if not len(lines.times):
+            return
+        index = [rr.TimeColumn(TIMELINE, duration=lines.times)]
+        for path, values in lines.values.items():
+            self._recording.send_columns(named(path), indexes=index, columns=rr.Scalars.columns(scalars=values.astype(np.float32)))
+        if "/slip/cage" in lines.values and named is str:
+            self._write_thresholds(lines.times[[0, -1]])
 
     def _write_measured(self) -> None:
         if not self._measured or self._before is None:
@@ -151,7 +160,7 @@ class RunSeries:
         for path, column in lines.values.items():
             _widen(self._ranges, path, column)
         self.is_measured = True
-        self._send(self._measured_overview.add(lines) if self._measured_overview is not None else _whole(lines))
+        self._send(lines, self._measured_overview)
         self._send_level("/slip/no_residual", rows[[0, -1], 0], 0.0)
 
     def _write_thresholds(self, ends: np.ndarray) -> None:
@@ -251,10 +260,6 @@ class RunSeries:
 
 def _level_state(level: str, wanted: str) -> str:
     return level if level == wanted else f"{level}, not {wanted}"
-
-
-def _whole(lines: Lines) -> Thinned:
-    return Thinned(lines, Lines(lines.times[:0], {}))
 
 
 def _widen(ranges: dict, key, values: np.ndarray) -> None:
