@@ -126,6 +126,9 @@ class _Nowhere:
     def write(self, block) -> None:
         """Drop samples."""
 
+    def write_start(self, block) -> None:
+        """Drop the state at the start."""
+
     def write_inputs(self, time, inputs, channels) -> None:
         """Drop inputs."""
 
@@ -169,8 +172,7 @@ class _Run:
                 if isinstance(item, Event):
                     self._tell(item)
                 elif isinstance(item, Begun):
-                    if hasattr(self._recording, "write_start"):
-                        self._recording.write_start(item.block)
+                    self._recording.write_start(item.block)
                 else:
                     self._recording.write_inputs(*item)
             if place % _PROGRESS_EVERY == 0:
@@ -208,13 +210,18 @@ class _Run:
         if len(block) > 1 and not self._holding and self._monitor.is_calm(block):
             self._monitor.take_calm(block[:-1])
             for compared in self._comparison.predict(block[:-1]):
-                self._recording.write_measurement(*compared)
+                self._tell_measured(compared)
             block = block[-1:]
         for k in range(len(block)):
             self._monitor.take(block[k : k + 1])
             for compared in self._comparison.predict(block[k : k + 1]):
-                self._recording.write_measurement(*compared)
+                self._tell_measured(compared)
             self._report(block[k], float(block["time"][k]))
+
+    def _tell_measured(self, compared) -> None:
+        self._recording.write_measurement(*compared)
+        for watcher in self._watchers:
+            watcher.write_measurement(*compared)
 
     def _report(self, sample, moment: float) -> None:
         """Tell a change of the bearing's condition at once, and the condition once a second."""

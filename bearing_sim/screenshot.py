@@ -71,7 +71,7 @@ class HeadlessViewer:
     def __exit__(self, *_) -> None:
         self._process.terminate()
         try:
-            self._process.wait(10)
+            self._process.wait(5)
         except subprocess.TimeoutExpired:
             self._process.kill()
             self._process.wait()
@@ -104,6 +104,11 @@ class HeadlessViewer:
         if "graphics" in lowered or "render context" in lowered or "adapter" in lowered:
             return HOW_TO_GET_VULKAN
         return f"the viewer ended with code {self._process.returncode}: {said[-800:] or 'no message'}"
+
+    @property
+    def pid(self) -> int:
+        """Number of the viewer's process."""
+        return self._process.pid
 
     def span(self) -> tuple[float, float]:
         """Return first and last time of the recording's timeline [s]."""

@@ -81,6 +81,7 @@ ALLOWED = {
         {
             "studies",
             "effects",
+            "events",
             "integrators.status",
             "levels",
             "params",
@@ -93,6 +94,7 @@ ALLOWED = {
             "scene",
             "scene_file",
             "scene_uncertainty",
+            "screenshot",
             "simulation",
             "sinks",
             "sweep",

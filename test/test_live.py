@@ -29,6 +29,9 @@ class ListSink:
     def write_event(self, event):
         self.events.append(event)
 
+    def write_measurement(self, time, cage_speed, residual, origin):
+        self.measurements.append((cage_speed, residual))
+
     def close(self):
         self.closed += 1
 
@@ -38,9 +41,6 @@ class ListRecorder(ListSink):
 
     def write_inputs(self, time, inputs, channels, origin):
         self.inputs.append((time, inputs, list(channels)))
-
-    def write_measurement(self, time, cage_speed, residual, origin):
-        self.measurements.append((cage_speed, residual))
 
     def write_diagnostics(self, time, events, values):
         self.events += events

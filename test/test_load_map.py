@@ -98,3 +98,15 @@ def test_narrow_map_is_higher_for_its_width():
     width, height = struct.unpack(">II", chart.png(100.0)[16:24])
     assert (width, height) == map_size(narrow=True)
     assert height / width > map_size()[1] / map_size()[0]
+
+
+def test_a_roller_that_alone_bears_load_is_a_level_band_in_the_map_by_roller():
+    chart = LoadMap(1.0, rolling=False, rollers=18)
+    block = synthetic_block(SCENE, np.linspace(1e-3, 1.0, 500))
+    block["inner_load"] = 0.0
+    block["inner_load"][:, 4] = 700.0
+    chart.add(block)
+    loads = chart.loads()
+    assert loads.shape == (18, COLUMNS)
+    np.testing.assert_allclose(np.nanmean(loads, axis=1), 700.0 * (np.arange(18) == 4))
+    assert len(chart.png(1000.0)) > 100

@@ -38,7 +38,13 @@ class ListSink:
     """Keeps what it is given."""
 
     def __init__(self):
-        self.inputs, self.samples, self.events, self.diagnostics = [], [], [], []
+        self.inputs, self.samples, self.events, self.diagnostics, self.starts, self.measurements = [], [], [], [], [], []
+
+    def write_start(self, block):
+        self.starts += list(block)
+
+    def write_measurement(self, time, cage_speed, residual):
+        self.measurements.append((time, cage_speed, residual))
 
     def write_inputs(self, time, inputs, channels):
         self.inputs.append((time, inputs, tuple(channels)))
@@ -66,7 +72,9 @@ def run(path, fails_at=None, watchers=(), scene=SCENE, **options):
 
     sink = ListSink()
     course = judge(read_input_log(path), scene.input_limits, HELD)
-    return replay(scene, course, sink, watchers, model=model, **options), sink, made[0]
+    result = replay(scene, course, sink, watchers, model=model, **options)
+    assert [start["time"] for start in sink.starts] == [0.0], "a recording begins with the state at the start"
+    return result, sink, made[0]
 
 
 def times(sink):

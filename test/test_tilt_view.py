@@ -40,7 +40,7 @@ def shown(scene):
 
 
 def test_tilts_are_shown_where_the_level_has_them_and_only_there():
-    tilts = {"Roller tilt [mrad]", "Roller skew [mrad]", "Ring [mrad]: blue y, green z", "Cage [mrad]", "Pressure [MPa]"}
+    tilts = {"Roller tilt [mrad]", "Roller skew [mrad]", "Ring [mrad]: blue y, orange z", "Cage [mrad]", "Pressure [MPa]"}
     assert tilts <= shown(SPATIAL) and not tilts & shown(PLANAR)
 
 

@@ -65,7 +65,7 @@ def last_value(chunks, entity, component):
 
 def test_orbit_is_shown_where_the_level_has_whirl_and_only_there():
     shown = {scene.level: set(views(blueprint(scene, ((-40, 40), (-40, 40)), live=False).root_container)) for scene in (SLIP, PLANAR)}
-    assert {"Cage orbit", "e/c"} <= shown["planar"] and not {"Cage orbit", "e/c"} & shown["slip"]
+    assert {"Cage orbit", "e/c [-]"} <= shown["planar"] and not {"Cage orbit", "e/c [-]"} & shown["slip"]
     assert {"Power: mean of 20 samples", "Pocket [N]"} <= shown["planar"] & shown["slip"]
 
 

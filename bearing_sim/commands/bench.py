@@ -17,12 +17,19 @@ from bearing_sim.commands.reporting import BadInput, print_json, tell_compilatio
 @click.option("--rate", type=click.FloatRange(min=1), default=1000.0, show_default=True, metavar="HZ", help="With --recording: samples a second.")
 @click.option("--repetitions", type=click.IntRange(min=1), default=3, show_default=True, metavar="N", help="With --recording: runs of each kind.")
 @click.option("--fleet", is_flag=True, help="Measure instead how many bearings one core holds in real time, by running them.")
-def command(as_json, quick, levels, cold, recording, seconds, rate, repetitions, fleet):
+@click.option("--view", is_flag=True, help="Measure instead what a live view costs the solver whatever viewers do, and how an hour opens.")
+@click.option("--frozen", default=60.0, show_default=True, metavar="S", help="With --view: how long the viewer is frozen.")
+def command(as_json, quick, levels, cold, recording, seconds, rate, repetitions, fleet, view, frozen):
     """Measure how fast each level and integration method is, how large its errors are, and what bounds it.
 
     Bearing deng2017_table1 at 800 N, 15,000 and 45,000 rpm.  Other solvers get the same compiled right-hand side.  Takes a minute or two for
     each of the smaller levels once they are compiled, and longer for level spatial.
     """
+    if view:
+        from bearing_sim.commands.bench_view import measure_view
+
+        measure_view(as_json, quick, frozen)
+        return
     from bearing_sim.levels.level import LEVELS
     from bearing_sim.studies.bench import run_bench
 

@@ -14,29 +14,68 @@ from bearing_sim.commands.reporting import BadInput, FailedRun, progress_bar, to
 @click.option("--screenshot", type=click.Path(path_type=Path), metavar="PICTURE.png", help="Write a picture of the view instead of opening it.")
 @click.option("--at", "seconds", type=float, metavar="SECONDS", help="Simulated time of the picture [default: the end].")
 @click.option("--size", default="1600x1000", show_default=True, metavar="WxH", help="Size of the picture [px].")
+@click.option("--speed-topic", metavar="TOPIC", help="In a bag of others: topic of the shaft speed [default: /shaft_speed].")
+@click.option("--load-topic", metavar="TOPIC", help="The same of the radial load [default: /radial_load].")
+@click.option("--cage-topic", metavar="TOPIC", help="The same of a measured cage speed [default: /cage_speed_measured].")
+@click.option("--temperature-topic", metavar="TOPIC", help="The same of the oil temperature [default: /oil_temperature].")
 @click.option("--open/--no-open", "opens", default=None, help="Open rerun [default: where there is a display].")
-def command(recording, out, screenshot, seconds, size, opens):
-    """Show RUN.mcap, a recording of bearing-sim or of the node, in rerun.
+def command(recording, out, screenshot, seconds, size, speed_topic, load_topic, cage_topic, temperature_topic, opens):
+    """Show RUN.mcap in rerun: a recording of bearing-sim or of the node, or what can be shown of any rosbag2 recording.
 
     Writes RUN.rrd and opens it, or prints the command that does. A picture needs no display, only a Vulkan driver, which may be
-    a software one.
+    a software one. Of bags that others wrote (MCAP or SQLite, file or folder) speeds, load, temperature and plain numbers are
+    shown over time, and it says what is not.
     """
-    from bearing_sim.recording_reader import Recording, RecordingError
+    from bearing_sim.recording_reader import RecordingError
 
     picture_size = _size(size)
+    unfinished = recording.suffix == ".active"
+    out = out or (recording.with_suffix("") if unfinished else recording).with_suffix(".rrd")
+    topics = {"speed": speed_topic, "load": load_topic, "cage_speed": cage_topic, "temperature": temperature_topic}
     with told_as_bad_input(RecordingError, PermissionError):
-        source = Recording(recording)
-        if seconds is not None and not source.first_time <= seconds <= source.last_time:
-            raise BadInput(f"--at {seconds:g}: the recording goes from {source.first_time:g} to {source.last_time:g} s")
-        out = out or recording.with_suffix("").with_suffix(".rrd") if recording.suffix == ".active" else out or recording.with_suffix(".rrd")
-        _convert(source, out)
-    if source.unfinished:
-        click.echo(f"{recording}: {source.unfinished}", err=True)
+        span = _write(recording, out, seconds, {role: topic for role, topic in topics.items() if topic})
     if screenshot is not None:
-        _take_picture(out, screenshot, source.last_time if seconds is None else seconds, picture_size)
+        _take_picture(out, screenshot, span[1] if seconds is None else seconds, picture_size)
         click.echo(f"{screenshot}")
         return
     _open(out, opens)
+
+
+def _write(recording: Path, out: Path, seconds: float | None, topics: dict[str, str]) -> tuple[float, float]:
+    """Write the file for rerun; return the first and last time in it [s]."""
+    from bearing_sim.recording_reader import Recording, RecordingError
+
+    if topics:
+        return _write_bag(recording, out, seconds, topics, "topics are named")
+    try:
+        source = Recording(recording)
+    except RecordingError as fault:
+        if not recording.exists():
+            raise
+        return _write_bag(recording, out, seconds, topics, str(fault))
+    _require_within(seconds, source.first_time, source.last_time)
+    _convert(source, out)
+    if source.unfinished:
+        click.echo(f"{recording}: {source.unfinished}", err=True)
+    return source.first_time, source.last_time
+
+
+def _write_bag(recording: Path, out: Path, seconds: float | None, topics: dict[str, str], why: str) -> tuple[float, float]:
+    from bearing_sim.bag_series import read_bag_series
+    from bearing_sim.sinks.rerun_bag import write_bag_view
+
+    found = read_bag_series(recording, topics)
+    _require_within(seconds, 0.0, found.duration)
+    click.echo(f"shown as a bag of others ({why}); not shown:", err=True)
+    for line in found.left_out:
+        click.echo(f"  {line}", err=True)
+    write_bag_view(out, recording.name, found.start_ns, found.series, found.events, found.left_out)
+    return 0.0, found.duration
+
+
+def _require_within(seconds: float | None, first: float, last: float) -> None:
+    if seconds is not None and not first <= seconds <= last:
+        raise BadInput(f"--at {seconds:g}: the recording goes from {first:g} to {last:g} s")
 
 
 def _size(text: str) -> tuple[int, int]:
@@ -47,18 +86,23 @@ def _size(text: str) -> tuple[int, int]:
 
 
 def _convert(source, out: Path) -> None:
+    from bearing_sim.measurement_reader import measurements
     from bearing_sim.sinks.rerun_sink import RerunSink
 
     with progress_bar(f"reading {source.path.name}", source.duration) as progress:
         with RerunSink(
             source.scene, path=out, start_ns=source.start_ns, lossless=True, duration=source.duration, load_scale=source.largest_load or None
         ) as sink:
+            waiting = measurements(getattr(source, "files", [source.path]), source.start_ns)[::-1]
             for item in source:
                 if isinstance(item, tuple):
                     sink.write_event(item)
-                else:
-                    sink.write(item)
-                    progress(float(item["time"][-1]) - source.first_time)
+                    continue
+                sink.write(item)
+                now = float(item["time"][-1])
+                while waiting and waiting[-1][0] <= now:
+                    sink.write_measurement(*waiting.pop())
+                progress(now - source.first_time)
     if sink.fault:
         raise FailedRun(f"{out}: {sink.fault}")
 

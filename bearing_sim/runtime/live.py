@@ -297,7 +297,7 @@ class LiveModel:
             predicted = float(sample["cage_slip"]) if own else math.nan
             self.residual.take(float(sample["time"]), float(sample["shaft_speed"]), measured, predicted)
             residual = measured - predicted
-        self._outlets.to_recorders(now, lambda recorder: recorder.write_measurement(now, self.gate.measured, residual, origin))
+        self._outlets.to_all(now, lambda sink: sink.write_measurement(now, self.gate.measured, residual, origin))
 
     def _follow_clock(self, now_ns: int) -> None:
         """Let run time go on evenly where the receiver's clock jumps, as when it is set: its stamps count from another start then."""

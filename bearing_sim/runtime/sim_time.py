@@ -365,7 +365,7 @@ class SimTimeModel:
 
     def _tell_compared(self, compared) -> None:
         for one in compared:
-            self._outlets.to_recorders(one.time, lambda recorder, one=one: recorder.write_measurement(*one))
+            self._outlets.to_all(one.time, lambda sink, one=one: sink.write_measurement(*one))
             self._residuals.append((self.start_ns + round(one.time * 1e9), one.residual))
 
     def _note(self, event: Event) -> None:

@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""The load map: inner contact load by azimuth and time, as a small picture that grows or rolls with the run."""
+"""Load maps: inner contact load by azimuth, or by roller, and time, as small pictures that grow or roll with the run."""
 
 import math
 import struct
@@ -18,25 +18,27 @@ _NARROW = 2  # times the height in a narrow picture
 
 
 class LoadMap:
-    """Mean load per azimuth bin and time column.
+    """Mean load per azimuth bin, or per roller, and time column.
 
-    By azimuth, not by roller: load zones stand still in azimuth, while a roller passes them hundreds of times a second,
-    far more often than most recordings take samples.
+    Load zones stand still in azimuth, while a roller passes them hundreds of times a second, far more often than most recordings
+    take samples: so the map by azimuth shows the bearing at any sampling, the one by roller what a roller meets in fine ones.
 
     Parameters
     ----------
     span : time [s] that the columns cover.
     rolling : True keeps the newest ``span`` seconds; False starts at the first sample and doubles the span when the run outgrows it.
     narrow : True makes pictures for a view that shares its place.
+    rollers : how many rollers have a row each; None for rows by azimuth.
     """
 
-    def __init__(self, span: float, rolling: bool, narrow: bool = False):
+    def __init__(self, span: float, rolling: bool, narrow: bool = False, rollers: int | None = None):
         self._narrow = narrow
         self.span = span
         self.start: float | None = None  # time at the left edge [s]; known from the first sample on
         self._rolling = rolling
-        self._sums = np.zeros((AZIMUTH_BINS, COLUMNS))
-        self._counts = np.zeros((AZIMUTH_BINS, COLUMNS))
+        self._rollers = rollers
+        self._sums = np.zeros((rollers or AZIMUTH_BINS, COLUMNS))
+        self._counts = np.zeros((rollers or AZIMUTH_BINS, COLUMNS))
 
     def add(self, block: np.ndarray) -> None:
         """Enter the samples of a block, which must not be older than those before."""
@@ -47,11 +49,16 @@ class LoadMap:
         columns = np.floor((times - self.start) / self.span * COLUMNS).astype(int)
         kept = (columns >= 0) & (columns <= COLUMNS)  # a sample on the right edge belongs to the last column
         columns = np.minimum(columns[kept], COLUMNS - 1)
-        turns = block["roller_angle"][kept] / (2 * math.pi)
-        bins = np.minimum((AZIMUTH_BINS * (turns - np.floor(turns))).astype(int), AZIMUTH_BINS - 1)
+        bins = self._bins(block["roller_angle"][kept])
         place = (bins, np.broadcast_to(columns[:, None], bins.shape))
         np.add.at(self._sums, place, np.nan_to_num(block["inner_load"][kept]))
         np.add.at(self._counts, place, 1.0)
+
+    def _bins(self, azimuth: np.ndarray) -> np.ndarray:
+        if self._rollers:
+            return np.broadcast_to(np.arange(self._rollers), azimuth.shape)
+        turns = azimuth / (2 * math.pi)
+        return np.minimum((AZIMUTH_BINS * (turns - np.floor(turns))).astype(int), AZIMUTH_BINS - 1)
 
     def _make_room(self, newest: float) -> None:
         if self._rolling:
@@ -70,12 +77,14 @@ class LoadMap:
                 table[:, COLUMNS // 2 :] = 0.0
 
     def loads(self) -> np.ndarray:
-        """Return mean loads [N], shape (AZIMUTH_BINS, COLUMNS); NaN where there is no sample yet.
+        """Return mean loads [N], shape (AZIMUTH_BINS or rollers, COLUMNS); NaN where there is no sample yet.
 
         A bin that no roller met while its column lasted takes the value between its neighbours in azimuth.
         """
         with np.errstate(invalid="ignore", divide="ignore"):
             means = self._sums / self._counts
+        if self._rollers:
+            return means
         azimuth = np.arange(AZIMUTH_BINS)
         for column in np.flatnonzero((self._counts > 0).any(axis=0)):
             met = self._counts[:, column] > 0
@@ -83,11 +92,12 @@ class LoadMap:
         return means
 
     def png(self, load_scale: float) -> bytes:
-        """Return the map as PNG: time to the right, azimuth upwards, colours from 0 to ``load_scale`` [N]."""
+        """Return the map as PNG: time to the right, azimuth or rollers upwards, colours from 0 to ``load_scale`` [N]."""
         loads = self.loads()
         index = np.clip(1 + 253 * np.nan_to_num(loads) / load_scale, 1, 254).astype(np.uint8)
         index[np.nan_to_num(loads) <= 0] = 255
         index[np.isnan(loads)] = 0
+        index = index[np.arange(AZIMUTH_BINS) * len(index) // AZIMUTH_BINS]
         palette = np.concatenate(([NOT_YET], load_palette(254), [NO_LOAD])).astype(np.uint8)
         return palette_png(np.kron(index[::-1], np.ones(_pixels(self._narrow), np.uint8)), palette)
 

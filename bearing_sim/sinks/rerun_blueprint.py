@@ -11,9 +11,10 @@ from bearing_sim.scene import Scene
 from bearing_sim.sinks import section
 from bearing_sim.sinks.load_map import map_bounds
 from bearing_sim.sinks.rerun_cage import ORBIT_EDGE
+from bearing_sim.sinks.rerun_lines import range_path
 from bearing_sim.sinks.rerun_power import CAUSES, SAMPLES
 from bearing_sim.sinks.rerun_power import bounds as power_bounds
-from bearing_sim.sinks.rerun_series import TIMELINE
+from bearing_sim.sinks.rerun_series import END, TIMELINE
 
 LIVE_WINDOW = 30.0  # [s] of history that a live view shows
 _LINKED_UP_TO = 50.0  # [s]
@@ -42,7 +43,7 @@ def _cage_factor(scene: Scene) -> str:
     return f", cage x{section.cage_magnification(scene)}" if scene.cage_whirls else ""
 
 
-def blueprint(scene: Scene, bounds, live: bool, extent: Extent | None = None) -> rrb.Blueprint:
+def blueprint(scene: Scene, bounds, live: bool, extent: Extent | None = None, measured: bool = False) -> rrb.Blueprint:
     """Return the lay-out.
 
     Parameters
@@ -51,12 +52,15 @@ def blueprint(scene: Scene, bounds, live: bool, extent: Extent | None = None) ->
     bounds : horizontal and vertical range of the cross-section [mm] (`SectionDrawing.bounds`).
     live : True follows the newest data and shows the last seconds only.
     extent : what the finished run covers; axes choose themselves where absent.
+    measured : whether the cage is measured, and its residual slip has a plot.
     """
     axes = _Axes(live, extent)
-    plots = rrb.Horizontal(_middle(scene, axes), _right(scene, axes), column_shares=[0.58, 0.42])
     log = rrb.TextLogView(origin="/log", name="Log", columns=rrb.TextLogColumns(timeline_columns=[TIMELINE], text_log_columns=["loglevel", "body"]))
+    lanes = rrb.StateTimelineView(origin="/", contents=["/regime", "/level"], name="Regime by the slip's thresholds, level", time_view=axes.time)
+    plots = rrb.Horizontal(_middle(scene, axes, measured), _right(scene, axes), column_shares=[0.58, 0.42])
+    below = rrb.Horizontal(lanes, log, column_shares=[0.58, 0.42])
     return rrb.Blueprint(
-        rrb.Horizontal(_left(scene, bounds), rrb.Vertical(plots, log, row_shares=[0.84, 0.16]), column_shares=[0.42, 0.58]),
+        rrb.Horizontal(_left(scene, bounds), rrb.Vertical(plots, below, row_shares=[0.815, 0.185]), column_shares=[0.42, 0.58]),
         rrb.BlueprintPanel(state="collapsed"),
         rrb.SelectionPanel(state="collapsed"),
         rrb.TimePanel(state="collapsed", timeline=TIMELINE, play_state="following"),
@@ -76,7 +80,7 @@ class _Axes:
         """Return a plot of some series; ``from_zero`` keeps zero on the axis.  The title is the legend: it hides no line."""
         return rrb.TimeSeriesView(
             origin="/",
-            contents=contents,
+            contents=[END, *map(range_path, contents), *contents],
             name=title,
             axis_x=self.time,
             axis_y=self._value_axis(contents, from_zero),
@@ -90,11 +94,14 @@ class _Axes:
         low, high = min(low for low, _ in known), max(high for _, high in known)
         if from_zero:
             low, high = min(low, 0.0), max(high, 0.0)
-        margin = 0.08 * (high - low) or 0.05 * abs(high) or 1.0
+        margin = 0.1 * (high - low) or 0.05 * abs(high) or 1.0
         decade = 10.0 ** math.ceil(math.log10(high)) if from_zero and high > 0 else math.inf
         if 0.45 * decade < high < decade:  # ticks are labelled at powers of ten first: keep one in sight
-            return rrb.ScalarAxis(range=(low - margin if low < 0 else 0.0, 1.04 * decade))
-        return rrb.ScalarAxis(range=(low if from_zero and low == 0.0 else low - margin, high + margin))
+            high, margin = decade, 0.14 * decade
+        step = 10.0 ** math.floor(math.log10(high - low)) if high > low else math.inf
+        if (tick := math.ceil(high / step - 1e-9) * step if math.isfinite(step) else high) < high + 1.4 * margin:
+            high, margin = tick, max(margin, 0.12 * (tick - low))  # the last label in full, too
+        return rrb.ScalarAxis(range=(low - 0.5 * margin, high + margin))  # with room for the labels at both ends
 
 
 def _time_axis(live: bool, extent: Extent | None) -> rrb.TimeAxis:
@@ -113,34 +120,41 @@ def _window(start: rr.TimeRangeBoundary, end: rr.TimeRangeBoundary) -> rrb.TimeA
 
 def _left(scene: Scene, bounds) -> rrb.Vertical:
     map_x, map_y = map_bounds(narrow=scene.cage_whirls)
-    reach = bounds[0][1]
+    reach = (0.83 if scene.bodies_tilt else 1.0) * bounds[0][1]  # closer where the solid has less room
     eye = rrb.EyeControls3D(position=(2.0 * reach, 1.1 * reach, 0.8 * reach), look_target=(0.0, 0.0, 0.0), eye_up=(0.0, 0.0, 1.0))
-    chart = rrb.Spatial2DView(
-        origin="/load_map",
-        name="Load map, colours as above" if scene.cage_whirls else "Load map: load on the inner ring by azimuth and time, colours as above",
-        visual_bounds=rrb.VisualBounds2D(x_range=map_x, y_range=map_y),
+    titles = {
+        "/load_map": "Load map, colours as above" if scene.cage_whirls else "Load map: load on the inner ring by azimuth and time, colours as above",
+        "/load_map_by_roller": "By roller",
+    }
+    charts = [
+        rrb.Spatial2DView(
+            origin=root,
+            name=title,
+            visual_bounds=rrb.VisualBounds2D(x_range=map_x, y_range=map_y),
+            background=BACKGROUND,
+        )
+        for root, title in titles.items()
+    ]
+    across = rrb.Spatial2DView(
+        origin="/section",
+        name=section_title(scene),
+        visual_bounds=rrb.VisualBounds2D(x_range=bounds[0], y_range=bounds[1]),
         background=BACKGROUND,
     )
+    solid = rrb.Spatial3DView(
+        origin="/",
+        contents="/solid/**",
+        name=f"3D, x{section.magnification(scene.bearing)}{_cage_factor(scene)}",
+        background=BACKGROUND,
+        eye_controls=eye,
+        line_grid=False,
+    )
+    above = across if scene.bodies_tilt else rrb.Tabs(across, solid, active_tab=0)
+    chart = rrb.Tabs(*([solid] if scene.bodies_tilt else []), *charts, active_tab=0)
     return rrb.Vertical(
-        rrb.Tabs(
-            rrb.Spatial2DView(
-                origin="/section",
-                name=section_title(scene),
-                visual_bounds=rrb.VisualBounds2D(x_range=bounds[0], y_range=bounds[1]),
-                background=BACKGROUND,
-            ),
-            rrb.Spatial3DView(
-                origin="/",
-                contents="/solid/**",
-                name=f"3D, x{section.magnification(scene.bearing)}{_cage_factor(scene)}",
-                background=BACKGROUND,
-                eye_controls=eye,
-                line_grid=False,
-            ),
-            active_tab=0,
-        ),
+        above,
         rrb.Horizontal(chart, _orbit(scene), column_shares=[0.64, 0.36]) if scene.cage_whirls else chart,
-        row_shares=[0.71, 0.29],
+        row_shares=[0.69, 0.31],
     )
 
 
@@ -154,36 +168,62 @@ def _orbit(scene: Scene) -> rrb.Spatial2DView:
     )
 
 
-def _middle(scene: Scene, axes: _Axes) -> rrb.Vertical:
-    whirl = [axes.plot("e/c", ["/cage/eccentricity"])] if scene.cage_whirls else []
-    tilts = [_tilts(axes)] if scene.bodies_tilt else []
-    return rrb.Vertical(
-        axes.plot("Speeds [rpm] (blue: shaft, orange: cage, grey: cage without slip)", ["/speed/shaft", "/speed/ideal_cage", "/speed/cage"]),
-        rrb.Tabs(
-            axes.plot("Cage slip [%] (yellow: warning, red: error)", ["/slip/warning", "/slip/error", "/slip/cage"]),
-            axes.plot("Pocket [N]", ["/loads/pocket_largest"]),
-            *whirl,
-            active_tab=0,
-        ),
-        rrb.StateTimelineView(origin="/regime", name="Regime by these thresholds", time_view=axes.time),
-        _lives(scene, axes),
-        rrb.Tabs(
-            axes.plot("Largest load [N]: blue inner, red outer", ["/loads/inner_largest", "/loads/outer_largest"]),
-            axes.plot("Inner [N]", ["/loads/each/inner"]),
-            axes.plot("Outer [N]", ["/loads/each/outer"]),
-            *([axes.plot("Pressure [MPa]", [f"/pressure/{place}" for place in ("inner", "outer", "inner_edge", "outer_edge")])] if tilts else []),
-            active_tab=0,
-        ),
-        *tilts,
-        row_shares=[0.18, 0.18, 0.12, 0.17, 0.175, 0.175] if tilts else [0.23, 0.22, 0.12, 0.2, 0.23],
+def _middle(scene: Scene, axes: _Axes, measured: bool) -> rrb.Vertical:
+    rows = [_speeds(axes, measured), _slips(scene, axes, measured), _rollers(axes), _lives(scene, axes), _loads(scene, axes)]
+    if measured:
+        title = "Residual slip [points]: measured less predicted (grey: none)"
+        rows.insert(2, axes.plot(title, ["/slip/no_residual", "/slip/residual"]))
+    return rrb.Vertical(*rows, *([_tilts(axes)] if scene.bodies_tilt else []))
+
+
+def _speeds(axes: _Axes, measured: bool) -> rrb.TimeSeriesView:
+    paths = ["/speed/shaft", "/speed/ideal_cage", "/speed/cage"]
+    title = "Speeds [rpm] (blue: shaft, orange: cage, grey: cage without slip)"
+    if measured:
+        title, paths = "Speeds [rpm] (blue: shaft, orange: cage, white: measured)", [*paths, "/speed/cage_measured"]
+    return axes.plot(title, paths)
+
+
+def _slips(scene: Scene, axes: _Axes, measured: bool) -> rrb.Tabs:
+    whirl = [axes.plot("e/c [-]", ["/cage/eccentricity"])] if scene.cage_whirls else []
+    title, paths = "Cage slip [%] (yellow: warning, red: error)", ["/slip/warning", "/slip/error", "/slip/cage"]
+    if measured:
+        title, paths = (
+            "Cage slip [%] (blue: predicted, white: measured)",
+            ["/slip/warning", "/slip/error", "/slip/measured", "/slip/cage"],
+        )
+    pocket = axes.plot("Pocket [N]", ["/loads/pocket_warning", "/loads/pocket_error", "/loads/pocket_largest"])
+    return rrb.Tabs(axes.plot(title, paths), pocket, *whirl, active_tab=0)
+
+
+def _rollers(axes: _Axes) -> rrb.Tabs:
+    """Return the plots with a line for each roller's slip and spin, coloured around the bearing."""
+    return rrb.Tabs(
+        axes.plot("Slip of each roller on inner ring [m/s]", ["/rollers/inner_sliding"]),
+        axes.plot("Outer [m/s]", ["/rollers/outer_sliding"]),
+        axes.plot("Spin [rpm]", ["/rollers/spin"]),
+        active_tab=0,
+    )
+
+
+def _loads(scene: Scene, axes: _Axes) -> rrb.Tabs:
+    places = ("inner", "outer", "inner_edge", "outer_edge")
+    pressure = [axes.plot("Pressure [MPa]", [f"/pressure/{place}" for place in places])] if scene.bodies_tilt else []
+    return rrb.Tabs(
+        axes.plot("Largest load [N]: blue inner, red outer", ["/loads/inner_largest", "/loads/outer_largest"]),
+        axes.plot("Inner [N]", ["/loads/each/inner"]),
+        axes.plot("Outer [N]", ["/loads/each/outer"]),
+        axes.plot("Pockets [N]", ["/loads/each/pocket"]),
+        *pressure,
+        active_tab=0,
     )
 
 
 def _lives(scene: Scene, axes: _Axes) -> rrb.TimeSeriesView:
     """Return the plot of the basic life and of those that scene or level have besides."""
-    paths, others = ["/life/warning", "/life/log10_hours"], []
+    paths, others = ["/life/warning", "/life/error", "/life/log10_hours"], []
     if scene.bodies_tilt:
-        paths, others = [*paths, "/life/lamina_log10_hours"], ["blue lamina"]
+        paths, others = [*paths, "/life/lamina_log10_hours"], ["white lamina"]
     if not scene.life.is_basic:
         paths, others = [*paths, "/life/chosen_log10_hours"], [*others, "purple by choice"]
     title = "Rating life, log10 of hours: 2 = 100 h, 3 = 1000 h (yellow: warning)"
@@ -194,7 +234,7 @@ def _tilts(axes: _Axes) -> rrb.Tabs:
     return rrb.Tabs(
         axes.plot("Roller tilt [mrad]", ["/tilt/each/tilt"]),
         axes.plot("Roller skew [mrad]", ["/tilt/each/skew"]),
-        axes.plot("Ring [mrad]: blue y, green z", ["/tilt/ring_y", "/tilt/ring_z"]),
+        axes.plot("Ring [mrad]: blue y, orange z", ["/tilt/ring_y", "/tilt/ring_z"]),
         axes.plot("Cage [mrad]", ["/tilt/cage_y", "/tilt/cage_z"]),
         active_tab=0,
     )
@@ -208,10 +248,10 @@ def _right(scene: Scene, axes: _Axes) -> rrb.Vertical:
         visual_bounds=rrb.VisualBounds2D(x_range=across, y_range=down),
         background=BACKGROUND,
     )
-    return rrb.Vertical(
-        rrb.Tabs(rrb.TextDocumentView(origin="/now", name="Now"), rrb.TextDocumentView(origin="/about", name="About")),
-        rrb.Tabs(bars, axes.plot("Plot [W]", [f"/power/{cause}" for cause in CAUSES]), active_tab=0),
-        axes.plot("Radial load [N]", ["/load/radial"]),
-        rrb.Tabs(axes.plot("Damage [millionths of the life]", ["/damage/ppm"]), axes.plot("Oil [°C]", ["/oil/temperature"]), active_tab=0),
-        row_shares=[0.5, 0.26, 0.12, 0.12] if scene.bodies_tilt else [0.385, 0.285, 0.165, 0.165],
-    )
+    load, damage = axes.plot("Radial load [N]", ["/load/radial"]), axes.plot("Damage [millionths of the life]", ["/damage/ppm"])
+    oil = axes.plot("Oil [°C]", ["/oil/temperature"])
+    texts = rrb.Tabs(rrb.TextDocumentView(origin="/now", name="Now"), rrb.TextDocumentView(origin="/about", name="About"))
+    powers = rrb.Tabs(bars, axes.plot("Plot [W]", [f"/power/{cause}" for cause in CAUSES]), active_tab=0)
+    if scene.bodies_tilt:  # with so many numbers now
+        return rrb.Vertical(texts, powers, rrb.Tabs(load, damage, oil, active_tab=0), row_shares=[0.53, 0.27, 0.2])
+    return rrb.Vertical(texts, powers, load, rrb.Tabs(damage, oil, active_tab=0), row_shares=[0.43, 0.255, 0.1575, 0.1575])

@@ -25,7 +25,7 @@ _WIDTH, _PITCH = 100.0, 12.0  # drawn length of the scale, and distance of two b
 
 
 class PowerDrawing:
-    """Bars of one run, each on a line of its own with its name and its watts; all on one scale, which grows when exceeded.
+    """Bars of one run, each on a line of its own with its name and its watts; all on one scale, which fits the longest.
 
     Means of the newest `SAMPLES`: at an instant the shaft's power is in part stored, in motion and elastic contacts, or given back.
 
@@ -56,8 +56,9 @@ class PowerDrawing:
         """Draw the bars at the recording's present time."""
         powers = self._newest.mean(axis=0)
         known = np.nan_to_num(powers)
-        if np.abs(known).max() > self._scale:
-            self._scale = section.round_up(float(np.abs(known).max()))
+        largest = float(np.abs(known).max())
+        if largest > 0.0 and not 0.25 * self._scale < largest <= self._scale:
+            self._scale = section.round_up(largest)
         ends = _WIDTH * known / self._scale
         radii = np.minimum(0.3 * _PITCH, 0.45 * np.abs(ends))  # the ends of lines are round and stand out by this
         left, right = np.minimum(ends, 0.0) + radii, np.maximum(ends, 0.0) - radii

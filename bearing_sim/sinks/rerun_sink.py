@@ -1,14 +1,20 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The rerun sink: shows a run while it goes on, or writes it to an .rrd file, without ever holding up the run.
 
-Logging to rerun may block without end once a viewer stops reading.  So the producer only puts blocks into a bounded
-queue, and one daemon thread alone calls rerun.  When the queue is full a block is dropped and counted, and the view
-says so; in lossless mode, for files only, the producer waits instead.
+In real time the view is a process of its own (`bearing_sim.sinks.rerun_process`): drawing costs milliseconds of
+interpreter time, which a thread in this process would take from the solver between its ticks, and rerun itself may block
+without end behind a viewer that stops reading.  Here a daemon thread only hands on bytes; when the pipe is full, its queue
+fills, and then blocks are dropped and counted.
 """
 
+import json
 import logging
+import os
+import pickle
 import queue
 import socket
+import subprocess
+import sys
 import threading
 import time as wall
 from pathlib import Path
@@ -17,39 +23,16 @@ import numpy as np
 
 from bearing_sim.events import Event
 from bearing_sim.scene import Scene
-from bearing_sim.sinks.rerun_view import RunView
+from bearing_sim.sinks.rerun_thread import QUEUED_ROWS, Dropped, Measurement, RowQueue, ViewThread
+from bearing_sim.sinks.rerun_view import ViewOptions
+from bearing_sim.topics import Origin
 
-_QUEUED_ROWS = 20_000  # about 20 MB with 18 rollers
-_FLUSH_EVERY = 0.25  # [s] of wall time between columns of a live view
+_HAND_ON_EVERY = 0.03  # [s]; the thread that solves is disturbed no more often than that
 _log = logging.getLogger(__name__)
 
 
-class _RowQueue(queue.Queue):
-    """A queue bounded by rows of samples, not by blocks: one block may be a row or a thousand."""
-
-    def _init(self, maxsize):
-        super()._init(maxsize)
-        self._rows = 0
-
-    def _qsize(self):
-        return self._rows
-
-    def _put(self, item):
-        self._rows += _rows(item)
-        super()._put(item)
-
-    def _get(self):
-        item = super()._get()
-        self._rows -= _rows(item)
-        return item
-
-
-def _rows(item) -> int:
-    return len(item) if isinstance(item, np.ndarray) else 1
-
-
 class RerunSink:
-    """Shows blocks of samples and events in rerun.
+    """Shows blocks of samples, events and measurements in rerun.
 
     Parameters
     ----------
@@ -63,7 +46,7 @@ class RerunSink:
 
     Attributes
     ----------
-    dropped : blocks and events dropped so far.
+    dropped : blocks, events and measurements dropped so far.
     fault : why nothing is shown any more, or None.
 
     Raises
@@ -92,14 +75,24 @@ class RerunSink:
             Path(path).open("wb").close()  # the recorder itself would only log that it cannot write
         if serve_port is not None:
             _require_free(serve_port)
-        self.dropped = 0
-        self.fault: str | None = None
-        self._lossless = lossless
-        self._queue = _RowQueue(_QUEUED_ROWS)
-        self._closed = False
-        options = {"start_ns": start_ns, "duration": duration, "load_scale": load_scale, "real_time": not lossless}
-        self._worker = threading.Thread(target=self._work, args=(scene, path, serve_port, options), name="rerun", daemon=True)
-        self._worker.start()
+        self._lossless, self._closed = lossless, False
+        options = ViewOptions(start_ns, duration, load_scale, real_time=not lossless)
+        self._view = ViewThread(scene, path, None, options, lossless=True) if lossless else ViewProcess(scene, path, serve_port, options)
+
+    @property
+    def dropped(self) -> int:
+        """Blocks, events and measurements dropped so far."""
+        return self._view.dropped
+
+    @property
+    def fault(self) -> str | None:
+        """Why nothing is shown any more, or None."""
+        return self._view.fault
+
+    @property
+    def pid(self) -> int | None:
+        """Number of the view's process; None in lossless mode, which has none."""
+        return None if self._lossless else self._view.pid
 
     def write(self, block: np.ndarray) -> None:
         """Take a block of samples; returns at once, except in lossless mode."""
@@ -110,30 +103,30 @@ class RerunSink:
         """Take an event; returns at once, except in lossless mode."""
         self._offer(event)
 
+    def write_measurement(self, time: float, cage_speed: float, residual: float, origin: Origin | None = None) -> None:
+        """Take a cage speed [rad/s] measured at ``time`` [s], and by how much its slip is more than the predicted one (a fraction, or NaN).
+
+        ``origin`` is what recordings keep, and no view shows.
+        """
+        self._offer(Measurement(time, cage_speed, residual))
+
+    def wait_until_ready(self, timeout: float = 20.0) -> bool:
+        """Wait until the file is there and viewers find the server; return whether that was so within ``timeout`` [s]."""
+        return self._view.wait_until_ready(timeout)
+
     def close(self, timeout: float | None = None) -> bool:
         """Show what is queued and finish; a second call does nothing.
 
         Parameters
         ----------
-        timeout : longest wait [s]; 5 s, or 120 s in lossless mode, where absent.  A worker that is stuck in rerun is left
-            behind: it is a daemon and ends with the process.
+        timeout : longest wait [s]; 5 s, or 120 s in lossless mode, where absent.  What is stuck behind a viewer then ends unfinished.
 
         Returns
         -------
         finished : whether everything queued was shown.
         """
-        limit = timeout if timeout is not None else (120.0 if self._lossless else 5.0)
-        deadline = wall.monotonic() + limit
-        if not self._closed:
-            self._closed = True
-            try:
-                self._queue.put(None, timeout=limit)
-            except queue.Full:
-                _log.warning("rerun did not take the last blocks within %g s; they are not shown", limit)
-        self._worker.join(max(0.0, deadline - wall.monotonic()))
-        if self._worker.is_alive():
-            _log.warning("rerun did not finish within %g s; left behind", limit)
-        return not self._worker.is_alive() and self.fault is None
+        self._closed = True
+        return self._view.close(timeout if timeout is not None else (120.0 if self._lossless else 5.0))
 
     def __enter__(self) -> "RerunSink":
         return self
@@ -144,58 +137,132 @@ class RerunSink:
     def _offer(self, item) -> None:
         if self._closed:
             raise ValueError("the rerun sink is closed")
-        if self._lossless:
-            self._wait_to_put(item)
-            return
+        self._view.write(item)
+
+
+class ViewProcess:
+    """A file, a server, or both in a process of their own, fed through a pipe.
+
+    Parameters
+    ----------
+    scene, path, serve_port, options : as those of `bearing_sim.sinks.rerun_thread.ViewThread`.
+
+    Attributes
+    ----------
+    fault : why nothing is shown any more, or None.
+    """
+
+    def __init__(self, scene: Scene, path: str | Path | None, serve_port: int | None, options: ViewOptions):
+        self.fault: str | None = None
+        self._dropped_here = self._dropped_there = 0
+        self._ready = threading.Event()
+        self._queue = RowQueue(QUEUED_ROWS)
+        self._closed = False
+        paths = os.pathsep.join(place for place in sys.path if place)
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", "bearing_sim.sinks.rerun_process"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            env=dict(os.environ, PYTHONPATH=paths),
+        )
+        first = pickle.dumps((scene, None if path is None else str(Path(path).absolute()), serve_port, options))
+        self._feeder = threading.Thread(target=self._feed, args=(first,), name="rerun-feeder", daemon=True)
+        self._listener = threading.Thread(target=self._listen, name="rerun-listener", daemon=True)
+        self._feeder.start()
+        self._listener.start()
+
+    @property
+    def dropped(self) -> int:
+        """Blocks, events and measurements dropped so far, on this side of the pipe and beyond it."""
+        return self._dropped_here + self._dropped_there
+
+    @property
+    def pid(self) -> int:
+        """Number of the process."""
+        return self._process.pid
+
+    def write(self, item: np.ndarray | Event | Measurement) -> None:
+        """Take a block of samples, an event or a measurement; returns at once."""
         if self.fault is not None:
-            self.dropped += 1
+            self._dropped_here += 1
             return
         try:
             self._queue.put_nowait(item)
         except queue.Full:
-            self.dropped += 1
+            self._dropped_here += 1
 
-    def _wait_to_put(self, item) -> None:
-        while self.fault is None:
+    def wait_until_ready(self, timeout: float) -> bool:
+        """Wait until viewers find it; return whether that was so within ``timeout`` [s]."""
+        return self._ready.wait(timeout)
+
+    def close(self, timeout: float) -> bool:
+        """Show what is queued and end the process, if need be by force after ``timeout`` [s]; return whether all was shown."""
+        deadline = wall.monotonic() + timeout
+        if self._closed:
+            return self.fault is None
+        self._closed = True
+        try:
+            self._queue.put(None, timeout=timeout)
+            finished = self._process.wait(max(0.0, deadline - wall.monotonic())) == 0
+        except (queue.Full, subprocess.TimeoutExpired):
+            _log.warning("the view did not finish within %g s; ended", timeout)
+            self._process.kill()
+            self._process.wait()
+            finished = False
+        self._feeder.join(1.0)
+        self._listener.join(1.0)
+        return finished and self.fault is None
+
+    def _feed(self, first: bytes) -> None:
+        pipe, told = self._process.stdin, 0
+        try:
+            pipe.write(first)
+            while True:
+                items, ended = self._gathered()
+                if self._dropped_here > told:
+                    told = self._dropped_here
+                    items.append(Dropped(told))
+                for item in items:
+                    pickle.dump(item, pipe, protocol=5)
+                pipe.flush()
+                if ended:
+                    break
+                wall.sleep(_HAND_ON_EVERY)
+            pipe.close()
+        except OSError:  # the process is gone; the listener says why
+            pass
+
+    def _gathered(self) -> tuple[list, bool]:
+        """Return what waits, neighbouring blocks as one, and whether that is all that will ever come."""
+        gathered = [self._queue.get()]
+        while gathered[-1] is not None:
             try:
-                self._queue.put(item, timeout=0.2)
-                return
-            except queue.Full:
-                continue
-        raise OSError(f"rerun stopped: {self.fault}")
-
-    def _work(self, scene: Scene, path, serve_port, options: dict) -> None:
-        try:
-            self._show_all(RunView(scene, path, serve_port, **options))
-        except Exception as fault:  # whatever rerun raises, the run goes on; the reason is kept and told
-            self.fault = f"{type(fault).__name__}: {fault}"
-            _log.error("rerun stopped, the run goes on without it: %s", self.fault)
-
-    def _show_all(self, view: RunView) -> None:
-        flushed, told = wall.monotonic(), 0
-        while True:
-            item = self._next_item()
-            if item is None:
+                gathered.append(self._queue.get_nowait())
+            except queue.Empty:
                 break
-            if isinstance(item, Event):
-                view.write_event(item)
-            elif len(item):
-                view.write(item)
-            if not self._lossless and wall.monotonic() - flushed > _FLUSH_EVERY:
-                flushed = wall.monotonic()
-                view.flush()
-                if self.dropped > told:
-                    told = self.dropped
-                    view.write_dropped(told)
-        view.close()
+        ended = gathered[-1] is None
+        items: list = []
+        for item in gathered[:-1] if ended else gathered:
+            if isinstance(item, np.ndarray) and items and isinstance(items[-1], list):
+                items[-1].append(item)
+            else:
+                items.append([item] if isinstance(item, np.ndarray) else item)
+        return [np.concatenate(item) if isinstance(item, list) else item for item in items], ended
 
-    def _next_item(self):
-        if self._lossless:
-            return self._queue.get()
-        try:
-            return self._queue.get(timeout=_FLUSH_EVERY)
-        except queue.Empty:
-            return np.empty(0)  # nothing new: time to flush what waits
+    def _listen(self) -> None:
+        """Take in what the process reports, a line of JSON each time, until it ends."""
+        for line in self._process.stdout:
+            report = json.loads(line)
+            if report["ready"]:
+                self._ready.set()
+            self._dropped_there = report["dropped"]
+            if report["fault"] is not None and self.fault is None:
+                self.fault = report["fault"]
+                _log.error("rerun stopped, the run goes on without it: %s", self.fault)
+        code = self._process.wait()
+        if not self._closed and self.fault is None:
+            self.fault = f"the process of the view ended by itself (code {code})"
+            _log.error("%s; the run goes on without it", self.fault)
 
 
 def _require_free(port: int) -> None:

@@ -3,6 +3,7 @@
 
 import time as wall
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import rerun as rr
@@ -11,17 +12,39 @@ from bearing_sim.events import Event, Level
 from bearing_sim.scene import Scene
 from bearing_sim.sinks import section
 from bearing_sim.sinks.load_map import LoadMap, label_distance, map_size
+from bearing_sim.sinks.rerun_about import about
 from bearing_sim.sinks.rerun_blueprint import LIVE_WINDOW, Extent, blueprint
 from bearing_sim.sinks.rerun_cage import CageDrawing
 from bearing_sim.sinks.rerun_power import PowerDrawing
 from bearing_sim.sinks.rerun_scene import SectionDrawing, labels
-from bearing_sim.sinks.rerun_series import TIMELINE, RunSeries, about
+from bearing_sim.sinks.rerun_series import TIMELINE, RunSeries
 from bearing_sim.sinks.rerun_solid import SolidDrawing
 
 APPLICATION = "bearing_sim"
 ROWS_PER_COLUMN = 1000
 _SERVER_MEMORY = "256MB"
-_RATE = 30.0  # [Hz] pictures for those who watch
+_RATE = 20.0  # [Hz] pictures for those who watch
+_MOST_WANTED = 300  # pictures of events in a file
+
+
+class ViewOptions(NamedTuple):
+    """What a view of a run may know besides its scene.
+
+    Attributes
+    ----------
+    start_ns : wall time of sample time 0 [ns since the epoch], or None.
+    duration : simulated time that will come [s], where known.
+    load_scale : load [N] at the upper end of the colour map, where known; grows by itself when exceeded.
+    real_time : True while the run goes on in real time, which pictures must not take processor time from.
+    """
+
+    start_ns: int | None = None
+    duration: float | None = None
+    load_scale: float | None = None
+    real_time: bool = False
+
+
+NOTHING_KNOWN = ViewOptions()
 
 
 class LiveFrames:
@@ -52,8 +75,14 @@ class FileFrames:
         self._interval = max(duration / most if duration else 0.0, shortest)
         self._fixed = duration is not None
         self._batch = most // 2
-        self._drawn = 0
+        self._drawn = self._wanted = 0
         self._first = self._last = None
+
+    def want(self) -> None:
+        """Let the next sample be drawn, whenever it is: something happened."""
+        if self._wanted < _MOST_WANTED and self._last is not None:
+            self._wanted += 1
+            self._last = -np.inf
 
     def pick(self, times: np.ndarray) -> list[int]:
         """Return the indices of the samples to draw."""
@@ -71,29 +100,18 @@ class FileFrames:
 
 
 class RunView:
-    """Everything that is shown of one run.
+    """Everything that is shown of one run, in a file or at a port.
 
     Parameters
     ----------
     scene : what runs.
     path : .rrd file to write, or None.
-    serve_port : port on 127.0.0.1 where viewers may connect, or None.
-    start_ns : wall time of sample time 0 [ns since the epoch], or None.
-    duration : simulated time that will come [s], where known.
-    load_scale : load [N] at the upper end of the colour map, where known; grows by itself when exceeded.
-    real_time : True while the run goes on in real time, which pictures must not take processor time from.
+    serve_port : port on 127.0.0.1 where viewers may connect, or None; one of both.
+    options : what else is known.
     """
 
-    def __init__(
-        self,
-        scene: Scene,
-        path: str | Path | None = None,
-        serve_port: int | None = None,
-        start_ns: int | None = None,
-        duration: float | None = None,
-        load_scale: float | None = None,
-        real_time: bool = False,
-    ):
+    def __init__(self, scene: Scene, path: str | Path | None = None, serve_port: int | None = None, options: ViewOptions = NOTHING_KNOWN):
+        start_ns, duration, load_scale, real_time = options
         live = serve_port is not None
         self._recording = rr.RecordingStream(APPLICATION)
         self._recording.set_log_time_enabled(False)  # one timeline: the simulated time
@@ -102,25 +120,22 @@ class RunView:
         self._solid = SolidDrawing(self._recording, scene)
         self._cage = CageDrawing(self._recording, scene) if scene.cage_whirls else None
         self._power = PowerDrawing(self._recording)
-        sinks = [rr.FileSink(str(path))] if path is not None else []
-        if serve_port is not None:
-            sinks.append(rr.GrpcServerSink("127.0.0.1", serve_port, server_memory_limit=_SERVER_MEMORY))
-        self._recording.set_sinks(*sinks, default_blueprint=blueprint(scene, self._drawing.bounds(), live))
+        sink = rr.GrpcServerSink("127.0.0.1", serve_port, server_memory_limit=_SERVER_MEMORY) if live else rr.FileSink(str(path))
+        self._recording.set_sinks(sink, default_blueprint=blueprint(scene, self._drawing.bounds(), live))
         self._recording.send_recording_name(scene.name)
         if start_ns is not None:
             self._recording.send_recording_start_time_nanos(start_ns)
-        self._series = RunSeries(self._recording, scene)
-        # A file keeps every picture: half as many for those who watch, evenly spread ones where nobody does.
-        in_file = FileFrames(duration, shortest=2 / _RATE if real_time else 0.0)
-        self._frames = LiveFrames(_RATE if path is None else _RATE / 2) if live else in_file
+        self._series = RunSeries(self._recording, scene, thin=not live, duration=duration)
+        self._frames = LiveFrames(_RATE) if live else FileFrames(duration, shortest=2 / _RATE if real_time else 0.0)
         self._details = LiveFrames(rate=10.0) if live else None  # nobody reads numbers faster
         self._map_times = LiveFrames(rate=2.0) if live else FileFrames(duration, most=30)
-        self._map = LoadMap(LIVE_WINDOW if live else duration or 1.0, rolling=live, narrow=scene.cage_whirls)
-        self._whole_map = LoadMap(duration or 1.0, rolling=False, narrow=scene.cage_whirls) if live and path is not None else None
+        rows = {"/load_map": None, "/load_map_by_roller": scene.bearing.roller.count}
+        span, narrow = LIVE_WINDOW if live else duration or 1.0, scene.cage_whirls
+        self._maps = {root: LoadMap(span, rolling=live, narrow=narrow, rollers=count) for root, count in rows.items()}
         self._pending: list[np.ndarray] = []
         self._newest: np.void | None = None
         self._first_time = 0.0
-        self._scene, self._has_file = scene, path is not None
+        self._scene, self._live, self._laid_out_measured = scene, live, False
         self._drawing.draw_still_parts()
         self._solid.draw_still_parts()
         self._power.draw_still_parts()
@@ -145,21 +160,24 @@ class RunView:
             self._draw(block[index])
             drawn = index + 1
         self._follow(block[drawn:])
-        if self._whole_map is not None:
-            self._whole_map.add(block)
         entered = 0
         for index in self._map_times.pick(block["time"]):
-            self._map.add(block[entered : index + 1])
-            self._draw_map(self._map, float(block["time"][index]))
+            self._enter_maps(block[entered : index + 1])
+            self._draw_maps(float(block["time"][index]))
             entered = index + 1
-        if entered < len(block):
-            self._map.add(block[entered:])
+        self._enter_maps(block[entered:])
         if sum(map(len, self._pending)) >= ROWS_PER_COLUMN:
             self.flush()
 
     def write_event(self, event: Event) -> None:
         """Take an event."""
         self._series.write_event(event)
+        if not self._live:
+            self._frames.want()
+
+    def write_measurement(self, time: float, cage_speed: float, residual: float) -> None:
+        """Take a cage speed [rad/s] measured at ``time`` [s] and its residual slip, a fraction or NaN."""
+        self._series.note_measurement(time, cage_speed, residual)
 
     def write_dropped(self, dropped: int) -> None:
         """Show that ``dropped`` blocks in all never arrived here."""
@@ -171,6 +189,9 @@ class RunView:
         if self._pending:
             self._series.write(np.concatenate(self._pending))
             self._pending.clear()
+            if self._live and self._series.is_measured and not self._laid_out_measured:
+                self._laid_out_measured = True
+                self._recording.send_blueprint(blueprint(self._scene, self._drawing.bounds(), live=True, measured=True))
 
     def close(self) -> None:
         """Send the rest and finish the file."""
@@ -178,10 +199,12 @@ class RunView:
         if self._newest is not None:
             last = float(self._newest["time"])
             self._draw(self._newest)
-            self._draw_map(self._whole_map or self._map, last)
-            if self._has_file:  # now that every series is known, its axis can be chosen to hold it
+            self._draw_maps(last)
+            if not self._live:  # now that every series is known, its axis can be chosen to hold it
+                self._series.finish()
                 extent = Extent((self._first_time, last), self._series.ranges())
-                self._recording.send_blueprint(blueprint(self._scene, self._drawing.bounds(), live=False, extent=extent))
+                measured = self._series.is_measured
+                self._recording.send_blueprint(blueprint(self._scene, self._drawing.bounds(), live=False, extent=extent, measured=measured))
         self._recording.flush(timeout_sec=5.0)
         self._recording.disconnect()
 
@@ -201,19 +224,32 @@ class RunView:
         if self._cage is not None:
             self._cage.add(samples)
 
-    def _draw_map(self, chart: LoadMap, time: float) -> None:
-        narrow = self._scene.cage_whirls
-        width, height = map_size(narrow)
-        self._recording.set_time(TIMELINE, duration=time)
-        self._recording.log("/load_map/map", rr.EncodedImage(contents=chart.png(self._drawing.load_scale), media_type="image/png"))
-        times = section.round_ticks(chart.start, chart.start + chart.span)
-        across = (times - chart.start) / chart.span * width
-        self._label("/load_map/time", np.stack((across, np.full(len(times), 1.02 * height)), axis=1), [f"{time:g} s" for time in times])
-        places = np.stack((np.full(5, -label_distance(narrow)), height * np.linspace(0.9, -0.02, 5)), axis=1)
-        self._label("/load_map/azimuth", places, ["0° +Y", "90° +Z", "180°", "270°", "360°"])
+    def _enter_maps(self, samples: np.ndarray) -> None:
+        if len(samples):
+            for chart in self._maps.values():
+                chart.add(samples)
 
-    def _label(self, path: str, places: np.ndarray, texts: list[str]) -> None:
-        self._recording.log(path, labels(places, texts))
+    def _draw_maps(self, time: float) -> None:
+        self._recording.set_time(TIMELINE, duration=time)
+        narrow, count = self._scene.cage_whirls, self._scene.bearing.roller.count
+        width, height = map_size(narrow)
+        rows = {
+            "/load_map": (np.linspace(0.0, 1.0, 5), ["0° +Y", "90° +Z", "180°", "270°", "360°"]),
+            "/load_map_by_roller": (
+                np.array([0.5, (count + 1) // 2 - 0.5, count - 0.5]) / count,
+                ["no. 1", f"no. {(count + 1) // 2}", f"no. {count}"],
+            ),
+        }
+        for root, chart in self._maps.items():
+            picture = rr.EncodedImage(contents=chart.png(self._drawing.load_scale), media_type="image/png")
+            self._recording.log(f"{root}/map", picture)
+            times = section.round_ticks(chart.start, chart.start + chart.span, most=4 if narrow else 6)
+            across = (times - chart.start) / chart.span * width
+            below = np.stack((across, np.full(len(times), 1.02 * height)), axis=1)
+            self._recording.log(f"{root}/time", labels(below, [f"{time:g} s" for time in times]))
+            upwards, names = rows[root]
+            beside = np.stack((np.full(len(upwards), -label_distance(narrow)), height * (0.9 - 0.92 * upwards)), axis=1)
+            self._recording.log(f"{root}/rows", labels(beside, names))
 
 
 def first_load_scale(scene: Scene) -> float:

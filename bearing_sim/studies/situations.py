@@ -1,0 +1,208 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Six situations that an engineer should know by sight, each a short run of the bearing of Deng 2017, Table 1.
+
+Start from rest, steady light load, skid in a loss of load, misaligned rings, heavy load, and a fault: the guide land of
+the running machine closes up, which the model does not know, and the measured cage falls behind the predicted one.
+"""
+
+import dataclasses
+import math
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from bearing_sim.events import Event, Level
+from bearing_sim.runtime.monitor import Monitor
+from bearing_sim.runtime.residual import ResidualMonitor
+from bearing_sim.scene import Scene
+from bearing_sim.scene_file import load_scene
+from bearing_sim.simulation import Inputs, Simulation, scene_inputs
+
+BASE = "deng2017_table1"
+_RPM = math.pi / 30
+_BLOCK = 10  # samples
+_NOISE = 3e-4  # of a measured slip, a fraction
+_LOOSE = "bearing.outer_raceway.low_radius=34.87 mm"  # little preload: the cage slips soon
+_QUICK = [  # runs of a second cannot wait for half of one before they tell
+    "thresholds.slip_hold={raise_after: 10 ms, clear_after: 50 ms}",
+    "thresholds.life_hold={raise_after: 10 ms, clear_after: 50 ms}",
+    "thresholds.residual={batch: 10 ms, learning: 1 s, settling: 100 ms, memory: 100 ms, false_alarm_time: 1 h, tolerance: 0.1 %}",
+]
+
+
+class Situation(NamedTuple):
+    """A run with a name.
+
+    Attributes
+    ----------
+    name : of its files.
+    title : what happens, in a sentence.
+    overrides : what differs from the scene `BASE`.
+    duration, rate : length [s] and samples a second of simulated time.
+    course : what the inputs are at a time, given those of the scene; constant where absent.
+    picture_at : the time of its picture [s].
+    fault : when the machine changes [s], and how, in overrides; a machine is simulated beside the model only where there is one.
+    """
+
+    name: str
+    title: str
+    overrides: tuple[str, ...]
+    duration: float
+    rate: float
+    picture_at: float
+    course: Callable[[float, Inputs], Inputs] = lambda time, inputs: inputs
+    fault: tuple[float, tuple[str, ...]] | None = None
+
+    def scene(self) -> Scene:
+        """Return the scene that the model computes."""
+        return dataclasses.replace(load_scene(BASE, [*_QUICK, *self.overrides]), name=self.name, description=self.title)
+
+
+class Measured(NamedTuple):
+    """A measured cage speed [rad/s] at a time [s], and its residual slip, a fraction."""
+
+    time: float
+    cage_speed: float
+    residual: float
+
+
+def _smooth(share: float) -> float:
+    share = min(max(share, 0.0), 1.0)
+    return share * share * (3.0 - 2.0 * share)
+
+
+def _run_up(time: float, inputs: Inputs) -> Inputs:
+    return inputs._replace(shaft_speed=inputs.shaft_speed * _smooth((time - 0.02) / 0.5))
+
+
+def _gust(time: float, inputs: Inputs) -> Inputs:
+    share = 1.0 - 0.95 * (_smooth((time - 0.3) / 0.03) - _smooth((time - 0.45) / 0.03))
+    return inputs._replace(load_y=inputs.load_y * share, load_z=inputs.load_z * share)
+
+
+SITUATIONS = (
+    Situation(
+        "start_from_rest",
+        "The shaft runs up from rest to 20,000 rpm in half a second; the cage is dragged along.",
+        ("level=planar", "operating.shaft_speed=20000 rpm", "operating.radial_load=300 N"),
+        0.6,
+        1000.0,
+        0.3,
+        course=_run_up,
+    ),
+    Situation(
+        "steady_light_load",
+        "30,000 rpm and 100 N: the preload of the lobes alone keeps the cage near its speed.",
+        ("level=planar", "operating.shaft_speed=30000 rpm", "operating.radial_load=100 N"),
+        0.1,
+        6000.0,
+        0.1,
+    ),
+    Situation(
+        "skid_in_a_gust",
+        "A gust takes nearly all of the load off for 0.15 s at 33,000 rpm and little preload: the cage skids, and is caught when the load is back.",
+        ("level=planar", _LOOSE, "operating.shaft_speed=33000 rpm", "operating.radial_load=1200 N"),
+        0.7,
+        1500.0,
+        0.36,
+        course=_gust,
+    ),
+    Situation(
+        "misaligned",
+        "The inner ring is held 2 mrad out of line at 5000 rpm and 2 kN: rollers tilt and skew, their ends press hard.",
+        (
+            "level=spatial",
+            "bearing.roller.crown=iso_log",
+            "operating.misalignment=2 mrad",
+            "operating.shaft_speed=5000 rpm",
+            "operating.radial_load=2 kN",
+        ),
+        0.03,
+        8000.0,
+        0.03,
+    ),
+    Situation(
+        "heavy_load",
+        "6 kN at 15,000 rpm: the loaded rollers drive the cage at its ideal speed, and wear out in hours.",
+        ("level=planar", "operating.shaft_speed=15000 rpm", "operating.radial_load=6 kN"),
+        0.1,
+        3000.0,
+        0.1,
+    ),
+    Situation(
+        "fault_injected",
+        "The guide land of the machine closes from 150 to 10 um and brakes the cage; the model does not know: measured slip departs.",
+        ("level=slip", "operating.shaft_speed=30000 rpm"),
+        2.2,
+        250.0,
+        2.2,
+        fault=(1.5, ("bearing.cage.guide_clearance=10 um", "bearing.cage.outer_radius=null")),
+    ),
+)
+
+
+def play(situation: Situation, scene: Scene) -> Iterator[np.ndarray | Event | Measured]:
+    """Run a situation; yield blocks of samples, events, and the measurements of the cage where there are any, in order of time.
+
+    Parameters
+    ----------
+    situation : what happens.
+    scene : its `Situation.scene`.
+    """
+    given = scene_inputs(scene)
+    model = Simulation(scene, situation.course(0.0, given))
+    machine = Simulation(scene, model.inputs) if situation.fault else None
+    news, samples, lot = _News(scene), round(situation.duration * situation.rate), np.random.default_rng(1)
+    for done in range(0, samples, _BLOCK):
+        count = min(_BLOCK, samples - done)
+        end = (done + count) / situation.rate
+        inputs = situation.course(end, given)
+        block = model.advance(count / situation.rate, inputs, count)
+        yield block
+        if machine is not None:
+            machine = _with_fault(machine, situation, done / situation.rate)
+            yield from news.compare(block, machine.advance(count / situation.rate, inputs, count), lot)
+        yield from news.of(block)
+        if machine is not None and done / situation.rate < situation.fault[0] <= end:
+            yield Event(end, Level.OK, "study.fault", "the guide land of the machine closes; the model does not know")
+
+
+def _with_fault(machine: Simulation, situation: Situation, now: float) -> Simulation:
+    """Return the machine as it is from ``now`` [s] on."""
+    begins, changes = situation.fault
+    if now < begins * (1 - 1e-9) or machine.scene.bearing.cage != situation.scene().bearing.cage:
+        return machine
+    changed = Simulation(situation._replace(overrides=(*situation.overrides, *changes)).scene(), machine.inputs)
+    changed.take_over(machine)
+    return changed
+
+
+class _News:
+    """What the monitors of one run find, each change once."""
+
+    def __init__(self, scene: Scene):
+        self._monitor = Monitor(scene)
+        self._residual = ResidualMonitor(scene.thresholds.residual, scene.thresholds.slip_from_speed)
+        self._held: dict[str, Level] = {}
+
+    def of(self, block: np.ndarray) -> Iterator[Event]:
+        """Yield what a block has changed."""
+        self._monitor.take(block)
+        now = float(block["time"][-1])
+        held = {event.code: event for event in (*self._monitor.events(now), *self._residual.events(now))}
+        for code, event in held.items():
+            if self._held.get(code) != event.level:
+                yield event
+        for code in self._held.keys() - held.keys():
+            yield Event(now, Level.OK, code, "back within its limits")
+        self._held = {code: event.level for code, event in held.items()}
+
+    def compare(self, predicted: np.ndarray, true: np.ndarray, lot) -> Iterator[Measured]:
+        """Yield measurements of the machine with a sensor's noise, and take their residuals in."""
+        for one, other in zip(predicted, true):
+            ideal = float(one["ideal_cage_speed"])
+            speed = float(other["cage_speed"]) + _NOISE * ideal * lot.normal()
+            measured = 1.0 - speed / ideal
+            self._residual.take(float(one["time"]), float(one["shaft_speed"]), measured, float(one["cage_slip"]))
+            yield Measured(float(one["time"]), speed, measured - float(one["cage_slip"]))

@@ -1,0 +1,159 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Bags that others wrote: what can be shown is, what cannot is said; and measured cages in recordings of ours."""
+
+import math
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from recordings import FLOAT, JOINTS, SECOND, WRENCH, joint_state, steady_log, temperature, wrench, write_log
+from rerun.chunk import RrdReader
+from synthetic_run import synthetic_block
+
+from bearing_sim.bag_series import read_bag_series
+from bearing_sim.commands import view
+from bearing_sim.events import Level
+from bearing_sim.recording_reader import RecordingError
+from bearing_sim.scene_file import load_scene
+from bearing_sim.screenshot import HOW_TO_GET_VULKAN
+from bearing_sim.sinks.mcap_file import McapFile
+from bearing_sim.sinks.mcap_sink import McapSink
+from bearing_sim.sinks.rerun_bag import write_bag_view
+
+START = 1_700_000_000 * SECOND
+SCENE = load_scene("deng2017_table1")
+
+
+def run(*arguments):
+    return CliRunner().invoke(view.command, [str(argument) for argument in arguments])
+
+
+def column(path, entity, component="Scalars:scalars"):
+    """Return times [s] and values of one component, in the order of time."""
+    rows = []
+    for chunk in RrdReader(str(path)).stream():
+        table = chunk.to_record_batch()
+        if chunk.entity_path == entity and not chunk.is_static and component in table.schema.names:
+            rows += zip(table.column("sim_time").cast("int64").to_pylist(), table.column(component).to_pylist())
+    rows.sort(key=lambda row: row[0])
+    return 1e-9 * np.array([time for time, _ in rows]), np.array([value for _, (value,) in rows])
+
+
+@pytest.fixture
+def bag(tmp_path):
+    path = tmp_path / "servo.mcap"
+    with McapFile(path) as recording:
+        for k in range(50):
+            now = START + k * SECOND // 10
+            recording.write("/servo/state", JOINTS, now, joint_state(now, 100.0 + k))
+            recording.write("/cell", WRENCH, now, wrench(now, 300.0, 400.0))
+            recording.write("/oil_temperature", "sensor_msgs/msg/Temperature", now, temperature(now, 80.0))
+            recording.write("/valve", FLOAT, now, {"data": 0.1 * k})
+            recording.write(
+                "/where",
+                "geometry_msgs/msg/PointStamped",
+                now,
+                {"header": {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": ""}, "point": {"x": 0.0, "y": 0.0, "z": 0.0}},
+            )
+    return path
+
+
+def test_speed_load_and_plain_numbers_are_shown_and_the_rest_is_named(bag, tmp_path):
+    result = run(bag, "-o", tmp_path / "run.rrd", "--no-open", "--load-topic", "/cell")
+    assert result.exit_code == 0, result.output
+    assert "/where: nothing to plot in geometry_msgs/msg/PointStamped" in result.output and "need a model" in result.output
+    times, speeds = column(tmp_path / "run.rrd", "/speed/shaft")
+    np.testing.assert_allclose(times, 0.1 * np.arange(50), atol=1e-6)
+    np.testing.assert_allclose(speeds, (100.0 + np.arange(50)) * 60 / (2 * math.pi), rtol=1e-6)
+    np.testing.assert_allclose(column(tmp_path / "run.rrd", "/load/radial")[1], 500.0)
+    np.testing.assert_allclose(column(tmp_path / "run.rrd", "/oil/temperature")[1], 80.0)
+    np.testing.assert_allclose(column(tmp_path / "run.rrd", "/bag/valve")[1], 0.1 * np.arange(50), rtol=1e-6)
+    (about,) = [chunk for chunk in RrdReader(str(tmp_path / "run.rrd")).stream() if chunk.entity_path == "/about"]
+    assert "/where" in str(about.to_record_batch().to_pydict())
+
+
+def test_the_folder_of_a_bag_in_sqlite_is_shown_too(bag, tmp_path):
+    from rosbags.rosbag2 import StoragePlugin, Writer
+    from rosbags.typesys import Stores, get_typestore
+
+    store, folder = get_typestore(Stores.ROS2_JAZZY), tmp_path / "bag"
+    with Writer(folder, version=9, storage_plugin=StoragePlugin.SQLITE3) as writer:
+        connection = writer.add_connection("/rpm", FLOAT, typestore=store)
+        for k in range(10):
+            message = store.types[FLOAT](data=50.0 + k)
+            writer.write(connection, START + k * SECOND, store.serialize_cdr(message, FLOAT))
+    result = run(folder, "-o", tmp_path / "run.rrd", "--no-open", "--speed-topic", "rpm")
+    assert result.exit_code == 0, result.output
+    np.testing.assert_allclose(column(tmp_path / "run.rrd", "/speed/shaft")[1], (50.0 + np.arange(10)) * 30 / math.pi, rtol=1e-6)
+
+
+def test_messages_out_of_order_are_put_in_order(tmp_path):
+    found = read_bag_series(steady_log(tmp_path / "log.mcap"))
+    times, values = found.series["speed", "/shaft_speed shaft", "rpm"]
+    assert (np.diff(times) > 0).all() and len(times) == 21 and values == pytest.approx(4000.0 * 30 / math.pi)
+    assert any("no cage speed (/cage_speed_measured)" in line for line in found.left_out)
+
+
+def test_a_long_bag_is_thinned_out(tmp_path):
+    times = 1e-3 * np.arange(300_000)
+    values = np.sin(times)
+    values[123_456] = 99.0
+    write_bag_view(tmp_path / "run.rrd", "long", START, {("", "/a", "-"): (times, values)}, [], [])
+    assert len(column(tmp_path / "run.rrd", "/bag/a")[0]) < 10_000
+    ranges = [
+        chunk.to_record_batch().column("Scalars:scalars").to_pylist()
+        for chunk in RrdReader(str(tmp_path / "run.rrd")).stream()
+        if chunk.entity_path == "/bag/a/range" and not chunk.is_static
+    ]
+    assert max(high for rows in ranges for _, high in rows) == 99.0
+
+
+def test_diagnostics_of_others_reach_the_log(tmp_path):
+    path = tmp_path / "run.mcap"
+    with McapFile(path) as recording:
+        status = [
+            {"level": bytes([k]), "name": f"pump {k}", "message": "hot", "hardware_id": "x", "values": [{"key": "a", "value": "b"}]} for k in range(3)
+        ]
+        recording.write(
+            "/diagnostics",
+            "diagnostic_msgs/msg/DiagnosticArray",
+            START,
+            {"header": {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": "x"}, "status": status},
+        )
+        recording.write("/valve", FLOAT, START + SECOND, {"data": 1.0})
+    assert [(event.level, event.code) for event in read_bag_series(path).events] == [(Level.WARN, "pump 1"), (Level.ERROR, "pump 2")]
+
+
+def test_what_cannot_be_shown_at_all_is_told_with_exit_code_2(tmp_path):
+    (tmp_path / "noise.mcap").write_bytes(b"no recording")
+    for path, reason in ((tmp_path / "noise.mcap", "can be opened"), (tmp_path / "absent.mcap", "no such file")):
+        result = run(path, "-o", tmp_path / "run.rrd")
+        assert result.exit_code == 2 and reason in result.output and "Traceback" not in result.output
+    write_log(tmp_path / "log.mcap", [(0.0, 1.0), (1.0, 1.0)], [(0.0, 1.0, 0.0), (1.0, 1.0, 0.0)])
+    with pytest.raises(RecordingError, match="no topic /torque for the load; it has /radial_load, /shaft_speed"):
+        read_bag_series(tmp_path / "log.mcap", {"load": "/torque"})
+
+
+def test_a_measured_cage_in_a_recording_of_ours_shows_its_residual(tmp_path):
+    block = synthetic_block(SCENE, 0.005 * np.arange(1, 61))
+    with McapSink(tmp_path / "run.mcap", SCENE, START) as sink:
+        for k in range(60):
+            sink.write(block[k : k + 1])
+            if k % 2:
+                sink.write_measurement(float(block["time"][k]), float(block["ideal_cage_speed"][k] * 0.9), 0.1 - float(block["cage_slip"][k]))
+    assert run(tmp_path / "run.mcap", "-o", tmp_path / "run.rrd", "--no-open").exit_code == 0
+    times, residuals = column(tmp_path / "run.rrd", "/slip/residual")
+    np.testing.assert_allclose(times, block["time"][1::2], atol=1e-6)
+    np.testing.assert_allclose(residuals, 10.0 - 100 * block["cage_slip"][1::2], atol=1e-4)
+    np.testing.assert_allclose(column(tmp_path / "run.rrd", "/slip/measured")[1], 10.0, rtol=1e-5)
+    np.testing.assert_allclose(
+        column(tmp_path / "run.rrd", "/speed/cage_measured")[1], 0.9 * block["ideal_cage_speed"][1::2] * 30 / math.pi, rtol=1e-6
+    )
+
+
+def test_a_picture_of_a_bag_needs_no_bearing(bag, tmp_path):
+    result = run(bag, "-o", tmp_path / "run.rrd", "--screenshot", tmp_path / "a.png", "--size", "1000x700")
+    if HOW_TO_GET_VULKAN in result.output:
+        pytest.skip(f"needs a Vulkan driver: {HOW_TO_GET_VULKAN}")
+    assert result.exit_code == 0, result.output
+    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")

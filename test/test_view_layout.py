@@ -1,0 +1,187 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""The lay-out of the view: everything that is computed is shown, at the same paths at every level, with units, in colours that all can tell apart."""
+
+import itertools
+import re
+
+import numpy as np
+import pytest
+import rerun as rr
+import rerun.blueprint as rrb
+from synthetic_run import synthetic_block
+from test_bag_view import column
+from test_whirl_view import written
+
+from bearing_sim.events import Event, Level
+from bearing_sim.scene_file import load_scene
+from bearing_sim.sinks.overview import AROUND
+from bearing_sim.sinks.rerun_blueprint import blueprint
+from bearing_sim.sinks.rerun_lines import LINES, roller_series, threshold_lines
+from bearing_sim.sinks.rerun_series import RunSeries
+from bearing_sim.sinks.rerun_sink import RerunSink
+
+SCENES = {level: load_scene("deng2017_table1", [f"level={level}"]) for level in ("steady", "slip", "planar", "spatial")}
+SLIP = SCENES["slip"]
+BOUNDS = ((-40, 40), (-40, 40))
+
+
+@pytest.fixture(autouse=True)
+def strict_rerun():
+    rr.set_strict_mode(True)
+    yield
+    rr.set_strict_mode(False)
+
+
+def views(part):
+    if isinstance(part, rrb.View):
+        yield part
+    for inner in getattr(part, "contents", None) or [] if not isinstance(part, rrb.View) else []:
+        yield from views(inner)
+
+
+def shown(scene, **options):
+    return list(views(blueprint(scene, BOUNDS, live=False, **options).root_container))
+
+
+def plots(scene):
+    return [view for view in shown(scene, measured=True) if isinstance(view, rrb.TimeSeriesView)]
+
+
+@pytest.mark.parametrize("level", SCENES)
+def test_every_plot_says_its_unit(level):
+    for plot in plots(SCENES[level]):
+        assert re.search(r"\[.+\]|log10 of hours", plot.name), plot.name
+
+
+def paths_in(tmp_path, scene, level_number):
+    block = synthetic_block(scene, 1e-3 * np.arange(1, 30))
+    block["level"] = level_number
+    chunks = written(tmp_path / f"{scene.level}.rrd", scene, block)
+    return {chunk.entity_path for chunk in chunks if not chunk.is_static}
+
+
+def test_what_two_levels_have_in_common_stands_at_the_same_paths(tmp_path):
+    found = [paths_in(tmp_path, scene, number) for number, scene in enumerate(SCENES.values())]
+    for cheaper, dearer in itertools.pairwise(found):
+        assert cheaper <= dearer
+    assert {path.split("/")[1] for path in found[2] - found[1]} == {"cage_orbit"}
+    assert {path.split("/")[1] for path in found[3] - found[2]} == {"tilt", "pressure", "life"}
+
+
+@pytest.mark.parametrize("level", SCENES)
+def test_every_series_that_is_written_has_a_plot(tmp_path, level):
+    scene = SCENES[level]
+    block = synthetic_block(scene, 1e-3 * np.arange(1, 30))
+    series = {
+        chunk.entity_path
+        for chunk in written(tmp_path / "run.rrd", scene, block)
+        if not chunk.is_static and "Scalars:scalars" in chunk.to_record_batch().schema.names
+    }
+    plotted = {path for plot in plots(scene) for path in plot.contents}
+    of_readers = {"/life/hours"} | ({"/cage/eccentricity"} if not scene.cage_whirls else set())
+    assert series - plotted <= of_readers, "which are there for whoever reads the file"
+
+
+# G. M. Machado, M. M. Oliveira, L. A. F. Fernandes, IEEE Trans. Vis. Comput. Graph. 15 (2009): full severity, linear RGB.
+SIGHTS = {
+    "all cones": np.eye(3),
+    "protanopia": [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]],
+    "deuteranopia": [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.011820, 0.042940, 0.968881]],
+    "tritanopia": [[1.255528, -0.076749, -0.178779], [-0.078411, 0.930809, 0.147602], [0.004733, 0.691367, 0.303900]],
+}
+
+
+def lab(colour, sight):
+    """Return CIE L*a*b* (D65) of an sRGB colour as seen."""
+    linear = ((np.array(colour[:3]) / 255 + 0.055) / 1.055) ** 2.4
+    seen = np.clip(np.array(SIGHTS[sight]) @ linear, 0.0, 1.0)
+    xyz = np.array([[0.4124564, 0.3575761, 0.1804375], [0.2126729, 0.7151522, 0.0721750], [0.0193339, 0.1191920, 0.9503041]]) @ seen
+    f = np.cbrt(np.maximum(xyz / [0.95047, 1.0, 1.08883], 0.008856))
+    return np.array([116 * f[1] - 16, 500 * (f[0] - f[1]), 200 * (f[1] - f[2])])
+
+
+@pytest.mark.parametrize("sight", SIGHTS)
+def test_lines_of_one_plot_can_be_told_apart_with_any_sight(sight):
+    for plot in [plot for scene in SCENES.values() for plot in plots(scene)]:
+        coloured = [(path, lab(LINES[path][1], sight)) for path in plot.contents if path in LINES]
+        if plot.name.startswith("Plot [W]"):  # eight causes, which the bars beside name
+            continue
+        for (one, first), (other, second) in itertools.combinations(coloured, 2):
+            assert np.linalg.norm(first - second) > 15.0, f"{plot.name}: {one}, {other}"
+
+
+def test_the_lane_of_levels_tells_where_a_governor_fell_and_came_back(tmp_path):
+    scene, block = SCENES["planar"], synthetic_block(SCENES["planar"], 1e-3 * np.arange(1, 101))
+    block["level"] = np.where((np.arange(100) >= 40) & (np.arange(100) < 70), 1, 2)
+    written(tmp_path / "run.rrd", scene, block)
+    times, states = column(tmp_path / "run.rrd", "/level", "StateChange:state")
+    assert list(states) == ["planar", "slip, not planar", "planar"]
+    np.testing.assert_allclose(times, block["time"][[0, 40, 70]], atol=1e-6)
+
+
+def test_rollers_that_roll_slide_nowhere_and_a_spin_too_slow_slides_on_both_rings():
+    bearing, block = SLIP.bearing, synthetic_block(SLIP, [0.1])
+    radius = bearing.roller.diameter / 2
+    pitch = bearing.inner_raceway.radius + radius
+    block["roller_radius"], block["orbital_speed"] = pitch, 1000.0
+    block["roller_spin"] = 1000.0 * pitch / radius  # rolls on the outer ring
+    block["shaft_speed"] = 2 * 1000.0 * pitch / bearing.inner_raceway.radius  # and on the inner one
+    for path in ("/rollers/inner_sliding", "/rollers/outer_sliding"):
+        np.testing.assert_allclose(roller_series(SLIP, block)[path], 0.0, atol=1e-9)
+    block["roller_spin"] -= 10.0
+    found = roller_series(SLIP, block)
+    np.testing.assert_allclose(found["/rollers/inner_sliding"], 10.0 * radius)
+    np.testing.assert_allclose(found["/rollers/outer_sliding"], -10.0 * radius)
+
+
+def test_thresholds_that_a_scene_has_are_drawn_and_others_are_not():
+    assert set(threshold_lines(SLIP)) == {"/slip/warning", "/slip/error", "/life/warning"}
+    stricter = ["thresholds.life_error=100 h", "thresholds.pocket_force_warning=50 N", "thresholds.pocket_force_error=90 N"]
+    found = threshold_lines(load_scene("deng2017_table1", stricter))
+    assert found["/life/error"] == pytest.approx(2.0) and (found["/loads/pocket_warning"], found["/loads/pocket_error"]) == (50.0, 90.0)
+
+
+def test_residual_has_a_plot_where_the_cage_is_measured_and_only_there():
+    names = [[view.name for view in shown(SLIP, measured=measured)] for measured in (False, True)]
+    assert [any(name.startswith("Residual slip") for name in found) for found in names] == [False, True]
+
+
+def test_residual_slip_is_written_in_points_and_a_zero_line_beside_it(tmp_path):
+    block = synthetic_block(SLIP, 1e-3 * np.arange(1, 101))
+    with RerunSink(SLIP, path=tmp_path / "run.rrd", lossless=True) as sink:
+        for part in np.array_split(block, 10):
+            sink.write(part)
+            sink.write_measurement(float(part["time"][-1]), 0.95 * float(part["ideal_cage_speed"][-1]), 0.05 - float(part["cage_slip"][-1]))
+    np.testing.assert_allclose(column(tmp_path / "run.rrd", "/slip/measured")[1], 5.0, rtol=1e-4)
+    np.testing.assert_allclose(column(tmp_path / "run.rrd", "/slip/residual")[1], 5.0 - 100 * block["cage_slip"][9::10], atol=1e-4)
+    assert set(column(tmp_path / "run.rrd", "/slip/no_residual")[1]) == {0.0}
+
+
+def test_a_long_run_is_thinned_out_but_for_what_happened(tmp_path):
+    seconds, rate, event = 260.0, 400.0, 200.0
+    block = synthetic_block(SLIP, np.arange(1, round(seconds * rate) + 1) / rate, slips=(0.01, 0.02))
+    block["cage_slip"][30_000] = 0.04
+    recording = rr.RecordingStream("test")
+    recording.save(tmp_path / "run.rrd")
+    series = RunSeries(recording, SLIP, thin=True, duration=seconds)
+    for part in np.array_split(block, 260):
+        series.write(part)
+        if part["time"][0] <= event <= part["time"][-1]:
+            series.write_event(Event(event, Level.WARN, "test", "something happened"))
+    series.finish()
+    recording.disconnect()
+    times, slips = column(tmp_path / "run.rrd", "/slip/cage")
+    assert len(times) < 12_000 and times[0] == pytest.approx(1 / rate) and times[-1] == pytest.approx(seconds, abs=0.1)
+    within = np.abs(block["time"] - event) < 0.9713 * AROUND
+    kept = np.abs(times - event) < 0.9713 * AROUND
+    np.testing.assert_allclose(times[kept], block["time"][within], atol=1e-6)
+    np.testing.assert_allclose(slips[kept], 100 * block["cage_slip"][within], rtol=1e-5)
+    assert max(high for _, high in column_of_pairs(tmp_path / "run.rrd", "/slip/cage/range")) == pytest.approx(4.0)
+
+
+def column_of_pairs(path, entity):
+    from rerun.chunk import RrdReader
+
+    for chunk in RrdReader(str(path)).stream():
+        if chunk.entity_path == entity and not chunk.is_static:
+            yield from chunk.to_record_batch().column("Scalars:scalars").to_pylist()
