@@ -54,7 +54,7 @@ from bearing_sim.commands.reporting import (
     "--longest-gap",
     type=click.FloatRange(min=0, min_open=True),
     metavar="S",
-    help="Longer times between messages are not simulated [default: ten times their median spacing, at least input_limits.stale_after of the scene].",
+    help="Longer times between messages are not simulated [default: ten times their usual spacing, at least input_limits.stale_after of the scene].",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 def command(
