@@ -95,7 +95,7 @@ def test_roller_loads_layout_indexes_the_data():
 @pytest.mark.parametrize("name", topics.ARRAYS)
 def test_every_array_says_how_its_numbers_lie(name):
     sample = one_sample(rollers=4)
-    message = topics.OUTPUTS[name].message(STAMP, sample)
+    message = (topics.OUTPUTS | topics.RECORDED)[name].message(STAMP, sample)
     dim, (label, fields) = message["layout"]["dim"], topics.ARRAYS[name]
     assert dim[0]["label"] == label and math.prod(d["size"] for d in dim) == dim[0]["stride"] == len(message["data"])
     step = dim[1]["stride"] if len(dim) == 2 else 1
