@@ -21,7 +21,7 @@ from bearing_sim.topics import condition, further_condition
 
 _REPORT_EVERY = 1.0  # [s] of simulated time between diagnostics
 _PROGRESS_EVERY = 50  # items
-_JUDGED = 100  # outputs that are judged at once where none of them can be news
+_JUDGED = 400  # outputs that are judged at once where none of them can be news
 _WATCHED_BLOCK = 100  # samples: views take long blocks far more cheaply than single samples
 _TURNING = 0.01  # of the largest speed of the run: slip means nothing on a shaft that hardly turns
 
