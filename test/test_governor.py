@@ -162,4 +162,3 @@ def test_live_model_tells_the_change_and_keeps_telling_the_level():
     (change,) = [event for event in bench.news if event.code == "governor.change"]
     assert "planar holds" in change.text
     assert "slip goes on" in change.text
-    assert bench.live.runner.pace.lost == 0.0
