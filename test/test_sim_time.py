@@ -115,6 +115,17 @@ def test_a_pause_of_the_clock_and_of_the_model_and_a_machine_that_lags_change_no
     assert_same_samples(run.finish().samples, expected.samples)
 
 
+def test_level_steady_goes_its_course_through_operating_points_as_in_a_replay(make, tmp_path):
+    scene, messages = load_scene("deng2017_table1", ["level=steady"]), course(SECONDS)
+    expected = replayed(write(tmp_path / "log.mcap", messages), scene)
+    run = make(Simulation(scene), scene)
+    run.model.note_senders("oil_temperature", 1)
+    run.player.play(messages, ticks(SECONDS, 0.1), random.Random(3))
+    got = run.finish().samples
+    assert_same_samples(got, expected.samples)
+    assert len({float(sample["cage_slip"]) for sample in got.values()}) > 50, "the slip follows the inputs"
+
+
 def test_a_recording_replayed_twice_is_equal_to_the_byte_in_every_message_and_log_time(tmp_path):
     path = write(tmp_path / "log.mcap", course(SECONDS, cage=True))
     judged = judge(read_input_log(path), SCENE.input_limits, Inputs(0.0, 0.0, 0.0, SCENE.lubricant.temperature))

@@ -3,12 +3,14 @@
 
 import json
 import math
+import random
 from functools import partial
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
 from scipy.interpolate import PchipInterpolator
+from sim_time_bench import RATE, FalseWall, ListSink, Player, assert_same_samples, course, replayed, write
 
 from bearing_sim import Inputs, Simulation, load_scene
 from bearing_sim.cli import main
@@ -17,6 +19,7 @@ from bearing_sim.kernels.raceway import tabulated
 from bearing_sim.levels.steady_point import ANSWER
 from bearing_sim.levels.steady_table import empty_table, monotone_slopes
 from bearing_sim.params import lubricate, pack
+from bearing_sim.runtime.sim_time import SimTimeModel
 from bearing_sim.tables import store
 from bearing_sim.tables.grid import Span, assembled, build_table, look_up
 from bearing_sim.tables.store import cached_table, obtain_table, read_table, solve_scene, span_of, table_hash, table_path, write_table
@@ -178,6 +181,26 @@ def test_course_of_inputs_is_the_same_as_one_advance_after_the_other(small):
     for name in ("time", "cage_slip", "cage_angle", "damage", "inner_load", "rating_life", "shaft_angle", "oil_temperature"):
         np.testing.assert_allclose(block[name], singles[name], rtol=1e-9, atol=1e-9)
     assert one.time == pytest.approx(other.time) and one.counters.steps == other.counters.steps == 40
+
+
+def test_course_by_table_under_a_clock_is_that_of_a_replay_to_rounding(small, tmp_path):
+    scene, table, _ = small
+    messages, by_table, wall = course(1.2, oil=False), partial(Simulation, table=table), FalseWall()
+    expected = replayed(write(tmp_path / "log.mcap", messages), scene, model=by_table)
+    model, recordings = SimTimeModel(scene, by_table(scene), RATE, RATE, wall=wall), []
+
+    def record(start_ns):
+        recordings.append(ListSink(start_ns))
+        return recordings[-1]
+
+    model.open("record", record, anew=True)
+    player = Player(model, wall)
+    player.play(messages, np.arange(0.0, 1.21, 0.1).tolist(), random.Random(3))
+    player.stand(1.0)
+    player.until_idle()
+    assert model.close()
+    assert_same_samples(recordings[-1].samples, expected.samples, exactly=False, limit=1e-13)
+    assert len({float(sample["cage_slip"]) for sample in recordings[-1].samples.values()}) > 50, "the slip follows the inputs"
 
 
 def test_course_ends_where_the_table_does(small):
