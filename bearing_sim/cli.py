@@ -24,6 +24,7 @@ _COMMANDS = {
     "report": "Make one HTML page of a study.",
     "trade": "Measure what speed costs in accuracy on a scene, and recommend a setting.",
     "bench": "Measure speed and error of every level and method.",
+    "compile": "Compile levels ahead of their first run.",
     "study": "Study the model itself: the extremes.",
     "info": "Say what a recording holds, where it comes from and whether it is whole.",
     "compare": "Compare two recordings topic by topic.",

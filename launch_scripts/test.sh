@@ -10,4 +10,7 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 install_package test
 
 cd "$here"
+if [ $# = 0 ]; then
+    "$venv/bin/bearing-sim" compile --every-method # on all cores, where the tests would do it on one
+fi
 exec "$venv/bin/python" -m pytest "$@"

@@ -1,0 +1,64 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""``bearing-sim compile``: all that runs later is compiled, and nothing of this version is thrown away."""
+
+import subprocess
+import sys
+
+from click.testing import CliRunner
+
+from bearing_sim import precompilation
+from bearing_sim.cli import main
+from bearing_sim.kernels import compilation
+from bearing_sim.levels.level import LEVELS
+from bearing_sim.precompilation import Build, builds
+from bearing_sim.scene_file import load_scene
+
+_RUN = """
+import gc, sys
+from numba.core.dispatcher import Dispatcher
+from bearing_sim import Simulation, load_scene
+run = Simulation(load_scene("deng2017_table1", sys.argv[1:]))
+run.advance(0.001, run.inputs._replace(shaft_speed=1000.0), 7)
+kernels = [found for found in gc.get_objects() if isinstance(found, Dispatcher)]
+print(sum(sum(kernel.stats.cache_hits.values()) for kernel in kernels), sum(sum(kernel.stats.cache_misses.values()) for kernel in kernels))
+"""
+
+
+def test_every_build_is_a_scene_of_its_own_and_all_methods_of_all_levels_are_among_them():
+    found = builds(tuple(LEVELS), every_method=True)
+    assert len(set(found)) == len(found)
+    for build in found:
+        scene = load_scene("deng2017_table1", build.overrides)
+        assert (scene.level, scene.integration.method) == (build.level, build.method)
+        assert (scene.integration.fixed_step is not None) == build.fixed_step
+    assert {(build.level, build.method) for build in found} == {(level, method) for level in LEVELS for method in LEVELS[level].methods}
+    assert {build.level for build in found if build.fixed_step} == {"slip", "planar", "spatial"}
+
+
+def test_by_default_each_level_is_compiled_with_its_own_method():
+    assert set(builds(("slip", "planar"))) == {Build("slip", "rosenbrock2"), Build("planar", "sdirk2")}
+
+
+def test_run_after_compile_finds_all_its_code_on_disk():
+    result = CliRunner().invoke(main, ["compile", "--level", "slip"])
+    assert result.exit_code == 0 and "slip by rosenbrock2: compiled" in result.output, result.output
+    run = subprocess.run([sys.executable, "-c", _RUN, "level=slip"], check=True, timeout=300, capture_output=True, text=True)
+    loaded, compiled = map(int, run.stdout.split())
+    assert loaded > 0 and compiled == 0
+
+
+def test_unknown_level_is_refused_with_the_known_ones():
+    result = CliRunner().invoke(main, ["compile", "--level", "plane"])
+    assert result.exit_code == 2 and "--level plane: expected one of steady, slip, planar, spatial" in result.output
+
+
+def test_prune_removes_other_versions_and_keeps_this_one(tmp_path, monkeypatch):
+    for version in ("present", "older"):
+        (tmp_path / version / "levels").mkdir(parents=True)
+        (tmp_path / version / "levels" / "slip.nbc").write_bytes(bytes(1_500_000))
+    monkeypatch.setattr(compilation, "CACHE_FOLDER", tmp_path / "present")
+    monkeypatch.setattr(precompilation, "compile_all", lambda wanted, workers: iter(()))
+    result = CliRunner().invoke(main, ["compile", "--prune"])
+    assert result.exit_code == 0 and "2 MB of other versions removed" in result.output, result.output
+    assert [folder.name for folder in tmp_path.iterdir()] == ["present"]
+    assert (tmp_path / "present" / "levels" / "slip.nbc").stat().st_size == 1_500_000
