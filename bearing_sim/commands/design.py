@@ -1,12 +1,10 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """``bearing-sim design``: the region of outer raceways that keep slip and life within limits."""
 
-from pathlib import Path
-
 import click
 
-from bearing_sim.commands.reporting import BadInput, orderly_end, print_json, tell_compilation, told_as_bad_input, told_file_faults
-from bearing_sim.commands.sweeping import Points, executor_options, picture_option
+from bearing_sim.commands.reporting import BadInput, orderly_end, picture_option, print_json, tell_compilation, told_as_bad_input, told_file_faults
+from bearing_sim.commands.sweeping import Points, executor_options, table_option
 
 # Deng 2017, for the bearing of its Table 1 at 45,000 rpm and 800 N: what it recommends for slip below 10 % and a life of 300 h.
 _DENG = ("deng2017_table1", 10.0, 300.0, (0.095, 0.105), (34.8625, 34.8650))
@@ -22,17 +20,9 @@ _DENG = ("deng2017_table1", 10.0, 300.0, (0.095, 0.105), (34.8625, 34.8650))
 @click.option("--d-value", "d_values", metavar="START:STOP:N", help="D values [default: 80 to 120 % of the scene's, 9].")
 @click.option("--set", "overrides", multiple=True, metavar="FIELD=VALUE", help="Override a field of the scene; may be repeated.")
 @click.option("--level", metavar="LEVEL", help="Fidelity level [default: steady where that has all that the scene asks for, or the scene's].")
-@click.option(
-    "-o",
-    "--out",
-    type=click.Path(path_type=Path),
-    default=Path("design.parquet"),
-    show_default=True,
-    metavar="PATH.parquet",
-    help="The map; beside it PATH.csv, PATH_borders.parquet and .csv, and PATH.journal, from which it goes on after a kill.",
-)
+@table_option("design.parquet", "The map; beside it PATH.csv, PATH_borders.parquet and .csv, and")
 @executor_options
-@picture_option
+@picture_option("Draw the results")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 def command(
     scene_name, slip_below, life_above, speed_tolerance, load_tolerance, radii, d_values, overrides, level, out, workers, dask, picture, as_json

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.commands.reporting import FailedRun, print_json, progress_bar, tell_compilation, told_file_faults
+from bearing_sim.commands.reporting import FailedRun, print_json, print_rows, progress_bar, tell_compilation, told_file_faults
 
 
 @click.command()
@@ -101,19 +101,13 @@ def _figures(situation, block, residuals, codes) -> dict:
 
 
 def _print(report, out) -> None:
-    import sys
-
-    from rich.console import Console
-    from rich.table import Table
-
-    table = Table(title=f"situations in {out}", title_justify="left")
-    for column in ("name", "level", "rpm", "N", "slip at first, then, at last [%]", "life [h]", "load [N]", "tilt, skew [mrad]", "residual [points]"):
-        table.add_column(column, justify="left" if column in {"name", "level"} else "right")
+    columns = ("name", "level", "rpm", "N", "slip at first, then, at last [%]", "life [h]", "load [N]", "tilt, skew [mrad]", "residual [points]")
+    rows = []
     for name, found in report.items():
         slips = ", ".join(f"{100 * found[key]:.2f}" for key in ("slip_at_first", "slip", "slip_at_last"))
         leans = f"{1e3 * found['largest_tilt']:.2f}, {1e3 * found['largest_skew']:.2f}"
         residual = "-" if found["residual"] is None else f"{100 * found['residual']:+.2f}"
         numbers = (f"{found[key]:.4g}" for key in ("shaft_speed_rpm", "radial_load"))
         others = (f"{found[key]:.4g}" for key in ("rating_life", "largest_load"))
-        table.add_row(name, found["level"], *numbers, slips, *others, leans, residual)
-    Console(width=None if sys.stdout.isatty() else 170).print(table)
+        rows.append((name, found["level"], *numbers, slips, *others, leans, residual))
+    print_rows(f"situations in {out}", columns, rows, words=("name", "level"), width=170)

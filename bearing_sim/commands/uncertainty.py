@@ -6,9 +6,17 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.commands.reporting import BadInput, print_json, print_table, progress_bar, tell_compilation, told_as_bad_input, told_file_faults
+from bearing_sim.commands.reporting import (
+    picture_option,
+    print_json,
+    print_table,
+    progress_bar,
+    require_levels,
+    tell_compilation,
+    told_as_bad_input,
+    told_file_faults,
+)
 
-PICTURES = (".png", ".svg", ".pdf")
 SEED = 2017
 
 
@@ -24,7 +32,7 @@ SEED = 2017
 @click.option("--stretches", default=24, show_default=True, type=click.IntRange(1, 10_000), help="Into how many the course of the log is cut.")
 @click.option("--workers", type=click.IntRange(1, 256), metavar="N", help="Threads [default: all cores].")
 @click.option("--csv", "table", type=click.Path(path_type=Path), metavar="PATH.csv", help="Write every point that was computed.")
-@click.option("--picture", type=click.Path(path_type=Path), metavar="PATH.png", help="Draw bands and shares (.png, .svg or .pdf).")
+@picture_option("Draw bands and shares")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 def command(scene_name, overrides, samples, seed, level, log, stretches, workers, table, picture, as_json):
     """Tell what slip and life of SCENE may be (5, 50 and 95 %), its uncertain fields drawn from the ranges in its block `uncertainty`.
@@ -32,13 +40,9 @@ def command(scene_name, overrides, samples, seed, level, log, stretches, workers
     With N samples and d ranges the bearing is computed N (d + 2) times; Sobol' indices say which field the spread comes from.
     Other ranges: --set "uncertainty.lubricant.temperature=[90 degC, 130 degC]"; none for a field: --set uncertainty.FIELD=null.
     """
-    from bearing_sim.effects import LEVELS
     from bearing_sim.scene_file import SceneError, load_scene
 
-    if level is not None and level not in LEVELS:
-        raise BadInput(f"--level {level}: expected one of {', '.join(LEVELS)}")
-    if picture is not None and picture.suffix.lower() not in PICTURES:
-        raise BadInput(f"--picture {picture}: expected a name that ends in {', '.join(PICTURES)}")
+    require_levels([level] if level is not None else ())
     with told_as_bad_input(SceneError):
         scene = load_scene(scene_name, overrides)
     scene, course = _course(log, scene, stretches) if log is not None else (scene, None)
