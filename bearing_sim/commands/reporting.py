@@ -157,7 +157,8 @@ def print_rows(
 def _show(table, width: int = 150) -> None:
     from rich.console import Console
 
-    Console(width=None if sys.stdout.isatty() else width).print(table)
+    # A unit in brackets is a unit, no mark-up.
+    Console(width=None if sys.stdout.isatty() else width, markup=False, emoji=False).print(table)
 
 
 @contextmanager
