@@ -8,6 +8,7 @@ import pytest
 from click.testing import CliRunner
 from recordings import FLOAT, JOINTS, SECOND, WRENCH, joint_state, steady_log, temperature, wrench, write_log
 from rerun.chunk import RrdReader
+from rerun_files import column
 from synthetic_run import synthetic_block
 
 from bearing_sim.bag_series import read_bag_series
@@ -27,17 +28,6 @@ SCENE = load_scene("deng2017_table1")
 
 def run(*arguments):
     return CliRunner().invoke(view.command, [str(argument) for argument in arguments])
-
-
-def column(path, entity, component="Scalars:scalars"):
-    """Return times [s] and values of one component, in the order of time."""
-    rows = []
-    for chunk in RrdReader(str(path)).stream():
-        table = chunk.to_record_batch()
-        if chunk.entity_path == entity and not chunk.is_static and component in table.schema.names:
-            rows += zip(table.column("sim_time").cast("int64").to_pylist(), table.column(component).to_pylist())
-    rows.sort(key=lambda row: row[0])
-    return 1e-9 * np.array([time for time, _ in rows]), np.array([value for _, (value,) in rows])
 
 
 @pytest.fixture
