@@ -24,7 +24,7 @@ from mcap.stream_reader import CRCValidationError, StreamReader
 from bearing_sim.bag_files import BagError, mcap_files
 from bearing_sim.contour import outer_contour
 from bearing_sim.effects import NUMBERS
-from bearing_sim.events import Event, Level
+from bearing_sim.events import Event, Level, Measurement
 from bearing_sim.mcap_stream import WholeReads
 from bearing_sim.params import contact_stiffness
 from bearing_sim.sample import new_block
@@ -68,14 +68,6 @@ class Received(NamedTuple):
     log_ns: int
     publish_ns: int
     data: bytes
-
-
-class Measurement(NamedTuple):
-    """A cage speed [rad/s] that was measured at a time [s], and by how much its slip is more than predicted (a fraction, or NaN)."""
-
-    time: float
-    cage_speed: float
-    residual: float
 
 
 class Recording:

@@ -54,8 +54,9 @@ def _run(situation, rrd: Path) -> dict:
     """Write a situation's recording; return what it is told by."""
     import numpy as np
 
+    from bearing_sim.events import Measurement
     from bearing_sim.sinks.rerun_sink import RerunSink
-    from bearing_sim.studies.situations import Measured, play
+    from bearing_sim.studies.situations import play
 
     scene, blocks, residuals, codes = situation.scene(), [], [], []
     with RerunSink(scene, path=rrd, lossless=True, duration=situation.duration) as sink:
@@ -65,7 +66,7 @@ def _run(situation, rrd: Path) -> dict:
                     sink.write(item)
                     blocks.append(item)
                     progress(float(item["time"][-1]))
-                elif isinstance(item, Measured):
+                elif isinstance(item, Measurement):
                     sink.write_measurement(*item)
                     residuals.append(item)
                 else:

@@ -86,8 +86,7 @@ def _size(text: str) -> tuple[int, int]:
 
 
 def _convert(source, out: Path) -> None:
-    from bearing_sim.events import Event
-    from bearing_sim.recording_reader import Measurement
+    from bearing_sim.events import Event, Measurement
     from bearing_sim.sinks.rerun_sink import RerunSink
 
     with progress_bar(f"reading {source.path.name}", source.duration) as progress:
