@@ -154,6 +154,8 @@ def test_info_says_what_is_wrong_with_a_file(recording, tmp_path):
     broken = truncated(recording, tmp_path / "run.mcap.active", recording.stat().st_size // 2)
     assert "NOT WHOLE" in invoke("info", broken, code=1)
     assert "no recording of a run" in invoke("info", steady_log(tmp_path / "log.mcap"))
+    (tmp_path / "spoilt.mcap").write_bytes(recording.read_bytes()[:-8] + b"nonsense")
+    assert not contents(tmp_path / "spoilt.mcap").is_finished and "not the end" in invoke("info", tmp_path / "spoilt.mcap", code=1)
     (tmp_path / "text.mcap").write_text("hello")
     assert "not an MCAP file" in invoke("info", tmp_path / "text.mcap", code=2)
 
