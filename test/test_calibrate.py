@@ -125,6 +125,11 @@ def test_an_error_of_the_model_shows_where_there_are_more_points_than_fields_and
     assert math.isnan(fit(measured(4)).misfit)
 
 
+def test_an_interval_of_less_confidence_is_narrower():
+    half, usual = (fit(measured(9), confidence=share).fitted[0] for share in (0.5, 0.95))
+    assert half.value == usual.value and 0.3 < (half.high - half.low) / (usual.high - usual.low) < 0.36  # 0.674 / 1.96 of a normal distribution
+
+
 def test_noise_that_resembles_itself_is_not_taken_for_an_error_of_the_model():
     assert min(fit(measured(seed, FIVE_POINTS, correlation=0.9)).misfit_chance for seed in (1, 2, 3)) > 0.01
 
