@@ -178,6 +178,12 @@ def test_the_design_question_is_answered_beside_the_papers_answer(folder, about)
     assert {row["kind"] for row in borders.rows} == {"nominal", "worst"} and (folder / "figures" / "design.png").stat().st_size > 20_000
 
 
+def test_a_value_is_crossed_between_the_points_linearly_and_nowhere_where_it_is_always_or_never_reached():
+    rising = Course(np.array([1.0, 2.0, 3.0]), np.array([8.0, 9.0, 11.0]), np.zeros(3, bool))
+    assert deng2017_claims._crossing(rising, 10.0) == pytest.approx(2.5)
+    assert np.isnan(deng2017_claims._crossing(rising, 7.0)) and np.isnan(deng2017_claims._crossing(rising, 12.0))
+
+
 def test_contours_of_the_machining_model_grow_as_the_arc_is_turned(folder):
     rows = read_table(folder / "tables" / "machining.parquet").rows
     for name, sign in (("high_radius", 1), ("low_radius", -1), ("d_value", 1), ("roundness", 1)):

@@ -211,9 +211,11 @@ def test_after_a_jump_back_the_bearing_is_judged_anew(make):
     run.player.play(messages, ticks(SECONDS, 0.1))
     run.finish()
     assert "bearing.slip" in run.events()
+    run.player.offer(Message(SECONDS + 0.1, "shaft_speed", (float("nan"),)))
     run.player.play([message for message in messages if message.stamp <= 0.3], ticks(0.3, 0.1))
     run.finish()
     assert len(run.recordings) == 2 and "bearing.slip" not in run.events(), "it has not held for its hold time yet"
+    assert run.model.gate.refused == {"input.not_finite": 1}, "what was refused stays counted"
 
 
 def test_clock_that_jumps_back_is_an_error_where_that_is_asked_for_and_ends_when_it_has_passed(make, tmp_path):
