@@ -162,6 +162,7 @@ def test_the_band_of_one_field_is_slip_at_the_ends_of_its_own_band():
     slips = [settled(with_values(steady, {"lubricant.mixture_fraction": bound}))[0, 0] for bound in bounds]
     bands = found.bands["cage_slip"]
     assert [bands.low, bands.middle, bands.high] == pytest.approx(slips, rel=0.03)
+    assert bands == band(found.answers["cage_slip"][:128]), "both samples of the design count"
     assert found.indices["cage_slip"].total == pytest.approx([1.0])
     assert found.own["cage_slip"] == pytest.approx(settled(steady)[0, 0])
 
