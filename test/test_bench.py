@@ -12,6 +12,7 @@ import pytest
 from click.testing import CliRunner
 
 from bearing_sim.cli import main
+from bearing_sim.commands.reporting import print_rows
 from bearing_sim.studies import bench_settled
 from bearing_sim.studies.bench import SPEEDS, one_core
 from bearing_sim.studies.bench_problem import STOCK_ROLLERS, bare_problem, error_share, level_methods, scaled_scene, state_scales
@@ -92,6 +93,12 @@ def test_the_benchmarks_are_listed_and_an_unknown_level_is_refused_by_each_that_
     for name in ("levels", "recording", "fleet"):
         refused = CliRunner().invoke(main, ["bench", name, "--level", "cheap"])
         assert refused.exit_code == 2 and "expected one of steady, slip, planar, spatial" in refused.output
+
+
+def test_a_table_shows_the_units_of_its_headings(capsys):
+    print_rows("times", ("while", "late [ms]"), [("[absent]", "1.5")], words=("while",))
+    told = capsys.readouterr().out
+    assert "late [ms]" in told and "[absent]" in told, "brackets are no mark-up"
 
 
 @pytest.mark.parametrize("rollers", [9, 36, 144])
