@@ -27,6 +27,7 @@ from bearing_sim.recovery import RecoveryError, contents, recover
 from bearing_sim.sample import OBSERVABLES
 from bearing_sim.scene_file import load_scene, scene_from_yaml
 from bearing_sim.simulation import Inputs
+from bearing_sim.sinks.mcap_file import McapFile
 from bearing_sim.sinks.mcap_sink import McapSink
 from bearing_sim.topics import outputs, recorded
 
@@ -162,6 +163,14 @@ def test_info_says_what_is_in_a_recording_and_that_it_is_whole(recording):
     assert scene_from_yaml(invoke("info", recording, "--scene")) == SCENE
     text = invoke("info", recording)
     assert "whole, all checksums good" in text and "deng2017_table1" in text and "/roller_places" in text
+
+
+def test_messages_out_of_order_are_counted_each_by_its_own_topic(tmp_path):
+    with McapFile(tmp_path / "log.mcap") as file:
+        for topic, times in (("/a", (11, 13, 12, 14)), ("/b", (10, 15, 15))):
+            for time_ns in times:
+                file.write(topic, "std_msgs/msg/Float64", time_ns, {"data": 0.0})
+    assert contents(tmp_path / "log.mcap").out_of_order == 1
 
 
 def test_info_says_what_is_wrong_with_a_file(recording, tmp_path):

@@ -15,6 +15,7 @@ from bearing_sim.input_course import judge
 from bearing_sim.input_log import read_input_log
 from bearing_sim.replay import replay
 from bearing_sim.runtime.clock_watch import ClockWatch, Step
+from bearing_sim.runtime.growing_course import GrowingCourse
 from bearing_sim.runtime.leg import is_gap
 from bearing_sim.runtime.sim_time import SimTimeModel
 from bearing_sim.runtime.stragglers import Message as Aside
@@ -195,6 +196,14 @@ def test_a_reading_is_settled_half_a_second_later_and_what_is_missing_is_told_af
     assert (watch.settled(10.49), watch.settled(10.51), watch.overdue(11.99), watch.overdue(12.01)) == (-1, 100, -1, 100)
     assert not watch.stands_still(10.99) and watch.stands_still(11.01)
     assert watch.read(50, wall=13.0) is Step.BACK and watch.settled(13.4) == watch.overdue(13.4) == -1, "readings from before the jump say nothing"
+
+
+def test_nothing_is_known_beyond_the_clock_though_messages_are_stamped_later():
+    known = GrowingCourse(RATE, SCENE.input_limits, 390.0)
+    for channel, value in (("shaft_speed", 100.0), ("radial_load", (800.0, 0.0))):
+        for stamp in (100, 1000):
+            known.add(channel, stamp, value)
+    assert [known.known_until(clock, clock, False) for clock in (500, 1000, 2000)] == [500, 1000, 1000]
 
 
 def test_of_messages_set_aside_a_jump_takes_those_nearer_to_where_the_clock_has_gone():
