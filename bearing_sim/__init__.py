@@ -31,6 +31,7 @@ module                 responsibility
 ``studies``            the bench: speed and error of every level and method; statics: the load distribution by slices;
                        extremes: the stability map; uncertainty and sensitivity: bands of slip and life, and which field they
                        come from; calibration: fields fitted to a measured cage speed
+``events``             what happens besides samples: what a person should be told, and measurements of the cage
 ``topics``             the messages that samples and inputs become
 ``ros``                the ROS 2 node and player, and what the launch files share
 ``commands``, ``cli``  the command line

@@ -1,13 +1,9 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""The command line ``bearing-sim``.
-
-Each command lives in its own module and is imported only when it is called, so that ``--help`` stays
-fast (click's lazy-group pattern).
-"""
-
-import importlib
+"""The command line ``bearing-sim``; each command lives in its own module."""
 
 import click
+
+from bearing_sim.commands.lazy_group import LazyGroup
 
 _COMMANDS = {
     "run": "Run a scene under its constant conditions.",
@@ -23,9 +19,9 @@ _COMMANDS = {
     "design": "Map which outer raceways keep slip and life within limits.",
     "report": "Make one HTML page of a study.",
     "trade": "Measure what speed costs in accuracy on a scene, and recommend a setting.",
-    "bench": "Measure speed and error of every level and method.",
+    "bench": "Measure how fast the model is, and what recordings, views and many bearings cost.",
     "compile": "Compile levels ahead of their first run.",
-    "study": "Study the model itself: the extremes.",
+    "study": "Study the model itself, and the results of Deng 2017.",
     "info": "Say what a recording holds, where it comes from and whether it is whole.",
     "compare": "Compare two recordings topic by topic.",
     "recover": "Complete the recording of a killed writer.",
@@ -37,22 +33,9 @@ _COMMANDS = {
 }
 
 
-class _LazyGroup(click.Group):
-    def list_commands(self, context):
-        return list(_COMMANDS)
-
-    def get_command(self, context, name):
-        if name not in _COMMANDS:
-            return None
-        module = importlib.import_module(f"bearing_sim.commands.{name.replace('-', '_')}")
-        return module.command
-
-    def format_commands(self, context, formatter):
-        with formatter.section("Commands"):
-            formatter.write_dl(list(_COMMANDS.items()))
-
-
-@click.group(cls=_LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(
+    cls=LazyGroup, told=_COMMANDS, within="bearing_sim.commands.", heading="Commands", context_settings={"help_option_names": ["-h", "--help"]}
+)
 @click.version_option(package_name="bearing_sim")
 def main():
     """Cage slip and rating life of high-speed roller bearings with lobed raceways."""

@@ -10,14 +10,13 @@ from importlib import resources
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import ConfigDict, Field, TypeAdapter, ValidationError, model_validator
-from pydantic.dataclasses import dataclass
+from pydantic import Field, TypeAdapter, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
 
 from bearing_sim.quantity import quantity, to_si
 from bearing_sim.scene_file import Fault, SceneError, did_you_mean, faults_of, yaml_mapping
+from bearing_sim.scene_record import record
 
-_strict = dataclass(frozen=True, kw_only=True, config=ConfigDict(extra="forbid", str_strip_whitespace=True))
 _LAWS = frozenset({"sum", "norm", "mass_times_acceleration", "gear_force"})
 
 
@@ -28,7 +27,7 @@ class MappingError(SceneError):
 def _column(si_unit: str, meaning: str) -> type:
     """Return the record of a column of one kind: SI value = scale x cell + offset, or the cell in a named unit."""
 
-    @_strict
+    @record
     class Column:
         """One column: either ``unit``, or ``scale`` (SI per one in the cell) and ``offset``."""
 
@@ -68,7 +67,7 @@ TemperatureColumn = _column("K", "oil temperature")
 PowerColumn = _column("W", "power")
 
 
-@_strict
+@record
 class TimeColumn:
     """The time of each row: numbers in a ``unit`` since ``epoch``, or timestamps in a ``format``."""
 
@@ -112,7 +111,7 @@ def nanoseconds(moment: datetime.datetime) -> int:
     return (zoned - datetime.datetime(1970, 1, 1, tzinfo=datetime.UTC)) // datetime.timedelta(microseconds=1) * 1000
 
 
-@_strict
+@record
 class SumLoad:
     """Load along +y: the sum of the columns."""
 
@@ -120,7 +119,7 @@ class SumLoad:
     columns: tuple[ForceColumn, ...]
 
 
-@_strict
+@record
 class NormLoad:
     """Load along +y: the length of the vector of the columns."""
 
@@ -128,7 +127,7 @@ class NormLoad:
     columns: tuple[ForceColumn, ...]
 
 
-@_strict
+@record
 class MassTimesAcceleration:
     """Load along +y: a supported mass times the length of the vector of the accelerations."""
 
@@ -137,7 +136,7 @@ class MassTimesAcceleration:
     accelerations: tuple[AccelerationColumn, ...]
 
 
-@_strict
+@record
 class GearForce:
     """Load along +y: tangential force of a gear on the shaft, F = 2 P/(efficiency omega d), omega the row's shaft speed."""
 
@@ -147,7 +146,7 @@ class GearForce:
     pitch_diameter: quantity("m", "pitch diameter of the gear, d", 1e-3, 100.0, "mm")
 
 
-@_strict
+@record
 class Mapping:
     """How a table becomes a log."""
 

@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Events: what a person should be told, with level, code, reason and time."""
+"""What happens in a run besides its samples: events, which a person should be told, and measurements of the cage."""
 
 from enum import IntEnum
 from typing import NamedTuple
@@ -24,3 +24,18 @@ class Event(NamedTuple):
     level: Level
     code: str
     text: str
+
+
+class Measurement(NamedTuple):
+    """A measured cage speed.
+
+    Attributes
+    ----------
+    time : [s] since the start of the run.
+    cage_speed : [rad/s].
+    residual : measured less predicted cage slip, a fraction; NaN where there is nothing to compare with.
+    """
+
+    time: float
+    cage_speed: float
+    residual: float

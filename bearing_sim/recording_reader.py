@@ -10,6 +10,7 @@ are taken to roll on the outer ring, and what cannot be known is NaN.
 import math
 import struct
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -23,13 +24,25 @@ from mcap.stream_reader import CRCValidationError, StreamReader
 from bearing_sim.bag_files import BagError, mcap_files
 from bearing_sim.contour import outer_contour
 from bearing_sim.effects import NUMBERS
-from bearing_sim.events import Event, Level
+from bearing_sim.events import Event, Level, Measurement
 from bearing_sim.mcap_stream import WholeReads
 from bearing_sim.params import contact_stiffness
 from bearing_sim.sample import new_block
 from bearing_sim.scene import Scene
 from bearing_sim.scene_file import SceneError, scene_from_yaml
-from bearing_sim.topics import ARRAYS, DIAGNOSTICS, INPUTS, MEASUREMENTS, OUTPUTS, RECORDED, ZERO_CELSIUS
+from bearing_sim.topics import (
+    ARRAYS,
+    CAGE_JOINT,
+    DIAGNOSTICS,
+    INPUTS,
+    MEASURED,
+    MEASUREMENTS,
+    OUTPUTS,
+    RECORDED,
+    RESIDUAL,
+    ZERO_CELSIUS,
+    input_values,
+)
 
 ROWS_PER_BLOCK = 1000
 METADATA = "bearing_sim"
@@ -167,6 +180,23 @@ class Recording:
         """Yield what iterating yields, and the messages of inputs and measurements as they were recorded."""
         return self._items(with_received=True)
 
+    def with_measurements(self) -> Iterator["np.ndarray | Event | Measurement"]:
+        """Yield what iterating yields and, before a block, the measurements up to its end that were read by then, in order of time."""
+        waiting: dict[int, dict[str, float]] = {}
+        for item in self.with_received():
+            if isinstance(item, Received):
+                name = item.topic[1:]
+                if name in MEASUREMENTS:
+                    waiting.setdefault(item.log_ns, {})[name] = _measured_number(name, _decoder()(item.data, item.ros_type))
+                continue
+            if isinstance(item, np.ndarray):
+                end_ns = self.start_ns + round(float(item["time"][-1]) * 1e9)
+                for log_ns in sorted(stamp for stamp in waiting if stamp <= end_ns):
+                    numbers = waiting.pop(log_ns)
+                    if MEASURED in numbers:
+                        yield Measurement((log_ns - self.start_ns) * 1e-9, numbers[MEASURED], numbers.get(RESIDUAL, math.nan))
+            yield item
+
     def _items(self, with_received: bool = False) -> Iterator["np.ndarray | Event | Received"]:
         rows = _Rows(self.scene, self.start_ns)
         told: dict[tuple[str, Level], float] = {}
@@ -198,6 +228,14 @@ def trailing_doubles(data: bytes) -> np.ndarray:
     return np.empty(0)
 
 
+def _measured_number(name: str, message) -> float:
+    if MEASUREMENTS[name].ros_type == "std_msgs/msg/Float64":
+        return float(message.data)
+    joint = CAGE_JOINT if CAGE_JOINT in message.name else message.name[0]  # a cage of another name is recorded under its own
+    return input_values(name, MEASUREMENTS[name].ros_type, message, joint)[0]
+
+
+@cache
 def _decoder():
     from rosbags.typesys import Stores, get_typestore
 

@@ -167,13 +167,13 @@ INPUTS = {
 }
 """The input topics by channel (`bearing_sim.runtime.input_gate` uses the same channel names)."""
 
-MEASURED = "cage_speed_measured"
+MEASURED, RESIDUAL = "cage_speed_measured", "cage_slip_residual"
 MEASUREMENTS = {
     topic.name: topic
     for topic in (
         Topic(MEASURED, "sensor_msgs/msg/JointState", "optional: measured velocity of the joint 'cage' [rad/s]", _cage_speed),
         Topic(
-            "cage_slip_residual",
+            RESIDUAL,
             "std_msgs/msg/Float64",
             "measured less predicted cage slip [fraction]",
             lambda stamp_ns, residual: {"data": residual},

@@ -8,6 +8,7 @@ import pytest
 from click.testing import CliRunner
 from recordings import FLOAT, JOINTS, SECOND, WRENCH, joint_state, steady_log, temperature, wrench, write_log
 from rerun.chunk import RrdReader
+from rerun_files import column
 from synthetic_run import synthetic_block
 
 from bearing_sim.bag_series import read_bag_series
@@ -19,6 +20,7 @@ from bearing_sim.screenshot import HOW_TO_GET_VULKAN
 from bearing_sim.sinks.mcap_file import McapFile
 from bearing_sim.sinks.mcap_sink import McapSink
 from bearing_sim.sinks.rerun_bag import write_bag_view
+from bearing_sim.sinks.rerun_sink import RerunSink
 
 START = 1_700_000_000 * SECOND
 SCENE = load_scene("deng2017_table1")
@@ -26,17 +28,6 @@ SCENE = load_scene("deng2017_table1")
 
 def run(*arguments):
     return CliRunner().invoke(view.command, [str(argument) for argument in arguments])
-
-
-def column(path, entity, component="Scalars:scalars"):
-    """Return times [s] and values of one component, in the order of time."""
-    rows = []
-    for chunk in RrdReader(str(path)).stream():
-        table = chunk.to_record_batch()
-        if chunk.entity_path == entity and not chunk.is_static and component in table.schema.names:
-            rows += zip(table.column("sim_time").cast("int64").to_pylist(), table.column(component).to_pylist())
-    rows.sort(key=lambda row: row[0])
-    return 1e-9 * np.array([time for time, _ in rows]), np.array([value for _, (value,) in rows])
 
 
 @pytest.fixture
@@ -149,6 +140,28 @@ def test_a_measured_cage_in_a_recording_of_ours_shows_its_residual(tmp_path):
     np.testing.assert_allclose(
         column(tmp_path / "run.rrd", "/speed/cage_measured")[1], 0.9 * block["ideal_cage_speed"][1::2] * 30 / math.pi, rtol=1e-6
     )
+
+
+def test_a_cage_measured_while_the_shaft_speeds_up_is_compared_with_the_ideal_speed_of_its_own_moment(tmp_path):
+    """A live run writes a measurement after the block of samples that it is compared with; readers and views have blocks of their own."""
+    block = synthetic_block(SCENE, 0.002 * np.arange(1, 2501))
+    with McapSink(tmp_path / "run.mcap", SCENE, START) as sink:
+        for k in range(0, 2500, 150):
+            sink.write(block[k : k + 150])
+            sink.write_measurement(float(block["time"][k + 50]), float(0.9 * block["ideal_cage_speed"][k + 50]), math.nan)
+    assert run(tmp_path / "run.mcap", "-o", tmp_path / "run.rrd", "--no-open").exit_code == 0
+    times, slips = column(tmp_path / "run.rrd", "/slip/measured")
+    np.testing.assert_allclose(times, block["time"][50::150], atol=1e-6)
+    np.testing.assert_allclose(slips, 10.0, atol=1e-3)
+
+
+def test_measurements_that_a_live_view_gets_after_their_block_are_compared_with_it_all_the_same(tmp_path):
+    block = synthetic_block(SCENE, 0.002 * np.arange(1, 401))
+    with RerunSink(SCENE, path=tmp_path / "run.rrd", lossless=True) as sink:
+        for k in range(0, 400, 100):
+            sink.write(block[k : k + 100])
+            sink.write_measurement(float(block["time"][k + 50]), float(0.9 * block["ideal_cage_speed"][k + 50]), 0.0)
+    np.testing.assert_allclose(column(tmp_path / "run.rrd", "/slip/measured")[1], 10.0, atol=1e-3)
 
 
 def test_a_picture_of_a_bag_needs_no_bearing(bag, tmp_path):

@@ -9,7 +9,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
+from bearing_sim.cli import main
+from bearing_sim.commands.reporting import print_rows
 from bearing_sim.studies import bench_settled
 from bearing_sim.studies.bench import SPEEDS, one_core
 from bearing_sim.studies.bench_problem import STOCK_ROLLERS, bare_problem, error_share, level_methods, scaled_scene, state_scales
@@ -23,7 +26,7 @@ ROOT = Path(__file__).resolve().parents[1]
 @pytest.fixture(scope="module")
 def report():
     found = subprocess.run(
-        [sys.executable, "-m", "bearing_sim.cli", "bench", "--quick", "--json", *(f"--level={level}" for level in MEASURED)],
+        [sys.executable, "-m", "bearing_sim.cli", "bench", "levels", "--quick", "--json", *(f"--level={level}" for level in MEASURED)],
         capture_output=True,
         text=True,
         timeout=600,
@@ -66,12 +69,36 @@ def test_kernels_and_the_rest_make_up_a_step(report):
 
 
 def test_the_tables_name_every_level_method_and_solver(report, capsys):
-    from bearing_sim.commands import bench
+    from bearing_sim.commands import bench_levels
 
-    bench._print(report)
+    bench_levels._print(report)
     told = capsys.readouterr().out
     for name in {*MEASURED, *(method for level in MEASURED for method in level_methods(level)), "LSODA", "CVODE"}:
         assert name in told
+
+
+@pytest.mark.parametrize(
+    ("name", "foreign"),
+    [("levels", "--frozen=1"), ("levels", "--repetitions=1"), ("recording", "--cold"), ("view", "--level=slip"), ("fleet", "--seconds=3")],
+)
+def test_a_benchmark_refuses_the_options_of_another(name, foreign):
+    refused = CliRunner().invoke(main, ["bench", name, "--quick", foreign])
+    assert refused.exit_code == 2 and "No such option" in refused.output and foreign.partition("=")[0] in refused.output
+
+
+def test_the_benchmarks_are_listed_and_an_unknown_level_is_refused_by_each_that_takes_one():
+    listed = CliRunner().invoke(main, ["bench", "--help"])
+    assert listed.exit_code == 0 and all(name in listed.output for name in ("levels", "recording", "view", "fleet"))
+    assert CliRunner().invoke(main, ["bench"]).output == listed.output, "alone it measures nothing"
+    for name in ("levels", "recording", "fleet"):
+        refused = CliRunner().invoke(main, ["bench", name, "--level", "cheap"])
+        assert refused.exit_code == 2 and "expected one of steady, slip, planar, spatial" in refused.output
+
+
+def test_a_table_shows_the_units_of_its_headings(capsys):
+    print_rows("times", ("while", "late [ms]"), [("[absent]", "1.5")], words=("while",))
+    told = capsys.readouterr().out
+    assert "late [ms]" in told and "[absent]" in told, "brackets are no mark-up"
 
 
 @pytest.mark.parametrize("rollers", [9, 36, 144])

@@ -13,9 +13,11 @@ from reference_slip import Reference
 
 from bearing_sim import Simulation, load_scene
 from bearing_sim.cli import main
+from bearing_sim.studies import deng2017_claims
 from bearing_sim.studies.deng2017 import D_VALUE, LEVELS, LOAD, LOW, SPEED, STUDIES, plan_study
 from bearing_sim.studies.deng2017_claims import CLAIMS, FAILS, HOLDS, IN_PART, Course, judge
 from bearing_sim.sweep.axis import read_axis
+from bearing_sim.sweep.point import Column
 from bearing_sim.sweep.table import Table, read_table
 
 
@@ -48,7 +50,7 @@ def test_every_claim_is_judged_at_both_levels_and_every_figure_of_the_paper_is_d
     assert judged == {(0, "elastic ring")} | {(number, level) for number in range(1, 10) for level in LEVELS}
     told = " ".join(each["title"] for each in about["figures"])
     assert all(re.search(rf"\b{number}\b", told) for number in (3, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23))
-    assert "Trajectories" in told
+    assert "Trajectories" in told and "design question" in told
 
 
 def test_all_parameters_are_those_of_the_bundled_scenes_but_what_a_figure_varies(tables):
@@ -99,6 +101,8 @@ def test_claims_at_level_slip_follow_from_the_tables(tables, about):
         for low in (34.86, 34.8625, 34.865, 34.8675):
             assert np.all(sign * np.diff(column(tables["speed", "slip"], SPEED, f"{ring}_load_maximum", **{LOW: low})[1]) > -3)
     assert np.all(np.diff(column(tables["table2", "slip"], SPEED, "cage_slip")[1]) > 0) and verdicts[9] == HOLDS
+    (second,) = [each for each in about["claims"] if (each["claim"], each["level"]) == (2, "slip")]
+    assert second["verdict"] == IN_PART and "not 10 %" in second["off"], "slip and life rise, but past 10 % sooner"
     assert verdicts[6] == IN_PART  # an inner ring that is free to move hardly notices
 
 
@@ -139,11 +143,45 @@ def test_a_claim_whose_numbers_are_turned_round_does_not_hold_and_says_by_how_mu
     assert (before.verdict, before.off) != (after.verdict, after.off)
 
 
+def test_slips_that_do_not_rise_in_the_order_of_the_radii_are_told(tables):
+    """The rows of the tightest and the loosest radius change places."""
+    other = {34.86: 34.8675, 34.8675: 34.86}
+    rows = [row | {LOW: other.get(row[LOW], row[LOW])} for row in tables["speed", "slip"].rows]
+    swapped = tables | {("speed", "slip"): Table(tables["speed", "slip"].columns, rows, tables["speed", "slip"].about)}
+    (found,) = [each for each in judge(swapped, ["slip"]) if each.claim == 3]
+    assert found.verdict == IN_PART and "not in the order of the radii" in found.off
+
+
+@pytest.mark.parametrize(("broken", "verdict"), [(0, HOLDS), (1, IN_PART), (5, IN_PART), (6, FAILS), (10, FAILS)])
+def test_a_claim_fails_where_more_than_half_of_the_steps_go_wrong(broken, verdict):
+    """Of ten even steps upwards so many go down instead."""
+    steps = np.ones(10)
+    steps[:broken] = -1.0
+    rows = [{SPEED: 1e4 + k, "cage_slip": slip, "inner_equivalent_load": 1.0} for k, slip in enumerate(np.cumsum([20.0, *steps]).tolist())]
+    columns = tuple(Column(name, "", "") for name in rows[0])
+    found = deng2017_claims.table2({("table2", "slip"): Table(columns, rows, {})}, "slip")
+    assert found.verdict == verdict
+
+
 def test_a_step_back_within_noise_is_no_fall_and_one_beyond_is():
     calm = np.zeros(3, bool)
     assert Course(np.arange(3.0), np.array([1.0, 0.995, 2.0]), calm).backward() == []
     assert Course(np.arange(3.0), np.array([1.0, 0.98, 2.0]), calm).backward() == [0]
     assert Course(np.arange(3.0), np.array([3.0, np.nan, 2.0]), calm).backward(rising=False) == [0, 1]  # no result is no fall
+
+
+def test_the_design_question_is_answered_beside_the_papers_answer(folder, about):
+    (shown,) = [each for each in about["figures"] if each["file"] == "design.png"]
+    found = re.search(r"speed and load R_low = ([\d.]+) to ([\d.]+) mm", shown["caption"])
+    assert 34.861 < float(found[1]) < 34.8625 < float(found[2]) < 34.8655 and "34.8625 to 34.8650 mm" in shown["caption"]
+    borders = read_table(folder / "tables" / "design_borders.parquet")
+    assert {row["kind"] for row in borders.rows} == {"nominal", "worst"} and (folder / "figures" / "design.png").stat().st_size > 20_000
+
+
+def test_a_value_is_crossed_between_the_points_linearly_and_nowhere_where_it_is_always_or_never_reached():
+    rising = Course(np.array([1.0, 2.0, 3.0]), np.array([8.0, 9.0, 11.0]), np.zeros(3, bool))
+    assert deng2017_claims._crossing(rising, 10.0) == pytest.approx(2.5)
+    assert np.isnan(deng2017_claims._crossing(rising, 7.0)) and np.isnan(deng2017_claims._crossing(rising, 12.0))
 
 
 def test_contours_of_the_machining_model_grow_as_the_arc_is_turned(folder):

@@ -30,7 +30,7 @@ def test_fewer_and_fewer_are_tried_until_all_hold(monkeypatch, capacity, found):
 
 
 def test_the_bench_tells_the_count_for_each_level_as_json():
-    words = [sys.executable, "-m", "bearing_sim.cli", "bench", "--fleet", "--quick", "--json", "--level", "slip"]
+    words = [sys.executable, "-m", "bearing_sim.cli", "bench", "fleet", "--quick", "--json", "--level", "slip"]
     report = json.loads(subprocess.run(words, capture_output=True, text=True, timeout=300, cwd=ROOT, check=True).stdout)
     (case,) = report["cases"]
     assert (case["level"], case["speed_rpm"]) == ("slip", 1500.0)

@@ -1,9 +1,15 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Blocks written as rows: the same file as message by message."""
 
+import struct
+
 import numpy as np
 import pytest
+import zstandard
+from mcap.opcode import Opcode
 from mcap.reader import make_reader
+from mcap.records import Chunk, MessageIndex
+from mcap.stream_reader import StreamReader
 
 from bearing_sim.sample import OBSERVABLES, new_block
 from bearing_sim.scene_file import load_scene
@@ -87,6 +93,28 @@ def test_rows_and_single_messages_mix_in_one_file(tmp_path):
     found, statistics = contents(tmp_path / "run.mcap")
     assert [len(messages) for messages in found.values()] == [3] * (len(layout.topics) + 1)
     assert statistics.message_count == 3 * (len(layout.topics) + 1)
+
+
+def test_the_index_of_a_chunk_says_where_its_messages_stand(tmp_path):
+    """Readers that seek go by it; those that read chunk by chunk would not notice."""
+    scene = load_scene("deng2017_table1")
+    layout = RowLayout(tuple(recorded(scene).values()), scene.bearing.roller.count)
+    block, times = random_block(40, scene.bearing.roller.count), np.uint64(START) + np.arange(40, dtype=np.uint64)
+    with McapFile(tmp_path / "run.mcap") as recording:
+        for part in np.split(np.arange(40), [1, 3, 20]):
+            recording.write_rows(layout, block[part], times[part])
+            recording.write("/other", "std_msgs/msg/Float64", START + int(part[-1]), {"data": 0.0})
+    content, entries = b"", 0
+    with open(tmp_path / "run.mcap", "rb") as stream:
+        for record in StreamReader(stream, emit_chunks=True).records:
+            if isinstance(record, Chunk):
+                content = zstandard.decompress(record.data, max_output_size=record.uncompressed_size)
+            elif isinstance(record, MessageIndex):
+                for log_time, offset in record.records:
+                    opcode, _, channel, _, logged = struct.unpack_from("<BQHIQ", content, offset)
+                    assert (opcode, channel, logged) == (Opcode.MESSAGE, record.channel_id, log_time)
+                    entries += 1
+    assert entries == 40 * len(layout.topics) + 4
 
 
 def test_a_topic_that_changes_its_numbers_is_refused():

@@ -15,6 +15,7 @@ import pyarrow.parquet
 import pytest
 from click.testing import CliRunner
 from mcap.reader import make_reader
+from mcap.records import Message
 from recordings import steady_log, truncated
 from synthetic_run import synthetic_block
 
@@ -26,6 +27,7 @@ from bearing_sim.recovery import RecoveryError, contents, recover
 from bearing_sim.sample import OBSERVABLES
 from bearing_sim.scene_file import load_scene, scene_from_yaml
 from bearing_sim.simulation import Inputs
+from bearing_sim.sinks.mcap_file import McapFile
 from bearing_sim.sinks.mcap_sink import McapSink
 from bearing_sim.topics import outputs, recorded
 
@@ -110,6 +112,19 @@ def test_what_comes_after_a_damaged_chunk_is_recovered_too(recording, tmp_path):
     assert blocks(tmp_path / "good.mcap")["time"][-1] == pytest.approx(RUN["time"][-1])
 
 
+def test_messages_whose_channel_was_told_in_a_damaged_chunk_are_counted_as_lost(recording, tmp_path):
+    data = bytearray(recording.read_bytes())
+    with open(recording, "rb") as stream:
+        chunks = make_reader(stream).get_summary().chunk_indexes
+    middle = chunks[0].chunk_start_offset + chunks[0].chunk_length // 2
+    data[middle : middle + 40] = b"\xff" * 40
+    (tmp_path / "broken.mcap").write_bytes(data)
+    whole, found = contents(recording), contents(tmp_path / "broken.mcap")
+    readable = sum(isinstance(record, Message) for record in Salvage(tmp_path / "broken.mcap"))
+    orphans = found.damaged - 1
+    assert orphans > 0 and readable == found.messages.total() + orphans < whole.messages.total()
+
+
 @pytest.mark.parametrize("share", [0.0, 0.02, 0.3, 0.77, 0.999])
 def test_a_file_cut_anywhere_recovers_to_a_beginning_or_says_that_nothing_is_in_it(recording, tmp_path, share):
     broken = truncated(recording, tmp_path / "broken.mcap", int(share * recording.stat().st_size))
@@ -150,10 +165,20 @@ def test_info_says_what_is_in_a_recording_and_that_it_is_whole(recording):
     assert "whole, all checksums good" in text and "deng2017_table1" in text and "/roller_places" in text
 
 
+def test_messages_out_of_order_are_counted_each_by_its_own_topic(tmp_path):
+    with McapFile(tmp_path / "log.mcap") as file:
+        for topic, times in (("/a", (11, 13, 12, 14)), ("/b", (10, 15, 15))):
+            for time_ns in times:
+                file.write(topic, "std_msgs/msg/Float64", time_ns, {"data": 0.0})
+    assert contents(tmp_path / "log.mcap").out_of_order == 1
+
+
 def test_info_says_what_is_wrong_with_a_file(recording, tmp_path):
     broken = truncated(recording, tmp_path / "run.mcap.active", recording.stat().st_size // 2)
     assert "NOT WHOLE" in invoke("info", broken, code=1)
     assert "no recording of a run" in invoke("info", steady_log(tmp_path / "log.mcap"))
+    (tmp_path / "spoilt.mcap").write_bytes(recording.read_bytes()[:-8] + b"nonsense")
+    assert not contents(tmp_path / "spoilt.mcap").is_finished and "not the end" in invoke("info", tmp_path / "spoilt.mcap", code=1)
     (tmp_path / "text.mcap").write_text("hello")
     assert "not an MCAP file" in invoke("info", tmp_path / "text.mcap", code=2)
 

@@ -24,11 +24,7 @@ TIMES = 0.001 * np.arange(1, 101)
 LONG = 0.001 * np.arange(1, 401)
 
 
-@pytest.fixture(autouse=True)
-def strict_rerun():
-    rr.set_strict_mode(True)
-    yield
-    rr.set_strict_mode(False)
+pytestmark = pytest.mark.usefixtures("strict_rerun")
 
 
 def written(path, block, events=(), **options):

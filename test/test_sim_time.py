@@ -14,8 +14,12 @@ from bearing_sim.events import Level
 from bearing_sim.input_course import judge
 from bearing_sim.input_log import read_input_log
 from bearing_sim.replay import replay
+from bearing_sim.runtime.clock_watch import ClockWatch, Step
+from bearing_sim.runtime.growing_course import GrowingCourse
 from bearing_sim.runtime.leg import is_gap
 from bearing_sim.runtime.sim_time import SimTimeModel
+from bearing_sim.runtime.stragglers import Message as Aside
+from bearing_sim.runtime.stragglers import Side, Stragglers
 from bearing_sim.scene_file import load_scene
 from bearing_sim.simulation import Inputs, Simulation
 from bearing_sim.sinks.mcap_sink import McapSink
@@ -195,6 +199,43 @@ def test_messages_around_a_jump_back_may_come_on_its_wrong_side(make, tmp_path):
     got = run.finish()
     assert_same_samples(got.samples, expected.samples)
     assert run.model.gate.refused == {"input.leftover": len(late)}
+
+
+def test_a_reading_is_settled_half_a_second_later_and_what_is_missing_is_told_after_two():
+    watch = ClockWatch()
+    assert watch.read(100, wall=10.0) is Step.FIRST and watch.read(100, wall=10.1) is None
+    assert (watch.settled(10.49), watch.settled(10.51), watch.overdue(11.99), watch.overdue(12.01)) == (-1, 100, -1, 100)
+    assert not watch.stands_still(10.99) and watch.stands_still(11.01)
+    assert watch.read(50, wall=13.0) is Step.BACK and watch.settled(13.4) == watch.overdue(13.4) == -1, "readings from before the jump say nothing"
+
+
+def test_nothing_is_known_beyond_the_clock_though_messages_are_stamped_later():
+    known = GrowingCourse(RATE, SCENE.input_limits, 390.0)
+    for channel, value in (("shaft_speed", 100.0), ("radial_load", (800.0, 0.0))):
+        for stamp in (100, 1000):
+            known.add(channel, stamp, value)
+    assert [known.known_until(clock, clock, False) for clock in (500, 1000, 2000)] == [500, 1000, 1000]
+
+
+def test_of_messages_set_aside_a_jump_takes_those_nearer_to_where_the_clock_has_gone():
+    sorter, newest = Stragglers(), {"shaft_speed": 1000, "radial_load": 900}
+    early, faulty = Aside("shaft_speed", (1.0,), 120), Aside("radial_load", (1.0, 0.0), 890)
+    assert [sorter.sort(message, newest[message.channel], wall=0.0) for message in (early, faulty)] == [Side.ASIDE, Side.ASIDE]
+    assert sorter.jump(100, newest) == [early], "the other was faulty before the jump, and belongs to no course"
+    assert sorter.faulty(wall=10.0) == []
+
+
+def test_after_a_jump_back_the_bearing_is_judged_anew(make):
+    run = make(scene=load_scene("deng2017_table1", ["thresholds.slip_warning=0.5 %"]))
+    messages = course(SECONDS, oil=False)
+    run.player.play(messages, ticks(SECONDS, 0.1))
+    run.finish()
+    assert "bearing.slip" in run.events()
+    run.player.offer(Message(SECONDS + 0.1, "shaft_speed", (float("nan"),)))
+    run.player.play([message for message in messages if message.stamp <= 0.3], ticks(0.3, 0.1))
+    run.finish()
+    assert len(run.recordings) == 2 and "bearing.slip" not in run.events(), "it has not held for its hold time yet"
+    assert run.model.gate.refused == {"input.not_finite": 1}, "what was refused stays counted"
 
 
 def test_clock_that_jumps_back_is_an_error_where_that_is_asked_for_and_ends_when_it_has_passed(make, tmp_path):

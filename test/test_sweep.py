@@ -16,7 +16,8 @@ from click.testing import CliRunner
 
 from bearing_sim import SceneError, Simulation, load_scene
 from bearing_sim.cli import main
-from bearing_sim.sample import OBSERVABLES
+from bearing_sim.sample import OBSERVABLES, new_block
+from bearing_sim.sweep import point
 from bearing_sim.sweep.axis import axis, read_axis
 from bearing_sim.sweep.fields import FieldError
 from bearing_sim.sweep.grid import sweep
@@ -151,6 +152,19 @@ def test_slip_in_the_table_is_a_share_in_percent_and_loads_hold_the_ring():
     losses = sum(row[name] for name in row if name.endswith("_power") and name != "shaft_power")
     assert losses == pytest.approx(row["shaft_power"], rel=0.02)
     assert 3 <= row["loaded_rollers"] <= 18
+
+
+def test_a_row_says_means_extremes_and_lives_as_damage_adds_up(monkeypatch):
+    window = new_block(2, 4)
+    for name in window.dtype.names:
+        window[name] = 1.0
+    window["cage_slip"], window["rating_life"] = [0.1, 0.3], [100.0, 300.0]
+    window["inner_load"], window["outer_load"] = [[0.0, 0.0, 0.0, 5.0], [0.0, 2.0, 3.0, 7.0]], [[9.0] * 4, [9.0, 9.0, 9.0, 11.0]]
+    monkeypatch.setattr(point, "settle", lambda scene, duration: (window, 0.5, ""))
+    row = point_row(load_scene("deng2017_table1"))
+    assert (row["cage_slip_minimum"], row["cage_slip"], row["cage_slip_maximum"]) == pytest.approx((10.0, 20.0, 30.0))
+    assert row["rating_life"] == pytest.approx(150.0), "half of the time at 100 h and half at 300 h uses as much up as 150 h do"
+    assert row["loaded_rollers"] == 2.0 and (row["inner_load_maximum"], row["outer_load_maximum"]) == (7.0, 11.0)
 
 
 def test_an_axis_of_numbers_in_si_is_the_axis_of_the_text():

@@ -3,11 +3,10 @@
 
 import numpy as np
 import pytest
-import rerun as rr
 import rerun.blueprint as rrb
+from rerun_files import last_value, views_in, written
 from scipy.spatial.transform import Rotation
 from synthetic_run import synthetic_block
-from test_whirl_view import last_value, views, written
 
 from bearing_sim import topics
 from bearing_sim.scene_file import load_scene
@@ -18,11 +17,7 @@ CHOICE = ["life.reliability=99 %", "life.lamina=true"]
 SPATIAL, CHOOSING, PLANAR = (load_scene("deng2017_table1", o) for o in (["level=spatial"], ["level=spatial", *CHOICE], ["level=planar"]))
 
 
-@pytest.fixture(autouse=True)
-def strict_rerun():
-    rr.set_strict_mode(True)
-    yield
-    rr.set_strict_mode(False)
+pytestmark = pytest.mark.usefixtures("strict_rerun")
 
 
 def tilted_block(samples=40):
@@ -36,7 +31,7 @@ def tilted_block(samples=40):
 
 
 def shown(scene):
-    return set(views(blueprint(scene, ((-40, 40), (-40, 40)), live=False).root_container))
+    return {view.name for view in views_in(blueprint(scene, ((-40, 40), (-40, 40)), live=False).root_container)}
 
 
 def test_tilts_are_shown_where_the_level_has_them_and_only_there():

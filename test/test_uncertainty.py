@@ -17,6 +17,7 @@ from bearing_sim.scene_uncertainty import Range, quantities, value_at, with_valu
 from bearing_sim.studies.course_stretches import stretches
 from bearing_sim.studies.sensitivity import band, design, distribution, indices
 from bearing_sim.studies.uncertainty import UncertaintyError, cheapest_level, settled, study
+from bearing_sim.sweep.journal import Journal
 
 NONE = [
     f"uncertainty.{field}=null"
@@ -161,6 +162,7 @@ def test_the_band_of_one_field_is_slip_at_the_ends_of_its_own_band():
     slips = [settled(with_values(steady, {"lubricant.mixture_fraction": bound}))[0, 0] for bound in bounds]
     bands = found.bands["cage_slip"]
     assert [bands.low, bands.middle, bands.high] == pytest.approx(slips, rel=0.03)
+    assert bands == band(found.answers["cage_slip"][:128]), "both samples of the design count"
     assert found.indices["cage_slip"].total == pytest.approx([1.0])
     assert found.own["cage_slip"] == pytest.approx(settled(steady)[0, 0])
 
@@ -206,6 +208,21 @@ def test_over_a_course_slip_is_the_mean_over_time_and_life_follows_miner():
         study(load_scene("deng2017_table1", ["uncertainty.operating.radial_load=[700 N, 900 N]"]), 2, seed=1, course=(conditions, seconds), workers=1)
 
 
+def test_workers_and_a_journal_change_no_digit_and_what_is_in_the_journal_is_not_computed_again(tmp_path):
+    scene, told = load_scene("deng2017_table1"), []
+    conditions = (np.array([[4000.0, 800.0, 0.0, math.nan], [5000.0, 0.0, 2000.0, 400.0]]), np.array([30.0, 10.0]))
+    with Journal(tmp_path / "points.journal") as journal:
+        found = study(scene, 16, seed=1, course=conditions, journal=journal, workers=2, tell=lambda *counts: told.append(counts))
+        assert told[0] == (0, 96) and told[-1] == (96, 96)
+    fields, steady = [one.field for one in found.ranges], cheapest_level(scene)[0]
+    for k in (0, 63, 64, 95):
+        alone = settled(with_values(steady, dict(zip(fields, found.design.points[k].tolist()))), conditions[0])
+        assert (found.slips[k] == alone[0]).all()
+    with Journal(tmp_path / "points.journal") as journal:
+        again = study(scene, 16, seed=1, course=conditions, journal=journal, workers=1, tell=lambda *counts: told.append(counts))
+    assert told[-1] == (0, 0) and (again.slips == found.slips).all() and again.answers["life_hours"].tolist() == found.answers["life_hours"].tolist()
+
+
 def test_stretches_keep_the_means_of_a_course_and_leave_gaps_out():
     times = np.array([0.0, 1.0, 2.0, 7.0, 10.0])
     inputs = np.stack([100.0 + 10.0 * times, times, 0.0 * times, 0.0 * times + math.nan], axis=-1)
@@ -234,7 +251,9 @@ def test_the_command_tells_bands_shares_errors_and_sources(tmp_path):
     assert rows[0][1] == "lubricant.temperature [K]" and len(rows) == 1 + 16 * 6
     assert (tmp_path / "bands.png").stat().st_size > 20_000
     again = json.loads(bands("--samples", 16, "--json").stdout)
-    assert again["cage_slip"] == slip, "the seed decides"
+    assert again["cage_slip"] == slip and again["kept_from_before"] == 0, "the seed decides"
+    resumed = json.loads(bands("--samples", 16, "--json", "--csv", tmp_path / "points.csv").stdout)
+    assert resumed["cage_slip"] == slip and resumed["kept_from_before"] == 16 * 6
 
 
 def test_the_command_prints_a_table_and_refuses_in_one_line():

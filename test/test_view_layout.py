@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 import rerun as rr
 import rerun.blueprint as rrb
+from rerun_files import column, views_in, written
 from synthetic_run import synthetic_block
-from test_bag_view import column
-from test_whirl_view import written
 
 from bearing_sim.events import Event, Level
 from bearing_sim.scene_file import load_scene
@@ -25,22 +24,11 @@ SLIP = SCENES["slip"]
 BOUNDS = ((-40, 40), (-40, 40))
 
 
-@pytest.fixture(autouse=True)
-def strict_rerun():
-    rr.set_strict_mode(True)
-    yield
-    rr.set_strict_mode(False)
-
-
-def views(part):
-    if isinstance(part, rrb.View):
-        yield part
-    for inner in getattr(part, "contents", None) or [] if not isinstance(part, rrb.View) else []:
-        yield from views(inner)
+pytestmark = pytest.mark.usefixtures("strict_rerun")
 
 
 def shown(scene, **options):
-    return list(views(blueprint(scene, BOUNDS, live=False, **options).root_container))
+    return list(views_in(blueprint(scene, BOUNDS, live=False, **options).root_container))
 
 
 def plots(scene):

@@ -5,32 +5,18 @@ import math
 
 import numpy as np
 import pytest
-import rerun as rr
-import rerun.blueprint as rrb
-from rerun.chunk import RrdReader
+from rerun_files import last_value, views_in, written
 from synthetic_run import synthetic_block
 
 from bearing_sim.scene_file import load_scene
 from bearing_sim.sinks.rerun_blueprint import blueprint
 from bearing_sim.sinks.rerun_cage import TURNS, OrbitPath
 from bearing_sim.sinks.rerun_power import CAUSES
-from bearing_sim.sinks.rerun_sink import RerunSink
 
 SLIP, PLANAR = (load_scene("deng2017_table1", [f"level={level}"]) for level in ("slip", "planar"))
 
 
-@pytest.fixture(autouse=True)
-def strict_rerun():
-    rr.set_strict_mode(True)
-    yield
-    rr.set_strict_mode(False)
-
-
-def views(part):
-    if isinstance(part, rrb.View):
-        yield part.name
-    for inner in getattr(part, "contents", None) or [] if not isinstance(part, rrb.View) else []:
-        yield from views(inner)
+pytestmark = pytest.mark.usefixtures("strict_rerun")
 
 
 def whirling_block(samples=200, turns=10.0):
@@ -45,26 +31,10 @@ def whirling_block(samples=200, turns=10.0):
     return block
 
 
-def written(path, scene, block):
-    with RerunSink(scene, path=path, lossless=True) as sink:
-        for part in np.array_split(block, 7):
-            sink.write(part)
-    assert sink.fault is None
-    return list(RrdReader(str(path)).stream())
-
-
-def last_value(chunks, entity, component):
-    found = {}
-    for chunk in chunks:
-        table = chunk.to_record_batch()
-        if chunk.entity_path == entity and not chunk.is_static and component in table.schema.names:
-            times = [time.total_seconds() for time in table.column("sim_time").to_pylist()]
-            found |= dict(zip(times, table.column(component).to_pylist()))
-    return found[max(found)]
-
-
 def test_orbit_is_shown_where_the_level_has_whirl_and_only_there():
-    shown = {scene.level: set(views(blueprint(scene, ((-40, 40), (-40, 40)), live=False).root_container)) for scene in (SLIP, PLANAR)}
+    shown = {
+        scene.level: {view.name for view in views_in(blueprint(scene, ((-40, 40), (-40, 40)), live=False).root_container)} for scene in (SLIP, PLANAR)
+    }
     assert {"Cage orbit", "e/c [-]"} <= shown["planar"] and not {"Cage orbit", "e/c [-]"} & shown["slip"]
     assert {"Power: mean of 20 samples", "Pocket [N]"} <= shown["planar"] & shown["slip"]
 

@@ -1,19 +1,19 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""``bearing-sim bench --view``: what a live view costs the solver, and how an hour opens."""
+"""``bearing-sim bench view``: what a live view costs the solver, and how an hour opens."""
 
 import click
 
-from bearing_sim.commands.reporting import FailedRun, print_json, tell_compilation
+from bearing_sim.commands.reporting import FailedRun, print_json, print_rows, tell_compilation
 
 
-def measure_view(as_json: bool, quick: bool, frozen: float) -> None:
-    """Measure and print.
+@click.command()
+@click.option("--frozen", type=click.FloatRange(min=0.1), default=60.0, show_default=True, metavar="S", help="How long the viewer is frozen.")
+@click.option("--quick", is_flag=True, help="Measure next to nothing, to see that everything works.")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+def command(frozen, quick, as_json):
+    """Measure what a live view costs the solver while viewers are absent, attached, frozen and killed, and how an hour's recording opens.
 
-    Parameters
-    ----------
-    as_json : print one JSON object instead of tables.
-    quick : measure next to nothing, to see that everything works.
-    frozen : for how long the viewer is frozen [s].
+    Needs a Vulkan driver, which may be a software one.
     """
     from bearing_sim.screenshot import ViewerFailed
     from bearing_sim.studies.bench_view import run_hour, run_view_bench
@@ -34,19 +34,13 @@ def measure_view(as_json: bool, quick: bool, frozen: float) -> None:
 
 
 def _print(report) -> None:
-    import sys
-
-    from rich.console import Console
-    from rich.table import Table
-
-    table = Table(title=f"the solver with a live view, 1000 samples a second; load average {report['load_average']:.2f}", title_justify="left")
     columns = ("while", "x real time", "rate to none", "work to none", "worst tick [ms]", "worst wait [ms]", "99.9 % [ms]", "dropped")
-    for name in columns:
-        table.add_column(name, justify="left" if name == "while" else "right")
+    rows = []
     for row in report["stretches"]:
         times = (f"{1e3 * row[name]:.2f}" for name in ("worst_tick", "worst_wait", "late_wait"))
-        table.add_row(row["name"], f"{row['wall_rate']:.2f}", f"{row['rate_ratio']:.3f}", f"{row['work_ratio']:.3f}", *times, str(row["dropped"]))
-    Console(width=None if sys.stdout.isatty() else 150).print(table)
+        rows.append((row["name"], f"{row['wall_rate']:.2f}", f"{row['rate_ratio']:.3f}", f"{row['work_ratio']:.3f}", *times, str(row["dropped"])))
+    title = f"the solver with a live view, 1000 samples a second; load average {report['load_average']:.2f}"
+    print_rows(title, columns, rows, words=("while",))
     click.echo("rates for the time in which a core was to be had; a wait is what a tick neither worked nor waited for a core")
     hour = report["hour"]
     click.echo(

@@ -5,8 +5,16 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.commands.reporting import BadInput, print_json, print_table, progress_bar, tell_compilation, told_as_bad_input, told_file_faults
-from bearing_sim.commands.uncertainty import PICTURES
+from bearing_sim.commands.reporting import (
+    BadInput,
+    picture_option,
+    print_json,
+    print_table,
+    progress_bar,
+    tell_compilation,
+    told_as_bad_input,
+    told_file_faults,
+)
 
 _EXPECTED = 30  # evaluations of an ordinary search, for the bar
 _UNLIKELY = 0.01
@@ -24,7 +32,7 @@ _UNLIKELY = 0.01
 @click.option(
     "-o", "--out", type=click.Path(path_type=Path), metavar="SCENE.yaml", help="Write the scene with the fitted values and their intervals."
 )
-@click.option("--picture", type=click.Path(path_type=Path), metavar="PATH.png", help="Draw measured and predicted slip (.png, .svg or .pdf).")
+@picture_option("Draw measured and predicted slip")
 @click.option("--speed-topic", metavar="TOPIC", help="Topic of the shaft speed [default: /shaft_speed].")
 @click.option("--load-topic", metavar="TOPIC", help="Topic of the radial load [default: /radial_load].")
 @click.option("--temperature-topic", metavar="TOPIC", help="Topic of the oil temperature [default: /oil_temperature, where there is one].")
@@ -42,8 +50,6 @@ def command(
     Any rosbag2 recording in MCAP with shaft speed, radial load and measured cage speed will do: one of ours, a bag, or what
     `bearing-sim import-csv` makes of a table. Only what has settled counts. What the measurement cannot tell is refused.
     """
-    if picture is not None and picture.suffix.lower() not in PICTURES:
-        raise BadInput(f"--picture {picture}: expected a name that ends in {', '.join(PICTURES)}")
     if out is not None and out.suffix.lower() not in (".yaml", ".yml"):
         raise BadInput(f"--out {out}: expected a name that ends in .yaml")
     scene = _scene(log, scene_name, overrides)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.commands.reporting import BadInput, print_json, told_as_bad_input, told_file_faults
+from bearing_sim.commands.reporting import BadInput, print_json, print_rows, told_as_bad_input, told_file_faults
 
 
 @click.command()
@@ -81,23 +81,17 @@ def _told(difference) -> dict:
 
 
 def _print(first, second, differences, skipped, agree) -> None:
-    from rich.console import Console
-    from rich.table import Table
-
-    table = Table(title=f"{first} against {second}", title_justify="left")
-    for name in ("topic", "messages", "alone", "differing", "largest", "over magnitude", "tolerance", "in", "after [s]", ""):
-        table.add_column(name, justify="left" if name in ("topic", "in", "") else "right", no_wrap=name == "topic")
-    start = min(difference.first_ns for difference in differences)
+    rows, start = [], min(difference.first_ns for difference in differences)
     for difference in differences:
         told = _told(difference)
         alone = f"{difference.only_first} / {difference.only_second}"
         numbers = ["-"] * 2 if told["largest"] is None else [f"{told['largest']:.3g}", f"{told['largest_relative']:.2e}"]
         where = ["", ""] if told["largest_in"] is None else [told["largest_in"], f"{(told['largest_at_ns'] - start) * 1e-9:.6g}"]
         verdict = "agrees" if difference.agrees else "DIFFERS"
-        table.add_row(
-            difference.topic, str(difference.matched), alone, str(difference.differing), *numbers, f"{difference.tolerance:g}", *where, verdict
-        )
-    Console(width=None if sys.stdout.isatty() else 170).print(table)
+        counts = str(difference.matched), alone, str(difference.differing)
+        rows.append((difference.topic, *counts, *numbers, f"{difference.tolerance:g}", *where, verdict))
+    columns = ("topic", "messages", "alone", "differing", "largest", "over magnitude", "tolerance", "in", "after [s]", "")
+    print_rows(f"{first} against {second}", columns, rows, words=("topic", "in", ""), width=170, whole=("topic",))
     if skipped:
         click.echo(f"not compared: {', '.join(skipped)}")
     click.echo("the recordings agree" if agree else "the recordings differ")

@@ -1,15 +1,10 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """``bearing-sim design``: the region of outer raceways that keep slip and life within limits."""
 
-from pathlib import Path
-
 import click
 
-from bearing_sim.commands.reporting import BadInput, orderly_end, print_json, tell_compilation, told_as_bad_input, told_file_faults
-from bearing_sim.commands.sweeping import Points, executor_options, picture_option
-
-# Deng 2017, for the bearing of its Table 1 at 45,000 rpm and 800 N: what it recommends for slip below 10 % and a life of 300 h.
-_DENG = ("deng2017_table1", 10.0, 300.0, (0.095, 0.105), (34.8625, 34.8650))
+from bearing_sim.commands.reporting import BadInput, orderly_end, picture_option, print_json, tell_compilation, told_as_bad_input, told_file_faults
+from bearing_sim.commands.sweeping import Points, executor_options, table_option
 
 
 @click.command()
@@ -22,17 +17,9 @@ _DENG = ("deng2017_table1", 10.0, 300.0, (0.095, 0.105), (34.8625, 34.8650))
 @click.option("--d-value", "d_values", metavar="START:STOP:N", help="D values [default: 80 to 120 % of the scene's, 9].")
 @click.option("--set", "overrides", multiple=True, metavar="FIELD=VALUE", help="Override a field of the scene; may be repeated.")
 @click.option("--level", metavar="LEVEL", help="Fidelity level [default: steady where that has all that the scene asks for, or the scene's].")
-@click.option(
-    "-o",
-    "--out",
-    type=click.Path(path_type=Path),
-    default=Path("design.parquet"),
-    show_default=True,
-    metavar="PATH.parquet",
-    help="The map; beside it PATH.csv, PATH_borders.parquet and .csv, and PATH.journal, from which it goes on after a kill.",
-)
+@table_option("design.parquet", "The map; beside it PATH.csv, PATH_borders.parquet and .csv, and")
 @executor_options
-@picture_option
+@picture_option("Draw the results")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 def command(
     scene_name, slip_below, life_above, speed_tolerance, load_tolerance, radii, d_values, overrides, level, out, workers, dask, picture, as_json
@@ -116,37 +103,26 @@ def _limits(slip_below, life_above, speed_tolerance, load_tolerance) -> tuple[fl
 
 
 def _beside(scene, wanted):
-    name, slip, life, d_values, radii = _DENG
-    if scene.bearing.name == name and (wanted.slip_below, wanted.life_above) == (slip, life):
-        return "recommended by Deng 2017", d_values, radii
-    return None
+    from bearing_sim.studies import deng2017_design as deng
+
+    asked = scene.bearing.name, wanted.slip_below, wanted.life_above
+    return deng.BESIDE if asked == (deng.SCENE, deng.SLIP_BELOW, deng.LIFE_ABOVE) else None
 
 
 def _report(scene, designed, beside, files) -> dict:
+    from bearing_sim.studies.deng2017_design import radii_within
     from bearing_sim.studies.design import KINDS
 
     about = designed.grid.about
     report = {"scene": scene.name, "level": about["level"], **about["wanted"], "raceways": len(designed.grid.rows)}
     report["without_result"] = sum(row["status"] in ("failed", "refused") for row in designed.grid.rows)
     for kind in KINDS:
-        report[kind] = [border._asdict() for border in designed.borders if border.kind == kind]
+        borders = [border for border in designed.borders if border.kind == kind]
+        report[kind] = [border._asdict() for border in borders]
         if beside is not None:
-            report[f"{kind}_within_deng"] = _within(report[kind], beside)
+            found = radii_within(borders, beside[1])
+            report[f"{kind}_within_deng"] = found and {"low_from": found[0], "low_to": found[1]}
     return report | {"deng2017": beside and {"d_value": beside[1], "low_radius": beside[2]}, "files": list(map(str, files))}
-
-
-def _within(borders, beside) -> dict | None:
-    """Return which radii meet the limits at every D value that the other answer spans, linearly between those of the map; None where none do."""
-    import numpy as np
-
-    left, right = beside[1]
-    ours = sorted(borders, key=lambda border: border["d_value"])
-    d_values = [border["d_value"] for border in ours]
-    if not ours or len(set(d_values)) < len(d_values) or d_values[0] > left + 1e-9 or d_values[-1] < right - 1e-9:
-        return None  # the map has nothing, or several stretches, or does not reach so far
-    places = [left, right, *(d for d in d_values if left < d < right)]
-    low, high = (np.interp(places, d_values, [border[end] for border in ours]) for end in ("low_from", "low_to"))
-    return {"low_from": round(float(low.max()), 6), "low_to": round(float(high.min()), 6)} if low.max() <= high.min() else None
 
 
 def _print(report) -> None:

@@ -2,13 +2,10 @@
 """``bearing-sim loads``: how a scene's load spreads over its rollers and along them."""
 
 import math
-from pathlib import Path
 
 import click
 
-from bearing_sim.commands.reporting import BadInput, FailedRun, print_json, print_table, tell_compilation, told_as_bad_input, told_file_faults
-
-_PICTURES = (".png", ".svg", ".pdf")
+from bearing_sim.commands.reporting import FailedRun, picture_option, print_json, print_table, tell_compilation, told_as_bad_input, told_file_faults
 
 
 @click.command()
@@ -17,7 +14,7 @@ _PICTURES = (".png", ".svg", ".pdf")
 @click.option(
     "--slices", default=40, show_default=True, type=click.IntRange(5, 400), metavar="N", help="Slices of a roller (ISO/TS 16281: 30 or more)."
 )
-@click.option("--picture", type=click.Path(path_type=Path), metavar="PATH.png", help="Draw the loads (.png, .svg or .pdf).")
+@picture_option("Draw the loads")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 def command(scene_name, overrides, slices, picture, as_json):
     """Show the quasi-static load distribution of SCENE at its constant conditions, the cage without slip, roller 0 on the load line.
@@ -26,8 +23,6 @@ def command(scene_name, overrides, slices, picture, as_json):
     """
     from bearing_sim.scene_file import SceneError, load_scene
 
-    if picture is not None and picture.suffix.lower() not in _PICTURES:
-        raise BadInput(f"--picture {picture}: expected a name that ends in {', '.join(_PICTURES)}")
     with told_as_bad_input(SceneError):
         scene = load_scene(scene_name, overrides)
     tell_compilation()

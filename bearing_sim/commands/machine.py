@@ -6,9 +6,7 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.commands.reporting import BadInput, print_json, print_table, told_as_bad_input, told_file_faults
-
-_PICTURES = (".png", ".svg", ".pdf")
+from bearing_sim.commands.reporting import BadInput, picture_option, print_json, print_table, told_as_bad_input, told_file_faults
 
 
 def _quantity(unit, meaning, minimum, maximum, shown_in):
@@ -48,7 +46,7 @@ def _option(name, default, unit, meaning, minimum, maximum, shown_in):
 @_option("low-radius", None, "m", "lowest radius of the finished raceway [default: 34.8625 mm, without --ground-radius]", 1e-3, 2.0, "mm")
 @_option("ground-radius", None, "m", "radius that the pressed ring is ground to", 1e-3, 2.0, "mm")
 @click.option("-o", "--out", type=click.Path(path_type=Path), metavar="CONTOUR.csv", help="Contour file for bearing.outer_raceway.contour_file.")
-@click.option("--picture", type=click.Path(path_type=Path), metavar="PATH.png", help="Draw the contour (.png, .svg or .pdf).")
+@picture_option("Draw the contour")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 def command(
     pressure,
@@ -77,8 +75,6 @@ def command(
         raise BadInput("--low-radius and --ground-radius say the same thing twice; give one")
     if arcs * arc_width + abs(arc_turn) > 2 * math.pi:
         raise BadInput(f"--arc-width {math.degrees(arc_width):g} deg, {arcs} times and turned by {math.degrees(arc_turn):g} deg: the arcs overlap")
-    if picture is not None and picture.suffix.lower() not in _PICTURES:
-        raise BadInput(f"--picture {picture}: expected a name that ends in {', '.join(_PICTURES)}")
     if ground_radius is None and low_radius is None:
         low_radius = 34.8625e-3
     section, pressing = RingSection(mean_radius, width, thickness, modulus), Pressing(pressure, arc_turn, arc_width, arcs, pressed_width)

@@ -5,13 +5,12 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.commands.reporting import told_as_bad_input, told_file_faults
-from bearing_sim.commands.sweeping import picture_option
+from bearing_sim.commands.reporting import picture_option, told_as_bad_input, told_file_faults
 
 
 @click.command()
 @click.argument("path", metavar="TABLE.parquet", type=click.Path(path_type=Path))
-@picture_option
+@picture_option("Draw the results")
 @click.option("--quantity", "quantities", multiple=True, metavar="COLUMN", help="Draw this column; may be repeated [default: slip, life, loads].")
 def command(path, picture, quantities):
     """Draw a sweep: lines over one variable, maps over two; into TABLE.png unless --picture says otherwise."""

@@ -7,11 +7,13 @@ import math
 import signal
 import sys
 import threading
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
 import click
+
+_PICTURES = (".png", ".svg", ".pdf")
 
 
 class BadInput(click.ClickException):
@@ -58,6 +60,29 @@ def orderly_end() -> Iterator[None]:
         signal.signal(signal.SIGTERM, before)
 
 
+def require_levels(levels: Iterable[str]) -> None:
+    """Refuse what is no level of fidelity."""
+    from bearing_sim.effects import LEVELS
+
+    for level in levels:
+        if level not in LEVELS:
+            raise BadInput(f"--level {level}: expected one of {', '.join(LEVELS)}")
+
+
+def picture_option(drawn: str) -> Callable:
+    """Return the option ``--picture``, which takes a path of a kind that can be drawn; ``drawn`` says what, as in "Draw the map"."""
+
+    def checked(context, parameter, path):
+        if path is not None and path.suffix.lower() not in _PICTURES:
+            raise BadInput(f"--{parameter.name} {path}: expected a name that ends in {', '.join(_PICTURES)}")
+        return path
+
+    kind = click.Path(path_type=Path)
+    return click.option(
+        "--picture", type=kind, callback=checked, metavar="PATH.png", help=f"{drawn} ({', '.join(_PICTURES[:-1])} or {_PICTURES[-1]})."
+    )
+
+
 def tell_compilation() -> None:
     """Say on stderr that compiling will take a while, where this version of the model has not run here yet."""
     from bearing_sim.kernels.compilation import CACHE_FOLDER
@@ -97,13 +122,43 @@ def _finite(value):
 
 def print_table(title: str, rows: Iterable[tuple[str, str]]) -> None:
     """Print names and values in two columns."""
-    from rich.console import Console
     from rich.table import Table
 
     table = Table("", "", title=title, show_header=False, title_justify="left")
     for name, value in rows:
         table.add_row(name, value)
-    Console(width=None if sys.stdout.isatty() else 150).print(table)
+    _show(table)
+
+
+def print_rows(
+    title: str, columns: Sequence[str], rows: Iterable[Sequence[str]], words: Container[str] = (), width: int = 150, whole: Container[str] = ()
+) -> None:
+    """Print rows under headings, numbers flushed right.
+
+    Parameters
+    ----------
+    title : above the table.
+    columns : headings.
+    rows : texts, as many as there are columns.
+    words : columns that are flushed left.
+    width : of the table where there is no terminal.
+    whole : columns whose texts are never broken over lines.
+    """
+    from rich.table import Table
+
+    table = Table(title=title, title_justify="left")
+    for name in columns:
+        table.add_column(name, justify="left" if name in words else "right", no_wrap=name in whole)
+    for row in rows:
+        table.add_row(*row)
+    _show(table, width)
+
+
+def _show(table, width: int = 150) -> None:
+    from rich.console import Console
+
+    # A unit in brackets is a unit, no mark-up.
+    Console(width=None if sys.stdout.isatty() else width, markup=False, emoji=False).print(table)
 
 
 @contextmanager

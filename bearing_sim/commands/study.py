@@ -1,9 +1,9 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """``bearing-sim study``: studies by name, each a command of its own."""
 
-import importlib
-
 import click
+
+from bearing_sim.commands.lazy_group import LazyGroup
 
 _STUDIES = {
     "deng2017": "The results of Deng 2017 with this code, claim by claim.",
@@ -16,18 +16,6 @@ _STUDIES = {
 }
 
 
-class _LazyStudies(click.Group):
-    def list_commands(self, context):
-        return list(_STUDIES)
-
-    def get_command(self, context, name):
-        return importlib.import_module(f"bearing_sim.commands.study_{name}").command if name in _STUDIES else None
-
-    def format_commands(self, context, formatter):
-        with formatter.section("Studies"):
-            formatter.write_dl(list(_STUDIES.items()))
-
-
-@click.group(cls=_LazyStudies)
+@click.group(cls=LazyGroup, told=_STUDIES, within="bearing_sim.commands.study_", heading="Studies")
 def command():
     """Run one of the studies of the model itself."""

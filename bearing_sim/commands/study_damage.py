@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.commands.reporting import FailedRun, print_json, progress_bar, tell_compilation, told_as_bad_input, told_file_faults
+from bearing_sim.commands.reporting import FailedRun, print_json, print_rows, progress_bar, tell_compilation, told_as_bad_input, told_file_faults
 
 
 @click.command()
@@ -52,19 +52,14 @@ def command(log, scene_name, overrides, windows, length, as_json):
 
 def _print(log, name, found) -> None:
     import math
-    import sys
 
-    from rich.console import Console
-    from rich.table import Table
-
-    table = Table(title=f"{log.name}, {name}: damage in millionths of the life, by level", title_justify="left")
-    for column in ("from, s", "rpm", "N", "steady", "slip", "planar", "planar/slip"):
-        table.add_column(column, justify="right")
+    rows = []
     sums = [sum(getattr(window, level) for window in found.windows) for level in ("steady", "slip", "planar")]
     for window in found.windows:
         numbers = [f"{1e6 * value:.4g}" for value in (window.steady, window.slip, window.planar)]
         where = f"{window.start:.1f}", f"{window.shaft_speed * 30 / math.pi:.0f}", f"{window.radial_load:.0f}"
-        table.add_row(*where, *numbers, f"{window.planar / window.slip:.3f}" if window.slip > 0.0 else "")
-    table.add_row("windows", "", "", *(f"{1e6 * value:.4g}" for value in sums), f"{sums[2] / sums[1]:.3f}" if sums[1] > 0.0 else "")
-    table.add_row("whole", "", "", f"{1e6 * found.steady:.6g}", f"{1e6 * found.slip:.6g}", "", "")
-    Console(width=None if sys.stdout.isatty() else 150).print(table)
+        rows.append((*where, *numbers, f"{window.planar / window.slip:.3f}" if window.slip > 0.0 else ""))
+    rows.append(("windows", "", "", *(f"{1e6 * value:.4g}" for value in sums), f"{sums[2] / sums[1]:.3f}" if sums[1] > 0.0 else ""))
+    rows.append(("whole", "", "", f"{1e6 * found.steady:.6g}", f"{1e6 * found.slip:.6g}", "", ""))
+    columns = ("from, s", "rpm", "N", "steady", "slip", "planar", "planar/slip")
+    print_rows(f"{log.name}, {name}: damage in millionths of the life, by level", columns, rows)

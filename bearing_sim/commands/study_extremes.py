@@ -5,9 +5,8 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.commands.reporting import BadInput, FailedRun, print_json, print_table, progress_bar, told_file_faults
+from bearing_sim.commands.reporting import FailedRun, picture_option, print_json, print_table, progress_bar, require_levels, told_file_faults
 
-_PICTURES = (".png", ".svg", ".pdf")
 _SHOWN = 12  # reasons in a table
 
 
@@ -17,7 +16,7 @@ _SHOWN = 12  # reasons in a table
 @click.option("--seed", default=0, show_default=True, type=click.IntRange(0), help="Of the Latin hypercube.")
 @click.option("--long/--no-long", default=True, show_default=True, help="Make the long continuous runs, too.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
-@click.option("--picture", type=click.Path(path_type=Path), metavar="PATH.png", help="Draw the map (.png, .svg or .pdf).")
+@picture_option("Draw the map")
 @click.option("--csv", "table", type=click.Path(path_type=Path), metavar="PATH.csv", help="Write all cases, one a line.")
 def command(samples, levels, seed, long, as_json, picture, table):
     """Run scenes at the extremes of everything and tell which finish, are clamped, are refused or fail.
@@ -25,14 +24,9 @@ def command(samples, levels, seed, long, as_json, picture, table):
     Speed, load, play, lobes, rollers, pockets, lands, oil, slices, methods, tolerances and steps by a Latin hypercube, and corners by name, on
     all cores this process may use.  Exit code 1 where anything fails.
     """
-    from bearing_sim.levels.level import LEVELS
     from bearing_sim.studies.extremes import run_extremes
 
-    for level in levels:
-        if level not in LEVELS:
-            raise BadInput(f"--level {level}: expected one of {', '.join(LEVELS)}")
-    if picture is not None and picture.suffix.lower() not in _PICTURES:
-        raise BadInput(f"--picture {picture}: expected a name that ends in {', '.join(_PICTURES)}")
+    require_levels(levels)
     with progress_bar("extremes", 1.0) as progress:
         report, outcomes = run_extremes(samples, levels, seed, long, lambda text: click.echo(f"{text} ...", err=True), progress)
     with told_file_faults():

@@ -6,9 +6,16 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.commands.reporting import BadInput, FailedRun, print_json, progress_bar, tell_compilation, told_as_bad_input, told_file_faults
-
-_PICTURES = (".png", ".svg", ".pdf")
+from bearing_sim.commands.reporting import (
+    FailedRun,
+    picture_option,
+    print_json,
+    print_rows,
+    progress_bar,
+    tell_compilation,
+    told_as_bad_input,
+    told_file_faults,
+)
 
 
 @click.command()
@@ -19,7 +26,7 @@ _PICTURES = (".png", ".svg", ".pdf")
 @click.option("--crown", "crowns", multiple=True, metavar="LAW", help="As bearing.roller.crown; may be repeated [default: none, iso_log].")
 @click.option("--slices", default=30, show_default=True, type=click.IntRange(5, 400), help="Slices of a roller (ISO/TS 16281: 30 or more).")
 @click.option("--csv", "table", type=click.Path(path_type=Path), metavar="PATH.csv", help="Write the results as a table.")
-@click.option("--picture", type=click.Path(path_type=Path), metavar="PATH.png", help="Draw them (.png, .svg or .pdf).")
+@picture_option("Draw them")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 def command(scene_name, overrides, largest, points, crowns, slices, table, picture, as_json):
     """Run SCENE at level spatial with its inner ring held at misalignments from 0 on, with and without a crown."""
@@ -28,8 +35,6 @@ def command(scene_name, overrides, largest, points, crowns, slices, table, pictu
     from bearing_sim.scene_file import SceneError
     from bearing_sim.simulation import IntegrationError
 
-    if picture is not None and picture.suffix.lower() not in _PICTURES:
-        raise BadInput(f"--picture {picture}: expected a name that ends in {', '.join(_PICTURES)}")
     tell_compilation()
     from bearing_sim.studies.misalignment import CROWNS, misalign
 
@@ -75,18 +80,12 @@ def _row(one) -> dict:
 
 
 def _print(name, rows) -> None:
-    import sys
-
-    from rich.console import Console
-    from rich.table import Table
-
-    table = Table(title=f"{name}: misalignment of the inner ring, level spatial", title_justify="left")
-    for column in ("crown", "mrad", "slip, %", "largest, MPa", "inner edge, MPa", "outer edge, MPa", "tilt, mrad", "skew, mrad"):
-        table.add_column(column, justify="left" if column == "crown" else "right")
-    for column in ("life, h", "by slices, h", "no slip, h"):
-        table.add_column(column, justify="right")
-    for row in rows:
-        crown, *numbers = row.values()
-        table.add_row(crown, *(format(number, ".4g") for number in numbers))
-    Console(width=None if sys.stdout.isatty() else 150).print(table)
+    pressures, angles, lives = (
+        ("largest, MPa", "inner edge, MPa", "outer edge, MPa"),
+        ("tilt, mrad", "skew, mrad"),
+        ("life, h", "by slices, h", "no slip, h"),
+    )
+    texts = [(crown, *(format(number, ".4g") for number in numbers)) for crown, *numbers in (row.values() for row in rows)]
+    columns = ("crown", "mrad", "slip, %", *pressures, *angles, *lives)
+    print_rows(f"{name}: misalignment of the inner ring, level spatial", columns, texts, words=("crown",))
     click.echo("pressures, tilt and skew: the largest at an instant, in the mean over time; no slip: life by slices in quasi-static balance")

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.commands.reporting import FailedRun, print_json, progress_bar, tell_compilation, told_file_faults
+from bearing_sim.commands.reporting import FailedRun, print_json, print_rows, progress_bar, tell_compilation, told_file_faults
 
 
 @click.command()
@@ -54,8 +54,9 @@ def _run(situation, rrd: Path) -> dict:
     """Write a situation's recording; return what it is told by."""
     import numpy as np
 
+    from bearing_sim.events import Measurement
     from bearing_sim.sinks.rerun_sink import RerunSink
-    from bearing_sim.studies.situations import Measured, play
+    from bearing_sim.studies.situations import play
 
     scene, blocks, residuals, codes = situation.scene(), [], [], []
     with RerunSink(scene, path=rrd, lossless=True, duration=situation.duration) as sink:
@@ -65,7 +66,7 @@ def _run(situation, rrd: Path) -> dict:
                     sink.write(item)
                     blocks.append(item)
                     progress(float(item["time"][-1]))
-                elif isinstance(item, Measured):
+                elif isinstance(item, Measurement):
                     sink.write_measurement(*item)
                     residuals.append(item)
                 else:
@@ -101,19 +102,13 @@ def _figures(situation, block, residuals, codes) -> dict:
 
 
 def _print(report, out) -> None:
-    import sys
-
-    from rich.console import Console
-    from rich.table import Table
-
-    table = Table(title=f"situations in {out}", title_justify="left")
-    for column in ("name", "level", "rpm", "N", "slip at first, then, at last [%]", "life [h]", "load [N]", "tilt, skew [mrad]", "residual [points]"):
-        table.add_column(column, justify="left" if column in {"name", "level"} else "right")
+    columns = ("name", "level", "rpm", "N", "slip at first, then, at last [%]", "life [h]", "load [N]", "tilt, skew [mrad]", "residual [points]")
+    rows = []
     for name, found in report.items():
         slips = ", ".join(f"{100 * found[key]:.2f}" for key in ("slip_at_first", "slip", "slip_at_last"))
         leans = f"{1e3 * found['largest_tilt']:.2f}, {1e3 * found['largest_skew']:.2f}"
         residual = "-" if found["residual"] is None else f"{100 * found['residual']:+.2f}"
         numbers = (f"{found[key]:.4g}" for key in ("shaft_speed_rpm", "radial_load"))
         others = (f"{found[key]:.4g}" for key in ("rating_life", "largest_load"))
-        table.add_row(name, found["level"], *numbers, slips, *others, leans, residual)
-    Console(width=None if sys.stdout.isatty() else 170).print(table)
+        rows.append((name, found["level"], *numbers, slips, *others, leans, residual))
+    print_rows(f"situations in {out}", columns, rows, words=("name", "level"), width=170)

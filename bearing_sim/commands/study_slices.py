@@ -3,7 +3,7 @@
 
 import click
 
-from bearing_sim.commands.reporting import FailedRun, print_json, progress_bar, tell_compilation, told_as_bad_input
+from bearing_sim.commands.reporting import FailedRun, print_json, print_rows, progress_bar, tell_compilation, told_as_bad_input
 
 
 @click.command()
@@ -41,19 +41,13 @@ def command(scene_name, overrides, settle, duration, as_json):
 
 
 def _print(name, found, costs) -> None:
-    import sys
-
-    from rich.console import Console
-    from rich.table import Table
-
-    table = Table(title=f"{name}: results by number of slices", title_justify="left")
-    for column in ("slices", "slip, %", "largest load, N", "life, h", "by slices, h", "static: MPa", "by slices, h", "us a step", "x real time"):
-        table.add_column(column, justify="right")
+    columns = ("slices", "slip, %", "largest load, N", "life, h", "by slices, h", "static: MPa", "by slices, h", "us a step", "x real time")
+    rows = []
     for one in found:
         lives = [format(value, ".4g") for value in (one.inner_load, one.rating_life, one.lamina_life)]
         still = f"{1e-6 * one.static_pressure:.5g}", f"{one.static_lamina_life:.4g}"
-        table.add_row(str(one.slices), f"{100 * one.slip:.4g}", *lives, *still, f"{1e6 * one.step_seconds:.3g}", f"{one.real_time_factor:.3g}")
-    Console(width=None if sys.stdout.isatty() else 150).print(table)
+        rows.append((str(one.slices), f"{100 * one.slip:.4g}", *lives, *still, f"{1e6 * one.step_seconds:.3g}", f"{one.real_time_factor:.3g}"))
+    print_rows(f"{name}: results by number of slices", columns, rows)
     for what, cost in costs.items():
         steps = ", ".join(f"{count}: {1e6 * seconds:.3g}" for count, seconds in zip(cost.counts, cost.step_seconds))
         told = f"{1e6 * cost.fixed:.3g} + {1e6 * cost.each:.3g} a piece, within {100 * cost.misfit:.2g} %"

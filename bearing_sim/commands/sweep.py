@@ -2,19 +2,20 @@
 """``bearing-sim sweep``: a scene at every combination of values of its fields, as a table."""
 
 import math
-from pathlib import Path
 
 import click
 
 from bearing_sim.commands.reporting import (
     BadInput,
     orderly_end,
+    picture_option,
     print_json,
+    print_rows,
     tell_compilation,
     told_as_bad_input,
     told_file_faults,
 )
-from bearing_sim.commands.sweeping import Points, executor_options, picture_option
+from bearing_sim.commands.sweeping import Points, executor_options, table_option
 
 _SHOWN = ("cage_slip", "rating_life", "inner_load_maximum", "outer_load_maximum", "shaft_power", "status")
 
@@ -32,17 +33,9 @@ _SHOWN = ("cage_slip", "rating_life", "inner_load_maximum", "outer_load_maximum"
 @click.option("--set", "overrides", multiple=True, metavar="FIELD=VALUE", help="Override a field of the scene; may be repeated.")
 @click.option("--level", metavar="LEVEL", help="Fidelity level instead of the scene's.")
 @click.option("--duration", default="0.5 s", show_default=True, metavar="S", help="Simulated time of a point that settles in it.")
-@click.option(
-    "-o",
-    "--out",
-    type=click.Path(path_type=Path),
-    default=Path("sweep.parquet"),
-    show_default=True,
-    metavar="PATH.parquet",
-    help="The table; beside it PATH.csv and PATH.journal, from which a sweep that was stopped goes on.",
-)
+@table_option("sweep.parquet", "The table; beside it PATH.csv and")
 @executor_options
-@picture_option
+@picture_option("Draw the results")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 def command(scene_name, axes, overrides, level, duration, out, workers, dask, picture, as_json):
     """Run SCENE at every combination of values, on all cores, until each point has settled.
@@ -117,23 +110,15 @@ def _report(table, points, files, picture) -> dict:
 
 
 def _print(table, report) -> None:
-    import sys
-
-    from rich.console import Console
-    from rich.table import Table as Rows
-
     varied = [axis["field"] for axis in table.about["axes"]]
-    rows = Rows(title=f"{report['scene']} at level {report['level']}", title_justify="left")
     columns = [table.column(name) for name in (*varied, *_SHOWN)]
-    for column in columns:
-        name = column.name.rpartition(".")[2]
-        rows.add_column(f"{name}, {column.unit}" if column.unit else name, justify="left" if column.name == "status" else "right")
+    names = [column.name.rpartition(".")[2] + (f", {column.unit}" if column.unit else "") for column in columns]
     shown = table.rows if len(table.rows) <= 60 else table.rows[:50]
-    for row in shown:
-        rows.add_row(
-            *(f"{value:.{8 if name in varied else 5}g}" if isinstance(value, float) else str(value) for name, value in _picked(row, columns))
-        )
-    Console(width=None if sys.stdout.isatty() else 150).print(rows)
+    rows = [
+        [f"{value:.{8 if name in varied else 5}g}" if isinstance(value, float) else str(value) for name, value in _picked(row, columns)]
+        for row in shown
+    ]
+    print_rows(f"{report['scene']} at level {report['level']}", names, rows, words=("status",))
     if len(shown) < len(table.rows):
         click.echo(f"... and {len(table.rows) - len(shown)} points more, all in the files")
     for reason, count in _reasons(table).items():

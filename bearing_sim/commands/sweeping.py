@@ -1,20 +1,12 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""What commands that run many points share: where they run, how far they are, what they draw."""
+"""What commands that run many points share: where they run, how far they are, where their tables go."""
 
 from contextlib import ExitStack
 from pathlib import Path
 
 import click
 
-from bearing_sim.commands.reporting import BadInput, progress_bar
-
-_PICTURES = (".png", ".svg", ".pdf")
-
-
-def _checked_picture(context, parameter, path):
-    if path is not None and path.suffix.lower() not in _PICTURES:
-        raise BadInput(f"--{parameter.name} {path}: expected a name that ends in {', '.join(_PICTURES)}")
-    return path
+from bearing_sim.commands.reporting import progress_bar
 
 
 def executor_options(command):
@@ -23,13 +15,11 @@ def executor_options(command):
     return click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="Processes [default: all cores].")(command)
 
 
-picture_option = click.option(
-    "--picture",
-    type=click.Path(path_type=Path),
-    callback=_checked_picture,
-    metavar="PATH.png",
-    help="Draw the results (.png, .svg or .pdf).",
-)
+def table_option(default: str, beside: str):
+    """Return the option that says where results go; ``beside`` completes its help: what there is besides the table."""
+    kind = click.Path(path_type=Path)
+    text = f"{beside} PATH.journal, from which it goes on after a kill."
+    return click.option("-o", "--out", type=kind, default=Path(default), show_default=True, metavar="PATH.parquet", help=text)
 
 
 class Points:

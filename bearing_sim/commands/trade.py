@@ -6,9 +6,18 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.commands.reporting import BadInput, FailedRun, print_json, progress_bar, tell_compilation, told_as_bad_input, told_file_faults
+from bearing_sim.commands.reporting import (
+    FailedRun,
+    picture_option,
+    print_json,
+    print_rows,
+    progress_bar,
+    require_levels,
+    tell_compilation,
+    told_as_bad_input,
+    told_file_faults,
+)
 
-_PICTURES = (".png", ".svg", ".pdf")
 _MEASURED = ("real_time_factor", "slip_error_points", "largest_slip_error_points", "load_error", "life_error")
 _COLUMNS = ("level", "method", "setting", *_MEASURED, "on_front", "fault")
 _FACTORS, _ERRORS = (1.0, 3.0, 10.0, 100.0, 1000.0), (0.01, 0.1, 1.0)
@@ -23,7 +32,7 @@ _FACTORS, _ERRORS = (1.0, 3.0, 10.0, 100.0, 1000.0), (0.01, 0.1, 1.0)
     "--error", type=click.FloatRange(min=0.0, min_open=True), help="Recommend the fastest setting within this error of slip [percentage points]."
 )
 @click.option("--csv", "table", type=click.Path(path_type=Path), metavar="PATH.csv", help="Write all settings as a table.")
-@click.option("--picture", type=click.Path(path_type=Path), metavar="PATH.png", help="Draw errors over speed (.png, .svg or .pdf).")
+@picture_option("Draw errors over speed")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 @click.option("--quick", is_flag=True, help="Measure next to nothing, to see that everything works.")
 def command(scene_name, overrides, levels, factor, error, table, picture, as_json, quick):
@@ -32,15 +41,11 @@ def command(scene_name, overrides, levels, factor, error, table, picture, as_jso
     All run the same manoeuvre from the scene's conditions (the load is halved and restored, the shaft slowed by a fifth) and are compared with a
     tight reference.  Processor time of one core: other programs beside it do not count, but they slow the memory down.
     """
-    from bearing_sim.levels.level import LEVELS
+    from bearing_sim.effects import LEVELS
     from bearing_sim.scene_file import SceneError
     from bearing_sim.simulation import IntegrationError
 
-    for level in levels:
-        if level not in LEVELS:
-            raise BadInput(f"--level {level}: expected one of {', '.join(LEVELS)}")
-    if picture is not None and picture.suffix.lower() not in _PICTURES:
-        raise BadInput(f"--picture {picture}: expected a name that ends in {', '.join(_PICTURES)}")
+    require_levels(levels)
     tell_compilation()
     from bearing_sim.studies.trade import recommend, settings_of, trade
 
@@ -90,20 +95,14 @@ def _report(found) -> dict:
 
 
 def _print(name, found) -> None:
-    import sys
-
-    from rich.console import Console
-    from rich.table import Table
-
-    table = Table(title=f"{name}: against {found.reference}, over {found.simulated:.3g} s", title_justify="left")
-    for column in ("", "level", "method", "setting", "x real time", "slip, points", "largest, points", "load, %", "life, %", ""):
-        table.add_column(column, justify="right" if "," in column or "x " in column else "left")
+    rows = []
     for k in sorted(range(len(found.measured)), key=lambda k: -found.measured[k].real_time_factor):
         row = _row(found, k)
         points = f"{row['slip_error_points']:.3f}", f"{row['largest_slip_error_points']:.3f}"
         told = f"{row['real_time_factor']:.3g}", *points, f"{100 * row['load_error']:.2g}", f"{100 * row['life_error']:.2g}"
-        table.add_row("*" if row["on_front"] else "", row["level"], row["method"], row["setting"], *told, row["fault"])
-    Console(width=None if sys.stdout.isatty() else 150).print(table)
+        rows.append(("*" if row["on_front"] else "", row["level"], row["method"], row["setting"], *told, row["fault"]))
+    words, numbers = ("", "level", "method", "setting"), ("x real time", "slip, points", "largest, points", "load, %", "life, %")
+    print_rows(f"{name}: against {found.reference}, over {found.simulated:.3g} s", (*words, *numbers, ""), rows, words)
     slip, _, load, life = found.own_error
     click.echo(
         f"* nothing is both faster and closer in slip; the reference itself is good to {slip:.2g} points, {100 * load:.2g} %, {100 * life:.2g} %"

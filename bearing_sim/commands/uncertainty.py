@@ -6,9 +6,18 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.commands.reporting import BadInput, print_json, print_table, progress_bar, tell_compilation, told_as_bad_input, told_file_faults
+from bearing_sim.commands.reporting import (
+    orderly_end,
+    picture_option,
+    print_json,
+    print_table,
+    require_levels,
+    tell_compilation,
+    told_as_bad_input,
+    told_file_faults,
+)
+from bearing_sim.commands.sweeping import Points, executor_options
 
-PICTURES = (".png", ".svg", ".pdf")
 SEED = 2017
 
 
@@ -22,27 +31,32 @@ SEED = 2017
 @click.option("--level", metavar="LEVEL", help="Fidelity level [default: the cheapest that has all the scene asks for].")
 @click.option("--log", type=click.Path(path_type=Path), metavar="IN.mcap", help="Bands over the course of speed and load in a log.")
 @click.option("--stretches", default=24, show_default=True, type=click.IntRange(1, 10_000), help="Into how many the course of the log is cut.")
-@click.option("--workers", type=click.IntRange(1, 256), metavar="N", help="Threads [default: all cores].")
-@click.option("--csv", "table", type=click.Path(path_type=Path), metavar="PATH.csv", help="Write every point that was computed.")
-@click.option("--picture", type=click.Path(path_type=Path), metavar="PATH.png", help="Draw bands and shares (.png, .svg or .pdf).")
+@executor_options
+@click.option(
+    "--csv",
+    "table",
+    type=click.Path(path_type=Path),
+    metavar="PATH.csv",
+    help="Write every point; beside it PATH.journal, from which it goes on after a kill.",
+)
+@picture_option("Draw bands and shares")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
-def command(scene_name, overrides, samples, seed, level, log, stretches, workers, table, picture, as_json):
+def command(scene_name, overrides, samples, seed, level, log, stretches, workers, dask, table, picture, as_json):
     """Tell what slip and life of SCENE may be (5, 50 and 95 %), its uncertain fields drawn from the ranges in its block `uncertainty`.
 
     With N samples and d ranges the bearing is computed N (d + 2) times; Sobol' indices say which field the spread comes from.
     Other ranges: --set "uncertainty.lubricant.temperature=[90 degC, 130 degC]"; none for a field: --set uncertainty.FIELD=null.
     """
-    from bearing_sim.effects import LEVELS
     from bearing_sim.scene_file import SceneError, load_scene
+    from bearing_sim.sweep.journal import Journal, JournalInUse
 
-    if level is not None and level not in LEVELS:
-        raise BadInput(f"--level {level}: expected one of {', '.join(LEVELS)}")
-    if picture is not None and picture.suffix.lower() not in PICTURES:
-        raise BadInput(f"--picture {picture}: expected a name that ends in {', '.join(PICTURES)}")
+    require_levels([level] if level is not None else ())
     with told_as_bad_input(SceneError):
         scene = load_scene(scene_name, overrides)
     scene, course = _course(log, scene, stretches) if log is not None else (scene, None)
-    found, report = bands_of(scene, samples, seed, level, course, workers)
+    with told_file_faults(), orderly_end(), told_as_bad_input(JournalInUse):
+        with Journal(table and table.with_suffix(".journal")) as journal:
+            found, report = bands_of(scene, samples, seed, level, course, journal, workers, dask)
     with told_file_faults():
         if table is not None:
             _write(table, found)
@@ -57,25 +71,28 @@ def command(scene_name, overrides, samples, seed, level, log, stretches, workers
         print_bands(scene.name if log is None else f"{scene.name} under {log.name}", report)
 
 
-def bands_of(scene, samples, seed=SEED, level=None, course=None, workers=None):
+def bands_of(scene, samples, seed=SEED, level=None, course=None, journal=None, workers=None, dask=None):
     """Return a study of a scene's uncertainty and its report as plain numbers; tells on stderr what it does.
 
     Parameters
     ----------
     scene : with ranges.
     samples : rounded up to a power of two.
-    seed, level, workers : as of `bearing_sim.studies.uncertainty.study`.
+    seed, level, journal, workers, dask : as of `bearing_sim.studies.uncertainty.study`.
     course : `bearing_sim.studies.course_stretches.Stretches`, or None.
     """
     tell_compilation()
     from bearing_sim.studies.uncertainty import UncertaintyError, study
+    from bearing_sim.sweep.executor import ClusterError
 
     base = 1 << (samples - 1).bit_length()
-    total, began = base * (len(scene.uncertainty) + 2), time.perf_counter()
-    with progress_bar(f"uncertainty of {scene.name}", total) as show, told_as_bad_input(UncertaintyError, ValueError):
-        given = (course.conditions, course.seconds) if course is not None else None
-        found = study(scene, base, seed, level=level, course=given, workers=workers, progress=show)
-    return found, _report(found, seed, time.perf_counter() - began, course)
+    began, given = time.perf_counter(), (course.conditions, course.seconds) if course is not None else None
+    with (
+        Points(f"uncertainty of {scene.name}", base * (len(scene.uncertainty) + 2)) as points,
+        told_as_bad_input(UncertaintyError, ClusterError, ValueError),
+    ):
+        found = study(scene, base, seed, level=level, course=given, journal=journal, workers=workers, dask=dask, tell=points.tell)
+    return found, {**_report(found, seed, time.perf_counter() - began, course), "kept_from_before": points.kept}
 
 
 def _course(log, scene, count):
@@ -194,13 +211,17 @@ def print_bands(name, report) -> None:
         + (f" ({one['source']})" if one["source"] else "")
         for field, one in report["ranges"].items()
     ]
+    kept = f", {report['kept_from_before']} of them kept from before" if report["kept_from_before"] else ""
     print_table(
         f"what {name} may do",
         [
             ("uncertain", "\n".join(ranges)),
             *band_rows(report),
             ("in parentheses", "95 % intervals of the sampling error; more --samples narrow them"),
-            ("computed", f"{report['evaluations']} times ({report['samples']} samples, seed {report['seed']}) in {report['wall_seconds']:.3g} s"),
+            (
+                "computed",
+                f"{report['evaluations']} times ({report['samples']} samples, seed {report['seed']}) in {report['wall_seconds']:.3g} s{kept}",
+            ),
             ("without an answer", str(report["without_answer"])),
             ("level", report["level_reason"]),
         ],

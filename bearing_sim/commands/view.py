@@ -86,23 +86,21 @@ def _size(text: str) -> tuple[int, int]:
 
 
 def _convert(source, out: Path) -> None:
-    from bearing_sim.measurement_reader import measurements
+    from bearing_sim.events import Event, Measurement
     from bearing_sim.sinks.rerun_sink import RerunSink
 
     with progress_bar(f"reading {source.path.name}", source.duration) as progress:
         with RerunSink(
             source.scene, path=out, start_ns=source.start_ns, lossless=True, duration=source.duration, load_scale=source.largest_load or None
         ) as sink:
-            waiting = measurements(getattr(source, "files", [source.path]), source.start_ns)[::-1]
-            for item in source:
-                if isinstance(item, tuple):
+            for item in source.with_measurements():
+                if isinstance(item, Measurement):
+                    sink.write_measurement(*item)
+                elif isinstance(item, Event):
                     sink.write_event(item)
-                    continue
-                sink.write(item)
-                now = float(item["time"][-1])
-                while waiting and waiting[-1][0] <= now:
-                    sink.write_measurement(*waiting.pop())
-                progress(now - source.first_time)
+                else:
+                    sink.write(item)
+                    progress(float(item["time"][-1]) - source.first_time)
     if sink.fault:
         raise FailedRun(f"{out}: {sink.fault}")
 

@@ -3,22 +3,14 @@
 
 import math
 from bisect import bisect_left, bisect_right, insort
-from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.events import Measurement
 from bearing_sim.runtime.residual import ResidualMonitor
 
 _KEPT = 2000  # outputs: a measurement may come so many after its time
 _PREDICTED = ("time", "shaft_speed", "ideal_cage_speed", "cage_slip")
-
-
-class Compared(NamedTuple):
-    """One comparison."""
-
-    time: float  # of the measurement [s]
-    cage_speed: float  # measured [rad/s]
-    residual: float  # measured less predicted slip; NaN where there is nothing to compare
 
 
 class Comparison:
@@ -41,13 +33,13 @@ class Comparison:
         self._times: list[float] = []
         self._rows: list[tuple[float, ...]] = []
         self._waiting: list[tuple[float, float]] = []
-        self.compared: Compared | None = None
+        self.compared: Measurement | None = None
 
     def measure(self, time: float, cage_speed: float) -> None:
         """Take in a measurement [s, rad/s]."""
         insort(self._waiting, (time, cage_speed))
 
-    def predict(self, block: np.ndarray) -> list[Compared]:
+    def predict(self, block: np.ndarray) -> list[Measurement]:
         """Take in outputs (see `bearing_sim.sample`), in order of time, and return the comparisons that they allow."""
         rows = list(zip(*(block[name].tolist() for name in _PREDICTED)))
         self._times += [row[0] for row in rows]
@@ -57,7 +49,7 @@ class Comparison:
             del self._times[:-_KEPT], self._rows[:-_KEPT]
         return found
 
-    def due(self) -> list[Compared]:
+    def due(self) -> list[Measurement]:
         """Return the comparisons that measurements since the last call allow."""
         if not self._times or not self._waiting:
             return []
@@ -65,11 +57,11 @@ class Comparison:
         taken, self._waiting = self._waiting[:ready], self._waiting[ready:]
         return [self._compare(time, speed) for time, speed in taken]
 
-    def _compare(self, time: float, cage_speed: float) -> Compared:
+    def _compare(self, time: float, cage_speed: float) -> Measurement:
         _, shaft_speed, ideal, predicted = self._at(time)
         measured = 1.0 - cage_speed / ideal if ideal else math.nan
         self.residual.take(time, shaft_speed, measured, predicted)
-        self.compared = Compared(time, cage_speed, measured - predicted)
+        self.compared = Measurement(time, cage_speed, measured - predicted)
         return self.compared
 
     def _at(self, time: float) -> tuple[float, ...]:

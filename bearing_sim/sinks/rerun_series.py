@@ -65,7 +65,7 @@ class RunSeries:
         self._ranges: dict[str, tuple[float, float]] = {}  # lowest and highest value so far, by entity path
         self._slip_ranges: dict[int, tuple[float, float]] = {}  # the same for the slip, by octave of the shaft speed
         self._measured: list[tuple[float, float, float]] = []  # time, cage speed, residual
-        self._before: np.ndarray | None = None  # the newest block written
+        self._newest: list[np.ndarray] = []  # the last two blocks written: measurements come before or after those of their times
         self._started: float | None = None
         self.is_measured = False
 
@@ -99,7 +99,7 @@ class RunSeries:
         self._choose_thinning(block["time"])
         self._send(lines, self._overview)
         self._write_lanes(block)
-        self._before = block if self._before is None else np.concatenate((self._before[-1:], block))
+        self._newest = [*self._newest[-1:], block]
         self._write_measured()
 
     def note_measurement(self, time: float, cage_speed: float, residual: float) -> None:
@@ -111,8 +111,8 @@ class RunSeries:
         self._write_measured()
         for overview in filter(None, (self._overview, self._measured_overview)):
             self._send_thinned(overview.finish())
-        if self._before is not None:
-            last = float(self._before["time"][-1])
+        if self._newest:
+            last = float(self._newest[-1]["time"][-1])
             self._send_level(END, np.array([last + 0.07 * (last - self._started)]), math.nan)
 
     def _choose_thinning(self, times: np.ndarray) -> None:
@@ -151,11 +151,11 @@ class RunSeries:
             self._write_thresholds(lines.times[[0, -1]])
 
     def _write_measured(self) -> None:
-        if not self._measured or self._before is None:
+        if not self._measured or not self._newest:
             return
         rows, self._measured = np.array(self._measured), []
         rows = rows[np.argsort(rows[:, 0], kind="stable")]
-        values = measured_series(*rows.T, self._before)
+        values = measured_series(*rows.T, np.concatenate(self._newest))
         lines = Lines(rows[:, 0], {path: plottable(column) for path, column in values.items()})
         for path, column in lines.values.items():
             _widen(self._ranges, path, column)

@@ -21,9 +21,9 @@ from pathlib import Path
 
 import numpy as np
 
-from bearing_sim.events import Event
+from bearing_sim.events import Event, Measurement
 from bearing_sim.scene import Scene
-from bearing_sim.sinks.rerun_thread import QUEUED_ROWS, Dropped, Measurement, RowQueue, ViewThread
+from bearing_sim.sinks.rerun_thread import QUEUED_ROWS, Dropped, RowQueue, ViewThread
 from bearing_sim.sinks.rerun_view import ViewOptions
 from bearing_sim.topics import Origin
 

@@ -15,28 +15,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.events import Event
+from bearing_sim.events import Event, Measurement
 from bearing_sim.scene import Scene
 from bearing_sim.sinks.rerun_view import NOTHING_KNOWN, RunView, ViewOptions
 
 QUEUED_ROWS = 20_000  # about 20 MB with 18 rollers
 _FLUSH_EVERY = 0.25  # [s] of wall time between columns of a live view
 _log = logging.getLogger(__name__)
-
-
-class Measurement(NamedTuple):
-    """A measured cage speed.
-
-    Attributes
-    ----------
-    time : [s].
-    cage_speed : [rad/s].
-    residual : measured less predicted cage slip, a fraction; NaN where there is nothing to compare with.
-    """
-
-    time: float
-    cage_speed: float
-    residual: float
 
 
 class Dropped(NamedTuple):

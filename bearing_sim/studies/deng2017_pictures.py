@@ -216,8 +216,8 @@ def _finish(figure, path, axes) -> None:
         each.grid(alpha=0.3)
         if each.get_yscale() == "linear" and each.get_xscale() == "linear":
             each.ticklabel_format(useOffset=False)
-            if len(each.get_xticks()) > 7 and not each.get_xlabel().startswith("azimuth"):
-                each.xaxis.set_major_locator(MaxNLocator(5))
+            if "[deg]" not in each.get_xlabel():  # radii and speeds have long numbers, which would run into each other
+                each.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 2.5, 5, 10]))
     figure.savefig(path, dpi=_DPI)
 
 

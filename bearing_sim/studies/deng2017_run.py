@@ -14,6 +14,7 @@ from bearing_sim.scene_file import load_scene, scene_to_yaml
 from bearing_sim.studies.deng2017 import LEVELS, STUDIES, plan_study
 from bearing_sim.studies.deng2017_claims import Finding, judge
 from bearing_sim.studies.deng2017_contours import contour_finding, machined_rings, machining_table
+from bearing_sim.studies.deng2017_design import answer, write_answer
 from bearing_sim.studies.deng2017_pictures import draw_study
 from bearing_sim.sweep.executor import run_tasks
 from bearing_sim.sweep.journal import Journal
@@ -67,13 +68,14 @@ def run_study(
 
     with Journal(folder / "study.journal") as journal:
         results = iter(run_tasks(planned.tasks, journal, workers, dask, counted))
+        designed = answer(journal, quick, workers, dask)
     tables = {key: plan.table([next(results) for _ in plan.tasks]) for key, plan in planned.sweeps.items()}
     profiles = {key: next(results) for key in planned.profiles}
     trajectories = {low: next(results) for low in planned.trajectories}
     rings = machined_rings()
     findings = [contour_finding(rings), *judge(tables, LEVELS)]
     _write_tables(folder / "tables", tables, profiles, trajectories, rings, findings)
-    pictured = draw_study(folder / "figures", tables, profiles, trajectories, rings)
+    pictured = [*draw_study(folder / "figures", tables, profiles, trajectories, rings), write_answer(folder, designed)]
     about = {
         "title": "Deng et al. 2017, Cage slip characteristics of a cylindrical roller bearing with a trilobe-raceway: the results with bearing_sim",
         "doi": "10.1016/j.cja.2017.07.001",

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.events import Event, Level
+from bearing_sim.events import Event, Level, Measurement
 from bearing_sim.runtime.monitor import Monitor
 from bearing_sim.runtime.residual import ResidualMonitor
 from bearing_sim.scene import Scene
@@ -57,14 +57,6 @@ class Situation(NamedTuple):
     def scene(self) -> Scene:
         """Return the scene that the model computes."""
         return dataclasses.replace(load_scene(BASE, [*_QUICK, *self.overrides]), name=self.name, description=self.title)
-
-
-class Measured(NamedTuple):
-    """A measured cage speed [rad/s] at a time [s], and its residual slip, a fraction."""
-
-    time: float
-    cage_speed: float
-    residual: float
 
 
 def _smooth(share: float) -> float:
@@ -142,7 +134,7 @@ SITUATIONS = (
 )
 
 
-def play(situation: Situation, scene: Scene) -> Iterator[np.ndarray | Event | Measured]:
+def play(situation: Situation, scene: Scene) -> Iterator[np.ndarray | Event | Measurement]:
     """Run a situation; yield blocks of samples, events, and the measurements of the cage where there are any, in order of time.
 
     Parameters
@@ -198,11 +190,11 @@ class _News:
             yield Event(now, Level.OK, code, "back within its limits")
         self._held = {code: event.level for code, event in held.items()}
 
-    def compare(self, predicted: np.ndarray, true: np.ndarray, lot) -> Iterator[Measured]:
+    def compare(self, predicted: np.ndarray, true: np.ndarray, lot) -> Iterator[Measurement]:
         """Yield measurements of the machine with a sensor's noise, and take their residuals in."""
         for one, other in zip(predicted, true):
             ideal = float(one["ideal_cage_speed"])
             speed = float(other["cage_speed"]) + _NOISE * ideal * lot.normal()
             measured = 1.0 - speed / ideal
             self._residual.take(float(one["time"]), float(one["shaft_speed"]), measured, float(one["cage_slip"]))
-            yield Measured(float(one["time"]), speed, measured - float(one["cage_slip"]))
+            yield Measurement(float(one["time"]), speed, measured - float(one["cage_slip"]))

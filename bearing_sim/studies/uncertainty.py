@@ -6,9 +6,7 @@ that the scene asks for: at level ``steady`` an operating point is solved for, d
 """
 
 import math
-import os
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
 import numpy as np
@@ -20,10 +18,14 @@ from bearing_sim.scene import Scene
 from bearing_sim.scene_uncertainty import Range, quantities, value_at, with_values
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation, scene_inputs
 from bearing_sim.studies.sensitivity import Band, Design, Indices, band, design, distribution, indices
+from bearing_sim.sweep.executor import run_tasks
+from bearing_sim.sweep.journal import Journal
+from bearing_sim.sweep.tasks import task
 
 VALUES = ("cage_slip", "life_hours")
 _MARCH, _SAMPLES, _SETTLED = 0.5, 500, 0.2  # s and samples of a march (Deng 2017, 3.3), and the share at its end that counts
 _ENDLESS = 1e4  # s; longer than any lag of a cage at level steady, where time costs nothing
+_LOT = 64  # points of level steady, milliseconds each, that go to a worker together; of dearer levels each goes alone
 _ABSENT = 0.05  # share of points without an answer beyond which there are no bands
 
 
@@ -90,8 +92,8 @@ def cheapest_level(scene: Scene, level: str | None = None) -> tuple[Scene, str]:
 
 def study(
     scene: Scene, base: int, seed: int, *,
-    level: str | None = None, course: tuple[np.ndarray, np.ndarray] | None = None, workers: int | None = None,
-    progress: Callable[[int], None] = lambda done: None,
+    level: str | None = None, course: tuple[np.ndarray, np.ndarray] | None = None, journal: Journal | None = None,
+    workers: int | None = None, dask: str | None = None, tell: Callable[[int, int], None] = lambda done, pending: None,
 ) -> Study:  # fmt: skip
     """Return bands and Sobol' indices of slip and life.
 
@@ -104,32 +106,30 @@ def study(
     course : conditions one after the other, columns as `Inputs`, shape (m, 4), an oil temperature of NaN standing for the scene's,
         and how long each lasts [s], shape (m,); the scene's own conditions where absent.  Slip is then the mean over time, life that
         under the repeated course.
-    workers : threads; as many as the machine has cores where absent.
-    progress : called now and then with the number of points done.
+    journal : of finished points, which are not computed again; in memory where absent.
+    workers, dask : see `bearing_sim.sweep.executor.run_tasks`.
+    tell : takes how many of the points that are not in the journal are done, and how many there are.
 
     Raises
     ------
     UncertaintyError
         The scene has no ranges, one of them leaves out the scene's own value, numbers in their ranges do not fit together, or too many
         points have no answer.
+    ClusterError
+        See `bearing_sim.sweep.executor.run_tasks`.
     """
     scene, reason = cheapest_level(scene, level)
     ranges = scene.uncertainty
     _check(scene, course is not None)
     conditions, seconds = course if course is not None else (None, np.ones(1))
     lots = design([distribution(one, value_at(scene, one.field)) for one in ranges], base, seed)
-    values = [dict(zip([one.field for one in ranges], row)) for row in lots.points.tolist()]
-    evaluate = lambda changed: settled(_varied(scene, changed), conditions)  # noqa: E731
-    own = evaluate({})
-    found = np.empty((len(values), 2, len(seconds)))
-    with ThreadPoolExecutor(workers or os.cpu_count() or 1) as pool:
-        for k, answer in enumerate(pool.map(evaluate, values)):
-            found[k] = answer
-            progress(k + 1)
+    own = settled(_varied(scene, {}), conditions)
+    kept = Journal() if journal is None else journal
+    found = _at_points(scene, [one.field for one in ranges], lots.points, conditions, len(seconds), kept, workers, dask, tell)
     answers = dict(zip(VALUES, _over_course(found, seconds)))
     absent = int(np.isnan(answers["cage_slip"]).sum())
-    if absent > _ABSENT * len(values):
-        raise UncertaintyError(f"{absent} of {len(values)} points have no answer at level {scene.level}; narrow the ranges, or ask for another level")
+    if absent > _ABSENT * len(found):
+        raise UncertaintyError(f"{absent} of {len(found)} points have no answer at level {scene.level}; narrow the ranges, or ask for another level")
     both = slice(0, 2 * base)
     return Study(
         scene.level,
@@ -143,6 +143,32 @@ def study(
         seconds,
         found[:, 0],
     )
+
+
+def _at_points(scene, fields, points, conditions, stretches, journal, workers, dask, tell) -> np.ndarray:
+    """Return what `settled` says at each point, shape (points, 2, stretches)."""
+    size = _LOT if scene.level == "steady" else 1
+    asked = None if conditions is None else tuple(map(tuple, conditions.tolist()))
+    parts = [points[first : first + size] for first in range(0, len(points), size)]
+    tasks = [task(scene.level, settled_lot, scene, tuple(fields), tuple(map(tuple, part.tolist())), asked) for part in parts]
+    results = run_tasks(tasks, journal, workers, dask, lambda done, pending: tell(*(min(size * lots, len(points)) for lots in (done, pending))))
+    nothing = [[math.nan] * stretches] * 2
+    return np.concatenate([result.get("settled", [nothing] * len(part)) for part, result in zip(parts, results)])
+
+
+def settled_lot(
+    scene: Scene, fields: tuple[str, ...], points: tuple[tuple[float, ...], ...], conditions: tuple[tuple[float, ...], ...] | None
+) -> dict:
+    """Return under ``settled`` what `settled` says of a scene with other numbers, as lists.
+
+    Parameters
+    ----------
+    scene, conditions : see `settled`.
+    fields : dotted paths.
+    points : their numbers [SI], point by point.
+    """
+    asked = None if conditions is None else np.array(conditions)
+    return {"settled": [settled(_varied(scene, dict(zip(fields, point))), asked).tolist() for point in points]}
 
 
 def _check(scene: Scene, on_course: bool) -> None:
