@@ -23,6 +23,7 @@ from functools import wraps
 from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.lifecycle import LifecycleNode, TransitionCallbackReturn
+from rclpy.task import Future
 
 from bearing_sim import topics
 from bearing_sim.events import Event, Level
@@ -84,6 +85,7 @@ class BearingNode(LifecycleNode):
 
     def __init__(self):
         super().__init__("bearing_node", automatically_declare_parameters_from_overrides=True)
+        self.ended = Future()  # given a `CannotRun` where the node ends itself
         self.fault = ""  # why the last transition did not succeed
         self.bearings: list[BearingDoors] = []
         self._state, self._next_report_ns = "unconfigured", 0
@@ -265,13 +267,18 @@ class BearingNode(LifecycleNode):
             self._open_those_warm()
         except OSError as fault:
             if self.manages_itself:
-                raise CannotRun(str(fault)) from None
+                self._end(CannotRun(str(fault)))
+                return
             self.get_logger().error(str(fault))
             self.trigger_deactivate()
             self.fault = f"activate failed: {fault}"
             return
         if self.manages_itself and all(bearing.fault for bearing in self.bearings):
-            raise CannotRun("\n".join(bearing.fault for bearing in self.bearings), exit_code=1)
+            self._end(CannotRun("\n".join(bearing.fault for bearing in self.bearings), exit_code=1))
+
+    def _end(self, fault: CannotRun) -> None:
+        if not self.ended.done():
+            self.ended.set_exception(fault)
 
     def _state_event(self, bearing: BearingDoors | None) -> Event:
         if self.fault:

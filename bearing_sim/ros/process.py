@@ -8,9 +8,12 @@ from collections.abc import Callable
 from contextlib import contextmanager
 
 import rclpy
-from rclpy.executors import ExternalShutdownException
+from rclpy.executors import Executor, ExternalShutdownException, SingleThreadedExecutor
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
+from rclpy.task import Future
+
+_LONG = 3600.0  # [s] without a limit, the events of a rclpy that was built against a glibc before 2.30 wait busily and hear nothing
 
 
 class CannotRun(Exception):
@@ -21,8 +24,26 @@ class CannotRun(Exception):
         self.exit_code = exit_code
 
 
-class Done(Exception):
-    """Raised by a node that has finished its work."""
+def make_executor() -> Executor:
+    """Return the executor of the process: rclpy's own of events where it has one, as it does not list all it waits for at every message.
+
+    Events are for the main thread only: elsewhere none are delivered.
+    """
+    try:
+        from rclpy.experimental import EventsExecutor
+    except ImportError:
+        return SingleThreadedExecutor()
+    return EventsExecutor()
+
+
+def spin(executor: Executor, ended: Future) -> None:
+    """Let an executor work until its context ends or ``ended`` is done."""
+    if isinstance(executor, SingleThreadedExecutor):  # waiting for a future, it would remember every wake until then
+        while rclpy.ok() and not ended.done():
+            executor.spin_once()
+        return
+    while rclpy.ok() and not ended.done():
+        executor.spin_until_future_complete(ended, _LONG)
 
 
 @contextmanager
@@ -39,12 +60,13 @@ def signals_left_to_ros():
 
 
 def run_node(name: str, make_node: Callable[[], Node], args: list[str] | None) -> int:
-    """Make a node and spin it until a signal comes or it raises `Done`; then call its ``close``.
+    """Make a node and spin it until a signal comes or it ends itself; then call its ``close``.
 
     Parameters
     ----------
     name : first word of error messages.
-    make_node : makes the node; it has ``close() -> bool``, whether every thread of it ended.
+    make_node : makes the node; it has ``ended``, a future that a callback may give a `CannotRun`, for an executor of events would log what
+        a callback raises as a fault of the program; and ``close() -> bool``, whether every thread of it ended.
     args : command line; ``sys.argv`` where absent.
 
     Returns
@@ -63,8 +85,12 @@ def _run(name: str, make_node: Callable[[], Node], args: list[str] | None) -> in
     node, code, ended = None, 0, True
     try:
         node = make_node()
-        rclpy.spin(node)
-    except (ExternalShutdownException, Done):
+        executor = make_executor()
+        executor.add_node(node)
+        spin(executor, node.ended)
+        if node.ended.done():
+            node.ended.result()
+    except ExternalShutdownException:
         pass
     except CannotRun as fault:
         code = _complain(name, str(fault), fault.exit_code)
