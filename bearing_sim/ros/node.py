@@ -29,7 +29,6 @@ from bearing_sim import topics
 from bearing_sim.events import Event, Level
 from bearing_sim.ros.bearing_doors import STATE_QOS, BearingDoors
 from bearing_sim.ros.messages import message, message_class
-from bearing_sim.ros.office_hours import OfficeHours
 from bearing_sim.ros.parameter_server import ParameterServer
 from bearing_sim.ros.parameters import NodeSettings, SettingsError
 from bearing_sim.ros.process import CannotRun, run_node
@@ -89,7 +88,7 @@ class BearingNode(LifecycleNode):
         self.fault = ""  # why the last transition did not succeed
         self.bearings: list[BearingDoors] = []
         self._state, self._next_report_ns = "unconfigured", 0
-        self._warm_up, self._publish_timer = WarmUp(), None
+        self._warm_up = WarmUp()
         self.parameters = ParameterServer(self, self)
         self._shared: NodeSettings | None = None
         name, ros_type = topics.DIAGNOSTICS
@@ -99,7 +98,6 @@ class BearingNode(LifecycleNode):
         self._clock_watch = watch_clock(self, self._tick)
         self.manages_itself = bool(self.parameters.value("autostart"))
         _refuse_impossible_transitions(self)
-        self.office_hours = OfficeHours(self)  # open from each review to the next time something is published
 
     def start(self) -> None:
         """Configure and activate, as ``autostart`` asks for.
@@ -147,7 +145,6 @@ class BearingNode(LifecycleNode):
             self._close()
             raise
         self._state = "active"
-        self._publish_timer = create_steady_timer(self, 1.0 / self._shared.publish_rate, self._publish)
         return super().on_activate(state)
 
     @_told
@@ -196,9 +193,6 @@ class BearingNode(LifecycleNode):
             self._shared = dataclasses.replace(self._shared, publish_rate=changes["publish_rate"])
             for bearing in self.bearings:
                 bearing.publish_at(changes["publish_rate"])
-            if self._publish_timer is not None:
-                self.destroy_timer(self._publish_timer)
-                self._publish_timer = create_steady_timer(self, 1.0 / self._shared.publish_rate, self._publish)
         if "governor" in changes:
             for bearing in self.bearings:
                 bearing.govern(changes["governor"], self._warm_up)
@@ -225,9 +219,6 @@ class BearingNode(LifecycleNode):
                 bearing.open()
 
     def _close(self) -> None:
-        if self._publish_timer is not None:
-            self.destroy_timer(self._publish_timer)
-            self._publish_timer = None
         for bearing in self.bearings:
             if not bearing.close():
                 self._warm_up.ask(bearing.warm_up)  # its model is still in the hands of the thread that did not end
@@ -243,14 +234,8 @@ class BearingNode(LifecycleNode):
         for bearing in self.bearings:
             bearing.tick(now_ns)
 
-    def _publish(self) -> None:
-        self.office_hours.is_open = False
-        for bearing in self.bearings:
-            bearing.publish()
-
     def _review(self) -> None:
         """Open what has become warm, let every bearing review itself, and say what the node waits for where none does."""
-        self.office_hours.is_open = True
         if self._state == "active":
             self._begin_late()
         now_ns = self.now_ns()
