@@ -95,6 +95,7 @@ class BearingDoors:
         settings, rate = self.settings, self._shared.sample_rate
         try:
             prepare(view=bool(settings.rrd or settings.rerun_port))
+            self._outputs.lay_out()
             simulation = warmed_up(self.scene, rate)
             governs = self._shared.governor and not follows_clock(self._node)  # by sim time nothing is given up
             if governs and levels_to_compile(self.scene):

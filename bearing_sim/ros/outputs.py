@@ -7,7 +7,6 @@ from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.lifecycle import LifecycleNode
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
-from rclpy.serialization import serialize_message
 
 from bearing_sim import topics
 from bearing_sim.ros.messages import message, message_class
@@ -58,12 +57,16 @@ class Outputs:
 
     def __init__(self, node: LifecycleNode, scene: Scene, name_of: Callable[[str], str], qos: QoSProfile):
         self._node, self._name_of, self._qos = node, name_of, qos
-        chosen = tuple(topics.outputs(scene).values())
-        self._publishers = [self._publisher(topic) for topic in chosen]
-        self._messages = SampleMessages(message_layouts(chosen, scene.bearing.roller.count, serialized))
+        self._topics, self._rollers = tuple(topics.outputs(scene).values()), scene.bearing.roller.count
+        self._publishers = [self._publisher(topic) for topic in self._topics]
+        self._messages: SampleMessages | None = None
         residual = topics.MEASUREMENTS["cage_slip_residual"]
         self._residual_topic, self._residual = residual, self._publisher(residual)
         self._heard: list[tuple[int, object]] = []
+
+    def lay_out(self) -> None:
+        """Find out where the numbers stand in the messages; before anything is published, on any thread, for it takes a moment."""
+        self._messages = SampleMessages(message_layouts(self._topics, self._rollers))
 
     def look(self) -> None:
         """Take notice of who listens; asking at every message would cost a quarter of what sending it does."""
@@ -90,8 +93,3 @@ class Outputs:
     def _publisher(self, topic: Topic):
         quiet = PublisherEventCallbacks(use_default_callbacks=False)
         return self._node.create_lifecycle_publisher(message_class(topic.ros_type), self._name_of(topic.name), self._qos, event_callbacks=quiet)
-
-
-def serialized(ros_type: str, fields: dict) -> bytes:
-    """Return a message with those fields, serialised by rclpy."""
-    return serialize_message(message(ros_type, fields))

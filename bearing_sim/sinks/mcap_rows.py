@@ -17,7 +17,6 @@ from mcap.writer import CompressionType, Writer
 
 from bearing_sim.sample import flat
 from bearing_sim.sinks.message_layout import message_layouts
-from bearing_sim.sinks.ros_types import message_type
 from bearing_sim.topics import Topic
 
 _RECORD_HEAD = 9 + 22  # [byte]: opcode and length, then channel, sequence, log time, publish time
@@ -45,7 +44,7 @@ class RowLayout:
     def __init__(self, topics: Sequence[Topic], rollers: int):
         self.topics, self.rollers = tuple(topics), rollers
         row, starts, runs, stamps = b"", [], [], []
-        for cdr, numbers, stamped in message_layouts(self.topics, rollers, _serialized):
+        for cdr, numbers, stamped in message_layouts(self.topics, rollers):
             begin = len(row) + _RECORD_HEAD
             starts.append(len(row))
             runs += [run._replace(target=begin + run.target) for run in numbers]
@@ -96,10 +95,6 @@ class RowLayout:
         for k, run in enumerate(self._runs):
             fields[f"run{k}"] = numbers[:, run.source : run.source + run.count]
         return filled
-
-
-def _serialized(ros_type: str, fields: dict) -> bytes:
-    return message_type(ros_type).serialize(fields)
 
 
 class _RowIndex:

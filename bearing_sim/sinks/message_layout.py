@@ -6,12 +6,13 @@ copying numbers into it, for a recording many samples at once, for the node all 
 """
 
 import struct
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from bearing_sim.sample import flat, new_block
+from bearing_sim.sinks.ros_types import message_type
 from bearing_sim.topics import Topic
 
 _PROBE_STAMP = 1_234_567_891_987_654_321  # [ns]: seconds and nanoseconds whose bytes occur nowhere else in a message
@@ -36,14 +37,13 @@ class MessageLayout(NamedTuple):
     stamps: tuple[int, ...]  # where header stamps stand [byte]
 
 
-def message_layouts(topics: Sequence[Topic], rollers: int, serialize: Callable[[str, dict], bytes]) -> tuple[MessageLayout, ...]:
+def message_layouts(topics: Sequence[Topic], rollers: int) -> tuple[MessageLayout, ...]:
     """Return where the numbers of a sample stand in the messages of some topics.
 
     Parameters
     ----------
     topics : output topics whose messages hold numbers of the sample as they are.
     rollers : number of rollers, as many as the samples have.
-    serialize : ``serialize(ros_type, fields)`` returns a message as little-endian CDR.
 
     Raises
     ------
@@ -55,7 +55,7 @@ def message_layouts(topics: Sequence[Topic], rollers: int, serialize: Callable[[
     numbers[0] = np.random.default_rng(1).uniform(1.0, 2.0, numbers.shape[1])  # nobody's numbers, each told from the others
     found = []
     for topic in topics:
-        cdr = serialize(topic.ros_type, topic.message(_PROBE_STAMP, probe[0]))
+        cdr = message_type(topic.ros_type).serialize(topic.message(_PROBE_STAMP, probe[0]))
         found.append(MessageLayout(cdr, _runs(topic.name, cdr, numbers[0]), _stamps(cdr)))
     return tuple(found)
 
