@@ -16,6 +16,7 @@ from enum import Enum
 import numpy as np
 
 from bearing_sim.events import Event, Level
+from bearing_sim.runtime.blocks import joined
 from bearing_sim.runtime.governor import Governor
 from bearing_sim.runtime.pacer import Pace, Pacer
 from bearing_sim.runtime.threads import SOLVER, name_this_thread
@@ -258,7 +259,7 @@ class Runner:
         ended = self._clock()
         self._pacer.worked(ended, self.tick, ended - began)
         self._pace = self._pacer.pace
-        block = block.copy()  # the model may keep its own
+        block = joined([block])  # a copy: the model may keep its own
         block["time"] += self._shift
         if self._failed_ticks:
             text = f"time advances again after {self._failed_ticks} failed ticks"
