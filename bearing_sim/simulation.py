@@ -208,7 +208,7 @@ class Simulation:
         end = self.inputs if inputs is None else _checked(inputs)
         if end.oil_temperature != self._lubrication.temperature:
             self._lubrication = lubricate(self.scene.lubricant, self._params, end.oil_temperature)
-        block = np.zeros(samples, self._dtype)
+        block = np.zeros(samples * self._dtype.itemsize // 8).view(self._dtype)
         state = self._state.copy()
         integration = self.scene.integration
         advance = self._method.advance if integration.fixed_step is None else self._method.advance_fixed

@@ -12,6 +12,7 @@ from ros_bench import Client, NodeProcess, fresh_domain  # noqa: E402
 from std_srvs.srv import SetBool  # noqa: E402
 
 from bearing_sim.recording_reader import Recording  # noqa: E402
+from bearing_sim.ros.outputs import Soon  # noqa: E402
 
 pytestmark = pytest.mark.timeout(300)
 
@@ -48,6 +49,38 @@ def launch(tmp_path):
     for process, client in started:
         client.close()
         process.end(signal.SIGKILL)
+
+
+class Later:
+    """A node and its executor, which does what it is asked for when told to."""
+
+    def __init__(self):
+        self.executor, self.asked = self, []
+
+    def create_task(self, action):
+        self.asked.append(action)
+
+    def work(self):
+        asked, self.asked = self.asked, []
+        for action in asked:
+            action()
+
+
+def test_what_is_asked_for_again_before_it_is_done_is_done_once_and_what_comes_in_the_middle_of_it_is_not_missed():
+    node, done = Later(), []
+    soon = Soon(node, lambda: (done.append(1), soon() if len(done) == 1 else None))
+    for _ in range(5):
+        soon()
+    assert len(node.asked) == 1, "a slow executor does not queue it up"
+    node.work()
+    assert len(done) == 1 and len(node.asked) == 1
+    node.work()
+    assert len(done) == 2 and not node.asked
+    node.executor = None
+    soon()
+    node.executor = node
+    soon()
+    assert len(node.asked) == 1, "what was asked for without an executor does not stand in the way"
 
 
 def stamps(client):

@@ -211,7 +211,8 @@ class BearingNode(LifecycleNode):
 
     def now_ns(self) -> int:
         """Return the node's time [ns since the epoch]."""
-        return self.get_clock().now().nanoseconds
+        clock = self.get_clock()
+        return clock.now().nanoseconds if clock.ros_time_is_active else time.time_ns()  # the same, at a fraction of the cost
 
     def _open_those_warm(self) -> None:
         for bearing in self.bearings:
