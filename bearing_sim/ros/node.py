@@ -78,13 +78,18 @@ def _refuse_impossible_transitions(node: LifecycleNode) -> None:
 
 
 class BearingNode(LifecycleNode):
-    """The life and the parameters of a node that hosts bearings."""
+    """The life and the parameters of a node that hosts bearings.
+
+    Parameters
+    ----------
+    ended : given a `CannotRun` where the node ends itself.
+    """
 
     REVIEW_PERIOD = 0.05  # [s] how soon a change of health is told
 
-    def __init__(self):
+    def __init__(self, ended: Future):
         super().__init__("bearing_node", automatically_declare_parameters_from_overrides=True)
-        self.ended = Future()  # given a `CannotRun` where the node ends itself
+        self._ended = ended
         self.fault = ""  # why the last transition did not succeed
         self.bearings: list[BearingDoors] = []
         self._state, self._next_report_ns = "unconfigured", 0
@@ -263,8 +268,8 @@ class BearingNode(LifecycleNode):
             self._end(CannotRun("\n".join(bearing.fault for bearing in self.bearings), exit_code=1))
 
     def _end(self, fault: CannotRun) -> None:
-        if not self.ended.done():
-            self.ended.set_exception(fault)
+        if not self._ended.done():
+            self._ended.set_exception(fault)
 
     def _state_event(self, bearing: BearingDoors | None) -> Event:
         if self.fault:
@@ -279,8 +284,8 @@ class BearingNode(LifecycleNode):
         return Event(0.0, Level.OK, f"run.{self._state}", said.get(self._state, self._state))
 
 
-def _make_node() -> BearingNode:
-    node = BearingNode()
+def _make_node(ended: Future) -> BearingNode:
+    node = BearingNode(ended)
     try:
         if node.manages_itself:
             node.start()
