@@ -50,8 +50,9 @@ class WarmUp:
             job()
 
     def _freeze_once(self) -> None:
-        """Take what compiling has left, some hundred thousand objects that stay, out of the garbage collector's rounds: each of them holds
-        everything else in the process up for a tenth of a second and more.
+        """Take what compiling has left out of the garbage collector's rounds.
+
+        These are some hundred thousand objects that stay; each full round over them holds the whole process up for a tenth of a second.
         """
         if not self._is_frozen:
             gc.freeze()
