@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.compiled_call import compiled_for
 from bearing_sim.effects import NUMBERS
 from bearing_sim.integrators.status import COUNT, OK, REASONS, new_counts
 from bearing_sim.levels.inputs import Drive
@@ -14,7 +15,7 @@ from bearing_sim.levels.slip import Model
 from bearing_sim.levels.steady_table import Table
 from bearing_sim.oil import kinematic_viscosities
 from bearing_sim.params import lubricate, pack
-from bearing_sim.sample import flat, new_block
+from bearing_sim.sample import flat, new_block, sample_dtype
 from bearing_sim.scene import Integration, Operating, Scene
 from bearing_sim.tables.store import cached_table
 
@@ -82,6 +83,7 @@ class Simulation:
             kept = cached_table(scene) if table is None else (table,)
             self._tables = kept[:1] if kept else ()
         self._method = self._level.method(scene.integration.method)
+        self._dtype = sample_dtype(self._params.rollers.count)
         self.reset(inputs)
 
     def reset(self, inputs: Inputs | None = None) -> None:
@@ -139,6 +141,7 @@ class Simulation:
     def _begin(self, state: np.ndarray, previous: np.ndarray) -> None:
         """Take a state as the present one; what adds up over time goes on from the sample before."""
         self._state = state
+        self._compiled = None  # the code of `advance`, from its first call on: the types of its arguments stay
         self._memory = self._method.new_memory(state.size)
         self._step = float(self.scene.integration.first_step)
         self._lubrication = lubricate(self.scene.lubricant, self._params, self.inputs.oil_temperature)
@@ -205,11 +208,11 @@ class Simulation:
         end = self.inputs if inputs is None else _checked(inputs)
         if end.oil_temperature != self._lubrication.temperature:
             self._lubrication = lubricate(self.scene.lubricant, self._params, end.oil_temperature)
-        block = new_block(samples, self._params.rollers.count)
+        block = np.zeros(samples * self._dtype.itemsize // 8).view(self._dtype)
         state = self._state.copy()
         integration = self.scene.integration
         advance = self._method.advance if integration.fixed_step is None else self._method.advance_fixed
-        status, step = advance(
+        arguments = (
             self.time,
             float(duration),
             state,
@@ -223,6 +226,9 @@ class Simulation:
             flat(self._previous)[0],
             flat(block),
         )
+        status, step = (self._compiled or advance)(*arguments)
+        if self._compiled is None:
+            self._compiled = compiled_for(advance, arguments)
         if status != OK:
             self._work = self._new_work()  # a failed search may have left nonsense to start the next one from
             self._memory = self._method.new_memory(state.size)
@@ -235,7 +241,7 @@ class Simulation:
         block["level"] = NUMBERS[self.scene.level]
         self.time += duration
         self.inputs, self._state, self._step = end, state, step
-        self._previous = block[-1:].copy()
+        self._previous = _last(block)
         return block
 
     @property
@@ -281,7 +287,7 @@ class Simulation:
             self.inputs = Inputs(*map(float, inputs[reached - 1]))
             self.time = float(block["time"][reached - 1])
             block["level"] = NUMBERS[self.scene.level]
-            self._previous = block[reached - 1 : reached].copy()
+            self._previous = _last(block[:reached])
             if self.inputs.oil_temperature != self._lubrication.temperature:
                 self._lubrication = lubricate(self.scene.lubricant, self._params, self.inputs.oil_temperature)
         return block[:reached]
@@ -300,6 +306,11 @@ def _tolerance(integration: Integration) -> float:
 def start_sample(simulation: Simulation) -> np.ndarray:
     """Return the newest sample as a block of its own: at the start, what a recording begins with so that it can be repeated."""
     return np.array([simulation.sample])
+
+
+def _last(block: np.ndarray) -> np.ndarray:
+    """Return a copy of a block's last sample, as a block; of its plain numbers, since field by field it would take as long as a tick."""
+    return flat(block)[-1].copy().view(block.dtype)
 
 
 def _checked(inputs: Inputs) -> Inputs:

@@ -67,7 +67,8 @@ ALLOWED = {
     "params.py": ({"numpy"}, {"contour", "crown", "kernels", "oil", "rating_life", "ring_growth", "scene", "scene_lubricant"}),
     "rating_life.py": ({"numpy"}, {"kernels.compilation"}),
     "tables": ({"numpy", "platformdirs"}, {"tables", "kernels.compilation", "levels", "params", "rating_life", "scene"}),
-    "simulation.py": ({"numpy"}, {"effects", "integrators.status", "levels", "oil", "params", "sample", "scene", "tables"}),
+    "compiled_call.py": ({"numba"}, set()),
+    "simulation.py": ({"numpy"}, {"compiled_call", "effects", "integrators.status", "levels", "oil", "params", "sample", "scene", "tables"}),
     "sinks": (
         {"numpy", "mcap", "rosbags", "rerun", "yaml"},
         {"sinks", "contour", "effects", "sample", "scene", "scene_file", "events", "topics", "provenance", "simulation"},

@@ -4,6 +4,7 @@
 import math
 import time
 
+import numpy as np
 import pytest
 from fake_simulation import FakeSimulation
 
@@ -237,3 +238,26 @@ def test_a_low_sample_rate_thins_what_sinks_get_not_what_the_model_does(bench):
     assert len(sink.blocks) == 1 + len(one.simulation.calls) // cadence(10.0).every
     steps = sorted(b["time"][0] - a["time"][0] for a, b in zip(sink.blocks, sink.blocks[1:]))
     assert steps[len(steps) // 2] == pytest.approx(0.1)
+
+
+def test_a_sample_that_is_due_is_told_at_once_so_often_as_asked_for_and_never_while_paused(bench):
+    told = []
+    one = bench(publish_rate=40.0, due=lambda: told.append(float(one.live.runner.newest["time"])))
+    one.run(1.0)
+    assert np.median(np.diff(told)) == pytest.approx(0.025, abs=1e-6)
+    one.live.publish_at(100.0)
+    seen = len(told)
+    one.run(0.5)
+    assert np.median(np.diff(told[seen:])) == pytest.approx(0.01, abs=1e-6)
+    one.live.publish_at(1e4)
+    seen = len(told)
+    one.run(0.5)
+    assert np.median(np.diff(told[seen:])) == pytest.approx(LONGEST_TICK, abs=1e-6), "there is no more than every tick"
+    one.live.runner.pause()
+    one.run(0.1)
+    seen = len(told)
+    one.run(0.3)
+    assert len(told) == seen
+    one.live.runner.pause(False)
+    one.run(0.3)
+    assert len(told) > seen

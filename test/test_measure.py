@@ -48,6 +48,7 @@ def test_a_node_is_measured_over_dds_and_the_figures_hang_together():
     found = subprocess.run(words, capture_output=True, text=True, timeout=200, check=True, env=environment)
     (case,) = json.loads(found.stdout)
     assert (case["level"], case["rate_hz"], case["exit_code"]) == ("slip", 50.0, 0) and case["topics_heard"] == 13
+    assert case["input_rate_hz"] == pytest.approx(48.5), "detuned, so that no one phase between inputs and outputs decides the latency"
     assert case["period_ms"] > 19.0, "no faster than asked for, however busy the machine"
     assert case["period_error_percent"] == pytest.approx(100 * (case["period_ms"] / 20.0 - 1.0))
     assert 0.0 < case["latency_p50_ms"] <= case["latency_p99_ms"]

@@ -185,3 +185,35 @@ def test_thresholds_take_units_and_faults_are_told():
     assert (limits.residual.false_alarm_time, limits.slip_hold.raise_after, limits.slip_hold.clear_after) == (3.6e5, 0.1, 2.0)
     with pytest.raises(SceneError, match="raise_after"):
         load_scene("deng2017_table1", ["thresholds.slip_hold.raise_after=-1 s"])
+
+
+@pytest.mark.parametrize("rough", [(), ROUGH], ids=["no roughness", "roughness"])
+def test_blocks_judged_together_leave_the_same_events_and_numbers_as_one_by_one(rough):
+    """Slip, life, damage and film wander across their limits; what stands at the end of each review is compared."""
+    noise, count = np.random.default_rng(3), 3000
+    wander = np.cumsum(noise.normal(size=count)) * 0.02
+    slip = np.where(noise.random(count) < 0.02, np.nan, 0.06 + 0.05 * np.sin(np.arange(count) / 180) + 1e-3 * noise.normal(size=count))
+    life = 300.0 * np.exp(wander)
+    block = course(count, cage_slip=slip, rating_life=life, modified_rating_life=life, damage=np.linspace(0.0, 0.9, count), pocket_force=5.0)
+    block["inner_load"], block["roller_spin"] = 100.0 + 900.0 * noise.random((count, 1)), math.nan
+    block["time"] = 0.01 * np.arange(1, count + 1)
+    together, single = monitor(*rough), monitor(*rough)
+    told_ones, begin = set(), 0
+    while begin < count:
+        size = int(noise.integers(1, 40))
+        samples = [block[k : k + 1].copy() for k in range(begin, min(begin + size, count))]
+        together.take_all(samples)
+        for sample in samples:
+            single.take(sample)
+        now = float(samples[-1]["time"][0])
+        # Of a film that is told ten times a second, the instant of telling depends on where the blocks begin.
+        assert [event for event in together.events(now) if event.code != "bearing.lambda"] == [
+            event for event in single.events(now) if event.code != "bearing.lambda"
+        ]
+        found, expected = dict(together.values), dict(single.values)
+        found.pop("film over roughness, lambda", None), expected.pop("film over roughness, lambda", None)
+        assert found == pytest.approx(expected, nan_ok=True)
+        told_ones |= {event.code for event in together.events(now)}
+        begin += size
+    together.take_all([])
+    assert {"bearing.slip", "bearing.life"} <= told_ones

@@ -17,7 +17,7 @@ from bearing_sim.effects import hint
 from bearing_sim.events import Event, Level
 from bearing_sim.ros.cheaper_levels import levels_to_compile, start_compiling
 from bearing_sim.ros.messages import message_class
-from bearing_sim.ros.outputs import Output
+from bearing_sim.ros.outputs import Outputs, Soon
 from bearing_sim.ros.parameters import OIL_TEMPERATURE, BearingSettings, NodeSettings, scene_value
 from bearing_sim.ros.recordings import fresh_path, limits_of, open_recording, open_view, prepare
 from bearing_sim.ros.sim_time import OUTPUT_QOS, follows_clock, subscribe_to_all
@@ -70,10 +70,10 @@ class BearingDoors:
         component = node.get_fully_qualified_name().lstrip("/")
         self.component = f"{component}/{settings.name}" if settings.name else component
         self.hardware_id = f"{settings.name}/{self.scene.bearing.name}" if settings.name else self.scene.bearing.name
-        self._outputs = [self._output(topic) for topic in topics.outputs(self.scene).values()]
-        self._residual = self._output(topics.MEASUREMENTS["cage_slip_residual"])
+        self._outputs = Outputs(node, self.scene, self._topic_name, OUTPUT_QOS if follows_clock(node) else STATE_QOS)
+        self._publish_soon = Soon(node, self._publish)
         self._services = [
-            node.create_service(kind, self._service_name(name), serve, callback_group=node.office_hours)
+            node.create_service(kind, self._service_name(name), serve)
             for kind, name, serve in (
                 (Trigger, "reset", self._serve_reset),
                 (Trigger, "start_recording", self._serve_start_recording),
@@ -95,6 +95,7 @@ class BearingDoors:
         settings, rate = self.settings, self._shared.sample_rate
         try:
             prepare(view=bool(settings.rrd or settings.rerun_port))
+            self._outputs.lay_out()
             simulation = warmed_up(self.scene, rate)
             governs = self._shared.governor and not follows_clock(self._node)  # by sim time nothing is given up
             if governs and levels_to_compile(self.scene):
@@ -133,8 +134,9 @@ class BearingDoors:
 
     def _wall_time_model(self) -> LiveModel:
         governor = self._governor if self._shared.governor else None
-        rate, lag = self._shared.sample_rate, self._shared.maximum_lag
-        return LiveModel(self.scene, self._simulation, self._node.now_ns(), rate, lag, governor=governor)
+        shared, due = self._shared, self._publish_soon
+        timing = {"sample_rate": shared.sample_rate, "maximum_lag": shared.maximum_lag, "publish_rate": shared.publish_rate}
+        return LiveModel(self.scene, self._simulation, self._node.now_ns(), **timing, governor=governor, due=due)
 
     def _sim_time_model(self) -> SimTimeModel:
         shared = self._shared
@@ -166,19 +168,8 @@ class BearingDoors:
             self._compiling.wait()
         for service in self._services:
             self._node.destroy_service(service)
-        for output in (*self._outputs, self._residual):
-            output.destroy()
+        self._outputs.destroy()
         return stopped
-
-    def publish(self) -> None:
-        """Publish what is new: with sim time every output at its stamp, else the newest."""
-        if self.live is None:
-            return
-        for stamp_ns, sample in self.live.published():
-            for output in self._outputs:
-                output.publish(stamp_ns, sample)
-        for stamp_ns, residual in self.live.residuals():
-            self._residual.publish(stamp_ns, residual)
 
     def review(self, now_ns: int, state: Event, warm_up: WarmUp) -> None:
         """Feed the sinks, log what is new, and report when a second has passed or the level has changed.
@@ -195,6 +186,9 @@ class BearingDoors:
         self._join_governor(warm_up)
         for event in self.live.collect(now_ns):
             self._log(event)
+        self._outputs.look()
+        if follows_clock(self._node):  # by wall time outputs leave as they come
+            self._publish()
         self.report(now_ns, self.live.condition(now_ns))
 
     def report(self, now_ns: int, condition: Condition) -> None:
@@ -237,7 +231,7 @@ class BearingDoors:
         """Publish so often from now on [Hz], with sim time for each simulated second."""
         self._shared = dataclasses.replace(self._shared, publish_rate=rate)
         if self.live is not None:
-            self.live.publish_rate = rate
+            self.live.publish_at(rate)
 
     def govern(self, wanted: bool, warm_up: WarmUp) -> None:
         """Let a governor change levels from now on, made by ``warm_up`` where there is none yet, or let none."""
@@ -257,8 +251,14 @@ class BearingDoors:
         """Log something about this bearing."""
         self._logger.info(f"{self.settings.name}: {text}" if self.settings.name else text)
 
-    def _output(self, topic: topics.Topic) -> Output:
-        return Output(self._node, topic, self._topic_name(topic.name), OUTPUT_QOS if follows_clock(self._node) else STATE_QOS)
+    def _publish(self) -> None:
+        """Publish what is new: with sim time every output at its stamp, else the newest."""
+        if self.live is None:  # the run has ended since this was asked for
+            return
+        for stamp_ns, sample in self.live.published():
+            self._outputs.publish(stamp_ns, sample)
+        for stamp_ns, residual in self.live.residuals():
+            self._outputs.publish_residual(stamp_ns, residual)
 
     def _subscribe(self, channel: str, ros_type: str) -> None:
         taking = partial(self._take, channel, ros_type)

@@ -1,49 +1,95 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Publish samples cheaply: only what somebody listens to, into messages that are made once."""
+"""Publish the samples of a bearing cheaply: only what somebody listens to, serialised for all topics at once."""
+
+from collections.abc import Callable
 
 from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.lifecycle import LifecycleNode
+from rclpy.node import Node
 from rclpy.qos import QoSProfile
 
-from bearing_sim.ros.messages import fill, message_class
+from bearing_sim import topics
+from bearing_sim.ros.messages import message, message_class
+from bearing_sim.scene import Scene
+from bearing_sim.sinks.message_layout import SampleMessages, message_layouts
 from bearing_sim.topics import Topic
 
-_ALWAYS_THE_SAME = ("layout", "name", "effort")  # fields of an output that no sample changes
 
-
-class Output:
-    """One output topic of a bearing.
-
-    Each message costs the node's thread more in the making and sending than in the computing; a topic without a listener is left out, and
-    fields that never change are filled once.  Events of quality of service are not watched, each would wait beside every message: a
-    subscriber that asks for what is not offered is warned on its own side.
+class Soon:
+    """Has something done on the thread that spins a node, soon, and once however often it is asked for meanwhile.
 
     Parameters
     ----------
-    node : on which the publisher is made, silent until the node is active.
-    topic : what is published.
-    name : of the topic.
+    node : whose executor does it.
+    action : what is to be done.
+    """
+
+    def __init__(self, node: Node, action: Callable[[], None]):
+        self._node, self._action, self._is_asked = node, action, False
+
+    def __call__(self) -> None:
+        """Ask for it, from any one thread; nothing comes of it while the node has no executor."""
+        executor = self._node.executor
+        if executor is None or self._is_asked:
+            return
+        self._is_asked = True
+        executor.create_task(self._act)
+
+    def _act(self) -> None:
+        self._is_asked = False  # before, so that what comes up in the middle of it is not missed
+        self._action()
+
+
+class Outputs:
+    """The output topics of a bearing, and the residual slip where its cage is measured.
+
+    Making message objects and having rclpy serialise them would cost more than all else in the node; so the serialised messages of a
+    sample are filled by its numbers all at once, and a topic without a listener is left out.  Events of quality of service are not
+    watched: a subscriber that asks for what is not offered is warned on its own side.
+
+    Parameters
+    ----------
+    node : on which the publishers are made, silent until the node is active.
+    scene : of the bearing; its level has the topics.
+    name_of : ``name_of(topic)`` is the name under which a topic is published.
     qos : offered.
     """
 
-    def __init__(self, node: LifecycleNode, topic: Topic, name: str, qos: QoSProfile):
-        self._node, self._topic = node, topic
-        quiet = PublisherEventCallbacks(use_default_callbacks=False)
-        self._publisher = node.create_lifecycle_publisher(message_class(topic.ros_type), name, qos, event_callbacks=quiet)
-        self._message, self._is_filled = message_class(topic.ros_type)(), False
+    def __init__(self, node: LifecycleNode, scene: Scene, name_of: Callable[[str], str], qos: QoSProfile):
+        self._node, self._name_of, self._qos = node, name_of, qos
+        self._topics, self._rollers = tuple(topics.outputs(scene).values()), scene.bearing.roller.count
+        self._publishers = [self._publisher(topic) for topic in self._topics]
+        self._messages: SampleMessages | None = None
+        residual = topics.MEASUREMENTS["cage_slip_residual"]
+        self._residual_topic, self._residual = residual, self._publisher(residual)
+        self._heard: list[tuple[int, object]] = []
 
-    def publish(self, stamp_ns: int, source) -> None:
-        """Publish a sample, or whatever the topic takes, if somebody listens."""
-        if self._publisher.get_subscription_count() == 0:
+    def lay_out(self) -> None:
+        """Find out where the numbers stand in the messages; before anything is published, on any thread, for it takes a moment."""
+        self._messages = SampleMessages(message_layouts(self._topics, self._rollers))
+
+    def look(self) -> None:
+        """Take notice of who listens; asking at every message would cost a quarter of what sending it does."""
+        self._heard = [(k, publisher) for k, publisher in enumerate(self._publishers) if publisher.get_subscription_count()]
+
+    def publish(self, stamp_ns: int, sample) -> None:
+        """Publish a sample on the topics that somebody listened to when last looked at."""
+        if not self._heard:
             return
-        fields = self._topic.message(stamp_ns, source)
-        if self._is_filled:
-            for field in _ALWAYS_THE_SAME:
-                fields.pop(field, None)
-        fill(self._message, fields)
-        self._is_filled = True
-        self._publisher.publish(self._message)
+        self._messages.fill(stamp_ns, sample)
+        for k, publisher in self._heard:
+            publisher.publish(self._messages.message(k))
+
+    def publish_residual(self, stamp_ns: int, residual: float) -> None:
+        """Publish how much more than predicted the cage slips."""
+        topic = self._residual_topic
+        self._residual.publish(message(topic.ros_type, topic.message(stamp_ns, residual)))
 
     def destroy(self) -> None:
-        """Take the topic away."""
-        self._node.destroy_lifecycle_publisher(self._publisher)
+        """Take the topics away."""
+        for publisher in (*self._publishers, self._residual):
+            self._node.destroy_lifecycle_publisher(publisher)
+
+    def _publisher(self, topic: Topic):
+        quiet = PublisherEventCallbacks(use_default_callbacks=False)
+        return self._node.create_lifecycle_publisher(message_class(topic.ros_type), self._name_of(topic.name), self._qos, event_callbacks=quiet)

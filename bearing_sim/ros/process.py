@@ -8,9 +8,12 @@ from collections.abc import Callable
 from contextlib import contextmanager
 
 import rclpy
-from rclpy.executors import ExternalShutdownException
-from rclpy.impl.implementation_singleton import rclpy_implementation
+from rclpy.executors import Executor, ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
+from rclpy.task import Future
+
+_LONG = 3600.0  # [s] without a limit, the events of a rclpy that was built against a glibc before 2.30 wait busily and hear nothing
 
 
 class CannotRun(Exception):
@@ -21,62 +24,92 @@ class CannotRun(Exception):
         self.exit_code = exit_code
 
 
-class Done(Exception):
-    """Raised by a node that has finished its work."""
+def make_executor() -> Executor:
+    """Return the executor of the process: rclpy's own of events where it has one, as it does not list all it waits for at every message.
+
+    Events are for the main thread only: elsewhere none are delivered.
+    """
+    try:
+        from rclpy.experimental import EventsExecutor
+    except ImportError:
+        return SingleThreadedExecutor()
+    return EventsExecutor()
+
+
+def spin(executor: Executor, ended: Future) -> None:
+    """Let an executor work until its context ends or ``ended`` is done."""
+    if isinstance(executor, SingleThreadedExecutor):  # waiting for a future, it would remember every wake until then
+        while rclpy.ok() and not ended.done():
+            executor.spin_once()
+        return
+    while rclpy.ok() and not ended.done():
+        executor.spin_until_future_complete(ended, _LONG)
 
 
 @contextmanager
-def signals_left_to_ros():
-    """Keep Python from raising KeyboardInterrupt: rclpy turns SIGINT and SIGTERM into an orderly shutdown of its context.
+def signals_end(ended: Future):
+    """Let SIGINT and SIGTERM make a future done, which ends `spin` at the node's next callback.
 
-    An exception on top of that could break into the closing of a recording.
+    rclpy's own handlers would take the context away in the middle of a message, and of an executor of events everything with it.
     """
-    before = signal.signal(signal.SIGINT, lambda *_: None)
+
+    def end(*_) -> None:
+        if not ended.done():
+            ended.set_result(None)
+
+    before = {number: signal.signal(number, end) for number in (signal.SIGINT, signal.SIGTERM)}
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
-def run_node(name: str, make_node: Callable[[], Node], args: list[str] | None) -> int:
-    """Make a node and spin it until a signal comes or it raises `Done`; then call its ``close``.
+def run_node(name: str, make_node: Callable[[Future], Node], args: list[str] | None) -> int:
+    """Make a node and spin it until a signal comes or it ends itself; then call its ``close``.
 
     Parameters
     ----------
     name : first word of error messages.
-    make_node : makes the node; it has ``close() -> bool``, whether every thread of it ended.
+    make_node : ``make_node(ended)`` makes the node.  A callback that cannot go on gives the future a `CannotRun`, for an executor of events
+        would log what a callback raises as a fault of the program.  The node has a timer, and ``close() -> bool``: whether every thread of
+        it ended.
     args : command line; ``sys.argv`` where absent.
 
     Returns
     -------
     The exit code: 0, or that of a `CannotRun`.
     """
-    with signals_left_to_ros():
-        return _run(name, make_node, args)
+    ended = Future()
+    with signals_end(ended):
+        return _run(name, make_node, args, ended)
 
 
-def _run(name: str, make_node: Callable[[], Node], args: list[str] | None) -> int:
+def _run(name: str, make_node: Callable[[Future], Node], args: list[str] | None, ended: Future) -> int:
     try:
-        rclpy.init(args=args)
+        rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
     except RuntimeError as fault:  # rclpy's own errors are of this kind
         return _complain(name, f"cannot start ROS: {' '.join(str(fault).split())}", 2)
-    node, code, ended = None, 0, True
+    node, executor, code, closed = None, None, 0, True
     try:
-        node = make_node()
-        rclpy.spin(node)
-    except (ExternalShutdownException, Done):
+        node = make_node(ended)
+        executor = make_executor()
+        executor.add_node(node)
+        spin(executor, ended)
+        if ended.done():
+            ended.result()
+    except ExternalShutdownException:
         pass
     except CannotRun as fault:
         code = _complain(name, str(fault), fault.exit_code)
-    except rclpy_implementation.RCLError:
-        if rclpy.ok():  # otherwise a signal took the context away while a message was on its way out
-            raise
     finally:
         if node is not None:
-            ended = node.close()
+            closed = node.close()
+            if executor is not None:
+                executor.shutdown()
             node.destroy_node()
         rclpy.try_shutdown()
-    if not ended:
+    if not closed:
         # A thread deep in compiled code cannot be ended from here; recordings are complete, so leave without it.
         sys.stdout.flush()
         sys.stderr.flush()

@@ -1,6 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Compile models beside a node that answers meanwhile: one thread for all, in the order of asking."""
 
+import gc
 import threading
 from collections import deque
 from collections.abc import Callable
@@ -17,6 +18,7 @@ class WarmUp:
         self._lock = threading.Lock()
         self._jobs: deque[Callable[[], None]] = deque()
         self._thread: threading.Thread | None = None
+        self._is_frozen = False
 
     def ask(self, job: Callable[[], None]) -> None:
         """Run a job, which must not raise, when all those asked for before are done."""
@@ -42,6 +44,16 @@ class WarmUp:
             with self._lock:
                 if not self._jobs:
                     self._thread = None
+                    self._freeze_once()
                     return
                 job = self._jobs.popleft()
             job()
+
+    def _freeze_once(self) -> None:
+        """Take what compiling has left out of the garbage collector's rounds.
+
+        These are some hundred thousand objects that stay; each full round over them holds the whole process up for a tenth of a second.
+        """
+        if not self._is_frozen:
+            gc.freeze()
+        self._is_frozen = True

@@ -190,24 +190,27 @@ def _value_fault(channel: str, values: tuple[float, ...], limits: InputLimits) -
     if len(values) not in expected_count:
         return "input.malformed", f"{len(values)} values, expected {' or '.join(map(str, expected_count))}"
     unit = UNITS[channel]
-    shown = ", ".join(f"{value:.6g}" for value in values)
     if not all(map(math.isfinite, values)):
-        return "input.not_finite", f"{shown} {unit} is not finite"
+        return "input.not_finite", f"{_shown(values)} {unit} is not finite"
     if channel == "oil_temperature":
         low, high = limits.minimum_temperature, limits.maximum_temperature
         if not low <= values[0] <= high:
             code = "input.too_small" if values[0] < low else "input.too_large"
-            return code, f"{shown} K is outside {low:.6g} to {high:.6g} K"
+            return code, f"{_shown(values)} K is outside {low:.6g} to {high:.6g} K"
         return None
     speed = channel in ("shaft_speed", MEASURED)
     signed = len(values) == 2 or (speed and limits.reverse_rotation)
     if values[0] < 0.0 and not signed:
         hint = " (input_limits.reverse_rotation is off)" if speed else ""
-        return "input.negative", f"{shown} {unit} is negative, expected zero or more{hint}"
+        return "input.negative", f"{_shown(values)} {unit} is negative, expected zero or more{hint}"
     magnitude, largest = math.hypot(*values), limits.maximum_speed if speed else limits.maximum_load
     if magnitude > largest:
         return "input.too_large", f"{magnitude:.6g} {unit} is above the largest accepted, {largest:.6g} {unit}"
     return None
+
+
+def _shown(values: tuple[float, ...]) -> str:
+    return ", ".join(f"{value:.6g}" for value in values)
 
 
 def _stamp_fault(state: _Channel, stamp: float) -> tuple[str, str, Level] | None:

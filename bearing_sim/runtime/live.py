@@ -15,6 +15,8 @@ import numpy as np
 from bearing_sim import topics
 from bearing_sim.effects import cheaper_levels
 from bearing_sim.events import Event, Level
+from bearing_sim.runtime.beat import Beat
+from bearing_sim.runtime.blocks import joined
 from bearing_sim.runtime.governor import Governor
 from bearing_sim.runtime.health import Condition, Health
 from bearing_sim.runtime.input_gate import UNITS, InputGate
@@ -97,6 +99,8 @@ class LiveModel:
     maximum_lag : lag behind wall time that is caught up [s]; more is given up and counted.
     clock : wall clock of the runner [s], monotonic.
     governor : see `governor_of`; without one the level stays, and time is given up where it is too slow.
+    publish_rate : outputs that are due to be published in each second [Hz].
+    due : called on the runner's thread when a sample has come that is due; shall take no time.
     """
 
     def __init__(
@@ -108,6 +112,8 @@ class LiveModel:
         maximum_lag: float = 0.2,
         clock: Callable[[], float] = time.monotonic,
         governor: Governor | None = None,
+        publish_rate: float = 50.0,
+        due: Callable[[], None] | None = None,
     ):
         self._governor = governor
         self.scene, self.start_ns = scene, start_ns
@@ -117,8 +123,9 @@ class LiveModel:
         self._rivals = {channel: Rivals(channel, unit) for channel, unit in UNITS.items()}
         beat = cadence(sample_rate)
         pacer, capacity = Pacer(1.0, maximum_lag), round(_SLACK / beat.tick)
-        self.runner = Runner(simulation, pacer, beat.tick, beat.samples, capacity, clock, governor)
+        self.runner = Runner(simulation, pacer, beat.tick, beat.samples, capacity, clock, governor, self._advanced)
         self._every, self._blocks = beat.every, 0
+        self._publish_beat, self._due = Beat(publish_rate), due
         self._clock, self._clock_ahead = clock, start_ns * 1e-9 - clock()
         self._outlets = Outlets()
         self._published_time = self._residual_time = -math.inf
@@ -139,7 +146,7 @@ class LiveModel:
         """
         self._follow_clock(now_ns)
         now, origin = self.run_time(now_ns), topics.Origin(stamp_ns, frame_id)
-        if channel != topics.MEASURED:
+        if channel != topics.MEASURED and self._outlets.keep_inputs:
             received = _as_received(self.gate.held, channel, values)
             self._outlets.to_recorders(now, lambda recorder: recorder.write_inputs(now, received, [channel], origin))
         event = self.gate.offer(channel, now if stamp_ns is None else self.run_time(stamp_ns), values, arrival=now)
@@ -196,6 +203,10 @@ class LiveModel:
         """Let a sink have the samples and events from now on (see `bearing_sim.runtime.outlets.Outlets.attach`)."""
         self._outlets.attach(name, sink)
 
+    def publish_at(self, rate: float) -> None:
+        """Let outputs be due so often from now on [Hz]."""
+        self._publish_beat.rate = rate
+
     def published(self) -> list[Published]:
         """Return the newest sample, where it was not returned before."""
         sample = self.runner.newest
@@ -231,16 +242,18 @@ class LiveModel:
     def collect(self, now_ns: int) -> list[Event]:
         """Hand blocks and events to the sinks and review the health.  Returns the events that are news."""
         self._follow_clock(now_ns)
-        now, blocks = self.run_time(now_ns), []
+        now, blocks, judged = self.run_time(now_ns), [], 0
         for item in self.runner.take():
             if isinstance(item, Event):
+                self.monitor.take_all(blocks[judged:])
+                judged = len(blocks)
                 self.health.note(item._replace(time=now))
                 if item.code == "run.reset":
                     self.monitor.restart()
                     self.residual.interrupt(item.time)
             else:
-                self.monitor.take(item)
                 blocks.append(item)
+        self.monitor.take_all(blocks[judged:])
         self._write(now, blocks)
         for event in self._outlets.news(now):
             self.health.note(event)
@@ -281,6 +294,11 @@ class LiveModel:
         self._outlets.close(0.0)
         return stopped
 
+    def _advanced(self, time: float) -> None:
+        """Tell that a sample is due, on the runner's thread."""
+        if self._publish_beat.is_due(time) and self._due is not None:
+            self._due()
+
     def _inputs_changed(self) -> None:
         # Speed starts the model: load and temperature have sensible values in the scene, a wrong speed would be a false jolt.
         if self.gate.accepted["shaft_speed"]:
@@ -312,8 +330,8 @@ class LiveModel:
         """Hand blocks to the sinks, all at once: for many samples together they hold the interpreter's lock far shorter."""
         kept = [block for place, block in enumerate(blocks, self._blocks) if place % self._every == 0]  # the first is the state at the start
         self._blocks += len(blocks)
-        if kept:
-            together = np.concatenate(kept)
+        if kept and self._outlets:
+            together = joined(kept)
             self._outlets.to_all(now, lambda sink: sink.write(together))
 
 

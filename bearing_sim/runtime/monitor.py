@@ -11,6 +11,7 @@ import numpy as np
 from bearing_sim.events import Event, Level
 from bearing_sim.film_ratio import FilmRatio
 from bearing_sim.runtime.alarm import Alarm
+from bearing_sim.runtime.blocks import joined
 from bearing_sim.scene import Scene
 from bearing_sim.scene_monitoring import Hold, Thresholds
 
@@ -135,6 +136,16 @@ class Monitor:
             latest["lambda"] = self._film
         for name, value in latest.items():
             self._watches[name].judge(now, value)
+
+    def take_all(self, blocks: list[np.ndarray]) -> None:
+        """Judge blocks as `take` does one after the other, in one go where none but the last can be news."""
+        if len(blocks) > 1:
+            whole = joined(blocks)
+            if self.is_calm(whole):
+                self.take_calm(whole[: -len(blocks[-1])])
+                blocks = blocks[-1:]
+        for block in blocks:
+            self.take(block)
 
     def is_calm(self, block: np.ndarray) -> bool:
         """Return whether no sample of a block could change what holds; `take_calm` then takes it in faster than `take` would sample by sample."""

@@ -36,6 +36,14 @@ class Outlets:
         self._recorders: dict[str, Recorder] = {}
         self._given_up: dict[str, Event] = {}
 
+    def __bool__(self) -> bool:
+        return bool(self._sinks)
+
+    @property
+    def keep_inputs(self) -> bool:
+        """Whether there is a sink that keeps inputs."""
+        return bool(self._recorders)
+
     def attach(self, name: str, sink: Sink) -> None:
         """Let a sink have what comes from now on; one with ``write_inputs`` gets the inputs and diagnostics too.
 

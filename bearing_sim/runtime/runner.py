@@ -16,6 +16,7 @@ from enum import Enum
 import numpy as np
 
 from bearing_sim.events import Event, Level
+from bearing_sim.runtime.blocks import joined
 from bearing_sim.runtime.governor import Governor
 from bearing_sim.runtime.pacer import Pace, Pacer
 from bearing_sim.runtime.threads import SOLVER, name_this_thread
@@ -51,6 +52,7 @@ class Runner:
     clock : wall clock [s], monotonic.
     governor : where given, changes the simulation for that of another level when the solver is too slow or fast enough; its wanted level
         is that of ``simulation``.
+    advanced : called on the worker thread after every tick with the run time it has reached [s]; shall take no time.
     """
 
     def __init__(
@@ -62,8 +64,9 @@ class Runner:
         capacity: int = 512,
         clock: Callable[[], float] = time.monotonic,
         governor: Governor | None = None,
+        advanced: Callable[[float], None] | None = None,
     ):
-        self._governor = governor
+        self._governor, self._advanced = governor, advanced
         self._simulation, self._pacer, self._clock = simulation, pacer, clock
         self.tick, self._samples = tick, samples
         self._changed = threading.Condition()  # guards all that follows
@@ -101,7 +104,8 @@ class Runner:
         """Set the inputs that the next tick shall reach.  The first ones start the model, in ideal rolling at these inputs."""
         with self._changed:
             self._latest = inputs
-            self._changed.notify_all()
+            if self._phase is Phase.WAITING:  # a thread that waits for its next tick to be due need not be woken for it
+                self._changed.notify_all()
 
     def take(self) -> list[np.ndarray | Event]:
         """Return the blocks and events since the last call, oldest first."""
@@ -255,7 +259,7 @@ class Runner:
         ended = self._clock()
         self._pacer.worked(ended, self.tick, ended - began)
         self._pace = self._pacer.pace
-        block = block.copy()  # the model may keep its own
+        block = joined([block])  # a copy: the model may keep its own
         block["time"] += self._shift
         if self._failed_ticks:
             text = f"time advances again after {self._failed_ticks} failed ticks"
@@ -263,6 +267,8 @@ class Runner:
             self._failed_ticks = 0
         self._newest = block[-1]
         self._put(block)
+        if self._advanced is not None:
+            self._advanced(float(block["time"][-1]))
         self._govern(float(block["time"][-1]), ended - began)
 
     def _govern(self, now: float, spent: float) -> None:

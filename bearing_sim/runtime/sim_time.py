@@ -54,8 +54,6 @@ class SimTimeModel:
     ----------
     start_ns : int
         Run time 0 [ns since the epoch]: where the course of inputs has begun; before that, where the clock was first.
-    publish_rate : float
-        May be changed.
     """
 
     def __init__(
@@ -67,7 +65,7 @@ class SimTimeModel:
         jump_back: str = "reset",
         wall: Callable[[], float] = time.monotonic,
     ):
-        self.scene, self.start_ns, self.publish_rate = scene, 0, publish_rate
+        self.scene, self.start_ns, self._publish_rate = scene, 0, publish_rate
         self._rate, self._jump_back, self._wall, self._wall_start = sample_rate, jump_back, wall, wall()
         self._first_inputs = simulation.inputs
         self.gate = InputGate(scene.input_limits, self._first_inputs)
@@ -204,6 +202,10 @@ class SimTimeModel:
             self._begin_anew()
             return True
         return self.runner.reset(timeout)
+
+    def publish_at(self, rate: float) -> None:
+        """Let so many outputs be published for each simulated second from now on [Hz]."""
+        self._publish_rate = rate
 
     def published(self) -> list[Published]:
         """Return the outputs that are to be published since the last call."""
@@ -357,7 +359,7 @@ class SimTimeModel:
         self.monitor.take(block)
         self._outlets.to_all(now, lambda sink: sink.write(block))
         self._tell_compared(self._comparison.predict(block))
-        share = min(self.publish_rate / self._rate, 1.0)
+        share = min(self._publish_rate / self._rate, 1.0)
         for sample in block:
             number = round(float(sample["time"]) * self._rate)
             if math.floor(number * share + 1e-9) > math.floor((number - 1) * share + 1e-9):

@@ -8,7 +8,6 @@ the bytes of all topics of one sample are laid out once and filled by numpy for 
 
 import struct
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 from mcap._chunk_builder import ChunkBuilder
@@ -16,20 +15,11 @@ from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
 from mcap.writer import CompressionType, Writer
 
-from bearing_sim.sample import flat, new_block
-from bearing_sim.sinks.ros_types import message_type
+from bearing_sim.sample import flat
+from bearing_sim.sinks.message_layout import message_layouts
 from bearing_sim.topics import Topic
 
-_PROBE_STAMP = 1_234_567_891_987_654_321  # [ns]: seconds and nanoseconds whose bytes occur nowhere else in a message
 _RECORD_HEAD = 9 + 22  # [byte]: opcode and length, then channel, sequence, log time, publish time
-
-
-class _Run(NamedTuple):
-    """Numbers that lie side by side in the sample and in its messages."""
-
-    source: int  # column of the sample laid out flat
-    count: int
-    target: int  # [byte] in the row
 
 
 class RowLayout:
@@ -53,17 +43,12 @@ class RowLayout:
 
     def __init__(self, topics: Sequence[Topic], rollers: int):
         self.topics, self.rollers = tuple(topics), rollers
-        probe = new_block(1, rollers)
-        numbers = flat(probe)
-        numbers[0] = np.random.default_rng(1).uniform(1.0, 2.0, numbers.shape[1])  # nobody's numbers, each told from the others
-        self._columns = numbers.shape[1]
         row, starts, runs, stamps = b"", [], [], []
-        for topic in self.topics:
-            cdr = message_type(topic.ros_type).serialize(topic.message(_PROBE_STAMP, probe[0]))
+        for cdr, numbers, stamped in message_layouts(self.topics, rollers):
             begin = len(row) + _RECORD_HEAD
             starts.append(len(row))
-            runs += _runs(topic.name, cdr, numbers[0], begin)
-            stamps += _stamps(cdr, begin)
+            runs += [run._replace(target=begin + run.target) for run in numbers]
+            stamps += [begin + place for place in stamped]
             row += struct.pack("<BQ", Opcode.MESSAGE, 22 + len(cdr)) + bytes(22) + cdr
         self.size, self.starts = len(row), tuple(starts)
         self._runs = runs
@@ -110,29 +95,6 @@ class RowLayout:
         for k, run in enumerate(self._runs):
             fields[f"run{k}"] = numbers[:, run.source : run.source + run.count]
         return filled
-
-
-def _runs(name: str, cdr: bytes, numbers: np.ndarray, begin: int) -> list[_Run]:
-    """Return where the numbers stand in a message, runs of neighbours joined."""
-    places = sorted((cdr.find(number.tobytes()), column) for column, number in enumerate(numbers) if number.tobytes() in cdr)
-    known = len(places) * 8
-    doubled = sum(cdr.count(numbers[column].tobytes()) for _, column in places)
-    if not places or doubled != len(places):
-        raise ValueError(f"topic {name}: {known} bytes of its message are numbers of the sample, {doubled} times; expected each once")
-    runs: list[_Run] = []
-    for place, column in places:
-        last = runs[-1] if runs else None
-        if last is not None and last.target + 8 * last.count == begin + place and last.source + last.count == column:
-            runs[-1] = last._replace(count=last.count + 1)
-        else:
-            runs.append(_Run(column, 1, begin + place))
-    return runs
-
-
-def _stamps(cdr: bytes, begin: int) -> list[int]:
-    """Return where header stamps stand in a message, [byte] in the row."""
-    pattern = struct.pack("<iI", *divmod(_PROBE_STAMP, 1_000_000_000))
-    return [begin + cdr.index(pattern)] if pattern in cdr else []
 
 
 class _RowIndex:
