@@ -32,6 +32,20 @@ process.make_executor = told
 sys.exit(node.main())
 """
 
+# A module that runs a node whose timer stands still once the model runs, as where the system's clock is set back an hour.
+_WITHOUT_TIMER = """
+import sys
+from bearing_sim.ros import node
+create_steady_timer = node.create_steady_timer
+def standing_still(of, period, callback):
+    def called():
+        if not (of.bearings and of.bearings[0].live and of.bearings[0].live.runner.newest is not None):
+            callback()
+    return create_steady_timer(of, period, called)
+node.create_steady_timer = standing_still
+sys.exit(node.main())
+"""
+
 
 @pytest.fixture
 def launch(tmp_path):
@@ -142,3 +156,17 @@ def test_the_node_runs_the_same_on_an_rclpy_that_has_no_executor_of_events(launc
     assert process.end(signal.SIGINT) == 0 and "Traceback" not in process.text, process.text
     assert "spun by SingleThreadedExecutor" in process.text
     assert Recording(recording).samples > 100
+
+
+def test_health_is_told_and_new_listeners_are_served_though_the_timer_stands_still(launch, tmp_path):
+    (tmp_path / "without_timer.py").write_text(_WITHOUT_TIMER)
+    process, client = launch("publish_rate:=50", module="without_timer")
+    client.wait_until_matched(process)
+    reports = client.received["diagnostics"]
+    client.drive_until(
+        lambda: len(client.received["bearing_joints"]) > 100 and "running" in client.values().get("phase", ""), "outputs come", process
+    )
+    seen, late = len(reports), []
+    client.listen("std_msgs/msg/Float64MultiArray", "power", late.append)
+    client.drive_until(lambda: len(reports) > seen + 2 and late, "diagnostics keep coming", process)
+    assert process.end(signal.SIGINT) == 0 and "Traceback" not in process.text, process.text

@@ -71,7 +71,7 @@ class BearingDoors:
         self.component = f"{component}/{settings.name}" if settings.name else component
         self.hardware_id = f"{settings.name}/{self.scene.bearing.name}" if settings.name else self.scene.bearing.name
         self._outputs = Outputs(node, self.scene, self._topic_name, OUTPUT_QOS if follows_clock(node) else STATE_QOS)
-        self._publish_soon = Soon(node, self._publish)
+        self._publish_soon = Soon(node, self._publish_due)
         self._services = [
             node.create_service(kind, self._service_name(name), serve)
             for kind, name, serve in (
@@ -250,6 +250,10 @@ class BearingDoors:
     def say(self, text: str) -> None:
         """Log something about this bearing."""
         self._logger.info(f"{self.settings.name}: {text}" if self.settings.name else text)
+
+    def _publish_due(self) -> None:
+        self._publish()
+        self._node.review_if_late()
 
     def _publish(self) -> None:
         """Publish what is new: with sim time every output at its stamp, else the newest."""

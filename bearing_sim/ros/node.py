@@ -38,6 +38,7 @@ from bearing_sim.runtime.health import Condition
 from bearing_sim.scene_file import SceneError
 
 SUCCESS, FAILURE, ERROR = TransitionCallbackReturn.SUCCESS, TransitionCallbackReturn.FAILURE, TransitionCallbackReturn.ERROR
+_LATE = 5  # review periods without a review
 _WARMING = "warming up: compiling the model; messages that come now are not used"
 
 
@@ -92,7 +93,7 @@ class BearingNode(LifecycleNode):
         self._ended = ended
         self.fault = ""  # why the last transition did not succeed
         self.bearings: list[BearingDoors] = []
-        self._state, self._next_report_ns = "unconfigured", 0
+        self._state, self._next_report_ns, self._reviewed = "unconfigured", 0, time.monotonic()
         self._warm_up = WarmUp()
         self.parameters = ParameterServer(self, self)
         self._shared: NodeSettings | None = None
@@ -214,6 +215,11 @@ class BearingNode(LifecycleNode):
         fields = topics.diagnostics(now_ns, condition.events, values, component, hardware_id)
         self._diagnostics.publish(message(topics.DIAGNOSTICS[1], fields))
 
+    def review_if_late(self) -> None:
+        """Review now where the timer stands still: an rclpy built against an old glibc waits for it by the system's clock, which may be set back."""
+        if time.monotonic() - self._reviewed > _LATE * self.REVIEW_PERIOD:
+            self._review()
+
     def now_ns(self) -> int:
         """Return the node's time [ns since the epoch]."""
         clock = self.get_clock()
@@ -242,6 +248,7 @@ class BearingNode(LifecycleNode):
 
     def _review(self) -> None:
         """Open what has become warm, let every bearing review itself, and say what the node waits for where none does."""
+        self._reviewed = time.monotonic()
         if self._state == "active":
             self._begin_late()
         now_ns = self.now_ns()
