@@ -36,6 +36,7 @@ from bearing_sim.ros.sim_time import create_steady_timer, watch_clock
 from bearing_sim.ros.warm_up import WarmUp
 from bearing_sim.runtime.health import Condition
 from bearing_sim.scene_file import SceneError
+from bearing_sim.sinks.recorder import Recorder
 
 SUCCESS, FAILURE, ERROR = TransitionCallbackReturn.SUCCESS, TransitionCallbackReturn.FAILURE, TransitionCallbackReturn.ERROR
 _WARMING = "warming up: compiling the model; messages that come now are not used"
@@ -88,6 +89,7 @@ class BearingNode(LifecycleNode):
         self.bearings: list[BearingDoors] = []
         self._state, self._next_report_ns = "unconfigured", 0
         self._warm_up, self._publish_timer = WarmUp(), None
+        self.recorder = Recorder()  # one process for the recordings of all bearings
         self.parameters = ParameterServer(self, self)
         self._shared: NodeSettings | None = None
         name, ros_type = topics.DIAGNOSTICS
@@ -116,6 +118,7 @@ class BearingNode(LifecycleNode):
         self._warm_up.forget()
         stopped = [bearing.destroy() for bearing in self.bearings]
         self.bearings = []
+        self.recorder.close(timeout=2.0)
         return all(stopped) and not self._warm_up.is_working
 
     @_told
