@@ -12,10 +12,10 @@ from bearing_sim.commands.reporting import BadInput, print_json, tell_compilatio
 @click.option("--quick", is_flag=True, help="Measure next to nothing, to see that everything works.")
 @click.option("--level", "levels", multiple=True, metavar="LEVEL", help="Measure this level; may be repeated [default: all].")
 @click.option("--cold", is_flag=True, help="Measure the first start of all, which compiles, too.")
-@click.option("--recording", is_flag=True, help="Measure instead what recording all observables costs a live run (levels slip and planar).")
-@click.option("--seconds", type=click.FloatRange(min=2), default=20.0, show_default=True, metavar="S", help="With --recording: length of a run.")
+@click.option("--recording", is_flag=True, help="Measure instead what recording and a live view cost a run (levels slip and planar).")
+@click.option("--seconds", type=click.FloatRange(min=0.5), default=3.0, show_default=True, metavar="S", help="With --recording: of a stretch.")
 @click.option("--rate", type=click.FloatRange(min=1), default=1000.0, show_default=True, metavar="HZ", help="With --recording: samples a second.")
-@click.option("--repetitions", type=click.IntRange(min=1), default=3, show_default=True, metavar="N", help="With --recording: runs of each kind.")
+@click.option("--repetitions", type=click.IntRange(min=1), default=12, show_default=True, metavar="N", help="With --recording: pairs.")
 @click.option("--fleet", is_flag=True, help="Measure instead how many bearings one core holds in real time, by running them.")
 @click.option("--view", is_flag=True, help="Measure instead what a live view costs the solver whatever viewers do, and how an hour opens.")
 @click.option("--frozen", default=60.0, show_default=True, metavar="S", help="With --view: how long the viewer is frozen.")
@@ -39,7 +39,7 @@ def command(as_json, quick, levels, cold, recording, seconds, rate, repetitions,
 
     tell_compilation()
     if recording:
-        _recording(levels or ("slip", "planar"), 2.0 if quick else seconds, rate, 1 if quick else repetitions, as_json)
+        _recording(levels or ("slip", "planar"), 0.5 if quick else seconds, rate, 1 if quick else repetitions, as_json)
         return
     if fleet:
         bench_fleet.run(as_json, quick, levels)
@@ -51,32 +51,50 @@ def command(as_json, quick, levels, cold, recording, seconds, rate, repetitions,
         _print(report)
 
 
-def _recording(levels, seconds, rate, repetitions, as_json) -> None:
+def _recording(levels, seconds, rate, pairs, as_json) -> None:
     from bearing_sim.scene_file import load_scene
     from bearing_sim.studies.bench_recording import at_level, recording_cost
 
+    def told(level):
+        return lambda text: click.echo(f"{level}: {text} ...", err=True)
+
     scene = load_scene("deng2017_table1")
-    reports = [
-        recording_cost(at_level(scene, level), seconds, rate, repetitions, lambda text, level=level: click.echo(f"{level}: {text} ...", err=True))
-        for level in levels
-    ]
+    reports = [recording_cost(at_level(scene, level), seconds, rate, pairs, progress=told(level)) for level in levels]
     if as_json:
         print_json({"recording": reports})
         return
-    columns = ("level", "recording", "times real time", "tick [ms]", "late p50", "p99", "p99.9", "worst [ms]", "processor")
-    rows = []
     for report in reports:
-        for kind in ("without", "with"):
-            told = report[kind]
-            names = ("solver_rate", "spent_median_ms", "late_p50_ms", "late_p99_ms", "late_p999_ms", "late_worst_ms")
-            rows.append([report["level"], kind, *(_number(told[name]) for name in names), f"{100 * told['processor_share']:.0f} %"])
-    _table(f"live runs of {seconds:g} s at {rate:g} samples a second, medians of {repetitions} of each kind", columns, rows)
-    for report in reports:
-        click.echo(
-            f"{report['level']}: recording costs {100 * (1 - report['rate_ratio']):.2f} % of the solver's rate "
-            f"({100 * (1 - report['processor_rate_ratio']):.2f} % by its thread's processor time); worst stall {report['worst_stall_ms']:+.2f} ms, "
-            f"p99.9 {report['p999_stall_ms']:+.2f} ms beyond the runs without; {report['recording_mb_per_second']:.3g} MB/s written"
-        )
+        _print_recording(report)
+
+
+_RECORDING = {
+    "rate": "rate by wall time, of that without",
+    "core_rate": "rate while a core was to be had",
+    "processor_rate": "rate by its thread's processor time",
+    "worst_stall_ms": "worst stall [ms], beyond that without",
+    "late_stall_ms": "99.9 % of ticks stall less [ms], beyond",
+    "worst_held_ms": "worst stall but for waits for a core [ms], beyond",
+    "late_held_ms": "99.9 % of these [ms], beyond",
+}
+
+
+def _print_recording(report) -> None:
+    def spread(found):
+        return f"{found['median']:.3f} ({found['low']:.3f} to {found['high']:.3f})"
+
+    rows = [
+        (meaning, spread(report["with"][name]), spread(report["control"][name]), _number(report["without"][name]))
+        for name, meaning in _RECORDING.items()
+    ]
+    title = (
+        f"{report['level']}: recording at {report['sample_rate']:g} Hz and a live view (viewer: {report['viewer']}), {report['pairs']} pairs of "
+        f"stretches of {report['seconds']:g} s"
+    )
+    _table(title, ("recording", "with", "control, without", "without"), rows)
+    click.echo(
+        f"median, and where it lies with 95 % confidence; {report['recording_mb_per_second']:.3g} MB/s written, {report['dropped']} blocks missed; "
+        f"load average {report['load_average']:.2f}, {100 * report['stolen_share']:.1f} % of the processors' time stolen by the host"
+    )
 
 
 def _print(report) -> None:

@@ -150,7 +150,7 @@ class LiveRecording:
 
     def write_inputs(self, time: float, inputs, channels: Iterable[str] = tuple(topics.INPUTS), origin: topics.Origin | None = None) -> None:
         """Write the inputs that arrived at ``time`` [s] (see `bearing_sim.sinks.mcap_sink.McapSink.write_inputs`)."""
-        self._offer("write_inputs", (time, inputs, tuple(channels), origin))
+        self._offer("write_inputs", (time, inputs._asdict(), tuple(channels), origin))  # by name: their class would bring the solver along
 
     def write_measurement(self, time: float, cage_speed: float, residual: float, origin: topics.Origin | None = None) -> None:
         """Write a measured cage speed [rad/s] that came at ``time`` [s], and its residual slip."""

@@ -13,9 +13,8 @@ import sys
 import threading
 import traceback
 from collections.abc import Iterator
+from types import SimpleNamespace
 from typing import BinaryIO
-
-import numpy as np
 
 from bearing_sim import topics
 from bearing_sim.sample import sample_dtype
@@ -83,8 +82,7 @@ class Desk:
             elif name == "close":
                 self._close(number)
             elif number in self._sinks and number not in self._faulty:
-                sink = self._sinks[number]
-                sink.write(_block(*arguments)) if name == "write" else getattr(sink, name)(*arguments)
+                _apply(self._sinks[number], name, arguments)
         except Exception as fault:  # even a fault of the program shall not end the other recordings
             self._faulty.add(number)
             self._tell(number, fault=_described(fault), **({"closed": True} if name == "open" else {}))
@@ -128,8 +126,15 @@ class Desk:
                 pass  # nobody listens any more: the feeding process was killed
 
 
-def _block(numbers: np.ndarray, rollers: int) -> np.ndarray:
-    return numbers.view(sample_dtype(rollers))[:, 0]
+def _apply(sink: McapSink, name: str, arguments: tuple) -> None:
+    if name == "write":
+        numbers, rollers = arguments
+        sink.write(numbers.view(sample_dtype(rollers))[:, 0])
+    elif name == "write_inputs":
+        time, inputs, channels, origin = arguments
+        sink.write_inputs(time, SimpleNamespace(**inputs), channels, origin)
+    else:
+        getattr(sink, name)(*arguments)
 
 
 def _described(fault: Exception) -> list:

@@ -25,7 +25,7 @@ from bearing_sim.scene import Scene
 from bearing_sim.screenshot import HeadlessViewer, ViewerFailed
 from bearing_sim.sinks.recorder import Recorder
 from bearing_sim.sinks.rerun_sink import RerunSink
-from bearing_sim.studies.paired import CONTROL, WITH, WITHOUT, ThreadBooks, differences, order, ratios, stolen_share
+from bearing_sim.studies.paired import CONTROL, WITH, ThreadBooks, differences, order, ratios, stolen_share
 
 _INPUTS_EVERY = 0.02  # [s] between messages of speed and load
 _REVIEW_EVERY = 0.05  # [s] as the node looks after its sinks
@@ -93,6 +93,10 @@ def recording_cost(
         live = LiveModel(scene, watched, sinks.start_ns, sample_rate, maximum_lag=_ALL)  # no time is given up, so that ticks stay countable
         for name, sink in sinks.by_name.items():
             live.attach(name, sink)
+        with sinks.fed(True):
+            _drive(live, scene, _SETTLING)
+        if view:
+            sinks.attach_viewer(opened)
         begins, shares = [], []
         for place, kind in enumerate(kinds):
             progress(f"stretch {place + 1} of {len(kinds)}, {kind}, {seconds:g} s")
@@ -156,7 +160,8 @@ class _Watched:
             self._books = ThreadBooks()
         before = time.perf_counter(), time.thread_time(), self._books.waited()
         block = self._simulation.advance(*arguments)
-        self._noted.append((*before, time.perf_counter(), time.thread_time(), self._books.waited()))
+        waited, work = self._books.waited(), time.thread_time()  # within the wall time of the tick, as those before it
+        self._noted.append((*before, time.perf_counter(), work, waited))
         return block
 
     def stretches(self, begins: list[float], seconds: float, tick: float) -> list[Figures]:
@@ -182,7 +187,7 @@ def _figures(noted: np.ndarray, due: np.ndarray, tick: float) -> Figures:
     total = tick * len(spent)
     return Figures(
         total / spent.sum(),
-        total / (spent - waited).sum(),
+        total / np.maximum(spent - waited, work).sum(),
         total / work.sum(),
         float(stall.max()),
         float(np.quantile(stall, 0.999)),
@@ -226,11 +231,14 @@ class _Sinks:
         self.by_name = {"record": _Tap(self._recording)}
         if not view:
             return
-        port = _free_port()
-        self._view = opened.enter_context(RerunSink(scene, serve_port=port))
+        self._port = free_port()
+        self._view = opened.enter_context(RerunSink(scene, serve_port=self._port))
         self._view.wait_until_ready()
         self.by_name["view"] = _Tap(self._view)
-        viewer = HeadlessViewer(f"rerun+http://127.0.0.1:{port}/proxy", size=(800, 600))
+
+    def attach_viewer(self, opened: ExitStack) -> None:
+        """Let a viewer show the view; it needs something to show."""
+        viewer = HeadlessViewer(f"rerun+http://127.0.0.1:{self._port}/proxy", size=(800, 600))
         try:
             self._viewer = opened.enter_context(viewer)
         except ViewerFailed as fault:
@@ -262,7 +270,8 @@ def keep_modest(pid: int) -> None:
         os.setpriority(os.PRIO_PROCESS, int(thread.name), _VIEWER_NICENESS)
 
 
-def _free_port() -> int:
+def free_port() -> int:
+    """Return a port on 127.0.0.1 that nobody uses."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return probe.getsockname()[1]
