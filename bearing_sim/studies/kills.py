@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.recording_reader import Recording
-from bearing_sim.recovery import recover
+from bearing_sim.recovery import contents, recover
 from bearing_sim.sample import new_block
 from bearing_sim.scene_file import load_scene
 from bearing_sim.simulation import Inputs
@@ -93,7 +93,7 @@ def _kill_one(context, path: Path, moment: float, victim: str) -> Kill:
     if feeder.exitcode != (_TOLD if victim == "writer" else -signal.SIGKILL):
         raise RuntimeError(f"the process that feeds {path} ended otherwise than by the death of the {victim}, exit code {feeder.exitcode}")
     times = _times(path, complete=victim == "feeder")
-    if not len(times):  # killed before anything left the process
+    if not len(times):
         return Kill(victim, after, recorded.value, 0, recorded.value / RATE, 0)
     last = round(float(times[-1]) * RATE)
     return Kill(victim, after, recorded.value, len(times), max(recorded.value - last, 0) / RATE, last - len(times))
@@ -105,9 +105,10 @@ def _times(path: Path, complete: bool) -> np.ndarray:
         _wait_until(path.exists, f"{path} is completed")
     else:
         remains, path = path.with_name(path.name + ".active"), path.with_name(f"{path.stem}_recovered.mcap")
-        if not recover(remains, path).messages:
-            return np.empty(0)
-    return np.concatenate([np.empty(0), *(item["time"] for item in Recording(path) if isinstance(item, np.ndarray))])
+        recover(remains, path)
+    if not contents(path).messages:  # killed before anything left the process
+        return np.empty(0)
+    return np.concatenate([item["time"] for item in Recording(path) if isinstance(item, np.ndarray)])
 
 
 def _wait_until(condition: Callable[[], object], what: str) -> None:
