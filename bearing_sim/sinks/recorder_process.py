@@ -13,6 +13,8 @@ import sys
 import threading
 import traceback
 from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
 from types import SimpleNamespace
 from typing import BinaryIO
 
@@ -28,7 +30,7 @@ def main() -> None:
     """Write what comes on the standard input, and report what becomes of it on the standard output."""
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)
-    os.nice(_NICENESS)
+    _give_way()
     reports = os.dup(1)
     os.dup2(2, 1)  # whatever a library prints is no report
     for topic in (*topics.INPUTS.values(), *topics.RECORDED.values(), *topics.OUTPUTS.values()):
@@ -41,6 +43,13 @@ def main() -> None:
         desk.tell_news()
     desk.close()
     os._exit(0)  # nothing is left to be done, and the process that ends this one waits for it
+
+
+def _give_way() -> None:
+    """Let others have the processor first; where the system shares it by sessions, this one has a session of its own that must say so, too."""
+    os.nice(_NICENESS)
+    with suppress(OSError):
+        Path("/proc/self/autogroup").write_text(str(_NICENESS))
 
 
 def frames(stream: BinaryIO) -> Iterator[list]:

@@ -30,7 +30,7 @@ from bearing_sim.studies.paired import CONTROL, WITH, ThreadBooks, differences, 
 _INPUTS_EVERY = 0.02  # [s] between messages of speed and load
 _REVIEW_EVERY = 0.05  # [s] as the node looks after its sinks
 _ALL = 1e3  # [s]
-_SETTLING = 0.7  # [s] left out at the start of each stretch
+_SETTLING = 0.4  # [s] left out at the start of each stretch
 _VIEWER_NICENESS = 10  # that draws without a graphics card takes all the time it gets
 
 
@@ -267,7 +267,7 @@ def keep_modest(pid: int) -> None:
     cores = os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else set()
     for thread in Path(f"/proc/{pid}/task").iterdir() if len(cores) > 1 else ():
         os.sched_setaffinity(int(thread.name), {min(cores)})
-        os.setpriority(os.PRIO_PROCESS, int(thread.name), _VIEWER_NICENESS)
+        os.setpriority(os.PRIO_PROCESS, int(thread.name), os.getpriority(os.PRIO_PROCESS, 0) + _VIEWER_NICENESS)
 
 
 def free_port() -> int:
