@@ -291,3 +291,18 @@ def test_a_full_disk_comes_back_as_an_error_and_nothing_written_is_lost(recorder
         sink.close()
     found = recover(small_disk / "run.mcap.active", tmp_path / "good.mcap")
     assert found.damaged == 0 and found.messages["/roller_loads"] > 500
+
+
+def test_one_process_makes_many_recordings_and_keeps_neither_files_nor_threads(tmp_path):
+    with Recorder() as recorder:
+
+        def belongings():
+            return len(os.listdir(f"/proc/{recorder.pid}/fd")), len(os.listdir(f"/proc/{recorder.pid}/task"))
+
+        for number in range(30):
+            with recorder.open(tmp_path / f"run_{number}.mcap", SCENE, START) as sink:
+                write(sink, last=100)
+            if number == 5:
+                files, threads = belongings()
+        wait_for(lambda: belongings() == (files, threads))
+    assert all(len(samples(tmp_path / f"run_{number}.mcap")) == 100 for number in (0, 29))

@@ -13,14 +13,13 @@ import sys
 import threading
 import traceback
 from collections.abc import Iterator
-from contextlib import suppress
-from pathlib import Path
 from types import SimpleNamespace
 from typing import BinaryIO
 
 from bearing_sim import topics
 from bearing_sim.sample import sample_dtype
 from bearing_sim.sinks.mcap_sink import McapSink
+from bearing_sim.sinks.priority import give_way
 from bearing_sim.sinks.ros_types import message_type
 
 _NICENESS = 5  # a file may be late by a part of a second, the solver may not
@@ -30,7 +29,7 @@ def main() -> None:
     """Write what comes on the standard input, and report what becomes of it on the standard output."""
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)
-    _give_way()
+    give_way(_NICENESS)
     reports = os.dup(1)
     os.dup2(2, 1)  # whatever a library prints is no report
     for topic in (*topics.INPUTS.values(), *topics.RECORDED.values(), *topics.OUTPUTS.values()):
@@ -43,13 +42,6 @@ def main() -> None:
         desk.tell_news()
     desk.close()
     os._exit(0)  # nothing is left to be done, and the process that ends this one waits for it
-
-
-def _give_way() -> None:
-    """Let others have the processor first; where the system shares it by sessions, this one has a session of its own that must say so, too."""
-    os.nice(_NICENESS)
-    with suppress(OSError):
-        Path("/proc/self/autogroup").write_text(str(_NICENESS))
 
 
 def frames(stream: BinaryIO) -> Iterator[list]:

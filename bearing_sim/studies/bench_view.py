@@ -27,7 +27,7 @@ from bearing_sim.studies.paired import CONTROL, WITH, ThreadBooks, order, ratios
 
 _SCENE = ("deng2017_table1", ("level=slip", "operating.shaft_speed=15000 rpm"))
 _TICK, _SAMPLES = 0.005, 5  # [s] of wall time that a tick about takes, and samples in it
-_STRETCH, _SETTLING = 1.0, 0.2  # [s] of wall time of a stretch, and what is left out before it
+_STRETCH, _SETTLING = 0.5, 0.25  # [s] of wall time of a stretch, and what is left out before it: a view is that much behind
 _HOUR, _RATE = 3600.0, 1000.0  # [s], [Hz]
 
 
@@ -38,7 +38,8 @@ class Stretch(NamedTuple):
     ----------
     wall_rate : simulated seconds for each second of wall time.
     rate : the same for each second in which a core was to be had.
-    processor_rate : the same for each second of the thread's processor time.
+    processor_rate : the same for each second of the thread's processor time, by the quartile of ticks: the others share caches and memory with
+        whatever runs on other cores.
     worst_tick : longest wall time of a tick [s].
     worst_wait, late_wait : longest time, and 99.9 % of them, in which a tick neither worked nor waited for a core [s].
     """
@@ -143,7 +144,7 @@ def _stretch(ticks: np.ndarray, tick: float) -> Stretch:
     return Stretch(
         simulated / wall.sum(),
         simulated / (wall.sum() - delay.sum()),
-        simulated / work.sum(),
+        tick / float(np.quantile(work, 0.25)),
         float(wall.max()),
         float(waits.max()),
         float(np.quantile(waits, 0.999)),
