@@ -18,7 +18,7 @@ from bearing_sim.runtime.live import LiveModel, cadence
 from bearing_sim.scene_file import load_scene
 from bearing_sim.simulation import Inputs, Simulation, start_sample
 from bearing_sim.sinks.mcap_sink import McapSink
-from bearing_sim.studies.kills import kill_recorders
+from bearing_sim.studies.kills import kill_recordings
 
 START = 1_700_000_000_000_000_000
 
@@ -128,7 +128,7 @@ def test_from_recording_refuses_what_does_not_go_with_it(tmp_path):
 
 def test_killed_recorders_lose_less_than_a_second_each(tmp_path):
     """A few of the many that `bearing-sim study kills` ends."""
-    for kill in kill_recorders(tmp_path, 3, seed=11):
+    for kill in kill_recordings(tmp_path, 3, seed=11):
         assert kill.lost <= 1.0 and kill.gaps == 0, kill
 
 

@@ -23,7 +23,7 @@ def command(frozen, quick, as_json):
 
     tell_compilation()
     try:
-        report = run_view_bench(0.5 if quick else 15.0, min(frozen, 0.5) if quick else frozen, tell)
+        report = run_view_bench(1.0 if quick else 60.0, min(frozen, 1.0) if quick else frozen, tell)
         report["hour"] = run_hour(*([120.0] if quick else []), progress=tell)
     except ViewerFailed as fault:
         raise FailedRun(f"no viewer to measure with: {fault}") from None
@@ -34,14 +34,28 @@ def command(frozen, quick, as_json):
 
 
 def _print(report) -> None:
-    columns = ("while", "x real time", "rate to none", "work to none", "worst tick [ms]", "worst wait [ms]", "99.9 % [ms]", "dropped")
+    def spread(found):
+        return f"{found['median']:.4f} ({found['low']:.4f} to {found['high']:.4f})"
+
+    columns = (
+        "while",
+        "pairs",
+        "rate, by wall",
+        "while a core was to be had",
+        "by processor time",
+        "control, by processor time",
+        "worst wait [ms]",
+        "missed",
+    )
     rows = []
-    for row in report["stretches"]:
-        times = (f"{1e3 * row[name]:.2f}" for name in ("worst_tick", "worst_wait", "late_wait"))
-        rows.append((row["name"], f"{row['wall_rate']:.2f}", f"{row['rate_ratio']:.3f}", f"{row['work_ratio']:.3f}", *times, str(row["dropped"])))
-    title = f"the solver with a live view, 1000 samples a second; load average {report['load_average']:.2f}"
-    print_rows(title, columns, rows, words=("while",))
-    click.echo("rates for the time in which a core was to be had; a wait is what a tick neither worked nor waited for a core")
+    for row in report["situations"]:
+        told = [spread(row["with"][name]) for name in ("wall_rate", "rate", "processor_rate")]
+        waits = f"{1e3 * row['worst_wait_with']:.2f}, without {1e3 * row['worst_wait_without']:.2f}"
+        pairs, control = str(row["with"]["rate"]["pairs"]), spread(row["control"]["processor_rate"])
+        rows.append((row["name"], pairs, *told, control, waits, str(row["dropped"])))
+    title = f"the solver with a live view, 1000 samples a second, to stretches of {report['stretch']:g} s without; "
+    print_rows(f"{title}load average {report['load_average']:.2f}", columns, rows, words=("while",), width=200)
+    click.echo("median, and where it lies with 95 % confidence; a wait is what a tick neither worked nor waited for a core")
     hour = report["hour"]
     click.echo(
         f"{hour['simulated_seconds']:g} s at 1 kHz: {hour['samples']} samples, {hour['bytes'] / 1e6:.1f} MB, made "

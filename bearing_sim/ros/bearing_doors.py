@@ -19,7 +19,7 @@ from bearing_sim.ros.cheaper_levels import levels_to_compile, start_compiling
 from bearing_sim.ros.messages import message_class
 from bearing_sim.ros.outputs import Outputs, Soon
 from bearing_sim.ros.parameters import OIL_TEMPERATURE, BearingSettings, NodeSettings, scene_value
-from bearing_sim.ros.recordings import fresh_path, limits_of, open_recording, open_view, prepare
+from bearing_sim.ros.recordings import fresh_path, limits_of, open_lossless_recording, open_recording, open_view, prepare
 from bearing_sim.ros.sim_time import OUTPUT_QOS, follows_clock, subscribe_to_all
 from bearing_sim.ros.warm_up import WarmUp
 from bearing_sim.runtime.governor import Governor
@@ -94,7 +94,7 @@ class BearingDoors:
         """Compile or load the model; takes seconds to minutes.  Belongs to a thread of its own, see `warm_up`."""
         settings, rate = self.settings, self._shared.sample_rate
         try:
-            prepare(view=bool(settings.rrd or settings.rerun_port))
+            prepare(bool(settings.rrd or settings.rerun_port), None if follows_clock(self._node) else self._node.recorder)
             self._outputs.lay_out()
             simulation = warmed_up(self.scene, rate)
             governs = self._shared.governor and not follows_clock(self._node)  # by sim time nothing is given up
@@ -337,8 +337,11 @@ class BearingDoors:
 
     def _start_recording(self, path: Path) -> None:
         def opened(start_ns: int):
-            own_clock = None if follows_clock(self._node) else self._shared.sample_rate
-            sink = open_recording(path, self.scene, start_ns, limits_of(self._shared), own_clock)
+            limits = limits_of(self._shared)
+            if follows_clock(self._node):
+                sink = open_lossless_recording(path, self.scene, start_ns, limits)
+            else:
+                sink = open_recording(path, self.scene, start_ns, limits, self._shared.sample_rate, self._node.recorder)
             self.say(f"recording {sink.path}" + (f" ({path} exists and stays as it is)" if sink.path != path else ""))
             return sink
 

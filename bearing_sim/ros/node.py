@@ -36,6 +36,7 @@ from bearing_sim.ros.sim_time import create_steady_timer, watch_clock
 from bearing_sim.ros.warm_up import WarmUp
 from bearing_sim.runtime.health import Condition
 from bearing_sim.scene_file import SceneError
+from bearing_sim.sinks.recorder import Recorder
 
 SUCCESS, FAILURE, ERROR = TransitionCallbackReturn.SUCCESS, TransitionCallbackReturn.FAILURE, TransitionCallbackReturn.ERROR
 _LATE = 5  # review periods without a review
@@ -95,6 +96,7 @@ class BearingNode(LifecycleNode):
         self.bearings: list[BearingDoors] = []
         self._state, self._next_report_ns, self._reviewed = "unconfigured", 0, time.monotonic()
         self._warm_up = WarmUp()
+        self.recorder = Recorder()  # one process for the recordings of all bearings
         self.parameters = ParameterServer(self, self)
         self._shared: NodeSettings | None = None
         name, ros_type = topics.DIAGNOSTICS
@@ -122,6 +124,7 @@ class BearingNode(LifecycleNode):
         self._warm_up.forget()
         stopped = [bearing.destroy() for bearing in self.bearings]
         self.bearings = []
+        self.recorder.close(timeout=2.0)
         return all(stopped) and not self._warm_up.is_working
 
     @_told

@@ -9,14 +9,26 @@ from typing import TYPE_CHECKING
 from bearing_sim import topics
 from bearing_sim.runtime.live import cadence
 from bearing_sim.scene import Scene
+from bearing_sim.sinks.limits import Limits
 
 if TYPE_CHECKING:
     from bearing_sim.ros.parameters import NodeSettings
-    from bearing_sim.sinks.parts import Limits
+    from bearing_sim.sinks.recorder import Recorder
 
 
-def prepare(view: bool) -> None:
-    """Load what recordings need, which takes half a second that the running node shall not pay at its first message."""
+def prepare(view: bool, recorder: "Recorder | None") -> None:
+    """Start or load what recordings need, which takes half a second that the running node shall not pay at its first message.
+
+    Parameters
+    ----------
+    view : whether a view is wanted.
+    recorder : the process that will record; None where this process does it.
+    """
+    if view:
+        importlib.import_module("bearing_sim.sinks.rerun_sink")
+    if recorder is not None:
+        recorder.start()
+        return
     from bearing_sim.sinks.mcap_file import message_type
 
     importlib.import_module("bearing_sim.sinks.mcap_sink")
@@ -24,37 +36,38 @@ def prepare(view: bool) -> None:
         topics.DIAGNOSTICS[1]
     }:
         message_type(ros_type)
-    if view:
-        importlib.import_module("bearing_sim.sinks.rerun_sink")
 
 
-def open_recording(path: Path, scene: Scene, start_ns: int, limits: "Limits | None" = None, sample_rate: float | None = None):
-    """Return an MCAP sink (see `bearing_sim.sinks.mcap_sink.McapSink`); its ``path`` is a fresh one where ``path`` is taken.
+def open_recording(path: Path, scene: Scene, start_ns: int, limits: Limits, sample_rate: float, recorder: "Recorder"):
+    """Return a recording in real time (see `bearing_sim.sinks.recorder.LiveRecording`); its ``path`` is a fresh one where ``path`` is taken.
 
     Parameters
     ----------
     path : what is asked for, a file or the folder of a bag.
     scene, start_ns : what is simulated, and time 0 of the samples [ns since the epoch].
-    limits : where files end; one file where absent.
+    limits : where files end.
     sample_rate : of the live model [Hz].
+    recorder : the process that records.
 
     Raises
     ------
     OSError
         The file cannot be made.
     """
+    beat = cadence(sample_rate)
+    advance = (beat.tick, beat.samples) if beat.every == 1 else None
+    return recorder.open(fresh_path(path), scene, start_ns, limits, advance)
+
+
+def open_lossless_recording(path: Path, scene: Scene, start_ns: int, limits: Limits):
+    """Return a recording that the model may have to wait for, as a run by sim time does; written in this process.  Else as `open_recording`."""
     from bearing_sim.sinks.mcap_sink import McapSink
-    from bearing_sim.sinks.parts import UNPARTED
 
-    beat = cadence(sample_rate) if sample_rate else None
-    advance = (beat.tick, beat.samples) if beat is not None and beat.every == 1 else None
-    return McapSink(fresh_path(path), scene, start_ns, limits=limits or UNPARTED, advance=advance)
+    return McapSink(fresh_path(path), scene, start_ns, limits=limits)
 
 
-def limits_of(settings: "NodeSettings") -> "Limits":
+def limits_of(settings: "NodeSettings") -> Limits:
     """Return the limits of recordings that the node's parameters set; 0 stands for none."""
-    from bearing_sim.sinks.parts import Limits
-
     size, duration = settings.record_part_size or math.inf, settings.record_part_duration or math.inf
     return Limits(1e6 * size, duration, 1e6 * settings.record_keep_free)
 

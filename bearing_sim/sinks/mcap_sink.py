@@ -11,8 +11,9 @@ from bearing_sim.events import Event, Level
 from bearing_sim.provenance import git_hash, package_version, versions
 from bearing_sim.scene import Scene
 from bearing_sim.scene_file import scene_to_yaml
+from bearing_sim.sinks.limits import UNPARTED, Limits
 from bearing_sim.sinks.mcap_rows import RowLayout
-from bearing_sim.sinks.parts import UNPARTED, Limits, Parts
+from bearing_sim.sinks.parts import Parts
 
 METADATA = "bearing_sim"
 """Name of the metadata record: scene (YAML), level, start_ns, package_version, git_hash, part, and versions of packages by name."""

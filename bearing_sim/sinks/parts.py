@@ -5,32 +5,14 @@ import math
 import threading
 from collections.abc import Mapping
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
 from bearing_sim.events import Level
 from bearing_sim.sinks.bag_metadata import Part, TopicCount, bag_metadata, write_bag_metadata
+from bearing_sim.sinks.limits import UNPARTED, Limits
 from bearing_sim.sinks.mcap_file import McapFile
 from bearing_sim.sinks.mcap_rows import RowLayout
-
-
-class Limits(NamedTuple):
-    """How far a recording may go.
-
-    Attributes
-    ----------
-    part_size : length of a file [byte] beyond which the next one begins.
-    part_duration : time between its first and last message [s] beyond which the next one begins.
-    keep_free : free space that the disk shall keep [byte]; below it the recording stops.
-    """
-
-    part_size: float = math.inf
-    part_duration: float = math.inf
-    keep_free: float = 100e6
-
-
-UNPARTED = Limits()
 
 
 class Parts:

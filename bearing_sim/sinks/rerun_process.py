@@ -13,6 +13,7 @@ import sys
 import threading
 import time
 
+from bearing_sim.sinks.priority import give_way
 from bearing_sim.sinks.rerun_thread import Dropped, ViewThread
 
 _REPORT_EVERY = 0.1  # [s], where there is news
@@ -24,7 +25,7 @@ def main() -> None:
     """Show what comes on the standard input, and report drops and faults on the standard output."""
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, signal.SIG_IGN)
-    os.nice(_NICENESS)
+    give_way(_NICENESS)
     items = sys.stdin.buffer
     scene, path, port, options = pickle.load(items)
     views = {True: ViewThread(scene, path, None, options)} if path is not None else {}

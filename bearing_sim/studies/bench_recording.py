@@ -1,14 +1,20 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""What recording costs a live run: the solver's rate, and the worst that its thread is held up, with and without sinks.
+"""What recording and showing cost a live run: the solver's rate, and the worst that its thread is held up, with and without sinks.
 
-Both kinds of run follow each other several times, because a machine's own noise comes and goes.
+One live model runs on; its sinks, a recording of all observables and a live view with a viewer, get what it computes in every other stretch
+only, and the viewer sleeps in between (see `bearing_sim.studies.paired`).  The time of a tick is split by the kernel's books into the
+thread's own work, its wait for a core, which other programs cause as well, and the rest: waits for the interpreter's lock.
 """
 
 import dataclasses
 import math
+import os
+import signal
+import socket
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
@@ -16,136 +22,259 @@ import numpy as np
 
 from bearing_sim.runtime.live import LiveModel, cadence, warmed_up
 from bearing_sim.scene import Scene
-from bearing_sim.sinks.mcap_sink import McapSink
+from bearing_sim.screenshot import HeadlessViewer, ViewerFailed
+from bearing_sim.sinks.recorder import Recorder
+from bearing_sim.sinks.rerun_sink import RerunSink
+from bearing_sim.studies.paired import CONTROL, WITH, ThreadBooks, differences, order, ratios, stolen_share
 
 _INPUTS_EVERY = 0.02  # [s] between messages of speed and load
 _REVIEW_EVERY = 0.05  # [s] as the node looks after its sinks
 _ALL = 1e3  # [s]
-_SETTLING = 1.0  # [s] left out at the start of each run
+_SETTLING = 0.4  # [s] left out at the start of each stretch
+_VIEWER_NICENESS = 10  # that draws without a graphics card takes all the time it gets
 
 
-class Ticks(NamedTuple):
-    """The ticks of one run.
+class Figures(NamedTuple):
+    """How the solver's thread fared in one stretch.
 
     Attributes
     ----------
-    spent, computed : wall time in the solver and processor time of its thread there [s], shape (ticks,).
-    late : how long after it was due each tick was done [s], from the most punctual one on.
-    cpu : processor time of the whole process over wall time.
-    written : length of the recording [byte]; 0 without one.
+    rate : simulated time over wall time in the solver.
+    core_rate : likewise over the time in which a core was to be had.
+    processor_rate : likewise over the processor time of its thread.
+    worst_stall, late_stall : the longest that a tick was due, or running, and not computed, and what 99.9 % of ticks stay below [s].
+    worst_held, late_held : the same without the wait for a core [s].
     """
 
-    spent: np.ndarray
-    computed: np.ndarray
-    late: np.ndarray
-    cpu: float
-    written: int
+    rate: float
+    core_rate: float
+    processor_rate: float
+    worst_stall: float
+    late_stall: float
+    worst_held: float
+    late_held: float
 
 
-def recording_cost(scene: Scene, seconds: float, sample_rate: float, repetitions: int, progress: Callable[[str], None] = lambda text: None) -> dict:
-    """Measure runs in real time without and with a recording of all observables.
+RATES = ("rate", "core_rate", "processor_rate")
+STALLS = ("worst_stall", "late_stall", "worst_held", "late_held")
+
+
+def recording_cost(
+    scene: Scene,
+    seconds: float,
+    sample_rate: float,
+    pairs: int,
+    view: bool = True,
+    progress: Callable[[str], None] = lambda text: None,
+) -> dict:
+    """Measure a run in real time without and with a recording of all observables and a live view.
 
     Parameters
     ----------
     scene : what is simulated.
-    seconds : length of each run.
+    seconds : length of each stretch, of which there are four for each pair.
     sample_rate : samples recorded for each second [Hz].
-    repetitions : runs of each kind.
+    pairs : pairs with, and as many controls.
+    view : whether there is a view, with a viewer where one can be started.
     progress : told what is being done.
 
     Returns
     -------
-    report : ``rate_ratio``, the solver's rate with the recording over that without; ``processor_rate_ratio``, likewise by the processor time
-        of its thread, which other programs do not disturb but which leaves out waiting; ``worst_stall_ms``, the largest lateness of a tick
-        beyond that of the runs without; all from medians of the runs.  Percentiles of both kinds, and what was written.
+    report : ``with`` and ``control``: for each of `RATES` the ratio, for each of `STALLS` the difference [ms] to the stretches without, as
+        `bearing_sim.studies.paired.Spread`; ``without``: medians of the figures themselves; ``dropped``: blocks that sinks missed; ``viewer``:
+        ``"attached"`` or why there is none; what was written, and how busy the machine was.
     """
-    runs: dict[bool, list[Ticks]] = {False: [], True: []}
-    with tempfile.TemporaryDirectory() as folder:
-        for repetition in range(repetitions):
-            for recorded in (False, True):
-                progress(f"run {repetition + 1} of {repetitions} {'with' if recorded else 'without'} recording, {seconds:g} s")
-                path = Path(folder) / f"run_{repetition}.mcap" if recorded else None
-                runs[recorded].append(_run(scene, seconds, sample_rate, path))
-    alone, recorded = (_summary(runs[kind], cadence(sample_rate).tick) for kind in (False, True))
+    kinds, tick = order(pairs), cadence(sample_rate).tick
+    stolen = stolen_share()
+    with tempfile.TemporaryDirectory() as folder, ExitStack() as opened:
+        path = Path(folder) / "run.mcap"
+        watched = _Watched(warmed_up(scene, sample_rate))
+        sinks = _Sinks(opened, scene, path, view)
+        live = LiveModel(scene, watched, sinks.start_ns, sample_rate, maximum_lag=_ALL)  # no time is given up, so that ticks stay countable
+        for name, sink in sinks.by_name.items():
+            live.attach(name, sink)
+        with sinks.fed(True):
+            _drive(live, scene, _SETTLING)
+        if view:
+            sinks.attach_viewer(opened)
+        begins, shares = [], []
+        for place, kind in enumerate(kinds):
+            progress(f"stretch {place + 1} of {len(kinds)}, {kind}, {seconds:g} s")
+            with sinks.fed(kind == WITH):
+                _drive(live, scene, _SETTLING)
+                began = time.perf_counter()
+                begins.append(began)
+                busy = time.process_time()
+                _drive(live, scene, seconds)
+                shares.append((time.process_time() - busy) / (time.perf_counter() - began))
+        live.close()
+        written = path.stat().st_size
+    found = watched.stretches(begins, seconds, tick)
+    given, all_of_it = (after - before for after, before in zip(stolen_share(), stolen))
     return {
         "scene": scene.name,
         "level": scene.level,
         "sample_rate": sample_rate,
         "seconds": seconds,
-        "repetitions": repetitions,
-        "rate_ratio": recorded["solver_rate"] / alone["solver_rate"],
-        "processor_rate_ratio": recorded["solver_processor_rate"] / alone["solver_processor_rate"],
-        "worst_stall_ms": recorded["late_worst_ms"] - alone["late_worst_ms"],
-        "p999_stall_ms": recorded["late_p999_ms"] - alone["late_p999_ms"],
-        "recording_mb_per_second": float(np.median([run.written for run in runs[True]])) / 1e6 / seconds,
-        "without": alone,
-        "with": recorded,
+        "pairs": pairs,
+        "ticks": round(seconds / tick),
+        "with": _compared(kinds, found, WITH),
+        "control": _compared(kinds, found, CONTROL),
+        "without": _medians([one for kind, one in zip(kinds, found) if kind != WITH]),
+        "recorded": _medians([one for kind, one in zip(kinds, found) if kind == WITH]),
+        "processor_share": {
+            name: float(np.median([share for kind, share in zip(kinds, shares) if (kind == WITH) == fed]))
+            for name, fed in (("without", False), ("with", True))
+        },
+        "recording_mb_per_second": written / 1e6 / (pairs * (seconds + _SETTLING)),
+        "dropped": sinks.dropped,
+        "viewer": sinks.viewer_told,
+        "load_average": os.getloadavg()[0],
+        "stolen_share": given / all_of_it if all_of_it else 0.0,
     }
 
 
-def _summary(runs: list[Ticks], tick: float) -> dict:
-    def median(figure: Callable[[Ticks], float]) -> float:
-        return float(np.median([figure(run) for run in runs]))
+def _compared(kinds: list[str], found: list[Figures], kind: str) -> dict:
+    told = {name: ratios(kinds, [getattr(one, name) for one in found], kind)._asdict() for name in RATES}
+    return told | {f"{name}_ms": differences(kinds, [1e3 * getattr(one, name) for one in found], kind)._asdict() for name in STALLS}
 
-    return {
-        "ticks": int(median(lambda run: len(run.spent))),
-        "solver_rate": median(lambda run: tick / run.spent.mean()),
-        "solver_processor_rate": median(lambda run: tick / run.computed.mean()),
-        "spent_median_ms": median(lambda run: 1e3 * np.median(run.spent)),
-        "spent_worst_ms": median(lambda run: 1e3 * run.spent.max()),
-        "late_p50_ms": median(lambda run: 1e3 * np.percentile(run.late, 50)),
-        "late_p99_ms": median(lambda run: 1e3 * np.percentile(run.late, 99)),
-        "late_p999_ms": median(lambda run: 1e3 * np.percentile(run.late, 99.9)),
-        "late_worst_ms": median(lambda run: 1e3 * run.late.max()),
-        "processor_share": median(lambda run: run.cpu),
-    }
+
+def _medians(found: list[Figures]) -> dict:
+    told = {name: float(np.median([getattr(one, name) for one in found])) for name in RATES}
+    return told | {f"{name}_ms": float(1e3 * np.median([getattr(one, name) for one in found])) for name in STALLS}
 
 
 class _Watched:
-    """A simulation that notes when each tick began and ended."""
+    """A simulation that notes of each tick when it began and ended, and what the kernel booked for its thread until then."""
 
     def __init__(self, simulation):
         self._simulation = simulation
-        self.begun: list[float] = []
-        self.ended: list[float] = []
-        self.computed: list[float] = []
+        self._books: ThreadBooks | None = None
+        self._noted: list[tuple[float, float, float, float, float, float]] = []
 
     def __getattr__(self, name: str):
         return getattr(self._simulation, name)
 
     def advance(self, *arguments):
-        self.begun.append(time.perf_counter())
-        before = time.thread_time()
+        if self._books is None:
+            self._books = ThreadBooks()
+        before = time.perf_counter(), time.thread_time(), self._books.waited()
         block = self._simulation.advance(*arguments)
-        self.computed.append(time.thread_time() - before)
-        self.ended.append(time.perf_counter())
+        waited, work = self._books.waited(), time.thread_time()  # within the wall time of the tick, as those before it
+        self._noted.append((*before, time.perf_counter(), work, waited))
         return block
 
+    def stretches(self, begins: list[float], seconds: float, tick: float) -> list[Figures]:
+        """Return the figures of the stretches that began at some moments of `time.perf_counter`."""
+        noted = np.array(self._noted)
+        due = tick * np.arange(len(noted))
+        found = []
+        for begin in begins:
+            first, last = np.searchsorted(noted[:, 0], (begin, begin + seconds))
+            found.append(_figures(noted[first - 1 : last], due[first - 1 : last], tick))
+        return found
 
-def _run(scene: Scene, seconds: float, sample_rate: float, path: Path | None) -> Ticks:
-    watched = _Watched(warmed_up(scene, sample_rate))
-    start_ns = time.time_ns()
-    live = LiveModel(scene, watched, start_ns, sample_rate, maximum_lag=_ALL)  # no time is given up, so that ticks stay countable
-    if path is not None:
-        live.attach("record", McapSink(path, scene, start_ns, replace=True))
+
+def _figures(noted: np.ndarray, due: np.ndarray, tick: float) -> Figures:
+    """Return the figures of a stretch; the first tick only tells where the second begins."""
+    begun, _, waited_before, ended, _, _ = noted[1:].T
+    spent, work, waited = (noted[1:, k + 3] - noted[1:, k] for k in range(3))
+    due = due[1:] + np.min(begun - due[1:])  # by the most punctual tick
+    could_begin = np.maximum(due, noted[:-1, 3])
+    stall = ended - could_begin - work
+    waiting = noted[1:, 5] - noted[:-1, 5]  # for a core, since the tick before
+    held = np.maximum(stall - waiting, 0.0)
+    total = tick * len(spent)
+    return Figures(
+        total / spent.sum(),
+        total / np.maximum(spent - waited, work).sum(),
+        total / work.sum(),
+        float(stall.max()),
+        float(np.quantile(stall, 0.999)),
+        float(held.max()),
+        float(np.quantile(held, 0.999)),
+    )
+
+
+def _drive(live: LiveModel, scene: Scene, seconds: float) -> None:
+    """Do what a node does, for a while: hand on messages of speed and load, look after the sinks."""
     operating = scene.operating
     load = (operating.radial_load * math.cos(operating.load_angle), operating.radial_load * math.sin(operating.load_angle))
-    began, began_cpu, reviewed = time.perf_counter(), time.process_time(), 0.0
-    while (now := time.perf_counter() - began) < seconds + _SETTLING:
-        speed = operating.shaft_speed * (1.0 + 0.01 * math.sin(now))
-        live.offer("shaft_speed", (speed,), time.time_ns(), time.time_ns())
+    began, reviewed = time.perf_counter(), -math.inf
+    while (now := time.perf_counter() - began) < seconds:
+        live.offer("shaft_speed", (operating.shaft_speed * (1.0 + 0.01 * math.sin(now)),), time.time_ns(), time.time_ns())
         live.offer("radial_load", load, time.time_ns(), time.time_ns())
         if now - reviewed >= _REVIEW_EVERY:
             reviewed = now
             live.collect(time.time_ns())
         time.sleep(_INPUTS_EVERY)
-    cpu = (time.process_time() - began_cpu) / (time.perf_counter() - began)
-    live.close()
-    begun, ended, computed = (np.array(noted) for noted in (watched.begun, watched.ended, watched.computed))
-    kept = begun > begun[0] + _SETTLING
-    tick = cadence(sample_rate).tick
-    late = ended[kept] - tick * np.arange(kept.sum())
-    return Ticks((ended - begun)[kept], computed[kept], late - late.min(), cpu, path.stat().st_size if path is not None else 0)
+
+
+class _Tap:
+    """A sink that passes on, or not."""
+
+    def __init__(self, sink):
+        self._sink, self.is_open = sink, False
+
+    def __getattr__(self, name: str):
+        method = getattr(self._sink, name)
+        return method if self.is_open or name in {"close", "dropped"} else lambda *_, **__: ()
+
+
+class _Sinks:
+    """A recording, and a view with a viewer where there can be one."""
+
+    def __init__(self, opened: ExitStack, scene: Scene, path: Path, view: bool):
+        self.start_ns, self.viewer_told, self._viewer = time.time_ns(), "none wanted", None
+        recorder = opened.enter_context(Recorder())
+        self._recording, self._view = recorder.open(path, scene, self.start_ns), None
+        self.by_name = {"record": _Tap(self._recording)}
+        if not view:
+            return
+        self._port = free_port()
+        self._view = opened.enter_context(RerunSink(scene, serve_port=self._port))
+        self._view.wait_until_ready()
+        self.by_name["view"] = _Tap(self._view)
+
+    def attach_viewer(self, opened: ExitStack) -> None:
+        """Let a viewer show the view; it needs something to show."""
+        viewer = HeadlessViewer(f"rerun+http://127.0.0.1:{self._port}/proxy", size=(800, 600))
+        try:
+            self._viewer = opened.enter_context(viewer)
+        except ViewerFailed as fault:
+            self.viewer_told = f"none could be started: {fault}"
+            return
+        self.viewer_told = "attached"
+        keep_modest(viewer.pid)
+        opened.callback(os.kill, viewer.pid, signal.SIGCONT)
+
+    @property
+    def dropped(self) -> int:
+        return self._recording.dropped + (self._view.dropped if self._view is not None else 0)
+
+    @contextmanager
+    def fed(self, wanted: bool) -> Iterator[None]:
+        """Feed the sinks and let the viewer draw for a while, or neither."""
+        for tap in self.by_name.values():
+            tap.is_open = wanted
+        if self._viewer is not None:
+            os.kill(self._viewer.pid, signal.SIGCONT if wanted else signal.SIGSTOP)
+        yield
+
+
+def keep_modest(pid: int) -> None:
+    """Let a viewer that draws without a graphics card, with as many threads as there are cores, give way to others on one core."""
+    cores = os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else set()
+    for thread in Path(f"/proc/{pid}/task").iterdir() if len(cores) > 1 else ():
+        os.sched_setaffinity(int(thread.name), {min(cores)})
+        os.setpriority(os.PRIO_PROCESS, int(thread.name), os.getpriority(os.PRIO_PROCESS, 0) + _VIEWER_NICENESS)
+
+
+def free_port() -> int:
+    """Return a port on 127.0.0.1 that nobody uses."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
 
 
 def at_level(scene: Scene, level: str | None) -> Scene:

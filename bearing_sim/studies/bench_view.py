@@ -1,14 +1,14 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """What a live view costs the solver, whatever viewers do, and how an hour at 1 kHz opens.
 
-The solver runs as fast as it can and hands every block to the view, a thousand samples for each second of wall time.  The time
-between two ticks is split, by the kernel's own books, into the thread's own work, its wait for a processor core, which is other
-programs' doing, and the rest: waits for the interpreter's lock, a queue, or the disk, which would be the view's doing.
+The solver runs as fast as it can, a thousand samples for each second of wall time, and in every other stretch it hands its blocks to the view
+(see `bearing_sim.studies.paired`).  The time between two ticks is split, by the kernel's own books, into the thread's own work, its wait for
+a processor core, which is other programs' doing, and the rest: waits for the interpreter's lock, a queue, or the disk, which would be the
+view's doing.
 """
 
 import os
 import signal
-import socket
 import tempfile
 import time
 from collections.abc import Callable, Iterator
@@ -22,9 +22,12 @@ from bearing_sim.scene_file import load_scene
 from bearing_sim.screenshot import HeadlessViewer
 from bearing_sim.simulation import Simulation
 from bearing_sim.sinks.rerun_sink import RerunSink
+from bearing_sim.studies.bench_recording import free_port, keep_modest
+from bearing_sim.studies.paired import CONTROL, WITH, ThreadBooks, order, ratios, spread, stolen_share
 
 _SCENE = ("deng2017_table1", ("level=slip", "operating.shaft_speed=15000 rpm"))
 _TICK, _SAMPLES = 0.005, 5  # [s] of wall time that a tick about takes, and samples in it
+_STRETCH, _SETTLING = 0.5, 0.25  # [s] of wall time of a stretch, and what is left out before it: a view is that much behind
 _HOUR, _RATE = 3600.0, 1000.0  # [s], [Hz]
 
 
@@ -33,145 +36,133 @@ class Stretch(NamedTuple):
 
     Attributes
     ----------
-    name : what the viewer did.
     wall_rate : simulated seconds for each second of wall time.
     rate : the same for each second in which a core was to be had.
-    work : processor time of the solver's thread for each simulated second [s].
+    processor_rate : the same for each second of the thread's processor time, by the quartile of ticks: the others share caches and memory with
+        whatever runs on other cores.
     worst_tick : longest wall time of a tick [s].
     worst_wait, late_wait : longest time, and 99.9 % of them, in which a tick neither worked nor waited for a core [s].
-    dropped : blocks that the view missed.
     """
 
-    name: str
     wall_rate: float
     rate: float
-    work: float
+    processor_rate: float
     worst_tick: float
     worst_wait: float
     late_wait: float
-    dropped: int
+
+
+RATES = ("wall_rate", "rate", "processor_rate")
 
 
 def run_view_bench(seconds: float, frozen: float, progress: Callable[[str], None] = lambda text: None) -> dict:
-    """Measure the solver without a view, with one, and with viewers that come, freeze, die.
+    """Measure the solver without a view and with one, while viewers are absent, come, freeze, die.
 
     Parameters
     ----------
-    seconds : wall time of each stretch [s].
-    frozen : wall time for which the viewer is frozen [s].
+    seconds : wall time of each situation [s].
+    frozen : wall time for which viewer, and then view, are frozen [s].
     progress : told what comes next.
 
     Returns
     -------
-    stretches : list of `Stretch` as dicts; each with a view has beside it, as ``rate_ratio`` and ``work_ratio``, what it is of the mean of the
-        stretches without before and after it.
+    situations : list of dicts: ``name``; ``with`` and ``control``: for each of `RATES` what the stretches with the view, and those that only
+        pretend, are of the stretches without one beside them, as `bearing_sim.studies.paired.Spread`; the worst times of the stretches with and
+        without; ``dropped``: blocks that the view missed.
     """
     simulation = Simulation(load_scene(*_SCENE))
     simulation.advance(0.2)
     began = time.thread_time()
     simulation.advance(0.5)
     tick = _TICK * 0.5 / max(time.thread_time() - began, 1e-6)
-    with _solver_on_a_core_of_its_own() as others:
-        found = list(_stretches(simulation, tick, seconds, frozen, others, progress))
-    bare = [place for place, stretch in enumerate(found) if stretch.name == "no view"]
-    report = []
-    for place, stretch in enumerate(found):
-        beside = [found[max(k for k in bare if k <= place)], found[min(k for k in bare if k >= place)]]
-        ratios = {f"{name}_ratio": getattr(stretch, name) / np.mean([getattr(one, name) for one in beside]) for name in ("rate", "work")}
-        report.append(stretch._asdict() | {name: float(ratio) for name, ratio in ratios.items()})
-    return {"cores": os.cpu_count(), "load_average": os.getloadavg()[0], "tick": tick, "stretches": report}
+    stolen = stolen_share()
+    found = list(_situations(simulation, tick, seconds, frozen, progress))
+    given, all_of_it = (after - before for after, before in zip(stolen_share(), stolen))
+    machine = {"cores": os.cpu_count(), "load_average": os.getloadavg()[0], "stolen_share": given / all_of_it if all_of_it else 0.0}
+    return {**machine, "tick": tick, "stretch": _STRETCH, "situations": found}
 
 
-def _stretches(simulation, tick, seconds, frozen, others, progress) -> Iterator[Stretch]:
-    def measure(name, length=seconds, sink=None):
-        progress(name)
-        return _measure(simulation, tick, length, name, sink)
+def _situations(simulation, tick, seconds, frozen, progress) -> Iterator[dict]:
+    def measure(name, length=seconds):
+        progress(f"{name}, {length:g} s")
+        with _solver_on_a_core_of_its_own():
+            return _measure(simulation, tick, length, name, sink)
 
-    yield measure("no view")
-    port = _free_port()
+    port = free_port()
     with RerunSink(simulation.scene, serve_port=port) as sink:
         sink.wait_until_ready()
-        yield measure("view, no viewer", sink=sink)
-        yield measure("no view")
+        yield measure("no viewer")
         viewer = HeadlessViewer(f"rerun+http://127.0.0.1:{port}/proxy", size=(800, 600))
         with suppress(ProcessLookupError), viewer:
-            _keep_to(viewer.pid, others)
-            yield measure("viewer attached", sink=sink)
-            yield measure("no view")
+            keep_modest(viewer.pid)
+            yield measure("viewer attached")
             os.kill(viewer.pid, signal.SIGSTOP)
-            yield measure(f"viewer frozen for {frozen:g} s", frozen, sink)
+            yield measure("viewer frozen", frozen)
             os.kill(viewer.pid, signal.SIGCONT)
-            yield measure("no view")
             os.kill(viewer.pid, signal.SIGKILL)
-            yield measure("viewer killed", sink=sink)
-        yield measure("no view")
+            yield measure("viewer killed")
         os.kill(sink.pid, signal.SIGSTOP)
-        yield measure(f"view itself frozen for {frozen:g} s", frozen, sink)
+        yield measure("view itself frozen", frozen)
         os.kill(sink.pid, signal.SIGCONT)
-        yield measure("no view")
 
 
-def _measure(simulation: Simulation, tick: float, seconds: float, name: str, sink: RerunSink | None) -> Stretch:
-    """Run the solver on this thread for a while; every block goes to the sink, if there is one."""
-    rows, dropped = [], sink.dropped if sink is not None else 0
-    began, work, delay = time.perf_counter(), time.thread_time(), _delay()
-    first, before = began, (began, work, delay)
-    while before[0] - first < seconds:
+def _measure(simulation: Simulation, tick: float, seconds: float, name: str, sink: RerunSink) -> dict:
+    """Run the solver on this thread for a while; every block of a stretch with the view goes to the sink."""
+    length = min(_STRETCH, seconds / 5)
+    kinds, dropped = order(max(1, int(seconds / (4 * (length + _SETTLING))))), sink.dropped
+    books = ThreadBooks()
+    found = []
+    for kind in kinds:
+        fed = sink if kind == WITH else None
+        _run(simulation, tick, min(_SETTLING, length), fed, books)
+        found.append(_stretch(_run(simulation, tick, length, fed, books), tick))
+    books.close()
+    told = {kind: {rate: ratios(kinds, [getattr(one, rate) for one in found], kind)._asdict() for rate in RATES} for kind in (WITH, CONTROL)}
+    worst = {
+        f"{figure}_{label}": spread(getattr(one, figure) for kind, one in zip(kinds, found) if (kind == WITH) == fed).median
+        for figure in ("wall_rate", "worst_tick", "worst_wait", "late_wait")
+        for label, fed in (("with", True), ("without", False))
+    }
+    return {"name": name, "seconds": seconds, **told, **worst, "dropped": sink.dropped - dropped}
+
+
+def _run(simulation: Simulation, tick: float, seconds: float, sink: RerunSink | None, books: ThreadBooks) -> np.ndarray:
+    """Return what each tick took: wall time, processor time of this thread, its wait for a core [s], shape (ticks, 3)."""
+    noted = [(time.perf_counter(), time.thread_time(), books.waited())]
+    while noted[-1][0] - noted[0][0] < seconds:
         block = simulation.advance(tick, samples=_SAMPLES)
         if sink is not None:
             sink.write(block)
-        now = time.perf_counter(), time.thread_time(), _delay()
-        rows.append([after - earlier for after, earlier in zip(now, before)])
-        before = now
-    wall, work, delay = np.array(rows).T
+        noted.append((time.perf_counter(), time.thread_time(), books.waited()))
+    return np.diff(np.array(noted), axis=0)
+
+
+def _stretch(ticks: np.ndarray, tick: float) -> Stretch:
+    wall, work, delay = ticks.T
     waits = np.maximum(wall - work - delay, 0.0)
-    simulated = tick * len(rows)
+    simulated = tick * len(ticks)
     return Stretch(
-        name,
         simulated / wall.sum(),
         simulated / (wall.sum() - delay.sum()),
-        work.sum() / simulated,
+        tick / float(np.quantile(work, 0.25)),
         float(wall.max()),
         float(waits.max()),
         float(np.quantile(waits, 0.999)),
-        sink.dropped - dropped if sink is not None else 0,
     )
 
 
-def _delay() -> float:
-    """Return the time [s] for which this thread has waited for a core so far; 0 where the kernel keeps no books."""
-    try:
-        with open("/proc/thread-self/schedstat", "rb") as books:
-            return 1e-9 * int(books.read().split()[1])
-    except (OSError, IndexError):
-        return 0.0
-
-
 @contextmanager
-def _solver_on_a_core_of_its_own() -> Iterator[set[int]]:
-    """Keep this thread on the last core; yield the others, all of them where there is but one."""
+def _solver_on_a_core_of_its_own() -> Iterator[None]:
+    """Keep this thread, but none that it has started before, on the last core; viewers have the first one."""
     if not hasattr(os, "sched_setaffinity"):
-        yield set()
+        yield
         return
     before = os.sched_getaffinity(0)
-    others = before - {max(before)} or before
     os.sched_setaffinity(0, {max(before)})
     try:
-        yield others
+        yield
     finally:
         os.sched_setaffinity(0, before)
-
-
-def _keep_to(pid: int, cores: set[int]) -> None:
-    """Keep a process with all its threads to some cores: a viewer that draws without a graphics card would take all of them."""
-    for thread in Path(f"/proc/{pid}/task").iterdir() if cores else ():
-        os.sched_setaffinity(int(thread.name), cores)
-
-
-def _free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
 
 
 def run_hour(seconds: float = _HOUR, progress: Callable[[str], None] = lambda text: None) -> dict:

@@ -1,0 +1,120 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""The node's recording when something ends it: the node killed, the process that records killed, the disk full."""
+
+import os
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("rclpy", reason="the node needs ROS 2 (pip install 'bearing_sim[ros]', or a ROS installation)")
+
+from ros_bench import Client, NodeProcess, fresh_domain  # noqa: E402
+from std_srvs.srv import Trigger  # noqa: E402
+
+from bearing_sim.input_log import read_input_log  # noqa: E402
+from bearing_sim.recording_reader import Recording  # noqa: E402
+from bearing_sim.recovery import contents, recover  # noqa: E402
+
+pytestmark = pytest.mark.timeout(180)
+SECOND = 1_000_000_000
+
+
+@pytest.fixture
+def launch(tmp_path):
+    """Return a function that starts a node and a client of it; both are gone at the end."""
+    started = []
+
+    def start(*parameters):
+        domain = fresh_domain()
+        process = NodeProcess(tmp_path, domain, "--ros-args", *(word for parameter in parameters for word in ("-p", parameter)))
+        started.append((process, Client(domain)))
+        process_and_client = started[-1]
+        process_and_client[1].wait_until_matched(process)
+        process_and_client[1].drive_until(lambda: process_and_client[1].received["cage_slip"], "the node runs", process)
+        return process_and_client
+
+    yield start
+    for process, client in started:
+        client.close()
+        process.end(signal.SIGKILL)
+
+
+def recorders_of(process):
+    """Return the numbers of the processes that record for a node."""
+    found = []
+    for place in Path("/proc").glob("[0-9]*"):
+        try:
+            command = (place / "cmdline").read_bytes().split(b"\0")
+            parent = Path(f"/proc/{(place / 'stat').read_text().rpartition(')')[2].split()[1]}")
+            grandparent = int((parent / "stat").read_text().rpartition(")")[2].split()[1])
+        except (OSError, IndexError, ValueError):
+            continue
+        if b"bearing_sim.sinks.recorder_process" in command and grandparent == process.process.pid:  # the node is the child of `timeout`
+            found.append(int(place.name))
+    return found
+
+
+def wait_for(condition, seconds=60.0):
+    limit = time.monotonic() + seconds
+    while not condition() and time.monotonic() < limit:
+        time.sleep(0.02)
+    assert condition()
+
+
+def given_up(client, since=0):
+    return [text for level, name, text in client.statuses(since) if level == 2 and "record failed and is given up" in text]
+
+
+def test_the_node_goes_on_without_the_process_that_records_gets_another_one_and_killed_itself_leaves_a_complete_file(launch, tmp_path):
+    process, client = launch(f"record:={tmp_path / 'run.mcap'}")
+    client.drive(2.0)
+    [pid] = recorders_of(process)
+    client.hear()
+    last_heard = client.received["bearing_joints"][-1].header.stamp.sec
+    os.kill(pid, signal.SIGKILL)
+    client.drive_until(lambda: given_up(client), "the lost recording is told as an ERROR", process)
+    assert "SIGKILL" in given_up(client)[-1]
+    heard = len(client.received["cage_slip"])
+    client.drive_until(lambda: len(client.received["cage_slip"]) > heard + 20, "the node goes on", process)
+    found = recover(tmp_path / "run.mcap.active", tmp_path / "good.mcap")
+    assert found.damaged == 0 and found.messages["/cage_slip"] > 30
+    assert last_heard - found.last_ns / SECOND < 1.0
+
+    again = client.call(Trigger, "start_recording", Trigger.Request(), process)
+    assert again.success, again.message
+    client.drive(2.0)
+    [pid] = recorders_of(process)
+    killed_ns = time.time_ns()
+    process.end(signal.SIGKILL)
+    second = Path(again.message)
+    wait_for(lambda: second.exists() and not Path(f"/proc/{pid}").exists())
+    assert contents(second).is_sound and not Recording(second).unfinished
+    times = read_input_log(second).series["shaft_speed"].log_times
+    assert len(times) > 30 and killed_ns - times[-1] < SECOND
+
+
+@pytest.fixture
+def small_disk(tmp_path):
+    folder = tmp_path / "disk"
+    folder.mkdir()
+    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=1m", "tmpfs", str(folder)], capture_output=True, text=True, check=False)
+    if mounted.returncode:
+        pytest.skip(f"no right to mount a small disk: {mounted.stderr.strip()}")
+    yield folder
+    subprocess.run(["umount", "-l", str(folder)], check=True)
+
+
+def test_a_full_disk_under_the_node_is_told_the_node_goes_on_and_what_was_written_recovers(launch, small_disk, tmp_path):
+    process, client = launch(f"record:={small_disk / 'run.mcap'}", "record_keep_free:=0.0", "sample_rate:=1000.0", "governor:=false")
+    client.drive_until(lambda: given_up(client), "the full disk is told as an ERROR", process)
+    assert "No space left on device" in given_up(client)[-1]
+    heard = len(client.received["cage_slip"])
+    client.drive_until(lambda: len(client.received["cage_slip"]) > heard + 20, "the node goes on", process)
+    refused = client.call(Trigger, "stop_recording", Trigger.Request(), process)
+    assert not refused.success and "no recording" in refused.message
+    found = recover(small_disk / "run.mcap.active", tmp_path / "good.mcap")
+    assert found.damaged == 0 and found.messages["/roller_loads"] > 300
+    assert process.end(signal.SIGINT) == 0

@@ -1,0 +1,308 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Recordings by a process of their own: what is in them, and what is lost when either side is killed, frozen, or out of disk."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mcap.reader import make_reader
+from synthetic_run import synthetic_block
+
+from bearing_sim.events import Event, Level
+from bearing_sim.recording_reader import Recording
+from bearing_sim.recovery import contents, recover
+from bearing_sim.runtime.outlets import Outlets
+from bearing_sim.scene_file import load_scene
+from bearing_sim.simulation import Inputs
+from bearing_sim.sinks.limits import Limits
+from bearing_sim.sinks.mcap_sink import METADATA, McapSink
+from bearing_sim.sinks.recorder import Recorder
+from bearing_sim.topics import Origin
+
+SCENE = load_scene("deng2017_table1")
+START = 1_700_000_000_000_000_000
+RUN = synthetic_block(SCENE, 0.001 * np.arange(1, 2001))
+RUN["inner_load"] *= 1 + 1e-3 * np.random.default_rng(3).normal(size=RUN["inner_load"].shape)  # does not compress away
+INPUTS = Inputs(4000.0, 800.0, -50.0, 393.15)
+
+
+@pytest.fixture(scope="module")
+def recorder():
+    with Recorder() as process:
+        process.start()
+        yield process
+
+
+def write(sink, first=0, last=2000, step=50, pause=0.0):
+    for start in range(first, last, step):
+        sink.write_inputs(float(RUN["time"][start]), INPUTS)
+        sink.write(RUN[start : start + step])
+        time.sleep(pause)
+
+
+def samples(path):
+    return np.concatenate([item for item in Recording(path) if isinstance(item, np.ndarray)])
+
+
+def messages(path):
+    """Every message of a file: topic, times and bytes, in the order of writing within its topic."""
+    with open(path, "rb") as stream:
+        found = [(channel.topic, m.sequence, m.log_time, m.publish_time, m.data) for _, channel, m in make_reader(stream).iter_messages()]
+    return sorted(found)
+
+
+def wait_for(condition, seconds=60.0):
+    limit = time.monotonic() + seconds
+    while not (found := condition()) and time.monotonic() < limit:
+        time.sleep(0.01)
+    assert found
+    return found
+
+
+def is_gone(pid):
+    return not Path(f"/proc/{pid}").exists()
+
+
+def test_what_the_process_writes_is_what_a_sink_in_this_process_writes(recorder, tmp_path):
+    for sink in (recorder.open(tmp_path / "there.mcap", SCENE, START, advance=(0.005, 5)), McapSink(tmp_path / "here.mcap", SCENE, START)):
+        sink.write_start(RUN[:1])
+        sink.write_inputs(0.0, INPUTS, ["radial_load"], Origin(START + 5, "dyno"))
+        write(sink, first=1, last=1001)
+        sink.write_measurement(0.5, 1800.0, 0.01, Origin(START + 7, "laser"))
+        sink.write_event(Event(0.6, Level.WARN, "slip.high", "text"))
+        sink.write_diagnostics(0.7, [Event(0.7, Level.OK, "run.running", "text")], {"level": "slip", "real-time factor": np.float64(1.5)})
+        sink.close()
+    assert messages(tmp_path / "there.mcap") == messages(tmp_path / "here.mcap")
+    there, here = (contents(tmp_path / name).metadata[METADATA] for name in ("there.mcap", "here.mcap"))
+    assert there == {**here, "advance_seconds": "0.005", "advance_samples": "5"}
+
+
+def test_a_block_may_be_used_again_once_it_is_written(recorder, tmp_path):
+    with recorder.open(tmp_path / "run.mcap", SCENE, START) as sink:
+        block = RUN[:10].copy()
+        sink.write(block)
+        block["inner_load"] = -1.0
+    np.testing.assert_array_equal(samples(tmp_path / "run.mcap")["inner_load"], RUN["inner_load"][:10])
+
+
+def test_parts_and_a_bag_are_made_by_the_same_limits(recorder, tmp_path):
+    with recorder.open(tmp_path / "run", SCENE, START, Limits(part_duration=0.5)) as sink:
+        write(sink)
+    assert sorted(file.name for file in (tmp_path / "run").iterdir()) == ["metadata.yaml", *(f"run_{k}.mcap" for k in range(4))]
+    np.testing.assert_array_equal(samples(tmp_path / "run")["outer_load"], RUN["outer_load"])
+
+
+def test_a_file_that_cannot_be_made_is_told_at_the_start_and_other_recordings_go_on(recorder, tmp_path):
+    (tmp_path / "a_file").touch()
+    with recorder.open(tmp_path / "good.mcap", SCENE, START) as good:
+        write(good, last=500)
+        with pytest.raises(OSError, match="a_file"):
+            recorder.open(tmp_path / "a_file" / "run.mcap", SCENE, START)
+        with pytest.raises(OSError, match="are free on the disk"):
+            recorder.open(tmp_path / "run.mcap", SCENE, START, Limits(keep_free=1e18))
+        write(good, first=500, last=1000)
+    assert len(samples(tmp_path / "good.mcap")) == 1000
+
+
+def test_writing_after_close_is_refused_and_closing_twice_is_not(recorder, tmp_path):
+    sink = recorder.open(tmp_path / "run.mcap", SCENE, START)
+    sink.close()
+    sink.close()
+    with pytest.raises(ValueError, match="closed"):
+        sink.write(RUN[:1])
+
+
+def test_a_file_deleted_under_the_process_is_told_and_written_anew(recorder, tmp_path):
+    sink = recorder.open(tmp_path / "run.mcap", SCENE, START)
+    write(sink, last=1000)
+    wait_for(lambda: (tmp_path / "run.mcap.active").stat().st_size > 100e3)
+    (tmp_path / "run.mcap.active").unlink()
+    wait_for(lambda: (tmp_path / "run.mcap.active").exists())
+    news = []
+
+    def told():
+        sink.write_diagnostics(1.0)
+        news.extend(sink.news())
+        return news
+
+    wait_for(told)
+    write(sink, first=1000, last=2000)
+    sink.close()
+    [(level, code, text)] = news
+    assert level is Level.WARN and code == "recording.restored" and "was deleted" in text
+    np.testing.assert_array_equal(samples(tmp_path / "run.mcap")["inner_load"], RUN["inner_load"][:2000])
+
+
+def test_a_killed_process_is_told_as_an_error_what_it_wrote_recovers_and_the_next_recording_has_another_one(tmp_path):
+    with Recorder() as recorder:
+        outlets, pid = Outlets(), None
+        outlets.attach("record", recorder.open(tmp_path / "run.mcap", SCENE, START))
+        pid = recorder.pid
+        for start in range(0, 1500, 10):
+            outlets.to_all(0.0, lambda sink, start=start: sink.write(RUN[start : start + 10]))
+            time.sleep(0.02)
+        os.kill(pid, signal.SIGKILL)
+
+        def given_up():
+            outlets.to_all(3.0, lambda sink: sink.write(RUN[1500:1510]))
+            return not outlets.has("record")
+
+        wait_for(given_up)
+        [event] = outlets.troubles(3.0)
+        assert event.level is Level.ERROR and event.code == "sink.failed.record" and "SIGKILL" in event.text
+        assert is_gone(pid), "no zombie is left"
+        recover(tmp_path / "run.mcap.active", tmp_path / "good.mcap")
+        kept = samples(tmp_path / "good.mcap")
+        np.testing.assert_array_equal(kept["inner_load"], RUN["inner_load"][: len(kept)])
+        assert len(kept) >= 1000, "at most the last second of three is lost"
+        with recorder.open(tmp_path / "next.mcap", SCENE, START) as sink:
+            sink.write(RUN[:10])
+        assert len(samples(tmp_path / "next.mcap")) == 10
+
+
+def test_a_frozen_process_holds_nobody_up_what_it_misses_is_counted_and_it_goes_on_when_it_thaws(tmp_path):
+    with Recorder(capacity=1_000_000) as recorder:
+        sink = recorder.open(tmp_path / "run.mcap", SCENE, START)
+        write(sink, last=500, pause=0.005)
+        time.sleep(0.5)
+        os.kill(recorder.pid, signal.SIGSTOP)
+        try:
+            longest = 0.0
+            for start in range(500, 2000, 50):
+                began = time.thread_time()
+                sink.write(RUN[start : start + 50])
+                longest = max(longest, time.thread_time() - began)
+                time.sleep(0.005)
+            missed = sink.dropped
+            [(level, code, text)] = sink.news()
+        finally:
+            os.kill(recorder.pid, signal.SIGCONT)
+        sink.close(timeout=60.0)
+        assert longest < 0.05 and 0 < missed < 30
+        assert level is Level.WARN and code == "recording.dropped" and str(missed) in text
+        assert sink.dropped == missed and len(samples(tmp_path / "run.mcap")) == 2000 - 50 * missed
+
+
+def test_closing_does_not_wait_for_ever_and_the_process_completes_the_file_when_it_can(tmp_path):
+    recorder = Recorder()
+    sink = recorder.open(tmp_path / "run.mcap", SCENE, START)
+    write(sink, last=1000)
+    pid = recorder.pid
+    os.kill(pid, signal.SIGSTOP)
+    try:
+        with pytest.raises(OSError, match="is not complete after"):
+            sink.close(timeout=0.3)
+        assert not recorder.close(timeout=0.3)
+    finally:
+        os.kill(pid, signal.SIGCONT)
+    wait_for(lambda: (tmp_path / "run.mcap").exists() and is_gone(pid))
+    assert len(samples(tmp_path / "run.mcap")) == 1000
+
+
+def test_a_process_that_was_never_needed_ends_with_its_recorder():
+    recorder = Recorder()
+    recorder.start()
+    pid = recorder.pid
+    assert recorder.close() and is_gone(pid)
+
+
+FEEDER = """
+import sys, time
+sys.path.insert(0, sys.argv[2])
+import numpy as np
+from synthetic_run import synthetic_block
+from bearing_sim.scene_file import load_scene
+from bearing_sim.sinks.recorder import Recorder
+scene = load_scene("deng2017_table1")
+run = synthetic_block(scene, 0.001 * np.arange(1, 20001))
+recorder = Recorder()
+sink = recorder.open(sys.argv[1], scene, 0)
+done, began = 0, time.monotonic()
+try:
+    print(recorder.pid, flush=True)
+    while done < len(run):
+        sink.write(run[done : done + 10])
+        done += 10
+        print(done, flush=True)
+        time.sleep(max(0.0, began + 1e-3 * done - time.monotonic()))
+except KeyboardInterrupt:
+    sink.close()
+    print(done, flush=True)
+"""
+
+
+def _feeder(path):
+    command = [sys.executable, "-c", FEEDER, str(path), str(Path(__file__).parent)]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, text=True, start_new_session=True)
+
+
+def test_killing_the_feeding_process_with_its_whole_group_leaves_a_complete_file_and_no_process(tmp_path):
+    feeder = _feeder(tmp_path / "run.mcap")
+    pid, told = int(feeder.stdout.readline()), 0
+    while told < 2000:
+        told = int(feeder.stdout.readline())
+    os.killpg(feeder.pid, signal.SIGKILL)
+    told = max([told, *(int(line) for line in feeder.stdout if line.endswith("\n"))])
+    feeder.wait(30)
+    wait_for(lambda: (tmp_path / "run.mcap").exists() and is_gone(pid))
+    assert contents(tmp_path / "run.mcap").is_sound
+    kept = samples(tmp_path / "run.mcap")
+    np.testing.assert_allclose(kept["time"], 0.001 * np.arange(1, len(kept) + 1), atol=1e-9)
+    assert len(kept) >= told - 1000
+
+
+def test_ctrl_c_does_not_end_the_process_before_it_is_fed_to_the_end(tmp_path):
+    feeder = _feeder(tmp_path / "run.mcap")
+    for _ in range(100):
+        feeder.stdout.readline()
+    os.killpg(feeder.pid, signal.SIGINT)
+    told = [int(line) for line in feeder.stdout][-1]
+    assert feeder.wait(30) == 0
+    assert len(samples(tmp_path / "run.mcap")) == told
+
+
+@pytest.fixture
+def small_disk(tmp_path):
+    folder = tmp_path / "disk"
+    folder.mkdir()
+    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=1m", "tmpfs", str(folder)], capture_output=True, text=True, check=False)
+    if mounted.returncode:
+        pytest.skip(f"no right to mount a small disk: {mounted.stderr.strip()}")
+    yield folder
+    subprocess.run(["umount", "-l", str(folder)], check=True)
+
+
+def test_a_full_disk_comes_back_as_an_error_and_nothing_written_is_lost(recorder, small_disk, tmp_path):
+    sink = recorder.open(small_disk / "run.mcap", SCENE, START, Limits(keep_free=0.0))
+
+    def fill():
+        for _ in range(3000):
+            write(sink, last=200)
+            time.sleep(0.02)
+
+    with pytest.raises(OSError, match="No space left on device"):
+        fill()
+    with pytest.raises(OSError, match="No space left on device"):
+        sink.close()
+    found = recover(small_disk / "run.mcap.active", tmp_path / "good.mcap")
+    assert found.damaged == 0 and found.messages["/roller_loads"] > 500
+
+
+def test_one_process_makes_many_recordings_and_keeps_neither_files_nor_threads(tmp_path):
+    with Recorder() as recorder:
+
+        def belongings():
+            return len(os.listdir(f"/proc/{recorder.pid}/fd")), len(os.listdir(f"/proc/{recorder.pid}/task"))
+
+        for number in range(30):
+            with recorder.open(tmp_path / f"run_{number}.mcap", SCENE, START) as sink:
+                write(sink, last=100)
+            if number == 5:
+                files, threads = belongings()
+        wait_for(lambda: belongings() == (files, threads))
+    assert all(len(samples(tmp_path / f"run_{number}.mcap")) == 100 for number in (0, 29))
