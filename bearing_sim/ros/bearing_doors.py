@@ -16,6 +16,7 @@ from bearing_sim import topics
 from bearing_sim.effects import hint
 from bearing_sim.events import Event, Level
 from bearing_sim.ros.cheaper_levels import levels_to_compile, start_compiling
+from bearing_sim.ros.event_log import log_event
 from bearing_sim.ros.messages import message_class
 from bearing_sim.ros.outputs import Outputs, Soon
 from bearing_sim.ros.parameters import OIL_TEMPERATURE, BearingSettings, NodeSettings, scene_value
@@ -185,7 +186,7 @@ class BearingDoors:
             return
         self._join_governor(warm_up)
         for event in self.live.collect(now_ns):
-            self._log(event)
+            log_event(self._logger, event, self.settings.name)
         self._outputs.look()
         if follows_clock(self._node):  # by wall time outputs leave as they come
             self._publish()
@@ -323,17 +324,6 @@ class BearingDoors:
         if not expected or found in ("", expected):
             return ""
         return f"frame {found!r}, expected {expected!r} (parameter frame_id), for the force's direction would be another"
-
-    def _log(self, event: Event) -> None:
-        line = f"{event.code}: {event.text}"
-        line = f"{self.settings.name}: {line}" if self.settings.name else line
-        # rclpy refuses a line of code that logs at more than one severity.
-        if event.level == Level.ERROR:
-            self._logger.error(line)
-        elif event.level == Level.WARN:
-            self._logger.warning(line)
-        else:
-            self._logger.info(line)
 
     def _start_recording(self, path: Path) -> None:
         def opened(start_ns: int):
