@@ -62,6 +62,7 @@ setup(
             "pydocstyle>=6.3",
             "pytest>=8",
             "pytest-timeout>=2.3",
+            "pytest-xdist>=3.5",
             "scikit-sundae>=1.1",
             *ros_tests,
         ],

@@ -10,7 +10,8 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 install_package test
 
 cd "$here"
-if [ $# = 0 ]; then
-    "$venv/bin/bearing-sim" compile --every-method # on all cores, where the tests would do it on one
+if [ $# = 0 ]; then # all of them: on all cores
+    "$venv/bin/python" -m bearing_sim.cli compile --every-method # of the checkout, which the tests import
+    set -- -n auto --dist loadgroup
 fi
 exec "$venv/bin/python" -m pytest "$@"

@@ -1,11 +1,37 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""What all tests share: hypothesis without deadlines (the first call compiles) and the same examples every time; a strict rerun."""
+"""What all tests share: hypothesis without deadlines (the first call compiles) and the same examples every time; a strict rerun.
+
+On several cores (``pytest -n auto --dist loadgroup``) the files run side by side, but never two that run something in real time.
+"""
 
 import pytest
 from hypothesis import settings
 
 settings.register_profile("bearing_sim", deadline=None, derandomize=True)
 settings.load_profile("bearing_sim")
+
+_REAL_TIME = {
+    "test_bench_view",
+    "test_demo",
+    "test_first_ten_minutes",
+    "test_fleet",
+    "test_frozen_viewer",
+    "test_governor",
+    "test_launch_files",
+    "test_live",
+    "test_measure",
+    "test_recorder",
+    "test_recording_files",
+    "test_runner",
+    "test_view",
+}
+
+
+def pytest_collection_modifyitems(items):
+    """Keep the tests of a file together, and all files that run something in real time."""
+    for item in items:
+        name = item.path.stem
+        item.add_marker(pytest.mark.xdist_group("real_time" if name in _REAL_TIME or name.startswith("test_node") else name))
 
 
 @pytest.fixture

@@ -212,7 +212,8 @@ def test_a_process_that_was_never_needed_ends_with_its_recorder():
 
 
 FEEDER = """
-import sys, time
+import signal, sys, time
+signal.signal(signal.SIGINT, signal.default_int_handler)  # which a process in the background would ignore
 sys.path.insert(0, sys.argv[2])
 import numpy as np
 from synthetic_run import synthetic_block
