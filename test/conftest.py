@@ -4,6 +4,8 @@
 On several cores (``pytest -n auto --dist loadgroup``) the files run side by side, but never two that run something in real time.
 """
 
+import subprocess
+
 import pytest
 from hypothesis import settings
 
@@ -42,3 +44,15 @@ def strict_rerun():
     rr.set_strict_mode(True)
     yield
     rr.set_strict_mode(False)
+
+
+@pytest.fixture
+def small_disk(tmp_path):
+    """Return a folder on a disk of 1 MB."""
+    folder = tmp_path / "disk"
+    folder.mkdir()
+    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=1m", "tmpfs", str(folder)], capture_output=True, text=True, check=False)
+    if mounted.returncode:
+        pytest.skip(f"no right to mount a small disk: {mounted.stderr.strip()}")
+    yield folder
+    subprocess.run(["umount", "-l", str(folder)], check=True)

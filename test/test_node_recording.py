@@ -3,7 +3,6 @@
 
 import os
 import signal
-import subprocess
 import time
 from pathlib import Path
 
@@ -94,17 +93,6 @@ def test_the_node_goes_on_without_the_process_that_records_gets_another_one_and_
     assert contents(second).is_sound and not Recording(second).unfinished
     times = read_input_log(second).series["shaft_speed"].log_times
     assert len(times) > 30 and killed_ns - times[-1] < SECOND
-
-
-@pytest.fixture
-def small_disk(tmp_path):
-    folder = tmp_path / "disk"
-    folder.mkdir()
-    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=1m", "tmpfs", str(folder)], capture_output=True, text=True, check=False)
-    if mounted.returncode:
-        pytest.skip(f"no right to mount a small disk: {mounted.stderr.strip()}")
-    yield folder
-    subprocess.run(["umount", "-l", str(folder)], check=True)
 
 
 def test_a_full_disk_under_the_node_is_told_the_node_goes_on_and_what_was_written_recovers(launch, small_disk, tmp_path):

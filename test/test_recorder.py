@@ -267,17 +267,6 @@ def test_ctrl_c_does_not_end_the_process_before_it_is_fed_to_the_end(tmp_path):
     assert len(samples(tmp_path / "run.mcap")) == told
 
 
-@pytest.fixture
-def small_disk(tmp_path):
-    folder = tmp_path / "disk"
-    folder.mkdir()
-    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=1m", "tmpfs", str(folder)], capture_output=True, text=True, check=False)
-    if mounted.returncode:
-        pytest.skip(f"no right to mount a small disk: {mounted.stderr.strip()}")
-    yield folder
-    subprocess.run(["umount", "-l", str(folder)], check=True)
-
-
 def test_a_full_disk_comes_back_as_an_error_and_nothing_written_is_lost(recorder, small_disk, tmp_path):
     sink = recorder.open(small_disk / "run.mcap", SCENE, START, Limits(keep_free=0.0))
 

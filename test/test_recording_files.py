@@ -143,17 +143,6 @@ def test_a_recording_does_not_begin_on_a_disk_nearly_full(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.fixture
-def small_disk(tmp_path):
-    folder = tmp_path / "disk"
-    folder.mkdir()
-    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=1m", "tmpfs", str(folder)], capture_output=True, text=True, check=False)
-    if mounted.returncode:
-        pytest.skip(f"no right to mount a small disk: {mounted.stderr.strip()}")
-    yield folder
-    subprocess.run(["umount", "-l", str(folder)], check=True)
-
-
 def test_a_full_disk_is_told_and_nothing_written_is_lost(small_disk, tmp_path):
     sink = McapSink(small_disk / "run.mcap", SCENE, START, flush_every=0.02, limits=Limits(keep_free=0.0))
     with pytest.raises(OSError, match="No space left on device"):
