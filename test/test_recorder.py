@@ -294,5 +294,6 @@ def test_one_process_makes_many_recordings_and_keeps_neither_files_nor_threads(t
                 write(sink, last=100)
             if number == 5:
                 files, threads = belongings()
-        wait_for(lambda: belongings() == (files, threads))
+        # The fifth's thread may have been ending when it was counted; of the 24 since then none is left.
+        wait_for(lambda: all(now <= then for now, then in zip(belongings(), (files, threads))))
     assert all(len(samples(tmp_path / f"run_{number}.mcap")) == 100 for number in (0, 29))

@@ -5,7 +5,7 @@ import time
 
 import click
 
-from bearing_sim.commands.reporting import BadInput, progress_bar
+from bearing_sim.commands.reporting import progress_bar, require_levels
 
 
 @click.command()
@@ -21,9 +21,7 @@ def command(levels, every_method, workers, prune):
     from bearing_sim.levels.level import LEVELS
     from bearing_sim.precompilation import builds, compile_all, remove_other_versions
 
-    for level in levels:
-        if level not in LEVELS:
-            raise BadInput(f"--level {level}: expected one of {', '.join(LEVELS)}")
+    require_levels(levels)
     wanted, began = builds(levels or tuple(LEVELS), every_method), time.monotonic()
     with progress_bar("compiling", len(wanted)) as tell:
         for done, build in enumerate(compile_all(wanted, workers), 1):

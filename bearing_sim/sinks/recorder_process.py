@@ -91,8 +91,7 @@ class Desk:
     def tell_news(self) -> None:
         """Pass on what happened to files."""
         for number, sink in list(self._sinks.items()):
-            if news := sink.news():
-                self._tell(number, news=[[level.name, code, text] for level, code, text in news])
+            self._tell_news_of(number, sink)
 
     def close(self) -> None:
         """Complete what is not complete yet."""
@@ -115,9 +114,12 @@ class Desk:
             sink.close()
         except Exception as fault:
             self._tell(number, fault=_described(fault))
+        self._tell_news_of(number, sink)
+        self._tell(number, closed=True)
+
+    def _tell_news_of(self, number: int, sink: McapSink) -> None:
         if news := sink.news():
             self._tell(number, news=[[level.name, code, text] for level, code, text in news])
-        self._tell(number, closed=True)
 
     def _tell(self, number: int, **told) -> None:
         with self._telling:
