@@ -17,6 +17,7 @@ from bearing_sim.effects import hint
 from bearing_sim.events import Event, Level
 from bearing_sim.ros.cheaper_levels import levels_to_compile, start_compiling
 from bearing_sim.ros.event_log import log_event
+from bearing_sim.ros.inputs import InputReader, Refused
 from bearing_sim.ros.messages import message_class
 from bearing_sim.ros.outputs import Outputs, Soon
 from bearing_sim.ros.parameters import OIL_TEMPERATURE, BearingSettings, NodeSettings, scene_value
@@ -67,6 +68,7 @@ class BearingDoors:
         self._compiling: subprocess.Popen | None = None
         self._last_level: Level | None = None
         self._next_report_ns = 0
+        self._now_ns = node.now_ns
         self._subscriptions = {}
         component = node.get_fully_qualified_name().lstrip("/")
         self.component = f"{component}/{settings.name}" if settings.name else component
@@ -118,6 +120,8 @@ class BearingDoors:
             A recording or a view cannot be opened.
         """
         settings = self.settings
+        # By wall time, the same as of the node's clock at a fraction of the cost.
+        self._now_ns = self._node.now_ns if follows_clock(self._node) else time.time_ns
         self.live = self._sim_time_model() if follows_clock(self._node) else self._wall_time_model()
         if settings.record:
             self._start_recording(Path(settings.record))
@@ -182,26 +186,28 @@ class BearingDoors:
         """
         if self.live is None:
             told = Event(0.0, Level.ERROR, "run.failed", self.fault) if self.fault else state
-            self.report(now_ns, Condition([told], {}))
+            if self._report_is_due(told.level):
+                self._report(now_ns, Condition([told], {}))
             return
         self._join_governor(warm_up)
         for event in self.live.collect(now_ns):
             log_event(self._logger, event, self.settings.name)
-        self._outputs.look()
+        self._outputs.look(time.monotonic())
         if follows_clock(self._node):  # by wall time outputs leave as they come
             self._publish()
-        self.report(now_ns, self.live.condition(now_ns))
+        if self._report_is_due(self.live.level):
+            self._report(now_ns, self.live.condition(now_ns))
 
-    def report(self, now_ns: int, condition: Condition) -> None:
-        """Publish the condition on /diagnostics if it is time."""
-        steady_ns = time.monotonic_ns()  # /clock may stand still
-        if steady_ns < self._next_report_ns and condition.level == self._last_level:
-            return
+    def _report_is_due(self, level: Level) -> bool:
+        return level != self._last_level or time.monotonic_ns() >= self._next_report_ns  # not by /clock, which may stand still
+
+    def _report(self, now_ns: int, condition: Condition) -> None:
+        """Publish the condition on /diagnostics."""
         if self.live is not None:  # now and then is enough
             for channel, subscription in self._subscriptions.items():
                 self.live.note_senders(channel, self._node.count_publishers(subscription.topic_name))
         self._last_level = condition.level
-        self._next_report_ns = steady_ns + round((_DIAGNOSTICS_PERIOD - self._node.REVIEW_PERIOD / 2) * 1e9)
+        self._next_report_ns = time.monotonic_ns() + round((_DIAGNOSTICS_PERIOD - self._node.REVIEW_PERIOD / 2) * 1e9)
         self._node.tell(now_ns, condition, self.component, self.hardware_id)
         if self.live is not None:
             self.live.record_diagnostics(condition, now_ns)
@@ -266,14 +272,15 @@ class BearingDoors:
             self._outputs.publish_residual(stamp_ns, residual)
 
     def _subscribe(self, channel: str, ros_type: str) -> None:
-        taking = partial(self._take, channel, ros_type)
+        joint = self.settings.cage_joint if channel == topics.MEASURED else self.settings.joint
+        taking = partial(self._take, channel, InputReader(channel, ros_type, joint, self.settings.frame_id))
         kind, name = message_class(ros_type), self._topic_name(channel)
         if follows_clock(self._node):
             replaced = partial(self._subscriptions.__setitem__, channel)
             self._subscriptions[channel] = subscribe_to_all(self._node, kind, name, taking, replaced, self._tell_loss)
             return
         quiet = SubscriptionEventCallbacks(use_default_callbacks=False)  # any publisher matches: nothing to watch
-        self._subscriptions[channel] = self._node.create_subscription(kind, name, taking, _INPUT_QOS, event_callbacks=quiet)
+        self._subscriptions[channel] = self._node.create_subscription(kind, name, taking, _INPUT_QOS, event_callbacks=quiet, raw=True)
 
     def _tell_loss(self, text: str) -> None:
         if self.live is not None:
@@ -303,27 +310,16 @@ class BearingDoors:
                 self.live.govern(self._governor)
                 self.say("the cheaper levels are compiled: the governor can fall back on them")
 
-    def _take(self, channel: str, ros_type: str, incoming) -> None:
+    def _take(self, channel: str, reader: InputReader, cdr: bytes) -> None:
         if self.live is None:  # a message that was on its way when the run ended
             return
-        now_ns = self._node.now_ns()
-        if reason := self._frame_fault(channel, incoming):
-            self.live.refuse(channel, "input.frame", reason, now_ns)
-            return
+        now_ns = self._now_ns()
         try:
-            joint = self.settings.cage_joint if channel == topics.MEASURED else self.settings.joint
-            values = topics.input_values(channel, ros_type, incoming, joint)
-        except ValueError as fault:
-            self.live.refuse(channel, "input.malformed", str(fault), now_ns)
+            values, stamp_ns, frame_id = reader.read(cdr)
+        except Refused as fault:
+            self.live.refuse(channel, fault.code, str(fault), now_ns)
             return
-        self.live.offer(channel, values, topics.header_stamp_ns(incoming), now_ns, topics.frame_of(incoming))
-
-    def _frame_fault(self, channel: str, incoming) -> str:
-        """Return what is wrong with the frame of a load; the direction of a load counts, of the other inputs none has one."""
-        expected, found = self.settings.frame_id, incoming.header.frame_id if channel == "radial_load" and hasattr(incoming, "header") else ""
-        if not expected or found in ("", expected):
-            return ""
-        return f"frame {found!r}, expected {expected!r} (parameter frame_id), for the force's direction would be another"
+        self.live.offer(channel, values, stamp_ns, now_ns, frame_id)
 
     def _start_recording(self, path: Path) -> None:
         def opened(start_ns: int):

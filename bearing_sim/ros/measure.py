@@ -19,7 +19,7 @@ import sys
 import tempfile
 import time
 from pathlib import Path
-from typing import NamedTuple
+from typing import IO, NamedTuple
 
 import click
 
@@ -28,6 +28,7 @@ from bearing_sim.runtime.threads import SOLVER
 _DOMAINS = range(60, 100)  # above what people pick by hand, below where ports collide with those the system hands out
 _START_LIMIT = 600.0  # [s] for the first start, which compiles
 _SETTLING = 10.0  # [s] after which the memory shall not grow
+_LINES_TOLD = 10  # of its log, where it does not begin
 _STEP = 1e-6  # by which one speed sent differs from the next, relative
 _DISTINCT = 1000  # speeds sent until they repeat; an output is never that late
 DETUNING = 0.97  # rate of the inputs over that of the outputs
@@ -170,7 +171,7 @@ def measure(level: str, speed_rpm: float, duration: float, rate: float, listen: 
     Raises
     ------
     RuntimeError
-        The node does not begin.
+        The node does not begin, or ends; with what it said.
     """
     from bearing_sim import topics
     from bearing_sim.scene_file import load_scene
@@ -183,12 +184,14 @@ def measure(level: str, speed_rpm: float, duration: float, rate: float, listen: 
         node = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT, start_new_session=True)
         driver = Driver(speed_rpm * math.pi / 30, 800.0, names)
         try:
-            _wait_until_heard(driver, node)
+            _wait_until_heard(driver, node, log)
             driver.drive(2.0, DETUNING * rate)
             began, first = time.monotonic(), cost_of(node.pid)
             driver.drive(min(_SETTLING, duration / 2), DETUNING * rate)
             settled = cost_of(node.pid)
             driver.drive(duration - (time.monotonic() - began), DETUNING * rate)
+            if node.poll() is not None:
+                raise RuntimeError(f"the node ended while it was measured; {_last_words(log)}")
             ended, last = time.monotonic(), cost_of(node.pid)
         finally:
             driver.close()
@@ -203,15 +206,21 @@ def measure(level: str, speed_rpm: float, duration: float, rate: float, listen: 
     return {**asked, "exit_code": node.returncode, **found}
 
 
-def _wait_until_heard(driver: Driver, node: subprocess.Popen) -> None:
+def _wait_until_heard(driver: Driver, node: subprocess.Popen, log: IO[bytes]) -> None:
     end = time.monotonic() + _START_LIMIT
     while not (driver.is_matched and driver.heard):
         if node.poll() is not None or time.monotonic() > end:
-            raise RuntimeError("the node did not begin")
+            raise RuntimeError(f"the node did not begin; {_last_words(log)}")
         if driver.is_matched:
             driver.send()
         driver.take()
         time.sleep(0.02)
+
+
+def _last_words(log: IO[bytes]) -> str:
+    log.seek(0)
+    said = log.read().decode(errors="replace").strip().splitlines()[-_LINES_TOLD:]
+    return "\n".join(["it said:", *(said or ["nothing"])])
 
 
 def _figures(driver: Driver, began: float, ended: float, rate: float) -> dict:
@@ -295,6 +304,8 @@ def command(levels, speed_rpm, duration, rate, listen, as_json):
     rclpy.init(args=[])
     try:
         cases = [measure(level, speed_rpm, duration, rate, listen) for level in levels]
+    except RuntimeError as fault:
+        raise click.ClickException(str(fault)) from fault
     finally:
         rclpy.try_shutdown()
     if as_json:

@@ -87,7 +87,7 @@ class BearingNode(LifecycleNode):
     ended : given a `CannotRun` where the node ends itself.
     """
 
-    REVIEW_PERIOD = 0.05  # [s] how soon a change of health is told
+    REVIEW_PERIOD = 0.1  # [s] how soon a change of health is told
 
     def __init__(self, ended: Future):
         super().__init__("bearing_node", automatically_declare_parameters_from_overrides=True)

@@ -35,7 +35,7 @@ def create_steady_timer(node: Node, period: float, callback: Callable[[], None])
 def subscribe_to_all(
     node: Node, message_class, topic: str, callback: Callable, replaced: Callable[[Subscription], None], lost: Callable[[str], None]
 ) -> Subscription:
-    """Return a subscription that no message is lost to, where its publishers are reliable.
+    """Return a subscription, to messages as they are serialised, that no message is lost to where its publishers are reliable.
 
     Parameters
     ----------
@@ -50,12 +50,12 @@ def subscribe_to_all(
         fallen.append(True)
         lost(f"{topic}: a publisher offers best effort only; what it loses on the way makes this run another than that of the recording")
         node.destroy_subscription(subscription)
-        replaced(node.create_subscription(message_class, topic, callback, _ANY_INPUT_QOS, event_callbacks=told))
+        replaced(node.create_subscription(message_class, topic, callback, _ANY_INPUT_QOS, event_callbacks=told, raw=True))
 
     fallen: list[bool] = []
     told = SubscriptionEventCallbacks(
         message_lost=lambda info: lost(f"{topic}: {info.total_count} messages were lost on the way; inputs are linear across them")
     )
     events = SubscriptionEventCallbacks(incompatible_qos=fall_back, message_lost=told.message_lost)
-    subscription = node.create_subscription(message_class, topic, callback, _INPUT_QOS, event_callbacks=events)
+    subscription = node.create_subscription(message_class, topic, callback, _INPUT_QOS, event_callbacks=events, raw=True)
     return subscription

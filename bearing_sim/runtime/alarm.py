@@ -6,8 +6,6 @@ limit.  With hold times, being beyond is told after it has lasted, and being ove
 what cannot be told nobody can say that it is too much.
 """
 
-import numpy as np
-
 from bearing_sim.scene_monitoring import Hold
 
 
@@ -48,11 +46,9 @@ class Alarm:
         """Whether the value is beyond the limit, or was so lately that the trouble still holds."""
         return self.raised or self._beyond
 
-    def reaches(self, values: np.ndarray) -> bool:
-        """Return whether any of the values is beyond the limit."""
-        if self.limit is None:
-            return False
-        return bool((values < self.limit if self._below else values >= self.limit).any())
+    def reaches(self, value: float) -> bool:
+        """Return whether a value is beyond the limit."""
+        return self.limit is not None and (value < self.limit if self._below else value >= self.limit)
 
     def judge(self, now: float, value: float) -> bool:
         """Take in the value of an instant, which must not lie before the last one.  Returns whether the trouble holds.

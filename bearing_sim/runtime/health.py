@@ -5,8 +5,7 @@ Pure: it reads the newest sample, the input gate and the runner, and knows no RO
 """
 
 import math
-from collections.abc import Iterable, Mapping
-from types import MappingProxyType
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 from bearing_sim import topics
@@ -27,7 +26,7 @@ class Condition(NamedTuple):
     @property
     def level(self) -> Level:
         """The level of the worst event."""
-        return self.events[0].level if self.events else Level.OK
+        return level_of(self.events)
 
 
 class Health:
@@ -53,23 +52,16 @@ class Health:
         if count == 0:
             self._news.append(event)
 
-    def review(
-        self,
-        now: float,
-        gate: InputGate,
-        runner: Runner | ClockRunner,
-        others: Iterable[Event] = (),
-        values: Mapping[str, object] = MappingProxyType({}),
-        flow: Iterable[Event] | None = None,
-    ) -> Condition:
-        """Return what holds at ``now``.
+    def events(
+        self, now: float, gate: InputGate, runner: Runner | ClockRunner, others: Iterable[Event] = (), flow: Iterable[Event] | None = None
+    ) -> list[Event]:
+        """Return what holds at ``now``, the worst first.
 
         Parameters
         ----------
         now : [s], of the clock by which events are noted.
         gate, runner : of the model.
         others : added to the events.
-        values : added to the numbers.
         flow : what is wrong with the flow of messages; what the gate says as of ``now`` where absent.
         """
         self._momentary = {kind: noted for kind, noted in self._momentary.items() if now - noted[2] < _LINGER}
@@ -79,7 +71,7 @@ class Health:
         known = {}
         for event in sorted(events, key=lambda event: -event.level):
             known.setdefault(_kind(event), event)
-        return Condition(list(known.values()), _numbers(gate, runner) | dict(values))
+        return list(known.values())
 
     def news(self, events: Iterable[Event]) -> list[Event]:
         """Return, each trouble once, what was noted and which of the lasting ``events`` began since the last call."""
@@ -118,10 +110,16 @@ def run_events(now: float, runner: Runner | ClockRunner) -> list[Event]:
     return []
 
 
-def _numbers(gate: InputGate, runner: Runner | ClockRunner) -> dict[str, object]:
+def level_of(events: Sequence[Event]) -> Level:
+    """Return the level of the worst of events, which is the first."""
+    return events[0].level if events else Level.OK
+
+
+def numbers(gate: InputGate, runner: Runner | ClockRunner) -> dict[str, object]:
+    """Return the numbers that every diagnostics report has, the unit in each key."""
     pace = runner.pace
-    numbers = topics.condition(runner.newest) if runner.newest is not None else {}
-    numbers |= {
+    found = topics.condition(runner.newest) if runner.newest is not None else {}
+    found |= {
         "phase": runner.phase.value,
         "run time [s]": float(runner.newest["time"]) if runner.newest is not None else 0.0,
         "real-time factor held": pace.real_time_factor,
@@ -132,9 +130,8 @@ def _numbers(gate: InputGate, runner: Runner | ClockRunner) -> dict[str, object]
     }
     for channel, rate in ((channel, gate.rate(channel)) for channel in CHANNELS):
         if not math.isnan(rate):
-            numbers[f"{channel} rate [Hz]"] = rate
-    numbers |= {f"refused: {code}": count for code, count in sorted(gate.refused.items())}
-    return numbers
+            found[f"{channel} rate [Hz]"] = rate
+    return found | {f"refused: {code}": count for code, count in sorted(gate.refused.items())}
 
 
 def _counted(event: Event, count: int) -> Event:

@@ -186,11 +186,11 @@ class InputGate:
 
 def _value_fault(channel: str, values: tuple[float, ...], limits: InputLimits) -> tuple[str, str] | None:
     """Return code and reason of what is wrong with the values, or None."""
-    expected_count = (1, 2) if channel == "radial_load" else (1,)
-    if len(values) not in expected_count:
-        return "input.malformed", f"{len(values)} values, expected {' or '.join(map(str, expected_count))}"
+    if len(values) != 1 and (len(values) != 2 or channel != "radial_load"):
+        return "input.malformed", f"{len(values)} values, expected {'1 or 2' if channel == 'radial_load' else '1'}"
     unit = UNITS[channel]
-    if not all(map(math.isfinite, values)):
+    magnitude = math.hypot(*values)
+    if not math.isfinite(magnitude) and not all(map(math.isfinite, values)):
         return "input.not_finite", f"{_shown(values)} {unit} is not finite"
     if channel == "oil_temperature":
         low, high = limits.minimum_temperature, limits.maximum_temperature
@@ -198,12 +198,11 @@ def _value_fault(channel: str, values: tuple[float, ...], limits: InputLimits) -
             code = "input.too_small" if values[0] < low else "input.too_large"
             return code, f"{_shown(values)} K is outside {low:.6g} to {high:.6g} K"
         return None
-    speed = channel in ("shaft_speed", MEASURED)
-    signed = len(values) == 2 or (speed and limits.reverse_rotation)
-    if values[0] < 0.0 and not signed:
+    speed = channel != "radial_load"
+    if values[0] < 0.0 and len(values) == 1 and not (speed and limits.reverse_rotation):
         hint = " (input_limits.reverse_rotation is off)" if speed else ""
         return "input.negative", f"{_shown(values)} {unit} is negative, expected zero or more{hint}"
-    magnitude, largest = math.hypot(*values), limits.maximum_speed if speed else limits.maximum_load
+    largest = limits.maximum_speed if speed else limits.maximum_load
     if magnitude > largest:
         return "input.too_large", f"{magnitude:.6g} {unit} is above the largest accepted, {largest:.6g} {unit}"
     return None
@@ -237,9 +236,9 @@ UNITS = {"shaft_speed": "rad/s", "radial_load": "N", "oil_temperature": "K", MEA
 
 
 def _with_values(held: Inputs, channel: str, values: tuple[float, ...]) -> Inputs:
-    numbers = [float(value) for value in values]
+    speed, load_y, load_z, temperature = held
     if channel == "shaft_speed":
-        return held._replace(shaft_speed=numbers[0])
+        return Inputs(float(values[0]), load_y, load_z, temperature)
     if channel == "radial_load":
-        return held._replace(load_y=numbers[0], load_z=numbers[1] if len(numbers) == 2 else 0.0)
-    return held._replace(oil_temperature=numbers[0])
+        return Inputs(speed, float(values[0]), float(values[1]) if len(values) == 2 else 0.0, temperature)
+    return Inputs(speed, load_y, load_z, float(values[0]))

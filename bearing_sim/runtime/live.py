@@ -18,7 +18,7 @@ from bearing_sim.events import Event, Level
 from bearing_sim.runtime.beat import Beat
 from bearing_sim.runtime.blocks import joined
 from bearing_sim.runtime.governor import Governor
-from bearing_sim.runtime.health import Condition, Health
+from bearing_sim.runtime.health import Condition, Health, level_of, numbers
 from bearing_sim.runtime.input_gate import UNITS, InputGate
 from bearing_sim.runtime.monitor import Monitor
 from bearing_sim.runtime.outlets import Outlets, Sink
@@ -101,6 +101,11 @@ class LiveModel:
     governor : see `governor_of`; without one the level stays, and time is given up where it is too slow.
     publish_rate : outputs that are due to be published in each second [Hz].
     due : called on the runner's thread when a sample has come that is due; shall take no time.
+
+    Attributes
+    ----------
+    level : Level
+        Of the worst that held when the health was last reviewed, by `collect`.
     """
 
     def __init__(
@@ -129,6 +134,7 @@ class LiveModel:
         self._clock, self._clock_ahead = clock, start_ns * 1e-9 - clock()
         self._outlets = Outlets()
         self._published_time = self._residual_time = -math.inf
+        self.level = Level.OK
         self.runner.start()
 
     def run_time(self, now_ns: int) -> float:
@@ -145,9 +151,9 @@ class LiveModel:
         frame_id : the frame that the message names.
         """
         self._follow_clock(now_ns)
-        now, origin = self.run_time(now_ns), topics.Origin(stamp_ns, frame_id)
+        now = self.run_time(now_ns)
         if channel != topics.MEASURED and self._outlets.keep_inputs:
-            received = _as_received(self.gate.held, channel, values)
+            received, origin = _as_received(self.gate.held, channel, values), topics.Origin(stamp_ns, frame_id)
             self._outlets.to_recorders(now, lambda recorder: recorder.write_inputs(now, received, [channel], origin))
         event = self.gate.offer(channel, now if stamp_ns is None else self.run_time(stamp_ns), values, arrival=now)
         if event is not None:
@@ -155,7 +161,7 @@ class LiveModel:
             return event
         self._rivals[channel].take(values)
         if channel == topics.MEASURED:
-            self._compare(now, origin)
+            self._compare(now, topics.Origin(stamp_ns, frame_id))
             return None
         self._inputs_changed()
         return None
@@ -257,25 +263,20 @@ class LiveModel:
         self._write(now, blocks)
         for event in self._outlets.news(now):
             self.health.note(event)
-        news = self.health.news(self.condition(now_ns).events)
+        events = self._events(now)
+        self.level = level_of(events)
+        news = self.health.news(events)
         for event in news:
             self._outlets.to_all(now, lambda sink, event=event: sink.write_event(event))
         return news
 
     def condition(self, now_ns: int) -> Condition:
         """Return what holds now, with the numbers behind it."""
-        now, troubles = self.run_time(now_ns), [*self._outlets.troubles(self.run_time(now_ns))]
-        running = self._governor.level if self._governor is not None else self.scene.level
-        values = {"level": running}
-        if running != self.scene.level:
-            text = f"computing at level {running} instead of {self.scene.level}, which this machine is too slow for"
-            troubles.append(Event(now, Level.WARN, "governor.level", text))
+        now, values = self.run_time(now_ns), {"level": self._running_level}
         if self.runner.newest is not None:
             values |= topics.further_condition(self.scene, self.runner.newest)
         values |= self.monitor.values | self.residual.values(now) | self._outlets.values
-        troubles += [*self.monitor.events(now), *self.residual.events(now)]
-        troubles += [event for rivals in self._rivals.values() if (event := rivals.event(now)) is not None]
-        return self.health.review(now, self.gate, self.runner, troubles, values)
+        return Condition(self._events(now), numbers(self.gate, self.runner) | values)
 
     def record_diagnostics(self, condition: Condition, now_ns: int) -> None:
         """Let the recorders keep a diagnostics report."""
@@ -293,6 +294,19 @@ class LiveModel:
         self._write(0.0, [item for item in self.runner.take() if not isinstance(item, Event)])
         self._outlets.close(0.0)
         return stopped
+
+    @property
+    def _running_level(self) -> str:
+        return self._governor.level if self._governor is not None else self.scene.level
+
+    def _events(self, now: float) -> list[Event]:
+        """Return what holds now [s], the worst first."""
+        troubles = [*self._outlets.troubles(now), *self.monitor.events(now), *self.residual.events(now)]
+        if self._running_level != self.scene.level:
+            text = f"computing at level {self._running_level} instead of {self.scene.level}, which this machine is too slow for"
+            troubles.append(Event(now, Level.WARN, "governor.level", text))
+        troubles += [event for rivals in self._rivals.values() if (event := rivals.event(now)) is not None]
+        return self.health.events(now, self.gate, self.runner, troubles)
 
     def _advanced(self, time: float) -> None:
         """Tell that a sample is due, on the runner's thread."""

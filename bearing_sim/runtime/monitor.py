@@ -46,7 +46,11 @@ class Watch:
 
     def is_calm(self, values: np.ndarray) -> bool:
         """Return whether nothing holds or is about to, and none of the values is beyond a limit."""
-        return not any(alarm.is_alerted or alarm.reaches(values) for _, alarm in self._alarms)
+        (_, error), (_, warning) = self._alarms
+        if error.is_alerted or warning.is_alerted:
+            return False
+        worst = float((np.fmin if self._below else np.fmax).reduce(values, axis=None)) if values.size else math.nan  # of those that are numbers
+        return not error.reaches(worst) and not warning.reaches(worst)
 
     def event(self, now: float) -> Event | None:
         """Return the worse of the troubles that hold, or None."""

@@ -102,9 +102,9 @@ class Runner:
 
     def post(self, inputs: Inputs) -> None:
         """Set the inputs that the next tick shall reach.  The first ones start the model, in ideal rolling at these inputs."""
-        with self._changed:
-            self._latest = inputs
-            if self._phase is Phase.WAITING:  # a thread that waits for its next tick to be due need not be woken for it
+        self._latest = inputs  # whole, whoever reads it when
+        if self._phase is Phase.WAITING:  # a thread that waits for its next tick to be due need not be woken for it
+            with self._changed:
                 self._changed.notify_all()
 
     def take(self) -> list[np.ndarray | Event]:

@@ -22,7 +22,7 @@ from bearing_sim.runtime.clock_runner import ClockRunner, Start
 from bearing_sim.runtime.clock_watch import ClockWatch, Step
 from bearing_sim.runtime.comparison import Comparison
 from bearing_sim.runtime.growing_course import OIL, GrowingCourse
-from bearing_sim.runtime.health import Condition, Health
+from bearing_sim.runtime.health import Condition, Health, level_of, numbers
 from bearing_sim.runtime.input_gate import UNITS, InputGate
 from bearing_sim.runtime.leg import Arrival
 from bearing_sim.runtime.live import Published
@@ -54,6 +54,8 @@ class SimTimeModel:
     ----------
     start_ns : int
         Run time 0 [ns since the epoch]: where the course of inputs has begun; before that, where the clock was first.
+    level : Level
+        Of the worst that held when the health was last reviewed, by `collect`.
     """
 
     def __init__(
@@ -72,6 +74,7 @@ class SimTimeModel:
         self.health, self.monitor = Health(), Monitor(scene)
         self.residual = ResidualMonitor(scene.thresholds.residual, scene.thresholds.slip_from_speed)
         self._comparison = Comparison(self.residual)
+        self.level = Level.OK
         self._clock = ClockWatch()
         self._epoch: int | None = None  # of the gate's times
         self._held_until: int | None = None  # while a jump back is an error
@@ -229,7 +232,9 @@ class SimTimeModel:
         for event in self._outlets.news(self.run_time(now_ns)):
             self._note(event)
         now = self.run_time(now_ns)
-        news = self.health.news(self.condition(now_ns).events)
+        events = self._events(now)
+        self.level = level_of(events)
+        news = self.health.news(events)
         for event in news:
             self._outlets.to_all(now, lambda sink, event=event: sink.write_event(event._replace(time=max(event.time, 0.0))))
         return news
@@ -241,11 +246,7 @@ class SimTimeModel:
             values |= topics.further_condition(self.scene, self.runner.newest)
         values |= self.monitor.values | self.residual.values(now) | self._outlets.values
         values |= progress(self._wall(), self._clock, self.runner) | {"late inputs": self._late, "gaps": self._gaps}
-        troubles = [*clock_events(now, self._wall(), self._clock, self._held_until), *walk_events(now, self._clock, self.runner)]
-        troubles += self._outlets.troubles(now)
-        troubles += [*self.monitor.events(now), *self.residual.events(now)]
-        troubles += [event for rivals in self._rivals.values() if (event := rivals.event(now)) is not None]
-        return self.health.review(self._seen_at(), self.gate, self.runner, troubles, values, self._flow())
+        return Condition(self._events(now), numbers(self.gate, self.runner) | values)
 
     def record_diagnostics(self, condition: Condition, now_ns: int) -> None:
         """Let the recorders keep a diagnostics report."""
@@ -264,6 +265,13 @@ class SimTimeModel:
             self._handle(item)
         self._outlets.close(0.0)
         return stopped
+
+    def _events(self, now: float) -> list[Event]:
+        """Return what holds now [s], the worst first."""
+        troubles = [*clock_events(now, self._wall(), self._clock, self._held_until), *walk_events(now, self._clock, self.runner)]
+        troubles += [*self._outlets.troubles(now), *self.monitor.events(now), *self.residual.events(now)]
+        troubles += [event for rivals in self._rivals.values() if (event := rivals.event(now)) is not None]
+        return self.health.events(self._seen_at(), self.gate, self.runner, troubles, self._flow())
 
     def _accept(self, message: Message) -> Event | None:
         channel, values, stamp = message

@@ -81,7 +81,7 @@ class SampleMessages:
         places, sources = np.array(pairs, np.intp).reshape(-1, 2).T
         if (places % _WORD).any():
             raise ValueError("a message's numbers are not aligned to eight bytes: it is not CDR of version 1")
-        self._buffer, self._places, self._sources = buffer, places // _WORD, sources
+        self._buffer, self._bytes, self._places, self._sources = buffer, memoryview(buffer), places // _WORD, sources
         self._words = np.frombuffer(buffer, np.float64)
 
     def fill(self, stamp_ns: int, sample: np.void) -> None:
@@ -92,7 +92,7 @@ class SampleMessages:
 
     def message(self, k: int) -> bytes:
         """Return the message of the topic number ``k``, serialised."""
-        return bytes(self._buffer[self._parts[k]])
+        return bytes(self._bytes[self._parts[k]])
 
 
 def _runs(name: str, cdr: bytes, numbers: np.ndarray) -> tuple[NumberRun, ...]:
