@@ -51,7 +51,7 @@ def with_other_padding(cdr: bytes, kind, rng) -> bytes:
 @pytest.mark.parametrize("frame", ["", "bearing", "ünïcode"])
 def test_joint_states_of_any_sender_say_what_was_put_in(names, frame):
     rng, reader = np.random.default_rng(1), InputReader("shaft_speed", JOINT_STATE, "shaft", "bearing")
-    for k in range(5):
+    for _ in range(5):
         stamp = (int(rng.integers(1, 2**31)), int(rng.integers(0, 1_000_000_000)))
         made, values = joint_state(rng, names, "shaft", frame, stamp)
         assert reader.read(serialize_message(made)) == Reading(values, stamp[0] * 1_000_000_000 + stamp[1], frame)
@@ -70,8 +70,12 @@ def test_loads_say_what_was_put_in_and_what_cdr_leaves_unused_does_not_count(fra
 
 @pytest.mark.parametrize(
     ("channel", "ros_type", "field", "expected"),
-    [("shaft_speed", SCALAR, {"data": 3.5}, 3.5), ("radial_load", SCALAR, {"data": 800.0}, 800.0), ("oil_temperature", TEMPERATURE, {"temperature": 120.0}, 393.15)],
-)  # fmt: skip
+    [
+        ("shaft_speed", SCALAR, {"data": 3.5}, 3.5),
+        ("radial_load", SCALAR, {"data": 800.0}, 800.0),
+        ("oil_temperature", TEMPERATURE, {"temperature": 120.0}, 393.15),
+    ],
+)
 def test_the_other_types_say_what_was_put_in_each_time(channel, ros_type, field, expected):
     reader = InputReader(channel, ros_type, "shaft", "bearing")
     for factor in (1.0, 2.0, 3.0):

@@ -8,6 +8,7 @@ import sys
 import threading
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -15,7 +16,7 @@ pytest.importorskip("rclpy", reason="the node needs ROS 2 (pip install 'bearing_
 
 from ros_bench import fresh_domain  # noqa: E402
 
-from bearing_sim.ros.measure import cost_of  # noqa: E402
+from bearing_sim.ros.measure import _wait_until_heard, cost_of  # noqa: E402
 from bearing_sim.runtime.threads import name_this_thread  # noqa: E402
 
 pytestmark = pytest.mark.timeout(240)
@@ -57,3 +58,19 @@ def test_a_node_is_measured_over_dds_and_the_figures_hang_together():
     assert case["cpu_solver_percent"] > 0.0 and case["cpu_without_solver_percent"] > 0.0
     assert sum(case["cpu_by_thread_percent"].values()) == pytest.approx(case["cpu_solver_percent"] + case["cpu_without_solver_percent"], abs=0.1)
     assert 50.0 < case["memory_at_10_s_mb"] < 1000.0
+
+
+def test_a_topic_that_there_is_not_is_named_with_those_that_there_are():
+    words = [sys.executable, "-m", "bearing_sim.ros.measure", "--listen", "cage_slip,cage_skid", "--duration", "4"]
+    environment = {**os.environ, "ROS_DOMAIN_ID": str(fresh_domain()), "PYTHONPATH": str(ROOT)}
+    found = subprocess.run(words, capture_output=True, text=True, timeout=200, env=environment)
+    assert found.returncode == 1 and "no output topic 'cage_skid'; there are cage_slip, rating_life," in found.stderr
+    assert "Traceback" not in found.stderr
+
+
+def test_a_node_that_does_not_begin_is_told_in_its_own_words(tmp_path):
+    silent = SimpleNamespace(is_matched=False, heard=[], take=lambda: None)
+    with open(tmp_path / "log", "w+b") as log:
+        node = subprocess.Popen([sys.executable, "-c", "raise SystemExit('bearing_node: no such scene')"], stdout=log, stderr=subprocess.STDOUT)
+        with pytest.raises(RuntimeError, match="did not begin; it said:\nbearing_node: no such scene"):
+            _wait_until_heard(silent, node, log)

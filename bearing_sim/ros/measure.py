@@ -23,6 +23,7 @@ from typing import IO, NamedTuple
 
 import click
 
+from bearing_sim.commands.reporting import print_rows
 from bearing_sim.runtime.threads import SOLVER
 
 _DOMAINS = range(60, 100)  # above what people pick by hand, below where ports collide with those the system hands out
@@ -31,6 +32,7 @@ _SETTLING = 10.0  # [s] after which the memory shall not grow
 _LINES_TOLD = 10  # of its log, where it does not begin
 _STEP = 1e-6  # by which one speed sent differs from the next, relative
 _DISTINCT = 1000  # speeds sent until they repeat; an output is never that late
+ALL = "all"
 DETUNING = 0.97  # rate of the inputs over that of the outputs
 
 
@@ -157,7 +159,7 @@ def _taken(subscription):
             yield taken[0]
 
 
-def measure(level: str, speed_rpm: float, duration: float, rate: float, listen: str = "all") -> dict:
+def measure(level: str, speed_rpm: float, duration: float, rate: float, listen: str = ALL) -> dict:
     """Measure a node and return plain numbers.
 
     Parameters
@@ -166,10 +168,12 @@ def measure(level: str, speed_rpm: float, duration: float, rate: float, listen: 
     speed_rpm : of the shaft.
     duration : of the measurement after the start [s], longer than the first ten seconds.
     rate : of the node's output topics [Hz]; inputs come at `DETUNING` of it.
-    listen : ``all`` output topics, each with a reliable subscriber, or ``joints`` alone.
+    listen : output topics that have a reliable subscriber, separated by commas, or `ALL`; bearing_joints has one in any case.
 
     Raises
     ------
+    ValueError
+        There is no such topic.
     RuntimeError
         The node does not begin, or ends; with what it said.
     """
@@ -177,7 +181,7 @@ def measure(level: str, speed_rpm: float, duration: float, rate: float, listen: 
     from bearing_sim.scene_file import load_scene
 
     overrides = [f"level={level}", f"operating.shaft_speed={speed_rpm} rpm"]
-    names = [name for name in topics.outputs(load_scene("deng2017_table1", overrides)) if name != "bearing_joints" and listen == "all"]
+    names = _topics_heard(listen, list(topics.outputs(load_scene("deng2017_table1", overrides))))
     words = {"overrides": str(overrides), "publish_rate": str(float(rate)), "governor": "false"}
     command = [sys.executable, "-m", "bearing_sim.ros.node", "--ros-args"] + [w for key, value in words.items() for w in ("-p", f"{key}:={value}")]
     with tempfile.TemporaryFile() as log:
@@ -204,6 +208,13 @@ def measure(level: str, speed_rpm: float, duration: float, rate: float, listen: 
     found = _figures(driver, began, ended, rate) | _costs(first, settled, last, ended - began)
     asked = {"level": level, "speed_rpm": speed_rpm, "rate_hz": rate, "input_rate_hz": DETUNING * rate, "topics_heard": len(names) + 1}
     return {**asked, "exit_code": node.returncode, **found}
+
+
+def _topics_heard(listen: str, known: list[str]) -> list[str]:
+    wanted = known if listen == ALL else [name.strip() for name in listen.split(",")]
+    if strangers := sorted(set(wanted) - set(known)):
+        raise ValueError(f"no output topic {', '.join(map(repr, strangers))}; there are {', '.join(known)}, or {ALL!r}")
+    return [name for name in known if name in wanted and name != "bearing_joints"]
 
 
 def _wait_until_heard(driver: Driver, node: subprocess.Popen, log: IO[bytes]) -> None:
@@ -272,16 +283,9 @@ _COLUMNS = {
 
 
 def _print_table(cases: list[dict]) -> None:
-    from rich.console import Console
-    from rich.table import Table
-
-    caption = f"inputs at {100 * DETUNING:.0f} % of the outputs' rate, so that every phase occurs; latency: age of the newest input in an output"
-    table = Table(title="bearing_node, from another process", title_justify="left", caption=caption, caption_justify="left")
-    for title in _COLUMNS.values():
-        table.add_column(title, justify="right")
-    for case in cases:
-        table.add_row(*(value if isinstance(value := case[name], str) else f"{value:.5g}" for name in _COLUMNS))
-    Console(width=None if sys.stdout.isatty() else 170).print(table)
+    rows = [[value if isinstance(value := case[name], str) else f"{value:.5g}" for name in _COLUMNS] for case in cases]
+    print_rows("bearing_node, from another process", list(_COLUMNS.values()), rows, words={"level"}, width=170)
+    click.echo(f"inputs at {100 * DETUNING:.0f} % of the outputs' rate, so that every phase occurs; latency: age of the newest input in an output")
 
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
@@ -292,7 +296,10 @@ def _print_table(cases: list[dict]) -> None:
     "--rate", default=100.0, type=click.FloatRange(1.0, 200.0), show_default=True, help="Rate of the outputs [Hz]; inputs come at 97 % of it."
 )
 @click.option(
-    "--listen", type=click.Choice(["all", "joints"]), default="all", show_default=True, help="Which output topics have a (reliable) subscriber."
+    "--listen",
+    default=ALL,
+    show_default=True,
+    help="Output topics that have a (reliable) subscriber, separated by commas; bearing_joints has one in any case.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON list.")
 def command(levels, speed_rpm, duration, rate, listen, as_json):
@@ -304,7 +311,7 @@ def command(levels, speed_rpm, duration, rate, listen, as_json):
     rclpy.init(args=[])
     try:
         cases = [measure(level, speed_rpm, duration, rate, listen) for level in levels]
-    except RuntimeError as fault:
+    except (RuntimeError, ValueError) as fault:
         raise click.ClickException(str(fault)) from fault
     finally:
         rclpy.try_shutdown()
