@@ -7,7 +7,7 @@ import random
 import pytest
 
 from bearing_sim.events import Level
-from bearing_sim.runtime.input_gate import InputGate
+from bearing_sim.runtime.input_gate import CHANNELS, InputGate
 from bearing_sim.scene import InputLimits
 from bearing_sim.simulation import Inputs
 
@@ -154,3 +154,20 @@ def test_random_messages_never_leave_a_bad_value_held():
         held = gate.held
         assert 0.0 <= held.shaft_speed <= 5000.0 and math.hypot(held.load_y, held.load_z) <= 2000.0 and 233.15 <= held.oil_temperature <= 523.15
     assert gate.refused.total() + gate.accepted.total() == 3000 and gate.accepted.total() > 100
+
+
+@pytest.mark.parametrize("values", [(), (1.0, 2.0), (1.0, 2.0, 3.0)], ids=len)
+@pytest.mark.parametrize("channel", CHANNELS)
+def test_as_many_values_as_the_channel_has_are_accepted_and_no_others(channel, values):
+    gate = InputGate(LIMITS, START)
+    event = gate.offer(channel, 1.0, values)
+    if channel == "radial_load" and len(values) == 2:
+        assert event is None and (gate.held.load_y, gate.held.load_z) == values
+    else:
+        assert event.code == "input.malformed" and f"{len(values)} values, expected" in event.text
+        assert gate.held == START
+
+
+def test_values_so_large_that_their_sum_overflows_are_too_large_and_not_called_infinite():
+    event = InputGate(LIMITS, START).offer("radial_load", 1.0, (1e308, 1.7e308))
+    assert event.code == "input.too_large"

@@ -34,6 +34,9 @@ class _Channel:
     rate: float = math.nan
     earlier_stamp: float = -math.inf
     earlier_count: int = 0
+    least: float = 0.0  # what is from here ...
+    largest: float = 0.0  # ... to here is good, as nearly all is; why something else is not takes a closer look
+    is_force: bool = False
 
 
 class InputGate:
@@ -61,6 +64,8 @@ class InputGate:
         self.refused: Counter[str] = Counter()
         self.accepted: Counter[str] = Counter()
         self._channels = {name: _Channel() for name in CHANNELS}
+        for name, state in self._channels.items():
+            state.least, state.largest, state.is_force = *_good_from_to(name, limits), name == "radial_load"
         self._reported: set[tuple[str, str]] = set()
 
     def offer(self, channel: str, stamp: float, values: tuple[float, ...], arrival: float | None = None) -> Event | None:
@@ -88,8 +93,14 @@ class InputGate:
         received = stamp if arrival is None else arrival
         if math.isfinite(received):
             self._count_rate(state, received)
-        fault = _value_fault(channel, values, self.limits)
-        if fault is None:
+        fault = None
+        if len(values) == 1:
+            is_good = state.least <= values[0] <= state.largest
+        else:
+            is_good = len(values) == 2 and state.is_force and math.hypot(*values) <= state.largest
+        if not is_good:
+            fault = _value_fault(channel, values, self.limits)
+        if fault is None and not state.stamp < stamp < math.inf:
             fault = _stamp_fault(state, stamp)
             if fault and arrival is not None and _clock_set_anew(state, stamp):
                 fault = None
@@ -182,6 +193,15 @@ class InputGate:
             return None
         text = f"{channel}: messages come at {state.rate:.3g} Hz, expected {slowest:.3g} to {fastest:.3g} Hz; values are used as they come"
         return Event(now, Level.WARN, "input.rate", text)
+
+
+def _good_from_to(channel: str, limits: InputLimits) -> tuple[float, float]:
+    """Return the least and the largest value of a good message of one value."""
+    if channel == "oil_temperature":
+        return limits.minimum_temperature, limits.maximum_temperature
+    if channel == "radial_load":
+        return 0.0, limits.maximum_load
+    return -limits.maximum_speed if limits.reverse_rotation else 0.0, limits.maximum_speed
 
 
 def _value_fault(channel: str, values: tuple[float, ...], limits: InputLimits) -> tuple[str, str] | None:

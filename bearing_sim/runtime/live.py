@@ -151,11 +151,12 @@ class LiveModel:
         frame_id : the frame that the message names.
         """
         self._follow_clock(now_ns)
-        now = self.run_time(now_ns)
+        start_ns = self.start_ns
+        now = (now_ns - start_ns) * 1e-9
         if channel != topics.MEASURED and self._outlets.keep_inputs:
             received, origin = _as_received(self.gate.held, channel, values), topics.Origin(stamp_ns, frame_id)
             self._outlets.to_recorders(now, lambda recorder: recorder.write_inputs(now, received, [channel], origin))
-        event = self.gate.offer(channel, now if stamp_ns is None else self.run_time(stamp_ns), values, arrival=now)
+        event = self.gate.offer(channel, now if stamp_ns is None else (stamp_ns - start_ns) * 1e-9, values, now)
         if event is not None:
             self.health.note(event)
             return event
