@@ -102,6 +102,12 @@ ALLOWED = {
             "tables",
         },
     ),
+    "message_rows.py": ({"numpy", "mcap"}, set()),
+    "message_numbers.py": ({"numpy", "rosbags"}, {"topics"}),
+    "mcap_stream.py": ({"mcap", "zstandard"}, {"message_rows"}),
+    "mcap_index.py": ({"numpy", "mcap"}, {"mcap_stream", "message_rows"}),
+    "recording_completion.py": ({"numpy"}, {"contour", "effects", "params", "scene", "topics"}),
+    "recording_samples.py": ({"numpy"}, {"message_numbers", "message_rows", "recording_completion", "sample", "scene", "topics"}),
     "runtime": ({"numpy", "scipy"}, {"runtime", "film_ratio", "simulation", "scene", "scene_monitoring", "effects", "events", "sample", "topics"}),
 }
 
