@@ -6,7 +6,6 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from bearing_sim import topics
 from bearing_sim.runtime.live import cadence
 from bearing_sim.scene import Scene
 from bearing_sim.sinks.limits import Limits
@@ -29,13 +28,10 @@ def prepare(view: bool, recorder: "Recorder | None") -> None:
     if recorder is not None:
         recorder.start()
         return
-    from bearing_sim.sinks.mcap_file import message_type
+    from bearing_sim.sinks.ros_types import load_message_types
 
     importlib.import_module("bearing_sim.sinks.mcap_sink")
-    for ros_type in {topic.ros_type for topic in (*topics.INPUTS.values(), *topics.RECORDED.values(), *topics.OUTPUTS.values())} | {
-        topics.DIAGNOSTICS[1]
-    }:
-        message_type(ros_type)
+    load_message_types()
 
 
 def open_recording(path: Path, scene: Scene, start_ns: int, limits: Limits, sample_rate: float, recorder: "Recorder"):
