@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from bearing_sim.runtime.live import cadence
 from bearing_sim.scene import Scene
+from bearing_sim.sinks.lasting_recording import LastingRecording
 from bearing_sim.sinks.limits import Limits
 
 if TYPE_CHECKING:
@@ -35,7 +36,9 @@ def prepare(view: bool, recorder: "Recorder | None") -> None:
 
 
 def open_recording(path: Path, scene: Scene, start_ns: int, limits: Limits, sample_rate: float, recorder: "Recorder"):
-    """Return a recording in real time (see `bearing_sim.sinks.recorder.LiveRecording`); its ``path`` is a fresh one where ``path`` is taken.
+    """Return a recording in real time; its ``path`` is a fresh one where ``path`` is taken.
+
+    Where the process that records is killed, it goes on in another fresh one (see `bearing_sim.sinks.lasting_recording`).
 
     Parameters
     ----------
@@ -52,7 +55,7 @@ def open_recording(path: Path, scene: Scene, start_ns: int, limits: Limits, samp
     """
     beat = cadence(sample_rate)
     advance = (beat.tick, beat.samples) if beat.every == 1 else None
-    return recorder.open(fresh_path(path), scene, start_ns, limits, advance)
+    return LastingRecording(lambda wait: recorder.open(fresh_path(path), scene, start_ns, limits, advance, wait=wait))
 
 
 def open_lossless_recording(path: Path, scene: Scene, start_ns: int, limits: Limits):
