@@ -5,9 +5,8 @@ from collections import defaultdict
 
 import numpy as np
 import pytest
-from mcap.reader import make_reader
 from mcap.records import Message
-from recordings import write_log
+from recordings import spoiled, write_log
 from rosbags.typesys import Stores, get_typestore
 from synthetic_run import synthetic_block
 
@@ -50,17 +49,6 @@ def recording(tmp_path_factory):
                 sink.write_event(Event(time, Level.WARN, f"slip.{size}", "slip is high"))
                 sink.write_measurement(time, 1800.0 + time, 0.01)
     return path
-
-
-def spoiled(path, target):
-    """Copy a file with a chunk in its middle overwritten."""
-    data = bytearray(path.read_bytes())
-    with open(path, "rb") as stream:
-        chunks = make_reader(stream).get_summary().chunk_indexes
-    middle = chunks[len(chunks) // 2].chunk_start_offset + chunks[len(chunks) // 2].chunk_length // 2
-    data[middle : middle + 40] = b"\xff" * 40
-    target.write_bytes(data)
-    return target
 
 
 def one_by_one(records):
@@ -132,7 +120,7 @@ def test_opening_a_finished_recording_reads_none_of_its_chunks(recording, monkey
 
 
 def test_reading_stops_at_a_damaged_chunk_and_says_so(recording, tmp_path):
-    broken = Recording(spoiled(recording, tmp_path / "broken.mcap"))
+    broken = Recording(spoiled(recording, tmp_path / "broken.mcap", chunk=40))
     read = np.concatenate([item for item in broken if isinstance(item, np.ndarray)])
     whole = np.concatenate([item for item in Recording(recording) if isinstance(item, np.ndarray)])
     assert 500 < len(read) < 2000 and "damaged" in broken.unfinished
