@@ -18,6 +18,7 @@ from bearing_sim.message_numbers import NumberPlaces, number_places, numbers_of
 from bearing_sim.message_rows import Rows
 
 _TOGETHER = 4 * 1024 * 1024  # [byte] of a recording that are compared at once
+_LOOKED_AHEAD = 64  # messages, where two recordings are out of step
 _EQUAL_LOOKED_INTO = 32  # of so many equal messages one, for the magnitude
 _TEXT = "diagnostic_msgs/msg/DiagnosticArray"  # says things in words and at moments of its own
 
@@ -205,6 +206,16 @@ def _joined(columns: list[_Column]) -> _Column:
     return _Column(np.concatenate(times), np.concatenate(data))
 
 
+def _alone(mine: np.ndarray, others: np.ndarray) -> tuple[int, int]:
+    """Return how many log times at the beginning of each of two courses the other one has not, as far as they can be seen."""
+    same = mine[:, None] == others
+    if same.any():
+        first = int(same.any(axis=1).argmax())
+        return first, int(same[first].argmax())
+    later = [times > min(mine.max(), others.max()) for times in (mine, others)]  # than what the other has shown: it may have them yet
+    return tuple(int(part.argmax()) if part.any() else len(part) for part in later)
+
+
 class _Pairing:
     """Finds the messages of one topic that belong together, and compares many at once.
 
@@ -229,9 +240,9 @@ class _Pairing:
             if together:
                 self._pair(self._taken(0, together), self._taken(1, together))
             else:
-                ahead = int(others[0].log_ns[0] < mine[0].log_ns[0])  # the side whose next message the other has not
-                later = self._waiting[ahead][0].log_ns >= self._waiting[1 - ahead][0].log_ns[0]
-                self._stray(ahead, int(later.argmax()) if later.any() else len(later))
+                for side, count in enumerate(_alone(mine[0].log_ns[:_LOOKED_AHEAD], others[0].log_ns[:_LOOKED_AHEAD])):
+                    if count:
+                        self._stray(side, count)
 
     def finished(self) -> TopicDifference:
         for side in (0, 1):

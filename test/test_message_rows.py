@@ -187,3 +187,13 @@ def test_messages_of_other_lengths_with_the_same_numbers_agree(tmp_path):
     differences, _ = compare(tmp_path / "one.mcap", tmp_path / "other.mcap")
     [loads] = [difference for difference in differences if difference.topic == "/radial_load"]
     assert loads.agrees and loads.matched == 50 and loads.differing == 0
+
+
+def test_recordings_of_other_times_have_nothing_in_common(tmp_path):
+    for name, shift in (("first.mcap", 0), ("second.mcap", 300), ("later.mcap", 10**9)):
+        with McapFile(tmp_path / name) as file:
+            for k in range(500):
+                file.write("/a", FLOAT, START + shift + 1000 * k, {"data": float(k)})
+    for other in ("second.mcap", "later.mcap"):
+        [difference], _ = compare(tmp_path / "first.mcap", tmp_path / other)
+        assert (difference.matched, difference.only_first, difference.only_second) == (0, 500, 500) and not difference.agrees
