@@ -3,7 +3,8 @@
 
 import io
 import struct
-from collections.abc import Iterator
+import zlib
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import zstandard
@@ -14,12 +15,14 @@ from mcap.opcode import Opcode
 from mcap.records import Chunk, McapRecord, Message
 from mcap.stream_reader import CRCValidationError, get_chunk_data_stream
 
+from bearing_sim.message_rows import RECORD, RowFinder, Rows, message_at
+
 BROKEN = (McapError, CRCValidationError, zstandard.ZstdError, struct.error, UnicodeDecodeError, ValueError, RuntimeError)  # lz4 raises RuntimeError
 """What the mcap library raises on bytes that are no MCAP."""
 
-_MAGIC = b"\x89MCAP0\r\n"
-_RECORD = struct.Struct("<BQ")
-_MESSAGE = struct.Struct("<HIQQ")
+MAGIC = b"\x89MCAP0\r\n"
+_CHUNK = struct.Struct("<QQQII")  # first and last log time, size and CRC of the data, length of the compression's name
+_BLOCK = 1024 * 1024  # [byte] read at once
 _PARSED = {
     Opcode.HEADER: records.Header,
     Opcode.SCHEMA: records.Schema,
@@ -62,6 +65,7 @@ class Salvage:
     Parameters
     ----------
     path : the file.
+    in_rows : whether messages of a topic may come many at once, as `bearing_sim.message_rows.Rows`; none do where absent.
 
     Attributes
     ----------
@@ -72,73 +76,101 @@ class Salvage:
     size, read : length of the file and of what was made out [byte].
     """
 
-    def __init__(self, path: str | Path):
-        self.path = Path(path)
+    def __init__(self, path: str | Path, in_rows: Callable[[str], bool] | None = None):
+        self.path, self._in_rows = Path(path), in_rows
         self.size = self.path.stat().st_size
         self.read = self.damaged = 0
         self.is_finished = False
         self.ends = ""
         with open(self.path, "rb") as stream:
-            self.is_mcap = stream.read(len(_MAGIC)) == _MAGIC
+            self.is_mcap = stream.read(len(MAGIC)) == MAGIC
 
-    def __iter__(self) -> Iterator[McapRecord]:
+    def __iter__(self) -> Iterator[McapRecord | Rows]:
+        self._topics: dict[int, str] = {}
+        self._finder = None if self._in_rows is None else RowFinder(lambda channel: self._in_rows(self._topics.get(channel, "")))
+        self._zstd = zstandard.ZstdDecompressor()
         self.read, self.damaged, self.is_finished, self.ends = 0, 0, False, ""
         if not self.is_mcap:
             self.ends = "it does not begin as an MCAP file"
             return
         with open(self.path, "rb") as stream:
-            stream.seek(len(_MAGIC))
-            self.read, in_data = len(_MAGIC), True
+            stream.seek(len(MAGIC))
+            self.read, in_data = len(MAGIC), True
             for opcode, content in self._top_level(stream):
-                self.read += _RECORD.size + len(content)
                 in_data = in_data and opcode != Opcode.DATA_END
                 if in_data:
                     yield from self._contained(opcode, content)
                 if opcode == Opcode.FOOTER:
-                    self.is_finished = stream.read() == _MAGIC
+                    stream.seek(self.read)
+                    self.is_finished = stream.read() == MAGIC
                     self.ends = "" if self.is_finished else "what follows the footer is not the end of an MCAP file"
                     return
 
     def _top_level(self, stream) -> Iterator[tuple[int, bytes]]:
-        while True:
-            head = stream.read(_RECORD.size)
-            if len(head) < _RECORD.size:
-                self.ends = "it was not completed" if not head else "it ends within a record"
-                return
-            opcode, length = _RECORD.unpack(head)
-            if length > self.size - stream.tell():
-                self.ends = "it ends within a record"
-                return
-            if opcode == 0:
-                self.ends = f"there is no record at byte {stream.tell() - _RECORD.size}"
-                return
-            yield opcode, stream.read(length)
+        """Yield opcode and content of all records but indexes, of which there are many small ones: hence the reading by blocks."""
+        block, place = b"", 0
 
-    def _contained(self, opcode: int, content: bytes) -> list[McapRecord]:
+        def has(length: int) -> bool:
+            nonlocal block, place
+            if len(block) - place < length:
+                block, place = block[place:] + stream.read(max(length, _BLOCK)), 0
+            return len(block) - place >= length
+
+        while has(RECORD.size):
+            opcode, length = RECORD.unpack_from(block, place)
+            if opcode == 0:
+                self.ends = f"there is no record at byte {self.read}"
+                return
+            whole = RECORD.size + length
+            if self.read + whole > self.size or not has(whole):
+                break
+            begin, place = place + RECORD.size, place + whole
+            self.read += whole
+            if opcode != Opcode.MESSAGE_INDEX:
+                yield opcode, block[begin:place]
+        self.ends = "it was not completed" if self.read == self.size else "it ends within a record"
+
+    def _contained(self, opcode: int, content: bytes) -> list[McapRecord | Rows]:
         try:
             if opcode == Opcode.CHUNK:
-                stream, length = get_chunk_data_stream(Chunk.read(ReadDataStream(io.BytesIO(content))), validate_crc=True)
-                return list(_records_of(stream.read(length)))
+                return list(self._records_of(self._chunk_data(content)))
             return [_parsed(opcode, content)] if opcode in _PARSED or opcode == Opcode.MESSAGE else []
         except BROKEN:
             self.damaged += 1
             return []
 
-
-def _records_of(data: bytes) -> Iterator[McapRecord]:
-    """Yield the records of a chunk's data."""
-    place = 0
-    while place < len(data):
-        opcode, length = _RECORD.unpack_from(data, place)
-        place += _RECORD.size
-        if length > len(data) - place:
+    def _chunk_data(self, content: bytes) -> bytes:
+        *_, size, crc, name_length = _CHUNK.unpack_from(content)
+        begin = _CHUNK.size + name_length + 8  # of the records, after their length
+        if content[_CHUNK.size : _CHUNK.size + name_length] != b"zstd":
+            stream, length = get_chunk_data_stream(Chunk.read(ReadDataStream(WholeReads(io.BytesIO(content)))), validate_crc=True)
+            return stream.read(length)
+        data = self._zstd.decompress(memoryview(content)[begin:], max_output_size=size)  # the library makes a context for each chunk
+        if crc and zlib.crc32(data) != crc:
             raise EndOfFile()
-        if opcode == Opcode.MESSAGE:
-            channel, sequence, log_time, publish_time = _MESSAGE.unpack_from(data, place)
-            yield Message(channel, log_time, data[place + _MESSAGE.size : place + length], publish_time, sequence)
-        elif opcode in _PARSED:
-            yield _parsed(opcode, data[place : place + length])
-        place += length
+        return data
+
+    def _records_of(self, data: bytes) -> Iterator[McapRecord | Rows]:
+        """Yield the records of a chunk's data."""
+        place = 0
+        while place < len(data):
+            if self._finder is not None and (rows := self._finder.rows_at(data, place)) is not None:
+                yield rows
+                place += rows.table.size
+                continue
+            opcode, length = RECORD.unpack_from(data, place)
+            end = place + RECORD.size + length
+            if end > len(data):
+                raise EndOfFile()
+            if opcode == Opcode.MESSAGE:
+                yield message_at(data, place, end)
+                if self._finder is not None:
+                    self._finder.learn(data, place)
+            elif opcode in _PARSED:
+                yield (record := _parsed(opcode, data[place + RECORD.size : end]))
+                if isinstance(record, records.Channel):
+                    self._topics[record.id] = record.topic
+            place = end
 
 
 def _parsed(opcode: int, content: bytes) -> McapRecord:

@@ -6,11 +6,12 @@ An image for a machine, or a whole test suite, is better served by having all of
 """
 
 import multiprocessing
-import os
 import shutil
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from typing import NamedTuple
+
+from bearing_sim.cores import cores
 
 _SECONDS = 1e-4  # a run as short as this calls all that there is to compile
 
@@ -72,7 +73,7 @@ def compile_all(wanted: Sequence[Build], workers: int | None = None) -> Iterator
     concurrent.futures.process.BrokenProcessPool
         A process was killed, as where memory is short: one takes up to 1 GB.
     """
-    workers = workers or len(os.sched_getaffinity(0))
+    workers = workers or cores()
     context = multiprocessing.get_context("spawn")
     # A process for each: what a compiler has taken of memory it does not give back.
     with ProcessPoolExecutor(min(workers, len(wanted)) or 1, context, max_tasks_per_child=1) as pool:

@@ -1,50 +1,26 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Read our own recordings back: MCAP messages to blocks of samples and events, as the sinks take them.
-
-Of a recording from before all observables were recorded, what it does not hold follows from the scene and from what it does:
-rollers stand at equal steps behind the cage's angle (their play in the pockets is left out), an outer load says how deep a
-roller sits in the outer raceway, rotations follow from spins, the inner loads together say where the inner ring is, rollers
-are taken to roll on the outer ring, and what cannot be known is NaN.
-"""
+"""Read our own recordings back: MCAP messages to blocks of samples and events, as the sinks take them."""
 
 import math
-import struct
 from collections.abc import Iterator
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 import yaml
-import zstandard
-from mcap.exceptions import McapError
-from mcap.records import Channel, Footer, Message, Metadata, Schema
-from mcap.stream_reader import CRCValidationError, StreamReader
+from mcap.records import Channel, Message, Metadata, Schema
 
 from bearing_sim.bag_files import BagError, mcap_files
-from bearing_sim.contour import outer_contour
-from bearing_sim.effects import NUMBERS
 from bearing_sim.events import Event, Level, Measurement
-from bearing_sim.mcap_stream import WholeReads
-from bearing_sim.params import contact_stiffness
-from bearing_sim.sample import new_block
+from bearing_sim.mcap_index import FileIndex, read_index
+from bearing_sim.mcap_stream import Salvage
+from bearing_sim.message_rows import Rows
+from bearing_sim.recording_samples import ROWS_PER_BLOCK, Samples
 from bearing_sim.scene import Scene
 from bearing_sim.scene_file import SceneError, scene_from_yaml
-from bearing_sim.topics import (
-    ARRAYS,
-    CAGE_JOINT,
-    DIAGNOSTICS,
-    INPUTS,
-    MEASURED,
-    MEASUREMENTS,
-    OUTPUTS,
-    RECORDED,
-    RESIDUAL,
-    ZERO_CELSIUS,
-    input_values,
-)
+from bearing_sim.topics import ARRAYS, CAGE_JOINT, DIAGNOSTICS, INPUTS, MEASURED, MEASUREMENTS, OUTPUTS, RECORDED, RESIDUAL, input_values
 
-ROWS_PER_BLOCK = 1000
 METADATA = "bearing_sim"
 _REPEATS_WITHIN = 2.5  # [s] a lasting trouble is reported every second, and told once
 _TYPES = {f"/{topic.name}": topic.ros_type for topic in (*INPUTS.values(), *RECORDED.values(), *OUTPUTS.values())} | {
@@ -52,8 +28,7 @@ _TYPES = {f"/{topic.name}": topic.ros_type for topic in (*INPUTS.values(), *RECO
 }
 _OUTPUT_TOPICS = frozenset(f"/{name}" for name in (*RECORDED, *OUTPUTS))
 _RECEIVED = {f"/{name}" for name in (*INPUTS, *MEASUREMENTS)}
-_OF_TILTING_LEVELS = tuple(field for name, topic in OUTPUTS.items() if topic.of_tilting_levels for field in ARRAYS[name].fields)
-_BROKEN = (McapError, CRCValidationError, zstandard.ZstdError, struct.error, UnicodeDecodeError)
+_LAST_OF_SAMPLE = "/roller_loads"
 
 
 class RecordingError(ValueError):
@@ -71,7 +46,7 @@ class Received(NamedTuple):
 
 
 class Recording:
-    """A recording of one run.
+    """A recording of one run; opening it reads no more of a finished one than its index.
 
     Parameters
     ----------
@@ -85,8 +60,7 @@ class Recording:
     start_ns : wall time of sample time 0 [ns since the epoch].
     samples : number of samples.
     first_time, last_time : simulated times of the first and the last sample [s].
-    largest_load : largest roller load [N].
-    unfinished : why reading ends before the file's proper end, or ``""``.
+    unfinished : why reading ends before the file's proper end, or ``""``; of a file that has its end, but is damaged, reading it tells.
 
     Raises
     ------
@@ -101,9 +75,10 @@ class Recording:
             self.files = mcap_files(self.path)
         except BagError as fault:
             raise RecordingError(str(fault)) from None
-        metadata, times, self.largest_load, present = self._scan()
+        parts = [self._told_by(file) for file in self.files]
+        metadata = next((part.metadata[METADATA] for part in reversed(parts) if METADATA in part.metadata), None)
         self.metadata: dict[str, str] = metadata or {}
-        listing = ", ".join(sorted(present)) or "no topics"
+        listing = ", ".join(sorted(set().union(*(part.present for part in parts)))) or "no topics"
         if metadata is None:
             raise RecordingError(f"{self.path}: no metadata record {METADATA!r}, so this is no recording of bearing_sim; it has {listing}")
         try:
@@ -111,61 +86,80 @@ class Recording:
             self.start_ns = int(metadata["start_ns"])
         except (KeyError, ValueError, SceneError, yaml.YAMLError) as fault:
             raise RecordingError(f"{self.path}: the metadata cannot be used: {fault}") from None
-        if not times:
+        times = np.unique(np.concatenate([part.log_ns for part in parts])).astype(np.int64)
+        if not len(times):
             raise RecordingError(f"{self.path}: no samples on {', '.join(sorted(_OUTPUT_TOPICS))}; it has {listing}")
         self.samples = len(times)
-        self.first_time, self.last_time = ((edge(times) - self.start_ns) * 1e-9 for edge in (min, max))
+        self.first_time, self.last_time = ((int(edge) - self.start_ns) * 1e-9 for edge in times[[0, -1]])
 
     @property
     def duration(self) -> float:
         """Simulated time from the first to the last sample [s]."""
         return self.last_time - self.first_time
 
-    def _scan(self) -> tuple[dict | None, set[int], float, set[str]]:
-        """Return our metadata, the log times of samples, the largest load and the topics."""
-        metadata, times, largest, present = None, set(), 0.0, set()
-        loads_topic = "/roller_loads"
-        for topic, message in self._messages():
-            if isinstance(message, Metadata):
-                metadata = message.metadata if message.name == METADATA else metadata
+    @cached_property
+    def largest_load(self) -> float:
+        """Largest roller load [N]; the recording is read for it."""
+        largest = 0.0
+        for topics, record in self._records():
+            if _LAST_OF_SAMPLE not in topics:
                 continue
-            present.add(topic)
-            if topic == loads_topic:
-                times.add(message.log_time)
-                values = trailing_doubles(message.data)
-                largest = max(largest, float(values.max(initial=0.0))) if np.isfinite(values).all() else largest
-        return metadata, times, largest, present
+            data = record.data(topics.index(_LAST_OF_SAMPLE)) if isinstance(record, Rows) else np.frombuffer(record.data, np.uint8)[None]
+            count = trailing_doubles(data[0].tobytes()).size
+            loads = np.ascontiguousarray(data[:, data.shape[1] - 8 * count :]).view("<f8")
+            finite = loads[np.isfinite(loads).all(axis=1)]
+            largest = max(largest, float(finite.max(initial=0.0)))
+        return largest
 
-    def _messages(self) -> Iterator[tuple[str, Message | Metadata]]:
-        """Yield (topic, message) in file order, and metadata records with topic ``""``; end quietly where a file was cut short."""
+    def _told_by(self, file: Path) -> FileIndex:
+        """Return what a file says of itself or, where it was cut short, what reading it finds."""
+        told = read_index(file, _LAST_OF_SAMPLE)
+        if told is not None:
+            for topic, ros_type in told.types.items():
+                self._require_type(topic, ros_type)
+            return told
+        present: set[str] = set()
+        metadata: dict[str, dict[str, str]] = {}
+        log_ns = [np.empty(0, np.uint64)]
+        for topics, record in self._records_of(file):
+            present |= set(topics)
+            if isinstance(record, Metadata):
+                metadata[record.name] = record.metadata
+            elif isinstance(record, Rows):
+                log_ns += [record.log_ns(k) for k, topic in enumerate(topics) if topic == _LAST_OF_SAMPLE]
+            elif topics == (_LAST_OF_SAMPLE,):
+                log_ns.append(np.array([record.log_time], np.uint64))
+        return FileIndex({}, present, metadata, np.concatenate(log_ns))
+
+    def _records(self) -> Iterator[tuple[tuple[str, ...], Message | Rows | Metadata]]:
+        """Yield (topics, messages) in file order, and metadata records without a topic; end quietly where a file was cut short."""
         for file in self.files:
-            yield from self._messages_of(file)
+            yield from self._records_of(file)
 
-    def _messages_of(self, file: Path) -> Iterator[tuple[str, Message | Metadata]]:
+    def _records_of(self, file: Path) -> Iterator[tuple[tuple[str, ...], Message | Rows | Metadata]]:
         topics: dict[int, str] = {}
         schemas: dict[int, str] = {}
-        started = finished = False
-        with open(file, "rb") as stream:
-            records = StreamReader(WholeReads(stream), validate_crcs=True, record_size_limit=max(file.stat().st_size, 1)).records
-            try:
-                for record in records:
-                    started = True
-                    if isinstance(record, Message):
-                        yield topics[record.channel_id], record
-                    elif isinstance(record, Schema):
-                        schemas[record.id] = record.name
-                    elif isinstance(record, Channel):
-                        self._require_type(record.topic, schemas.get(record.schema_id, ""))
-                        topics[record.id] = record.topic
-                    elif isinstance(record, Metadata):
-                        yield "", record
-                    finished = finished or isinstance(record, Footer)
-            except _BROKEN as fault:
-                if not started:
-                    raise RecordingError(f"{file}: not an MCAP file ({fault or type(fault).__name__})") from None
-                if not finished:
-                    name = "the file" if len(self.files) == 1 else file.name
-                    self.unfinished = f"{name} ends early ({str(fault) or type(fault).__name__}); what was complete before that is shown"
+        salvage = Salvage(file, in_rows=_OUTPUT_TOPICS.__contains__)
+        if not salvage.is_mcap:
+            raise RecordingError(f"{file}: not an MCAP file ({salvage.size} bytes)")
+        for record in salvage:
+            if salvage.damaged:
+                break
+            if isinstance(record, Rows):
+                yield tuple(topics[channel] for channel in record.channels), record
+            elif isinstance(record, Message):
+                yield (topics[record.channel_id],), record
+            elif isinstance(record, Schema):
+                schemas[record.id] = record.name
+            elif isinstance(record, Channel):
+                self._require_type(record.topic, schemas.get(record.schema_id, ""))
+                topics[record.id] = record.topic
+            elif isinstance(record, Metadata):
+                yield (), record
+        if salvage.damaged or not salvage.is_finished:
+            name = "the file" if len(self.files) == 1 else file.name
+            why = "what follows is damaged" if salvage.damaged else salvage.ends
+            self.unfinished = f"{name} ends early ({why}); what was complete before that is shown"
 
     def _require_type(self, topic: str, ros_type: str) -> None:
         expected = _TYPES.get(topic)
@@ -198,25 +192,52 @@ class Recording:
             yield item
 
     def _items(self, with_received: bool = False) -> Iterator["np.ndarray | Event | Received"]:
-        rows = _Rows(self.scene, self.start_ns)
+        samples = Samples(self.scene, self.start_ns)
         told: dict[tuple[str, Level], float] = {}
-        decode = _decoder()
-        for topic, message in self._messages():
-            if with_received and topic in _RECEIVED:
-                ros_type = _TYPES.get(topic) or MEASUREMENTS[topic[1:]].ros_type
-                yield Received(topic, ros_type, message.log_time, message.publish_time, message.data)
-            if topic not in _TYPES:
-                continue
-            decoded = trailing_doubles(message.data) if topic[1:] in ARRAYS else decode(message.data, _TYPES[topic])
-            if topic == f"/{DIAGNOSTICS[0]}":
-                yield from _news(decoded, (message.log_time - self.start_ns) * 1e-9, told)
-                continue
-            if topic in _OUTPUT_TOPICS and rows.begins_sample(message.log_time) and rows.count == ROWS_PER_BLOCK:
-                yield rows.take()
-            rows.enter(topic, message.log_time, decoded)
-        last = rows.take()
+        for topics, record in self._records():
+            if isinstance(record, Rows):
+                yield from _from_rows(samples, topics, record)
+            elif isinstance(record, Message):
+                if with_received and topics[0] in _RECEIVED:
+                    ros_type = _TYPES.get(topics[0]) or MEASUREMENTS[topics[0][1:]].ros_type
+                    yield Received(topics[0], ros_type, record.log_time, record.publish_time, record.data)
+                if topics[0] == f"/{DIAGNOSTICS[0]}":
+                    yield from _news(_decoder()(record.data, DIAGNOSTICS[1]), (record.log_time - self.start_ns) * 1e-9, told)
+                else:
+                    yield from _from_message(samples, topics[0], record)
+        last = samples.take()
         if len(last):
             yield last
+
+
+def _from_rows(samples: Samples, topics: tuple[str, ...], rows: Rows) -> Iterator[np.ndarray]:
+    """Enter rows, all at once where they can be; yield the blocks that get full."""
+    found = samples.numbers_of(rows, [topic[1:] if topic in _TYPES else "" for topic in topics])
+    if found is None:
+        for k, message in enumerate(rows.messages()):
+            yield from _from_message(samples, topics[k % len(topics)], message)
+        return
+    log_ns, (columns, numbers) = rows.log_ns(0), found
+    while len(log_ns):
+        if samples.count == ROWS_PER_BLOCK:
+            yield samples.take()
+        room = ROWS_PER_BLOCK - samples.count
+        samples.enter_rows(log_ns[:room], columns, numbers[:room])
+        log_ns, numbers = log_ns[room:], numbers[room:]
+
+
+def _from_message(samples: Samples, topic: str, message: Message) -> Iterator[np.ndarray]:
+    """Enter an input or an output; yield the block that gets full."""
+    if topic not in _TYPES:
+        return
+    name = topic[1:]
+    decoded = trailing_doubles(message.data) if name in ARRAYS else _decoder()(message.data, _TYPES[topic])
+    if topic not in _OUTPUT_TOPICS:
+        samples.enter_input(name, decoded)
+        return
+    if samples.begins_sample(message.log_time) and samples.count == ROWS_PER_BLOCK:
+        yield samples.take()
+    samples.enter(name, message.log_time, decoded)
 
 
 def trailing_doubles(data: bytes) -> np.ndarray:
@@ -251,134 +272,3 @@ def _news(message, time: float, told: dict[tuple[str, Level], float]) -> Iterato
         if time - told.get((code, level), -math.inf) > _REPEATS_WITHIN:
             yield Event(time, level, code, status.message)
         told[code, level] = time
-
-
-class _Rows:
-    """Samples being put together from messages that share a log time; inputs hold until the next ones."""
-
-    def __init__(self, scene: Scene, start_ns: int):
-        self._scene, self._start_ns = scene, start_ns
-        self._block = new_block(ROWS_PER_BLOCK, scene.bearing.roller.count)
-        self._log_time: int | None = None
-        self._last: np.void | None = None
-        operating = scene.operating
-        self._load = (operating.radial_load * math.cos(operating.load_angle), operating.radial_load * math.sin(operating.load_angle))
-        self._temperature = scene.lubricant.temperature
-        self.count = 0
-
-    def begins_sample(self, log_time: int) -> bool:
-        """Return whether an output message at this time starts a new sample."""
-        return log_time != self._log_time
-
-    def enter(self, topic: str, log_time: int, message) -> None:
-        """Enter one decoded message."""
-        if topic == "/radial_load":
-            self._load = (message.wrench.force.y, message.wrench.force.z)
-        elif topic == "/oil_temperature":
-            self._temperature = message.temperature + ZERO_CELSIUS
-        elif topic in _OUTPUT_TOPICS:
-            if self.begins_sample(log_time):
-                self._begin(log_time)
-            self._enter_output(topic, message)
-
-    def _begin(self, log_time: int) -> None:
-        self._log_time = log_time
-        row = self._block[self.count]
-        for name in row.dtype.names:
-            row[name] = np.nan
-        row["time"] = (log_time - self._start_ns) * 1e-9
-        row["load_y"], row["load_z"] = self._load
-        row["oil_temperature"] = self._temperature
-        self.count += 1
-
-    def _enter_output(self, topic: str, message) -> None:
-        row = self._block[self.count - 1]
-        if topic == "/bearing_joints":
-            places = {name: place for place, name in enumerate(message.name)}
-            for joint, field in (("shaft", "shaft"), ("cage", "cage"), ("cage_ideal", "ideal_cage")):
-                row[f"{field}_angle"], row[f"{field}_speed"] = message.position[places[joint]], message.velocity[places[joint]]
-        elif topic[1:] in ARRAYS:
-            fields = ARRAYS[topic[1:]].fields
-            for field, values in zip(fields, np.reshape(message, (len(fields), -1))):
-                row[field] = values if row[field].ndim else values[0]
-        else:
-            row[topic[1:]] = message.data
-
-    def take(self) -> np.ndarray:
-        """Return the samples so far, completed, and start anew."""
-        block, self.count = self._block[: self.count], 0
-        block = block[~np.isnan(block["inner_load"]).all(axis=1)]  # of a sample cut short by a kill the loads, written last, are missing
-        complete(self._scene, block, self._last)
-        if len(block):
-            self._last = block[-1].copy()
-        return block
-
-
-def complete(scene: Scene, block: np.ndarray, before: np.void | None = None) -> None:
-    """Fill in what a recording does not hold from what it does (see the module's description).
-
-    Equivalent loads that were not recorded are the power means of the instant, not averaged over a roller pitch.
-
-    Parameters
-    ----------
-    scene : what was simulated.
-    block : samples with time, speeds, angles and loads, NaN where nothing was recorded; changed in place.
-    before : the completed sample before the block.
-    """
-    bearing = scene.bearing
-    count, radius = bearing.roller.count, bearing.roller.diameter / 2
-    stiffness = contact_stiffness(bearing)
-    azimuth = block["cage_angle"][:, None] + 2 * math.pi / count * np.arange(count)
-    approach = {ring: np.maximum(block[f"{ring}_load"] / stiffness, 0.0) ** 0.9 for ring in ("inner", "outer")}
-    _fill(block, "roller_angle", azimuth)
-    if np.isnan(block["roller_radius"]).any():
-        _fill(block, "roller_radius", outer_contour(bearing.outer_raceway, azimuth)[0] - radius + approach["outer"])
-    rolling = bearing.pitch_radius / radius
-    _fill(block, "roller_spin", (block["cage_speed"] * rolling)[:, None])
-    _fill(block, "orbital_speed", block["cage_speed"][:, None])
-    start = block["cage_angle"][:1, None] * rolling
-    if np.isnan(block["roller_rotation"]).any():
-        _fill(block, "roller_rotation", _rotation(block, before if before is not None else block[0], start))
-    _fill(block, "inner_equivalent_load", np.mean(block["inner_load"] ** 4, axis=1) ** (1 / 4))
-    _fill(block, "outer_equivalent_load", np.mean(block["outer_load"] ** 4.5, axis=1) ** (1 / 4.5))
-    if not scene.bodies_tilt:
-        for field in _OF_TILTING_LEVELS:
-            _fill(block, field, 0.0)
-    _fill(block, "level", NUMBERS[scene.level])
-    for life in ("lamina_life", "modified_rating_life"):
-        _fill(block, life, block["rating_life"])
-    # A loaded roller touches the ring: e cos(phi - phi_e) = delta_i - (R_i + R_w - r); all of them together give e.
-    if np.isnan(block["ring_y"]).any():
-        wanted = approach["inner"] - (bearing.inner_raceway.radius + radius - block["roller_radius"])
-        for field, places in zip(("ring_y", "ring_z"), _ring_centre(azimuth, wanted, block["inner_load"] > 0)):
-            _fill(block, field, places)
-    guide_y, guide_z = (block["ring_y"], block["ring_z"]) if scene.cage_whirls and bearing.cage.guidance == "inner_ring" else (0.0, 0.0)
-    eccentricity = np.hypot(block["cage_y"] - guide_y, block["cage_z"] - guide_z) / bearing.cage.play
-    _fill(block, "land_eccentricity", eccentricity)
-
-
-def _fill(block: np.ndarray, field: str, values: np.ndarray | float) -> None:
-    """Enter values where none were recorded."""
-    block[field] = np.where(np.isnan(block[field]), values, block[field])
-
-
-def _rotation(block: np.ndarray, before: np.void, start: np.ndarray) -> np.ndarray:
-    """Return the rollers' rotation [rad] by trapezoids over their spins, from ``before`` or, where it knows none, from ``start``."""
-    times = np.concatenate(([before["time"]], block["time"]))
-    spins = np.concatenate((before["roller_spin"][None], block["roller_spin"]))
-    steps = 0.5 * (spins[1:] + spins[:-1]) * np.diff(times)[:, None]
-    known = np.isfinite(before["roller_rotation"])
-    return np.where(known, before["roller_rotation"], start) + np.cumsum(steps, axis=0)
-
-
-def _ring_centre(azimuth: np.ndarray, wanted: np.ndarray, touching: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the ring centre [m] that fits ``wanted`` [m] best over the touching rollers, by least squares, shape (n,) each.
-
-    A slight pull to the centre gives a ring that too few rollers hold a place.
-    """
-    cosine, sine = np.where(touching, np.cos(azimuth), 0.0), np.where(touching, np.sin(azimuth), 0.0)
-    wanted = np.where(touching, np.nan_to_num(wanted), 0.0)
-    a, b, d = (cosine**2).sum(axis=1) + 1e-9, (cosine * sine).sum(axis=1), (sine**2).sum(axis=1) + 1e-9
-    p, q = (cosine * wanted).sum(axis=1), (sine * wanted).sum(axis=1)
-    determinant = a * d - b * b
-    return (d * p - b * q) / determinant, (a * q - b * p) / determinant

@@ -1,7 +1,8 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The algebra of a system of one equation, for tests of integrators: what a level brings to them, as small as it gets.
 
-``work`` holds the Jacobian and its factor; models and right-hand sides are the tests' own.
+``work`` holds the Jacobian and its factor; models and right-hand sides are the tests' own.  What stands at the end, and `kept`, fits
+systems of any size.
 """
 
 from bearing_sim.kernels.compilation import kernel
@@ -36,3 +37,13 @@ def norm(t, y, change, tolerance, model):
 @kernel
 def stay(known, shift, slope, model, work, guess):
     guess[0] = known[0]
+
+
+@kernel
+def no_limit(t, y, model):
+    return 1e9
+
+
+@kernel
+def failing(t, y, model, work, rate):
+    return False

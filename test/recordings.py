@@ -3,6 +3,8 @@
 
 import struct
 
+from mcap.reader import make_reader
+
 from bearing_sim.sinks.mcap_file import McapFile
 
 SECOND = 1_000_000_000
@@ -57,6 +59,17 @@ def steady_log(path, duration=2.0, rate=10, speed=4000.0, load=800.0, start_ns=1
 def truncated(path, target, size):
     """Copy the first bytes of a file."""
     target.write_bytes(path.read_bytes()[:size])
+    return target
+
+
+def spoiled(path, target, chunk):
+    """Copy a file with some bytes in the middle of its chunk of that number overwritten."""
+    data = bytearray(path.read_bytes())
+    with open(path, "rb") as stream:
+        index = make_reader(stream).get_summary().chunk_indexes[chunk]
+    middle = index.chunk_start_offset + index.chunk_length // 2
+    data[middle : middle + 40] = b"\xff" * 40
+    target.write_bytes(data)
     return target
 
 

@@ -66,7 +66,8 @@ ALLOWED = {
     "oil.py": ({"numpy"}, {"scene_lubricant"}),
     "params.py": ({"numpy"}, {"contour", "crown", "kernels", "oil", "rating_life", "ring_growth", "scene", "scene_lubricant"}),
     "rating_life.py": ({"numpy"}, {"kernels.compilation"}),
-    "tables": ({"numpy", "platformdirs"}, {"tables", "kernels.compilation", "levels", "params", "rating_life", "scene"}),
+    "cores.py": (set(), set()),
+    "tables": ({"numpy", "platformdirs"}, {"tables", "cores", "kernels.compilation", "levels", "params", "rating_life", "scene"}),
     "compiled_call.py": ({"numba"}, set()),
     "simulation.py": ({"numpy"}, {"compiled_call", "effects", "integrators.status", "levels", "oil", "params", "sample", "scene", "tables"}),
     "sinks": (
@@ -75,12 +76,13 @@ ALLOWED = {
     ),
     "sweep": (
         {"numpy", "pyarrow", "distributed", "matplotlib"},
-        {"sweep", "kernels.compilation", "levels.steady_table", "provenance", "quantity", "sample", "scene", "scene_file", "simulation"},
+        {"sweep", "cores", "kernels.compilation", "levels.steady_table", "provenance", "quantity", "sample", "scene", "scene_file", "simulation"},
     ),
     "studies": (
         NUMBERS | {"sksundae", "matplotlib", "pydantic"},
         {
             "studies",
+            "cores",
             "effects",
             "events",
             "integrators.status",
@@ -102,6 +104,12 @@ ALLOWED = {
             "tables",
         },
     ),
+    "message_rows.py": ({"numpy", "mcap"}, set()),
+    "message_numbers.py": ({"numpy", "rosbags"}, {"topics"}),
+    "mcap_stream.py": ({"mcap", "zstandard"}, {"message_rows"}),
+    "mcap_index.py": ({"numpy", "mcap"}, {"mcap_stream", "message_rows"}),
+    "recording_completion.py": ({"numpy"}, {"contour", "effects", "params", "scene", "topics"}),
+    "recording_samples.py": ({"numpy"}, {"message_numbers", "message_rows", "recording_completion", "sample", "scene", "topics"}),
     "runtime": ({"numpy", "scipy"}, {"runtime", "film_ratio", "simulation", "scene", "scene_monitoring", "effects", "events", "sample", "topics"}),
 }
 
@@ -273,3 +281,11 @@ def test_quantities_in_the_scene_are_declared_once_with_unit_and_meaning():
             for quantity in getattr(field.type, "__metadata__", ()):
                 if isinstance(quantity, Quantity):
                     assert quantity.meaning and quantity.minimum < quantity.maximum, field.name
+
+
+def test_cores_are_counted_in_one_place():
+    """The bench pins itself to cores and tells the machine's; whoever shares out work asks `bearing_sim.cores`."""
+    counting = {
+        path.relative_to(PACKAGE).as_posix() for path in MODULES if re.search(r"len\(os\.sched_getaffinity|os\.cpu_count\(\) or", path.read_text())
+    }
+    assert counting == {"cores.py"}

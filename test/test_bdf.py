@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from one_equation import failing, kept, no_limit
 from scipy.integrate import solve_ivp
 
 from bearing_sim.integrators.bdf import bdf, solve_step
@@ -14,11 +15,6 @@ from bearing_sim.kernels.compilation import kernel
 
 # model: (problem, parameter); work: rows of the Jacobian, then rows of I - shift J, shape (4, 2)
 OSCILLATOR, VAN_DER_POL, STIFF, KINK = 0.0, 1.0, 2.0, 3.0
-
-
-@kernel
-def kept(h, y, model, work):
-    pass
 
 
 @kernel
@@ -70,11 +66,6 @@ def norm(t, y, change, tolerance, model):
 
 
 @kernel
-def no_limit(t, y, model):
-    return 1e9
-
-
-@kernel
 def nan_rate(t, y, model, work, rate):
     rate[0], rate[1] = math.nan, 0.0
     return True
@@ -84,11 +75,6 @@ def nan_rate(t, y, model, work, rate):
 def nan_rate_and_jacobian(t, y, model, work, rate):
     work[:] = 0.0
     return nan_rate(t, y, model, work, rate)
-
-
-@kernel
-def failing_rate(t, y, model, work, rate):
-    return False
 
 
 @kernel
@@ -130,9 +116,7 @@ def advance_nan(t, end, stop, y, h, tolerance, longest, budget, model, work, his
 
 @kernel
 def advance_failing(t, end, stop, y, h, tolerance, longest, budget, model, work, history, counts):
-    return bdf(
-        failing_rate, failing_rate, factor, solve, norm, no_limit, kept, t, end, stop, y, h, tolerance, longest, budget, model, work, history, counts
-    )
+    return bdf(failing, failing, factor, solve, norm, no_limit, kept, t, end, stop, y, h, tolerance, longest, budget, model, work, history, counts)
 
 
 @kernel

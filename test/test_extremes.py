@@ -21,7 +21,8 @@ from bearing_sim.simulation import scene_inputs
 from bearing_sim.studies.extremes import kinds_of_reason
 from bearing_sim.studies.extremes_long import long_run
 from bearing_sim.studies.extremes_run import CLAMPED, FAILED, FINISHED, REFUSED, course_legs, run_case
-from bearing_sim.studies.extremes_scenes import BEARING, DIMENSIONS, Case, oil_of, sampled_cases
+from bearing_sim.studies.extremes_scenes import DIMENSIONS, Case, oil_of, sampled_cases
+from bearing_sim.studies.stock_bearing import BEARING
 
 
 def case(*overrides, level="slip", course="steady", seconds=1e-3):

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from one_equation import factor, kept, norm, nothing, solve, stay
+from one_equation import factor, failing, kept, norm, nothing, solve, stay
 
 from bearing_sim.integrators.fixed_step import fixed_step
 from bearing_sim.integrators.rosenbrock2 import rosenbrock2_step
@@ -29,11 +29,6 @@ def rate_of(t, y, model, work, rate):
 def rate_and_jacobian(t, y, model, work, rate):
     work[0] = -model[0]
     return rate_of(t, y, model, work, rate)
-
-
-@kernel
-def failing(t, y, model, work, rate):
-    return False
 
 
 @kernel

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from one_equation import factor, kept, norm, nothing, solve, stay
+from one_equation import factor, failing, kept, no_limit, norm, nothing, solve, stay
 
 from bearing_sim.integrators.drive import drive
 from bearing_sim.integrators.rosenbrock2 import rosenbrock2_step
@@ -30,20 +30,10 @@ def rate_and_jacobian(t, y, model, work, rate):
 
 
 @kernel
-def failing_rate(t, y, model, work, rate):
-    return False
-
-
-@kernel
 def nan_rate(t, y, model, work, rate):
     rate[0] = math.nan
     work[0] = 0.0
     return True
-
-
-@kernel
-def no_limit(t, y, model):
-    return 1e9
 
 
 @kernel
@@ -79,7 +69,7 @@ def advance_nan(t, end, y, h, tolerance, longest, budget, model, work, scratch, 
 
 @kernel
 def advance_failing(t, end, y, h, tolerance, longest, budget, model, work, scratch, counts):
-    return drive(failing_rate, step, norm, no_limit, kept, 2, t, end, y, h, tolerance, longest, budget, model, work, scratch, counts)
+    return drive(failing, step, norm, no_limit, kept, 2, t, end, y, h, tolerance, longest, budget, model, work, scratch, counts)
 
 
 def solution(stiffness, steps=0, told=1.0, tolerance=1e9, end=2.0, budget=10**7, run=advance, start=1.0):

@@ -26,6 +26,7 @@ from bearing_sim.scene_file import load_scene, scene_from_yaml
 from bearing_sim.simulation import Inputs
 from bearing_sim.sinks.mcap_file import McapFile, message_type
 from bearing_sim.sinks.mcap_sink import METADATA, McapSink
+from bearing_sim.sinks.ros_types import load_message_types
 from bearing_sim.topics import ARRAYS, INPUTS, OUTPUTS, RECORDED, Origin, recorded
 
 START = 1_700_000_000_000_000_000
@@ -267,3 +268,14 @@ def test_arrays_are_serialised_as_the_general_way_does(topic):
         np.testing.assert_array_equal(read.data, message["data"])
         assert [(d.label, d.size, d.stride) for d in read.layout.dim] == [tuple(d.values()) for d in message["layout"]["dim"]]
         assert bytes(store.serialize_cdr(read, ros_type)) == message_type(ros_type).serialize(message)
+
+
+def test_once_types_are_loaded_no_message_of_a_recording_waits_for_one(tmp_path):
+    load_message_types()
+    loaded = message_type.cache_info().misses
+    with McapSink(tmp_path / "run.mcap", load_scene("deng2017_table1", ["level=spatial"]), START) as sink:
+        sink.write_inputs(0.0, Inputs(4000.0, 800.0, -50.0, 393.15))
+        sink.write_measurement(0.0, 1800.0, 0.01)
+        sink.write(numbered_block(1))
+        sink.write_event(Event(0.2, Level.WARN, "slip.high", "slip is 6 %"))
+    assert message_type.cache_info().misses == loaded

@@ -67,20 +67,35 @@ def given_up(client, since=0):
     return [text for level, name, text in client.statuses(since) if level == 2 and "record failed and is given up" in text]
 
 
-def test_the_node_goes_on_without_the_process_that_records_gets_another_one_and_killed_itself_leaves_a_complete_file(launch, tmp_path):
+def restarts(client, since=0):
+    return [text for level, name, text in client.statuses(since) if level == 1 and "recording.restarted" in name]
+
+
+def test_a_recording_whose_process_is_killed_goes_on_in_another_file_but_not_for_ever_and_a_killed_node_leaves_a_complete_one(launch, tmp_path):
     process, client = launch(f"record:={tmp_path / 'run.mcap'}")
     client.drive(2.0)
     [pid] = recorders_of(process)
     client.hear()
     last_heard = client.received["bearing_joints"][-1].header.stamp.sec
     os.kill(pid, signal.SIGKILL)
-    client.drive_until(lambda: given_up(client), "the lost recording is told as an ERROR", process)
-    assert "SIGKILL" in given_up(client)[-1]
+    client.drive_until(lambda: restarts(client), "the lost recording is told as a WARN", process)
+    assert "SIGKILL" in restarts(client)[-1] and "goes on in" in restarts(client)[-1] and not given_up(client)
     heard = len(client.received["cage_slip"])
     client.drive_until(lambda: len(client.received["cage_slip"]) > heard + 20, "the node goes on", process)
     found = recover(tmp_path / "run.mcap.active", tmp_path / "good.mcap")
     assert found.damaged == 0 and found.messages["/cage_slip"] > 30
     assert last_heard - found.last_ns / SECOND < 1.0
+
+    second = tmp_path / "run_2.mcap.active"
+    client.drive_until(lambda: second.exists() and contents(second).messages["/cage_slip"] > 30, "the recording goes on", process)
+
+    def kill_and_look():
+        for number in recorders_of(process):
+            os.kill(number, signal.SIGKILL)
+        return given_up(client)
+
+    client.drive_until(kill_and_look, "a process that is killed again and again is told as an ERROR", process)
+    assert "no other is started" in given_up(client)[-1] and not recorders_of(process)
 
     again = client.call(Trigger, "start_recording", Trigger.Request(), process)
     assert again.success, again.message

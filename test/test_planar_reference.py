@@ -2,9 +2,11 @@
 """The planar level against a plain NumPy model: its forces, its derivatives, its course in time, its conservation laws."""
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
+from complex_step import assert_blocks_agree, complex_step_jacobian
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from reference_planar import Reference, State
@@ -146,30 +148,14 @@ def test_right_hand_side_is_that_of_the_plain_numpy_model(variant):
     follows()
 
 
-def complex_step_jacobian(reference, state):
-    matrix = np.zeros((state.size, state.size))
-    for i in range(state.size):
-        shifted = state.astype(complex)
-        shifted[i] += 1e-30j
-        matrix[:, i] = rate_of(reference, shifted).imag / 1e-30
-    return matrix
-
-
 @pytest.mark.parametrize("variant", VARIANTS)
 @pytest.mark.parametrize("seed", range(3))
 def test_jacobian_is_that_of_a_complex_step_through_the_plain_numpy_model(variant, seed):
     fields, overrides = VARIANTS[variant]
     run = simulation(*overrides)
     state = rough_state(run, seed, 0.3)
-    found, expected = dense_jacobian(run, state), complex_step_jacobian(Reference(**fields), state)
-    which = kinds(run._params.rollers.count)
-    round_off = np.abs(expected).max(1)  # some blocks are sums over rollers that vanish
-    # each block of one kind of rate by one kind of state has a unit, and so a largest entry, of its own
-    for row in range(11):
-        for column in range(11):
-            block = np.ix_(which == row, which == column)
-            largest = np.abs(expected[block]).max() + 1e-9 * round_off[which == row].min()
-            assert np.abs(found - expected)[block].max() <= 1e-6 * largest, (row, column)
+    found, expected = dense_jacobian(run, state), complex_step_jacobian(partial(rate_of, Reference(**fields)), state)
+    assert_blocks_agree(found, expected, kinds(run._params.rollers.count))
 
 
 def test_drag_on_rollers_along_its_tangent_is_that_of_their_own_speed_while_they_keep_up_with_the_cage():

@@ -16,7 +16,7 @@ import pytest
 from click.testing import CliRunner
 from mcap.reader import make_reader
 from mcap.records import Message
-from recordings import steady_log, truncated
+from recordings import spoiled, steady_log, truncated
 from synthetic_run import synthetic_block
 
 from bearing_sim.cli import main
@@ -98,27 +98,19 @@ def test_a_recovered_file_holds_the_same_messages(recording, tmp_path):
 
 
 def test_what_comes_after_a_damaged_chunk_is_recovered_too(recording, tmp_path):
-    data = bytearray(recording.read_bytes())
-    with open(recording, "rb") as stream:
-        chunks = make_reader(stream).get_summary().chunk_indexes
-    middle = chunks[3].chunk_start_offset + chunks[3].chunk_length // 2
-    data[middle : middle + 40] = b"\xff" * 40
-    (tmp_path / "broken.mcap").write_bytes(data)
+    spoiled(recording, tmp_path / "broken.mcap", chunk=3)
     found = recover(tmp_path / "broken.mcap", tmp_path / "good.mcap")
     whole = contents(recording)
     lost = whole.messages.total() - found.messages.total()
+    with open(recording, "rb") as stream:
+        chunks = len(make_reader(stream).get_summary().chunk_indexes)
     assert found.damaged == 1 and found.is_finished and not found.is_sound
-    assert 0 < lost <= 1.2 * whole.messages.total() / len(chunks)
+    assert 0 < lost <= 1.2 * whole.messages.total() / chunks
     assert blocks(tmp_path / "good.mcap")["time"][-1] == pytest.approx(RUN["time"][-1])
 
 
 def test_messages_whose_channel_was_told_in_a_damaged_chunk_are_counted_as_lost(recording, tmp_path):
-    data = bytearray(recording.read_bytes())
-    with open(recording, "rb") as stream:
-        chunks = make_reader(stream).get_summary().chunk_indexes
-    middle = chunks[0].chunk_start_offset + chunks[0].chunk_length // 2
-    data[middle : middle + 40] = b"\xff" * 40
-    (tmp_path / "broken.mcap").write_bytes(data)
+    spoiled(recording, tmp_path / "broken.mcap", chunk=0)
     whole, found = contents(recording), contents(tmp_path / "broken.mcap")
     readable = sum(isinstance(record, Message) for record in Salvage(tmp_path / "broken.mcap"))
     orphans = found.damaged - 1

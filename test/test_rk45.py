@@ -5,16 +5,12 @@ import math
 
 import numpy as np
 import pytest
+from one_equation import failing, kept, no_limit
 from scipy.integrate import solve_ivp
 
 from bearing_sim.integrators.rk45 import rk45
 from bearing_sim.integrators.status import COUNT, NON_FINITE, NOT_EVALUATED, OK, STEP_BUDGET, new_counts
 from bearing_sim.kernels.compilation import kernel
-
-
-@kernel
-def kept(h, y, model, work):
-    pass
 
 
 @kernel
@@ -33,19 +29,9 @@ def prothero_robinson(t, y, model, work, rate):
 
 
 @kernel
-def failing(t, y, model, work, rate):
-    return False
-
-
-@kernel
 def norm(t, y, change, tolerance, model):
     first, second = abs(change[0]) / tolerance, abs(change[1]) / tolerance
     return second if not second <= first else first
-
-
-@kernel
-def no_limit(t, y, model):
-    return 1e9
 
 
 @kernel

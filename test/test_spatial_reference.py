@@ -2,9 +2,11 @@
 """The spatial level against a plain NumPy model: its forces, its derivatives, its energy."""
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
+from complex_step import assert_blocks_agree, complex_step_jacobian
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from reference_planar import Reference
@@ -203,31 +205,14 @@ def dense_jacobian(run, state):
     return matrix
 
 
-def complex_step_jacobian(reference, state):
-    matrix = np.zeros((state.size, state.size))
-    for i in range(state.size):
-        shifted = state.astype(complex)
-        shifted[i] += 1e-30j
-        matrix[:, i] = rate_of(reference, shifted).imag / 1e-30
-    return matrix
-
-
 @pytest.mark.parametrize("variant", VARIANTS)
 @pytest.mark.parametrize("seed", range(3))
 def test_jacobian_is_that_of_a_complex_step_through_the_plain_numpy_model(variant, seed):
     new_reference, overrides, crown = VARIANTS[variant]
     run = simulation(*overrides, crown=crown)
     state = rough_state(run, seed, 0.3)
-    found, expected = dense_jacobian(run, state), complex_step_jacobian(new_reference(), state)
-    which = kinds(run._params.rollers.count)
-    round_off = np.abs(expected).max(1)  # some blocks are sums over slices that vanish
-    # each block of one kind of rate by one kind of state has a unit, and so a largest entry, of its own
-    for row in range(19):
-        for column in range(19):
-            block = np.ix_(which == row, which == column)
-            largest = np.abs(expected[block]).max() + 1e-9 * round_off[which == row].min()
-            error = np.abs(found - expected)[block].max()
-            assert error <= 1e-6 * largest, (row, column, error, largest)
+    found, expected = dense_jacobian(run, state), complex_step_jacobian(partial(rate_of, new_reference()), state)
+    assert_blocks_agree(found, expected, kinds(run._params.rollers.count))
 
 
 def test_block_arrow_solution_is_that_of_the_dense_matrix():

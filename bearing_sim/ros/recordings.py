@@ -6,9 +6,9 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from bearing_sim import topics
 from bearing_sim.runtime.live import cadence
 from bearing_sim.scene import Scene
+from bearing_sim.sinks.lasting_recording import LastingRecording
 from bearing_sim.sinks.limits import Limits
 
 if TYPE_CHECKING:
@@ -29,17 +29,16 @@ def prepare(view: bool, recorder: "Recorder | None") -> None:
     if recorder is not None:
         recorder.start()
         return
-    from bearing_sim.sinks.mcap_file import message_type
+    from bearing_sim.sinks.ros_types import load_message_types
 
     importlib.import_module("bearing_sim.sinks.mcap_sink")
-    for ros_type in {topic.ros_type for topic in (*topics.INPUTS.values(), *topics.RECORDED.values(), *topics.OUTPUTS.values())} | {
-        topics.DIAGNOSTICS[1]
-    }:
-        message_type(ros_type)
+    load_message_types()
 
 
 def open_recording(path: Path, scene: Scene, start_ns: int, limits: Limits, sample_rate: float, recorder: "Recorder"):
-    """Return a recording in real time (see `bearing_sim.sinks.recorder.LiveRecording`); its ``path`` is a fresh one where ``path`` is taken.
+    """Return a recording in real time; its ``path`` is a fresh one where ``path`` is taken.
+
+    Where the process that records is killed, it goes on in another fresh one (see `bearing_sim.sinks.lasting_recording`).
 
     Parameters
     ----------
@@ -56,7 +55,7 @@ def open_recording(path: Path, scene: Scene, start_ns: int, limits: Limits, samp
     """
     beat = cadence(sample_rate)
     advance = (beat.tick, beat.samples) if beat.every == 1 else None
-    return recorder.open(fresh_path(path), scene, start_ns, limits, advance)
+    return LastingRecording(lambda wait: recorder.open(fresh_path(path), scene, start_ns, limits, advance, wait=wait))
 
 
 def open_lossless_recording(path: Path, scene: Scene, start_ns: int, limits: Limits):

@@ -72,15 +72,24 @@ class Recorder:
         limits: Limits = UNPARTED,
         advance: tuple[float, int] | None = None,
         replace: bool = False,
+        wait: bool = True,
     ) -> "LiveRecording":
-        """Begin a recording; the parameters are those of `bearing_sim.sinks.mcap_sink.McapSink`.
+        """Begin a recording; the other parameters are those of `bearing_sim.sinks.mcap_sink.McapSink`.
+
+        Parameters
+        ----------
+        wait : whether to wait until the file is open; else what is written meanwhile waits, and the first write after a fault raises it.
 
         Raises
         ------
         OSError
             The file cannot be made, or no process can.
         """
-        return LiveRecording(self._living_line(), Path(path), scene, int(start_ns), {"limits": limits, "advance": advance, "replace": replace})
+        options = {"limits": limits, "advance": advance, "replace": replace}
+        recording = LiveRecording(self._living_line(), Path(path), scene, int(start_ns), options)
+        if wait:
+            recording.wait_until_open()
+        return recording
 
     def close(self, timeout: float = _CLOSE_WITHIN) -> bool:
         """Complete what is being recorded and end the process; a second call does nothing.
@@ -111,7 +120,9 @@ class Recorder:
 
 
 class LiveRecording:
-    """One recording of a `Recorder`, with the methods of `bearing_sim.sinks.mcap_sink.McapSink`; none but `close` waits for anything.
+    """One recording of a `Recorder`, with the methods of `bearing_sim.sinks.mcap_sink.McapSink`.
+
+    None but `wait_until_open` and `close` waits for anything.
 
     Attributes
     ----------
@@ -124,9 +135,23 @@ class LiveRecording:
         self._line, self._told, self._closed = line, 0, False
         self._number, self._state = line.register()
         line.put(self._number, "open", (path.absolute(), scene, start_ns, options), urgent=True)
+
+    @property
+    def is_orphaned(self) -> bool:
+        """Whether the process has ended before this recording was complete."""
+        return self._line.end is not None
+
+    def wait_until_open(self) -> None:
+        """Wait until there is a file.
+
+        Raises
+        ------
+        OSError
+            It cannot be made, or is not within half a minute.
+        """
         if not self._state.opened.wait(_OPEN_WITHIN):
-            line.put(self._number, "close", (), urgent=True)
-            raise OSError(f"{path} was not opened within {_OPEN_WITHIN:g} s by the process that records")
+            self._line.put(self._number, "close", (), urgent=True)
+            raise OSError(f"{self.path} was not opened within {_OPEN_WITHIN:g} s by the process that records")
         if self._state.fault is not None:
             raise self._state.fault
 

@@ -16,11 +16,10 @@ from collections.abc import Iterator
 from types import SimpleNamespace
 from typing import BinaryIO
 
-from bearing_sim import topics
 from bearing_sim.sample import sample_dtype
 from bearing_sim.sinks.mcap_sink import McapSink
 from bearing_sim.sinks.priority import give_way
-from bearing_sim.sinks.ros_types import message_type
+from bearing_sim.sinks.ros_types import load_message_types
 
 _NICENESS = 5  # a file may be late by a part of a second, the solver may not
 
@@ -32,9 +31,7 @@ def main() -> None:
     give_way(_NICENESS)
     reports = os.dup(1)
     os.dup2(2, 1)  # whatever a library prints is no report
-    for topic in (*topics.INPUTS.values(), *topics.RECORDED.values(), *topics.OUTPUTS.values()):
-        message_type(topic.ros_type)
-    message_type(topics.DIAGNOSTICS[1])
+    load_message_types()
     desk = Desk(reports)
     for operations in frames(sys.stdin.buffer):
         for number, name, arguments in operations:

@@ -9,6 +9,8 @@ import numpy as np
 from rosbags.interfaces import Nodetype
 from rosbags.typesys import Stores, get_typestore
 
+from bearing_sim import topics
+
 _ARRAY = "std_msgs/msg/Float64MultiArray"
 
 
@@ -42,6 +44,13 @@ def message_type(ros_type: str) -> MessageType:
         return bytes(store.serialize_cdr(fill(message), ros_type))
 
     return MessageType(definition, store.hash_rihs01(ros_type), _array_serializer(serialize) if ros_type == _ARRAY else serialize)
+
+
+def load_message_types() -> None:
+    """Make the types of all topics of a recording ready, which takes a part of a second, before the first message is to be written."""
+    for topic in (*topics.INPUTS.values(), *topics.MEASUREMENTS.values(), *topics.RECORDED.values(), *topics.OUTPUTS.values()):
+        message_type(topic.ros_type)
+    message_type(topics.DIAGNOSTICS[1])
 
 
 def _array_serializer(serialize: Callable[[dict], bytes]) -> Callable[[dict], bytes]:

@@ -20,9 +20,10 @@ from bearing_sim.levels.level import LEVELS
 from bearing_sim.scene import Scene
 from bearing_sim.simulation import IntegrationError, Simulation
 from bearing_sim.studies import bench_bound, bench_settled
-from bearing_sim.studies.bench_problem import BEARING, LOAD, STOCK_ROLLERS, bare_problem, error_share, level_methods, scaled_scene
+from bearing_sim.studies.bench_problem import LOAD, STOCK_ROLLERS, bare_problem, error_share, level_methods, scaled_scene
 from bearing_sim.studies.bench_solvers import SolverRun, solve_with
 from bearing_sim.studies.bench_start_up import start_up
+from bearing_sim.studies.stock_bearing import BEARING
 
 SPEEDS = (15_000.0, 45_000.0)  # rpm
 # With looser tolerances of LSODA, so that it can be had at no smaller an error than ours, too.

@@ -15,10 +15,10 @@ from bearing_sim.levels.level import LEVELS
 from bearing_sim.levels.slip import Model
 from bearing_sim.params import lubricate, pack
 from bearing_sim.scene import Integration, Scene
-from bearing_sim.scene_file import SceneError, load_scene
+from bearing_sim.scene_file import load_scene
 from bearing_sim.simulation import Simulation, scene_inputs
+from bearing_sim.studies.stock_bearing import BEARING, takes
 
-BEARING = "deng2017_table1"
 LOAD = 800.0  # N
 STOCK_ROLLERS = 18
 FIXED_STEP = "integration.fixed_step=10 us"
@@ -57,20 +57,12 @@ def level_methods(level: str) -> dict[str, list[str]]:
     methods, found = getattr(LEVELS[level], "methods", None), {}
     if methods is None:
         choices = typing.get_args(typing.get_type_hints(Integration)["method"])
-        return {name: [] for choice in choices for name in typing.get_args(choice) if _accepted(level, f"integration.method={name}")} or {"": []}
+        return {name: [] for choice in choices for name in typing.get_args(choice) if takes(level, f"integration.method={name}")} or {"": []}
     for name in methods:
         found[name] = [f"integration.method={name}"]
         if getattr(methods[name], "advance_fixed", None) is not None:
             found[f"{name}, fixed step"] = [*found[name], FIXED_STEP]
     return found
-
-
-def _accepted(level: str, override: str) -> bool:
-    try:
-        load_scene(BEARING, [f"level={level}", override])
-    except SceneError:
-        return False
-    return True
 
 
 def scaled_scene(level: str, speed_rpm: float, rollers: int = STOCK_ROLLERS, overrides: Sequence[str] = (), tolerance: float | None = None) -> Scene:
@@ -123,6 +115,7 @@ def bare_problem(scene: Scene) -> Problem | None:
 
 def error_share(problem: Problem, state: np.ndarray, reference: np.ndarray) -> float:
     """Return how far a state is off in the level's own measure of error, the one that the relative tolerance bounds in a step."""
+    reference = np.ascontiguousarray(reference)  # a column of a course would be another type, and compiled for once more
     return float(_norm(problem.kernels.error_norm)(0.0, reference, state - reference, 1.0, problem.model))
 
 

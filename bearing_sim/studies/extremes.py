@@ -7,13 +7,13 @@ step or an explicit method); *refused*, by the scene's checks before it starts; 
 died, a hang, too slow with settings that do not ask for it, or a value that no bearing can have.
 """
 
-import os
 import re
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import get_context
 
+from bearing_sim.cores import cores
 from bearing_sim.levels.level import LEVELS
 from bearing_sim.studies.extremes_corners import corner_cases
 from bearing_sim.studies.extremes_long import LongRun, long_run, long_runs
@@ -67,11 +67,6 @@ def run_extremes(
     order = {(case.level, case.name): place for place, case in enumerate(cases)}
     outcomes.sort(key=lambda outcome: order[outcome.case.level, outcome.case.name])
     return _report(levels, samples, seed, outcomes, long_outcomes), outcomes
-
-
-def cores() -> int:
-    """Return how many cores this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _pool(workers: int | None = None) -> ProcessPoolExecutor:

@@ -2,7 +2,8 @@
 """The corners of the study of extremes: one thing at a time driven to its bound, by name."""
 
 from bearing_sim.levels.level import LEVELS
-from bearing_sim.studies.extremes_scenes import Case, oil_of, takes
+from bearing_sim.studies.extremes_scenes import Case, oil_of
+from bearing_sim.studies.stock_bearing import takes
 
 _WARM = 393.15  # K
 _SPEED, _LOAD, _LOW, _CAGE = "operating.shaft_speed", "operating.radial_load", "bearing.outer_raceway.low_radius", "bearing.cage"

@@ -9,7 +9,7 @@ import numpy as np
 
 from bearing_sim.scene_file import load_scene
 from bearing_sim.simulation import IntegrationError, Simulation
-from bearing_sim.studies.extremes_scenes import BEARING
+from bearing_sim.studies.stock_bearing import BEARING
 
 # Simulated seconds at 15,000 rpm; a level that is not named runs as long as the cheapest.
 _SECONDS = {"slip": 1000.0, "planar": 100.0, "spatial": 10.0}

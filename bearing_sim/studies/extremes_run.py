@@ -13,7 +13,8 @@ from bearing_sim.integrators.status import STEP_BUDGET
 from bearing_sim.scene import Scene
 from bearing_sim.scene_file import SceneError, load_scene
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation, scene_inputs
-from bearing_sim.studies.extremes_scenes import BEARING, Case
+from bearing_sim.studies.extremes_scenes import Case
+from bearing_sim.studies.stock_bearing import BEARING
 
 FINISHED, CLAMPED, REFUSED, FAILED = OUTCOMES = ("finished", "clamped", "refused", "failed")
 STEPS = 20_000  # allowed to one run whose settings ask for small steps

@@ -12,9 +12,8 @@ from typing import NamedTuple
 from scipy.stats import qmc
 
 from bearing_sim.levels.level import LEVELS
-from bearing_sim.scene_file import SceneError, load_scene
+from bearing_sim.studies.stock_bearing import takes
 
-BEARING = "deng2017_table1"
 COURSES = ("steady", "steady", "reversal", "stop", "start", "load_step", "ripple")  # of the inputs; steady ones twice as often
 _TRACTIONS = ("oil_4109", "constant", "kragelskii", "eyring")
 _CROWNS = ("none", "iso_log", "{law: straight_arc, straight_length: 4 mm, crown_radius: 1 m}")
@@ -128,15 +127,6 @@ def _room(rollers: int) -> float:
 
 def _pitch_radius(rollers: int) -> float:
     return (_INNER_RADIUS + _DIAMETER / 2) * max(rollers / _ROLLERS_THAT_FIT, 1.0)
-
-
-def takes(level: str, override: str) -> bool:
-    """Return whether a scene of a level may have a field overridden."""
-    try:
-        load_scene(BEARING, [f"level={level}", override])
-    except SceneError:
-        return False
-    return True
 
 
 def _method(level: str, share: float) -> tuple[str, bool]:

@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 
+from bearing_sim.cores import cores
 from bearing_sim.sweep.journal import Journal
 from bearing_sim.sweep.tasks import Task
 
@@ -23,11 +24,6 @@ _DASK_TIMEOUT = 20  # s to reach the scheduler
 
 class ClusterError(RuntimeError):
     """A Dask cluster that cannot be used; the message says what to do."""
-
-
-def cores() -> int:
-    """Return how many cores this process may use."""
-    return len(os.sched_getaffinity(0))
 
 
 def run_tasks(

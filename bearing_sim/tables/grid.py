@@ -7,7 +7,6 @@ of some lines of the grid drawn by lot.  What is reported in the end comes from 
 
 import itertools
 import math
-import os
 import threading
 import time
 from collections.abc import Callable
@@ -16,6 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.cores import cores
 from bearing_sim.levels.inputs import Drive
 from bearing_sim.levels.slip import Model
 from bearing_sim.levels.steady import look_up_conditions, new_work, solve_conditions
@@ -70,7 +70,7 @@ class Solver:
         self._lubrications: dict[float, Lubrication] = {}
         self._known: dict[tuple, np.ndarray] = {}
         self._local = threading.local()
-        self._pool = ThreadPoolExecutor(workers or os.cpu_count() or 1)
+        self._pool = ThreadPoolExecutor(workers or cores())
 
     def __enter__(self) -> "Solver":
         return self
