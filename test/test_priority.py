@@ -16,6 +16,7 @@ from mcap.reader import make_reader
 from rerun.chunk import RrdReader
 from synthetic_run import synthetic_block
 
+from bearing_sim.ros.cheaper_levels import start_compiling
 from bearing_sim.scene_file import load_scene
 from bearing_sim.screenshot import HOW_TO_GET_VULKAN, HeadlessViewer, ViewerFailed
 from bearing_sim.sinks import priority
@@ -99,6 +100,16 @@ def test_the_recorder_gives_way_but_has_a_share_of_its_own_whatever_runs_in_the_
             assert group.read_text().split()[-1] == "5"
 
 
+def test_compiling_cheaper_levels_gives_way_but_does_not_wait_for_idle_time_which_a_solver_that_is_too_slow_leaves_none_of():
+    process = start_compiling(SCENE, 1000.0)
+    try:
+        wait_for(lambda: set(policies(process.pid).values()) == {BATCH})
+        assert os.getpriority(os.PRIO_PROCESS, process.pid) == min(19, os.getpriority(os.PRIO_PROCESS, 0) + 10)
+    finally:
+        process.kill()
+        process.wait()
+
+
 ON_ONE_CORE = """
 import os, subprocess, sys, time
 os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
@@ -133,31 +144,32 @@ def rows(path):
 
 
 AT_A_TERMINAL = """
-import fcntl, json, os, signal, sys, termios, time
+import fcntl, json, signal, sys, termios, time
 fcntl.ioctl(0, termios.TIOCSCTTY, 0)  # the terminal of this session, in whose foreground this process is
-signal.signal(signal.SIGINT, signal.default_int_handler)
+interrupted = []
+signal.signal(signal.SIGINT, lambda *_: interrupted.append(True))
 sys.path.insert(0, sys.argv[2])
 from test_priority import BLOCK, Recorder, RerunSink, SCENE, free_port
 with Recorder() as recorder, RerunSink(SCENE, path=sys.argv[1] + ".rrd") as view, RerunSink(SCENE, serve_port=free_port()) as pictures:
     record = recorder.open(sys.argv[1] + ".mcap", SCENE, 0)
-    try:
-        print(json.dumps([recorder.pid, view.pid, pictures.pid]), flush=True)  # as early as can be: the view may not even have begun to read
-        written = 0
-        while True:
-            block = BLOCK.copy()
-            block["time"] += 0.2 * written
-            record.write(block)
-            view.write(block)
-            written += 1
-            time.sleep(0.05)
-    except KeyboardInterrupt:
-        print("interrupted", flush=True)
-        sys.stdin.readline()
-        block["time"] += 0.2
+    written = 0
+    def write():
+        global written
+        block = BLOCK.copy()
+        block["time"] += 0.2 * written
         record.write(block)
         view.write(block)
-        record.close(60.0)
-        print(json.dumps([written + 1, view.close(60.0), pictures.fault]), flush=True)
+        written += 1
+    print(json.dumps([recorder.pid, view.pid, pictures.pid]), flush=True)  # as early as can be: the view may not even have begun to read
+    while not interrupted:
+        write()
+        time.sleep(0.05)
+    print("interrupted", flush=True)
+    sys.stdin.readline()
+    view.wait_until_ready(60.0)
+    write()
+    record.close(60.0)
+    print(json.dumps([written, view.close(60.0), pictures.fault]), flush=True)
 """
 
 
