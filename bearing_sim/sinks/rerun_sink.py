@@ -30,7 +30,7 @@ from bearing_sim.sinks.rerun_view import ViewOptions
 from bearing_sim.topics import Origin
 
 _HAND_ON_EVERY = 0.03  # [s]; the thread that solves is disturbed no more often than that
-_NICENESS = 10  # of a process that writes a file, which nothing should be missing from
+_NICENESS = 5  # of a process that writes a file, which nothing should be missing from
 _log = logging.getLogger(__name__)
 
 
