@@ -13,6 +13,8 @@ import time
 import zlib
 from pathlib import Path
 
+from bearing_sim.sinks.priority import in_idle_time
+
 HOW_TO_GET_VULKAN = (
     "the viewer found no graphics driver; a software one is enough: on Debian or Ubuntu "
     "`apt-get install -y --no-install-recommends mesa-vulkan-drivers`, on Fedora `dnf install mesa-vulkan-drivers`, on Arch `pacman -S vulkan-swrast`"
@@ -33,6 +35,7 @@ class HeadlessViewer:
     size : width and height of the picture [px].
     timeline : the timeline that `seek` moves along.
     ready_within : seconds to wait for the recording to be loaded.
+    in_idle_time : whether it leaves the processor to everything else, as a viewer beside a solver shall.
 
     Raises
     ------
@@ -40,11 +43,19 @@ class HeadlessViewer:
         On entry, saying why and what to do.
     """
 
-    def __init__(self, recording: str | Path, size: tuple[int, int] = (1600, 1000), timeline: str = "sim_time", ready_within: float = 90.0):
+    def __init__(
+        self,
+        recording: str | Path,
+        size: tuple[int, int] = (1600, 1000),
+        timeline: str = "sim_time",
+        ready_within: float = 90.0,
+        in_idle_time: bool = False,
+    ):
         self._recording = str(recording)
         self._size = size
         self._timeline = timeline
         self._ready_within = ready_within
+        self._in_idle_time = in_idle_time
 
     def __enter__(self) -> "HeadlessViewer":
         program = viewer_program()
@@ -55,8 +66,9 @@ class HeadlessViewer:
         port = _free_port()
         options = ["--headless", "--bind", "127.0.0.1", "--port", str(port), "--memory-limit", "2GB", "--hide-welcome-screen"]
         self._messages = tempfile.TemporaryFile()
+        command = [program, *options, "--window-size", f"{self._size[0]}x{self._size[1]}", self._recording]
         self._process = subprocess.Popen(
-            [program, *options, "--window-size", f"{self._size[0]}x{self._size[1]}", self._recording],
+            in_idle_time(command) if self._in_idle_time else command,
             env=environment,
             stdout=subprocess.DEVNULL,
             stderr=self._messages,

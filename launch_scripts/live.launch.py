@@ -10,6 +10,7 @@ from launch.actions import ExecuteProcess, OpaqueFunction, RegisterEventHandler
 from launch.event_handlers import OnProcessIO
 
 from bearing_sim.ros.launching import READY, Argument, bearing_node, declared, value
+from bearing_sim.sinks.priority import in_idle_time
 
 VIEW = Argument("view", "false", "whether to open a rerun viewer; where rerun_port is 0, at port 9876", ("true", "false"))
 
@@ -30,7 +31,7 @@ def _start(context):
 
 def _viewer_when_ready(node, port):
     """Return the handler that opens the viewer once the node serves it: before, there is nothing to connect to."""
-    viewer = ExecuteProcess(cmd=[_rerun(), f"rerun+http://127.0.0.1:{port}/proxy"], output="log")
+    viewer = ExecuteProcess(cmd=in_idle_time([_rerun(), f"rerun+http://127.0.0.1:{port}/proxy"]), output="log")
     waiting = [viewer]
 
     def heard(event):

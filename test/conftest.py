@@ -22,6 +22,7 @@ _REAL_TIME = {
     "test_launch_files",
     "test_live",
     "test_measure",
+    "test_priority",
     "test_recorder",
     "test_recording_files",
     "test_runner",

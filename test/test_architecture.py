@@ -70,6 +70,7 @@ ALLOWED = {
     "tables": ({"numpy", "platformdirs"}, {"tables", "cores", "kernels.compilation", "levels", "params", "rating_life", "scene"}),
     "compiled_call.py": ({"numba"}, set()),
     "simulation.py": ({"numpy"}, {"compiled_call", "effects", "integrators.status", "levels", "oil", "params", "sample", "scene", "tables"}),
+    "screenshot.py": ({"rerun", "rerun_cli"}, {"sinks.priority"}),
     "sinks": (
         {"numpy", "mcap", "rosbags", "rerun", "yaml"},
         {"sinks", "contour", "effects", "sample", "scene", "scene_file", "events", "topics", "provenance", "simulation"},

@@ -17,6 +17,7 @@ pytest.importorskip("rclpy", reason="the launch files take their arguments from 
 from bearing_sim.ros.parameters import DECLARATIONS  # noqa: E402
 from bearing_sim.ros.player import command as player_command  # noqa: E402
 from bearing_sim.scene_file import load_scene  # noqa: E402
+from bearing_sim.sinks.priority import in_idle_time  # noqa: E402
 
 ROOT = Path(__file__).resolve().parent.parent
 FILES = sorted((ROOT / "launch_scripts").glob("*.launch.py"))
@@ -147,7 +148,9 @@ def test_a_live_launch_opens_a_viewer_once_when_the_node_is_ready(launched):
     assert handler.target_action is nodes(run)[0]
     assert handler.on_stderr(SimpleNamespace(text=b"warming up")) is None
     viewer = handler.on_stderr(SimpleNamespace(text=b"[INFO] [bearing_node]: ready: listening to shaft_speed"))
-    assert Path(viewer.cmd[0]).name == "rerun" and viewer.cmd[1] == "rerun+http://127.0.0.1:9900/proxy"
+    *before, program, address = viewer.cmd
+    assert Path(program).name == "rerun" and address == "rerun+http://127.0.0.1:9900/proxy"
+    assert [*before, program, address] == in_idle_time([program, address]), "drawing shall not hold up the solver"
     assert handler.on_stderr(SimpleNamespace(text=b"ready: listening")) is None, "one viewer only"
 
 

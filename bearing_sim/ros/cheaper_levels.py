@@ -1,7 +1,6 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Compile the levels that a governor may need in a process of their own, so that the model that runs meanwhile is not disturbed."""
 
-import os
 import subprocess
 import sys
 
@@ -9,6 +8,7 @@ from bearing_sim import effects
 from bearing_sim.kernels.compilation import CACHE_FOLDER
 from bearing_sim.scene import Scene
 from bearing_sim.scene_file import scene_to_yaml
+from bearing_sim.sinks.priority import giving_way
 
 _PROGRAM = """
 import sys
@@ -17,7 +17,7 @@ from bearing_sim.scene_file import scene_from_yaml
 from bearing_sim.simulation import Simulation
 governor_of(Simulation(scene_from_yaml(sys.stdin.read())), float(sys.argv[1]))
 """
-_NICE = 10  # what runs now comes first
+_NICENESS = 10  # what runs now comes first; not idle time: where the solver takes all there is, the cheaper levels are wanted most
 
 
 def levels_to_compile(scene: Scene) -> list[str]:
@@ -28,12 +28,11 @@ def levels_to_compile(scene: Scene) -> list[str]:
 def start_compiling(scene: Scene, sample_rate: float) -> subprocess.Popen:
     """Start a process that compiles all levels below a scene's own and ends."""
     process = subprocess.Popen(
-        [sys.executable, "-c", _PROGRAM, str(sample_rate)],
+        giving_way([sys.executable, "-c", _PROGRAM, str(sample_rate)], _NICENESS),
         stdin=subprocess.PIPE,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
         text=True,
-        preexec_fn=lambda: os.nice(_NICE),
     )
     process.stdin.write(scene_to_yaml(scene))
     process.stdin.close()

@@ -15,6 +15,7 @@ NOT_YET = (13, 14, 17)
 NO_LOAD = (44, 47, 55)
 _PIXELS = (3, 4)  # height and width of a cell
 _NARROW = 2  # times the height in a narrow picture
+_PALETTE = np.concatenate(([NOT_YET], load_palette(254), [NO_LOAD])).astype(np.uint8)
 
 
 class LoadMap:
@@ -86,9 +87,10 @@ class LoadMap:
         if self._rollers:
             return means
         azimuth = np.arange(AZIMUTH_BINS)
-        for column in np.flatnonzero((self._counts > 0).any(axis=0)):
-            met = self._counts[:, column] > 0
-            means[:, column] = np.interp(azimuth, azimuth[met], means[met, column], period=AZIMUTH_BINS)
+        met = self._counts > 0
+        for column in np.flatnonzero(met.any(axis=0) & ~met.all(axis=0)):
+            known = met[:, column]
+            means[:, column] = np.interp(azimuth, azimuth[known], means[known, column], period=AZIMUTH_BINS)
         return means
 
     def png(self, load_scale: float) -> bytes:
@@ -98,8 +100,8 @@ class LoadMap:
         index[np.nan_to_num(loads) <= 0] = 255
         index[np.isnan(loads)] = 0
         index = index[np.arange(AZIMUTH_BINS) * len(index) // AZIMUTH_BINS]
-        palette = np.concatenate(([NOT_YET], load_palette(254), [NO_LOAD])).astype(np.uint8)
-        return palette_png(np.kron(index[::-1], np.ones(_pixels(self._narrow), np.uint8)), palette)
+        height, width = _pixels(self._narrow)
+        return palette_png(index[::-1].repeat(height, axis=0).repeat(width, axis=1), _PALETTE)
 
 
 def map_size(narrow: bool = False) -> tuple[int, int]:

@@ -33,12 +33,14 @@ from bearing_sim.events import Event, Level
 from bearing_sim.sample import flat
 from bearing_sim.scene import Scene
 from bearing_sim.sinks.limits import UNPARTED, Limits
+from bearing_sim.sinks.priority import giving_way
 
 _HAND_ON_EVERY = 0.1  # [s]; what a killed process loses of its own, and how often the solver may be disturbed
 _PIPE = 1024 * 1024  # [byte] so that a late reader does not hold up the thread that hands on
 _SMALL = 512  # [byte] about what an operation without a block takes
 _OPEN_WITHIN = 30.0  # [s] a process that starts beside everything else on a busy machine
 _CLOSE_WITHIN = 5.0  # [s]
+_NICENESS = 5  # a file may be late by a part of a second, the solver may not
 _log = logging.getLogger(__name__)
 
 
@@ -259,9 +261,10 @@ class _Line:
         self._registered = 0
         self.end: str | None = None
         # A session of its own: neither Ctrl-C nor the end of a terminal nor a signal to the whole group reaches it, before Python could even
-        # say that it wants none.  The end of its input does.
+        # say that it wants none.  The end of its input does.  And whatever runs in the solver's session, the recorder has a share of its own: in
+        # idle time, or nicer in the same session, it would fall behind beside two busy processes there, and what falls behind is lost.
         self._process = subprocess.Popen(
-            [sys.executable, "-m", "bearing_sim.sinks.recorder_process"],
+            giving_way([sys.executable, "-m", "bearing_sim.sinks.recorder_process"], _NICENESS),
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             env=dict(os.environ, PYTHONPATH=os.pathsep.join(place for place in sys.path if place)),

@@ -18,17 +18,13 @@ from typing import BinaryIO
 
 from bearing_sim.sample import sample_dtype
 from bearing_sim.sinks.mcap_sink import McapSink
-from bearing_sim.sinks.priority import give_way
 from bearing_sim.sinks.ros_types import load_message_types
-
-_NICENESS = 5  # a file may be late by a part of a second, the solver may not
 
 
 def main() -> None:
     """Write what comes on the standard input, and report what becomes of it on the standard output."""
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)
-    give_way(_NICENESS)
     reports = os.dup(1)
     os.dup2(2, 1)  # whatever a library prints is no report
     load_message_types()

@@ -2,7 +2,8 @@
 """The process of a live view: takes pickled blocks and events from its standard input until that ends, and shows them.
 
 File and server have a thread and a queue each: a server that is stuck behind a viewer keeps nothing from the file.  Ctrl-C is
-left to the process that feeds this one; its end, of whatever kind, ends the input, and the file is finished then.
+left to the process that feeds this one; its end, of whatever kind, ends the input, and the file is finished then.  How much of
+the processor it gets is settled by who starts it.
 """
 
 import json
@@ -13,19 +14,16 @@ import sys
 import threading
 import time
 
-from bearing_sim.sinks.priority import give_way
 from bearing_sim.sinks.rerun_thread import Dropped, ViewThread
 
 _REPORT_EVERY = 0.1  # [s], where there is news
 _FINISH_WITHIN = {True: 4.0, False: 1.5}  # [s]: a file, which must be complete; a server, which may be stuck behind a viewer
-_NICENESS = 10  # a picture may be late, the solver may not
 
 
 def main() -> None:
     """Show what comes on the standard input, and report drops and faults on the standard output."""
-    for number in (signal.SIGINT, signal.SIGTERM):
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGTTOU):  # the last: a terminal may stop who writes from behind
         signal.signal(number, signal.SIG_IGN)
-    give_way(_NICENESS)
     items = sys.stdin.buffer
     scene, path, port, options = pickle.load(items)
     views = {True: ViewThread(scene, path, None, options)} if path is not None else {}

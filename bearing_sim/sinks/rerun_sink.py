@@ -4,7 +4,8 @@
 In real time the view is a process of its own (`bearing_sim.sinks.rerun_process`): drawing costs milliseconds of
 interpreter time, which a thread in this process would take from the solver between its ticks, and rerun itself may block
 without end behind a viewer that stops reading.  Here a daemon thread only hands on bytes; when the pipe is full, its queue
-fills, and then blocks are dropped and counted.
+fills, and then blocks are dropped and counted.  Pictures alone are drawn in idle time and may be missed where there is none;
+a process that writes a file as well only gives way (see `bearing_sim.sinks.priority`).
 """
 
 import json
@@ -23,11 +24,13 @@ import numpy as np
 
 from bearing_sim.events import Event, Measurement
 from bearing_sim.scene import Scene
+from bearing_sim.sinks.priority import giving_way, in_idle_time
 from bearing_sim.sinks.rerun_thread import QUEUED_ROWS, Dropped, RowQueue, ViewThread
 from bearing_sim.sinks.rerun_view import ViewOptions
 from bearing_sim.topics import Origin
 
 _HAND_ON_EVERY = 0.03  # [s]; the thread that solves is disturbed no more often than that
+_NICENESS = 5  # of a process that writes a file, which nothing should be missing from
 _log = logging.getLogger(__name__)
 
 
@@ -159,11 +162,15 @@ class ViewProcess:
         self._queue = RowQueue(QUEUED_ROWS)
         self._closed = False
         paths = os.pathsep.join(place for place in sys.path if place)
+        command = [sys.executable, "-m", "bearing_sim.sinks.rerun_process"]
+        # Ctrl-C in a terminal reaches neither a session nor a group of its own.
+        apart = {"process_group": 0} if path is None else {"start_new_session": True}
         self._process = subprocess.Popen(
-            [sys.executable, "-m", "bearing_sim.sinks.rerun_process"],
+            in_idle_time(command) if path is None else giving_way(command, _NICENESS),
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             env=dict(os.environ, PYTHONPATH=paths),
+            **apart,
         )
         first = pickle.dumps((scene, None if path is None else str(Path(path).absolute()), serve_port, options))
         self._feeder = threading.Thread(target=self._feed, args=(first,), name="rerun-feeder", daemon=True)

@@ -2,8 +2,9 @@
 """What recording and showing cost a live run: the solver's rate, and the worst that its thread is held up, with and without sinks.
 
 One live model runs on; its sinks, a recording of all observables and a live view with a viewer, get what it computes in every other stretch
-only, and the viewer sleeps in between (see `bearing_sim.studies.paired`).  The time of a tick is split by the kernel's books into the
-thread's own work, its wait for a core, which other programs cause as well, and the rest: waits for the interpreter's lock.
+only, and the viewer sleeps in between (see `bearing_sim.studies.paired`).  The viewer draws without a graphics card, on any core, in idle time,
+as ``live.launch.py`` starts it (`bearing_sim.sinks.priority`): what is found is what a user gets.  The time of a tick is split by the kernel's
+books into the thread's own work, its wait for a core, which other programs cause as well, and the rest: waits for the interpreter's lock.
 """
 
 import dataclasses
@@ -31,7 +32,6 @@ _INPUTS_EVERY = 0.02  # [s] between messages of speed and load
 _REVIEW_EVERY = 0.05  # [s] as the node looks after its sinks
 _ALL = 1e3  # [s]
 _SETTLING = 0.4  # [s] left out at the start of each stretch
-_VIEWER_NICENESS = 10  # that draws without a graphics card takes all the time it gets
 
 
 class Figures(NamedTuple):
@@ -238,14 +238,13 @@ class _Sinks:
 
     def attach_viewer(self, opened: ExitStack) -> None:
         """Let a viewer show the view; it needs something to show."""
-        viewer = HeadlessViewer(f"rerun+http://127.0.0.1:{self._port}/proxy", size=(800, 600))
+        viewer = HeadlessViewer(f"rerun+http://127.0.0.1:{self._port}/proxy", size=(800, 600), in_idle_time=True)
         try:
             self._viewer = opened.enter_context(viewer)
         except ViewerFailed as fault:
             self.viewer_told = f"none could be started: {fault}"
             return
         self.viewer_told = "attached"
-        keep_modest(viewer.pid)
         opened.callback(os.kill, viewer.pid, signal.SIGCONT)
 
     @property
@@ -260,14 +259,6 @@ class _Sinks:
         if self._viewer is not None:
             os.kill(self._viewer.pid, signal.SIGCONT if wanted else signal.SIGSTOP)
         yield
-
-
-def keep_modest(pid: int) -> None:
-    """Let a viewer that draws without a graphics card, with as many threads as there are cores, give way to others on one core."""
-    cores = os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else set()
-    for thread in Path(f"/proc/{pid}/task").iterdir() if len(cores) > 1 else ():
-        os.sched_setaffinity(int(thread.name), {min(cores)})
-        os.setpriority(os.PRIO_PROCESS, int(thread.name), os.getpriority(os.PRIO_PROCESS, 0) + _VIEWER_NICENESS)
 
 
 def free_port() -> int:

@@ -4,7 +4,8 @@
 The solver runs as fast as it can, a thousand samples for each second of wall time, and in every other stretch it hands its blocks to the view
 (see `bearing_sim.studies.paired`).  The time between two ticks is split, by the kernel's own books, into the thread's own work, its wait for
 a processor core, which is other programs' doing, and the rest: waits for the interpreter's lock, a queue, or the disk, which would be the
-view's doing.
+view's doing.  Viewers draw without a graphics card, on any core, in idle time, as ``live.launch.py`` starts them
+(`bearing_sim.sinks.priority`): what is found is what a user gets.
 """
 
 import os
@@ -22,7 +23,7 @@ from bearing_sim.scene_file import load_scene
 from bearing_sim.screenshot import HeadlessViewer
 from bearing_sim.simulation import Simulation
 from bearing_sim.sinks.rerun_sink import RerunSink
-from bearing_sim.studies.bench_recording import free_port, keep_modest
+from bearing_sim.studies.bench_recording import free_port
 from bearing_sim.studies.paired import CONTROL, WITH, ThreadBooks, order, ratios, spread, stolen_share
 
 _SCENE = ("deng2017_table1", ("level=slip", "operating.shaft_speed=15000 rpm"))
@@ -92,9 +93,8 @@ def _situations(simulation, tick, seconds, frozen, progress) -> Iterator[dict]:
     with RerunSink(simulation.scene, serve_port=port) as sink:
         sink.wait_until_ready()
         yield measure("no viewer")
-        viewer = HeadlessViewer(f"rerun+http://127.0.0.1:{port}/proxy", size=(800, 600))
+        viewer = HeadlessViewer(f"rerun+http://127.0.0.1:{port}/proxy", size=(800, 600), in_idle_time=True)
         with suppress(ProcessLookupError), viewer:
-            keep_modest(viewer.pid)
             yield measure("viewer attached")
             os.kill(viewer.pid, signal.SIGSTOP)
             yield measure("viewer frozen", frozen)
@@ -153,7 +153,7 @@ def _stretch(ticks: np.ndarray, tick: float) -> Stretch:
 
 @contextmanager
 def _solver_on_a_core_of_its_own() -> Iterator[None]:
-    """Keep this thread, but none that it has started before, on the last core; viewers have the first one."""
+    """Keep this thread, but none that it has started before, on the last core; everything else runs where it likes."""
     if not hasattr(os, "sched_setaffinity"):
         yield
         return
