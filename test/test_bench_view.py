@@ -3,9 +3,10 @@
 
 import pytest
 
+from bearing_sim.commands.bench_recording import command
 from bearing_sim.scene_file import load_scene
 from bearing_sim.screenshot import HOW_TO_GET_VULKAN, ViewerFailed
-from bearing_sim.studies.bench_recording import recording_cost
+from bearing_sim.studies.bench_recording import DRAWING, NO_VIEW, TAKING, VIEWERS, recording_cost
 from bearing_sim.studies.bench_view import RATES, run_hour, run_view_bench
 
 
@@ -27,9 +28,21 @@ def test_every_situation_is_measured_and_the_solver_goes_on_in_all_of_them():
                 assert 0.0 < spread["low"] <= spread["median"] <= spread["high"] and spread["pairs"] >= 1
 
 
+@pytest.mark.parametrize("viewer", [TAKING, NO_VIEW])
+def test_what_recording_costs_is_measured_with_a_viewer_that_draws_elsewhere_and_without_a_view(viewer):
+    report = recording_cost(load_scene("deng2017_table1"), 0.3, 1000.0, 1, viewer)
+    assert report["viewer"] == viewer and report["dropped"] == 0 and report["recording_mb_per_second"] > 0.1
+    assert report["with"]["rate"]["median"] > 0.0 and report["with"]["rate"]["pairs"] == 1
+
+
+def test_the_command_offers_the_viewers_that_there_are():
+    (option,) = (option for option in command.params if option.name == "viewer")
+    assert tuple(option.type.choices) == VIEWERS and option.default == DRAWING
+
+
 def test_what_recording_costs_is_measured_with_a_viewer_and_every_tick_is_counted():
     report = recording_cost(load_scene("deng2017_table1"), 0.3, 1000.0, 1)
-    if report["viewer"] != "attached" and HOW_TO_GET_VULKAN not in report["viewer"]:
+    if report["viewer"] != DRAWING and HOW_TO_GET_VULKAN not in report["viewer"]:
         pytest.fail(report["viewer"])
     assert report["dropped"] == 0 and report["recording_mb_per_second"] > 0.05
     for name in ("rate", "core_rate", "processor_rate"):

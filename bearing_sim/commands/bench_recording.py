@@ -21,10 +21,16 @@ _FIGURES = {
 @click.option("--seconds", type=click.FloatRange(min=0.5), default=1.0, show_default=True, metavar="S", help="Length of a stretch.")
 @click.option("--pairs", type=click.IntRange(min=1), default=24, show_default=True, metavar="N", help="Pairs of stretches, with and without.")
 @click.option("--rate", type=click.FloatRange(min=1), default=1000.0, show_default=True, metavar="HZ", help="Samples a second.")
-@click.option("--view/--no-view", default=True, show_default=True, help="With a live view and, where there is one, a viewer.")
+@click.option(
+    "--viewer",
+    type=click.Choice(["drawing", "taking", "nobody", "no-view"]),
+    default="drawing",
+    show_default=True,
+    help="Of the live view: one that draws on this processor, one that takes all that is to be drawn elsewhere, nobody; or no view.",
+)
 @click.option("--quick", is_flag=True, help="Measure next to nothing, to see that everything works.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
-def command(levels, seconds, pairs, rate, view, quick, as_json):
+def command(levels, seconds, pairs, rate, viewer, quick, as_json):
     """Run bearing deng2017_table1 in real time with and without sinks, in turn: the solver's rate and stalls.
 
     Every other stretch has no sinks; of the others every other one has none either and tells how much the machine itself makes of nothing.
@@ -40,7 +46,7 @@ def command(levels, seconds, pairs, rate, view, quick, as_json):
         return lambda text: click.echo(f"{level}: {text} ...", err=True)
 
     scene = load_scene("deng2017_table1")
-    reports = [recording_cost(at_level(scene, level), seconds, rate, pairs, view, progress=told(level)) for level in levels]
+    reports = [recording_cost(at_level(scene, level), seconds, rate, pairs, viewer, progress=told(level)) for level in levels]
     if as_json:
         print_json({"recording": reports})
         return

@@ -49,7 +49,7 @@ class Watch:
         (_, error), (_, warning) = self._alarms
         if error.is_alerted or warning.is_alerted:
             return False
-        worst = float((np.fmin if self._below else np.fmax).reduce(values, axis=None)) if values.size else math.nan  # of those that are numbers
+        worst = float((np.fmin if self._below else np.fmax).reduce(values, axis=None, initial=math.nan))  # of those that are numbers
         return not error.reaches(worst) and not warning.reaches(worst)
 
     def event(self, now: float) -> Event | None:
@@ -199,5 +199,4 @@ class Monitor:
 
 def _largest(values: np.ndarray) -> float:
     """Return the largest number among values; NaN where there is none."""
-    known = values[~np.isnan(values)]
-    return float(known.max()) if known.size else math.nan
+    return float(np.fmax.reduce(values, axis=None, initial=math.nan))

@@ -2,9 +2,10 @@
 """What recording and showing cost a live run: the solver's rate, and the worst that its thread is held up, with and without sinks.
 
 One live model runs on; its sinks, a recording of all observables and a live view with a viewer, get what it computes in every other stretch
-only, and the viewer sleeps in between (see `bearing_sim.studies.paired`).  The viewer draws without a graphics card, on any core, in idle time,
-as ``live.launch.py`` starts it (`bearing_sim.sinks.priority`): what is found is what a user gets.  The time of a tick is split by the kernel's
-books into the thread's own work, its wait for a core, which other programs cause as well, and the rest: waits for the interpreter's lock.
+only, and the viewer sleeps in between (see `bearing_sim.studies.paired`).  A viewer that draws does so without a graphics card, on any core, in
+idle time, as ``live.launch.py`` starts it (`bearing_sim.sinks.priority`): it takes every core that is left.  One that only takes stands for a
+viewer with a graphics card, or on another machine.  The time of a tick is split by the kernel's books into the thread's own work, its wait for
+a core, which other programs cause as well, and the rest: waits for the interpreter's lock.
 """
 
 import dataclasses
@@ -12,6 +13,7 @@ import math
 import os
 import signal
 import socket
+import subprocess
 import tempfile
 import time
 from collections.abc import Callable, Iterator
@@ -23,15 +25,19 @@ import numpy as np
 
 from bearing_sim.runtime.live import LiveModel, cadence, warmed_up
 from bearing_sim.scene import Scene
-from bearing_sim.screenshot import HeadlessViewer, ViewerFailed
+from bearing_sim.screenshot import HeadlessViewer, ViewerFailed, viewer_program
+from bearing_sim.sinks.priority import in_idle_time
 from bearing_sim.sinks.recorder import Recorder
 from bearing_sim.sinks.rerun_sink import RerunSink
 from bearing_sim.studies.paired import CONTROL, WITH, ThreadBooks, differences, order, ratios, stolen_share
 
 _INPUTS_EVERY = 0.02  # [s] between messages of speed and load
-_REVIEW_EVERY = 0.05  # [s] as the node looks after its sinks
+_REVIEW_EVERY = 0.1  # [s] as the node looks after its sinks
 _ALL = 1e3  # [s]
 _SETTLING = 0.4  # [s] left out at the start of each stretch
+_TAKING_WITHIN = 60.0  # [s]
+DRAWING, TAKING, NOBODY, NO_VIEW = VIEWERS = ("drawing", "taking", "nobody", "no-view")
+"""Who looks at the live view: a viewer that draws on this processor, one that takes all that is to be drawn elsewhere, nobody; or no view."""
 
 
 class Figures(NamedTuple):
@@ -64,7 +70,7 @@ def recording_cost(
     seconds: float,
     sample_rate: float,
     pairs: int,
-    view: bool = True,
+    viewer: str = DRAWING,
     progress: Callable[[str], None] = lambda text: None,
 ) -> dict:
     """Measure a run in real time without and with a recording of all observables and a live view.
@@ -75,28 +81,27 @@ def recording_cost(
     seconds : length of each stretch, of which there are four for each pair.
     sample_rate : samples recorded for each second [Hz].
     pairs : pairs with, and as many controls.
-    view : whether there is a view, with a viewer where one can be started.
+    viewer : which viewer the live view has: one of `VIEWERS`.
     progress : told what is being done.
 
     Returns
     -------
     report : ``with`` and ``control``: for each of `RATES` the ratio, for each of `STALLS` the difference [ms] to the stretches without, as
         `bearing_sim.studies.paired.Spread`; ``without``: medians of the figures themselves; ``dropped``: blocks that sinks missed; ``viewer``:
-        ``"attached"`` or why there is none; what was written, and how busy the machine was.
+        which, or why there is none; what was written, and how busy the machine was.
     """
     kinds, tick = order(pairs), cadence(sample_rate).tick
     stolen = stolen_share()
     with tempfile.TemporaryDirectory() as folder, ExitStack() as opened:
         path = Path(folder) / "run.mcap"
         watched = _Watched(warmed_up(scene, sample_rate))
-        sinks = _Sinks(opened, scene, path, view)
+        sinks = _Sinks(opened, scene, path, viewer)
         live = LiveModel(scene, watched, sinks.start_ns, sample_rate, maximum_lag=_ALL)  # no time is given up, so that ticks stay countable
         for name, sink in sinks.by_name.items():
             live.attach(name, sink)
         with sinks.fed(True):
             _drive(live, scene, _SETTLING)
-        if view:
-            sinks.attach_viewer(opened)
+        sinks.attach_viewer(opened)
         begins, shares = [], []
         for place, kind in enumerate(kinds):
             progress(f"stretch {place + 1} of {len(kinds)}, {kind}, {seconds:g} s")
@@ -210,6 +215,25 @@ def _drive(live: LiveModel, scene: Scene, seconds: float) -> None:
         time.sleep(_INPUTS_EVERY)
 
 
+@contextmanager
+def _taking(url: str) -> Iterator[subprocess.Popen]:
+    """Let a process take all that a viewer would, and draw nothing."""
+    with tempfile.TemporaryDirectory() as folder:
+        taken = Path(folder) / "taken.rrd"
+        command = [str(viewer_program()), url, "--save", str(taken), "--bind", "127.0.0.1", "--port", str(free_port())]
+        process = subprocess.Popen(in_idle_time(command), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        try:
+            limit = time.monotonic() + _TAKING_WITHIN
+            while not (taken.exists() and taken.stat().st_size):
+                if process.poll() is not None or time.monotonic() > limit:
+                    raise ViewerFailed(f"rerun took nothing from {url} within {_TAKING_WITHIN:g} s")
+                time.sleep(0.05)
+            yield process
+        finally:
+            process.kill()
+            process.wait()
+
+
 class _Tap:
     """A sink that passes on, or not."""
 
@@ -224,12 +248,12 @@ class _Tap:
 class _Sinks:
     """A recording, and a view with a viewer where there can be one."""
 
-    def __init__(self, opened: ExitStack, scene: Scene, path: Path, view: bool):
-        self.start_ns, self.viewer_told, self._viewer = time.time_ns(), "none wanted", None
+    def __init__(self, opened: ExitStack, scene: Scene, path: Path, viewer: str):
+        self.start_ns, self.viewer_told, self._viewer, self._wanted = time.time_ns(), viewer, None, viewer
         recorder = opened.enter_context(Recorder())
         self._recording, self._view = recorder.open(path, scene, self.start_ns), None
         self.by_name = {"record": _Tap(self._recording)}
-        if not view:
+        if viewer == NO_VIEW:
             return
         self._port = free_port()
         self._view = opened.enter_context(RerunSink(scene, serve_port=self._port))
@@ -237,15 +261,17 @@ class _Sinks:
         self.by_name["view"] = _Tap(self._view)
 
     def attach_viewer(self, opened: ExitStack) -> None:
-        """Let a viewer show the view; it needs something to show."""
-        viewer = HeadlessViewer(f"rerun+http://127.0.0.1:{self._port}/proxy", size=(800, 600), in_idle_time=True)
+        """Let the viewer have the view; it needs something to show."""
+        if self._wanted not in (DRAWING, TAKING):
+            return
+        url = f"rerun+http://127.0.0.1:{self._port}/proxy"
+        viewer = HeadlessViewer(url, size=(800, 600), in_idle_time=True) if self._wanted == DRAWING else _taking(url)
         try:
             self._viewer = opened.enter_context(viewer)
         except ViewerFailed as fault:
             self.viewer_told = f"none could be started: {fault}"
             return
-        self.viewer_told = "attached"
-        opened.callback(os.kill, viewer.pid, signal.SIGCONT)
+        opened.callback(os.kill, self._viewer.pid, signal.SIGCONT)
 
     @property
     def dropped(self) -> int:
