@@ -192,7 +192,7 @@ class BearingDoors:
         self._join_governor(warm_up)
         for event in self.live.collect(now_ns):
             log_event(self._logger, event, self.settings.name)
-        self._outputs.look(time.monotonic())
+        self._outputs.look()
         if follows_clock(self._node):  # by wall time outputs leave as they come
             self._publish()
         if self._report_is_due(self.live.level):
@@ -207,7 +207,7 @@ class BearingDoors:
             for channel, subscription in self._subscriptions.items():
                 self.live.note_senders(channel, self._node.count_publishers(subscription.topic_name))
         self._last_level = condition.level
-        self._next_report_ns = time.monotonic_ns() + round((_DIAGNOSTICS_PERIOD - self._node.REVIEW_PERIOD / 2) * 1e9)
+        self._next_report_ns = time.monotonic_ns() + round((_DIAGNOSTICS_PERIOD - self._node.review_period / 2) * 1e9)
         self._node.tell(now_ns, condition, self.component, self.hardware_id)
         if self.live is not None:
             self.live.record_diagnostics(condition, now_ns)

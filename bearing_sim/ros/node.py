@@ -32,13 +32,14 @@ from bearing_sim.ros.messages import message, message_class
 from bearing_sim.ros.parameter_server import ParameterServer
 from bearing_sim.ros.parameters import NodeSettings, SettingsError
 from bearing_sim.ros.process import CannotRun, run_node
-from bearing_sim.ros.sim_time import create_steady_timer, watch_clock
+from bearing_sim.ros.sim_time import create_steady_timer, follows_clock, watch_clock
 from bearing_sim.ros.warm_up import WarmUp
 from bearing_sim.runtime.health import Condition
 from bearing_sim.scene_file import SceneError
 from bearing_sim.sinks.recorder import Recorder
 
 SUCCESS, FAILURE, ERROR = TransitionCallbackReturn.SUCCESS, TransitionCallbackReturn.FAILURE, TransitionCallbackReturn.ERROR
+_REVIEW_PERIOD = {False: 0.2, True: 0.05}  # [s] how soon a change of health is told, and where the node follows /clock what has come of it
 _LATE = 5  # review periods without a review
 _WARMING = "warming up: compiling the model; messages that come now are not used"
 
@@ -85,9 +86,11 @@ class BearingNode(LifecycleNode):
     Parameters
     ----------
     ended : given a `CannotRun` where the node ends itself.
-    """
 
-    REVIEW_PERIOD = 0.1  # [s] how soon a change of health is told
+    Attributes
+    ----------
+    review_period : from one review to the next [s].
+    """
 
     def __init__(self, ended: Future):
         super().__init__("bearing_node", automatically_declare_parameters_from_overrides=True)
@@ -102,7 +105,8 @@ class BearingNode(LifecycleNode):
         name, ros_type = topics.DIAGNOSTICS
         quiet = PublisherEventCallbacks(use_default_callbacks=False)
         self._diagnostics = self.create_publisher(message_class(ros_type), f"/{name}", STATE_QOS, event_callbacks=quiet)
-        create_steady_timer(self, self.REVIEW_PERIOD, self._review)
+        self.review_period = _REVIEW_PERIOD[follows_clock(self)]
+        create_steady_timer(self, self.review_period, self._review)
         self._clock_watch = watch_clock(self, self._tick)
         self.manages_itself = bool(self.parameters.value("autostart"))
         _refuse_impossible_transitions(self)
@@ -220,7 +224,7 @@ class BearingNode(LifecycleNode):
 
     def review_if_late(self) -> None:
         """Review now where the timer stands still: an rclpy built against an old glibc waits for it by the system's clock, which may be set back."""
-        if time.monotonic() - self._reviewed > _LATE * self.REVIEW_PERIOD:
+        if time.monotonic() - self._reviewed > _LATE * self.review_period:
             self._review()
 
     def now_ns(self) -> int:

@@ -13,7 +13,7 @@ from bearing_sim.scene import Scene
 
 _SAMPLE_RATE = 100.0  # Hz, the node's default
 _INPUT_RATE = 100.0  # Hz
-_REVIEWS = 10  # inputs from one review to the next: 10 Hz, as the node does
+_REVIEWS = 20  # inputs from one review to the next: 5 Hz, as the node does
 _SETTLING = 1.0  # [s] not counted: the start from ideal rolling costs more
 _MAXIMUM_LAG = 0.2  # [s], the node's default
 _LEAST_SHARE = 0.98  # of real time, below which it is lost

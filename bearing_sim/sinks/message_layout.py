@@ -66,22 +66,29 @@ class SampleMessages:
     Parameters
     ----------
     layouts : of the messages.
+
+    Attributes
+    ----------
+    parts : tuple[memoryview, ...]
+        The serialised messages, in the order of their layouts; `fill` changes them.
     """
 
     def __init__(self, layouts: Sequence[MessageLayout]):
-        buffer, self._parts, self._stamps, pairs = bytearray(), [], [], []
+        buffer, places_of_parts, self._stamps, pairs = bytearray(), [], [], []
         for layout in layouts:
             buffer += bytes(-(len(buffer) + _ENCAPSULATION) % _WORD)  # so that the numbers of all messages are words of the buffer
             begin = len(buffer)
             buffer += layout.template
-            self._parts.append(slice(begin, len(buffer)))
+            places_of_parts.append(slice(begin, len(buffer)))
             self._stamps += [begin + place for place in layout.stamps]
             pairs += [(begin + run.target + _WORD * k, run.source + k) for run in layout.runs for k in range(run.count)]
         buffer += bytes(-len(buffer) % _WORD)
         places, sources = np.array(pairs, np.intp).reshape(-1, 2).T
         if (places % _WORD).any():
             raise ValueError("a message's numbers are not aligned to eight bytes: it is not CDR of version 1")
-        self._buffer, self._bytes, self._places, self._sources = buffer, memoryview(buffer), places // _WORD, sources
+        self._buffer, self._places, self._sources = buffer, places // _WORD, sources
+        whole = memoryview(buffer).toreadonly()
+        self.parts = tuple(whole[part] for part in places_of_parts)
         self._words = np.frombuffer(buffer, np.float64)
 
     def fill(self, stamp_ns: int, sample: np.void) -> None:
@@ -89,10 +96,6 @@ class SampleMessages:
         self._words[self._places] = np.frombuffer(sample, np.float64)[self._sources]
         for place in self._stamps:
             _STAMP.pack_into(self._buffer, place, *divmod(stamp_ns, 1_000_000_000))
-
-    def message(self, k: int) -> bytes:
-        """Return the message of the topic number ``k``, serialised."""
-        return bytes(self._bytes[self._parts[k]])
 
 
 def _runs(name: str, cdr: bytes, numbers: np.ndarray) -> tuple[NumberRun, ...]:

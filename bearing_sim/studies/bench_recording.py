@@ -32,7 +32,7 @@ from bearing_sim.sinks.rerun_sink import RerunSink
 from bearing_sim.studies.paired import CONTROL, WITH, ThreadBooks, differences, order, ratios, stolen_share
 
 _INPUTS_EVERY = 0.02  # [s] between messages of speed and load
-_REVIEW_EVERY = 0.1  # [s] as the node looks after its sinks
+_REVIEW_EVERY = 0.2  # [s] as the node looks after its sinks
 _ALL = 1e3  # [s]
 _SETTLING = 0.4  # [s] left out at the start of each stretch
 _TAKING_WITHIN = 60.0  # [s]
