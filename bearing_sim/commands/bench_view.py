@@ -41,18 +41,19 @@ def _print(report) -> None:
         "while",
         "pairs",
         "rate, by wall",
-        "while a core was to be had",
+        "share of time that it computes",
+        "control of that",
         "by processor time",
-        "control, by processor time",
         "worst wait [ms]",
         "missed",
     )
     rows = []
     for row in report["situations"]:
-        told = [spread(row["with"][name]) for name in ("wall_rate", "rate", "processor_rate")]
+        told = [
+            spread(row[kind][name]) for kind, name in (("with", "wall_rate"), ("with", "share"), ("control", "share"), ("with", "processor_rate"))
+        ]
         waits = f"{1e3 * row['worst_wait_with']:.2f}, without {1e3 * row['worst_wait_without']:.2f}"
-        pairs, control = str(row["with"]["rate"]["pairs"]), spread(row["control"]["processor_rate"])
-        rows.append((row["name"], pairs, *told, control, waits, str(row["dropped"])))
+        rows.append((row["name"], str(row["with"]["rate"]["pairs"]), *told, waits, str(row["dropped"])))
     title = f"the solver with a live view, 1000 samples a second, to stretches of {report['stretch']:g} s without; "
     print_rows(f"{title}load average {report['load_average']:.2f}", columns, rows, words=("while",), width=200)
     click.echo("median, and where it lies with 95 % confidence; a wait is what a tick neither worked nor waited for a core")

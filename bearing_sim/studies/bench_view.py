@@ -39,6 +39,8 @@ class Stretch(NamedTuple):
     ----------
     wall_rate : simulated seconds for each second of wall time.
     rate : the same for each second in which a core was to be had.
+    share : of the wall time, in which the thread had a core and computed.  Where the host makes a core slower for a moment, as shared machines
+        do, rates change by more than a view costs, but this does not.
     processor_rate : the same for each second of the thread's processor time, by the quartile of ticks: the others share caches and memory with
         whatever runs on other cores.
     worst_tick : longest wall time of a tick [s].
@@ -47,13 +49,14 @@ class Stretch(NamedTuple):
 
     wall_rate: float
     rate: float
+    share: float
     processor_rate: float
     worst_tick: float
     worst_wait: float
     late_wait: float
 
 
-RATES = ("wall_rate", "rate", "processor_rate")
+RATES = ("wall_rate", "rate", "share", "processor_rate")
 
 
 def run_view_bench(seconds: float, frozen: float, progress: Callable[[str], None] = lambda text: None) -> dict:
@@ -144,6 +147,7 @@ def _stretch(ticks: np.ndarray, tick: float) -> Stretch:
     return Stretch(
         simulated / wall.sum(),
         simulated / (wall.sum() - delay.sum()),
+        work.sum() / wall.sum(),
         tick / float(np.quantile(work, 0.25)),
         float(wall.max()),
         float(waits.max()),
