@@ -7,7 +7,7 @@ import shutil
 import time
 from collections import deque
 from pathlib import Path
-from threading import Condition
+from threading import Condition, Lock
 
 from bearing_sim.events import Level
 
@@ -19,7 +19,7 @@ _COPY = 1024 * 1024  # [byte]
 class GrowingFile:
     """A file being written.
 
-    ``write`` only puts data down; ``drain``, called by one other thread, hands it to the operating system, without the
+    ``write`` only puts data down; ``drain``, usually called by another thread, hands it to the operating system, without the
     interpreter's lock.  When that fails the file is cut back to the last record that is whole, and what could not be written
     is kept for another try at the end.  A file deleted or replaced meanwhile is written anew from its open descriptor.
 
@@ -38,6 +38,7 @@ class GrowingFile:
         self.path, self._keep_free = path, keep_free
         self._descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_EXCL | getattr(os, "O_CLOEXEC", 0), 0o644)
         self._changed = Condition()
+        self._at_disk = Lock()  # whoever writes and restores: one at a time, or something would be written twice
         self._waiting: deque[bytes] = deque()
         self._backlog = 0
         self._length = self._safe = 0
@@ -76,7 +77,8 @@ class GrowingFile:
         if self.fault is not None:
             return
         try:
-            self._restore_if_gone()
+            with self._at_disk:
+                self._restore_if_gone()
             free = shutil.disk_usage(self.path.parent).free
         except OSError as fault:
             self._stop(OSError(fault.errno, f"{self.path} was deleted under the writer and cannot be written anew: {fault.strerror}"))
@@ -87,8 +89,11 @@ class GrowingFile:
 
     def drain(self, despite_fault: bool = False) -> None:
         """Hand what waits to the operating system; a fault is kept in ``fault``."""
-        if self.fault is not None and not despite_fault:
-            return
+        with self._at_disk:
+            if self.fault is None or despite_fault:
+                self._drain()
+
+    def _drain(self) -> None:
         while self._waiting:
             data = self._waiting[0]
             try:
