@@ -63,7 +63,7 @@ class HeadlessViewer:
         environment = dict(os.environ, RUST_LOG="error", HOME=self._home.name, XDG_RUNTIME_DIR=self._home.name)
         environment.pop("DISPLAY", None)
         subprocess.run([program, "analytics", "disable"], env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)
-        port = _free_port()
+        port = free_port()
         options = ["--headless", "--bind", "127.0.0.1", "--port", str(port), "--memory-limit", "2GB", "--hide-welcome-screen"]
         self._messages = tempfile.TemporaryFile()
         command = [program, *options, "--window-size", f"{self._size[0]}x{self._size[1]}", self._recording]
@@ -177,7 +177,8 @@ def viewer_program() -> Path:
     return Path(rerun_cli.__file__).with_name("rerun.exe" if os.name == "nt" else "rerun")
 
 
-def _free_port() -> int:
+def free_port() -> int:
+    """Return a port on 127.0.0.1 that nobody uses."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return probe.getsockname()[1]

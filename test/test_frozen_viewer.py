@@ -3,7 +3,6 @@
 
 import os
 import signal
-import socket
 import subprocess
 import sys
 import textwrap
@@ -15,18 +14,12 @@ from rerun.chunk import RrdReader
 from synthetic_run import synthetic_block
 
 from bearing_sim.scene_file import load_scene
-from bearing_sim.screenshot import HOW_TO_GET_VULKAN, HeadlessViewer, ViewerFailed
+from bearing_sim.screenshot import HOW_TO_GET_VULKAN, HeadlessViewer, ViewerFailed, free_port
 from bearing_sim.sinks import rerun_sink
 from bearing_sim.sinks.rerun_sink import RerunSink
 
 SCENE = load_scene("deng2017_table1")
 BLOCK = synthetic_block(SCENE, 1e-3 * np.arange(1, 201))
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
 
 
 def feed(sink, blocks, start=0.0, pause=0.0):

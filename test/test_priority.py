@@ -18,11 +18,10 @@ from synthetic_run import synthetic_block
 
 from bearing_sim.ros.cheaper_levels import start_compiling
 from bearing_sim.scene_file import load_scene
-from bearing_sim.screenshot import HOW_TO_GET_VULKAN, HeadlessViewer, ViewerFailed
+from bearing_sim.screenshot import HOW_TO_GET_VULKAN, HeadlessViewer, ViewerFailed, free_port
 from bearing_sim.sinks import priority
 from bearing_sim.sinks.recorder import Recorder
 from bearing_sim.sinks.rerun_sink import RerunSink
-from bearing_sim.studies.bench_recording import free_port
 
 if not hasattr(os, "SCHED_IDLE") or not Path("/proc/self/task").is_dir():
     pytest.skip("needs Linux' policies and its /proc", allow_module_level=True)

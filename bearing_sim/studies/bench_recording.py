@@ -12,7 +12,6 @@ import dataclasses
 import math
 import os
 import signal
-import socket
 import subprocess
 import tempfile
 import time
@@ -25,7 +24,7 @@ import numpy as np
 
 from bearing_sim.runtime.live import LiveModel, cadence, warmed_up
 from bearing_sim.scene import Scene
-from bearing_sim.screenshot import HeadlessViewer, ViewerFailed, viewer_program
+from bearing_sim.screenshot import HeadlessViewer, ViewerFailed, free_port, viewer_program
 from bearing_sim.sinks.priority import in_idle_time
 from bearing_sim.sinks.recorder import Recorder
 from bearing_sim.sinks.rerun_sink import RerunSink
@@ -285,13 +284,6 @@ class _Sinks:
         if self._viewer is not None:
             os.kill(self._viewer.pid, signal.SIGCONT if wanted else signal.SIGSTOP)
         yield
-
-
-def free_port() -> int:
-    """Return a port on 127.0.0.1 that nobody uses."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
 
 
 def at_level(scene: Scene, level: str | None) -> Scene:

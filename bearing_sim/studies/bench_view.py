@@ -20,10 +20,9 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.scene_file import load_scene
-from bearing_sim.screenshot import HeadlessViewer
+from bearing_sim.screenshot import HeadlessViewer, free_port
 from bearing_sim.simulation import Simulation
 from bearing_sim.sinks.rerun_sink import RerunSink
-from bearing_sim.studies.bench_recording import free_port
 from bearing_sim.studies.paired import CONTROL, WITH, ThreadBooks, order, ratios, spread, stolen_share
 
 _SCENE = ("deng2017_table1", ("level=slip", "operating.shaft_speed=15000 rpm"))
