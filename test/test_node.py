@@ -315,9 +315,14 @@ def test_a_level_that_the_machine_is_too_slow_for_gives_way_and_everybody_is_tol
     client.drive_until(lambda: client.received["level"] and client.received["level"][-1].data < 3, "a cheaper level runs", process, shaft_speed=FAST)
     seen = len(client.received["diagnostics"])
     client.drive(3.0, shaft_speed=FAST)
-    level = int(client.received["level"][-1].data)
     assert any(number == 1 and name.endswith("governor.level") and "instead of spatial" in text for number, name, text in client.statuses(seen))
-    assert client.values()["level"] == {0: "steady", 1: "slip", 2: "planar"}[level]
+    # A busy machine changes levels again at any time, and the diagnostics come once a second: the two agree between changes.
+    client.drive_until(
+        lambda: client.values().get("level") == {0: "steady", 1: "slip", 2: "planar"}.get(client.received["level"][-1].data),
+        "the diagnostics name the level that is published",
+        process,
+        shaft_speed=FAST,
+    )
     assert "governor.change: level spatial holds" in process.text
     assert 0.04 < client.received["cage_slip"][-1].data < 0.11  # slip 6.2 %, planar 8.4 %
     assert ended_well(process, signal.SIGTERM)
@@ -325,4 +330,5 @@ def test_a_level_that_the_machine_is_too_slow_for_gives_way_and_everybody_is_tol
     told = [item.text for item in items if isinstance(item, Event) and item.code == "governor.level"]
     assert told and "instead of spatial" in told[0]
     levels = np.concatenate([item["level"] for item in items if not isinstance(item, Event)])
-    assert set(levels) <= {0, 1, 2, 3} and levels[-1] == level < 3
+    heard = {int(message.data) for message in client.received["level"]}
+    assert min(heard) < 3 and heard <= set(levels) <= {0, 1, 2, 3}
