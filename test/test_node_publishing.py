@@ -1,13 +1,17 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """When and how often a running node publishes, with rclpy's executor of events and without it."""
 
+import ctypes
+import os
 import signal
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 pytest.importorskip("rclpy", reason="the node needs ROS 2 (pip install 'bearing_sim[ros]', or a ROS installation)")
 
+from rclpy.utilities import get_rmw_implementation_identifier  # noqa: E402
 from ros_bench import Client, NodeProcess, fresh_domain  # noqa: E402
 from std_srvs.srv import SetBool  # noqa: E402
 
@@ -142,6 +146,20 @@ def test_a_listener_that_comes_later_is_served_and_one_that_is_not_there_costs_n
     client.listen("std_msgs/msg/Float64", "damage", again.append)
     client.drive_until(lambda: len(again) > 10, "another listener hears", process)
     assert late[-1].layout.dim[0].size == len(late[-1].data) == 8 and 0.0 < again[-1].data < 1e-3
+
+
+@pytest.mark.skipif(not hasattr(os, "SCHED_BATCH") or not Path("/proc/self/task").is_dir(), reason="needs Linux' policies and its /proc")
+@pytest.mark.skipif("fastrtps" not in get_rmw_implementation_identifier(), reason="knows the timers of Fast DDS alone")
+def test_the_timers_of_the_middleware_do_not_interrupt_who_publishes_and_all_other_threads_are_as_usual(launch):
+    process, client = launch()
+    at_work(process, client)
+    limiter = process.process.pid  # `timeout`, whose one child the node is
+    (pid,) = Path(f"/proc/{limiter}/task/{limiter}/children").read_text().split()
+    kernel = ctypes.CDLL(None)  # its own view of policies, where Python's is what is tested
+    found = {(thread / "comm").read_text().strip(): kernel.sched_getscheduler(int(thread.name)) for thread in Path(f"/proc/{pid}/task").iterdir()}
+    timers = {name: policy for name, policy in found.items() if name.startswith("dds.ev")}
+    assert "bearing-solver" in found and timers and set(timers.values()) == {os.SCHED_BATCH}
+    assert {policy for name, policy in found.items() if name not in timers} == {os.SCHED_OTHER}
 
 
 def test_the_node_runs_the_same_on_an_rclpy_that_has_no_executor_of_events(launch, tmp_path):

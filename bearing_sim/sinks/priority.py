@@ -27,17 +27,22 @@ _NICEST = 19
 
 def use_idle_time() -> None:
     """Let this process run in idle time only, with all the threads that it has and will have; there is no way back without privileges."""
-    if not _schedule_all_threads("SCHED_IDLE"):
+    if not _schedule_threads("SCHED_IDLE"):
         _be_nicer(_NICEST)
 
 
 def give_way(niceness: int) -> None:
     """Let this process interrupt nobody, and have a lower share of the processor where it is short; so, too, a session that it leads."""
     _be_nicer(niceness)
-    _schedule_all_threads("SCHED_BATCH")
+    _schedule_threads("SCHED_BATCH")
     if hasattr(os, "getsid") and os.getsid(0) == os.getpid():
         with suppress(OSError):
             Path("/proc/self/autogroup").write_text(str(niceness))
+
+
+def let_threads_give_way(beginning: str) -> None:
+    """Let those threads of this process that the system knows by a name with this beginning interrupt nobody."""
+    _schedule_threads("SCHED_BATCH", beginning)
 
 
 def in_idle_time(command: Sequence[str | os.PathLike]) -> list[str]:
@@ -55,16 +60,17 @@ def _behind(manner: str, command: Sequence[str | os.PathLike]) -> list[str]:
     return [sys.executable, "-I", "-S", __file__, manner, *map(os.fspath, command)]
 
 
-def _schedule_all_threads(policy: str) -> bool:
-    """Give the threads of this process a policy, which those that they start inherit; return whether the system let it."""
+def _schedule_threads(policy: str, beginning: str = "") -> bool:
+    """Give the threads of this process whose names begin so a policy, which those that they start inherit; return whether the system let it."""
     try:
-        threads = [int(thread.name) for thread in Path("/proc/self/task").iterdir()]
+        threads = list(Path("/proc/self/task").iterdir())
     except OSError:
-        threads = [0]
+        threads = [] if beginning else [Path("0")]  # 0 is the running thread
     try:
         for thread in threads:
-            with suppress(ProcessLookupError):
-                os.sched_setscheduler(thread, getattr(os, policy), os.sched_param(0))
+            with suppress(FileNotFoundError, ProcessLookupError):  # it may end meanwhile
+                if not beginning or (thread / "comm").read_text().startswith(beginning):
+                    os.sched_setscheduler(int(thread.name), getattr(os, policy), os.sched_param(0))
     except (AttributeError, OSError):
         return False
     return True
