@@ -109,8 +109,7 @@ def recover(source: str | Path, target: str | Path, progress: Callable[[float], 
     for taken in (target, draft):
         if taken.exists():
             raise RecoveryError(f"{taken} exists; recover into another file")
-    if not Salvage(source).is_mcap:
-        raise RecoveryError(f"{source}: not an MCAP file")
+    _salvage(source)
     try:
         with open(draft, "xb") as stream:
             copy = _Copy(Writer(stream, chunk_size=_CHUNK_SIZE, compression=CompressionType.ZSTD))
@@ -157,11 +156,16 @@ class _Copy:
             self.writer.add_attachment(record.create_time, record.log_time, record.name, record.media_type, record.data)
 
 
-def _walk(path: Path, progress: Callable[[float], None], take: Callable) -> Contents:
-    """Hand every record that can be read, and be understood, to ``take``; return what there is."""
+def _salvage(path: Path) -> Salvage:
     salvage = Salvage(path)
     if not salvage.is_mcap:
-        raise RecoveryError(f"{path}: not an MCAP file")
+        raise RecoveryError(f"{path}: not an MCAP file ({salvage.size} bytes)")
+    return salvage
+
+
+def _walk(path: Path, progress: Callable[[float], None], take: Callable) -> Contents:
+    """Hand every record that can be read, and be understood, to ``take``; return what there is."""
+    salvage = _salvage(path)
     found = Contents(path, salvage.size)
     schemas: dict[int, str] = {}
     topics: dict[int, str] = {}
