@@ -99,7 +99,7 @@ class InputGate:
         else:
             is_good = len(values) == 2 and state.is_force and math.hypot(*values) <= state.largest
         if not is_good:
-            fault = _value_fault(channel, values, self.limits)
+            fault = _value_fault(channel, values, state)
         if fault is None and not state.stamp < stamp < math.inf:
             fault = _stamp_fault(state, stamp)
             if fault and arrival is not None and _clock_set_anew(state, stamp):
@@ -196,7 +196,7 @@ class InputGate:
 
 
 def _good_from_to(channel: str, limits: InputLimits) -> tuple[float, float]:
-    """Return the least and the largest value of a good message of one value."""
+    """Return the least and the largest value of a good message of one value; of a force in two parts, the largest magnitude."""
     if channel == "oil_temperature":
         return limits.minimum_temperature, limits.maximum_temperature
     if channel == "radial_load":
@@ -204,7 +204,7 @@ def _good_from_to(channel: str, limits: InputLimits) -> tuple[float, float]:
     return -limits.maximum_speed if limits.reverse_rotation else 0.0, limits.maximum_speed
 
 
-def _value_fault(channel: str, values: tuple[float, ...], limits: InputLimits) -> tuple[str, str] | None:
+def _value_fault(channel: str, values: tuple[float, ...], state: _Channel) -> tuple[str, str] | None:
     """Return code and reason of what is wrong with the values, or None."""
     if len(values) != 1 and (len(values) != 2 or channel != "radial_load"):
         return "input.malformed", f"{len(values)} values, expected {'1 or 2' if channel == 'radial_load' else '1'}"
@@ -213,18 +213,15 @@ def _value_fault(channel: str, values: tuple[float, ...], limits: InputLimits) -
     if not math.isfinite(magnitude) and not all(map(math.isfinite, values)):
         return "input.not_finite", f"{_shown(values)} {unit} is not finite"
     if channel == "oil_temperature":
-        low, high = limits.minimum_temperature, limits.maximum_temperature
-        if not low <= values[0] <= high:
-            code = "input.too_small" if values[0] < low else "input.too_large"
-            return code, f"{_shown(values)} K is outside {low:.6g} to {high:.6g} K"
+        if not state.least <= values[0] <= state.largest:
+            code = "input.too_small" if values[0] < state.least else "input.too_large"
+            return code, f"{_shown(values)} K is outside {state.least:.6g} to {state.largest:.6g} K"
         return None
-    speed = channel != "radial_load"
-    if values[0] < 0.0 and len(values) == 1 and not (speed and limits.reverse_rotation):
-        hint = " (input_limits.reverse_rotation is off)" if speed else ""
+    if len(values) == 1 and state.least == 0.0 > values[0]:
+        hint = "" if state.is_force else " (input_limits.reverse_rotation is off)"
         return "input.negative", f"{_shown(values)} {unit} is negative, expected zero or more{hint}"
-    largest = limits.maximum_speed if speed else limits.maximum_load
-    if magnitude > largest:
-        return "input.too_large", f"{magnitude:.6g} {unit} is above the largest accepted, {largest:.6g} {unit}"
+    if magnitude > state.largest:
+        return "input.too_large", f"{magnitude:.6g} {unit} is above the largest accepted, {state.largest:.6g} {unit}"
     return None
 
 
