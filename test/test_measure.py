@@ -44,11 +44,12 @@ def test_the_cost_of_a_thread_is_found_under_its_name():
 
 
 def test_a_node_is_measured_over_dds_and_the_figures_hang_together():
-    words = [sys.executable, "-m", "bearing_sim.ros.measure", "--level", "slip", "--duration", "4", "--rate", "50", "--json"]
+    words = [sys.executable, "-m", "bearing_sim.ros.measure", "--level", "slip", "--duration", "4", "--rate", "50", "--record", "--json"]
     environment = {**os.environ, "ROS_DOMAIN_ID": str(fresh_domain()), "PYTHONPATH": str(ROOT)}
     found = subprocess.run(words, capture_output=True, text=True, timeout=200, check=True, env=environment)
     (case,) = json.loads(found.stdout)
     assert (case["level"], case["rate_hz"], case["exit_code"]) == ("slip", 50.0, 0) and case["topics_heard"] == 13
+    assert 0.0 < case["ending_s"] < 10.0 and case["recorded_mb"] > 0.02, "the node has completed its recording"
     assert case["input_rate_hz"] == pytest.approx(48.5), "detuned, so that no one phase between inputs and outputs decides the latency"
     assert case["period_ms"] > 19.0, "no faster than asked for, however busy the machine"
     assert case["period_error_percent"] == pytest.approx(100 * (case["period_ms"] / 20.0 - 1.0))

@@ -159,7 +159,7 @@ def _taken(subscription):
             yield taken[0]
 
 
-def measure(level: str, speed_rpm: float, duration: float, rate: float, listen: str = ALL) -> dict:
+def measure(level: str, speed_rpm: float, duration: float, rate: float, listen: str = ALL, record: bool = False) -> dict:
     """Measure a node and return plain numbers.
 
     Parameters
@@ -169,6 +169,7 @@ def measure(level: str, speed_rpm: float, duration: float, rate: float, listen: 
     duration : of the measurement after the start [s], longer than the first ten seconds.
     rate : of the node's output topics [Hz]; inputs come at `DETUNING` of it.
     listen : output topics that have a reliable subscriber, separated by commas, or `ALL`; bearing_joints has one in any case.
+    record : whether the node records meanwhile, to a temporary file.
 
     Raises
     ------
@@ -183,8 +184,12 @@ def measure(level: str, speed_rpm: float, duration: float, rate: float, listen: 
     overrides = [f"level={level}", f"operating.shaft_speed={speed_rpm} rpm"]
     names = _topics_heard(listen, list(topics.outputs(load_scene("deng2017_table1", overrides))))
     words = {"overrides": str(overrides), "publish_rate": str(float(rate)), "governor": "false"}
-    command = [sys.executable, "-m", "bearing_sim.ros.node", "--ros-args"] + [w for key, value in words.items() for w in ("-p", f"{key}:={value}")]
-    with tempfile.TemporaryFile() as log:
+    with tempfile.TemporaryFile() as log, tempfile.TemporaryDirectory(prefix="bearing_sim_measure_") as folder:
+        recording = Path(folder) / "run.mcap"
+        if record:
+            words["record"] = str(recording)
+        parameters = [word for key, value in words.items() for word in ("-p", f"{key}:={value}")]
+        command = [sys.executable, "-m", "bearing_sim.ros.node", "--ros-args", *parameters]
         node = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT, start_new_session=True)
         driver = Driver(speed_rpm * math.pi / 30, 800.0, names)
         try:
@@ -199,15 +204,23 @@ def measure(level: str, speed_rpm: float, duration: float, rate: float, listen: 
             ended, last = time.monotonic(), cost_of(node.pid)
         finally:
             driver.close()
-            node.terminate()
-            try:
-                node.wait(10.0)
-            except subprocess.TimeoutExpired:
-                node.kill()
-                node.wait()
+            ending = _end(node)
+        recorded = recording.stat().st_size if recording.exists() else 0
     found = _figures(driver, began, ended, rate) | _costs(first, settled, last, ended - began)
     asked = {"level": level, "speed_rpm": speed_rpm, "rate_hz": rate, "input_rate_hz": DETUNING * rate, "topics_heard": len(names) + 1}
-    return {**asked, "exit_code": node.returncode, **found}
+    return {**asked, "exit_code": node.returncode, "ending_s": ending, "recorded_mb": recorded / 1e6, **found}
+
+
+def _end(node: subprocess.Popen) -> float:
+    """End a node with SIGTERM, and return how long it took [s]."""
+    began = time.monotonic()
+    node.terminate()
+    try:
+        node.wait(10.0)
+    except subprocess.TimeoutExpired:
+        node.kill()
+        node.wait()
+    return time.monotonic() - began
 
 
 def _topics_heard(listen: str, known: list[str]) -> list[str]:
@@ -279,6 +292,7 @@ _COLUMNS = {
     "memory_at_end_mb": "at the end [MB]",
     "cpu_without_solver_percent": "CPU without solver [%]",
     "cpu_solver_percent": "solver [%]",
+    "ending_s": "ended in [s]",
 }
 
 
@@ -301,8 +315,9 @@ def _print_table(cases: list[dict]) -> None:
     show_default=True,
     help="Output topics that have a (reliable) subscriber, separated by commas; bearing_joints has one in any case.",
 )
+@click.option("--record", is_flag=True, help="Let the node record meanwhile, to a temporary file.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON list.")
-def command(levels, speed_rpm, duration, rate, listen, as_json):
+def command(levels, speed_rpm, duration, rate, listen, record, as_json):
     """Measure period, latency, real-time factor, memory and CPU of a bearing_node from another process."""
     os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
     os.environ.setdefault("ROS_DOMAIN_ID", str(random.SystemRandom().choice(_DOMAINS)))
@@ -310,7 +325,7 @@ def command(levels, speed_rpm, duration, rate, listen, as_json):
 
     rclpy.init(args=[])
     try:
-        cases = [measure(level, speed_rpm, duration, rate, listen) for level in levels]
+        cases = [measure(level, speed_rpm, duration, rate, listen, record) for level in levels]
     except (RuntimeError, ValueError) as fault:
         raise click.ClickException(str(fault)) from fault
     finally:
