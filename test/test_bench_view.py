@@ -7,7 +7,7 @@ from bearing_sim.commands.bench_recording import command
 from bearing_sim.scene_file import load_scene
 from bearing_sim.screenshot import HOW_TO_GET_VULKAN, ViewerFailed
 from bearing_sim.studies.bench_recording import DRAWING, NO_VIEW, TAKING, VIEWERS, recording_cost
-from bearing_sim.studies.bench_view import RATES, run_hour, run_view_bench
+from bearing_sim.studies.bench_view import COUNTING, RATES, run_hour, run_view_bench
 
 
 def test_every_situation_is_measured_and_the_solver_goes_on_in_all_of_them():
@@ -18,7 +18,9 @@ def test_every_situation_is_measured_and_the_solver_goes_on_in_all_of_them():
             raise
         pytest.skip(f"needs a Vulkan driver: {fault}")
     found = {situation["name"]: situation for situation in report["situations"]}
-    assert list(found) == ["no viewer", "viewer attached", "viewer frozen", "viewer killed", "view itself frozen"]
+    assert list(found) == ["no viewer", "viewer attached", "viewer frozen", "viewer killed", "view itself frozen", COUNTING]
+    for name in RATES:
+        assert report["together"]["with"][name]["pairs"] == sum(one["with"][name]["pairs"] for one in found.values() if one["name"] != COUNTING)
     for situation in found.values():
         assert situation["wall_rate_with"] > 0.0 and situation["dropped"] == 0
         assert 0.0 <= situation["late_wait_with"] <= situation["worst_wait_with"] <= situation["worst_tick_with"]

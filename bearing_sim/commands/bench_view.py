@@ -7,10 +7,11 @@ from bearing_sim.commands.reporting import FailedRun, print_json, print_rows, te
 
 
 @click.command()
+@click.option("--seconds", type=click.FloatRange(min=0.1), default=60.0, show_default=True, metavar="S", help="How long each situation is measured.")
 @click.option("--frozen", type=click.FloatRange(min=0.1), default=60.0, show_default=True, metavar="S", help="How long the viewer is frozen.")
 @click.option("--quick", is_flag=True, help="Measure next to nothing, to see that everything works.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
-def command(frozen, quick, as_json):
+def command(seconds, frozen, quick, as_json):
     """Measure what a live view costs the solver while viewers are absent, attached, frozen and killed, and how an hour's recording opens.
 
     Needs a Vulkan driver, which may be a software one.
@@ -23,7 +24,7 @@ def command(frozen, quick, as_json):
 
     tell_compilation()
     try:
-        report = run_view_bench(1.0 if quick else 60.0, min(frozen, 1.0) if quick else frozen, tell)
+        report = run_view_bench(min(seconds, 1.0) if quick else seconds, min(frozen, 1.0) if quick else frozen, tell)
         report["hour"] = run_hour(*([120.0] if quick else []), progress=tell)
     except ViewerFailed as fault:
         raise FailedRun(f"no viewer to measure with: {fault}") from None
@@ -37,25 +38,15 @@ def _print(report) -> None:
     def spread(found):
         return f"{found['median']:.4f} ({found['low']:.4f} to {found['high']:.4f})"
 
-    columns = (
-        "while",
-        "pairs",
-        "rate, by wall",
-        "share of time that it computes",
-        "control of that",
-        "by processor time",
-        "worst wait [ms]",
-        "missed",
-    )
+    columns = ("while", "pairs", "rate, by wall", "control", "share of time computing", "control", "by processor time", "worst wait [ms]", "missed")
+    shown = (("with", "wall_rate"), ("control", "wall_rate"), ("with", "share"), ("control", "share"), ("with", "processor_rate"))
     rows = []
-    for row in report["situations"]:
-        told = [
-            spread(row[kind][name]) for kind, name in (("with", "wall_rate"), ("with", "share"), ("control", "share"), ("with", "processor_rate"))
-        ]
-        waits = f"{1e3 * row['worst_wait_with']:.2f}, without {1e3 * row['worst_wait_without']:.2f}"
-        rows.append((row["name"], str(row["with"]["rate"]["pairs"]), *told, waits, str(row["dropped"])))
+    for row in (*report["situations"], {"name": "all with a view, together", **report["together"]}):
+        told = [spread(row[kind][name]) for kind, name in shown]
+        waits = f"{1e3 * row['worst_wait_with']:.2f}, without {1e3 * row['worst_wait_without']:.2f}" if "worst_wait_with" in row else ""
+        rows.append((row["name"], str(row["with"]["rate"]["pairs"]), *told, waits, str(row.get("dropped", ""))))
     title = f"the solver with a live view, 1000 samples a second, to stretches of {report['stretch']:g} s without; "
-    print_rows(f"{title}load average {report['load_average']:.2f}", columns, rows, words=("while",), width=200)
+    print_rows(f"{title}load average {report['load_average']:.2f}", columns, rows, words=("while",), width=220)
     click.echo("median, and where it lies with 95 % confidence; a wait is what a tick neither worked nor waited for a core")
     hour = report["hour"]
     click.echo(

@@ -6,12 +6,18 @@ The solver runs as fast as it can, a thousand samples for each second of wall ti
 a processor core, which is other programs' doing, and the rest: waits for the interpreter's lock, a queue, or the disk, which would be the
 view's doing.  Viewers draw without a graphics card, on any core, in idle time, as ``live.launch.py`` starts them
 (`bearing_sim.sinks.priority`): what is found is what a user gets.
+
+Cores of one machine are not independent: they share caches, memory, and the heat they may make.  So a last situation has, in the place of the
+view, a program that only counts: what that costs the solver on a core of its own, any program does.
 """
 
 import os
 import signal
+import subprocess
+import sys
 import tempfile
 import time
+from collections import defaultdict
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -22,12 +28,14 @@ import numpy as np
 from bearing_sim.scene_file import load_scene
 from bearing_sim.screenshot import HeadlessViewer, free_port
 from bearing_sim.simulation import Simulation
+from bearing_sim.sinks.priority import in_idle_time
 from bearing_sim.sinks.rerun_sink import RerunSink
-from bearing_sim.studies.paired import CONTROL, WITH, ThreadBooks, order, ratios, spread, stolen_share
+from bearing_sim.studies.paired import CONTROL, WITH, ThreadBooks, each_ratio, order, spread, stolen_share
 
 _SCENE = ("deng2017_table1", ("level=slip", "operating.shaft_speed=15000 rpm"))
 _TICK, _SAMPLES = 0.005, 5  # [s] of wall time that a tick about takes, and samples in it
-_STRETCH, _SETTLING = 0.5, 0.25  # [s] of wall time of a stretch, and what is left out before it: a view is that much behind
+_STRETCH, _SETTLING = 0.25, 0.25  # [s] of wall time of a stretch, and what is left out before it: a view is that much behind
+_PROGRAM = "n = 0\nwhile True: n += 1"
 _HOUR, _RATE = 3600.0, 1000.0  # [s], [Hz]
 
 
@@ -56,6 +64,7 @@ class Stretch(NamedTuple):
 
 
 RATES = ("wall_rate", "rate", "share", "processor_rate")
+COUNTING = "no view, but a program that counts"
 
 
 def run_view_bench(seconds: float, frozen: float, progress: Callable[[str], None] = lambda text: None) -> dict:
@@ -71,7 +80,8 @@ def run_view_bench(seconds: float, frozen: float, progress: Callable[[str], None
     -------
     situations : list of dicts: ``name``; ``with`` and ``control``: for each of `RATES` what the stretches with the view, and those that only
         pretend, are of the stretches without one beside them, as `bearing_sim.studies.paired.Spread`; the worst times of the stretches with and
-        without; ``dropped``: blocks that the view missed.
+        without; ``dropped``: blocks that the view missed.  In the last, `COUNTING`, a program that counts runs where the view would.
+    together : ``with`` and ``control`` of all situations with a view taken together.
     """
     simulation = Simulation(load_scene(*_SCENE))
     simulation.advance(0.2)
@@ -79,17 +89,25 @@ def run_view_bench(seconds: float, frozen: float, progress: Callable[[str], None
     simulation.advance(0.5)
     tick = _TICK * 0.5 / max(time.thread_time() - began, 1e-6)
     stolen = stolen_share()
-    found = list(_situations(simulation, tick, seconds, frozen, progress))
+    found, together = list(_situations(simulation, tick, seconds, frozen, progress)), defaultdict(list)
+    for situation in found:
+        for (kind, rate), values in situation.pop("ratios").items():
+            situation.setdefault(kind, {})[rate] = spread(values)._asdict()
+            if situation["name"] != COUNTING:
+                together[kind, rate] += values
     given, all_of_it = (after - before for after, before in zip(stolen_share(), stolen))
     machine = {"cores": os.cpu_count(), "load_average": os.getloadavg()[0], "stolen_share": given / all_of_it if all_of_it else 0.0}
-    return {**machine, "tick": tick, "stretch": _STRETCH, "situations": found}
+    pooled = {kind: {rate: spread(together[kind, rate])._asdict() for rate in RATES} for kind in (WITH, CONTROL)}
+    return {**machine, "tick": tick, "stretch": _STRETCH, "situations": found, "together": pooled}
 
 
 def _situations(simulation, tick, seconds, frozen, progress) -> Iterator[dict]:
     def measure(name, length=seconds):
         progress(f"{name}, {length:g} s")
+        before = sink.dropped
         with _solver_on_a_core_of_its_own():
-            return _measure(simulation, tick, length, name, sink)
+            found = _measure(simulation, tick, length, sink.write)
+        return {"name": name, **found, "dropped": sink.dropped - before}
 
     port = free_port()
     with RerunSink(simulation.scene, serve_port=port) as sink:
@@ -106,35 +124,52 @@ def _situations(simulation, tick, seconds, frozen, progress) -> Iterator[dict]:
         os.kill(sink.pid, signal.SIGSTOP)
         yield measure("view itself frozen", frozen)
         os.kill(sink.pid, signal.SIGCONT)
+    progress(f"{COUNTING}, {seconds:g} s")
+    with _counting() as switch, _solver_on_a_core_of_its_own():
+        yield {"name": COUNTING, **_measure(simulation, tick, seconds, lambda _: None, switch), "dropped": 0}
 
 
-def _measure(simulation: Simulation, tick: float, seconds: float, name: str, sink: RerunSink) -> dict:
-    """Run the solver on this thread for a while; every block of a stretch with the view goes to the sink."""
+@contextmanager
+def _counting() -> Iterator[Callable[[bool], None]]:
+    """Have a program beside this one that only counts; yield what lets it go on (True) or stand still."""
+    program = subprocess.Popen(in_idle_time([sys.executable, "-I", "-S", "-c", _PROGRAM]))
+    try:
+        yield lambda goes_on: os.kill(program.pid, signal.SIGCONT if goes_on else signal.SIGSTOP)
+    finally:
+        program.kill()
+        program.wait()
+
+
+def _measure(
+    simulation: Simulation, tick: float, seconds: float, write: Callable[[np.ndarray], None], switch: Callable[[bool], None] = lambda on: None
+) -> dict:
+    """Run the solver on this thread for a while; in a stretch with what is measured, that is switched on and gets every block."""
     length = min(_STRETCH, seconds / 5)
-    kinds, dropped = order(max(1, int(seconds / (4 * (length + _SETTLING))))), sink.dropped
+    kinds = order(max(1, int(seconds / (4 * (length + _SETTLING)))))
     books = ThreadBooks()
     found = []
     for kind in kinds:
-        fed = sink if kind == WITH else None
+        switch(kind == WITH)
+        fed = write if kind == WITH else None
         _run(simulation, tick, min(_SETTLING, length), fed, books)
         found.append(_stretch(_run(simulation, tick, length, fed, books), tick))
     books.close()
-    told = {kind: {rate: ratios(kinds, [getattr(one, rate) for one in found], kind)._asdict() for rate in RATES} for kind in (WITH, CONTROL)}
+    told = {(kind, rate): each_ratio(kinds, [getattr(one, rate) for one in found], kind) for kind in (WITH, CONTROL) for rate in RATES}
     worst = {
         f"{figure}_{label}": spread(getattr(one, figure) for kind, one in zip(kinds, found) if (kind == WITH) == fed).median
         for figure in ("wall_rate", "worst_tick", "worst_wait", "late_wait")
         for label, fed in (("with", True), ("without", False))
     }
-    return {"name": name, "seconds": seconds, **told, **worst, "dropped": sink.dropped - dropped}
+    return {"seconds": seconds, "ratios": told, **worst}
 
 
-def _run(simulation: Simulation, tick: float, seconds: float, sink: RerunSink | None, books: ThreadBooks) -> np.ndarray:
+def _run(simulation: Simulation, tick: float, seconds: float, write: Callable[[np.ndarray], None] | None, books: ThreadBooks) -> np.ndarray:
     """Return what each tick took: wall time, processor time of this thread, its wait for a core [s], shape (ticks, 3)."""
     noted = [(time.perf_counter(), time.thread_time(), books.waited())]
     while noted[-1][0] - noted[0][0] < seconds:
         block = simulation.advance(tick, samples=_SAMPLES)
-        if sink is not None:
-            sink.write(block)
+        if write is not None:
+            write(block)
         noted.append((time.perf_counter(), time.thread_time(), books.waited()))
     return np.diff(np.array(noted), axis=0)
 

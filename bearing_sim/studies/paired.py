@@ -40,7 +40,12 @@ def order(pairs: int) -> list[str]:
 
 def ratios(kinds: Sequence[str], values: Sequence[float], kind: str) -> Spread:
     """Return what stretches of one kind are of the mean of the stretches before and after them."""
-    return spread(values[k] / (0.5 * (values[k - 1] + values[k + 1])) for k, one in enumerate(kinds) if one == kind)
+    return spread(each_ratio(kinds, values, kind))
+
+
+def each_ratio(kinds: Sequence[str], values: Sequence[float], kind: str) -> list[float]:
+    """Return what each stretch of one kind is of the mean of the stretches before and after it."""
+    return [values[k] / (0.5 * (values[k - 1] + values[k + 1])) for k, one in enumerate(kinds) if one == kind]
 
 
 def differences(kinds: Sequence[str], values: Sequence[float], kind: str) -> Spread:
