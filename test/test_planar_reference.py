@@ -165,15 +165,16 @@ def test_drag_on_rollers_along_its_tangent_is_that_of_their_own_speed_while_they
     assert np.abs(by_roller(straight - exact)[3]).max() < 1e-3 * np.abs(by_roller(exact)[3]).max()
 
 
-def scipy_run(rate, start, duration, extra=0):
+def scipy_run(rate, start, duration, extra=0, tolerance=1e-10):
     """The state after ``duration``, and integrals started at 0 behind it, by an explicit method of order 8."""
     absolute = np.zeros_like(start)
     absolute[:BORDER_STATES] = [1e-14] * 4 + [1e-12] + [1e-9] * 4 + [1e-8]
     by_roller(absolute)[:] = np.array([1e-14, 1e-12, 1e-9, 1e-8, 1e-6])[:, None]
-    absolute = np.concatenate([absolute, np.full(extra, 1e-12)])
+    absolute = np.concatenate([absolute, np.full(extra, 1e-12)]) * tolerance / 1e-10
     # invalid: a trial step that is far too long, and refused
     with np.errstate(all="ignore"):
-        solution = solve_ivp(rate, (0.0, duration), np.concatenate([start, np.zeros(extra)]), "DOP853", rtol=1e-10, atol=absolute, first_step=1e-8)
+        beginning = np.concatenate([start, np.zeros(extra)])
+        solution = solve_ivp(rate, (0.0, duration), beginning, "DOP853", rtol=tolerance, atol=absolute, first_step=1e-8)
     assert solution.success, solution.message
     return solution.y[:, -1]
 
@@ -225,7 +226,8 @@ def test_energy_and_momentum_are_kept(start, guidance):
         force, moment = reference.impulses(forces)
         return np.concatenate([rate_of(reference, y[:size], forces), list(work.values()), list(heat.values()), force, [moment]])
 
-    end = scipy_run(rate, state, duration, 2 + len(causes) + 3)
+    # Finer than the bound: contacts begin meanwhile, which costs a method its order, and which of them differs from processor to processor.
+    end = scipy_run(rate, state, duration, 2 + len(causes) + 3, tolerance=1e-12)
     work, heat, impulse = end[size : size + 2].sum(), end[size + 2 : -3], end[-3:]
     before, after = (reference.forces(plain(y)) for y in (state, end[:size]))
     gained = reference.energy(after) - reference.energy(before)

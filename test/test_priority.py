@@ -238,7 +238,11 @@ def test_a_program_that_is_not_there_is_told_in_a_line():
 
 
 def test_signals_end_what_runs_in_idle_time_as_they_would_without():
-    process = subprocess.Popen(priority.in_idle_time(["sleep", "60"]))
+    process = subprocess.Popen(
+        priority.in_idle_time(["sleep", "60"]),
+        # a shell starts background jobs with SIGINT ignored, and children inherit that
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )
     wait_for(lambda: Path(f"/proc/{process.pid}/comm").read_text() == "sleep\n")
     process.send_signal(signal.SIGINT)
     assert process.wait(30) == -signal.SIGINT
