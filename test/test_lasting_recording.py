@@ -13,6 +13,7 @@ from bearing_sim.events import Level
 from bearing_sim.recording_reader import Recording
 from bearing_sim.recovery import recover
 from bearing_sim.ros.recordings import open_recording
+from bearing_sim.runtime.cadence import cadence
 from bearing_sim.runtime.outlets import Outlets
 from bearing_sim.scene_file import load_scene
 from bearing_sim.simulation import Inputs
@@ -22,6 +23,7 @@ from bearing_sim.sinks.recorder import Recorder
 
 SCENE = load_scene("deng2017_table1")
 START = 1_700_000_000_000_000_000
+CADENCE = cadence(1000.0, 50.0)
 RUN = synthetic_block(SCENE, 0.001 * np.arange(1, 2001))
 
 
@@ -41,7 +43,7 @@ def killed(recorder, recording):
 def test_a_recording_whose_process_is_killed_goes_on_in_a_fresh_file_and_tells_what_is_lost(tmp_path):
     (tmp_path / "run_2.mcap").write_text("precious")
     with Recorder() as recorder:
-        recording = open_recording(tmp_path / "run.mcap", SCENE, START, UNPARTED, 1000.0, recorder)
+        recording = open_recording(tmp_path / "run.mcap", SCENE, START, UNPARTED, CADENCE, recorder)
         for start in range(0, 1000, 10):
             recording.write(RUN[start : start + 10])
             time.sleep(0.02)
@@ -138,4 +140,4 @@ def test_a_full_disk_is_no_reason_for_another_file(tmp_path):
 def test_a_recording_that_cannot_be_begun_is_told_at_the_start(tmp_path):
     (tmp_path / "a_file").touch()
     with Recorder() as recorder, pytest.raises(OSError, match="a_file"):
-        open_recording(tmp_path / "a_file" / "run.mcap", SCENE, START, UNPARTED, 1000.0, recorder)
+        open_recording(tmp_path / "a_file" / "run.mcap", SCENE, START, UNPARTED, CADENCE, recorder)

@@ -9,7 +9,8 @@ import pytest
 from fake_simulation import FakeSimulation
 
 from bearing_sim.events import Event, Level
-from bearing_sim.runtime.live import LONGEST_TICK, LiveModel, cadence
+from bearing_sim.runtime.cadence import LONGEST_TICK, SHORTEST_LIMIT, cadence, limit
+from bearing_sim.runtime.live import LiveModel
 from bearing_sim.runtime.runner import Phase
 from bearing_sim.scene_file import load_scene
 
@@ -222,10 +223,34 @@ def test_the_worst_event_comes_first(bench):
 
 
 @pytest.mark.parametrize("rate", [0.5, 1.0, 30.0, 99.0, 100.0, 250.0, 1000.0, 4321.0])
-def test_ticks_stay_short_and_make_the_sample_rate_exactly(rate):
-    beat = cadence(rate)
-    assert beat.tick <= LONGEST_TICK * (1 + 1e-6)
+@pytest.mark.parametrize("publish_rate", [1.0, 50.0, 60.0, 100.0, 200.0, math.inf])
+def test_ticks_stay_short_and_make_the_sample_rate_exactly(rate, publish_rate):
+    beat = cadence(rate, publish_rate)
+    assert 0.5 * SHORTEST_LIMIT < beat.tick <= limit(publish_rate) * (1 + 1e-6)
     assert beat.samples / (beat.tick * beat.every) == pytest.approx(rate, rel=1e-12)
+
+
+def test_ticks_are_half_a_period_of_the_outputs_between_5_and_10_ms_where_outputs_come_evenly_so():
+    assert [limit(rate) for rate in (1.0, 50.0, 62.5, 100.0, 200.0)] == pytest.approx([0.010, 0.010, 0.008, 0.005, 0.005])
+    assert (cadence(100.0, 50.0), cadence(100.0, 100.0), cadence(1000.0, 62.5)) == ((0.01, 1, 1), (0.005, 1, 2), (0.008, 8, 1))
+    assert cadence(100.0, 40.0).tick == 0.005, "25 ms are no whole number of 10 ms"
+
+
+def test_ticks_follow_the_publish_rate_and_sinks_get_their_samples_as_before(bench):
+    one = bench(publish_rate=100.0)
+    sink = ListSink()
+    one.live.attach("view", sink)
+    ticks = []
+    for rate in (100.0, 50.0, 100.0):
+        one.live.publish_at(rate)
+        one.run(0.1)
+        calls, began = len(one.simulation.calls), one.simulation.time
+        one.run(0.5)
+        ticks.append((one.simulation.time - began) / (len(one.simulation.calls) - calls))
+    assert one.live.close()
+    assert ticks == pytest.approx([SHORTEST_LIMIT, LONGEST_TICK, SHORTEST_LIMIT], rel=0.1)
+    times = np.concatenate([block["time"] for block in sink.blocks])
+    assert np.diff(times) == pytest.approx(0.01, abs=1e-6) or one.live.runner.pace.lost
 
 
 def test_a_low_sample_rate_thins_what_sinks_get_not_what_the_model_does(bench):
@@ -234,8 +259,8 @@ def test_a_low_sample_rate_thins_what_sinks_get_not_what_the_model_does(bench):
     one.live.attach("view", sink)
     one.run(1.0)
     assert one.live.close()
-    assert len(one.simulation.calls) > 50
-    assert len(sink.blocks) == 1 + len(one.simulation.calls) // cadence(10.0).every
+    assert len(one.simulation.calls) > 30
+    assert len(sink.blocks) == 1 + len(one.simulation.calls) // cadence(10.0, 50.0).every
     steps = sorted(b["time"][0] - a["time"][0] for a, b in zip(sink.blocks, sink.blocks[1:]))
     assert steps[len(steps) // 2] == pytest.approx(0.1)
 
@@ -252,7 +277,7 @@ def test_a_sample_that_is_due_is_told_at_once_so_often_as_asked_for_and_never_wh
     one.live.publish_at(1e4)
     seen = len(told)
     one.run(0.5)
-    assert np.median(np.diff(told[seen:])) == pytest.approx(LONGEST_TICK, abs=1e-6), "there is no more than every tick"
+    assert np.median(np.diff(told[seen:])) == pytest.approx(SHORTEST_LIMIT, abs=1e-6), "there is no more than every tick"
     one.live.runner.pause()
     one.run(0.1)
     seen = len(told)

@@ -95,16 +95,16 @@ class BearingDoors:
 
     def warm_up(self) -> None:
         """Compile or load the model; takes seconds to minutes.  Belongs to a thread of its own, see `warm_up`."""
-        settings, rate = self.settings, self._shared.sample_rate
+        settings = self.settings
         try:
             prepare(bool(settings.rrd or settings.rerun_port), None if follows_clock(self._node) else self._node.recorder)
             self._outputs.lay_out()
-            simulation = warmed_up(self.scene, rate)
+            simulation = warmed_up(self.scene)
             governs = self._shared.governor and not follows_clock(self._node)  # by sim time nothing is given up
             if governs and levels_to_compile(self.scene):
-                self._compiling = start_compiling(self.scene, rate)
+                self._compiling = start_compiling(self.scene)
             elif governs:
-                self._governor = governor_of(simulation, rate)
+                self._governor = governor_of(simulation)
             self._simulation = simulation
         except IntegrationError as fault:
             self.fault, self._fault_cause = f"the scene's own operating conditions cannot be computed: {fault}", fault
@@ -295,7 +295,7 @@ class BearingDoors:
     def _make_governor(self) -> None:
         """Make a governor; belongs to the thread of `warm_up`."""
         try:
-            self._joining = governor_of(self._simulation, self._shared.sample_rate)
+            self._joining = governor_of(self._simulation)
         except IntegrationError as fault:
             self._logger.warning(f"no cheaper level can take over: {fault}")
 
@@ -327,7 +327,7 @@ class BearingDoors:
             if follows_clock(self._node):
                 sink = open_lossless_recording(path, self.scene, start_ns, limits)
             else:
-                sink = open_recording(path, self.scene, start_ns, limits, self._shared.sample_rate, self._node.recorder)
+                sink = open_recording(path, self.scene, start_ns, limits, self.live.cadence, self._node.recorder)
             self.say(f"recording {sink.path}" + (f" ({path} exists and stays as it is)" if sink.path != path else ""))
             return sink
 

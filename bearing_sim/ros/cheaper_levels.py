@@ -15,7 +15,7 @@ import sys
 from bearing_sim.runtime.live import governor_of
 from bearing_sim.scene_file import scene_from_yaml
 from bearing_sim.simulation import Simulation
-governor_of(Simulation(scene_from_yaml(sys.stdin.read())), float(sys.argv[1]))
+governor_of(Simulation(scene_from_yaml(sys.stdin.read())))
 """
 _NICENESS = 10  # what runs now comes first; not idle time: where the solver takes all there is, the cheaper levels are wanted most
 
@@ -25,10 +25,10 @@ def levels_to_compile(scene: Scene) -> list[str]:
     return [level for level in effects.cheaper_levels(scene) if not any(CACHE_FOLDER.rglob(f"{level}.advance-*.nbi"))]
 
 
-def start_compiling(scene: Scene, sample_rate: float) -> subprocess.Popen:
+def start_compiling(scene: Scene) -> subprocess.Popen:
     """Start a process that compiles all levels below a scene's own and ends."""
     process = subprocess.Popen(
-        giving_way([sys.executable, "-c", _PROGRAM, str(sample_rate)], _NICENESS),
+        giving_way([sys.executable, "-c", _PROGRAM], _NICENESS),
         stdin=subprocess.PIPE,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,

@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from bearing_sim.runtime.live import cadence
+from bearing_sim.runtime.cadence import Cadence
 from bearing_sim.scene import Scene
 from bearing_sim.sinks.lasting_recording import LastingRecording
 from bearing_sim.sinks.limits import Limits
@@ -35,7 +35,7 @@ def prepare(view: bool, recorder: "Recorder | None") -> None:
     load_message_types()
 
 
-def open_recording(path: Path, scene: Scene, start_ns: int, limits: Limits, sample_rate: float, recorder: "Recorder"):
+def open_recording(path: Path, scene: Scene, start_ns: int, limits: Limits, cadence: Cadence, recorder: "Recorder"):
     """Return a recording in real time; its ``path`` is a fresh one where ``path`` is taken.
 
     Where the process that records is killed, it goes on in another fresh one (see `bearing_sim.sinks.lasting_recording`).
@@ -45,7 +45,7 @@ def open_recording(path: Path, scene: Scene, start_ns: int, limits: Limits, samp
     path : what is asked for, a file or the folder of a bag.
     scene, start_ns : what is simulated, and time 0 of the samples [ns since the epoch].
     limits : where files end.
-    sample_rate : of the live model [Hz].
+    cadence : of the live model.
     recorder : the process that records.
 
     Raises
@@ -53,8 +53,7 @@ def open_recording(path: Path, scene: Scene, start_ns: int, limits: Limits, samp
     OSError
         The file cannot be made.
     """
-    beat = cadence(sample_rate)
-    advance = (beat.tick, beat.samples) if beat.every == 1 else None
+    advance = (cadence.tick, cadence.samples) if cadence.every == 1 else None
     return LastingRecording(lambda wait: recorder.open(fresh_path(path), scene, start_ns, limits, advance, wait=wait))
 
 

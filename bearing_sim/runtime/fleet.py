@@ -44,7 +44,7 @@ def run_fleet(scene: Scene, bearings: int, seconds: float) -> FleetRun:
     bearings : how many.
     seconds : how long, after a second that is not counted [s].
     """
-    models = [LiveModel(scene, warmed_up(scene, _SAMPLE_RATE), time.time_ns(), _SAMPLE_RATE, _MAXIMUM_LAG) for _ in range(bearings)]
+    models = [LiveModel(scene, warmed_up(scene), time.time_ns(), _SAMPLE_RATE, _MAXIMUM_LAG) for _ in range(bearings)]
     try:
         _drive(models, _SETTLING)
         lost = [model.runner.pace.lost for model in models]

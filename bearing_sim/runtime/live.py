@@ -17,6 +17,7 @@ from bearing_sim.effects import cheaper_levels
 from bearing_sim.events import Event, Level
 from bearing_sim.runtime.beat import Beat
 from bearing_sim.runtime.blocks import joined
+from bearing_sim.runtime.cadence import LONGEST_TICK, cadence
 from bearing_sim.runtime.governor import Governor
 from bearing_sim.runtime.health import Condition, Health, level_of, numbers
 from bearing_sim.runtime.input_gate import UNITS, InputGate
@@ -29,7 +30,6 @@ from bearing_sim.runtime.runner import Phase, Runner
 from bearing_sim.scene import Scene, Thresholds
 from bearing_sim.simulation import Inputs, Simulation
 
-LONGEST_TICK = 0.005  # [s] inputs act this late at most; outputs can be published at 200 Hz
 _CLOCK_JUMP = 1.0  # [s] of the receiver's clock against the monotonic one, from one look to the next
 _SLACK = 4.0  # [s] how long blocks wait to be collected before the oldest are dropped
 
@@ -41,22 +41,7 @@ class Published(NamedTuple):
     sample: np.void
 
 
-class Cadence(NamedTuple):
-    """How a sample rate is made of ticks."""
-
-    tick: float  # [s]
-    samples: int  # in the block of one tick
-    every: int  # blocks from one that goes to the sinks to the next
-
-
-def cadence(sample_rate: float) -> Cadence:
-    """Return ticks no longer than `LONGEST_TICK` that give a sample rate [Hz] exactly."""
-    samples = max(1, math.floor(sample_rate * LONGEST_TICK * (1 + 1e-9)))
-    every = max(1, math.ceil(1 / (sample_rate * LONGEST_TICK) * (1 - 1e-9)))
-    return Cadence(samples / (sample_rate * every), samples, every)
-
-
-def warmed_up(scene: Scene, sample_rate: float) -> Simulation:
+def warmed_up(scene: Scene) -> Simulation:
     """Return a simulation whose code is compiled or loaded, so that its first tick costs no more than the others.
 
     Raises
@@ -65,12 +50,11 @@ def warmed_up(scene: Scene, sample_rate: float) -> Simulation:
         The scene's own operating conditions cannot be computed.
     """
     simulation = Simulation(scene)
-    beat = cadence(sample_rate)
-    simulation.advance(beat.tick, simulation.inputs, beat.samples)
+    simulation.advance(LONGEST_TICK, simulation.inputs)
     return simulation
 
 
-def governor_of(simulation: Simulation, sample_rate: float) -> Governor | None:
+def governor_of(simulation: Simulation) -> Governor | None:
     """Return a governor over a simulation's level and the cheaper ones that have all its scene asks for; None where there are none.
 
     Their code is compiled or loaded here.  Lower levels take their own methods, with the scene's tolerance.
@@ -81,7 +65,7 @@ def governor_of(simulation: Simulation, sample_rate: float) -> Governor | None:
         The scene's own operating conditions cannot be computed at one of them.
     """
     scene, own = simulation.scene, dataclasses.replace(simulation.scene.integration, method=None, fixed_step=None)
-    below = [warmed_up(dataclasses.replace(scene, level=level, integration=own), sample_rate) for level in cheaper_levels(scene)]
+    below = [warmed_up(dataclasses.replace(scene, level=level, integration=own)) for level in cheaper_levels(scene)]
     return Governor([simulation, *below]) if below else None
 
 
@@ -106,6 +90,8 @@ class LiveModel:
     ----------
     level : Level
         Of the worst that held when the health was last reviewed, by `collect`.
+    cadence : Cadence
+        Of what ticks samples are made now (see `bearing_sim.runtime.cadence`).
     """
 
     def __init__(
@@ -126,11 +112,10 @@ class LiveModel:
         self.health, self.monitor = Health(), Monitor(scene)
         self.residual = ResidualMonitor(scene.thresholds.residual, scene.thresholds.slip_from_speed)
         self._rivals = {channel: Rivals(channel, unit) for channel, unit in UNITS.items()}
-        beat = cadence(sample_rate)
-        pacer, capacity = Pacer(1.0, maximum_lag), round(_SLACK / beat.tick)
-        self.runner = Runner(simulation, pacer, beat.tick, beat.samples, capacity, clock, governor, self._advanced)
-        self._every, self._blocks = beat.every, 0
-        self._publish_beat, self._due = Beat(publish_rate), due
+        self._sample_rate, self.cadence = sample_rate, cadence(sample_rate, publish_rate)
+        pacer, capacity = Pacer(1.0, maximum_lag), round(_SLACK / cadence(sample_rate, math.inf).tick)
+        self.runner = Runner(simulation, pacer, self.cadence.tick, self.cadence.samples, capacity, clock, governor, self._advanced)
+        self._sample_beat, self._publish_beat, self._due = Beat(sample_rate), Beat(publish_rate), due
         self._clock, self._clock_ahead = clock, start_ns * 1e-9 - clock()
         self._outlets = Outlets()
         self._published_time = self._residual_time = -math.inf
@@ -212,7 +197,8 @@ class LiveModel:
 
     def publish_at(self, rate: float) -> None:
         """Let outputs be due so often from now on [Hz]."""
-        self._publish_beat.rate = rate
+        self._publish_beat.rate, self.cadence = rate, cadence(self._sample_rate, rate)
+        self.runner.tick_by(self.cadence.tick, self.cadence.samples)
 
     def published(self) -> list[Published]:
         """Return the newest sample, where it was not returned before."""
@@ -343,8 +329,7 @@ class LiveModel:
 
     def _write(self, now: float, blocks: list[np.ndarray]) -> None:
         """Hand blocks to the sinks, all at once: for many samples together they hold the interpreter's lock far shorter."""
-        kept = [block for place, block in enumerate(blocks, self._blocks) if place % self._every == 0]  # the first is the state at the start
-        self._blocks += len(blocks)
+        kept = [block for block in blocks if self._sample_beat.is_due(float(block["time"][-1]))]  # the first is the state at the start
         if kept and self._outlets:
             together = joined(kept)
             self._outlets.to_all(now, lambda sink: sink.write(together))

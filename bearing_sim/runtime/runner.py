@@ -68,7 +68,7 @@ class Runner:
     ):
         self._governor, self._advanced = governor, advanced
         self._simulation, self._pacer, self._clock = simulation, pacer, clock
-        self.tick, self._samples = tick, samples
+        self.tick, self._samples = self._wanted = tick, samples
         self._changed = threading.Condition()  # guards all that follows
         self._queue: deque[np.ndarray | Event] = deque()
         self._capacity = capacity
@@ -99,6 +99,10 @@ class Runner:
         """
         with self._changed:
             self._governors.append(governor)
+
+    def tick_by(self, tick: float, samples: int) -> None:
+        """Let ticks be so long [s] and give so many samples, from the next one on."""
+        self._wanted = tick, samples  # whole, whoever reads it when
 
     def post(self, inputs: Inputs) -> None:
         """Set the inputs that the next tick shall reach.  The first ones start the model, in ideal rolling at these inputs."""
@@ -225,6 +229,7 @@ class Runner:
             if self._stopping:
                 return False
             inputs, reset_wanted = self._latest, self._reset_wanted
+            self.tick, self._samples = self._wanted
         if reset_wanted:
             self._reset(inputs)
             return True

@@ -22,7 +22,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.runtime.live import LiveModel, cadence, warmed_up
+from bearing_sim.runtime.live import LiveModel, warmed_up
 from bearing_sim.scene import Scene
 from bearing_sim.screenshot import HeadlessViewer, ViewerFailed, free_port, viewer_program
 from bearing_sim.sinks.priority import in_idle_time
@@ -89,11 +89,11 @@ def recording_cost(
         `bearing_sim.studies.paired.Spread`; ``without``: medians of the figures themselves; ``dropped``: blocks that sinks missed; ``viewer``:
         which, or why there is none; what was written, and how busy the machine was.
     """
-    kinds, tick = order(pairs), cadence(sample_rate).tick
+    kinds = order(pairs)
     stolen = stolen_share()
     with tempfile.TemporaryDirectory() as folder, ExitStack() as opened:
         path = Path(folder) / "run.mcap"
-        watched = _Watched(warmed_up(scene, sample_rate))
+        watched = _Watched(warmed_up(scene))
         sinks = _Sinks(opened, scene, path, viewer)
         live = LiveModel(scene, watched, sinks.start_ns, sample_rate, maximum_lag=_ALL)  # no time is given up, so that ticks stay countable
         for name, sink in sinks.by_name.items():
@@ -113,6 +113,7 @@ def recording_cost(
                 shares.append((time.process_time() - busy) / (time.perf_counter() - began))
         live.close()
         written = path.stat().st_size
+    tick = live.cadence.tick
     found = watched.stretches(begins, seconds, tick)
     given, all_of_it = (after - before for after, before in zip(stolen_share(), stolen))
     return {
