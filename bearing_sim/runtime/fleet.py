@@ -5,6 +5,7 @@ What ROS adds for each bearing is not in here (``python -m bearing_sim.ros.measu
 """
 
 import math
+import sys
 import time
 from typing import NamedTuple
 
@@ -16,9 +17,10 @@ _INPUT_RATE = 100.0  # Hz
 _REVIEWS = 20  # inputs from one review to the next: 5 Hz, as the node does
 _SETTLING = 1.0  # [s] not counted: the start from ideal rolling costs more
 _MAXIMUM_LAG = 0.2  # [s], the node's default
-_LEAST_SHARE = 0.98  # of real time, below which it is lost
-_FULL = 0.95  # of a core: the count that is tried first would take so much
-_TRIES = 5
+_LEAST_SHARE = 0.995  # of real time, below which a lag grows: a few ticks of a run
+_FULL = 0.95  # of a core: the count that is tried next would take so much
+_NO_MORE_THAN_NOISE = 1.04  # times as many: what is held varies so from run to run
+_TRIES = 10
 
 
 class FleetRun(NamedTuple):
@@ -28,11 +30,12 @@ class FleetRun(NamedTuple):
     core_seconds: float  # of the whole process, for each simulated second of a bearing [s]
     lost: float  # largest time that one of them has lost [s]
     real_time_factor: float  # least
+    input_rate: float = _INPUT_RATE  # at which each was sent its speed and its load [Hz]
 
     @property
     def holds(self) -> bool:
-        """Whether all held real time."""
-        return self.lost == 0.0 and self.real_time_factor > _LEAST_SHARE
+        """Whether all held real time, driven as often as they were meant to be."""
+        return self.lost == 0.0 and min(self.real_time_factor, self.input_rate / _INPUT_RATE) > _LEAST_SHARE
 
 
 def run_fleet(scene: Scene, bearings: int, seconds: float) -> FleetRun:
@@ -50,18 +53,21 @@ def run_fleet(scene: Scene, bearings: int, seconds: float) -> FleetRun:
         lost = [model.runner.pace.lost for model in models]
         times = [_simulated(model) for model in models]
         began, had = time.monotonic(), time.process_time()
-        _drive(models, seconds)
+        beats = _drive(models, seconds)
         elapsed, spent = time.monotonic() - began, time.process_time() - had
         simulated = [_simulated(model) - before for model, before in zip(models, times)]
         given_up = max(model.runner.pace.lost - before for model, before in zip(models, lost))
-        return FleetRun(bearings, spent / sum(simulated), given_up, min(simulated) / elapsed)
+        return FleetRun(bearings, spent / sum(simulated), given_up, min(simulated) / elapsed, beats / elapsed)
     finally:
         for model in models:
             model.close()
 
 
 def most_bearings(scene: Scene, seconds: float) -> list[FleetRun]:
-    """Return runs of one bearing, and of as many as that lets expect, fewer and fewer until all hold real time; the last is the answer.
+    """Return runs of one bearing and of more, each of as many as the last one that held lets expect; the last is the most that held.
+
+    What each takes falls with their number, as they keep code and tables at hand for each other: so how many there can be shows in runs of
+    many only.  A run that does not hold is followed by one of a seventh fewer.  Where not even one bearing holds, its run is the last.
 
     Parameters
     ----------
@@ -69,15 +75,19 @@ def most_bearings(scene: Scene, seconds: float) -> list[FleetRun]:
     seconds : of each run [s].
     """
     runs = [run_fleet(scene, 1, seconds)]
-    count = max(1, math.floor(_FULL / runs[0].core_seconds))
+    most, too_many = runs[0], sys.maxsize
     for _ in range(_TRIES):
-        if count <= 1:
+        count = max(1, math.floor(_FULL / most.core_seconds))
+        if count >= too_many:
+            count = math.isqrt(most.bearings * too_many)
+        if count <= _NO_MORE_THAN_NOISE * most.bearings:
             break
         runs.append(run_fleet(scene, count, seconds))
         if runs[-1].holds:
-            return runs
-        count = min(count - 1, math.floor(0.85 * count))
-    return [*runs[1:], runs[0]]
+            most = runs[-1]
+        else:
+            too_many = count
+    return [*(run for run in runs if run is not most), most]
 
 
 def _simulated(model: LiveModel) -> float:
@@ -86,8 +96,8 @@ def _simulated(model: LiveModel) -> float:
     return float(sample["shaft_angle"] / sample["shaft_speed"]) if sample is not None else 0.0
 
 
-def _drive(models: list[LiveModel], seconds: float) -> None:
-    """Send every model its constant inputs and review it, for a while."""
+def _drive(models: list[LiveModel], seconds: float) -> int:
+    """Send every model its constant inputs and review it, for a while; return how often."""
     start, beat = time.monotonic(), 0
     while time.monotonic() < start + seconds:
         for model in models:
@@ -98,3 +108,4 @@ def _drive(models: list[LiveModel], seconds: float) -> None:
                 model.collect(now_ns)
         beat += 1
         time.sleep(max(0.0, start + beat / _INPUT_RATE - time.monotonic()))
+    return beat
