@@ -9,7 +9,7 @@ import pytest
 from fake_simulation import FakeSimulation
 
 from bearing_sim.events import Event, Level
-from bearing_sim.runtime.cadence import LONGEST_TICK, SHORTEST_LIMIT, cadence, limit
+from bearing_sim.runtime.cadence import LONGEST_TICK, SHORTEST_LIMIT, cadence, tick_limit
 from bearing_sim.runtime.live import LiveModel
 from bearing_sim.runtime.runner import Phase
 from bearing_sim.scene_file import load_scene
@@ -226,12 +226,12 @@ def test_the_worst_event_comes_first(bench):
 @pytest.mark.parametrize("publish_rate", [1.0, 50.0, 60.0, 100.0, 200.0, math.inf])
 def test_ticks_stay_short_and_make_the_sample_rate_exactly(rate, publish_rate):
     beat = cadence(rate, publish_rate)
-    assert 0.5 * SHORTEST_LIMIT < beat.tick <= limit(publish_rate) * (1 + 1e-6)
+    assert 0.5 * SHORTEST_LIMIT < beat.tick <= tick_limit(publish_rate) * (1 + 1e-6)
     assert beat.samples / (beat.tick * beat.every) == pytest.approx(rate, rel=1e-12)
 
 
 def test_ticks_are_half_a_period_of_the_outputs_between_5_and_10_ms_where_outputs_come_evenly_so():
-    assert [limit(rate) for rate in (1.0, 50.0, 62.5, 100.0, 200.0)] == pytest.approx([0.010, 0.010, 0.008, 0.005, 0.005])
+    assert [tick_limit(rate) for rate in (1.0, 50.0, 62.5, 100.0, 200.0)] == pytest.approx([0.010, 0.010, 0.008, 0.005, 0.005])
     assert (cadence(100.0, 50.0), cadence(100.0, 100.0), cadence(1000.0, 62.5)) == ((0.01, 1, 1), (0.005, 1, 2), (0.008, 8, 1))
     assert cadence(100.0, 40.0).tick == 0.005, "25 ms are no whole number of 10 ms"
 

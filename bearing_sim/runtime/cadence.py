@@ -1,5 +1,6 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""How long the ticks of a run in real time are: short enough for its outputs, and no shorter, since a tick costs the same whatever its length."""
+"""How long the ticks of a run in real time are: short enough for its outputs, and no shorter: at cheap levels most of what a tick costs is that
+it is one."""
 
 import math
 from typing import NamedTuple
@@ -16,13 +17,13 @@ class Cadence(NamedTuple):
     every: int  # blocks from one that goes to the sinks to the next
 
 
-def limit(publish_rate: float) -> float:
+def tick_limit(publish_rate: float) -> float:
     """Return how long a tick may be [s]: half a period of outputs that are published so often [Hz], within the bounds of this module."""
     return min(max(0.5 / publish_rate, SHORTEST_LIMIT), LONGEST_TICK)
 
 
 def cadence(sample_rate: float, publish_rate: float) -> Cadence:
-    """Return ticks that give a sample rate [Hz] exactly: no longer than `limit` where a period of the outputs is a whole number of them, so
+    """Return ticks that give a sample rate [Hz] exactly: no longer than `tick_limit` where a period of the outputs is a whole number of them, so
     that outputs come evenly, else no longer than `SHORTEST_LIMIT`.
 
     Parameters
@@ -30,7 +31,7 @@ def cadence(sample_rate: float, publish_rate: float) -> Cadence:
     sample_rate : samples for each simulated second that sinks get [Hz].
     publish_rate : outputs that are due to be published in each second [Hz].
     """
-    long = _cadence(sample_rate, limit(publish_rate))
+    long = _cadence(sample_rate, tick_limit(publish_rate))
     ticks = 1.0 / (publish_rate * long.tick)
     return long if abs(ticks - round(ticks)) < _WHOLE else _cadence(sample_rate, SHORTEST_LIMIT)
 
