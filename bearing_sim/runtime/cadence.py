@@ -1,6 +1,8 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""How long the ticks of a run in real time are: short enough for its outputs, and no shorter: at cheap levels most of what a tick costs is that
-it is one."""
+"""How long the ticks of a run in real time are: short enough for its outputs, and no shorter.
+
+At cheap levels most of what a tick costs does not depend on its length.
+"""
 
 import math
 from typing import NamedTuple
@@ -23,8 +25,10 @@ def tick_limit(publish_rate: float) -> float:
 
 
 def cadence(sample_rate: float, publish_rate: float) -> Cadence:
-    """Return ticks that give a sample rate [Hz] exactly: no longer than `tick_limit` where a period of the outputs is a whole number of them, so
-    that outputs come evenly, else no longer than `SHORTEST_LIMIT`.
+    """Return ticks that give a sample rate exactly.
+
+    They are no longer than `tick_limit` where a period of the outputs is a whole number of them, so that outputs come evenly, else no
+    longer than `SHORTEST_LIMIT`.
 
     Parameters
     ----------
