@@ -141,7 +141,7 @@ class BearingDoors:
         governor = self._governor if self._shared.governor else None
         shared, due = self._shared, self._publish_soon
         timing = {"sample_rate": shared.sample_rate, "maximum_lag": shared.maximum_lag, "publish_rate": shared.publish_rate}
-        return LiveModel(self.scene, self._simulation, self._node.now_ns(), **timing, governor=governor, due=due)
+        return LiveModel(self.scene, self._simulation, self._node.now_ns(), **timing, governor=governor, due=due, receiver=self._now_ns)
 
     def _sim_time_model(self) -> SimTimeModel:
         shared = self._shared

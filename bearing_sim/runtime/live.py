@@ -27,10 +27,10 @@ from bearing_sim.runtime.pacer import Pacer
 from bearing_sim.runtime.residual import ResidualMonitor
 from bearing_sim.runtime.rivals import Rivals
 from bearing_sim.runtime.runner import Phase, Runner
+from bearing_sim.runtime.wall_clock import WallClock
 from bearing_sim.scene import Scene, Thresholds
 from bearing_sim.simulation import Inputs, Simulation
 
-_CLOCK_JUMP = 1.0  # [s] of the receiver's clock against the monotonic one, from one look to the next
 _SLACK = 4.0  # [s] how long blocks wait to be collected before the oldest are dropped
 
 
@@ -85,6 +85,7 @@ class LiveModel:
     governor : see `governor_of`; without one the level stays, and time is given up where it is too slow.
     publish_rate : outputs that are due to be published in each second [Hz].
     due : called on the runner's thread when a sample has come that is due; shall take no time.
+    receiver : reads the receiver's clock [ns since the epoch] (see `bearing_sim.runtime.wall_clock.WallClock`).
 
     Attributes
     ----------
@@ -105,6 +106,7 @@ class LiveModel:
         governor: Governor | None = None,
         publish_rate: float = 50.0,
         due: Callable[[], None] | None = None,
+        receiver: Callable[[], int] | None = None,
     ):
         self._governor = governor
         self.scene, self.start_ns = scene, start_ns
@@ -114,9 +116,10 @@ class LiveModel:
         self._rivals = {channel: Rivals(channel, unit) for channel, unit in UNITS.items()}
         self._sample_rate, self.cadence = sample_rate, cadence(sample_rate, publish_rate)
         pacer, capacity = Pacer(1.0, maximum_lag), round(_SLACK / cadence(sample_rate, math.inf).tick)
-        self.runner = Runner(simulation, pacer, self.cadence.tick, self.cadence.samples, capacity, clock, governor, self._advanced)
+        tick, samples, every = self.cadence
+        self.runner = Runner(simulation, pacer, tick, samples, capacity, clock, governor, self._advanced, every)
         self._sample_beat, self._publish_beat, self._due = Beat(sample_rate), Beat(publish_rate), due
-        self._clock, self._clock_ahead = clock, start_ns * 1e-9 - clock()
+        self._wall_clock = WallClock(start_ns, clock, receiver)
         self._outlets = Outlets()
         self._published_time = self._residual_time = -math.inf
         self.level = Level.OK
@@ -198,7 +201,7 @@ class LiveModel:
     def publish_at(self, rate: float) -> None:
         """Let outputs be due so often from now on [Hz]."""
         self._publish_beat.rate, self.cadence = rate, cadence(self._sample_rate, rate)
-        self.runner.tick_by(self.cadence.tick, self.cadence.samples)
+        self.runner.tick_by(*self.cadence)
 
     def published(self) -> list[Published]:
         """Return the newest sample, where it was not returned before."""
@@ -320,9 +323,8 @@ class LiveModel:
 
     def _follow_clock(self, now_ns: int) -> None:
         """Let run time go on evenly where the receiver's clock jumps, as when it is set: its stamps count from another start then."""
-        ahead = now_ns * 1e-9 - self._clock()
-        jump, self._clock_ahead = ahead - self._clock_ahead, ahead
-        if abs(jump) > _CLOCK_JUMP:
+        jump = self._wall_clock.jump(now_ns)
+        if jump:
             self.start_ns += round(jump * 1e9)
             text = f"the clock jumped by {jump:+.6g} s; the run and its recording go on evenly, by the clock from before"
             self.health.note(Event(self.run_time(now_ns), Level.WARN, "clock.jumped", text))
