@@ -71,7 +71,7 @@ class Runner:
         self._governor, self._advanced = governor, advanced
         self._simulation, self._pacer, self._clock = simulation, pacer, clock
         self.tick, self._samples, self._together = self._wanted = tick, samples, together
-        self._ticks = 0  # since the last whole number of them that belong together
+        self._ticks = 0  # done of those that belong together
         self._changed = threading.Condition()  # guards all that follows
         self._queue: deque[np.ndarray | Event] = deque()
         self._capacity = capacity
