@@ -30,7 +30,7 @@ def test_a_fleet_holds_where_all_keep_real_time_and_are_driven_as_often_as_meant
 
 @pytest.mark.parametrize(("capacity", "found"), [(7, 7), (6, 6), (10, 9), (100, 9), (1, 1), (0, 1)])
 def test_fewer_are_tried_where_not_all_hold(monkeypatch, capacity, found):
-    monkeypatch.setattr(fleet, "run_fleet", lambda scene, count, seconds: FleetRun(count, 0.1, 0.0 if count <= capacity else 1.0, 1.0))
+    monkeypatch.setattr(fleet, "run_fleet", lambda scene, count, seconds: FleetRun(count, 0.1, 0.0 if count <= capacity else 1.0, 1.0, 100.0))
     runs = most_bearings(None, 1.0)
     assert runs[-1].bearings == found and runs[-1].holds == (capacity > 0)
     assert 1 in [run.bearings for run in runs] and len({run.bearings for run in runs}) == len(runs)
@@ -41,7 +41,9 @@ def test_more_are_tried_as_each_takes_less_beside_others(monkeypatch, capacity):
     def share(count):
         return 0.01 + 0.09 / count
 
-    monkeypatch.setattr(fleet, "run_fleet", lambda scene, count, seconds: FleetRun(count, share(count), 0.0, 1.0 if count <= capacity else 0.98))
+    monkeypatch.setattr(
+        fleet, "run_fleet", lambda scene, count, seconds: FleetRun(count, share(count), 0.0, 1.0 if count <= capacity else 0.98, 100.0)
+    )
     runs = most_bearings(None, 1.0)
     assert runs[-1].holds and min(0.9 * capacity, 80) < runs[-1].bearings <= capacity
     assert runs[-1].bearings * share(runs[-1].bearings) <= 0.96

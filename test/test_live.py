@@ -253,14 +253,25 @@ def test_ticks_follow_the_publish_rate_and_sinks_get_their_samples_as_before(ben
     assert np.diff(times) == pytest.approx(0.01, abs=1e-6) or one.live.runner.pace.lost
 
 
+def test_a_message_that_waited_for_its_thread_is_no_jump_of_the_clock(bench):
+    def receiver():
+        return START_NS + round((time.monotonic() - began) * 1e9)
+
+    began = time.monotonic()
+    one = bench(receiver=receiver)
+    one.live.offer("shaft_speed", (100.0,), None, receiver() - 5 * 10**9)
+    one.run(0.1)
+    assert not [event for event in one.news if event.code == "clock.jumped"] and one.live.start_ns == START_NS
+
+
 def test_a_low_sample_rate_thins_what_sinks_get_not_what_the_model_does(bench):
-    one = bench(sample_rate=10.0)
+    one = bench(sample_rate=10.0, publish_rate=100.0)
     sink = ListSink()
     one.live.attach("view", sink)
     one.run(1.0)
     assert one.live.close()
-    assert len(one.simulation.calls) > 30
-    assert len(sink.blocks) == 1 + len(one.simulation.calls) // cadence(10.0, 50.0).every
+    assert len(one.simulation.calls) > 50
+    assert len(sink.blocks) == 1 + len(one.simulation.calls) // cadence(10.0, 100.0).every
     steps = sorted(b["time"][0] - a["time"][0] for a, b in zip(sink.blocks, sink.blocks[1:]))
     assert steps[len(steps) // 2] == pytest.approx(0.1)
 

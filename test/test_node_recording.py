@@ -114,6 +114,10 @@ def test_a_recording_whose_process_is_killed_goes_on_in_another_file_but_not_for
     second = Path(again.message)
     wait_for(lambda: second.exists() and not Path(f"/proc/{pid}").exists())
     assert contents(second).is_sound and not Recording(second).unfinished
+    assert {name: Recording(second).metadata[name] for name in ("advance_seconds", "advance_samples")} == {
+        "advance_seconds": "0.01",
+        "advance_samples": "1",
+    }, "tick by tick, as the node has computed it"
     times = read_input_log(second).series["shaft_speed"].log_times
     assert len(times) > 30 and killed_ns - times[-1] < SECOND
 

@@ -94,6 +94,20 @@ def test_over_a_tick_inputs_go_from_the_previous_to_the_latest_value(rig):
     assert ramp["shaft_speed"] == pytest.approx([150.0, 200.0, 250.0, 300.0])
 
 
+def test_other_ticks_begin_after_a_whole_number_of_those_from_one_kept_sample_to_the_next(rig):
+    ends = []
+
+    def advanced(now):
+        ends.append(one.simulation.time)
+        if len(ends) == 3:
+            one.runner.tick_by(0.02, 2, 1)
+
+    one = rig(tick=0.01, samples=1, every=2, advanced=advanced).start()
+    one.collect(lambda r: len(ends) >= 6)
+    assert ends[:6] == pytest.approx([0.01, 0.02, 0.03, 0.04, 0.06, 0.08])
+    assert [len(block) for block in one.blocks[1:7]] == [1, 1, 1, 1, 2, 2]
+
+
 def test_only_the_latest_of_many_inputs_counts_and_posting_never_waits_for_the_solver(rig):
     one = rig(rate=1.0)
     one.simulation.seconds_per_tick = 0.2

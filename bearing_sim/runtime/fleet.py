@@ -5,7 +5,6 @@ What ROS adds for each bearing is not in here (``python -m bearing_sim.ros.measu
 """
 
 import math
-import sys
 import time
 from typing import NamedTuple
 
@@ -30,7 +29,7 @@ class FleetRun(NamedTuple):
     core_seconds: float  # of the whole process, for each simulated second of a bearing [s]
     lost: float  # largest time that one of them has lost [s]
     real_time_factor: float  # least
-    input_rate: float = _INPUT_RATE  # at which each was sent its speed and its load [Hz]
+    input_rate: float  # at which each was sent its speed and its load [Hz]
 
     @property
     def holds(self) -> bool:
@@ -67,7 +66,8 @@ def most_bearings(scene: Scene, seconds: float) -> list[FleetRun]:
     """Return runs of one bearing and of more, each of as many as the last one that held lets expect; the last is the most that held.
 
     What each takes falls with their number, as they keep code and tables at hand for each other: so how many there can be shows in runs of
-    many only.  A run that does not hold is followed by one of a seventh fewer.  Where not even one bearing holds, its run is the last.
+    many only.  A run that does not hold is followed by one half-way, in ratio, to the most that held.  Where not even one bearing holds,
+    its run is the last.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def most_bearings(scene: Scene, seconds: float) -> list[FleetRun]:
     seconds : of each run [s].
     """
     runs = [run_fleet(scene, 1, seconds)]
-    most, too_many = runs[0], sys.maxsize
+    most, too_many = runs[0], math.inf
     for _ in range(_TRIES):
         count = max(1, math.floor(_FULL / most.core_seconds))
         if count >= too_many:

@@ -53,7 +53,7 @@ class Runner:
     governor : where given, changes the simulation for that of another level when the solver is too slow or fast enough; its wanted level
         is that of ``simulation``.
     advanced : called on the worker thread after every tick with the run time it has reached [s]; shall take no time.
-    together : ticks that belong together, as from one sample that is kept to the next.
+    every : ticks from one sample that is kept to the next.
     """
 
     def __init__(
@@ -66,12 +66,12 @@ class Runner:
         clock: Callable[[], float] = time.monotonic,
         governor: Governor | None = None,
         advanced: Callable[[float], None] | None = None,
-        together: int = 1,
+        every: int = 1,
     ):
         self._governor, self._advanced = governor, advanced
         self._simulation, self._pacer, self._clock = simulation, pacer, clock
-        self.tick, self._samples, self._together = self._wanted = tick, samples, together
-        self._ticks = 0  # done of those that belong together
+        self.tick, self._samples, self._every = self._wanted = tick, samples, every
+        self._ticks = 0  # since the last sample that is kept
         self._changed = threading.Condition()  # guards all that follows
         self._queue: deque[np.ndarray | Event] = deque()
         self._capacity = capacity
@@ -103,9 +103,9 @@ class Runner:
         with self._changed:
             self._governors.append(governor)
 
-    def tick_by(self, tick: float, samples: int, together: int = 1) -> None:
-        """Let ticks be otherwise (see `Runner`) from when those that belong together are done."""
-        self._wanted = tick, samples, together  # whole, whoever reads it when
+    def tick_by(self, tick: float, samples: int, every: int = 1) -> None:
+        """Let ticks be otherwise (see `Runner`) from the next sample on that is kept."""
+        self._wanted = tick, samples, every  # whole, whoever reads it when
 
     def post(self, inputs: Inputs) -> None:
         """Set the inputs that the next tick shall reach.  The first ones start the model, in ideal rolling at these inputs."""
@@ -232,8 +232,8 @@ class Runner:
             if self._stopping:
                 return False
             inputs, reset_wanted = self._latest, self._reset_wanted
-            if self._ticks % self._together == 0:
-                self.tick, self._samples, self._together = self._wanted
+            if self._ticks % self._every == 0:
+                self.tick, self._samples, self._every = self._wanted
                 self._ticks = 0
         if reset_wanted:
             self._reset(inputs)
