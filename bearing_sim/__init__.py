@@ -1,46 +1,43 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Cage slip and rating life of high-speed roller bearings with lobed raceways.
+"""Cage slip and rating life of high-speed cylindrical roller bearings, live or offline.
 
-=====================  ==================================================================================
-module                 responsibility
-=====================  ==================================================================================
-``scene``              what to simulate: frozen records, one declaration per quantity
-``scene_monitoring``   from where on a condition is told
-``scene_uncertainty``  what nobody knows for sure: ranges of fields, fields by their paths
-``crown``              profiles of the rollers
-``contour``            forms of the outer raceway; ``contour_file``, ``contour_scene``: measured ones
-``methods``            by which integrators each level can be advanced
-``effects``            which levels have what a scene may ask for
-``scene_bounds``       bounds that no single field has
-``scene_file``         YAML, presets, overrides; every fault of a file at once
-``quantity``           units at the door
-``params``             what compiled code sees; `pack` is the only bridge from a scene
-``simulation``         owns time and state; ``advance`` returns a block of samples
-``sample``             the sample record: names, units and meanings of all observables
-``levels``             one complete model per file
-``tables``             tables of operating points of level ``steady``: refined until they are good, kept on disk
-``kernels``            scalar laws: contact, traction, cage, drag, raceway, load balance, linear algebra
-``integrators``        stiff and explicit methods and their drive loops; they know no bearings
-``rating_life``        roller loads to rating life: whole rollers, slices, oil and reliability
-``oil``                oil properties at a temperature
-``film_ratio``         lambda ratio: oil film over roughness
-``ring_growth``        how far rings grow by rotation, fits and heat
-``sweep``              a scene at many points: tasks on all cores or a Dask cluster, a journal of them, tables, pictures
-``runtime``            pacing, the solver's thread, the gate for inputs, health, alarms, residual slip
-``sinks``              MCAP and rerun
-``studies``            the bench: speed and error of every level and method; statics: the load distribution by slices;
-                       extremes: the stability map; uncertainty and sensitivity: bands of slip and life, and which field they
-                       come from; calibration: fields fitted to a measured cage speed
-``events``             what happens besides samples: what a person should be told, and measurements of the cage
-``topics``             the messages that samples and inputs become
-``ros``                the ROS 2 node and player, and what the launch files share
-``commands``, ``cli``  the command line
-=====================  ==================================================================================
+Start here: `load_scene` reads what to simulate, `Simulation` advances it, `to_pandas` and `to_xarray` turn its samples into tables.
+
+===============  =====================================================================================================
+room             purpose
+===============  =====================================================================================================
+``scene``        what a user writes: records with units and bounds, the loader, the catalogue, the bundled scenes
+``numerics``     compiled helpers that know no bearing: linear algebra, integrators, compilation, lanes
+``physics``      the laws, one file each: contact, traction, film, drag, cage, raceway, rating life
+``model``        from a scene to numbers: parameters, oil, ring growth, the sample record and its tables
+``levels``       the equations of motion at each level of fidelity: steady, slip, planar, spatial
+``simulation``   the facade: `Simulation`, `Inputs`
+``messages``     what topics and recordings carry: topics, events, the CDR layout of messages
+``inputs``       everything that comes in: gate, profiles over time, logs, CSV import, the synthetic mission
+``recording``    MCAP out and in: writer, writer process, reader, recovery, comparison, export
+``monitoring``   thresholds, alarms, residual slip and its CUSUM, health, film ratio
+``runtime``      running against a clock: wall time and sim time, solver thread, pacing, governor, sinks, replay
+``view``         pictures in rerun
+``sweep``        a scene at many points: tasks, journal, tables
+``studies``      questions answered by many runs: bench, trade-off, uncertainty, calibration, design, the paper's results
+``cli``          the command line ``bearing-sim``
+``ros``          the ROS 2 node and player
+===============  =====================================================================================================
+
+``doc/architecture.md`` says which room may import which, and in which file to change what.
 """
 
 from importlib import import_module
 
-_EXPORTS = {"Scene": "scene", "load_scene": "scene_file", "SceneError": "scene_file", "Simulation": "simulation", "Inputs": "simulation"}
+_EXPORTS = {
+    "Scene": "scene.scene",
+    "SceneError": "scene.loader",
+    "load_scene": "scene.loader",
+    "Simulation": "simulation",
+    "Inputs": "simulation",
+    "to_pandas": "model.labelled",
+    "to_xarray": "model.labelled",
+}
 __all__ = list(_EXPORTS)
 
 

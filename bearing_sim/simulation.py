@@ -6,20 +6,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.compiled_call import compiled_for
-from bearing_sim.effects import NUMBERS
-from bearing_sim.integrators.status import COUNT, OK, REASONS, new_counts
-from bearing_sim.levels.inputs import Drive
+from bearing_sim.levels.common.model import Drive, Model, Tolerances
 from bearing_sim.levels.level import LEVELS
-from bearing_sim.levels.slip import Model
-from bearing_sim.levels.steady_table import Table
-from bearing_sim.oil import kinematic_viscosities
-from bearing_sim.params import lubricate, pack
-from bearing_sim.sample import flat, new_block, sample_dtype
-from bearing_sim.scene import Integration, Operating, Scene
-from bearing_sim.tables.store import cached_table
+from bearing_sim.levels.steady.table import Table
+from bearing_sim.levels.steady.table_builder import cached_table
+from bearing_sim.model.oil import kinematic_viscosities
+from bearing_sim.model.params import lubricate, pack
+from bearing_sim.model.sample import flat, new_block
+from bearing_sim.numerics.compilation import compiled_for
+from bearing_sim.numerics.time_stepping import COUNT, OK, REASONS, new_counts
+from bearing_sim.scene.fidelity import NUMBERS
+from bearing_sim.scene.scene import Integration, Operating, Scene
 
-_FINEST_WITH_FIXED_STEP = 1e-7
+_FINEST_WITH_FIXED_STEP = Tolerances(position=2.5e-11, play=5e-11, speed=1e-7, relative=3e-7)
 
 
 class Inputs(NamedTuple):
@@ -49,7 +48,7 @@ class IntegrationError(RuntimeError):
 
     Attributes
     ----------
-    status : why, see `bearing_sim.integrators.status`; None where it is not known.
+    status : why, see `bearing_sim.numerics.time_stepping`; None where it is not known.
     """
 
     def __init__(self, message: str, status: int | None = None):
@@ -79,11 +78,10 @@ class Simulation:
         self._params = pack(scene)
         self._level = LEVELS[scene.level]
         self._tables = ()  # what the level's workspace is made of besides the parameters
-        if self._level.advance_course is not None:
+        if self._level.advance_profile is not None:
             kept = cached_table(scene) if table is None else (table,)
             self._tables = kept[:1] if kept else ()
         self._method = self._level.method(scene.integration.method)
-        self._dtype = sample_dtype(self._params.rollers.count)
         self.reset(inputs)
 
     def reset(self, inputs: Inputs | None = None) -> None:
@@ -101,10 +99,10 @@ class Simulation:
         self._begin(self._level.initial_state(self._params, self._work, *self.inputs[:3]), new_block(1, self._params.rollers.count))
 
     def take_over(self, other: "Simulation") -> None:
-        """Go on from where another simulation of the same bearing is, at another level or with other settings.
+        """Continue from the state of another simulation of the same bearing, at another level or with other settings.
 
-        Time, inputs, damage and the angles of all bodies go on without a jump, cage and rollers as fast as they are; see
-        `bearing_sim.levels.carried`.  Counters keep what this simulation has done itself.
+        Time, inputs, damage, the angles of all bodies and the speeds of cage and rollers continue without a jump; see
+        `bearing_sim.levels.common.state_transfer`.  Counters keep counting this simulation's own work.
 
         Raises
         ------
@@ -112,7 +110,8 @@ class Simulation:
             The other bearing has another number of rollers.
         """
         if other._params.rollers.count != self._params.rollers.count:
-            raise ValueError(f"cannot go on from a bearing of {other._params.rollers.count} rollers with one of {self._params.rollers.count}")
+            theirs, own = other._params.rollers.count, self._params.rollers.count
+            raise ValueError(f"cannot continue a bearing of {theirs} rollers with one of {own}: both simulations need the same bearing")
         self.inputs, self.time = other.inputs, other.time
         self._work = self._new_work()
         before = other._previous.copy()
@@ -121,13 +120,13 @@ class Simulation:
         self._begin(self._level.state_at(self._params, self._work, other.sample), before)
 
     def resume(self, sample: np.void) -> None:
-        """Go on from a recorded sample, at its inputs, with bodies where they were and as fast as they were (see `take_over`).
+        """Continue from a recorded sample: its inputs, positions and speeds (see `take_over`).
 
-        What a sample does not hold, such as the radial speeds of rollers, begins at rest.
+        What a sample does not hold, such as the radial speeds of rollers, starts at rest.
 
         Parameters
         ----------
-        sample : all observables of an instant (see `bearing_sim.sample`); its time becomes the simulation's.
+        sample : all observables of an instant (see `bearing_sim.model.sample`); its time becomes the simulation's.
         """
         self.inputs = _checked(Inputs(*(sample[name] for name in Inputs._fields)))
         self.time = float(sample["time"])
@@ -139,7 +138,7 @@ class Simulation:
         self._begin(self._level.state_at(self._params, self._work, before[0]), before)
 
     def _begin(self, state: np.ndarray, previous: np.ndarray) -> None:
-        """Take a state as the present one; what adds up over time goes on from the sample before."""
+        """Take a state as the present one; sums over time continue from the sample before."""
         self._state = state
         self._compiled = None  # the code of `advance`, from its first call on: the types of its arguments stay
         self._memory = self._method.new_memory(state.size)
@@ -164,11 +163,11 @@ class Simulation:
             now.load_z,
             (end.load_z - now.load_z) / duration,
         )
-        return Model(self._params, self._lubrication, drive, _tolerance(self.scene.integration))
+        return Model(self._params, self._lubrication, drive, tolerances_of(self.scene.integration))
 
     @property
     def sample(self) -> np.void:
-        """The newest sample (see `bearing_sim.sample`)."""
+        """The newest sample (see `bearing_sim.model.sample`)."""
         return self._previous[0]
 
     @property
@@ -182,9 +181,9 @@ class Simulation:
         return Counters(*(int(self._counts[index]) for index in COUNT))
 
     def advance(self, duration: float, inputs: Inputs | None = None, samples: int = 1) -> np.ndarray:
-        """Advance by ``duration`` [s] while the inputs go linearly from their present values to ``inputs``.
+        """Advance by ``duration`` [s] while the inputs change linearly from their present values to ``inputs``.
 
-        The oil temperature takes its new value at the start: it is slow, and every oil property hangs on it.
+        The oil temperature takes its new value at the start: it changes slowly, and every oil property depends on it.
 
         Parameters
         ----------
@@ -194,7 +193,7 @@ class Simulation:
 
         Returns
         -------
-        block : samples, shape (samples,), see `bearing_sim.sample.sample_dtype`.
+        block : samples, shape (samples,), see `bearing_sim.model.sample.sample_dtype`.
 
         Raises
         ------
@@ -208,7 +207,7 @@ class Simulation:
         end = self.inputs if inputs is None else _checked(inputs)
         if end.oil_temperature != self._lubrication.temperature:
             self._lubrication = lubricate(self.scene.lubricant, self._params, end.oil_temperature)
-        block = np.zeros(samples * self._dtype.itemsize // 8).view(self._dtype)
+        block = new_block(samples, self._params.rollers.count)
         state = self._state.copy()
         integration = self.scene.integration
         advance = self._method.advance if integration.fixed_step is None else self._method.advance_fixed
@@ -245,11 +244,11 @@ class Simulation:
         return block
 
     @property
-    def takes_courses(self) -> bool:
-        """Whether `advance_course` goes over many instants at once."""
+    def takes_profiles(self) -> bool:
+        """Whether `advance_profile` goes over many instants at once."""
         return bool(self._tables)
 
-    def advance_course(self, stretches: np.ndarray, inputs: np.ndarray) -> np.ndarray:
+    def advance_profile(self, stretches: np.ndarray, inputs: np.ndarray) -> np.ndarray:
         """Advance from instant to instant of a course, as far as the level's table holds it, many times as fast as by `advance`.
 
         Parameters
@@ -266,14 +265,14 @@ class Simulation:
         ValueError
             The level takes no courses, a stretch is not positive and finite, or an input is not finite.
         """
-        if not self.takes_courses:
+        if not self.takes_profiles:
             raise ValueError(f"level {self.scene.level} without a table takes no courses of inputs; use advance")
         if not (np.isfinite(inputs).all() and np.isfinite(stretches).all() and (stretches > 0.0).all()):
-            raise ValueError("advance_course takes positive finite stretches and finite inputs")
+            raise ValueError("advance_profile takes positive finite stretches and finite inputs")
         block = new_block(len(stretches), self._params.rollers.count)
-        reached = self._level.advance_course(
+        reached = self._level.advance_profile(
             self.time,
-            self.time + np.cumsum(stretches),
+            np.ascontiguousarray(stretches, float),
             np.ascontiguousarray(np.vstack([[*self.inputs], inputs]), float),
             kinematic_viscosities(self.scene.lubricant.oil, np.ascontiguousarray(inputs[:, 3], float)),
             self._state,
@@ -293,23 +292,24 @@ class Simulation:
         return block[:reached]
 
 
-def _tolerance(integration: Integration) -> float:
-    """Return the tolerance of a method.
+def tolerances_of(integration: Integration) -> Tolerances:
+    """Return the tolerances of a method.
 
-    With a fixed step it only says when the iteration of a stage has ended, and at a bend of a law of friction an iteration need not come
-    much closer than the finest one here, however the step is divided.
+    With a fixed step they only end the iteration of a stage, and at a bend of a law of friction an iteration cannot come closer
+    than the finest ones here, however the step is divided.
     """
-    tolerance = float(integration.relative_tolerance)
-    return tolerance if integration.fixed_step is None else max(tolerance, _FINEST_WITH_FIXED_STEP)
+    absolute = integration.absolute_tolerance
+    wanted = Tolerances(*(float(value) for value in (absolute.position, absolute.play, absolute.speed, integration.relative_tolerance)))
+    return wanted if integration.fixed_step is None else Tolerances(*map(max, wanted, _FINEST_WITH_FIXED_STEP))
 
 
 def start_sample(simulation: Simulation) -> np.ndarray:
-    """Return the newest sample as a block of its own: at the start, what a recording begins with so that it can be repeated."""
+    """Return the newest sample as a block of its own: at the start of a run a recording begins with it, so that the run can be reproduced."""
     return np.array([simulation.sample])
 
 
 def _last(block: np.ndarray) -> np.ndarray:
-    """Return a copy of a block's last sample, as a block; of its plain numbers, since field by field it would take as long as a tick."""
+    """Return a copy of a block's last sample, as a block; of its plain numbers, because a copy field by field would take as long as a tick."""
     return flat(block)[-1].copy().view(block.dtype)
 
 

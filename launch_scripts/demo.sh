@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-# Run the ROS 2 node on the bundled synthetic mission, record it and show what came of it.
+# Run the ROS 2 node on the bundled synthetic mission, record it and show the results.
 #
 #   launch_scripts/demo.sh [--duration S] [--scene SCENE] [--set FIELD=VALUE] [--no-open] [--help]
 #
-# Needs Python 3.11 to 3.13 with venv, and pip's package index; nothing else. Makes .venv beside this folder if absent and
-# installs the package there when its sources have changed. Everything stays on the loopback interface.
-# Exit code: 0 success, 1 failed, 2 cannot be used here, 130 interrupted.
+# Needs only Python 3.11 to 3.13 with venv, and access to a package index. Creates .venv in the checkout if absent and installs
+# the package there when its sources have changed. All traffic stays on the loopback interface.
+# Exit code: 0 success, 1 failure, 2 unsupported environment or usage, 130 interrupted.
 set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)

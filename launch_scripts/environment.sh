@@ -1,7 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-# What demo.sh and test.sh share; sourced, not run. Needs $here, the folder of the checkout.
+# Shared by demo.sh and test.sh; to be sourced. Needs $here, the folder of the checkout.
 #
-# Makes .venv if absent and installs the package there, again when its sources have changed.
+# Creates .venv if absent and installs the package there, and again whenever its sources have changed.
 
 venv="$here/.venv"
 
@@ -10,7 +10,7 @@ complain() {
     exit 2
 }
 
-# The checkout brings its own ROS; one that the shell has sourced must not mix with it.
+# The virtual environment has its own ROS; it must not mix with one sourced in the shell.
 unset PYTHONPATH PYTHONHOME AMENT_PREFIX_PATH RMW_IMPLEMENTATION ROS_LOCALHOST_ONLY
 if [ -n "${_ROS_WHEELS_BOOTSTRAP_COMPLETE:-}" ] || [ -n "${ROS_DISTRO:-}" ]; then
     unset _ROS_WHEELS_BOOTSTRAP_COMPLETE LD_LIBRARY_PATH ROS_DISTRO
@@ -29,7 +29,7 @@ find_python() {
             return
         fi
     done
-    complain "needs Python 3.11 to 3.13; python3 is $(python3 --version 2>&1 || true). Install one, or name it: PYTHON=/path/to/python3 $0"
+    complain "needs Python 3.11 to 3.13; python3 is $(python3 --version 2>&1 || true). Install one, or set PYTHON: PYTHON=/path/to/python3 $0"
 }
 
 make_venv() {
@@ -37,9 +37,9 @@ make_venv() {
     python=$(find_python)
     "$python" -c 'import venv, ensurepip' 2>/dev/null ||
         complain "$python has no venv module; on Debian and Ubuntu: apt install python3-venv"
-    printf 'making %s with %s\n' "$venv" "$("$python" --version)" >&2
+    printf 'creating %s with %s\n' "$venv" "$("$python" --version)" >&2
     rm -rf "$venv"
-    "$python" -m venv "$venv" || complain "$python could not make $venv"
+    "$python" -m venv "$venv" || complain "$python could not create $venv"
 }
 
 sources() {
@@ -56,7 +56,7 @@ install_package() {
     if [ -f "$stamp" ] && [ "$(cat "$stamp")" = "$wanted" ]; then
         return
     fi
-    printf 'installing bearing_sim and what it needs (the first time takes a minute or two)\n' >&2
+    printf 'installing bearing_sim and its dependencies (a minute or two the first time)\n' >&2
     "$venv/bin/python" -m pip install -qq --upgrade "$here${extra:+[$extra]}" || {
         printf '%s: the installation failed; see the message above\n' "$(basename "$0")" >&2
         exit 1

@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Start several bearings, in a process each or all in one: ``ros2 launch bearing_sim fleet.launch.py bearings:="front=a.yaml rear=b.yaml"``."""
+"""Start several bearings, each in its own process or all in one: ``ros2 launch bearing_sim fleet.launch.py bearings:="front=a.yaml rear=b.yaml"``."""
 
 import re
 import shlex
@@ -14,13 +14,13 @@ FLEET = (
     Argument(
         "bearings",
         "front=deng2017_table1 rear=deng2017_table2",
-        "NAME=SCENE of each bearing; topics are NAME/cage_slip and so on, the node is NAME/bearing_NAME",
+        "NAME=SCENE of each bearing; its topics are NAME/cage_slip and so on, its node is NAME/bearing_NAME",
     ),
     Argument(
-        "one_process", "false", "whether one node, bearing_node, hosts them all; topics are the same, services NAME/reset ...", ("true", "false")
+        "one_process", "false", "true: one node, bearing_node, hosts all bearings; same topics, services NAME/reset and so on", ("true", "false")
     ),
-    Argument("record_folder", "", "folder for a recording of each bearing, NAME and time of the start; empty for none"),
-    Argument("first_rerun_port", "0", "port on 127.0.0.1 for viewers of the first bearing, the next ones follow; 0 for none"),
+    Argument("record_folder", "", "folder for a recording of each bearing, named after it and the start time; empty: none"),
+    Argument("first_rerun_port", "0", "port on 127.0.0.1 for viewers of the first bearing; the others use the ports after it; 0: none"),
 )
 SET_FOR_EACH = ("bearings", "scene", "record", "rrd", "rerun_port")
 
@@ -46,7 +46,7 @@ def _start(context):
     return [
         bearing_node(
             context,
-            # Names differ too: /diagnostics is one topic for all, and tells bearings apart by the node's name.
+            # The nodes need different names: /diagnostics is shared and identifies bearings by the name of the node.
             name=f"bearing_{name}",
             namespace="/".join(part for part in (value(context, "namespace").rstrip("/"), name) if part),
             bearings="['']",
@@ -62,10 +62,10 @@ def _bearings(text):
     for word in shlex.split(text):
         name, _, scene = word.partition("=")
         if not re.fullmatch(r"[a-z][a-z0-9_]*", name) or not scene:
-            raise RuntimeError(f"bearings: {word!r} is not NAME=SCENE with a NAME of small letters, digits and underscores")
+            raise RuntimeError(f"bearings: {word!r} is not NAME=SCENE; a NAME has lower-case letters, digits and underscores")
         if name in scenes:
-            raise RuntimeError(f"bearings: {name!r} stands twice; every bearing needs a name of its own")
+            raise RuntimeError(f"bearings: {name!r} is given twice; every bearing needs its own name")
         scenes[name] = scene
     if not scenes:
-        raise RuntimeError("bearings is empty: give NAME=SCENE of each bearing")
+        raise RuntimeError("bearings is empty: give NAME=SCENE for each bearing")
     return scenes

@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Start bearing_node with a recording from the start: ``ros2 launch bearing_sim record.launch.py record:=run.mcap``."""
+"""Start bearing_node and record from the start: ``ros2 launch bearing_sim record.launch.py record:=run.mcap``."""
 
 from launch import LaunchDescription
 from launch.actions import LogInfo, OpaqueFunction
@@ -15,5 +15,5 @@ def generate_launch_description():
 def _start(context):
     record = value(context, "record")
     if not record:
-        raise RuntimeError("record is empty: name the MCAP file to write, or use live.launch.py to run without a recording")
-    return [LogInfo(msg=f"recording to {record}; complete when this launch is ended by Ctrl-C"), bearing_node(context)]
+        raise RuntimeError("record is empty: give the MCAP file to write, or use live.launch.py to run without a recording")
+    return [LogInfo(msg=f"recording to {record}; press Ctrl-C to end the launch and complete the recording"), bearing_node(context)]

@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Play the inputs of a recording to bearing_node and end with it: ``ros2 launch bearing_sim replay.launch.py log:=mission.mcap``."""
+"""Play the inputs of a recording to bearing_node, and end when either has ended: ``ros2 launch bearing_sim replay.launch.py log:=mission.mcap``."""
 
 from launch import LaunchDescription
 from launch.actions import OpaqueFunction, Shutdown
@@ -8,13 +8,17 @@ from launch_ros.actions import Node
 from bearing_sim.ros.launching import Argument, bearing_node, declared, value
 
 PLAYER = (
-    Argument("log", "mission.mcap", "MCAP recording whose inputs are played; bearing-sim mission -o mission.mcap writes one"),
-    Argument("rate", "1.0", "how many times as fast as recorded, such as 0.1 to 20"),
-    Argument("clock", "100.0", "readings of /clock a second, which the node follows: outputs do not depend on the rate; 0: none, wall time counts"),
-    Argument("start_paused", "false", "whether to wait for the player's service bearing_player/pause", ("false", "true")),
-    Argument("loop", "false", "whether to begin again at the end, each time with the bearing and the recording anew", ("false", "true")),
-    Argument("wait_limit", "600", "how long the player waits for the node, which compiles at its first start [s]"),
-    Argument("use_limit", "3600", "how long the player waits at the end for the node to have computed all [s]"),
+    Argument("log", "mission.mcap", "MCAP recording with the inputs to play; bearing-sim mission -o mission.mcap writes one"),
+    Argument("rate", "1.0", "playback speed relative to the recording, such as 0.1 to 20"),
+    Argument(
+        "clock",
+        "100.0",
+        "rate of /clock [Hz]; the node follows it, so that outputs do not depend on the speed; 0: no clock, wall time",
+    ),
+    Argument("start_paused", "false", "whether to start paused, until the service bearing_player/pause is called", ("false", "true")),
+    Argument("loop", "false", "whether to start again at the end, each time with a new bearing and a new recording", ("false", "true")),
+    Argument("wait_limit", "600", "time that the player waits for the node, which compiles at its first start [s]"),
+    Argument("use_limit", "3600", "time that the player waits at the end until the node has computed everything [s]"),
 )
 
 

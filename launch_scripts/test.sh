@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-# Set up what the tests need in .venv and run them all; arguments go to pytest.
+# Install the test dependencies in .venv and run the tests; arguments are passed to pytest.
 #
 #   launch_scripts/test.sh [pytest arguments]
 set -euo pipefail
@@ -10,8 +10,8 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 install_package test
 
 cd "$here"
-if [ $# = 0 ]; then # all of them: on all cores
-    "$venv/bin/python" -m bearing_sim.cli compile --every-method # of the checkout, which the tests import
+if [ $# = 0 ]; then # all tests, on all cores
+    "$venv/bin/python" -m bearing_sim.cli compile --every-method # the code of the checkout, which the tests import
     set -- -n auto --dist loadgroup
 fi
 exec "$venv/bin/python" -m pytest "$@"

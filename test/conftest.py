@@ -25,7 +25,7 @@ _REAL_TIME = {
     "test_priority",
     "test_recorder",
     "test_recording_files",
-    "test_runner",
+    "test_solver",
     "test_view",
 }
 

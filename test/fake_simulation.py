@@ -5,7 +5,7 @@ import time
 
 import numpy as np
 
-from bearing_sim.sample import new_block
+from bearing_sim.model.sample import new_block
 from bearing_sim.simulation import Inputs, IntegrationError
 
 START = Inputs(shaft_speed=100.0, load_y=800.0, load_z=0.0, oil_temperature=393.15)

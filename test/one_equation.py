@@ -1,21 +1,16 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""The algebra of a system of one equation, for tests of integrators: what a level brings to them, as small as it gets.
+"""The algebra of a system of one equation, for tests of time-stepping methods: the kernels of a level, as small as possible.
 
-``work`` holds the Jacobian and its factor; models and right-hand sides are the tests' own.  What stands at the end, and `kept`, fits
+``work`` holds the Jacobian and its factor; models and right-hand sides are the tests' own.  `step_taken`, `no_limit` and `failing` fit
 systems of any size.
 """
 
-from bearing_sim.kernels.compilation import kernel
+from bearing_sim.numerics.compilation import kernel
 
 
 @kernel
-def kept(h, y, model, work):
+def step_taken(h, y, model, work):
     pass
-
-
-@kernel
-def nothing(t, y, model, work, rate):
-    return True
 
 
 @kernel
@@ -27,16 +22,6 @@ def factor(shift, work):
 @kernel
 def solve(work, x):
     x[0] /= work[1]
-
-
-@kernel
-def norm(t, y, change, tolerance, model):
-    return abs(change[0]) / tolerance
-
-
-@kernel
-def stay(known, shift, slope, model, work, guess):
-    guess[0] = known[0]
 
 
 @kernel

@@ -5,7 +5,7 @@ import struct
 
 from mcap.reader import make_reader
 
-from bearing_sim.sinks.mcap_file import McapFile
+from bearing_sim.recording.writer import McapFile
 
 SECOND = 1_000_000_000
 

@@ -5,7 +5,7 @@ import numpy as np
 import rerun.blueprint as rrb
 from rerun.chunk import RrdReader
 
-from bearing_sim.sinks.rerun_sink import RerunSink
+from bearing_sim.view.sink import RerunSink
 
 
 def views_in(part):

@@ -16,7 +16,7 @@ import rclpy  # noqa: E402
 from rclpy.executors import SingleThreadedExecutor  # noqa: E402
 from rclpy.qos import qos_profile_sensor_data  # noqa: E402
 
-from bearing_sim import topics  # noqa: E402
+from bearing_sim.messages import topics  # noqa: E402
 from bearing_sim.ros.messages import message, message_class  # noqa: E402
 from bearing_sim.simulation import Inputs  # noqa: E402
 

@@ -6,9 +6,7 @@ import sys
 import time
 from pathlib import Path
 
-from bearing_sim.sweep.executor import run_tasks
-from bearing_sim.sweep.journal import Journal
-from bearing_sim.sweep.tasks import task
+from bearing_sim.sweep.tasks import Journal, run_tasks, task
 
 
 def noted(path, number, pause=0.0):

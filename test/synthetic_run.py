@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from bearing_sim.sample import new_block
+from bearing_sim.model.sample import new_block
 
 
 def synthetic_block(scene, times, speeds=(520.0, 4700.0), slips=(0.01, 0.16)):

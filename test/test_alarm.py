@@ -6,8 +6,8 @@ import math
 import numpy as np
 import pytest
 
-from bearing_sim.runtime.alarm import Alarm
-from bearing_sim.scene_monitoring import Hold
+from bearing_sim.monitoring.monitor import Alarm
+from bearing_sim.scene.thresholds import Hold
 
 HOLD = Hold(hysteresis=0.1, raise_after=1.0, clear_after=2.0)
 STEP = 0.1  # s
@@ -66,10 +66,3 @@ def test_without_hold_times_it_acts_at_once_and_without_a_limit_never():
     at_once = Hold(hysteresis=0.0, raise_after=0.0, clear_after=0.0)
     assert turns([9.0, 10.0, 9.9], hold=at_once) == [(0.1, True), (0.2, False)]
     assert turns([1e9] * 100, limit=None) == []
-
-
-def test_it_knows_since_when():
-    alarm = Alarm(10.0, HOLD)
-    for k in range(100):
-        alarm.judge(k * STEP, 5.0 if k < 50 else 12.0)
-    assert alarm.raised and alarm.since == pytest.approx(5.0)

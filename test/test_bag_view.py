@@ -11,23 +11,21 @@ from rerun.chunk import RrdReader
 from rerun_files import column
 from synthetic_run import synthetic_block
 
-from bearing_sim.bag_series import read_bag_series
-from bearing_sim.commands import view
-from bearing_sim.events import Level
-from bearing_sim.recording_reader import RecordingError
-from bearing_sim.scene_file import load_scene
-from bearing_sim.screenshot import HOW_TO_GET_VULKAN
-from bearing_sim.sinks.mcap_file import McapFile
-from bearing_sim.sinks.mcap_sink import McapSink
-from bearing_sim.sinks.rerun_bag import write_bag_view
-from bearing_sim.sinks.rerun_sink import RerunSink
+from bearing_sim.cli import view
+from bearing_sim.messages.events import Level
+from bearing_sim.recording.bag import RecordingError
+from bearing_sim.recording.writer import McapFile, McapSink
+from bearing_sim.scene.loader import load_scene
+from bearing_sim.view.bag import read_bag_series, write_bag_view
+from bearing_sim.view.screenshot import HOW_TO_GET_VULKAN
+from bearing_sim.view.sink import RerunSink
 
 START = 1_700_000_000 * SECOND
 SCENE = load_scene("deng2017_table1")
 
 
 def run(*arguments):
-    return CliRunner().invoke(view.command, [str(argument) for argument in arguments])
+    return CliRunner().invoke(view.view, [str(argument) for argument in arguments])
 
 
 @pytest.fixture
@@ -112,12 +110,12 @@ def test_diagnostics_of_others_reach_the_log(tmp_path):
             {"header": {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": "x"}, "status": status},
         )
         recording.write("/valve", FLOAT, START + SECOND, {"data": 1.0})
-    assert [(event.level, event.code) for event in read_bag_series(path).events] == [(Level.WARN, "pump 1"), (Level.ERROR, "pump 2")]
+    assert [(event.level, event.kind) for event in read_bag_series(path).events] == [(Level.WARN, "pump 1"), (Level.ERROR, "pump 2")]
 
 
 def test_what_cannot_be_shown_at_all_is_told_with_exit_code_2(tmp_path):
     (tmp_path / "noise.mcap").write_bytes(b"no recording")
-    for path, reason in ((tmp_path / "noise.mcap", "can be opened"), (tmp_path / "absent.mcap", "no such file")):
+    for path, reason in ((tmp_path / "noise.mcap", "not an MCAP file"), (tmp_path / "absent.mcap", "no such file")):
         result = run(path, "-o", tmp_path / "run.rrd")
         assert result.exit_code == 2 and reason in result.output and "Traceback" not in result.output
     write_log(tmp_path / "log.mcap", [(0.0, 1.0), (1.0, 1.0)], [(0.0, 1.0, 0.0), (1.0, 1.0, 0.0)])

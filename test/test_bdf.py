@@ -5,15 +5,15 @@ import math
 
 import numpy as np
 import pytest
-from one_equation import failing, kept, no_limit
+from one_equation import failing, no_limit, step_taken
 from scipy.integrate import solve_ivp
 
-from bearing_sim.integrators.bdf import bdf, solve_step
-from bearing_sim.integrators.history import CONVERGED, FIGURE, accept, new_history
-from bearing_sim.integrators.status import COUNT, NON_FINITE, NOT_EVALUATED, OK, STEP_BUDGET, new_counts
-from bearing_sim.kernels.compilation import kernel
+from bearing_sim.numerics.bdf import ORDER, bdf, bdf_attempt, new_history, take_into_differences
+from bearing_sim.numerics.compilation import kernel
+from bearing_sim.numerics.newton import NEWTON
+from bearing_sim.numerics.time_stepping import CONTROL, COUNT, NON_FINITE, NOT_EVALUATED, OK, STEP_BUDGET, new_counts, start_from_known
 
-# model: (problem, parameter); work: rows of the Jacobian, then rows of I - shift J, shape (4, 2)
+# model: (problem, parameter, tolerance); work: rows of the Jacobian, then rows of I - shift J, shape (4, 2)
 OSCILLATOR, VAN_DER_POL, STIFF, KINK = 0.0, 1.0, 2.0, 3.0
 
 
@@ -60,7 +60,8 @@ def solve(work, x):
 
 
 @kernel
-def norm(t, y, change, tolerance, model):
+def norm(t, y, change, model):
+    tolerance = model[2]
     first, second = abs(change[0]) / (tolerance * (1.0 + abs(y[0]))), abs(change[1]) / (tolerance * (1.0 + abs(y[1])))
     return second if not second <= first else first
 
@@ -83,58 +84,48 @@ def nan_later(t, y, model, work, rate):
 
 
 @kernel
-def advance(t, end, stop, y, h, tolerance, longest, budget, model, work, history, counts):
+def advance(t, end, stop, y, h, longest, budget, model, work, history, counts):
     return bdf(
-        rate_of, rate_and_jacobian, factor, solve, norm, no_limit, kept, t, end, stop, y, h, tolerance, longest, budget, model, work, history, counts
-    )
+        rate_of, rate_and_jacobian, start_from_known, factor, solve, norm, no_limit, step_taken,
+        t, end, stop, y, h, longest, budget, model, work, history, counts,
+    )  # fmt: skip
 
 
 @kernel
-def advance_nan(t, end, stop, y, h, tolerance, longest, budget, model, work, history, counts):
+def advance_nan(t, end, stop, y, h, longest, budget, model, work, history, counts):
     return bdf(
-        nan_later,
-        nan_rate_and_jacobian,
-        factor,
-        solve,
-        norm,
-        no_limit,
-        kept,
-        t,
-        end,
-        stop,
-        y,
-        h,
-        tolerance,
-        longest,
-        budget,
-        model,
-        work,
-        history,
-        counts,
-    )
+        nan_later, nan_rate_and_jacobian, start_from_known, factor, solve, norm, no_limit, step_taken,
+        t, end, stop, y, h, longest, budget, model, work, history, counts,
+    )  # fmt: skip
 
 
 @kernel
-def advance_failing(t, end, stop, y, h, tolerance, longest, budget, model, work, history, counts):
-    return bdf(failing, failing, factor, solve, norm, no_limit, kept, t, end, stop, y, h, tolerance, longest, budget, model, work, history, counts)
+def advance_failing(t, end, stop, y, h, longest, budget, model, work, history, counts):
+    return bdf(
+        failing, failing, start_from_known, factor, solve, norm, no_limit, step_taken,
+        t, end, stop, y, h, longest, budget, model, work, history, counts,
+    )  # fmt: skip
 
 
 @kernel
 def constant_steps(number, model, work, history, counts):
     """The formula alone: equal steps of the order at hand."""
-    converged = True
+    solved = True
     for _ in range(number):
-        # so tight that the iteration ends at round-off
-        converged = solve_step(rate_of, rate_and_jacobian, factor, solve, norm, 1e-12, model, work, history, counts) == CONVERGED and converged
-        accept(math.inf, history)
-    return converged
+        outcome = bdf_attempt(
+            rate_of, rate_and_jacobian, start_from_known, factor, solve, norm,
+            history.control[CONTROL.time], history.differences[0], history.control[CONTROL.step], model, work, history, counts,
+        )  # fmt: skip
+        solved = solved and outcome == OK
+        take_into_differences(math.inf, history)
+    return solved
 
 
 class Run:
     """A problem in time, with history, work and counts."""
 
     def __init__(self, problem, parameter, start, tolerance, run=advance, budget=10**6):
-        self.model, self.y, self.tolerance, self.run, self.budget = np.array([problem, parameter]), np.array(start), tolerance, run, budget
+        self.model, self.y, self.run, self.budget = np.array([problem, parameter, tolerance]), np.array(start), run, budget
         self.time, self.history, self.work, self.counts, self.step = 0.0, new_history(2), np.zeros((4, 2)), new_counts(), 1e-6
 
     def to(self, end, stop=math.inf):
@@ -144,7 +135,6 @@ class Run:
             stop,
             self.y,
             self.step,
-            self.tolerance,
             1e9,
             self.budget,
             self.model,
@@ -163,8 +153,14 @@ def end_of_constant_steps(order, number, problem, parameter, exact):
     for m in range(order + 1):
         history.differences[m] = table[0]
         table = [newer - older for newer, older in zip(table, table[1:])]
-    history.order[0], history.figures[FIGURE.step], history.figures[FIGURE.wanted], history.figures[FIGURE.contraction] = order, h, h, 1.0
-    assert constant_steps(number, np.array([problem, parameter]), np.zeros((4, 2)), history, new_counts())
+    history.order[ORDER.order], history.control[CONTROL.step], history.control[CONTROL.next_step], history.newton[NEWTON.contraction] = (
+        order,
+        h,
+        h,
+        1.0,
+    )
+    # so tight that the iteration ends at round-off
+    assert constant_steps(number, np.array([problem, parameter, 1e-12]), np.zeros((4, 2)), history, new_counts())
     return np.abs(history.differences[0] - exact(1.0)).max()
 
 
@@ -247,7 +243,7 @@ def test_no_step_passes_a_stop_and_the_interval_ends_there_exactly():
     # the rate has a kink at 0.7; t^2/2 - 0.7 t up to it
     run = Run(KINK, 0.7, [0.0, 0.0], 1e-5)
     assert run.to(0.7, 0.7) == OK
-    assert run.history.figures[FIGURE.time] == 0.7
+    assert run.history.control[CONTROL.time] == 0.7
     assert run.y[0] == pytest.approx(0.245, abs=1e-5)
     assert run.to(1.4, 1.4) == OK
     assert run.y[0] == pytest.approx(0.49, abs=2e-4)

@@ -2,12 +2,11 @@
 """The benches of view and recording measure what they say; how fast things are is for the bench, not for a test."""
 
 import pytest
+from recording_overhead import DRAWING, NO_VIEW, TAKING, VIEWERS, command, recording_cost
+from view_overhead import COUNTING, RATES, run_hour, run_view_bench
 
-from bearing_sim.commands.bench_recording import command
-from bearing_sim.scene_file import load_scene
-from bearing_sim.screenshot import HOW_TO_GET_VULKAN, ViewerFailed
-from bearing_sim.studies.bench_recording import DRAWING, NO_VIEW, TAKING, VIEWERS, recording_cost
-from bearing_sim.studies.bench_view import COUNTING, RATES, run_hour, run_view_bench
+from bearing_sim.scene.loader import load_scene
+from bearing_sim.view.screenshot import HOW_TO_GET_VULKAN, ViewerFailed
 
 
 def test_every_situation_is_measured_and_the_solver_goes_on_in_all_of_them():

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from bearing_sim import SceneError, Simulation, load_scene
-from bearing_sim.params import pack
-from bearing_sim.scene_file import scene_from_yaml, scene_to_yaml
+from bearing_sim.model.params import pack
+from bearing_sim.scene.loader import scene_from_yaml, scene_to_yaml
 
 OUTSIDE = "bearing.cage.outer_radius=33.35 mm"
 INNER = ["bearing.cage.guidance=inner_ring", OUTSIDE]
@@ -74,7 +74,7 @@ def test_oil_drags_at_the_faces_that_run_on_no_lands():
         ([*ROLLER, "bearing.cage.assumed_eccentricity=0.5"], "no lands to be eccentric in"),
         (["bearing.cage.pocket_radial_clearance=0.1 mm"], "lands guide this cage .outer_ring.; leave it out, or set guidance: roller"),
         ([*ROLLER, "bearing.cage.pocket_radial_clearance=40 um"], "lobes move the rollers outwards and inwards by 49 um"),
-        ([*ROLLER, "bearing.cage.pocket_radial_clearance=2 mm"], "let the cage reach a raceway, 1.5125 mm away, before its guidance holds it"),
+        ([*ROLLER, "bearing.cage.pocket_radial_clearance=2 mm"], "lets the cage touch a raceway, 1.5125 mm away, before its guidance stops it"),
     ],
 )
 def test_a_cage_that_does_not_fit_is_refused_with_what_to_do(given, expected):

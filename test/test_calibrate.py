@@ -10,17 +10,15 @@ import pytest
 from click.testing import CliRunner
 from scipy.signal import lfilter
 
-from bearing_sim.cli import main
-from bearing_sim.input_log import read_input_log
-from bearing_sim.levels.steady_point import ANSWER
-from bearing_sim.levels.steady_table import empty_table
-from bearing_sim.scene_file import load_scene
+from bearing_sim.cli.main import main
+from bearing_sim.inputs.log import read_input_log
+from bearing_sim.levels.steady.operating_point import ANSWER
+from bearing_sim.levels.steady.table import empty_table
+from bearing_sim.levels.steady.table_builder import solve_points
+from bearing_sim.recording.writer import McapSink
+from bearing_sim.scene.loader import load_scene
 from bearing_sim.simulation import Inputs, Simulation
-from bearing_sim.sinks.mcap_sink import McapSink
-from bearing_sim.studies.calibration import _Model, _spread, calibrate, resemblance
-from bearing_sim.studies.calibration_blocks import Measured, cut, shared_points
-from bearing_sim.studies.calibration_faults import CalibrationError
-from bearing_sim.tables.store import solve_points
+from bearing_sim.studies.calibration import CalibrationError, Measured, _Model, _spread, calibrate, correlation_time, cut, shared_points
 
 RPM, KELVIN = math.pi / 30, 393.15
 RATE, READING = 10.0, 0.003  # Hz, and standard deviation of a slip from a cage speed sensor
@@ -93,8 +91,8 @@ def test_the_cages_lag_behind_a_rising_speed_is_not_taken_for_slip():
 def test_the_autocorrelation_time_is_that_of_the_closed_form():
     """(1 + a)/(1 - a) of a first-order process."""
     draws = np.random.default_rng(1).normal(size=40_000)
-    assert resemblance(draws)[0] == pytest.approx(1.0, abs=0.05)
-    assert resemblance(lfilter([1], [1, -0.8], draws))[0] == pytest.approx(9.0, rel=0.1)
+    assert correlation_time(draws)[0] == pytest.approx(1.0, abs=0.05)
+    assert correlation_time(lfilter([1], [1, -0.8], draws))[0] == pytest.approx(9.0, rel=0.1)
 
 
 def test_deviations_of_a_linear_model_are_those_of_ordinary_least_squares():
@@ -112,9 +110,9 @@ def test_what_was_not_fitted_shifts_the_result_as_another_fit_with_it_changed_sa
     course, high = measured(3), 1.1
     found = fit(course, overrides=["uncertainty.lubricant.traction_scale=[0.9, 1.1]"])
     again = fit(course, overrides=[f"lubricant.traction_scale={high}", "uncertainty.lubricant.traction_scale=[0.9, 1.2]"])
-    told = found.depends["lubricant.traction_scale"]
-    assert told.shape == (2, 1) and told[0, 0] < found.fitted[0].value < told[1, 0]
-    assert told[1, 0] - found.fitted[0].value == pytest.approx(again.fitted[0].value - found.fitted[0].value, rel=0.15)
+    reported = found.depends["lubricant.traction_scale"]
+    assert reported.shape == (2, 1) and reported[0, 0] < found.fitted[0].value < reported[1, 0]
+    assert reported[1, 0] - found.fitted[0].value == pytest.approx(again.fitted[0].value - found.fitted[0].value, rel=0.15)
     assert "lubricant.temperature" not in found.depends, "the recording says it"
 
 
@@ -135,32 +133,35 @@ def test_noise_that_resembles_itself_is_not_taken_for_an_error_of_the_model():
 
 
 def refused(course, *fields, **options):
-    with pytest.raises(CalibrationError) as fault:
+    with pytest.raises(CalibrationError) as error:
         fit(course, *fields, **options)
-    return str(fault.value)
+    return str(error.value)
 
 
 @pytest.mark.parametrize("points", [ONE_POINT, FIVE_POINTS])
 def test_fields_that_change_slip_alike_are_refused_by_name(points):
     """Drag over traction is what slip goes by: at any speed and load more oil is as good as less traction."""
-    told = refused(measured(1, points, 30.0), MIXTURE, "lubricant.traction_scale")
-    assert "lubricant.mixture_fraction and lubricant.traction_scale cannot be told apart" in told
-    assert f"{'one operating point' if len(points) == 1 else '5 operating points'} of this run" in told and "condition of the scaled Jacobian" in told
+    reported = refused(measured(1, points, 30.0), MIXTURE, "lubricant.traction_scale")
+    assert "lubricant.mixture_fraction and lubricant.traction_scale cannot be distinguished" in reported
+    assert (
+        f"{'one operating point' if len(points) == 1 else '5 operating points'} of this run" in reported
+        and "condition of the scaled Jacobian" in reported
+    )
 
 
 def test_a_field_without_influence_is_refused():
-    told = refused(measured(1), "pocket_clearance", overrides=["uncertainty.bearing.cage.pocket_clearance=[0.05 mm, 0.2 mm]"])
-    assert "bearing.cage.pocket_clearance cannot be identified" in told and "changes slip by no more than" in told
+    reported = refused(measured(1), "pocket_clearance", overrides=["uncertainty.bearing.cage.pocket_clearance=[0.05 mm, 0.2 mm]"])
+    assert "bearing.cage.pocket_clearance cannot be identified" in reported and "changes slip by no more than" in reported
 
 
 def test_a_best_value_at_a_bound_is_refused():
-    told = refused(measured(1), overrides=["uncertainty.lubricant.mixture_fraction=[0.02, 0.034]"])
-    assert "lies at the bound of its range, 0.034" in told and "the measured cage by 8.4" in told and "something else must differ" in told
+    reported = refused(measured(1), overrides=["uncertainty.lubricant.mixture_fraction=[0.02, 0.034]"])
+    assert "lies at the bound of its range, 0.034" in reported and "the measured cage by 8.4" in reported and "check other fields" in reported
 
 
 def test_too_little_data_is_refused_by_what_was_left_out():
-    told = refused(measured(1, seconds=8.0))
-    assert "too little data: 7 settled blocks of 1 s" in told and "1 at the start or after a gap" in told
+    reported = refused(measured(1, seconds=8.0))
+    assert "too little data: 7 settled blocks of 1 s" in reported and "1 at the start or after a gap" in reported
     course = measured(1, seconds=40.0)
     ramped = course.inputs.copy()
     ramped[:, 0] *= 1.0 + 0.05 * np.sin(course.times)
@@ -178,17 +179,17 @@ def test_an_interval_as_wide_as_the_range_is_refused():
 
 
 @pytest.mark.parametrize(
-    ("fields", "overrides", "told"),
+    ("fields", "overrides", "reported"),
     [
         (["mixture_fractoin"], [], "unknown field (did you mean 'lubricant.mixture_fraction'?)"),
-        (["bearing.cage.mass"], [], 'the scene gives it no range to search; add --set "uncertainty.bearing.cage.mass=[LOW, HIGH]"'),
-        (["temperature"], [], "the recording itself says it"),
-        (["operating.radial_load"], ["uncertainty.operating.radial_load=[700 N, 900 N]"], "the recording itself says it"),
+        (["bearing.cage.mass"], [], 'the scene gives no range to search; add --set "uncertainty.bearing.cage.mass=[LOW, HIGH]"'),
+        (["temperature"], [], "the recording itself gives it"),
+        (["operating.radial_load"], ["uncertainty.operating.radial_load=[700 N, 900 N]"], "the recording itself gives it"),
         ([MIXTURE, "mixture_fraction"], [], "given twice"),
     ],
 )
-def test_a_question_that_cannot_be_asked_is_refused(fields, overrides, told):
-    assert told in refused(measured(1), *fields, overrides=overrides)
+def test_a_question_that_cannot_be_asked_is_refused(fields, overrides, reported):
+    assert reported in refused(measured(1), *fields, overrides=overrides)
 
 
 def test_the_oil_temperature_can_be_fitted_where_no_recording_says_it():
@@ -210,7 +211,7 @@ def test_gaps_and_what_settles_after_them_are_left_out():
 def test_blocks_that_are_near_each_other_share_an_operating_point_of_their_means():
     conditions = np.array([[1000.0, 500.0, 0.0, 390.0], [1001.0, 502.0, 0.0, 390.1], [2000.0, 500.0, 0.0, 390.0]])
     points = shared_points(conditions)
-    assert len(points.conditions) == 2 and points.conditions[points.place[0]] == pytest.approx(conditions[:2].mean(axis=0))
+    assert len(points.conditions) == 2 and points.conditions[points.index[0]] == pytest.approx(conditions[:2].mean(axis=0))
     assert len(shared_points(np.random.default_rng(1).random((2000, 4)) * [5000, 3000, 3000, 60] + [0, 0, 0, 350]).conditions) <= 400
 
 
@@ -248,7 +249,7 @@ def test_the_command_calibrates_our_own_recording_and_writes_a_scene_that_predic
     after = solve_points(scene, np.array([[45000 * RPM, 800.0, KELVIN, 0.0]]))[0, ANSWER.cage_slip]
     assert after == pytest.approx(true_slips(ONE_POINT)[0], abs=5e-4)
     shown = invoke("calibrate", run, "--set", "lubricant.mixture_fraction=0.02")
-    assert shown.exit_code == 0 and "95 % interval" in shown.output and "the scene says 0.02" in shown.output and "to use it" in shown.output
+    assert shown.exit_code == 0 and "95 % interval" in shown.output and "scene: 0.02" in shown.output and "to use the result" in shown.output
 
 
 def test_the_command_calibrates_a_table_that_was_imported(tmp_path):
@@ -264,7 +265,7 @@ def test_the_command_calibrates_a_table_that_was_imported(tmp_path):
     log = tmp_path / "rig.mcap"
     imported = invoke("import-csv", tmp_path / "rig.csv", tmp_path / "rig.yaml", "-o", log)
     assert imported.exit_code == 0 and "cage_speed_measured messages" in imported.output
-    assert "name the scene to calibrate with --scene" in invoke("calibrate", log).output
+    assert "give the scene to calibrate with --scene" in invoke("calibrate", log).output
     found = invoke("calibrate", log, "--scene", "deng2017_table1", "--json")
     assert json.loads(found.stdout)["fitted"][MIXTURE]["value"] == pytest.approx(TRUTH, rel=0.02)
     assert set(read_input_log(log).series) == {"shaft_speed", "radial_load", "cage_speed_measured"}, "a replay compares what was measured"

@@ -6,12 +6,12 @@ import sys
 
 from click.testing import CliRunner
 
-from bearing_sim import precompilation
-from bearing_sim.cli import main
-from bearing_sim.kernels import compilation
+from bearing_sim.cli.main import main
 from bearing_sim.levels.level import LEVELS
-from bearing_sim.precompilation import Build, builds
-from bearing_sim.scene_file import load_scene
+from bearing_sim.numerics import compilation
+from bearing_sim.runtime import precompilation
+from bearing_sim.runtime.precompilation import Build, builds
+from bearing_sim.scene.loader import load_scene
 
 _RUN = """
 import gc, sys

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from numba import njit
 
-from bearing_sim.compiled_call import compiled_for
-from bearing_sim.scene_file import load_scene
+from bearing_sim.numerics.compilation import compiled_for
+from bearing_sim.scene.loader import load_scene
 from bearing_sim.simulation import Simulation
 
 

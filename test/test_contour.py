@@ -9,13 +9,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bearing_sim import SceneError, Simulation, load_scene
-from bearing_sim.contour import outer_contour
-from bearing_sim.contour_file import ContourFault, measured_spline, read_contour
-from bearing_sim.kernels.raceway import TABLE_INTERVALS, contour_at, tabulated
-from bearing_sim.recording_reader import Recording
-from bearing_sim.scene_file import scene_from_yaml, scene_to_yaml
-from bearing_sim.scene_raceway import ContourPoint, OuterRaceway
-from bearing_sim.sinks.mcap_sink import McapSink
+from bearing_sim.physics.raceway import TABLE_INTERVALS, contour_at, tabulated
+from bearing_sim.recording.reader import Recording
+from bearing_sim.recording.writer import McapSink
+from bearing_sim.scene.bearing import ContourPoint, OuterRaceway
+from bearing_sim.scene.contour import ContourError, measured_spline, outer_contour, read_contour
+from bearing_sim.scene.loader import scene_from_yaml, scene_to_yaml
 
 LOW, D = 34.8625e-3, 98e-6
 
@@ -146,28 +145,28 @@ def changed(**lines):
         ("", "the contour is empty"),
         ("\n".join(GOOD), "the angle has no unit.*the radius has no unit"),
         ("angle [furlong], radius [mm]\n" + "\n".join(GOOD), "angle unit: "),
-        ("angle [deg], weight [mm]\n" + "\n".join(GOOD), "expected the header"),
+        ("angle [deg], weight [mm]\n" + "\n".join(GOOD), "expected a header such as"),
         ("radius [mm], r [mm]\n" + "\n".join(GOOD), "expected one angle and one radius"),
         ("angle [deg], radius [mm]\n" + "\n".join(GOOD[:11]), "11 points"),
         (changed(l5="50, nan", l7="70; inf"), "line 7: '50, nan' is not finite.*line 9"),
         (changed(l5="50", l7="70, x"), "line 7: expected an angle and a radius.*line 9"),
-        (changed(l5="40, 34.9"), "line 7: the angle 40 deg is there twice"),
-        (changed(l5="35, 34.9"), "line 7: the angle falls from 40 to 35 deg"),
-        (changed(l5="50, 34900"), "line 7: a radius outside 1 mm to 2 m; is the unit right"),
-        (changed(**{f"l{k}": "" for k in (8, 9, 10)}), "a gap of 40 deg after 70 deg where 10 is usual"),
-        (changed(**{f"l{k}": "" for k in range(28, 36)}), "after 270 deg .*the turn is not complete"),
+        (changed(l5="40, 34.9"), "line 7: the angle 40 deg is repeated"),
+        (changed(l5="35, 34.9"), "line 7: the angle decreases from 40 to 35 deg"),
+        (changed(l5="50, 34900"), "line 7: radius outside 1 mm to 2 m; check the unit"),
+        (changed(**{f"l{k}": "" for k in (8, 9, 10)}), "a gap of 40 deg after 70 deg; the usual spacing is 10 deg"),
+        (changed(**{f"l{k}": "" for k in range(28, 36)}), "after 270 deg; .*the turn is not complete"),
         (changed(l35="360, 34.9"), "the turn does not close: its ends differ by 37.5 um"),
         (changed(l35="375, 34.9"), "the angles cover 375 deg"),
     ],
 )
-def test_faults_of_a_file_are_told_with_line_and_reason(text, expected):
-    with pytest.raises(ContourFault, match=expected):
+def test_errors_in_a_file_are_reported_with_line_and_reason(text, expected):
+    with pytest.raises(ContourError, match=expected):
         read_contour(text)
 
 
 @given(st.text(alphabet="0123456789.,;# \n-eanglrdius[]m", max_size=80))
 def test_no_text_crashes_the_reader(text):
-    with pytest.raises(ContourFault):
+    with pytest.raises(ContourError):
         measured_spline(text, "deg", "mm")
 
 
@@ -175,12 +174,12 @@ def test_no_text_crashes_the_reader(text):
     ("overrides", "expected"),
     [
         (["contour_file=nowhere.csv"], "contour_file = 'nowhere.csv': no such file"),
-        (["contour_file=CONTOUR", "low_radius=34.9 mm"], "low_radius: follows from the contour's points \\(34.8625 mm\\); leave it away"),
+        (["contour_file=CONTOUR", "low_radius=34.9 mm"], "low_radius: follows from the points of the contour \\(34.8625 mm\\); leave it out"),
         (["contour_file=CONTOUR", "roundness=4 um"], "contour and roundness exclude each other"),
         (["contour_fil=CONTOUR"], "did you mean 'contour_file'"),
-        (["contour_angle_unit=deg"], "contour_angle_unit: is for a contour from a file"),
+        (["contour_angle_unit=deg"], "contour_angle_unit: applies only to a contour from a file"),
         (["contour_file=CONTOUR", "contour_angle_unit=rad"], "the header says deg for the angle, the scene rad"),
-        (["roundness=4 um", "lobes=1"], "one lobe has one low point"),
+        (["roundness=4 um", "lobes=1"], "roundness: needs two or more low points"),
         (["roundness=0.2 mm"], "roundness: expected less than d_value"),
         (["low_points=[{azimuth: 0 deg, radius: 34.86 mm}]"], "low_points: 1 for 0 high_points"),
         (
@@ -188,8 +187,8 @@ def test_no_text_crashes_the_reader(text):
              "high_points=[{azimuth: 2, radius: 34.9 mm}, {azimuth: 3, radius: 34.9 mm}]"],
             "no high point between 0 and 57.2958 deg; high_points: no low point between 114.592 and 171.887 deg",
         ),
-        (["low_points=[{azimuth: 0, radius: 34.9 mm}]", "high_points=[{azimuth: 3, radius: 34.8 mm}]"], "the low one is not lower"),
-        (["low_points=[{azimuth: 0, radius: 34.8 mm}]", "high_points=[{azimuth: 0.01, radius: 34.9 mm}]"], "nearer than 2 deg"),
+        (["low_points=[{azimuth: 0, radius: 34.9 mm}]", "high_points=[{azimuth: 3, radius: 34.8 mm}]"], "the low point is not lower"),
+        (["low_points=[{azimuth: 0, radius: 34.8 mm}]", "high_points=[{azimuth: 0.01, radius: 34.9 mm}]"], "less than 2 deg apart"),
     ],
 )  # fmt: skip
 def test_contours_that_contradict_themselves_say_how(tmp_path, overrides, expected):
@@ -198,10 +197,10 @@ def test_contours_that_contradict_themselves_say_how(tmp_path, overrides, expect
         raceway_with(*(override.replace("CONTOUR", str(tmp_path / "c.csv")) for override in overrides))
 
 
-def test_a_file_fault_is_told_together_with_the_scenes_other_faults():
+def test_a_missing_file_is_reported_together_with_the_other_errors_of_the_scene():
     with pytest.raises(SceneError) as error:
         load_scene("deng2017_table1", ["bearing.outer_raceway.contour_file=nowhere.csv", "bearing.roller.cout=3"])
-    assert [fault.path for fault in error.value.faults] == ["bearing.roller.cout", "bearing.outer_raceway.contour_file"]
+    assert [each.path for each in error.value.errors] == ["bearing.roller.cout", "bearing.outer_raceway.contour_file"]
 
 
 def scene_with_contour(tmp_path):

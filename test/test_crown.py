@@ -6,9 +6,9 @@ import math
 import numpy as np
 import pytest
 
-from bearing_sim.crown import IsoLogCrown, NoCrown, StraightArcCrown, TableCrown, crown_drops, slice_middles
-from bearing_sim.params import contact_stiffness, pack
-from bearing_sim.scene_file import SceneError, load_scene, scene_from_yaml, scene_to_yaml
+from bearing_sim.model.params import contact_stiffness, pack
+from bearing_sim.scene.crown import IsoLogCrown, NoCrown, StraightArcCrown, TableCrown, crown_drops, slice_middles
+from bearing_sim.scene.loader import SceneError, load_scene, scene_from_yaml, scene_to_yaml
 
 DIAMETER, LENGTH = 7e-3, 7e-3
 
@@ -74,21 +74,21 @@ def test_a_scene_files_crown_lies_beside_it(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "text, told",
+    "text, reported",
     [
         ("position,drop\n1,2\n", "header"),
         ("position[mm],drop[um]\n1\n", "row 1"),
         ("position[mm],drop[um]\n-3.5,1\n3.5,x\n", "crown.drops.1"),
         ("position[mm],drop[kg]\n-3.5,1\n3.5,1\n", "dimension"),
-        ("position[mm],drop[um]\n-3.5,1\n-3.5,1\n", "rising"),
-        ("position[mm],drop[um]\n-3.5,1\n0,1\n", "both ends"),
+        ("position[mm],drop[um]\n-3.5,1\n-3.5,1\n", "increasing positions"),
+        ("position[mm],drop[um]\n-3.5,1\n0,1\n", "do not cover the roller"),
         ("", "header"),
     ],
 )
-def test_a_bad_table_is_told(tmp_path, text, told):
+def test_a_bad_table_is_reported(tmp_path, text, reported):
     path = tmp_path / "crown.csv"
     path.write_text(text)
-    with pytest.raises(SceneError, match=told):
+    with pytest.raises(SceneError, match=reported):
         scene(f"bearing.roller.crown={{law: table, file: {path}}}")
 
 
@@ -107,19 +107,19 @@ def test_a_level_without_slices_names_everything_that_it_would_ignore():
 
 
 @pytest.mark.parametrize(
-    "crown, told",
+    "crown, reported",
     [
         ("isolog", "did you mean 'iso_log'"),
         ("{law: straight_arc, straight_length: 9 mm, crown_radius: 2 m}", "longer than the roller"),
-        ("{law: straight_arc, straight_length: 1 mm, crown_radius: 2 mm}", "ends before the roller"),
+        ("{law: straight_arc, straight_length: 1 mm, crown_radius: 2 mm}", "end before the end of the roller"),
         ("{law: straight_arc, straight_length: 1 mm}", "crown_radius: missing"),
         ("{law: table, file: nowhere.csv}", "cannot be read"),
-        ("{law: table, file: nowhere.csv, drops: [1 um]}", "instead of positions"),
-        ("{law: table, positions: [-4mm, 4mm], drops: [1 um]}", "expected as many"),
+        ("{law: table, file: nowhere.csv, drops: [1 um]}", "give either file, or positions and drops"),
+        ("{law: table, positions: [-4mm, 4mm], drops: [1 um]}", "expected the same number"),
     ],
 )
-def test_a_crown_that_cannot_be_is_told(crown, told):
-    with pytest.raises(SceneError, match=told):
+def test_an_impossible_crown_is_reported(crown, reported):
+    with pytest.raises(SceneError, match=reported):
         scene(f"bearing.roller.crown={crown}")
 
 

@@ -11,10 +11,9 @@ from click.testing import CliRunner
 from mcap.reader import make_reader
 
 import bearing_sim
-from bearing_sim.cli import main
-from bearing_sim.csv_import import METADATA, TableError, read_table, write_log
-from bearing_sim.csv_mapping import load_mapping, mapping_from_yaml
-from bearing_sim.input_log import read_input_log
+from bearing_sim.cli.main import main
+from bearing_sim.inputs.csv_import import METADATA, TableError, load_mapping, mapping_from_yaml, read_table, write_log
+from bearing_sim.inputs.log import read_input_log
 
 MAPPING = """
 name: rig
@@ -60,7 +59,7 @@ def test_power_without_speed_gives_no_force(tmp_path):
     law = "{law: gear_force, power: {column: f, unit: kW}, efficiency: 0.8, pitch_diameter: 500 mm}"
     table = table_of(tmp_path, "t,n,f\n0,0,4\n1,30,4\n2,,4\n", MAPPING.replace("{law: sum, columns: [{column: f, unit: N}]}", law))
     assert table.refused == {"radial_load.no_speed": 2, "shaft_speed.empty_cell": 1}
-    assert table.told["radial_load.no_speed"][1][0] == 4
+    assert table.examples["radial_load.no_speed"][1][0] == 4
 
 
 FAULTY = """t,n,f
@@ -83,7 +82,7 @@ inf,30,800
 
 def test_every_fault_is_counted_with_its_line_and_only_its_message_is_lost(tmp_path):
     table = table_of(tmp_path, FAULTY)
-    lines = {code: [line for line, _ in told] for code, told in table.told.items()}
+    lines = {code: [line for line, _ in told] for code, told in table.examples.items()}
     assert lines == {
         "shaft_speed.empty_cell": [3],
         "shaft_speed.not_a_number": [4, 14],
@@ -103,7 +102,7 @@ def test_every_fault_is_counted_with_its_line_and_only_its_message_is_lost(tmp_p
 def test_of_many_faults_the_first_lines_are_told_and_all_counted(tmp_path):
     table = table_of(tmp_path, "t,n,f\n" + "".join(f"{row},{row if row % 2 else ''},1\n" for row in range(100)))
     assert table.refused["shaft_speed.empty_cell"] == 50
-    assert [line for line, _ in table.told["shaft_speed.empty_cell"]] == [2, 4, 6, 8, 10]
+    assert [line for line, _ in table.examples["shaft_speed.empty_cell"]] == [2, 4, 6, 8, 10]
 
 
 def test_gaps_are_told_per_channel_by_the_line_that_ends_them(tmp_path):
@@ -122,7 +121,7 @@ def test_longest_step_of_the_mapping_decides_what_a_gap_is(tmp_path):
 
 def test_quoted_cells_over_several_lines_keep_line_numbers_right(tmp_path):
     table = table_of(tmp_path, 't,n,f,note\n0,30,1,"two\nlines"\n1,,1,x\n')
-    assert table.told["shaft_speed.empty_cell"][0][0] == 4
+    assert table.examples["shaft_speed.empty_cell"][0][0] == 4
 
 
 def test_semicolons_decimal_commas_and_a_byte_order_mark(tmp_path):

@@ -3,7 +3,7 @@
 
 import pytest
 
-from bearing_sim.csv_mapping import MappingError, load_mapping, mapping_from_yaml, mapping_names
+from bearing_sim.inputs.csv_import import MappingError, load_mapping, mapping_from_yaml, mapping_names
 
 GOOD = """
 name: test rig
@@ -17,7 +17,7 @@ oil_temperature: {column: T, unit: degC}
 def faults_of(text):
     with pytest.raises(MappingError) as raised:
         mapping_from_yaml(text)
-    return {fault.path: fault for fault in raised.value.faults}
+    return {fault.path: fault for fault in raised.value.errors}
 
 
 def test_units_become_scale_and_offset_in_si():
@@ -59,11 +59,11 @@ oil_temperature: {column: T}
         ("law: sum, ", "", "radial_load.law: missing"),
         ("name: test rig", "name: test rig\n[1, 2]: 3", "a key cannot be a list"),
         ("unit: kN", "unit: kN, scale: 3 N", "either unit, or scale"),
-        ("unit: kN", "unit: kN, offset: 3 N", "no offset beside unit"),
+        ("unit: kN", "unit: kN, offset: 3 N", "offset does not go with unit"),
         ("unit: kN", "scale: .nan", "outside|finite"),
         ("[{column: f, unit: kN}]", "[]", "needs at least one column"),
         ("unit: ms", "unit: ms, format: iso", "either unit .numbers., or format"),
-        ("unit: ms, epoch: 2020-01-01", "format: iso, epoch: 2020-01-01", "no epoch beside format"),
+        ("unit: ms, epoch: 2020-01-01", "format: iso, epoch: 2020-01-01", "epoch does not go with format"),
         ("epoch: 2020-01-01", "epoch: yesterday", "expected a date"),
         ("column: n", "column: n, formula: 2*n", "unknown field"),
         ("name: test rig", "name: test rig\nname: again", "written twice"),

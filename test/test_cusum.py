@@ -8,7 +8,7 @@ import pytest
 from scipy.signal import lfilter
 from scipy.stats import kstest
 
-from bearing_sim.runtime.cusum import Cusum, Whitener, run_length, threshold_for
+from bearing_sim.monitoring.residual import Cusum, Whitener, run_length, threshold_for
 
 
 def correlated(lot, count, correlation):
@@ -117,3 +117,15 @@ def test_what_is_not_a_number_changes_nothing():
     cusum = Cusum(5.0)
     cusum.take(3.0)
     assert cusum.take(math.nan) == 0 and cusum.up == 2.5
+
+
+@pytest.mark.parametrize(("batches", "correlation"), [(20, 0.9), (40, 0.9)])
+def test_the_correlation_of_a_short_course_is_more_often_over_than_underestimated(batches, correlation):
+    """A standard error above an unbiased estimate; Kendall's correction left out, it is below in 60 % of the courses and more."""
+    lot, above = np.random.default_rng(11), 0
+    for _ in range(600):
+        whitener = Whitener(1e-9)
+        for value in correlated(lot, batches, correlation):
+            whitener.take(value)
+        above += whitener.correlation >= correlation
+    assert above / 600 > 0.58

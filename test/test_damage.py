@@ -9,7 +9,7 @@ from click.testing import CliRunner
 from recordings import steady_log
 
 from bearing_sim import Inputs, Simulation, load_scene
-from bearing_sim.cli import main
+from bearing_sim.cli.main import main
 from bearing_sim.studies.damage import damages
 
 START = Inputs(1500.0, 1500.0, 0.0, 393.15)

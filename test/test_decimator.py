@@ -6,17 +6,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as some
 
-from bearing_sim.runtime.beat import Beat
+from bearing_sim.runtime.pacing import Decimator
 
 
-def due(beat, times):
-    return [time for time in times if beat.is_due(time)]
+def due(decimator, times):
+    return [time for time in times if decimator.is_due(time)]
 
 
 @pytest.mark.parametrize("ticks", [200.0, 300.0, 250.0])
 @pytest.mark.parametrize("rate", [100.0, 50.0, 30.0, 97.0, 7.3, 0.1, 199.9])
 def test_an_hours_mean_rate_is_the_one_asked_for_also_where_it_does_not_divide_that_of_the_ticks(rate, ticks):
-    found = due(Beat(rate), 0.123456789 + np.arange(3600 * ticks) / ticks)
+    found = due(Decimator(rate), 0.123456789 + np.arange(3600 * ticks) / ticks)
     assert abs(len(found) - 3600 * rate) <= 1
     assert np.diff(found).max() < 1 / rate + 1 / ticks + 1e-6, "none is left out"
 
@@ -24,32 +24,38 @@ def test_an_hours_mean_rate_is_the_one_asked_for_also_where_it_does_not_divide_t
 @pytest.mark.parametrize("every", [1, 2, 4, 20])
 def test_a_rate_that_divides_that_of_the_ticks_takes_every_nth_tick_however_its_times_are_rounded(every):
     times = np.cumsum(np.full(100_000, 0.005)) + np.random.default_rng(1).uniform(-1e-9, 1e-9, 100_000)
-    assert due(Beat(200.0 / every), times) == times[::every].tolist()
+    assert due(Decimator(200.0 / every), times) == times[::every].tolist()
 
 
 def test_of_a_rate_above_that_of_the_ticks_every_tick_is_due():
     times = (np.arange(1000) * 0.005).tolist()
-    assert due(Beat(777.0), times) == times
+    assert due(Decimator(777.0), times) == times
 
 
 def test_after_a_skip_of_run_time_nothing_is_made_up_for():
     times = [*np.arange(0.0, 1.0, 0.005), *np.arange(7.0012, 8.0, 0.005)]
-    later = [time for time in due(Beat(50.0), times) if time > 1.0]
+    later = [time for time in due(Decimator(50.0), times) if time > 1.0]
     assert later[0] == 7.0012 and np.diff(later) == pytest.approx(0.02)
 
 
 def test_a_rate_that_changes_counts_from_the_sample_that_was_due_last():
-    beat = Beat(10.0)
-    before = due(beat, np.arange(200) * 0.005)
-    beat.rate = 100.0
-    after = due(beat, np.arange(200, 400) * 0.005)
+    decimator = Decimator(10.0)
+    before = due(decimator, np.arange(200) * 0.005)
+    decimator.rate = 100.0
+    after = due(decimator, np.arange(200, 400) * 0.005)
     assert len(before) == 10 and len(after) == 100
-    beat.rate = 1.0
-    assert len(due(beat, np.arange(400, 1400) * 0.005)) == 5
+    decimator.rate = 1.0
+    assert len(due(decimator, np.arange(400, 1400) * 0.005)) == 5
 
 
 @given(steps=some.lists(some.floats(1e-4, 0.5), min_size=2, max_size=300), rate=some.floats(0.1, 200.0))
 def test_two_that_are_due_are_never_closer_on_the_average_than_a_period(steps, rate):
     times = np.cumsum(steps)
-    found = due(Beat(rate), times.tolist())
+    found = due(Decimator(rate), times.tolist())
     assert len(found) <= (times[-1] - times[0]) * rate + 1 + 1e-6 * rate * len(steps)
+
+
+def test_a_skip_of_less_than_a_period_keeps_the_multiples_and_a_longer_one_counts_from_its_end():
+    assert due(Decimator(100.0), [0.0, 0.015, 0.02, 0.03]) == [0.0, 0.015, 0.02, 0.03]
+    assert due(Decimator(100.0), [0.0, 0.019, 0.02, 0.03]) == [0.0, 0.019, 0.02, 0.03]
+    assert due(Decimator(100.0), [0.0, 0.025, 0.03, 0.034, 0.035, 0.04, 0.045]) == [0.0, 0.025, 0.035, 0.045]

@@ -16,8 +16,8 @@ pytest.importorskip("rclpy", reason="the demonstration needs ROS 2")
 
 from ros_bench import PATIENCE, NodeProcess, fresh_domain  # noqa: E402
 
-from bearing_sim.input_log import read_input_log  # noqa: E402
-from bearing_sim.mission import mission  # noqa: E402
+from bearing_sim.inputs.log import read_input_log  # noqa: E402
+from bearing_sim.inputs.mission import mission  # noqa: E402
 
 pytestmark = pytest.mark.timeout(240)
 REPOSITORY = Path(__file__).resolve().parent.parent
@@ -95,7 +95,7 @@ def test_a_player_whom_nobody_hears_gives_up_with_a_word(tmp_path):
     log = steady_log(tmp_path / "log.mcap", duration=0.2)
     process = NodeProcess(tmp_path, fresh_domain(), str(log), "--wait-limit", "0.5", module="bearing_sim.ros.player")
     assert process.wait() == 1
-    assert "nobody listens to shaft_speed, radial_load" in process.text and "Traceback" not in process.text
+    assert "no subscriber for shaft_speed, radial_load" in process.text and "Traceback" not in process.text
 
 
 def script(folder, *arguments, **environment):

@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""The design: its borders are where single runs begin to break a limit, tolerances shrink its region, and what ends it is told."""
+"""The design: its borders are where single runs begin to break a limit, tolerances shrink its region, and what bounds it is reported."""
 
 import json
 
@@ -8,19 +8,19 @@ import pytest
 from click.testing import CliRunner
 
 from bearing_sim import Simulation, load_scene
-from bearing_sim.cli import main
-from bearing_sim.studies.design import D_VALUE, LOW, NOMINAL, WORST, Wanted, default_axes, design
-from bearing_sim.sweep.axis import read_axis
-from bearing_sim.sweep.journal import Journal
+from bearing_sim.cli.main import main
+from bearing_sim.studies.design import D_VALUE, LOW, NOMINAL, WORST, Limits, default_axes, design
+from bearing_sim.sweep.grid import read_axis
 from bearing_sim.sweep.table import read_table
+from bearing_sim.sweep.tasks import Journal
 
-WANTED = Wanted(10.0, 300.0, 0.02, 0.1)
+LIMITS = Limits(10.0, 300.0, 0.02, 0.1)
 
 
-def found(radii="34.86mm:34.8675mm:6", d_values="0.095mm,0.105mm", wanted=WANTED, overrides=("level=steady",)):
+def found(radii="34.86mm:34.8675mm:6", d_values="0.095mm,0.105mm", limits=LIMITS, overrides=("level=steady",)):
     axes = read_axis(f"{LOW}={radii}"), read_axis(f"{D_VALUE}={d_values}")
     with Journal() as journal:
-        return design("deng2017_table1", overrides, wanted, *axes, journal, 0.5, workers=1)
+        return design("deng2017_table1", overrides, limits, *axes, journal, 0.5, workers=1)
 
 
 @pytest.fixture(scope="module")
@@ -65,7 +65,7 @@ def test_tolerances_shrink_the_region_and_none_leave_it_as_it_is(designed):
     for d_value in (0.095, 0.105):
         whole, kept = (border_of(designed, kind, d_value) for kind in (NOMINAL, WORST))
         assert whole.low_from < kept.low_from < kept.low_to < whole.low_to
-    exact = found(wanted=Wanted(10.0, 300.0))
+    exact = found(limits=Limits(10.0, 300.0))
     for d_value in (0.095, 0.105):
         nominal, worst = (border_of(exact, kind, d_value) for kind in (NOMINAL, WORST))
         assert nominal[2:] == worst[2:]
@@ -107,7 +107,7 @@ def test_a_region_that_goes_on_beyond_the_range_says_so_and_raceways_that_cannot
 
 
 def test_limits_that_nothing_meets_leave_no_border():
-    assert found(radii="34.862mm:34.864mm:2", d_values="0.1mm", wanted=Wanted(1.0, 1e6)).borders == []
+    assert found(radii="34.862mm:34.864mm:2", d_values="0.1mm", limits=Limits(1.0, 1e6)).borders == []
 
 
 def test_the_default_range_is_about_the_scene():
@@ -121,8 +121,8 @@ WORDS = ["design", "deng2017_table1", "--slip-below", "10%", "--life-above", "30
 
 def test_command_answers_beside_deng_writes_tables_and_picture_and_computes_nothing_twice(tmp_path):
     words = [*WORDS, "--d-value", "0.095mm:0.105mm:2", "-o", str(tmp_path / "d.parquet"), "--picture", str(tmp_path / "d.png")]
-    told = CliRunner().invoke(main, words, catch_exceptions=False)
-    assert told.exit_code == 0 and "Deng 2017 has 34.8625 to 34.8650 mm" in told.output and "bound by slip" in told.output
+    reported = CliRunner().invoke(main, words, catch_exceptions=False)
+    assert reported.exit_code == 0 and "Deng 2017 has 34.8625 to 34.8650 mm" in reported.output and "bound by slip" in reported.output
     entries = (tmp_path / "d.journal").read_text().count("\n")
     report = json.loads(CliRunner().invoke(main, [*words, "--json"]).stdout)
     assert (tmp_path / "d.journal").read_text().count("\n") == entries
@@ -145,15 +145,15 @@ def test_what_stands_beside_the_paper_spans_its_d_values_whatever_the_grid(tmp_p
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "reported"),
     [
         (["--set", "bearing.outer_raceway.d_value=0"], "is round"),
-        (["--set", "operating.shaft_speed=0"], "nothing slips"),
+        (["--set", "operating.shaft_speed=0"], "there is no slip at rest"),
         (["--speed-tolerance", "80%"], "--speed-tolerance 80%"),
         (["--slip-below", "10 N"], "wrong dimension"),
         (["--d-value", "0.1"], "d_value"),
     ],
 )
-def test_command_refuses_what_it_cannot_mean(tmp_path, words, told):
+def test_command_refuses_what_it_cannot_mean(tmp_path, words, reported):
     result = CliRunner().invoke(main, [*WORDS, *words, "-o", str(tmp_path / "d.parquet")])
-    assert result.exit_code == 2 and told in result.output
+    assert result.exit_code == 2 and reported in result.output

@@ -5,10 +5,10 @@ import pytest
 from click.testing import CliRunner
 
 from bearing_sim import SceneError, load_scene
-from bearing_sim.commands import run
-from bearing_sim.effects import EFFECTS, LEVELS, WANTS, Effect, asked_for, choose, hint, levels_with
+from bearing_sim.cli import run
 from bearing_sim.levels.level import LEVELS as BUILT
-from bearing_sim.scene_file import scene_from_yaml, scene_to_yaml
+from bearing_sim.scene.fidelity import EFFECTS, LEVELS, WANTS, Effect, asked_for, choose, hint, levels_with
+from bearing_sim.scene.loader import scene_from_yaml, scene_to_yaml
 
 ASKING = {
     "bearing.roller.crown": "iso_log",
@@ -48,9 +48,9 @@ def test_stock_scene_asks_for_nothing():
 
 
 @pytest.mark.parametrize("override", [None, "lubricant.pumping=true", "bearing.ring_growth.thermal=true", "life.reliability=99 %"])
-def test_a_spatial_scene_without_anything_spatial_is_told_of_level_planar(override):
+def test_a_spatial_scene_without_spatial_effects_gets_a_hint_to_level_planar(override):
     line = hint(scene("spatial", *([override] if override else [])))
-    assert "nothing that needs it" in line and "level planar computes the same" in line and "\n" not in line
+    assert "nothing in the scene needs it" in line and "level planar computes the same" in line and "\n" not in line
     assert "misalignment" in line and "pumping" not in line
 
 
@@ -61,12 +61,12 @@ def test_a_scene_that_needs_its_level_hears_nothing(field):
 
 
 def test_a_run_says_the_hint_on_stderr_and_keeps_stdout_for_its_report():
-    ran = CliRunner().invoke(run.command, ["deng2017_table1", "--level", "spatial", "--duration", "0.2 ms", "--json"])
+    ran = CliRunner().invoke(run.run, ["deng2017_table1", "--level", "spatial", "--duration", "0.2 ms", "--json"])
     assert ran.exit_code == 0 and ran.stdout.startswith("{") and "level planar computes the same" in ran.stderr
 
 
 @pytest.mark.parametrize("effect", EFFECTS, ids=lambda effect: effect.field)
-def test_auto_takes_the_cheapest_level_that_has_what_is_asked_for_and_says_why(effect):
+def test_auto_takes_the_lowest_level_with_everything_the_scene_asks_for_and_says_why(effect):
     chosen = scene("auto", OVERRIDES[effect.field])
     assert chosen.level == effect.levels[0]
     line = hint(chosen)
@@ -80,10 +80,10 @@ def test_auto_with_several_wants_takes_the_level_that_has_them_all():
     assert scene("auto", "wants=[cage_orbit]", "life.lamina=true").level == "spatial"
 
 
-def test_auto_with_faults_tells_them_all_as_any_level_does():
+def test_auto_reports_all_errors_of_a_scene_as_any_level_does():
     with pytest.raises(SceneError) as caught:
         scene("auto", "wants=[ring_bending]", "operating.shaft_speed=fast")
-    assert {fault.path for fault in caught.value.faults} == {"wants.0", "operating.shaft_speed"}
+    assert {each.path for each in caught.value.errors} == {"wants.0", "operating.shaft_speed"}
     assert "expected 'slip', 'life'" in str(caught.value)
 
 
@@ -91,10 +91,10 @@ def test_what_no_single_level_has_is_an_error_that_names_who_has_what(monkeypatc
     stock = scene("slip")
     rival = (Effect("wants.a", ("slip",), "", lambda scene: True), Effect("wants.b", ("planar", "spatial"), "", lambda scene: True))
     with monkeypatch.context() as patched:
-        patched.setattr("bearing_sim.effects.EFFECTS", rival)
+        patched.setattr("bearing_sim.scene.fidelity.EFFECTS", rival)
         found = choose(stock)
     assert found == (None, "no level has all of wants.a (slip); wants.b (planar, spatial)")
-    monkeypatch.setattr("bearing_sim.scene_file.choose", lambda scene: found)
+    monkeypatch.setattr("bearing_sim.scene.loader.choose", lambda scene: found)
     with pytest.raises(SceneError, match=r"level = 'auto': no level has all of wants.a \(slip\); wants.b"):
         scene("auto")
 
@@ -111,6 +111,6 @@ def test_the_choice_is_kept_in_a_recorded_scene_and_dropped_with_the_level():
 
 
 def test_run_says_in_one_line_what_it_chose():
-    ran = CliRunner().invoke(run.command, ["deng2017_table1", "--level", "auto", "--set", "wants=[cage_orbit]", "--duration", "0.2 ms", "--json"])
+    ran = CliRunner().invoke(run.run, ["deng2017_table1", "--level", "auto", "--set", "wants=[cage_orbit]", "--duration", "0.2 ms", "--json"])
     assert ran.exit_code == 0
-    assert "level planar chosen, the cheapest with all that is asked for (wants.cage_orbit: whose cage whirls)" in ran.stderr
+    assert "level planar chosen, the lowest with everything that the scene asks for (wants.cage_orbit: whose cage whirls)" in ran.stderr

@@ -10,19 +10,20 @@ import pytest
 from click.testing import CliRunner
 
 from bearing_sim import SceneError, Simulation, load_scene
-from bearing_sim.cli import main
-from bearing_sim.kernels.lanes import LANES
-from bearing_sim.kernels.load_balance import LOAD
-from bearing_sim.kernels.traction import CONTACT, traction
-from bearing_sim.levels import planar, slip
-from bearing_sim.levels.planar_state import ROLLER, ROLLERS
-from bearing_sim.params import lubricate, pack
+from bearing_sim.cli.main import main
+from bearing_sim.levels.planar import model as planar
+from bearing_sim.levels.planar.state import ROLLER, ROLLERS
+from bearing_sim.levels.slip import state as slip_state
+from bearing_sim.levels.slip.forces import balance_loads
+from bearing_sim.model.params import lubricate, pack
+from bearing_sim.numerics.simd import LANES
+from bearing_sim.physics.contact import CONTACT
+from bearing_sim.physics.load_balance import LOAD
+from bearing_sim.physics.traction import traction
+from bearing_sim.scene.scene import tolerance_overrides
 from bearing_sim.simulation import scene_inputs
-from bearing_sim.studies.extremes import kinds_of_reason
-from bearing_sim.studies.extremes_long import long_run
-from bearing_sim.studies.extremes_run import CLAMPED, FAILED, FINISHED, REFUSED, course_legs, run_case
-from bearing_sim.studies.extremes_scenes import DIMENSIONS, Case, oil_of, sampled_cases
-from bearing_sim.studies.stock_bearing import BEARING
+from bearing_sim.studies.extremes import FAILED, FINISHED, REFUSED, STEP_LIMITED, course_segments, kinds_of_reason, long_run, run_case
+from bearing_sim.studies.extremes_cases import BEARING, DIMENSIONS, Case, oil_of, sampled_cases
 
 
 def case(*overrides, level="slip", course="steady", seconds=1e-3):
@@ -30,28 +31,28 @@ def case(*overrides, level="slip", course="steady", seconds=1e-3):
 
 
 def refusal(*overrides):
-    with pytest.raises(SceneError) as told:
+    with pytest.raises(SceneError) as reported:
         load_scene(BEARING, overrides)
-    return str(told.value)
+    return str(reported.value)
 
 
 def test_the_hypercube_fills_every_dimension_evenly_and_again_the_same():
     cases = sampled_cases("slip", 40, 3)
     assert cases == sampled_cases("slip", 40, 3)
-    rollers = sorted(case.place["rollers"] for case in cases)
+    rollers = sorted(case.point["rollers"] for case in cases)
     assert all(DIMENSIONS["rollers"](k / 40) <= count <= DIMENSIONS["rollers"]((k + 1) / 40) for k, count in enumerate(rollers))
-    speeds = np.sort([case.place["shaft_speed_rpm"] for case in cases])
+    speeds = np.sort([case.point["shaft_speed_rpm"] for case in cases])
     assert (np.abs(speeds - np.linspace(-97_500, 97_500, 40)) <= 5_001).all()
     assert {case.course for case in cases} >= {"steady", "reversal", "stop", "start", "load_step", "ripple"}
-    assert "misalignment" not in cases[0].place and "misalignment" in sampled_cases("spatial", 1, 0)[0].place
+    assert "misalignment" not in cases[0].point and "misalignment" in sampled_cases("spatial", 1, 0)[0].point
 
 
 @pytest.mark.parametrize("course", ["steady", "reversal", "stop", "start", "load_step", "ripple"])
 def test_courses_last_as_long_as_asked_and_go_where_their_names_say(course):
     inputs = scene_inputs(load_scene(BEARING))
-    legs = list(course_legs(course, 10e-3, inputs))
-    assert math.fsum(leg.duration for leg in legs) == pytest.approx(10e-3) and len(legs) > 12
-    speeds, loads = ([getattr(leg.inputs, name) for leg in legs] for name in ("shaft_speed", "load_y"))
+    segments = list(course_segments(course, 10e-3, inputs))
+    assert math.fsum(segment.duration for segment in segments) == pytest.approx(10e-3) and len(segments) > 12
+    speeds, loads = ([getattr(segment.inputs, name) for segment in segments] for name in ("shaft_speed", "load_y"))
     full, load = inputs.shaft_speed, inputs.load_y
     expected = {
         "steady": (full, full, load, load),
@@ -63,9 +64,9 @@ def test_courses_last_as_long_as_asked_and_go_where_their_names_say(course):
     }[course]
     assert (speeds[0], speeds[-1], loads[0]) == pytest.approx(expected[:3]) and loads[-1] == pytest.approx(expected[3])
     if course == "ripple":
-        assert max(loads) == pytest.approx(1.9 * load) and min(loads) == pytest.approx(0.1 * load) and len(legs) == 81
+        assert max(loads) == pytest.approx(1.9 * load) and min(loads) == pytest.approx(0.1 * load) and len(segments) == 81
     if course == "load_step":
-        assert max(loads) == load and min(leg.duration for leg in legs[1:]) == pytest.approx(1e-6)
+        assert max(loads) == load and min(segment.duration for segment in segments[1:]) == pytest.approx(1e-6)
 
 
 def test_a_stock_case_finishes_and_counts_its_work():
@@ -84,15 +85,15 @@ def test_a_scene_that_cannot_be_is_refused_with_the_bound_it_broke():
     assert kinds_of_reason(outcome.reason) == ["bearing.roller.count", "operating.radial_load"]
 
 
-def test_a_tight_tolerance_runs_out_of_steps_by_its_own_fault_and_a_loose_one_by_the_models(monkeypatch):
-    monkeypatch.setattr("bearing_sim.studies.extremes_run._step_budget", lambda scene: 20)
-    assert run_case(case("integration.relative_tolerance=1e-8")).status == CLAMPED
-    outcome = run_case(case("integration.relative_tolerance=2e-3"))
+def test_a_tight_tolerance_exhausts_its_steps_and_is_step_limited_and_a_loose_one_is_too_slow(monkeypatch):
+    monkeypatch.setattr("bearing_sim.studies.extremes._step_budget", lambda scene: 20)
+    assert run_case(case(*tolerance_overrides(1e-6))).status == STEP_LIMITED
+    outcome = run_case(case(*tolerance_overrides(0.2)))
     assert outcome.status == FAILED and outcome.reason.startswith("too slow: 20 steps last for ")
 
 
 @pytest.mark.parametrize(
-    ("column", "value", "told"),
+    ("column", "value", "reported"),
     [
         ("inner_load", -1.0, "inner_load = -1 N pulls"),
         ("ring_y", math.nan, "ring_y = nan"),
@@ -101,7 +102,7 @@ def test_a_tight_tolerance_runs_out_of_steps_by_its_own_fault_and_a_loose_one_by
         ("cage_slip", -0.06, "cage slip -6 % in steady drive"),
     ],
 )
-def test_what_no_bearing_can_do_is_a_failure(monkeypatch, column, value, told):
+def test_what_no_bearing_can_do_is_a_failure(monkeypatch, column, value, reported):
     advance = Simulation.advance
 
     def spoiled(self, *arguments):
@@ -111,7 +112,7 @@ def test_what_no_bearing_can_do_is_a_failure(monkeypatch, column, value, told):
 
     monkeypatch.setattr(Simulation, "advance", spoiled)
     outcome = run_case(case())
-    assert outcome.status == FAILED and outcome.reason == told
+    assert outcome.status == FAILED and outcome.reason == reported
 
 
 def test_a_life_that_rises_with_load_is_a_failure(monkeypatch):
@@ -140,7 +141,7 @@ def test_the_command_writes_totals_a_table_and_a_picture(tmp_path, monkeypatch):
     )
     report = json.loads(result.stdout)
     assert result.exit_code == (1 if report["failed"] else 0)
-    assert sum(report[name] for name in ("finished", "clamped", "refused", "failed")) == 6 and report["failed"] == 0
+    assert sum(report[name] for name in ("finished", "step_limited", "refused", "failed")) == 6 and report["failed"] == 0
     assert report["levels"]["slip"]["refused_by"]["bearing.roller.count"] == 1
     rows = list(csv.DictReader(table.open()))
     assert len(rows) == 6 and rows[0]["status"] == "finished" and "--set 'bearing.roller.count=2'" in rows[1]["overrides"]
@@ -151,7 +152,7 @@ def test_the_command_writes_totals_a_table_and_a_picture(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("override", "told"),
+    ("override", "reported"),
     [
         (
             "bearing.cage.pocket_clearance=2 mm",
@@ -165,8 +166,8 @@ def test_the_command_writes_totals_a_table_and_a_picture(tmp_path, monkeypatch):
         ),
     ],
 )
-def test_scenes_without_sense_are_refused_before_they_start(override, told):
-    assert told in refusal(override, "level=spatial")
+def test_scenes_without_sense_are_refused_before_they_start(override, reported):
+    assert reported in refusal(override, "level=spatial")
 
 
 def test_a_fixed_step_may_be_long_where_the_shaft_is_slow():
@@ -180,10 +181,10 @@ def test_a_ring_finds_its_place_across_a_wide_play():
     )
     params = pack(scene)
     for number, place in enumerate(np.random.default_rng(0).normal(scale=1.5e-3, size=(300, 2))):
-        work = slip.new_work(params)
+        work = slip_state.new_work(params)
         work.ring[:] = place
         load = 0.9 * np.array([math.cos(number), math.sin(number)])
-        assert slip.balance_loads(0.1 * number, 500.0, *load, params, work), place
+        assert balance_loads(0.1 * number, 500.0, *load, params, work), place
         carried = [(work.loads[LOAD.inner] * work.loads[row]).sum() for row in (LOAD.cosine, LOAD.sine)]
         np.testing.assert_allclose(carried, load - 1e3 * work.ring, atol=1e-3)
 
@@ -202,15 +203,15 @@ def test_an_eyring_film_is_never_stiffer_than_the_surfaces_creep(viscosity, load
     slides = np.geomspace(1e-12, 10.0, LANES)
     contacts[:, CONTACT.load], contacts[:, CONTACT.rolling], contacts[:, CONTACT.sliding] = load, rolling, slides
     traction(contacts, lubrication.inner, lubrication.outer)
-    assert (contacts[0, CONTACT.by_sliding] <= 1.001 * stiffest).all()
+    assert (contacts[0, CONTACT.d_sliding] <= 1.001 * stiffest).all()
     assert (contacts[0, CONTACT.force] <= 1.001 * stiffest * slides).all()
     if viscosity == 1.0 and load == 2e4:  # solid: all of the sliding is creep
-        assert contacts[0, CONTACT.by_sliding, 0] == pytest.approx(stiffest, rel=0.01)
+        assert contacts[0, CONTACT.d_sliding, 0] == pytest.approx(stiffest, rel=0.01)
 
 
 def test_backward_differences_keep_the_tightest_tolerance_through_vibrating_contacts():
     # A history of order 5 that failed thrice went on along its last secant, whose error goes with the step and not with its square.
-    run = Simulation(load_scene(BEARING, ["level=planar", "integration.method=bdf", "integration.relative_tolerance=1e-10"]))
+    run = Simulation(load_scene(BEARING, ["level=planar", "integration.method=bdf", *tolerance_overrides(1e-8)]))
     for _ in range(10):
         run.advance(1e-5)
     assert run.counters.smallest_steps == 0 and run.counters.rejected_steps < 0.2 * run.counters.steps
@@ -221,7 +222,7 @@ def test_a_fixed_step_gets_over_rollers_that_go_from_sliding_one_way_to_the_othe
     overrides = ["integration.fixed_step=50 us", "operating.shaft_speed=-12000 rpm", "operating.radial_load=16 kN", "lubricant.pumping=true"]
     overrides += ["bearing.outer_raceway={low_radius: 34.853 mm, d_value: 0}", "lubricant.traction.law=eyring", oil_of(0.5, 335.0)]
     outcome = run_case(case(*overrides, "lubricant.temperature=335 K", "bearing.cage.pocket_clearance=15 um", level="planar", course="ripple"))
-    assert outcome.status in (FINISHED, CLAMPED), outcome.reason
+    assert outcome.status in (FINISHED, STEP_LIMITED), outcome.reason
 
 
 def test_the_mixture_never_drives_a_roller():
@@ -238,5 +239,5 @@ def test_the_mixture_never_drives_a_roller():
 
 def test_a_long_run_drifts_in_nothing():
     found = long_run(("slip", 1.0))
-    assert found.fault == "" and found.simulated == pytest.approx(1.0)
+    assert found.failure == "" and found.simulated == pytest.approx(1.0)
     assert abs(found.shaft_angle_error) < 1e-12 and abs(found.slip_drift) < 1e-4 and abs(found.damage_drift) < 1e-3 and found.cage_slip > 0.0

@@ -1,8 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""A user's first ten minutes, as the README tells them: each of its commands is really run, those of ``ros2`` by what they do in rclpy.
-
-Installing is what brought the suite here.
-"""
+"""The commands of the tutorial on live monitoring do what it says: each is executed, those of ``ros2`` through rclpy."""
 
 import re
 import shlex
@@ -20,20 +17,20 @@ from rclpy.parameter import Parameter  # noqa: E402
 from ros_bench import Client, NodeProcess, fresh_domain  # noqa: E402
 from std_srvs.srv import Trigger  # noqa: E402
 
-from bearing_sim import topics  # noqa: E402
-from bearing_sim.recording_reader import Recording  # noqa: E402
-from bearing_sim.scene_file import load_scene  # noqa: E402
+from bearing_sim.messages import topics  # noqa: E402
+from bearing_sim.recording.reader import Recording  # noqa: E402
+from bearing_sim.scene.loader import load_scene  # noqa: E402
 
 pytestmark = pytest.mark.timeout(240)
 ROOT = Path(__file__).resolve().parents[1]
-TITLE = "### The first ten minutes"
+PAGE, TITLE = ROOT / "doc" / "tutorials" / "live_monitoring.md", "## The first ten minutes"
 
 
 def commands():
-    """Return the commands of the README's section, in order, without their comments."""
-    text = (ROOT / "README.md").read_text()
-    assert TITLE in text, f"the README has no section {TITLE!r}"
-    (block,) = re.findall(r"```\n(.*?)```", text.partition(TITLE)[2].partition("\n## ")[0], flags=re.DOTALL)
+    """Return the commands of the tutorial's section, in order, without their comments."""
+    text = PAGE.read_text()
+    assert TITLE in text, f"the tutorial has no section {TITLE!r}"
+    (block,) = re.findall(r"```text\n(.*?)```", text.partition(TITLE)[2].partition("\n## ")[0], flags=re.DOTALL)
     return [shlex.split(line, comments=True) for line in block.splitlines() if shlex.split(line, comments=True)]
 
 
@@ -77,7 +74,7 @@ class User:
                 assert answer.success, answer.message
                 self.client.spin(1.0)
             case _:
-                raise AssertionError(f"a command of the README that is not run here: {shlex.join(words)}")
+                raise AssertionError(f"a command of the tutorial that is not run here: {shlex.join(words)}")
 
     def _list_topics(self):
         wanted = {f"/{name}" for name in (*topics.outputs(load_scene("deng2017_table1")), *topics.INPUTS, topics.MEASURED, "diagnostics")}
@@ -92,7 +89,7 @@ class User:
         return {**os.environ, "PYTHONPATH": str(ROOT)}
 
 
-def test_the_commands_of_the_first_ten_minutes_do_what_the_readme_says(tmp_path):
+def test_the_commands_of_the_first_ten_minutes_do_what_the_tutorial_says(tmp_path):
     user = User(tmp_path)
     try:
         done = [user.run(words) for words in commands()]

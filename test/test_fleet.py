@@ -10,7 +10,7 @@ import pytest
 
 from bearing_sim.runtime import fleet
 from bearing_sim.runtime.fleet import FleetRun, most_bearings, run_fleet
-from bearing_sim.scene_file import load_scene
+from bearing_sim.scene.loader import load_scene
 
 ROOT = Path(__file__).resolve().parents[1]
 

@@ -13,10 +13,9 @@ from rosbags.rosbag2 import StoragePlugin
 from rosbags.rosbag2 import Writer as BagWriter
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-from bearing_sim.cli import main
-from bearing_sim.input_log import Anomalies, InputLogError, anomalies, read_input_log
-from bearing_sim.input_source import source, source_values
-from bearing_sim.sinks.mcap_file import McapFile
+from bearing_sim.cli.main import main
+from bearing_sim.inputs.log import Anomalies, InputLogError, anomalies, read_input_log, source, source_values
+from bearing_sim.recording.writer import McapFile
 
 T0 = 1_700_000_000 * SECOND
 SERVO = "drive_msgs/msg/ServoState"
@@ -101,10 +100,10 @@ def test_standard_types_of_an_sqlite_bag_are_read_as_those_of_mcap(tmp_path):
         recording.flush()
         for topic, series in read_input_log(recording.active_path).series.items():
             assert len(series.values) == 21, topic
-        from bearing_sim.mcap_stream import Salvage
+        from bearing_sim.recording.mcap_reader import McapReader
 
         kinds = {}
-        for record in Salvage(recording.active_path):
+        for record in McapReader(recording.active_path):
             if type(record).__name__ == "Channel":
                 kinds[record.id] = JOINTS if record.topic == "/shaft_speed" else WRENCH
             elif type(record).__name__ == "Message":
@@ -119,12 +118,12 @@ def test_an_absent_field_is_told_with_those_there_are(tmp_path):
     for field, words in (
         ("speed", "no field 'speed'.*it has header, velocity, torque, cells"),
         ("velocity[7]", "has 2 numbers"),
-        ("cells", "is no number"),
+        ("cells", "is not a number"),
         ("torque.y", r"no field 'y' in the message \(torque.y\); it has none"),
     ):
         with pytest.raises(InputLogError, match=words):
             read_input_log(path, {"shaft_speed": f"/servo/state.{field}", "radial_load": "/servo/state.torque"})
-    with pytest.raises(InputLogError, match="needs sensor_msgs/msg/JointState or std_msgs/msg/Float64, or the field to take"):
+    with pytest.raises(InputLogError, match="needs sensor_msgs/msg/JointState or std_msgs/msg/Float64, or name a field of it"):
         read_input_log(path, {"shaft_speed": "/servo/state", "radial_load": "/servo/state.torque"})
 
 

@@ -10,7 +10,7 @@ from fake_simulation import FakeSimulation
 from test_live import Bench
 
 from bearing_sim import Simulation, load_scene
-from bearing_sim.events import Level
+from bearing_sim.messages.events import Level
 from bearing_sim.runtime.governor import Governor
 from bearing_sim.runtime.live import governor_of
 
@@ -90,7 +90,7 @@ def test_a_level_that_falls_again_is_waited_for_longer_each_time():
         machine.costs = {"planar": 1.5, "slip": 0.02} if machine.governor.level == "planar" else {"planar": 0.3, "slip": 0.02}
         machine.costs["planar"] = 1.5
         machine.run(1.0)
-        machine.governor._dearer = [1.0, math.nan]  # it believes the best each time
+        machine.governor._cost_ratios = [1.0, math.nan]  # it believes the best each time
     came_up = [when for when, level in machine.changes if level == "planar"]
     waits = np.diff([0.0, *came_up])
     assert len(waits) >= 3
@@ -156,9 +156,9 @@ def test_live_model_tells_the_change_and_keeps_telling_the_level():
     condition = bench.live.condition(bench.now_ns)
     bench.live.close()
     assert condition.values["level"] == "slip"
-    (lasting,) = [event for event in condition.events if event.code == "governor.level"]
+    (lasting,) = [event for event in condition.events if event.kind == "governor.level"]
     assert lasting.level is Level.WARN
     assert "instead of planar" in lasting.text
-    (change,) = [event for event in bench.news if event.code == "governor.change"]
-    assert "planar holds" in change.text
-    assert "slip goes on" in change.text
+    (change,) = [event for event in bench.news if event.kind == "governor.change"]
+    assert "planar reaches" in change.text
+    assert "slip continues" in change.text

@@ -9,8 +9,8 @@ from mcap.reader import make_reader
 from mcap.writer import CompressionType, Writer
 from recordings import FLOAT, JOINTS, SECOND, TEMPERATURE, WRENCH, joint_state, raw_cdr_float64, steady_log, temperature, truncated, wrench, write_log
 
-from bearing_sim.input_log import InputLogError, read_input_log, summary_lines
-from bearing_sim.sinks.mcap_file import McapFile, message_type
+from bearing_sim.inputs.log import InputLogError, read_input_log, summary_lines
+from bearing_sim.recording.writer import McapFile, message_type
 
 T0 = 1_700_000_000 * SECOND
 
@@ -58,7 +58,7 @@ def test_a_stamp_missing_among_others_is_a_fault_not_a_log_time(tmp_path):
         recording.write("/radial_load", WRENCH, T0, wrench(T0, 4.0))
     series = read_input_log(tmp_path / "log.mcap").series["shaft_speed"]
     assert series.stamps == [T0, T0 + 5]
-    assert [(fault.code, fault.log_ns) for fault in series.faults] == [("input.not_stamped", T0 + 1)]
+    assert [(error.kind, error.log_ns) for error in series.errors] == [("input.not_stamped", T0 + 1)]
 
 
 def test_another_joint_can_be_named_and_an_absent_one_is_told(tmp_path):
@@ -132,7 +132,7 @@ def test_undecodable_message_is_counted_and_the_others_are_read(tmp_path):
         writer.finish()
     series = read_input_log(path, NAMES).series["shaft_speed"]
     assert series.values == [(1.0,), (2.0,)]
-    assert [fault.code for fault in series.faults] == ["input.unreadable"]
+    assert [error.kind for error in series.errors] == ["input.unreadable"]
 
 
 def noisy_log(path, messages=4000):
@@ -169,7 +169,7 @@ def test_a_cut_never_makes_up_a_value(tmp_path, compression):
         except InputLogError:
             continue
         assert set(log.series["shaft_speed"].values) == {(1.5,)} and set(log.series["radial_load"].values) == {(800.0,)}
-        assert not log.series["shaft_speed"].faults
+        assert not log.series["shaft_speed"].errors
 
 
 def test_damage_in_the_middle_is_told_and_the_part_before_it_used(tmp_path):

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from recordings import JOINTS, SECOND, TEMPERATURE, WRENCH, joint_state, steady_log, temperature, truncated, wrench, write_log
 
-from bearing_sim.input_course import judge
-from bearing_sim.input_log import Fault, InputLogError, read_input_log
-from bearing_sim.scene import InputLimits
+from bearing_sim.inputs.log import InputLogError, ReadError, read_input_log
+from bearing_sim.inputs.profile import Messages, OnlineInputProfile, inputs_at, judge
+from bearing_sim.recording.writer import McapFile
+from bearing_sim.scene.scene import InputLimits
 from bearing_sim.simulation import Inputs
-from bearing_sim.sinks.mcap_file import McapFile
 
 HELD = Inputs(0.0, 0.0, 0.0, 393.15)
 LIMITS = InputLimits(maximum_speed=5000.0, maximum_load=2000.0, stale_after=1.0)
@@ -24,7 +24,7 @@ def course_of(path, **options):
 
 
 def codes(course):
-    return [event.code for event in course.events]
+    return [event.kind for event in course.events]
 
 
 def test_inputs_are_linear_between_stamps_of_each_channel(tmp_path):
@@ -66,7 +66,7 @@ def test_oil_topic_without_one_readable_message_leaves_the_scenes_temperature(tm
             recording.write("/shaft_speed", JOINTS, T0 + place, joint_state(T0 + place, 1.0))
             recording.write("/radial_load", WRENCH, T0 + place, wrench(T0 + place, 1.0))
     log = read_input_log(path)
-    log.series["oil_temperature"].faults.append(Fault(T0, "input.unreadable", "cannot be decoded"))
+    log.series["oil_temperature"].errors.append(ReadError(T0, "input.unreadable", "cannot be decoded"))
     for numbers in (log.series["oil_temperature"].stamps, log.series["oil_temperature"].log_times, log.series["oil_temperature"].values):
         numbers.clear()
     course = judge(log, LIMITS, HELD)
@@ -98,7 +98,7 @@ def test_of_many_faults_the_first_are_told_and_all_are_counted(tmp_path):
     speeds = [(t / 10, 1.0 if t in (0, 50) else math.nan) for t in range(51)]
     course = course_of(write_log(tmp_path / "log.mcap", speeds, [(t / 10, 1.0, 0.0) for t in range(51)]))
     assert course.refused["input.not_finite"] == 49
-    told = [event for event in course.events if event.code == "input.not_finite"]
+    told = [event for event in course.events if event.kind == "input.not_finite"]
     assert len(told) == 6 and "44 more" in told[-1].text
 
 
@@ -115,21 +115,21 @@ def test_a_long_silence_is_stale_and_a_gap(tmp_path):
     course = course_of(write_log(tmp_path / "log.mcap", [(t, 1.0) for t in times], [(t / 10, 1.0, 0.0) for t in range(50)]))
     assert course.gaps == [(900_000_000, 4_000_000_000)]
     assert {"input.stale", "input.gap"} <= set(codes(course))
-    assert next(event.time for event in course.events if event.code == "input.gap") == pytest.approx(0.9)
+    assert next(event.time for event in course.events if event.kind == "input.gap") == pytest.approx(0.9)
 
 
 def test_slow_but_steady_log_is_no_gap_unless_asked_for(tmp_path):
     path = write_log(tmp_path / "log.mcap", [(60.0 * t, 1.0) for t in range(5)], [(60.0 * t, 1.0, 0.0) for t in range(5)])
     course = course_of(path)
     assert course.gaps == [] and set(codes(course)) == {"input.stale"}
-    assert all("linearly" in event.text and "holding" not in event.text for event in course.events)
+    assert all("linear" in event.text and "holding" not in event.text for event in course.events)
     assert len(course_of(path, longest_gap=30.0).gaps) == 8
 
 
 def test_wrong_message_rate_is_told_once(tmp_path):
     course = judge(read_input_log(steady_log(tmp_path / "log.mcap", duration=9.0, rate=2)), InputLimits(minimum_rate=5.0), HELD)
     assert codes(course) == ["input.rate", "input.rate"]
-    assert {event.text.partition(":")[0] for event in course.events} == {"shaft_speed", "radial_load"}
+    assert {event.subject for event in course.events} == {"shaft_speed", "radial_load"}
 
 
 def test_cut_log_is_told_at_its_end(tmp_path):
@@ -146,5 +146,46 @@ def test_log_of_which_nothing_passes_is_refused_with_the_reasons(tmp_path):
 
 def test_channels_on_different_clocks_are_refused_with_their_spans(tmp_path):
     path = write_log(tmp_path / "log.mcap", [(0.0, 1.0), (1.0, 1.0)], [(5.0, 1.0, 0.0), (6.0, 1.0, 0.0)])
-    with pytest.raises(InputLogError, match="never known together .*log times"):
+    with pytest.raises(InputLogError, match="both shaft speed and radial load are known .*log times"):
         course_of(path)
+
+
+def _messages(oil_ns):
+    """Return constant speed and load over 100 s, and one oil temperature of 350 K at a stamp [ns]."""
+    ends = np.array([0, 100 * SECOND])
+    stamps = {"shaft_speed": ends, "radial_load": ends, "oil_temperature": np.array([oil_ns])}
+    return Messages(stamps, {"shaft_speed": np.array([100.0, 100.0]), "radial_load": np.zeros((2, 2)), "oil_temperature": np.array([350.0])})
+
+
+@pytest.mark.parametrize("stale_after", [0.5, 1.0])
+def test_a_first_oil_temperature_counts_from_the_start_if_it_comes_within_ten_stale_times_and_from_its_stamp_if_later(stale_after):
+    limits, instants = InputLimits(maximum_speed=5000.0, maximum_load=2000.0, stale_after=stale_after), np.array([0, 3 * SECOND, 20 * SECOND])
+    patience = round(10 * stale_after * SECOND)
+    soon, late = (inputs_at(instants, _messages(stamp), limits, 300.0)[:, 3] for stamp in (patience, patience + 1))
+    assert soon.tolist() == [350.0, 350.0, 350.0]
+    assert late.tolist() == [300.0, 300.0, 350.0]
+
+
+def test_a_run_that_expects_an_oil_temperature_waits_for_it_ten_stale_times_and_no_longer():
+    profile = OnlineInputProfile(100.0, LIMITS, 300.0)  # stale after 1 s
+    for stamp in (T0, T0 + 60 * SECOND):
+        profile.add("shaft_speed", stamp, 100.0)
+        profile.add("radial_load", stamp, (800.0, 0.0))
+    clock = T0 + 60 * SECOND
+    assert profile.known_until(clock, T0 + 10 * SECOND, True) == -1 and profile.awaited(T0 + 10 * SECOND, True) == ["oil_temperature"]
+    assert profile.known_until(clock, T0 + 10 * SECOND + 1, True) == T0 + 10 * SECOND + 1
+    assert profile.known_until(clock, T0, False) == clock, "without a publisher it does not wait"
+
+
+def test_a_set_of_the_oil_temperature_is_nothing_to_wait_for_and_acts_from_its_instant_or_where_the_model_is():
+    profile = OnlineInputProfile(10.0, LIMITS, 300.0)
+    for stamp in (T0, T0 + 2 * SECOND):
+        profile.add("shaft_speed", stamp, 100.0)
+        profile.add("radial_load", stamp, (800.0, 0.0))
+    profile.set_oil_temperature(T0 + SECOND // 2, 310.0)
+    assert profile.known_until(T0 + 2 * SECOND, T0, False) == T0 + 2 * SECOND
+    first = profile.take(T0 + SECOND)
+    profile.set_oil_temperature(T0 + SECOND // 2, 320.0)
+    second = profile.take(T0 + 2 * SECOND)
+    assert first.inputs[:, 3].tolist() == [300.0] * 6 + [310.0] * 5 and set(second.inputs[:, 3]) == {320.0}
+    assert sum(map(len, (first.arrived, second.arrived))) == 5, "start, the temperature before the first set, two sets, end"

@@ -1,149 +1,269 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""The stiff method and the drive loop on problems with closed forms; they know no bearings."""
+"""One-step methods and both loops around them on problems with closed forms; they know no bearings."""
 
 import math
 
 import numpy as np
 import pytest
-from one_equation import factor, failing, kept, no_limit, norm, nothing, solve, stay
+from one_equation import factor, failing, no_limit, solve, step_taken
 
-from bearing_sim.integrators.drive import drive
-from bearing_sim.integrators.rosenbrock2 import rosenbrock2_step
-from bearing_sim.integrators.sdirk2 import sdirk2_step
-from bearing_sim.integrators.status import COUNT, NON_FINITE, NOT_EVALUATED, OK, STEP_BUDGET, new_counts
-from bearing_sim.kernels.compilation import kernel
+from bearing_sim.numerics.compilation import kernel
+from bearing_sim.numerics.rosenbrock2 import rosenbrock2, rosenbrock2_fixed
+from bearing_sim.numerics.sdirk2 import sdirk2, sdirk2_fixed
+from bearing_sim.numerics.time_stepping import (
+    COUNT,
+    NON_FINITE,
+    NOT_CONVERGED,
+    NOT_EVALUATED,
+    OK,
+    STEP_BUDGET,
+    advance_in_fixed_steps,
+    advance_one_step,
+    new_counts,
+    new_memory,
+    start_from_known,
+)
 
-# work: [jacobian, factored]; model: (stiffness, share of the Jacobian that the method is told)
+# model: (stiffness, fraction of the Jacobian that the method is given, absolute tolerance, time from which all is NaN, longest step that
+# can be solved); work: (jacobian, factored)
+STIFFNESS, GIVEN, TOLERANCE, NAN_FROM, SOLVABLE = range(5)
 
 
 @kernel
 def rate_of(t, y, model, work, rate):
     # Prothero and Robinson 1974: y' = -k (y - cos t) - sin t, solution cos t for any k
-    rate[0] = -model[0] * (y[0] - math.cos(t)) - math.sin(t)
+    rate[0] = -model[STIFFNESS] * (y[0] - math.cos(t)) - math.sin(t)
+    if t > model[NAN_FROM]:
+        rate[0] = math.nan
     return True
 
 
 @kernel
 def rate_and_jacobian(t, y, model, work, rate):
-    work[0] = -model[0] * model[1]
+    work[0] = -model[STIFFNESS] * model[GIVEN]
     return rate_of(t, y, model, work, rate)
 
 
 @kernel
-def nan_rate(t, y, model, work, rate):
-    rate[0] = math.nan
-    work[0] = 0.0
-    return True
+def norm(t, y, change, model):
+    return abs(change[0]) / model[TOLERANCE]
 
 
 @kernel
-def step(t, y, rate, h, model, work, stages, next_y, error):
-    return rosenbrock2_step(rate_of, factor, solve, t, y, rate, h, model, work, stages, next_y, error)
+def solved_if_short(rhs, rhs_and_jacobian, predict, factor, solve, error_norm, t, y, h, model, work, memory, counts):
+    # what contacts do to an iteration: whether it converges depends on the length of the step
+    memory.scratch[1, 0] = y[0] + h
+    return OK if h <= model[SOLVABLE] else NOT_CONVERGED
 
 
 @kernel
-def nan_step(t, y, rate, h, model, work, stages, next_y, error):
-    return rosenbrock2_step(nan_rate, factor, solve, t, y, rate, h, model, work, stages, next_y, error)
+def unsolved_across_an_impact(rhs, rhs_and_jacobian, predict, factor, solve, error_norm, t, y, h, model, work, memory, counts):
+    memory.scratch[1, 0] = y[0] + h
+    return OK if h <= 2.0**-9 or not t <= model[SOLVABLE] < t + h else NOT_CONVERGED
 
 
 @kernel
-def implicit_step(t, y, rate, h, model, work, stages, next_y, error):
-    # the counts of iterations go where no stage stands
-    return sdirk2_step(rate_of, rate_and_jacobian, stay, factor, solve, norm, t, y, h, 1e-9, model, work, stages, next_y, error, work[2:4], work[4:])
+def error_by_length(rhs, rhs_and_jacobian, predict, factor, solve, error_norm, t, y, h, model, work, memory, counts):
+    memory.scratch[1, 0], memory.scratch[2, 0] = y[0] + h, h
+    return OK
 
 
 @kernel
-def advance_implicit(t, end, y, h, tolerance, longest, budget, model, work, scratch, counts):
-    return drive(nothing, implicit_step, norm, no_limit, kept, 2, t, end, y, h, tolerance, longest, budget, model, work, scratch, counts)
+def keep_longest(h, y, model, work):
+    work[0] = max(work[0], h)
 
 
 @kernel
-def advance(t, end, y, h, tolerance, longest, budget, model, work, scratch, counts):
-    return drive(rate_and_jacobian, step, norm, no_limit, kept, 2, t, end, y, h, tolerance, longest, budget, model, work, scratch, counts)
+def with_error_by_length(t, end, y, h, longest, budget, model, work, memory, counts):
+    return advance_one_step(
+        error_by_length, rate_of, rate_and_jacobian, start_from_known, factor, solve, norm, no_limit, keep_longest,
+        t, end, y, h, longest, budget, model, work, memory, counts,
+    )  # fmt: skip
 
 
 @kernel
-def advance_nan(t, end, y, h, tolerance, longest, budget, model, work, scratch, counts):
-    return drive(nan_rate, nan_step, norm, no_limit, kept, 2, t, end, y, h, tolerance, longest, budget, model, work, scratch, counts)
+def by_rosenbrock2(t, end, y, h, longest, budget, model, work, memory, counts):
+    return rosenbrock2(
+        rate_of, rate_and_jacobian, start_from_known, factor, solve, norm, no_limit, step_taken,
+        t, end, end, y, h, longest, budget, model, work, memory, counts,
+    )  # fmt: skip
 
 
 @kernel
-def advance_failing(t, end, y, h, tolerance, longest, budget, model, work, scratch, counts):
-    return drive(failing, step, norm, no_limit, kept, 2, t, end, y, h, tolerance, longest, budget, model, work, scratch, counts)
+def by_sdirk2(t, end, y, h, longest, budget, model, work, memory, counts):
+    return sdirk2(
+        rate_of, rate_and_jacobian, start_from_known, factor, solve, norm, no_limit, step_taken,
+        t, end, end, y, h, longest, budget, model, work, memory, counts,
+    )  # fmt: skip
 
 
-def solution(stiffness, steps=0, told=1.0, tolerance=1e9, end=2.0, budget=10**7, run=advance, start=1.0):
-    """Return value, status and counts at ``end``; a fixed step where ``steps`` is given."""
-    y, counts = np.array([start]), new_counts()
-    longest = end / steps if steps else 1e9
-    status, _ = run(
-        0.0, end, y, longest if steps else 1e-3, tolerance, longest, budget, np.array([stiffness, told]), np.zeros(7), np.zeros((9, 1)), counts
-    )
+@kernel
+def by_failing_kernels(t, end, y, h, longest, budget, model, work, memory, counts):
+    return rosenbrock2(
+        failing, failing, start_from_known, factor, solve, norm, no_limit, step_taken,
+        t, end, end, y, h, longest, budget, model, work, memory, counts,
+    )  # fmt: skip
+
+
+@kernel
+def by_rosenbrock2_fixed(t, end, y, h, longest, budget, model, work, memory, counts):
+    return rosenbrock2_fixed(
+        rate_of, rate_and_jacobian, start_from_known, factor, solve, norm, no_limit, step_taken,
+        t, end, end, y, h, longest, budget, model, work, memory, counts,
+    )  # fmt: skip
+
+
+@kernel
+def by_sdirk2_fixed(t, end, y, h, longest, budget, model, work, memory, counts):
+    return sdirk2_fixed(
+        rate_of, rate_and_jacobian, start_from_known, factor, solve, norm, no_limit, step_taken,
+        t, end, end, y, h, longest, budget, model, work, memory, counts,
+    )  # fmt: skip
+
+
+@kernel
+def by_failing_kernels_fixed(t, end, y, h, longest, budget, model, work, memory, counts):
+    return rosenbrock2_fixed(
+        failing, failing, start_from_known, factor, solve, norm, no_limit, step_taken,
+        t, end, end, y, h, longest, budget, model, work, memory, counts,
+    )  # fmt: skip
+
+
+@kernel
+def by_short_steps_fixed(t, end, y, h, longest, budget, model, work, memory, counts):
+    return advance_in_fixed_steps(
+        solved_if_short, rate_of, rate_and_jacobian, start_from_known, factor, solve, norm, step_taken,
+        t, end, y, longest, budget, model, work, memory, counts,
+    )  # fmt: skip
+
+
+@kernel
+def across_an_impact_fixed(t, end, y, h, longest, budget, model, work, memory, counts):
+    return advance_in_fixed_steps(
+        unsolved_across_an_impact, rate_of, rate_and_jacobian, start_from_known, factor, solve, norm, step_taken,
+        t, end, y, longest, budget, model, work, memory, counts,
+    )  # fmt: skip
+
+
+ADAPTIVE, FIXED = [by_rosenbrock2, by_sdirk2], [by_rosenbrock2_fixed, by_sdirk2_fixed]
+
+
+def solution(run, stiffness=2.0, step=1e9, given=1.0, tolerance=1e-9, end=2.0, budget=10**7, start=1.0, nan_from=math.inf, solvable=math.inf):
+    """Return value, status and counts at ``end``; ``step`` is the fixed or longest one."""
+    y, counts, model = np.array([start]), new_counts(), np.array([stiffness, given, tolerance, nan_from, solvable])
+    status, _ = run(0.0, end, y, 1e-3, step, budget, model, np.zeros(2), new_memory(1), counts)
     return y[0], status, counts
 
 
-@pytest.mark.parametrize("told", [1.0, 0.7, 0.0])
-def test_rosenbrock2_is_of_order_2_whatever_jacobian_it_is_told(told):
-    errors = [abs(solution(2.0, steps, told)[0] - math.cos(2.0)) for steps in (64, 128, 256)]
-    orders = [math.log2(a / b) for a, b in zip(errors, errors[1:])]
-    assert orders == pytest.approx([2.0, 2.0], abs=0.2)
+def orders(run, stiffness=2.0, given=1.0):
+    errors = [abs(solution(run, stiffness, 2.0 / steps, given)[0] - math.cos(2.0)) for steps in (64, 128, 256)]
+    return [math.log2(a / b) for a, b in zip(errors, errors[1:])]
 
 
-def test_stiff_solution_is_followed_at_steps_a_million_times_its_time_constant():
-    value, status, counts = solution(1e9, steps=100)
-    assert status == OK and counts[COUNT.steps] == 100
-    # Of first order here: the method knows no derivative by time, so that a stiff solution lags by a part of the step.
-    assert abs(value - math.cos(2.0)) < 0.02
-    assert abs(solution(1e9, steps=400)[0] - math.cos(2.0)) < 0.005
+@pytest.mark.parametrize("given", [1.0, 0.7, 0.0])
+def test_rosenbrock2_is_of_order_2_whatever_jacobian_it_is_given(given):
+    assert orders(by_rosenbrock2_fixed, given=given) == pytest.approx([2.0, 2.0], abs=0.2)
 
 
 @pytest.mark.parametrize("stiffness", [2.0, 50.0])
 def test_sdirk2_is_of_order_2(stiffness):
-    errors = [abs(solution(stiffness, steps, run=advance_implicit)[0] - math.cos(2.0)) for steps in (64, 128, 256)]
-    orders = [math.log2(a / b) for a, b in zip(errors, errors[1:])]
-    assert orders == pytest.approx([2.0, 2.0], abs=0.25)
+    assert orders(by_sdirk2_fixed, stiffness) == pytest.approx([2.0, 2.0], abs=0.25)
+
+
+def test_rosenbrock2_follows_a_stiff_solution_at_steps_a_million_times_its_time_constant():
+    value, status, counts = solution(by_rosenbrock2_fixed, 1e9, 0.02)
+    assert status == OK and counts[COUNT.steps] == 100
+    # Of first order here: the method has no derivative by time, so that a stiff solution lags by a part of the step.
+    assert abs(value - math.cos(2.0)) < 0.02
+    assert abs(solution(by_rosenbrock2_fixed, 1e9, 0.005)[0] - math.cos(2.0)) < 0.005
 
 
 def test_sdirk2_follows_a_stiff_solution_without_lagging():
-    assert solution(1e9, steps=100, run=advance_implicit)[0] == pytest.approx(math.cos(2.0), abs=1e-8)
+    assert solution(by_sdirk2_fixed, 1e9, 0.02)[0] == pytest.approx(math.cos(2.0), abs=1e-8)
 
 
-def test_sdirk2_lets_a_stiff_transient_die_in_one_long_step():
-    assert solution(1e12, steps=1, end=1e-3, start=5.0, run=advance_implicit)[0] == pytest.approx(1.0, abs=1e-5)
-
-
-def test_a_stiff_transient_dies_in_one_long_step():
+@pytest.mark.parametrize(("run", "error"), [(by_rosenbrock2_fixed, 1e-2), (by_sdirk2_fixed, 1e-5)])
+def test_a_stiff_transient_dies_in_one_long_step(run, error):
     # L-stability: the factor of one step goes to zero with the stiffness
-    value, _, _ = solution(1e12, steps=1, end=1e-3, start=5.0)
-    assert value == pytest.approx(1.0, abs=1e-2)
+    assert solution(run, 1e12, 1e-3, end=1e-3, start=5.0)[0] == pytest.approx(1.0, abs=error)
 
 
-def test_error_stays_within_a_few_tolerances_and_work_grows_with_accuracy():
-    loose, _, loose_counts = solution(50.0, tolerance=1e-3)
-    tight, _, tight_counts = solution(50.0, tolerance=1e-6)
+@pytest.mark.parametrize("run", ADAPTIVE)
+def test_error_stays_within_a_few_tolerances_and_work_grows_with_accuracy(run):
+    loose, _, loose_counts = solution(run, 50.0, tolerance=3e-3)
+    tight, _, tight_counts = solution(run, 50.0, tolerance=3e-6)
     assert abs(loose - math.cos(2.0)) < 5e-3 and abs(tight - math.cos(2.0)) < 5e-6
     assert tight_counts[COUNT.steps] > 5 * loose_counts[COUNT.steps]
 
 
+@pytest.mark.parametrize("first", [1.0, 1e-6])
+def test_no_step_is_accepted_whose_error_is_above_the_tolerance(first):
+    # the error of a step is its length, the tolerance 0.01
+    work, counts, model = np.zeros(2), new_counts(), np.array([2.0, 1.0, 0.01, math.inf, 0.0])
+    status, _ = with_error_by_length(0.0, 2.0, np.zeros(1), first, 1e9, 10**6, model, work, new_memory(1), counts)
+    assert status == OK and 0.001 < work[0] <= 0.01
+    assert (counts[COUNT.rejected_steps] > 0) == (first > 0.01)
+
+
 def test_the_last_step_ends_exactly_at_the_end():
-    y, counts = np.array([1.0]), new_counts()
+    y, counts, memory = np.array([1.0]), new_counts(), new_memory(1)
     for k in range(10):
-        advance(0.1 * k, 0.1 * (k + 1), y, 0.03, 1e9, 0.03, 10**6, np.array([3.0, 1.0]), np.zeros(7), np.zeros((9, 1)), counts)
+        by_rosenbrock2(0.1 * k, 0.1 * (k + 1), y, 0.03, 0.03, 10**6, np.array([3.0, 1.0, 1e9, math.inf, 0.0]), np.zeros(2), memory, counts)
     assert y[0] == pytest.approx(math.cos(1.0), abs=2e-4)
     assert counts[COUNT.steps] == 40
 
 
-def test_a_step_budget_bounds_the_work():
-    _, status, counts = solution(1.0, steps=1000, budget=17)
+@pytest.mark.parametrize("run", [*ADAPTIVE, *FIXED])
+def test_a_step_budget_bounds_the_work(run):
+    _, status, counts = solution(run, step=2e-3, budget=17)
     assert status == STEP_BUDGET and counts[COUNT.steps] + counts[COUNT.rejected_steps] == 17
 
 
-def test_nan_and_kernels_that_fail_end_with_a_status_not_a_hang():
-    assert solution(1.0, run=advance_nan)[1] == NON_FINITE
-    assert solution(1.0, run=advance_nan)[2][COUNT.non_finite_steps] > 0
-    assert solution(1.0, run=advance_failing)[1] == NOT_EVALUATED
+@pytest.mark.parametrize("run", ADAPTIVE)
+def test_nan_ends_with_a_status_not_a_hang(run):
+    _, status, counts = solution(run, nan_from=0.5, tolerance=1e-3)
+    assert status == NON_FINITE and counts[COUNT.non_finite_steps] > 0
+
+
+@pytest.mark.parametrize("run", [by_failing_kernels, by_failing_kernels_fixed])
+def test_kernels_that_fail_end_with_a_status_not_a_hang(run):
+    assert solution(run, step=1e-3)[1] == NOT_EVALUATED
 
 
 def test_a_tolerance_that_cannot_be_met_takes_the_smallest_steps_and_counts_them():
-    value, status, counts = solution(1e3, tolerance=1e-30, budget=200)
+    value, status, counts = solution(by_rosenbrock2, 1e3, tolerance=1e-30, budget=200)
     assert status == STEP_BUDGET and counts[COUNT.smallest_steps] > 50 and math.isfinite(value)
+
+
+@pytest.mark.parametrize("run", FIXED)
+def test_fixed_steps_are_equal_and_no_longer_than_asked_for(run):
+    _, status, counts = solution(run, step=0.03)
+    assert status == OK and counts[COUNT.steps] == math.ceil(2.0 / 0.03) and counts[COUNT.rejected_steps] == 0
+    assert solution(run, step=0.1)[2][COUNT.steps] == 20
+
+
+def test_a_fixed_step_that_cannot_be_solved_is_halved_and_counted():
+    value, status, counts = solution(by_short_steps_fixed, step=0.5, solvable=0.13)
+    # every step of 0.5 is done as four of 0.125, after one attempt in one piece and one in halves
+    assert status == OK and value == pytest.approx(3.0)
+    assert counts[COUNT.steps] == 16 and counts[COUNT.rejected_steps] == 8
+
+
+def test_a_fixed_step_whose_thousandth_part_cannot_be_solved_ends_with_a_status_after_eleven_attempts():
+    value, status, counts = solution(by_short_steps_fixed, step=0.5, solvable=0.5 / 1500)
+    assert status == NOT_CONVERGED and value == 1.0
+    assert counts[COUNT.steps] == 0 and counts[COUNT.rejected_steps] == 11
+
+
+def test_a_fixed_step_with_an_impact_in_it_is_fine_there_alone():
+    value, status, counts = solution(across_an_impact_fixed, step=0.5, solvable=1.1)
+    # the impact is at 1.1; its step begins at 1.0 and needs parts of 2^-9, of which it has 256
+    assert status == OK and value == pytest.approx(3.0)
+    assert counts[COUNT.steps] < 30 and counts[COUNT.rejected_steps] < 20
+
+
+@pytest.mark.parametrize("run", FIXED)
+def test_a_state_that_is_not_finite_ends_fixed_steps_with_a_status(run):
+    value, status, counts = solution(run, step=0.02, nan_from=0.5)
+    assert status == NON_FINITE and value == pytest.approx(math.cos(0.5), abs=0.02)
+    assert 0 < counts[COUNT.rejected_steps] < 12

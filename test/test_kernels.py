@@ -9,21 +9,21 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bearing_sim import load_scene
-from bearing_sim.contour import outer_contour
-from bearing_sim.kernels.arrow import ARROW, factor_shifted, new_arrow, solve_factored
-from bearing_sim.kernels.cage import land_torque
-from bearing_sim.kernels.compilation import kernel
-from bearing_sim.kernels.contact import line_contact_stiffness, line_penetration
-from bearing_sim.kernels.drag import churning_force, cylinder_torque, end_face_torque
-from bearing_sim.kernels.elementary import cosine_sine, exponential, logarithm, ninth_root
-from bearing_sim.kernels.lanes import LANES, floor, larger, load, magnitude, smaller, spread, square_root, store, total, where_positive
-from bearing_sim.kernels.load_balance import LOAD, balance_ring, squeezed_roller
-from bearing_sim.kernels.raceway import TABLE_INTERVALS, contour_at, tabulated
-from bearing_sim.kernels.traction import CONTACT, traction
-from bearing_sim.oil import oil_at
-from bearing_sim.params import lubricate, pack
-from bearing_sim.rating_life import load_rating, rating_life_revolutions, ring_ratings
-from bearing_sim.scene_raceway import OuterRaceway
+from bearing_sim.model.oil import oil_at
+from bearing_sim.model.params import lubricate, pack
+from bearing_sim.numerics.compilation import kernel
+from bearing_sim.numerics.elementary import cosine_sine, exponential, logarithm, ninth_root
+from bearing_sim.numerics.linear_algebra import ARROW, factor_shifted, new_arrow, solve_factored
+from bearing_sim.numerics.simd import LANES, floor, larger, load, magnitude, smaller, spread, square_root, store, total, where_positive
+from bearing_sim.physics.contact import CONTACT, line_contact_stiffness, line_penetration
+from bearing_sim.physics.drag import churning_force, cylinder_torque, end_face_torque
+from bearing_sim.physics.land import land_torque
+from bearing_sim.physics.load_balance import LOAD, balance_ring, squeezed_roller
+from bearing_sim.physics.raceway import TABLE_INTERVALS, contour_at, tabulated
+from bearing_sim.physics.rating_life import load_rating, rating_life_revolutions, ring_ratings
+from bearing_sim.physics.traction import traction
+from bearing_sim.scene.bearing import OuterRaceway
+from bearing_sim.scene.contour import outer_contour
 
 STIFFNESS = line_contact_stiffness(7e-3, 2.06e11, 0.3)
 
@@ -142,7 +142,7 @@ def test_traction_is_odd_bounded_and_smooth_in_the_sliding_speed(slide, rolling,
     ahead, back = traction_coefficient(slide, load, rolling), traction_coefficient(-slide, load, rolling)
     assert back[CONTACT.force] == pytest.approx(-ahead[CONTACT.force], rel=1e-12, abs=1e-12)
     assert abs(ahead[CONTACT.force]) <= 0.5 * load
-    assert np.isfinite(ahead[[CONTACT.force, CONTACT.by_sliding, CONTACT.by_rolling]]).all()
+    assert np.isfinite(ahead[[CONTACT.force, CONTACT.d_sliding, CONTACT.d_rolling]]).all()
 
 
 def test_traction_slopes_are_finite_differences():
@@ -150,8 +150,8 @@ def test_traction_slopes_are_finite_differences():
         return traction_coefficient(sliding / rolling, 600.0, rolling)[CONTACT.force]
 
     found = traction_coefficient(2.0 / 50.0, 600.0, 50.0)
-    assert found[CONTACT.by_sliding] == pytest.approx((force(2.001, 50) - force(1.999, 50)) / 0.002, rel=1e-5)
-    assert found[CONTACT.by_rolling] == pytest.approx((force(2.0, 50.01) - force(2.0, 49.99)) / 0.02, rel=1e-4)
+    assert found[CONTACT.d_sliding] == pytest.approx((force(2.001, 50) - force(1.999, 50)) / 0.002, rel=1e-5)
+    assert found[CONTACT.d_rolling] == pytest.approx((force(2.0, 50.01) - force(2.0, 49.99)) / 0.02, rel=1e-4)
 
 
 @given(st.floats(-1e-4, 3e-4), st.floats(0.0, 2000.0))

@@ -6,12 +6,13 @@ import math
 import numpy as np
 import pytest
 
-from bearing_sim.kernels.contact import EXPONENT
-from bearing_sim.kernels.lamina import ROLLER_ROW, new_slices, sliced_contact
-from bearing_sim.levels import slip
-from bearing_sim.levels.slice_balance import balance, roller_tilts
-from bearing_sim.params import pack
-from bearing_sim.scene_file import load_scene
+from bearing_sim.levels.common.slice_balance import balance, roller_tilts
+from bearing_sim.levels.slip import state as slip_state
+from bearing_sim.levels.slip.forces import balance_loads
+from bearing_sim.model.params import pack
+from bearing_sim.physics.contact import EXPONENT
+from bearing_sim.physics.lamina import ROLLER_ROW, new_slices, sliced_contact
+from bearing_sim.scene.loader import load_scene
 
 AT_REST = (0.0, 0.0)
 
@@ -93,8 +94,8 @@ def test_slopes_of_a_sliced_contact_are_its_derivatives():
 def test_without_crown_and_moment_it_is_the_balance_of_level_slip():
     params = deng()
     slices = balance(params, 0.3, 2000.0, (700.0, 300.0))
-    work = slip.new_work(params)
-    assert slip.balance_loads(0.3, 2000.0, 700.0, 300.0, params, work)
+    work = slip_state.new_work(params)
+    assert balance_loads(0.3, 2000.0, 700.0, 300.0, params, work)
     # that one uses a centring spring and interpolates: 1e-6 of the load
     np.testing.assert_allclose(loads(slices), (work.loads[8], work.loads[9]), atol=2e-3)
     np.testing.assert_allclose(slices.ring[:2], work.ring, atol=2e-10)
@@ -126,7 +127,7 @@ def test_slices_carry_load_moment_and_centrifugal_force():
     params = deng("bearing.roller.crown=iso_log")
     slices = balance(params, 0.4, 2100.0, (800.0, -200.0), (0.3, 0.5))
     np.testing.assert_allclose(slices.reaction, (800.0, -200.0, 0.3, 0.5), rtol=1e-6)
-    x = slices.place * slices.half_length
+    x = slices.position * slices.half_length
     cosine, sine = slices.roller[ROLLER_ROW.cosine], slices.roller[ROLLER_ROW.sine]
     assert slices.inner.sum(axis=1) @ cosine == pytest.approx(800.0, rel=1e-6)
     assert (slices.inner @ x) @ cosine == pytest.approx(0.5, rel=1e-6)

@@ -14,10 +14,10 @@ import yaml
 
 pytest.importorskip("rclpy", reason="the launch files take their arguments from the node's parameters, which need rclpy of ROS 2")
 
+from bearing_sim.recording.priority import in_idle_time  # noqa: E402
 from bearing_sim.ros.parameters import DECLARATIONS  # noqa: E402
 from bearing_sim.ros.player import command as player_command  # noqa: E402
-from bearing_sim.scene_file import load_scene  # noqa: E402
-from bearing_sim.sinks.priority import in_idle_time  # noqa: E402
+from bearing_sim.scene.loader import load_scene  # noqa: E402
 
 ROOT = Path(__file__).resolve().parent.parent
 FILES = sorted((ROOT / "launch_scripts").glob("*.launch.py"))
@@ -233,7 +233,7 @@ def test_a_fleets_default_bearings_are_bundled_scenes_without_recordings_and_vie
 
 @pytest.mark.parametrize(
     ("bearings", "reason"),
-    [("", "is empty"), ("front", "not NAME=SCENE"), ("front=", "not NAME=SCENE"), ("2nd=a", "not NAME=SCENE"), ("a=x a=y", "stands twice")],
+    [("", "is empty"), ("front", "not NAME=SCENE"), ("front=", "not NAME=SCENE"), ("2nd=a", "not NAME=SCENE"), ("a=x a=y", "is given twice")],
 )
 def test_bearings_that_cannot_be_a_fleet_are_refused_with_the_reason(launched, bearings, reason):
     with pytest.raises(RuntimeError, match=reason):

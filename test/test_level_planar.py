@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from bearing_sim import Inputs, Simulation, load_scene
-from bearing_sim.kernels.lanes import LANES
-from bearing_sim.levels import planar, planar_rollers
-from bearing_sim.levels.planar_algebra import BLOCK, BORDER, LOCAL
-from bearing_sim.levels.planar_state import ROLLERS
+from bearing_sim.levels.planar import model as planar
+from bearing_sim.levels.planar.forces import equations
+from bearing_sim.levels.planar.state import BLOCK, BORDER, LOCAL, ROLLERS
+from bearing_sim.numerics.simd import LANES
 
 # Settings of the independent calculation; its pockets had no friction.
 INDEPENDENT = [
@@ -43,7 +43,7 @@ def rough_state(run):
 
 def dense_jacobian(run, state):
     model, work, rate = run._model(run.inputs, 1.0), run._work, np.zeros_like(state)
-    planar_rollers.equations(0.0, state, model, work, rate, True)
+    equations(0.0, state, model, work, rate, True)
     size, border = state.size, 2 * BORDER
     matrix = np.zeros((size, size))
     matrix[:BORDER, BORDER:border] = np.eye(BORDER)
@@ -51,7 +51,7 @@ def dense_jacobian(run, state):
     count = run._params.rollers.count
     for j in range(count):
         own = ROLLERS + j + count * np.arange(BLOCK)
-        slopes = work.slopes[j // LANES, :, j % LANES].reshape(-1, LOCAL)
+        slopes = work.jacobian[j // LANES, :, j % LANES].reshape(-1, LOCAL)
         matrix[own[:2], own[2:4]] = 1.0
         matrix[own[2:, None], own] = slopes[:3, :BLOCK]
         matrix[own[2:], :border] += slopes[:3, BLOCK:]
@@ -68,8 +68,8 @@ def differences(run, state):
         above, below, up, down = state.copy(), state.copy(), np.zeros(size), np.zeros(size)
         above[i] += step
         below[i] -= step
-        planar_rollers.equations(0.0, above, model, work, up, False)
-        planar_rollers.equations(0.0, below, model, work, down, False)
+        equations(0.0, above, model, work, up, False)
+        equations(0.0, below, model, work, down, False)
         matrix[:, i] = (up - down) / (2 * step)
     return matrix
 

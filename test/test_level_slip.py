@@ -8,11 +8,15 @@ import pytest
 from reference_slip import Reference
 
 from bearing_sim import Inputs, Simulation, load_scene
-from bearing_sim.kernels.load_balance import LOAD
-from bearing_sim.levels import slip
+from bearing_sim.levels.slip import model as slip
+from bearing_sim.levels.slip import state as slip_state
+from bearing_sim.levels.slip.forces import balance_loads
+from bearing_sim.levels.slip.methods import advance_rosenbrock2
+from bearing_sim.physics.load_balance import LOAD
+from bearing_sim.scene.scene import tolerance_overrides
 from bearing_sim.simulation import IntegrationError, scene_inputs
 
-TIGHT = ["integration.relative_tolerance=1e-7", "integration.maximum_step=1us"]
+TIGHT = [*tolerance_overrides(1e-5), "integration.maximum_step=1us"]
 
 
 def simulation(*overrides, inputs=None):
@@ -77,13 +81,13 @@ def test_jacobian_is_that_of_finite_differences_where_loads_do_not_move():
         return (up - down) / (2 * step)
 
     for j in (0, 7, 13):
-        column = difference(slip.SPIN + j, 1e-2)
-        assert column[slip.SPIN + j] == pytest.approx(rows[0, j], rel=1e-5)
-        assert column[slip.OMEGA] == pytest.approx(rows[2, j], rel=1e-5)
-    by_speed = difference(slip.OMEGA, 1e-2)
-    assert by_speed[slip.THETA] == pytest.approx(border[0])
+        column = difference(slip_state.SPIN + j, 1e-2)
+        assert column[slip_state.SPIN + j] == pytest.approx(rows[0, j], rel=1e-5)
+        assert column[slip_state.OMEGA] == pytest.approx(rows[2, j], rel=1e-5)
+    by_speed = difference(slip_state.OMEGA, 1e-2)
+    assert by_speed[slip_state.THETA] == pytest.approx(border[0])
     # The cage speed also moves the loads, by the centrifugal force, which the Jacobian leaves out.
-    assert by_speed[slip.OMEGA] == pytest.approx(border[1], rel=0.2)
+    assert by_speed[slip_state.OMEGA] == pytest.approx(border[1], rel=0.2)
 
 
 def test_leaning_normal_forces_are_the_slope_of_the_elastic_energy():
@@ -93,18 +97,18 @@ def test_leaning_normal_forces_are_the_slope_of_the_elastic_energy():
     stiffness = run._params.raceways.stiffness
 
     def energy(angle):
-        assert slip.balance_loads(angle, 0.0, load_y, load_z, run._params, run._work)
+        assert balance_loads(angle, 0.0, load_y, load_z, run._params, run._work)
         loads, ring = run._work.loads, run._work.ring
         penetrations = np.concatenate([(loads[LOAD.inner] / stiffness) ** 0.9, (loads[LOAD.outer] / stiffness) ** 0.9])
         return 9 / 19 * stiffness * np.sum(penetrations ** (19 / 9)) - load_y * ring[0] - load_z * ring[1]
 
     state, rate = run._state.copy(), np.zeros_like(run._state)
-    state[slip.THETA] = angle = 0.13
+    state[slip_state.THETA] = angle = 0.13
     slope = (energy(angle + 1e-5) - energy(angle - 1e-5)) / 2e-5
     assert slip.rhs(0.0, state, run._model(run.inputs, 1.0), run._work, rate)
     inertia = run._params.cage.inertia + run._params.rollers.mass * np.sum(run._work.loads[LOAD.radius] ** 2)
     assert abs(slope) > 0.01
-    assert rate[slip.OMEGA] * inertia == pytest.approx(-slope, rel=1e-3)
+    assert rate[slip_state.OMEGA] * inertia == pytest.approx(-slope, rel=1e-3)
 
 
 def test_reversed_rotation_mirrors_slip_and_loads():
@@ -181,10 +185,10 @@ def test_error_falls_with_the_tolerance():
     times = np.linspace(0.5e-3, 4e-3, 8)
     best = slips_at(simulation(*TIGHT), times)
 
-    def error(tolerance):
-        return np.sqrt(np.mean((slips_at(simulation(f"integration.relative_tolerance={tolerance}"), times) - best) ** 2))
+    def error(tolerances):
+        return np.sqrt(np.mean((slips_at(simulation(*tolerance_overrides(tolerances)), times) - best) ** 2))
 
-    errors = [error(tolerance) for tolerance in (1e-4, 1e-5, 1e-6)]
+    errors = [error(tolerances) for tolerances in (3e-3, 3e-4, 3e-5)]
     assert errors[1] < errors[0] / 4 and errors[2] < errors[1] / 4
 
 
@@ -223,7 +227,7 @@ def test_one_signature_serves_every_run():
     for rollers in (6, 18, 20):
         run = simulation(f"bearing.roller.count={rollers}", "operating.shaft_speed=9000")
         run.advance(1, Inputs(5000, 1, 2, 390), samples=2) if rollers == 6 else run.advance(1e-3)
-    assert len(slip.advance.signatures) == 1
+    assert len(advance_rosenbrock2.signatures) == 1
 
 
 def test_slip_comes_nearer_to_planar_when_told_of_an_eccentric_cage_and_of_pockets_that_act_back():

@@ -7,10 +7,9 @@ import numpy as np
 import pytest
 
 from bearing_sim import Inputs, SceneError, Simulation, load_scene
-from bearing_sim.kernels.lanes import by_roller as by_lane
-from bearing_sim.levels import spatial
-from bearing_sim.levels.spatial_algebra import BLOCK, BORDER
-from bearing_sim.levels.spatial_slices import SLICED
+from bearing_sim.levels.spatial import model as spatial
+from bearing_sim.levels.spatial.state import BLOCK, BORDER, SLICED
+from bearing_sim.numerics.simd import by_roller as by_lane
 
 Z = 18
 FIXED = "integration.fixed_step=20 us"
@@ -258,6 +257,6 @@ def test_a_held_ring_is_inclined_from_the_start_even_where_no_balance_is_found(m
     def lost(*arguments):
         raise ArithmeticError
 
-    monkeypatch.setattr("bearing_sim.levels.spatial_start.balance", lost)
+    monkeypatch.setattr("bearing_sim.levels.spatial.model.balance", lost)
     run = Simulation(load_scene("deng2017_table1", ["level=spatial", "operating.misalignment=1 mrad", "operating.misalignment_angle=90 deg"]))
     assert run.sample["ring_tilt_z"] == pytest.approx(1e-3)

@@ -7,16 +7,16 @@ import numpy as np
 import pytest
 
 from bearing_sim import Inputs, SceneError, Simulation, load_scene
-from bearing_sim.kernels.cyclic import ALPHA_0, ALPHA_1, ALPHA_2, ALPHA_3, solve_cyclic
-from bearing_sim.levels import slip
-from bearing_sim.levels.inputs import Drive
-from bearing_sim.levels.slip import Model
-from bearing_sim.levels.steady_orbit import new_orbit
-from bearing_sim.levels.steady_point import ANSWER, SETTLED, STOPPED, solve_point
-from bearing_sim.levels.steady_table import empty_table
-from bearing_sim.params import lubricate, pack
+from bearing_sim.levels.common.model import DEFAULT_TOLERANCES, Drive, Model
+from bearing_sim.levels.slip import state as slip_state
+from bearing_sim.levels.slip.forces import balance_loads
+from bearing_sim.levels.steady.operating_point import ANSWER, SETTLED, STOPPED, new_orbit, solve_point
+from bearing_sim.levels.steady.table import empty_table
+from bearing_sim.levels.steady.table_builder import solve_scene
+from bearing_sim.model.params import lubricate, pack
+from bearing_sim.numerics.linear_algebra import ALPHA_0, ALPHA_1, ALPHA_2, ALPHA_3, solve_cyclic
+from bearing_sim.scene.scene import tolerance_overrides
 from bearing_sim.studies.steady_check import compare, marched, solved
-from bearing_sim.tables.store import solve_scene
 
 RPM = math.pi / 30
 
@@ -39,7 +39,8 @@ def problem(of, rpm=45000.0, load=800.0, kelvin=393.15, angles=11):
     """Model, workspace and orbit of an operating point."""
     params = pack(of)
     drive = Drive(0.0, rpm * RPM, 0.0, load, 0.0, 0.0, 0.0)
-    return Model(params, lubricate(of.lubricant, params, kelvin), drive, 1e-2), slip.new_work(params), new_orbit(params.rollers.count, angles)
+    model = Model(params, lubricate(of.lubricant, params, kelvin), drive, DEFAULT_TOLERANCES)
+    return model, slip_state.new_work(params), new_orbit(params.rollers.count, angles)
 
 
 def test_cyclic_differences_are_solved_as_by_a_dense_matrix():
@@ -152,11 +153,11 @@ def test_oil_at_frost_whose_spins_jump_has_an_answer():
 
 
 def test_disturbed_cage_of_level_slip_comes_back_with_the_lag():
-    of = scene("integration.relative_tolerance=1e-4")
+    of = scene(*tolerance_overrides(0.01))
     lag, settled = answer(of).lag, answer(of).cage_slip
     run = Simulation(of)
     run.advance(0.15)
-    run._state[slip.OMEGA] *= 1.004
+    run._state[slip_state.OMEGA] *= 1.004
     run.advance(0.25 * lag)  # the spins are there before
     offs = [run.advance(0.1 * lag, samples=20)["cage_slip"].mean() - settled for _ in range(16)]
     slope = np.polyfit(0.1 * lag * np.arange(16), np.log(-np.array(offs)), 1)[0]
@@ -187,8 +188,8 @@ def test_sample_has_the_loads_of_level_slip_and_no_spins():
     of = scene()
     run = direct()
     sample = run.advance(0.2)[0]
-    params, work = pack(of), slip.new_work(pack(of))
-    assert slip.balance_loads(sample["cage_angle"], sample["cage_speed"], 800.0, 0.0, params, work)
+    params, work = pack(of), slip_state.new_work(pack(of))
+    assert balance_loads(sample["cage_angle"], sample["cage_speed"], 800.0, 0.0, params, work)
     np.testing.assert_allclose(sample["inner_load"], work.loads[8], rtol=1e-5, atol=1e-3)
     for name in ("roller_spin", "roller_rotation", "pocket_force"):
         assert np.isnan(sample[name]).all()

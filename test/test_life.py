@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from bearing_sim import Simulation, load_scene
-from bearing_sim.levels.slice_balance import balance
-from bearing_sim.params import lubricate, pack
-from bearing_sim.rating_life import (
+from bearing_sim.levels.common.slice_balance import balance
+from bearing_sim.model.params import lubricate, pack
+from bearing_sim.physics.rating_life import (
     CLEANLINESS,
     add_slice_powers,
     contamination_factor,
@@ -182,7 +182,7 @@ def test_dirtier_oil_never_has_the_larger_factor_and_a_thicker_film_never_the_sm
 
 
 def test_the_scenes_classes_are_the_tables():
-    from bearing_sim.scene import CLEANLINESS as NAMES
+    from bearing_sim.scene.scene import CLEANLINESS as NAMES
 
     assert set(NAMES.__args__) == {"none", *CLEANLINESS}
 

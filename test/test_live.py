@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from fake_simulation import FakeSimulation
 
-from bearing_sim.events import Event, Level
-from bearing_sim.runtime.cadence import LONGEST_TICK, SHORTEST_LIMIT, cadence, tick_limit
+from bearing_sim.messages.events import Event, Level
+from bearing_sim.monitoring.health import Phase
 from bearing_sim.runtime.live import LiveModel
-from bearing_sim.runtime.runner import Phase
-from bearing_sim.scene_file import load_scene
+from bearing_sim.runtime.pacing import LONGEST_TICK, SHORTEST_LIMIT, tick_limit, tick_schedule
+from bearing_sim.scene.loader import load_scene
 
 START_NS = 1_700_000_000_000_000_000
 
@@ -79,7 +79,7 @@ class Bench:
             time.sleep(0.02)
 
     def codes(self):
-        return {event.code for event in self.live.condition(self.now_ns).events}
+        return {event.kind for event in self.live.condition(self.now_ns).events}
 
 
 @pytest.fixture
@@ -100,10 +100,10 @@ def test_the_model_waits_for_the_first_good_speed_and_says_so(bench):
     one.load()
     one.speed(math.nan)
     one.run(0.1, drive=False)
-    assert one.live.runner.phase is Phase.WAITING
+    assert one.live.solver.phase is Phase.WAITING
     assert {"run.waiting", "input.not_finite"} <= one.codes()
     one.run(0.2)
-    assert one.live.runner.phase is Phase.RUNNING
+    assert one.live.solver.phase is Phase.RUNNING
     assert "run.waiting" not in one.codes()
 
 
@@ -113,12 +113,12 @@ def test_a_refused_message_is_news_once_shown_for_a_while_with_its_count_and_the
     for _ in range(5):
         one.speed(-1.0)
     one.run(0.1)
-    assert [event.code for event in one.news if event.code.startswith("input.")] == ["input.negative"]
+    assert [event.kind for event in one.news if event.kind.startswith("input.")] == ["input.negative"]
     condition = one.live.condition(one.now_ns)
     assert condition.level is Level.ERROR
     assert "(5 times)" in condition.events[0].text
     assert condition.values["messages refused"] == condition.values["refused: input.negative"] == 5
-    assert one.live.runner.newest["shaft_speed"] == 100.0
+    assert one.live.solver.newest["shaft_speed"] == 100.0
     one.run(2.2)
     assert "input.negative" not in one.codes(), "it is over"
 
@@ -128,7 +128,7 @@ def test_a_stale_input_is_news_when_it_starts_and_gone_when_messages_come_again(
     one.run(0.1)
     one.run(0.8, drive=False)
     assert "input.stale" in one.codes()
-    assert sum(event.code == "input.stale" for event in one.news) == 2, "once for speed, once for load"
+    assert sum(event.kind == "input.stale" for event in one.news) == 2, "once for speed, once for load"
     one.run(0.1)
     assert "input.stale" not in one.codes()
 
@@ -136,8 +136,8 @@ def test_a_stale_input_is_news_when_it_starts_and_gone_when_messages_come_again(
 def test_sinks_get_every_sample_once_in_order_and_recorders_the_inputs_too(bench):
     one = bench(sample_rate=1 / LONGEST_TICK)
     sink, recorder = ListSink(), ListRecorder()
-    one.live.attach("view", sink)
-    one.live.attach("record", recorder)
+    one.live.sinks.attach("view", sink)
+    one.live.sinks.attach("record", recorder)
     one.run(0.5)
     assert one.live.close()
     times = [t for block in sink.blocks for t in block["time"]]
@@ -151,23 +151,23 @@ def test_sinks_get_every_sample_once_in_order_and_recorders_the_inputs_too(bench
 def test_a_sink_that_cannot_write_is_given_up_and_named_and_the_rest_goes_on(bench):
     one = bench()
     broken, good = ListSink(fails=True), ListSink()
-    one.live.attach("record", broken)
-    one.live.attach("view", good)
+    one.live.sinks.attach("record", broken)
+    one.live.sinks.attach("view", good)
     one.run(0.3)
     condition = one.live.condition(one.now_ns)
     assert condition.level is Level.ERROR
-    assert any("record failed" in event.text and "no space left" in event.text for event in condition.events)
-    assert sum(event.code.startswith("sink.failed") for event in one.news) == 1
+    assert any(event.subject == "record" and "no space left" in event.text for event in condition.events)
+    assert sum(event.kind.startswith("sink.failed") for event in one.news) == 1
     assert len(good.blocks) > 10 and broken.closed == 1
-    one.live.attach("record", ListSink())
+    one.live.sinks.attach("record", ListSink())
     assert not any(code.startswith("sink.failed") for code in one.codes()), "a new recording ends the trouble"
 
 
 def test_two_sinks_of_a_name_are_refused_and_an_absent_one_detaches_to_nothing(bench):
     one = bench()
-    one.live.attach("record", ListSink())
+    one.live.sinks.attach("record", ListSink())
     with pytest.raises(ValueError, match="record"):
-        one.live.attach("record", ListSink())
+        one.live.sinks.attach("record", ListSink())
     assert one.live.detach("other") is None
 
 
@@ -180,7 +180,7 @@ def test_a_solver_that_fails_is_an_error_as_long_as_it_fails(bench):
     one.simulation.fails_at = lambda now, inputs: False
     one.run(2.3)
     assert "solver.failed" not in one.codes()
-    assert {"solver.failed", "solver.recovered"} <= {event.code for event in one.news}
+    assert {"solver.failed", "solver.recovered"} <= {event.kind for event in one.news}
 
 
 def test_time_lost_to_a_slow_solver_is_told_with_both_factors(bench):
@@ -209,15 +209,15 @@ def test_a_slip_that_flickers_around_its_limit_is_told_once_and_its_rise_to_an_e
     one.simulation._observe = flickering
     one.news.clear()
     one.run(2.0)
-    told = [event.level for event in one.news if event.code == "bearing.slip"]
+    told = [event.level for event in one.news if event.kind == "bearing.slip"]
     assert told == [Level.WARN, Level.ERROR]
 
 
 def test_the_worst_event_comes_first(bench):
     one = bench()
-    one.live.health.note(Event(0.0, Level.WARN, "a.warning", "w"))
-    one.live.health.note(Event(0.0, Level.ERROR, "an.error", "e"))
-    one.live.health.note(Event(0.0, Level.OK, "fine", "f"))
+    one.live.health.note(Event(0.0, Level.WARN, "a.warning", "", "w"))
+    one.live.health.note(Event(0.0, Level.ERROR, "an.error", "", "e"))
+    one.live.health.note(Event(0.0, Level.OK, "fine", "", "f"))
     levels = [event.level for event in one.live.condition(START_NS).events]
     assert levels == sorted(levels, reverse=True) and levels[0] is Level.ERROR
 
@@ -225,21 +225,21 @@ def test_the_worst_event_comes_first(bench):
 @pytest.mark.parametrize("rate", [0.5, 1.0, 30.0, 99.0, 100.0, 250.0, 1000.0, 4321.0])
 @pytest.mark.parametrize("publish_rate", [1.0, 50.0, 60.0, 100.0, 200.0, math.inf])
 def test_ticks_stay_short_and_make_the_sample_rate_exactly(rate, publish_rate):
-    beat = cadence(rate, publish_rate)
+    beat = tick_schedule(rate, publish_rate)
     assert 0.5 * SHORTEST_LIMIT < beat.tick <= tick_limit(publish_rate) * (1 + 1e-6)
     assert beat.samples / (beat.tick * beat.every) == pytest.approx(rate, rel=1e-12)
 
 
 def test_ticks_are_half_a_period_of_the_outputs_between_5_and_10_ms_where_outputs_come_evenly_so():
     assert [tick_limit(rate) for rate in (1.0, 50.0, 62.5, 100.0, 200.0)] == pytest.approx([0.010, 0.010, 0.008, 0.005, 0.005])
-    assert (cadence(100.0, 50.0), cadence(100.0, 100.0), cadence(1000.0, 62.5)) == ((0.01, 1, 1), (0.005, 1, 2), (0.008, 8, 1))
-    assert cadence(100.0, 40.0).tick == 0.005, "25 ms are no whole number of 10 ms"
+    assert (tick_schedule(100.0, 50.0), tick_schedule(100.0, 100.0), tick_schedule(1000.0, 62.5)) == ((0.01, 1, 1), (0.005, 1, 2), (0.008, 8, 1))
+    assert tick_schedule(100.0, 40.0).tick == 0.005, "25 ms are no whole number of 10 ms"
 
 
 def test_ticks_follow_the_publish_rate_and_sinks_get_their_samples_as_before(bench):
     one = bench(publish_rate=100.0)
     sink = ListSink()
-    one.live.attach("view", sink)
+    one.live.sinks.attach("view", sink)
     ticks = []
     for rate in (100.0, 50.0, 100.0):
         one.live.publish_at(rate)
@@ -250,7 +250,7 @@ def test_ticks_follow_the_publish_rate_and_sinks_get_their_samples_as_before(ben
     assert one.live.close()
     assert ticks == pytest.approx([SHORTEST_LIMIT, LONGEST_TICK, SHORTEST_LIMIT], rel=0.1)
     times = np.concatenate([block["time"] for block in sink.blocks])
-    assert np.diff(times) == pytest.approx(0.01, abs=1e-6) or one.live.runner.pace.lost
+    assert np.diff(times) == pytest.approx(0.01, abs=1e-6) or one.live.solver.pace.lost
 
 
 def test_a_message_that_waited_for_its_thread_is_no_jump_of_the_clock(bench):
@@ -261,24 +261,24 @@ def test_a_message_that_waited_for_its_thread_is_no_jump_of_the_clock(bench):
     one = bench(receiver=receiver)
     one.live.offer("shaft_speed", (100.0,), None, receiver() - 5 * 10**9)
     one.run(0.1)
-    assert not [event for event in one.news if event.code == "clock.jumped"] and one.live.start_ns == START_NS
+    assert not [event for event in one.news if event.kind == "clock.jumped"] and one.live.start_ns == START_NS
 
 
 def test_a_low_sample_rate_thins_what_sinks_get_not_what_the_model_does(bench):
     one = bench(sample_rate=10.0, publish_rate=100.0)
     sink = ListSink()
-    one.live.attach("view", sink)
+    one.live.sinks.attach("view", sink)
     one.run(1.0)
     assert one.live.close()
     assert len(one.simulation.calls) > 50
-    assert len(sink.blocks) == 1 + len(one.simulation.calls) // cadence(10.0, 100.0).every
+    assert len(sink.blocks) == 1 + len(one.simulation.calls) // tick_schedule(10.0, 100.0).every
     steps = sorted(b["time"][0] - a["time"][0] for a, b in zip(sink.blocks, sink.blocks[1:]))
     assert steps[len(steps) // 2] == pytest.approx(0.1)
 
 
 def test_a_sample_that_is_due_is_told_at_once_so_often_as_asked_for_and_never_while_paused(bench):
     told = []
-    one = bench(publish_rate=40.0, due=lambda: told.append(float(one.live.runner.newest["time"])))
+    one = bench(publish_rate=40.0, due=lambda: told.append(float(one.live.solver.newest["time"])))
     one.run(1.0)
     assert np.median(np.diff(told)) == pytest.approx(0.025, abs=1e-6)
     one.live.publish_at(100.0)
@@ -289,11 +289,11 @@ def test_a_sample_that_is_due_is_told_at_once_so_often_as_asked_for_and_never_wh
     seen = len(told)
     one.run(0.5)
     assert np.median(np.diff(told[seen:])) == pytest.approx(SHORTEST_LIMIT, abs=1e-6), "there is no more than every tick"
-    one.live.runner.pause()
+    one.live.solver.pause()
     one.run(0.1)
     seen = len(told)
     one.run(0.3)
     assert len(told) == seen
-    one.live.runner.pause(False)
+    one.live.solver.pause(False)
     one.run(0.3)
     assert len(told) > seen

@@ -9,8 +9,8 @@ import pytest
 from fake_simulation import FakeSimulation
 from test_live import Bench, ListRecorder
 
-from bearing_sim.events import Level
-from bearing_sim.scene_file import load_scene
+from bearing_sim.messages.events import Level
+from bearing_sim.scene.loader import load_scene
 
 # batches of 20 ms and a second of learning: the test's time is real
 QUICK = ["thresholds.residual={batch: 20 ms, learning: 1 s, settling: 50 ms, memory: 500 ms, false_alarm_time: 1 h, tolerance: 0.1 %}"]
@@ -53,14 +53,14 @@ def test_a_cage_that_is_not_measured_leaves_no_trace(bench):
 
 def test_a_cage_that_slips_more_than_predicted_is_told_in_the_verdict_and_as_news_once(bench):
     recorder = ListRecorder()
-    bench.live.attach("record", recorder)
+    bench.live.sinks.attach("record", recorder)
     bench.measure(2.0, slip=0.015)
     assert bench.verdict == "as predicted"
     assert bench.live.condition(bench.now_ns).values["residual slip, usual mean [points]"] == pytest.approx(0.5, abs=0.1)
-    assert not [event for event in bench.news if event.code == "residual.shift"]
+    assert not [event for event in bench.news if event.kind == "residual.shift"]
     bench.measure(1.5, slip=0.03)
     assert bench.verdict == "slips more than predicted"
-    (event,) = [event for event in bench.news if event.code == "residual.shift"]
+    (event,) = [event for event in bench.news if event.kind == "residual.shift"]
     assert event.level is Level.WARN and event in recorder.events
     assert recorder.measurements[-1][0] == pytest.approx(IDEAL * 0.97, rel=0.01) and recorder.measurements[-1][1] == pytest.approx(0.02, abs=0.01)
 
@@ -68,21 +68,21 @@ def test_a_cage_that_slips_more_than_predicted_is_told_in_the_verdict_and_as_new
 def test_a_measurement_that_cannot_be_is_refused_as_an_input_is_and_one_that_stops_is_stale(bench):
     bench.measure(0.3, slip=0.01)
     event = bench.live.offer("cage_speed_measured", (math.nan,), None, bench.now_ns)
-    assert event.code == "input.not_finite" and event.text.startswith("cage_speed_measured") and "rad/s" in event.text
-    assert bench.live.offer("cage_speed_measured", (-1.0,), None, bench.now_ns).code == "input.negative"
+    assert event.kind == "input.not_finite" and event.text.startswith("cage_speed_measured") and "rad/s" in event.text
+    assert bench.live.offer("cage_speed_measured", (-1.0,), None, bench.now_ns).kind == "input.negative"
     bench.run(0.8)
-    assert any(event.code == "input.stale" and "cage_speed_measured" in event.text for event in bench.live.condition(bench.now_ns).events)
+    assert any(event.kind == "input.stale" and "cage_speed_measured" in event.text for event in bench.live.condition(bench.now_ns).events)
 
 
 def test_a_measurement_alone_starts_no_model(bench):
     bench.live.offer("cage_speed_measured", (40.0,), None, bench.now_ns)
     bench.run(0.2, drive=False)
-    assert bench.live.runner.newest is None and bench.live.condition(bench.now_ns).level is Level.OK
+    assert bench.live.solver.newest is None and bench.live.condition(bench.now_ns).level is Level.OK
 
 
 def test_after_a_reset_the_cage_is_not_judged_until_the_prediction_has_settled(bench):
     bench.measure(0.5, slip=0.01)
-    assert bench.live.runner.reset()
+    assert bench.live.solver.reset()
     bench.live.residual.adjust(load_scene("deng2017_table1", [*QUICK, "thresholds.residual.settling=10 s"]).thresholds.residual, 20.0)
     bench.measure(0.3, slip=0.01)
     assert bench.verdict.startswith("not judged")
@@ -118,9 +118,9 @@ def test_a_threshold_changed_in_mid_run_holds_and_a_reset_forgets_what_was_raise
     assert "bearing.slip" not in bench.codes()
     bench.live.adjust(load_scene("deng2017_table1", [*QUICK, "thresholds.slip_warning=0.5 %"]).thresholds)
     bench.run(0.8)
-    (told,) = [event for event in bench.live.condition(bench.now_ns).events if event.code == "bearing.slip"]
+    (told,) = [event for event in bench.live.condition(bench.now_ns).events if event.kind == "bearing.slip"]
     assert told.text == "cage slip: 1 % has reached 0.5 %"
-    assert bench.live.runner.reset()
+    assert bench.live.solver.reset()
     bench.run(0.2)
     assert "bearing.slip" not in bench.codes(), "the hold time has begun anew"
     bench.run(0.6)

@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner
 
 from bearing_sim import Simulation, load_scene
-from bearing_sim.cli import main
+from bearing_sim.cli.main import main
 from bearing_sim.studies.statics import statics
 
 SPATIAL = ("level=spatial", "bearing.roller.crown=iso_log")

@@ -10,8 +10,8 @@ from click.testing import CliRunner
 from scipy.integrate import solve_ivp
 
 from bearing_sim import load_scene
-from bearing_sim.cli import main
-from bearing_sim.contour import outer_contour
+from bearing_sim.cli.main import main
+from bearing_sim.scene.contour import outer_contour
 from bearing_sim.studies.machining import Pressing, RingSection, deflection, machine, pressure_harmonics
 
 SECTION = RingSection(mean_radius=35.8e-3, width=12e-3, thickness=3.4e-3, modulus=2.06e11)
@@ -120,4 +120,4 @@ def test_what_cannot_be_machined_says_why(arguments, expected):
 
 def test_a_swallowed_lobe_is_told():
     ran = command("--arc-turn", "12 deg")
-    assert ran.exit_code == 0 and "swallowed a lobe" in ran.output
+    assert ran.exit_code == 0 and "removed a lobe" in ran.output

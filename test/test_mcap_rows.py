@@ -11,11 +11,11 @@ from mcap.reader import make_reader
 from mcap.records import Chunk, MessageIndex
 from mcap.stream_reader import StreamReader
 
-from bearing_sim.sample import OBSERVABLES, new_block
-from bearing_sim.scene_file import load_scene
-from bearing_sim.sinks.mcap_file import McapFile
-from bearing_sim.sinks.mcap_rows import RowLayout
-from bearing_sim.topics import INPUTS, RECORDED, Topic, outputs, recorded
+from bearing_sim.messages.topics import INPUTS, RECORDED, outputs, recorded
+from bearing_sim.model.sample import OBSERVABLES, new_block
+from bearing_sim.recording.mcap_writer import SampleRows
+from bearing_sim.recording.writer import McapFile
+from bearing_sim.scene.loader import load_scene
 
 START = 1_700_000_000_000_000_000
 LEVELS = ("slip", "spatial")
@@ -52,7 +52,7 @@ def test_rows_make_the_same_messages_as_one_by_one(tmp_path, level):
             for topic in topics:
                 single.write(f"/{topic.name}", topic.ros_type, time_ns, topic.message(time_ns, sample))
     with McapFile(tmp_path / "rows.mcap") as rows:
-        layout = RowLayout(topics, scene.bearing.roller.count)
+        layout = SampleRows(topics, scene.bearing.roller.count)
         for part in np.split(np.arange(len(block)), [1, 2, 40, 300]):
             rows.write_rows(layout, block[part], times[part])
     expected, wanted = contents(tmp_path / "one_by_one.mcap")
@@ -84,7 +84,7 @@ def test_what_is_only_recorded_is_not_published():
 
 def test_rows_and_single_messages_mix_in_one_file(tmp_path):
     scene = load_scene("deng2017_table1")
-    layout = RowLayout(tuple(recorded(scene).values()), scene.bearing.roller.count)
+    layout = SampleRows(tuple(recorded(scene).values()), scene.bearing.roller.count)
     block, times = random_block(3, scene.bearing.roller.count), np.uint64(START) + np.arange(3, dtype=np.uint64)
     with McapFile(tmp_path / "run.mcap") as recording:
         for k in range(3):
@@ -98,7 +98,7 @@ def test_rows_and_single_messages_mix_in_one_file(tmp_path):
 def test_the_index_of_a_chunk_says_where_its_messages_stand(tmp_path):
     """Readers that seek go by it; those that read chunk by chunk would not notice."""
     scene = load_scene("deng2017_table1")
-    layout = RowLayout(tuple(recorded(scene).values()), scene.bearing.roller.count)
+    layout = SampleRows(tuple(recorded(scene).values()), scene.bearing.roller.count)
     block, times = random_block(40, scene.bearing.roller.count), np.uint64(START) + np.arange(40, dtype=np.uint64)
     with McapFile(tmp_path / "run.mcap") as recording:
         for part in np.split(np.arange(40), [1, 3, 20]):
@@ -115,9 +115,3 @@ def test_the_index_of_a_chunk_says_where_its_messages_stand(tmp_path):
                     assert (opcode, channel, logged) == (Opcode.MESSAGE, record.channel_id, log_time)
                     entries += 1
     assert entries == 40 * len(layout.topics) + 4
-
-
-def test_a_topic_that_changes_its_numbers_is_refused():
-    kelvin = Topic("celsius", "std_msgs/msg/Float64", "", lambda stamp_ns, sample: {"data": float(sample["oil_temperature"]) - 273.15})
-    with pytest.raises(ValueError, match="celsius"):
-        RowLayout([kelvin], 6)

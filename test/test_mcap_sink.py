@@ -19,15 +19,14 @@ from mcap_ros2.decoder import DecoderFactory
 from rosbags.rosbag2 import Reader
 from rosbags.typesys import Stores, get_typestore
 
-from bearing_sim import provenance
-from bearing_sim.events import Event, Level
-from bearing_sim.sample import new_block
-from bearing_sim.scene_file import load_scene, scene_from_yaml
+from bearing_sim.messages.events import Event, Level
+from bearing_sim.messages.ros_types import load_message_types
+from bearing_sim.messages.topics import INPUTS, OUTPUTS, Origin, recorded
+from bearing_sim.model.sample import new_block
+from bearing_sim.recording import provenance
+from bearing_sim.recording.writer import METADATA, McapFile, McapSink, message_type
+from bearing_sim.scene.loader import load_scene, scene_from_yaml
 from bearing_sim.simulation import Inputs
-from bearing_sim.sinks.mcap_file import McapFile, message_type
-from bearing_sim.sinks.mcap_sink import METADATA, McapSink
-from bearing_sim.sinks.ros_types import load_message_types
-from bearing_sim.topics import ARRAYS, INPUTS, OUTPUTS, RECORDED, Origin, recorded
 
 START = 1_700_000_000_000_000_000
 ROLLERS = 18
@@ -55,7 +54,7 @@ def recording(tmp_path, scene):
         for sample in range(3):
             sink.write_inputs(sample / 10, Inputs(4000.0 + sample, 800.0, -50.0, 393.15))
             sink.write(block[sample : sample + 1])
-        sink.write_event(Event(0.2, Level.WARN, "slip.high", "slip is 6 %, expected below 5 %"))
+        sink.write_event(Event(0.2, Level.WARN, "slip.high", "", "slip is 6 %, expected below 5 %"))
     return sink.path, block
 
 
@@ -188,7 +187,7 @@ def test_a_fault_of_the_disk_reaches_the_writer(tmp_path):
     recording = McapFile(tmp_path / "run.mcap", flush_every=0.01)
     recording.write("/cage_slip", "std_msgs/msg/Float64", 5, {"data": 0.25})
 
-    recording._disk.fault = OSError(28, "No space left on device")
+    recording._file.error = OSError(28, "No space left on device")
     with pytest.raises(OSError, match="No space left"):
         recording.write("/cage_slip", "std_msgs/msg/Float64", 6, {"data": 0.25})
 
@@ -226,48 +225,30 @@ def streamed(path):
 
 WRITER = """
 import sys, time
-from bearing_sim.sample import new_block
-from bearing_sim.scene_file import load_scene
-from bearing_sim.sinks.mcap_sink import McapSink
-sink = McapSink(sys.argv[1], load_scene("deng2017_table1"), time.time_ns())
+from bearing_sim.model.sample import new_block
+from bearing_sim.scene.loader import load_scene
+from bearing_sim.recording.writer import McapSink
+sink = McapSink(sys.argv[1], load_scene("deng2017_table1"), 0, flush_every=1e9)
 block = new_block(1, 18)
-start = time.time_ns()
-while True:
-    block["time"] = (time.time_ns() - sink.start_ns) / 1e9
+for sample in range(150):
+    block["time"] = 0.01 * sample
     sink.write(block)
-    print(time.time_ns(), flush=True)
-    time.sleep(0.01)
+    if sample == 99:
+        sink.flush()
+print("written", flush=True)
+time.sleep(600)
 """
 
 
 @pytest.mark.timeout(60)
-def test_sigkill_loses_at_most_the_last_second(tmp_path):
-    """A child writes wall-clock times at 100 Hz and tells after each write; what it told one second before it died must be in the file."""
+def test_a_killed_writer_leaves_all_that_it_had_flushed(tmp_path):
     child = subprocess.Popen([sys.executable, "-c", WRITER, str(tmp_path / "run.mcap")], stdout=subprocess.PIPE, text=True)
-    told = []
-    while len(told) < 2 or told[-1] - told[0] < 2.2e9:
-        told.append(int(child.stdout.readline()))
+    assert child.stdout.readline() == "written\n"
     os.kill(child.pid, signal.SIGKILL)
-    told += [int(line) for line in child.stdout if line.endswith("\n")]
     child.wait(10)
     recovered = [message.log_time for topic, message in streamed(tmp_path / "run.mcap.active") if topic == "/cage_slip"]
     assert not (tmp_path / "run.mcap").exists()
-    assert recovered == sorted(recovered) and len(recovered) > 50
-    assert told[-1] - recovered[-1] < 1e9
-    assert len(recovered) >= sum(moment <= recovered[-1] for moment in told)
-
-
-@pytest.mark.parametrize("topic", ARRAYS)
-def test_arrays_are_serialised_as_the_general_way_does(topic):
-    one = {**OUTPUTS, **RECORDED}[topic]
-    ros_type = one.ros_type
-    store = get_typestore(Stores.ROS2_JAZZY)
-    for sample in numbered_block(2):
-        message = one.message(START, sample)
-        read = store.deserialize_cdr(message_type(ros_type).serialize(message), ros_type)
-        np.testing.assert_array_equal(read.data, message["data"])
-        assert [(d.label, d.size, d.stride) for d in read.layout.dim] == [tuple(d.values()) for d in message["layout"]["dim"]]
-        assert bytes(store.serialize_cdr(read, ros_type)) == message_type(ros_type).serialize(message)
+    assert recovered[:100] == [10_000_000 * sample for sample in range(100)] and len(recovered) < 150
 
 
 def test_once_types_are_loaded_no_message_of_a_recording_waits_for_one(tmp_path):
@@ -277,5 +258,5 @@ def test_once_types_are_loaded_no_message_of_a_recording_waits_for_one(tmp_path)
         sink.write_inputs(0.0, Inputs(4000.0, 800.0, -50.0, 393.15))
         sink.write_measurement(0.0, 1800.0, 0.01)
         sink.write(numbered_block(1))
-        sink.write_event(Event(0.2, Level.WARN, "slip.high", "slip is 6 %"))
+        sink.write_event(Event(0.2, Level.WARN, "slip.high", "", "slip is 6 %"))
     assert message_type.cache_info().misses == loaded

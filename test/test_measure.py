@@ -14,13 +14,14 @@ import pytest
 
 pytest.importorskip("rclpy", reason="the node needs ROS 2 (pip install 'bearing_sim[ros]', or a ROS installation)")
 
+from node_overhead import _wait_until_running, cost_of  # noqa: E402
 from ros_bench import fresh_domain  # noqa: E402
 
-from bearing_sim.ros.measure import _wait_until_heard, cost_of  # noqa: E402
-from bearing_sim.runtime.threads import name_this_thread  # noqa: E402
+from bearing_sim.runtime.solver import name_this_thread  # noqa: E402
 
 pytestmark = pytest.mark.timeout(240)
 ROOT = Path(__file__).resolve().parents[1]
+NODE_OVERHEAD = str(ROOT / "test/benchmarks/node_overhead.py")
 
 
 def test_the_cost_of_a_thread_is_found_under_its_name():
@@ -44,11 +45,11 @@ def test_the_cost_of_a_thread_is_found_under_its_name():
 
 
 def test_a_node_is_measured_over_dds_and_the_figures_hang_together():
-    words = [sys.executable, "-m", "bearing_sim.ros.measure", "--level", "slip", "--duration", "4", "--rate", "50", "--record", "--json"]
+    words = [sys.executable, NODE_OVERHEAD, "--level", "slip", "--duration", "4", "--rate", "50", "--record", "--json"]
     environment = {**os.environ, "ROS_DOMAIN_ID": str(fresh_domain()), "PYTHONPATH": str(ROOT)}
     found = subprocess.run(words, capture_output=True, text=True, timeout=200, check=True, env=environment)
     (case,) = json.loads(found.stdout)
-    assert (case["level"], case["rate_hz"], case["exit_code"]) == ("slip", 50.0, 0) and case["topics_heard"] == 13
+    assert (case["level"], case["rate_hz"], case["exit_code"]) == ("slip", 50.0, 0) and case["topics_subscribed"] == 13
     assert 0.0 < case["ending_s"] < 10.0 and case["recorded_mb"] > 0.02, "the node has completed its recording"
     assert case["input_rate_hz"] == pytest.approx(48.5), "detuned, so that no one phase between inputs and outputs decides the latency"
     assert case["period_ms"] > 19.0, "no faster than asked for, however busy the machine"
@@ -62,16 +63,16 @@ def test_a_node_is_measured_over_dds_and_the_figures_hang_together():
 
 
 def test_a_topic_that_there_is_not_is_named_with_those_that_there_are():
-    words = [sys.executable, "-m", "bearing_sim.ros.measure", "--listen", "cage_slip,cage_skid", "--duration", "4"]
+    words = [sys.executable, NODE_OVERHEAD, "--listen", "cage_slip,cage_skid", "--duration", "4"]
     environment = {**os.environ, "ROS_DOMAIN_ID": str(fresh_domain()), "PYTHONPATH": str(ROOT)}
     found = subprocess.run(words, capture_output=True, text=True, timeout=200, env=environment)
-    assert found.returncode == 1 and "no output topic 'cage_skid'; there are cage_slip, rating_life," in found.stderr
+    assert found.returncode == 1 and "unknown output topic 'cage_skid'; the topics are cage_slip, rating_life," in found.stderr
     assert "Traceback" not in found.stderr
 
 
 def test_a_node_that_does_not_begin_is_told_in_its_own_words(tmp_path):
-    silent = SimpleNamespace(is_matched=False, heard=[], take=lambda: None)
+    silent = SimpleNamespace(is_matched=False, received=[], take=lambda: None)
     with open(tmp_path / "log", "w+b") as log:
         node = subprocess.Popen([sys.executable, "-c", "raise SystemExit('bearing_node: no such scene')"], stdout=log, stderr=subprocess.STDOUT)
-        with pytest.raises(RuntimeError, match="did not begin; it said:\nbearing_node: no such scene"):
-            _wait_until_heard(silent, node, log)
+        with pytest.raises(RuntimeError, match="did not start; its log:\nbearing_node: no such scene"):
+            _wait_until_running(silent, node, log)

@@ -8,12 +8,12 @@ import pytest
 from click.testing import CliRunner
 
 from bearing_sim import load_scene
-from bearing_sim.cli import main
+from bearing_sim.cli.main import main
 from bearing_sim.studies.misalignment import misalign
 from bearing_sim.studies.slices import by_slices, line
 
 SLOW = ["operating.shaft_speed=5000 rpm", "operating.radial_load=2 kN"]
-QUIET = {"tell": lambda text: None}
+QUIET = {"progress": lambda text: None}
 
 
 @pytest.fixture(scope="module")

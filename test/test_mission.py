@@ -9,11 +9,11 @@ import pytest
 from click.testing import CliRunner
 from mcap.reader import make_reader
 
-from bearing_sim.cli import main
-from bearing_sim.input_course import judge
-from bearing_sim.input_log import read_input_log
-from bearing_sim.mission import DURATION, METADATA, PHASES, mission, phase, write_mission
-from bearing_sim.scene_file import load_scene
+from bearing_sim.cli.main import main
+from bearing_sim.inputs.log import read_input_log
+from bearing_sim.inputs.mission import DURATION, METADATA, PHASES, mission, phase, write_mission
+from bearing_sim.inputs.profile import judge
+from bearing_sim.scene.loader import load_scene
 from bearing_sim.simulation import Inputs
 
 RPM = math.pi / 30

@@ -18,11 +18,11 @@ from ros_bench import GOOD, Client, NodeProcess, fresh_domain  # noqa: E402
 from rosbags.highlevel import AnyReader  # noqa: E402
 from std_srvs.srv import SetBool, Trigger  # noqa: E402
 
-from bearing_sim import topics  # noqa: E402
-from bearing_sim.events import Event  # noqa: E402
-from bearing_sim.recording_reader import Recording  # noqa: E402
+from bearing_sim.messages import topics  # noqa: E402
+from bearing_sim.messages.events import Event  # noqa: E402
+from bearing_sim.recording.reader import Recording  # noqa: E402
 from bearing_sim.runtime.live import governor_of  # noqa: E402
-from bearing_sim.scene_file import load_scene  # noqa: E402
+from bearing_sim.scene.loader import load_scene  # noqa: E402
 from bearing_sim.simulation import Simulation  # noqa: E402
 
 pytestmark = pytest.mark.timeout(180)
@@ -291,8 +291,8 @@ def test_wrong_parameters_and_scenes_end_with_one_clear_message_and_code_2(tmp_p
     blocked = tmp_path / "a_file"
     blocked.write_text("")
     cases = [
-        (["publish_rate:=fast", "input_type:=scaler"], ["2 parameter faults", "publish_rate = 'fast'", "did you mean 'scalar'"]),
-        (["scene:=deng2017_tabel1"], ["no such file, and no bundled scene", "deng2017_table1"]),
+        (["publish_rate:=fast", "input_type:=scaler"], ["2 parameter errors", "publish_rate = 'fast'", "did you mean 'scalar'"]),
+        (["scene:=deng2017_tabel1"], ["no such file or bundled scene", "deng2017_table1"]),
         (["overrides:=['lubricant.temprature=300']"], ["lubricant.temprature", "did you mean 'temperature'"]),
         ([f"record:={blocked}/run.mcap"], ["a_file"]),
     ]
@@ -323,11 +323,11 @@ def test_a_level_that_the_machine_is_too_slow_for_gives_way_and_everybody_is_tol
         process,
         shaft_speed=FAST,
     )
-    assert "governor.change: level spatial holds" in process.text
+    assert "governor.change: level spatial reaches" in process.text
     assert 0.04 < client.received["cage_slip"][-1].data < 0.11  # slip 6.2 %, planar 8.4 %
     assert ended_well(process, signal.SIGTERM)
     items = list(Recording(recording))
-    told = [item.text for item in items if isinstance(item, Event) and item.code == "governor.level"]
+    told = [item.text for item in items if isinstance(item, Event) and item.kind == "governor.level"]
     assert told and "instead of spatial" in told[0]
     levels = np.concatenate([item["level"] for item in items if not isinstance(item, Event)])
     heard = {int(message.data) for message in client.received["level"]}

@@ -16,7 +16,7 @@ pytest.importorskip("rclpy", reason="the node needs ROS 2 (pip install 'bearing_
 from rclpy.qos import qos_profile_sensor_data  # noqa: E402
 from ros_bench import GOOD, Client, NodeProcess, fresh_domain  # noqa: E402
 
-from bearing_sim import topics  # noqa: E402
+from bearing_sim.messages import topics  # noqa: E402
 from bearing_sim.ros.messages import message, message_class  # noqa: E402
 
 pytestmark = pytest.mark.timeout(240)
@@ -72,7 +72,7 @@ def wrench(frame, stamp_ns=None):
         (
             lambda: wrench("map"),
             "input.frame",
-            "radial_load: frame 'map', expected 'bearing' (parameter frame_id), for the force's direction would be another; "
+            "radial_load: frame 'map', expected 'bearing' (parameter frame_id); the direction of the force would be wrong; "
             "message refused, holding (800, 0) N",
         ),
     ],
@@ -113,7 +113,9 @@ def test_a_flood_of_five_thousand_messages_a_second_is_told_with_its_rate_and_th
         client.drive_until(told, "the flood is told", process)
         level, _, text = told()[0]
         assert (
-            level == 1 and text.startswith("shaft_speed: messages come at ") and text.endswith("expected 1 to 120 Hz; values are used as they come")
+            level == 1
+            and text.startswith("shaft_speed: messages arrive at ")
+            and text.endswith("expected 1 to 120 Hz; values are used as they arrive")
         )
         client.drive_until(lambda: len(client.received["cage_slip"]) > seen + 20, "slip comes in spite of it", process)
     finally:
@@ -128,7 +130,7 @@ def _flooding(domain):
     code = f"""
 import time, rclpy
 from rclpy.qos import qos_profile_sensor_data
-from bearing_sim import topics
+from bearing_sim.messages import topics
 from bearing_sim.ros.messages import message, message_class
 from bearing_sim.simulation import Inputs
 rclpy.init(args=[], domain_id={domain})
@@ -164,7 +166,7 @@ def test_two_publishers_of_one_input_are_told_and_worse_where_they_disagree(node
     report, rival = len(client.received["diagnostics"]), Rival(client)
     told = lambda level: [s for s in client.statuses(report) if s[1] == "bearing_node: input.publishers" and s[0] == level]  # noqa: E731
     client.drive_until(lambda: told(1), "two publishers are told", process)
-    assert told(1)[0][2] == "shaft_speed: 2 publishers, expected one; the newest value of any is used"
+    assert told(1)[0][2] == "shaft_speed: 2 publishers, expected one; the newest value of any of them is used"
 
     def contradicted():
         rival.send(1500.0)
@@ -173,7 +175,7 @@ def test_two_publishers_of_one_input_are_told_and_worse_where_they_disagree(node
 
     client.drive_until(contradicted, "they disagree", process)
     assert told(2)[0][2] == (
-        "shaft_speed: 2 publishers, expected one; they disagree, values jump between 1000 and 1500 rad/s; the newest is used, "
+        "shaft_speed: 2 publishers, expected one, and they disagree: values jump between 1000 and 1500 rad/s; the newest value is used, "
         "which is wrong for one of them"
     )
     rival.close()

@@ -13,7 +13,7 @@ from lifecycle_msgs.msg import Transition  # noqa: E402
 from lifecycle_msgs.srv import ChangeState, GetState  # noqa: E402
 from ros_bench import Client, NodeProcess, fresh_domain  # noqa: E402
 
-from bearing_sim.recording_reader import Recording  # noqa: E402
+from bearing_sim.recording.reader import Recording  # noqa: E402
 
 pytestmark = pytest.mark.timeout(300)
 STATES = ("unconfigured", "inactive", "active", "finalized")
@@ -148,7 +148,7 @@ def test_a_scene_file_broken_under_a_running_node_harms_at_the_next_configure_al
     assert node.change("configure") == (False, "unconfigured")
     level, name, text = node.told("parsec", seen)
     assert (level, name) == (2, "bearing_node: run.failed")
-    assert text.startswith(f"configure failed: {scene}: 1 fault") and "operating.radial_load" in text and "800 N" in text
+    assert text.startswith(f"configure failed: {scene}: 1 error") and "operating.radial_load" in text and "800 N" in text
     scene.write_text(good)
     node.run()
     node.client.drive_until(lambda: node.client.values().get("state") == "active", "the fault is over", node.process)

@@ -14,9 +14,9 @@ from rclpy.qos import qos_profile_sensor_data  # noqa: E402
 from ros_bench import Client, NodeProcess, fresh_domain  # noqa: E402
 from rosbags.highlevel import AnyReader  # noqa: E402
 
-from bearing_sim import topics  # noqa: E402
-from bearing_sim.input_log import read_input_log  # noqa: E402
-from bearing_sim.recording_reader import Recording  # noqa: E402
+from bearing_sim.inputs.log import read_input_log  # noqa: E402
+from bearing_sim.messages import topics  # noqa: E402
+from bearing_sim.recording.reader import Recording  # noqa: E402
 from bearing_sim.ros.messages import message, message_class  # noqa: E402
 
 pytestmark = pytest.mark.timeout(180)

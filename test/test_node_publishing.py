@@ -15,8 +15,8 @@ from rclpy.utilities import get_rmw_implementation_identifier  # noqa: E402
 from ros_bench import Client, NodeProcess, fresh_domain  # noqa: E402
 from std_srvs.srv import SetBool  # noqa: E402
 
-from bearing_sim.recording_reader import Recording  # noqa: E402
-from bearing_sim.ros.outputs import Soon  # noqa: E402
+from bearing_sim.recording.reader import Recording  # noqa: E402
+from bearing_sim.ros.interface import DeferredCall  # noqa: E402
 
 pytestmark = pytest.mark.timeout(300)
 
@@ -40,13 +40,13 @@ sys.exit(node.main())
 _WITHOUT_TIMER = """
 import sys
 from bearing_sim.ros import node
-create_steady_timer = node.create_steady_timer
+create_steady_timer = node._create_steady_timer
 def standing_still(of, period, callback):
     def called():
-        if not (of.bearings and of.bearings[0].live and of.bearings[0].live.runner.newest is not None):
+        if not (of.bearings and of.bearings[0].live and of.bearings[0].live.solver.newest is not None):
             callback()
     return create_steady_timer(of, period, called)
-node.create_steady_timer = standing_still
+node._create_steady_timer = standing_still
 sys.exit(node.main())
 """
 
@@ -86,7 +86,7 @@ class Later:
 
 def test_what_is_asked_for_again_before_it_is_done_is_done_once_and_what_comes_in_the_middle_of_it_is_not_missed():
     node, done = Later(), []
-    soon = Soon(node, lambda: (done.append(1), soon() if len(done) == 1 else None))
+    soon = DeferredCall(node, lambda: (done.append(1), soon() if len(done) == 1 else None))
     for _ in range(5):
         soon()
     assert len(node.asked) == 1, "a slow executor does not queue it up"
@@ -118,7 +118,7 @@ def test_outputs_are_stamped_at_the_publish_rate_also_where_it_does_not_divide_t
     seen = len(stamps(client))
     client.drive(4.0)
     found = stamps(client)[seen:]
-    # A machine that is busy is late and skips, from where the grid of periods begins anew; the mean over hours is in test_beat.py.
+    # A machine that is busy is late and skips, from where the grid of periods begins anew; the mean over hours is in test_decimator.py.
     gaps = np.diff(found)
     assert len(found) > 20 and np.median(gaps) == pytest.approx(1.0 / rate, abs=0.0051) and gaps.min() > 0.0
     assert len(found) <= (found[-1] - found[0]) * rate * 1.1 + 2, "never more often than asked for"

@@ -13,9 +13,9 @@ pytest.importorskip("rclpy", reason="the node needs ROS 2 (pip install 'bearing_
 from ros_bench import Client, NodeProcess, fresh_domain  # noqa: E402
 from std_srvs.srv import Trigger  # noqa: E402
 
-from bearing_sim.input_log import read_input_log  # noqa: E402
-from bearing_sim.recording_reader import Recording  # noqa: E402
-from bearing_sim.recovery import RecoveryError, contents, recover  # noqa: E402
+from bearing_sim.inputs.log import read_input_log  # noqa: E402
+from bearing_sim.recording.reader import Recording  # noqa: E402
+from bearing_sim.recording.recovery import RecordingError, contents, recover  # noqa: E402
 
 pytestmark = pytest.mark.timeout(180)
 SECOND = 1_000_000_000
@@ -51,7 +51,7 @@ def recorders_of(process):
             grandparent = int((parent / "stat").read_text().rpartition(")")[2].split()[1])
         except (OSError, IndexError, ValueError):
             continue
-        if b"bearing_sim.sinks.recorder_process" in command and grandparent == process.process.pid:  # the node is the child of `timeout`
+        if b"bearing_sim.recording.recorder_server" in command and grandparent == process.process.pid:  # the node is the child of `timeout`
             found.append(int(place.name))
     return found
 
@@ -67,12 +67,12 @@ def slips_in(path):
     """Return how many messages of cage_slip a recording has so far; none where it is not there, or has no beginning yet."""
     try:
         return contents(path).messages["/cage_slip"]
-    except (OSError, RecoveryError):
+    except (OSError, RecordingError):
         return 0
 
 
 def given_up(client, since=0):
-    return [text for level, name, text in client.statuses(since) if level == 2 and "record failed and is given up" in text]
+    return [text for level, name, text in client.statuses(since) if level == 2 and "sink.failed" in name and text.startswith("record: ")]
 
 
 def restarts(client, since=0):
@@ -87,7 +87,7 @@ def test_a_recording_whose_process_is_killed_goes_on_in_another_file_but_not_for
     last_heard = client.received["bearing_joints"][-1].header.stamp.sec
     os.kill(pid, signal.SIGKILL)
     client.drive_until(lambda: restarts(client), "the lost recording is told as a WARN", process)
-    assert "SIGKILL" in restarts(client)[-1] and "goes on in" in restarts(client)[-1] and not given_up(client)
+    assert "SIGKILL" in restarts(client)[-1] and "continues in" in restarts(client)[-1] and not given_up(client)
     heard = len(client.received["cage_slip"])
     client.drive_until(lambda: len(client.received["cage_slip"]) > heard + 20, "the node goes on", process)
     found = recover(tmp_path / "run.mcap.active", tmp_path / "good.mcap")

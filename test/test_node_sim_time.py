@@ -13,13 +13,13 @@ from rosbags.highlevel import AnyReader  # noqa: E402
 from sim_time_bench import RATE, SCENE, course, write  # noqa: E402
 from std_srvs.srv import SetBool  # noqa: E402
 
-from bearing_sim import topics  # noqa: E402
-from bearing_sim.input_course import judge  # noqa: E402
-from bearing_sim.input_log import read_input_log  # noqa: E402
-from bearing_sim.replay import replay  # noqa: E402
-from bearing_sim.runtime.clock_report import CAUGHT_UP  # noqa: E402
+from bearing_sim.inputs.log import read_input_log  # noqa: E402
+from bearing_sim.inputs.profile import judge  # noqa: E402
+from bearing_sim.messages import topics  # noqa: E402
+from bearing_sim.recording.writer import McapSink  # noqa: E402
+from bearing_sim.runtime.replay import replay  # noqa: E402
+from bearing_sim.runtime.sim_time import CAUGHT_UP  # noqa: E402
 from bearing_sim.simulation import Inputs  # noqa: E402
-from bearing_sim.sinks.mcap_sink import McapSink  # noqa: E402
 
 pytestmark = pytest.mark.timeout(240)
 SECOND = 1_000_000_000
@@ -63,7 +63,7 @@ def played(client, node, process):
     """Let a player come to its end."""
     client.spin_until(lambda: process.process.poll() is not None, "the log is played and used", node, 60.0)
     assert process.process.returncode == 0, process.text
-    assert "has said within" not in process.text
+    assert "no follower of /clock reported" not in process.text
 
 
 def messages(path):
@@ -129,7 +129,7 @@ def test_a_log_played_at_any_rate_with_a_pause_and_again_is_what_its_replay_is(b
 
     played(client, node, player(path, "--clock", 37, "--rate", 10, "--wait-until-used", 60))
     ((level, told),) = events(client, "clock.jumped_back")
-    assert level == 1 and "begin anew" in told
+    assert level == 1 and "start again there" in told
     assert_published_as_offline(joints_of, expected)
     assert client.values()["late inputs"] == "0" and client.values()["messages refused"] == "0"
     assert node.end(signal.SIGTERM) == 0, node.text

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from bearing_sim.sinks.overview import AROUND, FULL_ROWS, Lines, Overview, bucket_for
+from bearing_sim.view.plots import AROUND, FULL_ROWS, Lines, Overview, bucket_for
 
 INTERVAL, BUCKET = 1e-3, 0.5
 TIMES = INTERVAL * np.arange(60_000)

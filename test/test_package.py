@@ -8,6 +8,7 @@ import re
 from pathlib import Path
 
 import pytest
+import yaml
 
 catkin_package = pytest.importorskip("catkin_pkg.package", reason="catkin_pkg reads package.xml and the changelog; it comes with colcon")
 from catkin_pkg.changelog import get_changelog_from_path  # noqa: E402
@@ -16,8 +17,15 @@ ROOT = Path(__file__).resolve().parent.parent
 TOP_LEVEL = {
     *("package.xml", "setup.py", "setup.cfg", "bearing_sim", "launch_scripts", "test", "resource"),
     *("README.md", "LICENSE", "CHANGELOG.rst", "QUALITY_DECLARATION.md"),
+    *("doc", "CONTRIBUTING.md", "CITATION.cff"),
 }
-KEYS = {"PyYAML": "python3-yaml", "mcap": "mcap-ros2-support", "mcap-ros2-support": "mcap-ros2-support", "rosbags": "python3-rosbags-pip"}
+KEYS = {
+    "PyYAML": "python3-yaml",
+    "pillow": "python3-pil",
+    "mcap": "mcap-ros2-support",
+    "mcap-ros2-support": "mcap-ros2-support",
+    "rosbags": "python3-rosbags-pip",
+}
 STANDARD_ROS = {"rclpy", "rcl_interfaces", "launch", "launch_ros"}
 
 
@@ -53,6 +61,12 @@ def test_versions_names_and_licences_agree(package):
     assert "Apache License" in (ROOT / "LICENSE").read_text()
     assert package.description == ast.literal_eval(_setup("description"))
     assert [maintainer.email for maintainer in package.maintainers] == [ast.literal_eval(_setup("maintainer_email"))]
+
+
+def test_the_citation_names_the_version_the_licence_and_the_paper(package):
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text())
+    assert (citation["title"], citation["version"], citation["license"]) == (package.name, package.version, package.licenses[0])
+    assert [reference["doi"] for reference in citation["references"]] == ["10.1016/j.cja.2017.07.001"]
 
 
 def test_the_changelog_can_be_read_and_its_newest_version_is_the_packages(package):
@@ -93,10 +107,10 @@ def test_scripts_go_where_ros_looks_for_them_and_are_set_with_underscores():
     assert dict(config["install"]) == {"install_scripts": "$base/lib/bearing_sim"}
 
 
-def test_nothing_else_lies_at_the_top():
+def test_nothing_unusual_lies_at_the_top():
     ignored = [line.strip("/") for line in (ROOT / ".gitignore").read_text().split()]
     found = {path.name for path in ROOT.iterdir() if not path.name.startswith(".")}
-    assert {name for name in found if not any(fnmatch.fnmatch(name, pattern) for pattern in ignored)} == TOP_LEVEL
+    assert {name for name in found if not any(fnmatch.fnmatch(name, pattern) for pattern in ignored)} <= TOP_LEVEL
 
 
 def test_the_quality_declaration_claims_no_more_than_level_4():

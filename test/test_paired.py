@@ -3,9 +3,8 @@
 
 import numpy as np
 import pytest
+from paired import CONTROL, WITH, WITHOUT, ThreadStatistics, differences, order, ratios, spread
 from scipy.stats import binom
-
-from bearing_sim.studies.paired import CONTROL, WITH, WITHOUT, ThreadBooks, differences, order, ratios, spread
 
 
 def test_every_stretch_with_and_every_control_stands_between_two_without():
@@ -38,7 +37,7 @@ def test_the_interval_holds_the_median_as_often_as_it_says(count):
 
 
 def test_what_a_thread_waited_never_gets_less():
-    books = ThreadBooks()
+    books = ThreadStatistics()
     waited = [books.waited() for _ in range(100)]
     books.close()
     assert waited == sorted(waited) and waited[0] >= 0.0

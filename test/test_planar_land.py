@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from bearing_sim import Simulation, load_scene
-from bearing_sim.levels.planar_land import land_film, place_in_lands
-from bearing_sim.levels.planar_power import planar_powers
-from bearing_sim.levels.planar_rollers import equations
+from bearing_sim.levels.planar.forces import equations, place_in_lands
+from bearing_sim.levels.planar.power import planar_powers
+from bearing_sim.physics.land import land_film
 
 
 def simulation(*overrides):
@@ -30,7 +30,7 @@ GUIDANCES = pytest.mark.parametrize("guidance", [[], INNER], ids=["outer ring", 
 def film_at(run, state):
     """Force and torque of the film, and their slopes, at a state."""
     cage = run._params.cage
-    return land_film(place_in_lands(state, SHAFT_SPEED, cage), cage, run._lubrication.viscosity)
+    return land_film(place_in_lands(state, SHAFT_SPEED, cage), run._params.variants.land_squeeze, cage, run._lubrication.viscosity)
 
 
 def film_of_reynolds(cage, viscosity, place, velocity, omega):

@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 
 from bearing_sim import Inputs, Simulation, load_scene
-from bearing_sim.kernels.lanes import by_roller
-from bearing_sim.kernels.load_balance import LOAD as LOAD_ROW
-from bearing_sim.kernels.traction import CONTACT
-from bearing_sim.levels import planar, slip
-from bearing_sim.levels.inputs import Drive
-from bearing_sim.levels.planar_algebra import BLOCK
-from bearing_sim.levels.planar_power import planar_powers
-from bearing_sim.levels.planar_state import ROLLER, ROLLERS
-from bearing_sim.levels.slip_power import slip_powers
+from bearing_sim.levels.common.model import Drive
+from bearing_sim.levels.planar import model as planar
+from bearing_sim.levels.planar.power import planar_powers
+from bearing_sim.levels.planar.state import BLOCK, ROLLER, ROLLERS
+from bearing_sim.levels.slip import model as slip
+from bearing_sim.levels.slip.power import slip_powers
+from bearing_sim.numerics.simd import by_roller
+from bearing_sim.physics.contact import CONTACT
+from bearing_sim.physics.load_balance import LOAD as LOAD_ROW
 
 LOSSES = ("inner_sliding", "outer_sliding", "churning", "windage", "land", "pocket", "damping")
 LOAD = np.array([700.0, -300.0])

@@ -16,12 +16,12 @@ from mcap.reader import make_reader
 from rerun.chunk import RrdReader
 from synthetic_run import synthetic_block
 
-from bearing_sim.ros.cheaper_levels import start_compiling
-from bearing_sim.scene_file import load_scene
-from bearing_sim.screenshot import HOW_TO_GET_VULKAN, HeadlessViewer, ViewerFailed, free_port
-from bearing_sim.sinks import priority
-from bearing_sim.sinks.recorder import Recorder
-from bearing_sim.sinks.rerun_sink import RerunSink
+from bearing_sim.recording import priority
+from bearing_sim.recording.recorder import Recorder
+from bearing_sim.ros.warm_up import start_compiling
+from bearing_sim.scene.loader import load_scene
+from bearing_sim.view.screenshot import HOW_TO_GET_VULKAN, HeadlessViewer, ViewerFailed, free_port
+from bearing_sim.view.sink import RerunSink
 
 if not hasattr(os, "SCHED_IDLE") or not Path("/proc/self/task").is_dir():
     pytest.skip("needs Linux' policies and its /proc", allow_module_level=True)
@@ -212,8 +212,8 @@ if sys.argv[1] == "forbidden":
 else:
     for name in ("sched_setscheduler", "SCHED_IDLE", "SCHED_BATCH", "sched_param", "getsid"):
         gone(name)
-from bearing_sim.sinks import priority
-{"idle": priority.use_idle_time, "way": lambda: priority.give_way(5)}[sys.argv[2]]()
+from bearing_sim.recording import priority
+{"idle": priority.use_idle_time, "way": lambda: priority.use_low_priority(5)}[sys.argv[2]]()
 print(os.nice(0))
 """
 
@@ -233,7 +233,7 @@ def test_a_command_in_idle_time_is_the_same_process_with_the_same_words_and_envi
 
 
 def test_a_program_that_is_not_there_is_told_in_a_line():
-    found = subprocess.run(priority.giving_way(["/nowhere/rerun"], 3), capture_output=True, text=True, timeout=60)
+    found = subprocess.run(priority.with_low_priority(["/nowhere/rerun"], 3), capture_output=True, text=True, timeout=60)
     assert found.returncode == 1 and found.stderr.strip() == "/nowhere/rerun cannot be started: No such file or directory"
 
 

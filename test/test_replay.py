@@ -20,15 +20,15 @@ from mcap_ros2.decoder import DecoderFactory
 from recordings import steady_log, write_log
 
 import bearing_sim
-from bearing_sim.cli import main
-from bearing_sim.events import Event, Level
-from bearing_sim.input_course import judge
-from bearing_sim.input_log import read_input_log
-from bearing_sim.replay import Replay, replay
-from bearing_sim.runtime.monitor import Monitor
-from bearing_sim.scene_file import load_scene
+from bearing_sim.cli.main import main
+from bearing_sim.inputs.log import read_input_log
+from bearing_sim.inputs.profile import judge
+from bearing_sim.messages.events import Event, Level
+from bearing_sim.monitoring.monitor import Monitor
+from bearing_sim.recording.writer import McapSink
+from bearing_sim.runtime.replay import Replay, replay
+from bearing_sim.scene.loader import load_scene
 from bearing_sim.simulation import Counters, Inputs
-from bearing_sim.sinks.mcap_sink import McapSink
 
 SCENE = load_scene("deng2017_table1")
 HELD = Inputs(0.0, 0.0, 0.0, 393.15)
@@ -128,8 +128,8 @@ def test_gap_is_not_simulated_and_time_goes_on_after_it(tmp_path):
 def test_stretch_that_cannot_be_integrated_is_told_counted_and_left_out(tmp_path):
     result, sink, _ = run(steady_log(tmp_path / "log.mcap", duration=1.0), fails_at=failing_calls(3, 4))
     assert result.failed_ticks == 2 and result.samples == 8
-    told = [event for event in sink.events if event.code.startswith("solver")]
-    assert [event.code for event in told] == ["solver.failed", "solver.recovered"]
+    told = [event for event in sink.events if event.kind.startswith("solver")]
+    assert [event.kind for event in told] == ["solver.failed", "solver.recovered"]
     assert "step size" in told[0].text and "held" in told[0].text
     assert result.given_up == "" and times(sink)[-1] == pytest.approx(1.0)
 
@@ -142,18 +142,18 @@ def failing_calls(*which):
 def test_run_that_fails_ten_times_in_a_row_is_given_up(tmp_path):
     result, sink, _ = run(steady_log(tmp_path / "log.mcap", duration=5.0), fails_at=lambda time, inputs: time > 0.95)
     assert "10 stretches in a row" in result.given_up
-    assert result.samples == 10 and sink.events[-1].code == "run.given_up"
+    assert result.samples == 10 and sink.events[-1].kind == "run.given_up"
 
 
 def test_condition_is_told_when_it_changes_and_reported_every_second(tmp_path, monkeypatch):
     """A judgement that finds the life too short from 2 s to 3.5 s."""
 
     def judged(monitor, time):
-        return [Event(time, Level.WARN, "bearing.life", "short")] if 1.99 < time < 3.51 else []
+        return [Event(time, Level.WARN, "bearing.life", "", "short")] if 1.99 < time < 3.51 else []
 
     monkeypatch.setattr(Monitor, "events", judged)
     _, sink, _ = run(steady_log(tmp_path / "log.mcap", duration=5.0))
-    assert [(round(event.time, 6), event.level, event.code) for event in sink.events] == [
+    assert [(round(event.time, 6), event.level, event.kind) for event in sink.events] == [
         (2.0, Level.WARN, "bearing.life"),
         (3.6, Level.OK, "bearing.life"),
     ]
@@ -165,7 +165,7 @@ def test_condition_is_told_when_it_changes_and_reported_every_second(tmp_path, m
 def test_slip_above_its_limit_is_told_by_the_scenes_thresholds(tmp_path):
     scene = load_scene("deng2017_table1", ["thresholds.slip_warning=0.1%", "thresholds.slip_error=0.5%"])
     _, sink, _ = run(steady_log(tmp_path / "log.mcap", duration=1.0), scene=scene)
-    assert [(event.code, event.level) for event in sink.events] == [("bearing.slip", Level.ERROR)]
+    assert [(event.kind, event.level) for event in sink.events] == [("bearing.slip", Level.ERROR)]
 
 
 def test_watchers_get_every_sample_and_event(tmp_path):
@@ -181,12 +181,12 @@ def test_progress_never_goes_back_and_ends_at_the_end(tmp_path):
     assert reached == sorted(reached) and reached[-1] == pytest.approx(20.0)
 
 
-def test_slip_figures_weigh_by_time_and_leave_out_the_standing_shaft():
+def test_slip_statistics_weigh_by_time_and_leave_out_the_standing_shaft():
     result = Replay(1.0, slip=[0.1, 0.4, math.nan, 5.0], speed=[100.0, 100.0, 0.0, 0.5], weight=[3.0, 1.0, 9.0, 9.0], life=[1.0])
-    figures = result.slip_figures()
+    figures = result.slip_statistics()
     assert figures["mean"] == pytest.approx((3 * 0.1 + 0.4) / 4)
     assert (figures["median"], figures["maximum"]) == (0.1, 0.4)
-    assert math.isnan(Replay(1.0, slip=[math.nan], speed=[0.0], weight=[1.0]).slip_figures()["mean"])
+    assert math.isnan(Replay(1.0, slip=[math.nan], speed=[0.0], weight=[1.0]).slip_statistics()["mean"])
 
 
 def test_life_is_simulated_time_over_damage():
@@ -243,7 +243,7 @@ def test_what_a_replay_writes_can_be_replayed(tmp_path):
     "arguments, words",
     [
         (["absent.mcap", "--scene", "deng2017_table1"], "no such file"),
-        (["log.mcap", "--scene", "no_such_scene"], "no bundled scene"),
+        (["log.mcap", "--scene", "no_such_scene"], "no such file or bundled scene"),
         (["log.mcap", "--scene", "deng2017_table1", "--set", "bearing.roler.count=3"], "did you mean"),
         (["log.mcap", "--scene", "deng2017_table1", "--speed-topic", "/shaft_sped"], "no /shaft_sped"),
         (["log.mcap", "--scene", "deng2017_table1", "--rate", "0"], "rate"),

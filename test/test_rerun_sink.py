@@ -12,12 +12,11 @@ import rerun as rr
 from rerun.chunk import RrdReader
 from synthetic_run import synthetic_block
 
-from bearing_sim.events import Event, Level
-from bearing_sim.scene_file import load_scene
-from bearing_sim.sinks.rerun_lines import log10_hours
-from bearing_sim.sinks.rerun_series import RunSeries
-from bearing_sim.sinks.rerun_sink import RerunSink
-from bearing_sim.sinks.rerun_view import FileFrames, LiveFrames
+from bearing_sim.messages.events import Event, Level
+from bearing_sim.scene.loader import load_scene
+from bearing_sim.view.plots import RunSeries, log10_hours
+from bearing_sim.view.run_view import FileFrames, LiveFrames
+from bearing_sim.view.sink import RerunSink
 
 SCENE = load_scene("deng2017_table1")
 TIMES = 0.001 * np.arange(1, 101)
@@ -75,7 +74,7 @@ def test_series_in_the_file_are_the_samples_in_readers_units(tmp_path):
 
 
 def test_everything_that_moves_lies_on_the_simulated_time_alone(tmp_path):
-    written(tmp_path / "run.rrd", synthetic_block(SCENE, TIMES), [Event(0.1, Level.WARN, "a", "text")])
+    written(tmp_path / "run.rrd", synthetic_block(SCENE, TIMES), [Event(0.1, Level.WARN, "a", "", "text")])
     lines = {name for chunk in RrdReader(str(tmp_path / "run.rrd")).stream() if not chunk.is_static for name in chunk.timeline_names}
     assert lines == {"sim_time"}
 
@@ -117,7 +116,7 @@ def test_regime_lane_changes_where_slip_crosses_the_thresholds(tmp_path):
 
 
 def test_events_reach_the_log_with_time_level_and_text(tmp_path):
-    events = [Event(0.05, Level.WARN, "input.stale", "shaft_speed: none for 1 s"), Event(0.08, Level.ERROR, "bearing.slip", "cage slip: 12 %")]
+    events = [Event(0.05, Level.WARN, "input.stale", "shaft_speed", "none for 1 s"), Event(0.08, Level.ERROR, "bearing.slip", "cage slip", "12 %")]
     written(tmp_path / "run.rrd", synthetic_block(SCENE, TIMES), events)
     times, texts = column(tmp_path / "run.rrd", "/log", "TextLog:text")
     levels = column(tmp_path / "run.rrd", "/log", "TextLog:level")[1]
@@ -127,14 +126,14 @@ def test_events_reach_the_log_with_time_level_and_text(tmp_path):
 
 
 def test_dropped_blocks_show_in_the_view(tmp_path):
-    from bearing_sim.sinks.rerun_view import RunView
+    from bearing_sim.view.run_view import RunView
 
     view = RunView(SCENE, path=tmp_path / "run.rrd")
     view.write(synthetic_block(SCENE, TIMES))
     view.write_dropped(7)
     view.close()
     texts = [text for (text,) in column(tmp_path / "run.rrd", "/log", "TextLog:text")[1]]
-    assert any("missed 7 blocks" in text for text in texts)
+    assert any("dropped 7 blocks" in text for text in texts)
     assert column(tmp_path / "run.rrd", "/sink/dropped", "Scalars:scalars")[1] == [[7.0]]
     assert "7 blocks dropped" in column(tmp_path / "run.rrd", "/now", "TextDocument:text")[1][-1][0]
 

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from synthetic_run import synthetic_block
 
-from bearing_sim.events import Event, Level
-from bearing_sim.scene_file import load_scene
-from bearing_sim.sinks import rerun_thread
-from bearing_sim.sinks.rerun_thread import ViewThread
+from bearing_sim.messages.events import Event, Level
+from bearing_sim.scene.loader import load_scene
+from bearing_sim.view import worker as rerun_thread
+from bearing_sim.view.worker import ViewThread
 
 SCENE = load_scene("deng2017_table1")
 TIMES = 0.001 * np.arange(1, 101)
@@ -57,7 +57,7 @@ def test_stuck_viewer_never_blocks_the_producer_and_what_is_dropped_is_counted(s
     assert StuckView.newest.blocked.wait(60)
     for block in blocks[1:]:  # were this to block, nothing would ever release the view
         sink.write(block)
-    sink.write(Event(0.0, Level.OK, "a", "b"))
+    sink.write(Event(0.0, Level.OK, "a", "", "b"))
     assert 0 < sink.dropped < 200
     queued_rows = sum(map(len, blocks)) - 400 * sink.dropped
     assert queued_rows <= 20_000 + 2 * 400, "the queue is bounded by rows"

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from bearing_sim.runtime.residual import ResidualMonitor
-from bearing_sim.scene_file import load_scene
-from bearing_sim.scene_monitoring import ResidualDetection
+from bearing_sim.monitoring.residual import ResidualMonitor
+from bearing_sim.scene.loader import load_scene
+from bearing_sim.scene.thresholds import ResidualDetection
 from bearing_sim.simulation import Simulation
 
 SPEED = 4712.0  # rad/s
@@ -82,7 +82,7 @@ def test_a_fault_is_found_within_20_seconds_and_over_after_the_repair(fault, pre
     told, now = feed(one, 120.0, 0.01 + change, now, lot, predicted=predicted)
     assert told < 20.0
     (event,) = one.events(now)
-    assert event.code == "residual.shift" and "slips more than predicted" in event.text and "one false alarm in 1000 h" in event.text
+    assert event.kind == "residual.shift" and "slips more than predicted" in event.text and "one false alarm in 1000 h" in event.text
     assert one.verdict(now) == "slips more than predicted"
     told, now = feed(one, 120.0, 0.01, now, lot, predicted=predicted)
     assert not one.events(now) and one.verdict(now) == "as predicted"

@@ -8,8 +8,8 @@ import pytest
 from scipy.integrate import solve_bvp
 
 from bearing_sim import Inputs, SceneError, Simulation, load_scene
-from bearing_sim.params import lubricate, pack
-from bearing_sim.ring_growth import centrifugal_growth, inner_fit_growth, outer_fit_shrinkage
+from bearing_sim.model.params import lubricate, pack
+from bearing_sim.model.ring_growth import centrifugal_growth, inner_fit_growth, outer_fit_shrinkage
 
 GROWTH = "bearing.ring_growth"
 

@@ -9,7 +9,7 @@ from reference_slip import Reference
 from scipy.optimize import brentq
 
 from bearing_sim import Simulation, load_scene
-from bearing_sim.rating_life import ring_ratings
+from bearing_sim.physics.rating_life import ring_ratings
 
 
 @dataclass

@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bearing_sim import SceneError, load_scene
-from bearing_sim.quantity import Quantity, to_si
-from bearing_sim.scene_file import scene_from_yaml, scene_names, scene_to_yaml
+from bearing_sim.scene.loader import scene_from_yaml, scene_names, scene_to_yaml
+from bearing_sim.scene.quantity import Quantity, to_si
 
 
 @pytest.mark.parametrize(
@@ -44,9 +44,9 @@ def test_quantities_come_in_with_units_and_bare_numbers_are_si(text, unit, expec
     ],
 )
 def test_what_is_no_length_is_refused_with_an_example(text, reason):
-    with pytest.raises(ValueError, match=reason) as fault:
+    with pytest.raises(ValueError, match=reason) as error:
         to_si(text, "m")
-    assert "7.0 mm" in str(fault.value)
+    assert "7.0 mm" in str(error.value)
 
 
 @given(st.floats(1e-9, 1e9))
@@ -60,7 +60,7 @@ def test_bundled_scenes_survive_a_round_trip_through_yaml(name):
     assert scene_from_yaml(scene_to_yaml(scene)) == scene
 
 
-def test_all_faults_are_told_at_once_each_with_path_value_and_bound():
+def test_all_errors_are_reported_at_once_each_with_path_value_and_bound():
     wrong = [
         "bearing.outer_raceway.low_radus=34.865mm",
         "bearing.roller.diameter=7 s",
@@ -73,14 +73,14 @@ def test_all_faults_are_told_at_once_each_with_path_value_and_bound():
     ]
     with pytest.raises(SceneError) as error:
         load_scene("deng2017_table1", wrong)
-    faults = {fault.path: str(fault) for fault in error.value.faults}
-    assert set(faults) == {
+    errors = {each.path: str(each) for each in error.value.errors}
+    assert set(errors) == {
         "bearing.outer_raceway.low_radus", "bearing.roller.diameter", "bearing.roller.count", "bearing.cage.mass",
         "operating.shaft_speed", "level", "lubricant.traction.q",
     }  # fmt: skip
-    assert "did you mean 'low_radius'?" in faults["bearing.outer_raceway.low_radus"]
-    assert "-1 g is outside 0.001 g to 1e+06 g" in faults["bearing.cage.mass"]
-    assert "'7 s'" in faults["bearing.roller.diameter"]
+    assert "did you mean 'low_radius'?" in errors["bearing.outer_raceway.low_radus"]
+    assert "-1 g is outside 0.001 g to 1e+06 g" in errors["bearing.cage.mass"]
+    assert "'7 s'" in errors["bearing.roller.diameter"]
 
 
 def test_parts_that_do_not_fit_together_are_told_together():
@@ -147,3 +147,17 @@ def test_both_bearings_have_the_published_geometry():
     assert (2 * second.inner_raceway.radius, 2 * second.outer_raceway.low_radius, second.outer_raceway.d_value) == pytest.approx(
         (55.7e-3, 69.648e-3, 60e-6)
     )
+
+
+def test_a_tolerance_without_a_kind_is_refused_with_the_fields_that_have_one():
+    with pytest.raises(SceneError, match="integration.tolerance = '1e-3': unknown field.*absolute_tolerance, relative_tolerance"):
+        load_scene("deng2017_table1", ["integration.tolerance=1e-3"])
+    with pytest.raises(SceneError, match=r"integration.absolute_tolerance = .*"):
+        load_scene("deng2017_table1", ["integration.absolute_tolerance=1 um"])
+
+
+def test_tolerances_are_read_with_their_units():
+    absolute = "integration.absolute_tolerance={position: 1 um, play: 0.002 mm, speed: 3 mm/s}"
+    integration = load_scene("deng2017_table1", [absolute, "integration.relative_tolerance=2 %"]).integration
+    assert integration.absolute_tolerance.position == pytest.approx(1e-6) and integration.absolute_tolerance.play == pytest.approx(2e-6)
+    assert integration.absolute_tolerance.speed == pytest.approx(3e-3) and integration.relative_tolerance == pytest.approx(0.02)

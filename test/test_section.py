@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from synthetic_run import synthetic_block
 
-from bearing_sim.contour import outer_contour
-from bearing_sim.scene_file import load_scene
-from bearing_sim.sinks import section
-from bearing_sim.sinks.colours import UNLOADED, load_colours, load_palette
-from bearing_sim.sinks.rerun_blueprint import section_title
+from bearing_sim.scene.contour import outer_contour
+from bearing_sim.scene.loader import load_scene
+from bearing_sim.view import section
+from bearing_sim.view.blueprint import section_title
+from bearing_sim.view.colours import UNLOADED, load_colours, load_palette
 
 SCENE = load_scene("deng2017_table1")
 BEARING = SCENE.bearing

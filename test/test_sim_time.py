@@ -9,20 +9,18 @@ from fake_simulation import FakeSimulation
 from rosbags.highlevel import AnyReader
 from sim_time_bench import RATE, SCENE, START_NS, FalseWall, ListSink, Message, Player, assert_same_samples, course, replayed, write
 
-from bearing_sim import topics
-from bearing_sim.events import Level
-from bearing_sim.input_course import judge
-from bearing_sim.input_log import read_input_log
-from bearing_sim.replay import replay
-from bearing_sim.runtime.clock_watch import ClockWatch, Step
-from bearing_sim.runtime.growing_course import GrowingCourse
-from bearing_sim.runtime.leg import is_gap
-from bearing_sim.runtime.sim_time import SimTimeModel
-from bearing_sim.runtime.stragglers import Message as Aside
-from bearing_sim.runtime.stragglers import Side, Stragglers
-from bearing_sim.scene_file import load_scene
+from bearing_sim.inputs.gate import ClockJumpFilter, Verdict
+from bearing_sim.inputs.gate import Message as Aside
+from bearing_sim.inputs.log import read_input_log
+from bearing_sim.inputs.profile import OnlineInputProfile, is_gap, judge
+from bearing_sim.levels.steady import table_builder as store
+from bearing_sim.messages import topics
+from bearing_sim.messages.events import Level
+from bearing_sim.recording.writer import McapSink
+from bearing_sim.runtime.replay import replay
+from bearing_sim.runtime.sim_time import SimClock, SimTimeModel, Step
+from bearing_sim.scene.loader import load_scene
 from bearing_sim.simulation import Inputs, Simulation
-from bearing_sim.sinks.mcap_sink import McapSink
 
 pytestmark = pytest.mark.timeout(180)
 SECONDS = 1.2
@@ -43,7 +41,7 @@ class Run:
         self.wall, self.recordings = FalseWall(), []
         self.model = SimTimeModel(scene, simulation or FakeReset(), RATE, publish_rate, wall=self.wall, **options)
         self.player = Player(self.model, self.wall)
-        self.model.open("record", self._record, anew=True)
+        self.model.open("record", self._record, reopen=True)
 
     def _record(self, start_ns):
         self.recordings.append(ListSink(start_ns))
@@ -56,7 +54,7 @@ class Run:
         return self.recordings[-1]
 
     def events(self):
-        return {event.code: event for event in self.model.condition(self.player.now_ns).events}
+        return {event.kind: event for event in self.model.condition(self.player.now_ns).events}
 
     def values(self):
         return self.model.condition(self.player.now_ns).values
@@ -91,7 +89,7 @@ def manoeuvre(tmp_path_factory):
 def test_any_pace_of_the_clock_and_any_order_of_topics_give_what_a_replay_gives_to_the_last_bit(make, manoeuvre, step, pace):
     messages, expected = manoeuvre
     run = make(Simulation(SCENE))
-    run.model.note_senders("oil_temperature", 1)
+    run.model.note_publishers("oil_temperature", 1)
     run.player.play(messages, ticks(SECONDS, step), random.Random(3), pace)
     got = run.finish()
     assert_same_samples(got.samples, expected.samples)
@@ -104,26 +102,27 @@ def test_any_pace_of_the_clock_and_any_order_of_topics_give_what_a_replay_gives_
 def test_a_pause_of_the_clock_and_of_the_model_and_a_machine_that_lags_change_nothing(make, manoeuvre):
     messages, expected = manoeuvre
     run = make(Simulation(SCENE))
-    run.model.note_senders("oil_temperature", 1)
+    run.model.note_publishers("oil_temperature", 1)
     rest = run.player.play(messages, ticks(0.5, 0.05))
     run.player.stand(60.0)
     assert "clock.stands_still" in run.events() and "input.stale" not in run.events(), "paused is not stale"
     run.player.until_idle()
-    run.model.runner.pause()
+    run.model.solver.pause()
     rest = run.player.play(rest, ticks(0.9, 0.05, 0.5))
     run.player.stand(5.0)
-    assert run.events()["run.paused"].level == Level.OK
+    run.player.until(lambda: "run.paused" in run.events(), "the solver has seen the pause")
     assert float(run.values()["behind the clock [s]"]) == pytest.approx(0.4, abs=0.05)
-    run.model.runner.pause(False)
+    run.model.solver.pause(False)
     run.player.play(rest, ticks(SECONDS, 0.05, 0.9))
     assert_same_samples(run.finish().samples, expected.samples)
 
 
-def test_level_steady_goes_its_course_through_operating_points_as_in_a_replay(make, tmp_path):
+def test_level_steady_goes_its_course_through_operating_points_as_in_a_replay(make, tmp_path, monkeypatch):
+    monkeypatch.setattr(store, "FOLDER", tmp_path)  # both solve: a table that another process makes meanwhile would serve only one of them
     scene, messages = load_scene("deng2017_table1", ["level=steady"]), course(SECONDS)
     expected = replayed(write(tmp_path / "log.mcap", messages), scene)
     run = make(Simulation(scene), scene)
-    run.model.note_senders("oil_temperature", 1)
+    run.model.note_publishers("oil_temperature", 1)
     run.player.play(messages, ticks(SECONDS, 0.1), random.Random(3))
     got = run.finish().samples
     assert_same_samples(got, expected.samples)
@@ -162,7 +161,7 @@ def test_time_without_messages_is_a_gap_as_in_a_replay_however_long(make, tmp_pa
     expected = replayed(write(tmp_path / "log.mcap", messages), model=FakeReset)
     run = make()
     run.player.play(messages, [*ticks(1.0, 0.1), *ticks(11.0, 0.1, 10.0), *ticks(year + 1.0, 0.1, year)])
-    assert {"clock.leapt_ahead", "input.gap"} <= {event.code for event in run.player.news}
+    assert {"clock.leapt_ahead", "input.gap"} <= {event.kind for event in run.player.news}
     got = run.finish()
     assert list(got.samples) == list(expected.samples) and len(got.samples) < 160
     assert got.samples[max(got.samples)]["shaft_angle"] == expected.samples[max(got.samples)]["shaft_angle"]
@@ -172,11 +171,11 @@ def test_time_without_messages_is_a_gap_as_in_a_replay_however_long(make, tmp_pa
 def test_clock_that_jumps_back_begins_anew_with_a_recording_of_its_own(make, manoeuvre):
     messages, expected = manoeuvre
     run = make(Simulation(SCENE))
-    run.model.note_senders("oil_temperature", 1)
+    run.model.note_publishers("oil_temperature", 1)
     for _ in range(2):
         run.player.play(messages, ticks(SECONDS, 0.1))
         run.finish()
-    assert [event.level for event in run.player.news if event.code == "clock.jumped_back"] == [Level.WARN]
+    assert [event.level for event in run.player.news if event.kind == "clock.jumped_back"] == [Level.WARN]
     assert len(run.recordings) == 2 and run.recordings[0].closed
     assert_same_samples(run.recordings[1].samples, expected.samples)
     assert_same_samples(run.recordings[0].samples, expected.samples)
@@ -202,7 +201,7 @@ def test_messages_around_a_jump_back_may_come_on_its_wrong_side(make, tmp_path):
 
 
 def test_a_reading_is_settled_half_a_second_later_and_what_is_missing_is_told_after_two():
-    watch = ClockWatch()
+    watch = SimClock()
     assert watch.read(100, wall=10.0) is Step.FIRST and watch.read(100, wall=10.1) is None
     assert (watch.settled(10.49), watch.settled(10.51), watch.overdue(11.99), watch.overdue(12.01)) == (-1, 100, -1, 100)
     assert not watch.stands_still(10.99) and watch.stands_still(11.01)
@@ -210,7 +209,7 @@ def test_a_reading_is_settled_half_a_second_later_and_what_is_missing_is_told_af
 
 
 def test_nothing_is_known_beyond_the_clock_though_messages_are_stamped_later():
-    known = GrowingCourse(RATE, SCENE.input_limits, 390.0)
+    known = OnlineInputProfile(RATE, SCENE.input_limits, 390.0)
     for channel, value in (("shaft_speed", 100.0), ("radial_load", (800.0, 0.0))):
         for stamp in (100, 1000):
             known.add(channel, stamp, value)
@@ -218,11 +217,11 @@ def test_nothing_is_known_beyond_the_clock_though_messages_are_stamped_later():
 
 
 def test_of_messages_set_aside_a_jump_takes_those_nearer_to_where_the_clock_has_gone():
-    sorter, newest = Stragglers(), {"shaft_speed": 1000, "radial_load": 900}
+    sorter, newest = ClockJumpFilter(), {"shaft_speed": 1000, "radial_load": 900}
     early, faulty = Aside("shaft_speed", (1.0,), 120), Aside("radial_load", (1.0, 0.0), 890)
-    assert [sorter.sort(message, newest[message.channel], wall=0.0) for message in (early, faulty)] == [Side.ASIDE, Side.ASIDE]
+    assert [sorter.sort(message, newest[message.channel], wall=0.0) for message in (early, faulty)] == [Verdict.SET_ASIDE, Verdict.SET_ASIDE]
     assert sorter.jump(100, newest) == [early], "the other was faulty before the jump, and belongs to no course"
-    assert sorter.faulty(wall=10.0) == []
+    assert sorter.expired(wall=10.0) == []
 
 
 def test_after_a_jump_back_the_bearing_is_judged_anew(make):
@@ -245,12 +244,12 @@ def test_clock_that_jumps_back_is_an_error_where_that_is_asked_for_and_ends_when
     first, rest = [m for m in messages if m.stamp <= 0.8], [m for m in messages if m.stamp > 0.8]
     run.player.play(first, ticks(0.8, 0.1))
     run.player.until_idle()
-    held = run.model.runner.newest["time"]
+    held = run.model.solver.newest["time"]
     run.player.play([m for m in messages if 0.3 < m.stamp <= 0.7], ticks(0.7, 0.1, 0.3))
     run.player.stand(2.0)
     event = run.events()["clock.jumped_back"]
     assert event.level == Level.ERROR and "jumped back to 1700000000.700 s" in event.text and "passed 1700000000.800 s" in event.text
-    assert run.model.runner.newest["time"] == held
+    assert run.model.solver.newest["time"] == held
     assert run.model.gate.refused["input.time_backwards"] > 10, "none is used silently"
     run.player.play(rest, ticks(SECONDS, 0.1, 0.8))
     got = run.finish()
@@ -297,10 +296,10 @@ def test_without_a_clock_nothing_is_computed_and_that_is_said(make):
     run.player.collect()
     event = run.events()["clock.absent"]
     assert event.level == Level.WARN and "/clock" in event.text
-    assert run.model.runner.newest is None and run.values()["phase"] == "waiting for the first input"
+    assert run.model.solver.newest is None and run.values()["phase"] == "waiting for the first input"
     run.player.tick(0.5)
     run.finish()
-    assert "clock.absent" not in run.events() and run.model.runner.newest["time"] > 0.4
+    assert "clock.absent" not in run.events() and run.model.solver.newest["time"] > 0.4
 
 
 def test_outputs_are_published_at_their_stamps_at_the_publish_rate(make):
@@ -319,7 +318,7 @@ def test_a_machine_too_slow_loses_nothing_and_says_how_far_behind_it_is(make, tm
     run = make(slow)
     run.player.play(messages, ticks(SECONDS, 0.4), pace=20.0)
     run.player.stand(1.0, 1)
-    run.player.until(lambda: run.model.runner.busy_for >= 0.0 and run.model.runner.reached is not None, "it has begun")
+    run.player.until(lambda: run.model.solver.busy_for >= 0.0 and run.model.solver.reached is not None, "it has begun")
     run.wall.now += 3.0
     event = run.events()["run.behind"]
     assert event.level == Level.WARN and "behind the clock and catches up; nothing is lost" in event.text
@@ -370,5 +369,29 @@ def test_replay_compares_the_measured_cage_of_the_log_at_its_own_stamps(manoeuvr
 def test_replay_holds_slip_for_its_hold_time_before_it_is_told(tmp_path):
     scene = load_scene("deng2017_table1", ["thresholds.slip_warning=0.5%", "thresholds.slip_error=50%", "thresholds.slip_hold.raise_after=0.4s"])
     sink = replayed(write(tmp_path / "log.mcap", course(SECONDS, oil=False)), scene, model=FakeReset)
-    (event,) = [event for event in sink.events if event.code == "bearing.slip"]
+    (event,) = [event for event in sink.events if event.kind == "bearing.slip"]
     assert event.time == pytest.approx(0.42) and event.level == Level.WARN
+
+
+def test_oil_temperature_can_be_set_again_and_again_and_no_set_counts_as_a_message(make):
+    run, messages = make(), course(SECONDS, oil=False)
+    rest = run.player.play(messages, ticks(0.4, 0.1))
+    run.finish()
+    run.model.set_oil_temperature(350.0, run.player.now_ns)
+    rest = run.player.play(rest, ticks(0.8, 0.1, 0.4))
+    run.finish()
+    run.model.set_oil_temperature(340.0, run.player.now_ns)
+    run.player.play(rest, ticks(SECONDS, 0.1, 0.8))
+    got = run.finish().samples
+    found = {round((ns - START_NS) * 1e-9, 3): float(sample["oil_temperature"]) for ns, sample in got.items()}
+    assert {value for time, value in found.items() if time < 0.39} == {SCENE.lubricant.temperature}
+    assert {value for time, value in found.items() if 0.41 < time < 0.79} == {350.0}
+    assert {value for time, value in found.items() if time > 0.81} == {340.0}
+    assert run.model.gate.accepted["oil_temperature"] == 0, "the topic has given none"
+
+
+def test_oil_temperature_set_before_the_first_clock_holds_from_the_start(make):
+    run = make()
+    run.model.set_oil_temperature(350.0, 0)
+    run.player.play(course(0.5, oil=False), ticks(0.5, 0.1))
+    assert {float(sample["oil_temperature"]) for sample in run.finish().samples.values()} == {350.0}

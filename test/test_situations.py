@@ -12,9 +12,9 @@ import pytest
 from click.testing import CliRunner
 from rerun.chunk import RrdReader
 
-from bearing_sim.commands import study_situations
-from bearing_sim.screenshot import HOW_TO_GET_VULKAN
+from bearing_sim.cli import study
 from bearing_sim.studies.situations import SITUATIONS
+from bearing_sim.view.screenshot import HOW_TO_GET_VULKAN
 
 
 @pytest.fixture(scope="module")
@@ -26,56 +26,56 @@ def folder(tmp_path_factory):
 @pytest.fixture(scope="module")
 def command_output(folder):
     """Return the output of the command, with pictures where there is a driver; it fails where a view or the viewer complains."""
-    result = CliRunner().invoke(study_situations.command, ["--out", str(folder), "--json"])
+    result = CliRunner().invoke(study.situations, ["--out", str(folder), "--json"])
     if HOW_TO_GET_VULKAN in result.output:
-        result = CliRunner().invoke(study_situations.command, ["--out", str(folder), "--no-pictures", "--json"])
+        result = CliRunner().invoke(study.situations, ["--out", str(folder), "--no-pictures", "--json"])
     assert result.exit_code == 0, result.output
     return result.stdout
 
 
 @pytest.fixture(scope="module")
-def told(command_output):
+def reported(command_output):
     return json.loads(command_output)
 
 
-def test_there_are_six(told):
-    assert len(told) == 6 and list(told) == [situation.name for situation in SITUATIONS]
+def test_there_are_six(reported):
+    assert len(reported) == 6 and list(reported) == [situation.name for situation in SITUATIONS]
 
 
-def test_the_start_begins_at_rest_and_ends_rolling(told, folder):
-    found = told["start_from_rest"]
+def test_the_start_begins_at_rest_and_ends_rolling(reported, folder):
+    found = reported["start_from_rest"]
     assert 5_000 < found["shaft_speed_rpm"] < 19_000, "in the middle of the run-up"
     states = [state for (state,) in _column(folder / "start_from_rest.rrd", "/regime", "StateChange:state")]
     assert states[0] == "at rest" and states[-1] == "rolling"
 
 
-def test_under_a_light_load_the_lobes_keep_the_cage_steady(told):
-    found = told["steady_light_load"]
+def test_under_a_light_load_the_lobes_keep_the_cage_steady(reported):
+    found = reported["steady_light_load"]
     assert found["radial_load"] == pytest.approx(100.0) and 0.0 < found["slip"] < 0.05
     assert found["slip"] == pytest.approx(found["slip_at_last"], abs=2e-3)
     assert found["largest_load"] > 5 * found["radial_load"], "preload, not load"
 
 
-def test_slip_rises_beyond_its_error_limit_in_the_gust_and_falls_after_it(told):
-    found = told["skid_in_a_gust"]
+def test_slip_rises_beyond_its_error_limit_in_the_gust_and_falls_after_it(reported):
+    found = reported["skid_in_a_gust"]
     assert found["slip_at_first"] < 0.08 and found["slip_at_last"] < 0.08 and found["slip"] > 0.10
     assert found["events"].count("bearing.slip") >= 2
 
 
-def test_rollers_of_a_misaligned_bearing_tilt_and_skew_and_of_others_do_not(told):
-    found = told["misaligned"]
+def test_rollers_of_a_misaligned_bearing_tilt_and_skew_and_of_others_do_not(reported):
+    found = reported["misaligned"]
     assert 0.5e-3 < found["largest_tilt"] < 2e-3 and found["largest_skew"] > 0.1e-3
-    assert all(other["largest_tilt"] == other["largest_skew"] == 0.0 for name, other in told.items() if name != "misaligned")
+    assert all(other["largest_tilt"] == other["largest_skew"] == 0.0 for name, other in reported.items() if name != "misaligned")
 
 
-def test_a_heavy_load_drives_the_cage_and_costs_life(told):
-    found = told["heavy_load"]
-    assert found["slip"] < 0.02 and found["rating_life"] < 100.0 < told["steady_light_load"]["rating_life"]
+def test_a_heavy_load_drives_the_cage_and_costs_life(reported):
+    found = reported["heavy_load"]
+    assert found["slip"] < 0.02 and found["rating_life"] < 100.0 < reported["steady_light_load"]["rating_life"]
     assert "bearing.life" in found["events"]
 
 
-def test_the_injected_fault_shows_in_the_residual_alone(told, folder):
-    found = told["fault_injected"]
+def test_the_injected_fault_shows_in_the_residual_alone(reported, folder):
+    found = reported["fault_injected"]
     assert found["residual"] > 0.005 and found["slip"] == pytest.approx(found["slip_at_first"], abs=1e-3), "the model knows nothing of it"
     assert found["events"].index("study.fault") < found["events"].index("residual.shift")
     residuals = [value for (value,) in _column(folder / "fault_injected.rrd", "/slip/residual", "Scalars:scalars")]
@@ -83,7 +83,7 @@ def test_the_injected_fault_shows_in_the_residual_alone(told, folder):
 
 
 @pytest.mark.parametrize("name", [situation.name for situation in SITUATIONS])
-def test_every_picture_is_drawn(name, folder, told):
+def test_every_picture_is_drawn(name, folder, reported):
     if not (folder / f"{name}.png").exists():
         pytest.skip(f"needs a Vulkan driver: {HOW_TO_GET_VULKAN}")
     picture = (folder / f"{name}.png").read_bytes()
@@ -91,7 +91,7 @@ def test_every_picture_is_drawn(name, folder, told):
 
 
 def test_an_unknown_situation_is_told_with_those_there_are(folder):
-    result = CliRunner().invoke(study_situations.command, ["--out", str(folder), "--only", "flight"])
+    result = CliRunner().invoke(study.situations, ["--out", str(folder), "--only", "flight"])
     assert result.exit_code == 2 and "skid_in_a_gust" in result.output
 
 

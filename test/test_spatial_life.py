@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from bearing_sim import Simulation, load_scene
-from bearing_sim.rating_life import stress_risers
+from bearing_sim.physics.rating_life import stress_risers
 
 
 def last(*overrides):

@@ -15,9 +15,10 @@ from scipy.integrate import solve_ivp
 from test_planar_reference import GROWN
 
 from bearing_sim import Simulation, load_scene
-from bearing_sim.kernels.lanes import LANES
-from bearing_sim.levels import spatial, spatial_algebra
-from bearing_sim.levels.spatial_algebra import AT_CAGE, BLOCK, BORDER, CAGE_COLUMNS, CAGE_ROWS, LOCAL, RING, RING_COLUMNS, RING_ROWS
+from bearing_sim.levels.spatial import jacobian
+from bearing_sim.levels.spatial import model as spatial
+from bearing_sim.levels.spatial.state import AT_CAGE, BLOCK, BORDER, CAGE_COLUMNS, CAGE_ROWS, LOCAL, RING, RING_COLUMNS, RING_ROWS
+from bearing_sim.numerics.simd import LANES
 
 BORDER_STATES = 2 * BORDER
 CROWN = np.array([3e-6, 1e-6, 0.0, 0.0, 1e-6, 3e-6])
@@ -191,7 +192,7 @@ def dense_jacobian(run, state):
     cage = np.concatenate([np.arange(RING, BORDER), BORDER + np.arange(RING, BORDER)])
     for j in range(count):
         own = BORDER_STATES + j + count * np.arange(BLOCK)
-        slopes = work.slopes[j // LANES, :, j % LANES]
+        slopes = work.jacobian[j // LANES, :, j % LANES]
         rows = slopes[:RING_ROWS].reshape(5, LOCAL)
         matrix[own[:4], own[4:8]] = 1.0
         matrix[own[4:, None], own] = rows[:, :BLOCK]
@@ -221,8 +222,8 @@ def test_block_arrow_solution_is_that_of_the_dense_matrix():
     matrix = np.eye(state.size) - shift * dense_jacobian(run, state)
     right = np.random.default_rng(2).normal(size=state.size)
     x = right.copy()
-    assert spatial_algebra.factor(run._work.slopes, run._work.border_own, shift, run._work.factored)
-    spatial_algebra.solve(run._work.slopes, run._work.factored, x)
+    assert jacobian.factor(run._work.jacobian, run._work.border_own, shift, run._work.factored)
+    jacobian.solve(run._work.jacobian, run._work.factored, x)
     expected = np.linalg.solve(matrix, right)
     np.testing.assert_allclose(x, expected, rtol=0, atol=1e-9 * np.abs(expected).max())
 

@@ -15,16 +15,13 @@ import pytest
 from click.testing import CliRunner
 
 from bearing_sim import SceneError, Simulation, load_scene
-from bearing_sim.cli import main
-from bearing_sim.sample import OBSERVABLES, new_block
+from bearing_sim.cli.main import main
+from bearing_sim.model.sample import OBSERVABLES, new_block
 from bearing_sim.sweep import point
-from bearing_sim.sweep.axis import axis, read_axis
-from bearing_sim.sweep.fields import FieldError
-from bearing_sim.sweep.grid import sweep
-from bearing_sim.sweep.journal import Journal
-from bearing_sim.sweep.picture import NotDrawable, draw
+from bearing_sim.sweep.grid import FieldError, axis, read_axis, sweep
 from bearing_sim.sweep.point import RESULTS, point_row
-from bearing_sim.sweep.table import read_table, write_table
+from bearing_sim.sweep.table import NotDrawable, draw, read_table, write_table
+from bearing_sim.sweep.tasks import Journal
 
 LOW = "bearing.outer_raceway.low_radius"
 SPEED = "operating.shaft_speed"
@@ -62,23 +59,23 @@ def test_even_steps_are_what_a_person_would_write():
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "reported"),
     [
         ("bearing.outer_raceway.low_radus=1mm:2mm:3", "did you mean 'low_radius'"),
         ("bearing.outer_raceway=1:2:3", "a block"),
         ("operating.shaft_speed.rpm=1:2:3", "is a value, not a block"),
         (f"{LOW}=34.86mm:34.87mm", "START:STOP:N"),
-        (f"{LOW}=34.86:34.87mm:3", "one end has a unit"),
+        (f"{LOW}=34.86:34.87mm:3", "only one end has a unit"),
         (f"{LOW}=34.86N:34.87N:3", "wrong dimension"),
         (f"{LOW}=34.86mm:34.87mm:0", "from 1 to"),
         ("bearing.roller.count=12:18:4.5", "START:STOP:N"),
         ("bearing.roller.count=12:17:3", "whole numbers"),
-        ("bearing.roller.crown=1:2:3", "only numbers have a range"),
+        ("bearing.roller.crown=1:2:3", "a range needs numbers"),
         (LOW, "FIELD="),
     ],
 )
-def test_what_cannot_be_varied_is_refused_with_the_reason(text, told):
-    with pytest.raises(FieldError, match=told):
+def test_what_cannot_be_varied_is_refused_with_the_reason(text, reported):
+    with pytest.raises(FieldError, match=reported):
         read_axis(text)
 
 
@@ -181,7 +178,7 @@ def test_pictures_are_lines_over_one_variable_maps_over_two_and_refused_over_thr
     three = swept(f"{LOW}=34.86mm,34.865mm", f"{SPEED}=20000rpm,50000rpm", "operating.radial_load=100,200", overrides=["level=steady"])
     with pytest.raises(NotDrawable, match="this table has 3"):
         draw(tmp_path / "three.png", three)
-    with pytest.raises(NotDrawable, match="reason: no quantity"):
+    with pytest.raises(NotDrawable, match="reason: not a quantity"):
         draw(tmp_path / "one.png", one, ["reason"])
 
 
@@ -225,19 +222,19 @@ def test_a_finer_sweep_computes_only_what_is_new(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "reported"),
     [
         (["--vary", f"{LOW}=34.86mm:34.87mm:3", "--vary", f"{LOW}=1mm"], "given 2 times"),
         (["--vary", "level=slip,planar", "--level", "slip"], "contradict"),
         (["--vary", f"{LOW}=34.86mm:34.87mm:3", "--picture", "a.doc"], "expected a name that ends"),
         (["--vary", f"{LOW}=34.86mm:34.87mm:3", "--duration", "-1"], "more than 0"),
         (["--vary", "nothing=1"], "unknown field"),
-        (["--vary", f"{LOW}=1mm:34.87mm:1000", "--vary", f"{SPEED}=1:2:2000"], "points; at most"),
+        (["--vary", f"{LOW}=1mm:34.87mm:1000", "--vary", f"{SPEED}=1:2:2000"], "points; a sweep has at most"),
     ],
 )
-def test_command_refuses_what_it_cannot_mean(words, told):
+def test_command_refuses_what_it_cannot_mean(words, reported):
     result = CliRunner().invoke(main, ["sweep", "deng2017_table1", *words])
-    assert result.exit_code == 2 and told in result.output
+    assert result.exit_code == 2 and reported in result.output
 
 
 def test_plot_refuses_files_that_are_no_tables(tmp_path):

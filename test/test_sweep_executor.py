@@ -14,10 +14,8 @@ import pytest
 from click.testing import CliRunner
 from sweep_tasks import deadly, noted, tasks
 
-from bearing_sim.cli import main
-from bearing_sim.sweep.executor import ClusterError, run_tasks
-from bearing_sim.sweep.journal import Journal, JournalInUse
-from bearing_sim.sweep.tasks import task
+from bearing_sim.cli.main import main
+from bearing_sim.sweep.tasks import ClusterError, Journal, JournalInUse, run_tasks, task
 
 HERE = Path(__file__).resolve().parent
 
@@ -80,11 +78,11 @@ def test_after_a_kill_in_mid_run_nothing_in_the_journal_is_computed_again_and_no
     kept, before = len(lines(journal)), notes(tmp_path)
     assert 8 <= kept < count
     assert sum(before.values()) <= kept + 4  # what was under way: two tasks a worker at most
-    told = []
+    reported = []
     with Journal(journal) as again:
-        found = run_tasks(tasks(tmp_path / "notes", count, 0.05), again, workers=2, tell=lambda done, total: told.append((done, total)))
+        found = run_tasks(tasks(tmp_path / "notes", count, 0.05), again, workers=2, progress=lambda done, total: reported.append((done, total)))
     assert [result["square"] for result in found] == [number * number for number in range(count)]
-    assert told[0] == (0, count - kept) and told[-1] == (count - kept, count - kept)
+    assert reported[0] == (0, count - kept) and reported[-1] == (count - kept, count - kept)
     entries = [json.loads(line) for line in lines(journal)]
     assert len(entries) == count == len({entry["key"] for entry in entries})
     done_before = {str(round(entry["result"]["square"] ** 0.5)) for entry in entries[:kept]}
@@ -136,7 +134,7 @@ def test_a_key_tells_functions_arguments_and_their_last_digit_apart(tmp_path):
 
 
 def test_a_changed_law_changes_every_key(monkeypatch):
-    from bearing_sim.kernels import compilation
+    from bearing_sim.numerics import compilation
     from bearing_sim.sweep.tasks import program_hash
 
     before = program_hash()
@@ -163,7 +161,7 @@ def test_a_dask_cluster_computes_the_same_though_one_of_its_workers_is_killed_in
 
     cluster_tasks = tasks(tmp_path / "notes", count, 0.05)
     with Journal(tmp_path / "j") as journal:
-        found = run_tasks(cluster_tasks, journal, dask=cluster.scheduler_address, tell=kill_one)
+        found = run_tasks(cluster_tasks, journal, dask=cluster.scheduler_address, progress=kill_one)
     assert killed
     assert [result["square"] for result in found] == [number * number for number in range(count)]
     assert killed[0] in {result["process"] for result in found} and len({result["process"] for result in found}) >= 2
@@ -187,6 +185,6 @@ def test_the_command_sweeps_on_a_cluster_what_it_sweeps_alone(tmp_path, cluster)
 
 def test_a_scheduler_that_is_not_there_is_told(tmp_path, monkeypatch):
     pytest.importorskip("distributed", reason="distributed is not installed: pip install 'bearing_sim[dask]'")
-    monkeypatch.setattr("bearing_sim.sweep.executor._DASK_TIMEOUT", 0.5)
+    monkeypatch.setattr("bearing_sim.sweep.tasks._DASK_TIMEOUT", 0.5)
     with Journal() as journal, pytest.raises(ClusterError, match="no Dask scheduler answers"):
         run_tasks(tasks(tmp_path / "notes", 2), journal, dask="tcp://127.0.0.1:9")

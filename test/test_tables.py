@@ -13,17 +13,28 @@ from scipy.interpolate import PchipInterpolator
 from sim_time_bench import RATE, FalseWall, ListSink, Player, assert_same_samples, course, replayed, write
 
 from bearing_sim import Inputs, Simulation, load_scene
-from bearing_sim.cli import main
-from bearing_sim.contour import outer_contour
-from bearing_sim.kernels.raceway import tabulated
-from bearing_sim.levels.steady_point import ANSWER
-from bearing_sim.levels.steady_table import empty_table, monotone_slopes
-from bearing_sim.params import lubricate, pack
+from bearing_sim.cli.main import main
+from bearing_sim.levels.steady import table_builder as store
+from bearing_sim.levels.steady.operating_point import ANSWER
+from bearing_sim.levels.steady.table import contour_period, empty_table, mirror_axis, monotone_slopes, radius_at
+from bearing_sim.levels.steady.table_builder import (
+    Span,
+    assembled,
+    build_table,
+    cached_table,
+    look_up,
+    obtain_table,
+    read_table,
+    solve_scene,
+    span_of,
+    table_hash,
+    table_path,
+    write_table,
+)
+from bearing_sim.model.params import lubricate, pack
+from bearing_sim.physics.raceway import tabulated
 from bearing_sim.runtime.sim_time import SimTimeModel
-from bearing_sim.tables import store
-from bearing_sim.tables.grid import Span, assembled, build_table, look_up
-from bearing_sim.tables.store import cached_table, obtain_table, read_table, solve_scene, span_of, table_hash, table_path, write_table
-from bearing_sim.tables.symmetry import contour_period, mirror_axis, radius_at
+from bearing_sim.scene.contour import outer_contour
 
 RPM = math.pi / 30
 SMALL = [
@@ -176,14 +187,14 @@ def test_course_of_inputs_is_the_same_as_one_advance_after_the_other(small):
     times = np.linspace(0.1, 4.0, 40)
     inputs = np.column_stack([3000 + 400 * times, 500 + 100 * np.sin(times), 200 * np.cos(times), np.full(40, 393.15)])
     one, other = Simulation(scene, table=table), Simulation(scene, table=table)
-    block = one.advance_course(np.full(40, 0.1), inputs)
+    block = one.advance_profile(np.full(40, 0.1), inputs)
     singles = np.concatenate([other.advance(0.1, Inputs(*row)) for row in inputs])
     for name in ("time", "cage_slip", "cage_angle", "damage", "inner_load", "rating_life", "shaft_angle", "oil_temperature"):
         np.testing.assert_allclose(block[name], singles[name], rtol=1e-9, atol=1e-9)
     assert one.time == pytest.approx(other.time) and one.counters.steps == other.counters.steps == 40
 
 
-def test_course_by_table_under_a_clock_is_that_of_a_replay_to_rounding(small, tmp_path):
+def test_course_by_table_under_a_clock_is_that_of_a_replay_to_the_last_bit(small, tmp_path):
     scene, table, _ = small
     messages, by_table, wall = course(1.2, oil=False), partial(Simulation, table=table), FalseWall()
     expected = replayed(write(tmp_path / "log.mcap", messages), scene, model=by_table)
@@ -193,20 +204,20 @@ def test_course_by_table_under_a_clock_is_that_of_a_replay_to_rounding(small, tm
         recordings.append(ListSink(start_ns))
         return recordings[-1]
 
-    model.open("record", record, anew=True)
+    model.open("record", record, reopen=True)
     player = Player(model, wall)
     player.play(messages, np.arange(0.0, 1.21, 0.1).tolist(), random.Random(3))
     player.stand(1.0)
     player.until_idle()
     assert model.close()
-    assert_same_samples(recordings[-1].samples, expected.samples, exactly=False, limit=1e-9)
+    assert_same_samples(recordings[-1].samples, expected.samples)
     assert len({float(sample["cage_slip"]) for sample in recordings[-1].samples.values()}) > 50, "the slip follows the inputs"
 
 
 def test_course_ends_where_the_table_does(small):
     scene, table, _ = small
     inputs = np.column_stack([np.linspace(3000, 6000, 30), np.full(30, 500.0), np.zeros(30), np.full(30, 393.15)])
-    reached = Simulation(scene, table=table).advance_course(np.full(30, 0.1), inputs)
+    reached = Simulation(scene, table=table).advance_profile(np.full(30, 0.1), inputs)
     assert 0 < len(reached) < 30 and reached["shaft_speed"].max() <= table.speeds[-1]
 
 
@@ -244,9 +255,9 @@ def test_broken_file_is_built_anew(small, monkeypatch):
     whole = path.read_bytes()
     path.write_bytes(whole[:1000])
     monkeypatch.setattr(store, "build_table", lambda *_: (table, quality))
-    assert Simulation(scene).takes_courses is False
+    assert Simulation(scene).takes_profiles is False
     assert obtain_table(scene)[1] == quality and read_table(path) is not None
-    assert Simulation(scene).takes_courses is True
+    assert Simulation(scene).takes_profiles is True
 
 
 def test_table_belongs_to_bearing_oil_and_span_and_to_nothing_else():
@@ -317,10 +328,10 @@ def test_tabulated_contour_is_the_one_that_the_symmetry_is_looked_for_in():
 def test_replay_without_a_recording_comes_to_the_same_as_with_one(small, tmp_path):
     from recordings import steady_log
 
-    from bearing_sim.input_course import judge
-    from bearing_sim.input_log import read_input_log
-    from bearing_sim.replay import replay
-    from bearing_sim.sinks.mcap_sink import McapSink
+    from bearing_sim.inputs.log import read_input_log
+    from bearing_sim.inputs.profile import judge
+    from bearing_sim.recording.writer import McapSink
+    from bearing_sim.runtime.replay import replay
 
     scene, table, _ = small
     names = {"shaft_speed": None, "radial_load": None, "oil_temperature": None}

@@ -8,10 +8,10 @@ from rerun_files import last_value, views_in, written
 from scipy.spatial.transform import Rotation
 from synthetic_run import synthetic_block
 
-from bearing_sim import topics
-from bearing_sim.scene_file import load_scene
-from bearing_sim.sinks import section
-from bearing_sim.sinks.rerun_blueprint import blueprint
+from bearing_sim.messages import topics
+from bearing_sim.scene.loader import load_scene
+from bearing_sim.view import section
+from bearing_sim.view.blueprint import blueprint
 
 CHOICE = ["life.reliability=99 %", "life.lamina=true"]
 SPATIAL, CHOOSING, PLANAR = (load_scene("deng2017_table1", o) for o in (["level=spatial"], ["level=spatial", *CHOICE], ["level=planar"]))

@@ -6,12 +6,14 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from rosbags.typesys import Stores, get_typestore
 
-from bearing_sim import topics
-from bearing_sim.events import Event, Level
-from bearing_sim.runtime.input_gate import InputGate
-from bearing_sim.sample import new_block
-from bearing_sim.scene import InputLimits
+from bearing_sim.inputs.gate import InputGate
+from bearing_sim.messages import topics
+from bearing_sim.messages.events import Event, Level
+from bearing_sim.messages.sample_messages import SampleMessages, message_templates
+from bearing_sim.model.sample import OBSERVABLES, new_block
+from bearing_sim.scene.scene import InputLimits
 from bearing_sim.simulation import Inputs
 
 STAMP = 1_700_000_000_250_000_001
@@ -104,11 +106,36 @@ def test_every_array_says_how_its_numbers_lie(name):
 
 
 def test_diagnostics_level_is_a_byte_and_the_worst_of_the_events():
-    events = [Event(1.0, Level.WARN, "slip.high", "slip is 6 %"), Event(1.0, Level.ERROR, "input.stale", "no speed for 2 s")]
+    events = [Event(1.0, Level.WARN, "slip.high", "", "slip is 6 %"), Event(1.0, Level.ERROR, "input.stale", "", "no speed for 2 s")]
     message = topics.diagnostics(STAMP, events, topics.condition(one_sample()), hardware_id="b1")
     assert [status["level"] for status in message["status"]] == [b"\x02", b"\x01", b"\x02"]
     assert message["status"][0]["message"] == "no speed for 2 s"
     assert topics.diagnostics(STAMP)["status"][0]["level"] == b"\x00"
+
+
+def test_diagnostics_state_a_sample_in_the_units_that_their_keys_name():
+    """Written out: 15,000 rpm, a load of 3-4-5, oil at 120 degC."""
+    sample = one_sample()
+    for name, value in {
+        "shaft_speed": 500.0 * math.pi,
+        "load_y": 300.0,
+        "load_z": -400.0,
+        "oil_temperature": 393.15,
+        "cage_slip": 0.0625,
+        "rating_life": 389.0,
+        "damage": 0.005,
+    }.items():
+        sample[name] = value
+    assert topics.condition(sample) == pytest.approx(
+        {
+            "shaft speed [rpm]": 15_000.0,
+            "radial load [N]": 500.0,
+            "oil temperature [degC]": 120.0,
+            "cage slip [%]": 6.25,
+            "rating life [h]": 389.0,
+            "damage [% of life]": 0.5,
+        }
+    )
 
 
 def test_diagnostics_numbers_are_strings_with_the_unit_in_the_key():
@@ -117,3 +144,82 @@ def test_diagnostics_numbers_are_strings_with_the_unit_in_the_key():
     values = {pair["key"]: pair["value"] for pair in topics.diagnostics(STAMP, (), topics.condition(sample))["status"][0]["values"]}
     assert float(values["shaft speed [rpm]"]) == pytest.approx(45_000)
     assert all("[" in key and isinstance(value, str) and value for key, value in values.items())
+
+
+# What each row of each array is, written out: label on the wire, observable, unit.  These are promises to readers of recordings and topics.
+WIRE = {
+    "equivalent_loads": ("ring: inner, outer", [("inner_equivalent_load", "N"), ("outer_equivalent_load", "N")]),
+    "centre_positions": ("inner ring y, z, cage y, z", [("ring_y", "m"), ("ring_z", "m"), ("cage_y", "m"), ("cage_z", "m")]),
+    "axis_tilts": (
+        "inner ring y, z, cage y, z",
+        [("ring_tilt_y", "rad"), ("ring_tilt_z", "rad"), ("cage_tilt_y", "rad"), ("cage_tilt_z", "rad")],
+    ),
+    "slice_pressures": (
+        "inner, outer, inner end slices, outer end slices",
+        [("inner_pressure", "Pa"), ("outer_pressure", "Pa"), ("inner_edge_pressure", "Pa"), ("outer_edge_pressure", "Pa")],
+    ),
+    "power": (
+        "shaft, inner sliding, outer sliding, churning, windage, land, pocket, damping",
+        [
+            ("shaft_power", "W"),
+            ("inner_sliding_power", "W"),
+            ("outer_sliding_power", "W"),
+            ("churning_power", "W"),
+            ("windage_power", "W"),
+            ("land_power", "W"),
+            ("pocket_power", "W"),
+            ("damping_power", "W"),
+        ],
+    ),
+    "roller_speeds": ("speed: orbital, spin", [("orbital_speed", "rad/s"), ("roller_spin", "rad/s")]),
+    "pocket_forces": ("force on", [("pocket_force", "N")]),
+    "roller_tilts": ("inclination: outwards, along the orbit", [("roller_tilt", "rad"), ("roller_skew", "rad")]),
+    "roller_loads": ("ring", [("inner_load", "N"), ("outer_load", "N")]),
+    "operating_point": (
+        "load y, z, oil temperature, land eccentricity",
+        [("load_y", "N"), ("load_z", "N"), ("oil_temperature", "K"), ("land_eccentricity", "")],
+    ),
+    "roller_places": ("angle, radius, rotation", [("roller_angle", "rad"), ("roller_radius", "m"), ("roller_rotation", "rad")]),
+}
+NUMBERS = {"cage_slip": "", "rating_life": "h", "lamina_life": "h", "modified_rating_life": "h", "level": "", "damage": ""}
+JOINT_ROWS = {
+    "shaft": ("shaft_angle", "shaft_speed"),
+    "cage": ("cage_angle", "cage_speed"),
+    "cage_ideal": ("ideal_cage_angle", "ideal_cage_speed"),
+}
+
+
+def on_the_wire(rollers=4):
+    """Return one sample, and its messages by topic as another library reads them from the bytes that are published and recorded."""
+    sample, store = one_sample(rollers), get_typestore(Stores.ROS2_JAZZY)
+    table = tuple((topics.OUTPUTS | topics.RECORDED).values())
+    messages = SampleMessages(message_templates(table, rollers))
+    messages.fill(STAMP, sample)
+    return sample, {topic.name: store.deserialize_cdr(bytes(part), topic.ros_type) for topic, part in zip(table, messages.parts)}
+
+
+def test_no_topic_of_samples_is_missing_from_what_is_written_out_here():
+    assert {*WIRE, *NUMBERS, "bearing_joints"} == {*topics.OUTPUTS, *topics.RECORDED}
+
+
+@pytest.mark.parametrize("name", WIRE)
+def test_rows_of_an_array_are_those_that_its_label_names_in_their_order_and_unit(name):
+    sample, messages = on_the_wire()
+    message, (label, rows) = messages[name], WIRE[name]
+    assert message.layout.dim[0].label == label
+    data = message.data.reshape(len(rows), -1)
+    units = {observable.name: observable.unit for observable in OBSERVABLES}
+    for row, (observable, unit) in zip(data, rows):
+        np.testing.assert_array_equal(row, np.atleast_1d(sample[observable]), err_msg=observable)
+        assert units[observable] == unit, observable
+        assert f"[{unit}]" in (topics.OUTPUTS | topics.RECORDED)[name].meaning or not unit
+
+
+def test_plain_numbers_and_joints_carry_the_observable_that_they_name():
+    sample, messages = on_the_wire()
+    for name, unit in NUMBERS.items():
+        assert messages[name].data == sample[name] and (f"[{unit}]" in topics.OUTPUTS[name].meaning or not unit), name
+    joints = messages["bearing_joints"]
+    found = {name: (angle, speed) for name, angle, speed in zip(joints.name, joints.position, joints.velocity)}
+    assert found == {name: (sample[angle], sample[speed]) for name, (angle, speed) in JOINT_ROWS.items()}
+    assert np.isnan(joints.effort).all() and (joints.header.stamp.sec, joints.header.stamp.nanosec) == (1_700_000_000, 250_000_001)

@@ -11,13 +11,11 @@ from click.testing import CliRunner
 from recordings import steady_log
 from scipy import stats
 
-from bearing_sim.cli import main
-from bearing_sim.scene_file import SceneError, load_scene, scene_from_yaml, scene_names, scene_to_yaml
-from bearing_sim.scene_uncertainty import Range, quantities, value_at, with_values
-from bearing_sim.studies.course_stretches import stretches
-from bearing_sim.studies.sensitivity import band, design, distribution, indices
-from bearing_sim.studies.uncertainty import UncertaintyError, cheapest_level, settled, study
-from bearing_sim.sweep.journal import Journal
+from bearing_sim.cli.main import main
+from bearing_sim.scene.loader import SceneError, load_scene, scene_from_yaml, scene_names, scene_to_yaml
+from bearing_sim.scene.uncertainty import Range, quantities, value_at, with_values
+from bearing_sim.studies.uncertainty import UncertaintyError, band, design, distribution, indices, lowest_level, settled, stretches, study
+from bearing_sim.sweep.tasks import Journal
 
 NONE = [
     f"uncertainty.{field}=null"
@@ -49,11 +47,11 @@ def test_ranges_are_read_in_units_by_path_or_nested_and_written_back():
 
 
 @pytest.mark.parametrize(
-    ("override", "told"),
+    ("override", "reported"),
     [
         ("uncertainty.lubricant.mixture_fractoin=[0.01, 0.05]", "unknown field (did you mean 'lubricant.mixture_fraction'?)"),
         ("uncertainty.temperature=[380, 390]", "did you mean 'lubricant.temperature'?"),
-        ("uncertainty.integration.first_step=[1 us, 2 us]", "a range is for a quantity of bearing, lubricant or operating"),
+        ("uncertainty.integration.first_step=[1 us, 2 us]", "expected a quantity of bearing, lubricant or operating"),
         ("uncertainty.lubricant.temperature=[1 mm, 400]", "has the wrong dimension; expected a temperature"),
         ("uncertainty.lubricant.temperature=[120 degC, 900 degC]", "900 degC is outside"),
         ("uncertainty.lubricant.temperature=[120 degC, 110 degC]", "is not below high"),
@@ -68,13 +66,13 @@ def test_ranges_are_read_in_units_by_path_or_nested_and_written_back():
         ("uncertainty=3", "expected a mapping of field to range"),
     ],
 )
-def test_a_range_that_cannot_be_is_refused_by_name(override, told):
+def test_a_range_that_cannot_be_is_refused_by_name(override, reported):
     with pytest.raises(SceneError) as refused:
         load_scene("deng2017_table1", [override])
-    assert told in str(refused.value)
+    assert reported in str(refused.value)
 
 
-def test_an_override_replaces_a_range_or_one_end_of_it_or_takes_it_away():
+def test_an_override_replaces_a_range_or_one_end_of_it_or_removes_it():
     changed = ranges("uncertainty.lubricant.temperature=[90 degC, 130 degC]", f"{FRACTION}.low=0.01", "uncertainty.lubricant.traction_scale=null")
     assert changed["lubricant.temperature"].low == pytest.approx(363.15) and changed["lubricant.temperature"].distribution == "uniform"
     assert (changed["lubricant.mixture_fraction"].low, changed["lubricant.mixture_fraction"].high) == (0.01, 0.05)
@@ -84,14 +82,14 @@ def test_an_override_replaces_a_range_or_one_end_of_it_or_takes_it_away():
 
 
 @pytest.mark.parametrize("name", scene_names())
-def test_bundled_scenes_say_what_nobody_knows_around_their_own_values_and_where_it_comes_from(name):
+def test_bundled_scenes_have_ranges_with_sources_around_their_own_values(name):
     scene = load_scene(name)
     assert {one.field.rpartition(".")[2] for one in scene.uncertainty} == {"mixture_fraction", "temperature", "traction_scale", "guide_clearance"}
     for one in scene.uncertainty:
         assert one.low < value_at(scene, one.field) < one.high and one.source
 
 
-def test_values_are_changed_by_path_and_checked_anew():
+def test_values_are_changed_by_path_and_checked_again():
     scene = load_scene("deng2017_table1")
     changed = with_values(scene, {"lubricant.temperature": 400.0, "bearing.cage.guide_clearance": 2e-4, "bearing.cage.mass": 0.06})
     assert (changed.lubricant.temperature, changed.bearing.cage.guide_clearance, changed.bearing.cage.mass) == (400.0, 2e-4, 0.06)
@@ -158,7 +156,7 @@ def test_the_band_of_one_field_is_slip_at_the_ends_of_its_own_band():
     found = study(scene, 64, seed=1, workers=1)
     assert found.level == "steady" and found.absent == 0
     bounds = stats.loguniform(0.015, 0.05).ppf([0.05, 0.5, 0.95])
-    steady = cheapest_level(scene)[0]
+    steady = lowest_level(scene)[0]
     slips = [settled(with_values(steady, {"lubricant.mixture_fraction": bound}))[0, 0] for bound in bounds]
     bands = found.bands["cage_slip"]
     assert [bands.low, bands.middle, bands.high] == pytest.approx(slips, rel=0.03)
@@ -170,28 +168,28 @@ def test_the_band_of_one_field_is_slip_at_the_ends_of_its_own_band():
 def test_what_is_sampled_at_level_steady_is_where_level_slip_settles():
     scene = load_scene("deng2017_table1", ["lubricant.mixture_fraction=0.045"])
     (slip,), (life,) = settled(scene)
-    (steady_slip,), (steady_life,) = settled(cheapest_level(scene)[0])
+    (steady_slip,), (steady_life,) = settled(lowest_level(scene)[0])
     assert scene.level == "slip" and slip == pytest.approx(steady_slip, abs=1e-3) and life == pytest.approx(steady_life, rel=0.01)
 
 
-def test_the_level_is_the_cheapest_that_has_what_the_scene_asks_for():
-    assert cheapest_level(load_scene("deng2017_table1", ["level=planar", "integration.fixed_step=5 us"]))[0].level == "steady"
-    assert cheapest_level(load_scene("deng2017_table1", ["level=spatial", "wants=[cage_orbit]"]))[0].level == "planar"
-    assert cheapest_level(load_scene("deng2017_table1"), "slip") == (load_scene("deng2017_table1"), "as asked for")
+def test_the_level_is_the_lowest_that_has_what_the_scene_asks_for():
+    assert lowest_level(load_scene("deng2017_table1", ["level=planar", "integration.fixed_step=5 us"]))[0].level == "steady"
+    assert lowest_level(load_scene("deng2017_table1", ["level=spatial", "wants=[cage_orbit]"]))[0].level == "planar"
+    assert lowest_level(load_scene("deng2017_table1"), "slip") == (load_scene("deng2017_table1"), "as requested")
     with pytest.raises(UncertaintyError, match="needs level spatial"):
-        cheapest_level(load_scene("deng2017_table1", ["level=spatial", "bearing.roller.crown=iso_log"]), "slip")
+        lowest_level(load_scene("deng2017_table1", ["level=spatial", "bearing.roller.crown=iso_log"]), "slip")
 
 
 @pytest.mark.parametrize(
-    ("overrides", "told"),
+    ("overrides", "reported"),
     [
-        (NONE, "says nothing of what is uncertain"),
-        (["lubricant.mixture_fraction=0.06"], r"0.015 to 0.05 leaves out the scene's own 0.06; .*=\[0.015, 0.06\]"),
-        ([*NONE, "uncertainty.bearing.cage.inner_radius=[29 mm, 36 mm]"], "do not fit together .*lies outside its outer surface.*narrow the ranges"),
+        (NONE, "has no uncertain fields"),
+        (["lubricant.mixture_fraction=0.06"], r"0.015 to 0.05 excludes the scene's own value, 0.06; .*=\[0.015, 0.06\]"),
+        ([*NONE, "uncertainty.bearing.cage.inner_radius=[29 mm, 36 mm]"], "contradict each other .*lies outside its outer surface.*narrow"),
     ],
 )
-def test_what_cannot_be_sampled_is_refused(overrides, told):
-    with pytest.raises(UncertaintyError, match=told):
+def test_what_cannot_be_sampled_is_refused(overrides, reported):
+    with pytest.raises(UncertaintyError, match=reported):
         study(load_scene("deng2017_table1", overrides), 4, seed=1, workers=1)
 
 
@@ -199,7 +197,7 @@ def test_over_a_course_slip_is_the_mean_over_time_and_life_follows_miner():
     scene = load_scene("deng2017_table1", NONE[1:])
     conditions, seconds = np.array([[4000.0, 800.0, 0.0, math.nan], [5000.0, 0.0, 2000.0, 400.0]]), np.array([30.0, 10.0])
     found = study(scene, 2, seed=1, course=(conditions, seconds), workers=1)
-    steady = cheapest_level(scene)[0]
+    steady = lowest_level(scene)[0]
     slips, lives = zip(*(settled(steady, conditions[[k]])[:, 0] for k in range(2)))
     assert found.own["cage_slip"] == pytest.approx(0.75 * slips[0] + 0.25 * slips[1])
     assert found.own["life_hours"] == pytest.approx(1 / (0.75 / lives[0] + 0.25 / lives[1]))
@@ -209,18 +207,20 @@ def test_over_a_course_slip_is_the_mean_over_time_and_life_follows_miner():
 
 
 def test_workers_and_a_journal_change_no_digit_and_what_is_in_the_journal_is_not_computed_again(tmp_path):
-    scene, told = load_scene("deng2017_table1"), []
+    scene, reported = load_scene("deng2017_table1"), []
     conditions = (np.array([[4000.0, 800.0, 0.0, math.nan], [5000.0, 0.0, 2000.0, 400.0]]), np.array([30.0, 10.0]))
     with Journal(tmp_path / "points.journal") as journal:
-        found = study(scene, 16, seed=1, course=conditions, journal=journal, workers=2, tell=lambda *counts: told.append(counts))
-        assert told[0] == (0, 96) and told[-1] == (96, 96)
-    fields, steady = [one.field for one in found.ranges], cheapest_level(scene)[0]
+        found = study(scene, 16, seed=1, course=conditions, journal=journal, workers=2, progress=lambda *counts: reported.append(counts))
+        assert reported[0] == (0, 96) and reported[-1] == (96, 96)
+    fields, steady = [one.field for one in found.ranges], lowest_level(scene)[0]
     for k in (0, 63, 64, 95):
         alone = settled(with_values(steady, dict(zip(fields, found.design.points[k].tolist()))), conditions[0])
         assert (found.slips[k] == alone[0]).all()
     with Journal(tmp_path / "points.journal") as journal:
-        again = study(scene, 16, seed=1, course=conditions, journal=journal, workers=1, tell=lambda *counts: told.append(counts))
-    assert told[-1] == (0, 0) and (again.slips == found.slips).all() and again.answers["life_hours"].tolist() == found.answers["life_hours"].tolist()
+        again = study(scene, 16, seed=1, course=conditions, journal=journal, workers=1, progress=lambda *counts: reported.append(counts))
+    assert (
+        reported[-1] == (0, 0) and (again.slips == found.slips).all() and again.answers["life_hours"].tolist() == found.answers["life_hours"].tolist()
+    )
 
 
 def test_stretches_keep_the_means_of_a_course_and_leave_gaps_out():
@@ -258,9 +258,9 @@ def test_the_command_tells_bands_shares_errors_and_sources(tmp_path):
 
 def test_the_command_prints_a_table_and_refuses_in_one_line():
     shown = bands("--samples", 4)
-    assert shown.exit_code == 0 and "cage slip: 5, 50, 95 % below" in shown.output and "lubricant.mixture_fraction" in shown.output
+    assert shown.exit_code == 0 and "cage slip: 5, 50, 95 % quantile" in shown.output and "lubricant.mixture_fraction" in shown.output
     refused = bands("--samples", 4, "--set", "lubricant.temperature=60 degC")
-    assert refused.exit_code == 2 and "leaves out the scene's own 60 degC" in refused.output
+    assert refused.exit_code == 2 and "excludes the scene's own value, 60 degC" in refused.output
     assert bands("--level", "cheap").exit_code == 2 and bands("--picture", "bands.gif").exit_code == 2
 
 
@@ -273,11 +273,11 @@ def test_the_command_tells_bands_over_a_log(tmp_path):
     assert (tmp_path / "course.png").exists()
 
 
-def test_a_run_tells_bands_too_where_it_is_asked_to():
+def test_a_run_prints_bands_on_request():
     arguments = ["run", "deng2017_table1", "--duration", "0.02", "--uncertainty", "4"]
     found = CliRunner().invoke(main, [*arguments, "--json"])
     assert found.exit_code == 0, found.output
     report = json.loads(found.stdout)
     assert report["level"] == "slip" and report["uncertainty"]["level"] == "steady" and report["uncertainty"]["cage_slip"]["p95"] > 0.05
     shown = CliRunner().invoke(main, arguments)
-    assert "cage slip varies by" in shown.output and "24 times level steady" in shown.output
+    assert "cage slip depends on" in shown.output and "24 runs of level steady" in shown.output

@@ -10,14 +10,14 @@ from click.testing import CliRunner
 from rerun.chunk import RrdReader
 from synthetic_run import synthetic_block
 
-from bearing_sim import screenshot
-from bearing_sim.commands import view
-from bearing_sim.events import Event, Level
-from bearing_sim.scene_file import load_scene
-from bearing_sim.screenshot import HOW_TO_GET_VULKAN, HeadlessViewer, ViewerFailed
-from bearing_sim.sinks.mcap_sink import McapSink
-from bearing_sim.sinks.rerun_blueprint import section_title
-from bearing_sim.sinks.rerun_sink import RerunSink
+from bearing_sim.cli import view
+from bearing_sim.messages.events import Event, Level
+from bearing_sim.recording.writer import McapSink
+from bearing_sim.scene.loader import load_scene
+from bearing_sim.view import screenshot
+from bearing_sim.view.blueprint import section_title
+from bearing_sim.view.screenshot import HOW_TO_GET_VULKAN, HeadlessViewer, ViewerFailed
+from bearing_sim.view.sink import RerunSink
 
 SCENE = load_scene("deng2017_table1")
 
@@ -27,12 +27,12 @@ def recording(tmp_path_factory):
     path = tmp_path_factory.mktemp("view") / "run.mcap"
     with McapSink(path, SCENE, 1_700_000_000_000_000_000) as sink:
         sink.write(synthetic_block(SCENE, 0.005 * np.arange(1, 61)))
-        sink.write_event(Event(0.2, Level.WARN, "bearing.slip", "cage slip: 6 % has reached 5 %"))
+        sink.write_event(Event(0.2, Level.WARN, "bearing.slip", "cage slip", "6 % has reached 5 %"))
     return path
 
 
 def run(*arguments):
-    return CliRunner().invoke(view.command, [str(argument) for argument in arguments])
+    return CliRunner().invoke(view.view, [str(argument) for argument in arguments])
 
 
 def picture_or_skip(*arguments):
@@ -65,7 +65,7 @@ def test_file_for_rerun_lies_beside_the_recording_unless_told_otherwise(recordin
 @pytest.mark.parametrize(
     "arguments, reason",
     [
-        (["--at", "99", "--screenshot", "a.png"], "goes from 0.005 to 0.3 s"),
+        (["--at", "99", "--screenshot", "a.png"], "covers 0.005 to 0.3 s"),
         (["--size", "wide"], "expected WIDTHxHEIGHT"),
     ],
 )

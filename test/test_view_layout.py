@@ -11,13 +11,11 @@ import rerun.blueprint as rrb
 from rerun_files import column, views_in, written
 from synthetic_run import synthetic_block
 
-from bearing_sim.events import Event, Level
-from bearing_sim.scene_file import load_scene
-from bearing_sim.sinks.overview import AROUND
-from bearing_sim.sinks.rerun_blueprint import blueprint
-from bearing_sim.sinks.rerun_lines import LINES, roller_series, threshold_lines
-from bearing_sim.sinks.rerun_series import RunSeries
-from bearing_sim.sinks.rerun_sink import RerunSink
+from bearing_sim.messages.events import Event, Level
+from bearing_sim.scene.loader import load_scene
+from bearing_sim.view.blueprint import blueprint
+from bearing_sim.view.plots import AROUND, LINES, RunSeries, roller_series, threshold_lines
+from bearing_sim.view.sink import RerunSink
 
 SCENES = {level: load_scene("deng2017_table1", [f"level={level}"]) for level in ("steady", "slip", "planar", "spatial")}
 SLIP = SCENES["slip"]
@@ -155,7 +153,7 @@ def test_a_long_run_is_thinned_out_but_for_what_happened(tmp_path):
     for part in np.array_split(block, 260):
         series.write(part)
         if part["time"][0] <= event <= part["time"][-1]:
-            series.write_event(Event(event, Level.WARN, "test", "something happened"))
+            series.write_event(Event(event, Level.WARN, "test", "", "something happened"))
     series.finish()
     recording.disconnect()
     times, slips = column(tmp_path / "run.rrd", "/slip/cage")

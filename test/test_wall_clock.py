@@ -3,7 +3,7 @@
 
 import pytest
 
-from bearing_sim.runtime.wall_clock import WallClock
+from bearing_sim.runtime.pacing import WallClock
 
 START_NS = 1_700_000_000_000_000_000
 

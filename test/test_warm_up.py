@@ -18,19 +18,19 @@ def ended(warm_up):
 def test_jobs_run_one_after_the_other_on_one_thread_that_then_ends():
     warm_up, began, threads = WarmUp(), [], set()
     for number in range(50):
-        warm_up.ask(lambda number=number: (began.append(number), threads.add(threading.get_ident())))
+        warm_up.request(lambda number=number: (began.append(number), threads.add(threading.get_ident())))
     assert ended(warm_up) and began == list(range(50))
     assert not [thread for thread in threading.enumerate() if thread.name == "warm-up"]
 
 
 def test_jobs_asked_for_while_one_runs_wait_and_can_be_forgotten():
     warm_up, gate, done = WarmUp(), threading.Event(), []
-    warm_up.ask(lambda: gate.wait(30.0))
+    warm_up.request(lambda: gate.wait(30.0))
     for number in range(100):
-        warm_up.ask(lambda number=number: done.append(number))
+        warm_up.request(lambda number=number: done.append(number))
     assert len([thread for thread in threading.enumerate() if thread.name == "warm-up"]) == 1
-    warm_up.forget()
+    warm_up.cancel()
     gate.set()
     assert ended(warm_up) and done == []
-    warm_up.ask(lambda: done.append("later"))
+    warm_up.request(lambda: done.append("later"))
     assert ended(warm_up) and done == ["later"]

@@ -8,10 +8,9 @@ import pytest
 from rerun_files import last_value, views_in, written
 from synthetic_run import synthetic_block
 
-from bearing_sim.scene_file import load_scene
-from bearing_sim.sinks.rerun_blueprint import blueprint
-from bearing_sim.sinks.rerun_cage import TURNS, OrbitPath
-from bearing_sim.sinks.rerun_power import CAUSES
+from bearing_sim.scene.loader import load_scene
+from bearing_sim.view.blueprint import blueprint
+from bearing_sim.view.drawings import CAUSES, TURNS, OrbitPath
 
 SLIP, PLANAR = (load_scene("deng2017_table1", [f"level={level}"]) for level in ("slip", "planar"))
 
@@ -77,16 +76,16 @@ def test_path_holds_the_last_turns_of_the_cage():
     for part in np.array_split(block, 11):
         path.add(part)
     recent = block["cage_angle"] >= block["cage_angle"][-1] - 2 * math.pi * TURNS
-    np.testing.assert_array_equal(path.places(), np.stack((block["cage_y"], block["cage_z"]), axis=1)[recent])
+    np.testing.assert_array_equal(path.positions(), np.stack((block["cage_y"], block["cage_z"]), axis=1)[recent])
     assert path.is_dense()
 
 
 def test_samples_a_good_part_of_a_turn_apart_are_no_line():
     path = OrbitPath()
-    assert not path.is_dense() and path.places().shape == (0, 2)
+    assert not path.is_dense() and path.positions().shape == (0, 2)
     path.add(whirling_block(samples=100, turns=30.0))
     assert not path.is_dense()
-    assert len(path.places()) >= 40
+    assert len(path.positions()) >= 40
 
 
 def test_recording_that_does_not_know_the_cages_place_is_shown_without(tmp_path):

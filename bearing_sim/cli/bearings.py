@@ -1,28 +1,147 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""``bearing-sim machine``: the contour that pre-deformation machining leaves."""
+"""``bearing-sim scenes``, ``loads`` and ``machine``: what is bundled, static load distributions, and machined raceways."""
 
 import math
 from pathlib import Path
 
 import click
 
-from bearing_sim.commands.reporting import BadInput, picture_option, print_json, print_table, told_as_bad_input, told_file_faults
+from bearing_sim.cli.options import json_option, picture_option, scene_argument, set_option
+from bearing_sim.cli.reporting import FailedRun, UsageError, announce_compilation, as_file_error, as_usage_error, print_json, print_table
+
+
+@click.command("scenes")
+@json_option
+def scenes(as_json):
+    """List the bundled scenes, bearings, oils and CSV mappings."""
+    from bearing_sim.scene.loader import catalog_names, load_scene, scene_names
+
+    found = {"scenes": {name: load_scene(name).description for name in scene_names()}}
+    found |= {kind: catalog_names(kind) for kind in ("bearings", "oils", "mappings")}
+    if as_json:
+        print_json(found)
+        return
+    print_table("scenes", found["scenes"].items())
+    print_table("catalog", [(kind, ", ".join(found[kind])) for kind in ("bearings", "oils", "mappings")])
+
+
+@click.command("loads")
+@scene_argument
+@set_option
+@click.option(
+    "--slices", default=40, show_default=True, type=click.IntRange(5, 400), metavar="N", help="Slices per roller (ISO/TS 16281: at least 30)."
+)
+@picture_option("Draw the loads")
+@json_option
+def loads(scene_name, overrides, slices, picture, as_json):
+    """Show the quasi-static load distribution of SCENE under its constant conditions, without cage slip and with roller 0 on the load line.
+
+    A crown, a moment or a misalignment requires level spatial, in the scene or by --set level=spatial.
+    """
+    from bearing_sim.scene.loader import SceneError, load_scene
+
+    with as_usage_error(SceneError):
+        scene = load_scene(scene_name, overrides)
+    announce_compilation()
+    from bearing_sim.studies.statics import statics
+
+    try:
+        found = statics(scene, slices)
+    except ArithmeticError as error:
+        raise FailedRun(str(error)) from None
+    if picture is not None:
+        from bearing_sim.studies.statics import draw
+
+        operating = scene.operating
+        with as_file_error():
+            draw(picture, f"{scene.name}: {operating.radial_load:g} N, {operating.shaft_speed * 30 / math.pi:.6g} rpm", found)
+    if as_json:
+        print_json({**_report_loads(scene, slices, found), "picture": picture and str(picture)})
+    else:
+        _print_loads(scene, slices, found)
+
+
+def _report_loads(scene, slices, found) -> dict:
+    return {
+        "scene": scene.name,
+        "slices": slices,
+        "ring_displacement_um": [1e6 * place for place in found.ring],
+        "ring_tilt_mrad": 1e3 * found.tilt[0],
+        "ring_tilt_angle_deg": math.degrees(found.tilt[1]),
+        "moment": found.moment[0],
+        "moment_angle_deg": math.degrees(found.moment[1]),
+        "loaded_rollers": int((found.inner > 0).sum()),
+        "inner_load_maximum": float(found.inner.max()),
+        "outer_load_maximum": float(found.outer.max()),
+        "inner_pressure_maximum_mpa": 1e-6 * found.inner_pressure,
+        "outer_pressure_maximum_mpa": 1e-6 * found.outer_pressure,
+        "equivalent_loads": list(found.equivalent_loads),
+        "life_hours": found.rating_life,
+        "lamina_life_hours": found.lamina_life,
+        "modified_life_hours": found.modified_life,
+        "viscosity_ratio": found.viscosity_ratio,
+        "contamination_factor": found.contamination_factor,
+        "azimuths_deg": [math.degrees(azimuth) for azimuth in found.azimuths],
+        "inner_loads": found.inner.tolist(),
+        "outer_loads": found.outer.tolist(),
+        "roller_tilts_mrad": [1e3 * tilt for tilt in found.tilts.tolist()],
+        "slice_middles_mm": [1e3 * middle for middle in found.slice_middles.tolist()],
+        "inner_slice_loads": found.inner_slices.tolist(),
+        "outer_slice_loads": found.outer_slices.tolist(),
+    }
+
+
+def _print_loads(scene, slices, found) -> None:
+    import numpy as np
+
+    def lean(amount, azimuth, unit):
+        return f"{amount:.6g} {unit}, +x end towards {round(math.degrees(azimuth), 1) + 0.0:g} deg" if amount > 1e-9 else "none"
+
+    operating = scene.operating
+    oil = f"kappa {found.viscosity_ratio:.3g}"
+    if not math.isnan(found.contamination_factor):
+        oil += f", e_C {found.contamination_factor:.3g} ({scene.life.a_iso})"
+    held = "free" if operating.moment is not None else "held"
+    print_table(
+        f"{scene.name}: {operating.radial_load:g} N at {operating.shaft_speed * 30 / math.pi:.6g} rpm, {slices} slices",
+        [
+            ("loaded rollers", f"{int((found.inner > 0).sum())} of {len(found.inner)}"),
+            ("largest roller load", f"inner {found.inner.max():.6g} N, outer {found.outer.max():.6g} N"),
+            ("largest slice pressure", f"inner {1e-6 * found.inner_pressure:.4g} MPa, outer {1e-6 * found.outer_pressure:.4g} MPa"),
+            ("ring displacement", "y {:.6g} um, z {:.6g} um".format(*(round(1e6 * place, 6) + 0.0 for place in found.ring))),
+            (f"ring tilt ({held})", lean(1e3 * found.tilt[0], found.tilt[1], "mrad")),
+            ("moment on the ring", lean(found.moment[0], found.moment[1], "N m")),
+            ("basic rating life, whole rollers", _hours(found.rating_life)),
+            ("lamina life, with stress risers", _hours(found.lamina_life)),
+            (f"modified life, {100 * scene.life.reliability:g} % reliability", f"{_hours(found.modified_life)}; {oil}"),
+        ],
+    )
+    rows = []
+    for j in np.flatnonzero(found.inner > 0):
+        along, tilt = found.inner_slices[j], round(1e3 * found.tilts[j], 6) + 0.0
+        carried = f"inner {found.inner[j]:.6g} N (slices {along.min():.4g} to {along.max():.4g} N), outer {found.outer[j]:.6g} N"
+        rows.append((f"{j}: {math.degrees(found.azimuths[j]):.0f} deg", f"{carried}, tilt {tilt:.3g} mrad"))
+    print_table("rollers between both rings", rows)
+
+
+def _hours(life) -> str:
+    return f"{life:.4g} h" if math.isfinite(life) else "infinite"
 
 
 def _quantity(unit, meaning, minimum, maximum, shown_in):
-    """Return a click callback that reads a text with a unit."""
+    """Return a click callback that parses a quantity with a unit."""
 
     def read(context, option, text):
         from pydantic_core import PydanticCustomError
 
-        from bearing_sim.quantity import Quantity
+        from bearing_sim.scene.quantity import Quantity
 
         if text is None:
             return None
         try:
             return Quantity(unit, meaning, minimum, maximum, shown_in).read(text)
-        except PydanticCustomError as fault:
-            raise BadInput(f"--{option.name.replace('_', '-')} {text}: {fault.message()}") from None
+        except PydanticCustomError as error:
+            raise UsageError(f"--{option.name.replace('_', '-')} {text}: {error.message()}") from None
 
     return read
 
@@ -33,22 +152,22 @@ def _option(name, default, unit, meaning, minimum, maximum, shown_in):
     return click.option(f"--{name}", metavar="QUANTITY", callback=read, help=f"{meaning[0].upper()}{meaning[1:]}.", **shown)
 
 
-@click.command()
+@click.command("machine")
 @_option("pressure", "2.0 MPa", "Pa", "mean pressure on the arcs", 1e3, 1e9, "MPa")
-@_option("arc-turn", "0 deg", "rad", "how far one arc is turned from its even place, phi_f", -math.pi / 2, math.pi / 2, "deg")
+@_option("arc-turn", "0 deg", "rad", "angle by which one arc is turned from its even position, phi_f", -math.pi / 2, math.pi / 2, "deg")
 @_option("arc-width", "60 deg", "rad", "width of each pressed arc", 1e-3, math.pi, "deg")
-@click.option("--arcs", default=3, show_default=True, type=click.IntRange(2, 12), help="Number of pressed arcs, one for each lobe.")
+@click.option("--arcs", default=3, show_default=True, type=click.IntRange(2, 12), help="Number of pressed arcs, one per lobe.")
 @_option("mean-radius", "35.8 mm", "m", "mean radius of the ring blank", 1e-3, 2.0, "mm")
 @_option("width", "12 mm", "m", "width of the ring", 1e-4, 1.0, "mm")
 @_option("pressed-width", None, "m", "width that the pressure acts on [default: the ring's]", 1e-4, 1.0, "mm")
-@_option("thickness", "3.4 mm", "m", "equivalent thickness of the ring's section, ribs and all", 1e-5, 0.5, "mm")
+@_option("thickness", "3.4 mm", "m", "equivalent thickness of the ring's section, including ribs", 1e-5, 0.5, "mm")
 @_option("modulus", "206 GPa", "Pa", "Young's modulus", 1e9, 1e12, "GPa")
-@_option("low-radius", None, "m", "lowest radius of the finished raceway [default: 34.8625 mm, without --ground-radius]", 1e-3, 2.0, "mm")
-@_option("ground-radius", None, "m", "radius that the pressed ring is ground to", 1e-3, 2.0, "mm")
+@_option("low-radius", None, "m", "smallest radius of the finished raceway [default: 34.8625 mm unless --ground-radius is given]", 1e-3, 2.0, "mm")
+@_option("ground-radius", None, "m", "radius to which the pressed ring is ground", 1e-3, 2.0, "mm")
 @click.option("-o", "--out", type=click.Path(path_type=Path), metavar="CONTOUR.csv", help="Contour file for bearing.outer_raceway.contour_file.")
 @picture_option("Draw the contour")
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
-def command(
+@json_option
+def machine(
     pressure,
     arc_turn,
     arc_width,
@@ -64,36 +183,36 @@ def command(
     picture,
     as_json,
 ):
-    """Press a ring blank over even arcs, grind its raceway round, release it: what contour is left?
+    """Compute the contour left by pressing a ring blank over even arcs, grinding its raceway round and releasing it.
 
-    The ring is a thin elastic one, computed by the Fourier series of the pressure.  Where it was pressed are the high points;
-    without arc turn a low point is at 0 deg.  Turned pressures are rescaled until their resultant vanishes.
+    The ring is thin and elastic, computed by the Fourier series of the pressure.  The high points are where it was pressed; without
+    --arc-turn a low point is at 0 deg.  Pressures of turned arcs are rescaled until their resultant vanishes.
     """
     from bearing_sim.studies.machining import Pressing, RingSection, contour_text, machine
 
     if low_radius is not None and ground_radius is not None:
-        raise BadInput("--low-radius and --ground-radius say the same thing twice; give one")
+        raise UsageError("--low-radius and --ground-radius determine the same radius; give one of them")
     if arcs * arc_width + abs(arc_turn) > 2 * math.pi:
-        raise BadInput(f"--arc-width {math.degrees(arc_width):g} deg, {arcs} times and turned by {math.degrees(arc_turn):g} deg: the arcs overlap")
+        raise UsageError(f"--arc-width {math.degrees(arc_width):g} deg, {arcs} times and turned by {math.degrees(arc_turn):g} deg: the arcs overlap")
     if ground_radius is None and low_radius is None:
         low_radius = 34.8625e-3
     section, pressing = RingSection(mean_radius, width, thickness, modulus), Pressing(pressure, arc_turn, arc_width, arcs, pressed_width)
-    with told_as_bad_input(ValueError):
+    with as_usage_error(ValueError):
         machined = machine(section, pressing, ground_radius=ground_radius, low_radius=low_radius)
-    report = _report(section, pressing, machined)
-    with told_file_faults():
+    report = _report_machine(section, pressing, machined)
+    with as_file_error():
         if out is not None:
             out.write_text(contour_text(machined, _about(section, pressing)))
         if picture is not None:
-            from bearing_sim.studies.machining_picture import draw
+            from bearing_sim.studies.machining import draw
 
             draw(picture, section, pressing, machined)
     if as_json:
         print_json({**report, "out": out and str(out), "picture": picture and str(picture)})
     else:
-        _print(report, machined)
+        _print_machine(report, machined)
     if len(machined.lows) != arcs:
-        click.echo(f"note: {len(machined.lows)} low points from {arcs} arcs: the turned arc has swallowed a lobe", err=True)
+        click.echo(f"note: {arcs} arcs give {len(machined.lows)} low points: the turned arc has removed a lobe", err=True)
 
 
 def _about(section, pressing) -> str:
@@ -105,7 +224,7 @@ def _about(section, pressing) -> str:
     )
 
 
-def _report(section, pressing, machined) -> dict:
+def _report_machine(section, pressing, machined) -> dict:
     return {
         "pressures_mpa": [1e-6 * float(pressure) for pressure in pressing.pressures],
         "arc_centres_deg": [math.degrees(centre) for centre in pressing.centres],
@@ -122,14 +241,14 @@ def _report(section, pressing, machined) -> dict:
     }
 
 
-def _print(report, machined) -> None:
+def _print_machine(report, machined) -> None:
     def points(kind):
         return ", ".join(f"{point['radius_mm']:.4f} mm at {point['angle_deg']:.1f} deg" for point in report[f"{kind}_points"])
 
     print_table(
         "raceway after release",
         [
-            ("D-value, mean of highs less mean of lows", f"{report['d_value_mm']:.4f} mm"),
+            ("D-value, mean of highs minus mean of lows", f"{report['d_value_mm']:.4f} mm"),
             ("roundness of the low points", f"{report['roundness_um']:.2f} um"),
             ("low points", points("low")),
             ("high points", points("high")),

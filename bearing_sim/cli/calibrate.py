@@ -5,29 +5,21 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.commands.reporting import (
-    BadInput,
-    picture_option,
-    print_json,
-    print_table,
-    progress_bar,
-    tell_compilation,
-    told_as_bad_input,
-    told_file_faults,
-)
+from bearing_sim.cli.options import json_option, picture_option
+from bearing_sim.cli.reporting import UsageError, announce_compilation, as_file_error, as_usage_error, print_json, print_table, progress_bar
 
-_EXPECTED = 30  # evaluations of an ordinary search, for the bar
+_EXPECTED = 30  # evaluations of a typical search, for the progress bar
 _UNLIKELY = 0.01
 
 
-@click.command()
+@click.command("calibrate")
 @click.argument("log", type=click.Path(path_type=Path), metavar="RUN.mcap")
 @click.option("--scene", "scene_name", metavar="SCENE", help="Bundled scene or YAML file [default: the scene in the recording].")
-@click.option("--set", "overrides", multiple=True, metavar="FIELD=VALUE", help="Override a field of the scene, or a range; may be repeated.")
-@click.option("--fit", "fields", multiple=True, metavar="FIELD", help="Fit this field; may be repeated [default: lubricant.mixture_fraction].")
-@click.option("--batch", type=click.FloatRange(min=0.01), metavar="S", help="Length of the blocks averaged over [default: 1 s, less in a short run].")
+@click.option("--set", "overrides", multiple=True, metavar="FIELD=VALUE", help="Override a field or a range of the scene; can be repeated.")
+@click.option("--fit", "fields", multiple=True, metavar="FIELD", help="Fit this field; can be repeated [default: lubricant.mixture_fraction].")
+@click.option("--batch", type=click.FloatRange(min=0.01), metavar="S", help="Length of the averaged blocks [default: 1 s, less for short runs].")
 @click.option(
-    "--confidence", default=0.95, show_default=True, type=click.FloatRange(0.5, 0.999), metavar="SHARE", help="Of the confidence intervals."
+    "--confidence", default=0.95, show_default=True, type=click.FloatRange(0.5, 0.999), metavar="FRACTION", help="Level of the confidence intervals."
 )
 @click.option(
     "-o", "--out", type=click.Path(path_type=Path), metavar="SCENE.yaml", help="Write the scene with the fitted values and their intervals."
@@ -35,40 +27,39 @@ _UNLIKELY = 0.01
 @picture_option("Draw measured and predicted slip")
 @click.option("--speed-topic", metavar="TOPIC", help="Topic of the shaft speed [default: /shaft_speed].")
 @click.option("--load-topic", metavar="TOPIC", help="Topic of the radial load [default: /radial_load].")
-@click.option("--temperature-topic", metavar="TOPIC", help="Topic of the oil temperature [default: /oil_temperature, where there is one].")
+@click.option("--temperature-topic", metavar="TOPIC", help="Topic of the oil temperature [default: /oil_temperature, if present].")
 @click.option("--cage-topic", metavar="TOPIC", help="Topic of the measured cage speed [default: /cage_speed_measured].")
-@click.option("--joint", default="shaft", show_default=True, metavar="NAME", help="The shaft's joint in JointState messages.")
-@click.option("--cage-joint", default="cage", show_default=True, metavar="NAME", help="The cage's joint in JointState messages.")
-@click.option("--stamps", type=click.Choice(["header", "log"]), default="header", show_default=True, help="Go by header stamps, or by log times.")
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
-def command(
+@click.option("--joint", default="shaft", show_default=True, metavar="NAME", help="Name of the shaft's joint in JointState messages.")
+@click.option("--cage-joint", default="cage", show_default=True, metavar="NAME", help="Name of the cage's joint in JointState messages.")
+@click.option("--stamps", type=click.Choice(["header", "log"]), default="header", show_default=True, help="Use header stamps or log times.")
+@json_option
+def calibrate(
     log, scene_name, overrides, fields, batch, confidence, out, picture, speed_topic, load_topic, temperature_topic, cage_topic, joint, cage_joint,
     stamps, as_json,
 ):  # fmt: skip
-    """Fit fields of a scene to the cage speed that was measured in RUN.mcap, within their ranges in the scene's block `uncertainty`.
+    """Fit fields of a scene to the cage speed measured in RUN.mcap, within their ranges in the scene's block `uncertainty`.
 
-    Any rosbag2 recording in MCAP with shaft speed, radial load and measured cage speed will do: one of ours, a bag, or what
-    `bearing-sim import-csv` makes of a table. Only what has settled counts. What the measurement cannot tell is refused.
+    RUN.mcap is any rosbag2 recording in MCAP with shaft speed, radial load and measured cage speed: from bearing-sim, from any bag, or
+    from a table by `bearing-sim import-csv`. Only settled operation is used. Fields that the data cannot determine are refused.
     """
     if out is not None and out.suffix.lower() not in (".yaml", ".yml"):
-        raise BadInput(f"--out {out}: expected a name that ends in .yaml")
+        raise UsageError(f"--out {out}: expected a name that ends in .yaml")
     scene = _scene(log, scene_name, overrides)
     names = {"shaft_speed": speed_topic, "radial_load": load_topic, "oil_temperature": temperature_topic, "cage_speed_measured": cage_topic}
     measured, lines = _measured(log, scene, names, joint, stamps, cage_joint)
-    tell_compilation()
-    from bearing_sim.studies.calibration import CalibrationError, calibrate
-    from bearing_sim.studies.calibration_blocks import block_length, cut
+    announce_compilation()
+    from bearing_sim.studies.calibration import CalibrationError, block_length, calibrate, cut
 
     length = batch or block_length(measured.times[-1] - measured.times[0])
     blocks = cut(measured, scene.bearing.diameter_ratio, scene.thresholds.slip_from_speed, length)
     asked = fields or ("lubricant.mixture_fraction",)
-    with progress_bar(f"calibrating {scene.name}", _EXPECTED) as show, told_as_bad_input(CalibrationError):
+    with progress_bar(f"calibrating {scene.name}", _EXPECTED) as show, as_usage_error(CalibrationError):
         found = calibrate(scene, asked, blocks, confidence=confidence, progress=show)
-    with told_file_faults():
+    with as_file_error():
         if out is not None:
             _write(out, log, found)
         if picture is not None:
-            from bearing_sim.studies.calibration_picture import draw
+            from bearing_sim.studies.calibration import draw
 
             draw(picture, f"{scene.name} calibrated by {log.name}", found)
     if as_json:
@@ -78,34 +69,35 @@ def command(
 
 
 def _scene(log, scene_name, overrides):
-    """Return the scene to calibrate: the one asked for, or that of the recording, with what is overridden."""
-    from bearing_sim.recording_reader import Recording, RecordingError
-    from bearing_sim.scene_file import SceneError, load_scene, scene_from_yaml, scene_to_yaml
+    """Return the scene to calibrate: the named one, or that of the recording, with overrides."""
+    from bearing_sim.recording.bag import RecordingError
+    from bearing_sim.recording.reader import Recording
+    from bearing_sim.scene.loader import SceneError, load_scene, scene_from_yaml, scene_to_yaml
 
-    with told_as_bad_input(SceneError), told_file_faults():
+    with as_usage_error(SceneError), as_file_error():
         if scene_name is not None:
             return load_scene(scene_name, overrides)
         try:
             recorded = Recording(log).scene
-        except RecordingError as fault:
-            raise BadInput(f"{fault}; name the scene to calibrate with --scene") from None
+        except RecordingError as error:
+            raise UsageError(f"{error}; give the scene to calibrate with --scene") from None
         return scene_from_yaml(scene_to_yaml(recorded), overrides, origin=f"{log}: scene in the metadata")
 
 
 def _measured(log, scene, names, joint, stamps, cage_joint):
-    """Return what was measured, and lines of text on where it was found."""
+    """Return the measured data, and table rows that say where they come from."""
     import math
 
-    from bearing_sim.input_course import judge
-    from bearing_sim.input_log import REQUIRED, InputLogError, read_input_log, summary_lines
+    from bearing_sim.inputs.log import REQUIRED, InputLogError, read_input_log, summary_lines
+    from bearing_sim.inputs.profile import judge
+    from bearing_sim.messages.topics import MEASURED
     from bearing_sim.simulation import Inputs
-    from bearing_sim.studies.calibration_blocks import Measured
-    from bearing_sim.topics import MEASURED
+    from bearing_sim.studies.calibration import Measured
 
-    with told_as_bad_input(InputLogError), told_file_faults():
+    with as_usage_error(InputLogError), as_file_error():
         recorded = read_input_log(log, names, joint, stamps, cage_joint, (*REQUIRED, MEASURED))
         course = judge(recorded, scene.input_limits, Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature))
-    inputs = course.at(course.instants, math.nan)  # NaN: the scene's own temperature, which may be one to fit
+    inputs = course.at(course.instants, math.nan)  # NaN: the scene's own temperature, which may be a fitted field
     gaps = [(begin * 1e-9, end * 1e-9) for begin, end in course.gaps]
     refused = [("refused messages", ", ".join(f"{count} x {code}" for code, count in sorted(course.refused.items())))] if course.refused else []
     lines = [("log", line) for line in summary_lines(recorded)] + refused
@@ -117,8 +109,8 @@ def _override(found) -> list[str]:
 
 
 def _write(path, log, found) -> None:
-    from bearing_sim.provenance import package_version
-    from bearing_sim.scene_file import scene_to_yaml
+    from bearing_sim.recording.provenance import package_version
+    from bearing_sim.scene.loader import scene_to_yaml
 
     fields = ", ".join(one.range.field for one in found.fitted)
     head = f"# Calibrated by bearing_sim {package_version()}: {fields} fitted to the cage speed in {log.name}, {len(found.blocks.slip)} blocks.\n"
@@ -160,15 +152,15 @@ def _report(log, scene, found) -> dict:
 
 
 def _print(log, scene, found, lines, out) -> None:
-    from bearing_sim.scene_uncertainty import quantities
+    from bearing_sim.scene.uncertainty import quantities
 
     known, blocks = quantities(type(scene)), found.blocks
     percent = f"{100 * found.confidence:g} %"
     rows = [*lines]
     for one in found.fitted:
         show = known[one.range.field].show
-        told = f"{show(one.value)}, {percent} interval {show(one.low)} to {show(one.high)}"
-        rows.append((one.range.field, f"{told}\n(the scene says {show(one.before)}, searched from {show(one.range.low)} to {show(one.range.high)})"))
+        fitted = f"{show(one.value)}, {percent} interval {show(one.low)} to {show(one.high)}"
+        rows.append((one.range.field, f"{fitted}\n(scene: {show(one.before)}, searched from {show(one.range.low)} to {show(one.range.high)})"))
     if len(found.fitted) > 1:
         pairs = [(a, b) for a in range(len(found.fitted)) for b in range(a)]
         names = [one.range.field.rpartition(".")[2] for one in found.fitted]
@@ -179,18 +171,16 @@ def _print(log, scene, found, lines, out) -> None:
     rows += [
         (
             "measured slip",
-            f"{100 * blocks.slip.mean():.3f} % in the mean; the model {100 * found.after.mean():.3f} %, before {100 * found.before.mean():.3f} %",
+            f"{100 * blocks.slip.mean():.3f} % on average; model {100 * found.after.mean():.3f} %, uncalibrated {100 * found.before.mean():.3f} %",
         ),
-        ("residuals, root mean square", f"{after:.3f} points, before {before:.3f}"),
+        ("residuals, root mean square", f"{after:.3f} points, uncalibrated {before:.3f}"),
         ("data", f"{len(blocks.slip)} blocks of {blocks.length:.3g} s at {_points(found)}; left out: {left_out}"),
-        ("worth", f"{found.effective:.0f} independent blocks: residuals resemble each other over {found.resemblance * blocks.length:.2g} s"),
+        ("information", f"{found.effective:.0f} independent blocks: residuals are correlated over {found.correlation_time * blocks.length:.2g} s"),
         ("model", _misfit(found)),
-        ("to use it", " ".join(f'--set "{item}"' for item in _override(found)) + (f", or the scene {out}" if out else "")),
+        ("to use the result", " ".join(f'--set "{item}"' for item in _override(found)) + (f", or the scene {out}" if out else "")),
     ]
     if scene.level not in ("steady", "slip"):
-        rows.append(
-            ("level", f"fitted at level steady; level {scene.level}, which the scene asks for, slips otherwise by what `bearing-sim trade` tells")
-        )
+        rows.append(("level", f"fitted at level steady; the slip of the scene's level {scene.level} differs by what `bearing-sim trade` shows"))
     print_table(f"{scene.name} calibrated by {log.name}", rows)
 
 
@@ -200,24 +190,24 @@ def _points(found) -> str:
 
 
 def _dependence(scene, found) -> list[tuple[str, str]]:
-    from bearing_sim.scene_uncertainty import quantities
+    from bearing_sim.scene.uncertainty import quantities
 
-    known, told = quantities(type(scene)), []
+    known, effects = quantities(type(scene)), []
     for other, ends in found.depends.items():
         one = next(each for each in scene.uncertainty if each.field == other)
         for place, fitted in enumerate(found.fitted):
             name, show = fitted.range.field.rpartition(".")[2], known[fitted.range.field].show
             low, high = (known[other].show(end) for end in (one.low, one.high))
-            told.append(f"{name} about {show(ends[0, place])} with {other} {low}, {show(ends[1, place])} with {high}")
-    return [("the rest as uncertain as the scene says", "\n".join(told))] if told else []
+            effects.append(f"{name} about {show(ends[0, place])} with {other} {low}, {show(ends[1, place])} with {high}")
+    return [("effect of the other uncertain fields", "\n".join(effects))] if effects else []
 
 
 def _misfit(found) -> str:
     import math
 
     if not math.isfinite(found.misfit):
-        return "no more operating points than fields: whether the model holds cannot be told"
-    share = f"means at operating points are off by {math.sqrt(found.misfit):.2g} times what scatter explains"
+        return "no more operating points than fields: the model cannot be checked"
+    share = f"means at operating points deviate by {math.sqrt(found.misfit):.2g} times what scatter explains"
     if found.misfit_chance < _UNLIKELY:
-        return f"{share}: the model's own error shows, intervals do not know of it"
-    return f"{share}: no error of the model shows"
+        return f"{share}: the model has an error that the intervals do not include"
+    return f"{share}: no sign of a model error"

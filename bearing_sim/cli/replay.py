@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""``bearing-sim replay``: run the model on a recorded log of shaft speed and radial load."""
+"""``bearing-sim replay``: run the model on a recorded log, or compute a recorded run again."""
 
 import time
 from contextlib import ExitStack, suppress
@@ -7,31 +7,32 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.commands.reporting import (
-    BadInput,
+from bearing_sim.cli.options import json_option, set_option
+from bearing_sim.cli.reporting import (
     FailedRun,
-    orderly_end,
+    UsageError,
+    announce_compilation,
+    announce_replacement,
+    as_file_error,
+    as_usage_error,
+    exit_on_sigterm,
     print_json,
     print_table,
     progress_bar,
-    tell_cheaper_level,
-    tell_compilation,
-    tell_replacement,
-    told_as_bad_input,
-    told_file_faults,
+    suggest_level,
 )
 
 
-@click.command()
+@click.command("replay")
 @click.argument("logs", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="IN.mcap...")
 @click.option("--scene", "scene_name", metavar="SCENE", help="Bundled scene or YAML file.")
 @click.option(
-    "--from-recording", is_flag=True, help="Compute the run of a recording again, from it alone: its scene, start and inputs, sample by sample."
+    "--from-recording", is_flag=True, help="Compute a recorded run again from its recording alone: scene, start and inputs, sample by sample."
 )
-@click.option("--set", "overrides", multiple=True, metavar="FIELD=VALUE", help="Override a field of the scene; may be repeated.")
-@click.option("-o", "--out", type=click.Path(path_type=Path), metavar="OUT.mcap", help="Recording of inputs and outputs [default: none].")
-@click.option("--rrd", type=click.Path(path_type=Path), metavar="RUN.rrd", help="Write a view for rerun, too.")
-@click.option("--rate", type=click.FloatRange(min=0, min_open=True), metavar="HZ", help="Outputs per simulated second [default: one at each stamp].")
+@set_option
+@click.option("-o", "--out", type=click.Path(path_type=Path), metavar="OUT.mcap", help="Record inputs and outputs [default: no recording].")
+@click.option("--rrd", type=click.Path(path_type=Path), metavar="RUN.rrd", help="Also write a view for rerun.")
+@click.option("--rate", type=click.FloatRange(min=0, min_open=True), metavar="HZ", help="Outputs per simulated second [default: one per stamp].")
 @click.option(
     "--speed", "--speed-topic", "speed", metavar="TOPIC", help="Shaft speed: /topic, or /topic.field[0] of any type [default: /shaft_speed]."
 )
@@ -43,21 +44,21 @@ from bearing_sim.commands.reporting import (
     "--temperature-topic",
     "temperature",
     metavar="TOPIC",
-    help="Oil temperature, likewise [default: /oil_temperature, where there is one].",
+    help="Oil temperature, likewise [default: /oil_temperature, if present].",
 )
 @click.option("--speed-unit", metavar="UNIT", help="Unit of the shaft speed in the log, such as rpm [default: rad/s].")
 @click.option("--load-unit", metavar="UNIT", help="Unit of the load in the log, such as kN [default: N].")
 @click.option("--temperature-unit", metavar="UNIT", help="Unit of the oil temperature in the log [default: degC].")
-@click.option("--joint", default="shaft", show_default=True, metavar="NAME", help="The shaft's joint in JointState messages.")
-@click.option("--stamps", type=click.Choice(["header", "log"]), default="header", show_default=True, help="Go by header stamps, or by log times.")
+@click.option("--joint", default="shaft", show_default=True, metavar="NAME", help="Name of the shaft's joint in JointState messages.")
+@click.option("--stamps", type=click.Choice(["header", "log"]), default="header", show_default=True, help="Use header stamps or log times.")
 @click.option(
     "--longest-gap",
     type=click.FloatRange(min=0, min_open=True),
     metavar="S",
-    help="Longer times between messages are not simulated [default: ten times their usual spacing, at least input_limits.stale_after of the scene].",
+    help="Do not simulate longer gaps between messages [default: ten times the usual spacing, at least the scene's input_limits.stale_after].",
 )
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
-def command(
+@json_option
+def replay(
     logs,
     scene_name,
     from_recording,
@@ -78,31 +79,28 @@ def command(
 ):
     """Run the model on IN.mcap and write inputs and outputs to OUT.mcap.
 
-    IN.mcap is any rosbag2 recording, MCAP or sqlite3 (a file, also an unfinished one, or a bag's folder; several that belong together)
-    with shaft speed (JointState or Float64) and radial load (WrenchStamped, or Float64 along +y), or with such numbers in messages of
-    any other type whose definition is in the recording. Needs no ROS. Inputs go linearly from stamp to stamp; bad messages are refused,
-    told and counted as in a live run.
+    IN.mcap is any rosbag2 recording, MCAP or sqlite3: a file, finished or not, a bag's folder, or several that belong together. It holds
+    shaft speed (JointState or Float64) and radial load (WrenchStamped, or Float64 along +y), or such numbers in messages of any other
+    type whose definition is in the recording. ROS is not needed. Inputs are interpolated linearly between stamps; bad messages are
+    refused, reported and counted as in a live run.
     """
     if from_recording == bool(scene_name):
-        raise BadInput("give either --scene, or --from-recording for a recording of bearing-sim")
+        raise UsageError("give either --scene, or --from-recording for a recording made by bearing-sim")
     if from_recording:
-        from bearing_sim.commands.from_recording import repeat_recording
-
         if len(logs) > 1 or overrides or rate or rrd or speed or load or temperature:
-            raise BadInput("--from-recording takes one recording, all of it as it was; only -o and --json go with it")
-        repeat_recording(logs[0], out, as_json)
+            raise UsageError("--from-recording takes exactly one recording and reproduces it as it was; it can be combined with -o and --json only")
+        reproduce(logs[0], out, as_json)
         return
     import numpy as np
 
-    from bearing_sim.input_course import judge
-    from bearing_sim.input_log import InputLogError, read_input_log
-    from bearing_sim.input_source import source
-    from bearing_sim.replay import replay
-    from bearing_sim.scene_file import SceneError, load_scene
+    from bearing_sim.inputs.log import InputLogError, read_input_log, source
+    from bearing_sim.inputs.profile import judge
+    from bearing_sim.recording.writer import McapSink
+    from bearing_sim.runtime.replay import replay
+    from bearing_sim.scene.loader import SceneError, load_scene
     from bearing_sim.simulation import Inputs, IntegrationError, Simulation
-    from bearing_sim.sinks.mcap_sink import McapSink
 
-    with told_as_bad_input(ValueError):
+    with as_usage_error(ValueError):
         names = {
             channel: source(channel, text, unit)
             for channel, text, unit in (
@@ -112,11 +110,11 @@ def command(
             )
             if text or unit
         }
-    with told_as_bad_input(SceneError, InputLogError), told_file_faults(), orderly_end():
+    with as_usage_error(SceneError, InputLogError), as_file_error(), exit_on_sigterm():
         if out is not None and out.exists() and any(log.exists() and out.samefile(log) for log in logs):
-            raise BadInput(f"{out} is the log itself; write to another file")
+            raise UsageError(f"{out} is the input log; choose another file")
         scene = load_scene(scene_name, overrides)
-        tell_cheaper_level(scene)
+        suggest_level(scene)
         recorded = read_input_log(logs, names, joint, stamps)
         held = Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature)
         course = judge(recorded, scene.input_limits, held, longest_gap)
@@ -124,23 +122,23 @@ def command(
         with ExitStack() as stack:
             recording, names_of = None, [log.name for log in logs]
             if out is not None:
-                tell_replacement(out)
+                announce_replacement(out)
                 recording = stack.enter_context(
                     McapSink(out, scene, course.start_ns, {"bearing_sim_replay": {"log": " ".join(names_of)}}, replace=True)
                 )
             watchers = []
             if rrd is not None:
-                from bearing_sim.sinks.rerun_sink import RerunSink
+                from bearing_sim.view.sink import RerunSink
 
                 watchers.append(stack.enter_context(RerunSink(scene, path=rrd, start_ns=course.start_ns, lossless=True, duration=seconds)))
-            tell_compilation()
+            announce_compilation()
             choice = _choice(scene, course)
             started = time.perf_counter()
-            with suppress(IntegrationError):  # the replay itself will tell
+            with suppress(IntegrationError):  # the replay itself will report it
                 warm = choice.get("model", Simulation)(scene)
-                warm.advance(1e-6)  # machine code is compiled or loaded here, and not timed with the run
-                if warm.takes_courses:
-                    warm.advance_course(np.array([1e-6]), np.array([warm.inputs]))
+                warm.advance(1e-6)  # compile or load machine code, so that it is not timed with the run
+                if warm.takes_profiles:
+                    warm.advance_profile(np.array([1e-6]), np.array([warm.inputs]))
             start_up = time.perf_counter() - started
             progress = stack.enter_context(progress_bar(f"replaying {', '.join(names_of)}", seconds))
             result = replay(scene, course, recording, watchers, rate, progress, **choice)
@@ -153,12 +151,12 @@ def command(
 
 
 def _choice(scene, course) -> dict:
-    """Return what replay is told of the model: at level steady its table, for one oil temperature where the log has no other."""
+    """Return the model to replay with: at level steady its table, for a single oil temperature unless the log has its own."""
     if scene.level != "steady":
         return {}
     from functools import partial
 
-    from bearing_sim.commands.table import build_with_progress
+    from bearing_sim.cli.table import build_with_progress
     from bearing_sim.simulation import Simulation
 
     kelvin = scene.lubricant.temperature
@@ -166,9 +164,9 @@ def _choice(scene, course) -> dict:
 
 
 def _report(result, course, recorded, scene, out) -> dict:
-    from bearing_sim.input_log import anomalies
+    from bearing_sim.inputs.log import anomalies
 
-    slip = result.slip_figures()
+    slip = result.slip_statistics()
     return {
         "scene": scene.name,
         "level": scene.level,
@@ -206,10 +204,10 @@ def _report(result, course, recorded, scene, out) -> dict:
 
 
 def _print(result, course, recorded, scene, out) -> None:
-    from bearing_sim.input_log import summary_lines
+    from bearing_sim.inputs.log import summary_lines
 
-    slip = {name: f"{100 * value:.2f} %" for name, value in result.slip_figures().items()}
-    shares = f"mean {slip['mean']}, median {slip['median']}, 95 % below {slip['p95']}, 99 % below {slip['p99']}, most {slip['maximum']}"
+    slip = {name: f"{100 * value:.2f} %" for name, value in result.slip_statistics().items()}
+    spread = f"mean {slip['mean']}, median {slip['median']}, 95 % below {slip['p95']}, 99 % below {slip['p99']}, largest {slip['maximum']}"
     rejected = f"{result.rejected_steps} rejected, {result.non_finite_steps} of them not finite"
     refused = ", ".join(f"{count} x {code}" for code, count in sorted(course.refused.items())) or "none"
     rows = [("log", line) for line in summary_lines(recorded)]
@@ -217,15 +215,84 @@ def _print(result, course, recorded, scene, out) -> None:
         rows.append(("log ends early", recorded.unfinished))
     rows += [
         ("level", scene.level),
-        ("cage slip while turning", shares),
-        ("life under this course", f"{result.life_hours:.4g} h (least rating life of an instant {result.least_rating_life:.4g} h)"),
+        ("cage slip while turning", spread),
+        ("life under these inputs", f"{result.life_hours:.4g} h (smallest instantaneous rating life {result.least_rating_life:.4g} h)"),
         ("life used", f"{100 * result.damage:.4g} %"),
         ("refused inputs", f"{refused} (of {course.messages})"),
         ("gaps", f"{len(course.gaps)}, {result.gap_seconds:.4g} s not simulated"),
         ("simulated", f"{result.sim_seconds:.6g} s of {result.log_seconds:.6g} s, {result.samples} outputs"),
-        ("took", f"{result.wall_seconds:.3g} s ({result.cpu_seconds:.3g} s of processor), {result.real_time_factor:.3g} times real time"),
-        ("steps", f"{result.steps}, {rejected}; {result.failed_ticks} stretches left out"),
+        ("computed in", f"{result.wall_seconds:.3g} s ({result.cpu_seconds:.3g} s of processor time), {result.real_time_factor:.3g} times real time"),
+        ("steps", f"{result.steps}, {rejected}; {result.failed_ticks} intervals skipped"),
         ("events", ", ".join(f"{count} x {code}" for code, count in sorted(result.events.items())) or "none"),
         ("recording", str(out or "none")),
     ]
     print_table(f"replay of {recorded.path.name} on {scene.name}", rows)
+
+
+def reproduce(path: Path, out: Path | None, as_json: bool) -> None:
+    """Compute a recorded run again, record it if requested, and print a summary.
+
+    Parameters
+    ----------
+    path : a recording of bearing-sim, finished or not.
+    out : the new recording, or None.
+    as_json : whether to print JSON.
+    """
+    from bearing_sim.recording.bag import RecordingError
+    from bearing_sim.recording.provenance import git_hash, package_version
+    from bearing_sim.recording.reader import Recording
+    from bearing_sim.recording.writer import McapSink
+    from bearing_sim.runtime import reproduction
+
+    with as_usage_error(RecordingError, ValueError), as_file_error(), exit_on_sigterm(), ExitStack() as stack:
+        recording = Recording(path)
+        sink = _Nowhere()
+        if out is not None:
+            if out.exists() and path.exists() and out.samefile(path):
+                raise UsageError(f"{out} is the input recording; choose another file")
+            announce_replacement(out)
+            origin = {"bearing_sim_replay": {"log": path.name, "from_recording": "true"}}
+            sink = stack.enter_context(McapSink(out, recording.scene, recording.start_ns, origin, replace=True))
+        announce_compilation()
+        progress = stack.enter_context(progress_bar(f"reproducing {path.name}", recording.duration))
+        result = reproduction.reproduce(recording, sink, progress)
+    was = {name: recording.metadata.get(name, "") for name in ("package_version", "git_hash")}
+    now = {"package_version": package_version(), "git_hash": git_hash()}
+    if as_json:
+        report = {"recording": str(path), "out": out and str(out), "scene": recording.scene.name, "level": recording.scene.level}
+        print_json({**report, **vars(result), "recorded_with": was, "repeated_with": now, "recording_unfinished": recording.unfinished})
+        return
+    rows = [
+        ("level", recording.scene.level),
+        ("recorded with", _version(was)),
+        ("reproduced with", _version(now)),
+        ("start", ", then ".join(result.starts)),
+        ("samples", f"{result.samples}, {result.failed} of which could not be computed"),
+        ("input messages copied", str(result.received)),
+        (
+            "simulated",
+            f"{result.sim_seconds:.6g} s in {result.wall_seconds:.3g} s; {result.skipped_seconds:.4g} s were not simulated originally either",
+        ),
+        ("changes of level", str(result.level_changes)),
+        ("recording", f"{out}; bearing-sim compare {path} {out} shows the differences" if out else "none"),
+    ]
+    if recording.unfinished:
+        rows.insert(0, ("recording ends early", recording.unfinished))
+    print_table(f"{path.name} reproduced on {recording.scene.name}", rows)
+
+
+def _version(origin: dict[str, str]) -> str:
+    return ", ".join(filter(None, (origin["package_version"], origin["git_hash"]))) or "an unknown version"
+
+
+class _Nowhere:
+    """A recording that drops everything."""
+
+    def write(self, block) -> None:
+        """Drop samples."""
+
+    def write_received(self, topic, ros_type, log_ns, data, publish_ns) -> None:
+        """Drop a message."""
+
+    def write_event(self, event) -> None:
+        """Drop an event."""

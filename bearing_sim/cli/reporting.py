@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""What commands share in talking to people and to programs: faults, JSON, tables, progress."""
+"""Shared by the commands: errors and exit codes, announcements, JSON, tables and progress bars."""
 
 import errno
 import json
@@ -8,48 +8,46 @@ import signal
 import sys
 import threading
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 import click
 
-_PICTURES = (".png", ".svg", ".pdf")
 
-
-class BadInput(click.ClickException):
-    """The caller gave something that cannot be used: one message, exit code 2."""
+class UsageError(click.ClickException):
+    """An argument or an input that cannot be used: one message, exit code 2."""
 
     exit_code = 2
 
 
 class FailedRun(click.ClickException):
-    """A run that did not come to its end: one message, exit code 1."""
+    """A run that failed: one message, exit code 1."""
 
     exit_code = 1
 
 
 @contextmanager
-def told_as_bad_input(*kinds: type[Exception]) -> Iterator[None]:
-    """Turn exceptions of these kinds into one message and exit code 2."""
+def as_usage_error(*kinds: type[Exception]) -> Iterator[None]:
+    """Convert exceptions of these types to a `UsageError`."""
     try:
         yield
-    except kinds as fault:
-        raise BadInput(str(fault)) from None
+    except kinds as error:
+        raise UsageError(str(error)) from None
 
 
 @contextmanager
-def told_file_faults() -> Iterator[None]:
-    """Turn a file that cannot be opened into exit code 2, and a disk that fails or fills up during a run into exit code 1."""
+def as_file_error() -> Iterator[None]:
+    """Convert an OSError: a disk that fails or is full to a `FailedRun`, any other, such as a file that cannot be opened, to a `UsageError`."""
     try:
         yield
-    except OSError as fault:
-        failed = fault.errno in (errno.ENOSPC, errno.EIO, errno.EDQUOT, errno.EFBIG)
-        raise (FailedRun if failed else BadInput)(str(fault)) from None
+    except OSError as error:
+        failed = error.errno in (errno.ENOSPC, errno.EIO, errno.EDQUOT, errno.EFBIG)
+        raise (FailedRun if failed else UsageError)(str(error)) from None
 
 
 @contextmanager
-def orderly_end() -> Iterator[None]:
-    """Make SIGTERM unwind the program as Ctrl-C does, so that recordings are finished; exit code 143."""
+def exit_on_sigterm() -> Iterator[None]:
+    """Let SIGTERM unwind the program as Ctrl-C does, so that recordings are completed; exit code 143."""
     if threading.current_thread() is not threading.main_thread():  # only the main thread may set handlers
         yield
         return
@@ -61,45 +59,42 @@ def orderly_end() -> Iterator[None]:
 
 
 def require_levels(levels: Iterable[str]) -> None:
-    """Refuse what is no level of fidelity."""
-    from bearing_sim.effects import LEVELS
+    """Raise `UsageError` for an unknown level of fidelity."""
+    from bearing_sim.scene.fidelity import LEVELS
 
     for level in levels:
         if level not in LEVELS:
-            raise BadInput(f"--level {level}: expected one of {', '.join(LEVELS)}")
+            raise UsageError(f"--level {level}: expected one of {', '.join(LEVELS)}")
 
 
-def picture_option(drawn: str) -> Callable:
-    """Return the option ``--picture``, which takes a path of a kind that can be drawn; ``drawn`` says what, as in "Draw the map"."""
+def seconds_of(duration: str) -> float:
+    """Return ``--duration`` in seconds; raise `UsageError` if it is not a time of at most 1e6 s."""
+    from bearing_sim.scene.quantity import to_si
 
-    def checked(context, parameter, path):
-        if path is not None and path.suffix.lower() not in _PICTURES:
-            raise BadInput(f"--{parameter.name} {path}: expected a name that ends in {', '.join(_PICTURES)}")
-        return path
-
-    kind = click.Path(path_type=Path)
-    return click.option(
-        "--picture", type=kind, callback=checked, metavar="PATH.png", help=f"{drawn} ({', '.join(_PICTURES[:-1])} or {_PICTURES[-1]})."
-    )
+    with as_usage_error(ValueError):
+        seconds = to_si(duration, "s")
+    if not 0.0 < seconds <= 1e6:
+        raise UsageError(f"--duration {duration}: expected more than 0 and at most 1e6 s")
+    return seconds
 
 
-def tell_compilation() -> None:
-    """Say on stderr that compiling will take a while, where this version of the model has not run here yet."""
-    from bearing_sim.kernels.compilation import CACHE_FOLDER
+def announce_compilation() -> None:
+    """Announce on stderr that compiling will take a while, if this version of the model has not been compiled yet."""
+    from bearing_sim.numerics.compilation import CACHE_FOLDER
 
     if not any(CACHE_FOLDER.rglob("*.nbi")):
-        click.echo("compiling the model, once for this version: about 20 s ...", err=True)
+        click.echo("compiling the model, once per version: about 20 s ...", err=True)
 
 
-def tell_replacement(out: Path) -> None:
-    """Say on stderr that a finished file will be replaced."""
+def announce_replacement(out: Path) -> None:
+    """Announce on stderr that an existing file will be replaced."""
     if out.is_file():
-        click.echo(f"{out} exists and is replaced when the new one is complete", err=True)
+        click.echo(f"{out} exists and will be replaced when the new file is complete", err=True)
 
 
-def tell_cheaper_level(scene) -> None:
-    """Say on stderr where a cheaper level computes the same."""
-    from bearing_sim.effects import hint
+def suggest_level(scene) -> None:
+    """Suggest a faster level on stderr if one gives the same results."""
+    from bearing_sim.scene.fidelity import hint
 
     if line := hint(scene):
         click.echo(line, err=True)
@@ -121,7 +116,7 @@ def _finite(value):
 
 
 def print_table(title: str, rows: Iterable[tuple[str, str]]) -> None:
-    """Print names and values in two columns."""
+    """Print a table of names and values."""
     from rich.table import Table
 
     table = Table("", "", title=title, show_header=False, title_justify="left")
@@ -133,16 +128,16 @@ def print_table(title: str, rows: Iterable[tuple[str, str]]) -> None:
 def print_rows(
     title: str, columns: Sequence[str], rows: Iterable[Sequence[str]], words: Container[str] = (), width: int = 150, whole: Container[str] = ()
 ) -> None:
-    """Print rows under headings, numbers flushed right.
+    """Print rows under headings, numbers aligned right.
 
     Parameters
     ----------
     title : above the table.
     columns : headings.
-    rows : texts, as many as there are columns.
-    words : columns that are flushed left.
-    width : of the table where there is no terminal.
-    whole : columns whose texts are never broken over lines.
+    rows : texts, one per column.
+    words : columns to align left.
+    width : of the table if there is no terminal.
+    whole : columns whose texts are never wrapped.
     """
     from rich.table import Table
 
@@ -157,20 +152,48 @@ def print_rows(
 def _show(table, width: int = 150) -> None:
     from rich.console import Console
 
-    # A unit in brackets is a unit, no mark-up.
+    # Units in brackets are not mark-up.
     Console(width=None if sys.stdout.isatty() else width, markup=False, emoji=False).print(table)
 
 
 @contextmanager
 def progress_bar(text: str, total: float) -> Iterator[Callable[[float], None]]:
-    """Show a bar with the time to go on stderr, on a terminal only; yields the function that takes what is done of ``total``."""
+    """Show a progress bar on stderr, on a terminal only; yields the function that takes how much of ``total`` is done."""
     if not sys.stderr.isatty():
         yield lambda done: None
         return
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-    columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeElapsedColumn(), TextColumn("to go"), TimeRemainingColumn())
+    columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeElapsedColumn(), TextColumn("left"), TimeRemainingColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(text, total=total)
         yield lambda done: bar.update(task, completed=done)
+
+
+class Points:
+    """A progress bar for points, which counts those computed now and those kept from an earlier run; a context manager.
+
+    Attributes
+    ----------
+    computed, kept : counts so far.
+    """
+
+    def __init__(self, text: str, total: int):
+        self._text, self._total, self._stack = text, total, ExitStack()
+        self._show = None
+        self.computed, self.kept = 0, total
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *error):
+        return self._stack.__exit__(*error)
+
+    def update(self, done: int, pending: int) -> None:
+        """Update the bar: how many of the pending points are done, and how many there are."""
+        self.computed, self.kept = done, self._total - pending
+        if self._show is None:
+            kept = f", {self.kept} kept from before" if self.kept else ""
+            self._show = self._stack.enter_context(progress_bar(f"{self._text}: {pending} points{kept}", max(pending, 1)))
+        self._show(done)

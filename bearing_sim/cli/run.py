@@ -8,60 +8,62 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.commands.reporting import (
-    BadInput,
+from bearing_sim.cli.options import json_option, scene_argument, set_option
+from bearing_sim.cli.reporting import (
     FailedRun,
+    announce_compilation,
+    announce_replacement,
+    as_file_error,
+    as_usage_error,
     print_json,
     print_table,
     progress_bar,
-    tell_cheaper_level,
-    tell_compilation,
-    tell_replacement,
-    told_as_bad_input,
-    told_file_faults,
+    seconds_of,
+    suggest_level,
 )
 
 _BLOCK = 10  # samples
-_SAMPLES = 10_000  # of a long run, unless asked otherwise
-_RATE = 1000.0  # Hz, of a short one
+_SAMPLES = 10_000  # of a long run, by default
+_RATE = 1000.0  # [Hz] of a short run
 
 
-@click.command()
-@click.argument("scene_name", metavar="SCENE")
-@click.option("--set", "overrides", multiple=True, metavar="FIELD=VALUE", help="Override a field of the scene; may be repeated.")
+@click.command("run")
+@scene_argument
+@set_option
 @click.option("--duration", default="0.5 s", show_default=True, metavar="S", help="Simulated time, such as 0.5 or '300 ms' (Deng 2017: 0.5 s).")
-@click.option("--level", metavar="LEVEL", help="Fidelity level instead of the scene's.")
+@click.option("--level", metavar="LEVEL", help="Level of fidelity, instead of the scene's.")
 @click.option(
     "--rate", type=click.FloatRange(min=0, min_open=True), metavar="HZ", help="Samples per simulated second [default: 1000, fewer beyond 10 s]."
 )
 @click.option("--out", type=click.Path(path_type=Path), metavar="RUN.mcap", help="Record the run.")
-@click.option("--rrd", type=click.Path(path_type=Path), metavar="RUN.rrd", help="Write a view for rerun, too.")
+@click.option("--rrd", type=click.Path(path_type=Path), metavar="RUN.rrd", help="Also write a view for rerun.")
 @click.option(
-    "--uncertainty", type=click.IntRange(2, 65536), metavar="N", help="Tell bands of slip and life, too, by N samples of the scene's ranges."
+    "--uncertainty", type=click.IntRange(2, 65536), metavar="N", help="Also compute ranges of slip and life from N samples of uncertain fields."
 )
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
-def command(scene_name, overrides, duration, level, rate, out, rrd, uncertainty, as_json):
-    """Run SCENE (a bundled scene or a YAML file) under its constant conditions, from ideal rolling on.
+@json_option
+def run(scene_name, overrides, duration, level, rate, out, rrd, uncertainty, as_json):
+    """Run SCENE (a bundled scene or a YAML file) under its constant conditions, starting from ideal rolling.
 
-    Cage slip is the mean over the last fifth of the run, after it has settled. Bands are those of the settled bearing at the cheapest
-    level that has all that the scene asks for; `bearing-sim uncertainty` has more of them.
+    Cage slip is the mean over the last fifth of the run, after it has settled. --uncertainty uses the settled bearing at the fastest
+    level that supports the scene; `bearing-sim uncertainty` shows more.
     """
-    from bearing_sim.scene_file import SceneError, load_scene
+    from bearing_sim.cli.uncertainty import bands_of
+    from bearing_sim.scene.loader import SceneError, load_scene
     from bearing_sim.simulation import IntegrationError, Simulation, start_sample
 
-    seconds = _seconds(duration)
-    with told_as_bad_input(SceneError):
+    seconds = seconds_of(duration)
+    with as_usage_error(SceneError):
         scene = load_scene(scene_name, [*overrides, *([f"level={level}"] if level else [])])
-    tell_cheaper_level(scene)
+    suggest_level(scene)
     samples = max(round(seconds * (rate or min(_RATE, _SAMPLES / seconds))), 5)
-    with told_file_faults(), ExitStack() as stack:
+    with as_file_error(), ExitStack() as stack:
         sinks = _sinks(stack, scene, seconds, samples, out, rrd)
         progress = stack.enter_context(progress_bar(f"running {scene.name}", seconds))
         started = time.perf_counter()
-        tell_compilation()
+        announce_compilation()
         try:
             simulation = Simulation(scene)
-            simulation.advance(1e-6)  # machine code is compiled or loaded here, and not timed with the run
+            simulation.advance(1e-6)  # compile or load machine code, so that it is not timed with the run
             simulation.reset()
             for sink in sinks[: out is not None]:
                 sink.write(start_sample(simulation))
@@ -71,45 +73,29 @@ def command(scene_name, overrides, duration, level, rate, out, rrd, uncertainty,
             raise FailedRun(str(error)) from None
         wall = time.perf_counter() - first
     report = _report(simulation, settled, seconds, wall, first - started)
-    bands = _bands(scene, uncertainty) if uncertainty else None
+    bands = bands_of(scene, uncertainty)[1] if uncertainty else None
     if as_json:
         print_json({**report, "uncertainty": bands} if bands else report)
     else:
         _print(report, scene, bands)
 
 
-def _bands(scene, samples) -> dict:
-    from bearing_sim.commands.uncertainty import bands_of
-
-    return bands_of(scene, samples)[1]
-
-
-def _seconds(duration: str) -> float:
-    from bearing_sim.quantity import to_si
-
-    with told_as_bad_input(ValueError):
-        seconds = to_si(duration, "s")
-    if not 0.0 < seconds <= 1e6:
-        raise BadInput(f"--duration {duration}: expected more than 0 and at most 1e6 s")
-    return seconds
-
-
 def _sinks(stack, scene, seconds, samples, out, rrd) -> list:
     start_ns, sinks = time.time_ns(), []
     if out is not None:
-        from bearing_sim.sinks.mcap_sink import McapSink
+        from bearing_sim.recording.writer import McapSink
 
-        tell_replacement(out)
+        announce_replacement(out)
         sinks.append(stack.enter_context(McapSink(out, scene, start_ns, replace=True, advance=(_BLOCK * (seconds / samples), _BLOCK))))
     if rrd is not None:
-        from bearing_sim.sinks.rerun_sink import RerunSink
+        from bearing_sim.view.sink import RerunSink
 
         sinks.append(stack.enter_context(RerunSink(scene, path=rrd, start_ns=start_ns, lossless=True, duration=seconds)))
     return sinks
 
 
 def _advance(simulation, seconds, samples, sinks, progress) -> list:
-    """Advance to the end block by block; return the settled last fifth of the slips as a list of numbers."""
+    """Advance to the end block by block; return the slips of the settled last fifth as a list of numbers."""
     interval, settled = seconds / samples, []
     for done in range(0, samples, _BLOCK):
         count = min(_BLOCK, samples - done)
@@ -149,9 +135,9 @@ def _report(simulation, settled, seconds, wall, start_up) -> dict:
 
 
 def _print(report, scene, bands) -> None:
-    from bearing_sim.commands.uncertainty import band_rows
+    from bearing_sim.cli.uncertainty import band_rows
 
-    rejected = f"{report['rejected_steps']} rejected, {report['non_finite_steps']} of them not finite"
+    rejected = f"{report['rejected_steps']} rejected, {report['non_finite_steps']} of which not finite"
     print_table(
         f"{report['scene']} at level {report['level']}",
         [
@@ -167,7 +153,7 @@ def _print(report, scene, bands) -> None:
             ("work", f"{report['right_hand_sides']} right-hand sides, {report['jacobians']} Jacobians, {report['factorisations']} factorisations"),
             *(band_rows(bands) if bands else []),
             *(
-                [("bands", f"{bands['evaluations']} times level {bands['level']}, seed {bands['seed']}; in parentheses the sampling error")]
+                [("uncertainty", f"{bands['evaluations']} runs of level {bands['level']}, seed {bands['seed']}; in parentheses the sampling error")]
                 if bands
                 else []
             ),
@@ -176,7 +162,7 @@ def _print(report, scene, bands) -> None:
 
 
 def _lives(report, scene) -> list[tuple[str, str]]:
-    """Return the rows of the basic life and, where the scene or its level has others, of these."""
+    """Return the rows of the basic life and of any other lives that the scene or its level has."""
     rows = [("rating life", f"{report['life_hours']:.4g} h")]
     if not scene.life.is_basic:
         rows.append(("life by the scene's choice", f"{report['modified_life_hours']:.4g} h"))
@@ -184,5 +170,5 @@ def _lives(report, scene) -> list[tuple[str, str]]:
         rows.append(("lamina life", f"{report['lamina_life_hours']:.4g} h"))
         for ring in ("inner", "outer"):
             whole, edge = report[f"{ring}_pressure_maximum_mpa"], report[f"{ring}_edge_pressure_maximum_mpa"]
-            rows.append((f"largest pressure, {ring} raceway", f"{whole:.4g} MPa, of the end slices {edge:.4g} MPa"))
+            rows.append((f"largest pressure, {ring} raceway", f"{whole:.4g} MPa, end slices {edge:.4g} MPa"))
     return rows

@@ -1,46 +1,187 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""``bearing-sim design``: the region of outer raceways that keep slip and life within limits."""
+"""Commands that run many points: ``sweep``, its ``plot``, and the ``design`` of outer raceways."""
+
+import math
+from pathlib import Path
 
 import click
 
-from bearing_sim.commands.reporting import BadInput, orderly_end, picture_option, print_json, tell_compilation, told_as_bad_input, told_file_faults
-from bearing_sim.commands.sweeping import Points, executor_options, table_option
+from bearing_sim.cli.options import executor_options, json_option, picture_option, scene_argument, set_option, table_option
+from bearing_sim.cli.reporting import (
+    Points,
+    UsageError,
+    announce_compilation,
+    as_file_error,
+    as_usage_error,
+    exit_on_sigterm,
+    print_json,
+    print_rows,
+    seconds_of,
+)
+
+_SHOWN = ("cage_slip", "rating_life", "inner_load_maximum", "outer_load_maximum", "shaft_power", "status")
 
 
-@click.command()
-@click.argument("scene_name", metavar="SCENE")
-@click.option("--slip-below", required=True, metavar="SLIP", help="Largest cage slip, such as 10%.")
-@click.option("--life-above", required=True, metavar="LIFE", help="Least life, such as 300h; by the scene's choice of life.")
-@click.option("--speed-tolerance", default="2%", show_default=True, metavar="SHARE", help="How far the speed may be off, either way.")
-@click.option("--load-tolerance", default="10%", show_default=True, metavar="SHARE", help="How far the load may be off, either way.")
-@click.option("--low-radius", "radii", metavar="START:STOP:N", help="Radii at the low points [default: -2.5 to +5 um about the scene's, 16].")
-@click.option("--d-value", "d_values", metavar="START:STOP:N", help="D values [default: 80 to 120 % of the scene's, 9].")
-@click.option("--set", "overrides", multiple=True, metavar="FIELD=VALUE", help="Override a field of the scene; may be repeated.")
-@click.option("--level", metavar="LEVEL", help="Fidelity level [default: steady where that has all that the scene asks for, or the scene's].")
-@table_option("design.parquet", "The map; beside it PATH.csv, PATH_borders.parquet and .csv, and")
+@click.command("sweep")
+@scene_argument
+@click.option(
+    "--vary",
+    "axes",
+    multiple=True,
+    required=True,
+    metavar="FIELD=START:STOP:N",
+    help="Vary a field over N evenly spaced values, or over a list, FIELD=a,b,c; repeat the option for a grid.",
+)
+@set_option
+@click.option("--level", metavar="LEVEL", help="Level of fidelity, instead of the scene's.")
+@click.option("--duration", default="0.5 s", show_default=True, metavar="S", help="Simulated time per point; extended until the point has settled.")
+@table_option("sweep.parquet", "Results; also written: PATH.csv and")
 @executor_options
 @picture_option("Draw the results")
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
-def command(
+@json_option
+def sweep(scene_name, axes, overrides, level, duration, out, workers, dask, picture, as_json):
+    """Run SCENE at every combination of values, on all cores, until each point has settled.
+
+    Slip, lives, loads and powers are means over the last fifth of a run, largest loads are those of any instant in it.  An interrupted
+    sweep resumes with the same command; points computed by an earlier sweep into the same file are not computed again.
+
+    bearing-sim sweep deng2017_table1 --vary bearing.outer_raceway.low_radius=34.86mm:34.8675mm:7 --picture sweep.png
+    """
+    from bearing_sim.scene.loader import SceneError
+    from bearing_sim.sweep.grid import FieldError, read_axis
+    from bearing_sim.sweep.tasks import ClusterError, Journal, JournalInUse
+
+    seconds = seconds_of(duration)
+    with as_usage_error(FieldError):
+        varied = [read_axis(text) for text in axes]
+    _check_sweep(varied, level)
+    announce_compilation()
+    from bearing_sim.sweep.grid import sweep
+    from bearing_sim.sweep.table import write_table
+
+    overrides = [*overrides, *([f"level={level}"] if level else [])]
+    points = Points("sweep", math.prod(len(axis.values) for axis in varied))
+    with as_file_error(), exit_on_sigterm(), as_usage_error(SceneError, ClusterError, JournalInUse):
+        with Journal(out.with_suffix(".journal")) as journal, points:
+            table = sweep(scene_name, overrides, varied, journal, seconds, workers, dask, points.update)
+        files = write_table(out, table)
+        if picture is not None:
+            from bearing_sim.sweep.table import NotDrawable, draw
+
+            with as_usage_error(NotDrawable):
+                draw(picture, table)
+    report = _report_sweep(table, points, files, picture)
+    if as_json:
+        print_json(report | {"points": table.rows})
+    else:
+        _print_sweep(table, report)
+
+
+def _check_sweep(axes, level) -> None:
+    from bearing_sim.sweep.grid import MOST_POINTS
+
+    paths = [axis.field.path for axis in axes]
+    for path in set(paths):
+        if paths.count(path) > 1:
+            raise UsageError(f"--vary {path}: given {paths.count(path)} times; give all its values in one option")
+    if level is not None and "level" in paths:
+        raise UsageError("--level and --vary level= contradict each other; give one of them")
+    points = math.prod(len(axis.values) for axis in axes)
+    if points > MOST_POINTS:
+        raise UsageError(f"--vary: {points} points; a sweep has at most {MOST_POINTS}")
+
+
+def _report_sweep(table, points, files, picture) -> dict:
+    statuses = table.values("status")
+    return {
+        "scene": table.about["scene"],
+        "level": table.about["level"],
+        "computed": points.computed,
+        "kept_from_before": points.kept,
+        **{f"{status}_points": statuses.count(status) for status in ("ok", "unsettled", "failed", "refused")},
+        "parquet": str(files[0]),
+        "csv": str(files[1]),
+        "picture": picture and str(picture),
+    }
+
+
+def _print_sweep(table, report) -> None:
+    varied = [axis["field"] for axis in table.about["axes"]]
+    columns = [table.column(name) for name in (*varied, *_SHOWN)]
+    names = [column.name.rpartition(".")[2] + (f", {column.unit}" if column.unit else "") for column in columns]
+    shown = table.rows if len(table.rows) <= 60 else table.rows[:50]
+    rows = [
+        [f"{value:.{8 if name in varied else 5}g}" if isinstance(value, float) else str(value) for name, value in _picked(row, columns)]
+        for row in shown
+    ]
+    print_rows(f"{report['scene']} at level {report['level']}", names, rows, words=("status",))
+    if len(shown) < len(table.rows):
+        click.echo(f"... and {len(table.rows) - len(shown)} more points; all are in the files")
+    for reason, count in _reasons(table).items():
+        click.echo(f"{count} x {reason}")
+    counts = f"{report['computed']} points computed, {report['kept_from_before']} kept from before"
+    click.echo(f"{counts}; {', '.join(filter(None, (report['parquet'], report['csv'], report['picture'])))}")
+
+
+def _picked(row, columns):
+    return [(column.name, row[column.name]) for column in columns]
+
+
+def _reasons(table) -> dict:
+    counts: dict = {}
+    for row in table.rows:
+        if row["reason"]:
+            reason = f"{row['status']}: {row['reason']}"
+            counts[reason] = counts.get(reason, 0) + 1
+    return dict(sorted(counts.items(), key=lambda item: -item[1])[:5])
+
+
+@click.command("plot")
+@click.argument("path", metavar="TABLE.parquet", type=click.Path(path_type=Path))
+@picture_option("Draw the results")
+@click.option("--quantity", "quantities", multiple=True, metavar="COLUMN", help="Draw this column; can be repeated [default: slip, life, loads].")
+def plot(path, picture, quantities):
+    """Draw a sweep: lines for one varied field, maps for two; into TABLE.png unless --picture is given."""
+    from bearing_sim.sweep.table import QUANTITIES, NotDrawable, draw, read_table
+
+    picture = picture or path.with_suffix(".png")
+    with as_file_error(), as_usage_error(NotDrawable, ValueError):
+        draw(picture, read_table(path), quantities or QUANTITIES)
+    click.echo(str(picture))
+
+
+@click.command("design")
+@scene_argument
+@click.option("--slip-below", required=True, metavar="SLIP", help="Largest cage slip, such as 10%.")
+@click.option("--life-above", required=True, metavar="LIFE", help="Smallest life, such as 300h; the kind of life is chosen in the scene.")
+@click.option("--speed-tolerance", default="2%", show_default=True, metavar="FRACTION", help="Tolerance of the speed, in both directions.")
+@click.option("--load-tolerance", default="10%", show_default=True, metavar="FRACTION", help="Tolerance of the load, in both directions.")
+@click.option("--low-radius", "radii", metavar="START:STOP:N", help="Radii at the low points [default: 16 values, -2.5 to +5 um about the scene's].")
+@click.option("--d-value", "d_values", metavar="START:STOP:N", help="D values [default: 9 values, 80 to 120 % of the scene's].")
+@set_option
+@click.option("--level", metavar="LEVEL", help="Level of fidelity [default: steady if it supports the scene, otherwise the scene's].")
+@table_option("design.parquet", "Map; also written: PATH.csv, PATH_borders.parquet and .csv, and")
+@executor_options
+@picture_option("Draw the results")
+@json_option
+def design(
     scene_name, slip_below, life_above, speed_tolerance, load_tolerance, radii, d_values, overrides, level, out, workers, dask, picture, as_json
 ):
-    """Map which low-point radii and D values keep SCENE's slip below a limit and its life above another.
+    """Map which low-point radii and D values keep the slip of SCENE below a limit and its life above another.
 
     bearing-sim design deng2017_table1 --slip-below 10% --life-above 300h --picture design.png
     """
-    from bearing_sim.scene_file import SceneError, load_scene
-    from bearing_sim.sweep.axis import read_axis
-    from bearing_sim.sweep.executor import ClusterError
-    from bearing_sim.sweep.fields import FieldError
-    from bearing_sim.sweep.journal import Journal, JournalInUse
+    from bearing_sim.scene.loader import SceneError, load_scene
+    from bearing_sim.sweep.grid import FieldError, read_axis
+    from bearing_sim.sweep.tasks import ClusterError, Journal, JournalInUse
 
-    with told_as_bad_input(SceneError, FieldError):
+    with as_usage_error(SceneError, FieldError):
         scene = load_scene(scene_name, overrides)
         level = level or _cheapest(scene)
         overrides = [*overrides, f"level={level}"]
         scene = load_scene(scene_name, overrides)
-        _check(scene)
-        tell_compilation()
+        _check_design(scene)
+        announce_compilation()
         from bearing_sim.studies import design as studied
         from bearing_sim.sweep.point import DURATION
         from bearing_sim.sweep.table import write_table
@@ -49,41 +190,41 @@ def command(
         for place, (path, text) in enumerate(((studied.LOW, radii), (studied.D_VALUE, d_values))):
             if text is not None:
                 axes[place] = read_axis(f"{path}={text}")
-    wanted = studied.Wanted(*_limits(slip_below, life_above, speed_tolerance, load_tolerance))
+    wanted = studied.Limits(*_limits(slip_below, life_above, speed_tolerance, load_tolerance))
     points = Points("raceways", 0)
-    with told_file_faults(), orderly_end(), told_as_bad_input(SceneError, ClusterError, JournalInUse):
+    with as_file_error(), exit_on_sigterm(), as_usage_error(SceneError, ClusterError, JournalInUse):
         with Journal(out.with_suffix(".journal")) as journal, points:
-            designed = studied.design(scene_name, overrides, wanted, *axes, journal, DURATION, workers, dask, points.tell)
+            designed = studied.design(scene_name, overrides, wanted, *axes, journal, DURATION, workers, dask, points.update)
         files = [*write_table(out, designed.grid), *write_table(out.with_name(f"{out.stem}_borders.parquet"), designed.border_table)]
         beside = _beside(scene, wanted)
         if picture is not None:
-            from bearing_sim.studies.design_picture import draw
+            from bearing_sim.studies.design import draw
 
             draw(picture, designed, beside)
             files.append(picture)
-    report = _report(scene, designed, beside, files)
+    report = _report_design(scene, designed, beside, files)
     if as_json:
         print_json(report)
     else:
-        _print(report)
+        _print_design(report)
 
 
 def _cheapest(scene) -> str:
-    from bearing_sim.effects import asked_for, levels_with
+    from bearing_sim.scene.fidelity import asked_for, levels_with
 
     return "steady" if "steady" in levels_with(asked_for(scene)) else scene.level
 
 
-def _check(scene) -> None:
+def _check_design(scene) -> None:
     raceway = scene.bearing.outer_raceway
     if not raceway.d_value or raceway.contour is not None or raceway.low_points:
-        raise BadInput("bearing.outer_raceway: a design varies low_radius and d_value of even lobes; this contour is given otherwise or is round")
+        raise UsageError("bearing.outer_raceway: a design varies low_radius and d_value of even lobes; this raceway is round or given otherwise")
     if scene.operating.shaft_speed == 0.0:
-        raise BadInput("operating.shaft_speed: 0; at rest nothing slips, give a speed")
+        raise UsageError("operating.shaft_speed: 0; there is no slip at rest; give a speed")
 
 
 def _limits(slip_below, life_above, speed_tolerance, load_tolerance) -> tuple[float, float, float, float]:
-    from bearing_sim.quantity import to_si
+    from bearing_sim.scene.quantity import to_si
 
     found = []
     for name, text, unit, factor, most in (
@@ -94,23 +235,23 @@ def _limits(slip_below, life_above, speed_tolerance, load_tolerance) -> tuple[fl
     ):
         try:
             value = factor * to_si(text, unit)
-        except ValueError as fault:
-            raise BadInput(f"{name} {text}: {fault}") from None
+        except ValueError as error:
+            raise UsageError(f"{name} {text}: {error}") from None
         if not 0.0 <= value <= most:
-            raise BadInput(f"{name} {text}: expected 0 to {most / factor:g}{f' {unit}' if unit else ''}")
+            raise UsageError(f"{name} {text}: expected 0 to {most / factor:g}{f' {unit}' if unit else ''}")
         found.append(value)
     return tuple(found)
 
 
 def _beside(scene, wanted):
-    from bearing_sim.studies import deng2017_design as deng
+    from bearing_sim.studies.deng2017 import design as deng
 
     asked = scene.bearing.name, wanted.slip_below, wanted.life_above
     return deng.BESIDE if asked == (deng.SCENE, deng.SLIP_BELOW, deng.LIFE_ABOVE) else None
 
 
-def _report(scene, designed, beside, files) -> dict:
-    from bearing_sim.studies.deng2017_design import radii_within
+def _report_design(scene, designed, beside, files) -> dict:
+    from bearing_sim.studies.deng2017.design import radii_within
     from bearing_sim.studies.design import KINDS
 
     about = designed.grid.about
@@ -125,20 +266,20 @@ def _report(scene, designed, beside, files) -> dict:
     return report | {"deng2017": beside and {"d_value": beside[1], "low_radius": beside[2]}, "files": list(map(str, files))}
 
 
-def _print(report) -> None:
+def _print_design(report) -> None:
     from bearing_sim.studies.design import NOMINAL, WORST
 
     spread = f"speed +-{100 * report['speed_tolerance']:g} %, load +-{100 * report['load_tolerance']:g} %"
     click.echo(f"{report['scene']} at level {report['level']}: slip below {report['slip_below']:g} %, life above {report['life_above']:g} h")
     if report["without_result"]:
-        click.echo(f"{report['without_result']} of {report['raceways']} raceways have no result; reasons are in the table")
-    for kind, told in ((NOMINAL, "at the scene's speed and load"), (WORST, f"in the worst case of {spread}")):
-        click.echo(f"{told}:" if report[kind] else f"{told}: no raceway of the map meets both limits")
+        click.echo(f"{report['without_result']} of {report['raceways']} raceways have no result; the table has the reasons")
+    for kind, condition in ((NOMINAL, "at the scene's speed and load"), (WORST, f"in the worst case of {spread}")):
+        click.echo(f"{condition}:" if report[kind] else f"{condition}: no raceway in the map meets both limits")
         for border in report[kind]:
             ends = f"from {border['low_from']:.5f} (bound by {border['below_by']}) to {border['low_to']:.5f} mm (bound by {border['above_by']})"
             click.echo(f"  D = {border['d_value']:.4f} mm: R_low {ends}")
         if report["deng2017"]:
             found, (left, right), (low, high) = report[f"{kind}_within_deng"], report["deng2017"]["d_value"], report["deng2017"]["low_radius"]
-            span = f"R_low {found['low_from']:.5f} to {found['low_to']:.5f} mm" if found else "none that the map shows"
+            span = f"R_low {found['low_from']:.5f} to {found['low_to']:.5f} mm" if found else "none in the map"
             click.echo(f"  for every D from {left} to {right} mm: {span}; Deng 2017 has {low:.4f} to {high:.4f} mm")
     click.echo(", ".join(report["files"]))

@@ -5,40 +5,41 @@ import math
 
 import click
 
-from bearing_sim.commands.reporting import print_json, print_table, progress_bar, tell_compilation, told_as_bad_input
+from bearing_sim.cli.options import json_option, scene_argument, set_option
+from bearing_sim.cli.reporting import UsageError, announce_compilation, as_usage_error, print_json, print_table, progress_bar
 
 
-@click.command()
-@click.argument("scene_name", metavar="SCENE")
-@click.option("--set", "overrides", multiple=True, metavar="FIELD=VALUE", help="Override a field of the scene; may be repeated.")
-@click.option("--rebuild", is_flag=True, help="Build the table even if there is one.")
-@click.option("--workers", type=click.IntRange(1, 256), metavar="N", help="Threads that build it [default: all cores].")
+@click.command("table")
+@scene_argument
+@set_option
+@click.option("--rebuild", is_flag=True, help="Build the table even if it exists.")
+@click.option("--workers", type=click.IntRange(1, 256), metavar="N", help="Number of threads [default: all cores].")
 @click.option(
-    "--at", "points", multiple=True, metavar="RPM,N[,DEGC[,DEG]]", help="Show this operating point, of the table and solved for; may be repeated."
+    "--at", "points", multiple=True, metavar="RPM,N[,DEGC[,DEG]]", help="Show this operating point, interpolated and solved; can be repeated."
 )
 @click.option(
     "--against-slip",
     type=click.IntRange(1, 10_000),
     metavar="N",
-    help="Instead, compare the solver with level slip at N operating points drawn by lot.",
+    help="Instead compare the solver with level slip at N random operating points.",
 )
-@click.option("--seed", default=2017, show_default=True, help="Of the lot.")
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
-def command(scene_name, overrides, rebuild, workers, points, against_slip, seed, as_json):
-    """Build the table of operating points for SCENE at level steady, or show the one that is kept.
+@click.option("--seed", default=2017, show_default=True, help="Seed of the random points.")
+@json_option
+def table(scene_name, overrides, rebuild, workers, points, against_slip, seed, as_json):
+    """Build the table of operating points of SCENE at level steady, or show the existing one.
 
-    It spans what the scene's block `table` says (maximum_speed, maximum_load, minimum_temperature, maximum_temperature, tolerance),
-    and all directions of the load.
+    Its range is given in the scene's block `table` (maximum_speed, maximum_load, minimum_temperature, maximum_temperature, tolerance);
+    it covers all directions of the load.
     """
-    from bearing_sim.scene_file import SceneError, load_scene
+    from bearing_sim.scene.loader import SceneError, load_scene
 
-    with told_as_bad_input(SceneError):
+    with as_usage_error(SceneError):
         scene = load_scene(scene_name, [*overrides, "level=steady"])
     if against_slip is not None:
         _compare(scene, against_slip, seed, as_json)
         return
     asked = [_condition(text, scene) for text in points]
-    tell_compilation()
+    announce_compilation()
     table, quality = build_with_progress(scene, None, workers, rebuild)
     report = _report(scene, table, quality, [_answers(scene, table, condition) for condition in asked])
     if as_json:
@@ -48,45 +49,42 @@ def command(scene_name, overrides, rebuild, workers, points, against_slip, seed,
 
 
 def build_with_progress(scene, temperatures=None, workers=None, rebuild=False):
-    """Return a scene's table and its quality, from disk or built; says on stderr that it is being built.
+    """Return a scene's table and its quality, from disk or newly built; reports building on stderr.
 
     Parameters
     ----------
-    scene : what it is for.
-    temperatures : lowest and highest oil temperature [K] instead of the scene's.
-    workers : threads; all cores where absent.
-    rebuild : whether to build it even if there is one.
+    scene : the scene.
+    temperatures : lowest and highest oil temperature [K], instead of the scene's.
+    workers : number of threads; None: all cores.
+    rebuild : whether to build it even if it exists.
     """
-    from bearing_sim.tables.store import cached_table, obtain_table
+    from bearing_sim.levels.steady.table_builder import cached_table, obtain_table
 
     kept = None if rebuild else cached_table(scene, temperatures)
     if kept is not None:
         return kept
-    click.echo(f"building the table of operating points for {scene.name}, once for this bearing and oil ...", err=True)
-    # How many points it will take is not known before; what is known is how fast their share of a usual number grows.
+    click.echo(f"building the table of operating points of {scene.name}, once for this bearing and oil ...", err=True)
+    # The number of points is not known in advance; the bar approaches 100 % as a typical number is reached.
     with progress_bar("operating points", 1.0) as show:
         return obtain_table(scene, temperatures, workers, lambda solved: show(1.0 - math.exp(-solved / 15_000)), rebuild)
 
 
 def _condition(text, scene) -> tuple[float, float, float, float]:
     """Return shaft speed, load, oil temperature and direction of the load in SI from ``RPM,N[,DEGC[,DEG]]``."""
-    from bearing_sim.commands.reporting import BadInput
-
     try:
         numbers = [float(part) for part in text.split(",")]
         if not 2 <= len(numbers) <= 4 or not all(map(math.isfinite, numbers)):
             raise ValueError
     except ValueError:
-        raise BadInput(f"--at {text}: expected speed [rpm], load [N], and perhaps oil temperature [degC] and direction of the load [deg]") from None
+        raise UsageError(f"--at {text}: expected speed [rpm], load [N], optionally oil temperature [degC], load direction [deg]") from None
     kelvin = numbers[2] + 273.15 if len(numbers) > 2 else scene.lubricant.temperature
     angle = math.radians(numbers[3]) if len(numbers) > 3 else scene.operating.load_angle
     return numbers[0] * math.pi / 30, numbers[1], kelvin, angle
 
 
 def _answers(scene, table, condition) -> dict:
-    from bearing_sim.levels.steady_point import ANSWER
-    from bearing_sim.tables.grid import look_up
-    from bearing_sim.tables.store import holds, solve_scene
+    from bearing_sim.levels.steady.operating_point import ANSWER
+    from bearing_sim.levels.steady.table_builder import holds, look_up, solve_scene
 
     speed, load, kelvin, angle = condition
     solved, interpolated = solve_scene(scene, *condition), look_up(table, [condition])[0]
@@ -97,12 +95,12 @@ def _answers(scene, table, condition) -> dict:
 
 
 def _look_up_times(table) -> tuple[float, float]:
-    """Return what a look-up anywhere in the table takes, from compiled code and as a call from Python [us]; the best of a few tries."""
+    """Return the time of a look-up at random points, in compiled code and called from Python [us]; the best of a few tries."""
     import time
 
     import numpy as np
 
-    from bearing_sim.tables.grid import look_up
+    from bearing_sim.levels.steady.table_builder import look_up
 
     count, tries = 20_000, 5
     last = [table.speeds[-1], table.loads[-1], table.temperatures[-1] - table.temperatures[0], 2 * math.pi]
@@ -119,7 +117,7 @@ def _look_up_times(table) -> tuple[float, float]:
 
 
 def _report(scene, table, quality, answers) -> dict:
-    from bearing_sim.tables.store import span_of, table_path
+    from bearing_sim.levels.steady.table_builder import span_of, table_path
 
     compiled, called = _look_up_times(table)
     return {
@@ -142,9 +140,9 @@ def _report(scene, table, quality, answers) -> dict:
 def _compare(scene, count, seed, as_json) -> None:
     from bearing_sim.studies.steady_check import compare
 
-    tell_compilation()
+    announce_compilation()
     rows = []
-    with progress_bar(f"marching {scene.name}", count) as progress:
+    with progress_bar(f"simulating {scene.name}", count) as progress:
         for row in compare(scene, count, seed):
             rows.append(row._asdict() | {"agrees": row.agrees})
             progress(len(rows))
@@ -152,29 +150,29 @@ def _compare(scene, count, seed, as_json) -> None:
         print_json({"scene": scene.name, "agreeing": sum(row["agrees"] for row in rows), "points": rows})
         return
     for row in rows:
-        slip = f"slip {100 * row['marched_slip']:8.4f} % marched, {100 * row['solved_slip']:8.4f} % solved"
+        slip = f"slip {100 * row['marched_slip']:8.4f} % simulated, {100 * row['solved_slip']:8.4f} % solved"
         life = f"life {row['marched_life']:9.4g} h, {100 * (row['solved_life'] / row['marched_life'] - 1):+.2f} %"
         where = f"{row['speed_rpm']:7.0f} rpm {row['load']:6.0f} N {row['load_angle_deg']:5.0f} deg {row['oil_temperature_c']:4.0f} degC"
         click.echo(f"{where}: {slip}; {life}{'' if row['agrees'] else '; differs'}")
-    click.echo(f"{sum(row['agrees'] for row in rows)} of {count} agree: slip to 2 % of it or 0.05 points, and life to 2 %")
+    click.echo(f"{sum(row['agrees'] for row in rows)} of {count} agree: slip within 2 % or 0.05 points, and life within 2 %")
 
 
 def _print(report) -> None:
     def spanned(values, unit):
-        return f"{values[0]:.6g} to {values[-1]:.6g} {unit}, {len(values)} knots" if len(values) > 1 else f"{values[0]:.6g} {unit} alone"
+        return f"{values[0]:.6g} to {values[-1]:.6g} {unit}, {len(values)} knots" if len(values) > 1 else f"{values[0]:.6g} {unit} only"
 
     print_table(
         f"operating points of {report['scene']}",
         [
-            ("shaft speed", spanned(report["speeds_rpm"], "rpm") + (", both senses" if report["both_senses"] else ", forwards alone")),
+            ("shaft speed", spanned(report["speeds_rpm"], "rpm") + (", both directions" if report["both_senses"] else ", forward only")),
             ("radial load", spanned(report["loads"], "N")),
             ("oil temperature", spanned(report["oil_temperatures_c"], "degC")),
             ("load direction", f"all; {len(report['load_angles_deg'])} knots on {report['period_deg']:.6g} deg"),
-            ("nodes", f"{report['nodes']}, {report['missing']} without an answer; {report['megabytes']:.3g} MB; {report['file']}"),
+            ("nodes", f"{report['nodes']}, {report['missing']} without a solution; {report['megabytes']:.3g} MB; {report['file']}"),
             ("built", f"from {report['solved']} operating points in {report['seconds']:.3g} s"),
-            ("a look-up takes", f"{report['look_up_us']:.3g} us in compiled code, {report['look_up_from_python_us']:.3g} us from Python"),
-            ("asked for", f"{100 * report['tolerance']:.3g} % of life, and of slip besides 0.025 points"),
-            ("kept", f"at {100 * report['within']:.4g} % of points drawn anywhere in it"),
+            ("look-up time", f"{report['look_up_us']:.3g} us in compiled code, {report['look_up_from_python_us']:.3g} us from Python"),
+            ("requested tolerance", f"{100 * report['tolerance']:.3g} % of life, and of slip plus 0.025 points"),
+            ("met", f"at {100 * report['within']:.4g} % of random points in the table"),
             ("error of slip", f"{100 * report['slip_error']:.3f} points at most, 95 % below {100 * report['slip_error_95']:.3f}"),
             ("error of life", f"{100 * report['life_error']:.2f} % at most, 95 % below {100 * report['life_error_95']:.2f}"),
         ],

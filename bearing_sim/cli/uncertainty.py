@@ -6,62 +6,62 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.commands.reporting import (
-    orderly_end,
-    picture_option,
+from bearing_sim.cli.options import executor_options, json_option, picture_option, scene_argument
+from bearing_sim.cli.reporting import (
+    Points,
+    announce_compilation,
+    as_file_error,
+    as_usage_error,
+    exit_on_sigterm,
     print_json,
     print_table,
     require_levels,
-    tell_compilation,
-    told_as_bad_input,
-    told_file_faults,
 )
-from bearing_sim.commands.sweeping import Points, executor_options
 
 SEED = 2017
 
 
-@click.command()
-@click.argument("scene_name", metavar="SCENE")
-@click.option("--set", "overrides", multiple=True, metavar="FIELD=VALUE", help="Override a field of the scene, or a range; may be repeated.")
+@click.command("uncertainty")
+@scene_argument
+@click.option("--set", "overrides", multiple=True, metavar="FIELD=VALUE", help="Override a field or a range of the scene; can be repeated.")
 @click.option(
-    "--samples", default=256, show_default=True, type=click.IntRange(2, 65536), help="Of each of two samples; rounded up to a power of two."
+    "--samples", default=256, show_default=True, type=click.IntRange(2, 65536), help="Size of each of the two samples; rounded up to a power of two."
 )
-@click.option("--seed", default=SEED, show_default=True, type=click.IntRange(0), help="Of the samples.")
-@click.option("--level", metavar="LEVEL", help="Fidelity level [default: the cheapest that has all the scene asks for].")
-@click.option("--log", type=click.Path(path_type=Path), metavar="IN.mcap", help="Bands over the course of speed and load in a log.")
-@click.option("--stretches", default=24, show_default=True, type=click.IntRange(1, 10_000), help="Into how many the course of the log is cut.")
+@click.option("--seed", default=SEED, show_default=True, type=click.IntRange(0), help="Seed of the samples.")
+@click.option("--level", metavar="LEVEL", help="Level of fidelity [default: the fastest that supports the scene].")
+@click.option("--log", type=click.Path(path_type=Path), metavar="IN.mcap", help="Compute the ranges over time, for speed and load in a log.")
+@click.option("--stretches", default=24, show_default=True, type=click.IntRange(1, 10_000), help="Number of intervals into which the log is divided.")
 @executor_options
 @click.option(
     "--csv",
     "table",
     type=click.Path(path_type=Path),
     metavar="PATH.csv",
-    help="Write every point; beside it PATH.journal, from which it goes on after a kill.",
+    help="Write all points; also written: PATH.journal, from which an interrupted run resumes.",
 )
-@picture_option("Draw bands and shares")
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
-def command(scene_name, overrides, samples, seed, level, log, stretches, workers, dask, table, picture, as_json):
-    """Tell what slip and life of SCENE may be (5, 50 and 95 %), its uncertain fields drawn from the ranges in its block `uncertainty`.
+@picture_option("Draw ranges and shares")
+@json_option
+def uncertainty(scene_name, overrides, samples, seed, level, log, stretches, workers, dask, table, picture, as_json):
+    """Compute quantiles (5, 50 and 95 %) of slip and life of SCENE, with uncertain fields drawn from the ranges in its block `uncertainty`.
 
-    With N samples and d ranges the bearing is computed N (d + 2) times; Sobol' indices say which field the spread comes from.
-    Other ranges: --set "uncertainty.lubricant.temperature=[90 degC, 130 degC]"; none for a field: --set uncertainty.FIELD=null.
+    With N samples and d ranges the bearing is computed N (d + 2) times; Sobol' indices show which fields the spread comes from.
+    To change a range: --set "uncertainty.lubricant.temperature=[90 degC, 130 degC]"; to remove one: --set uncertainty.FIELD=null.
     """
-    from bearing_sim.scene_file import SceneError, load_scene
-    from bearing_sim.sweep.journal import Journal, JournalInUse
+    from bearing_sim.scene.loader import SceneError, load_scene
+    from bearing_sim.sweep.tasks import Journal, JournalInUse
 
     require_levels([level] if level is not None else ())
-    with told_as_bad_input(SceneError):
+    with as_usage_error(SceneError):
         scene = load_scene(scene_name, overrides)
     scene, course = _course(log, scene, stretches) if log is not None else (scene, None)
-    with told_file_faults(), orderly_end(), told_as_bad_input(JournalInUse):
+    with as_file_error(), exit_on_sigterm(), as_usage_error(JournalInUse):
         with Journal(table and table.with_suffix(".journal")) as journal:
             found, report = bands_of(scene, samples, seed, level, course, journal, workers, dask)
-    with told_file_faults():
+    with as_file_error():
         if table is not None:
             _write(table, found)
         if picture is not None:
-            from bearing_sim.studies.uncertainty_picture import draw
+            from bearing_sim.studies.uncertainty import draw
 
             ranges = f"{len(found.ranges)} uncertain fields, {found.design.base} samples, level {found.level}"
             draw(picture, f"{scene.name}{'' if log is None else f' under {log.name}'}: {ranges}", found, course and course.middles)
@@ -72,46 +72,46 @@ def command(scene_name, overrides, samples, seed, level, log, stretches, workers
 
 
 def bands_of(scene, samples, seed=SEED, level=None, course=None, journal=None, workers=None, dask=None):
-    """Return a study of a scene's uncertainty and its report as plain numbers; tells on stderr what it does.
+    """Return a study of a scene's uncertainty and its report as plain numbers; shows progress on stderr.
 
     Parameters
     ----------
-    scene : with ranges.
+    scene : a scene with ranges.
     samples : rounded up to a power of two.
-    seed, level, journal, workers, dask : as of `bearing_sim.studies.uncertainty.study`.
-    course : `bearing_sim.studies.course_stretches.Stretches`, or None.
+    seed, level, journal, workers, dask : as for `bearing_sim.studies.uncertainty.study`.
+    course : `bearing_sim.studies.uncertainty.Stretches`, or None.
     """
-    tell_compilation()
+    announce_compilation()
     from bearing_sim.studies.uncertainty import UncertaintyError, study
-    from bearing_sim.sweep.executor import ClusterError
+    from bearing_sim.sweep.tasks import ClusterError
 
     base = 1 << (samples - 1).bit_length()
     began, given = time.perf_counter(), (course.conditions, course.seconds) if course is not None else None
     with (
         Points(f"uncertainty of {scene.name}", base * (len(scene.uncertainty) + 2)) as points,
-        told_as_bad_input(UncertaintyError, ClusterError, ValueError),
+        as_usage_error(UncertaintyError, ClusterError, ValueError),
     ):
-        found = study(scene, base, seed, level=level, course=given, journal=journal, workers=workers, dask=dask, tell=points.tell)
+        found = study(scene, base, seed, level=level, course=given, journal=journal, workers=workers, dask=dask, progress=points.update)
     return found, {**_report(found, seed, time.perf_counter() - began, course), "kept_from_before": points.kept}
 
 
 def _course(log, scene, count):
-    """Return the scene, without a range of what the log says itself, and the log's course in stretches."""
+    """Return the scene, without ranges of fields that the log gives, and the log's inputs in intervals."""
     import dataclasses
     import math
 
     import numpy as np
 
-    from bearing_sim.input_course import judge
-    from bearing_sim.input_log import InputLogError, read_input_log
+    from bearing_sim.inputs.log import InputLogError, read_input_log
+    from bearing_sim.inputs.profile import judge
     from bearing_sim.simulation import Inputs
-    from bearing_sim.studies.course_stretches import stretches
+    from bearing_sim.studies.uncertainty import stretches
 
-    with told_as_bad_input(InputLogError), told_file_faults():
+    with as_usage_error(InputLogError), as_file_error():
         course = judge(read_input_log(log), scene.input_limits, Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature))
     kelvin = math.nan  # the scene's own, which may be uncertain
     if "oil_temperature" in course.stamps and any(one.field == "lubricant.temperature" for one in scene.uncertainty):
-        click.echo("the log says the oil temperature: its range in the scene goes unused", err=True)
+        click.echo("the log gives the oil temperature: its range in the scene is not used", err=True)
         scene = dataclasses.replace(scene, uncertainty=tuple(one for one in scene.uncertainty if one.field != "lubricant.temperature"))
     in_gap = np.zeros(len(course.instants), bool)
     for begin, end in course.gaps:
@@ -164,19 +164,22 @@ def _report(found, seed, seconds, course) -> dict:
 
 
 def band_rows(report) -> list[tuple[str, str]]:
-    """Return rows of a table: the bands, with their sampling errors, and the fields they come from, the most important first."""
+    """Return table rows: the quantiles with their sampling errors, and the fields they depend on, most important first."""
     rows = []
     for name, label, scale, unit in (("cage_slip", "cage slip", 100.0, "%"), ("life_hours", "life", 1.0, "h")):
         one = report[name]
 
-        def told(key, one=one, scale=scale):
+        def quantile(key, one=one, scale=scale):
             low, high = (scale * end for end in one[f"{key}_interval"])
             return f"{scale * one[key]:.4g} ({low:.4g} to {high:.4g})"
 
         rows.append(
-            (f"{label}: 5, 50, 95 % below", f"{told('p05')}, {told('p50')}, {told('p95')} {unit}; at the scene's own values {scale * one['own']:.4g}")
+            (
+                f"{label}: 5, 50, 95 % quantile",
+                f"{quantile('p05')}, {quantile('p50')}, {quantile('p95')} {unit}; scene's own values: {scale * one['own']:.4g}",
+            )
         )
-        rows.append((f"{label} varies by", _shares(one["shares"])))
+        rows.append((f"{label} depends on", _shares(one["shares"])))
     return rows
 
 
@@ -184,14 +187,14 @@ def _shares(shares) -> str:
     import math
 
     if shares is None:
-        return "not known: it is not finite at every point"
+        return "unknown: it is not finite at every point"
     known = [item for item in shares.items() if math.isfinite(item[1]["total"])]
     if not known:
-        return "nothing: it is the same at every point"
+        return "no field: it is the same at every point"
     known.sort(key=lambda item: -item[1]["total"])
     return "\n".join(
-        f"{field}: {_percent(one['first_order'])} % by itself ({' to '.join(map(_percent, one['first_order_interval']))}), "
-        f"{_percent(one['total'])} % in all ({' to '.join(map(_percent, one['total_interval']))})"
+        f"{field}: {_percent(one['first_order'])} % alone ({' to '.join(map(_percent, one['first_order_interval']))}), "
+        f"{_percent(one['total'])} % including interactions ({' to '.join(map(_percent, one['total_interval']))})"
         for field, one in known
     )
 
@@ -202,8 +205,8 @@ def _percent(share: float) -> str:
 
 def print_bands(name, report) -> None:
     """Print a report as a table."""
-    from bearing_sim.scene import Scene
-    from bearing_sim.scene_uncertainty import quantities
+    from bearing_sim.scene.scene import Scene
+    from bearing_sim.scene.uncertainty import quantities
 
     known = quantities(Scene)
     ranges = [
@@ -211,18 +214,18 @@ def print_bands(name, report) -> None:
         + (f" ({one['source']})" if one["source"] else "")
         for field, one in report["ranges"].items()
     ]
-    kept = f", {report['kept_from_before']} of them kept from before" if report["kept_from_before"] else ""
+    kept = f", {report['kept_from_before']} of which kept from before" if report["kept_from_before"] else ""
     print_table(
-        f"what {name} may do",
+        f"uncertainty of {name}",
         [
-            ("uncertain", "\n".join(ranges)),
+            ("uncertain fields", "\n".join(ranges)),
             *band_rows(report),
-            ("in parentheses", "95 % intervals of the sampling error; more --samples narrow them"),
+            ("in parentheses", "95 % intervals of the sampling error; increase --samples to narrow them"),
             (
                 "computed",
-                f"{report['evaluations']} times ({report['samples']} samples, seed {report['seed']}) in {report['wall_seconds']:.3g} s{kept}",
+                f"{report['evaluations']} evaluations ({report['samples']} samples, seed {report['seed']}) in {report['wall_seconds']:.3g} s{kept}",
             ),
-            ("without an answer", str(report["without_answer"])),
+            ("without a result", str(report["without_answer"])),
             ("level", report["level_reason"]),
         ],
     )
@@ -231,8 +234,8 @@ def print_bands(name, report) -> None:
 def _write(path, found) -> None:
     import csv
 
-    from bearing_sim.scene import Scene
-    from bearing_sim.scene_uncertainty import quantities
+    from bearing_sim.scene.scene import Scene
+    from bearing_sim.scene.uncertainty import quantities
 
     known = quantities(Scene)
     with open(path, "w", newline="") as file:

@@ -5,34 +5,34 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.commands.reporting import BadInput, FailedRun, progress_bar, told_as_bad_input
+from bearing_sim.cli.reporting import FailedRun, UsageError, as_usage_error, progress_bar
 
 
-@click.command()
+@click.command("view")
 @click.argument("recording", type=click.Path(path_type=Path), metavar="RUN.mcap")
-@click.option("-o", "--out", type=click.Path(path_type=Path), metavar="RUN.rrd", help="File for rerun [default: beside the recording].")
+@click.option("-o", "--out", type=click.Path(path_type=Path), metavar="RUN.rrd", help="File for rerun [default: next to the recording].")
 @click.option("--screenshot", type=click.Path(path_type=Path), metavar="PICTURE.png", help="Write a picture of the view instead of opening it.")
 @click.option("--at", "seconds", type=float, metavar="SECONDS", help="Simulated time of the picture [default: the end].")
 @click.option("--size", default="1600x1000", show_default=True, metavar="WxH", help="Size of the picture [px].")
-@click.option("--speed-topic", metavar="TOPIC", help="In a bag of others: topic of the shaft speed [default: /shaft_speed].")
-@click.option("--load-topic", metavar="TOPIC", help="The same of the radial load [default: /radial_load].")
-@click.option("--cage-topic", metavar="TOPIC", help="The same of a measured cage speed [default: /cage_speed_measured].")
-@click.option("--temperature-topic", metavar="TOPIC", help="The same of the oil temperature [default: /oil_temperature].")
-@click.option("--open/--no-open", "opens", default=None, help="Open rerun [default: where there is a display].")
-def command(recording, out, screenshot, seconds, size, speed_topic, load_topic, cage_topic, temperature_topic, opens):
-    """Show RUN.mcap in rerun: a recording of bearing-sim or of the node, or what can be shown of any rosbag2 recording.
+@click.option("--speed-topic", metavar="TOPIC", help="In a bag from another source: topic of the shaft speed [default: /shaft_speed].")
+@click.option("--load-topic", metavar="TOPIC", help="Likewise for the radial load [default: /radial_load].")
+@click.option("--cage-topic", metavar="TOPIC", help="Likewise for a measured cage speed [default: /cage_speed_measured].")
+@click.option("--temperature-topic", metavar="TOPIC", help="Likewise for the oil temperature [default: /oil_temperature].")
+@click.option("--open/--no-open", "opens", default=None, help="Open rerun [default: if there is a display].")
+def view(recording, out, screenshot, seconds, size, speed_topic, load_topic, cage_topic, temperature_topic, opens):
+    """Show RUN.mcap in rerun: a recording of bearing-sim or the node, or any rosbag2 recording.
 
-    Writes RUN.rrd and opens it, or prints the command that does. A picture needs no display, only a Vulkan driver, which may be
-    a software one. Of bags that others wrote (MCAP or SQLite, file or folder) speeds, load, temperature and plain numbers are
-    shown over time, and it says what is not.
+    Writes RUN.rrd and opens it, or prints the command that does. A picture needs no display, only a Vulkan driver; a software driver
+    is sufficient. Of bags from other sources (MCAP or SQLite, file or folder), speeds, load, temperature and plain numbers are shown over
+    time; topics that cannot be shown are listed.
     """
-    from bearing_sim.recording_reader import RecordingError
+    from bearing_sim.recording.bag import RecordingError
 
     picture_size = _size(size)
     unfinished = recording.suffix == ".active"
     out = out or (recording.with_suffix("") if unfinished else recording).with_suffix(".rrd")
     topics = {"speed": speed_topic, "load": load_topic, "cage_speed": cage_topic, "temperature": temperature_topic}
-    with told_as_bad_input(RecordingError, PermissionError):
+    with as_usage_error(RecordingError, PermissionError):
         span = _write(recording, out, seconds, {role: topic for role, topic in topics.items() if topic})
     if screenshot is not None:
         _take_picture(out, screenshot, span[1] if seconds is None else seconds, picture_size)
@@ -43,16 +43,17 @@ def command(recording, out, screenshot, seconds, size, speed_topic, load_topic, 
 
 def _write(recording: Path, out: Path, seconds: float | None, topics: dict[str, str]) -> tuple[float, float]:
     """Write the file for rerun; return the first and last time in it [s]."""
-    from bearing_sim.recording_reader import Recording, RecordingError
+    from bearing_sim.recording.bag import RecordingError
+    from bearing_sim.recording.reader import Recording
 
     if topics:
-        return _write_bag(recording, out, seconds, topics, "topics are named")
+        return _write_bag(recording, out, seconds, topics, "topics are given")
     try:
         source = Recording(recording)
-    except RecordingError as fault:
+    except RecordingError as error:
         if not recording.exists():
             raise
-        return _write_bag(recording, out, seconds, topics, str(fault))
+        return _write_bag(recording, out, seconds, topics, str(error))
     _require_within(seconds, source.first_time, source.last_time)
     _convert(source, out)
     if source.unfinished:
@@ -61,12 +62,11 @@ def _write(recording: Path, out: Path, seconds: float | None, topics: dict[str, 
 
 
 def _write_bag(recording: Path, out: Path, seconds: float | None, topics: dict[str, str], why: str) -> tuple[float, float]:
-    from bearing_sim.bag_series import read_bag_series
-    from bearing_sim.sinks.rerun_bag import write_bag_view
+    from bearing_sim.view.bag import read_bag_series, write_bag_view
 
     found = read_bag_series(recording, topics)
     _require_within(seconds, 0.0, found.duration)
-    click.echo(f"shown as a bag of others ({why}); not shown:", err=True)
+    click.echo(f"shown as a bag from another source ({why}); not shown:", err=True)
     for line in found.left_out:
         click.echo(f"  {line}", err=True)
     write_bag_view(out, recording.name, found.start_ns, found.series, found.events, found.left_out)
@@ -75,19 +75,19 @@ def _write_bag(recording: Path, out: Path, seconds: float | None, topics: dict[s
 
 def _require_within(seconds: float | None, first: float, last: float) -> None:
     if seconds is not None and not first <= seconds <= last:
-        raise BadInput(f"--at {seconds:g}: the recording goes from {first:g} to {last:g} s")
+        raise UsageError(f"--at {seconds:g}: the recording covers {first:g} to {last:g} s")
 
 
 def _size(text: str) -> tuple[int, int]:
     width, _, height = text.partition("x")
     if not (width.isdigit() and height.isdigit() and 200 <= int(width) <= 8000 and 200 <= int(height) <= 8000):
-        raise BadInput(f"--size {text}: expected WIDTHxHEIGHT, each 200 to 8000, such as 1600x1000")
+        raise UsageError(f"--size {text}: expected WIDTHxHEIGHT, each 200 to 8000, such as 1600x1000")
     return int(width), int(height)
 
 
 def _convert(source, out: Path) -> None:
-    from bearing_sim.events import Event, Measurement
-    from bearing_sim.sinks.rerun_sink import RerunSink
+    from bearing_sim.messages.events import Event, Measurement
+    from bearing_sim.view.sink import RerunSink
 
     with progress_bar(f"reading {source.path.name}", source.duration) as progress:
         with RerunSink(
@@ -106,17 +106,17 @@ def _convert(source, out: Path) -> None:
 
 
 def _take_picture(rrd: Path, picture: Path, seconds: float, size: tuple[int, int]) -> None:
-    from bearing_sim.screenshot import HeadlessViewer, ViewerFailed
+    from bearing_sim.view.screenshot import HeadlessViewer, ViewerFailed
 
     try:
         with HeadlessViewer(rrd, size) as viewer:
             viewer.seek(seconds)
             picture.write_bytes(viewer.png())
             problems = viewer.problems()
-    except ViewerFailed as fault:
-        raise FailedRun(f"no picture: {fault}") from None
+    except ViewerFailed as error:
+        raise FailedRun(f"no picture: {error}") from None
     if problems:
-        raise FailedRun(f"{picture} was written, but the viewer complains: {'; '.join(problems)}")
+        raise FailedRun(f"{picture} was written, but the viewer reports: {'; '.join(problems)}")
 
 
 def _open(rrd: Path, opens: bool | None) -> None:

@@ -1,44 +1,265 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Measured tables into input logs: every row that becomes a message, and by line number why the others do not.
+"""Import measured tables (CSV) as input logs.
 
-A bad time loses its row; a bad cell loses the one message that needs it.  Nothing is filled in, sorted or smoothed.
+A mapping, a YAML file, says which columns are time, shaft speed, radial load, oil temperature and cage speed, and in which units.
+Nothing in it is evaluated: each input is one of a few fixed laws of columns.
+
+A bad time costs its row, a bad cell the one message that needs it; both are reported by line number.  Nothing is filled in, sorted or
+smoothed.
 """
 
 import csv
+import datetime
 import hashlib
 import math
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from datetime import datetime
 from decimal import Decimal, InvalidOperation
+from importlib import resources
 from pathlib import Path
+from typing import Annotated, Literal
 
 import numpy as np
+from pydantic import Field, TypeAdapter, ValidationError, model_validator
+from pydantic_core import PydanticCustomError
 
-from bearing_sim import topics
-from bearing_sim.csv_mapping import GearForce, Mapping, MassTimesAcceleration, NormLoad, nanoseconds
-from bearing_sim.provenance import git_hash, package_version
-from bearing_sim.scene_file import did_you_mean
+from bearing_sim.messages import topics
+from bearing_sim.recording.provenance import git_hash, package_version
+from bearing_sim.recording.writer import McapFile
+from bearing_sim.scene.loader import InvalidField, SceneError, did_you_mean, invalid_fields, yaml_mapping
+from bearing_sim.scene.quantity import quantity, record, to_si
 from bearing_sim.simulation import Inputs
-from bearing_sim.sinks.mcap_file import McapFile
 
 METADATA = "bearing_sim_import"
 """Name of the metadata record: mapping (YAML), file, sha256, package_version, git_hash."""
 
-_LINES_TOLD = 5  # of each kind of fault; all are counted
-_USUAL_SPACINGS = 3.0  # rows further apart than this many median spacings leave a gap, where the mapping does not say
+_LINES_KEPT = 5  # of each kind of error; all are counted
+_USUAL_SPACINGS = 3.0  # median spacings above which there is a gap, if the mapping does not set longest_step
+
+_LAWS = frozenset({"sum", "norm", "mass_times_acceleration", "gear_force"})
+
+
+class MappingError(SceneError):
+    """A mapping that cannot be used; ``faults`` lists all errors in it."""
+
+
+def _column(si_unit: str, meaning: str) -> type:
+    """Return the record type of a column: value in SI = scale x cell + offset, or the cell in a named unit."""
+
+    @record
+    class Column:
+        """A column: either ``unit``, or ``scale`` (SI per unit of the cell) and ``offset``."""
+
+        column: str
+        unit: str | None = None
+        scale: quantity(si_unit, f"{meaning} for a cell of 1") | None = None
+        offset: quantity(si_unit, f"{meaning} for a cell of 0") | None = None
+
+        @model_validator(mode="after")
+        def _converts(self):
+            if (self.unit is None) == (self.scale is None):
+                raise PydanticCustomError("conversion", "expected either unit, or scale (and offset)")
+            if self.unit is not None and self.offset is not None:
+                raise PydanticCustomError("conversion", "offset does not go with unit; give scale and offset instead")
+            if self.scale is not None and not (math.isfinite(self.scale) and math.isfinite(self.offset or 0.0)):
+                raise PydanticCustomError("conversion", "expected a finite scale and offset")
+            self.line()  # a wrong unit is an error of the mapping, not of the data
+            return self
+
+        def line(self) -> tuple[float, float]:
+            """Return (scale, offset) in SI."""
+            if self.unit is None:
+                return self.scale, self.offset or 0.0
+            try:
+                offset = to_si(f"0 {self.unit}", si_unit)
+                return to_si(f"1 {self.unit}", si_unit) - offset, offset
+            except ValueError as error:
+                raise PydanticCustomError("conversion", "{reason}", {"reason": str(error)}) from None
+
+    return Column
+
+
+SpeedColumn = _column("rad/s", "shaft speed")
+ForceColumn = _column("N", "force")
+AccelerationColumn = _column("m/s^2", "acceleration")
+TemperatureColumn = _column("K", "oil temperature")
+PowerColumn = _column("W", "power")
+
+
+@record
+class TimeColumn:
+    """The time of each row: numbers in a ``unit`` since ``epoch``, or timestamps in a ``format``."""
+
+    column: str
+    unit: str | None = None
+    format: str | None = None  # "iso", or a format of strptime; a timestamp without a zone is UTC
+    epoch: datetime.datetime | datetime.date | str | None = None
+    longest_step: quantity("s", "spacing of rows above which there is a gap", 0.0) | None = None
+
+    @model_validator(mode="after")
+    def _reads_one_way(self):
+        if (self.unit is None) == (self.format is None):
+            raise PydanticCustomError("time", "expected either unit (numbers), or format (timestamps)")
+        if self.format is not None and self.epoch is not None:
+            raise PydanticCustomError("time", "epoch does not go with format: timestamps contain their date")
+        if self.unit is not None:
+            self.nanoseconds_per_unit()
+            self.epoch_ns()
+        return self
+
+    def nanoseconds_per_unit(self) -> float:
+        """Return the number of nanoseconds in one unit of the cell."""
+        try:
+            return to_si(f"1 {self.unit}", "s") * 1e9
+        except ValueError as error:
+            raise PydanticCustomError("time", "{reason}", {"reason": str(error)}) from None
+
+    def epoch_ns(self) -> int:
+        """Return the time of a cell of 0 [ns since 1970]."""
+        if self.epoch is None:
+            return 0
+        try:
+            return nanoseconds(datetime.datetime.fromisoformat(str(self.epoch)))
+        except ValueError:
+            raise PydanticCustomError("time", "epoch: expected a date such as 2019-03-12 or 2019-03-12T06:00:00Z") from None
+
+
+def nanoseconds(moment: datetime.datetime) -> int:
+    """Return a moment in nanoseconds since 1970; UTC if it has no zone."""
+    zoned = moment if moment.tzinfo is not None else moment.replace(tzinfo=datetime.UTC)
+    return (zoned - datetime.datetime(1970, 1, 1, tzinfo=datetime.UTC)) // datetime.timedelta(microseconds=1) * 1000
+
+
+@record
+class SumLoad:
+    """Load along +y: the sum of the columns."""
+
+    law: Literal["sum"] = "sum"
+    columns: tuple[ForceColumn, ...]
+
+
+@record
+class NormLoad:
+    """Load along +y: the Euclidean norm of the columns."""
+
+    law: Literal["norm"] = "norm"
+    columns: tuple[ForceColumn, ...]
+
+
+@record
+class MassTimesAcceleration:
+    """Load along +y: a supported mass times the Euclidean norm of the accelerations."""
+
+    law: Literal["mass_times_acceleration"] = "mass_times_acceleration"
+    mass: quantity("kg", "mass that the bearing supports", 1e-6, 1e6)
+    accelerations: tuple[AccelerationColumn, ...]
+
+
+@record
+class GearForce:
+    """Load along +y: tangential force of a gear on the shaft, F = 2 P/(efficiency omega d) with the row's shaft speed omega."""
+
+    law: Literal["gear_force"] = "gear_force"
+    power: PowerColumn
+    efficiency: quantity("", "power out over power through the gear", 0.01, 1.0)
+    pitch_diameter: quantity("m", "pitch diameter of the gear, d", 1e-3, 100.0, "mm")
+
+
+@record
+class Mapping:
+    """How the columns of a table become the messages of a log."""
+
+    name: str
+    description: str = ""
+    source: str = ""
+    delimiter: Annotated[str, Field(min_length=1, max_length=1)] = ","
+    decimal: Literal[".", ","] = "."
+    only: dict[str, str] = Field(default_factory=dict)  # column: text that its cell must have; other rows are left out
+    time: TimeColumn
+    shaft_speed: SpeedColumn
+    radial_load: Annotated[SumLoad | NormLoad | MassTimesAcceleration | GearForce, Field(discriminator="law")]
+    oil_temperature: TemperatureColumn | None = None
+    cage_speed: SpeedColumn | None = None  # measured; compared with the model, not an input of it
+
+    @model_validator(mode="after")
+    def _is_complete(self):
+        if self.delimiter == self.decimal:
+            raise ValueError("delimiter: expected a character other than the decimal mark")
+        if not self.load_columns():
+            raise ValueError(f"radial_load: the law {self.radial_load.law} needs at least one column")
+        return self
+
+    def load_columns(self) -> tuple:
+        """Return the columns that the load is computed from."""
+        load = self.radial_load
+        if isinstance(load, MassTimesAcceleration):
+            return load.accelerations
+        return (load.power,) if isinstance(load, GearForce) else load.columns
+
+    def column_names(self) -> list[tuple[str, str]]:
+        """Return (path in the mapping, name) of every column that is used."""
+        named = [(f"only.{name}", name) for name in self.only]
+        named += [("time.column", self.time.column), ("shaft_speed.column", self.shaft_speed.column)]
+        named += [("radial_load", one.column) for one in self.load_columns()]
+        optional = {"oil_temperature": self.oil_temperature, "cage_speed": self.cage_speed}
+        return named + [(f"{name}.column", one.column) for name, one in optional.items() if one]
+
+
+def mapping_names() -> list[str]:
+    """Return the names of the bundled mappings."""
+    folder = resources.files("bearing_sim.scene").joinpath("catalog", "mappings")
+    return sorted(entry.name.removesuffix(".yaml") for entry in folder.iterdir() if entry.name.endswith(".yaml"))
+
+
+def load_mapping(mapping: str | Path) -> tuple[Mapping, str]:
+    """Load a mapping by bundled name or file path.
+
+    Returns
+    -------
+    The mapping and its text.
+
+    Raises
+    ------
+    MappingError
+        The file is missing, is not YAML, or has errors; all of them are listed.
+    """
+    if str(mapping) in mapping_names():
+        text = resources.files("bearing_sim.scene").joinpath("catalog", "mappings", f"{mapping}.yaml").read_text(encoding="utf-8")
+    else:
+        path = Path(mapping)
+        if not path.is_file():
+            known = mapping_names()
+            reason = f"no such file or bundled mapping{did_you_mean(str(mapping), known)}; bundled: {', '.join(known)}"
+            raise MappingError(str(mapping), [InvalidField("mapping", "", reason)])
+        try:
+            text = path.read_text(encoding="utf-8")
+        except UnicodeDecodeError as error:
+            raise MappingError(str(mapping), [InvalidField("mapping", "", f"not readable as UTF-8 text: {error.reason}")]) from None
+    return mapping_from_yaml(text, str(mapping)), text
+
+
+def mapping_from_yaml(text: str, origin: str = "mapping") -> Mapping:
+    """Build a mapping from YAML text (see `load_mapping`)."""
+    try:
+        tree = yaml_mapping(text, origin, "time, shaft_speed, radial_load ...")
+    except SceneError as error:
+        raise MappingError(origin, error.errors) from None
+    try:
+        return TypeAdapter(Mapping).validate_python(tree)
+    except ValidationError as error:
+        raise MappingError(origin, invalid_fields(error, Mapping, _LAWS)) from None
 
 
 class TableError(ValueError):
-    """A table that cannot become a log."""
+    """A table that cannot be imported."""
 
 
 class _BadCell(ValueError):
-    """A cell that holds no usable number."""
+    """A cell without a usable number."""
 
-    def __init__(self, code: str, text: str):
-        self.code = code
+    def __init__(self, kind: str, text: str):
+        self.kind = kind
         super().__init__(text)
 
 
@@ -51,11 +272,11 @@ class Table:
     rows : rows of data, without the header and those that ``only`` leaves out (``left_out``).
     stamps : by channel [ns since 1970], rising.
     values : by channel, in SI; the load along +y.
-    refused : by code, what could not be used: ``time.*`` a whole row, ``shaft_speed.*`` and so on one message.
-    told : by code, the first few (line number, what is wrong).
+    refused : number of errors by kind: ``time.*`` costs a whole row, ``shaft_speed.*`` and so on one message.
+    examples : by kind, the first few (line number, what is wrong).
     lines : by channel, the line number of each message.
     gaps : (channel, line number, seconds) of messages that come too long after the one before.
-    longest_step : spacing [s] above which it is a gap.
+    longest_step : spacing [s] above which there is a gap.
     """
 
     rows: int = 0
@@ -63,25 +284,25 @@ class Table:
     stamps: dict[str, list[int]] = field(default_factory=dict)
     values: dict[str, list[float]] = field(default_factory=dict)
     refused: Counter = field(default_factory=Counter)
-    told: dict[str, list[tuple[int, str]]] = field(default_factory=dict)
+    examples: dict[str, list[tuple[int, str]]] = field(default_factory=dict)
     lines: dict[str, list[int]] = field(default_factory=dict)
     gaps: list[tuple[str, int, float]] = field(default_factory=list)
     longest_step: float = math.nan
 
-    def refuse(self, code: str, line: int, text: str) -> None:
-        """Count a fault and remember it if it is among the first of its kind."""
-        self.refused[code] += 1
-        if len(told := self.told.setdefault(code, [])) < _LINES_TOLD:
-            told.append((line, text))
+    def refuse(self, kind: str, line: int, text: str) -> None:
+        """Count an error and keep it as an example if it is among the first of its kind."""
+        self.refused[kind] += 1
+        if len(examples := self.examples.setdefault(kind, [])) < _LINES_KEPT:
+            examples.append((line, text))
 
 
 def read_table(path: str | Path, mapping: Mapping) -> Table:
-    """Read a table by a mapping.
+    """Read a table as a mapping describes it.
 
     Raises
     ------
     TableError
-        No such file, no text, no header, columns missing (all of them are named), or no row that can be used.
+        The file is missing, not text, or has no header; columns are missing (all of them are named); or no row can be used.
     """
     table = Table()
     path = Path(path)
@@ -95,13 +316,13 @@ def read_table(path: str | Path, mapping: Mapping) -> Table:
             for line, cells in _rows(records):
                 if row_reader.take(line, cells):
                     times.append(row_reader.newest)
-    except UnicodeDecodeError as fault:
-        raise TableError(f"{path}: not readable as UTF-8 text ({fault.reason})") from None
-    except csv.Error as fault:
-        raise TableError(f"{path}, line {records.line_num}: {fault}") from None
+    except UnicodeDecodeError as error:
+        raise TableError(f"{path}: not readable as UTF-8 text ({error.reason})") from None
+    except csv.Error as error:
+        raise TableError(f"{path}, line {records.line_num}: {error}") from None
     missing = [channel for channel in ("shaft_speed", "radial_load") if not table.stamps.get(channel)]
     if missing:
-        why = ", ".join(f"{count} x {code}" for code, count in table.refused.items()) or "it has no rows" + " for `only`" * bool(mapping.only)
+        why = ", ".join(f"{count} x {kind}" for kind, count in table.refused.items()) or "it has no rows" + " that match `only`" * bool(mapping.only)
         raise TableError(f"{path}: nothing usable for {' and '.join(missing)}: {why}")
     _find_gaps(table, mapping, np.diff(times) * 1e-9)
     return table
@@ -109,19 +330,19 @@ def read_table(path: str | Path, mapping: Mapping) -> Table:
 
 def _header(path: Path, records: Iterator[list[str]], mapping: Mapping) -> dict[str, int]:
     names = [name.strip() for name in next(records, [])]
-    faults = []
+    errors = []
     for where, name in mapping.column_names():
         if names.count(name) == 0:
-            faults.append(f"{where}: no column {name!r}{did_you_mean(name, names)}")
+            errors.append(f"{where}: no column {name!r}{did_you_mean(name, names)}")
         elif names.count(name) > 1:
-            faults.append(f"{where}: {names.count(name)} columns are called {name!r}")
-    if faults:
-        raise TableError("\n".join([f"{path}: the header has {', '.join(names) or 'nothing'}", *(f"  {fault}" for fault in faults)]))
-    return {name: place for place, name in enumerate(names)}
+            errors.append(f"{where}: {names.count(name)} columns are called {name!r}")
+    if errors:
+        raise TableError("\n".join([f"{path}: the header has {', '.join(names) or 'nothing'}", *(f"  {error}" for error in errors)]))
+    return {name: column for column, name in enumerate(names)}
 
 
 def _rows(records) -> Iterator[tuple[int, list[str]]]:
-    """Yield (line number, cells); the line that a row begins on."""
+    """Yield (number of the line that the row begins on, cells)."""
     before = records.line_num
     for cells in records:
         yield before + 1, cells
@@ -129,23 +350,23 @@ def _rows(records) -> Iterator[tuple[int, list[str]]]:
 
 
 class _RowReader:
-    """Takes rows into a table by a mapping."""
+    """Adds rows to a table as a mapping describes them."""
 
-    def __init__(self, mapping: Mapping, places: dict[str, int], table: Table):
-        self._table, self._places, self._width = table, places, len(places)
+    def __init__(self, mapping: Mapping, columns: dict[str, int], table: Table):
+        self._table, self._width = table, len(columns)
         self._comma = mapping.decimal == ","
-        self._only = [(places[name], text) for name, text in mapping.only.items()]
-        self._time, self._time_place = _time_reader(mapping), places[mapping.time.column]
-        self._speed = (places[mapping.shaft_speed.column], mapping.shaft_speed.column, *mapping.shaft_speed.line())
-        self._load_columns = [(places[record.column], record.column, *record.line()) for record in mapping.load_columns()]
+        self._only = [(columns[name], text) for name, text in mapping.only.items()]
+        self._time, self._time_column = _time_reader(mapping), columns[mapping.time.column]
+        self._speed = (columns[mapping.shaft_speed.column], mapping.shaft_speed.column, *mapping.shaft_speed.line())
+        self._load_columns = [(columns[one.column], one.column, *one.line()) for one in mapping.load_columns()]
         self._load = _load_law(mapping)
         optional = {"oil_temperature": mapping.oil_temperature, topics.MEASURED: mapping.cage_speed}
-        self._optional = {channel: (places[one.column], one.column, *one.line()) for channel, one in optional.items() if one}
+        self._optional = {channel: (columns[one.column], one.column, *one.line()) for channel, one in optional.items() if one}
         self.newest: int | None = None
 
     def take(self, line: int, cells: list[str]) -> bool:
-        """Take one row; return whether its time was good."""
-        if cells and len(cells) == self._width and any(cells[place].strip() != text for place, text in self._only):
+        """Add one row; return whether its time is good."""
+        if cells and len(cells) == self._width and any(cells[column].strip() != text for column, text in self._only):
             self._table.left_out += 1
             return False
         self._table.rows += 1
@@ -160,61 +381,61 @@ class _RowReader:
         return True
 
     def _time_of(self, line: int, cells: list[str]) -> int | None:
-        """Return the row's time if it can be used, else count why not."""
+        """Return the row's time if it can be used, otherwise count the error."""
         refuse = self._table.refuse
         if len(cells) != self._width:
             refuse("time.cells" if cells else "time.empty_line", line, f"{len(cells)} cells, expected {self._width}")
             return None
-        text = cells[self._time_place].strip()
+        text = cells[self._time_column].strip()
         try:
             time_ns = self._time(text)
         except (ValueError, InvalidOperation, OverflowError):
-            refuse("time.unreadable" if text else "time.empty_cell", line, f"{text!r} is no time" if text else "the time is empty")
+            refuse("time.unreadable" if text else "time.empty_cell", line, f"{text!r} is not a time" if text else "the time is empty")
             return None
         if self.newest is not None and time_ns <= self.newest:
             back = (self.newest - time_ns) * 1e-9
             if back:
-                refuse("time.backwards", line, f"{text} lies {back:.6g} s before the row used last")
+                refuse("time.backwards", line, f"{text} lies {back:.6g} s before the last row used")
             else:
-                refuse("time.repeated", line, f"{text} repeats the time of the row used last")
+                refuse("time.repeated", line, f"{text} repeats the time of the last row used")
             return None
         return time_ns
 
     def _number(self, channel: str, line: int, time_ns: int, read: Callable[[], float]) -> float:
-        """Keep one channel's value if it can be used, else count why not; returns it, or NaN."""
+        """Return one channel's value and keep it if it can be used, otherwise count the error and return NaN."""
         try:
             value = read()
-        except _BadCell as fault:
-            self._table.refuse(f"{channel}.{fault.code}", line, str(fault))
+        except _BadCell as error:
+            self._table.refuse(f"{channel}.{error.kind}", line, str(error))
             return math.nan
         self._table.stamps.setdefault(channel, []).append(time_ns)
         self._table.values.setdefault(channel, []).append(value)
         self._table.lines.setdefault(channel, []).append(line)
         return value
 
-    def _cell(self, cells: list[str], place: int, name: str, scale: float, offset: float) -> float:
-        text = cells[place].strip()
+    def _cell(self, cells: list[str], column: int, name: str, scale: float, offset: float) -> float:
+        text = cells[column].strip()
         if not text:
             raise _BadCell("empty_cell", f"{name} is empty")
         try:
-            if "_" in text or (self._comma and "." in text):  # float() would read 1_000; and 1.000 is not 1 where a comma is the mark
+            if "_" in text or (self._comma and "." in text):  # float() accepts 1_000, and 1.000 where a comma is the mark
                 raise ValueError
             number = float(text.replace(",", ".") if self._comma else text)
         except ValueError:
-            raise _BadCell("not_a_number", f"{name} = {text!r} is no number") from None
+            raise _BadCell("not_a_number", f"{name} = {text!r} is not a number") from None
         if not math.isfinite(number):
             raise _BadCell("not_finite", f"{name} = {text} is not finite")
         return offset + scale * number
 
 
 def _time_reader(mapping: Mapping) -> Callable[[str], int]:
-    """Return what turns a time cell into nanoseconds since 1970."""
+    """Return a function that converts a time cell to nanoseconds since 1970."""
     time = mapping.time
     if time.format == "iso":
-        return lambda text: nanoseconds(datetime.fromisoformat(text))
+        return lambda text: nanoseconds(datetime.datetime.fromisoformat(text))
     if time.format is not None:
-        return lambda text: nanoseconds(datetime.strptime(text, time.format))
-    # Decimal keeps every digit of a time; a float would not keep nanoseconds.
+        return lambda text: nanoseconds(datetime.datetime.strptime(text, time.format))
+    # Decimal keeps every digit of a time; a float would lose nanoseconds.
     factor, epoch, comma = Decimal(repr(time.nanoseconds_per_unit())), time.epoch_ns(), mapping.decimal == ","
 
     def read(text: str) -> int:
@@ -226,7 +447,7 @@ def _time_reader(mapping: Mapping) -> Callable[[str], int]:
 
 
 def _load_law(mapping: Mapping) -> Callable[[float, list[float]], float]:
-    """Return load(speed, column values) in SI."""
+    """Return the function load(speed, column values), in SI."""
     law = mapping.radial_load
     if isinstance(law, MassTimesAcceleration):
         return lambda speed, values: law.mass * math.hypot(*values)
@@ -238,8 +459,8 @@ def _load_law(mapping: Mapping) -> Callable[[float, list[float]], float]:
 
 
 def _gear_force(law: GearForce, speed: float, power: float) -> float:
-    if not abs(speed) > 0.0:  # NaN too: the row's speed could not be read
-        raise _BadCell("no_speed", "power without a shaft speed above zero gives no force")
+    if not abs(speed) > 0.0:  # also NaN, where the row's speed could not be read
+        raise _BadCell("no_speed", "power without a shaft speed other than zero gives no force")
     return 2 * power / (law.efficiency * abs(speed) * law.pitch_diameter)
 
 
@@ -249,30 +470,30 @@ def _find_gaps(table: Table, mapping: Mapping, row_spacings: np.ndarray) -> None
     for channel, stamps in table.stamps.items():
         spacings = np.diff(stamps) * 1e-9
         # A nanosecond of slack: times are rounded to nanoseconds.
-        for place in np.flatnonzero(spacings > table.longest_step + 1e-9):
-            table.gaps.append((channel, table.lines[channel][place + 1], float(spacings[place])))
+        for k in np.flatnonzero(spacings > table.longest_step + 1e-9):
+            table.gaps.append((channel, table.lines[channel][k + 1], float(spacings[k])))
 
 
 def write_log(table: Table, mapping_text: str, source: str | Path, out: str | Path, progress: Callable[[float], None] = lambda done: None) -> None:
-    """Write a table as an input log, each channel at its own stamps, all in order of time.
+    """Write a table as an input log, each channel at its own stamps, in order of time.
 
     Parameters
     ----------
-    table : what `read_table` returned.
-    mapping_text : the mapping, for the file's metadata.
+    table : see `read_table`.
+    mapping_text : the mapping's YAML, for the metadata.
     source : the table's file; its name and checksum go into the metadata.
     out : the recording to write.
     progress : called now and then with the number of messages written.
     """
     origin = {"package_version": package_version(), "git_hash": git_hash()}
     checksum = hashlib.sha256(Path(source).read_bytes()).hexdigest()
-    record = {"mapping": mapping_text, "file": Path(source).name, "sha256": checksum, **origin}
-    messages = sorted((stamp, channel, place) for channel, stamps in table.stamps.items() for place, stamp in enumerate(stamps))
-    with McapFile(out, {METADATA: record}, {"generator": "bearing_sim", **origin}, replace=True) as recording:
-        for done, (stamp, channel, place) in enumerate(messages):
-            topic, value = (topics.INPUTS | topics.MEASUREMENTS)[channel], table.values[channel][place]
-            # An input's message takes its own channel out of the inputs; the others do not matter.
-            source = value if channel == topics.MEASURED else Inputs(value, value, 0.0, value)
-            recording.write(f"/{topic.name}", topic.ros_type, stamp, topic.message(stamp, source))
+    metadata = {"mapping": mapping_text, "file": Path(source).name, "sha256": checksum, **origin}
+    messages = sorted((stamp, channel, k) for channel, stamps in table.stamps.items() for k, stamp in enumerate(stamps))
+    with McapFile(out, {METADATA: metadata}, {"generator": "bearing_sim", **origin}, replace=True) as recording:
+        for done, (stamp, channel, k) in enumerate(messages):
+            topic, value = (topics.INPUTS | topics.MEASUREMENTS)[channel], table.values[channel][k]
+            # An input's message contains its own channel only; the other inputs do not matter.
+            content = value if channel == topics.MEASURED else Inputs(value, value, 0.0, value)
+            recording.write(f"/{topic.name}", topic.ros_type, stamp, topic.message(stamp, content))
             if done % 1000 == 0:
                 progress(done)

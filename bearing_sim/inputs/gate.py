@@ -1,30 +1,43 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""The door for input messages: what is not a usable value is refused, named and counted, and the last good value is held.
+"""What decides about every input message: the gate, several publishers on one channel, and messages around a jump of the clock.
 
-Pure arithmetic on numbers and times that the caller brings along; no clock, no ROS.  The node and the replay of
-recordings use the same gate, so a log is judged exactly as it would have been live.
+Values, counts and times in, events out; no clock and no ROS.  The node and the replay of recordings use the same gate, so a log is
+judged exactly as it would have been live.
 """
 
 import math
-from collections import Counter
+from collections import Counter, deque
+from collections.abc import Mapping
 from dataclasses import dataclass
+from enum import Enum
+from typing import NamedTuple
 
-from bearing_sim.events import Event, Level
-from bearing_sim.scene import InputLimits
+from bearing_sim.messages.events import Event, Level
+from bearing_sim.messages.topics import MEASURED
+from bearing_sim.scene.scene import InputLimits
 from bearing_sim.simulation import Inputs
-from bearing_sim.topics import MEASURED
 
-CHANNELS = ("shaft_speed", "radial_load", "oil_temperature", MEASURED)  # the last is held against the model, no input of it
+CHANNELS = ("shaft_speed", "radial_load", "oil_temperature", MEASURED)  # the last is compared with the model, not an input of it
+REQUIRED = ("shaft_speed", "radial_load")
+UNITS = {"shaft_speed": "rad/s", "radial_load": "N", "oil_temperature": "K", MEASURED: "rad/s"}
+"""SI unit of the values of each channel."""
+
 _OPTIONAL = ("oil_temperature", MEASURED)
-_RATE_WINDOW = 1.0  # [s] a rate is the count of messages over at least this long
-_RATE_TOLERANCE = 0.1  # relative: timers jitter
-_SLOW_CHANNEL = {"oil_temperature": 10.0}  # oil warms up in minutes: its messages may be that much rarer
-_RISING_TO_FOLLOW = 3  # this many refused messages in a row with rising stamps: the sender's clock has been set anew
+_RATE_WINDOW = 1.0  # [s] a rate is the number of messages over at least this long
+_RATE_TOLERANCE = 0.1  # relative, because timers jitter
+_SLOW_CHANNEL = {"oil_temperature": 10.0}  # oil warms up in minutes: its messages may be rarer by this factor
+_RISING_TO_FOLLOW = 3  # refused messages in a row with rising stamps after which the sender's clock counts as set
+
+_REMEMBERED = 16  # values of a channel in which a conflict of publishers is looked for
+_CONFLICT_TOLERANCE = 0.02  # of the largest value: publishers that differ by less measure the same quantity
+_REVERSALS = 4  # large jumps against the jump before, among the values remembered: one or two are a manoeuvre
+
+_SET_ASIDE = 1.0  # [s of wall time] in which a jump of the clock may become known
 
 
 @dataclass
 class _Channel:
-    """What is remembered of one input: the newest stamp, the newest arrival, and the count of the running rate window."""
+    """State of one channel: newest stamp, newest arrival, and the count of the open rate window."""
 
     stamp: float = -math.inf
     arrival: float = -math.inf
@@ -34,8 +47,8 @@ class _Channel:
     rate: float = math.nan
     earlier_stamp: float = -math.inf
     earlier_count: int = 0
-    least: float = 0.0  # what is from here ...
-    largest: float = 0.0  # ... to here is good, as nearly all is; why something else is not takes a closer look
+    least: float = 0.0  # values from here ...
+    largest: float = 0.0  # ... to here are good
     is_force: bool = False
 
 
@@ -44,8 +57,9 @@ class InputGate:
 
     Parameters
     ----------
-    limits : what a message may be (see `bearing_sim.scene.InputLimits`).
+    limits : what a message may contain (see `bearing_sim.scene.scene.InputLimits`).
     held : the inputs before the first message.
+    substitute : what the model uses while good messages are missing, for the texts of events; by default the held value.
 
     Attributes
     ----------
@@ -54,12 +68,11 @@ class InputGate:
     measured : float
         The last good cage speed [rad/s]; NaN before the first.
     refused, accepted : collections.Counter
-        Messages refused by event code, and accepted by channel.
+        Messages refused by kind of event, and accepted by channel.
     """
 
-    def __init__(self, limits: InputLimits, held: Inputs):
-        self.limits = limits
-        self.held = held
+    def __init__(self, limits: InputLimits, held: Inputs, substitute: str = ""):
+        self.limits, self.held, self._substitute = limits, held, substitute
         self.measured = math.nan
         self.refused: Counter[str] = Counter()
         self.accepted: Counter[str] = Counter()
@@ -69,7 +82,7 @@ class InputGate:
         self._reported: set[tuple[str, str]] = set()
 
     def offer(self, channel: str, stamp: float, values: tuple[float, ...], arrival: float | None = None) -> Event | None:
-        """Judge one message; take its values over into ``held`` if they are good.
+        """Judge one message; take its values into ``held`` if they are good.
 
         Parameters
         ----------
@@ -77,12 +90,12 @@ class InputGate:
         stamp : the sender's time [s since the start]; must rise from message to message of a channel.
         values : ``(speed,)`` [rad/s], of shaft or cage; ``(force_y, force_z)`` [N], or ``(force,)`` [N] for a magnitude along +y, which cannot
             be negative; ``(temperature,)`` [K].
-        arrival : the receiver's time [s since the start], by which age and rate are judged; ``stamp`` where absent (replay).
-            Where it is given, a sender whose clock was set back is followed after a few messages, else never.
+        arrival : the receiver's time [s since the start], from which age and rate are computed; ``stamp`` by default, as in a replay.
+            If it is given, a sender whose clock was set back is followed after a few messages, otherwise never.
 
         Returns
         -------
-        None if accepted, otherwise the event that says what is wrong, what was expected and what is held instead.
+        None if accepted, otherwise the event that says what is wrong, what was expected and what is used instead.
 
         Raises
         ------
@@ -92,40 +105,48 @@ class InputGate:
         state = self._channels[channel]
         received = stamp if arrival is None else arrival
         if math.isfinite(received):
-            self._count_rate(state, received)
-        fault = None
+            state.seen = True
+            elapsed = received - state.window_start
+            if elapsed >= 0.0:
+                state.window_count += 1
+                if elapsed >= _RATE_WINDOW:
+                    state.rate = state.window_count / elapsed
+                    state.window_start, state.window_count = received, 0
+            else:  # the first message (NaN), or the receiver's clock was set back
+                state.window_start, state.window_count = received, 0
+        error = None
         if len(values) == 1:
             is_good = state.least <= values[0] <= state.largest
         else:
             is_good = len(values) == 2 and state.is_force and math.hypot(*values) <= state.largest
         if not is_good:
-            fault = _value_fault(channel, values, state)
-        if fault is None and not state.stamp < stamp < math.inf:
-            fault = _stamp_fault(state, stamp)
-            if fault and arrival is not None and _clock_set_anew(state, stamp):
-                fault = None
-        if fault is not None:
-            return self.refuse(channel, received, *fault)
+            error = _value_error(channel, values, state)
+        if error is None and not state.stamp < stamp < math.inf:
+            error = _stamp_error(state, stamp)
+            if error and arrival is not None and _follows_new_clock(state, stamp):
+                error = None
+        if error is not None:
+            return self.refuse(channel, received, *error)
         state.stamp, state.earlier_count = stamp, 0
         state.arrival = max(state.arrival, received)
         self.accepted[channel] += 1
         if channel == MEASURED:
             self.measured = float(values[0])
         else:
-            self.held = _with_values(self.held, channel, values)
+            self.held = with_values(self.held, channel, values)
         return None
 
     def hold_oil_temperature(self, temperature: float) -> None:
-        """Hold another oil temperature [K], which has come by another way than a message."""
+        """Hold another oil temperature [K] that did not come as a message."""
         self.held = self.held._replace(oil_temperature=float(temperature))
 
-    def refuse(self, channel: str, time: float, code: str, reason: str, level: Level = Level.ERROR) -> Event:
-        """Count a refused message and return its event; for faults that only the caller can see, such as a missing joint."""
-        self.refused[code] += 1
-        return Event(time, level, code, f"{channel}: {reason}; message refused, holding {self._held_text(channel)}")
+    def refuse(self, channel: str, time: float, kind: str, reason: str, level: Level = Level.ERROR) -> Event:
+        """Count a refused message and return its event; for errors that only the caller can see, such as a missing joint."""
+        self.refused[kind] += 1
+        return Event(time, level, kind, channel, reason, f"message refused, {self._used_instead(channel)}")
 
     def latest(self, channel: str) -> float | tuple[float, float]:
-        """Return the last good value of a channel, of the load both forces, in SI."""
+        """Return the last good value of a channel in SI; of the load both forces."""
         if channel == MEASURED:
             return self.measured
         if channel == "radial_load":
@@ -133,10 +154,10 @@ class InputGate:
         return getattr(self.held, channel)
 
     def check(self, now: float) -> list[Event]:
-        """Return what is wrong at ``now`` [s since the start] with the flow of messages, as long as it is wrong.
+        """Return what is wrong at ``now`` [s since the start] with the flow of messages, for as long as it is wrong.
 
-        Codes ``input.stale`` (no good message for ``limits.stale_after``) and ``input.rate`` (outside ``minimum_rate`` to
-        ``maximum_rate``, with a tenth of tolerance).  An optional channel is judged only once a message of it came.
+        Kinds ``input.stale`` (no good message for ``limits.stale_after``) and ``input.rate`` (outside ``minimum_rate`` to
+        ``maximum_rate``, with a tolerance of a tenth).  An optional channel is judged only after its first message.
         """
         events = []
         for channel, state in self._channels.items():
@@ -147,7 +168,7 @@ class InputGate:
 
     def onsets(self, now: float) -> list[Event]:
         """Return those events of `check` that did not hold at the last call of ``onsets``: each trouble once, for logs."""
-        holding = {(event.code, event.text.partition(":")[0]): event for event in self.check(now)}
+        holding = {event.key: event for event in self.check(now)}
         fresh = [event for key, event in holding.items() if key not in self._reported]
         self._reported = set(holding)
         return fresh
@@ -156,47 +177,47 @@ class InputGate:
         """Return the last measured message rate of a channel [Hz]; NaN until a window of messages is full."""
         return self._channels[channel].rate
 
-    def _count_rate(self, state: _Channel, received: float) -> None:
-        state.seen = True
-        elapsed = received - state.window_start
-        if not 0.0 <= elapsed:  # the first message, or the receiver's clock went back
-            state.window_start, state.window_count = received, 0
-            return
-        state.window_count += 1
-        if elapsed >= _RATE_WINDOW:
-            state.rate = state.window_count / elapsed
-            state.window_start, state.window_count = received, 0
-
     def _stale_event(self, channel: str, state: _Channel, now: float) -> Event | None:
         patience = self.limits.stale_after * _SLOW_CHANNEL.get(channel, 1.0)
         age = now - max(state.arrival, 0.0)
         if age <= patience or (channel in _OPTIONAL and not state.seen):
             return None
         since = f"no good message for {age:.3g} s" if state.arrival > -math.inf else f"no good message since the start {age:.3g} s ago"
-        text = f"{channel}: {since}, expected one within {patience:.3g} s; holding {self._held_text(channel)}"
-        return Event(now, Level.WARN, "input.stale", text)
+        return Event(now, Level.WARN, "input.stale", channel, f"{since}, expected one within {patience:.3g} s", self._used_instead(channel))
 
-    def _held_text(self, channel: str) -> str:
+    def _used_instead(self, channel: str) -> str:
         held = self.held
+        if self._substitute:
+            return self._substitute
         if channel == MEASURED:
-            return f"{self.measured:.6g} rad/s"
+            return f"holding {self.measured:.6g} rad/s"
         if channel == "shaft_speed":
-            return f"{held.shaft_speed:.6g} rad/s"
+            return f"holding {held.shaft_speed:.6g} rad/s"
         if channel == "radial_load":
-            return f"({held.load_y:.6g}, {held.load_z:.6g}) N"
-        return f"{held.oil_temperature:.6g} K"
+            return f"holding ({held.load_y:.6g}, {held.load_z:.6g}) N"
+        return f"holding {held.oil_temperature:.6g} K"
 
     def _rate_event(self, channel: str, state: _Channel, now: float) -> Event | None:
         slowest = self.limits.minimum_rate / _SLOW_CHANNEL.get(channel, 1.0)
         fastest = self.limits.maximum_rate
         if slowest * (1 - _RATE_TOLERANCE) <= state.rate <= fastest * (1 + _RATE_TOLERANCE) or math.isnan(state.rate):
             return None
-        text = f"{channel}: messages come at {state.rate:.3g} Hz, expected {slowest:.3g} to {fastest:.3g} Hz; values are used as they come"
-        return Event(now, Level.WARN, "input.rate", text)
+        reason = f"messages arrive at {state.rate:.3g} Hz, expected {slowest:.3g} to {fastest:.3g} Hz"
+        return Event(now, Level.WARN, "input.rate", channel, reason, "values are used as they arrive")
+
+
+def with_values(held: Inputs, channel: str, values: tuple[float, ...]) -> Inputs:
+    """Return inputs in which the values of one channel replace the held ones."""
+    speed, load_y, load_z, temperature = held
+    if channel == "shaft_speed":
+        return Inputs(float(values[0]), load_y, load_z, temperature)
+    if channel == "radial_load":
+        return Inputs(speed, float(values[0]), float(values[1]) if len(values) == 2 else 0.0, temperature)
+    return Inputs(speed, load_y, load_z, float(values[0]))
 
 
 def _good_from_to(channel: str, limits: InputLimits) -> tuple[float, float]:
-    """Return the least and the largest value of a good message of one value; of a force in two parts, the largest magnitude."""
+    """Return the least and the largest good value of a message with one value; of a force with two components, the largest magnitude."""
     if channel == "oil_temperature":
         return limits.minimum_temperature, limits.maximum_temperature
     if channel == "radial_load":
@@ -204,33 +225,29 @@ def _good_from_to(channel: str, limits: InputLimits) -> tuple[float, float]:
     return -limits.maximum_speed if limits.reverse_rotation else 0.0, limits.maximum_speed
 
 
-def _value_fault(channel: str, values: tuple[float, ...], state: _Channel) -> tuple[str, str] | None:
-    """Return code and reason of what is wrong with the values, or None."""
+def _value_error(channel: str, values: tuple[float, ...], state: _Channel) -> tuple[str, str] | None:
+    """Return kind and reason of what is wrong with the values, or None."""
     if len(values) != 1 and (len(values) != 2 or channel != "radial_load"):
         return "input.malformed", f"{len(values)} values, expected {'1 or 2' if channel == 'radial_load' else '1'}"
-    unit = UNITS[channel]
+    unit, shown = UNITS[channel], ", ".join(f"{value:.6g}" for value in values)
     magnitude = math.hypot(*values)
     if not math.isfinite(magnitude) and not all(map(math.isfinite, values)):
-        return "input.not_finite", f"{_shown(values)} {unit} is not finite"
+        return "input.not_finite", f"{shown} {unit} is not finite"
     if channel == "oil_temperature":
         if not state.least <= values[0] <= state.largest:
-            code = "input.too_small" if values[0] < state.least else "input.too_large"
-            return code, f"{_shown(values)} K is outside {state.least:.6g} to {state.largest:.6g} K"
+            kind = "input.too_small" if values[0] < state.least else "input.too_large"
+            return kind, f"{shown} K is outside {state.least:.6g} to {state.largest:.6g} K"
         return None
     if len(values) == 1 and state.least == 0.0 > values[0]:
         hint = "" if state.is_force else " (input_limits.reverse_rotation is off)"
-        return "input.negative", f"{_shown(values)} {unit} is negative, expected zero or more{hint}"
+        return "input.negative", f"{shown} {unit} is negative, expected zero or more{hint}"
     if magnitude > state.largest:
         return "input.too_large", f"{magnitude:.6g} {unit} is above the largest accepted, {state.largest:.6g} {unit}"
     return None
 
 
-def _shown(values: tuple[float, ...]) -> str:
-    return ", ".join(f"{value:.6g}" for value in values)
-
-
-def _stamp_fault(state: _Channel, stamp: float) -> tuple[str, str, Level] | None:
-    """Return code, reason and level of what is wrong with the stamp, or None."""
+def _stamp_error(state: _Channel, stamp: float) -> tuple[str, str, Level] | None:
+    """Return kind, reason and level of what is wrong with the stamp, or None."""
     if not math.isfinite(stamp):
         return "input.stamp_not_finite", f"stamp {stamp} s is not finite", Level.ERROR
     if stamp == state.stamp:
@@ -241,21 +258,127 @@ def _stamp_fault(state: _Channel, stamp: float) -> tuple[str, str, Level] | None
     return None
 
 
-def _clock_set_anew(state: _Channel, stamp: float) -> bool:
-    """Return whether enough refused messages in a row rise among themselves: then their sender's clock is the one to follow."""
+def _follows_new_clock(state: _Channel, stamp: float) -> bool:
+    """Return whether enough refused messages in a row have rising stamps: then their sender's clock was set and is followed."""
     state.earlier_count = state.earlier_count + 1 if stamp > state.earlier_stamp and state.earlier_count else 1
     state.earlier_stamp = stamp
     return math.isfinite(stamp) and state.earlier_count > _RISING_TO_FOLLOW
 
 
-UNITS = {"shaft_speed": "rad/s", "radial_load": "N", "oil_temperature": "K", MEASURED: "rad/s"}
-"""In which SI unit the values of a channel are."""
+class PublisherConflict:
+    """Reports several publishers on one input channel, and as an error if their values disagree.
+
+    Parameters
+    ----------
+    channel : its name.
+
+    Attributes
+    ----------
+    publishers : int
+        How many there are.
+    """
+
+    def __init__(self, channel: str):
+        self._channel = channel
+        self._values: deque[tuple[float, ...]] = deque(maxlen=_REMEMBERED)
+        self.publishers = 1
+
+    def take(self, values: tuple[float, ...]) -> None:
+        """Take the values of an accepted message; of a force its components."""
+        self._values.append(values)
+
+    @property
+    def disagreement(self) -> tuple[float, float] | None:
+        """Least and largest of the newest values if these jump to and fro by more than the tolerance; else None."""
+        if len(self._values) < _REMEMBERED:
+            return None
+        return next(((min(series), max(series)) for series in zip(*self._values) if _jumps_to_and_fro(series)), None)
+
+    def event(self, now: float) -> Event | None:
+        """Return the event that holds at ``now`` [s]; None for a single publisher."""
+        if self.publishers < 2:
+            return None
+        reason, extremes = f"{self.publishers} publishers, expected one", self.disagreement
+        if extremes is None:
+            return Event(now, Level.WARN, "input.publishers", self._channel, reason, "the newest value of any of them is used")
+        reason = f"{reason}, and they disagree: values jump between {extremes[0]:.6g} and {extremes[1]:.6g} {UNITS[self._channel]}"
+        return Event(now, Level.ERROR, "input.publishers", self._channel, reason, "the newest value is used, which is wrong for one of them")
 
 
-def _with_values(held: Inputs, channel: str, values: tuple[float, ...]) -> Inputs:
-    speed, load_y, load_z, temperature = held
-    if channel == "shaft_speed":
-        return Inputs(float(values[0]), load_y, load_z, temperature)
-    if channel == "radial_load":
-        return Inputs(speed, float(values[0]), float(values[1]) if len(values) == 2 else 0.0, temperature)
-    return Inputs(speed, load_y, load_z, float(values[0]))
+def _jumps_to_and_fro(values: tuple[float, ...]) -> bool:
+    least = _CONFLICT_TOLERANCE * max(map(abs, values))
+    jumps = [after - before for before, after in zip(values, values[1:]) if abs(after - before) > least]
+    return sum(first * second < 0.0 for first, second in zip(jumps, jumps[1:])) >= _REVERSALS
+
+
+class Message(NamedTuple):
+    """One input message."""
+
+    channel: str
+    values: tuple[float, ...]  # SI
+    stamp: int  # [ns since the epoch]
+
+
+class Verdict(Enum):
+    """What `ClockJumpFilter` decides about a message."""
+
+    ACCEPT = "belongs to the present run of the clock"
+    SET_ASIDE = "stamped before the newest: from after a jump that is not known yet, or wrong"
+    LEFTOVER = "from before the last jump"
+
+
+class ClockJumpFilter:
+    """Sorts messages that arrive on the wrong side of a backward jump of the clock.
+
+    Messages and clock arrive on different topics: messages from after the jump may arrive before the jump is known, and messages from
+    before it afterwards.  A message stamped before the newest of its channel is set aside for a second of wall time, in which the jump
+    may become known.  After the jump, messages stamped beyond the newest one from before it are left out, until their channel has
+    jumped back too or the clock has reached them.
+    """
+
+    def __init__(self):
+        self._aside: deque[tuple[float, Message]] = deque()
+        self._left: dict[str, int] = {}
+
+    def sort(self, message: Message, newest: int | None, wall: float) -> Verdict:
+        """Judge a message, and keep it if it is set aside.
+
+        Parameters
+        ----------
+        message : the message.
+        newest : stamp of the newest good message of its channel since the jump [ns since the epoch]; None for none.
+        wall : wall time [s].
+        """
+        if message.stamp > self._left.get(message.channel, message.stamp):
+            return Verdict.LEFTOVER
+        if newest is not None and message.stamp < newest:
+            self._aside.append((wall, message))
+            return Verdict.SET_ASIDE
+        self._left.pop(message.channel, None)
+        return Verdict.ACCEPT
+
+    def jump(self, clock: int, newest: Mapping[str, int]) -> list[Message]:
+        """Take a backward jump and return the messages from after it that have arrived already.
+
+        Of the messages set aside these are the ones stamped nearer to the clock than to the newest; the others were wrong before the jump.
+
+        Parameters
+        ----------
+        clock : the reading after the jump [ns since the epoch].
+        newest : the newest stamp of each channel from before the jump [ns since the epoch].
+        """
+        self._left = {channel: stamp for channel, stamp in newest.items() if stamp > clock}
+        aside, self._aside = self._aside, deque()
+        middle = 0.5 * (clock + max(newest.values(), default=clock))
+        return [message for _, message in aside if message.stamp <= middle]
+
+    def reach(self, clock: int) -> None:
+        """Take a reading of the clock [ns since the epoch]."""
+        self._left = {channel: stamp for channel, stamp in self._left.items() if stamp > clock}
+
+    def expired(self, wall: float) -> list[Message]:
+        """Return the messages that were set aside without a jump becoming known, at wall time [s]."""
+        found = []
+        while self._aside and wall - self._aside[0][0] > _SET_ASIDE:
+            found.append(self._aside.popleft()[1])
+        return found

@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""The bundled mission: a synthetic engine cycle, made up for demonstrations.  It was measured nowhere.
+"""The bundled mission: a synthetic engine cycle for demonstrations, not a measurement.
 
 Start, idle, take-off at 45,000 rpm, cruise, descent under light load with a gust, stop.
 """
@@ -8,16 +8,16 @@ import math
 from collections.abc import Callable
 from pathlib import Path
 
-from bearing_sim import topics
-from bearing_sim.provenance import git_hash, package_version
+from bearing_sim.messages import topics
+from bearing_sim.recording.provenance import git_hash, package_version
+from bearing_sim.recording.writer import McapFile
 from bearing_sim.simulation import Inputs
-from bearing_sim.sinks.mcap_file import McapFile
 
 DURATION = 60.0  # [s]
 METADATA = "bearing_sim_mission"
 """Name of the metadata record: synthetic ("true"), duration [s], rate [Hz], package_version, git_hash."""
 
-# Per phase: its name, its end as a share of the mission, and what is reached at its end:
+# For each phase: its name, its end as a fraction of the mission, and the inputs at its end:
 # shaft speed [rpm], load along y and z [N], oil temperature [degC].
 PHASES = (
     ("rest", 0.03, 0.0, 120.0, 0.0, 40.0),
@@ -32,43 +32,43 @@ PHASES = (
     ("run-down", 0.97, 0.0, 120.0, 0.0, 80.0),
     ("standstill", 1.00, 0.0, 120.0, 0.0, 80.0),
 )
-_GUST = (0.73, 0.05, 700.0, -400.0)  # centre and width as shares of the mission; load added at its height along y and z [N]
+_GUST = (0.73, 0.05, 700.0, -400.0)  # centre and width as fractions of the mission; peak of the additional load along y and z [N]
 
 
 def mission(time: float, duration: float = DURATION) -> Inputs:
     """Return the inputs at a time of the mission.
 
-    Every quantity goes from phase to phase by the smooth step 3 s^2 - 2 s^3, so its first derivative is continuous; the
-    gust during the descent is a raised cosine.  Before the start and after the end the shaft rests.
+    Every input follows the smooth step 3 s^2 - 2 s^3 from phase to phase, so its first derivative is continuous; the gust during the descent
+    is a raised cosine.  Before the start and after the end the shaft is at rest.
 
     Parameters
     ----------
     time : since the start of the mission [s].
-    duration : length of the whole mission [s]; every phase shrinks or grows with it.
+    duration : length of the whole mission [s]; all phases scale with it.
     """
-    share = min(max(time / duration, 0.0), 1.0)
+    fraction = min(max(time / duration, 0.0), 1.0)
     begin, before = 0.0, PHASES[0][2:]
     for _, end, *reached in PHASES:
-        if share <= end:
+        if fraction <= end:
             break
         begin, before = end, reached
-    part = (share - begin) / (end - begin)
+    part = (fraction - begin) / (end - begin)
     step = part * part * (3.0 - 2.0 * part)
     speed_rpm, load_y, load_z, celsius = (old + step * (new - old) for old, new in zip(before, reached))
-    gust = _gust(share)
+    gust = _gust(fraction)
     return Inputs(speed_rpm * math.pi / 30, load_y + gust * _GUST[2], load_z + gust * _GUST[3], celsius + topics.ZERO_CELSIUS)
 
 
-def _gust(share: float) -> float:
+def _gust(fraction: float) -> float:
     centre, width = _GUST[:2]
-    away = abs(share - centre) / width
+    away = abs(fraction - centre) / width
     return 0.5 * (1.0 + math.cos(2.0 * math.pi * away)) if away < 0.5 else 0.0
 
 
 def phase(time: float, duration: float = DURATION) -> str:
     """Return the name of the phase at a time of the mission."""
-    share = time / duration
-    return next((name for name, end, *_ in PHASES if share <= end), PHASES[-1][0])
+    fraction = time / duration
+    return next((name for name, end, *_ in PHASES if fraction <= end), PHASES[-1][0])
 
 
 def write_mission(
@@ -81,8 +81,8 @@ def write_mission(
     path : the recording to write.
     start_ns : time 0 [ns since the epoch].
     duration : length of the mission [s].
-    rate : messages per second of speed and load [Hz]; of the oil temperature there is one a second.
-    progress : called now and then with the time that has been reached [s].
+    rate : rate of the messages of speed and load [Hz]; the oil temperature has one per second.
+    progress : called repeatedly with the time reached [s].
 
     Returns
     -------

@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""ROS 2 message types as a recording needs them: definition, hash and CDR, by the ROS-free definitions of the rosbags library."""
+"""ROS 2 message types as a recording needs them: definition, hash and serialiser, without a ROS installation."""
 
 from collections.abc import Callable
 from functools import cache
@@ -7,24 +7,17 @@ from typing import NamedTuple
 
 import numpy as np
 from rosbags.interfaces import Nodetype
-from rosbags.typesys import Stores, get_typestore
 
-from bearing_sim import topics
-
-_ARRAY = "std_msgs/msg/Float64MultiArray"
+from bearing_sim.messages import topics
+from bearing_sim.messages.cdr_layout import typestore
 
 
 class MessageType(NamedTuple):
-    """What a recording needs to know of one ROS type."""
+    """Definition, hash and serialiser of one ROS type."""
 
     definition: str  # ros2msg text
     hash: str  # RIHS01
     serialize: Callable[[dict], bytes]  # nested dict -> CDR
-
-
-@cache
-def _typestore():
-    return get_typestore(Stores.ROS2_JAZZY)
 
 
 @cache
@@ -36,41 +29,21 @@ def message_type(ros_type: str) -> MessageType:
     KeyError
         The type is not among ROS 2 Jazzy's standard messages.
     """
-    store = _typestore()
-    fill = _filler(ros_type)
+    store, fill = typestore(), _filler(ros_type)
     definition, _ = store.generate_msgdef(ros_type, ros_version=2)
-
-    def serialize(message: dict) -> bytes:
-        return bytes(store.serialize_cdr(fill(message), ros_type))
-
-    return MessageType(definition, store.hash_rihs01(ros_type), _array_serializer(serialize) if ros_type == _ARRAY else serialize)
+    return MessageType(definition, store.hash_rihs01(ros_type), lambda message: bytes(store.serialize_cdr(fill(message), ros_type)))
 
 
 def load_message_types() -> None:
-    """Make the types of all topics of a recording ready, which takes a part of a second, before the first message is to be written."""
+    """Load the types of all topics of a recording, so that the first message does not wait a fraction of a second for them."""
     for topic in (*topics.INPUTS.values(), *topics.MEASUREMENTS.values(), *topics.RECORDED.values(), *topics.OUTPUTS.values()):
         message_type(topic.ros_type)
     message_type(topics.DIAGNOSTICS[1])
 
 
-def _array_serializer(serialize: Callable[[dict], bytes]) -> Callable[[dict], bytes]:
-    """Return a serialiser of arrays that keeps the bytes before the numbers: most of a sample are arrays of unchanging lay-out."""
-    heads: dict[tuple, bytes] = {}
-
-    def serialize_array(message: dict) -> bytes:
-        layout, data = message["layout"], np.asarray(message["data"], "<f8")
-        key = (layout["data_offset"], data.size, *[(dim["label"], dim["size"], dim["stride"]) for dim in layout["dim"]])
-        if key not in heads:
-            whole = serialize(message)
-            heads[key] = whole[: len(whole) - data.nbytes]
-        return heads[key] + data.tobytes()
-
-    return serialize_array
-
-
 @cache
 def _filler(ros_type: str) -> Callable[[dict], object]:
-    store = _typestore()
+    store = typestore()
     message_class = store.types[ros_type]
     fields = [(name, _field_filler(*kind)) for name, kind in store.fielddefs[ros_type][1]]
 

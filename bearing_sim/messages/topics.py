@@ -1,21 +1,22 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Topics: which ROS messages an input, a sample and a list of events become, and which numbers an input message holds.
+"""Topics: the ROS messages of inputs, samples and events, and the numbers that an input message holds.
 
-One table for recordings and for the node, free of ROS.  A message is a plain nested dict of field to value: dict for a
-message, list for a sequence of messages or strings, float64 array for a sequence of numbers, float, int, str, and bytes of
-length one for a ``byte``.  Every array is filled (`serialize_message` pads messages with empty arrays, and strict
-readers refuse the padding), so each message class can be filled from its dict by one small generic function.
+One table serves recordings and the node; it needs no ROS.  A message is a nested dict of field to value: a dict for a
+message, a list for a sequence of messages or strings, a float64 array for a sequence of numbers, float, int, str, and bytes of
+length one for a ``byte``.  No array is empty: `serialize_message` pads messages with empty arrays, and strict readers reject
+the padding.
 
 Names are relative; a recording writes them with a leading slash.
 """
 
 import math
 from collections.abc import Callable, Iterable, Mapping
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from bearing_sim.events import Event, Level
+from bearing_sim.messages.events import Event, Level
 
 SHAFT_JOINT, CAGE_JOINT = "shaft", "cage"
 FRAME = "bearing"  # x along the shaft
@@ -30,15 +31,18 @@ class Topic(NamedTuple):
     name : relative topic name.
     ros_type : ``package/msg/Type``.
     meaning : what it carries, with units.
-    message : ``message(stamp_ns, source) -> dict``, where ``source`` is an `bearing_sim.simulation.Inputs` for an input
-        topic and one sample (see `bearing_sim.sample`) for an output topic.
-    of_tilting_levels : whether a level without tilts and slices leaves it out.
+    message : ``message(stamp_ns, source) -> dict``, where ``source`` is a `bearing_sim.simulation.Inputs` for an input
+        topic and one sample (see `bearing_sim.model.sample`) for an output topic.
+    observables : of an output topic, by field of its message: the observables whose numbers stand there one after the other,
+        exactly as in the sample.
+    of_tilting_levels : whether levels without tilts and slices omit it.
     """
 
     name: str
     ros_type: str
     meaning: str
     message: Callable[[int, Any], dict]
+    observables: Mapping[str, tuple[str, ...]] = MappingProxyType({})
     of_tilting_levels: bool = False
 
 
@@ -49,7 +53,7 @@ def stamp(stamp_ns: int) -> dict:
 
 
 class Origin(NamedTuple):
-    """What an input message said of itself: its stamp [ns since the epoch], None for a message without one, and its frame."""
+    """Stamp [ns since the epoch] and frame in the header of an input message; the stamp is None for a message without one."""
 
     stamp_ns: int | None
     frame_id: str
@@ -61,7 +65,7 @@ def header(stamp_ns: int, frame_id: str = "") -> dict:
 
 
 def _joints(stamp_ns: int, names: list[str], position: list, velocity: list) -> dict:
-    # No array may stay empty; NaN says that a torque is not known.
+    # No array may stay empty; a torque of NaN is unknown.
     return {
         "header": header(stamp_ns),
         "name": names,
@@ -72,7 +76,7 @@ def _joints(stamp_ns: int, names: list[str], position: list, velocity: list) -> 
 
 
 def _shaft_speed(stamp_ns: int, inputs) -> dict:
-    return _joints(stamp_ns, [SHAFT_JOINT], [math.nan], [inputs.shaft_speed])  # nor is the angle known
+    return _joints(stamp_ns, [SHAFT_JOINT], [math.nan], [inputs.shaft_speed])  # the angle is unknown
 
 
 def _radial_load(stamp_ns: int, inputs) -> dict:
@@ -88,25 +92,30 @@ def _cage_speed(stamp_ns: int, speed: float) -> dict:
     return _joints(stamp_ns, [CAGE_JOINT], [math.nan], [speed])
 
 
-def _number(field: str) -> Callable[[int, Any], dict]:
-    return lambda stamp_ns, sample: {"data": float(sample[field])}
+def _number(name: str, meaning: str) -> Topic:
+    """Return the topic of an observable that is one number."""
+    return Topic(name, "std_msgs/msg/Float64", meaning, lambda stamp_ns, sample: {"data": float(sample[name])}, {"data": (name,)})
+
+
+JOINTS = {
+    SHAFT_JOINT: ("shaft_angle", "shaft_speed"),
+    CAGE_JOINT: ("cage_angle", "cage_speed"),
+    "cage_ideal": ("ideal_cage_angle", "ideal_cage_speed"),
+}
+"""Angle and speed of each joint of ``bearing_joints``, by its name."""
 
 
 def _bearing_joints(stamp_ns: int, sample) -> dict:
-    return _joints(
-        stamp_ns,
-        [SHAFT_JOINT, "cage", "cage_ideal"],
-        [sample["shaft_angle"], sample["cage_angle"], sample["ideal_cage_angle"]],
-        [sample["shaft_speed"], sample["cage_speed"], sample["ideal_cage_speed"]],
-    )
+    angles, speeds = zip(*JOINTS.values())
+    return _joints(stamp_ns, list(JOINTS), [sample[name] for name in angles], [sample[name] for name in speeds])
 
 
-class Rows(NamedTuple):
-    """What a std_msgs/Float64MultiArray of ours holds: observables one after the other, each a number or one for each roller.
+class ArrayRows(NamedTuple):
+    """The rows of a std_msgs/Float64MultiArray: observables one after the other, each one number or one for each roller.
 
     Attributes
     ----------
-    label : of the array's first dimension; says what its rows are, in order.
+    label : of the array's first dimension; names its rows in order.
     fields : the observable of each row.
     """
 
@@ -115,13 +124,13 @@ class Rows(NamedTuple):
 
 
 ARRAYS = {
-    "equivalent_loads": Rows("ring: inner, outer", ("inner_equivalent_load", "outer_equivalent_load")),
-    "centre_positions": Rows("inner ring y, z, cage y, z", ("ring_y", "ring_z", "cage_y", "cage_z")),
-    "axis_tilts": Rows("inner ring y, z, cage y, z", ("ring_tilt_y", "ring_tilt_z", "cage_tilt_y", "cage_tilt_z")),
-    "slice_pressures": Rows(
+    "equivalent_loads": ArrayRows("ring: inner, outer", ("inner_equivalent_load", "outer_equivalent_load")),
+    "centre_positions": ArrayRows("inner ring y, z, cage y, z", ("ring_y", "ring_z", "cage_y", "cage_z")),
+    "axis_tilts": ArrayRows("inner ring y, z, cage y, z", ("ring_tilt_y", "ring_tilt_z", "cage_tilt_y", "cage_tilt_z")),
+    "slice_pressures": ArrayRows(
         "inner, outer, inner end slices, outer end slices", ("inner_pressure", "outer_pressure", "inner_edge_pressure", "outer_edge_pressure")
     ),
-    "power": Rows(
+    "power": ArrayRows(
         "shaft, inner sliding, outer sliding, churning, windage, land, pocket, damping",
         (
             "shaft_power",
@@ -134,17 +143,18 @@ ARRAYS = {
             "damping_power",
         ),
     ),
-    "roller_speeds": Rows("speed: orbital, spin", ("orbital_speed", "roller_spin")),
-    "pocket_forces": Rows("force on", ("pocket_force",)),
-    "roller_tilts": Rows("inclination: outwards, along the orbit", ("roller_tilt", "roller_skew")),
-    "roller_loads": Rows("ring", ("inner_load", "outer_load")),
-    "operating_point": Rows("load y, z, oil temperature, land eccentricity", ("load_y", "load_z", "oil_temperature", "land_eccentricity")),
-    "roller_places": Rows("angle, radius, rotation", ("roller_angle", "roller_radius", "roller_rotation")),
+    "roller_speeds": ArrayRows("speed: orbital, spin", ("orbital_speed", "roller_spin")),
+    "pocket_forces": ArrayRows("force on", ("pocket_force",)),
+    "roller_tilts": ArrayRows("inclination: outwards, along the orbit", ("roller_tilt", "roller_skew")),
+    "roller_loads": ArrayRows("ring", ("inner_load", "outer_load")),
+    "operating_point": ArrayRows("load y, z, oil temperature, land eccentricity", ("load_y", "load_z", "oil_temperature", "land_eccentricity")),
+    "roller_places": ArrayRows("angle, radius, rotation", ("roller_angle", "roller_radius", "roller_rotation")),
 }
-"""The topics of samples that carry arrays, by name; a second dimension ``roller`` where there is a number for each."""
+"""The topics of samples that carry arrays, by name; a second dimension ``roller`` where rows have a number for each roller."""
 
 
-def _array(name: str) -> Callable[[int, Any], dict]:
+def _array(name: str, meaning: str, of_tilting_levels: bool = False) -> Topic:
+    """Return the topic of an array."""
     label, fields = ARRAYS[name]
 
     def message(stamp_ns: int, sample) -> dict:
@@ -154,7 +164,7 @@ def _array(name: str) -> Callable[[int, Any], dict]:
             dim.append({"label": "roller", "size": data.shape[1], "stride": data.shape[1]})
         return {"layout": {"dim": dim, "data_offset": 0}, "data": data.ravel()}
 
-    return message
+    return Topic(name, "std_msgs/msg/Float64MultiArray", meaning, message, {"data": fields}, of_tilting_levels)
 
 
 INPUTS = {
@@ -165,7 +175,7 @@ INPUTS = {
         Topic("oil_temperature", "sensor_msgs/msg/Temperature", "oil temperature [degC]", _oil_temperature),
     )
 }
-"""The input topics by channel (`bearing_sim.runtime.input_gate` uses the same channel names)."""
+"""The input topics by channel (`bearing_sim.inputs.gate` uses the same channel names)."""
 
 MEASURED, RESIDUAL = "cage_speed_measured", "cage_slip_residual"
 MEASUREMENTS = {
@@ -180,41 +190,34 @@ MEASUREMENTS = {
         ),
     )
 }
-"""What there is only where the cage is measured, by name: the measurement, and what it differs by from the prediction; each of a number."""
-
-_MULTI_ARRAY = "std_msgs/msg/Float64MultiArray"
+"""Topics of a measured cage, by name: the measurement, and its difference from the prediction; the source of each is one number."""
 
 OUTPUTS = {
     topic.name: topic
     for topic in (
-        Topic("cage_slip", "std_msgs/msg/Float64", "cage slip [fraction]; NaN at rest", _number("cage_slip")),
-        Topic("rating_life", "std_msgs/msg/Float64", "rating life at the present condition [h]; infinite at rest", _number("rating_life")),
-        Topic("lamina_life", "std_msgs/msg/Float64", "rating life by slices [h]; the rating life at a level without slices", _number("lamina_life")),
+        _number("cage_slip", "cage slip [fraction]; NaN at rest"),
+        _number("rating_life", "rating life at the present condition [h]; infinite at rest"),
+        _number("lamina_life", "rating life by slices [h]; the rating life at a level without slices"),
+        _number("modified_rating_life", "life with reliability and oil, by the scene's choice [h]; damage counts it"),
+        _number("level", "level that computed the sample: 0 steady, 1 slip, 2 planar, 3 spatial"),
+        _number("damage", "fraction of life used since the start"),
         Topic(
-            "modified_rating_life",
-            "std_msgs/msg/Float64",
-            "life with reliability and oil, by the scene's choice [h]; damage counts it",
-            _number("modified_rating_life"),
+            "bearing_joints",
+            "sensor_msgs/msg/JointState",
+            "shaft, cage, cage_ideal: angle [rad], speed [rad/s]; no torque",
+            _bearing_joints,
+            {"position": tuple(angle for angle, _ in JOINTS.values()), "velocity": tuple(speed for _, speed in JOINTS.values())},
         ),
-        Topic("level", "std_msgs/msg/Float64", "level that computed the sample: 0 steady, 1 slip, 2 planar, 3 spatial", _number("level")),
-        Topic("damage", "std_msgs/msg/Float64", "fraction of life used since the start", _number("damage")),
-        Topic("bearing_joints", "sensor_msgs/msg/JointState", "shaft, cage, cage_ideal: angle [rad], speed [rad/s]; no torque", _bearing_joints),
-        Topic("equivalent_loads", _MULTI_ARRAY, "dynamic equivalent roller loads [N], ring (inner, outer)", _array("equivalent_loads")),
-        Topic("centre_positions", _MULTI_ARRAY, "displacements [m]: inner ring y, z, cage y, z", _array("centre_positions")),
-        Topic("axis_tilts", _MULTI_ARRAY, "tilts [rad]: inner ring towards y, z, cage towards y, z", _array("axis_tilts"), True),
-        Topic(
-            "slice_pressures",
-            _MULTI_ARRAY,
-            "largest Hertzian pressures [Pa]: inner, outer raceway, and of the rollers' end slices alone",
-            _array("slice_pressures"),
-            True,
-        ),
-        Topic("power", _MULTI_ARRAY, "power [W]: what the shaft puts in, then what is lost, by cause", _array("power")),
-        Topic("roller_speeds", _MULTI_ARRAY, "speeds [rad/s], (orbital, spin) x roller", _array("roller_speeds")),
-        Topic("pocket_forces", _MULTI_ARRAY, "forces of the pockets on the rollers [N], positive where they drive", _array("pocket_forces")),
-        Topic("roller_tilts", _MULTI_ARRAY, "inclinations [rad], (tilt outwards, skew along the orbit) x roller", _array("roller_tilts"), True),
-        # the last of a sample: readers take it for complete where this has come
-        Topic("roller_loads", _MULTI_ARRAY, "roller loads [N], ring (inner, outer) x roller", _array("roller_loads")),
+        _array("equivalent_loads", "dynamic equivalent roller loads [N], ring (inner, outer)"),
+        _array("centre_positions", "displacements [m]: inner ring y, z, cage y, z"),
+        _array("axis_tilts", "tilts [rad]: inner ring towards y, z, cage towards y, z", True),
+        _array("slice_pressures", "largest Hertzian pressures [Pa]: inner, outer raceway, and of the rollers' end slices alone", True),
+        _array("power", "power [W]: what the shaft puts in, then what is lost, by cause"),
+        _array("roller_speeds", "speeds [rad/s], (orbital, spin) x roller"),
+        _array("pocket_forces", "forces of the pockets on the rollers [N], positive where they drive"),
+        _array("roller_tilts", "inclinations [rad], (tilt outwards, skew along the orbit) x roller", True),
+        # The last message of a sample: readers take the sample for complete once it is there.
+        _array("roller_loads", "roller loads [N], ring (inner, outer) x roller"),
     )
 }
 """The output topics by name; a level has those of `outputs`."""
@@ -223,11 +226,11 @@ OUTPUTS = {
 RECORDED = {
     topic.name: topic
     for topic in (
-        Topic("operating_point", _MULTI_ARRAY, "inputs as the model had them: load y, z [N], oil [K]; land eccentricity", _array("operating_point")),
-        Topic("roller_places", _MULTI_ARRAY, "(azimuth [rad], distance from the centre [m], rotation [rad]) x roller", _array("roller_places")),
+        _array("operating_point", "inputs as the model had them: load y, z [N], oil [K]; land eccentricity"),
+        _array("roller_places", "(azimuth [rad], distance from the centre [m], rotation [rad]) x roller"),
     )
 }
-"""What a recording holds besides `OUTPUTS`, so that every observable of `bearing_sim.sample` is in it, by name."""
+"""Topics of recordings alone: with them and `OUTPUTS` a recording holds every observable of `bearing_sim.model.sample`."""
 
 
 def recorded(scene) -> dict[str, Topic]:
@@ -241,7 +244,7 @@ def outputs(scene) -> dict[str, Topic]:
 
 
 DIAGNOSTICS = ("diagnostics", "diagnostic_msgs/msg/DiagnosticArray")
-"""Name and type of the topic whose messages `diagnostics` makes."""
+"""Name and type of the topic of `diagnostics`."""
 
 
 def diagnostics(
@@ -252,16 +255,38 @@ def diagnostics(
     Parameters
     ----------
     stamp_ns : time of the message [ns since the epoch].
-    events : what a person should be told now; the worst of them gives the first status its level and message.
+    events : what to report now; the worst of them gives the first status its level and message.
     values : key to value, the unit written in the key (see `condition`); shown with the first status.
     component : first half of each status' name, the node's name by convention.
     hardware_id : the bearing's name.
     """
     events = list(events)
-    worst = max(events, key=lambda event: event.level, default=Event(0.0, Level.OK, "ok", "OK"))
+    worst = max(events, key=lambda event: event.level, default=Event(0.0, Level.OK, "ok", "", "OK"))
     whole = _status(f"{component}: condition", hardware_id, worst.level, worst.text, values or {})
-    parts = [_status(f"{component}: {event.code}", hardware_id, event.level, event.text, {"time [s]": event.time}) for event in events]
+    parts = [_status(f"{component}: {event.kind}", hardware_id, event.level, event.text, _event_values(event)) for event in events]
     return {"header": header(stamp_ns), "status": [whole, *parts]}
+
+
+def _event_values(event: Event) -> dict[str, object]:
+    """Return the fields of an event that a status has no field for."""
+    fields = {"time [s]": event.time, "subject": event.subject, "reason": event.reason, "action": event.action}
+    return {key: value for key, value in fields.items() if value != ""} | ({"count": event.count} if event.count > 1 else {})
+
+
+def event_of(time: float, status) -> Event:
+    """Return the event of a diagnostic_msgs/DiagnosticStatus that `diagnostics`, or another program, has made.
+
+    Parameters
+    ----------
+    time : of the event [s].
+    status : deserialised message; of another program's status, the message becomes the reason.
+    """
+    kind = status.name.partition(": ")[2] or status.name
+    values = {pair.key: pair.value for pair in status.values}
+    if "reason" not in values:
+        return Event(time, Level(int(status.level)), kind, "", status.message)
+    count = int(values.get("count", 1))
+    return Event(time, Level(int(status.level)), kind, values.get("subject", ""), values["reason"], values.get("action", ""), count)
 
 
 def _status(name: str, hardware_id: str, level: Level, text: str, values: Mapping[str, object]) -> dict:
@@ -270,7 +295,7 @@ def _status(name: str, hardware_id: str, level: Level, text: str, values: Mappin
 
 
 def condition(sample) -> dict[str, float]:
-    """Return the numbers of one sample that a diagnostics reader wants, the unit in each key."""
+    """Return the numbers of one sample for diagnostics, with the unit in each key."""
     return {
         "shaft speed [rpm]": float(sample["shaft_speed"]) * 30 / math.pi,
         "radial load [N]": math.hypot(sample["load_y"], sample["load_z"]),
@@ -282,7 +307,7 @@ def condition(sample) -> dict[str, float]:
 
 
 def further_condition(scene, sample) -> dict[str, float]:
-    """Return what `condition` leaves out because only some scenes have it: lives beside the basic one, pressures and tilts by slices."""
+    """Return the numbers that only some scenes have, in addition to `condition`: lives beside the basic one, pressures and tilts by slices."""
     numbers = {}
     if not scene.life.is_basic:
         numbers["life by the scene's choice [h]"] = float(sample["modified_rating_life"])
@@ -296,7 +321,7 @@ def further_condition(scene, sample) -> dict[str, float]:
 
 
 def input_types(channel: str) -> tuple[str, ...]:
-    """Return the message types from which `input_values` can read a channel."""
+    """Return the message types that can carry a channel."""
     if channel == MEASURED:
         return (MEASUREMENTS[channel].ros_type,)
     scalar = ("std_msgs/msg/Float64",) if channel != "oil_temperature" else ()
@@ -304,7 +329,7 @@ def input_types(channel: str) -> tuple[str, ...]:
 
 
 def input_values(channel: str, ros_type: str, message, joint: str = SHAFT_JOINT) -> tuple[float, ...]:
-    """Return the numbers of an input message in SI, as `bearing_sim.runtime.input_gate.InputGate.offer` takes them.
+    """Return the numbers of an input message in SI, as `bearing_sim.inputs.gate.InputGate.offer` takes them.
 
     Parameters
     ----------
@@ -348,6 +373,6 @@ def header_stamp_ns(message) -> int | None:
 
 
 def frame_of(message) -> str:
-    """Return the frame that a message's header names; ``""`` for a message without one."""
+    """Return the frame in the header of a message; ``""`` for a message without a header."""
     stamped = getattr(message, "header", None)
     return "" if stamped is None else str(stamped.frame_id)

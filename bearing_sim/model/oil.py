@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.scene_lubricant import CustomOil, DoubleExponentialViscosity, HyperbolicPressureViscosity, Oil
+from bearing_sim.scene.lubricant import CustomOil, DoubleExponentialViscosity, HyperbolicPressureViscosity, Oil
 
 _DENSITY_TEMPERATURE = 288.15  # K, of data sheets
 
@@ -25,8 +25,8 @@ class OilState(NamedTuple):
 def oil_at(oil: Oil | CustomOil, temperature: float) -> OilState:
     """Return the oil's properties at a temperature [K].
 
-    Fits of the ADORE-style data base (see the oil's ``source``), or ASTM D341 of a custom oil; a fitted oil's density is
-    interpolated linearly between its points and held beyond them.
+    The fit of a catalogued oil (see its ``source``), or ASTM D341 of a custom oil; a catalogued oil's density is interpolated linearly
+    between its points and constant beyond them.  beta is a central difference over 0.2 K.
     """
     viscosity, density = _viscosity_and_density(oil, temperature)
     warmer, colder = (_viscosity_and_density(oil, temperature + side)[0] for side in (0.1, -0.1))
@@ -41,7 +41,7 @@ def oil_at(oil: Oil | CustomOil, temperature: float) -> OilState:
 
 
 def kinematic_viscosities(oil: Oil | CustomOil, temperatures: np.ndarray) -> np.ndarray:
-    """Return nu of an oil at many temperatures [m^2/s, K], both of one shape; between whole kelvins by its logarithm, to 1e-4."""
+    """Return nu [m^2/s] of an oil at many temperatures [K], of one shape; interpolated logarithmically between whole kelvins, to 1e-4."""
     kelvins = np.arange(math.floor(temperatures.min()), math.ceil(temperatures.max()) + 1, dtype=float)
     at = [_viscosity_and_density(oil, kelvin) for kelvin in kelvins.tolist()]
     return np.exp(np.interp(temperatures, kelvins, [math.log(viscosity / density) for viscosity, density in at]))
@@ -60,7 +60,7 @@ def _viscosity_and_density(oil: Oil | CustomOil, temperature: float) -> tuple[fl
 
 
 def walther_viscosity(temperature: float, viscosity_40: float, viscosity_100: float) -> float:
-    """Return the kinematic viscosity at a temperature: a straight line of lg lg Z over lg T (ASTM D341).
+    """Return the kinematic viscosity at a temperature: lg lg Z is linear in lg T (C. Walther's equation, ASTM D341).
 
     Z = nu + 0.7 + exp(-1.47 - 1.84 nu - 0.51 nu^2) with nu in mm^2/s.
 
@@ -69,14 +69,14 @@ def walther_viscosity(temperature: float, viscosity_40: float, viscosity_100: fl
     temperature : [K].
     viscosity_40, viscosity_100 : at 40 and 100 degC [m^2/s].
     """
+    from scipy.optimize import brentq
+
     low, high = math.log10(313.15), math.log10(373.15)
     thick, thin = (_lg_lg_z(1e6 * viscosity) for viscosity in (viscosity_40, viscosity_100))
     wanted = thick + (thin - thick) * (math.log10(temperature) - low) / (high - low)
-    few, many = 0.2, 1e12  # mm^2/s; the standard ends at 0.21
-    for _ in range(100):  # halving the logarithm: the standard's own inverse is good to three digits only
-        middle = math.sqrt(few * many)
-        few, many = (few, middle) if _lg_lg_z(middle) > wanted else (middle, many)
-    return 1e-6 * middle
+    # Solved for ln nu, from 0.2 mm^2/s (the standard ends at 0.21): the standard's own inverse is good to three digits only.
+    log_nu = brentq(lambda log: _lg_lg_z(math.exp(log)) - wanted, math.log(0.2), math.log(1e12), xtol=1e-15, rtol=4 * np.finfo(float).eps)
+    return 1e-6 * math.exp(log_nu)
 
 
 def _lg_lg_z(nu: float) -> float:

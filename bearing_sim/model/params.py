@@ -1,28 +1,22 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""What compiled code sees: plain numbers in nested named tuples; `pack` is the only bridge from a scene."""
+"""The parameters of compiled code: plain numbers in nested named tuples; `pack` makes them from a scene."""
 
 import math
 from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.contour import outer_contour
-from bearing_sim.crown import crown_drops
-from bearing_sim.kernels.contact import iso_contact_stiffness, line_contact_stiffness
-from bearing_sim.kernels.film import Pumping, pumping_constant
-from bearing_sim.kernels.raceway import tabulated
-from bearing_sim.kernels.traction import (
-    TractionConstants,
-    constant_constants,
-    kragelskii_constants,
-    oil_4109_constants,
-    thermal_eyring_constants,
-)
-from bearing_sim.oil import oil_at
-from bearing_sim.rating_life import CLEANLINESS, fatigue_limit, load_rating, reliability_factor, ring_ratings, static_rating, stress_risers
-from bearing_sim.ring_growth import Growth, fit_growth, running_growth
-from bearing_sim.scene import Bearing, Lubricant, Scene
-from bearing_sim.scene_lubricant import ConstantTraction, EyringTraction, KragelskiiTraction
+from bearing_sim.model.oil import oil_at
+from bearing_sim.model.ring_growth import Growth, fit_growth, running_growth
+from bearing_sim.physics.contact import iso_contact_stiffness, line_contact_stiffness
+from bearing_sim.physics.film import Pumping, pumping_constant
+from bearing_sim.physics.raceway import tabulated
+from bearing_sim.physics.rating_life import CLEANLINESS, fatigue_limit, load_rating, reliability_factor, ring_ratings, static_rating, stress_risers
+from bearing_sim.physics.traction import TractionConstants, constant_constants, kragelskii_constants, oil_4109_constants, thermal_eyring_constants
+from bearing_sim.scene.contour import outer_contour
+from bearing_sim.scene.crown import crown_drops
+from bearing_sim.scene.lubricant import ConstantTraction, EyringTraction, KragelskiiTraction
+from bearing_sim.scene.scene import Bearing, Lubricant, Scene
 
 
 class Rollers(NamedTuple):
@@ -43,7 +37,6 @@ class Raceways(NamedTuple):
     pitch_radius: float  # r_m = R_i + R_w [m]
     diameter_ratio: float  # gamma = D_w / d_m
     contour: np.ndarray  # R_e(phi), periodic cubic table, shape (n, 4)
-    slope_factor: float  # 1 with the lean of the contact normal, 0 without (Deng 2017)
     stiffness: float  # K of Q = K delta^(10/9) [N/m^(10/9)]
     inner_curvature_radius: float  # effective radius of the inner contact [m]
     outer_curvature_radius: float  # effective radius of the outer contact [m]
@@ -64,7 +57,6 @@ class CageBody(NamedTuple):
     inertia: float  # about the shaft axis [kg m^2]
     mass: float  # [kg]
     pocket_friction: float  # mu_c
-    pocket_reaction: float  # 1 where level slip lets pocket friction brake the cage, 0 without
     assumed_eccentricity: float  # of the cage at level slip, over the guide clearance
     pocket_clearance: float  # C_p [m]
     pocket_stiffness: float  # K_c of the film, until the clearance is used up [N/m]
@@ -75,7 +67,6 @@ class CageBody(NamedTuple):
     guide_width: float  # L_g, all lands together [m]; 0 without lands
     land_film: float  # films in the guide land thinner than this touch [m]
     land_friction: float  # coefficient of boundary friction there
-    land_squeeze: float  # 1 where the film knows how the cage's centre moves, 0 without (Deng 2017)
     outer_radius: float  # of the cage [m]
     inner_radius: float  # of the cage [m]
     outer_width: float  # of its outer surface, without what runs on lands [m]
@@ -90,16 +81,16 @@ class Ring(NamedTuple):
 
 
 class Slices(NamedTuple):
-    """The rollers' slices; level ``spatial`` and the statics by slices look at them."""
+    """The rollers' slices; only level ``spatial`` and the statics by slices use them."""
 
-    places: np.ndarray  # axial place of each slice's middle from the roller's, x_k [m], shape (N,)
+    positions: np.ndarray  # axial position of each slice's middle from the roller's, x_k [m], shape (N,)
     crown: np.ndarray  # drop of the profile there, C_k [m], shape (N,)
     together: int  # slices that share one evaluation of the traction law
     risers: np.ndarray  # stress risers f(k) of a life by slices (ISO/TS 16281), shape (N,)
 
 
 class Tilts(NamedTuple):
-    """What tilts and what tilts it; level ``spatial`` alone looks at it.
+    """What tilts and what tilts it; only level ``spatial`` uses it.
 
     Tilts and moments are pairs by y and z: a tilt is the inclination of the axis towards them, a moment is what drives it.
     """
@@ -107,9 +98,8 @@ class Tilts(NamedTuple):
     roller_inertia: float  # about a diameter [kg m^2]
     cage_inertia: float
     ring_inertia: float
-    gyroscopic: float  # 1 with gyroscopic moments, 0 without (Deng 2017)
     ring_polar_inertia: float  # [kg m^2]
-    land_place: float  # of one of the cage's guide lands along the axis, the other is opposite [m]
+    land_position: float  # of one of the cage's guide lands along the axis, the other is opposite [m]
     ring_free: float  # 1 where a moment tilts the ring, 0 where its tilt is held
     moment_y: float  # on the ring [N m]
     moment_z: float
@@ -124,10 +114,19 @@ class Life(NamedTuple):
     outer_rating: float  # Q_ce [N]
     reliability_factor: float  # a_1
     modified: bool  # whether a_ISO is taken
-    cleanliness_slope: float  # of e_C, see `bearing_sim.rating_life.CLEANLINESS`
+    cleanliness_slope: float  # of e_C, see `bearing_sim.physics.rating_life.CLEANLINESS`
     cleanliness_loss: float
     fatigue_limit_ratio: float  # C_u/C_r
-    lamina: bool  # whether a level with slices takes the life by them
+    lamina: bool  # whether a level with slices computes the life by them
+
+
+class Variants(NamedTuple):
+    """Where the model departs from Deng 2017, which is 0 throughout; factors 0 or 1."""
+
+    contour_slope: float  # the outer contact's normal leans by the slope of the contour
+    land_squeeze: float  # the film of the guide lands depends on the motion of the cage's centre
+    pocket_reaction: float  # at level slip pocket friction acts back on the cage
+    gyroscopic: float  # gyroscopic moments of tilting rollers, cage and ring
 
 
 class Params(NamedTuple):
@@ -141,6 +140,7 @@ class Params(NamedTuple):
     growth: Growth  # of the inner raceway with speed and temperature
     slices: Slices
     tilts: Tilts
+    variants: Variants
 
 
 class Lubrication(NamedTuple):
@@ -164,7 +164,7 @@ def contact_stiffness(bearing: Bearing) -> float:
 
 
 def pack(scene: Scene) -> Params:
-    """Return the parameters of a scene as compiled code wants them: float64, int, C-contiguous arrays."""
+    """Return the parameters of a scene as compiled code needs them: float64, int, C-contiguous arrays."""
     bearing = scene.bearing
     roller_radius = bearing.roller.diameter / 2
     mass = math.pi * roller_radius**2 * bearing.roller.length * bearing.material.density
@@ -188,7 +188,6 @@ def pack(scene: Scene) -> Params:
             pitch_radius=bearing.pitch_radius,
             diameter_ratio=bearing.diameter_ratio,
             contour=contour,
-            slope_factor=1.0 if bearing.outer_raceway.contour_slope else 0.0,
             stiffness=contact_stiffness(bearing),
             inner_curvature_radius=1 / (1 / roller_radius + 1 / inner_radius),
             outer_curvature_radius=1 / (1 / roller_radius - 1 / low_radius),
@@ -198,7 +197,6 @@ def pack(scene: Scene) -> Params:
             inertia=cage.polar_inertia if cage.polar_inertia is not None else cage.mass * bearing.pitch_radius**2,
             mass=cage.mass,
             pocket_friction=cage.pocket_friction,
-            pocket_reaction=1.0 if cage.pocket_reaction else 0.0,
             assumed_eccentricity=cage.assumed_eccentricity,
             pocket_clearance=cage.pocket_clearance,
             pocket_stiffness=cage.pocket_film_force / cage.pocket_clearance,
@@ -213,7 +211,6 @@ def pack(scene: Scene) -> Params:
             guide_width=land_width,
             land_film=cage.land_film,
             land_friction=cage.land_friction,
-            land_squeeze=1.0 if cage.land_squeeze else 0.0,
             outer_radius=cage.outside,
             inner_radius=cage.bore,
             outer_width=cage.width - (land_width if cage.guidance == "outer_ring" else 0.0),
@@ -224,16 +221,22 @@ def pack(scene: Scene) -> Params:
         growth=running_growth(bearing),
         slices=_slices(bearing),
         tilts=_tilts(scene, mass),
+        variants=Variants(
+            contour_slope=float(bearing.outer_raceway.contour_slope),
+            land_squeeze=float(cage.land_squeeze),
+            pocket_reaction=float(cage.pocket_reaction),
+            gyroscopic=float(scene.dynamics.gyroscopic),
+        ),
     )
 
 
 def _slices(bearing: Bearing) -> Slices:
     roller = bearing.roller
     count = roller.slices
-    places = (np.arange(count) - 0.5 * (count - 1)) * (roller.length / count)
+    positions = (np.arange(count) - 0.5 * (count - 1)) * (roller.length / count)
     drops = np.ascontiguousarray(crown_drops(roller.crown, roller.diameter, roller.length, count), np.float64)
     risers = stress_risers(count) if count > 1 else np.ones(1)
-    return Slices(places, drops, int(roller.slices_per_traction), risers)
+    return Slices(positions, drops, int(roller.slices_per_traction), risers)
 
 
 def _tilts(scene: Scene, roller_mass: float) -> Tilts:
@@ -248,9 +251,8 @@ def _tilts(scene: Scene, roller_mass: float) -> Tilts:
         roller_inertia=roller_mass * (3 * (bearing.roller.diameter / 2) ** 2 + bearing.roller.length**2) / 12,
         cage_inertia=cage.transverse_inertia if cage.transverse_inertia is not None else 0.5 * polar,
         ring_inertia=inner.transverse_inertia if inner.transverse_inertia is not None else 0.5 * ring_polar,
-        gyroscopic=1.0 if scene.dynamics.gyroscopic else 0.0,
         ring_polar_inertia=ring_polar,
-        land_place=distance / 2,
+        land_position=distance / 2,
         ring_free=1.0 if operating.moment is not None else 0.0,
         moment_y=moment * math.cos(operating.moment_angle),
         moment_z=moment * math.sin(operating.moment_angle),
@@ -280,7 +282,7 @@ def _life(scene: Scene) -> Life:
 def lubricate(lubricant: Lubricant, params: Params, temperature: float) -> Lubrication:
     """Return what the lubricant does at a temperature [K].
 
-    The oil-air mixture has the mixture fraction of the oil's density, and the oil's viscosity.
+    *Assumption*: the oil-air mixture has the mixture fraction times the oil's density, and the oil's viscosity.
     """
     oil = oil_at(lubricant.oil, temperature)
     raceways, growth, length = params.raceways, params.growth, params.rollers.length

@@ -1,9 +1,13 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""How much rings grow by rotation, fits and heat: elastic rings, Lame's thick cylinders, thermal expansion."""
+"""How much rings grow by rotation, fits and heat.
+
+Rotation: a thin elastic ring, u = rho R^3 omega^2/E.  Fits: thick-walled cylinders of one material (G. Lame; any text on the strength of
+materials).  Heat: alpha R dT.  All are linear elastic and plane; ribs and the support by shaft and housing under rotation are left out.
+"""
 
 from typing import NamedTuple
 
-from bearing_sim.scene import Bearing
+from bearing_sim.scene.bearing import Bearing
 
 
 class Growth(NamedTuple):
@@ -15,7 +19,7 @@ class Growth(NamedTuple):
 
 
 def centrifugal_growth(mean_radius: float, density: float, youngs_modulus: float) -> float:
-    """Return the radial growth of a thin ring by the square of its speed, rho R^3/E [m s^2].
+    """Return the radial growth of a thin ring divided by the square of its speed, rho R^3/E [m s^2].
 
     Parameters
     ----------
@@ -63,15 +67,15 @@ def fit_growth(bearing: Bearing) -> tuple[float, float]:
 
 
 def running_growth(bearing: Bearing) -> Growth:
-    """Return the growth that goes with speed and oil temperature.
+    """Return the growth that depends on speed and oil temperature.
 
     What the rollers gain in diameter and the outer raceway in radius is counted at the inner raceway: the play is what matters,
     and the rollers' orbit changes by a ten-thousandth.
     """
     options, material, inner, outer = bearing.ring_growth, bearing.material, bearing.inner_raceway, bearing.outer_raceway
-    by_speed = by_temperature = constant = 0.0
+    d_speed = by_temperature = constant = 0.0
     if options.centrifugal:
-        by_speed = centrifugal_growth((inner.bore_radius + inner.radius) / 2, material.density, material.youngs_modulus)
+        d_speed = centrifugal_growth((inner.bore_radius + inner.radius) / 2, material.density, material.youngs_modulus)
     if options.thermal:
         parts = (
             (inner.radius, options.inner_excess),
@@ -80,4 +84,4 @@ def running_growth(bearing: Bearing) -> Growth:
         )
         by_temperature = options.expansion * sum(length for length, _ in parts)
         constant = options.expansion * sum(length * (excess - options.reference_temperature) for length, excess in parts)
-    return Growth(by_speed, by_temperature, constant)
+    return Growth(d_speed, by_temperature, constant)

@@ -3,10 +3,10 @@
 
 import numpy as np
 
-from bearing_sim.kernels.film import DOWSON_HIGGINSON, HEAT_EXPONENT, HEAT_FACTOR, SHEAR_EXPONENT, SHEAR_FACTOR
-from bearing_sim.oil import OilState, oil_at
-from bearing_sim.params import pack
-from bearing_sim.scene import Scene
+from bearing_sim.model.oil import OilState, oil_at
+from bearing_sim.model.params import pack
+from bearing_sim.physics.film import DOWSON_HIGGINSON, films
+from bearing_sim.scene.scene import Scene
 
 _SAME_OIL = 0.1  # [K] an oil so much warmer is the same oil: its film differs by half a percent at most
 _LOADED_FROM = 1.0  # [N] a roller that is pressed by less is not separated from anything
@@ -15,10 +15,9 @@ _LOADED_FROM = 1.0  # [N] a roller that is pressed by less is not separated from
 class FilmRatio:
     """lambda = h_min/sigma of the thinnest film between any loaded roller and either raceway.
 
-    h_min = R 2.65 U^0.70 G^0.54 W^-0.13 (Dowson and Higginson, see `bearing_sim.kernels.film.minimum_film`) times what heating of
-    the inlet leaves of it (`thermal_factor`); sigma is the composite roughness of `bearing_sim.scene.Roughness`.  Almost always it
-    is the inner ring's most heavily loaded contact: there the effective radius R is smallest.  Spins that a sample does not tell
-    are those of rolling on the outer ring.
+    h_min is that of Dowson and Higginson, thinned by the heated inlet (`bearing_sim.physics.film.film_thickness`); sigma is the composite
+    roughness of `bearing_sim.scene.scene.Roughness`.  Almost always the thinnest film is that of the inner ring's most heavily loaded
+    contact, whose effective radius R is smallest.  Spins that a sample does not hold are those of rolling on the outer ring.
 
     Parameters
     ----------
@@ -41,7 +40,7 @@ class FilmRatio:
 
         Parameters
         ----------
-        samples : shape (n,), see `bearing_sim.sample`.
+        samples : shape (n,), see `bearing_sim.model.sample`.
         """
         raceways, rollers, oil = self._params.raceways, self._params.rollers, self._oil_at(float(samples["oil_temperature"][-1]))
         orbit, orbital = samples["roller_radius"], samples["orbital_speed"]
@@ -59,13 +58,9 @@ class FilmRatio:
 
     def _film(self, oil: OilState, radius: float, force: np.ndarray, rolling: np.ndarray, sliding: np.ndarray) -> np.ndarray:
         """Return the least thickness [m] of the contacts of one ring, infinite where a roller is not loaded; arrays of one shape."""
-        law, modulus = DOWSON_HIGGINSON, self._params.raceways.reduced_modulus
         rolling, pressed = np.maximum(np.abs(rolling), 1e-9), np.maximum(force, _LOADED_FROM)
-        speed, load = oil.viscosity * rolling / (modulus * radius), pressed / (modulus * radius * self._params.rollers.length)
-        thickness = radius * law.factor * speed**law.speed * (oil.pressure_viscosity * modulus) ** law.material * load**law.load
-        thermal_load = oil.viscosity * oil.temperature_viscosity * rolling**2 / oil.conductivity
-        sheared = 1.0 + SHEAR_FACTOR * (np.abs(sliding) / rolling) ** SHEAR_EXPONENT
-        return np.where(force > _LOADED_FROM, thickness / (1.0 + HEAT_FACTOR * sheared * thermal_load**HEAT_EXPONENT), np.inf)
+        modulus, length = self._params.raceways.reduced_modulus, self._params.rollers.length
+        return np.where(force > _LOADED_FROM, films(DOWSON_HIGGINSON, oil, radius, modulus, length, pressed, rolling, sliding), np.inf)
 
     def _oil_at(self, temperature: float) -> OilState:
         if self._oil is None or abs(self._oil.temperature - temperature) > _SAME_OIL:

@@ -1,9 +1,9 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Exponential, logarithm, ninth root, sine and cosine that a vector of numbers can go through.
+"""Exponential, logarithm, ninth root, sine and cosine of numbers and of SIMD vectors.
 
-The library calls of `math` take one number at a time.  These are free of branches and accurate to 1e-11 relative (exp,
+The functions of `math` take one number at a time.  These are free of branches and accurate to 1e-11 relative (exp,
 arguments within +-700; ninth root, positive normal numbers), 2e-11 absolute (log, the same) and 1e-15 (sine and cosine), far more
-than any law that they serve.  Each takes a number or `bearing_sim.kernels.lanes`.
+than any law needs.  Each takes a number or a vector of `bearing_sim.numerics.simd`.
 """
 
 import math
@@ -11,8 +11,8 @@ import math
 import numba
 import numpy as np
 
-from bearing_sim.kernels.compilation import template
-from bearing_sim.kernels.lanes import bits, double, floor, larger, smaller
+from bearing_sim.numerics.compilation import template
+from bearing_sim.numerics.simd import bits, double, floor, larger, smaller
 
 _ROUND = 6755399441055744.0  # 1.5 * 2^52: adding it rounds to an integer that stands in the low bits
 _ROUND_BITS = 0x4338000000000000
@@ -61,7 +61,7 @@ def _vector_logarithm(x):
 
 @template
 def _vector_ninth_root(x):
-    # Less a ninth of the bits of x, and a constant, are roughly those of z = x^(-1/9): x z^9 lies between 0.737 and 1.262.
+    # A constant less a ninth of the bits of x is roughly the bits of z = x^(-1/9): x z^9 lies between 0.737 and 1.262.
     counted = double((bits(x) >> 20) + _ROUND_BITS)
     z = double(bits(_ROOT_BITS - counted * (1.0 / 9.0)) << 20)
     z_2 = z * z
@@ -73,7 +73,7 @@ def _vector_ninth_root(x):
     z = z * p
     z_2 = z * z
     z_4 = z_2 * z_2
-    y = x * (z_4 * z_4)  # x^(1/9) (1 - e)^(8/9): Newton's step and the term behind it make it whole
+    y = x * (z_4 * z_4)  # x^(1/9) (1 - e)^(8/9): Newton's step and the next term of the series remove the error
     e = 1.0 - y * z
     p = e * (68.0 / 81.0) + 8.0 / 9.0
     return y + y * (p * e)
@@ -106,7 +106,7 @@ def cosine_sine(turn):
     return sign * (c * g + 1.0), sign * (x * (s * g + 1.0))
 
 
-# The debugger's mode (NUMBA_DISABLE_JIT=1) has no bits to look at.
+# Without compilation (NUMBA_DISABLE_JIT=1) the bits of a number are not at hand.
 exponential = np.exp if numba.config.DISABLE_JIT else _vector_exponential
 logarithm = np.log if numba.config.DISABLE_JIT else _vector_logarithm
 ninth_root = (lambda x: x ** (1.0 / 9.0)) if numba.config.DISABLE_JIT else _vector_ninth_root

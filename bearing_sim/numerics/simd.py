@@ -1,9 +1,12 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Several rollers at once: a value that is a whole vector of doubles, one lane for each of ``LANES`` rollers.
+"""SIMD over rollers: a value that is a vector of doubles, with one lane for each of ``LANES`` rollers.
 
 The compiler vectorises loops by itself only where it can prove that arrays do not overlap, and gives up after a few rows.
-With a vector as a type there is nothing to prove: a law written once for a number runs four rollers per instruction.
-In the debugger (NUMBA_DISABLE_JIT=1) lanes are NumPy arrays of that many numbers.
+With a vector as a type there is nothing to prove: a law that is written for a number computes four rollers per instruction.
+Without compilation (NUMBA_DISABLE_JIT=1, for a debugger) a vector is a NumPy array of ``LANES`` numbers.
+
+Arrays of lanes have the shape (blocks, rows, LANES), see `new_rows`; a state holds each quantity of all rollers as one run of
+numbers, see `spread_runs` and `collect_runs`.
 """
 
 import operator
@@ -16,7 +19,9 @@ from numba.core.datamodel import PrimitiveModel, register_default
 from numba.core.typing.templates import AbstractTemplate, infer_global
 from numba.extending import intrinsic, lower_builtin
 
-LANES = 4  # as many as a register of common machines holds
+from bearing_sim.numerics.compilation import template
+
+LANES = 4  # doubles in a 256-bit register; eight gave no gain where registers have 512 bits
 
 _VECTOR = ir.VectorType(ir.DoubleType(), LANES)
 _INTEGERS = ir.VectorType(ir.IntType(64), LANES)
@@ -131,10 +136,10 @@ def _gather(context, table, index, column):
         column = _index(context, builder, arguments[2], signature.args[2])
         value = ir.Constant(_VECTOR, ir.Undefined)
         for lane in range(LANES):
-            place = ir.Constant(ir.IntType(32), lane)
-            row = builder.fptosi(builder.extract_element(arguments[1], place), ir.IntType(64))
+            position = ir.Constant(ir.IntType(32), lane)
+            row = builder.fptosi(builder.extract_element(arguments[1], position), ir.IntType(64))
             pointer = builder.gep(table.data, [builder.add(builder.mul(row, columns), column)])
-            value = builder.insert_element(value, builder.load(pointer), place)
+            value = builder.insert_element(value, builder.load(pointer), position)
         return value
 
     return lanes_type(table, index, column), generate
@@ -268,3 +273,37 @@ def new_rows(rows, count):
 def by_roller(array, row, count):
     """Return one row of an array of `new_rows` as numbers by roller, shape (count,)."""
     return array[:, row].reshape(-1)[:count]
+
+
+@template
+def spread_runs(x, first, runs, count, rows):
+    """Copy runs of ``count`` numbers into the first rows of all blocks; lanes without a roller keep their values.
+
+    Parameters
+    ----------
+    x : numbers, the runs one after the other, starting at ``first``.
+    runs, count : how many runs, and numbers in each.
+    rows : see `new_rows`.
+    """
+    for k in range(runs):
+        start = first + k * count
+        for j in range(count):
+            rows[j // LANES, k, j % LANES] = x[start + j]
+
+
+@template
+def fill_lanes(rows, runs, count):
+    """Fill lanes without a roller with the last roller's values in the first ``runs`` rows, so that they stay finite."""
+    last = count - 1
+    for k in range(runs):
+        for j in range(count, rows.shape[0] * LANES):
+            rows[j // LANES, k, j % LANES] = rows[last // LANES, k, last % LANES]
+
+
+@template
+def collect_runs(rows, row, runs, count, x, first):
+    """Copy rows, starting at ``row``, back into runs, starting at ``first``; parameters as of `spread_runs`."""
+    for k in range(runs):
+        start = first + k * count
+        for j in range(count):
+            x[start + j] = rows[j // LANES, row + k, j % LANES]

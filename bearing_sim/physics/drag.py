@@ -1,23 +1,28 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Drag of the oil-air mixture on cage and rollers (Deng 2017, section 3.1.4, and the general literature)."""
+"""Drag of the oil-air mixture on rollers and cage (Deng 2017, section 3.1.4).
+
+The mixture has the density rho = mixture fraction times that of the oil, and the oil's viscosity eta: both are *assumptions*, the first
+is the knob to calibrate (published fractions 0.015 to 0.05).
+"""
 
 import math
 
 import numpy as np
 
-from bearing_sim.kernels.compilation import kernel
+from bearing_sim.numerics.compilation import kernel
 
-# Drag coefficient of a cylinder across the flow by Reynolds number, interpolated in logarithms (physics of
-# bluff bodies; the table of the bearing literature).
+# Drag coefficient C_d of a long cylinder across a flow by Re = rho v D_w/eta, interpolated in logarithms and constant beyond the table.
+# Assumption: read off the curve for one cylinder in an unbounded flow that textbooks show (H. Schlichting, Boundary-Layer Theory); the
+# rollers of a bearing stand close behind each other.
 _REYNOLDS = np.log(np.array([0.1, 1.0, 10.0, 100.0, 1e3, 1e4, 2e5, 3e5, 4e5, 5e5, 1e6]))
 _DRAG_COEFFICIENT = np.log(np.array([60.0, 10.0, 3.0, 1.8, 1.0, 1.2, 1.2, 0.9, 0.65, 0.3, 0.3]))
 
 
 @kernel
 def churning_force(speed, density, viscosity, roller_diameter, roller_length):
-    """Return the drag on a roller moving across the mixture [N] and its slope by speed [N s/m].
+    """Return the drag on a roller that moves across the mixture [N], and its derivative by speed [N s/m].
 
-    F = 0.5 rho C_d (L D_w) v |v|, against the motion.
+    F = 0.5 rho C_d(Re) (L D_w) v |v|, against the motion; C_d is the table above, an *assumption*.
 
     Parameters
     ----------
@@ -46,10 +51,14 @@ def churning_force(speed, density, viscosity, roller_diameter, roller_length):
 
 @kernel
 def cylinder_torque(relative_speed, radius, clearance, width, density, viscosity):
-    """Return the torque between coaxial cylinders in the mixture [N m] and its slope by relative speed [N m s].
+    """Return the torque between coaxial cylinders in the mixture [N m] and its derivative by relative speed [N m s].
 
-    Petroff's laminar torque 2 pi eta R^3 omega L/c times f/f_L: 1.3 (Ta/41)^0.539 in Taylor vortices (Ta = Re sqrt(c/R)),
-    3.0 (Re/2500)^0.856 in turbulence; the largest of the three is taken, so that nothing jumps between regimes.
+    Petroff's laminar torque 2 pi eta R^3 omega L/c times the largest of
+
+        1,   1.3 (Ta/41)^0.539 (Taylor vortices),   3.0 (Re/2500)^0.856 (turbulence),    Re = rho omega R c/eta, Ta = Re sqrt(c/R),
+
+    so that nothing jumps between the regimes.  41 is the critical Taylor number of a narrow gap whose inner cylinder turns (G. I. Taylor, Phil.
+    Trans. R. Soc. A 223 (1923)); the two factors and their exponents are *assumptions*, common in dynamic models of roller bearings.
 
     Parameters
     ----------
@@ -71,10 +80,12 @@ def cylinder_torque(relative_speed, radius, clearance, width, density, viscosity
 
 @kernel
 def end_face_torque(speed, outer_radius, inner_radius, density, viscosity):
-    """Return the drag on both end faces of a rotating annulus [N m], against its rotation, and its slope [N m s].
+    """Return the drag on both end faces of a rotating annulus [N m], against its rotation, and its derivative by speed [N m s].
 
-    M = 0.5 rho omega^2 (R_o^5 - R_in^5) C_n, C_n = 3.87 Re^-0.5 in laminar and 0.146 Re^-0.2 in turbulent flow, Re =
-    rho omega R_o^2/eta.  The literature switches at 3e5, where C_n jumps by 1.66; here it goes over between 2.5e5 and 3.5e5.
+    M = 0.5 rho omega^2 (R_o^5 - R_in^5) C_n, Re = rho omega R_o^2/eta: a free disc, both sides wetted.  C_n = 3.87 Re^-0.5 in laminar flow
+    (W. G. Cochran, Proc. Camb. Phil. Soc. 30 (1934)) and 0.146 Re^-0.2 in turbulent flow (T. von Karman, Z. angew. Math. Mech. 1 (1921)), as in
+    H. Schlichting, Boundary-Layer Theory.  The formulas meet at 3e5, where C_n jumps by 1.66; *assumption*: here it changes linearly
+    between 2.5e5 and 3.5e5, and a ring's torque is the difference of two discs'.
 
     Parameters
     ----------
@@ -86,8 +97,39 @@ def end_face_torque(speed, outer_radius, inner_radius, density, viscosity):
     reynolds = density * magnitude * outer_radius**2 / viscosity
     if reynolds < 1e-12:
         return 0.0, 0.0
-    turbulent_share = min(max((reynolds - 2.5e5) / 1e5, 0.0), 1.0)
-    coefficient = (1.0 - turbulent_share) * 3.87 / math.sqrt(reynolds) + turbulent_share * 0.146 * reynolds**-0.2
-    exponent = 1.5 + 0.3 * turbulent_share
+    turbulent_fraction = min(max((reynolds - 2.5e5) / 1e5, 0.0), 1.0)
+    coefficient = (1.0 - turbulent_fraction) * 3.87 / math.sqrt(reynolds) + turbulent_fraction * 0.146 * reynolds**-0.2
+    exponent = 1.5 + 0.3 * turbulent_fraction
     torque = 0.5 * density * speed * magnitude * (outer_radius**5 - inner_radius**5) * coefficient
     return torque, exponent * torque / speed
+
+
+@kernel
+def bore_torque(cage_speed, shaft_speed, params, lubrication):
+    """Return the torque of the mixture in the cage's bore, which the inner ring drives [N m], and minus its derivative by cage speed [N m s].
+
+    Parameters as of `mixture_torque`.
+    """
+    radius = params.cage.inner_radius
+    gap = radius - params.raceways.inner_radius
+    return cylinder_torque(shaft_speed - cage_speed, radius, gap, params.cage.inner_width, lubrication.mixture_density, lubrication.viscosity)
+
+
+@kernel
+def mixture_torque(cage_speed, shaft_speed, params, lubrication):
+    """Return the torque of the mixture on the cage [N m] and its derivative by cage speed [N m s].
+
+    It acts on the outer cylindrical face and on the bore, which the inner ring drives, as far as they do not run on lands, and on both end
+    faces (Deng 2017, section 3.1.4).
+
+    Parameters
+    ----------
+    cage_speed, shaft_speed : [rad/s].
+    params, lubrication : of the bearing, see `bearing_sim.model.params`.
+    """
+    cage, density, viscosity = params.cage, lubrication.mixture_density, lubrication.viscosity
+    outer_gap = params.raceways.low_radius - cage.outer_radius
+    outside, d_outside = cylinder_torque(-cage_speed, cage.outer_radius, outer_gap, cage.outer_width, density, viscosity)
+    inside, d_inside = bore_torque(cage_speed, shaft_speed, params, lubrication)
+    faces, d_faces = end_face_torque(cage_speed, cage.outer_radius, cage.inner_radius, density, viscosity)
+    return outside + inside - faces, -d_outside - d_inside - d_faces

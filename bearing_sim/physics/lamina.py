@@ -1,9 +1,10 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Quasi-static balance of the whole bearing by slices: ring displacement and tilt, roller positions and tilts.
 
-Every roller is cut into N slices, each an independent spring K/N delta^(10/9) on either raceway.  Unknown are the place of
+Every roller is cut into N slices, each an independent spring K/N delta^(10/9) on either raceway (the lamina model of
+ISO/TS 16281).  Unknown are the position of
 each roller (outer penetration and tilt) and that of the inner ring (two displacements, two tilts); all forces and moments
-derive from one convex potential, so that Newton's method with a bounded, backtracked step gets there from anywhere.
+derive from one convex potential, so that Newton's method with a bounded, backtracked step converges from anywhere.
 
 Tilts are counted as the displacement that they give a roller's end, so that all unknowns are lengths and all
 residuals forces: tilt times L/2, and moment over L/2.
@@ -14,10 +15,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.kernels.compilation import kernel, template
-from bearing_sim.kernels.contact import EXPONENT
+from bearing_sim.numerics.compilation import kernel, template
+from bearing_sim.physics.contact import EXPONENT
 
-_LARGEST_DAMPING = 1.0  # N/m; a ten-millionth of a contact's stiffness holds what nothing else does
+_LARGEST_DAMPING = 1.0  # N/m; a ten-millionth of a contact's stiffness restrains what nothing else does
 _LONGEST_STEP = 2e-5  # m, a few contact penetrations
 _ITERATIONS = 400
 _RELATIVE_RESIDUAL = 1e-9
@@ -28,7 +29,7 @@ _RING = 4  # unknowns of the ring
 class Slices(NamedTuple):
     """The bearing as `balance_slices` sees it at one cage angle, and its memory; see `new_slices`."""
 
-    place: np.ndarray  # of slice middles, 2 x_k/L, shape (N,)
+    position: np.ndarray  # of slice middles, 2 x_k/L, shape (N,)
     drop: np.ndarray  # C_k [m], shape (N,)
     half_length: float  # L/2 [m]
     stiffness: float  # K of the whole contact [N/m^(10/9)]
@@ -53,8 +54,8 @@ class RollerRow(NamedTuple):
     outer_moment: int = 7  # sum of q_e x over L/2 [N]
     inner_load: int = 8
     inner_moment: int = 9
-    outer_slopes: int = 10  # three rows: sums of the slices' slopes [N/m] times place to the power 0, 1, 2
-    inner_slopes: int = 13
+    outer_stiffness: int = 10  # three rows: sums of the slices' derivatives [N/m] times position to the power 0, 1, 2
+    inner_stiffness: int = 13
     step_penetration: int = 16  # [m]
     step_tilt: int = 17
 
@@ -75,7 +76,7 @@ def new_slices(rollers, drops, length, stiffness):
     """
     slices = len(drops)
     return Slices(
-        place=(2.0 * np.arange(slices) + 1.0) / slices - 1.0,
+        position=(2.0 * np.arange(slices) + 1.0) / slices - 1.0,
         drop=np.ascontiguousarray(drops, np.float64),
         half_length=float(length) / 2.0,
         stiffness=float(stiffness),
@@ -98,34 +99,34 @@ def sliced_contact(penetration, tilt, slices, loads):
     ----------
     penetration : delta of the middle [m].
     tilt : tilt between roller and raceway, times L/2 [m].
-    slices : `Slices`; place, drop and stiffness are taken.
+    slices : `Slices`; position, drop and stiffness are taken.
 
     Returns
     -------
-    load [N], moment over L/2 [N], and the sums of the slices' slopes [N/m] times place to the power 0, 1 and 2
+    load [N], moment over L/2 [N], and the sums of the slices' derivatives [N/m] times position to the power 0, 1 and 2
     """
-    stiffness = slices.stiffness / slices.place.shape[0]
-    load, moment, slope_0, slope_1, slope_2 = 0.0, 0.0, 0.0, 0.0, 0.0
-    for k in range(slices.place.shape[0]):
-        place = slices.place[k]
-        delta = penetration - slices.drop[k] + tilt * place
+    stiffness = slices.stiffness / slices.position.shape[0]
+    load, moment, stiffness_0, stiffness_1, stiffness_2 = 0.0, 0.0, 0.0, 0.0, 0.0
+    for k in range(slices.position.shape[0]):
+        position = slices.position[k]
+        delta = penetration - slices.drop[k] + tilt * position
         if delta <= 0.0:
             loads[k] = 0.0
             continue
         root = stiffness * delta ** (1.0 / 9.0)
-        slope = EXPONENT * root
+        d_depth = EXPONENT * root
         loads[k] = root * delta
         load += root * delta
-        moment += root * delta * place
-        slope_0 += slope
-        slope_1 += slope * place
-        slope_2 += slope * place * place
-    return load, moment, slope_0, slope_1, slope_2
+        moment += root * delta * position
+        stiffness_0 += d_depth
+        stiffness_1 += d_depth * position
+        stiffness_2 += d_depth * position * position
+    return load, moment, stiffness_0, stiffness_1, stiffness_2
 
 
 @kernel
 def _press(y, z, end_y, end_z, step, slices):
-    """Compute all contacts with the ring at a place and the rollers ``step`` times their steps further on.
+    """Compute all contacts with the ring at a position and the rollers ``step`` times their steps further on.
 
     ``end_y``, ``end_z`` are the ring's tilts about y and z times L/2 [m].
     """
@@ -136,12 +137,12 @@ def _press(y, z, end_y, end_z, step, slices):
         tilt = roller[row.tilt, j] + step * roller[row.step_tilt, j]
         approach = roller[row.squeeze, j] + y * cosine + z * sine
         ring_tilt = end_z * cosine - end_y * sine
-        load, moment, slope_0, slope_1, slope_2 = sliced_contact(penetration, tilt, slices, slices.outer[j])
+        load, moment, stiffness_0, stiffness_1, stiffness_2 = sliced_contact(penetration, tilt, slices, slices.outer[j])
         roller[row.outer_load, j], roller[row.outer_moment, j] = load, moment
-        roller[row.outer_slopes, j], roller[row.outer_slopes + 1, j], roller[row.outer_slopes + 2, j] = slope_0, slope_1, slope_2
-        load, moment, slope_0, slope_1, slope_2 = sliced_contact(approach - penetration, ring_tilt - tilt, slices, slices.inner[j])
+        roller[row.outer_stiffness, j], roller[row.outer_stiffness + 1, j], roller[row.outer_stiffness + 2, j] = stiffness_0, stiffness_1, stiffness_2
+        load, moment, stiffness_0, stiffness_1, stiffness_2 = sliced_contact(approach - penetration, ring_tilt - tilt, slices, slices.inner[j])
         roller[row.inner_load, j], roller[row.inner_moment, j] = load, moment
-        roller[row.inner_slopes, j], roller[row.inner_slopes + 1, j], roller[row.inner_slopes + 2, j] = slope_0, slope_1, slope_2
+        roller[row.inner_stiffness, j], roller[row.inner_stiffness + 1, j], roller[row.inner_stiffness + 2, j] = stiffness_0, stiffness_1, stiffness_2
 
 
 @kernel
@@ -161,9 +162,9 @@ def _reactions(slices):
 def _roller_inverse(roller, j, damping):
     """Return the inverse of one roller's stiffness matrix: three numbers of a symmetric two by two."""
     row = ROLLER_ROW
-    a = roller[row.outer_slopes, j] + roller[row.inner_slopes, j] + damping
-    b = roller[row.outer_slopes + 1, j] + roller[row.inner_slopes + 1, j]
-    d = roller[row.outer_slopes + 2, j] + roller[row.inner_slopes + 2, j] + damping
+    a = roller[row.outer_stiffness, j] + roller[row.inner_stiffness, j] + damping
+    b = roller[row.outer_stiffness + 1, j] + roller[row.inner_stiffness + 1, j]
+    d = roller[row.outer_stiffness + 2, j] + roller[row.inner_stiffness + 2, j] + damping
     determinant = a * d - b * b
     return d / determinant, -b / determinant, a / determinant
 
@@ -186,11 +187,11 @@ def _assemble(force, slices, free_tilts, damping):
         pull = roller[row.centrifugal, j] + roller[row.inner_load, j] - roller[row.outer_load, j]
         turn = roller[row.inner_moment, j] - roller[row.outer_moment, j]
         largest = max(largest, abs(pull), abs(turn))
-        k_0, k_1, k_2 = roller[row.inner_slopes, j], roller[row.inner_slopes + 1, j], roller[row.inner_slopes + 2, j]
+        k_0, k_1, k_2 = roller[row.inner_stiffness, j], roller[row.inner_stiffness + 1, j], roller[row.inner_stiffness + 2, j]
         if k_0 == 0.0:
             continue
         a, b, d = _roller_inverse(roller, j, damping)
-        # the roller gives way: K - K (K + K_e)^-1 K, and its own residual reaches the ring through K (K + K_e)^-1
+        # the roller yields: K - K (K + K_e)^-1 K, and its own residual reaches the ring through K (K + K_e)^-1
         p_0, p_1 = k_0 * a + k_1 * b, k_0 * b + k_1 * d
         p_2, p_3 = k_1 * a + k_2 * b, k_1 * b + k_2 * d
         s_0 = k_0 - (p_0 * k_0 + p_1 * k_1)
@@ -220,9 +221,9 @@ def _solve_ring(system):
     """Replace the right side of the ring's equations (column 4) by their solution: elimination of a positive definite matrix."""
     for pivot in range(_RING):
         for i in range(pivot + 1, _RING):
-            share = system[i, pivot] / system[pivot, pivot]
+            fraction = system[i, pivot] / system[pivot, pivot]
             for k in range(pivot, _RING + 1):
-                system[i, k] -= share * system[pivot, k]
+                system[i, k] -= fraction * system[pivot, k]
     for i in range(_RING - 1, -1, -1):
         for k in range(i + 1, _RING):
             system[i, _RING] -= system[i, k] * system[k, _RING]
@@ -238,7 +239,7 @@ def _roller_steps(slices, damping):
     for j in range(roller.shape[1]):
         cosine, sine = roller[row.cosine, j], roller[row.sine, j]
         approach, ring_tilt = y * cosine + z * sine, end_z * cosine - end_y * sine
-        k_0, k_1, k_2 = roller[row.inner_slopes, j], roller[row.inner_slopes + 1, j], roller[row.inner_slopes + 2, j]
+        k_0, k_1, k_2 = roller[row.inner_stiffness, j], roller[row.inner_stiffness + 1, j], roller[row.inner_stiffness + 2, j]
         pull = roller[row.centrifugal, j] + roller[row.inner_load, j] - roller[row.outer_load, j] + k_0 * approach + k_1 * ring_tilt
         turn = roller[row.inner_moment, j] - roller[row.outer_moment, j] + k_1 * approach + k_2 * ring_tilt
         a, b, d = _roller_inverse(roller, j, damping)
@@ -308,7 +309,7 @@ def balance_slices(load_y, load_z, moment_y, moment_z, free_tilts, slices):
         step = min(1.0, _LONGEST_STEP / longest) if longest > 0.0 else 1.0
         for _ in range(40):
             _press(y + step * system[0, 4], z + step * system[1, 4], end_y + step * system[2, 4], end_z + step * system[3, 4], step, slices)
-            # Downhill in the convex potential: what is out of balance must not push back harder than half of what it pushed on.
+            # Descent in the convex potential: the residual must not push back by more than half of what it pushed forward.
             if _push(force, slices, free_tilts) >= -0.5 * before:
                 break
             step *= 0.5

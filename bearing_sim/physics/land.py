@@ -1,18 +1,45 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""The guide land of a cage that rotates and whirls: the film of a short journal bearing, and contact where it ends.
+"""The guide lands of a cage: the film of a short journal bearing, contact where it ends, and boundary friction (Deng 2017, section 3.1.3).
 
 Lands of the outer ring lie around the cage and rest; those of the inner ring lie in its bore, turn with the shaft and move with the
-ring.  For both, what counts is how the cage moves against the ring.
+ring.  For both, only the cage's motion relative to the ring matters.
+
+Symbols: e eccentricity of the cage in the lands [m], c their clearance [m], eps = e/c, R_g their radius [m], L_g width of both lands together
+[m], eta_0 viscosity of the oil [Pa s], omega_c and omega_ring speeds of cage and ring [rad/s].
 """
 
 import math
 from typing import NamedTuple
 
-from bearing_sim.kernels.compilation import kernel
-from bearing_sim.levels.planar_algebra import BORDER
-from bearing_sim.levels.planar_state import CAGE_Y, CAGE_Z, OMEGA, RING_Y, RING_Z
+from bearing_sim.numerics.compilation import kernel, template
 
-_WEDGE = 10.0  # rad/s; the film's half-circle changes sides smoothly where the wedge speed changes sign
+_WEDGE = 10.0  # rad/s; assumption: the film's half-circle changes sides smoothly where the wedge speed changes sign
+_SLIDING = 0.1  # m/s; assumption: boundary friction is proportional to the sliding speed well below this
+
+
+@kernel
+def land_torque(cage_speed, ring_speed, eccentricity_ratio, viscosity, cage):
+    """Return the torque of the oil in the guide lands on the cage [N m] and its derivative by cage speed [N m s].
+
+    M = 2 pi eta_0 V R_g^2 L_g/(c sqrt(1 - eps^2)), V = R_g (omega_ring - omega_c) (Deng 2017, section 3.1.3): Petroff's torque of an
+    eccentric journal, laminar, the land full of oil.
+
+    Parameters
+    ----------
+    cage_speed, ring_speed : omega_c and omega_ring [rad/s].
+    eccentricity_ratio : eps, below 1.
+    viscosity : eta_0 [Pa s].
+    cage : `bearing_sim.model.params.CageBody`.
+    """
+    slope = (
+        2.0
+        * math.pi
+        * viscosity
+        * cage.guide_radius**3
+        * cage.guide_width
+        / (cage.guide_clearance * math.sqrt(1.0 - eccentricity_ratio * eccentricity_ratio))
+    )
+    return slope * (ring_speed - cage_speed), -slope
 
 
 class Land(NamedTuple):
@@ -27,29 +54,12 @@ class Land(NamedTuple):
 
 
 @kernel
-def place_in_lands(y, shaft_speed, cage):
-    """Return `Land` of a state.
-
-    Parameters
-    ----------
-    y : state of level ``planar``, its border at least.
-    shaft_speed : [rad/s].
-    cage : `bearing_sim.params.CageBody`.
-    """
-    turning = cage.guidance.turning
-    return Land(
-        y[CAGE_Y] - turning * y[RING_Y],
-        y[CAGE_Z] - turning * y[RING_Z],
-        y[BORDER + CAGE_Y] - turning * y[BORDER + RING_Y],
-        y[BORDER + CAGE_Z] - turning * y[BORDER + RING_Z],
-        y[OMEGA],
-        turning * shaft_speed,
-    )
-
-
-@kernel
 def _film_coefficients(eccentricity, cage):
-    """Return, by eccentricity and each with its slope: entrainment inwards and across, squeeze inwards and across, 1/sqrt(1 - eps^2)."""
+    """Return five functions of the eccentricity ratio eps, each followed by its derivative by e [1/m].
+
+    Those of `land_film` in this order: entrainment inwards and across, squeeze inwards and across, and 1/sqrt(1 - eps^2).  Films
+    thinner than ``cage.land_film`` touch and stiffen no further.
+    """
     clearance = cage.guide_clearance
     thinnest = max(1.0 - cage.land_film / clearance, 0.0)
     ratio = eccentricity / clearance
@@ -59,41 +69,45 @@ def _film_coefficients(eccentricity, cage):
     rest = 1.0 - ratio * ratio
     root = math.sqrt(rest)
     square, cube = rest * rest, rest * root
-    inwards, inwards_slope = ratio / square, (1.0 + 3.0 * ratio * ratio) / (square * rest)
-    across, across_slope = 0.25 * math.pi / cube, 0.75 * math.pi * ratio / (cube * rest)
-    press, press_slope = (
+    inwards, d_inwards = ratio / square, (1.0 + 3.0 * ratio * ratio) / (square * rest)
+    across, d_across = 0.25 * math.pi / cube, 0.75 * math.pi * ratio / (cube * rest)
+    press, d_press = (
         0.5 * math.pi * (1.0 + 2.0 * ratio * ratio) / (square * root),
         1.5 * math.pi * ratio * (3.0 + 2.0 * ratio * ratio) / (square * cube),
     )
-    shift, shift_slope = 2.0 * ratio / square, (2.0 + 6.0 * ratio * ratio) / (square * rest)
-    drag, drag_slope = 1.0 / root, ratio / cube
+    shift, d_shift = 2.0 * ratio / square, (2.0 + 6.0 * ratio * ratio) / (square * rest)
+    drag, d_drag = 1.0 / root, ratio / cube
     return (
-        inwards, inwards_slope * changing, across, across_slope * changing, press, press_slope * changing,
-        shift, shift_slope * changing, drag, drag_slope * changing,
+        inwards, d_inwards * changing, across, d_across * changing, press, d_press * changing,
+        shift, d_shift * changing, drag, d_drag * changing,
     )  # fmt: skip
 
 
 @kernel
-def land_film(land, cage, viscosity):
-    """Return forces y, z [N] and torque [N m] of the guide lands' film on the cage, then their derivatives by y, z, y', z' and omega (3 rows of 5).
+def land_film(land, squeeze, cage, viscosity):
+    """Return forces y, z [N] and torque [N m] of the guide lands' film on the cage, then their derivatives by y, z, y', z' and omega_c (3 rows of 5).
 
-    Short journal bearing with half a film (Ocvirk 1953; Childs 1993, section 3.4), two lands of width L, eps = e/c, per
-    eta R L^3/c^2:
+    Short journal bearing with half a film: F. W. Ocvirk, NACA TN 2808 (1952), and G. B. DuBois, F. W. Ocvirk, NACA Report 1157 (1953), for a
+    centre at rest; with its motion as in D. Childs, Turbomachinery Rotordynamics (1993), section 3.4.  Two lands of width L = L_g/2, forces per
+    eta_0 R_g L^3/c^2:
 
         inwards  |X| eps/(1 - eps^2)^2 + (pi/2)(1 + 2 eps^2)/(1 - eps^2)^2.5 e'/c
-        across   pi/4 X/(1 - eps^2)^1.5 + 2 eps sign(X)/(1 - eps^2)^2 e'/c,     X = eps (omega + omega_ring - 2 psi')
+        across   pi/4 X/(1 - eps^2)^1.5 + 2 eps sign(X)/(1 - eps^2)^2 e'/c,     X = eps (omega_c + omega_ring - 2 psi')
 
-    for a cage whose centre moves by e' outwards and whirls by psi', both seen from the ring's centre.  It does not matter which of
-    both is the journal.  A film that is carried round by the whirl at the mean speed of both surfaces has no wedge left: it is
-    what keeps the whirl from going faster.  Deng 2017, section 3.1.3, has the film of a cage whose centre rests, X = eps (omega +
-    omega_ring) and e' = 0 (``land_squeeze: false``).  The torque is his: both surfaces share it, and what the force's way across
-    the eccentricity adds, a thousandth of it, is the ring's (see `bearing_sim.levels.planar_power`).
+    for a cage that moves outwards by e' and whirls by psi', both relative to the ring's centre; ``across`` is ahead of the eccentricity in the
+    direction of rotation.  Which of both bodies is the journal does not matter.  A film that whirls at the mean speed of both surfaces has
+    no wedge left, which is what limits the whirl.  Deng 2017, section 3.1.3, is the film of a centre at rest, X = eps (omega_c + omega_ring)
+    and e' = 0 (``land_squeeze: false``).  The torque is that of `land_torque`: both surfaces share it, and what the force's lever across the
+    eccentricity adds, a thousandth of it, is given to the ring (see `bearing_sim.levels.planar.power`).
+
+    Range: L small against R_g, laminar, isoviscous, and a film that is full over the half-circle where the wedge or the approach fills it.
 
     Parameters
     ----------
     land : `Land`.
-    cage : `bearing_sim.params.CageBody`.
-    viscosity : of the oil [Pa s].
+    squeeze : 1 for the film of a moving centre, 0 for Deng's, of a centre at rest.
+    cage : `bearing_sim.model.params.CageBody`.
+    viscosity : eta_0 [Pa s].
     """
     entraining, turning = land.cage_speed + land.ring_speed, land.cage_speed - land.ring_speed
     clearance, radius, width = cage.guide_clearance, cage.guide_radius, 0.5 * cage.guide_width
@@ -103,28 +117,28 @@ def land_film(land, cage, viscosity):
     if eccentricity > 1e-9 * clearance:
         n_y, n_z = land.y / eccentricity, land.z / eccentricity
     turn = 1.0 / max(eccentricity, 1e-9 * clearance)
-    moving = cage.land_squeeze / clearance
+    moving = squeeze / clearance
     outwards = n_y * land.y_speed + n_z * land.z_speed
     along = n_y * land.z_speed - n_z * land.y_speed
     inwards, inwards_e, across, across_e, press, press_e, shift, shift_e, drag, drag_e = _film_coefficients(eccentricity, cage)
     wedge = eccentricity / clearance * entraining - 2.0 * moving * along
     root = math.sqrt(wedge * wedge + _WEDGE * _WEDGE)
-    side, side_slope = wedge / root, _WEDGE * _WEDGE / (root * root * root)
-    size, size_slope = wedge * side, side + wedge * side_slope
+    side, d_side = wedge / root, _WEDGE * _WEDGE / (root * root * root)
+    size, d_size = wedge * side, side + wedge * d_side
     rate = moving * outwards
     f_in = unit * (inwards * size + press * rate)
     f_across = unit * (across * wedge + shift * side * rate)
     # by eccentricity, outward speed, speed along and omega
-    in_wedge, across_wedge = unit * inwards * size_slope, unit * (across + shift * side_slope * rate)
+    in_wedge, across_wedge = unit * inwards * d_size, unit * (across + shift * d_side * rate)
     in_e = unit * (inwards_e * size + press_e * rate) + in_wedge * entraining / clearance
-    across_by_e = unit * (across_e * wedge + shift_e * side * rate) + across_wedge * entraining / clearance
+    across_d_e = unit * (across_e * wedge + shift_e * side * rate) + across_wedge * entraining / clearance
     in_out, across_out = unit * press * moving, unit * shift * side * moving
     in_along, across_along = -2.0 * moving * in_wedge, -2.0 * moving * across_wedge
     in_omega, across_omega = in_wedge * eccentricity / clearance, across_wedge * eccentricity / clearance
     # as the centre moves across, the frame turns by 1/e and sees the speeds turned
     in_t = turn * (in_out * along - in_along * outwards)
     across_t = turn * (across_out * along - across_along * outwards)
-    n_n, t_n, n_t, t_t = -in_e, across_by_e, -in_t - f_across * turn, across_t - f_in * turn
+    n_n, t_n, n_t, t_t = -in_e, across_d_e, -in_t - f_across * turn, across_t - f_in * turn
     friction = -2.0 * math.pi * viscosity * radius**3 * cage.guide_width / clearance
     torque = friction * drag * turning
     return (
@@ -150,12 +164,19 @@ def _in_plane(n_n, t_n, n_t, t_t, n_y, n_z):
 
 @kernel
 def land_contact(land, params):
-    """Force on the cage towards the ring's centre [N] where both touch, with its slopes by eccentricity and its rate; and both.
+    """Return the contact force of cage and land, its derivatives, and how they approach.
+
+    Q = K delta^(10/9) (1 + a delta'), delta = e - (c - h_0), as between rollers and raceways (`bearing_sim.physics.contact`): films thinner than
+    h_0 = ``cage.land_film`` touch.  *Assumption*: line contact with the raceways' K and a stands for that of two lands.
 
     Parameters
     ----------
     land : `Land`.
     params : of the bearing.
+
+    Returns
+    -------
+    force on the cage towards the ring's centre [N], d_eccentricity [N/m], d_rate [N s/m], eccentricity [m], its rate [m/s]
     """
     cage = params.cage
     eccentricity = math.sqrt(land.y * land.y + land.z * land.z)
@@ -168,3 +189,18 @@ def land_contact(land, params):
     if damping <= 0.0:
         return 0.0, 0.0, 0.0, eccentricity, rate
     return root * depth * damping, 10.0 / 9.0 * root * damping, root * depth * params.ring.contact_damping, eccentricity, rate
+
+
+@template
+def land_friction(sliding, coefficient):
+    """Return the coefficient of boundary friction with the sign of the sliding speed, mu s/sqrt(s^2 + s_0^2), and its derivative [s/m].
+
+    *Assumption*: mu (0.08 by default) and s_0 = 0.1 m/s, which only makes the law smooth through s = 0.
+
+    Parameters
+    ----------
+    sliding : s, speed of the cage's surface less that of the ring's [m/s].
+    coefficient : mu.
+    """
+    smooth = math.sqrt(sliding * sliding + _SLIDING * _SLIDING)
+    return coefficient * sliding / smooth, coefficient * _SLIDING * _SLIDING / (smooth * smooth * smooth)

@@ -1,8 +1,9 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Quasi-static radial balance: which roller carries what, and where the inner ring is.
 
-Each roller is held by Q_e = Q_i + F_c, a monotone scalar equation; the ring by two force balances, whose
-potential is convex.  Newton's method with a bounded, backtracked step therefore always gets there.
+For each roller Q_e(delta_e) = Q_i(delta_i) + F_c with delta_i + delta_e = approach, a monotone scalar equation of Palmgren contacts
+(`bearing_sim.physics.contact`); for the ring sum Q_i (cos phi, sin phi) = (F_y, F_z) (Deng 2017, eq. 16 at rest).  The potential of both is
+convex, so that Newton's method with a bounded, backtracked step always converges.
 """
 
 import math
@@ -10,23 +11,23 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.kernels.compilation import kernel
-from bearing_sim.kernels.contact import EXPONENT
+from bearing_sim.numerics.compilation import kernel
+from bearing_sim.physics.contact import EXPONENT
 
 # A ring that no roller holds (clearance, no load) has no position: this spring, a millionth of a contact's, gives it one.
-_CENTRING_STIFFNESS = 1e3  # N/m
-_FIRST_LONGEST_STEP = 2e-5  # m, a few contact penetrations; longer from step to step while all goes well, as across a wide play
-_ITERATIONS = 400  # a ring in a wide play rolls from roller to roller before it has found its place
+_CENTRING_STIFFNESS = 1e3  # N/m; assumption
+_FIRST_LONGEST_STEP = 2e-5  # m, a few contact penetrations; doubled with each good step, as across a wide play
+_ITERATIONS = 400  # a ring in a wide play rolls from roller to roller before it has found its position
 _RELATIVE_RESIDUAL = 1e-7
 
 
-def _outer_shares(intervals):
+def _outer_fractions(intervals):
     """Tabulate h(x) of h^(10/9) = (1 - h)^(10/9) + x^(10/9) on even x from 0 to 1.
 
-    h is the outer contact's share of the approach and x = free penetration / approach: the one curve on which every
-    squeezed roller lies, whatever its stiffness, speed and approach.
+    h is the outer contact's fraction of the approach and x = free penetration / approach: all squeezed rollers lie on this one curve,
+    whatever their stiffness, speed and approach.  Newton's method starts from it.
     """
-    shares = np.empty(intervals + 1)
+    fractions = np.empty(intervals + 1)
     for i, x in enumerate(np.linspace(0.0, 1.0, intervals + 1)):
         low, high = 0.5, 1.0
         for _ in range(60):
@@ -35,11 +36,11 @@ def _outer_shares(intervals):
                 low = middle
             else:
                 high = middle
-        shares[i] = 0.5 * (low + high)
-    return shares
+        fractions[i] = 0.5 * (low + high)
+    return fractions
 
 
-_OUTER_SHARES = _outer_shares(1024)
+_OUTER_FRACTIONS = _outer_fractions(1024)
 
 
 class LoadRow(NamedTuple):
@@ -77,9 +78,9 @@ def squeezed_roller(approach, centrifugal, free, stiffness):
     """
     if approach <= free:
         return free, 0.0, 0.0
-    position = free / approach * (_OUTER_SHARES.shape[0] - 1)
-    index = min(int(position), _OUTER_SHARES.shape[0] - 2)
-    outer = approach * (_OUTER_SHARES[index] + (position - index) * (_OUTER_SHARES[index + 1] - _OUTER_SHARES[index]))
+    position = free / approach * (_OUTER_FRACTIONS.shape[0] - 1)
+    index = min(int(position), _OUTER_FRACTIONS.shape[0] - 2)
+    outer = approach * (_OUTER_FRACTIONS[index] + (position - index) * (_OUTER_FRACTIONS[index + 1] - _OUTER_FRACTIONS[index]))
     inner, inner_root, outer_root, step = approach - outer, 0.0, 0.0, 0.0
     for _ in range(20):
         if inner <= 0.0:
@@ -150,7 +151,7 @@ def balance_ring(load_y, load_z, stiffness, loads, ring):
         for _ in range(30):
             next_y, next_z = y + scale * step_y, z + scale * step_z
             next_force_y, next_force_z, next_yy, next_yz, next_zz = _ring_forces(next_y, next_z, load_y, load_z, stiffness, loads)
-            # Downhill in the convex potential: the remaining force must not push back past the step by more than it pushed on.
+            # Descent in the convex potential: the remaining force must not push back by more than half of what it pushed forward.
             if next_force_y * step_y + next_force_z * step_z >= -0.5 * (force_y * step_y + force_z * step_z):
                 longest *= 2.0
                 break

@@ -1,12 +1,16 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""The outer raceway contour R_e(phi), in the one form that every contour takes: a periodic cubic table."""
+"""The outer raceway contour R_e(phi) in the one form that every contour takes: a periodic table of cubics.
+
+Between two knots the cubic Hermite interpolant of radii and slopes: continuous to the first derivative, so that contact forces have no kink.
+Which contour it is (Deng 2017, eq. 1 and 2, measured, machined) is decided in `bearing_sim.scene.contour`.
+"""
 
 import math
 
 import numpy as np
 
-from bearing_sim.kernels.compilation import template
-from bearing_sim.kernels.lanes import floor, gather, where_positive
+from bearing_sim.numerics.compilation import template
+from bearing_sim.numerics.simd import floor, gather, where_positive
 
 TABLE_INTERVALS = 720
 _TABLE_MISS = 0.2e-9  # m
@@ -33,7 +37,7 @@ def contour_table(radii, slopes):
 
 
 def tabulated(contour):
-    """Return the table of a contour, made finer until it is within 0.2 nm of it (or has 16 times the usual knots).
+    """Return the table of a contour, refined until it is within 0.2 nm of it, or has 16 times the usual 720 knots.
 
     Parameters
     ----------
@@ -44,8 +48,8 @@ def tabulated(contour):
         knots = np.linspace(0.0, 2.0 * math.pi, intervals, endpoint=False)
         table = contour_table(*contour(knots))
         spacing, miss = 2.0 * math.pi / intervals, 0.0
-        for share in (0.25, 0.5, 0.75):
-            x = share * spacing
+        for fraction in (0.25, 0.5, 0.75):
+            x = fraction * spacing
             between = ((table[:, 0] * x + table[:, 1]) * x + table[:, 2]) * x + table[:, 3]
             miss = max(miss, float(np.abs(between - contour(knots + x)[0]).max()))
         if miss <= _TABLE_MISS or intervals >= 16 * TABLE_INTERVALS:

@@ -1,14 +1,14 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Rating life from roller loads: by whole rollers, by slices, and modified by oil and reliability (ISO 281, ISO/TS 16281)."""
+"""Rating life from roller loads: by whole rollers, by slices, and modified by oil and reliability (ISO 281:2007, ISO/TS 16281:2008)."""
 
 import math
 
 import numpy as np
 
-from bearing_sim.kernels.compilation import kernel
+from bearing_sim.numerics.compilation import kernel
 
-ROTATING_EXPONENT = 4.0
-STATIONARY_EXPONENT = 4.5
+ROTATING_EXPONENT = 4.0  # of the mean load of a ring that rotates against the load (ISO/TS 16281)
+STATIONARY_EXPONENT = 4.5  # and of one that is stationary
 LARGEST_MODIFICATION = 50.0  # a_ISO is never more
 LARGEST_VISCOSITY_RATIO = 4.0  # kappa counts no more than that
 _LEAST_VISCOSITY_RATIO = 0.1  # below it a_ISO is at its least, 0.1
@@ -29,7 +29,10 @@ CLEANLINESS = {
 
 
 def load_rating(rollers, roller_diameter, length, gamma):
-    """Return the basic dynamic radial load rating C_r [N] (ISO 281, 7.1; b_m = 1.1).
+    """Return the basic dynamic radial load rating C_r [N] (ISO 281:2007, 7.1).
+
+    C_r = b_m f_c (L cos alpha)^(7/9) Z^(3/4) D_w^(29/27) in N and mm with b_m = 1.1, alpha = 0 and the f_c of ISO/TR 1281-1,
+    207.9 x 0.83 gamma^(2/9) (1 - gamma)^(29/27) (1 + gamma)^(-1/4) {1 + [1.04 ((1 - gamma)/(1 + gamma))^(143/108)]^(9/2)}^(-2/9).
 
     Parameters
     ----------
@@ -56,12 +59,12 @@ def ring_ratings(rollers, roller_diameter, length, gamma):
 
 @kernel
 def rating_life_revolutions(inner_equivalent, outer_equivalent, life):
-    """Return L10 in revolutions (ISO/TS 16281; Deng 2017, eq. 18 with rating and load in their right places).
+    """Return L10 in revolutions (ISO/TS 16281; Deng 2017, eq. 18 with rating and load in the right places).
 
     Parameters
     ----------
     inner_equivalent, outer_equivalent : dynamic equivalent roller loads Q_ei, Q_ee [N].
-    life : `bearing_sim.params.Life`.
+    life : `bearing_sim.model.params.Life`.
     """
     inner = (inner_equivalent / life.inner_rating) ** 4.5
     outer = (outer_equivalent / life.outer_rating) ** 4.5
@@ -85,9 +88,10 @@ def fatigue_limit(static, pitch_diameter):
 
 
 def reliability_factor(reliability):
-    """Return a_1, the share of L10 that a bearing survives with a probability (ISO 281:2007, table 12).
+    """Return a_1, the fraction of L10 that a bearing survives with a probability (ISO 281:2007, table 12).
 
-    The table's values are those of a Weibull distribution of slope 1.5 that begins at 0.05 of L10, to the digits printed.
+    The table's values are, to the digits printed, those of a Weibull distribution with slope 1.5 that starts at 0.05 of L10:
+    a_1 = 0.05 + 0.95 [ln(1/R)/ln(1/0.9)]^(2/3).
 
     Parameters
     ----------
@@ -99,29 +103,29 @@ def reliability_factor(reliability):
 def stress_risers(slices):
     """Return f(k) = 1 - 0.01/ln(1.985 |(2 k - N - 1)/(2 N - 2)|) of each slice (ISO/TS 16281, 5.3.3), shape (N,).
 
-    Edges of a roller bear more than their load; the very middle of an odd number of slices bears just its own.
+    They raise the load of the outer slices for the stress concentration at the edges; the middle slice of an odd number has 1.
 
     Parameters
     ----------
     slices : their number N, at least 2.
     """
-    place = np.abs(2.0 * np.arange(1, slices + 1) - slices - 1.0) / (2.0 * slices - 2.0)
+    position = np.abs(2.0 * np.arange(1, slices + 1) - slices - 1.0) / (2.0 * slices - 2.0)
     with np.errstate(divide="ignore"):
-        return 1.0 - 0.01 / np.log(1.985 * place)
+        return 1.0 - 0.01 / np.log(1.985 * position)
 
 
 @kernel
-def add_slice_powers(inner, outer, risers, share, inner_means, outer_means):
+def add_slice_powers(inner, outer, risers, fraction, inner_means, outer_means):
     """Add one instant to running means of the slices' loads, stress risers included, to the exponents of both rings.
 
-    m_k is kept up to date as m_k + share ((sum over rollers of (f_k q_jk)^p)/Z - m_k): a share of 1 starts anew, 1/(n + 1) gives
+    m_k is kept up to date as m_k + fraction ((sum over rollers of (f_k q_jk)^p)/Z - m_k): a fraction of 1 restarts the mean, 1/(n + 1) gives
     the plain mean of n + 1 instants, 1 - exp(-h/T) a mean that forgets.
 
     Parameters
     ----------
     inner, outer : loads of all slices [N], shape (Z, N).
     risers : see `stress_risers`, shape (N,).
-    share : weight of this instant.
+    fraction : weight of this instant.
     inner_means, outer_means : means of the powers 4 and 4.5, shape (N,); changed in place.
     """
     rollers, slices = inner.shape
@@ -131,8 +135,8 @@ def add_slice_powers(inner, outer, risers, share, inner_means, outer_means):
             q_i, q_e = risers[k] * inner[j, k], risers[k] * outer[j, k]
             rotating += (q_i * q_i) * (q_i * q_i)
             stationary += (q_e * q_e) * (q_e * q_e) * math.sqrt(q_e)
-        inner_means[k] += share * (rotating / rollers - inner_means[k])
-        outer_means[k] += share * (stationary / rollers - outer_means[k])
+        inner_means[k] += fraction * (rotating / rollers - inner_means[k])
+        outer_means[k] += fraction * (stationary / rollers - outer_means[k])
 
 
 @kernel
@@ -144,11 +148,11 @@ def lamina_life_revolutions(inner_means, outer_means, life):
     Parameters
     ----------
     inner_means, outer_means : see `add_slice_powers`, shape (N,).
-    life : `bearing_sim.params.Life`.
+    life : `bearing_sim.model.params.Life`.
     """
     slices = inner_means.shape[0]
-    share = slices ** (-7.0 / 9.0)
-    inner_scale, outer_scale = (life.inner_rating * share) ** -4.5, (life.outer_rating * share) ** -4.5
+    fraction = slices ** (-7.0 / 9.0)
+    inner_scale, outer_scale = (life.inner_rating * fraction) ** -4.5, (life.outer_rating * fraction) ** -4.5
     total = 0.0
     for k in range(slices):
         total += inner_means[k] ** (4.5 / ROTATING_EXPONENT) * inner_scale + outer_means[k] * outer_scale
@@ -168,7 +172,7 @@ def viscosity_ratio(kinematic_viscosity, shaft_speed, pitch_diameter):
     pitch_diameter : D_pw [m].
     """
     rpm = abs(shaft_speed) * (30.0 / math.pi)
-    # as a ratio, so that nothing is endless at rest
+    # as a ratio, which is finite at rest
     speed = rpm**0.83 / 45000.0 if rpm < 1000.0 else math.sqrt(rpm) / 4500.0
     return 1e6 * kinematic_viscosity * speed * math.sqrt(1e3 * pitch_diameter)
 
@@ -226,7 +230,7 @@ def modified_life_revolutions(revolutions, shaft_speed, kinematic_viscosity, pit
     shaft_speed : [rad/s].
     kinematic_viscosity : of the oil [m^2/s].
     pitch_diameter : [m].
-    life : `bearing_sim.params.Life`.
+    life : `bearing_sim.model.params.Life`.
     """
     if not life.modified:
         return life.reliability_factor * revolutions

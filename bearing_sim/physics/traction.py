@@ -1,37 +1,83 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Tangential force of the oil film between roller and raceway (Deng 2017, eq. 7).
+"""Tangential force of the oil film between roller and raceway, T = mu Q (Deng 2017, eq. 7): four laws of traction.
 
-Every law here is odd in the sliding speed and zero without sliding.  All but one are written in one form,
+Q is the normal force [N], u the mean rolling speed of both surfaces relative to the contact, du = raceway less roller the sliding speed
+[m/s], T the force on the roller with the sign of du.  Every law is odd in du, bounded, and zero and smooth at du = 0.
 
-    mu(s) = D - (D - B s) exp(-C s),   s = |du| / u,
+**Fitted form.** The laws ``oil_4109``, ``constant`` and ``kragelskii`` read
 
-with B, C and D products of powers of load and rolling speed.  Two logarithms and four exponentials then
-serve a contact, where the published form takes nine powers.  The Eyring film is in `bearing_sim.kernels.eyring`.
+    mu(s) = (A + B s) exp(-C s) + D = D - (D - B s) exp(-C s),   s = |du|/u,   A = -D,
+
+with B, C and D products of powers of Q and u, so that two logarithms and four exponentials serve a contact where the published form takes
+nine powers.  With mu_x = d mu/dx and e_b, e_c, e_d the exponents of one variable x in B, C, D:
+
+    d mu/ds    = [B + C (D - B s)] exp(-C s),
+    d mu/d ln x = e_d D (1 - exp(-C s)) + [e_b B + e_c C (D - B s)] s exp(-C s)   with s held;   s itself falls as 1/u.
+
+**Thermal Eyring film** (``eyring``).  Film thickness h by Dowson and Toyoda, thinned by its heated inlet (`bearing_sim.physics.film`);
+viscosity eta in the contact by C. J. A. Roelands (thesis, Delft 1966) at the mean Hertz pressure p,
+
+    ln eta = ln eta_0 + (ln eta_0 + 9.67) [(1 + 5.1e-9 p)^Z - 1],   Z = alpha/[5.1e-9 (ln eta_0 + 9.67)];
+
+shear stress tau = tau_E asinh(eta du_f/(h tau_E)) (H. Eyring's fluid, as K. L. Johnson and J. L. Tevaarwerk, Proc. R. Soc. A 356 (1977) use
+it), with eta thinned by the oil's own heat, by tau du h/(12 k) in the mean over the film; mu = Lambda tanh(tau/(Lambda p)), an *assumption*
+for how the limiting stress Lambda p is approached.
+
+The surfaces creep elastically, in series with the film: they take 8 tau/(pi E') of the slide-to-roll ratio, Carter's law of the rolling
+line contact while little of it slips (F. W. Carter, Proc. R. Soc. A 112 (1926)), and leave du_f = |du| - 8 tau u/(pi E') to the film.
+Without creep a film that pressure has solidified would drag with its full strength at any sliding, which no time step could follow.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.kernels.compilation import kernel
-from bearing_sim.kernels.contact_rows import CONTACT, EYRING, FITTED, KRAGELSKII, LOAD_FLOOR, ROLLING_SPEED_FLOOR, SPECIAL, TractionConstants
-from bearing_sim.kernels.elementary import exponential, logarithm
-from bearing_sim.kernels.eyring import eyring_constants, eyring_traction
-from bearing_sim.kernels.lanes import larger, load, magnitude, store, where_positive
+from bearing_sim.numerics.compilation import kernel, template
+from bearing_sim.numerics.elementary import exponential, logarithm
+from bearing_sim.numerics.simd import larger, load, magnitude, smaller, spread, square_root, store, where_positive
+from bearing_sim.physics.contact import CONTACT, LOAD_FLOOR, ROLLING_SPEED_FLOOR
+from bearing_sim.physics.film import DOWSON_TOYODA, FilmConstants, film_constants, film_thickness
 
-_STATIC, _DECAY, _RISE = 0, 1, 2  # places of Kragelskii's mu_0, C and the rate of rise in `TractionConstants.special`
+FITTED, KRAGELSKII, EYRING = 0, 1, 2  # what `TractionConstants.law` may be
+SPECIAL = 14  # constants of a law that is more than the fitted form
+_STATIC, _DECAY, _RISE = 0, 1, 2  # positions of Kragelskii's mu_0, C and the rate of rise in `TractionConstants.special`
+_ROELANDS_PRESSURE, _ROELANDS_LOG = 5.1e-9, 9.67  # 1/Pa, and -ln of the viscosity 6.3e-5 Pa s: the pole of Roelands' law
+_SMALL_RATIO = 0.01  # assumption: slide-to-roll ratio below which sliding no longer changes the heating of the inlet, for smoothness
+_NEWTON_STEPS = 7
+_SERIES_STEPS = 5  # with the creep; where it matters, the film alone is a bound from above
+_LARGEST_SINH = 1e150  # its square is still a number
+_LEAST_SPAN = 0.1  # of ln eta_0 + 9.67: Roelands' law ends where an oil is as thin as 6.3e-5 Pa s
+
+
+class TractionConstants(NamedTuple):
+    """ln D, ln B, ln C of one contact as affine functions of ln Q and ln u (SI), and what a law has besides."""
+
+    scale: float
+    log_d: float
+    d_load_exponent: float
+    d_speed_exponent: float
+    log_b: float
+    b_load_exponent: float
+    b_speed_exponent: float
+    log_c: float
+    c_load_exponent: float
+    c_speed_exponent: float
+    law: int
+    special: np.ndarray  # shape (SPECIAL,); zeros of a law that is of the fitted form alone
 
 
 def oil_4109_constants(scale, oil, curvature_radius, reduced_modulus):
-    """Return the constants of Wang Yanshuang's fit for the 4109 aviation oil (Deng 2017, ref. 17).
+    """Return the constants of Wang Yanshuang's fit to traction measured with the Chinese aviation oil 4109 (Deng 2017, ref. 17).
 
     A = -696 W^-0.163 U^0.577 T^0.308, B = 5.19e6 W^-0.373 U T^0.687, C = 6.826e5 W^-0.170 U^0.578 T^0.373, D = -A;
-    W = Q/(E' R^2), U = eta_0 u/(E' R), T = k T_0/(eta_0 u^2).
+    W = Q/(E' R^2), U = eta_0 u/(E' R), T = k T_0/(eta_0 u^2), T_0 in kelvin.  The fit stems
+    from one oil on a disc machine: its use for another oil by that oil's eta_0 is an *assumption*.
 
     Parameters
     ----------
     scale : factor on the coefficient of traction.
-    oil : `bearing_sim.oil.OilState`.
+    oil : `bearing_sim.model.oil.OilState`.
     curvature_radius : effective radius R of the contact [m].
     reduced_modulus : E' [Pa].
     """
@@ -88,7 +134,7 @@ def kragelskii_constants(scale, mu_0, mu_max, v_max, mu_inf, rise_speed):
 
 
 def thermal_eyring_constants(scale, oil, curvature_radius, reduced_modulus, length, eyring_stress, limiting_ratio):
-    """Return the constants of the Eyring film; parameters as of `bearing_sim.kernels.eyring.eyring_constants`."""
+    """Return the constants of the Eyring film; parameters as of `bearing_sim.physics.traction.eyring_constants`."""
     special = eyring_constants(oil, curvature_radius, reduced_modulus, length, eyring_stress, limiting_ratio)
     return TractionConstants(scale, *(0.0,) * 9, EYRING, special)
 
@@ -98,9 +144,15 @@ def _powers(contacts, first, end, constants):
     """Write D, B, C and exp(-C s) of the contacts in some blocks."""
     for block in range(first, end):
         log_load, log_speed = load(contacts, block, CONTACT.log_load), load(contacts, block, CONTACT.log_speed)
-        store(contacts, block, CONTACT.d, exponential(constants.d_constant + constants.d_load * log_load + constants.d_speed * log_speed))
-        store(contacts, block, CONTACT.b, exponential(constants.b_constant + constants.b_load * log_load + constants.b_speed * log_speed))
-        store(contacts, block, CONTACT.c, exponential(constants.c_constant + constants.c_load * log_load + constants.c_speed * log_speed))
+        store(
+            contacts, block, CONTACT.d, exponential(constants.log_d + constants.d_load_exponent * log_load + constants.d_speed_exponent * log_speed)
+        )
+        store(
+            contacts, block, CONTACT.b, exponential(constants.log_b + constants.b_load_exponent * log_load + constants.b_speed_exponent * log_speed)
+        )
+        store(
+            contacts, block, CONTACT.c, exponential(constants.log_c + constants.c_load_exponent * log_load + constants.c_speed_exponent * log_speed)
+        )
 
 
 @kernel
@@ -112,9 +164,9 @@ def _static(contacts, first, end, scale, special):
         late, soon = exponential(-decay * magnitude(sliding)), exponential(-rise * magnitude(sliding))
         signed = where_positive(sliding, scale, -scale) * static * (late - soon)
         store(contacts, block, CONTACT.force, load(contacts, block, CONTACT.force) + signed * normal)
-        store(contacts, block, CONTACT.by_load, load(contacts, block, CONTACT.by_load) + signed)
-        by_sliding = scale * static * normal * (rise * soon - decay * late)
-        store(contacts, block, CONTACT.by_sliding, load(contacts, block, CONTACT.by_sliding) + by_sliding)
+        store(contacts, block, CONTACT.d_load, load(contacts, block, CONTACT.d_load) + signed)
+        d_sliding = scale * static * normal * (rise * soon - decay * late)
+        store(contacts, block, CONTACT.d_sliding, load(contacts, block, CONTACT.d_sliding) + d_sliding)
 
 
 @kernel
@@ -123,7 +175,7 @@ def traction(contacts, inner, outer):
 
     Parameters
     ----------
-    contacts : array with rows `CONTACT`; load, rolling and sliding go in, force and its slopes come out.
+    contacts : array with rows `CONTACT`; load, rolling and sliding go in, force and its derivatives come out.
     inner, outer : `TractionConstants` of the raceways; they differ in the constant factors alone.
     """
     blocks = contacts.shape[0]
@@ -154,17 +206,135 @@ def traction(contacts, inner, outer):
         normal, rolling = load(contacts, block, CONTACT.load), load(contacts, block, CONTACT.rolling)
         ratio = magnitude(sliding) * inverse_speed
         rest = d - b * ratio
-        by_ratio = (b + c * rest) * decay
+        d_ratio = (b + c * rest) * decay
         # d, b and c are powers of load and speed: each change is the exponent times the value
         settled, spent = d * (1.0 - decay), ratio * decay
-        by_log_speed = inner.d_speed * settled + (inner.b_speed * b + inner.c_speed * c * rest) * spent - ratio * by_ratio
-        by_log_load = inner.d_load * settled + (inner.b_load * b + inner.c_load * c * rest) * spent
+        d_log_speed = inner.d_speed_exponent * settled + (inner.b_speed_exponent * b + inner.c_speed_exponent * c * rest) * spent - ratio * d_ratio
+        d_log_load = inner.d_load_exponent * settled + (inner.b_load_exponent * b + inner.c_load_exponent * c * rest) * spent
         coefficient = d - rest * decay
         scale = where_positive(sliding, inner.scale, -inner.scale)
         force = scale * normal
         store(contacts, block, CONTACT.force, force * coefficient)
-        store(contacts, block, CONTACT.by_load, scale * (coefficient + by_log_load))
-        store(contacts, block, CONTACT.by_sliding, inner.scale * normal * by_ratio * inverse_speed)
-        store(contacts, block, CONTACT.by_rolling, force * by_log_speed * rolling * inverse_speed * inverse_speed)
+        store(contacts, block, CONTACT.d_load, scale * (coefficient + d_log_load))
+        store(contacts, block, CONTACT.d_sliding, inner.scale * normal * d_ratio * inverse_speed)
+        store(contacts, block, CONTACT.d_rolling, force * d_log_speed * rolling * inverse_speed * inverse_speed)
     if inner.law == KRAGELSKII:
         _static(contacts, 0, blocks, inner.scale, inner.special)
+
+
+class EyringRow(NamedTuple):
+    """Positions in `TractionConstants.special` of the Eyring film."""
+
+    film: int = 0  # ln h less its powers of u and Q [m]
+    inlet: int = 1  # ln of 0.1 L_t^0.64, less its power of u
+    pressure: int = 2  # ln p less 0.5 ln Q
+    exponent: int = 3  # Roelands' Z
+    span: int = 4  # ln eta_0 + 9.67
+    fluidity: int = 5  # ln (eta_0/tau_E)
+    heating: int = 6  # beta tau_E/(12 k): fall of ln eta_0 by du and h [s/m^2]
+    limit: int = 7  # tau_E/Lambda [Pa]
+    limiting: int = 8  # Lambda
+    creep: int = 9  # 8 tau_E/(pi E'): slide-to-roll ratio that the surfaces take for tau = tau_E
+
+
+ROW = EyringRow()
+
+
+def eyring_constants(oil, curvature_radius, reduced_modulus, length, eyring_stress, limiting_ratio):
+    """Return the special constants of one contact, shape (SPECIAL,).
+
+    Parameters
+    ----------
+    oil : `bearing_sim.model.oil.OilState`.
+    curvature_radius : effective radius R [m].
+    reduced_modulus : E' [Pa].
+    length : L [m].
+    eyring_stress : tau_E [Pa].
+    limiting_ratio : Lambda, limiting shear stress over pressure.
+    """
+    special, log_viscosity = np.zeros(SPECIAL), math.log(oil.viscosity)
+    special[ROW.film], special[ROW.inlet] = film_constants(DOWSON_TOYODA, oil, curvature_radius, reduced_modulus, length)
+    special[ROW.pressure] = 0.5 * math.log(math.pi * reduced_modulus / (32 * curvature_radius * length))
+    span = max(log_viscosity + _ROELANDS_LOG, _LEAST_SPAN)
+    special[ROW.exponent] = oil.pressure_viscosity / (_ROELANDS_PRESSURE * span)
+    special[ROW.span] = span
+    special[ROW.fluidity] = log_viscosity - math.log(eyring_stress)
+    special[ROW.heating] = oil.temperature_viscosity * eyring_stress / (12 * oil.conductivity)
+    special[ROW.limit] = eyring_stress / limiting_ratio
+    special[ROW.limiting] = limiting_ratio
+    special[ROW.creep] = 8 * eyring_stress / (math.pi * reduced_modulus)
+    return special
+
+
+@template
+def _hyperbolic(y):
+    """Return sinh and cosh of lanes from 0 on, sinh to full relative accuracy where it is small."""
+    square = y * y
+    rising = exponential(smaller(y, 300.0))
+    falling = 1.0 / rising
+    series = y * (1.0 + square * (1.0 / 6.0) * (1.0 + square * (1.0 / 20.0) * (1.0 + square * (1.0 / 42.0) * (1.0 + square * (1.0 / 72.0)))))
+    return where_positive(1.0 - y, series, 0.5 * (rising - falling)), 0.5 * (rising + falling)
+
+
+@kernel
+def eyring_traction(contacts, first, end, scale, special):
+    """Compute the tangential forces of the contacts in some blocks, and their derivatives; equations in the docstring of the module.
+
+    Parameters
+    ----------
+    contacts : array with rows `CONTACT`.
+    first, end : blocks.
+    scale : factor on the coefficient.
+    special : see `eyring_constants`.
+    """
+    law, exponent, span, limiting = DOWSON_TOYODA, special[ROW.exponent], special[ROW.span], special[ROW.limiting]
+    inlet_film = FilmConstants(special[ROW.film], special[ROW.inlet])
+    for block in range(first, end):
+        normal, rolling, sliding = load(contacts, block, CONTACT.load), load(contacts, block, CONTACT.rolling), load(contacts, block, CONTACT.sliding)
+        log_load = logarithm(larger(normal, LOAD_FLOOR))
+        log_speed = 0.5 * logarithm(rolling * rolling + ROLLING_SPEED_FLOOR * ROLLING_SPEED_FLOOR)
+        inverse_speed, slide = exponential(-log_speed), magnitude(sliding)
+        # film, and its changes with ln |du|, ln u and ln Q
+        ratio = slide * inverse_speed
+        square = ratio * ratio + _SMALL_RATIO * _SMALL_RATIO
+        film, d_ratio, d_speed = film_thickness(exponential, law, inlet_film, log_speed, log_load, 0.5 * logarithm(square))
+        h_slide = d_ratio * (ratio * ratio / square)
+        h_speed = d_speed - h_slide
+        # viscosity at the mean pressure
+        pressure = exponential(special[ROW.pressure] + 0.5 * log_load)
+        piled = 1.0 + _ROELANDS_PRESSURE * pressure
+        power = exponential(exponent * logarithm(piled))
+        power_load = 0.5 * exponent * (piled - 1.0) / piled
+        thick = exponential(special[ROW.fluidity] + span * (power - 1.0)) / film  # eta/(h tau_E)
+        # sinh(y) = a exp(-k y): from no stress Newton's method comes up to the root and never passes it
+        a, k = thick * slide, special[ROW.heating] * slide * film * power
+        y = spread(0.0)
+        for _ in range(_NEWTON_STEPS):
+            sinh = smaller(a * exponential(-(k * y)), _LARGEST_SINH)
+            cosh = square_root(1.0 + sinh * sinh)
+            y -= (y - logarithm(sinh + cosh)) / (1.0 + k * sinh / cosh)
+        # sinh(y) exp(k y)/thick + creep y = |du|, which rises ever faster: from above Newton's method comes down to the root
+        creep = special[ROW.creep] / inverse_speed
+        y = smaller(y, slide / creep)
+        for _ in range(_SERIES_STEPS):
+            sinh, cosh = _hyperbolic(y)
+            opened = exponential(smaller(k * y, 300.0)) / thick
+            y = larger(y - (sinh * opened + creep * y - slide) / ((cosh + k * sinh) * opened + creep), 0.0)
+        sinh, cosh = _hyperbolic(y)
+        opened = exponential(smaller(k * y, 300.0)) / thick
+        sheared_slide = sinh * opened  # the film's fraction of |du|
+        stiff = 1.0 / ((cosh + k * sinh) * opened + creep)
+        film_fraction = sheared_slide / larger(slide, 1e-300)
+        y_slide = stiff * (1.0 - film_fraction * (h_slide + k * y * (1.0 + h_slide)))
+        y_speed = -(stiff * (sheared_slide * h_speed * (1.0 + k * y) + creep * y))
+        y_load = stiff * sheared_slide * (span * power * power_load - law.load - k * y * (law.load + power_load))
+        # limiting shear stress
+        limit = special[ROW.limit] / pressure
+        fade = exponential(-2.0 * (limit * y))
+        level = (1.0 - fade) / (1.0 + fade)
+        slope = limiting * (1.0 - level * level) * limit
+        sign = where_positive(sliding, scale, -scale)
+        store(contacts, block, CONTACT.force, sign * normal * limiting * level)
+        store(contacts, block, CONTACT.d_load, sign * (limiting * level + slope * (y_load - 0.5 * y)))
+        store(contacts, block, CONTACT.d_sliding, scale * normal * slope * y_slide)
+        store(contacts, block, CONTACT.d_rolling, sign * normal * slope * y_speed * rolling * inverse_speed * inverse_speed)

@@ -1,19 +1,24 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""The metadata of a rosbag2 bag, version 9: of one file, inside it, and of a folder of files, beside them."""
+"""The files of a recording: limits that split it, the folder of a bag, and rosbag2's metadata (version 9) inside and beside the files."""
 
+import math
 import os
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 import yaml
 
+ACTIVE = ".active"
+"""Suffix of the name of an unfinished file."""
+
 _FOREVER = {"sec": 9223372036, "nsec": 854775807}
 QOS = [
     {
         "history": "keep_last",
         "depth": 10,
-        "reliability": "reliable",  # offered reliable, a played-back topic suits best-effort subscribers too
+        "reliability": "reliable",  # so that a played-back topic also suits best-effort subscribers
         "durability": "volatile",
         "deadline": _FOREVER,
         "lifespan": _FOREVER,
@@ -23,6 +28,29 @@ QOS = [
     }
 ]
 """Quality of service that recorded topics offer."""
+
+
+class RecordingError(ValueError):
+    """A recording that cannot be used: the message says what is wrong, where, what was expected and what to do."""
+
+
+class Limits(NamedTuple):
+    """When a recording begins its next file, and when it stops.
+
+    Attributes
+    ----------
+    part_size : length of a file [byte] beyond which the next one begins.
+    part_duration : time between its first and last message [s] beyond which the next one begins.
+    keep_free : free space to leave on the disk [byte]; below it the recording stops.
+    """
+
+    part_size: float = math.inf
+    part_duration: float = math.inf
+    keep_free: float = 100e6
+
+
+UNLIMITED = Limits()
+"""A single file."""
 
 
 class Part(NamedTuple):
@@ -43,13 +71,8 @@ class TopicCount(NamedTuple):
     messages: int
 
 
-def part_metadata(part: Part, topics: Iterable[TopicCount], custom_data: Mapping[str, str]) -> str:
-    """Return the YAML that a file of a bag holds about itself."""
-    return bag_metadata([part], [topics], custom_data)
-
-
 def bag_metadata(parts: Sequence[Part], topics: Sequence[Iterable[TopicCount]], custom_data: Mapping[str, str]) -> str:
-    """Return the YAML of a bag.
+    """Return the YAML of a bag, or of one of its files.
 
     Parameters
     ----------
@@ -92,8 +115,8 @@ def bag_metadata(parts: Sequence[Part], topics: Sequence[Iterable[TopicCount]], 
 
 
 def write_bag_metadata(folder: Path, text: str) -> None:
-    """Write ``metadata.yaml`` into a bag's folder, at once: there is always a whole one."""
-    draft = folder / "metadata.yaml.active"
+    """Write ``metadata.yaml`` into a bag's folder; a reader never sees half of it."""
+    draft = folder / f"metadata.yaml{ACTIVE}"
     draft.write_text(text)
     os.replace(draft, folder / "metadata.yaml")
 
@@ -107,7 +130,7 @@ def _times(part: Part) -> dict:
 
 
 class _PlainDumper(yaml.SafeDumper):
-    """SafeDumper without anchors, which not every reader of bag metadata follows."""
+    """SafeDumper without anchors, which some readers of bag metadata do not follow."""
 
     def ignore_aliases(self, data):
         return True
@@ -119,4 +142,42 @@ def to_yaml(tree) -> str:
 
 
 QOS_TEXT = to_yaml(QOS)
-"""The same as the metadata of a channel have it."""
+"""The same as YAML, for the metadata of a channel."""
+
+
+def mcap_files(path: str | Path) -> list[Path]:
+    """Return the MCAP files of a recording in order.
+
+    Parameters
+    ----------
+    path : an MCAP file, finished or not (``*.mcap.active``), or the folder of a bag of MCAP files.
+
+    Raises
+    ------
+    RecordingError
+        There is no such recording, or it is in another format.
+    """
+    path = Path(path)
+    if path.is_file():
+        return [path]
+    if not path.is_dir():
+        raise RecordingError(f"{path}: no such file or folder; expected an MCAP file or the folder of a bag")
+    index = path / "metadata.yaml"
+    files = sorted([*path.glob("*.mcap"), *path.glob(f"*.mcap{ACTIVE}")], key=_by_number)
+    if index.is_file():
+        try:
+            listed = yaml.safe_load(index.read_text())["rosbag2_bagfile_information"]["relative_file_paths"]
+            named = [path / str(name) for name in listed]
+        except (yaml.YAMLError, KeyError, TypeError, UnicodeDecodeError):
+            raise RecordingError(f"{index}: not the metadata of a bag") from None
+        # A killed recorder leaves files that are unfinished or not listed yet; they come last.
+        files = named + [file for file in files if file.name.endswith(ACTIVE) or file.stem.startswith(f"{path.name}_") and file not in named]
+    unusable = [file.name for file in files if not file.is_file() or ".mcap" not in file.name or file.suffix == ".zstd"]
+    if unusable or not files:
+        raise RecordingError(f"{path}: expected uncompressed .mcap files, {'cannot use ' + ', '.join(unusable) if unusable else 'found none'}")
+    return files
+
+
+def _by_number(file: Path) -> tuple:
+    """Order ``run_10.mcap`` after ``run_9.mcap``."""
+    return tuple(int(part) if part.isdigit() else part for part in re.split(r"(\d+)", file.name))

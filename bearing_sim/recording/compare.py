@@ -10,17 +10,17 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from mcap.records import Channel, Message, Schema
 
-from bearing_sim.bag_files import mcap_files
-from bearing_sim.mcap_stream import Salvage
-from bearing_sim.message_numbers import NumberPlaces, number_places, numbers_of
-from bearing_sim.message_rows import Rows
+from bearing_sim.messages.cdr_layout import CdrError, CdrLayout, NumberColumns, is_known
+from bearing_sim.messages.topics import ARRAYS
+from bearing_sim.recording.bag import mcap_files
+from bearing_sim.recording.mcap_format import Message
+from bearing_sim.recording.mcap_reader import McapReader, Rows
 
-_TOGETHER = 4 * 1024 * 1024  # [byte] of a recording that are compared at once
-_LOOKED_AHEAD = 64  # messages, where two recordings are out of step
-_EQUAL_LOOKED_INTO = 32  # of so many equal messages one, for the magnitude
-_TEXT = "diagnostic_msgs/msg/DiagnosticArray"  # says things in words and at moments of its own
+_BATCH = 4 * 1024 * 1024  # [byte] of a recording compared at once
+_LOOK_AHEAD = 64  # messages, where two recordings are out of step
+_EQUAL_EXAMINED = 32  # one in so many equal messages is examined, for the magnitude
+_TEXT = "diagnostic_msgs/msg/DiagnosticArray"  # text, at times of its own
 
 
 @dataclass
@@ -29,13 +29,13 @@ class TopicDifference:
 
     Attributes
     ----------
-    topic, ros_type : which.
-    tolerance : what is accepted, relative to the largest magnitude of each field over the recordings.
-    matched : messages that both have, with as many numbers; ``only_first``, ``only_second`` what one of them has alone.
-    differing : matched messages of which some number differs at all.
+    topic, ros_type : name and type of the topic.
+    tolerance : accepted difference, relative to the largest magnitude of each field over both recordings.
+    matched : number of messages that both have; ``only_first``, ``only_second`` number of messages that only one of them has.
+    differing : number of matched messages in which any number differs.
     numbers : names of the numbers of a message, such as ``data[3]``.
-    largest : the largest difference of each number; infinite where one of them is not a number and the other is.
-    magnitude : the largest magnitude of the field to which each number belongs.
+    largest : the largest difference of each number; infinite where one of the two is NaN and the other is not.
+    magnitude : the largest magnitude in the field of each number.
     where_ns : log time of each number's largest difference [ns since the epoch].
     first_ns : log time of the first message of all [ns since the epoch].
     """
@@ -61,7 +61,7 @@ class TopicDifference:
 
     @property
     def worst(self) -> int | None:
-        """Which number differs most, relative to its field; None where there are none."""
+        """Index of the number that differs most, relative to its field; None for messages without numbers."""
         return int(np.argmax(self.relative)) if len(self.largest) else None
 
     @property
@@ -83,13 +83,13 @@ def compare(
 
     Returns
     -------
-    differences : of every topic that either has, by name.
-    skipped : topics of text, which are not compared.
+    differences : of every topic of either recording, sorted by name.
+    skipped : topics with text, which are not compared.
 
     Raises
     ------
-    bearing_sim.bag_files.BagError
-        A path names no recording.
+    bearing_sim.recording.bag.RecordingError
+        A path does not name a recording.
     """
     found: dict[str, _Pairing] = {}
     skipped: set[str] = set()
@@ -131,72 +131,30 @@ def _alternating(first: str | Path, second: str | Path) -> Iterator[tuple[int, s
 def _batches(path: str | Path) -> Iterator[list[tuple[str, str, _Column]]]:
     """Yield parts of a recording, as (topic, type, messages) in the order of each topic."""
     for file in mcap_files(path):
-        schemas: dict[int, str] = {}
-        channels: dict[int, tuple[str, str]] = {}
-        batch = _Batch()
-        for record in Salvage(file, in_rows=lambda topic: True):
+        reader = McapReader(file, in_rows=lambda topic: True)
+        columns: dict[int, list[_Column]] = defaultdict(list)  # by channel
+        size = 0
+        for record in reader:
             if isinstance(record, Rows):
-                batch.take_rows(record)
+                for k, channel in enumerate(record.channels):
+                    columns[channel].append(_Column(record.log_ns(k), record.data(k)))
+                size += record.table.size
             elif isinstance(record, Message):
-                batch.take(record)
-            elif isinstance(record, Schema):
-                schemas[record.id] = record.name
-            elif isinstance(record, Channel):
-                channels[record.id] = (record.topic, schemas.get(record.schema_id, ""))
-            if batch.size > _TOGETHER:
-                yield batch.columns(channels)
-                batch = _Batch()
-        yield batch.columns(channels)
+                log_ns = np.array([record.log_time], np.uint64)
+                columns[record.channel_id].append(_Column(log_ns, np.frombuffer(record.data, np.uint8)[None]))
+                size += len(record.data)
+            if size > _BATCH:
+                yield list(_by_topic(reader, columns))
+                columns, size = defaultdict(list), 0
+        yield list(_by_topic(reader, columns))
 
 
-class _Batch:
-    """Messages of a part of a recording, each topic's in order.
-
-    Attributes
-    ----------
-    size : of the messages [byte].
-    """
-
-    def __init__(self):
-        self.size = 0
-        self._columns: dict[int, list[_Column]] = defaultdict(list)  # by channel
-        self._open: dict[tuple, list[Rows]] = {}  # rows of one shape, whatever came between them
-        self._shapes: dict[int, tuple] = {}  # of the open rows with a channel
-
-    def take(self, message: Message) -> None:
-        if message.channel_id in self._shapes:
-            self._close(self._shapes[message.channel_id])
-        column = _Column(np.array([message.log_time], np.uint64), np.frombuffer(message.data, np.uint8)[None])
-        self._columns[message.channel_id].append(column)
-        self.size += len(message.data)
-
-    def take_rows(self, rows: Rows) -> None:
-        shape = (rows.channels, rows.starts)
-        if shape not in self._open:
-            for other in {self._shapes[channel] for channel in rows.channels if channel in self._shapes}:
-                self._close(other)
-            self._open[shape] = []
-            self._shapes |= dict.fromkeys(rows.channels, shape)
-        self._open[shape].append(rows)
-        self.size += rows.table.size
-
-    def _close(self, shape: tuple) -> None:
-        parts = self._open.pop(shape)
-        rows = parts[0]._replace(table=np.concatenate([part.table for part in parts]))
-        for k, channel in enumerate(rows.channels):
-            self._columns[channel].append(_Column(rows.log_ns(k), rows.data(k)))
-            self._shapes.pop(channel, None)
-
-    def columns(self, channels: Mapping[int, tuple[str, str]]) -> list[tuple[str, str, _Column]]:
-        """Return (topic, type, messages), a topic's in as few columns as it has runs of one length; a message without a channel has no topic."""
-        for shape in list(self._open):
-            self._close(shape)
-        told = []
-        for channel, columns in self._columns.items():
-            if channel in channels:
-                for _, run in groupby(columns, key=lambda column: column.data.shape[1]):
-                    told.append((*channels[channel], _joined(list(run))))
-        return told
+def _by_topic(reader: McapReader, columns: Mapping[int, list[_Column]]) -> Iterator[tuple[str, str, _Column]]:
+    """Yield (topic, type, messages), each topic's in runs of one length, without messages whose channel was lost in a damaged chunk."""
+    for channel, parts in columns.items():
+        if (topic := reader.topics.get(channel)) is not None:
+            for _, run in groupby(parts, key=lambda column: column.data.shape[1]):
+                yield topic, reader.types[topic], _joined(list(run))
 
 
 def _joined(columns: list[_Column]) -> _Column:
@@ -207,20 +165,20 @@ def _joined(columns: list[_Column]) -> _Column:
 
 
 def _alone(mine: np.ndarray, others: np.ndarray) -> tuple[int, int]:
-    """Return how many log times at the beginning of each of two courses the other one has not, as far as they can be seen."""
+    """Return how many of the first log times of each of two topics the other one lacks, as far as these log times show."""
     same = mine[:, None] == others
     if same.any():
         first = int(same.any(axis=1).argmax())
         return first, int(same[first].argmax())
-    later = [times > min(mine.max(), others.max()) for times in (mine, others)]  # than what the other has shown: it may have them yet
+    later = [times > min(mine.max(), others.max()) for times in (mine, others)]  # the other one may still have these
     return tuple(int(part.argmax()) if part.any() else len(part) for part in later)
 
 
 class _Pairing:
-    """Finds the messages of one topic that belong together, and compares many at once.
+    """Finds the messages of one topic with equal log times, and compares many at once.
 
-    Messages that stand at the same times in both recordings are taken as they come; one that the other recording does not have at its
-    place is a stray, which waits for a partner that comes out of order.
+    Messages at the same times in both recordings are compared as they come; a message that the other recording lacks there is a stray, and
+    waits for a partner that comes out of order.
     """
 
     def __init__(self, difference: TopicDifference):
@@ -228,7 +186,7 @@ class _Pairing:
         self._waiting: tuple[deque[_Column], deque[_Column]] = (deque(), deque())
         self._strays: tuple[dict[int, list[bytes]], dict[int, list[bytes]]] = (defaultdict(list), defaultdict(list))
         self._parts: list[int] | None = None  # how many numbers each field has
-        self._places: dict[int, NumberPlaces | None] = {}  # by length of the message
+        self._columns: dict[int, NumberColumns | None] = {}  # by length of the message
 
     def take(self, side: int, column: _Column) -> None:
         self._waiting[side].append(column)
@@ -240,7 +198,7 @@ class _Pairing:
             if together:
                 self._pair(self._taken(0, together), self._taken(1, together))
             else:
-                for side, count in enumerate(_alone(mine[0].log_ns[:_LOOKED_AHEAD], others[0].log_ns[:_LOOKED_AHEAD])):
+                for side, count in enumerate(_alone(mine[0].log_ns[:_LOOK_AHEAD], others[0].log_ns[:_LOOK_AHEAD])):
                     if count:
                         self._stray(side, count)
 
@@ -248,12 +206,12 @@ class _Pairing:
         for side in (0, 1):
             while self._waiting[side]:
                 self._stray(side, len(self._waiting[side][0].log_ns))
-        told, alone = self._difference, [sum(map(len, strays.values())) for strays in self._strays]
-        told.only_first, told.only_second = told.only_first + alone[0], told.only_second + alone[1]
-        return told
+        result, alone = self._difference, [sum(map(len, strays.values())) for strays in self._strays]
+        result.only_first, result.only_second = result.only_first + alone[0], result.only_second + alone[1]
+        return result
 
     def _taken(self, side: int, count: int) -> _Column:
-        """Return the first messages that wait at a side, as many of its first column, and let them wait no longer."""
+        """Remove and return the first messages that wait on a side; they all come from its first column."""
         column = self._waiting[side].popleft()
         if count < len(column.log_ns):
             self._waiting[side].appendleft(column.part(slice(count, None)))
@@ -275,63 +233,77 @@ class _Pairing:
 
     def _pair(self, first: _Column, second: _Column) -> None:
         """Compare messages with the same log times."""
-        told = self._difference
-        looked_into = (told.matched + np.arange(len(first.log_ns))) % _EQUAL_LOOKED_INTO == 0
+        result = self._difference
+        examined = (result.matched + np.arange(len(first.log_ns))) % _EQUAL_EXAMINED == 0
         if first.data.shape == second.data.shape:
-            looked_into |= (first.data != second.data).any(axis=1)
+            examined |= (first.data != second.data).any(axis=1)
         else:
-            looked_into[:] = True
-        told.matched += int((~looked_into).sum())
-        first, second = (_Column(column.log_ns[looked_into], column.data[looked_into]) for column in (first, second))
+            examined[:] = True
+        result.matched += int((~examined).sum())
+        first, second = (_Column(column.log_ns[examined], column.data[examined]) for column in (first, second))
         if not len(first.log_ns):
             return
         if self._parts is None:
             self._begin(first.data[0].tobytes())
         mine, others = self._numbers(first.data), self._numbers(second.data)
         if mine is not None and others is not None:
-            told.matched += len(mine)
+            result.matched += len(mine)
             self._compare(first.log_ns, mine, others)
             return
-        for log_ns, *both in zip(first.log_ns, first.data, second.data):  # laid out each in its own way
+        for log_ns, *both in zip(first.log_ns, first.data, second.data):  # each has a layout of its own
             a, b = (np.concatenate([*self._by_field(data.tobytes()).values(), np.zeros(0)]) for data in both)
-            if len(a) == len(b) == len(told.largest):
-                told.matched += 1
+            if len(a) == len(b) == len(result.largest):
+                result.matched += 1
                 self._compare(np.array([log_ns]), a[None], b[None])
             else:
-                told.only_first, told.only_second = told.only_first + 1, told.only_second + 1
+                result.only_first, result.only_second = result.only_first + 1, result.only_second + 1
 
     def _begin(self, message: bytes) -> None:
-        told = self._difference
+        result = self._difference
         fields = {name: part for name, part in self._by_field(message).items() if len(part)}
         self._parts = [len(part) for part in fields.values()]
-        told.numbers = [f"{name}[{k}]" if len(part) > 1 else name for name, part in fields.items() for k in range(len(part))]
-        size = len(told.numbers)
-        told.largest, told.magnitude, told.where_ns = np.zeros(size), np.zeros(size), np.zeros(size, np.int64)
+        result.numbers = [f"{name}[{k}]" if len(part) > 1 else name for name, part in fields.items() for k in range(len(part))]
+        size = len(result.numbers)
+        result.largest, result.magnitude, result.where_ns = np.zeros(size), np.zeros(size), np.zeros(size, np.int64)
+
+    def _layout(self, message: bytes) -> CdrLayout | None:
+        """Return the layout of a message; None if its type is unknown or it is damaged."""
+        try:
+            return CdrLayout(self._difference.ros_type, message) if is_known(self._difference.ros_type) else None
+        except CdrError:
+            return None
 
     def _by_field(self, message: bytes) -> dict[str, np.ndarray]:
-        return numbers_of(self._difference.topic, self._difference.ros_type, message)
+        """Return the numbers of a message by field; those of arrays of samples by observable."""
+        layout = self._layout(message)
+        numbers = {} if layout is None else layout.values(message)
+        rows = ARRAYS.get(self._difference.topic[1:])
+        if rows is not None and list(numbers) == ["data"] and len(numbers["data"]) % len(rows.fields) == 0:
+            return dict(zip(rows.fields, numbers["data"].reshape(len(rows.fields), -1)))
+        return numbers
 
     def _numbers(self, data: np.ndarray) -> np.ndarray | None:
-        """Return the numbers of messages, shape (n, numbers); None where they are not laid out alike or have not as many as the first had."""
+        """Return the numbers of messages, shape (n, numbers); None if they are not laid out alike, or have another count than the first message."""
         length = data.shape[1]
-        if length not in self._places:
-            self._places[length] = number_places(self._difference.topic, self._difference.ros_type, data[0].tobytes())
-        places = self._places[length]
-        numbers = None if places is None else places.numbers(data)
+        if length not in self._columns:
+            layout = self._layout(data[0].tobytes())
+            self._columns[length] = None if layout is None else NumberColumns(data[0], [(0, layout)])
+        columns = self._columns[length]
+        numbers = None if columns is None else columns.read(data)
         return numbers if numbers is not None and numbers.shape[1] == len(self._difference.largest) else None
 
     def _compare(self, log_ns: np.ndarray, a: np.ndarray, b: np.ndarray) -> None:
         if not self._parts:
             return
-        told = self._difference
+        result = self._difference
         finite = np.maximum(np.where(np.isfinite(a), abs(a), 0.0), np.where(np.isfinite(b), abs(b), 0.0)).max(axis=0)
         starts = np.cumsum([0, *self._parts[:-1]])
-        np.maximum(told.magnitude, np.repeat(np.maximum.reduceat(finite, starts), self._parts), out=told.magnitude)
+        np.maximum(result.magnitude, np.repeat(np.maximum.reduceat(finite, starts), self._parts), out=result.magnitude)
         with np.errstate(invalid="ignore"):
             gap = np.where((a == b) | (np.isnan(a) & np.isnan(b)), 0.0, np.abs(a - b))
         gap = np.where(np.isnan(gap), math.inf, gap)
-        told.differing += int(gap.any(axis=1).sum())
+        result.differing += int(gap.any(axis=1).sum())
         worst = gap.argmax(axis=0)
         largest = gap[worst, np.arange(gap.shape[1])]
-        larger = largest > told.largest
-        told.largest[larger], told.where_ns[larger] = largest[larger], log_ns[worst][larger]
+        larger = largest > result.largest
+        result.largest[larger], result.where_ns[larger] = largest[larger], log_ns[worst][larger]

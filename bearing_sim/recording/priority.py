@@ -1,18 +1,18 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Processes beside a solver let it have the processor first.
+"""Scheduling of processes that run beside the solver, so that it gets the processor first.
 
-Two ways, because niceness is not enough: since Linux 6.6 a thread that wakes up waits for the one that runs until its slice is over, several
-milliseconds, however nice that is.
+Niceness is not enough: since Linux 6.6 a thread that wakes up waits until the time slice of the running thread is over, several
+milliseconds, however nice that thread is.  Two policies help:
 
-- *Idle time* (the policy SCHED_IDLE) is for what may be late, pictures: whoever wakes up pre-empts it at once, a core that has nothing else to
-  run counts as free, and where there is no time to spare it gets next to none.
-- *Giving way* (SCHED_BATCH, and niceness) is for what must get its share in the end, files: it interrupts nobody when it wakes up.
+- *Idle time* (SCHED_IDLE) is for what may be late, such as pictures.  Every thread that wakes up pre-empts it at once, and a core that runs nothing
+  else counts as free.  On a busy machine it gets almost no time.
+- *Low priority* (SCHED_BATCH and niceness) is for what must get its share in the end, such as files.  It never pre-empts another thread.
 
-Linux compares threads within a session (its autogroups) or a control group, and those as wholes among each other.  So what runs in idle time
-belongs into the solver's session: in one of its own it would be its only thread, with the right of a whole session.  What gives way belongs
-into a session of its own where it must not depend on what else runs in the solver's.
+Linux compares threads within a session (autogroup) or control group, and sessions as wholes.  A process in idle time therefore belongs in the
+solver's session: in a session of its own it would be the only thread, with the share of a whole session.  A process with low priority belongs
+in a session of its own if it must not depend on what else runs in the solver's.
 
-Everything here needs no privileges, and does nothing where the system does not know it or does not allow it.
+Nothing here needs privileges.  Where the system does not know a policy or does not allow it, nothing happens.
 """
 
 import os
@@ -26,13 +26,13 @@ _NICEST = 19
 
 
 def use_idle_time() -> None:
-    """Let this process run in idle time only, with all the threads that it has and will have; there is no way back without privileges."""
+    """Run all present and future threads of this process in idle time only; this cannot be undone without privileges."""
     if not _schedule_threads("SCHED_IDLE"):
         _be_nicer(_NICEST)
 
 
-def give_way(niceness: int) -> None:
-    """Let this process interrupt nobody, and have a lower share of the processor where it is short; so, too, a session that it leads."""
+def use_low_priority(niceness: int) -> None:
+    """Let this process pre-empt nobody and get a smaller share of a busy processor; the same for a session that it leads."""
     _be_nicer(niceness)
     _schedule_threads("SCHED_BATCH")
     if hasattr(os, "getsid") and os.getsid(0) == os.getpid():
@@ -40,28 +40,28 @@ def give_way(niceness: int) -> None:
             Path("/proc/self/autogroup").write_text(str(niceness))
 
 
-def let_threads_give_way(beginning: str) -> None:
-    """Let those threads of this process that the system knows by a name with this beginning interrupt nobody."""
+def lower_thread_priority(beginning: str) -> None:
+    """Let the threads of this process with names that begin with ``beginning`` pre-empt nobody."""
     _schedule_threads("SCHED_BATCH", beginning)
 
 
 def in_idle_time(command: Sequence[str | os.PathLike]) -> list[str]:
-    """Return the command that does the same in idle time, as the same process, from its first moment on."""
-    return _behind(_IDLE_TIME, command)
+    """Return the command that runs the same program in idle time, from its start and as the same process."""
+    return _started_by_this_file(_IDLE_TIME, command)
 
 
-def giving_way(command: Sequence[str | os.PathLike], niceness: int) -> list[str]:
-    """Return the command that does the same and gives way, as the same process, from its first moment on."""
-    return _behind(str(niceness), command)
+def with_low_priority(command: Sequence[str | os.PathLike], niceness: int) -> list[str]:
+    """Return the command that runs the same program with low priority, from its start and as the same process."""
+    return _started_by_this_file(str(niceness), command)
 
 
-def _behind(manner: str, command: Sequence[str | os.PathLike]) -> list[str]:
-    # This file alone, without site and environment: it takes a hundredth of a second, and finds itself wherever the package is.
-    return [sys.executable, "-I", "-S", __file__, manner, *map(os.fspath, command)]
+def _started_by_this_file(policy: str, command: Sequence[str | os.PathLike]) -> list[str]:
+    # This file alone, without site and environment: that takes a hundredth of a second and works wherever the package is.
+    return [sys.executable, "-I", "-S", __file__, policy, *map(os.fspath, command)]
 
 
 def _schedule_threads(policy: str, beginning: str = "") -> bool:
-    """Give the threads of this process whose names begin so a policy, which those that they start inherit; return whether the system let it."""
+    """Set the policy of the threads with names that begin with ``beginning``; threads that they start inherit it.  Return whether it was allowed."""
     try:
         threads = list(Path("/proc/self/task").iterdir())
     except OSError:
@@ -82,16 +82,16 @@ def _be_nicer(niceness: int) -> None:
 
 
 def main() -> None:
-    """Become the command that follows, in the manner that is named before it."""
-    manner, *command = sys.argv[1:]
-    if manner == _IDLE_TIME:
+    """Set the policy named by the first argument and become the command that follows."""
+    policy, *command = sys.argv[1:]
+    if policy == _IDLE_TIME:
         use_idle_time()
     else:
-        give_way(int(manner))
+        use_low_priority(int(policy))
     try:
         os.execvp(command[0], command)
-    except OSError as fault:
-        sys.exit(f"{command[0]} cannot be started: {fault.strerror}")
+    except OSError as error:
+        sys.exit(f"{command[0]} cannot be started: {error.strerror}")
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Where a result comes from: version and git hash of this package, nothing of the machine it ran on."""
+"""Where a result comes from: version and git hash of this package, and nothing about the machine."""
 
 import platform
 import subprocess
@@ -10,7 +10,7 @@ from pathlib import Path
 
 @cache
 def package_version() -> str:
-    """Return the installed version; ``""`` where the package runs without being installed."""
+    """Return the installed version; ``""`` if the package is not installed."""
     try:
         return metadata.version("bearing_sim")
     except metadata.PackageNotFoundError:
@@ -19,8 +19,8 @@ def package_version() -> str:
 
 @cache
 def git_hash() -> str:
-    """Return the commit of the package's own checkout, with ``-dirty`` after it where files differ; ``""`` when there is none."""
-    checkout = Path(__file__).resolve().parent.parent
+    """Return the commit of the package's own checkout, followed by ``-dirty`` if files differ; ``""`` without a checkout."""
+    checkout = Path(__file__).resolve().parents[2]
     if not (checkout / ".git").exists():  # asking git alone would find a repository that merely contains the installation
         return ""
     command = ["git", "-C", str(checkout), "describe", "--always", "--dirty", "--abbrev=40", "--exclude=*"]
@@ -35,14 +35,13 @@ _PACKAGES = {
     "numpy": ("numpy",),
     "numba": ("numba",),
     "scipy": ("scipy",),
-    "mcap": ("mcap",),
     "rclpy": ("rclpy", "ros-jazzy-rclpy", "ros-kilted-rclpy"),
 }
 
 
 @cache
 def versions() -> dict[str, str]:
-    """Return the versions of Python and of the packages that a result may depend on, by name; without those that are not installed."""
+    """Return the versions of Python and of the installed packages on which a result may depend, by name."""
     found = {"python": platform.python_version()}
     for name, distributions in _PACKAGES.items():
         for distribution in distributions:

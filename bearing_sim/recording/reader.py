@@ -1,38 +1,49 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Read our own recordings back: MCAP messages to blocks of samples and events, as the sinks take them."""
+"""Read recordings of runs: MCAP messages to blocks of samples, events and measurements, as sinks take them."""
 
 import math
 from collections.abc import Iterator
-from functools import cache, cached_property
+from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 import yaml
-from mcap.records import Channel, Message, Metadata, Schema
 
-from bearing_sim.bag_files import BagError, mcap_files
-from bearing_sim.events import Event, Level, Measurement
-from bearing_sim.mcap_index import FileIndex, read_index
-from bearing_sim.mcap_stream import Salvage
-from bearing_sim.message_rows import Rows
-from bearing_sim.recording_samples import ROWS_PER_BLOCK, Samples
-from bearing_sim.scene import Scene
-from bearing_sim.scene_file import SceneError, scene_from_yaml
-from bearing_sim.topics import ARRAYS, CAGE_JOINT, DIAGNOSTICS, INPUTS, MEASURED, MEASUREMENTS, OUTPUTS, RECORDED, RESIDUAL, input_values
+from bearing_sim.messages.cdr_layout import CdrError, CdrLayout, NumberColumns, typestore
+from bearing_sim.messages.events import Event, Level, Measurement
+from bearing_sim.messages.sample_messages import sample_columns
+from bearing_sim.messages.topics import (
+    ARRAYS,
+    CAGE_JOINT,
+    DIAGNOSTICS,
+    INPUTS,
+    MEASURED,
+    MEASUREMENTS,
+    OUTPUTS,
+    RECORDED,
+    RESIDUAL,
+    event_of,
+    input_values,
+)
+from bearing_sim.model.sample import flat, new_block
+from bearing_sim.recording.bag import RecordingError, mcap_files
+from bearing_sim.recording.mcap_format import Message, Metadata
+from bearing_sim.recording.mcap_reader import FileIndex, McapReader, Rows, read_index
+from bearing_sim.recording.writer import METADATA
+from bearing_sim.scene.loader import SceneError, scene_from_yaml
+from bearing_sim.scene.scene import Scene
 
-METADATA = "bearing_sim"
-_REPEATS_WITHIN = 2.5  # [s] a lasting trouble is reported every second, and told once
-_TYPES = {f"/{topic.name}": topic.ros_type for topic in (*INPUTS.values(), *RECORDED.values(), *OUTPUTS.values())} | {
-    f"/{DIAGNOSTICS[0]}": DIAGNOSTICS[1]
+ROWS_PER_BLOCK = 1000
+_REPEATS_WITHIN = 2.5  # [s] a lasting trouble is reported every second, and is one event
+_SAMPLE_TOPICS = {f"/{name}": topic for name, topic in {**RECORDED, **OUTPUTS}.items()}
+_TYPES = {topic: kind.ros_type for topic, kind in _SAMPLE_TOPICS.items()} | {
+    f"/{topic.name}": topic.ros_type for topic in (*INPUTS.values(), *MEASUREMENTS.values())
 }
-_OUTPUT_TOPICS = frozenset(f"/{name}" for name in (*RECORDED, *OUTPUTS))
+_TYPES[f"/{DIAGNOSTICS[0]}"] = DIAGNOSTICS[1]
 _RECEIVED = {f"/{name}" for name in (*INPUTS, *MEASUREMENTS)}
 _LAST_OF_SAMPLE = "/roller_loads"
-
-
-class RecordingError(ValueError):
-    """A file that is no recording of ours; the message says what is missing."""
+_OF_TILTING_LEVELS = tuple(field for name, topic in OUTPUTS.items() if topic.of_tilting_levels for field in ARRAYS[name].fields)
 
 
 class Received(NamedTuple):
@@ -46,36 +57,33 @@ class Received(NamedTuple):
 
 
 class Recording:
-    """A recording of one run; opening it reads no more of a finished one than its index.
+    """A recording of one run; opening a finished one reads only its index.
 
     Parameters
     ----------
-    path : what `bearing_sim.sinks.mcap_sink.McapSink` wrote, finished or not: an MCAP file or the folder of a bag.
+    path : what `bearing_sim.recording.writer.McapSink` wrote, finished or not: an MCAP file or the folder of a bag.
 
     Attributes
     ----------
     files : the files of the recording, in order.
-    metadata : what its writer said of it, by name (see `bearing_sim.sinks.mcap_sink.METADATA`).
+    metadata : what its writer said about the run (see `bearing_sim.recording.writer.METADATA`).
     scene : what was simulated.
     start_ns : wall time of sample time 0 [ns since the epoch].
     samples : number of samples.
     first_time, last_time : simulated times of the first and the last sample [s].
-    unfinished : why reading ends before the file's proper end, or ``""``; of a file that has its end, but is damaged, reading it tells.
+    unfinished : why reading stops before the end of the recording, or ``""``; of a finished but damaged file only once it has been read.
 
     Raises
     ------
     RecordingError
-        No such file, no MCAP, no scene in its metadata, or no samples.
+        The file does not exist or is not MCAP, or it has no scene in its metadata or no samples.
     """
 
     def __init__(self, path: str | Path):
         self.path = Path(path)
         self.unfinished = ""
-        try:
-            self.files = mcap_files(self.path)
-        except BagError as fault:
-            raise RecordingError(str(fault)) from None
-        parts = [self._told_by(file) for file in self.files]
+        self.files = mcap_files(self.path)
+        parts = [self._index_of(file) for file in self.files]
         metadata = next((part.metadata[METADATA] for part in reversed(parts) if METADATA in part.metadata), None)
         self.metadata: dict[str, str] = metadata or {}
         listing = ", ".join(sorted(set().union(*(part.present for part in parts)))) or "no topics"
@@ -84,11 +92,11 @@ class Recording:
         try:
             self.scene: Scene = scene_from_yaml(metadata["scene"], origin=f"{self.path}: scene in the metadata")
             self.start_ns = int(metadata["start_ns"])
-        except (KeyError, ValueError, SceneError, yaml.YAMLError) as fault:
-            raise RecordingError(f"{self.path}: the metadata cannot be used: {fault}") from None
+        except (KeyError, ValueError, SceneError, yaml.YAMLError) as error:
+            raise RecordingError(f"{self.path}: the metadata cannot be used: {error}") from None
         times = np.unique(np.concatenate([part.log_ns for part in parts])).astype(np.int64)
         if not len(times):
-            raise RecordingError(f"{self.path}: no samples on {', '.join(sorted(_OUTPUT_TOPICS))}; it has {listing}")
+            raise RecordingError(f"{self.path}: no samples on {', '.join(sorted(_SAMPLE_TOPICS))}; it has {listing}")
         self.samples = len(times)
         self.first_time, self.last_time = ((int(edge) - self.start_ns) * 1e-9 for edge in times[[0, -1]])
 
@@ -99,25 +107,24 @@ class Recording:
 
     @cached_property
     def largest_load(self) -> float:
-        """Largest roller load [N]; the recording is read for it."""
+        """Largest roller load [N]; the whole recording is read to find it."""
         largest = 0.0
         for topics, record in self._records():
             if _LAST_OF_SAMPLE not in topics:
                 continue
             data = record.data(topics.index(_LAST_OF_SAMPLE)) if isinstance(record, Rows) else np.frombuffer(record.data, np.uint8)[None]
-            count = trailing_doubles(data[0].tobytes()).size
-            loads = np.ascontiguousarray(data[:, data.shape[1] - 8 * count :]).view("<f8")
-            finite = loads[np.isfinite(loads).all(axis=1)]
-            largest = max(largest, float(finite.max(initial=0.0)))
+            field = CdrLayout(_TYPES[_LAST_OF_SAMPLE], data[0].tobytes()).by_path["data"]
+            loads = np.ascontiguousarray(data[:, field.begin : field.end]).view(field.dtype)
+            largest = max(largest, float(loads[np.isfinite(loads).all(axis=1)].max(initial=0.0)))
         return largest
 
-    def _told_by(self, file: Path) -> FileIndex:
-        """Return what a file says of itself or, where it was cut short, what reading it finds."""
-        told = read_index(file, _LAST_OF_SAMPLE)
-        if told is not None:
-            for topic, ros_type in told.types.items():
+    def _index_of(self, file: Path) -> FileIndex:
+        """Return what a file says at its end or, if it has no end, what reading it finds."""
+        index = read_index(file, _LAST_OF_SAMPLE)
+        if index is not None:
+            for topic, ros_type in index.types.items():
                 self._require_type(topic, ros_type)
-            return told
+            return index
         present: set[str] = set()
         metadata: dict[str, dict[str, str]] = {}
         log_ns = [np.empty(0, np.uint64)]
@@ -132,34 +139,27 @@ class Recording:
         return FileIndex({}, present, metadata, np.concatenate(log_ns))
 
     def _records(self) -> Iterator[tuple[tuple[str, ...], Message | Rows | Metadata]]:
-        """Yield (topics, messages) in file order, and metadata records without a topic; end quietly where a file was cut short."""
+        """Yield (topics, messages) in file order, and metadata records without a topic; end quietly where a file is cut short or damaged."""
         for file in self.files:
             yield from self._records_of(file)
 
     def _records_of(self, file: Path) -> Iterator[tuple[tuple[str, ...], Message | Rows | Metadata]]:
-        topics: dict[int, str] = {}
-        schemas: dict[int, str] = {}
-        salvage = Salvage(file, in_rows=_OUTPUT_TOPICS.__contains__)
-        if not salvage.is_mcap:
-            raise RecordingError(f"{file}: not an MCAP file ({salvage.size} bytes)")
-        for record in salvage:
-            if salvage.damaged:
-                break
+        reader = McapReader(file, in_rows=_SAMPLE_TOPICS.__contains__, stops_at_damage=True)
+        checked = 0
+        for record in reader:
+            if len(reader.types) > checked:
+                checked = len(reader.types)
+                for topic, ros_type in reader.types.items():
+                    self._require_type(topic, ros_type)
             if isinstance(record, Rows):
-                yield tuple(topics[channel] for channel in record.channels), record
+                yield tuple(reader.topics[channel] for channel in record.channels), record
             elif isinstance(record, Message):
-                yield (topics[record.channel_id],), record
-            elif isinstance(record, Schema):
-                schemas[record.id] = record.name
-            elif isinstance(record, Channel):
-                self._require_type(record.topic, schemas.get(record.schema_id, ""))
-                topics[record.id] = record.topic
+                yield (reader.topics[record.channel_id],), record
             elif isinstance(record, Metadata):
                 yield (), record
-        if salvage.damaged or not salvage.is_finished:
+        if not reader.is_finished:
             name = "the file" if len(self.files) == 1 else file.name
-            why = "what follows is damaged" if salvage.damaged else salvage.ends
-            self.unfinished = f"{name} ends early ({why}); what was complete before that is shown"
+            self.unfinished = f"{name} ends early ({reader.ends}); what was complete before that is shown"
 
     def _require_type(self, topic: str, ros_type: str) -> None:
         expected = _TYPES.get(topic)
@@ -181,7 +181,7 @@ class Recording:
             if isinstance(item, Received):
                 name = item.topic[1:]
                 if name in MEASUREMENTS:
-                    waiting.setdefault(item.log_ns, {})[name] = _measured_number(name, _decoder()(item.data, item.ros_type))
+                    waiting.setdefault(item.log_ns, {})[name] = _measured_number(name, _decoded(item.data, item.topic))
                 continue
             if isinstance(item, np.ndarray):
                 end_ns = self.start_ns + round(float(item["time"][-1]) * 1e9)
@@ -192,61 +192,125 @@ class Recording:
             yield item
 
     def _items(self, with_received: bool = False) -> Iterator["np.ndarray | Event | Received"]:
-        samples = Samples(self.scene, self.start_ns)
-        told: dict[tuple[str, Level], float] = {}
+        samples = _Samples(self.scene, self.start_ns)
+        reported: dict[tuple[tuple[str, str], Level], float] = {}
         for topics, record in self._records():
             if isinstance(record, Rows):
-                yield from _from_rows(samples, topics, record)
-            elif isinstance(record, Message):
-                if with_received and topics[0] in _RECEIVED:
-                    ros_type = _TYPES.get(topics[0]) or MEASUREMENTS[topics[0][1:]].ros_type
-                    yield Received(topics[0], ros_type, record.log_time, record.publish_time, record.data)
-                if topics[0] == f"/{DIAGNOSTICS[0]}":
-                    yield from _news(_decoder()(record.data, DIAGNOSTICS[1]), (record.log_time - self.start_ns) * 1e-9, told)
-                else:
-                    yield from _from_message(samples, topics[0], record)
+                yield from samples.blocks_with_rows(topics, record)
+            elif not isinstance(record, Message):
+                continue
+            elif topics[0] in _SAMPLE_TOPICS:
+                yield from samples.blocks_with(topics[0], record)
+            elif topics[0] in _RECEIVED and with_received:
+                yield Received(topics[0], _TYPES[topics[0]], record.log_time, record.publish_time, record.data)
+            elif topics[0] == f"/{DIAGNOSTICS[0]}":
+                yield from _events(_decoded(record.data, topics[0]), (record.log_time - self.start_ns) * 1e-9, reported)
         last = samples.take()
         if len(last):
             yield last
 
 
-def _from_rows(samples: Samples, topics: tuple[str, ...], rows: Rows) -> Iterator[np.ndarray]:
-    """Enter rows, all at once where they can be; yield the blocks that get full."""
-    found = samples.numbers_of(rows, [topic[1:] if topic in _TYPES else "" for topic in topics])
-    if found is None:
-        for k, message in enumerate(rows.messages()):
-            yield from _from_message(samples, topics[k % len(topics)], message)
-        return
-    log_ns, (columns, numbers) = rows.log_ns(0), found
-    while len(log_ns):
-        if samples.count == ROWS_PER_BLOCK:
-            yield samples.take()
-        room = ROWS_PER_BLOCK - samples.count
-        samples.enter_rows(log_ns[:room], columns, numbers[:room])
-        log_ns, numbers = log_ns[room:], numbers[room:]
+class _Samples:
+    """Samples being put together from messages that share a log time, one by one or many at once.
+
+    Parameters
+    ----------
+    scene : what was simulated.
+    start_ns : wall time of sample time 0 [ns since the epoch].
+    """
+
+    def __init__(self, scene: Scene, start_ns: int):
+        self._scene, self._start_ns = scene, start_ns
+        self._block = new_block(ROWS_PER_BLOCK, scene.bearing.roller.count)
+        self._count = 0  # samples begun since the last `take`
+        self._log_ns: int | None = None
+        self._shapes: dict[tuple, tuple[np.ndarray, np.ndarray, NumberColumns]] = {}  # see `_shape_of`
+
+    def blocks_with(self, topic: str, message: Message) -> Iterator[np.ndarray]:
+        """Enter one message; yield the block that it finds full."""
+        columns, numbers = self._numbers_of((topic,), (0,), np.frombuffer(message.data, np.uint8)[None])
+        if message.log_time != self._log_ns:
+            if self._count == ROWS_PER_BLOCK:
+                yield self.take()
+            self._begin(np.array([message.log_time], np.uint64))
+        flat(self._block)[self._count - 1, columns] = numbers[0]
+
+    def blocks_with_rows(self, topics: tuple[str, ...], rows: Rows) -> Iterator[np.ndarray]:
+        """Enter rows, all at once if each is a sample; yield the blocks that get full."""
+        log_ns = rows.all_log_ns()
+        first = log_ns[:, 0]
+        are_samples = first[0] != self._log_ns and (first[1:] != first[:-1]).all() and (log_ns == first[:, None]).all()
+        found = self._numbers_of(topics, tuple(map(rows.begin, range(len(topics)))), rows.table) if are_samples else None
+        if found is None:
+            for k, message in enumerate(rows.messages()):
+                yield from self.blocks_with(topics[k % len(topics)], message)
+            return
+        columns, numbers = found
+        while len(first):
+            if self._count == ROWS_PER_BLOCK:
+                yield self.take()
+            room = ROWS_PER_BLOCK - self._count
+            self._begin(first[:room])[:, columns] = numbers[:room]
+            first, numbers = first[room:], numbers[room:]
+
+    def _numbers_of(self, topics: tuple[str, ...], begins: tuple[int, ...], table: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
+        """Return columns of a sample laid out flat and the numbers there, shape (rows, columns); None if the rows are not all laid out alike.
+
+        Parameters
+        ----------
+        topics, begins : topic and first byte of each serialised message in a row.
+        table : rows of bytes, uint8, shape (rows, length).
+        """
+        key = (topics, begins, table.shape[1])
+        for is_known in (key in self._shapes, False):
+            if not is_known:
+                self._shapes[key] = self._shape_of(topics, begins, table[0])
+            columns, known, reader = self._shapes[key]
+            if (numbers := reader.read(table)) is not None:
+                return columns, numbers[:, known]
+        return None
+
+    def _shape_of(self, topics: tuple[str, ...], begins: tuple[int, ...], row: np.ndarray) -> tuple[np.ndarray, np.ndarray, NumberColumns]:
+        """Return columns of a sample laid out flat, which numbers of a row belong there, and what reads the numbers."""
+        layouts, columns = [], []
+        for topic, begin in zip(topics, begins):
+            try:
+                layout = CdrLayout(_TYPES[topic], row[begin:].tobytes())
+            except CdrError as error:
+                raise RecordingError(f"a message on {topic} cannot be read: {error}") from None
+            own = sample_columns(_SAMPLE_TOPICS[topic], self._scene.bearing.roller.count)
+            for field in layout.numbers:
+                belong = own.get(field.path, np.full(field.count, -1))  # no sample has torques of joints
+                if field.count != len(belong):
+                    raise RecordingError(f"a message on {topic} has {field.count} numbers; expected {len(belong)} by the scene")
+                columns.append(belong)
+            layouts.append((begin, layout))
+        belong = np.concatenate(columns)
+        known = np.flatnonzero(belong >= 0)
+        return belong[known], known, NumberColumns(row, layouts)
+
+    def _begin(self, log_ns: np.ndarray) -> np.ndarray:
+        """Begin samples, of which only the time is known, and return their numbers."""
+        block = self._block[self._count : self._count + len(log_ns)]
+        numbers = flat(block)
+        numbers[:] = np.nan
+        block["time"] = (log_ns.astype(np.int64) - self._start_ns) * 1e-9
+        self._log_ns = int(log_ns[-1])
+        self._count += len(log_ns)
+        return numbers
+
+    def take(self) -> np.ndarray:
+        """Return the samples so far, without one that a kill cut short: its loads, written last, are missing."""
+        block, self._count = self._block[: self._count], 0
+        block = block[~np.isnan(block["inner_load"]).all(axis=1)]
+        if not self._scene.bodies_tilt:
+            for field in _OF_TILTING_LEVELS:
+                block[field] = 0.0
+        return block
 
 
-def _from_message(samples: Samples, topic: str, message: Message) -> Iterator[np.ndarray]:
-    """Enter an input or an output; yield the block that gets full."""
-    if topic not in _TYPES:
-        return
-    name = topic[1:]
-    decoded = trailing_doubles(message.data) if name in ARRAYS else _decoder()(message.data, _TYPES[topic])
-    if topic not in _OUTPUT_TOPICS:
-        samples.enter_input(name, decoded)
-        return
-    if samples.begins_sample(message.log_time) and samples.count == ROWS_PER_BLOCK:
-        yield samples.take()
-    samples.enter(name, message.log_time, decoded)
-
-
-def trailing_doubles(data: bytes) -> np.ndarray:
-    """Return the numbers of a Float64MultiArray, the last thing in its CDR: their count, padding to eight bytes, the numbers."""
-    words = np.frombuffer(data, "<u4", offset=4, count=(len(data) - 4) // 4)
-    for start in range(2, len(words) + 1, 2):
-        if len(words) - start in (2 * words[start - 1], 2 * words[start - 2]):
-            return np.frombuffer(data, "<f8", offset=4 + 4 * start)
-    return np.empty(0)
+def _decoded(data: bytes, topic: str):
+    return typestore().deserialize_cdr(data, _TYPES[topic])
 
 
 def _measured_number(name: str, message) -> float:
@@ -256,19 +320,13 @@ def _measured_number(name: str, message) -> float:
     return input_values(name, MEASUREMENTS[name].ros_type, message, joint)[0]
 
 
-@cache
-def _decoder():
-    from rosbags.typesys import Stores, get_typestore
-
-    return get_typestore(Stores.ROS2_JAZZY).deserialize_cdr
-
-
-def _news(message, time: float, told: dict[tuple[str, Level], float]) -> Iterator[Event]:
-    """Yield the events of a diagnostics message that were not told a moment ago; the first status is the whole's."""
+def _events(message, time: float, reported: dict[tuple[tuple[str, str], Level], float]) -> Iterator[Event]:
+    """Yield the events of a diagnostics message that were not reported a moment ago; the first status summarises the others."""
     for status in message.status[1:]:
-        code, level = status.name.partition(": ")[2], Level(int(status.level))
+        event = event_of(time, status)
+        key, level = event.key, event.level
         for other in set(Level) - {level}:  # a change of level is news, and so is the way back
-            told.pop((code, other), None)
-        if time - told.get((code, level), -math.inf) > _REPEATS_WITHIN:
-            yield Event(time, level, code, status.message)
-        told[code, level] = time
+            reported.pop((key, other), None)
+        if time - reported.get((key, level), -math.inf) > _REPEATS_WITHIN:
+            yield event
+        reported[key, level] = time

@@ -1,13 +1,15 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Recordings that are written in real time, by a process of their own (`bearing_sim.sinks.recorder_process`).
+"""Recordings in real time, written by a process of their own (`bearing_sim.recording.recorder_server`).
 
-Laying out, indexing and compressing messages takes interpreter time, which a thread beside the solver would take from it between its
-ticks.  Here a block is copied once and queued, and a thread hands on what has gathered ten times a second: one pickle of references, and
-the blocks' own bytes, written to a pipe without the interpreter's lock.  Where nothing runs in real time, use
-`bearing_sim.sinks.mcap_sink.McapSink` itself.
+Laying out, indexing and compressing messages takes interpreter time; a thread beside the solver would take it from the solver between its
+ticks.  Here a block is queued as it is, and a thread sends what has gathered to the other process ten times a second: one pickle of references,
+followed by the blocks' own bytes, written to a pipe without the interpreter's lock.  If nothing runs in real time, use
+`bearing_sim.recording.writer.McapSink` directly.
 
-What is killed loses little: when the feeding process is, the recorder completes every file with all that had left that process; when the
-recorder is, the files are what a killed writer leaves, and the feeding process is told by an OSError at its next write.
+What a kill loses, by construction: if the feeding process is killed, the recorder completes every file with all that had been sent (see
+`Recorder.backlog`).  If the recorder is killed, its files contain all that it had flushed, which `bearing_sim.recording.recovery` recovers, and the
+next write of the feeding process raises an OSError.  Sending happens every 0.1 s and flushing every 0.5 s as long as both processes get the
+processor; `test/benchmarks/recording_kills.py` measures what is lost in fact, also under load.
 """
 
 import fcntl
@@ -28,85 +30,90 @@ from pathlib import Path
 
 import numpy as np
 
-from bearing_sim import topics
-from bearing_sim.events import Event, Level
-from bearing_sim.sample import flat
-from bearing_sim.scene import Scene
-from bearing_sim.sinks.limits import UNPARTED, Limits
-from bearing_sim.sinks.priority import giving_way
+from bearing_sim.messages import topics
+from bearing_sim.messages.events import Event, Level
+from bearing_sim.model.sample import flat
+from bearing_sim.recording.bag import UNLIMITED, Limits
+from bearing_sim.recording.priority import with_low_priority
+from bearing_sim.scene.scene import Scene
 
-_HAND_ON_EVERY = 0.1  # [s]; what a killed process loses of its own, and how often the solver may be disturbed
-_PIPE = 1024 * 1024  # [byte] so that a late reader does not hold up the thread that hands on
-_SMALL = 512  # [byte] about what an operation without a block takes
-_OPEN_WITHIN = 30.0  # [s] a process that starts beside everything else on a busy machine
+_SEND_EVERY = 0.1  # [s] how often the solver may be disturbed; a killed process loses what it has not sent
+_PIPE = 1024 * 1024  # [byte] so that a late reader does not hold up the sending thread
+_SMALL = 512  # [byte] approximate size of an operation without a block
+_OPEN_WITHIN = 30.0  # [s] for a process that starts on a busy machine
 _CLOSE_WITHIN = 5.0  # [s]
-_NICENESS = 5  # a file may be late by a part of a second, the solver may not
+_NICENESS = 5  # a file may be a fraction of a second late, the solver may not
 _log = logging.getLogger(__name__)
 
 
 class Recorder:
-    """A process that writes recordings; started once, it serves one after the other and many at a time.
+    """A process that writes recordings, one after the other and several at a time.
 
     Parameters
     ----------
-    capacity : bytes that may wait for the process [byte]; what comes beyond them is dropped and counted.
+    capacity : how much may wait for the process [byte]; anything beyond is dropped and counted.
     """
 
     def __init__(self, capacity: int = 64 * 1024 * 1024):
         self._capacity = capacity
-        self._line: _Line | None = None
+        self._client: RecorderClient | None = None
         self._starting = threading.Lock()
 
     def start(self) -> None:
-        """Start the process where there is none, so that the first recording need not wait for it; may be called from any thread."""
-        self._living_line()
+        """Start the process if there is none, so that the first recording need not wait for it; may be called from any thread."""
+        self._living_client()
 
     @property
     def pid(self) -> int | None:
-        """Number of the process; None where there is none."""
-        return self._line.pid if self._line is not None and self._line.end is None else None
+        """Id of the process; None if there is none."""
+        return self._client.pid if self._client is not None and self._client.end is None else None
+
+    @property
+    def backlog(self) -> int:
+        """How much waits to be sent to the process [byte]; 0 once everything written so far would survive the end of this process."""
+        return 0 if self._client is None else self._client.backlog
 
     def open(
         self,
         path: str | Path,
         scene: Scene,
         start_ns: int,
-        limits: Limits = UNPARTED,
+        limits: Limits = UNLIMITED,
         advance: tuple[float, int] | None = None,
         replace: bool = False,
         wait: bool = True,
     ) -> "LiveRecording":
-        """Begin a recording; the other parameters are those of `bearing_sim.sinks.mcap_sink.McapSink`.
+        """Begin a recording; the other parameters are those of `bearing_sim.recording.writer.McapSink`.
 
         Parameters
         ----------
-        wait : whether to wait until the file is open; else what is written meanwhile waits, and the first write after a fault raises it.
+        wait : whether to wait until the file is open; otherwise writes are queued meanwhile, and the first one after an error raises it.
 
         Raises
         ------
         OSError
-            The file cannot be made, or no process can.
+            The file cannot be made, or no process can be started.
         """
         options = {"limits": limits, "advance": advance, "replace": replace}
-        recording = LiveRecording(self._living_line(), Path(path), scene, int(start_ns), options)
+        recording = LiveRecording(self._living_client(), Path(path), scene, int(start_ns), options)
         if wait:
             recording.wait_until_open()
         return recording
 
     def close(self, timeout: float = _CLOSE_WITHIN) -> bool:
-        """Complete what is being recorded and end the process; a second call does nothing.
+        """Complete all recordings and end the process; a second call does nothing.
 
         Parameters
         ----------
-        timeout : longest wait [s].  A process that is not done by then is left alone: it completes its files and ends by itself.
+        timeout : longest wait [s].  A process that needs longer completes its files and ends by itself.
 
         Returns
         -------
         whether it ended.
         """
         with self._starting:
-            line, self._line = self._line, None
-        return line.close(timeout) if line is not None else True
+            client, self._client = self._client, None
+        return client.close(timeout) if client is not None else True
 
     def __enter__(self) -> "Recorder":
         return self
@@ -114,34 +121,34 @@ class Recorder:
     def __exit__(self, *_) -> None:
         self.close()
 
-    def _living_line(self) -> "_Line":
+    def _living_client(self) -> "RecorderClient":
         with self._starting:
-            if self._line is None or self._line.end is not None:
-                self._line = _Line(self._capacity)
-            return self._line
+            if self._client is None or self._client.end is not None:
+                self._client = RecorderClient(self._capacity)
+            return self._client
 
 
 class LiveRecording:
-    """One recording of a `Recorder`, with the methods of `bearing_sim.sinks.mcap_sink.McapSink`.
+    """One recording of a `Recorder`, with the methods of `bearing_sim.recording.writer.McapSink`.
 
-    None but `wait_until_open` and `close` waits for anything.
+    Only `wait_until_open` and `close` wait.
 
     Attributes
     ----------
     path : the finished file's path, or the bag's.
-    dropped : blocks, inputs and reports dropped so far, because the process did not keep up.
+    dropped : blocks, inputs and reports dropped so far because the process did not keep up.
     """
 
-    def __init__(self, line: "_Line", path: Path, scene: Scene, start_ns: int, options: dict):
+    def __init__(self, client: "RecorderClient", path: Path, scene: Scene, start_ns: int, options: dict):
         self.path, self.start_ns, self.dropped = path, start_ns, 0
-        self._line, self._told, self._closed = line, 0, False
-        self._number, self._state = line.register()
-        line.put(self._number, "open", (path.absolute(), scene, start_ns, options), urgent=True)
+        self._client, self._reported, self._closed = client, 0, False
+        self._number, self._state = client.register()
+        client.put(self._number, "open", (path.absolute(), scene, start_ns, options), urgent=True)
 
     @property
     def is_orphaned(self) -> bool:
         """Whether the process has ended before this recording was complete."""
-        return self._line.end is not None
+        return self._client.end is not None
 
     def wait_until_open(self) -> None:
         """Wait until there is a file.
@@ -149,38 +156,37 @@ class LiveRecording:
         Raises
         ------
         OSError
-            It cannot be made, or is not within half a minute.
+            It cannot be made, or not within 30 s.
         """
         if not self._state.opened.wait(_OPEN_WITHIN):
-            self._line.put(self._number, "close", (), urgent=True)
-            raise OSError(f"{self.path} was not opened within {_OPEN_WITHIN:g} s by the process that records")
-        if self._state.fault is not None:
-            raise self._state.fault
+            self._client.put(self._number, "close", (), urgent=True)
+            raise OSError(f"{self.path} was not opened within {_OPEN_WITHIN:g} s by the recorder process")
+        if self._state.error is not None:
+            raise self._state.error
 
     def write(self, block: np.ndarray) -> None:
-        """Write a block of samples.
+        """Write a block of samples, which must not be changed afterwards.
 
         Raises
         ------
         OSError
-            The recording could not go on, some time since the last call.
+            The recording has failed since the last call.
         ValueError
             It is closed.
         """
         if len(block):
-            numbers = flat(np.array(block))
+            numbers = flat(np.ascontiguousarray(block))
             self._offer("write", (numbers, block["roller_angle"].shape[1]), numbers.nbytes)
 
-    def write_start(self, block: np.ndarray) -> None:
-        """Write the state from which the run starts (see `bearing_sim.sinks.mcap_sink.McapSink.write_start`)."""
-        self.write(block)
+    write_start = write
+    """Write the state from which the run starts (see `bearing_sim.recording.writer.McapSink.write_start`)."""
 
     def write_inputs(self, time: float, inputs, channels: Iterable[str] = tuple(topics.INPUTS), origin: topics.Origin | None = None) -> None:
-        """Write the inputs that arrived at ``time`` [s] (see `bearing_sim.sinks.mcap_sink.McapSink.write_inputs`)."""
-        self._offer("write_inputs", (time, inputs._asdict(), tuple(channels), origin))  # by name: their class would bring the solver along
+        """Write the inputs that arrived at ``time`` [s] (see `bearing_sim.recording.writer.McapSink.write_inputs`)."""
+        self._offer("write_inputs", (time, inputs._asdict(), tuple(channels), origin))  # by name: their class would load the solver over there
 
     def write_measurement(self, time: float, cage_speed: float, residual: float, origin: topics.Origin | None = None) -> None:
-        """Write a measured cage speed [rad/s] that came at ``time`` [s], and its residual slip."""
+        """Write a measured cage speed [rad/s] that arrived at ``time`` [s], and its residual slip."""
         self._offer("write_measurement", (time, cage_speed, residual, origin))
 
     def write_event(self, event: Event) -> None:
@@ -192,13 +198,13 @@ class LiveRecording:
         self._offer("write_diagnostics", (time, list(events), None if values is None else dict(values)))
 
     def news(self) -> list[tuple[Level, str, str]]:
-        """Return (level, code, text) of what happened to the recording since the last call."""
-        told = [self._state.news.popleft() for _ in range(len(self._state.news))]
-        if self.dropped > self._told:
-            self._told = self.dropped
+        """Return (level, kind, text) of what happened to the recording since the last call."""
+        news = [self._state.news.popleft() for _ in range(len(self._state.news))]
+        if self.dropped > self._reported:
+            self._reported = self.dropped
             text = f"the recording {self.path} does not keep up: {self.dropped} blocks, inputs and reports are missing from it so far"
-            told.append((Level.WARN, "recording.dropped", text))
-        return told
+            news.append((Level.WARN, "recording.dropped", text))
+        return news
 
     def close(self, timeout: float = _CLOSE_WITHIN) -> None:
         """Complete the recording and give it its name; a second call does nothing.
@@ -206,19 +212,19 @@ class LiveRecording:
         Raises
         ------
         OSError
-            It could not be completed, or not within ``timeout`` [s]; the process then goes on with it, even after the end of this one.
+            It could not be completed, or not within ``timeout`` [s]; the recorder process then continues, even after the end of this one.
         """
         if self._closed:
             return
         self._closed = True
-        earlier, self._state.fault = self._state.fault, None
-        self._line.put(self._number, "close", (), urgent=True)
+        earlier, self._state.error = self._state.error, None
+        self._client.put(self._number, "close", (), urgent=True)
         if not self._state.closed.wait(timeout):
-            raise OSError(f"{self.path} is not complete after {timeout:g} s; the process that records (number {self._line.pid}) goes on with it")
-        if self._line.end is not None and earlier is not None:
+            raise OSError(f"{self.path} is not complete after {timeout:g} s; the recorder process (id {self._client.pid}) is still completing it")
+        if self._client.end is not None and earlier is not None:
             raise earlier
-        if self._state.fault is not None:
-            raise self._state.fault
+        if self._state.error is not None:
+            raise self._state.error
 
     def __enter__(self) -> "LiveRecording":
         return self
@@ -229,42 +235,43 @@ class LiveRecording:
     def _offer(self, name: str, arguments: tuple, size: int = 0) -> None:
         if self._closed:
             raise ValueError(f"{self.path} is closed")
-        if self._state.fault is not None:
-            raise self._state.fault
-        if not self._line.put(self._number, name, arguments, size + _SMALL):
+        if self._state.error is not None:
+            raise self._state.error
+        if not self._client.put(self._number, name, arguments, size + _SMALL):
             self.dropped += 1
 
 
 class _State:
-    """What is known here of a recording over there."""
+    """What this process knows about a recording of the other one."""
 
     def __init__(self):
         self.opened, self.closed = threading.Event(), threading.Event()
-        self.fault: OSError | None = None
+        self.error: OSError | None = None
         self.news: deque[tuple[Level, str, str]] = deque()
 
 
-class _Line:
-    """A process and the way to it and back, for as long as it lives.
+class RecorderClient:
+    """One recorder process, the queue of operations for it, and its reports.
 
     Attributes
     ----------
-    pid : its number.
-    end : how it ended, or None.
+    pid : id of the process.
+    backlog : size of the operations not sent yet [byte].
+    end : how the process ended, or None.
     """
 
     def __init__(self, capacity: int):
-        self._capacity, self._waiting, self._queue = capacity, 0, deque()  # the first two in bytes
+        self._capacity, self.backlog, self._queue = capacity, 0, deque()
         self._changed, self._urgent = threading.Condition(), threading.Event()
         self._ended = False
         self._states: dict[int, _State] = {}
         self._registered = 0
         self.end: str | None = None
-        # A session of its own: neither Ctrl-C nor the end of a terminal nor a signal to the whole group reaches it, before Python could even
-        # say that it wants none.  The end of its input does.  And whatever runs in the solver's session, the recorder has a share of its own: in
-        # idle time, or nicer in the same session, it would fall behind beside two busy processes there, and what falls behind is lost.
+        # A session of its own: neither Ctrl-C nor the end of a terminal nor a signal to the whole group reaches the process, not even before
+        # Python could ignore it; the end of its input does.  It also gives the recorder a share of the processor of its own: in idle time, or
+        # with more niceness in the solver's session, it would fall behind beside two busy processes, and what falls behind is lost.
         self._process = subprocess.Popen(
-            giving_way([sys.executable, "-m", "bearing_sim.sinks.recorder_process"], _NICENESS),
+            with_low_priority([sys.executable, "-m", "bearing_sim.recording.recorder_server"], _NICENESS),
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             env=dict(os.environ, PYTHONPATH=os.pathsep.join(place for place in sys.path if place)),
@@ -272,9 +279,9 @@ class _Line:
         )
         self.pid = self._process.pid
         _widen(self._process.stdin.fileno())
-        self._feeder = threading.Thread(target=self._feed, name="recorder-feeder", daemon=True)
+        self._sender = threading.Thread(target=self._send, name="recorder-sender", daemon=True)
         self._listener = threading.Thread(target=self._listen, name="recorder-listener", daemon=True)
-        self._feeder.start()
+        self._sender.start()
         self._listener.start()
 
     def register(self) -> tuple[int, _State]:
@@ -287,19 +294,19 @@ class _Line:
         return number, state
 
     def put(self, number: int, name: str, arguments: tuple, size: int = 0, urgent: bool = False) -> bool:
-        """Queue an operation; whether there was room, which there always is for one without a size."""
+        """Queue an operation; return whether there was room, which there always is for one without a size."""
         with self._changed:
-            if size and self._waiting + size > self._capacity:
+            if size and self.backlog + size > self._capacity:
                 return False
             self._queue.append((number, name, arguments, size))
-            self._waiting += size
+            self.backlog += size
             self._changed.notify()
         if urgent:
             self._urgent.set()
         return True
 
     def close(self, timeout: float) -> bool:
-        """End the input and wait for the process to end; one that never got anything to do is not waited for."""
+        """End the input and wait for the process to end, without waiting for one that never got anything to do."""
         deadline = wall.monotonic() + timeout
         with self._changed:
             self._ended = True
@@ -307,11 +314,11 @@ class _Line:
         self._urgent.set()
         if not self._registered:
             self._process.kill()
-        self._feeder.join(timeout)
+        self._sender.join(timeout)
         self._listener.join(max(0.0, deadline - wall.monotonic()))
         return not self._listener.is_alive()
 
-    def _feed(self) -> None:
+    def _send(self) -> None:
         pipe = self._process.stdin
         try:
             while (gathered := self._gathered()) is not None:
@@ -324,18 +331,18 @@ class _Line:
                     pipe.write(part)
                 pipe.flush()
                 with self._changed:
-                    self._waiting -= sum(size for *_, size in gathered)
+                    self.backlog -= sum(size for *_, size in gathered)
         except OSError:  # the process is gone; the listener says why
             pass
-        finally:  # also at a fault of the program: the process completes its files then
+        finally:  # also after a programming error, so that the process completes its files
             with suppress(OSError):
                 pipe.close()
 
     def _gathered(self) -> list | None:
-        """Return what has gathered for a while; None when nothing will come any more."""
+        """Return what has gathered for a while; None when nothing more will come."""
         with self._changed:
             self._changed.wait_for(lambda: self._queue or self._ended)
-        self._urgent.wait(_HAND_ON_EVERY)
+        self._urgent.wait(_SEND_EVERY)
         with self._changed:
             self._urgent.clear()
             if self._ended:
@@ -344,19 +351,19 @@ class _Line:
         return gathered or (None if self._ended else [])
 
     def _listen(self) -> None:
-        """Take in what the process reports, a line of JSON each time, until it ends."""
+        """Read the reports of the process, one line of JSON each, until it ends."""
         for line in self._process.stdout:
             report = json.loads(line)
             state = self._states[report["recording"]]
-            state.news += [(Level[level], code, text) for level, code, text in report.get("news", ())]
-            if "fault" in report:
-                number, text = report["fault"]
-                state.fault = OSError(text) if number is None else OSError(number, text)
+            state.news += [(Level[level], kind, text) for level, kind, text in report.get("news", ())]
+            if "error" in report:
+                number, text = report["error"]
+                state.error = OSError(text) if number is None else OSError(number, text)
             if "closed" in report:
                 state.closed.set()
                 with self._changed:
                     del self._states[report["recording"]]
-            if report.keys() & {"opened", "fault"}:
+            if report.keys() & {"opened", "error"}:
                 state.opened.set()
         code = self._process.wait()
         self._process.stdout.close()
@@ -366,17 +373,17 @@ class _Line:
             for state in lost:
                 self._give_up(state)
         if lost:
-            _log.error("the process that records %s, number %d; the run goes on without it", self.end, self.pid)
+            _log.error("the recorder process %s (id %d); the run continues without it", self.end, self.pid)
 
     def _give_up(self, state: _State) -> None:
-        if state.fault is None:
-            text = f"the process that records {self.end}; what is on the disk is in the unfinished file (.active), bearing-sim recover completes it"
-            state.fault = OSError(text)
+        if state.error is None:
+            text = f"the recorder process {self.end}; what it had flushed is in the unfinished file (.active), which bearing-sim recover completes"
+            state.error = OSError(text)
         state.opened.set()
         state.closed.set()
 
 
 def _widen(pipe: int) -> None:
-    """Let a pipe hold more, where the system has a way and a right to it."""
+    """Let a pipe buffer more, if the system can and allows it."""
     with suppress(AttributeError, OSError):
         fcntl.fcntl(pipe, fcntl.F_SETPIPE_SZ, _PIPE)

@@ -1,7 +1,8 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""The process that writes live recordings: takes operations from its standard input until that ends, and completes every file then.
+"""The process that writes live recordings.
 
-Ctrl-C and SIGTERM are left to the process that feeds this one; its end, of whatever kind, ends the input.
+It reads operations from its standard input until that ends, and then completes every file.  Ctrl-C and SIGTERM are left to the process that feeds
+it; when that process ends in whatever way, so does the input.
 """
 
 import json
@@ -16,29 +17,29 @@ from collections.abc import Iterator
 from types import SimpleNamespace
 from typing import BinaryIO
 
-from bearing_sim.sample import sample_dtype
-from bearing_sim.sinks.mcap_sink import McapSink
-from bearing_sim.sinks.ros_types import load_message_types
+from bearing_sim.messages.ros_types import load_message_types
+from bearing_sim.model.sample import sample_dtype
+from bearing_sim.recording.writer import McapSink
 
 
 def main() -> None:
-    """Write what comes on the standard input, and report what becomes of it on the standard output."""
+    """Serve the operations on the standard input, and report on the standard output."""
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)
     reports = os.dup(1)
-    os.dup2(2, 1)  # whatever a library prints is no report
+    os.dup2(2, 1)  # keeps what a library prints out of the reports
     load_message_types()
-    desk = Desk(reports)
+    server = RecorderServer(reports)
     for operations in frames(sys.stdin.buffer):
         for number, name, arguments in operations:
-            desk.do(number, name, arguments)
-        desk.tell_news()
-    desk.close()
-    os._exit(0)  # nothing is left to be done, and the process that ends this one waits for it
+            server.do(number, name, arguments)
+        server.report_news()
+    server.close()
+    os._exit(0)  # nothing is left to do, and the feeding process waits
 
 
 def frames(stream: BinaryIO) -> Iterator[list]:
-    """Yield what `bearing_sim.sinks.recorder` sends, until the stream ends, in the middle of something where the feeding process was killed."""
+    """Yield the lists of operations that `bearing_sim.recording.recorder` sends, until the stream ends, perhaps within one."""
     while len(head := stream.read(4)) == 4:
         (count,) = struct.unpack("<I", head)
         lengths = stream.read(8 * count)
@@ -52,39 +53,39 @@ def frames(stream: BinaryIO) -> Iterator[list]:
         yield pickle.loads(parts[0], buffers=parts[1:])
 
 
-class Desk:
-    """The recordings of this process by number; each has faults of its own.
+class RecorderServer:
+    """The recordings of this process by number; an error of one does not affect the others.
 
     Parameters
     ----------
-    reports : descriptor that reports go to, a line of JSON each.
+    reports : descriptor for reports, one line of JSON each.
     """
 
     def __init__(self, reports: int):
-        self._reports, self._telling = reports, threading.Lock()
+        self._reports, self._reporting = reports, threading.Lock()
         self._sinks: dict[int, McapSink] = {}
-        self._faulty: set[int] = set()
+        self._failed: set[int] = set()
         self._closing: list[threading.Thread] = []
 
     def do(self, number: int, name: str, arguments: tuple) -> None:
-        """Open or close a recording, or call a method of its sink; the first fault is told, and what comes after it left out."""
+        """Open or close a recording, or call a method of its sink; after the first error, which is reported, the recording gets nothing more."""
         try:
             if name == "open":
                 path, scene, start_ns, options = arguments
                 self._sinks[number] = McapSink(path, scene, start_ns, **options)
-                self._tell(number, opened=True)
+                self._report(number, opened=True)
             elif name == "close":
                 self._close(number)
-            elif number in self._sinks and number not in self._faulty:
+            elif number in self._sinks and number not in self._failed:
                 _apply(self._sinks[number], name, arguments)
-        except Exception as fault:  # even a fault of the program shall not end the other recordings
-            self._faulty.add(number)
-            self._tell(number, fault=_described(fault), **({"closed": True} if name == "open" else {}))
+        except Exception as error:  # even a programming error must not end the other recordings
+            self._failed.add(number)
+            self._report(number, error=_described(error), **({"closed": True} if name == "open" else {}))
 
-    def tell_news(self) -> None:
-        """Pass on what happened to files."""
+    def report_news(self) -> None:
+        """Report what happened to files."""
         for number, sink in list(self._sinks.items()):
-            self._tell_news_of(number, sink)
+            self._report_news_of(number, sink)
 
     def close(self) -> None:
         """Complete what is not complete yet."""
@@ -94,7 +95,7 @@ class Desk:
             thread.join()
 
     def _close(self, number: int) -> None:
-        """Complete a recording on a thread of its own: its disk may be slow, and the other recordings shall not wait for it."""
+        """Complete a recording on a thread of its own, so that the other recordings do not wait for its disk."""
         sink = self._sinks.pop(number, None)
         if sink is None:  # it could not be opened
             return
@@ -105,21 +106,21 @@ class Desk:
     def _complete(self, number: int, sink: McapSink) -> None:
         try:
             sink.close()
-        except Exception as fault:
-            self._tell(number, fault=_described(fault))
-        self._tell_news_of(number, sink)
-        self._tell(number, closed=True)
+        except Exception as error:
+            self._report(number, error=_described(error))
+        self._report_news_of(number, sink)
+        self._report(number, closed=True)
 
-    def _tell_news_of(self, number: int, sink: McapSink) -> None:
+    def _report_news_of(self, number: int, sink: McapSink) -> None:
         if news := sink.news():
-            self._tell(number, news=[[level.name, code, text] for level, code, text in news])
+            self._report(number, news=[[level.name, kind, text] for level, kind, text in news])
 
-    def _tell(self, number: int, **told) -> None:
-        with self._telling:
+    def _report(self, number: int, **report) -> None:
+        with self._reporting:
             try:
-                os.write(self._reports, json.dumps({"recording": number, **told}).encode() + b"\n")
+                os.write(self._reports, json.dumps({"recording": number, **report}).encode() + b"\n")
             except OSError:
-                pass  # nobody listens any more: the feeding process was killed
+                pass  # the feeding process was killed
 
 
 def _apply(sink: McapSink, name: str, arguments: tuple) -> None:
@@ -133,12 +134,12 @@ def _apply(sink: McapSink, name: str, arguments: tuple) -> None:
         getattr(sink, name)(*arguments)
 
 
-def _described(fault: Exception) -> list:
-    if isinstance(fault, OSError):
-        return [fault.errno, f"{fault.strerror or fault}" + (f": {fault.filename}" if fault.filename else "")]
-    if isinstance(fault, ValueError):
-        return [None, str(fault)]
-    return [None, f"a program fault: {''.join(traceback.format_exception(fault, limit=-3)).strip()}"]
+def _described(error: Exception) -> list:
+    if isinstance(error, OSError):
+        return [error.errno, f"{error.strerror or error}" + (f": {error.filename}" if error.filename else "")]
+    if isinstance(error, ValueError):
+        return [None, str(error)]
+    return [None, f"programming error: {''.join(traceback.format_exception(error, limit=-3)).strip()}"]
 
 
 if __name__ == "__main__":

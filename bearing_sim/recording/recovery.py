@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Recover an MCAP file whose writer was killed, and say what is in an MCAP file and how sound it is."""
+"""Recover an MCAP file whose writer was killed, and report what an MCAP file contains and whether it is whole."""
 
 import math
 import os
@@ -7,29 +7,24 @@ from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import BinaryIO
 
-from mcap.records import Attachment, Channel, Header, Message, Metadata, Schema
-from mcap.writer import CompressionType, Writer
+from bearing_sim.recording.bag import ACTIVE, Part, RecordingError, TopicCount, bag_metadata
+from bearing_sim.recording.mcap_format import PROFILE, Attachment, Channel, Header, Message, Metadata, Schema
+from bearing_sim.recording.mcap_reader import McapReader
+from bearing_sim.recording.mcap_writer import McapWriter
 
-from bearing_sim.mcap_stream import Salvage
-from bearing_sim.sinks.bag_metadata import Part, TopicCount, part_metadata
-
-_CHUNK_SIZE = 64 * 1024  # [byte]
 _BAG = "rosbag2"
-
-
-class RecoveryError(ValueError):
-    """A file out of which nothing can be recovered, or a target that exists."""
 
 
 @dataclass
 class Contents:
-    """What an MCAP file holds.
+    """What an MCAP file contains.
 
     Attributes
     ----------
     path, size : the file and its length [byte].
-    profile, library : what its writer said of itself.
+    profile, library : what its header says about its writer.
     types : message type by topic; ``messages`` their number, ``hashes`` their type hashes, likewise.
     metadata : metadata records by name.
     attachments : number of attachments.
@@ -68,17 +63,17 @@ class Contents:
 
 
 def contents(path: str | Path, progress: Callable[[float], None] = lambda done: None) -> Contents:
-    """Read an MCAP file from end to end, checksums included, and return what it holds.
+    """Read an MCAP file from end to end, verify its checksums, and return what it contains.
 
     Parameters
     ----------
     path : the file, finished or not.
-    progress : called now and then with the share that was read.
+    progress : called repeatedly with the fraction that was read.
 
     Raises
     ------
-    RecoveryError
-        It is no MCAP file.
+    RecordingError
+        It is not an MCAP file.
     OSError
         It cannot be read.
     """
@@ -86,37 +81,37 @@ def contents(path: str | Path, progress: Callable[[float], None] = lambda done: 
 
 
 def recover(source: str | Path, target: str | Path, progress: Callable[[float], None] = lambda done: None) -> Contents:
-    """Write all that can be read of an MCAP file into a sound one; returns what was found.
+    """Write all that can be read of an MCAP file into a sound one; return what was found.
 
-    Messages keep their bytes, times and order; a damaged chunk is left out and counted.  What a ROS 2 recorder writes at the
-    end, the metadata of the bag, is made anew where it is missing.
+    Messages keep their bytes, times and order; a damaged chunk is left out and counted.  The metadata of the bag, which a ROS 2 recorder
+    writes at the end, is rebuilt if it is missing.
 
     Parameters
     ----------
     source : the file, finished or not.
     target : must not exist.
-    progress : called now and then with the share that was read.
+    progress : called repeatedly with the fraction that was read.
 
     Raises
     ------
-    RecoveryError
-        The source is no MCAP file or holds nothing complete, or the target exists.
+    RecordingError
+        The source is not an MCAP file or contains nothing complete, or the target exists.
     OSError
         A file cannot be read or written.
     """
     source, target = Path(source), Path(target)
-    draft = target.with_name(target.name + ".active")
+    draft = target.with_name(target.name + ACTIVE)
     for taken in (target, draft):
         if taken.exists():
-            raise RecoveryError(f"{taken} exists; recover into another file")
-    _salvage(source)
+            raise RecordingError(f"{taken} exists; recover into another file")
+    McapReader(source)  # before a draft is made
     try:
         with open(draft, "xb") as stream:
-            copy = _Copy(Writer(stream, chunk_size=_CHUNK_SIZE, compression=CompressionType.ZSTD))
+            copy = _Copy(stream)
             found = _walk(source, progress, copy.take)
             if not found.messages and not found.metadata:
-                raise RecoveryError(f"{source}: nothing complete in its {found.size} bytes")
-            if found.profile == "ros2" and _BAG not in found.metadata:
+                raise RecordingError(f"{source}: nothing complete in its {found.size} bytes, so there is nothing to recover")
+            if found.profile == PROFILE and _BAG not in found.metadata:
                 copy.writer.add_metadata(_BAG, {"serialized_metadata": _bag_metadata(found, target.name)})
             copy.writer.finish()
         os.replace(draft, target)
@@ -129,52 +124,45 @@ def recover(source: str | Path, target: str | Path, progress: Callable[[float], 
 class _Copy:
     """Writes records into another file, where schemas and channels have other numbers."""
 
-    def __init__(self, writer: Writer):
-        self.writer = writer
+    def __init__(self, stream: BinaryIO):
+        self._stream = stream
         self._schemas: dict[int, int] = {0: 0}
         self._channels: dict[int, int] = {}
-        self._started = False
+        self._writer: McapWriter | None = None
+
+    @property
+    def writer(self) -> McapWriter:
+        """What writes the other file; with a header of its own if that of the source was damaged."""
+        if self._writer is None:
+            self._writer = McapWriter(self._stream, library="")
+        return self._writer
 
     def take(self, record) -> None:
         if isinstance(record, Header):
-            self.writer.start(profile=record.profile, library=record.library)
-            self._started = True
-            return
-        if not self._started:  # the header itself was damaged
-            self.writer.start(profile="ros2")
-            self._started = True
-        if isinstance(record, Message):
-            self.writer.add_message(self._channels[record.channel_id], record.log_time, record.data, record.publish_time, record.sequence)
+            self._writer = self._writer or McapWriter(self._stream, record.profile, record.library)
+        elif isinstance(record, Message):
+            self.writer.add_message(record._replace(channel_id=self._channels[record.channel_id]))
         elif isinstance(record, Schema) and record.id not in self._schemas:
-            self._schemas[record.id] = self.writer.register_schema(record.name, record.encoding, record.data)
+            self._schemas[record.id] = self.writer.add_schema(record.name, record.encoding, record.data)
         elif isinstance(record, Channel) and record.id not in self._channels:
             schema = self._schemas.get(record.schema_id, 0)
-            self._channels[record.id] = self.writer.register_channel(record.topic, record.message_encoding, schema, record.metadata)
+            self._channels[record.id] = self.writer.add_channel(record.topic, record.message_encoding, schema, record.metadata)
         elif isinstance(record, Metadata):
             self.writer.add_metadata(record.name, record.metadata)
         elif isinstance(record, Attachment):
-            self.writer.add_attachment(record.create_time, record.log_time, record.name, record.media_type, record.data)
-
-
-def _salvage(path: Path) -> Salvage:
-    salvage = Salvage(path)
-    if not salvage.is_mcap:
-        raise RecoveryError(f"{path}: not an MCAP file ({salvage.size} bytes)")
-    return salvage
+            self.writer.add_attachment(record)
 
 
 def _walk(path: Path, progress: Callable[[float], None], take: Callable) -> Contents:
-    """Hand every record that can be read, and be understood, to ``take``; return what there is."""
-    salvage = _salvage(path)
-    found = Contents(path, salvage.size)
-    schemas: dict[int, str] = {}
-    topics: dict[int, str] = {}
+    """Hand every record that can be read and understood to ``take``; return what there is."""
+    reader = McapReader(path)
+    found = Contents(path, reader.size)
     newest: dict[int, int] = {}
     orphans, first, last = 0, math.inf, 0
-    for record in salvage:
+    for record in reader:
         if isinstance(record, Message):
-            topic, latest = topics.get(record.channel_id), newest.get(record.channel_id, 0)
-            if topic is None:  # its channel was told in a damaged chunk
+            topic, latest = reader.topics.get(record.channel_id), newest.get(record.channel_id, 0)
+            if topic is None:  # its channel was described in a damaged chunk
                 orphans += 1
                 continue
             found.messages[topic] += 1
@@ -184,23 +172,20 @@ def _walk(path: Path, progress: Callable[[float], None], take: Callable) -> Cont
             last = max(last, record.log_time)
         elif isinstance(record, Header):
             found.profile, found.library = record.profile, record.library
-        elif isinstance(record, Schema):
-            schemas[record.id] = record.name
         elif isinstance(record, Channel):
-            topics[record.id] = record.topic
-            found.types[record.topic] = schemas.get(record.schema_id, "")
+            found.types[record.topic] = reader.types[record.topic]
             found.hashes[record.topic] = record.metadata.get("topic_type_hash", "")
         elif isinstance(record, Metadata):
             found.metadata[record.name] = record.metadata
         elif isinstance(record, Attachment):
             found.attachments += 1
         take(record)
-        progress(salvage.read / max(salvage.size, 1))
+        progress(reader.read / max(reader.size, 1))
     found.first_ns, found.last_ns = (int(first), last) if found.messages else (0, 0)
-    found.damaged, found.is_finished, found.ends = salvage.damaged + orphans, salvage.is_finished, salvage.ends
+    found.damaged, found.is_finished, found.ends = reader.damaged + orphans, reader.is_finished, reader.ends
     return found
 
 
 def _bag_metadata(found: Contents, name: str) -> str:
     counts = [TopicCount(topic, kind, found.hashes[topic], found.messages[topic]) for topic, kind in found.types.items()]
-    return part_metadata(Part(name, found.first_ns, found.last_ns, found.messages.total()), counts, {"recovered": "true"})
+    return bag_metadata([Part(name, found.first_ns, found.last_ns, found.messages.total())], [counts], {"recovered": "true"})

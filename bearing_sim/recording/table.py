@@ -1,7 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""A recording as one table: a row for each sample, a column for each observable, and one for each roller where rollers have their own.
+"""A recording as one table: a row for each sample, and a column for each observable, or for each roller if the observable is one of rollers.
 
-Columns are called as the observables of `bearing_sim.sample`, those of rollers with the roller's number after them
+Columns are named after the observables of `bearing_sim.model.sample`, those of rollers with the roller's number after them
 (``inner_load_07``).  Parquet keeps unit and meaning of each column in the schema; CSV has the unit in the header, such as
 ``shaft_speed [rad/s]``.  Besides ``time`` there is ``stamp``, the wall time.
 """
@@ -15,20 +15,20 @@ import pyarrow as pa
 import pyarrow.csv
 import pyarrow.parquet
 
-from bearing_sim.recording_reader import Recording
-from bearing_sim.sample import OBSERVABLES
-from bearing_sim.scene_file import did_you_mean
+from bearing_sim.model.sample import OBSERVABLES
+from bearing_sim.recording.reader import Recording
+from bearing_sim.scene.loader import did_you_mean
 
 
 class Excerpt(NamedTuple):
-    """What of a recording goes into a table.
+    """The part of a recording that goes into a table.
 
     Attributes
     ----------
-    columns : names of observables; all where empty.
-    rollers : whether observables of single rollers are among them.
-    every : one sample of so many.
-    first, last : simulated times between which samples are taken [s].
+    columns : names of observables; empty for all.
+    rollers : whether to include observables of single rollers.
+    every : keep one sample in this many.
+    first, last : simulated times between which samples are kept [s].
     """
 
     columns: tuple[str, ...] = ()
@@ -39,7 +39,7 @@ class Excerpt(NamedTuple):
 
 
 class TableError(ValueError):
-    """An excerpt that names what is not there."""
+    """An excerpt that names an unknown observable, or a time span without samples."""
 
 
 WHOLE = Excerpt()
@@ -52,13 +52,13 @@ def write_csv(recording: Recording, path: Path, excerpt: Excerpt = WHOLE, progre
     ----------
     recording : of a run.
     path : the file; replaced if it exists.
-    excerpt : what of the recording.
-    progress : called now and then with the time that has been reached [s].
+    excerpt : the part to write.
+    progress : called repeatedly with the time reached [s].
 
     Raises
     ------
     TableError
-        The excerpt names no observable, or no sample lies in it.
+        The excerpt names an unknown observable, or contains no sample.
     """
     schema = _schema(recording, excerpt, units_in_names=True)
     with pa.OSFile(str(path), "wb") as stream, pa.csv.CSVWriter(stream, schema) as writer:

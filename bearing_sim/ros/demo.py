@@ -1,33 +1,42 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""The demonstration: the node on the bundled mission, with a player publishing the inputs on real topics.
+"""The demonstration: the node on the bundled mission, with a player that publishes the inputs, a recording, a view and a summary.
 
-Run by ``launch_scripts/demo.sh`` or ``python -m bearing_sim.ros.demo``.  Everything stays on this machine's loopback
-interface, in a ROS domain of its own.
+Run it with ``launch_scripts/demo.sh`` or ``python -m bearing_sim.ros.demo``.  Everything stays on this machine's loopback interface, in
+a ROS domain of its own.
 """
 
 import ctypes
+import math
 import os
 import random
+import shlex
 import signal
 import subprocess
 import sys
 import time
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 import click
+import numpy as np
 
-from bearing_sim.ros.summary import Summary, summarize
-from bearing_sim.scene_file import SceneError, load_scene
+from bearing_sim.messages import topics
+from bearing_sim.messages.cdr_layout import typestore
+from bearing_sim.messages.events import Event, Level
+from bearing_sim.recording.mcap_format import Message
+from bearing_sim.recording.mcap_reader import McapReader
+from bearing_sim.recording.reader import Recording
+from bearing_sim.scene.loader import SceneError, load_scene
 
-_DOMAINS = range(60, 100)  # above what people pick by hand, below where ports collide with those the system hands out
+_DOMAINS = range(60, 100)  # above the usual choices of users, below where ports collide with ephemeral ports
 _NODE_ENDS_WITHIN = 30.0  # [s]
-_PR_SET_PDEATHSIG = 1  # of Linux' prctl
+_PR_SET_PDEATHSIG = 1  # Linux: prctl
 
 
 class DemoFailed(Exception):
-    """The demonstration did not come to its end; the message says what happened."""
+    """The demonstration failed; the message says what happened."""
 
 
 class Demo:
@@ -35,7 +44,7 @@ class Demo:
 
     Parameters
     ----------
-    folder : where mission, recording, view and log go; made if absent.
+    folder : for mission, recording, view and log; created if absent.
     scene : bundled scene or scene file.
     overrides : scene fields to change, each ``FIELD=VALUE``.
     """
@@ -47,33 +56,32 @@ class Demo:
         domain = os.environ.get("BEARING_SIM_DEMO_DOMAIN_ID") or str(random.SystemRandom().choice(_DOMAINS))
         self._environment = {**os.environ, "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", "ROS_DOMAIN_ID": domain}
 
-    def run(self, mission: Path) -> Summary:
-        """Play a mission to a node and return what came of it.
+    def run(self, mission: Path) -> None:
+        """Play a mission to a node, record it and write the view.
 
         Raises
         ------
         DemoFailed
-            Node or player ended otherwise than they should.
+            The node or the player failed.
         """
         self.folder.mkdir(parents=True, exist_ok=True)
         with self._node() as node:
-            click.echo(f"bearing_node runs (log: {self.log}); on first use its code is compiled, which takes up to two minutes", err=True)
+            click.echo(f"bearing_node is running (log: {self.log}); on first use it compiles its code, which takes up to two minutes", err=True)
             self._play(mission, node)
             self._end(node)
         click.echo("writing the view", err=True)
-        self._check("bearing_sim.cli", "view", str(self.recording), "-o", str(self.view), "--no-open")
-        return summarize(self.recording)
+        self._run_to_end("bearing_sim.cli", "view", str(self.recording), "-o", str(self.view), "--no-open")
 
     def write_mission(self, duration: float) -> Path:
         """Write the synthetic mission and return its path."""
         path = self.folder / "mission.mcap"
         self.folder.mkdir(parents=True, exist_ok=True)
-        self._check("bearing_sim.cli", "mission", "-o", str(path), "--duration", str(duration))
+        self._run_to_end("bearing_sim.cli", "mission", "-o", str(path), "--duration", str(duration))
         return path
 
     @contextmanager
     def _node(self) -> Iterator[subprocess.Popen]:
-        # One level throughout, so that every demonstration shows the same; nor is a second level compiled beside a first start.
+        # Without governor: every demonstration shows the same level, and a first start does not compile another one.
         parameters = {"scene": self._scene, "record": str(self.recording), "governor": "false"}
         if self._overrides:
             parameters["overrides"] = "[" + ", ".join(f"'{text}'" for text in self._overrides) + "]"
@@ -105,29 +113,29 @@ class Demo:
             raise DemoFailed(f"bearing_node left no {self.recording}:\n{_tail(self.log)}")
 
     def _start(self, module: str, *arguments: str, **streams) -> subprocess.Popen:
-        # A session of their own: Ctrl-C reaches this process alone, which then ends the others in order, each by one signal.
+        # In its own session: Ctrl-C reaches this process alone, which then ends the others in order, each by one signal.
         return subprocess.Popen(
             [sys.executable, "-m", module, *arguments], env=self._environment, start_new_session=True, preexec_fn=_end_with_parent, **streams
         )
 
-    def _check(self, module: str, *arguments: str) -> None:
-        done = self._start(module, *arguments, stdout=subprocess.DEVNULL)
+    def _run_to_end(self, module: str, *arguments: str) -> None:
+        process = self._start(module, *arguments, stdout=subprocess.DEVNULL)
         try:
-            done.wait()
+            process.wait()
         finally:
-            _stop(done)
-        if done.returncode != 0:
-            raise DemoFailed(f"{' '.join(arguments[:1])} ended with code {done.returncode}")
+            _stop(process)
+        if process.returncode != 0:
+            raise DemoFailed(f"{arguments[0]} ended with code {process.returncode}")
 
 
 def _end_with_parent() -> None:
-    """Let the kernel end this process in order when the demonstration is killed by force: a node left behind would record for ever."""
+    """Have the kernel end this process when the demonstration is killed: an orphaned node would record for ever."""
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
 
 
 def _stop(process: subprocess.Popen) -> None:
-    """End a process in order, by force only if it does not."""
+    """End a process, by force if it does not end by itself."""
     if process.poll() is None:
         process.terminate()
     try:
@@ -141,26 +149,69 @@ def _tail(log: Path, lines: int = 15) -> str:
     return "\n".join(log.read_text(errors="replace").splitlines()[-lines:])
 
 
+def summary(path: Path) -> str:
+    """Return the key figures of a recorded run as a table of text.
+
+    Raises
+    ------
+    RecordingError
+        The file is not a recording of a run.
+    """
+    recording, blocks, warnings = Recording(path), [], Counter()
+    for item in recording:
+        if not isinstance(item, Event):
+            blocks.append(item)
+        elif item.level > Level.OK and item.kind != "condition":
+            warnings[item.kind] += 1
+
+    def column(name: str) -> np.ndarray:
+        return np.concatenate([block[name] for block in blocks])
+
+    slip, speed = 100.0 * column("cage_slip"), np.abs(column("shaft_speed"))
+    slip = slip[np.isfinite(slip) & (speed > 0.01 * speed.max())]
+    mean, quantile, largest = (slip.mean(), np.quantile(slip, 0.95), slip.max()) if slip.size else (math.nan,) * 3
+    reports = _diagnostics(path)
+    factors = [factor for report in reports if math.isfinite(factor := float(report.get("real-time factor possible", "nan")))] or [math.nan]
+    lost = float(reports[-1].get("time lost [s]", "nan")) if reports else math.nan
+    rows = [
+        ("recorded", f"{recording.duration:.1f} s, {recording.samples} samples"),
+        ("largest shaft speed", f"{speed.max() * 30 / math.pi:.0f} rpm"),
+        ("cage slip while turning", f"mean {mean:.2f} %, 95 % quantile {quantile:.2f} %, largest {largest:.2f} %"),
+        ("life at the worst condition", f"{column('modified_rating_life').min():.4g} h"),
+        ("life used", f"{100 * column('damage').max():.3g} %"),
+        ("real time", f"{lost:.2f} s skipped; speed of the solver alone: median {np.median(factors):.1f}, minimum {min(factors):.1f} x real time"),
+        ("warnings and errors", ", ".join(f"{kind} ({count} times)" for kind, count in warnings.items()) or "none"),
+    ]
+    width = max(len(name) for name, _ in rows)
+    return "\n".join(f"{name:<{width}}  {value}" for name, value in rows)
+
+
+def _diagnostics(path: Path) -> list[dict[str, str]]:
+    """Return the values of all diagnostics reports in a finished recording."""
+    topic, ros_type = topics.DIAGNOSTICS
+    reports, reader = [], McapReader(path)
+    for record in reader:
+        if isinstance(record, Message) and reader.topics[record.channel_id] == f"/{topic}":
+            report = typestore().deserialize_cdr(record.data, ros_type)
+            if report.status[0].values:
+                reports.append({pair.key: pair.value for pair in report.status[0].values})
+    return reports
+
+
 def _has_display() -> bool:
     return sys.platform in ("darwin", "win32") or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
 
 
 def _show(view: Path, opens: bool) -> None:
-    """Open the view, or say how to."""
+    """Open the view, or print the command that opens it."""
     rerun = Path(sys.executable).with_name("rerun")
     command = [str(rerun) if rerun.exists() else "rerun", str(view)]
     if opens:
         subprocess.Popen(command, start_new_session=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        click.echo("the recording opens in rerun; to open it again:")
+        click.echo("the view opens in rerun; to open it again:")
     else:
-        click.echo("open the recording with:")
-    click.echo(f"  {_shell(command)}")
-
-
-def _shell(command: list[str]) -> str:
-    import shlex
-
-    return shlex.join(command)
+        click.echo("open the view with:")
+    click.echo(f"  {shlex.join(command)}")
 
 
 def _interrupt(*_) -> None:
@@ -168,33 +219,33 @@ def _interrupt(*_) -> None:
 
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
-@click.option("--out", type=click.Path(path_type=Path), default=Path("runs"), show_default=True, help="Folder of runs; each gets one of its own.")
+@click.option("--out", type=click.Path(path_type=Path), default=Path("runs"), show_default=True, help="Folder for runs, each in its own subfolder.")
 @click.option("--scene", default="deng2017_table1", show_default=True, help="Bundled scene or scene file.")
-@click.option("--set", "overrides", multiple=True, metavar="FIELD=VALUE", help="Change a field of the scene; may be repeated.")
+@click.option("--set", "overrides", multiple=True, metavar="FIELD=VALUE", help="Change a field of the scene; can be repeated.")
 @click.option("--mission", type=click.Path(path_type=Path, exists=True), help="Input log to play instead of the bundled mission.")
 @click.option("--duration", type=click.FloatRange(1.0, 3600.0), default=60.0, show_default=True, help="Length of the bundled mission [s].")
-@click.option("--open/--no-open", "opens", default=None, help="Open the recording in rerun [default: when there is a display].")
+@click.option("--open/--no-open", "opens", default=None, help="Open the view in rerun [default: if there is a display].")
 def command(out, scene, overrides, mission, duration, opens):
-    """Run the node on the bundled synthetic mission, record it, and show what came of it."""
+    """Run the node on the bundled synthetic mission, record it, and show the results."""
     try:
         load_scene(scene, overrides)
-    except SceneError as fault:
-        click.echo(f"demo: {fault}", err=True)
+    except SceneError as error:
+        click.echo(f"demo: {error}", err=True)
         sys.exit(2)
     demo = Demo(_run_folder(out), scene, overrides)
     before = {number: signal.signal(number, _interrupt) for number in (signal.SIGTERM, signal.SIGHUP)}
     try:
-        summary = demo.run(mission or demo.write_mission(duration))
-    except DemoFailed as fault:
-        click.echo(f"demo: {fault}", err=True)
+        demo.run(mission or demo.write_mission(duration))
+    except DemoFailed as error:
+        click.echo(f"demo: {error}", err=True)
         sys.exit(1)
     except KeyboardInterrupt:
-        click.echo(f"demo: interrupted; what was recorded is in {demo.folder}", err=True)
+        click.echo(f"demo: interrupted; recorded data is in {demo.folder}", err=True)
         sys.exit(130)
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
-    click.echo(summary.table())
+    click.echo(summary(demo.recording))
     click.echo(f"recording: {demo.recording}")
     _show(demo.view, _has_display() if opens is None else opens)
 

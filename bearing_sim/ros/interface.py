@@ -1,53 +1,186 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""The ROS doors of one bearing: its topics, services, diagnostics and recordings, in front of its `LiveModel`."""
+"""The ROS interface of one bearing: its topics, services, diagnostics and recordings, in front of its live model."""
 
 import dataclasses
 import subprocess
 import time
+from collections.abc import Callable
+from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
 
-from rclpy.event_handler import SubscriptionEventCallbacks
+from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.lifecycle import LifecycleNode
-from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.node import Node
+from rclpy.publisher import Publisher
+from rclpy.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.subscription import Subscription
 from std_srvs.srv import SetBool, Trigger
 
-from bearing_sim import topics
-from bearing_sim.effects import hint
-from bearing_sim.events import Event, Level
-from bearing_sim.ros.cheaper_levels import levels_to_compile, start_compiling
-from bearing_sim.ros.event_log import log_event
-from bearing_sim.ros.inputs import InputReader, Refused
-from bearing_sim.ros.messages import message_class
-from bearing_sim.ros.outputs import Outputs, Soon
-from bearing_sim.ros.parameters import OIL_TEMPERATURE, BearingSettings, NodeSettings, scene_value
+from bearing_sim.messages import topics
+from bearing_sim.messages.events import Event, Level
+from bearing_sim.messages.sample_messages import SampleMessages, message_templates
+from bearing_sim.messages.topics import Topic
+from bearing_sim.monitoring.health import Condition
+from bearing_sim.ros.messages import InputReader, Refused, message, message_class
+from bearing_sim.ros.parameters import OIL_TEMPERATURE, BearingSettings, NodeSettings, follows_clock, thresholds_in
 from bearing_sim.ros.recordings import fresh_path, limits_of, open_lossless_recording, open_recording, open_view, prepare
-from bearing_sim.ros.sim_time import OUTPUT_QOS, follows_clock, subscribe_to_all
-from bearing_sim.ros.warm_up import WarmUp
+from bearing_sim.ros.warm_up import WarmUp, levels_to_compile, start_compiling
 from bearing_sim.runtime.governor import Governor
-from bearing_sim.runtime.health import Condition
 from bearing_sim.runtime.live import LiveModel, governor_of, warmed_up
 from bearing_sim.runtime.sim_time import SimTimeModel
-from bearing_sim.scene import Scene
-from bearing_sim.scene_file import load_scene
-from bearing_sim.scene_monitoring import with_thresholds
+from bearing_sim.scene.fidelity import hint
+from bearing_sim.scene.loader import load_scene
+from bearing_sim.scene.scene import Scene
+from bearing_sim.scene.thresholds import with_thresholds
 from bearing_sim.simulation import IntegrationError, Simulation
 
 _DIAGNOSTICS_PERIOD = 1.0  # [s] (REP 107)
+_SCALAR = "std_msgs/msg/Float64"
 STATE_QOS = QoSProfile(depth=10, reliability=ReliabilityPolicy.RELIABLE)
-# As sensor data, so that any publisher matches, but deeper: a recording shall not miss inputs when the machine stalls.
+# Like sensor data, so that any publisher matches, but deeper: a recording must not miss inputs when the machine stalls.
 _INPUT_QOS = QoSProfile(depth=200, reliability=ReliabilityPolicy.BEST_EFFORT)
+# With sim time, a lost message would make this run differ from the recording it follows.
+_LOSSLESS_QOS = QoSProfile(history=HistoryPolicy.KEEP_ALL, reliability=ReliabilityPolicy.RELIABLE)
+_LOSSY_QOS = QoSProfile(history=HistoryPolicy.KEEP_ALL, reliability=ReliabilityPolicy.BEST_EFFORT)
+_SIM_TIME_OUTPUT_QOS = QoSProfile(depth=1000, reliability=ReliabilityPolicy.RELIABLE)  # one step of /clock may bring many outputs at once
 
 
-class BearingDoors:
-    """One bearing of a node, from the node's configure to its cleanup.
-
-    All methods belong to the node's thread but for `warm_up`.
+def subscribe_to_all(
+    node: Node, kind: type, topic: str, callback: Callable, replace: Callable[[Subscription], None], report_loss: Callable[[str], None]
+) -> Subscription:
+    """Return a subscription to serialised messages that loses none where its publishers are reliable.
 
     Parameters
     ----------
-    node : on which topics and services are made.
-    settings : of this bearing; one with a name has topics and services below it.
+    kind, topic, callback : as for ``create_subscription``.
+    replace : called with the subscription that takes over when a publisher offers best effort only; messages may then be lost.
+    report_loss : called with a text when that happens, and when messages were lost.
+    """
+
+    def fall_back(_) -> None:
+        if fallen:
+            return
+        fallen.append(True)
+        report_loss(f"{topic}: a publisher offers best effort only; if messages are lost, this run differs from the recording")
+        node.destroy_subscription(subscription)
+        replace(node.create_subscription(kind, topic, callback, _LOSSY_QOS, event_callbacks=losses, raw=True))
+
+    fallen: list[bool] = []
+    losses = SubscriptionEventCallbacks(
+        message_lost=lambda info: report_loss(f"{topic}: {info.total_count} messages were lost; inputs are interpolated linearly across the gap")
+    )
+    events = SubscriptionEventCallbacks(incompatible_qos=fall_back, message_lost=losses.message_lost)
+    subscription = node.create_subscription(kind, topic, callback, _LOSSLESS_QOS, event_callbacks=events, raw=True)
+    return subscription
+
+
+class DeferredCall:
+    """Schedules an action on the thread that spins a node; requests made before it runs are merged into one.
+
+    Parameters
+    ----------
+    node : its executor runs the action.
+    action : what to run.
+    """
+
+    def __init__(self, node: Node, action: Callable[[], None]):
+        self._node, self._action, self._is_pending = node, action, False
+
+    def __call__(self) -> None:
+        """Request the action, from any one thread; a request is dropped while the node has no executor."""
+        executor = self._node.executor
+        if executor is None or self._is_pending:
+            return
+        self._is_pending = True
+        executor.create_task(self._run)
+
+    def _run(self) -> None:
+        self._is_pending = False  # first, so that a request made while the action runs is not missed
+        self._action()
+
+
+class Outputs:
+    """The output topics of a bearing, and the residual slip of a measured cage.
+
+    The serialised messages of a sample are filled with its numbers all at once, and only topics with a subscriber are published: building
+    message objects and serialising them with rclpy would cost more than the rest of the node.  QoS events are not watched; a subscriber with
+    incompatible QoS is warned on its own side.  The publishers are plain ones: there are no samples while the node is inactive, and rclpy's
+    lifecycle publishers would check the state at every message.
+
+    Parameters
+    ----------
+    node : owner of the publishers.
+    scene : of the bearing; its level determines the topics.
+    name_of : ``name_of(topic)`` returns the name under which a topic is published.
+    qos : offered QoS.
+    """
+
+    def __init__(self, node: Node, scene: Scene, name_of: Callable[[str], str], qos: QoSProfile):
+        self._node, self._name_of, self._qos = node, name_of, qos
+        self._topics, self._rollers = tuple(topics.outputs(scene).values()), scene.bearing.roller.count
+        self._publishers = [self._publisher(topic) for topic in self._topics]
+        self._borrowed = ExitStack()
+        self._sends = [_raw_publish(publisher, self._borrowed) for publisher in self._publishers]
+        self._messages: SampleMessages | None = None
+        self._residual_topic = topics.MEASUREMENTS["cage_slip_residual"]
+        self._residual = self._publisher(self._residual_topic)
+        self._subscribed: list[tuple[memoryview, Callable[[bytes], None]]] = []
+
+    def prepare(self) -> None:
+        """Lay out the messages.  To be called once before anything is published, on any thread: it takes a moment."""
+        self._messages = SampleMessages(message_templates(self._topics, self._rollers))
+
+    def update_subscribed(self) -> None:
+        """Note which topics have subscribers; asking at every message would cost a quarter of publishing it."""
+        counts = (publisher.get_subscription_count() for publisher in self._publishers)
+        self._subscribed = [(part, send) for part, send, count in zip(self._messages.parts, self._sends, counts) if count]
+
+    def publish(self, stamp_ns: int, sample) -> None:
+        """Publish a sample on the topics that had subscribers at the last `update_subscribed`."""
+        if not self._subscribed:
+            return
+        self._messages.fill(stamp_ns, sample)
+        for part, send in self._subscribed:
+            send(bytes(part))
+
+    def publish_residual(self, stamp_ns: int, residual: float) -> None:
+        """Publish the measured minus the predicted cage slip."""
+        topic = self._residual_topic
+        self._residual.publish(message(topic.ros_type, topic.message(stamp_ns, residual)))
+
+    def destroy(self) -> None:
+        """Destroy the publishers."""
+        self._borrowed.close()
+        for publisher in (*self._publishers, self._residual):
+            self._node.destroy_publisher(publisher)
+
+    def _publisher(self, topic: Topic) -> Publisher:
+        quiet = PublisherEventCallbacks(use_default_callbacks=False)
+        return self._node.create_publisher(message_class(topic.ros_type), self._name_of(topic.name), self._qos, event_callbacks=quiet)
+
+
+def _raw_publish(publisher: Publisher, borrowed: ExitStack) -> Callable[[bytes], None]:
+    """Return the function that publishes a serialised message, valid until ``borrowed`` is closed.
+
+    This is what `Publisher.publish` calls in the end.  Entering the handle once instead of at every message saves a sixth of the cost.
+    """
+    handle = publisher.handle
+    if not hasattr(handle, "publish_raw"):  # another version of rclpy
+        return publisher.publish
+    borrowed.enter_context(handle)
+    return handle.publish_raw
+
+
+class BearingInterface:
+    """One bearing of a node, from the node's configure to its cleanup.
+
+    All methods belong to the node's thread, except `warm_up`.
+
+    Parameters
+    ----------
+    node : owner of topics and services.
+    settings : of this bearing; if it has a name, its topics and services are below that name.
     shared : settings of the node.
 
     Raises
@@ -59,22 +192,21 @@ class BearingDoors:
     def __init__(self, node: LifecycleNode, settings: BearingSettings, shared: NodeSettings):
         self._node, self._logger, self.settings, self._shared = node, node.get_logger(), settings, shared
         self.scene: Scene = load_scene(settings.scene, settings.scene_overrides)
-        self.live: LiveModel | None = None
-        self.fault = ""  # why the model cannot run; told until the next configure
-        self._fault_cause: Exception | None = None
+        self.live: LiveModel | SimTimeModel | None = None
+        self.error = ""  # why the model cannot run; reported until the next configure
         self._simulation: Simulation | None = None
         self._governor: Governor | None = None
-        self._joining: Governor | None = None  # made on the thread of warm_up, to be taken over
+        self._new_governor: Governor | None = None  # made on the warm-up thread, taken over at the next review
         self._compiling: subprocess.Popen | None = None
         self._last_level: Level | None = None
         self._next_report_ns = 0
         self._now_ns = node.now_ns
-        self._subscriptions = {}
+        self._subscriptions: dict[str, Subscription] = {}
         component = node.get_fully_qualified_name().lstrip("/")
         self.component = f"{component}/{settings.name}" if settings.name else component
         self.hardware_id = f"{settings.name}/{self.scene.bearing.name}" if settings.name else self.scene.bearing.name
-        self._outputs = Outputs(node, self.scene, self._topic_name, OUTPUT_QOS if follows_clock(node) else STATE_QOS)
-        self._publish_soon = Soon(node, self._publish_due)
+        self._outputs = Outputs(node, self.scene, self._topic_name, _SIM_TIME_OUTPUT_QOS if follows_clock(node) else STATE_QOS)
+        self._publish_soon = DeferredCall(node, self._publish)
         self._services = [
             node.create_service(kind, self._service_name(name), serve)
             for kind, name, serve in (
@@ -84,9 +216,9 @@ class BearingDoors:
                 (SetBool, "pause", self._serve_pause),
             )
         ]
-        self.say(f"scene {self.scene.name!r}, bearing {self.scene.bearing.name!r}, level {self.scene.level!r}: warming up")
+        self._log(f"scene {self.scene.name!r}, bearing {self.scene.bearing.name!r}, level {self.scene.level!r}: warming up")
         if cheaper := hint(self.scene):
-            self.say(cheaper)
+            self._log(cheaper)
 
     @property
     def is_warm(self) -> bool:
@@ -94,68 +226,75 @@ class BearingDoors:
         return self._simulation is not None
 
     def warm_up(self) -> None:
-        """Compile or load the model; takes seconds to minutes.  Belongs to a thread of its own, see `warm_up`."""
+        """Compile or load the model, which takes seconds to minutes; runs on the thread of `WarmUp`."""
         settings = self.settings
         try:
             prepare(bool(settings.rrd or settings.rerun_port), None if follows_clock(self._node) else self._node.recorder)
-            self._outputs.lay_out()
+            self._outputs.prepare()
             simulation = warmed_up(self.scene)
-            governs = self._shared.governor and not follows_clock(self._node)  # by sim time nothing is given up
+            governs = self._shared.governor and not follows_clock(self._node)  # with sim time no time is skipped
             if governs and levels_to_compile(self.scene):
                 self._compiling = start_compiling(self.scene)
             elif governs:
                 self._governor = governor_of(simulation)
             self._simulation = simulation
-        except IntegrationError as fault:
-            self.fault, self._fault_cause = f"the scene's own operating conditions cannot be computed: {fault}", fault
-        except Exception as fault:  # a fault of the program: told by the node, which is where people look
-            self.fault, self._fault_cause = f"the model could not be made: {fault!r}", fault
+        except IntegrationError as error:
+            self.error = f"the scene's own operating conditions cannot be computed: {error}"
+        except Exception as error:  # a programming error: reported by the node, where users look
+            self.error = f"the model could not be made: {error!r}"
 
     def open(self) -> None:
-        """Begin a run: run time 0 is now, or with sim time where the inputs begin; open recordings and subscriptions.
+        """Start a run: open recordings and subscriptions.  Run time 0 is now, or the first input with sim time.
 
         Raises
         ------
         OSError
             A recording or a view cannot be opened.
         """
-        settings = self.settings
-        # By wall time, the same as of the node's clock at a fraction of the cost.
-        self._now_ns = self._node.now_ns if follows_clock(self._node) else time.time_ns
-        self.live = self._sim_time_model() if follows_clock(self._node) else self._wall_time_model()
+        settings, shared = self.settings, self._shared
+        if follows_clock(self._node):
+            self._now_ns = self._node.now_ns
+            self.live = SimTimeModel(self.scene, self._simulation, shared.sample_rate, shared.publish_rate, shared.clock_jump_back)
+            self.live.tick(self._now_ns())
+        else:
+            self._now_ns = time.time_ns  # the node's clock without its overhead
+            self.live = LiveModel(
+                self.scene,
+                self._simulation,
+                self._now_ns(),
+                sample_rate=shared.sample_rate,
+                maximum_lag=shared.maximum_lag,
+                publish_rate=shared.publish_rate,
+                governor=self._governor if shared.governor else None,
+                due=self._publish_soon,
+                receiver=self._now_ns,
+            )
+            temperature = self.scene.lubricant.temperature
+            if self._simulation.inputs.oil_temperature != temperature:  # set while inactive, or given by the topic in the last run
+                self.live.set_oil_temperature(temperature, self._now_ns())
         if settings.record:
             self._start_recording(Path(settings.record))
         if settings.rrd or settings.rerun_port:
             self.live.open("view", lambda start_ns: open_view(self.scene, start_ns, settings.rrd, settings.rerun_port))
         for channel, topic in topics.INPUTS.items():
-            ros_type = topic.ros_type
-            if self._shared.input_type == "scalar" and "std_msgs/msg/Float64" in topics.input_types(channel):
-                ros_type = "std_msgs/msg/Float64"
-            self._subscribe(channel, ros_type)
+            self._subscribe(channel, _SCALAR if shared.input_type == "scalar" and _SCALAR in topics.input_types(channel) else topic.ros_type)
         self._subscribe(topics.MEASURED, topics.MEASUREMENTS[topics.MEASURED].ros_type)
-        self.say("ready: listening to shaft_speed and radial_load")
+        self._log("ready: listening to shaft_speed and radial_load")
         if self._compiling is not None:
-            self.say("compiling cheaper levels for the governor beside this, once for this version")
-
-    def _wall_time_model(self) -> LiveModel:
-        governor = self._governor if self._shared.governor else None
-        shared, due = self._shared, self._publish_soon
-        timing = {"sample_rate": shared.sample_rate, "maximum_lag": shared.maximum_lag, "publish_rate": shared.publish_rate}
-        return LiveModel(self.scene, self._simulation, self._node.now_ns(), **timing, governor=governor, due=due, receiver=self._now_ns)
-
-    def _sim_time_model(self) -> SimTimeModel:
-        shared = self._shared
-        model = SimTimeModel(self.scene, self._simulation, shared.sample_rate, shared.publish_rate, shared.clock_jump_back)
-        model.tick(self._node.now_ns())
-        return model
+            self._log("compiling levels of lower fidelity for the governor in the background, once for this version")
 
     def tick(self, now_ns: int) -> None:
-        """Take in a reading of /clock, where the model follows it."""
+        """Pass on a reading of /clock, if the model follows it."""
         if isinstance(self.live, SimTimeModel):
             self.live.tick(now_ns)
 
     def close(self) -> bool:
-        """End the run, complete recordings.  Returns whether the solver's thread ended; else the model must be warmed up anew."""
+        """End the run and complete recordings.
+
+        Returns
+        -------
+        whether the solver's thread ended; otherwise the model must be warmed up again.
+        """
         for subscription in self._subscriptions.values():
             self._node.destroy_subscription(subscription)
         self._subscriptions = {}
@@ -166,7 +305,7 @@ class BearingDoors:
         return stopped
 
     def destroy(self) -> bool:
-        """Take the doors away.  Returns whether the solver's thread ended."""
+        """End the run and destroy topics and services.  Returns whether the solver's thread ended."""
         stopped = self.close()
         if self._compiling is not None:
             self._compiling.kill()
@@ -177,54 +316,54 @@ class BearingDoors:
         return stopped
 
     def review(self, now_ns: int, state: Event, warm_up: WarmUp) -> None:
-        """Feed the sinks, log what is new, and report when a second has passed or the level has changed.
+        """Feed the sinks, log new events, and publish diagnostics every second and when the level changes.
 
         Parameters
         ----------
-        state : what the node's lifecycle calls for; told while the model does not run.
-        warm_up : makes a governor when its levels are compiled.
+        state : the node's lifecycle state, reported while the model does not run.
+        warm_up : makes a governor once its levels are compiled.
         """
         if self.live is None:
-            told = Event(0.0, Level.ERROR, "run.failed", self.fault) if self.fault else state
-            if self._report_is_due(told.level):
-                self._report(now_ns, Condition([told], {}))
+            event = Event(0.0, Level.ERROR, "run.failed", "", self.error) if self.error else state
+            if self._report_is_due(event.level):
+                self._report(now_ns, Condition([event], {}))
             return
         self._join_governor(warm_up)
         for event in self.live.collect(now_ns):
-            log_event(self._logger, event, self.settings.name)
-        self._outputs.look()
-        if follows_clock(self._node):  # by wall time outputs leave as they come
+            self._log_event(event)
+        self._outputs.update_subscribed()
+        if follows_clock(self._node):  # otherwise outputs are published as soon as they are due
             self._publish()
         if self._report_is_due(self.live.level):
             self._report(now_ns, self.live.condition(now_ns))
 
     def _report_is_due(self, level: Level) -> bool:
-        return level != self._last_level or time.monotonic_ns() >= self._next_report_ns  # not by /clock, which may stand still
+        return level != self._last_level or time.monotonic_ns() >= self._next_report_ns  # /clock may stand still
 
     def _report(self, now_ns: int, condition: Condition) -> None:
         """Publish the condition on /diagnostics."""
-        if self.live is not None:  # now and then is enough
+        if self.live is not None:  # counting publishers once a second is enough
             for channel, subscription in self._subscriptions.items():
-                self.live.note_senders(channel, self._node.count_publishers(subscription.topic_name))
+                self.live.note_publishers(channel, self._node.count_publishers(subscription.topic_name))
         self._last_level = condition.level
         self._next_report_ns = time.monotonic_ns() + round((_DIAGNOSTICS_PERIOD - self._node.review_period / 2) * 1e9)
-        self._node.tell(now_ns, condition, self.component, self.hardware_id)
+        self._node.publish_diagnostics(now_ns, condition, self.component, self.hardware_id)
         if self.live is not None:
             self.live.record_diagnostics(condition, now_ns)
 
-    def objection(self, changes: dict[str, object]) -> str:
-        """Return why parameters of this bearing cannot be changed so; empty where they can."""
+    def reason_to_refuse(self, changes: dict[str, object]) -> str:
+        """Return why changes of this bearing's parameters are refused; empty if they can be applied."""
         if OIL_TEMPERATURE in changes and self.live is not None and self.live.gate.accepted["oil_temperature"]:
-            return f"{OIL_TEMPERATURE}: the topic oil_temperature has given the temperature in this run, and counts instead"
+            return f"{OIL_TEMPERATURE}: the topic oil_temperature has given the temperature in this run and takes precedence"
         try:
-            with_thresholds(self.scene.thresholds, _thresholds(changes))
-        except ValueError as fault:
-            return str(fault)
+            with_thresholds(self.scene.thresholds, thresholds_in(changes))
+        except ValueError as error:
+            return str(error)
         return ""
 
     def apply(self, changes: dict[str, object]) -> None:
-        """Change parameters of this bearing from now on."""
-        if found := _thresholds(changes):
+        """Apply changes of this bearing's parameters."""
+        if found := thresholds_in(changes):
             thresholds = with_thresholds(self.scene.thresholds, found)
             self.scene = dataclasses.replace(self.scene, thresholds=thresholds)
             if self.live is not None:
@@ -232,57 +371,63 @@ class BearingDoors:
         if OIL_TEMPERATURE in changes:
             self.scene = dataclasses.replace(self.scene, lubricant=dataclasses.replace(self.scene.lubricant, temperature=changes[OIL_TEMPERATURE]))
             if self.live is not None:
-                self.live.hold_oil_temperature(changes[OIL_TEMPERATURE], self._node.now_ns())
+                self.live.set_oil_temperature(changes[OIL_TEMPERATURE], self._now_ns())
 
     def publish_at(self, rate: float) -> None:
-        """Publish so often from now on [Hz], with sim time for each simulated second."""
+        """Set the publish rate [Hz]; with sim time per simulated second."""
         self._shared = dataclasses.replace(self._shared, publish_rate=rate)
         if self.live is not None:
             self.live.publish_at(rate)
 
     def govern(self, wanted: bool, warm_up: WarmUp) -> None:
-        """Let a governor change levels from now on, made by ``warm_up`` where there is none yet, or let none."""
+        """Enable or disable the governor; ``warm_up`` makes it if there is none yet."""
         self._shared = dataclasses.replace(self._shared, governor=wanted)
         if follows_clock(self._node):
             return
         if wanted and self._governor is None and self._compiling is None and self.is_warm:
-            warm_up.ask(self._make_governor)
+            warm_up.request(self._make_governor)
         elif self.live is not None:
             self.live.govern(self._governor if wanted else None)
 
     def report_soon(self) -> None:
-        """Publish diagnostics at the next review, whenever the last were."""
+        """Publish diagnostics at the next review."""
         self._next_report_ns = 0
 
-    def say(self, text: str) -> None:
-        """Log something about this bearing."""
+    def _log(self, text: str) -> None:
         self._logger.info(f"{self.settings.name}: {text}" if self.settings.name else text)
 
-    def _publish_due(self) -> None:
-        self._publish()
-        self._node.review_if_late()
+    def _log_event(self, event: Event) -> None:
+        line = f"{self.settings.name}: {event.kind}: {event.text}" if self.settings.name else f"{event.kind}: {event.text}"
+        # rclpy refuses one line of code that logs at several severities.
+        if event.level == Level.ERROR:
+            self._logger.error(line)
+        elif event.level == Level.WARN:
+            self._logger.warning(line)
+        else:
+            self._logger.info(line)
 
     def _publish(self) -> None:
-        """Publish what is new: with sim time every output at its stamp, else the newest."""
-        if self.live is None:  # the run has ended since this was asked for
+        """Publish new outputs: the newest one, or with sim time each one at its stamp."""
+        if self.live is None:  # the run has ended since this was requested
             return
         for stamp_ns, sample in self.live.published():
             self._outputs.publish(stamp_ns, sample)
         for stamp_ns, residual in self.live.residuals():
             self._outputs.publish_residual(stamp_ns, residual)
+        self._node.review_if_late()
 
     def _subscribe(self, channel: str, ros_type: str) -> None:
         joint = self.settings.cage_joint if channel == topics.MEASURED else self.settings.joint
-        taking = partial(self._take, channel, InputReader(channel, ros_type, joint, self.settings.frame_id))
+        receive = partial(self._receive, channel, InputReader(channel, ros_type, joint, self.settings.frame_id))
         kind, name = message_class(ros_type), self._topic_name(channel)
         if follows_clock(self._node):
-            replaced = partial(self._subscriptions.__setitem__, channel)
-            self._subscriptions[channel] = subscribe_to_all(self._node, kind, name, taking, replaced, self._tell_loss)
+            replace = partial(self._subscriptions.__setitem__, channel)
+            self._subscriptions[channel] = subscribe_to_all(self._node, kind, name, receive, replace, self._report_loss)
             return
         quiet = SubscriptionEventCallbacks(use_default_callbacks=False)  # any publisher matches: nothing to watch
-        self._subscriptions[channel] = self._node.create_subscription(kind, name, taking, _INPUT_QOS, event_callbacks=quiet, raw=True)
+        self._subscriptions[channel] = self._node.create_subscription(kind, name, receive, _INPUT_QOS, event_callbacks=quiet, raw=True)
 
-    def _tell_loss(self, text: str) -> None:
+    def _report_loss(self, text: str) -> None:
         if self.live is not None:
             self.live.note_loss(text)
 
@@ -293,33 +438,34 @@ class BearingDoors:
         return f"{self.settings.name}/{name}" if self.settings.name else f"~/{name}"
 
     def _make_governor(self) -> None:
-        """Make a governor; belongs to the thread of `warm_up`."""
+        """Make a governor, on the thread of `WarmUp`."""
         try:
-            self._joining = governor_of(self._simulation)
-        except IntegrationError as fault:
-            self._logger.warning(f"no cheaper level can take over: {fault}")
+            self._new_governor = governor_of(self._simulation)
+        except IntegrationError as error:
+            self._logger.warning(f"the governor has no level of lower fidelity to use: {error}")
 
     def _join_governor(self, warm_up: WarmUp) -> None:
-        """Let the governor begin once the cheaper levels are compiled; until then time is given up where the machine is too slow."""
+        """Hand over the governor once its levels are compiled; until then a machine that is too slow skips time."""
         if self._compiling is not None and self._compiling.poll() is not None:
             self._compiling = None
-            warm_up.ask(self._make_governor)
-        if self._joining is not None:
-            self._governor, self._joining = self._joining, None
+            warm_up.request(self._make_governor)
+        if self._new_governor is not None:
+            self._governor, self._new_governor = self._new_governor, None
             if self._shared.governor:
                 self.live.govern(self._governor)
-                self.say("the cheaper levels are compiled: the governor can fall back on them")
+                self._log("levels of lower fidelity are compiled: the governor can use them")
 
-    def _take(self, channel: str, reader: InputReader, cdr: bytes) -> None:
-        if self.live is None:  # a message that was on its way when the run ended
+    def _receive(self, channel: str, reader: InputReader, cdr: bytes) -> None:
+        live = self.live
+        if live is None:  # the message was on its way when the run ended
             return
         now_ns = self._now_ns()
         try:
             values, stamp_ns, frame_id = reader.read(cdr)
-        except Refused as fault:
-            self.live.refuse(channel, fault.code, str(fault), now_ns)
+        except Refused as error:
+            live.refuse(channel, error.kind, str(error), now_ns)
             return
-        self.live.offer(channel, values, stamp_ns, now_ns, frame_id)
+        live.offer(channel, values, stamp_ns, now_ns, frame_id)
 
     def _start_recording(self, path: Path) -> None:
         def opened(start_ns: int):
@@ -327,30 +473,30 @@ class BearingDoors:
             if follows_clock(self._node):
                 sink = open_lossless_recording(path, self.scene, start_ns, limits)
             else:
-                sink = open_recording(path, self.scene, start_ns, limits, self.live.cadence, self._node.recorder)
-            self.say(f"recording {sink.path}" + (f" ({path} exists and stays as it is)" if sink.path != path else ""))
+                sink = open_recording(path, self.scene, start_ns, limits, self.live.schedule, self._node.recorder)
+            self._log(f"recording {sink.path}" + (f" ({path} exists and is kept)" if sink.path != path else ""))
             return sink
 
-        self.live.open("record", opened, anew=True)
+        self.live.open("record", opened, reopen=True)
 
     def _refused(self, response) -> bool:
-        """Fill the response where there is no run to serve; return whether so."""
+        """Return whether there is no run to serve, and fill the response if so."""
         if self.live is None:
-            response.success, response.message = False, f"not running: {self.fault or 'activate the node first, and let it warm up'}"
+            response.success, response.message = False, f"not running: {self.error or 'activate the node and wait until it has warmed up'}"
         return self.live is None
 
     def _serve_start_recording(self, _, response):
         if self._refused(response):
             return response
         if self.live.has("record"):
-            response.success, response.message = False, "a recording is going on; stop it first"
+            response.success, response.message = False, "a recording is already running; stop it first"
             return response
         name = f"run_{self.settings.name}" if self.settings.name else "run"
         path = fresh_path(Path(self.settings.record or f"recordings/{name}.mcap"))
         try:
             self._start_recording(path)
-        except OSError as fault:
-            response.success, response.message = False, str(fault)
+        except OSError as error:
+            response.success, response.message = False, str(error)
         else:
             response.success, response.message = True, str(path.resolve())
         return response
@@ -360,8 +506,8 @@ class BearingDoors:
             return response
         try:
             sink = self.live.detach("record")
-        except OSError as fault:
-            response.success, response.message = False, str(fault)
+        except OSError as error:
+            response.success, response.message = False, str(error)
         else:
             response.success = sink is not None
             response.message = f"{sink.path} is complete" if sink is not None else "there is no recording to stop"
@@ -371,17 +517,13 @@ class BearingDoors:
         if self._refused(response):
             return response
         response.success = self.live.reset()
-        late = "not done within two seconds; it is done after the running tick"
-        response.message = "state and damage are at the start" if response.success else late
+        late = "not done within two seconds; the reset follows after the running tick"
+        response.message = "state and damage are reset" if response.success else late
         return response
 
     def _serve_pause(self, request, response):
         if self._refused(response):
             return response
-        self.live.runner.pause(request.data)
+        self.live.pause(request.data)
         response.success, response.message = True, "paused" if request.data else "running"
         return response
-
-
-def _thresholds(changes: dict[str, object]) -> dict[str, object]:
-    return {name.removeprefix("thresholds."): scene_value(name, value) for name, value in changes.items() if name.startswith("thresholds.")}

@@ -1,7 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""What the launch files share: arguments made from the node's own table of parameters, and the node as launch starts it.
+"""Shared by the launch files: launch arguments from the node's table of parameters, and the action that starts the node.
 
-Only ``launch_scripts/*.launch.py`` import this: it needs launch and launch_ros of a ROS 2 installation, which pip does not have.
+Imported by ``launch_scripts/*.launch.py`` only: it needs launch and launch_ros from a ROS 2 installation, which are not on PyPI.
 """
 
 from collections.abc import Mapping
@@ -16,11 +16,11 @@ from launch_ros.parameter_descriptions import ParameterValue
 
 from bearing_sim.ros.parameters import DECLARATIONS, Declaration
 
-READY = b"ready: listening"  # as the node logs it once its topics and its viewers' port are open
+READY = b"ready: listening"  # logged by the node once its topics and the viewer's port are open
 
 
 class Argument(NamedTuple):
-    """One argument of a launch file that is no parameter of the node."""
+    """An argument of a launch file that is not a parameter of the node."""
 
     name: str
     default: str
@@ -30,19 +30,19 @@ class Argument(NamedTuple):
 
 SHARED = (
     Argument("namespace", "", "namespace of the node and its topics"),
-    Argument("parameters_file", "", "YAML file of parameters; what it says counts more than these arguments; empty for none"),
-    Argument("discovery_range", "LOCALHOST", "LOCALHOST: only this machine sees the topics; SUBNET: its network does", ("LOCALHOST", "SUBNET")),
+    Argument("parameters_file", "", "YAML file of parameters, which override these arguments; empty: none"),
+    Argument("discovery_range", "LOCALHOST", "LOCALHOST: topics are visible on this machine only; SUBNET: in its network", ("LOCALHOST", "SUBNET")),
 )
 
 
 def declared(*arguments: Argument, leave_out: tuple[str, ...] = (), **defaults: str) -> list:
-    """Return actions that declare every parameter of the node, the shared arguments and more ones.
+    """Return actions that declare all parameters of the node, the shared arguments and those of one launch file.
 
     Parameters
     ----------
-    arguments : those of one launch file alone.
-    leave_out : parameters that the launch file sets by itself.
-    defaults : other defaults than the node's, by the parameter's name.
+    arguments : of one launch file.
+    leave_out : parameters that the launch file sets itself.
+    defaults : defaults that differ from the node's, by parameter name.
     """
     parameters = [
         Argument(row.name, defaults.get(row.name, _text(row.default)), row.meaning, row.choices) for row in DECLARATIONS if row.name not in leave_out
@@ -54,12 +54,12 @@ def declared(*arguments: Argument, leave_out: tuple[str, ...] = (), **defaults: 
 
 
 def now() -> str:
-    """Return this moment for the name of a recording, so that no launch replaces what another has recorded."""
+    """Return date and time for the name of a recording, so that no launch replaces another's recording."""
     return f"{datetime.now():%Y-%m-%d_%H%M%S}"
 
 
 def value(context, name: str) -> str:
-    """Return an argument's text."""
+    """Return the text of an argument."""
     return LaunchConfiguration(name).perform(context).strip()
 
 
@@ -72,17 +72,17 @@ def bearing_node(
     sim_time: bool = False,
     **texts: str,
 ) -> Node:
-    """Return the action that starts one bearing_node, which by the node's own parameter ``autostart`` configures and activates itself.
+    """Return the action that starts a bearing_node; the node's parameter ``autostart`` makes it configure and activate itself.
 
     Parameters
     ----------
     context : of the launch.
     name : of the node.
-    namespace : where it is not the argument's.
-    on_exit : action when the process has ended.
-    fleet : where the node hosts several: their names, and of each the parameters that are its own.
+    namespace : overrides the launch argument.
+    on_exit : action to take when the process has ended.
+    fleet : for several bearings in the node: the parameters of each bearing, by its name.
     sim_time : whether the node follows /clock.
-    texts : parameters that take another value than the argument of their name.
+    texts : values that override the launch argument of the same name.
     """
     if fleet:
         texts["bearings"] = f"[{', '.join(fleet)}]"
@@ -105,9 +105,9 @@ def bearing_node(
 
 
 def _typed(row: Declaration, text: str | None) -> ParameterValue:
-    # Without its type launch reads a text as YAML: a scene that is called 1.50 would become a number.
+    # Without a type launch parses the text as YAML: a scene named 1.50 would become a number.
     kind = type(row.default)
-    kind = List[type(row.default[0])] if kind is list else kind  # noqa: UP006 - launch knows typing's lists alone
+    kind = List[type(row.default[0])] if kind is list else kind  # noqa: UP006 - launch supports typing.List only
     source = LaunchConfiguration(row.name) if text is None else TextSubstitution(text=text)
     return ParameterValue(source, value_type=kind)
 

@@ -1,17 +1,15 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """`bearing_node`: one bearing or several as a managed ROS 2 node.
 
-Subscribes to shaft speed and radial load, advances the models in real time on threads of their own, publishes cage slip, life
-and roller loads, tells their health on ``/diagnostics``, and records when asked to.  What belongs to one bearing is in
-`bearing_sim.ros.bearing_doors`; here are the node's life and its parameters.  Run by ``bearing_node``,
-``python -m bearing_sim.ros.node`` or ``ros2 run bearing_sim bearing_node``.
+Subscribes to shaft speed and radial load, advances each model in real time on its own thread, publishes cage slip, life and roller loads,
+reports health on ``/diagnostics``, and records on request.  `bearing_sim.ros.interface` handles one bearing; this module handles the
+node's lifecycle and its parameters.  Run it with ``bearing_node``, ``python -m bearing_sim.ros.node`` or ``ros2 run bearing_sim bearing_node``.
 
-**Life.**  Configuring checks parameters and scenes, makes publishers and services and begins to compile the models on a thread of their
-own; it answers within a second, however long compiling takes, because those who manage nodes give up on a slow answer, and because the
-node shall be heard meanwhile.  Activating opens inputs and recordings, for each bearing as soon as its model is compiled: a fleet does not
-wait for its slowest member.  ``/diagnostics`` says in every state what the node is waiting for.  Each activation is a run of its own:
-state and damage begin anew (``~/pause`` holds them), recordings get fresh names.  Unless ``autostart`` is false, the node configures and
-activates itself.
+**Lifecycle.**  Configuring checks parameters and scenes, creates publishers and services, and starts compiling the models on a separate
+thread.  It answers within a second however long compiling takes: lifecycle managers give up on slow answers, and the node stays responsive.
+Activating opens inputs and recordings of each bearing as soon as its model is compiled: a fleet does not wait for its slowest member.
+``/diagnostics`` reports in every state what the node is waiting for.  Each activation is a new run: state and damage start over (``~/pause``
+holds them), recordings get fresh names.  Unless ``autostart`` is false, the node configures and activates itself.
 """
 
 import dataclasses
@@ -20,44 +18,44 @@ import time
 from collections.abc import Callable
 from functools import wraps
 
+from rclpy.clock import Clock, ClockType, JumpHandle, JumpThreshold
+from rclpy.duration import Duration
 from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.lifecycle import LifecycleNode, TransitionCallbackReturn
 from rclpy.task import Future
 
-from bearing_sim import topics
-from bearing_sim.events import Event, Level
-from bearing_sim.ros.bearing_doors import STATE_QOS, BearingDoors
+from bearing_sim.messages import topics
+from bearing_sim.messages.events import Event, Level
+from bearing_sim.monitoring.health import Condition
+from bearing_sim.recording.recorder import Recorder
+from bearing_sim.ros.interface import STATE_QOS, BearingInterface
 from bearing_sim.ros.messages import message, message_class
-from bearing_sim.ros.parameter_server import ParameterServer
-from bearing_sim.ros.parameters import NodeSettings, SettingsError
+from bearing_sim.ros.parameters import NodeSettings, ParameterServer, SettingsError, follows_clock
 from bearing_sim.ros.process import CannotRun, run_node
-from bearing_sim.ros.sim_time import create_steady_timer, follows_clock, watch_clock
 from bearing_sim.ros.warm_up import WarmUp
-from bearing_sim.runtime.health import Condition
-from bearing_sim.scene_file import SceneError
-from bearing_sim.sinks.recorder import Recorder
+from bearing_sim.scene.loader import SceneError
 
 SUCCESS, FAILURE, ERROR = TransitionCallbackReturn.SUCCESS, TransitionCallbackReturn.FAILURE, TransitionCallbackReturn.ERROR
-_REVIEW_PERIOD = {False: 0.2, True: 0.05}  # [s] how soon a change of health is told, and where the node follows /clock what has come of it
+_REVIEW_PERIOD = {False: 0.2, True: 0.05}  # [s] delay until a change of health, and with sim time an output, is published
 _LATE = 5  # review periods without a review
-_WARMING = "warming up: compiling the model; messages that come now are not used"
+_WARMING = "warming up: compiling the model; messages received now are not used"
 
 
-def _told(transition: Callable) -> Callable:
-    """Let a transition that fails say why, in the log and on /diagnostics; rclpy alone would drop the reason."""
+def _reported(transition: Callable) -> Callable:
+    """Report why a transition failed, in the log and on /diagnostics; rclpy alone would drop the reason."""
 
     @wraps(transition)
     def guarded(node, state) -> TransitionCallbackReturn:
         name = transition.__name__.removeprefix("on_")
         try:
-            result, node.fault = transition(node, state), ""
-        except (SettingsError, SceneError, OSError, CannotRun) as fault:
-            result, node.fault = FAILURE, f"{name} failed: {fault}"
-        except Exception as fault:
-            result, node.fault = ERROR, f"{name} failed by a program fault: {fault!r}"
-        if node.fault:
-            node.get_logger().error(node.fault)
+            result, node.error = transition(node, state), ""
+        except (SettingsError, SceneError, OSError, CannotRun) as error:
+            result, node.error = FAILURE, f"{name} failed: {error}"
+        except Exception as error:
+            result, node.error = ERROR, f"{name} failed unexpectedly: {error!r}"
+        if node.error:
+            node.get_logger().error(node.error)
             node.report_soon()
         return result
 
@@ -65,15 +63,15 @@ def _told(transition: Callable) -> Callable:
 
 
 def _refuse_impossible_transitions(node: LifecycleNode) -> None:
-    """Let a request for a transition that the state does not have be answered by "no"; in rclpy alone it ends the process."""
+    """Answer "no" to a request for a transition that the current state does not have; rclpy alone would end the process."""
     (service,) = (service for service in node.services if service.srv_name.endswith("/change_state"))
     change_state = service.callback
 
     def answered(request, response):
         try:
             return change_state(request, response)
-        except rclpy_implementation.RCLError as fault:
-            node.get_logger().warning(f"transition {request.transition.label or request.transition.id} refused: {' '.join(str(fault).split())}")
+        except rclpy_implementation.RCLError as error:
+            node.get_logger().warning(f"transition {request.transition.label or request.transition.id} refused: {' '.join(str(error).split())}")
             response.success = False
             return response
 
@@ -81,38 +79,38 @@ def _refuse_impossible_transitions(node: LifecycleNode) -> None:
 
 
 class BearingNode(LifecycleNode):
-    """The life and the parameters of a node that hosts bearings.
+    """The lifecycle and the parameters of a node that hosts one or more bearings.
 
     Parameters
     ----------
-    ended : given a `CannotRun` where the node ends itself.
+    ended : receives a `CannotRun` when the node ends itself.
 
     Attributes
     ----------
-    review_period : from one review to the next [s].
+    review_period : time from one review to the next [s].
     """
 
     def __init__(self, ended: Future):
         super().__init__("bearing_node", automatically_declare_parameters_from_overrides=True)
         self._ended = ended
-        self.fault = ""  # why the last transition did not succeed
-        self.bearings: list[BearingDoors] = []
+        self.error = ""  # why the last transition failed
+        self.bearings: list[BearingInterface] = []
         self._state, self._next_report_ns, self._reviewed = "unconfigured", 0, time.monotonic()
         self._warm_up = WarmUp()
         self.recorder = Recorder()  # one process for the recordings of all bearings
-        self.parameters = ParameterServer(self, self)
+        self.parameters = ParameterServer(self)
         self._shared: NodeSettings | None = None
         name, ros_type = topics.DIAGNOSTICS
         quiet = PublisherEventCallbacks(use_default_callbacks=False)
         self._diagnostics = self.create_publisher(message_class(ros_type), f"/{name}", STATE_QOS, event_callbacks=quiet)
         self.review_period = _REVIEW_PERIOD[follows_clock(self)]
-        create_steady_timer(self, self.review_period, self._review)
-        self._clock_watch = watch_clock(self, self._tick)
+        _create_steady_timer(self, self.review_period, self._review)
+        self._clock_watch = self._watch_clock()
         self.manages_itself = bool(self.parameters.value("autostart"))
         _refuse_impossible_transitions(self)
 
     def start(self) -> None:
-        """Configure and activate, as ``autostart`` asks for.
+        """Configure and activate, as requested by ``autostart``.
 
         Raises
         ------
@@ -121,84 +119,84 @@ class BearingNode(LifecycleNode):
         """
         for transition in (self.trigger_configure, self.trigger_activate):
             if transition() != SUCCESS:
-                raise CannotRun(self.fault.partition("failed: ")[2] or self.fault)
+                raise CannotRun(self.error.partition("failed: ")[2] or self.error)
 
     def close(self) -> bool:
-        """Stop the models and complete recordings.  Returns whether every thread ended."""
-        self._warm_up.forget()
+        """Stop the models and complete recordings.  Returns whether all threads ended."""
+        self._warm_up.cancel()
         stopped = [bearing.destroy() for bearing in self.bearings]
         self.bearings = []
         self.recorder.close(timeout=2.0)
         return all(stopped) and not self._warm_up.is_working
 
-    @_told
+    @_reported
     def on_configure(self, state) -> TransitionCallbackReturn:
-        """Check parameters, load scenes, make doors, begin to compile."""
-        self._shared, bearings = self.parameters.read()
+        """Check parameters, load scenes, create topics and services, and start compiling."""
+        self._shared, bearings = self.parameters.settings()
         try:
             for settings in bearings:
-                self.bearings.append(BearingDoors(self, settings, self._shared))
+                self.bearings.append(BearingInterface(self, settings, self._shared))
                 self.parameters.show_scene(settings.name, self.bearings[-1].scene)
         except Exception:
             self._release()
             raise
         for bearing in self.bearings:
-            self._warm_up.ask(bearing.warm_up)
+            self._warm_up.request(bearing.warm_up)
         self._state = "inactive"
         return super().on_configure(state)
 
-    @_told
+    @_reported
     def on_activate(self, state) -> TransitionCallbackReturn:
-        """Let the bearings run that are warm, and the others as soon as they are."""
-        if faults := [bearing.fault for bearing in self.bearings if bearing.fault]:
-            raise CannotRun(f"{faults[0]}; clean up and configure anew")
+        """Start the bearings that have warmed up; the others follow as soon as they have."""
+        if errors := [bearing.error for bearing in self.bearings if bearing.error]:
+            raise CannotRun(f"{errors[0]}; clean up and configure again")
         try:
-            self._open_those_warm()
+            self._open_warm_bearings()
         except Exception:
             self._close()
             raise
         self._state = "active"
         return super().on_activate(state)
 
-    @_told
+    @_reported
     def on_deactivate(self, state) -> TransitionCallbackReturn:
-        """End the runs, complete recordings; the compiled models stay."""
+        """End the runs and complete recordings; the compiled models are kept."""
         self._close()
         self._state = "inactive"
         return super().on_deactivate(state)
 
-    @_told
+    @_reported
     def on_cleanup(self, state) -> TransitionCallbackReturn:
-        """Let everything go that configuring has made."""
+        """Release everything that configuring created."""
         self._release()
         self._state = "unconfigured"
         return super().on_cleanup(state)
 
-    @_told
+    @_reported
     def on_shutdown(self, state) -> TransitionCallbackReturn:
-        """Let everything go for good; the process stays until a signal comes."""
+        """Release everything for good; the process stays until a signal arrives."""
         self._release()
         self._state = "finalized"
         return super().on_shutdown(state)
 
     def on_error(self, state) -> TransitionCallbackReturn:
-        """Let everything go after a program fault in a transition; the node can be configured anew."""
+        """Release everything after a programming error in a transition; the node can be configured again."""
         self._release()
         self._state = "unconfigured"
         return super().on_error(state)
 
     @property
     def is_running(self) -> bool:
-        """Whether the node is active, so that parameters that need a re-configure cannot change."""
+        """Whether the node is active, so that parameters that take effect at configure cannot change."""
         return self._state == "active"
 
-    def objection(self, changes: dict[str, object]) -> str:
-        """Return why parameters cannot be changed so; empty where they can."""
-        reasons = (bearing.objection(self.parameters.changes_of(bearing.settings.name, changes)) for bearing in self.bearings)
+    def reason_to_refuse(self, changes: dict[str, object]) -> str:
+        """Return why parameter changes are refused; empty if they can be applied."""
+        reasons = (bearing.reason_to_refuse(self.parameters.changes_of(bearing.settings.name, changes)) for bearing in self.bearings)
         return next(filter(None, reasons), "")
 
     def apply(self, changes: dict[str, object]) -> None:
-        """Change parameters from now on."""
+        """Apply parameter changes."""
         for bearing in self.bearings:
             bearing.apply(self.parameters.changes_of(bearing.settings.name, changes))
             self.parameters.show_scene(bearing.settings.name, bearing.scene)
@@ -211,91 +209,103 @@ class BearingNode(LifecycleNode):
                 bearing.govern(changes["governor"], self._warm_up)
 
     def report_soon(self) -> None:
-        """Publish diagnostics at the next review, whenever the last were."""
+        """Publish diagnostics at the next review."""
         self._next_report_ns = 0
         for bearing in self.bearings:
             bearing.report_soon()
 
-    def tell(self, now_ns: int, condition: Condition, component: str, hardware_id: str) -> None:
-        """Publish a condition on /diagnostics."""
+    def publish_diagnostics(self, now_ns: int, condition: Condition, component: str, hardware_id: str) -> None:
+        """Publish a condition on /diagnostics, with the state of the node."""
         values = {"state": self._state, **condition.values}
         fields = topics.diagnostics(now_ns, condition.events, values, component, hardware_id)
         self._diagnostics.publish(message(topics.DIAGNOSTICS[1], fields))
 
     def review_if_late(self) -> None:
-        """Review now where the timer stands still: an rclpy built against an old glibc waits for it by the system's clock, which may be set back."""
+        """Review now if the timer has stalled: an rclpy built against an old glibc waits on the system clock, which may be set back."""
         if time.monotonic() - self._reviewed > _LATE * self.review_period:
             self._review()
 
     def now_ns(self) -> int:
         """Return the node's time [ns since the epoch]."""
         clock = self.get_clock()
-        return clock.now().nanoseconds if clock.ros_time_is_active else time.time_ns()  # the same, at a fraction of the cost
+        return clock.now().nanoseconds if clock.ros_time_is_active else time.time_ns()  # the same, without the overhead
 
-    def _open_those_warm(self) -> None:
+    def _open_warm_bearings(self) -> None:
         for bearing in self.bearings:
-            if bearing.live is None and bearing.is_warm and not bearing.fault:
+            if bearing.live is None and bearing.is_warm and not bearing.error:
                 bearing.open()
 
     def _close(self) -> None:
         for bearing in self.bearings:
             if not bearing.close():
-                self._warm_up.ask(bearing.warm_up)  # its model is still in the hands of the thread that did not end
+                self._warm_up.request(bearing.warm_up)  # its model is still in use by the thread that did not end
 
     def _release(self) -> None:
         self._close()
-        self._warm_up.forget()
+        self._warm_up.cancel()
         for bearing in self.bearings:
             bearing.destroy()
         self.bearings = []
 
-    def _tick(self, now_ns: int) -> None:
-        for bearing in self.bearings:
-            bearing.tick(now_ns)
+    def _watch_clock(self) -> JumpHandle:
+        """Pass every reading of /clock to the bearings, as long as the returned handle is kept."""
+
+        def tick(_) -> None:
+            now_ns = self.get_clock().now().nanoseconds
+            for bearing in self.bearings:
+                bearing.tick(now_ns)
+
+        threshold = JumpThreshold(min_forward=Duration(nanoseconds=1), min_backward=Duration(nanoseconds=-1), on_clock_change=True)
+        return self.get_clock().create_jump_callback(threshold, post_callback=tick)
 
     def _review(self) -> None:
-        """Open what has become warm, let every bearing review itself, and say what the node waits for where none does."""
+        """Start bearings that have warmed up, review every bearing, and report the node's state if it has none."""
         self._reviewed = time.monotonic()
         if self._state == "active":
-            self._begin_late()
+            self._start_late()
         now_ns = self.now_ns()
         for bearing in self.bearings:
             bearing.review(now_ns, self._state_event(bearing), self._warm_up)
         steady_ns = time.monotonic_ns()  # /clock may stand still
         if not self.bearings and steady_ns >= self._next_report_ns:
             self._next_report_ns = steady_ns + 1_000_000_000
-            self.tell(now_ns, Condition([self._state_event(None)], {}), self.get_fully_qualified_name().lstrip("/"), "")
+            self.publish_diagnostics(now_ns, Condition([self._state_event(None)], {}), self.get_fully_qualified_name().lstrip("/"), "")
 
-    def _begin_late(self) -> None:
-        """Begin with bearings that have become warm; one that cannot is told, and ends the node where it manages itself and has no other."""
+    def _start_late(self) -> None:
+        """Start bearings that have warmed up; end a node that manages itself if a recording or all its bearings fail."""
         try:
-            self._open_those_warm()
-        except OSError as fault:
+            self._open_warm_bearings()
+        except OSError as error:
             if self.manages_itself:
-                self._end(CannotRun(str(fault)))
+                self._end(CannotRun(str(error)))
                 return
-            self.get_logger().error(str(fault))
+            self.get_logger().error(str(error))
             self.trigger_deactivate()
-            self.fault = f"activate failed: {fault}"
+            self.error = f"activate failed: {error}"
             return
-        if self.manages_itself and all(bearing.fault for bearing in self.bearings):
-            self._end(CannotRun("\n".join(bearing.fault for bearing in self.bearings), exit_code=1))
+        if self.manages_itself and all(bearing.error for bearing in self.bearings):
+            self._end(CannotRun("\n".join(bearing.error for bearing in self.bearings), exit_code=1))
 
-    def _end(self, fault: CannotRun) -> None:
+    def _end(self, error: CannotRun) -> None:
         if not self._ended.done():
-            self._ended.set_exception(fault)
+            self._ended.set_exception(error)
 
-    def _state_event(self, bearing: BearingDoors | None) -> Event:
-        if self.fault:
-            return Event(0.0, Level.ERROR, "run.failed", self.fault)
+    def _state_event(self, bearing: BearingInterface | None) -> Event:
+        if self.error:
+            return Event(0.0, Level.ERROR, "run.failed", "", self.error)
         if bearing is not None and not bearing.is_warm:
-            return Event(0.0, Level.WARN, "run.warming_up", _WARMING)
-        said = {
+            return Event(0.0, Level.WARN, "run.warming_up", "", _WARMING)
+        text = {
             "unconfigured": "unconfigured: waiting to be configured",
             "inactive": "inactive: ready to be activated",
             "finalized": "shut down: end the process",
         }
-        return Event(0.0, Level.OK, f"run.{self._state}", said.get(self._state, self._state))
+        return Event(0.0, Level.OK, f"run.{self._state}", "", text.get(self._state, self._state))
+
+
+def _create_steady_timer(node: LifecycleNode, period: float, callback: Callable[[], None]):
+    """Return a timer in wall time [s], which keeps running when /clock stands still or is absent."""
+    return node.create_timer(period, callback, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
 
 def _make_node(ended: Future) -> BearingNode:
@@ -315,8 +325,7 @@ def main(args: list[str] | None = None) -> int:
 
     Returns
     -------
-    0 after a signal; where the node manages itself, 2 when parameters, scene or recording paths cannot be used, 1 when the scene cannot be
-    computed.
+    0 after a signal.  A node that manages itself: 2 if parameters, scene or recording paths cannot be used, 1 if the scene cannot be computed.
     """
     return run_node("bearing_node", _make_node, args)
 

@@ -1,28 +1,36 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""What parameters the node has: one table with meaning, bounds and when a change counts; the scene's own are made from its declarations."""
+"""The node's parameters: one table of declarations, their values on a running node, and the example file.
+
+``python -m bearing_sim.ros.parameters > my_node.yaml`` writes all parameters with their defaults and meanings.
+"""
 
 import dataclasses
+import json
 import math
+import re
 import types
 import typing
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import reduce
+from pathlib import Path
 from typing import NamedTuple
 
-from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
+from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor, SetParametersResult
+from rclpy.node import Node
 from rclpy.parameter import Parameter
 
-from bearing_sim.quantity import Quantity
-from bearing_sim.scene import Lubricant, Scene, Thresholds
-from bearing_sim.scene_file import did_you_mean
+from bearing_sim.scene.loader import did_you_mean
+from bearing_sim.scene.lubricant import Lubricant
+from bearing_sim.scene.quantity import Quantity
+from bearing_sim.scene.scene import Scene, Thresholds
 
 
 class SettingsError(ValueError):
-    """Parameters that cannot be used; the message lists everything wrong with them."""
+    """Parameters that cannot be used; the message lists every error."""
 
-    def __init__(self, faults: list[str]):
-        super().__init__("\n".join([f"{len(faults)} parameter fault{'s' * (len(faults) != 1)}"] + [f"  {fault}" for fault in faults]))
+    def __init__(self, errors: list[str]):
+        super().__init__("\n".join([f"{len(errors)} parameter error{'s' * (len(errors) != 1)}"] + [f"  {error}" for error in errors]))
 
 
 class Declaration(NamedTuple):
@@ -30,8 +38,8 @@ class Declaration(NamedTuple):
 
     Attributes
     ----------
-    per_bearing : whether each bearing of a fleet may have its own, as ``NAME.parameter``.
-    running : whether a change counts at once while the node runs; else it waits for the next configure.
+    per_bearing : whether each bearing of a fleet may have its own value, as ``NAME.parameter``.
+    running : whether a change takes effect while the node runs; otherwise it takes effect at the next configure.
     """
 
     name: str
@@ -45,8 +53,8 @@ class Declaration(NamedTuple):
 
 
 DECLARATIONS = (
-    Declaration("autostart", True, "whether the node configures and activates itself; false: it waits for its lifecycle services"),
-    Declaration("bearings", [""], "names of several bearings, each with NAME.scene and its topics below NAME/; empty for one without a name"),
+    Declaration("autostart", True, "true: the node configures and activates itself; false: it waits for lifecycle requests"),
+    Declaration("bearings", [""], "names of several bearings, each with NAME.scene and its topics below NAME/; empty for one bearing without a name"),
     Declaration("scene", "deng2017_table1", "name of a bundled scene, or path of a scene file", per_bearing=True),
     Declaration(
         "overrides",
@@ -56,28 +64,31 @@ DECLARATIONS = (
     ),
     Declaration("joint", "shaft", "name of the shaft's joint in shaft_speed messages", per_bearing=True),
     Declaration("cage_joint", "cage", "name of the cage's joint in cage_speed_measured messages", per_bearing=True),
-    Declaration("frame_id", "bearing", "frame that radial_load messages must be in; one without a frame is taken; empty: any is", per_bearing=True),
+    Declaration(
+        "frame_id",
+        "bearing",
+        "frame in which radial_load messages must be given; messages without a frame are accepted; empty: accept any frame",
+        per_bearing=True,
+    ),
     Declaration(
         "input_type", "stamped", "stamped: JointState and WrenchStamped; scalar: Float64 [rad/s] and [N] along +y", choices=("stamped", "scalar")
     ),
     Declaration("publish_rate", 50.0, "rate of the output topics [Hz]", 0.1, 200.0, running=True),
-    Declaration("sample_rate", 100.0, "samples recorded for each simulated second [Hz]", 1.0, 10_000.0),
+    Declaration("sample_rate", 100.0, "samples recorded per simulated second [Hz]", 1.0, 10_000.0),
     Declaration(
         "clock_jump_back",
         "reset",
-        "with use_sim_time, what a /clock that jumps back does: reset: state and damage begin anew there; error: the last state is held",
+        "with use_sim_time, what happens when /clock jumps back: reset: state and damage start over; error: the last state is held",
         choices=("reset", "error"),
     ),
-    Declaration("maximum_lag", 0.2, "lag behind real time that is caught up [s]; more is given up, counted and told", 0.02, 10.0),
-    Declaration("governor", True, "whether to compute at a cheaper level while the machine is too slow for the scene's", running=True),
-    Declaration(
-        "record", "", "MCAP file, or bag's folder (no .mcap), to record from the start; empty for none until ~/start_recording", per_bearing=True
-    ),
-    Declaration("record_part_size", 0.0, "size of a recording's file beyond which the next one begins [MB]; 0 for none", 0.0, 1e6),
-    Declaration("record_part_duration", 0.0, "time in a recording's file beyond which the next one begins [s]; 0 for none", 0.0, 1e7),
-    Declaration("record_keep_free", 100.0, "free space that the disk shall keep [MB]; below it recording stops", 0.0, 1e7),
-    Declaration("rrd", "", "rerun recording (.rrd) to write from the start; empty for none", per_bearing=True),
-    Declaration("rerun_port", 0, "port on 127.0.0.1 at which a rerun viewer can watch live; 0 for none", 0, 65535, per_bearing=True),
+    Declaration("maximum_lag", 0.2, "lag behind real time up to which the model catches up [s]; time beyond it is skipped and reported", 0.02, 10.0),
+    Declaration("governor", True, "whether to use a level of lower fidelity while the machine is too slow for the scene's level", running=True),
+    Declaration("record", "", "MCAP file, or bag folder (no .mcap), to record from the start; empty: only on ~/start_recording", per_bearing=True),
+    Declaration("record_part_size", 0.0, "size at which a recording continues in a new file [MB]; 0: no limit", 0.0, 1e6),
+    Declaration("record_part_duration", 0.0, "duration at which a recording continues in a new file [s]; 0: no limit", 0.0, 1e7),
+    Declaration("record_keep_free", 100.0, "free disk space below which recording stops [MB]", 0.0, 1e7),
+    Declaration("rrd", "", "rerun recording (.rrd) to write from the start; empty: none", per_bearing=True),
+    Declaration("rerun_port", 0, "port on 127.0.0.1 to which a rerun viewer can connect; 0: none", 0, 65535, per_bearing=True),
 )
 """The node's own parameters; those of the scene are `SCENE_DECLARATIONS`."""
 
@@ -88,8 +99,8 @@ class BearingSettings:
 
     Attributes
     ----------
-    name : its name in the fleet; empty where it is alone.
-    conditions : scene parameters that somebody has set, by name, in SI; 0 for "none" where the scene allows none.
+    name : its name in the fleet; empty for a single bearing.
+    conditions : scene parameters that were set explicitly, by name, in SI; 0 for "none" where the scene allows none.
     """
 
     name: str
@@ -105,7 +116,7 @@ class BearingSettings:
 
     @property
     def scene_overrides(self) -> list[str]:
-        """All fields of the scene to change, as `bearing_sim.scene_file.load_scene` takes them."""
+        """All scene fields to change, as `bearing_sim.scene.loader.load_scene` takes them."""
         return [*self.overrides, *(f"{name}={scene_value(name, value)!r}".replace("=None", "=null") for name, value in self.conditions.items())]
 
 
@@ -125,7 +136,7 @@ class NodeSettings:
 
 
 def _declarations_of(record: type, path: str, default: object) -> Iterator[tuple[Declaration, bool]]:
-    """Yield the declaration of each quantity of a record and the records inside it, and whether it may be none."""
+    """Yield the declaration of each quantity of a record and its nested records, and whether it may be None."""
     hints = typing.get_type_hints(record, include_extras=True)
     for field in dataclasses.fields(record):
         hint, value = hints[field.name], getattr(default, field.name, None)
@@ -145,45 +156,56 @@ def _declaration(name: str, quantity: Quantity, default: float | None, optional:
     if shown not in ("", quantity.unit):
         meaning += f", {quantity.show(quantity.minimum)} to {quantity.show(quantity.maximum)}"
     if optional:
-        meaning = meaning.replace("None: none is", "0: none is")
+        meaning = meaning.replace("None: ", "0: ")
     return Declaration(name, 0.0 if default is None else default, meaning, quantity.minimum, quantity.maximum, per_bearing=True, running=True)
 
 
 OIL_TEMPERATURE = "lubricant.temperature"
-_OF_SCENE = [
+_SCENE_ROWS = [
     *((row, optional) for row, optional in _declarations_of(Lubricant, "lubricant", None) if row.name == OIL_TEMPERATURE),
     *_declarations_of(Thresholds, "thresholds", Thresholds()),
 ]
 _temperature = next(field.default for field in dataclasses.fields(Lubricant) if field.name == "temperature")
 SCENE_DECLARATIONS = tuple(
-    row._replace(default=_temperature, meaning=f"{row.meaning}; once a message has come on the topic oil_temperature, that counts instead")
+    row._replace(default=_temperature, meaning=f"{row.meaning}; a message on the topic oil_temperature takes precedence")
     if row.name == OIL_TEMPERATURE
     else row
-    for row, _ in _OF_SCENE
+    for row, _ in _SCENE_ROWS
 )
-"""Fields of the scene that can be changed while it runs, by their place in it; where nobody sets them the scene's own values hold."""
-_MAY_BE_NONE = {row.name for row, optional in _OF_SCENE if optional}
+"""Scene fields that can be changed while the scene runs, by their path; fields that are not set keep the scene's values."""
+_OPTIONAL = {row.name for row, optional in _SCENE_ROWS if optional}
 
 
 def scene_value(name: str, parameter: float) -> float | None:
-    """Return what a scene parameter's value is in the scene, where a field without a limit holds None."""
-    return None if name in _MAY_BE_NONE and parameter == 0.0 else parameter
+    """Return the scene's value for a scene parameter: None for 0 where the field is optional."""
+    return None if name in _OPTIONAL and parameter == 0.0 else parameter
 
 
 def parameter_value(name: str, scene: Scene) -> float:
-    """Return the value that a scene parameter has in a scene; 0 for none."""
+    """Return the parameter value of a scene's field; 0 for None."""
     value = reduce(getattr, name.split("."), scene)
     return 0.0 if value is None else float(value)
 
 
+def thresholds_in(changes: Mapping[str, object]) -> dict[str, float | None]:
+    """Return the thresholds among parameter changes, by their path in `Thresholds`, as scene values."""
+    return {name.removeprefix("thresholds."): scene_value(name, value) for name, value in changes.items() if name.startswith("thresholds.")}
+
+
 def checked(declaration: Declaration, name: str, value: object) -> object:
-    """Return a value in the parameter's own type, or raise ValueError with what the user should read."""
+    """Return a value in the parameter's own type.
+
+    Raises
+    ------
+    ValueError
+        The value has another type or is out of range; the message is written for the user.
+    """
     kind = type(declaration.default)
     if kind is float and isinstance(value, int) and not isinstance(value, bool):
-        value = float(value)  # `-p publish_rate:=50` is meant
+        value = float(value)  # `-p publish_rate:=50` is meant as a float
     if kind is list:
         if isinstance(value, str) or not all(isinstance(item, str) for item in value or []):
-            raise ValueError(f"{name} = {value!r}: expected a list of texts, such as ['level=slip']")
+            raise ValueError(f"{name} = {value!r}: expected a list of strings, such as ['level=slip']")
         return list(value or [""])
     if not isinstance(value, kind) or isinstance(value, bool) != (kind is bool):
         raise ValueError(f"{name} = {value!r}: expected {_KINDS[kind]}; {declaration.meaning}")
@@ -194,15 +216,15 @@ def checked(declaration: Declaration, name: str, value: object) -> object:
     return value
 
 
-_KINDS = {float: "a number", int: "a whole number", str: "a text", bool: "true or false"}
+_KINDS = {float: "a number", int: "an integer", str: "a string", bool: "true or false"}
 _CHANGES = {
     True: "can be changed while the node runs",
-    False: "a change needs a re-configure: deactivate, cleanup, set it, configure, activate",
+    False: "a change takes effect at the next configure: deactivate, clean up, set it, configure, activate",
 }
 
 
 def descriptor(declaration: Declaration) -> ParameterDescriptor:
-    """Return what tools show of a parameter."""
+    """Return the descriptor that tools show."""
     filled = ParameterDescriptor(description=f"{declaration.meaning}; {_CHANGES[declaration.running]}")
     if declaration.choices:
         filled.additional_constraints = f"one of {', '.join(declaration.choices)}"
@@ -212,3 +234,207 @@ def descriptor(declaration: Declaration) -> ParameterDescriptor:
         filled.integer_range = [IntegerRange(from_value=int(declaration.low), to_value=int(declaration.high))]
     filled.type = Parameter.Type.from_parameter_value(declaration.default).value
     return filled
+
+
+_OF_EVERY_NODE = ("use_sim_time", "start_type_description_service", "qos_overrides")
+_TABLE = {row.name: row for row in (*DECLARATIONS, *SCENE_DECLARATIONS)}
+_RESERVED = {name.partition(".")[0] for name in (*_TABLE, *_OF_EVERY_NODE)}
+
+
+def follows_clock(node: Node) -> bool:
+    """Return whether a node uses /clock (parameter ``use_sim_time``)."""
+    return bool(node.get_parameter("use_sim_time").value)
+
+
+class ParameterServer:
+    """Declares all parameters on a node, checks changes, and passes them on.
+
+    An unusable value is reported by `settings`, not on construction, so that a node that waits for its configure transition can
+    still be given a better value.
+
+    Parameters
+    ----------
+    node : a `bearing_sim.ros.node.BearingNode`, made with ``automatically_declare_parameters_from_overrides=True``: all values set from
+        outside are then known by name, including misspelt ones, which are reported.  Asked for ``is_running``,
+        ``reason_to_refuse(changes)`` and ``apply(changes)``.
+    """
+
+    def __init__(self, node: Node):
+        self._node, self._is_own_change = node, False
+        self._errors: dict[str, str] = {}
+        self._known: dict[str, Declaration] = {}
+        given = {parameter.name: parameter.value for parameter in node.get_parameters_by_prefix("").values()}
+        self._chosen = set(given)
+        self._declare(_TABLE.values(), "", given)
+        for name in self._names():
+            self._declare_bearing(name, given)
+        for name in given:
+            if name not in self._known and not name.startswith(_OF_EVERY_NODE):
+                node.get_logger().warning(f"parameter {name!r} is unknown and ignored{did_you_mean(name, self._known)}")
+        node.add_pre_set_parameters_callback(self._converted)
+        node.add_on_set_parameters_callback(self._validate)
+        node.add_post_set_parameters_callback(self._after_change)
+
+    def value(self, name: str, bearing: str = "") -> object:
+        """Return the value of a parameter, or a bearing's own value where it has one."""
+        own = f"{bearing}.{name}"
+        return self._node.get_parameter(own if bearing and own in self._chosen else name).value
+
+    def settings(self) -> tuple[NodeSettings, list[BearingSettings]]:
+        """Return the settings for a configure transition.
+
+        Raises
+        ------
+        SettingsError
+            Listing every parameter that cannot be used.
+        """
+        names = self._names()
+        errors = [error for name, error in self._errors.items() if name in self._known] + _name_errors(names)
+        if errors:
+            raise SettingsError(errors)
+        for name in names:
+            self._declare_bearing(name, {})
+        shared = NodeSettings(**{field.name: self.value(field.name) for field in dataclasses.fields(NodeSettings)})
+        bearings = [self._bearing_settings(name, position) for position, name in enumerate(names or [""])]
+        for row in DECLARATIONS:
+            if row.per_bearing:
+                self._show({f"{bearing.name}.{row.name}": getattr(bearing, row.name) for bearing in bearings if bearing.name})
+        return shared, [dataclasses.replace(bearing, overrides=tuple(text for text in bearing.overrides if text.strip())) for bearing in bearings]
+
+    def show_scene(self, bearing: str, scene: Scene) -> None:
+        """Set the scene parameters of a bearing to its scene's values."""
+        prefix = f"{bearing}." if bearing else ""
+        self._show({f"{prefix}{row.name}": parameter_value(row.name, scene) for row in SCENE_DECLARATIONS})
+
+    def changes_of(self, bearing: str, changes: dict[str, object]) -> dict[str, object]:
+        """Return the changes that concern a bearing, by parameter names without the bearing's; its own values take precedence."""
+        own = f"{bearing}." if bearing else ""
+        shared = {name: value for name, value in changes.items() if name in _TABLE and (not bearing or f"{own}{name}" not in self._chosen)}
+        return shared | {name.removeprefix(own): value for name, value in changes.items() if bearing and name.startswith(own)}
+
+    def _names(self) -> list[str]:
+        return [name for name in self._node.get_parameter("bearings").value if name.strip()]
+
+    def _bearing_settings(self, name: str, position: int) -> BearingSettings:
+        values = {row.name: self.value(row.name, name) for row in DECLARATIONS if row.per_bearing}
+        for key in ("record", "rrd"):  # several bearings cannot share one file
+            if name and values[key] and f"{name}.{key}" not in self._chosen:
+                path = Path(values[key])
+                values[key] = str(path.with_stem(f"{path.stem}_{name}"))
+        if name and values["rerun_port"] and f"{name}.rerun_port" not in self._chosen:
+            values["rerun_port"] += position
+        chosen = [row.name for row in SCENE_DECLARATIONS if {row.name, f"{name}.{row.name}"} & self._chosen]
+        values["overrides"] = tuple(values["overrides"])
+        return BearingSettings(name=name, conditions={key: self.value(key, name) for key in chosen}, **values)
+
+    def _declare_bearing(self, name: str, given: dict) -> None:
+        if not _name_errors([name]) and f"{name}.scene" not in self._known:
+            self._declare([row for row in _TABLE.values() if row.per_bearing], f"{name}.", given)
+
+    def _declare(self, rows: Iterable[Declaration], prefix: str, given: dict) -> None:
+        self._is_own_change = True
+        for row in rows:
+            name, value = f"{prefix}{row.name}", row.default
+            self._known[name] = row
+            try:
+                value = checked(row, name, given.get(name, row.default))
+            except ValueError as error:
+                self._errors[name] = str(error)
+            if self._node.has_parameter(name):
+                self._node.undeclare_parameter(name)
+            self._node.declare_parameter(name, value, descriptor(row), ignore_override=True)
+        self._is_own_change = False
+
+    def _show(self, values: dict[str, object]) -> None:
+        self._is_own_change = True
+        changed = {name: value for name, value in values.items() if self._node.get_parameter(name).value != value}
+        self._node.set_parameters([Parameter(name, value=list(value) if isinstance(value, tuple) else value) for name, value in changed.items()])
+        self._is_own_change = False
+
+    def _converted(self, parameters: list[Parameter]) -> list[Parameter]:
+        """Convert integers to floats where a float is expected: ``ros2 param set ... publish_rate 20``."""
+        return [
+            Parameter(parameter.name, value=float(parameter.value))
+            if parameter.type_ is Parameter.Type.INTEGER and isinstance(getattr(self._known.get(parameter.name), "default", None), float)
+            else parameter
+            for parameter in parameters
+        ]
+
+    def _validate(self, parameters: list[Parameter]) -> SetParametersResult:
+        if self._is_own_change:
+            return SetParametersResult(successful=True)
+        changes = {}
+        for parameter in parameters:
+            row, name = self._known.get(parameter.name), parameter.name
+            if name == "use_sim_time" and self._node.is_running and parameter.value != self._node.get_parameter(name).value:
+                return SetParametersResult(successful=False, reason=self._needs_configure(name))
+            if row is None:
+                continue
+            try:
+                value = checked(row, name, parameter.value)
+            except ValueError as error:
+                return SetParametersResult(successful=False, reason=str(error))
+            if row.running:
+                changes[name] = value
+            elif self._node.is_running and value != self._node.get_parameter(name).value:
+                return SetParametersResult(successful=False, reason=self._needs_configure(name))
+        reason = self._node.reason_to_refuse(changes) if changes else ""
+        return SetParametersResult(successful=not reason, reason=reason)
+
+    def _needs_configure(self, name: str) -> str:
+        node = self._node.get_fully_qualified_name()
+        steps = ", ".join(f"ros2 lifecycle set {node} {step}" for step in ("deactivate", "cleanup"))
+        return f"{name} cannot change while the node is active, because the model is built from it: {steps}; then set it, configure and activate"
+
+    def _after_change(self, parameters: list[Parameter]) -> None:
+        if self._is_own_change:
+            return
+        known = {parameter.name: parameter.value for parameter in parameters if parameter.name in self._known}
+        self._chosen.update(known)
+        for name in known:
+            self._errors.pop(name, None)
+        if waiting := [name for name in known if not self._known[name].running]:
+            self._node.get_logger().info(f"{', '.join(waiting)}: takes effect at the next configure")
+        changes = {name: value for name, value in known.items() if self._known[name].running}
+        if changes:
+            self._node.apply(changes)
+
+
+def _name_errors(names: list[str]) -> list[str]:
+    errors = []
+    for name in dict.fromkeys(names):
+        if not re.fullmatch(r"[a-z][a-z0-9_]*", name):
+            errors.append(f"bearings: {name!r} is not a valid name; use lower-case letters, digits and underscores, starting with a letter")
+        elif name in _RESERVED:
+            errors.append(f"bearings: {name!r} is the name of a parameter; choose another name")
+        if names.count(name) > 1:
+            errors.append(f"bearings: {name!r} is given {names.count(name)} times; every bearing needs its own name")
+    return errors
+
+
+_FILE_HEAD = """# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+# All parameters of bearing_node with their defaults: bearing_node --ros-args --params-file THIS_FILE
+# Generated by python -m bearing_sim.ros.parameters. * marks parameters that can be changed while the node runs; others require reconfiguring.
+# Several bearings in one node: set bearings: [front, rear] and add front: {scene: a.yaml, joint: front_shaft} and so on below it.
+# The oil temperature and the thresholds given here replace those of the scene file: leave out what the scene file defines.
+"""
+
+
+def parameter_file() -> str:
+    """Return the text of an example file with all parameters."""
+    lines = [_FILE_HEAD + "/**:", "  ros__parameters:"]
+    blocks: list[str] = []
+    for row in (*DECLARATIONS, *SCENE_DECLARATIONS):
+        *path, name = row.name.split(".")
+        shared = next((depth for depth, pair in enumerate(zip(path, blocks)) if pair[0] != pair[1]), min(len(path), len(blocks)))
+        lines += [f"{'  ' * (2 + depth)}{path[depth]}:" for depth in range(shared, len(path))]
+        blocks = path
+        choices = f" ({', '.join(row.choices)})" if row.choices else ""
+        # ROS reads a number without a decimal point as an integer.
+        value = repr(row.default) if isinstance(row.default, float) else json.dumps(row.default)
+        lines += [f"{'  ' * (2 + len(path))}{text}" for text in (f"# {'* ' if row.running else ''}{row.meaning}{choices}", f"{name}: {value}")]
+    return "\n".join(lines) + "\n"
+
+
+if __name__ == "__main__":
+    print(parameter_file(), end="")

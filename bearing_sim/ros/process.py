@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Run a node as a process: start, spin, end in order on SIGINT and SIGTERM, say what is wrong in one message."""
+"""Run a node as a process: start, spin, end cleanly on SIGINT and SIGTERM, report an error in one message."""
 
 import os
 import signal
@@ -13,14 +13,14 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from rclpy.task import Future
 
-from bearing_sim.sinks.priority import let_threads_give_way
+from bearing_sim.recording.priority import lower_thread_priority
 
-_TIMERS = "dds.ev"  # how Fast DDS calls the thread of its timers
-_LONG = 3600.0  # [s] without a limit, the events of a rclpy that was built against a glibc before 2.30 wait busily and hear nothing
+_TIMERS = "dds.ev"  # name of the timer thread of Fast DDS
+_LONG = 3600.0  # [s] without a limit, the EventsExecutor of an rclpy built against glibc before 2.30 waits busily and receives nothing
 
 
 class CannotRun(Exception):
-    """A node that cannot do its work; the process ends with ``exit_code`` and the message."""
+    """The node cannot run; the process ends with ``exit_code`` and the message."""
 
     def __init__(self, message: str, exit_code: int = 2):
         super().__init__(message)
@@ -28,9 +28,9 @@ class CannotRun(Exception):
 
 
 def make_executor() -> Executor:
-    """Return the executor of the process: rclpy's own of events where it has one, as it does not list all it waits for at every message.
+    """Return the executor of the process: rclpy's EventsExecutor if there is one, which does not rebuild its wait set at every message.
 
-    Events are for the main thread only: elsewhere none are delivered.
+    It must spin on the main thread: elsewhere it delivers nothing.
     """
     try:
         from rclpy.experimental import EventsExecutor
@@ -40,8 +40,8 @@ def make_executor() -> Executor:
 
 
 def spin(executor: Executor, ended: Future) -> None:
-    """Let an executor work until its context ends or ``ended`` is done."""
-    if isinstance(executor, SingleThreadedExecutor):  # waiting for a future, it would remember every wake until then
+    """Spin until the context ends or ``ended`` is done."""
+    if isinstance(executor, SingleThreadedExecutor):  # waiting for a future would accumulate a callback per wake-up
         while rclpy.ok() and not ended.done():
             executor.spin_once()
         return
@@ -51,9 +51,9 @@ def spin(executor: Executor, ended: Future) -> None:
 
 @contextmanager
 def signals_end(ended: Future):
-    """Let SIGINT and SIGTERM make a future done, which ends `spin` at the node's next callback.
+    """Complete a future on SIGINT and SIGTERM, which ends `spin` at the node's next callback, and a player before its next message.
 
-    rclpy's own handlers would take the context away in the middle of a message, and of an executor of events everything with it.
+    rclpy's own handlers would shut down the context in the middle of a message, and crash an EventsExecutor.
     """
 
     def end(*_) -> None:
@@ -69,19 +69,18 @@ def signals_end(ended: Future):
 
 
 def run_node(name: str, make_node: Callable[[Future], Node], args: list[str] | None) -> int:
-    """Make a node and spin it until a signal comes or it ends itself; then call its ``close``.
+    """Make a node and spin it until a signal arrives or it ends itself; then call its ``close``.
 
     Parameters
     ----------
     name : first word of error messages.
-    make_node : ``make_node(ended)`` makes the node.  A callback that cannot go on gives the future a `CannotRun`, for an executor of events
-        would log what a callback raises as a fault of the program.  The node has a timer, and ``close() -> bool``: whether every thread of
-        it ended.
-    args : command line; ``sys.argv`` where absent.
+    make_node : ``make_node(ended)`` makes the node.  A callback that cannot continue sets a `CannotRun` on the future; an EventsExecutor
+        would log a raised exception as a programming error.  The node has a timer, and ``close() -> bool``: whether all its threads ended.
+    args : command line; None: ``sys.argv``.
 
     Returns
     -------
-    The exit code: 0, or that of a `CannotRun`.
+    The exit code: 0, or that of `CannotRun`.
     """
     ended = Future()
     with signals_end(ended):
@@ -91,13 +90,13 @@ def run_node(name: str, make_node: Callable[[Future], Node], args: list[str] | N
 def _run(name: str, make_node: Callable[[Future], Node], args: list[str] | None, ended: Future) -> int:
     try:
         rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
-    except RuntimeError as fault:  # rclpy's own errors are of this kind
-        return _complain(name, f"cannot start ROS: {' '.join(str(fault).split())}", 2)
+    except RuntimeError as error:  # the base of rclpy's own errors
+        return _complain(name, f"cannot start ROS: {' '.join(str(error).split())}", 2)
     node, executor, code, closed = None, None, 0, True
     try:
         node = make_node(ended)
-        # Every message published wakes them, to set a timer: where that interrupts who publishes, it is a fifth of the node's processor time.
-        let_threads_give_way(_TIMERS)
+        # Every published message wakes the timer thread; if it preempts the publisher, that costs a fifth of the node's processor time.
+        lower_thread_priority(_TIMERS)
         executor = make_executor()
         executor.add_node(node)
         spin(executor, ended)
@@ -105,8 +104,8 @@ def _run(name: str, make_node: Callable[[Future], Node], args: list[str] | None,
             ended.result()
     except ExternalShutdownException:
         pass
-    except CannotRun as fault:
-        code = _complain(name, str(fault), fault.exit_code)
+    except CannotRun as error:
+        code = _complain(name, str(error), error.exit_code)
     finally:
         if node is not None:
             closed = node.close()
@@ -115,7 +114,7 @@ def _run(name: str, make_node: Callable[[Future], Node], args: list[str] | None,
             node.destroy_node()
         rclpy.try_shutdown()
     if not closed:
-        # A thread deep in compiled code cannot be ended from here; recordings are complete, so leave without it.
+        # A thread inside compiled code cannot be ended from here; recordings are complete, so exit without it.
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(code)

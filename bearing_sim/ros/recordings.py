@@ -1,77 +1,77 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Open the node's recordings; what a view needs is imported only when one is wanted."""
+"""Open the node's recordings and views; the view is imported only when it is used."""
 
 import importlib
 import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from bearing_sim.runtime.cadence import Cadence
-from bearing_sim.scene import Scene
-from bearing_sim.sinks.lasting_recording import LastingRecording
-from bearing_sim.sinks.limits import Limits
+from bearing_sim.recording.bag import Limits
+from bearing_sim.recording.restarting_recorder import RestartingRecorder
+from bearing_sim.runtime.pacing import TickSchedule
+from bearing_sim.scene.scene import Scene
 
 if TYPE_CHECKING:
+    from bearing_sim.recording.recorder import Recorder
     from bearing_sim.ros.parameters import NodeSettings
-    from bearing_sim.sinks.recorder import Recorder
 
 
 def prepare(view: bool, recorder: "Recorder | None") -> None:
-    """Start or load what recordings need, which takes half a second that the running node shall not pay at its first message.
+    """Start or import what recordings need: half a second that would otherwise delay the first message.
 
     Parameters
     ----------
-    view : whether a view is wanted.
-    recorder : the process that will record; None where this process does it.
+    view : whether a view will be opened.
+    recorder : the process that will record; None if this process records.
     """
     if view:
-        importlib.import_module("bearing_sim.sinks.rerun_sink")
+        importlib.import_module("bearing_sim.view.sink")
     if recorder is not None:
         recorder.start()
         return
-    from bearing_sim.sinks.ros_types import load_message_types
+    from bearing_sim.messages.ros_types import load_message_types
 
-    importlib.import_module("bearing_sim.sinks.mcap_sink")
+    importlib.import_module("bearing_sim.recording.writer")
     load_message_types()
 
 
-def open_recording(path: Path, scene: Scene, start_ns: int, limits: Limits, cadence: Cadence, recorder: "Recorder"):
-    """Return a recording in real time; its ``path`` is a fresh one where ``path`` is taken.
+def open_recording(path: Path, scene: Scene, start_ns: int, limits: Limits, schedule: TickSchedule, recorder: "Recorder"):
+    """Return a recording in real time, under a fresh name if ``path`` exists.
 
-    Where the process that records is killed, it goes on in another fresh one (see `bearing_sim.sinks.lasting_recording`).
+    If the recording process is killed, the recording continues in another fresh file (see `bearing_sim.recording.restarting_recorder`).
 
     Parameters
     ----------
-    path : what is asked for, a file or the folder of a bag.
+    path : requested path, a file or a bag's folder.
     scene, start_ns : what is simulated, and time 0 of the samples [ns since the epoch].
-    limits : where files end.
-    cadence : of the live model.
+    limits : of the size and duration of files.
+    schedule : of the live model.
     recorder : the process that records.
 
     Raises
     ------
     OSError
-        The file cannot be made.
+        The file cannot be created.
     """
-    advance = (cadence.tick, cadence.samples) if cadence.every == 1 else None
-    return LastingRecording(lambda wait: recorder.open(fresh_path(path), scene, start_ns, limits, advance, wait=wait))
+    advance = (schedule.tick, schedule.samples) if schedule.every == 1 else None
+    return RestartingRecorder(lambda wait: recorder.open(fresh_path(path), scene, start_ns, limits, advance, wait=wait))
 
 
 def open_lossless_recording(path: Path, scene: Scene, start_ns: int, limits: Limits):
-    """Return a recording that the model may have to wait for, as a run by sim time does; written in this process.  Else as `open_recording`."""
-    from bearing_sim.sinks.mcap_sink import McapSink
+    """Return a recording written in this process, which the model waits for, as a run by sim time needs; otherwise as `open_recording`."""
+    from bearing_sim.recording.writer import McapSink
 
     return McapSink(fresh_path(path), scene, start_ns, limits=limits)
 
 
 def limits_of(settings: "NodeSettings") -> Limits:
-    """Return the limits of recordings that the node's parameters set; 0 stands for none."""
+    """Return the limits of recordings set by the node's parameters, where 0 means none."""
     size, duration = settings.record_part_size or math.inf, settings.record_part_duration or math.inf
     return Limits(1e6 * size, duration, 1e6 * settings.record_keep_free)
 
 
 def fresh_path(path: Path) -> Path:
-    """Return ``path``, or the first of ``path_2``, ``path_3`` ... that no recording has, finished or not, whole or in parts."""
+    """Return ``path``, or the first of ``path_2``, ``path_3`` ... not used by any recording, finished or not, whole or in parts."""
     number, candidate = 1, path
     while any(_is_taken(candidate.with_stem(f"{candidate.stem}{part}")) for part in ("", "_0")):
         number += 1
@@ -84,14 +84,14 @@ def _is_taken(path: Path) -> bool:
 
 
 def open_view(scene: Scene, start_ns: int, path: str, port: int):
-    """Return a rerun sink (see `bearing_sim.sinks.rerun_sink.RerunSink`) that writes a file, serves viewers, or both.
+    """Return a rerun sink (see `bearing_sim.view.sink.RerunSink`) that writes a file, serves viewers, or both.
 
     Raises
     ------
     OSError
-        The file cannot be made or the port cannot be served.
+        The file cannot be created, or the port cannot be used.
     """
-    from bearing_sim.sinks.rerun_sink import RerunSink
+    from bearing_sim.view.sink import RerunSink
 
     if path:
         Path(path).parent.mkdir(parents=True, exist_ok=True)

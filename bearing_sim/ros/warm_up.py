@@ -1,17 +1,34 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Compile models beside a node that answers meanwhile: one thread for all, in the order of asking."""
+"""Compile models while the node keeps answering: one thread for all bearings, and a process for levels of lower fidelity."""
 
 import gc
+import subprocess
+import sys
 import threading
 from collections import deque
 from collections.abc import Callable
 
+from bearing_sim.numerics.compilation import CACHE_FOLDER
+from bearing_sim.recording.priority import with_low_priority
+from bearing_sim.scene.fidelity import lower_levels
+from bearing_sim.scene.loader import scene_to_yaml
+from bearing_sim.scene.scene import Scene
+
+_PROGRAM = """
+import sys
+from bearing_sim.runtime.live import governor_of
+from bearing_sim.scene.loader import scene_from_yaml
+from bearing_sim.simulation import Simulation
+governor_of(Simulation(scene_from_yaml(sys.stdin.read())))
+"""
+_NICENESS = 10  # below the running model, but not idle priority: the levels are needed most when the solver takes all the time there is
+
 
 class WarmUp:
-    """Runs jobs one after the other on one thread, which ends when none is left.
+    """Runs jobs one after the other on one thread, which ends when no job is left.
 
-    Machine code cannot be interrupted while it is made; so a job that runs is finished even when nobody wants its result any more, and a node
-    that is configured again and again meanwhile waits for that one thread instead of starting more.
+    Compiling machine code cannot be interrupted: a running job is finished even if its result is no longer wanted.  A node that is
+    configured repeatedly in the meantime waits for that one thread instead of starting more.
     """
 
     def __init__(self):
@@ -20,16 +37,16 @@ class WarmUp:
         self._thread: threading.Thread | None = None
         self._is_frozen = False
 
-    def ask(self, job: Callable[[], None]) -> None:
-        """Run a job, which must not raise, when all those asked for before are done."""
+    def request(self, job: Callable[[], None]) -> None:
+        """Run a job, which must not raise, after all jobs requested before."""
         with self._lock:
             self._jobs.append(job)
             if self._thread is None:
                 self._thread = threading.Thread(target=self._work, name="warm-up", daemon=True)
                 self._thread.start()
 
-    def forget(self) -> None:
-        """Leave out the jobs that have not begun."""
+    def cancel(self) -> None:
+        """Drop the jobs that have not started."""
         with self._lock:
             self._jobs.clear()
 
@@ -50,10 +67,29 @@ class WarmUp:
             job()
 
     def _freeze_once(self) -> None:
-        """Take what compiling has left out of the garbage collector's rounds.
+        """Exclude what compiling has left from garbage collection.
 
-        These are some hundred thousand objects that stay; each full round over them holds the whole process up for a tenth of a second.
+        Compiling leaves some hundred thousand permanent objects; each full collection over them would stop the process for a tenth of a second.
         """
         if not self._is_frozen:
             gc.freeze()
         self._is_frozen = True
+
+
+def levels_to_compile(scene: Scene) -> list[str]:
+    """Return the levels of lower fidelity than a scene's own whose code is not in this version's cache."""
+    return [level for level in lower_levels(scene) if not any(CACHE_FOLDER.rglob(f"{level}.advance-*.nbi"))]
+
+
+def start_compiling(scene: Scene) -> subprocess.Popen:
+    """Start a process that compiles all levels of lower fidelity than a scene's own, so that the running model is not disturbed."""
+    process = subprocess.Popen(
+        with_low_priority([sys.executable, "-c", _PROGRAM], _NICENESS),
+        stdin=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        text=True,
+    )
+    process.stdin.write(scene_to_yaml(scene))
+    process.stdin.close()
+    return process

@@ -1,7 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""How many bearings one core holds: live models really run beside each other, each on its thread, as a node hosts them.
+"""How many bearings one core can run: live models side by side, each on its own thread, as in a node.
 
-What ROS adds for each bearing is not in here (``python -m bearing_sim.ros.measure`` measures that).
+The overhead of ROS is not included (``python test/benchmarks/node_overhead.py`` measures that).
 """
 
 import math
@@ -9,53 +9,53 @@ import time
 from typing import NamedTuple
 
 from bearing_sim.runtime.live import LiveModel, warmed_up
-from bearing_sim.scene import Scene
+from bearing_sim.scene.scene import Scene
 
 _SAMPLE_RATE = 100.0  # Hz, the node's default
 _INPUT_RATE = 100.0  # Hz
-_REVIEWS = 20  # inputs from one review to the next: 5 Hz, as the node does
-_SETTLING = 1.0  # [s] not counted: the start from ideal rolling costs more
+_REVIEWS = 20  # inputs from one review to the next: 5 Hz, as in the node
+_SETTLING = 1.0  # [s] not counted, because the start from ideal rolling costs more
 _MAXIMUM_LAG = 0.2  # [s], the node's default
-_LEAST_SHARE = 0.995  # of real time, below which a lag grows: a few ticks of a run
-_FULL = 0.95  # of a core: the count that is tried next would take so much
-_NO_MORE_THAN_NOISE = 1.04  # times as many: what is held varies so from run to run
+_LEAST_FRACTION = 0.995  # of real time, below which a lag grows: a few ticks of a run
+_FULL = 0.95  # of a core: expected load of the count that is tried next
+_NO_MORE_THAN_NOISE = 1.04  # ratio of counts: the largest count varies by this much from run to run
 _TRIES = 10
 
 
 class FleetRun(NamedTuple):
-    """What came of bearings that ran beside each other."""
+    """The result of bearings running side by side."""
 
     bearings: int
-    core_seconds: float  # of the whole process, for each simulated second of a bearing [s]
-    lost: float  # largest time that one of them has lost [s]
-    real_time_factor: float  # least
-    input_rate: float  # at which each was sent its speed and its load [Hz]
+    core_seconds: float  # of the whole process, per simulated second of a bearing [s]
+    lost: float  # largest time lost by one of them [s]
+    real_time_factor: float  # smallest
+    input_rate: float  # of speed and load messages to each [Hz]
 
     @property
     def holds(self) -> bool:
-        """Whether all held real time, driven as often as they were meant to be."""
-        return self.lost == 0.0 and min(self.real_time_factor, self.input_rate / _INPUT_RATE) > _LEAST_SHARE
+        """Whether all kept real time at the intended input rate."""
+        return self.lost == 0.0 and min(self.real_time_factor, self.input_rate / _INPUT_RATE) > _LEAST_FRACTION
 
 
 def run_fleet(scene: Scene, bearings: int, seconds: float) -> FleetRun:
-    """Run equal bearings in real time at their scene's operating conditions.
+    """Run identical bearings in real time at their scene's operating conditions.
 
     Parameters
     ----------
     scene : of each.
     bearings : how many.
-    seconds : how long, after a second that is not counted [s].
+    seconds : duration, after a second that is not counted [s].
     """
     models = [LiveModel(scene, warmed_up(scene), time.time_ns(), _SAMPLE_RATE, _MAXIMUM_LAG) for _ in range(bearings)]
     try:
         _drive(models, _SETTLING)
-        lost = [model.runner.pace.lost for model in models]
+        lost = [model.solver.pace.lost for model in models]
         times = [_simulated(model) for model in models]
         began, had = time.monotonic(), time.process_time()
         beats = _drive(models, seconds)
         elapsed, spent = time.monotonic() - began, time.process_time() - had
         simulated = [_simulated(model) - before for model, before in zip(models, times)]
-        given_up = max(model.runner.pace.lost - before for model, before in zip(models, lost))
+        given_up = max(model.solver.pace.lost - before for model, before in zip(models, lost))
         return FleetRun(bearings, spent / sum(simulated), given_up, min(simulated) / elapsed, beats / elapsed)
     finally:
         for model in models:
@@ -63,11 +63,11 @@ def run_fleet(scene: Scene, bearings: int, seconds: float) -> FleetRun:
 
 
 def most_bearings(scene: Scene, seconds: float) -> list[FleetRun]:
-    """Return runs of one bearing and of more, each of as many as the last one that held lets expect; the last is the most that held.
+    """Return runs of one bearing and of more; the last is the largest count that kept real time.
 
-    What each takes falls with their number, as they keep code and tables at hand for each other: so how many there can be shows in runs of
-    many only.  A run that does not hold is followed by one half-way, in ratio, to the most that held.  Where not even one bearing holds,
-    its run is the last.
+    The load per bearing falls with their number, because they share code and tables in the caches, so only runs of many show how many fit.
+    Each count is what the last successful run predicts; a run that fails is followed by the geometric mean of its count and the largest
+    successful one.  If not even one bearing keeps real time, its run is the last.
 
     Parameters
     ----------
@@ -91,13 +91,13 @@ def most_bearings(scene: Scene, seconds: float) -> list[FleetRun]:
 
 
 def _simulated(model: LiveModel) -> float:
-    """Return how far the model's shaft has turned, as time at its constant speed; what was given up is not in it."""
-    sample = model.runner.newest
+    """Return how far the model's shaft has turned, as time at its constant speed; skipped time is not included."""
+    sample = model.solver.newest
     return float(sample["shaft_angle"] / sample["shaft_speed"]) if sample is not None else 0.0
 
 
 def _drive(models: list[LiveModel], seconds: float) -> int:
-    """Send every model its constant inputs and review it, for a while; return how often."""
+    """Send constant inputs to every model and review it, for a while; return the number of messages per channel."""
     start, beat = time.monotonic(), 0
     while time.monotonic() < start + seconds:
         for model in models:

@@ -1,35 +1,32 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""A model that listens and tells while time goes by: gate, runner, health and sinks put together, free of ROS.
+"""A model that takes messages and gives samples and events while time passes: gate, solver, monitors and sinks, free of ROS.
 
-The node is a thin door to this; another door (a socket, a test) would use it the same way.
+`Model` is what a run in wall time (`LiveModel`) and a run in simulated time (`bearing_sim.runtime.sim_time.SimTimeModel`) have in common.
+The node is a thin front end; another one (a socket, a test) would use the same methods.
 """
 
 import dataclasses
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim import topics
-from bearing_sim.effects import cheaper_levels
-from bearing_sim.events import Event, Level
-from bearing_sim.runtime.beat import Beat
-from bearing_sim.runtime.blocks import joined
-from bearing_sim.runtime.cadence import LONGEST_TICK, cadence
+from bearing_sim.inputs.gate import UNITS, InputGate, PublisherConflict, with_values
+from bearing_sim.messages import topics
+from bearing_sim.messages.events import Event, Level
+from bearing_sim.model.sample import joined
+from bearing_sim.monitoring.health import Condition, Health, Phase, level_of, numbers
+from bearing_sim.monitoring.monitor import Monitor
+from bearing_sim.monitoring.residual import ResidualMonitor
 from bearing_sim.runtime.governor import Governor
-from bearing_sim.runtime.health import Condition, Health, level_of, numbers
-from bearing_sim.runtime.input_gate import UNITS, InputGate
-from bearing_sim.runtime.monitor import Monitor
-from bearing_sim.runtime.outlets import Outlets, Sink
-from bearing_sim.runtime.pacer import Pacer
-from bearing_sim.runtime.residual import ResidualMonitor
-from bearing_sim.runtime.rivals import Rivals
-from bearing_sim.runtime.runner import Phase, Runner
-from bearing_sim.runtime.wall_clock import WallClock
-from bearing_sim.scene import Scene, Thresholds
-from bearing_sim.simulation import Inputs, Simulation
+from bearing_sim.runtime.pacing import LONGEST_TICK, Decimator, Pacer, WallClock, tick_schedule
+from bearing_sim.runtime.sink_registry import Sink, SinkRegistry
+from bearing_sim.runtime.solver import Solver, WallTimeSolver
+from bearing_sim.scene.fidelity import lower_levels
+from bearing_sim.scene.scene import Scene, Thresholds
+from bearing_sim.simulation import Simulation
 
 _SLACK = 4.0  # [s] how long blocks wait to be collected before the oldest are dropped
 
@@ -42,7 +39,7 @@ class Published(NamedTuple):
 
 
 def warmed_up(scene: Scene) -> Simulation:
-    """Return a simulation whose code is compiled or loaded, so that its first tick costs no more than the others.
+    """Return a simulation whose code is compiled or loaded, so that its first tick takes no longer than the others.
 
     Raises
     ------
@@ -55,9 +52,9 @@ def warmed_up(scene: Scene) -> Simulation:
 
 
 def governor_of(simulation: Simulation) -> Governor | None:
-    """Return a governor over a simulation's level and the cheaper ones that have all its scene asks for; None where there are none.
+    """Return a governor over a simulation's level and the levels of lower fidelity that support its scene; None if there are none.
 
-    Their code is compiled or loaded here.  Lower levels take their own methods, with the scene's tolerance.
+    Their code is compiled or loaded here.  Lower levels use their own default methods, with the scene's tolerance.
 
     Raises
     ------
@@ -65,34 +62,220 @@ def governor_of(simulation: Simulation) -> Governor | None:
         The scene's own operating conditions cannot be computed at one of them.
     """
     scene, own = simulation.scene, dataclasses.replace(simulation.scene.integration, method=None, fixed_step=None)
-    below = [warmed_up(dataclasses.replace(scene, level=level, integration=own)) for level in cheaper_levels(scene)]
-    return Governor([simulation, *below]) if below else None
+    lower = [warmed_up(dataclasses.replace(scene, level=level, integration=own)) for level in lower_levels(scene)]
+    return Governor([simulation, *lower]) if lower else None
 
 
-class LiveModel:
-    """One bearing, driven by messages as they come, in real time.
+class Model:
+    """One bearing under way; base of `LiveModel` and `bearing_sim.runtime.sim_time.SimTimeModel`.
 
-    All methods belong to one thread (the node's); the model itself runs on the runner's.
+    All methods belong to one thread (the node's); the simulation runs on the solver's.
 
     Parameters
     ----------
     scene : what is simulated; its limits judge the messages, its thresholds the bearing.
-    simulation : the warmed-up model of that scene.
-    start_ns : the receiver's clock at run time 0 [ns since the epoch].
-    sample_rate : samples for each simulated second that sinks get [Hz].
-    maximum_lag : lag behind wall time that is caught up [s]; more is given up and counted.
-    clock : wall clock of the runner [s], monotonic.
-    governor : see `governor_of`; without one the level stays, and time is given up where it is too slow.
-    publish_rate : outputs that are due to be published in each second [Hz].
-    due : called on the runner's thread when a sample has come that is due; shall take no time.
-    receiver : reads the receiver's clock [ns since the epoch] (see `bearing_sim.runtime.wall_clock.WallClock`).
+    gate : judges the messages.
+    solver : the thread that advances the simulation.
+    start_ns : run time 0 [ns since the epoch].
 
     Attributes
     ----------
     level : Level
-        Of the worst that held when the health was last reviewed, by `collect`.
-    cadence : Cadence
-        Of what ticks samples are made now (see `bearing_sim.runtime.cadence`).
+        The worst level that held when `collect` last reviewed the health.
+    """
+
+    def __init__(self, scene: Scene, gate: InputGate, solver: Solver, start_ns: int):
+        self.scene, self.gate, self.solver, self.start_ns = scene, gate, solver, start_ns
+        self.health, self.monitor = Health(), Monitor(scene)
+        self.residual = ResidualMonitor(scene.thresholds.residual, scene.thresholds.slip_from_speed)
+        self.sinks = SinkRegistry()
+        self.level = Level.OK
+        self._conflicts = {channel: PublisherConflict(channel) for channel in UNITS}
+        self._residuals: list[tuple[int, float]] = []
+
+    def run_time(self, now_ns: int) -> float:
+        """Return the run time [s] of an instant of the clock."""
+        return (now_ns - self.start_ns) * 1e-9
+
+    def stamp(self, run_time: float) -> int:
+        """Return the instant of the clock [ns since the epoch] of a run time [s]."""
+        return self.start_ns + round(run_time * 1e9)
+
+    def tick(self, now_ns: int) -> None:
+        """Take a reading of the clock [ns since the epoch]."""
+        raise NotImplementedError
+
+    def offer(self, channel: str, values: tuple[float, ...], stamp_ns: int | None, now_ns: int, frame_id: str = "") -> Event | None:
+        """Take one message (see `bearing_sim.inputs.gate.InputGate.offer`); returns the event if it is refused.
+
+        Parameters
+        ----------
+        stamp_ns : the sender's stamp; None for a message without one.
+        now_ns : the clock.
+        frame_id : the frame that the message names.
+        """
+        raise NotImplementedError
+
+    def set_oil_temperature(self, temperature: float, now_ns: int) -> None:
+        """Set the oil temperature [K] from now on, in place of the scene's.  Messages of the topic replace it."""
+        raise NotImplementedError
+
+    def publish_at(self, rate: float) -> None:
+        """Change the rate of published outputs [Hz]."""
+        raise NotImplementedError
+
+    def published(self) -> list[Published]:
+        """Return the outputs to be published since the last call."""
+        raise NotImplementedError
+
+    def refuse(self, channel: str, kind: str, reason: str, now_ns: int) -> Event:
+        """Take a message that could not be read."""
+        event = self.gate.refuse(channel, self.run_time(now_ns), kind, reason)
+        self._note(event)
+        return event
+
+    def note_publishers(self, channel: str, count: int) -> None:
+        """Take the number of publishers of a channel; more than one is reported."""
+        self._conflicts[channel].publishers = count
+
+    def adjust(self, thresholds: Thresholds) -> None:
+        """Use other thresholds from now on; what was learned about the measured cage is kept."""
+        self.scene = dataclasses.replace(self.scene, thresholds=thresholds)
+        self.monitor.adjust(thresholds)
+        self.residual.adjust(thresholds.residual, thresholds.slip_from_speed)
+
+    def open(self, name: str, open_sink: Callable[[int], Sink], reopen: bool = False) -> None:
+        """Add a sink that gets samples and events from now on.
+
+        Parameters
+        ----------
+        name : of the sink.
+        open_sink : makes the sink from run time 0 [ns since the epoch].
+        reopen : whether to complete it and make another one each time the run starts again at another run time 0, because times in one
+            sink would overlap; this happens in simulated time only.
+
+        Raises
+        ------
+        OSError
+            It cannot be made.
+        """
+        self.sinks.attach(name, open_sink(self.start_ns))
+
+    def has(self, name: str) -> bool:
+        """Return whether there is a sink with this name."""
+        return name in self.sinks
+
+    def detach(self, name: str) -> Sink | None:
+        """Close a sink and return it; None if there is none with this name (see `bearing_sim.runtime.sink_registry.SinkRegistry.detach`)."""
+        return self.sinks.detach(name)
+
+    def residuals(self) -> list[tuple[int, float]]:
+        """Return the residual slips since the last call that are to be published, each with its stamp [ns since the epoch]."""
+        residuals, self._residuals = self._residuals, []
+        return residuals
+
+    def reset(self, timeout: float = 2.0) -> bool:
+        """Return state and damage to the start (see `bearing_sim.runtime.solver.Solver.reset`)."""
+        return self.solver.reset(timeout)
+
+    def pause(self, paused: bool = True) -> None:
+        """Hold simulated time, or continue."""
+        self.solver.pause(paused)
+
+    def collect(self, now_ns: int) -> list[Event]:
+        """Pass results of the solver to sinks and monitors and review the health.  Returns the events that are new."""
+        self.tick(now_ns)
+        now = (now_ns - self.start_ns) * 1e-9
+        self._take(self.solver.take(), now)
+        for event in self.sinks.news(now):
+            self._note(event)
+        events = self._events(now)
+        self.level = level_of(events)
+        news = self.health.news(events)
+        for event in news:
+            self.sinks.write_event(event if event.time >= 0.0 else event._replace(time=0.0))
+        return news
+
+    def condition(self, now_ns: int) -> Condition:
+        """Return the health now, with the numbers behind it."""
+        now, newest = self.run_time(now_ns), self.solver.newest
+        further = topics.further_condition(self.scene, newest) if newest is not None else {}
+        values = numbers(self.gate, self.solver) | {"level": self._running_level} | further
+        return Condition(self._events(now), values | self.monitor.values | self.residual.values(now) | self.sinks.values | self._values())
+
+    def record_diagnostics(self, condition: Condition, now_ns: int) -> None:
+        """Write a diagnostics report to the recorders."""
+        self.sinks.write_diagnostics(self.run_time(now_ns), condition.events, condition.values)
+
+    def close(self, timeout: float = 2.0) -> bool:
+        """Stop the solver, pass on its last results and complete the sinks.
+
+        Returns
+        -------
+        Whether the solver's thread ended within ``timeout`` [s].
+        """
+        stopped = self.solver.stop(timeout)
+        self._take(self.solver.take(), 0.0)
+        self.sinks.close(0.0)
+        return stopped
+
+    @property
+    def _running_level(self) -> str:
+        return self.scene.level
+
+    def _take(self, items: Iterable, now: float) -> None:
+        """Pass results of the solver on at run time ``now`` [s]."""
+        raise NotImplementedError
+
+    def _review_time(self, now: float) -> float:
+        """Return the time by which events age [s] at run time ``now`` [s]."""
+        return now
+
+    def _further_events(self, now: float) -> list[Event]:
+        """Return the events of the kind of run that hold at ``now`` [s]."""
+        raise NotImplementedError
+
+    def _values(self) -> dict[str, object]:
+        """Return the diagnostics values of the kind of run."""
+        return {}
+
+    def _events(self, now: float) -> list[Event]:
+        """Return the events that hold at ``now`` [s], the worst first."""
+        conflicts = [event for conflict in self._conflicts.values() if (event := conflict.event(now)) is not None]
+        events = [*self.sinks.events(now), *self.monitor.events(now), *self.residual.events(now), *self._further_events(now), *conflicts]
+        return self.health.events(self._review_time(now), events, self.solver)
+
+    def _note(self, event: Event) -> None:
+        self.health.note(event, self._review_time(event.time))
+
+    def _note_solver_event(self, event: Event, now: float) -> None:
+        """Note an event of the solver that is seen at ``now`` [s]; after a reset, judge the bearing from the start."""
+        self._note(event._replace(time=now))
+        if event.kind == "run.reset":
+            self.monitor.restart()
+            self.residual.interrupt(event.time)
+
+
+class LiveModel(Model):
+    """One bearing in real time: messages act as they arrive.
+
+    Parameters
+    ----------
+    scene : what is simulated.
+    simulation : the warmed-up simulation of the scene.
+    start_ns : the receiver's clock at run time 0 [ns since the epoch].
+    sample_rate : samples that sinks get for each simulated second [Hz].
+    maximum_lag : lag behind wall time that is caught up [s]; a larger one is skipped and counted.
+    clock : wall clock of the solver [s], monotonic.
+    governor : see `governor_of`; without one the level stays, and time is skipped where it is too slow.
+    publish_rate : outputs to be published in each second [Hz].
+    due : called on the solver's thread when an output is to be published; must return at once.
+    receiver : reads the receiver's clock [ns since the epoch] (see `bearing_sim.runtime.pacing.WallClock`).
+
+    Attributes
+    ----------
+    schedule : TickSchedule
+        Ticks that samples are made of now.
     """
 
     def __init__(
@@ -109,237 +292,108 @@ class LiveModel:
         receiver: Callable[[], int] | None = None,
     ):
         self._governor = governor
-        self.scene, self.start_ns = scene, start_ns
-        self.gate = InputGate(scene.input_limits, simulation.inputs)
-        self.health, self.monitor = Health(), Monitor(scene)
-        self.residual = ResidualMonitor(scene.thresholds.residual, scene.thresholds.slip_from_speed)
-        self._rivals = {channel: Rivals(channel, unit) for channel, unit in UNITS.items()}
-        self._sample_rate, self.cadence = sample_rate, cadence(sample_rate, publish_rate)
-        pacer, capacity = Pacer(1.0, maximum_lag), round(_SLACK / cadence(sample_rate, math.inf).tick)
-        tick, samples, every = self.cadence
-        self.runner = Runner(simulation, pacer, tick, samples, capacity, clock, governor, self._advanced, every)
-        self._sample_beat, self._publish_beat, self._due = Beat(sample_rate), Beat(publish_rate), due
+        self._sample_rate, self.schedule = sample_rate, tick_schedule(sample_rate, publish_rate)
+        pacer, capacity = Pacer(1.0, maximum_lag), round(_SLACK / tick_schedule(sample_rate, math.inf).tick)
+        solver = WallTimeSolver(simulation, pacer, self.schedule, capacity, clock, governor, self._advanced)
+        super().__init__(scene, InputGate(scene.input_limits, simulation.inputs), solver, start_ns)
+        self._sample_decimator, self._publish_decimator, self._due = Decimator(sample_rate), Decimator(publish_rate), due
         self._wall_clock = WallClock(start_ns, clock, receiver)
-        self._outlets = Outlets()
-        self._published_time = self._residual_time = -math.inf
-        self.level = Level.OK
-        self.runner.start()
+        self._published_time = -math.inf
+        self.solver.start()
 
-    def run_time(self, now_ns: int) -> float:
-        """Return the run time [s] of an instant of the receiver's clock."""
-        return (now_ns - self.start_ns) * 1e-9
+    def tick(self, now_ns: int) -> None:
+        """Take a reading of the receiver's clock; if the clock was set, its stamps count from another start so that run time continues."""
+        if jump := self._wall_clock.jump(now_ns):
+            self.start_ns += round(jump * 1e9)
+            action = "the run and its recording continue by the clock from before"
+            self._note(Event(self.run_time(now_ns), Level.WARN, "clock.jumped", "", f"the clock was set by {jump:+.6g} s", action))
 
     def offer(self, channel: str, values: tuple[float, ...], stamp_ns: int | None, now_ns: int, frame_id: str = "") -> Event | None:
-        """Take in one message (see `bearing_sim.runtime.input_gate.InputGate.offer`); recorders get it as it came, refused or not.
-
-        Parameters
-        ----------
-        stamp_ns : the sender's stamp, or None for a message without one.
-        now_ns : the receiver's clock.
-        frame_id : the frame that the message names.
-        """
-        self._follow_clock(now_ns)
+        """Take one message (see `Model.offer`); recorders get it as it is, even if it is refused."""
+        self.tick(now_ns)
         start_ns = self.start_ns
         now = (now_ns - start_ns) * 1e-9
-        if channel != topics.MEASURED and self._outlets.keep_inputs:
-            received, origin = _as_received(self.gate.held, channel, values), topics.Origin(stamp_ns, frame_id)
-            self._outlets.to_recorders(now, lambda recorder: recorder.write_inputs(now, received, [channel], origin))
+        if channel != topics.MEASURED and self.sinks.recorders:
+            self.sinks.write_inputs(now, with_values(self.gate.held, channel, values), [channel], topics.Origin(stamp_ns, frame_id))
         event = self.gate.offer(channel, now if stamp_ns is None else (stamp_ns - start_ns) * 1e-9, values, now)
         if event is not None:
-            self.health.note(event)
+            self._note(event)
             return event
-        self._rivals[channel].take(values)
+        self._conflicts[channel].take(values)
         if channel == topics.MEASURED:
             self._compare(now, topics.Origin(stamp_ns, frame_id))
-            return None
-        self._inputs_changed()
+        # Speed starts the model: the scene has sensible values of load and temperature, but a wrong speed would be a false jolt.
+        elif self.gate.accepted["shaft_speed"]:
+            self.solver.post(self.gate.held)
         return None
 
-    def adjust(self, thresholds: Thresholds) -> None:
-        """Judge the bearing by other thresholds from now on; what the comparison with the measured cage has learned stays."""
-        self.scene = dataclasses.replace(self.scene, thresholds=thresholds)
-        self.monitor.adjust(thresholds)
-        self.residual.adjust(thresholds.residual, thresholds.slip_from_speed)
-
-    def hold_oil_temperature(self, temperature: float, now_ns: int) -> None:
-        """Let the oil have another temperature [K] than the scene's, where no message tells it."""
+    def set_oil_temperature(self, temperature: float, now_ns: int) -> None:
+        """Set the oil temperature [K] (see `Model.set_oil_temperature`)."""
         self.gate.hold_oil_temperature(temperature)
-        now = self.run_time(now_ns)
-        self._inputs_changed()
-        self._outlets.to_recorders(now, lambda recorder: recorder.write_inputs(now, self.gate.held, ["oil_temperature"], topics.Origin(None, "")))
-
-    def refuse(self, channel: str, code: str, reason: str, now_ns: int) -> Event:
-        """Take in a message that could not even be read."""
-        event = self.gate.refuse(channel, self.run_time(now_ns), code, reason)
-        self.health.note(event)
-        return event
-
-    def note_senders(self, channel: str, count: int) -> None:
-        """Take in how many send a channel's messages; more than one is told."""
-        self._rivals[channel].senders = count
-
-    def open(self, name: str, open_sink: Callable[[int], Sink], anew: bool = False) -> None:
-        """Let a sink have the samples and events from now on (see `bearing_sim.runtime.outlets.Outlets.attach`).
-
-        Parameters
-        ----------
-        name : of the sink.
-        open_sink : makes it, told run time 0 [ns since the epoch].
-        anew : what to do where time begins anew, which it does not here.
-
-        Raises
-        ------
-        OSError
-            It cannot be made.
-        """
-        self.attach(name, open_sink(self.start_ns))
-
-    def attach(self, name: str, sink: Sink) -> None:
-        """Let a sink have the samples and events from now on (see `bearing_sim.runtime.outlets.Outlets.attach`)."""
-        self._outlets.attach(name, sink)
+        if self.gate.accepted["shaft_speed"]:
+            self.solver.post(self.gate.held)
+        self.sinks.write_inputs(self.run_time(now_ns), self.gate.held, ["oil_temperature"], topics.Origin(None, ""))
 
     def publish_at(self, rate: float) -> None:
-        """Let outputs be due so often from now on [Hz]."""
-        self._publish_beat.rate, self.cadence = rate, cadence(self._sample_rate, rate)
-        self.runner.tick_by(*self.cadence)
+        """Change the rate of published outputs [Hz]."""
+        self._publish_decimator.rate, self.schedule = rate, tick_schedule(self._sample_rate, rate)
+        self.solver.tick_by(self.schedule)
 
     def published(self) -> list[Published]:
-        """Return the newest sample, where it was not returned before."""
-        sample = self.runner.newest
+        """Return the newest sample if it was not returned before."""
+        sample = self.solver.newest
         if sample is None or sample["time"] <= self._published_time:
             return []
         self._published_time = float(sample["time"])
         return [Published(self.start_ns + round(self._published_time * 1e9), sample)]
 
-    def residuals(self) -> list[tuple[int, float]]:
-        """Return the newest residual slip with its stamp [ns since the epoch], where it was not returned before."""
-        if not self.residual.time > self._residual_time:
-            return []
-        self._residual_time = self.residual.time
-        return [(self.start_ns + round(self._residual_time * 1e9), self.residual.residual)]
-
-    def reset(self, timeout: float = 2.0) -> bool:
-        """Return state and damage to the start (see `bearing_sim.runtime.runner.Runner.reset`)."""
-        return self.runner.reset(timeout)
-
     def govern(self, governor: Governor | None) -> None:
-        """Let a governor change levels from now on; its wanted level is that of the simulation that runs.  None: the level stays the scene's."""
+        """Let a governor change levels from now on; None returns to the scene's level (see `bearing_sim.runtime.solver.WallTimeSolver.govern`)."""
         self._governor = governor
-        self.runner.govern(governor)
-
-    def has(self, name: str) -> bool:
-        """Return whether there is a sink of that name."""
-        return self._outlets.has(name)
-
-    def detach(self, name: str) -> Sink | None:
-        """Close a sink and return it; None when there is none of that name (see `bearing_sim.runtime.outlets.Outlets.detach`)."""
-        return self._outlets.detach(name)
-
-    def collect(self, now_ns: int) -> list[Event]:
-        """Hand blocks and events to the sinks and review the health.  Returns the events that are news."""
-        self._follow_clock(now_ns)
-        now, blocks, judged = self.run_time(now_ns), [], 0
-        for item in self.runner.take():
-            if isinstance(item, Event):
-                self.monitor.take_all(blocks[judged:])
-                judged = len(blocks)
-                self.health.note(item._replace(time=now))
-                if item.code == "run.reset":
-                    self.monitor.restart()
-                    self.residual.interrupt(item.time)
-            else:
-                blocks.append(item)
-        self.monitor.take_all(blocks[judged:])
-        self._write(now, blocks)
-        for event in self._outlets.news(now):
-            self.health.note(event)
-        events = self._events(now)
-        self.level = level_of(events)
-        news = self.health.news(events)
-        for event in news:
-            self._outlets.to_all(now, lambda sink, event=event: sink.write_event(event))
-        return news
-
-    def condition(self, now_ns: int) -> Condition:
-        """Return what holds now, with the numbers behind it."""
-        now, values = self.run_time(now_ns), {"level": self._running_level}
-        if self.runner.newest is not None:
-            values |= topics.further_condition(self.scene, self.runner.newest)
-        values |= self.monitor.values | self.residual.values(now) | self._outlets.values
-        return Condition(self._events(now), numbers(self.gate, self.runner) | values)
-
-    def record_diagnostics(self, condition: Condition, now_ns: int) -> None:
-        """Let the recorders keep a diagnostics report."""
-        now = self.run_time(now_ns)
-        self._outlets.to_recorders(now, lambda recorder: recorder.write_diagnostics(now, condition.events, condition.values))
-
-    def close(self, timeout: float = 2.0) -> bool:
-        """Stop the runner, empty its queue into the sinks and complete them.
-
-        Returns
-        -------
-        whether the solver's thread ended within ``timeout`` [s].
-        """
-        stopped = self.runner.stop(timeout)
-        self._write(0.0, [item for item in self.runner.take() if not isinstance(item, Event)])
-        self._outlets.close(0.0)
-        return stopped
+        self.solver.govern(governor)
 
     @property
     def _running_level(self) -> str:
         return self._governor.level if self._governor is not None else self.scene.level
 
-    def _events(self, now: float) -> list[Event]:
-        """Return what holds now [s], the worst first."""
-        troubles = [*self._outlets.troubles(now), *self.monitor.events(now), *self.residual.events(now)]
-        if self._running_level != self.scene.level:
-            text = f"computing at level {self._running_level} instead of {self.scene.level}, which this machine is too slow for"
-            troubles.append(Event(now, Level.WARN, "governor.level", text))
-        troubles += [event for rivals in self._rivals.values() if (event := rivals.event(now)) is not None]
-        return self.health.events(now, self.gate, self.runner, troubles)
+    def _take(self, items: Iterable, now: float) -> None:
+        blocks, judged = [], 0
+        for item in items:
+            if isinstance(item, Event):
+                self.monitor.take_all(blocks[judged:])
+                judged = len(blocks)
+                self._note_solver_event(item, now)
+            else:
+                blocks.append(item)
+        self.monitor.take_all(blocks[judged:])
+        kept = [block for block in blocks if self._sample_decimator.is_due(float(block["time"][-1]))]  # the first is the state at the start
+        if kept and self.sinks.by_name:  # all at once: many samples together hold the interpreter's lock far shorter
+            self.sinks.write(now, kept[0] if len(kept) == 1 else joined(kept))
 
-    def _advanced(self, time: float) -> None:
-        """Tell that a sample is due, on the runner's thread."""
-        if self._publish_beat.is_due(time) and self._due is not None:
+    def _further_events(self, now: float) -> list[Event]:
+        flow = self.gate.check(now)
+        if self._running_level == self.scene.level:
+            return flow
+        reason = f"computing at level {self._running_level} instead of {self.scene.level}, for which this machine is too slow"
+        return [Event(now, Level.WARN, "governor.level", "", reason), *flow]
+
+    def _advanced(self, now: float) -> None:
+        """Report that an output is due; on the solver's thread."""
+        if self._publish_decimator.is_due(now) and self._due is not None:
             self._due()
 
-    def _inputs_changed(self) -> None:
-        # Speed starts the model: load and temperature have sensible values in the scene, a wrong speed would be a false jolt.
-        if self.gate.accepted["shaft_speed"]:
-            self.runner.post(self.gate.held)
-
     def _compare(self, now: float, origin: topics.Origin) -> None:
-        """Hold the measured cage speed against the newest sample, which is a tick old at most."""
-        sample, residual = self.runner.newest, math.nan
-        if sample is not None and self.runner.phase is Phase.RUNNING:
+        """Compare the measured cage speed with the newest sample, which is at most a tick old."""
+        sample, residual = self.solver.newest, math.nan
+        if sample is not None and self.solver.phase is Phase.RUNNING:
             ideal = float(sample["ideal_cage_speed"])
             measured = 1.0 - self.gate.measured / ideal if ideal else math.nan
             # Levels predict slips that are points apart: what is usual at one says nothing about another.
             own = self._governor is None or self._governor.level == self._governor.wanted
             predicted = float(sample["cage_slip"]) if own else math.nan
+            before = self.residual.time
             self.residual.take(float(sample["time"]), float(sample["shaft_speed"]), measured, predicted)
             residual = measured - predicted
-        self._outlets.to_all(now, lambda sink: sink.write_measurement(now, self.gate.measured, residual, origin))
-
-    def _follow_clock(self, now_ns: int) -> None:
-        """Let run time go on evenly where the receiver's clock jumps, as when it is set: its stamps count from another start then."""
-        jump = self._wall_clock.jump(now_ns)
-        if jump:
-            self.start_ns += round(jump * 1e9)
-            text = f"the clock jumped by {jump:+.6g} s; the run and its recording go on evenly, by the clock from before"
-            self.health.note(Event(self.run_time(now_ns), Level.WARN, "clock.jumped", text))
-
-    def _write(self, now: float, blocks: list[np.ndarray]) -> None:
-        """Hand blocks to the sinks, all at once: for many samples together they hold the interpreter's lock far shorter."""
-        kept = [block for block in blocks if self._sample_beat.is_due(float(block["time"][-1]))]  # the first is the state at the start
-        if kept and self._outlets:
-            together = joined(kept)
-            self._outlets.to_all(now, lambda sink: sink.write(together))
-
-
-def _as_received(held: Inputs, channel: str, values: tuple[float, ...]) -> Inputs:
-    """Return the inputs that a message states, for those of other channels the held ones."""
-    if channel == "radial_load":
-        load_y, load_z = (*values, 0.0)[:2]
-        return held._replace(load_y=load_y, load_z=load_z)
-    return held._replace(**{"shaft_speed" if channel == "shaft_speed" else "oil_temperature": values[0]})
+            if self.residual.time != before and not math.isnan(self.residual.time):
+                self._residuals = [(self.stamp(self.residual.time), self.residual.residual)]  # only the newest is published
+        self.sinks.write_measurement(now, self.gate.measured, residual, origin)

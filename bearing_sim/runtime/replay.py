@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Replay: the model driven by the inputs of a log, from stamp to stamp, as fast as it can."""
+"""Replay: the model driven by the inputs of a log, from stamp to stamp, as fast as possible."""
 
 import math
 import time
@@ -9,37 +9,36 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from bearing_sim.events import Event, Level
-from bearing_sim.input_course import InputCourse
-from bearing_sim.runtime.comparison import Comparison
-from bearing_sim.runtime.monitor import Monitor
-from bearing_sim.runtime.residual import ResidualMonitor
-from bearing_sim.runtime.walk import Begun, Output, Walk
-from bearing_sim.scene import Scene
+from bearing_sim.inputs.profile import InputProfile
+from bearing_sim.messages.events import Event, Level
+from bearing_sim.messages.topics import condition, further_condition
+from bearing_sim.monitoring.monitor import Monitor
+from bearing_sim.monitoring.residual import Comparison, ResidualMonitor
+from bearing_sim.runtime.advance_segment import Begun, Output, ProfileRun
+from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Inputs, Simulation
-from bearing_sim.topics import condition, further_condition
 
 _REPORT_EVERY = 1.0  # [s] of simulated time between diagnostics
 _PROGRESS_EVERY = 50  # items
-_JUDGED = 400  # outputs that are judged at once where none of them can be news
-_WATCHED_BLOCK = 100  # samples: views take long blocks far more cheaply than single samples
-_TURNING = 0.01  # of the largest speed of the run: slip means nothing on a shaft that hardly turns
+_JUDGED = 400  # outputs judged at once if none of them can raise or clear an alarm
+_WATCHED_BLOCK = 100  # samples: views take one long block far faster than single samples
+_TURNING = 0.01  # of the largest speed of the run: slip has no meaning while the shaft hardly turns
 
 
 @dataclass
 class Replay:
-    """What came of a replay.
+    """The result of a replay.
 
     Attributes
     ----------
-    log_seconds, sim_seconds, wall_seconds : length of the log's course, what of it was simulated, and what that took.
-    cpu_seconds : processor time that it took, of all threads; less than ``wall_seconds`` where others had the processor.
+    log_seconds, sim_seconds, wall_seconds : length of the log's profile, how much of it was simulated, and how long that took.
+    cpu_seconds : processor time of all threads; less than ``wall_seconds`` if other processes used the processor.
     samples : outputs written.
     steps, rejected_steps, non_finite_steps : the integrator's work.
-    failed_ticks, gap_seconds : ticks that could not be integrated, and time in gaps of the log; neither is simulated.
-    slip : cage slip at each output; ``speed`` [rad/s], ``life`` [h] likewise; ``weight`` the time that each stands for [s].
+    failed_ticks, gap_seconds : stretches that could not be integrated, and time in gaps of the log; neither is simulated.
+    slip : cage slip at each output; ``speed`` [rad/s], ``life`` [h] likewise; ``weight`` the time that each represents [s].
     damage : fraction of life used.
-    events : occurrences by code.
+    events : number of events by kind.
     given_up : why the run ended before the log did, or ``""``.
     """
 
@@ -68,13 +67,13 @@ class Replay:
 
     @property
     def life_hours(self) -> float:
-        """Life under the repeated course of this run, simulated time over damage [h]; infinite without damage."""
+        """Life if this run were repeated, simulated time over damage [h]; infinite without damage."""
         return self.sim_seconds / 3600 / self.damage if self.damage > 0 else math.inf
 
-    def slip_figures(self) -> dict[str, float]:
-        """Return mean, median, 95th and 99th percentile and maximum of the slip, by time, while the shaft turns.
+    def slip_statistics(self) -> dict[str, float]:
+        """Return mean, median, 95th and 99th percentile and maximum of the slip, weighted by time, while the shaft turns.
 
-        It turns above a hundredth of the largest speed of the run; NaN where it never does.
+        It turns above a hundredth of the largest speed of the run; NaN if it never does.
         """
         slip, speed, weight = np.array(self.slip), np.abs(self.speed), np.array(self.weight)
         turning = np.isfinite(slip) & (speed > 0) & (speed >= _TURNING * speed.max(initial=0.0))
@@ -82,8 +81,8 @@ class Replay:
             return dict.fromkeys(("mean", "median", "p95", "p99", "maximum"), math.nan)
         slip, weight = slip[turning], weight[turning]
         median, p95, p99 = np.percentile(slip, [50, 95, 99], weights=weight, method="inverted_cdf")
-        figures = {"mean": np.average(slip, weights=weight), "median": median, "p95": p95, "p99": p99, "maximum": slip.max()}
-        return {name: float(value) for name, value in figures.items()}
+        statistics = {"mean": np.average(slip, weights=weight), "median": median, "p95": p95, "p99": p99, "maximum": slip.max()}
+        return {name: float(value) for name, value in statistics.items()}
 
     @property
     def least_rating_life(self) -> float:
@@ -93,35 +92,35 @@ class Replay:
 
 def replay(
     scene: Scene,
-    course: InputCourse,
+    profile: InputProfile,
     recording=None,
     watchers: Iterable = (),
     rate: float | None = None,
     progress: Callable[[float], None] = lambda seconds: None,
     model: Callable[[Scene, Inputs], Simulation] = Simulation,
 ) -> Replay:
-    """Run the model over a course of inputs and write inputs, outputs and events.
+    """Run the model over an input profile and write inputs, outputs and events.
 
     Parameters
     ----------
-    scene : what to simulate; the operating block counts only for an oil temperature that the log does not hold.
-    course : the inputs (see `bearing_sim.input_course.judge`).
-    recording : a `bearing_sim.sinks.mcap_sink.McapSink`, or alike; None writes nothing.
-    watchers : further sinks, which get samples and events.
+    scene : what to simulate; of its operating conditions only the oil temperature is used, if the log has none.
+    profile : the inputs (see `bearing_sim.inputs.profile.judge`).
+    recording : a `bearing_sim.recording.writer.McapSink` or similar; None writes nothing.
+    watchers : further sinks, which get samples, measurements and events.
     rate : outputs per simulated second [Hz]; by default one at each stamp of speed or load.
-    progress : called now and then with the time that has been reached [s].
-    model : what makes the simulation.
+    progress : called repeatedly with the time reached [s].
+    model : makes the simulation.
 
     Returns
     -------
-    What came of it.  A stretch that cannot be integrated is left out, told by an event, counted, and the next one is tried
-    from the last good state; after ten in a row the run is given up.
+    The result.  A stretch that cannot be integrated is skipped, reported by an event and counted, and the next one is tried from the last
+    good state; after ten in a row the run is given up.
     """
-    return _Run(scene, course, recording, tuple(watchers), rate, progress).run(model)
+    return _Run(scene, profile, recording, tuple(watchers), rate, progress).run(model)
 
 
-class _Nowhere:
-    """A recording that is none."""
+class _NoRecording:
+    """A recording that drops everything."""
 
     def write(self, block) -> None:
         """Drop samples."""
@@ -145,53 +144,54 @@ class _Nowhere:
 class _Run:
     """One replay under way."""
 
-    def __init__(self, scene: Scene, course: InputCourse, recording, watchers: tuple, rate: float | None, progress: Callable):
-        self._scene, self._course, self._watchers, self._progress, self._rate = scene, course, watchers, progress, rate
-        self._recording = recording if recording is not None else _Nowhere()
-        self._unseen = recording is None and not watchers
-        self._result = Replay(log_seconds=course.end * 1e-9)
-        self._pending_events = list(course.events)
+    def __init__(self, scene: Scene, profile: InputProfile, recording, watchers: tuple, rate: float | None, progress: Callable):
+        self._scene, self._profile, self._watchers, self._progress, self._rate = scene, profile, watchers, progress, rate
+        self._recording = recording if recording is not None else _NoRecording()
+        self._result = Replay(log_seconds=profile.end * 1e-9)
+        self._pending_events = list(profile.events)
         self._holding: dict[str, Event] = {}
         self._watched: list[np.ndarray] = []
         self._next_report = 0.0
         self._monitor = Monitor(scene)
         self._comparison = Comparison(ResidualMonitor(scene.thresholds.residual, scene.thresholds.slip_from_speed))
-        for time_, speed in course.measured:
+        for time_, speed in profile.measured:
             self._comparison.measure(time_, speed)
 
     def run(self, model: Callable[[Scene, Inputs], Simulation]) -> Replay:
         began, began_cpu = time.perf_counter(), time.process_time()
-        result, walk = self._result, Walk(lambda inputs: model(self._scene, inputs), self._unseen)
-        for place, item in enumerate(walk.over(self._course.leg(self._rate, self._scene.lubricant.temperature))):
+        result, outputs_only = self._result, isinstance(self._recording, _NoRecording) and not self._watchers
+        run = ProfileRun(lambda inputs: model(self._scene, inputs), outputs_only)
+        segment = self._profile.segment(self._rate, self._scene.lubricant.temperature)
+        for k, item in enumerate(run.advance_segment(segment)):
             if isinstance(item, Output):
                 self._take(item)
                 moment = float(item.block["time"][-1])
             else:
                 moment = item.time
-                self._tell_events_until(moment)
+                self._write_events_until(moment)
                 if isinstance(item, Event):
-                    self._tell(item)
+                    self._write_event(item)
                 elif isinstance(item, Begun):
                     self._recording.write_start(item.block)
                 else:
                     self._recording.write_inputs(*item)
-            if place % _PROGRESS_EVERY == 0:
+            if k % _PROGRESS_EVERY == 0:
                 self._progress(moment)
-        if not walk.given_up:
-            self._progress(self._course.end * 1e-9)
-        self._tell_events_until(math.inf)
-        self._show_watchers()
-        if walk.simulation is not None:
-            result.steps, result.rejected_steps, result.non_finite_steps = walk.simulation.counters[:3]
-        result.sim_seconds, result.gap_seconds = walk.simulated, walk.in_gaps
-        result.failed_ticks, result.given_up = walk.failures, walk.given_up
+        if not run.given_up:
+            self._progress(self._profile.end * 1e-9)
+        self._write_events_until(math.inf)
+        self._write_to_watchers()
+        if run.simulation is not None:
+            result.steps, result.rejected_steps, result.non_finite_steps = run.simulation.counters[:3]
+        result.sim_seconds, result.gap_seconds = run.simulated_ns * 1e-9, run.in_gaps_ns * 1e-9
+        result.failed_ticks, result.given_up = run.failures, run.given_up
         result.wall_seconds, result.cpu_seconds = time.perf_counter() - began, time.process_time() - began_cpu
         return result
 
     def _take(self, output: Output) -> None:
         """Write outputs and judge them."""
         block, result = output.block, self._result
-        self._tell_events_until(float(block["time"][-1]))
+        self._write_events_until(float(block["time"][-1]))
         result.samples += len(block)
         result.weight += output.weights.tolist()
         for kept, name in ((result.slip, "cage_slip"), (result.speed, "shaft_speed"), (result.life, "rating_life")):
@@ -201,58 +201,58 @@ class _Run:
         if self._watchers:
             self._watched.append(block)
             if sum(map(len, self._watched)) >= _WATCHED_BLOCK:
-                self._show_watchers()
+                self._write_to_watchers()
         for begin in range(0, len(block), _JUDGED):
             self._judge(block[begin : begin + _JUDGED])
 
     def _judge(self, block: np.ndarray) -> None:
-        """Judge outputs one by one, all at once where none of them can be news."""
+        """Judge outputs one by one, or all at once if none of them can raise or clear an alarm."""
         if len(block) > 1 and not self._holding and self._monitor.is_calm(block):
             self._monitor.take_calm(block[:-1])
             for compared in self._comparison.predict(block[:-1]):
-                self._tell_measured(compared)
+                self._write_measured(compared)
             block = block[-1:]
         for k in range(len(block)):
             self._monitor.take(block[k : k + 1])
             for compared in self._comparison.predict(block[k : k + 1]):
-                self._tell_measured(compared)
+                self._write_measured(compared)
             self._report(block[k], float(block["time"][k]))
 
-    def _tell_measured(self, compared) -> None:
+    def _write_measured(self, compared) -> None:
         self._recording.write_measurement(*compared)
         for watcher in self._watchers:
             watcher.write_measurement(*compared)
 
     def _report(self, sample, moment: float) -> None:
-        """Tell a change of the bearing's condition at once, and the condition once a second."""
+        """Write a change of the bearing's condition at once, and the condition once a second."""
         residual = self._comparison.residual
-        now = {event.code: event for event in (*self._monitor.events(moment), *residual.events(moment))}
-        for code, event in now.items():
-            if code not in self._holding or self._holding[code].level != event.level:
-                self._tell(event)
-        for code in sorted(self._holding.keys() - now.keys()):
-            self._tell(Event(moment, Level.OK, code, "back within its limits"))
+        now = {event.key: event for event in (*self._monitor.events(moment), *residual.events(moment))}
+        for key, event in now.items():
+            if key not in self._holding or self._holding[key].level != event.level:
+                self._write_event(event)
+        for kind, subject in sorted(self._holding.keys() - now.keys()):
+            self._write_event(Event(moment, Level.OK, kind, subject, "back within its limits"))
         self._holding = now
         if moment >= self._next_report:
-            # A hundredth early, so that reports keep to whole seconds where stamps jitter.
+            # A hundredth early, so that reports stay at whole seconds although stamps jitter.
             self._next_report = (math.floor(moment / _REPORT_EVERY + 0.01) + 0.99) * _REPORT_EVERY
             worst_first = sorted(now.values(), key=lambda event: -event.level)
             values = condition(sample) | further_condition(self._scene, sample) | self._monitor.values | residual.values(moment)
             self._recording.write_diagnostics(moment, worst_first, values)
 
-    def _show_watchers(self) -> None:
+    def _write_to_watchers(self) -> None:
         if self._watched:
             block = np.concatenate(self._watched)
             self._watched = []
             for watcher in self._watchers:
                 watcher.write(block)
 
-    def _tell(self, event: Event) -> None:
-        self._result.events[event.code] += 1
+    def _write_event(self, event: Event) -> None:
+        self._result.events[event.kind] += 1
         self._recording.write_event(event)
         for watcher in self._watchers:
             watcher.write_event(event)
 
-    def _tell_events_until(self, moment: float) -> None:
+    def _write_events_until(self, moment: float) -> None:
         while self._pending_events and self._pending_events[0].time <= moment:
-            self._tell(self._pending_events.pop(0))
+            self._write_event(self._pending_events.pop(0))

@@ -1,14 +1,13 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Repeat a recorded run from its recording alone: the scene, the start, the inputs as the model had them, sample by sample.
+"""Reproduce a recorded run from its recording alone: the scene, the start, and the inputs of the model sample by sample.
 
-Every sample of a recording says which inputs the model had at that instant, so a run in real time can be computed again
-although its inputs came late, were held, or were refused.  How much time was simulated from one sample to the next is told by
-the shaft's angle, which is the integral of its speed; so time that a live run gave up or spent paused is not simulated here
-either.
+Every sample of a recording contains the inputs that the model had at that instant, so a run in real time can be computed again although
+its inputs arrived late, were held, or were refused.  The shaft's angle is the integral of its speed and shows how much time was simulated
+from one sample to the next; time that a live run skipped or spent paused is not simulated here either.
 
-Rollers that hit their pockets multiply the smallest difference a millionfold within milliseconds.  So the model is advanced by
-the very calls of the recorded run, where the recording tells them: then the same machine computes the same bits, as long as inputs
-do not change.
+Impacts of rollers on their pockets amplify the smallest difference a millionfold within milliseconds.  So the model is advanced by the same
+calls as in the recorded run, if the recording contains their duration: then the same machine computes the same bits while inputs do not
+change.
 """
 
 import dataclasses
@@ -19,28 +18,28 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bearing_sim.effects import NUMBERS
-from bearing_sim.events import Event, Level
-from bearing_sim.recording_reader import Received, Recording
-from bearing_sim.sample import new_block
+from bearing_sim.messages.events import Event, Level
+from bearing_sim.model.sample import new_block
+from bearing_sim.recording.reader import Received, Recording
+from bearing_sim.scene.fidelity import NUMBERS
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation, start_sample
 
-_SKIPPED = 0.25  # share of a spacing by which angle and stamps may disagree before time counts as skipped
+_SKIPPED = 0.25  # fraction of a spacing by which angle and stamps may disagree before time counts as skipped
 _LEVELS = {number: name for name, number in NUMBERS.items()}
 
 
 @dataclass
-class Repetition:
-    """What came of a repetition.
+class Reproduction:
+    """The result of a reproduction.
 
     Attributes
     ----------
-    samples : computed and written; ``received`` messages of inputs copied.
-    sim_seconds, wall_seconds : simulated time, and what it took.
-    starts : how it began and began anew after a reset: ``"ideal rolling"`` or ``"sample"`` (in the middle of a run).
-    level_changes : of a governor.
+    samples, received : samples computed and written, and messages of inputs copied.
+    sim_seconds, wall_seconds : simulated time, and how long that took.
+    starts : how the run began, first and after each reset: ``"ideal rolling"`` or ``"sample"`` (in the middle of a run).
+    level_changes : changes of level by a governor.
     skipped_seconds : time of the recording that its run did not simulate.
-    failed : samples that could not be computed; the run goes on from what was recorded.
+    failed : samples that could not be computed; the run continues from the recorded ones.
     steps, rejected_steps : the integrator's work.
     """
 
@@ -56,19 +55,19 @@ class Repetition:
     rejected_steps: int = 0
 
 
-def repeat(recording: Recording, sink, progress: Callable[[float], None] = lambda seconds: None) -> Repetition:
+def reproduce(recording: Recording, sink, progress: Callable[[float], None] = lambda seconds: None) -> Reproduction:
     """Compute a recorded run again.
 
     Parameters
     ----------
     recording : of a run, with all observables.
-    sink : a `bearing_sim.sinks.mcap_sink.McapSink`, or alike; gets samples at the recorded times, and the received inputs as they are.
-    progress : called now and then with the time that has been reached [s].
+    sink : a `bearing_sim.recording.writer.McapSink` or similar; gets samples at the recorded times, and the received inputs unchanged.
+    progress : called repeatedly with the time reached [s].
 
     Raises
     ------
     ValueError
-        The recording is from before the inputs of every sample were recorded.
+        The recording does not contain the inputs of every sample.
     """
     run = _Run(recording, sink)
     began = time.perf_counter()
@@ -86,21 +85,21 @@ def repeat(recording: Recording, sink, progress: Callable[[float], None] = lambd
 
 
 class _Run:
-    """One repetition under way."""
+    """One reproduction under way."""
 
     def __init__(self, recording: Recording, sink):
-        self.result = Repetition()
+        self.result = Reproduction()
         self._scene, self._sink = recording.scene, sink
         self._interval = recording.duration / max(recording.samples - 1, 1)
         self._duration = float(recording.metadata.get("advance_seconds") or 0.0)  # of one call of the recorded run
-        self._together = int(recording.metadata.get("advance_samples") or 1)  # samples that it gave
+        self._together = int(recording.metadata.get("advance_samples") or 1)  # samples that it returned
         self._next_together = self._together
         self._simulation: Simulation | None = None
         self._last: np.void | None = None
         self._waiting = new_block(0, recording.scene.bearing.roller.count)
 
     def take(self, recorded: np.ndarray) -> np.ndarray:
-        """Return samples computed again; those of a call that is not complete yet wait."""
+        """Return samples computed again; samples of a call that is not complete yet wait."""
         rows, done, computed = np.concatenate((self._waiting, recorded)), 0, []
         while done < len(rows):
             begins = self._simulation is None or rows["damage"][done] < self._last["damage"]
@@ -140,22 +139,24 @@ class _Run:
             self.result.skipped_seconds += stamped - self._duration
         try:
             block = self._simulation.advance(self._duration, inputs, len(group))
-        except IntegrationError as fault:
-            return self._give_up(group[-1], fault, group)
+        except IntegrationError as error:
+            return self._give_up(group[-1], error, group)
         self.result.sim_seconds += self._duration
         self._last = group[-1].copy()
         return block
 
-    def _give_up(self, sample: np.void, fault: IntegrationError, recorded: np.ndarray) -> np.ndarray:
-        """Tell what could not be computed, return what was recorded there, and go on from it."""
+    def _give_up(self, sample: np.void, error: IntegrationError, recorded: np.ndarray) -> np.ndarray:
+        """Report what could not be computed, return what was recorded there, and continue from it."""
         self.result.failed += len(recorded)
-        self._sink.write_event(Event(float(sample["time"]), Level.ERROR, "repetition.failed", f"{fault}; going on from the recorded sample"))
+        self._sink.write_event(
+            Event(float(sample["time"]), Level.ERROR, "reproduction.failed", "", str(error), "the run continues from the recorded sample")
+        )
         self._simulation.resume(sample)
         self._last = sample.copy()
         return recorded.copy()
 
     def finish(self) -> None:
-        """Count the work of the last simulation."""
+        """Add the work of the last simulation."""
         if self._simulation is not None:
             self.result.steps += self._simulation.counters.steps
             self.result.rejected_steps += self._simulation.counters.rejected_steps
@@ -163,7 +164,7 @@ class _Run:
     def _one(self, sample: np.void) -> np.ndarray:
         """Return the sample at a recorded one's instant and inputs, as a block."""
         inputs = _inputs(sample)
-        if self._simulation is None or sample["damage"] < self._last["damage"]:  # damage falls at nothing but a reset
+        if self._simulation is None or sample["damage"] < self._last["damage"]:  # only a reset decreases the damage
             lead = self._begin(sample, inputs)
         else:
             lead = self._lead(self._last, sample)
@@ -174,13 +175,13 @@ class _Run:
             return start_sample(self._simulation)
         try:
             block = self._simulation.advance(lead, inputs)
-        except IntegrationError as fault:
-            return self._give_up(sample, fault, np.array([sample]))
+        except IntegrationError as error:
+            return self._give_up(sample, error, np.array([sample]))
         self.result.sim_seconds += lead
         return block
 
     def _begin(self, sample: np.void, inputs: Inputs) -> float:
-        """Start at the run's own start, if it is no more than an interval or two before the sample; return the time to it [s]."""
+        """Start at the run's own start if that is at most two intervals or so before the sample; return the time to the sample [s]."""
         self.finish()
         self._simulation = Simulation(self._scene, inputs)
         angle, speed = float(sample["shaft_angle"]), inputs.shaft_speed
@@ -218,5 +219,5 @@ class _Run:
 def _inputs(sample: np.void) -> Inputs:
     inputs = Inputs(*(float(sample[name]) for name in Inputs._fields))
     if not all(map(math.isfinite, inputs)):
-        raise ValueError("the recording does not say which inputs the model had at every sample; replay its inputs with --scene instead")
+        raise ValueError("the recording does not contain the inputs of every sample; replay its inputs with --scene instead")
     return inputs

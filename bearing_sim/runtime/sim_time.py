@@ -1,51 +1,116 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""A model that listens and tells while a clock that somebody else keeps goes by: what `bearing_sim.runtime.live` is to wall time.
+"""A model in simulated time: it follows /clock, as `bearing_sim.runtime.live.LiveModel` follows wall time.
 
-Inputs act at their stamps, as in a replay of a recording, and what comes out depends on nothing else: not on the pace of the clock, its
-steps and stops, the order in which topics arrive, nor the speed of the machine.  Nothing is given up.
+Inputs act at their stamps, as in a replay of a recording.  Results depend on nothing else: not on the pace of the clock, its steps and stops,
+the order in which topics arrive, or the speed of the machine.  Nothing is dropped.
 
-**The clock jumps back.**  With ``reset`` the model begins anew at the first messages after the jump.  With ``error`` the last good state is
-held until the clock has passed where it was, or a reset is asked for (see `bearing_sim.runtime.stragglers` for messages around the jump).
+**The clock jumps back.**  With ``reset`` the model starts again at the first messages after the jump.  With ``error`` the last good state is
+held until the clock has passed its old reading, or until a reset (see `bearing_sim.inputs.gate.ClockJumpFilter` for messages around the jump).
 """
 
-import dataclasses
 import math
 import time
-from collections.abc import Callable
+from collections import deque
+from collections.abc import Callable, Iterable
+from enum import Enum
 
 import numpy as np
 
-from bearing_sim import topics
-from bearing_sim.events import Event, Level
-from bearing_sim.runtime.clock_report import clock_events, flow_events, progress, walk_events
-from bearing_sim.runtime.clock_runner import ClockRunner, Start
-from bearing_sim.runtime.clock_watch import ClockWatch, Step
-from bearing_sim.runtime.comparison import Comparison
-from bearing_sim.runtime.growing_course import OIL, GrowingCourse
-from bearing_sim.runtime.health import Condition, Health, level_of, numbers
-from bearing_sim.runtime.input_gate import UNITS, InputGate
-from bearing_sim.runtime.leg import Arrival
-from bearing_sim.runtime.live import Published
-from bearing_sim.runtime.monitor import Monitor
-from bearing_sim.runtime.outlets import Outlets, Sink
-from bearing_sim.runtime.residual import ResidualMonitor
-from bearing_sim.runtime.rivals import Rivals
-from bearing_sim.runtime.stragglers import Message, Side, Stragglers
-from bearing_sim.runtime.walk import Begun, Output
-from bearing_sim.scene import Scene, Thresholds
+from bearing_sim.inputs.gate import ClockJumpFilter, InputGate, Message, Verdict
+from bearing_sim.inputs.profile import OIL, Arrival, OnlineInputProfile, gap_event
+from bearing_sim.messages import topics
+from bearing_sim.messages.events import Event, Level, Measurement
+from bearing_sim.monitoring.residual import Comparison
+from bearing_sim.runtime.advance_segment import Begun, Output
+from bearing_sim.runtime.live import Model, Published
+from bearing_sim.runtime.sink_registry import Sink
+from bearing_sim.runtime.solver import SimTimeSolver, Start
+from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Simulation
 
+CAUGHT_UP = "all known is computed and passed on"
+"""Diagnostics key: whether the model has come as far as clock and messages allow, and all its results are collected."""
 
-class SimTimeModel:
-    """One bearing, driven by stamped messages, as far as a clock has come.
+_SETTLING = 0.5  # [s of wall time] after which every message stamped before a reading of the clock has arrived
+_OVERDUE = 2.0  # [s of wall time] after which a message counts as missing: during fast playback, messages queue up for that long
+_STANDING = 1.0  # [s of wall time] without a new reading after which the clock stands still
+_LEAP = 10.0  # a step is a leap if it is longer than this many seconds and this many times the step before
+_BEHIND = 2.0  # [s of wall time] of uninterrupted catching up after which it is reported
 
-    All methods belong to one thread (the node's); the model itself runs on the runner's.
+
+class Step(Enum):
+    """What a reading of the clock is, compared with the one before."""
+
+    FIRST = "first"
+    FORWARD = "forward"
+    LEAP = "leap"  # too far ahead to be a pace
+    BACK = "back"
+
+
+class SimClock:
+    """Readings of /clock: whether it is there, stands still or jumps, and which of its readings is settled.
+
+    Attributes
+    ----------
+    now : int or None
+        The newest reading [ns since the epoch]; None before the first.
+    before : int or None
+        The one before it.
+    """
+
+    def __init__(self):
+        self.now: int | None = None
+        self.before: int | None = None
+        self._step = 0
+        self._changed_at = 0.0
+        self._unsettled: deque[tuple[float, int]] = deque()
+        self._pending: deque[tuple[float, int]] = deque()
+        self._settled = self._overdue = -1
+
+    def read(self, clock: int, wall: float) -> Step | None:
+        """Take a reading [ns since the epoch] at a wall time [s]; None if the clock stands still."""
+        if clock == self.now:
+            return None
+        self.before, self.now, self._changed_at = self.now, clock, wall
+        if self.before is not None and clock < self.before:
+            self._unsettled.clear()
+            self._pending.clear()
+            self._settled = self._overdue = -1
+        self._unsettled.append((wall, clock))
+        self._pending.append((wall, clock))
+        if self.before is None:
+            return Step.FIRST
+        step, usual = clock - self.before, self._step
+        self._step = max(step, 0)
+        if step < 0:
+            return Step.BACK
+        return Step.LEAP if usual and step > _LEAP * max(usual, 1_000_000_000) else Step.FORWARD
+
+    def settled(self, wall: float) -> int:
+        """Return the newest reading that is at least half a second of wall time old [ns since the epoch]; -1 if there is none."""
+        while self._unsettled and wall - self._unsettled[0][0] >= _SETTLING:
+            self._settled = self._unsettled.popleft()[1]
+        return self._settled
+
+    def overdue(self, wall: float) -> int:
+        """Return the newest reading before which a message that has not arrived is missing [ns since the epoch]; -1 if there is none."""
+        while self._pending and wall - self._pending[0][0] >= _OVERDUE:
+            self._overdue = self._pending.popleft()[1]
+        return self._overdue
+
+    def stands_still(self, wall: float) -> bool:
+        """Return whether there was a reading, but no other one for a second of wall time."""
+        return self.now is not None and wall - self._changed_at > _STANDING
+
+
+class SimTimeModel(Model):
+    """One bearing, driven by stamped messages, as far as /clock has come.
 
     Parameters
     ----------
-    scene : what is simulated; its limits judge the messages, its thresholds the bearing.
-    simulation : the warmed-up model of that scene.
-    sample_rate : outputs for each simulated second that sinks get [Hz], counted from the first instant at which speed and load are known.
+    scene : what is simulated.
+    simulation : the warmed-up simulation of the scene.
+    sample_rate : outputs that sinks get for each simulated second [Hz], counted from the first instant at which speed and load are known.
     publish_rate : how many of them are published for each simulated second [Hz].
     jump_back : ``"reset"`` or ``"error"``.
     wall : wall clock [s], monotonic; outputs do not depend on it.
@@ -53,9 +118,7 @@ class SimTimeModel:
     Attributes
     ----------
     start_ns : int
-        Run time 0 [ns since the epoch]: where the course of inputs has begun; before that, where the clock was first.
-    level : Level
-        Of the worst that held when the health was last reviewed, by `collect`.
+        Run time 0 [ns since the epoch]: the start of the input profile; before that, the first reading of the clock.
     """
 
     def __init__(
@@ -67,220 +130,172 @@ class SimTimeModel:
         jump_back: str = "reset",
         wall: Callable[[], float] = time.monotonic,
     ):
-        self.scene, self.start_ns, self._publish_rate = scene, 0, publish_rate
-        self._rate, self._jump_back, self._wall, self._wall_start = sample_rate, jump_back, wall, wall()
+        self._rate, self._publish_rate = sample_rate, publish_rate
+        self._jump_back, self._wall, self._wall_start = jump_back, wall, wall()
         self._first_inputs = simulation.inputs
-        self.gate = InputGate(scene.input_limits, self._first_inputs)
-        self.health, self.monitor = Health(), Monitor(scene)
-        self.residual = ResidualMonitor(scene.thresholds.residual, scene.thresholds.slip_from_speed)
-        self._comparison = Comparison(self.residual)
-        self.level = Level.OK
-        self._clock = ClockWatch()
+        self._oil_temperature = scene.lubricant.temperature  # without messages of it
+        self._clock, self._jump_filter = SimClock(), ClockJumpFilter()
         self._epoch: int | None = None  # of the gate's times
         self._held_until: int | None = None  # while a jump back is an error
-        self._stragglers = Stragglers()
         self._newest: dict[str, int] = {}
-        self._measured: list[tuple[int, float]] = []  # until the course begins
+        self._measured: list[tuple[int, float]] = []  # until the profile starts
         self._started = self._expects_oil = False
         self._late = self._gaps = 0
-        self._rivals = {channel: Rivals(channel, unit) for channel, unit in UNITS.items()}
-        self._outlets = Outlets()
         self._openers: dict[str, Callable[[int], Sink]] = {}
         self._published: list[Published] = []
-        self._residuals: list[tuple[int, float]] = []
-        self.runner = ClockRunner(simulation, self._new_course(), wall=wall)
-        self.runner.start()
+        profile = OnlineInputProfile(sample_rate, scene.input_limits, self._oil_temperature)
+        super().__init__(scene, InputGate(scene.input_limits, self._first_inputs), SimTimeSolver(simulation, profile, clock=wall), 0)
+        self._comparison = Comparison(self.residual)
+        self.solver.start()
 
-    def run_time(self, now_ns: int) -> float:
-        """Return the run time [s] of an instant of the clock."""
-        return (now_ns - self.start_ns) * 1e-9
-
-    def tick(self, clock_ns: int) -> None:
-        """Take in a reading of the clock [ns since the epoch]; 0 says that there is none."""
-        if clock_ns <= 0:
-            return
-        step = self._clock.read(clock_ns, self._wall())
-        if self._epoch is None:
-            self._epoch = clock_ns
-        if step is Step.FIRST and not self._started:
-            self.start_ns = clock_ns
-        if step is Step.BACK:
-            self._come_back()
-        elif step is Step.LEAP:
-            ahead = (clock_ns - self._clock.before) * 1e-9
-            text = f"the clock leapt {ahead:.4g} s ahead; time between messages that is a gap is not simulated, the state is held over it"
-            self._note(Event(self.run_time(clock_ns), Level.WARN, "clock.leapt_ahead", text))
-        if self._held_until is not None and clock_ns >= self._held_until:
-            self._held_until = None
-            self._note(Event(self.run_time(clock_ns), Level.OK, "clock.passed", "the clock has passed where it was; the model goes on"))
+    def tick(self, now_ns: int) -> None:
+        """Take a reading of /clock [ns since the epoch]; 0 means that there is none."""
+        if now_ns > 0:
+            step = self._clock.read(now_ns, self._wall())
+            if self._epoch is None:
+                self._epoch = now_ns
+            if step is Step.FIRST and not self._started:
+                self.start_ns = now_ns
+            elif step is Step.BACK:
+                self._come_back()
+            elif step is Step.LEAP:
+                reason = f"the clock leapt {(now_ns - self._clock.before) * 1e-9:.4g} s ahead"
+                action = "gaps between messages are not simulated, the state is held over them"
+                self._note(Event(self.run_time(now_ns), Level.WARN, "clock.leapt_ahead", "", reason, action))
+            if self._held_until is not None and now_ns >= self._held_until:
+                self._held_until = None
+                self._note(Event(self.run_time(now_ns), Level.OK, "clock.passed", "", "the clock has passed its old reading", "the model continues"))
         self._show_clock()
 
     def offer(self, channel: str, values: tuple[float, ...], stamp_ns: int | None, now_ns: int, frame_id: str = "") -> Event | None:
-        """Take in one message (see `bearing_sim.runtime.input_gate.InputGate.offer`).
+        """Take one message (see `Model.offer`).
 
-        Parameters
-        ----------
-        stamp_ns : the sender's stamp; the clock's newest reading stands in for the stamp of a message without one.
-        now_ns : the clock.
-        frame_id : the frame that the message names; recordings say the scene's.
+        The clock's newest reading replaces the stamp of a message without one.  Recordings name the scene's frame.
         """
         self.tick(now_ns)
         stamp = self._clock.now if stamp_ns is None else stamp_ns
         if stamp is None:
-            return self.refuse(channel, "input.not_stamped", "it has no stamp, and there is no clock yet whose time could stand in", now_ns)
+            return self.refuse(channel, "input.not_stamped", "it has no stamp, and there is no clock yet whose time could replace it", now_ns)
         if self._epoch is None:
             self._epoch = stamp
         message = Message(channel, values, stamp)
-        side = self._stragglers.sort(message, self._newest.get(channel), self._wall())
-        if side is Side.BEYOND:
+        verdict = self._jump_filter.sort(message, self._newest.get(channel), self._wall())
+        if verdict is Verdict.LEFTOVER:
             self.gate.refused["input.leftover"] += 1
-        return self._accept(message) if side is Side.HERE else None
+        return self._accept(message) if verdict is Verdict.ACCEPT else None
 
-    def note_senders(self, channel: str, count: int) -> None:
-        """Take in how many publish a channel; more than one is told, and a first oil temperature is waited for where somebody does."""
-        self._rivals[channel].senders = count
+    def set_oil_temperature(self, temperature: float, now_ns: int) -> None:
+        """Set the oil temperature [K] (see `Model.set_oil_temperature`); before the first reading of the clock, for the whole run."""
+        self.tick(now_ns)
+        self._oil_temperature = float(temperature)
+        self.gate.hold_oil_temperature(temperature)
+        self._first_inputs = self._first_inputs._replace(oil_temperature=self._oil_temperature)
+        self.solver.set_oil_temperature(self._clock.now, self._oil_temperature)
+
+    def note_publishers(self, channel: str, count: int) -> None:
+        """Take the number of publishers of a channel; if there is one of the oil temperature, the model waits for a first message."""
+        super().note_publishers(channel, count)
         if channel == OIL:
             self._expects_oil = count > 0
 
-    def note_loss(self, text: str) -> None:
-        """Take in that messages may have been, or were, lost on the way; ``text`` says of which channel."""
-        self._note(Event(self.run_time(self._clock.now or self.start_ns), Level.WARN, "input.lost", text))
+    def note_loss(self, reason: str) -> None:
+        """Take a report that messages were lost, or may have been; ``reason`` names the channel."""
+        self._note(Event(self.run_time(self._clock.now or self.start_ns), Level.WARN, "input.lost", "", reason))
 
-    def hold_oil_temperature(self, temperature: float, now_ns: int) -> None:
-        """Let the oil have another temperature [K] from now on, where no message tells it."""
-        self.offer(OIL, (temperature,), None, now_ns)
-
-    def govern(self, governor) -> None:
-        """Let the level stay: nothing is given up here, so there is nothing to govern."""
-
-    def refuse(self, channel: str, code: str, reason: str, now_ns: int) -> Event:
-        """Take in a message that could not even be read."""
-        event = self.gate.refuse(channel, self.run_time(now_ns), code, reason)
-        self._note(event)
-        return event
-
-    def adjust(self, thresholds: Thresholds) -> None:
-        """Judge the bearing by other thresholds from now on; what the comparison with the measured cage has learned stays."""
-        self.scene = dataclasses.replace(self.scene, thresholds=thresholds)
-        self.monitor.adjust(thresholds)
-        self.residual.adjust(thresholds.residual, thresholds.slip_from_speed)
-
-    def open(self, name: str, open_sink: Callable[[int], Sink], anew: bool = False) -> None:
-        """Let a sink have what comes from the start of the course on, or from now on.
-
-        Parameters
-        ----------
-        name : of the sink.
-        open_sink : makes it, told run time 0 [ns since the epoch].
-        anew : whether to complete it and make another one where the course begins anew, since times would overlap in one.
-
-        Raises
-        ------
-        OSError
-            It cannot be made.
-        """
+    def open(self, name: str, open_sink: Callable[[int], Sink], reopen: bool = False) -> None:
+        """Add a sink that gets samples and events from the start of the profile, or from now on (see `Model.open`)."""
         if self._started:
-            self._outlets.attach(name, open_sink(self.start_ns))
-        if anew or not self._started:
+            super().open(name, open_sink)
+        if reopen or not self._started:
             self._openers[name] = open_sink
 
     def has(self, name: str) -> bool:
-        """Return whether there is, or will be, a sink of that name."""
-        return self._outlets.has(name) or name in self._openers
+        """Return whether there is a sink with this name, or will be when the profile starts."""
+        return super().has(name) or (name in self._openers and not self._started)
 
     def detach(self, name: str) -> Sink | None:
-        """Close a sink and return it; None when there is none of that name (see `bearing_sim.runtime.outlets.Outlets.detach`)."""
+        """Close a sink and return it (see `Model.detach`); it is not opened again."""
         self._openers.pop(name, None)
-        return self._outlets.detach(name)
+        return super().detach(name)
 
     def reset(self, timeout: float = 2.0) -> bool:
-        """Return state and damage to the start; where a jump of the clock is held as an error, begin anew at the clock.
-
-        Returns
-        -------
-        Whether it was done within ``timeout`` [s]; if not, it will be done after the running stretch.
-        """
-        if self._held_until is not None:
-            self._held_until = None
-            self._begin_anew()
-            return True
-        return self.runner.reset(timeout)
+        """Return state and damage to the start (see `Model.reset`); if a jump of the clock is held as an error, start again at the clock."""
+        if self._held_until is None:
+            return super().reset(timeout)
+        self._held_until = None
+        self._start_again()
+        return True
 
     def publish_at(self, rate: float) -> None:
-        """Let so many outputs be published for each simulated second from now on [Hz]."""
+        """Change the rate of published outputs, for each simulated second [Hz]."""
         self._publish_rate = rate
 
     def published(self) -> list[Published]:
-        """Return the outputs that are to be published since the last call."""
+        """Return the outputs to be published since the last call."""
         published, self._published = self._published, []
         return published
 
-    def residuals(self) -> list[tuple[int, float]]:
-        """Return the residual slips since the last call, each with the stamp of its measurement [ns since the epoch]."""
-        residuals, self._residuals = self._residuals, []
-        return residuals
-
     def collect(self, now_ns: int) -> list[Event]:
-        """Hand what has come of the walk to sinks and monitors and review the health.  Returns the events that are news."""
+        """Pass results of the solver on and review the health (see `Model.collect`)."""
         self.tick(now_ns)
-        self._show_clock()
-        for message in self._stragglers.faulty(self._wall()):
+        for message in self._jump_filter.expired(self._wall()):
             self._accept(message)
-        for item in self.runner.take():
-            self._handle(item)
-        self._tell_compared(self._comparison.due())
-        for event in self._outlets.news(self.run_time(now_ns)):
-            self._note(event)
-        now = self.run_time(now_ns)
-        events = self._events(now)
-        self.level = level_of(events)
-        news = self.health.news(events)
-        for event in news:
-            self._outlets.to_all(now, lambda sink, event=event: sink.write_event(event._replace(time=max(event.time, 0.0))))
-        return news
+        return super().collect(now_ns)
 
-    def condition(self, now_ns: int) -> Condition:
-        """Return what holds now, with the numbers behind it."""
-        now, values = self.run_time(now_ns), {"level": self.scene.level}
-        if self.runner.newest is not None:
-            values |= topics.further_condition(self.scene, self.runner.newest)
-        values |= self.monitor.values | self.residual.values(now) | self._outlets.values
-        values |= progress(self._wall(), self._clock, self.runner) | {"late inputs": self._late, "gaps": self._gaps}
-        return Condition(self._events(now), numbers(self.gate, self.runner) | values)
+    def _values(self) -> dict[str, object]:
+        reached, clock = self.solver.reached, self._clock.now
+        values: dict[str, object] = {"clock [s]": clock * 1e-9 if clock is not None else math.nan}
+        if reached is not None and clock is not None:
+            values["behind the clock [s]"] = (clock - reached) * 1e-9
+        caught_up = clock is not None and self._clock.settled(self._wall()) == clock and self.solver.is_idle
+        values |= {CAUGHT_UP: caught_up, "waits for": ", ".join(self.solver.awaited()) or "nothing", "messages waiting": self.solver.waiting}
+        return values | {"late inputs": self._late, "gaps": self._gaps}
 
-    def record_diagnostics(self, condition: Condition, now_ns: int) -> None:
-        """Let the recorders keep a diagnostics report."""
-        now = self.run_time(now_ns)
-        self._outlets.to_recorders(now, lambda recorder: recorder.write_diagnostics(now, condition.events, condition.values))
+    def _further_events(self, now: float) -> list[Event]:
+        events, solver, clock = self._clock_events(now), self.solver, self._clock
+        if solver.given_up:
+            action = "the model has stopped until ~/reset or a jump back of the clock"
+            events.append(Event(now, Level.ERROR, "run.given_up", "", solver.given_up, action))
+        reached = solver.reached
+        if reached is None:
+            reason = f"waiting for the first {' and '.join(solver.awaited()) or 'instant'}; nothing is computed yet"
+            events.append(Event(now, Level.OK, "run.waiting", "", reason))
+        elif solver.busy_for > _BEHIND and clock.now is not None:
+            reason = f"the model is {(clock.now - reached) * 1e-9:.3g} s behind the clock and catches up; nothing is lost"
+            if not math.isnan(pace := solver.pace.solver_factor):
+                reason += f" (the solver alone reaches {pace:.3g} of real time)"
+            events.append(Event(now, Level.WARN, "run.behind", "", reason))
+        return events + self._flow_events()
 
-    def close(self, timeout: float = 2.0) -> bool:
-        """Stop the runner, empty its queue into the sinks and complete them.
+    def _clock_events(self, now: float) -> list[Event]:
+        clock, wall = self._clock, self._wall()
+        if clock.now is None:
+            reason = "no /clock: use_sim_time is set, and nothing is computed before its first message; publish it, or set use_sim_time to false"
+            return [Event(0.0, Level.WARN, "clock.absent", "", reason)]
+        if self._held_until is not None:
+            reason = f"the clock jumped back to {clock.now * 1e-9:.3f} s and clock_jump_back is error"
+            action = f"the last good state is held until the clock has passed {self._held_until * 1e-9:.3f} s again, or until ~/reset"
+            return [Event(now, Level.ERROR, "clock.jumped_back", "", reason, action)]
+        if clock.stands_still(wall):
+            return [Event(now, Level.OK, "clock.stands_still", "", f"paused: the clock stands still at {clock.now * 1e-9:.3f} s")]
+        return []
 
-        Returns
-        -------
-        whether the solver's thread ended within ``timeout`` [s].
-        """
-        stopped = self.runner.stop(timeout)
-        for item in self.runner.take():
-            self._handle(item)
-        self._outlets.close(0.0)
-        return stopped
-
-    def _events(self, now: float) -> list[Event]:
-        """Return what holds now [s], the worst first."""
-        troubles = [*clock_events(now, self._wall(), self._clock, self._held_until), *walk_events(now, self._clock, self.runner)]
-        troubles += [*self._outlets.troubles(now), *self.monitor.events(now), *self.residual.events(now)]
-        troubles += [event for rivals in self._rivals.values() if (event := rivals.event(now)) is not None]
-        return self.health.events(self._seen_at(), self.gate, self.runner, troubles, self._flow())
+    def _flow_events(self) -> list[Event]:
+        """Return what is wrong with the flow of messages; nothing can be said while a jump of the clock is held as an error."""
+        overdue = self._clock.overdue(self._wall())
+        if overdue < 0 or self._epoch is None or self._held_until is not None:
+            return []
+        return [event._replace(action="the model waits where it is") for event in self.gate.check((overdue - self._epoch) * 1e-9)]
 
     def _accept(self, message: Message) -> Event | None:
+        """Pass a message through the gate into the profile."""
         channel, values, stamp = message
         event = self.gate.offer(channel, (stamp - self._epoch) * 1e-9, values)
         if event is not None:
             self._note(event)
             return event
         self._newest[channel] = stamp
-        self._rivals[channel].take(values)
+        self._conflicts[channel].take(values)
         if channel == topics.MEASURED:
             if self._started:
                 self._comparison.measure(self.run_time(stamp), self.gate.measured)
@@ -288,68 +303,63 @@ class SimTimeModel:
                 self._measured.append((stamp, self.gate.measured))
             return None
         try:
-            gap = self.runner.add(channel, stamp, self.gate.latest(channel))
-        except ValueError as fault:
+            gap = self.solver.add(channel, stamp, self.gate.latest(channel))
+        except ValueError as error:
             self._late += 1
             self.gate.refused["input.late"] += 1
-            event = Event(self.run_time(stamp), Level.WARN, "input.late", f"{channel}: {fault}; message refused, what was known before is held")
+            event = Event(self.run_time(stamp), Level.WARN, "input.late", channel, str(error), "message refused, the earlier values are kept")
             self._note(event)
             return event
         if gap is not None:
             self._gaps += 1
-            text = f"{channel}: no good message for {(gap[1] - gap[0]) * 1e-9:.4g} s; this time is not simulated, the state is held"
-            self._note(Event(self.run_time(gap[0]), Level.WARN, "input.gap", text))
+            self._note(gap_event(self.run_time(gap[0]), channel, gap))
         return None
 
     def _come_back(self) -> None:
         """Act on a clock that has jumped back."""
         before, now = self._clock.before, self._clock.now
-        back = f"the clock jumped back by {(before - now) * 1e-9:.4g} s to {now * 1e-9:.3f} s"
         if self._jump_back == "error":
             self._held_until = max(before, self._held_until or 0)
             return
-        if (left := self.runner.unfinished) > 0.0:
-            back += f", {left:.3g} s before that are left uncomputed"
-        self._note(Event(self.run_time(now), Level.WARN, "clock.jumped_back", f"{back}; state and damage begin anew there"))
-        self._begin_anew()
+        reason = f"the clock jumped back by {(before - now) * 1e-9:.4g} s to {now * 1e-9:.3f} s"
+        if (left := self.solver.unfinished) > 0.0:
+            reason += f"; {left:.3g} s before that stay uncomputed"
+        self._note(Event(self.run_time(now), Level.WARN, "clock.jumped_back", "", reason, "state and damage start again there"))
+        self._start_again()
 
-    def _begin_anew(self) -> None:
-        """Leave the course and begin another one at the clock, with the messages that were set aside."""
-        early = self._stragglers.jump(self._clock.now, self._newest)
-        gate, self.gate = self.gate, InputGate(self.scene.input_limits, self._first_inputs)
-        self.gate.refused = gate.refused
+    def _start_again(self) -> None:
+        """Leave the profile and begin another one at the clock, with the messages that were set aside."""
+        early = self._jump_filter.jump(self._clock.now, self._newest)
+        refused, self.gate = self.gate.refused, InputGate(self.scene.input_limits, self._first_inputs)
+        self.gate.refused = refused
         self._newest, self._measured, self._started = {}, [], False
-        self.runner.follow(self._new_course())
+        self.solver.follow(OnlineInputProfile(self._rate, self.scene.input_limits, self._oil_temperature))
         for message in early:
             self._accept(message)
         self._show_clock()
 
-    def _new_course(self) -> GrowingCourse:
-        return GrowingCourse(self._rate, self.scene.input_limits, self.scene.lubricant.temperature)
-
     def _show_clock(self) -> None:
-        """Tell the runner how far it may go."""
+        """Tell the solver how far it may advance."""
         if self._clock.now is not None and self._held_until is None:
-            self._stragglers.pass_by(self._clock.now)
-            self.runner.see(self._clock.now, self._clock.settled(self._wall()), self._expects_oil)
+            self._jump_filter.reach(self._clock.now)
+            self.solver.see_clock(self._clock.now, self._clock.settled(self._wall()), self._expects_oil)
 
-    def _handle(self, item) -> None:
-        if isinstance(item, Start):
-            self._start(item.start_ns)
-        elif isinstance(item, Begun):
-            self._outlets.to_recorders(item.time, lambda recorder: recorder.write_start(item.block))
-        elif isinstance(item, Output):
-            self._take(item.block)
-        elif isinstance(item, Arrival):
-            self._outlets.to_recorders(item.time, lambda recorder: recorder.write_inputs(*item))
-        else:
-            self._note(item)
-            if item.code == "run.reset":
-                self.monitor.restart()
-                self.residual.interrupt(item.time)
+    def _take(self, items: Iterable, now: float) -> None:
+        for item in items:
+            if isinstance(item, Start):
+                self._start(item.start_ns)
+            elif isinstance(item, Begun):
+                self.sinks.write_start(item.time, item.block)
+            elif isinstance(item, Output):
+                self._take_output(item.block)
+            elif isinstance(item, Arrival):
+                self.sinks.write_inputs(*item)
+            else:
+                self._note_solver_event(item, item.time)
+        self._pass_on(self._comparison.due())
 
     def _start(self, start_ns: int) -> None:
-        """Begin a course: run time 0 is its start."""
+        """Start a profile at run time 0."""
         self.start_ns, self._started = start_ns, True
         self.monitor.restart()
         self.residual.interrupt(-math.inf)
@@ -358,35 +368,28 @@ class SimTimeModel:
         for stamp, speed in measured:
             self._comparison.measure(self.run_time(stamp), speed)
         for name, open_sink in self._openers.items():
-            self._outlets.guard(name, 0.0, lambda name=name: self._outlets.detach(name))
-            self._outlets.guard(name, 0.0, lambda name=name, open_sink=open_sink: self._outlets.attach(name, open_sink(start_ns)))
+            try:
+                self.sinks.detach(name)
+                self.sinks.attach(name, open_sink(start_ns))
+            except (OSError, ValueError) as error:
+                self.sinks.fail(name, 0.0, error)
 
-    def _take(self, block: np.ndarray) -> None:
+    def _take_output(self, block: np.ndarray) -> None:
         """Judge, record and publish outputs."""
-        now = float(block["time"][-1])
         self.monitor.take(block)
-        self._outlets.to_all(now, lambda sink: sink.write(block))
-        self._tell_compared(self._comparison.predict(block))
-        share = min(self._publish_rate / self._rate, 1.0)
+        self.sinks.write(float(block["time"][-1]), block)
+        self._pass_on(self._comparison.predict(block))
+        fraction = min(self._publish_rate / self._rate, 1.0)
         for sample in block:
             number = round(float(sample["time"]) * self._rate)
-            if math.floor(number * share + 1e-9) > math.floor((number - 1) * share + 1e-9):
-                self._published.append(Published(self.start_ns + round(float(sample["time"]) * 1e9), sample))
+            if math.floor(number * fraction + 1e-9) > math.floor((number - 1) * fraction + 1e-9):
+                self._published.append(Published(self.stamp(float(sample["time"])), sample))
 
-    def _tell_compared(self, compared) -> None:
-        for one in compared:
-            self._outlets.to_all(one.time, lambda sink, one=one: sink.write_measurement(*one))
-            self._residuals.append((self.start_ns + round(one.time * 1e9), one.residual))
+    def _pass_on(self, compared: Iterable[Measurement]) -> None:
+        for measurement in compared:
+            self.sinks.write_measurement(*measurement)
+            if not math.isnan(measurement.residual):
+                self._residuals.append((self.stamp(measurement.time), measurement.residual))
 
-    def _note(self, event: Event) -> None:
-        self.health.note(event, self._seen_at())
-
-    def _seen_at(self) -> float:
+    def _review_time(self, now: float) -> float:
         return self._wall() - self._wall_start
-
-    def _flow(self) -> list[Event]:
-        """Return what is wrong with the flow of messages; of a clock that counts as an error nothing can be said."""
-        overdue = self._clock.overdue(self._wall())
-        if overdue < 0 or self._epoch is None or self._held_until is not None:
-            return []
-        return flow_events((overdue - self._epoch) * 1e-9, self.gate)

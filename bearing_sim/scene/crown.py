@@ -8,27 +8,26 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
-from bearing_sim.quantity import quantity
-from bearing_sim.scene_record import record as _strict
+from bearing_sim.scene.quantity import quantity, record
 
 _TABLE_HEADER = "expected a header of two columns, position and drop, each with its unit in brackets, such as position[mm],drop[um]"
 
 
-@_strict
+@record
 class NoCrown:
     """A straight cylinder: no drop anywhere."""
 
     law: Literal["none"] = "none"
 
 
-@_strict
+@record
 class IsoLogCrown:
-    """The logarithmic profile of ISO/TS 16281: P(x) = 0.00035 D_w ln(1/(1 - (2 x/L)^2)); endless at the very end, x = L/2."""
+    """The logarithmic profile of ISO/TS 16281: P(x) = 0.00035 D_w ln(1/(1 - (2 x/L)^2)); infinite at the end, x = L/2."""
 
     law: Literal["iso_log"] = "iso_log"
 
 
-@_strict
+@record
 class StraightArcCrown:
     """Straight in the middle, then an arc: P(x) = R_c - sqrt(R_c^2 - s^2), s = |x| - straight_length/2, where s > 0."""
 
@@ -37,9 +36,9 @@ class StraightArcCrown:
     crown_radius: quantity("m", "radius of the arcs on both sides of it, R_c", 1e-3, 1e3, "mm")
 
 
-@_strict
+@record
 class TableCrown:
-    """A measured profile, straight lines between its points; positions count from the roller's middle along x."""
+    """A measured profile, linear between its points; positions are measured from the roller's middle along x."""
 
     law: Literal["table"] = "table"
     positions: tuple[quantity("m", "position along the roller, from its middle", -0.25, 0.25, "mm"), ...]
@@ -48,19 +47,19 @@ class TableCrown:
     @model_validator(mode="after")
     def _points_pair_up(self):
         if len(self.positions) != len(self.drops) or len(self.drops) < 2:
-            raise ValueError(f"drops: {len(self.drops)} values for {len(self.positions)} positions; expected as many, at least two")
+            raise ValueError(f"drops: {len(self.drops)} values for {len(self.positions)} positions; expected the same number, at least two")
         if any(b <= a for a, b in zip(self.positions, self.positions[1:])):
-            raise ValueError("positions: expected rising positions")
+            raise ValueError("positions: expected increasing positions")
         return self
 
 
 def _from_shorthand(value):
-    """Return the record that a bare name or the path of a CSV file stands for."""
+    """Return the record for a bare name or for the path of a CSV file."""
     if isinstance(value, str):
         return {"law": value.strip()}
     if isinstance(value, dict) and "file" in value and value.get("law", "table") == "table":
         if not isinstance(value["file"], (str, Path)) or "positions" in value or "drops" in value:
-            raise ValueError("file: expected the path of a CSV file, instead of positions and drops, not beside them")
+            raise ValueError("file: expected the path of a CSV file; give either file, or positions and drops")
         return {"law": "table", **{key: item for key, item in value.items() if key != "file"}, **crown_points(value["file"])}
     return value
 
@@ -74,11 +73,11 @@ Crown = Annotated[
 
 
 def anchor_crown(tree, folder: Path) -> None:
-    """Make a crown's file that a scene file names relative to that file's folder.
+    """Resolve the path of a crown's file relative to the folder of the scene file.
 
     Parameters
     ----------
-    tree : the scene as nested mappings; changed in place.
+    tree : the scene as nested mappings; modified.
     folder : of the scene file.
     """
     node = tree
@@ -89,30 +88,30 @@ def anchor_crown(tree, folder: Path) -> None:
 
 
 def crown_points(path: str | Path) -> dict[str, list[str]]:
-    """Return the positions and drops of a CSV file as texts with their units.
+    """Return positions and drops from a CSV file, as text with units.
 
     Parameters
     ----------
-    path : of a file whose first line names the columns with units, ``position[mm],drop[um]``; ``#`` begins a remark.
+    path : of a file whose first line names the columns with units, ``position[mm],drop[um]``; ``#`` begins a comment.
 
     Raises
     ------
     ValueError
-        The file cannot be read, or is not of that form.
+        The file cannot be read or has another format.
     """
     try:
         with open(path, encoding="utf-8", newline="") as file:
             rows = [row for row in csv.reader(line for line in file if not line.lstrip().startswith("#")) if any(cell.strip() for cell in row)]
-    except (OSError, UnicodeDecodeError, csv.Error) as fault:
-        raise ValueError(f"file {str(path)!r} cannot be read: {fault}") from None
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise ValueError(f"file {str(path)!r} cannot be read: {error}") from None
     names = [cell.strip().rstrip("]").split("[") for cell in rows[0]] if rows else []
-    units = {name[0].strip(): (place, name[1]) for place, name in enumerate(names) if len(name) == 2}
+    units = {name[0].strip(): (column, name[1]) for column, name in enumerate(names) if len(name) == 2}
     if len(names) != 2 or set(units) != {"position", "drop"}:
         raise ValueError(f"file {str(path)!r}: {_TABLE_HEADER}")
     short = next((number for number, row in enumerate(rows[1:], 1) if len(row) != 2), None)
     if short is not None:
         raise ValueError(f"file {str(path)!r}: row {short} has {len(rows[short])} columns, expected 2")
-    return {f"{name}s": [f"{row[place].strip()} {unit}" for row in rows[1:]] for name, (place, unit) in units.items()}
+    return {f"{name}s": [f"{row[column].strip()} {unit}" for row in rows[1:]] for name, (column, unit) in units.items()}
 
 
 def slice_middles(length: float, slices: int) -> np.ndarray:
@@ -123,8 +122,8 @@ def slice_middles(length: float, slices: int) -> np.ndarray:
 def crown_drops(crown, roller_diameter: float, length: float, slices: int) -> np.ndarray:
     """Return the drop C_k of every slice at its middle [m], shape (slices,).
 
-    It is taken off the penetration of each of the two contacts: delta_k = delta - C_k + tilt x_k.  ISO/TS 16281, which counts
-    the approach of both rings as one, takes 2 P(x_k) off it; that is the same.
+    The drop reduces the penetration of each of the two contacts: delta_k = delta - C_k + tilt x_k.  ISO/TS 16281 counts the
+    approach of both rings as one and subtracts 2 P(x_k), which is equivalent.
 
     Parameters
     ----------
@@ -137,22 +136,22 @@ def crown_drops(crown, roller_diameter: float, length: float, slices: int) -> np
         return -0.00035 * roller_diameter * np.log1p(-((2.0 * x / length) ** 2))
     if isinstance(crown, StraightArcCrown):
         on_arc = np.maximum(np.abs(x) - crown.straight_length / 2, 0.0)
-        # R - sqrt(R^2 - s^2) without the difference of two large numbers
+        # R - sqrt(R^2 - s^2), written without the difference of two large numbers
         return on_arc**2 / (crown.crown_radius + np.sqrt(crown.crown_radius**2 - on_arc**2))
     if isinstance(crown, TableCrown):
         return np.interp(x, crown.positions, crown.drops)
     return np.zeros(slices)
 
 
-def crown_faults(crown, length: float) -> list[str]:
-    """Return in words what about a crown does not fit a roller of a length [m]."""
+def crown_errors(crown, length: float) -> list[str]:
+    """Return error messages for a crown that does not fit a roller of the given length [m]."""
     half = length / 2
     if isinstance(crown, StraightArcCrown):
         if crown.straight_length > length:
             return [f"crown.straight_length: {1e3 * crown.straight_length:.6g} mm is longer than the roller, {1e3 * length:.6g} mm"]
         if crown.crown_radius <= half - crown.straight_length / 2:
-            return [f"crown.crown_radius: {1e3 * crown.crown_radius:.6g} mm is shorter than the arc, which then ends before the roller does"]
+            return [f"crown.crown_radius: {1e3 * crown.crown_radius:.6g} mm is too small: the arc would end before the end of the roller"]
     if isinstance(crown, TableCrown) and not (crown.positions[0] <= -half * (1 - 1e-9) and crown.positions[-1] >= half * (1 - 1e-9)):
         reached = f"{1e3 * crown.positions[0]:.6g} to {1e3 * crown.positions[-1]:.6g} mm"
-        return [f"crown.positions: {reached} do not reach both ends of the roller, {-1e3 * half:.6g} and {1e3 * half:.6g} mm"]
+        return [f"crown.positions: {reached} do not cover the roller, {-1e3 * half:.6g} to {1e3 * half:.6g} mm"]
     return []

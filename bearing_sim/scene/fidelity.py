@@ -1,12 +1,23 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""What a scene may ask for that not every level has: one table, for refusals, for hints, and for choosing a level."""
+"""Fidelity levels: what each can compute, the choice of a level for a scene, and the integration methods of each."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-LEVELS = ("steady", "slip", "planar", "spatial")  # from the cheapest to the dearest
-NUMBERS = {"steady": 0, "slip": 1, "planar": 2, "spatial": 3}  # how a sample names the level that computed it
-REDUCES_TO = {"spatial": "planar"}  # what a level moves and loads like, to round-off, where nothing that it alone has is asked for
+LEVELS = ("steady", "slip", "planar", "spatial")  # from the lowest to the highest fidelity
+NUMBERS = {"steady": 0, "slip": 1, "planar": 2, "spatial": 3}  # code of a level in a sample
+REDUCES_TO = {"spatial": "planar"}  # equal motion and loads, to round-off, unless the scene uses what only the higher level has
+
+
+# Integration methods of each level, the default first.  Only names: `bearing_sim.levels.level` binds them to code.
+METHODS = {
+    "steady": ("lag",),
+    "slip": ("rosenbrock2", "bdf"),
+    "planar": ("sdirk2", "bdf"),
+    "spatial": ("sdirk2",),
+}
+# Methods that can run with a fixed step; the others need their error estimates.
+FIXED_STEP = ("rosenbrock2", "sdirk2")
 
 
 class Effect(NamedTuple):
@@ -14,10 +25,10 @@ class Effect(NamedTuple):
 
     Attributes
     ----------
-    field : of the scene, as an author writes it.
-    levels : that have it, from the cheapest.
-    because : why these, as the rest of a sentence about them.
-    asked : scene -> whether the scene asks for it; may be a word that tells what it asks for.
+    field : dotted path in the scene.
+    levels : that have the effect, in order of fidelity.
+    because : why these levels, as a relative clause.
+    asked : scene -> whether the scene asks for it; may be the name of what it asks for.
     """
 
     field: str
@@ -27,22 +38,22 @@ class Effect(NamedTuple):
 
 
 class Want(NamedTuple):
-    """An output or behaviour that a scene may ask for by name, in its list ``wants``."""
+    """An output or behaviour that a scene can ask for by name in its list ``wants``."""
 
-    levels: tuple[str, ...]  # that have it, from the cheapest
+    levels: tuple[str, ...]  # that have it, in order of fidelity
     because: str  # as in `Effect`
 
 
 MARCHING, WHIRLING, TILTING = ("slip", "planar", "spatial"), ("planar", "spatial"), ("spatial",)
 WANTS = {
-    "slip": Want(LEVELS, "which all tell it"),
-    "life": Want(LEVELS, "which all tell it"),
-    "roller_loads": Want(LEVELS, "which all tell them"),
-    "power": Want(LEVELS, "which all tell it"),
-    "fast_transients": Want(MARCHING, "which march through what happens within a cage turn"),
-    "pocket_forces": Want(WHIRLING, "whose rollers have play in their pockets"),
+    "slip": Want(LEVELS, "which all compute it"),
+    "life": Want(LEVELS, "which all compute it"),
+    "roller_loads": Want(LEVELS, "which all compute them"),
+    "power": Want(LEVELS, "which all compute it"),
+    "fast_transients": Want(MARCHING, "which integrate the motion within a cage turn"),
+    "pocket_forces": Want(WHIRLING, "whose rollers have clearance in their pockets"),
     "cage_orbit": Want(WHIRLING, "whose cage whirls"),
-    "vibration": Want(WHIRLING, "whose rollers and inner ring have inertia across their paths"),
+    "vibration": Want(WHIRLING, "whose rollers and inner ring have radial inertia"),
     "misalignment": Want(TILTING, "whose ring tilts"),
     "tilt_and_skew": Want(TILTING, "whose rollers tilt and skew"),
     "edge_loads": Want(TILTING, "which slices the rollers"),
@@ -72,39 +83,39 @@ def asked_for(scene) -> list[Effect]:
 
 
 def refusals(scene) -> list[str]:
-    """Return, for each effect that a scene asks for and its level would ignore, which level it needs and why."""
-    return [_need(effect, scene) for effect in asked_for(scene) if scene.level not in effect.levels]
+    """Return an error message for each effect that the scene asks for but its level would ignore."""
+    return [_refusal(effect, scene) for effect in asked_for(scene) if scene.level not in effect.levels]
 
 
-def _need(effect: Effect, scene) -> str:
+def _refusal(effect: Effect, scene) -> str:
     word, names = effect.asked(scene), " or ".join(effect.levels)
     said = f"{word} " if isinstance(word, str) else ""
     return f"{effect.field}: {said}needs level {names}, {effect.because}; level {scene.level} would ignore it"
 
 
 def levels_with(effects) -> list[str]:
-    """Return the levels that have all of some effects, from the cheapest to the dearest."""
+    """Return the levels that have all the given effects, in order of fidelity."""
     return [level for level in LEVELS if all(level in effect.levels for effect in effects)]
 
 
 class Choice(NamedTuple):
     """What `choose` found."""
 
-    level: str | None  # None where no level has all that is asked for
+    level: str | None  # None if no level has everything
     reason: str  # one line
 
 
 def choose(scene) -> Choice:
-    """Return the cheapest level that has all that a scene asks for; its own level does not count."""
+    """Return the lowest level that has everything a scene asks for, whatever its own level."""
     asked = asked_for(scene)
     able = levels_with(asked)
     demanding = [effect for effect in asked if effect.levels != LEVELS]
     if not able:
-        told = [f"{effect.field} ({', '.join(effect.levels)})" for effect in demanding]
-        return Choice(None, f"no level has all of {'; '.join(told)}")
-    needed = [effect for effect in demanding if effect.levels[0] == able[0]]  # what rules out the cheaper ones
-    because = ", ".join(f"{effect.field}: {effect.because}" for effect in needed) or "nothing that is asked for needs a dearer one"
-    return Choice(able[0], f"level {able[0]} chosen, the cheapest with all that is asked for ({because})")
+        needs = [f"{effect.field} ({', '.join(effect.levels)})" for effect in demanding]
+        return Choice(None, f"no level has all of {'; '.join(needs)}")
+    needed = [effect for effect in demanding if effect.levels[0] == able[0]]  # what excludes the lower levels
+    because = ", ".join(f"{effect.field}: {effect.because}" for effect in needed) or "nothing in the scene needs a higher one"
+    return Choice(able[0], f"level {able[0]} chosen, the lowest with everything that the scene asks for ({because})")
 
 
 def level_of(sample) -> str:
@@ -112,20 +123,20 @@ def level_of(sample) -> str:
     return {number: name for name, number in NUMBERS.items()}[int(sample["level"])]
 
 
-def cheaper_levels(scene) -> list[str]:
-    """Return the levels cheaper than a scene's own that have all it asks for, the dearest of them first."""
+def lower_levels(scene) -> list[str]:
+    """Return the levels below a scene's own that have everything it asks for, the highest of them first."""
     able = levels_with(asked_for(scene))
     return [level for level in reversed(LEVELS[: LEVELS.index(scene.level)]) if level in able]
 
 
 def hint(scene) -> str | None:
-    """Return one line that says why a level was chosen, or names a cheaper one at which the scene computes the same, or None."""
+    """Return one line on why a level was chosen, or on a lower level that would give the same motion and loads, or None."""
     if scene.level_reason.startswith(f"level {scene.level} "):
         return scene.level_reason
-    cheaper = REDUCES_TO.get(scene.level)
-    if cheaper is None or cheaper not in levels_with(asked_for(scene)):
+    lower = REDUCES_TO.get(scene.level)
+    if lower is None or lower not in levels_with(asked_for(scene)):
         return None
     of_scenes = [effect for effect in EFFECTS if not effect.field.startswith("wants.")]
-    missing = ", ".join(effect.field for effect in of_scenes if scene.level in effect.levels and cheaper not in effect.levels)
-    faster = f"level {cheaper} computes the same motion and loads several times faster"
-    return f"level {scene.level}: the scene has nothing that needs it ({missing}); {faster}"
+    missing = ", ".join(effect.field for effect in of_scenes if scene.level in effect.levels and lower not in effect.levels)
+    faster = f"level {lower} computes the same motion and loads several times faster"
+    return f"level {scene.level}: nothing in the scene needs it ({missing}); {faster}"

@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Read scenes: YAML, presets, command-line overrides; every fault of a file reported at once."""
+"""Read scenes: YAML, presets, command-line overrides.  All errors of a file are reported at once."""
 
 import dataclasses
 import difflib
@@ -15,12 +15,12 @@ import yaml
 from pydantic import TypeAdapter, ValidationError
 from pydantic_core import PydanticCustomError
 
-from bearing_sim.contour_scene import UNREAD, anchor_contour, drop_other_forms, with_contour_text
-from bearing_sim.crown import anchor_crown
-from bearing_sim.effects import choose
-from bearing_sim.scene import Scene
-from bearing_sim.scene_cage import drop_other_lands
-from bearing_sim.scene_uncertainty import drop_ranges_of_lands, override_range, read_ranges, written
+from bearing_sim.scene.bearing import drop_other_lands
+from bearing_sim.scene.contour import UNREAD, anchor_contour, drop_other_forms, with_contour_text
+from bearing_sim.scene.crown import anchor_crown
+from bearing_sim.scene.fidelity import choose
+from bearing_sim.scene.scene import Scene
+from bearing_sim.scene.uncertainty import drop_ranges_of_lands, override_range, read_ranges, written
 
 _UNION_TAGS = frozenset(
     {"oil_4109", "constant", "kragelskii", "eyring", "fitted", "custom", "double_exponential", "reference", "hyperbolic", "power"}
@@ -29,8 +29,8 @@ _UNION_TAGS = frozenset(
 
 
 @dataclass(frozen=True)
-class Fault:
-    """One thing wrong in a scene: where, what was found (as text) and what was expected."""
+class InvalidField:
+    """One error in a scene: where it is, the value found (as text) and what was expected."""
 
     path: str
     value: str
@@ -42,17 +42,17 @@ class Fault:
 
 
 class SceneError(ValueError):
-    """A scene that cannot be used; ``faults`` lists everything that is wrong with it."""
+    """A scene that cannot be used; ``errors`` lists every invalid field."""
 
-    def __init__(self, origin: str, faults: Iterable[Fault]):
+    def __init__(self, origin: str, errors: Iterable[InvalidField]):
         self.origin = origin
-        self.faults = tuple(faults)
-        count = len(self.faults)
-        super().__init__("\n".join([f"{origin}: {count} fault{'s' * (count != 1)}"] + [f"  {fault}" for fault in self.faults]))
+        self.errors = tuple(errors)
+        count = len(self.errors)
+        super().__init__("\n".join([f"{origin}: {count} error{'s' * (count != 1)}"] + [f"  {error}" for error in self.errors]))
 
 
 class _UniqueKeyLoader(yaml.SafeLoader):
-    """SafeLoader that refuses a key written twice: PyYAML would silently keep the last."""
+    """SafeLoader that rejects a repeated key; PyYAML would silently keep the last value."""
 
 
 def _mapping_with_unique_keys(loader: yaml.SafeLoader, node: yaml.MappingNode) -> dict:
@@ -73,7 +73,9 @@ _UniqueKeyLoader.add_constructor(yaml.resolver.BaseResolver.DEFAULT_MAPPING_TAG,
 def scene_names() -> list[str]:
     """Return the names of the bundled scenes."""
     return sorted(
-        entry.name.removesuffix(".yaml") for entry in resources.files("bearing_sim").joinpath("scenes").iterdir() if entry.name.endswith(".yaml")
+        entry.name.removesuffix(".yaml")
+        for entry in resources.files("bearing_sim.scene").joinpath("scenes").iterdir()
+        if entry.name.endswith(".yaml")
     )
 
 
@@ -83,21 +85,21 @@ def load_scene(scene: str | Path, overrides: Iterable[str] = ()) -> Scene:
     Parameters
     ----------
     scene : the name of a bundled scene (see `scene_names`) or the path of a YAML file.
-    overrides : ``"bearing.outer_raceway.low_radius=34.865mm"`` and the like, applied in order over the file.
+    overrides : texts such as ``"bearing.outer_raceway.low_radius=34.865mm"``, applied in order over the file.
 
     Raises
     ------
     SceneError
-        The file is absent, is no YAML, or holds faults; all of them are listed.
+        The file is absent, is not YAML, or has errors; all of them are listed.
     """
     folder = None
     if str(scene) in scene_names():
-        text = resources.files("bearing_sim").joinpath("scenes", f"{scene}.yaml").read_text()
+        text = resources.files("bearing_sim.scene").joinpath("scenes", f"{scene}.yaml").read_text()
     else:
         path = Path(scene)
         if not path.is_file():
             known = ", ".join(scene_names())
-            raise SceneError(str(scene), [Fault("", "", f"no such file, and no bundled scene of that name; bundled: {known}")])
+            raise SceneError(str(scene), [InvalidField("", "", f"no such file or bundled scene; bundled scenes: {known}")])
         text, folder = path.read_text(), path.parent
     return scene_from_yaml(text, overrides, origin=str(scene), folder=folder)
 
@@ -105,7 +107,7 @@ def load_scene(scene: str | Path, overrides: Iterable[str] = ()) -> Scene:
 def scene_from_yaml(text: str, overrides: Iterable[str] = (), origin: str = "scene", folder: Path | None = None) -> Scene:
     """Build a scene from YAML text (see `load_scene`).
 
-    Files that the text names are looked for in ``folder``, those that an override names in the current folder.
+    Paths in the text are relative to ``folder``, paths in overrides to the current folder.
     """
     tree = yaml_mapping(text, origin, "bearing, lubricant, operating ...")
     if folder is not None:
@@ -122,35 +124,35 @@ def scene_from_mapping(tree: Mapping, origin: str = "scene") -> Scene:
     Raises
     ------
     SceneError
-        Listing every fault with its path, its value and what was expected.
+        Listing every error with its path, value and the expected value.
     """
-    resolved, faults = _with_presets(tree)
+    resolved, errors = _with_presets(tree)
     resolved, unread = with_contour_text(resolved)
     ranges, wrong = read_ranges(resolved.get("uncertainty"), Scene)
     resolved["uncertainty"] = ranges
-    faults += [Fault(*fault) for fault in wrong]
+    errors += [InvalidField(*error) for error in wrong]
     try:
         scene = TypeAdapter(Scene).validate_python(_with_level(resolved))
     except ValidationError as error:
-        faults += [fault for fault in faults_of(error, Scene, _UNION_TAGS) if not (unread and UNREAD in fault.reason)]
+        errors += [each for each in invalid_fields(error, Scene, _UNION_TAGS) if not (unread and UNREAD in each.reason)]
     if unread:
-        faults.append(Fault("bearing.outer_raceway.contour_file", *unread))
-    if faults:
-        raise SceneError(origin, faults)
+        errors.append(InvalidField("bearing.outer_raceway.contour_file", *unread))
+    if errors:
+        raise SceneError(origin, errors)
     return scene
 
 
 def _with_level(tree: Mapping) -> Mapping:
-    """Return a scene's tree with a level where it says auto: the cheapest that has all that the scene asks for.
+    """Return a scene's tree with ``level: auto`` resolved to the lowest level that has everything the scene asks for.
 
     Raises
     ------
     ValidationError
-        The scene has faults at any level, or asks for what no level has.
+        The scene has errors, or no level has everything it asks for.
     """
     if tree.get("level") != "auto":
         return tree
-    # Asked at the level that refuses nothing; methods differ from level to level and are judged at the one chosen.
+    # Validate at the level with all effects; methods depend on the level and are checked at the chosen one.
     integration = {name: value for name, value in (tree.get("integration") or {}).items() if name not in ("method", "fixed_step")}
     found = choose(TypeAdapter(Scene).validate_python({**tree, "level": "spatial", "integration": integration}))
     if found.level is None:
@@ -166,7 +168,7 @@ def scene_to_yaml(scene: Scene) -> str:
 
 
 class _LineDumper(yaml.SafeDumper):
-    """SafeDumper that writes a text of many lines, such as a contour, line by line."""
+    """SafeDumper that writes multi-line texts, such as contours, as blocks."""
 
 
 _LineDumper.add_representer(str, lambda dumper, text: dumper.represent_scalar("tag:yaml.org,2002:str", text, style="|" if "\n" in text else None))
@@ -181,19 +183,19 @@ def _plain(value):
 
 
 def yaml_mapping(text: str, origin: str, expected: str) -> dict:
-    """Return the mapping that YAML text holds; ``expected`` names some of its keys to an author who wrote something else.
+    """Return the mapping in a YAML text; ``expected`` names some of its keys for the error message.
 
     Raises
     ------
     SceneError
-        The text is no YAML, is no mapping, or has a key twice.
+        The text is not YAML, is not a mapping, or has a repeated key.
     """
     try:
         tree = yaml.load(text, Loader=_UniqueKeyLoader)
     except yaml.YAMLError as error:
-        raise SceneError(origin, [Fault("", "", f"not readable as YAML: {' '.join(str(error).split())}")]) from None
+        raise SceneError(origin, [InvalidField("", "", f"not readable as YAML: {' '.join(str(error).split())}")]) from None
     if not isinstance(tree, dict):
-        raise SceneError(origin, [Fault("", repr(tree), f"expected a mapping with {expected}")])
+        raise SceneError(origin, [InvalidField("", repr(tree), f"expected a mapping with {expected}")])
     return tree
 
 
@@ -201,7 +203,7 @@ def _apply_override(tree: dict, override: str) -> None:
     path, equals, text = override.partition("=")
     keys = path.strip().split(".")
     if not equals or not all(keys):
-        raise SceneError("--set", [Fault(path, "", "expected FIELD=VALUE, such as bearing.outer_raceway.low_radius=34.865mm")])
+        raise SceneError("--set", [InvalidField(path, "", "expected FIELD=VALUE, such as bearing.outer_raceway.low_radius=34.865mm")])
     try:
         value = yaml.load(text, Loader=_UniqueKeyLoader)
     except yaml.YAMLError:
@@ -217,7 +219,7 @@ def _apply_override(tree: dict, override: str) -> None:
         if child is None:
             child = {}
         if not isinstance(child, dict):
-            raise SceneError("--set", [Fault(".".join(keys[: depth + 1]), repr(child), f"is a value, not a block, so {path} cannot be set")])
+            raise SceneError("--set", [InvalidField(".".join(keys[: depth + 1]), repr(child), f"is a value, not a block; {path} cannot be set")])
         node[key] = dict(child)
         node = node[key]
     node[keys[-1]] = value
@@ -229,25 +231,25 @@ def _apply_override(tree: dict, override: str) -> None:
 
 def catalog_names(kind: str) -> list[str]:
     """Return the names of the catalog entries of a kind: ``bearings``, ``oils`` or ``mappings``."""
-    folder = resources.files("bearing_sim").joinpath("catalog", kind)
+    folder = resources.files("bearing_sim.scene").joinpath("catalog", kind)
     return sorted(entry.name.removesuffix(".yaml") for entry in folder.iterdir() if entry.name.endswith(".yaml"))
 
 
-def _from_catalog(kind: str, name: str, path: str) -> tuple[dict, list[Fault]]:
+def _from_catalog(kind: str, name: str, path: str) -> tuple[dict, list[InvalidField]]:
     names = catalog_names(kind)
     if name not in names:
-        return {}, [Fault(path, repr(name), f"not in the catalog{did_you_mean(str(name), names)}; known: {', '.join(names)}")]
-    return yaml.load(resources.files("bearing_sim").joinpath("catalog", kind, f"{name}.yaml").read_text(), Loader=_UniqueKeyLoader), []
+        return {}, [InvalidField(path, repr(name), f"not in the catalog{did_you_mean(str(name), names)}; known: {', '.join(names)}")]
+    return yaml.load(resources.files("bearing_sim.scene").joinpath("catalog", kind, f"{name}.yaml").read_text(), Loader=_UniqueKeyLoader), []
 
 
-def _with_presets(tree: Mapping) -> tuple[dict, list[Fault]]:
-    tree, faults = dict(tree), []
+def _with_presets(tree: Mapping) -> tuple[dict, list[InvalidField]]:
+    tree, errors = dict(tree), []
     bearing = tree.get("bearing")
     if isinstance(bearing, str):
         bearing = {"preset": bearing}
     if isinstance(bearing, Mapping) and "preset" in bearing:
         preset, unknown = _from_catalog("bearings", bearing["preset"], "bearing.preset")
-        faults += unknown
+        errors += unknown
         raceway = bearing.get("outer_raceway")
         if isinstance(raceway, Mapping) and "outer_raceway" in preset:
             drop_other_forms(preset["outer_raceway"], raceway)
@@ -255,21 +257,23 @@ def _with_presets(tree: Mapping) -> tuple[dict, list[Fault]]:
         if isinstance(cage, Mapping) and "cage" in preset:
             drop_other_lands(preset["cage"], cage)
         tree["bearing"] = _merged(preset, {key: value for key, value in bearing.items() if key != "preset"})
-        if unknown:  # its missing fields are consequences, not faults
-            raise SceneError("scene", faults)
+        if unknown:  # its missing fields are consequences
+            raise SceneError("scene", errors)
     lubricant = tree.get("lubricant")
     if isinstance(lubricant, Mapping) and isinstance(lubricant.get("oil"), str):
         oil, unknown = _from_catalog("oils", lubricant["oil"], "lubricant.oil")
         if lubricant["oil"] == "custom":
-            unknown = [Fault("lubricant.oil", "'custom'", "expected a block: law: custom, viscosity_40, viscosity_100, density, pressure_viscosity")]
-        faults += unknown
+            unknown = [
+                InvalidField("lubricant.oil", "'custom'", "expected a block: law: custom, viscosity_40, viscosity_100, density, pressure_viscosity")
+            ]
+        errors += unknown
         if unknown:
-            oil = _from_catalog("oils", catalog_names("oils")[0], "")[0]  # so that the rest is still checked
+            oil = _from_catalog("oils", catalog_names("oils")[0], "")[0]  # check the rest with any oil
         tree["lubricant"] = {**lubricant, "oil": oil}
     lubricant = tree.get("lubricant")
     if isinstance(lubricant, Mapping) and isinstance(lubricant.get("oil"), Mapping) and "law" not in lubricant["oil"]:
         tree["lubricant"] = {**lubricant, "oil": {"law": "fitted", **lubricant["oil"]}}
-    return tree, faults
+    return tree, errors
 
 
 def _merged(base: dict, over: Mapping) -> dict:
@@ -281,44 +285,44 @@ def _merged(base: dict, over: Mapping) -> dict:
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """Return ``" (did you mean ...?)"`` for the nearest known word, or nothing."""
+    """Return ``" (did you mean ...?)"`` for the nearest known word, or an empty text."""
     close = difflib.get_close_matches(word, list(known), n=1)
     return f" (did you mean {close[0]!r}?)" if close else ""
 
 
-def faults_of(error: ValidationError, record: type, laws: frozenset[str]) -> list[Fault]:
-    """Return the faults that pydantic found in a tree, in our words.
+def invalid_fields(error: ValidationError, record: type, laws: frozenset[str]) -> list[InvalidField]:
+    """Return the errors that pydantic found in a tree, with messages for the author of the file.
 
     Parameters
     ----------
-    error : what pydantic raised.
+    error : as raised by pydantic.
     record : the record type of the whole tree.
-    laws : values of the field ``law`` by which the tree's unions are told apart; pydantic puts them into its paths.
+    laws : values of the field ``law``, which selects the record of a union; pydantic includes them in its paths.
     """
-    return [_fault(problem, record, laws) for problem in error.errors(include_url=False)]
+    return [_invalid_field(problem, record, laws) for problem in error.errors(include_url=False)]
 
 
-def _fault(problem: Mapping, record: type, laws: frozenset[str]) -> Fault:
+def _invalid_field(problem: Mapping, record: type, laws: frozenset[str]) -> InvalidField:
     path = ".".join(str(part) for part in problem["loc"] if part not in laws)
     kind, reason, value = problem["type"], problem["msg"], problem["input"]
     shown = "" if isinstance(value, Mapping) or dataclasses.is_dataclass(value) or type(value).__name__ == "ArgsKwargs" else repr(value)
     if kind == "missing":
-        return Fault(path, "", "missing")
+        return InvalidField(path, "", "missing")
     if kind == "union_tag_not_found":
-        return Fault(f"{path}.law", "", "missing")
+        return InvalidField(f"{path}.law", "", "missing")
     if kind == "union_tag_invalid":
         tag, known = problem["ctx"]["tag"], problem["ctx"]["expected_tags"]
-        return Fault(f"{path}.law", repr(tag), f"expected one of {known}{did_you_mean(str(tag), re.findall(r'[a-z_0-9]+', known))}")
+        return InvalidField(f"{path}.law", repr(tag), f"expected one of {known}{did_you_mean(str(tag), re.findall(r'[a-z_0-9]+', known))}")
     if kind == "unexpected_keyword_argument":
         known = _field_names(problem["loc"][:-1], record, laws)
-        return Fault(path, shown, f"unknown field{did_you_mean(str(problem['loc'][-1]), known)}; known here: {', '.join(known)}")
-    return Fault(path, shown, re.sub(r"^(Value error, |Input should be )", lambda m: "" if m[1].startswith("Value") else "expected ", reason))
+        return InvalidField(path, shown, f"unknown field{did_you_mean(str(problem['loc'][-1]), known)}; known here: {', '.join(known)}")
+    return InvalidField(path, shown, re.sub(r"^(Value error, |Input should be )", lambda m: "" if m[1].startswith("Value") else "expected ", reason))
 
 
 def _field_names(loc: Iterable, record: type, laws: frozenset[str]) -> list[str]:
     kind = record
     for part in loc:
-        if isinstance(part, int):  # a place in a tuple of records
+        if isinstance(part, int):  # index into a tuple of records
             kind = _unwrapped(typing.get_args(kind)[0])
         elif part in laws:
             kind = next(option for option in typing.get_args(kind) if option.law == part)

@@ -1,12 +1,12 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The lubricant of a scene: laws of viscosity, oils, laws of traction."""
 
+from dataclasses import field
 from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from bearing_sim.quantity import quantity
-from bearing_sim.scene_record import record
+from bearing_sim.scene.quantity import quantity, record
 
 
 @record
@@ -15,9 +15,9 @@ class DoubleExponentialViscosity:
 
     law: Literal["double_exponential"] = "double_exponential"
     scale: quantity("Pa*s", "factor", 1e-12, 1e3)
-    a: float
-    b: float
-    c: float
+    a: float  # coefficient a
+    b: float  # coefficient b
+    c: float  # coefficient c
 
 
 @record
@@ -27,8 +27,8 @@ class ReferenceViscosity:
     law: Literal["reference"] = "reference"
     temperature: quantity("K", "reference temperature, T_ref", 150.0, 800.0, "degC")
     viscosity: quantity("Pa*s", "viscosity at the reference temperature", 1e-6, 1e3)
-    linear: float
-    quadratic: float
+    linear: float  # coefficient of d [K]
+    quadratic: float  # coefficient of d^2 [K^2]
 
 
 @record
@@ -36,9 +36,9 @@ class HyperbolicPressureViscosity:
     """alpha = offset + slope/(T - pole), T in kelvin, alpha in 1/Pa."""
 
     law: Literal["hyperbolic"] = "hyperbolic"
-    offset: float
-    slope: float
-    pole: float
+    offset: float  # [1/Pa]
+    slope: float  # [K/Pa]
+    pole: float  # temperature of the pole [K]
 
 
 @record
@@ -46,17 +46,17 @@ class PowerPressureViscosity:
     """alpha = exp(exponent ln eta0 - constant)/eta0, alpha in 1/Pa."""
 
     law: Literal["power"] = "power"
-    exponent: float
-    constant: float
+    exponent: float  # factor of ln eta0
+    constant: float  # subtracted from it
 
 
 @record
 class Oil:
-    """An oil's properties as functions of temperature (see `bearing_sim.oil`)."""
+    """An oil's properties as functions of temperature (see `bearing_sim.model.oil`)."""
 
     law: Literal["fitted"] = "fitted"
-    name: str
-    source: str
+    name: str  # name of the oil
+    source: str  # where its data come from
     viscosity: Annotated[DoubleExponentialViscosity | ReferenceViscosity, Field(discriminator="law")]
     pressure_viscosity: Annotated[HyperbolicPressureViscosity | PowerPressureViscosity, Field(discriminator="law")]
     density_temperatures: tuple[quantity("K", "temperature of a density point", 150.0, 800.0, "degC"), ...]
@@ -67,20 +67,21 @@ class Oil:
     def _density_points_pair_up(self):
         if len(self.density_temperatures) != len(self.densities) or len(self.densities) < 1:
             raise ValueError(
-                f"densities: {len(self.densities)} values for {len(self.density_temperatures)} density_temperatures; expected as many, at least one"
+                f"densities: {len(self.densities)} values for {len(self.density_temperatures)} density_temperatures; expected the same number, "
+                "at least one"
             )
         if any(b <= a for a, b in zip(self.density_temperatures, self.density_temperatures[1:])):
-            raise ValueError("density_temperatures: expected rising temperatures")
+            raise ValueError("density_temperatures: expected increasing temperatures")
         return self
 
 
 @record
 class CustomOil:
-    """An oil by what its data sheet says: kinematic viscosities at 40 and 100 degC (ASTM D341), density, pressure viscosity."""
+    """An oil by the values of its data sheet: kinematic viscosities at 40 and 100 degC (ASTM D341), density, pressure viscosity."""
 
     law: Literal["custom"] = "custom"
-    name: str = "custom"
-    source: str = ""
+    name: str = "custom"  # name of the oil
+    source: str = ""  # where its data come from
     viscosity_40: quantity("m^2/s", "kinematic viscosity at 40 degC", 2e-7, 0.1, "mm^2/s")
     viscosity_100: quantity("m^2/s", "kinematic viscosity at 100 degC", 2e-7, 0.1, "mm^2/s")
     density: quantity("kg/m^3", "density at 15 degC", 100.0, 3000.0)
@@ -97,7 +98,7 @@ class CustomOil:
 
 @record
 class Oil4109Traction:
-    """Traction of the 4109 aviation oil by dimensionless load, speed and temperature (physics section 3, law 1)."""
+    """Traction of the 4109 aviation oil by dimensionless load, speed and temperature (Wang Yanshuang's fit, see `bearing_sim.physics.traction`)."""
 
     law: Literal["oil_4109"] = "oil_4109"
 
@@ -115,28 +116,28 @@ class ConstantTraction:
 
 @record
 class KragelskiiTraction:
-    """mu(v) = (A + B v) exp(-C v) + D by sliding speed v, from what its course looks like (Kragelskii, as Gupta gives it)."""
+    """mu(v) = (A + B v) exp(-C v) + D by sliding speed v, from points of the curve (Kragelskii, as given by Gupta)."""
 
     law: Literal["kragelskii"] = "kragelskii"
-    mu_0: quantity("", "coefficient without sliding; reached over rise_speed", 0.0, 1.0) = 0.0
+    mu_0: quantity("", "coefficient as sliding begins; reached at rise_speed", 0.0, 1.0) = 0.0
     mu_max: quantity("", "largest coefficient", 1e-6, 1.0) = 0.05
     v_max: quantity("m/s", "sliding speed of the largest coefficient", 1e-3, 1e3) = 1.0
     mu_inf: quantity("", "coefficient at high sliding speed", 0.0, 1.0) = 0.036
-    rise_speed: quantity("m/s", "sliding speed over which mu_0 is reached", 1e-4, 10.0) = 0.01
+    rise_speed: quantity("m/s", "sliding speed at which mu_0 is reached", 1e-4, 10.0) = 0.01
 
     @model_validator(mode="after")
     def _maximum_is_one(self):
-        faults = [f"{name}: expected less than mu_max" for name in ("mu_0", "mu_inf") if getattr(self, name) >= self.mu_max]
+        errors = [f"{name}: expected less than mu_max" for name in ("mu_0", "mu_inf") if getattr(self, name) >= self.mu_max]
         if self.mu_0 > 0.0 and self.rise_speed > 0.1 * self.v_max:
-            faults.append("rise_speed: expected at most a tenth of v_max")
-        if faults:
-            raise ValueError("; ".join(faults))
+            errors.append("rise_speed: expected at most a tenth of v_max")
+        if errors:
+            raise ValueError("; ".join(errors))
         return self
 
 
 @record
 class EyringTraction:
-    """Thermal Eyring film with limiting shear stress (see `bearing_sim.kernels.eyring`)."""
+    """Thermal Eyring film with limiting shear stress (see `bearing_sim.physics.traction`)."""
 
     law: Literal["eyring"] = "eyring"
     eyring_stress: quantity("Pa", "Eyring stress, tau_E", 1e5, 1e9, "MPa") = 5e6
@@ -144,3 +145,15 @@ class EyringTraction:
 
 
 Traction = Annotated[Oil4109Traction | ConstantTraction | KragelskiiTraction | EyringTraction, Field(discriminator="law")]
+
+
+@record
+class Lubricant:
+    """The oil, its fraction in the oil-air mixture inside the bearing, and its traction law."""
+
+    oil: Annotated[Oil | CustomOil, Field(discriminator="law")]
+    temperature: quantity("K", "oil temperature", 220.0, 600.0, "degC") = 393.15
+    mixture_fraction: quantity("", "volume fraction of oil in the oil-air mixture", 0.0, 1.0) = 0.03
+    traction_scale: quantity("", "factor on every traction coefficient", 0.0, 100.0) = 1.0
+    traction: Traction = field(default_factory=Oil4109Traction)
+    pumping: bool = False  # hydrodynamic rolling resistance of the contact inlets

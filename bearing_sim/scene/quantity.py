@@ -1,9 +1,9 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Physical quantities at the door: text with a unit in, SI numbers out.
+"""Physical quantities of scene files: text with a unit in, SI numbers out; and the records that hold them.
 
 The only module that knows units.  Inside the package every number is SI; here ``7.0 mm`` becomes
-``0.007`` and a value outside its declared bounds becomes one clear message.  The unit library (pint)
-is imported at first use, because it costs a quarter of a second that ``--help`` should not pay.
+``0.007``, and a value outside its declared bounds raises one clear message.  The unit library (pint)
+is imported at first use, because importing it takes a quarter of a second, which ``--help`` does not need.
 """
 
 import math
@@ -12,6 +12,8 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Annotated, Any
 
+import pydantic.dataclasses
+from pydantic import ConfigDict
 from pydantic_core import PydanticCustomError, core_schema
 
 _NUMBER_THEN_UNIT = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|[-+]?(?:nan|inf(?:inity)?))\s*(.*?)\s*$", re.IGNORECASE)
@@ -36,7 +38,7 @@ def to_si(value: object, unit: str) -> float:
     Raises
     ------
     ValueError
-        The text is no quantity, the unit is unknown, or it has the wrong dimension.
+        The text is not a quantity, or its unit is unknown or has the wrong dimension.
     """
     if isinstance(value, bool) or not isinstance(value, (int, float, str)):
         raise ValueError(f"expected {_expected(unit)}, got {value!r}")
@@ -57,7 +59,7 @@ def to_si(value: object, unit: str) -> float:
         raise ValueError(f"unknown unit {written_unit!r} in {value!r}; expected {_expected(unit)}") from None
     except pint.DimensionalityError:
         raise ValueError(f"{value!r} has the wrong dimension; expected {_expected(unit)}") from None
-    except Exception:  # pint's parser raises whatever the tokenizer does
+    except Exception:  # pint's parser passes on any error of Python's tokenizer
         raise ValueError(f"cannot read the unit {written_unit!r} in {value!r}; expected {_expected(unit)}") from None
 
 
@@ -86,16 +88,16 @@ def _expected(unit: str) -> str:
 
 @dataclass(frozen=True)
 class Quantity:
-    """One declaration of one quantity: its unit, bounds and meaning.
+    """Declaration of one quantity: its unit, bounds and meaning.
 
-    Feeds YAML checking, ROS parameter descriptors and the nomenclature table.
+    Used to check YAML, for ROS parameter descriptors and for the reference pages.
 
     Attributes
     ----------
     unit : SI unit of the stored number.
     meaning : what the quantity is, in one line.
     minimum, maximum : bounds, both included, in SI.
-    shown_in : unit that people read it in (messages, tables); defaults to ``unit``.
+    shown_in : unit in messages and tables; defaults to ``unit``.
     """
 
     unit: str
@@ -108,13 +110,13 @@ class Quantity:
         return core_schema.no_info_plain_validator_function(self.read)
 
     def read(self, value: object) -> float:
-        """Return ``value`` in SI, or raise the fault that a scene file's author should see."""
+        """Return ``value`` in SI, or raise an error with a message for the author of the scene file."""
         try:
             number = to_si(value, self.unit)
-        except ValueError as fault:
-            raise PydanticCustomError("quantity", "{reason}", {"reason": str(fault)}) from None
+        except ValueError as error:
+            raise PydanticCustomError("quantity", "{reason}", {"reason": str(error)}) from None
         for bound in (self.minimum, self.maximum):
-            if math.isclose(number, bound, rel_tol=1e-12):  # "10 um" must not miss a bound of 1e-5 by round-off
+            if math.isclose(number, bound, rel_tol=1e-12):  # round-off must not put "10 um" outside a bound of 1e-5
                 number = bound
         if not self.minimum <= number <= self.maximum:  # NaN fails here too
             raise PydanticCustomError(
@@ -125,7 +127,7 @@ class Quantity:
         return number
 
     def show(self, number: float) -> str:
-        """Return ``number`` (SI) as text in the unit that people read."""
+        """Return ``number`` (SI) as text in the display unit."""
         unit = self.shown_in or self.unit
         if math.isfinite(number) and unit != self.unit:
             registry = unit_registry()
@@ -136,3 +138,7 @@ class Quantity:
 def quantity(unit: str, meaning: str, minimum: float = -math.inf, maximum: float = math.inf, shown_in: str = ""):
     """Return the annotated float type of a scene field (see `Quantity`)."""
     return Annotated[float, Quantity(unit, meaning, minimum, maximum, shown_in)]
+
+
+record = pydantic.dataclasses.dataclass(frozen=True, kw_only=True, config=ConfigDict(extra="forbid", str_strip_whitespace=True))
+"""Decorator of every record of a scene: frozen, keyword-only, and it refuses unknown fields."""

@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""The thresholds of a scene: from where on the condition of a bearing is a warning or an error, and how a change is told from noise."""
+"""The thresholds of a scene: when the condition of a bearing is a warning or an error, and how changes are detected in noise."""
 
 import dataclasses
 from collections.abc import Mapping
@@ -7,41 +7,38 @@ from dataclasses import field
 
 from pydantic import TypeAdapter, ValidationError, model_validator
 
-from bearing_sim.quantity import quantity
-from bearing_sim.scene_record import record
+from bearing_sim.scene.quantity import quantity, record
 
 
 @record
 class Hold:
-    """How firmly a value must be beyond its limit, and back, before that is told (see `bearing_sim.runtime.alarm`)."""
+    """Hysteresis and delays of an alarm (see `bearing_sim.monitoring.monitor.Alarm`)."""
 
-    hysteresis: quantity("", "share of the limit by which a value must come back", 0.0, 0.9, "%") = 0.1
-    raise_after: quantity("s", "time beyond the limit after which it is told", 0.0, 86400.0) = 0.5
-    clear_after: quantity("s", "time back after which it is over", 0.0, 86400.0) = 2.0
+    hysteresis: quantity("", "fraction of the limit by which a value must return before the alarm clears", 0.0, 0.9, "%") = 0.1
+    raise_after: quantity("s", "time beyond the limit before the alarm is raised", 0.0, 86400.0) = 0.5
+    clear_after: quantity("s", "time back within the limit before the alarm clears", 0.0, 86400.0) = 2.0
 
 
 @record
 class ResidualDetection:
-    """How measured slip is held against the predicted one (see `bearing_sim.runtime.residual`)."""
+    """How measured slip is compared with predicted slip (see `bearing_sim.monitoring.residual`)."""
 
     false_alarm_time: quantity("s", "mean time between false alarms", 60.0, 1e10, "h") = 3.6e6
-    tolerance: quantity("", "lasting change of the residual that is no fault: the model's own error from condition to condition", 1e-6, 1.0, "%") = (
-        0.002
-    )
-    batch: quantity("s", "time over which residuals are averaged before they are judged", 0.01, 3600.0) = 1.0
-    learning: quantity("s", "measured time from which the residual's usual mean and scatter are known well enough to judge", 1.0, 1e6) = 120.0
-    settling: quantity("s", "time after rest or a change of speed that is not judged", 0.0, 3600.0) = 5.0
-    memory: quantity("s", "time constant of the fading mean and standard deviation that are shown", 0.1, 1e6) = 60.0
+    tolerance: quantity("", "lasting change of the residual that is not a fault: the error of the model between conditions", 1e-6, 1.0, "%") = 0.002
+    batch: quantity("s", "time over which residuals are averaged before the test", 0.01, 3600.0) = 1.0
+    learning: quantity("s", "measured time from which the reference mean and scatter of the residual are learned", 1.0, 1e6) = 120.0
+    settling: quantity("s", "time after rest or a change of speed that is ignored", 0.0, 3600.0) = 5.0
+    memory: quantity("s", "time constant of the displayed exponential mean and standard deviation", 0.1, 1e6) = 60.0
 
     @model_validator(mode="after")
     def _times_fit_together(self):
-        faults = []
+        errors = []
         if self.learning < 30 * self.batch:
-            faults.append(f"learning: {self.learning:g} s are {self.learning / self.batch:.3g} batches of {self.batch:g} s; expected 30 or more")
+            errors.append(f"learning: {self.learning:g} s are {self.learning / self.batch:.3g} batches of {self.batch:g} s; expected 30 or more")
         if self.false_alarm_time < 20 * self.batch:
-            faults.append(f"false_alarm_time: {self.false_alarm_time:g} s is less than 20 batches of {self.batch:g} s")
-        if faults:
-            raise ValueError("; ".join(faults))
+            errors.append(f"false_alarm_time: {self.false_alarm_time:g} s is less than 20 batches of {self.batch:g} s")
+        if errors:
+            raise ValueError("; ".join(errors))
         return self
 
 
@@ -51,15 +48,15 @@ class Thresholds:
 
     slip_warning: quantity("", "cage slip that is a warning", 0.0, 1.0, "%") = 0.05
     slip_error: quantity("", "cage slip that is an error (Deng 2017: 10 %)", 0.0, 1.0, "%") = 0.10
-    # Leaving rest a cage may slip by any fraction of next to nothing, which harms no surface.
-    slip_from_speed: quantity("rad/s", "shaft speed from which slip and film are judged", 0.0, 12000.0, "rpm") = 20.0
+    # Just above rest the slip may be large, but it does no harm.
+    slip_from_speed: quantity("rad/s", "shaft speed above which slip and film are monitored", 0.0, 12000.0, "rpm") = 20.0
     slip_hold: Hold = field(default_factory=Hold)
     life_warning: quantity("h", "rating life below which there is a warning (Deng 2017: 300 h)", 0.0, 1e9) = 300.0
     life_error: quantity("h", "rating life below which there is an error; 0: never", 0.0, 1e9) = 0.0
     life_hold: Hold = field(default_factory=Hold)
     remaining_life_warning: quantity("h", "remaining life below which there is a warning (Deng 2017: 300 h)", 0.0, 1e9) = 300.0
     remaining_life_error: quantity("h", "remaining life below which there is an error; 0: never", 0.0, 1e9) = 0.0
-    remaining_life_memory: quantity("s", "time constant of the mean rate of damage by which remaining life is told", 1e-3, 1e9) = 60.0
+    remaining_life_memory: quantity("s", "time constant of the mean damage rate from which remaining life is computed", 1e-3, 1e9) = 60.0
     remaining_life_hold: Hold = field(default_factory=Hold)
     lambda_warning: quantity("", "film thickness over roughness below which there is a warning", 0.0, 100.0) = 1.0
     lambda_error: quantity("", "film thickness over roughness below which there is an error; 0: never", 0.0, 100.0) = 0.0
@@ -71,32 +68,32 @@ class Thresholds:
 
 
 def with_thresholds(thresholds: Thresholds, changes: Mapping[str, float | None]) -> Thresholds:
-    """Return thresholds some of which are others.
+    """Return thresholds with some numbers changed.
 
     Parameters
     ----------
-    thresholds : what holds where nothing is changed.
-    changes : numbers in SI by their place, such as ``slip_warning`` or ``slip_hold.raise_after``.
+    thresholds : the current ones.
+    changes : numbers in SI by dotted path, such as ``slip_warning`` or ``slip_hold.raise_after``.
 
     Raises
     ------
     ValueError
-        A number is outside its bounds, or they do not fit together; all faults are told.
+        A number is out of bounds, or the numbers contradict each other; the message lists all errors.
     KeyError
-        There is no such place.
+        There is no such path.
     """
     tree = dataclasses.asdict(thresholds)
-    for place, value in changes.items():
-        *blocks, last = place.split(".")
+    for path, value in changes.items():
+        *blocks, last = path.split(".")
         node = tree
         for block in blocks:
             node = node[block]
         if last not in node:
-            raise KeyError(place)
+            raise KeyError(path)
         node[last] = value
     try:
         return TypeAdapter(Thresholds).validate_python(tree)
     except ValidationError as error:
         raise ValueError(
-            "; ".join(f"thresholds.{'.'.join(map(str, fault['loc']))}: {fault['msg'].removeprefix('Value error, ')}" for fault in error.errors())
+            "; ".join(f"thresholds.{'.'.join(map(str, each['loc']))}: {each['msg'].removeprefix('Value error, ')}" for each in error.errors())
         ) from None

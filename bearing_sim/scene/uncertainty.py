@@ -1,13 +1,13 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""What nobody knows for sure: ranges of scene fields, and reading and changing fields by their paths.
+"""Uncertainty of a scene: ranges of its fields, and access to fields by dotted path.
 
-In a file the block ``uncertainty`` maps a field to its range, by dotted path or in nested blocks:
+The block ``uncertainty`` of a file maps fields to ranges, by dotted path or in nested blocks:
 
     uncertainty:
       lubricant.mixture_fraction: [0.015, 0.05]
-      lubricant.temperature: {low: 100 degC, high: 150 degC, distribution: triangular, source: where that comes from}
+      lubricant.temperature: {low: 100 degC, high: 150 degC, distribution: triangular, source: where the range comes from}
 
-A range says what is held possible; the scene's own value stays what is computed with.
+A range gives the possible values; runs use the scene's own value.
 """
 
 import dataclasses
@@ -22,53 +22,52 @@ from typing import Any, Literal
 from pydantic import ValidationError, model_validator
 from pydantic_core import PydanticCustomError
 
-from bearing_sim.quantity import Quantity
-from bearing_sim.scene_record import record
+from bearing_sim.scene.quantity import Quantity, record
 
-BLOCKS = ("bearing", "lubricant", "operating")  # of a scene, whose quantities may have ranges
+BLOCKS = ("bearing", "lubricant", "operating")  # of a scene; their quantities may have ranges
 _ENDS, _WORDS = ("low", "high", "mode"), ("distribution", "source")
 _CLOSE_ENOUGH = 0.6  # of difflib's ratio
 
 
 @record
 class Range:
-    """What one quantity of the scene may be, in its SI unit.
+    """Range of one quantity of the scene, in its SI unit.
 
     Attributes
     ----------
     field : dotted path in the scene.
     low, high : the ends.
-    distribution : ``uniform``; ``log_uniform``, even in the logarithm, for what is known to a factor; ``triangular``, with its peak at the mode.
-    mode : of a triangular distribution; None: the scene's own value, or the middle where that lies outside.
+    distribution : ``uniform``; ``log_uniform``, uniform in the logarithm; ``triangular``, with its peak at the mode.
+    mode : of a triangular distribution; None: the scene's own value, or the middle of the range if that lies outside.
     source : where the range comes from.
     """
 
-    field: str
-    low: float
-    high: float
-    distribution: Literal["uniform", "log_uniform", "triangular"] = "uniform"
-    mode: float | None = None
-    source: str = ""
+    field: str  # path of the field
+    low: float  # low end of its range, in the unit of the field
+    high: float  # high end
+    distribution: Literal["uniform", "log_uniform", "triangular"] = "uniform"  # how likely values are within the range
+    mode: float | None = None  # most likely value of a triangular distribution
+    source: str = ""  # where the range comes from
 
     @model_validator(mode="after")
     def _is_a_range(self):
-        faults = []
+        errors = []
         if not (math.isfinite(self.low) and math.isfinite(self.high) and self.low < self.high):
-            faults.append(f"low: {self.low:g} is not below high, {self.high:g}")
+            errors.append(f"low: {self.low:g} is not below high, {self.high:g}")
         if self.distribution == "log_uniform" and self.low <= 0.0:
-            faults.append(f"low: {self.low:g}; a log_uniform range lies above 0")
+            errors.append(f"low: {self.low:g}; a log_uniform range lies above 0")
         if self.mode is not None and self.distribution != "triangular":
-            faults.append(f"mode: only a triangular distribution has one, this one is {self.distribution}")
+            errors.append(f"mode: only a triangular distribution has one, this one is {self.distribution}")
         elif self.mode is not None and not self.low <= self.mode <= self.high:
-            faults.append(f"mode: {self.mode:g} lies outside {self.low:g} to {self.high:g}")
-        if faults:
-            raise ValueError("; ".join(faults))
+            errors.append(f"mode: {self.mode:g} lies outside {self.low:g} to {self.high:g}")
+        if errors:
+            raise ValueError("; ".join(errors))
         return self
 
 
 @cache
 def quantities(scene_type: type) -> Mapping[str, Quantity]:
-    """Return the declarations of all quantities that may have a range, by dotted path; those of alternative records, too."""
+    """Return the declarations of all quantities that may have a range, by dotted path, including those of alternative records."""
     hints = typing.get_type_hints(scene_type, include_extras=True)
     return types.MappingProxyType({path: found for name in BLOCKS for path, found in _declared(name, hints[name])})
 
@@ -89,7 +88,7 @@ def _declared(path: str, hint) -> Iterator[tuple[str, Quantity]]:
 
 
 def nearest(path: str, known: Iterable[str]) -> str:
-    """Return ``" (did you mean ...?)"`` for the known path that is nearest, by its last word or as a whole, or nothing."""
+    """Return ``" (did you mean ...?)"`` for the nearest known path, compared as a whole and by its last word, or an empty text."""
     known, word = list(known), path.rpartition(".")[2]
 
     def likeness(other: str) -> float:
@@ -101,7 +100,7 @@ def nearest(path: str, known: Iterable[str]) -> str:
 
 
 def flattened(block: Mapping, path: str = "") -> dict[str, Any]:
-    """Return a block ``uncertainty`` by dotted paths, whether it was written so or nested."""
+    """Return a block ``uncertainty``, nested or not, by dotted paths."""
     flat = {}
     for key, value in block.items():
         inner = f"{path}.{key}" if path else str(key)
@@ -113,7 +112,7 @@ def flattened(block: Mapping, path: str = "") -> dict[str, Any]:
 
 
 def override_range(tree: dict, keys: list[str], value) -> None:
-    """Enter ``uncertainty.FIELD=RANGE`` or ``uncertainty.FIELD.low=VALUE`` into a scene's tree, in place."""
+    """Apply the override ``uncertainty.FIELD=RANGE`` or ``uncertainty.FIELD.low=VALUE`` to a scene's tree, in place."""
     given = tree.get("uncertainty") or {}
     block = flattened(given) if isinstance(given, Mapping) else {}
     path = ".".join(keys[1:])
@@ -127,7 +126,7 @@ def override_range(tree: dict, keys: list[str], value) -> None:
 
 
 def drop_ranges_of_lands(tree: dict) -> None:
-    """Take out of a scene's tree the ranges of guide lands, which an override has just taken away from the cage."""
+    """Remove the ranges of guide lands from a scene's tree, in place, after an override removed the lands from the cage."""
     given = tree.get("uncertainty")
     if isinstance(given, Mapping):
         tree["uncertainty"] = {path: value for path, value in flattened(given).items() if not path.startswith("bearing.cage.guide_")}
@@ -138,85 +137,85 @@ def read_ranges(given, scene_type: type) -> tuple[list[dict], list[tuple[str, st
 
     Parameters
     ----------
-    given : what the file has there.
-    scene_type : whose quantities may have ranges.
+    given : the block in the file.
+    scene_type : type of the scene.
 
     Returns
     -------
-    ranges : fields of each `Range`.
-    faults : (path, value, reason) of all that is wrong.
+    ranges : the fields of each `Range`.
+    errors : (path, value, reason) of each error.
     """
     if given is None:
         return [], []
     if not isinstance(given, Mapping):
         return [], [("uncertainty", repr(given), "expected a mapping of field to range, such as lubricant.mixture_fraction: [0.015, 0.05]")]
-    known, ranges, faults = quantities(scene_type), [], []
+    known, ranges, errors = quantities(scene_type), [], []
     for path, value in flattened(given).items():
-        if value is None:  # --set uncertainty.FIELD=null takes a range away
+        if value is None:  # --set uncertainty.FIELD=null removes a range
             continue
         where = f"uncertainty.{path}"
         if path not in known:
-            reason = f"unknown field{nearest(path, known)}; a range is for a quantity of {', '.join(BLOCKS[:-1])} or {BLOCKS[-1]}"
-            faults.append((where, "", reason))
+            reason = f"unknown field{nearest(path, known)}; expected a quantity of {', '.join(BLOCKS[:-1])} or {BLOCKS[-1]}"
+            errors.append((where, "", reason))
             continue
         entered, wrong = _entered(where, value, known[path])
-        faults += wrong
+        errors += wrong
         if wrong:
             continue
         try:
             Range(field=path, **entered)
         except ValidationError as error:
-            faults += [(".".join([where, *map(str, fault["loc"])]), "", fault["msg"].removeprefix("Value error, ")) for fault in error.errors()]
+            errors += [(".".join([where, *map(str, error["loc"])]), "", error["msg"].removeprefix("Value error, ")) for error in error.errors()]
         else:
             ranges.append({"field": path, **entered})
-    return ranges, faults
+    return ranges, errors
 
 
 def _entered(where: str, value, declared: Quantity) -> tuple[dict, list[tuple[str, str, str]]]:
-    """Return the fields of one range in SI, and what is wrong with it."""
+    """Return the fields of one range in SI, and its errors."""
     if isinstance(value, (list, tuple)):
         if len(value) != 2:
             return {}, [(where, repr(value), "expected [low, high]")]
         value = dict(zip(("low", "high"), value))
     if not isinstance(value, Mapping):
-        return {}, [(where, repr(value), "expected [low, high], or a block with low, high and perhaps distribution, mode, source")]
-    faults = [
+        return {}, [(where, repr(value), "expected [low, high], or a block with low, high and optionally distribution, mode, source")]
+    errors = [
         (f"{where}.{name}", "", f"unknown field{nearest(str(name), (*_ENDS, *_WORDS))}; known here: {', '.join((*_ENDS, *_WORDS))}")
         for name in value
         if name not in (*_ENDS, *_WORDS)
     ]
-    faults += [(f"{where}.{name}", "", "missing") for name in ("low", "high") if value.get(name) is None]
+    errors += [(f"{where}.{name}", "", "missing") for name in ("low", "high") if value.get(name) is None]
     entered = dict(value)
     for name in _ENDS:
         if value.get(name) is None:
             continue
         try:
             entered[name] = declared.read(value[name])
-        except PydanticCustomError as fault:
-            faults.append((f"{where}.{name}", repr(value[name]), fault.message()))
-    return entered, faults
+        except PydanticCustomError as error:
+            errors.append((f"{where}.{name}", repr(value[name]), error.message()))
+    return entered, errors
 
 
-def range_faults(scene) -> list[str]:
-    """Return which ranges of a scene are of no quantity that it has, go beyond what that may be, or are given twice, in words."""
-    known, faults, seen = quantities(type(scene)), [], set()
+def range_errors(scene) -> list[str]:
+    """Return error messages for ranges of unknown or absent quantities, out of bounds, or given twice."""
+    known, errors, seen = quantities(type(scene)), [], set()
     for one in scene.uncertainty:
         where, declared = f"uncertainty.{one.field}", known.get(one.field)
         if declared is None:
-            faults.append(f"{where}: unknown field{nearest(one.field, known)}")
+            errors.append(f"{where}: unknown field{nearest(one.field, known)}")
         elif value_at(scene, one.field) is None:
-            faults.append(f"{where}: this scene has no {one.field}, so its range means nothing; leave it out")
+            errors.append(f"{where}: this scene has no {one.field}; leave its range out")
         elif not declared.minimum <= one.low <= one.high <= declared.maximum:
             bounds = f"{declared.show(declared.minimum)} to {declared.show(declared.maximum)}"
-            faults.append(f"{where}: {declared.show(one.low)} to {declared.show(one.high)} goes beyond {bounds}")
+            errors.append(f"{where}: {declared.show(one.low)} to {declared.show(one.high)} goes beyond {bounds}")
         if one.field in seen:
-            faults.append(f"{where}: given twice")
+            errors.append(f"{where}: given twice")
         seen.add(one.field)
-    return faults
+    return errors
 
 
 def written(ranges: Iterable[Mapping]) -> dict[str, dict]:
-    """Return ranges, as plain mappings, as a file has them; what is left at its default is left out."""
+    """Return ranges as a file has them, without fields at their defaults."""
     plain = {}
     for one in ranges:
         kept = {
@@ -227,19 +226,19 @@ def written(ranges: Iterable[Mapping]) -> dict[str, dict]:
 
 
 def value_at(scene, path: str):
-    """Return what a scene has at a dotted path; None where it has nothing there."""
+    """Return the value of a scene at a dotted path; None if there is none."""
     for name in path.split("."):
         scene = getattr(scene, name, None)
     return scene
 
 
 def with_values(scene, values: Mapping[str, float]):
-    """Return a scene with other numbers [SI] at dotted paths; everything is checked anew.
+    """Return a scene with other numbers [SI] at dotted paths; all checks run again.
 
     Raises
     ------
     pydantic.ValidationError
-        The numbers do not fit together, or one is out of its bounds.
+        The numbers contradict each other, or one is out of bounds.
     """
     changed: dict[str, dict[str, float]] = {}
     for path, value in values.items():

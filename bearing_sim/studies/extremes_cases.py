@@ -1,9 +1,195 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""The corners of the study of extremes: one thing at a time driven to its bound, by name."""
+"""Scenes at the extremes: a Latin hypercube over the fields of a scene, and named corners.
+
+All are overrides of the scene ``deng2017_table1``, so that ``bearing-sim run deng2017_table1 --set ...`` repeats any of them.
+"""
+
+import math
+from collections.abc import Callable, Mapping
+from typing import NamedTuple
+
+from scipy.stats import qmc
 
 from bearing_sim.levels.level import LEVELS
-from bearing_sim.studies.extremes_scenes import Case, oil_of
-from bearing_sim.studies.stock_bearing import takes
+from bearing_sim.scene.loader import SceneError, load_scene
+from bearing_sim.scene.scene import tolerance_overrides
+
+COURSES = ("steady", "steady", "reversal", "stop", "start", "load_step", "ripple")  # of the inputs; steady ones twice as often
+_TRACTIONS = ("oil_4109", "constant", "kragelskii", "eyring")
+_CROWNS = ("none", "iso_log", "{law: straight_arc, straight_length: 4 mm, crown_radius: 1 m}")
+_DIAMETER, _INNER_RADIUS, _CAGE_BORE, _GUIDE_RADIUS = 7e-3, 27.875e-3, 29.6e-3, 33.5e-3  # of the bearing [m]
+_LARGEST_PLAY = 1.3  # times the clearance that leaves no bar between pockets
+_ROLLERS_THAT_FIT = 24  # with bars of the cage between them; for more rollers the bearing grows
+
+
+class Case(NamedTuple):
+    """One scene to run."""
+
+    name: str
+    level: str
+    overrides: tuple[str, ...]
+    course: str
+    point: Mapping[str, float | str]  # of the map, by dimension
+    seconds: float | None = None  # simulated; None: chosen by the study
+
+
+def _linear(low, high):
+    return lambda u: low + (high - low) * u
+
+
+def _logarithmic(low, high):
+    return lambda u: low * (high / low) ** u
+
+
+def _choice(*options):
+    return lambda u: options[min(int(u * len(options)), len(options) - 1)]
+
+
+def _or_zero(fraction, law):
+    """Return a law that is exactly 0 for a fraction of all samples."""
+    return lambda u: 0.0 if u < fraction else law((u - fraction) / (1.0 - fraction))
+
+
+def _speed(u):
+    """Return a shaft speed [rpm] in either direction, 0 for one sample in twenty."""
+    signed = 2.0 * u - 1.0
+    return 0.0 if abs(signed) < 0.05 else 1e5 * signed
+
+
+def _clearance(u):
+    """Return a clearance at the low points [m], from 50 um of preload to 1 mm, mostly small."""
+    return -50e-6 * (1.0 - 2.0 * u) if u < 0.5 else 1e-3 * (2.0 * u - 1.0) ** 3
+
+
+DIMENSIONS: Mapping[str, Callable] = {
+    "shaft_speed_rpm": _speed,
+    "radial_load": _or_zero(0.05, lambda u: 5e4 * u**3),
+    "load_angle": _linear(0.0, 2.0 * math.pi),
+    "course": _choice(*COURSES),
+    "clearance": _clearance,
+    "d_value": _or_zero(0.15, lambda u: 0.5e-3 * u * u),
+    "rollers": lambda u: 3 + min(int(58 * u), 57),
+    "pocket_clearance": lambda u: u,  # scaled below, because its range depends on the number of rollers
+    "guide_clearance": _logarithmic(2.5e-6, 5e-3),
+    "cage_mass": _logarithmic(2e-3, 2.0),
+    "supported_mass": _or_zero(0.1, _logarithmic(1e-2, 100.0)),
+    "viscosity": _logarithmic(1e-4, 1.0),
+    "temperature": _linear(233.15, 523.15),
+    "mixture_fraction": _or_zero(0.1, lambda u: u * u),
+    "traction": _choice(*_TRACTIONS),
+    "pumping": _choice("false", "false", "true"),
+    "centrifugal": _choice("false", "false", "true"),
+    "contour_slope": _choice("true", "true", "false"),
+    "land_squeeze": _choice("true", "true", "false"),
+    "pocket_friction": _or_zero(0.2, _linear(0.0, 0.3)),
+    "method": lambda u: u,  # mapped below, because each level has its own methods
+    "tolerances": _logarithmic(1e-8, 1.0),  # times the default ones
+    "step": _logarithmic(1e-7, 1e-3),
+    "slices": lambda u: 1 + min(int(200 * u * u), 199),
+    "crown": _choice(*_CROWNS),
+    "misalignment": _or_zero(0.4, lambda u: 5e-3 * u * u),
+    "gyroscopic": _choice("true", "true", "false"),
+}
+# Fields that some levels refuse, according to the checks of the scene.
+_BY_LEVEL = {
+    "pumping": ("lubricant.pumping={}", "true"),
+    "centrifugal": ("bearing.ring_growth.centrifugal={}", "true"),
+    "crown": ("bearing.roller.crown={}", "iso_log"),
+    "misalignment": ("operating.misalignment={!r}", 1e-3),
+}
+
+
+def sampled_cases(level: str, samples: int, seed: int) -> list[Case]:
+    """Return a Latin hypercube of scenes of one level.
+
+    Parameters
+    ----------
+    samples : number of scenes.
+    seed : the same seed gives the same scenes.
+    """
+    ignored = frozenset(name for name, (field, value) in _BY_LEVEL.items() if not takes(level, field.format(value)))
+    cases = []
+    for number, row in enumerate(qmc.LatinHypercube(len(DIMENSIONS), seed=seed).random(samples)):
+        point = {name: law(float(u)) for (name, law), u in zip(DIMENSIONS.items(), row)}
+        for name in ignored:
+            del point[name]
+        point["pocket_clearance"] = _logarithmic(1e-6, _LARGEST_PLAY * _room(point["rollers"]))(point["pocket_clearance"])
+        method, fixed = _method(level, point.pop("method"))
+        point |= {"method": method, "fixed": fixed}
+        cases.append(Case(f"sample {number}", level, tuple(overrides_of(level, point)), point["course"], point))
+    return cases
+
+
+def _room(rollers: int) -> float:
+    """Return the pocket clearance at which no bar is left between the pockets [m]."""
+    return 0.5 * (2.0 * math.pi * _pitch_radius(rollers) / rollers - _DIAMETER)
+
+
+def _pitch_radius(rollers: int) -> float:
+    return (_INNER_RADIUS + _DIAMETER / 2) * max(rollers / _ROLLERS_THAT_FIT, 1.0)
+
+
+def _method(level: str, u: float) -> tuple[str, bool]:
+    """Return a method and whether its step is fixed: the level's default for half of the samples, else any other combination."""
+    methods = LEVELS[level].methods
+    own = next(iter(methods))
+    others = [(name, False) for name in methods if name != own] + [(name, True) for name, method in methods.items() if method.advance_fixed]
+    if u < 0.5 or not others:
+        return own, False
+    return others[min(int((u - 0.5) * 2.0 * len(others)), len(others) - 1)]
+
+
+def overrides_of(level: str, point: Mapping) -> list[str]:
+    """Return the overrides for a point of the map.
+
+    Parameters
+    ----------
+    level : of the scene.
+    point : values by dimension, see `DIMENSIONS`, with ``method`` by name and ``fixed``.
+    """
+    outward = _pitch_radius(point["rollers"]) - _pitch_radius(1)
+    inner = _INNER_RADIUS + outward
+    overrides = [
+        f"level={level}",
+        f"bearing.roller.count={point['rollers']}",
+        f"bearing.inner_raceway.radius={inner!r}",
+        f"bearing.inner_raceway.bore_radius={inner - 2.8615e-3!r}",
+        f"bearing.inner_raceway.supported_mass={point['supported_mass']!r}",
+        f"bearing.outer_raceway.low_radius={inner + _DIAMETER + point['clearance']!r}",
+        f"bearing.outer_raceway.d_value={point['d_value']!r}",
+        f"bearing.outer_raceway.contour_slope={point['contour_slope']}",
+        f"bearing.cage.inner_radius={_CAGE_BORE + outward!r}",
+        f"bearing.cage.guide_radius={_GUIDE_RADIUS + outward!r}",
+        f"bearing.cage.pocket_clearance={point['pocket_clearance']!r}",
+        f"bearing.cage.guide_clearance={point['guide_clearance']!r}",
+        f"bearing.cage.mass={point['cage_mass']!r}",
+        f"bearing.cage.land_squeeze={point['land_squeeze']}",
+        f"bearing.cage.pocket_friction={point['pocket_friction']!r}",
+        f"bearing.roller.slices={point['slices']}",
+        oil_of(point["viscosity"], point["temperature"]),
+        f"lubricant.temperature={point['temperature']!r}",
+        f"lubricant.mixture_fraction={point['mixture_fraction']!r}",
+        f"lubricant.traction={{law: {point['traction']}}}",
+        f"dynamics.gyroscopic={point['gyroscopic']}",
+        f"operating.shaft_speed={point['shaft_speed_rpm'] * math.pi / 30!r}",
+        f"operating.radial_load={point['radial_load']!r}",
+        f"operating.load_angle={point['load_angle']!r}",
+        f"integration.method={point['method']}",
+        *tolerance_overrides(point["tolerances"]),
+        f"integration.{'fixed' if point['fixed'] else 'maximum'}_step={point['step']!r}",
+    ]
+    return overrides + [field.format(point[name]) for name, (field, _) in _BY_LEVEL.items() if name in point]
+
+
+def oil_of(viscosity: float, temperature: float) -> str:
+    """Return the override for an oil of a given viscosity [Pa s] at a temperature [K], otherwise like MIL-L-23699."""
+    law = f"{{law: reference, temperature: {temperature!r}, viscosity: {viscosity!r}, linear: 3609.6, quadratic: 7.7657e5}}"
+    pressure = "{law: power, exponent: 1.15607, constant: 17.496}"
+    return (
+        f"lubricant.oil={{name: extreme, source: study of extremes, viscosity: {law}, pressure_viscosity: {pressure}, "
+        "density_temperatures: [233, 422], densities: [1016, 884]}"
+    )
+
 
 _WARM = 393.15  # K
 _SPEED, _LOAD, _LOW, _CAGE = "operating.shaft_speed", "operating.radial_load", "bearing.outer_raceway.low_radius", "bearing.cage"
@@ -116,7 +302,7 @@ def corner_cases(level: str) -> list[Case]:
         corners |= _SLICED
     for name, method in LEVELS[level].methods.items():
         chosen = f"integration.method={name}"
-        corners |= {f"{name}, tolerance {t:g}": ([chosen, f"integration.relative_tolerance={t!r}"], "steady") for t in (1e-2, 1e-5, 1e-10)}
+        corners |= {f"{name}, tolerances x {t:g}": ([chosen, *tolerance_overrides(t)], "steady") for t in (1.0, 1e-3, 1e-8)}
         corners[f"{name}, reversal at 100,000 rpm"] = [chosen, f"{_SPEED}=100000 rpm"], "reversal"
         corners[f"{name}, steps of 50 kN"] = [chosen, f"{_LOAD}=50 kN"], "load_step"
         if method.advance_fixed:
@@ -125,3 +311,16 @@ def corner_cases(level: str) -> list[Case]:
         else:
             corners[f"{name}, fixed step"] = [chosen, "integration.fixed_step=1e-5"], "steady"
     return [Case(name, level, (f"level={level}", *overrides), course, {"course": course}) for name, (overrides, course) in corners.items()]
+
+
+BEARING = "deng2017_table1"
+"""Name of its scene."""
+
+
+def takes(level: str, override: str) -> bool:
+    """Return whether its scene at a level accepts an override."""
+    try:
+        load_scene(BEARING, [f"level={level}", override])
+    except SceneError:
+        return False
+    return True

@@ -1,16 +1,18 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Pre-deformation machining of a lobed raceway (Deng 2017, eq. 1, Fig. 1 to 3): press the blank, grind it round, release it.
 
-Where the pressed arcs were the raceway springs back outwards and makes high points.  Deng computes the deformation by finite
-elements; here it is that of a thin elastic ring, term by term of the pressure's Fourier series: the harmonic q_n of the pressure
-bends the ring inwards by w_n = q_n b R^4/(E I (n^2 - 1)^2), the mean pressure shrinks it by q_0 R^2/(E t).  The ring's ribs are in
-its equivalent thickness.
+At the pressed arcs the raceway springs back outwards and forms high points.  Deng computes the deformation by finite elements;
+this module uses a thin elastic ring and the Fourier series of the pressure: the harmonic q_n bends the ring inwards by
+w_n = q_n b R^4/(E I (n^2 - 1)^2), the mean pressure shrinks it by q_0 R^2/(E t).  An equivalent thickness accounts for the ribs.
 """
 
 import math
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+
+from bearing_sim.sweep.table import new_figure
 
 HARMONICS = 120  # w_n falls with the fifth power of n
 POINTS = 720
@@ -36,21 +38,21 @@ class Pressing(NamedTuple):
     """How the blank is pressed from outside while it is ground."""
 
     pressure: float  # mean over the arcs, p [Pa]
-    arc_turn: float = 0.0  # how far the last arc is turned from its even place, phi_f [rad]
+    arc_turn: float = 0.0  # rotation of the last arc from even spacing, phi_f [rad]
     arc_width: float = math.pi / 3  # [rad]
     arcs: int = 3
-    width: float | None = None  # pressed width [m]; the ring's where absent
+    width: float | None = None  # pressed width [m]; None: the ring's width
 
     @property
     def centres(self) -> np.ndarray:
-        """Azimuths of the arcs' middles [rad], between the low points, one of which is at 0."""
+        """Azimuths of the middles of the arcs [rad], between the low points; one low point is at 0."""
         centres = (np.arange(self.arcs) + 0.5) * _TURN / self.arcs
         centres[-1] += self.arc_turn
         return centres
 
     @property
     def pressures(self) -> np.ndarray:
-        """Pressures of the arcs [Pa], nearest to equal ones among those whose resultant vanishes, with the given mean."""
+        """Pressures of the arcs [Pa] with the given mean: the least-squares nearest to equal ones with zero resultant."""
         directions = np.stack([np.cos(self.centres), np.sin(self.centres)])
         balanced = 1.0 - directions.T @ np.linalg.lstsq(directions.T, np.ones(self.arcs), rcond=None)[0]
         return self.pressure * balanced / balanced.mean()
@@ -61,18 +63,18 @@ class Machined(NamedTuple):
 
     azimuths: np.ndarray  # [rad], shape (POINTS,)
     radii: np.ndarray  # R_e there [m], shape (POINTS,)
-    ground_radius: float  # R_egm, of the raceway while it is pressed [m]
+    ground_radius: float  # R_egm, of the pressed raceway [m]
     lows: np.ndarray  # azimuth [rad] and radius [m] of the low points, shape (n, 2)
     highs: np.ndarray  # of the high points, shape (n, 2)
 
     @property
     def d_value(self) -> float:
-        """Mean radius of the high points less that of the low points, D [m]."""
+        """Mean radius of the high points minus that of the low points, D [m]."""
         return float(self.highs[:, 1].mean() - self.lows[:, 1].mean())
 
     @property
     def roundness(self) -> float:
-        """Highest less lowest of the low points, e [m]."""
+        """Highest minus lowest of the low points, e [m]."""
         return float(np.ptp(self.lows[:, 1]))
 
 
@@ -85,14 +87,14 @@ def pressure_harmonics(pressing: Pressing, highest: int = HARMONICS) -> np.ndarr
 
 
 def deflection(azimuths, section: RingSection, harmonics: np.ndarray, pressed_width: float | None = None) -> np.ndarray:
-    """Return how far the pressed ring is bent inwards at azimuths [rad], in [m].
+    """Return the inward deflection of the pressed ring at azimuths [m].
 
     Parameters
     ----------
-    azimuths : where [rad].
+    azimuths : [rad].
     section : the ring.
-    harmonics : of the pressure, see `pressure_harmonics`; the first moves the ring as a whole and is left out.
-    pressed_width : [m]; the ring's where absent.
+    harmonics : of the pressure, see `pressure_harmonics`; the first is ignored: it moves the ring as a whole.
+    pressed_width : [m]; None: the ring's width.
     """
     width = section.width if pressed_width is None else pressed_width
     n = np.arange(2, len(harmonics))
@@ -102,13 +104,13 @@ def deflection(azimuths, section: RingSection, harmonics: np.ndarray, pressed_wi
 
 
 def machine(section: RingSection, pressing: Pressing, *, ground_radius: float | None = None, low_radius: float | None = None) -> Machined:
-    """Return the raceway that pressing, grinding round and releasing make.
+    """Return the raceway after pressing, grinding round and releasing.
 
     Parameters
     ----------
     section, pressing : the blank and its load.
     ground_radius : R_egm [m]; or
-    low_radius : lowest radius that the released raceway shall have [m].
+    low_radius : lowest radius of the released raceway [m].
     """
     fine = _TURN * np.arange(_FINE) / _FINE
     sprung = deflection(fine, section, pressure_harmonics(pressing), pressing.width)
@@ -123,7 +125,78 @@ def machine(section: RingSection, pressing: Pressing, *, ground_radius: float | 
 
 
 def contour_text(machined: Machined, about: str) -> str:
-    """Return a contour file for ``contour_file`` of a scene, with ``about`` in comments at its top."""
+    """Return the text of a ``contour_file`` for scenes, with ``about`` as comments at its top."""
     lines = [f"# {line}" for line in about.splitlines()]
     points = zip(np.degrees(machined.azimuths), 1e3 * machined.radii)
     return "\n".join([*lines, "angle [deg], radius [mm]", *(f"{angle:.6g}, {radius:.8f}" for angle, radius in points), ""])
+
+
+_CONTOUR, _PRESSED, _ROUND = "#b2451f", "#c9d8ea", "#7a7a7a"
+_DRAWN = 0.22  # of the radius, as which D is drawn
+
+
+def draw(path: Path, section: RingSection, pressing: Pressing, machined: Machined) -> None:
+    """Draw the results into a file; the suffix of ``path`` gives the format."""
+    figure = new_figure(11, 5.2)
+    shape, radius = figure.subplots(1, 2, width_ratios=(1, 1.35))
+    _draw_shape(shape, pressing, machined)
+    _draw_radius(radius, pressing, machined)
+    pressed = f"{pressing.arcs} arcs of {math.degrees(pressing.arc_width):g}°, {1e-6 * pressing.pressure:g} MPa"
+    ring = f"ring R {1e3 * section.mean_radius:g} mm, thickness {1e3 * section.thickness:g} mm"
+    made = f"D {1e6 * machined.d_value:.1f} µm, roundness {1e6 * machined.roundness:.1f} µm"
+    figure.suptitle(f"{pressed}, arc rotation {math.degrees(pressing.arc_turn):g}°, {ring}: {made}")
+    figure.savefig(path, dpi=130)
+
+
+def _edges(pressing):
+    return [(centre - pressing.arc_width / 2, centre + pressing.arc_width / 2) for centre in pressing.centres]
+
+
+def _draw_shape(axes, pressing, machined):
+    """Draw the raceway as seen along the shaft, y to the right and z up."""
+    span = float(np.ptp(machined.radii))
+    factor = _DRAWN * machined.ground_radius / span if span > 0.0 else 1.0
+    azimuths = np.append(machined.azimuths, 2 * math.pi)
+    drawn = 1.0 + factor * (np.append(machined.radii, machined.radii[0]) / machined.ground_radius - 1.0)
+    outside = 1.32
+    for (start, end), pressure in zip(_edges(pressing), pressing.pressures):
+        arc = np.linspace(start, end, 40)
+        axes.plot(outside * np.cos(arc), outside * np.sin(arc), color="#6f93bd", lw=7, solid_capstyle="butt")
+        middle = 0.5 * (start + end)
+        inward = {"arrowstyle": "-|>", "color": "#3c5f8a", "lw": 1.5, "shrinkA": 0, "shrinkB": 0}
+        for at in np.linspace(start, end, 5)[1:-1]:
+            ends = [(radius * math.cos(at), radius * math.sin(at)) for radius in (outside - 0.03, outside - 0.19)]
+            axes.annotate("", xy=ends[1], xytext=ends[0], arrowprops=inward)
+        label = 1.53 * np.array([math.cos(middle), math.sin(middle)])
+        axes.text(*label, f"{1e-6 * pressure:.2f}\nMPa", ha="center", va="center", fontsize=9, color="#3c5f8a")
+    axes.plot(np.cos(azimuths), np.sin(azimuths), "--", color=_ROUND, lw=1, label="ground, under load")
+    axes.plot(drawn * np.cos(azimuths), drawn * np.sin(azimuths), color=_CONTOUR, lw=2, label=f"released, deviations ×{factor:.0f}")
+    axes.set(aspect="equal", xlim=(-1.75, 1.75), ylim=(-1.75, 1.75))
+    axes.axis("off")
+    axes.legend(loc="center", frameon=False, fontsize=9)
+
+
+def _draw_radius(axes, pressing, machined):
+    for edges in _edges(pressing):
+        for shift in (-360.0, 0.0, 360.0):
+            axes.axvspan(*(math.degrees(edge) + shift for edge in edges), color=_PRESSED, lw=0)
+    azimuths, radii = np.append(np.degrees(machined.azimuths), 360.0), 1e3 * np.append(machined.radii, machined.radii[0])
+    axes.axhline(1e3 * machined.ground_radius, color=_ROUND, ls="--", lw=1)
+    axes.plot(azimuths, radii, color=_CONTOUR, lw=2)
+    span = max(float(np.ptp(radii)), 1e-6)
+    for points, side in ((machined.lows, -1), (machined.highs, 1)):
+        for angle, radius in points:
+            axes.plot(math.degrees(angle), 1e3 * radius, "o", color=_CONTOUR, ms=4)
+            axes.annotate(
+                f"{1e3 * radius:.4f}",
+                (math.degrees(angle), 1e3 * radius),
+                xytext=(0, 7 * side),
+                textcoords="offset points",
+                ha="left" if angle < 0.1 else "center",
+                va="bottom" if side > 0 else "top",
+                fontsize=9,
+            )
+    axes.set(xlim=(0, 360), ylim=(radii.min() - 0.14 * span, radii.max() + 0.14 * span), xlabel="azimuth [deg]", ylabel="raceway radius [mm]")
+    axes.set_xticks(range(0, 361, 60))
+    axes.ticklabel_format(axis="y", useOffset=False)
+    axes.set_title("pressed arcs shaded", fontsize=10, color=_ROUND)

@@ -1,24 +1,26 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""What a misaligned inner ring does to edges, tilts, skews and life, with and without a crown.
+"""Misalignment study: edge pressure, tilt, skew and life under a misaligned inner ring, with and without a crown.
 
-Each point is a run of level ``spatial`` after settling; the quasi-static balance by slices stands beside it.
+Each point is a settled run of level ``spatial``, shown with the quasi-static balance by slices.
 """
 
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.scene_file import load_scene
+from bearing_sim.scene.loader import load_scene
 from bearing_sim.simulation import Simulation
 from bearing_sim.studies.statics import Statics, statics
+from bearing_sim.sweep.table import COLOURS, MARKERS, new_figure
 
 CROWNS = ("none", "iso_log")
 _SAMPLES_PER_TURN = 20
 
 
 class Misaligned(NamedTuple):
-    """One crown at one misalignment: means over the time after settling, of the largest value at an instant where there are many."""
+    """Results of one crown at one misalignment: means over the time after settling, of the largest value at each instant for arrays."""
 
     crown: str
     misalignment: float  # [rad]
@@ -30,7 +32,7 @@ class Misaligned(NamedTuple):
     skew: float  # largest along the orbit [rad]
     rating_life: float  # [h]
     lamina_life: float  # [h]
-    still: Statics  # the same without motion of rollers against the cage
+    still: Statics  # quasi-static balance without slip
 
 
 def misalign(
@@ -40,32 +42,32 @@ def misalign(
     crowns: Sequence[str] = CROWNS,
     slices: int = 30,
     turns: tuple[float, float] = (50.0, 20.0),
-    tell: Callable[[str], None] = print,
+    progress: Callable[[str], None] = print,
 ) -> list[Misaligned]:
     """Run a scene with each crown at each misalignment.
 
     Parameters
     ----------
-    name, overrides : of the scene, as `bearing_sim.scene_file.load_scene` takes them.
-    misalignments : tilts at which the inner ring is held, towards the scene's misalignment angle [rad].
-    crowns : as the scene's ``bearing.roller.crown``.
-    slices : of a roller.
-    turns : of the cage before, and while, results are taken.
-    tell : takes a line of progress.
+    name, overrides : of the scene, as `bearing_sim.scene.loader.load_scene` takes them.
+    misalignments : tilts of the inner ring towards the scene's misalignment angle [rad].
+    crowns : values of ``bearing.roller.crown``.
+    slices : per roller.
+    turns : of the cage, before and during the averaging.
+    progress : called with the name of each point.
 
     Raises
     ------
     SceneError
-        The scene is faulty, or cannot be at level ``spatial``.
+        The scene is invalid, or cannot be computed at level ``spatial``.
     ValueError
-        The scene's shaft is at rest.
+        The shaft of the scene is at rest.
     IntegrationError
-        A run did not come to its end.
+        A run stopped early.
     """
     found = []
     for crown in crowns:
         for misalignment in misalignments:
-            tell(f"crown {crown}, {1e3 * misalignment:g} mrad")
+            progress(f"crown {crown}, {1e3 * misalignment:g} mrad")
             own = ("level=spatial", f"bearing.roller.crown={crown}", f"bearing.roller.slices={slices}", f"operating.misalignment={misalignment!r}")
             found.append(_run(load_scene(name, [*overrides, *own]), crown, misalignment, slices, turns))
     return found
@@ -74,7 +76,7 @@ def misalign(
 def _run(scene, crown, misalignment, slices, turns):
     speed = 0.5 * abs(scene.operating.shaft_speed) * (1.0 - scene.bearing.diameter_ratio)
     if speed == 0.0:
-        raise ValueError("operating.shaft_speed: 0; nothing tilts or skews at rest but by balance, which `bearing-sim loads` shows")
+        raise ValueError("operating.shaft_speed: 0; this study needs a rotating shaft, for the balance at rest use `bearing-sim loads`")
     run, turn = Simulation(scene), 2 * np.pi / speed
     run.advance(turns[0] * turn)
     block = run.advance(turns[1] * turn, samples=max(round(turns[1] * _SAMPLES_PER_TURN), 1))
@@ -83,6 +85,59 @@ def _run(scene, crown, misalignment, slices, turns):
         misalignment,
         *(float(block[name].mean()) for name in ("cage_slip", "inner_pressure", "inner_edge_pressure", "outer_edge_pressure")),
         *(float(np.abs(block[name]).max(axis=1).mean()) for name in ("roller_tilt", "roller_skew")),
-        *(float(1.0 / np.mean(1.0 / block[name])) for name in ("rating_life", "lamina_life")),  # as damage adds up
+        *(float(1.0 / np.mean(1.0 / block[name])) for name in ("rating_life", "lamina_life")),  # damage adds up, so average the rates
         statics(scene, slices),
     )
+
+
+def draw(path: Path, title: str, found: list[Misaligned]) -> None:
+    """Draw the results into a file; the suffix of ``path`` gives the format."""
+    figure = new_figure(14, 8)
+    axes = figure.subplots(2, 3)
+    _over_misalignment(axes[0, 0], found, lambda one: 1e-6 * one.inner_edge_pressure, lambda one: 1e-6 * _edge_pressure(one))
+    axes[0, 0].set(ylabel="pressure of the end slices, inner raceway [MPa]", ylim=(0, None))
+    _over_misalignment(axes[0, 1], found, lambda one: one.lamina_life, lambda one: one.still.lamina_life)
+    axes[0, 1].set(ylabel="life by slices [h]", ylim=(0, None))
+    _over_misalignment(axes[0, 2], found, lambda one: 100 * one.slip)
+    axes[0, 2].set(ylabel="cage slip [%]", ylim=(0, None))
+    _over_misalignment(axes[1, 0], found, lambda one: 1e3 * one.tilt, lambda one: 1e3 * np.abs(one.still.tilts).max())
+    axes[1, 0].set(ylabel="largest tilt of a roller [mrad]", ylim=(0, None))
+    _over_misalignment(axes[1, 1], found, lambda one: 1e3 * one.skew)
+    axes[1, 1].set(ylabel="largest skew of a roller [mrad]", ylim=(0, None))
+    _along(axes[1, 2], found)
+    for each in axes.flat[:5]:
+        each.set_xlabel("misalignment of the inner ring [mrad]")
+        each.grid(alpha=0.3)
+    handles, labels = axes[0, 0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), frameon=False)
+    figure.suptitle(title)
+    figure.savefig(path, dpi=130)
+
+
+def _edge_pressure(one):
+    """Return the pressure of the end slices in quasi-static balance [Pa], proportional to the square root of the slice load."""
+    still = one.still
+    return still.inner_pressure * np.sqrt(still.inner_slices[:, [0, -1]].max() / still.inner_slices.max())
+
+
+def _over_misalignment(axes, found, moving, still=None):
+    for crown, colour, marker in zip(dict.fromkeys(one.crown for one in found), COLOURS, MARKERS):
+        mine = [one for one in found if one.crown == crown]
+        amounts = [1e3 * one.misalignment for one in mine]
+        axes.plot(amounts, [moving(one) for one in mine], marker=marker, ms=5, color=colour, label=f"crown {crown}")
+        if still is not None:
+            axes.plot(amounts, [still(one) for one in mine], "--", color=colour, lw=1, label=f"crown {crown}, quasi-static, no slip")
+
+
+def _along(axes, found):
+    """Draw load per length along the most heavily loaded roller, at a medium misalignment."""
+    amounts = sorted({one.misalignment for one in found})
+    shown = amounts[len(amounts) // 3]
+    for one, colour, marker in zip([one for one in found if one.misalignment == shown], COLOURS, MARKERS):
+        still = one.still
+        width = still.slice_middles[1] - still.slice_middles[0]
+        heaviest = still.inner_slices[np.argmax(still.inner)]
+        axes.plot(1e3 * still.slice_middles, 1e-3 * heaviest / width, marker=marker, ms=3, color=colour)
+    title = f"most heavily loaded roller at {1e3 * shown:g} mrad, quasi-static"
+    axes.set(xlabel="along the roller, x [mm]", ylabel="load per length, inner raceway [N/mm]", title=title, ylim=(0, None))
+    axes.grid(alpha=0.3)

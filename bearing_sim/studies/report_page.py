@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""One self-contained HTML page of a study in a folder: claims, figures, settings, versions; pictures inside, nothing from the network."""
+"""Self-contained HTML page of a study: claims, figures, settings and versions, with embedded pictures and without network access."""
 
 import base64
 import json
@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from html import escape
 from pathlib import Path
 
-from bearing_sim.studies.deng2017_run import STUDY_FILE
+from bearing_sim.studies.deng2017.run import STUDY_FILE
 
 _STYLE = """
 :root { color-scheme: light; --ink: #1c2430; --soft: #5b6675; --line: #d9dee5; --shade: #f5f7f9; --good: #00703c; --part: #9a5b00; --bad: #a3231f; }
@@ -46,7 +46,7 @@ _CLASSES = {"holds": "holds", "holds in part": "part", "does not hold": "fails"}
 
 
 class NoStudy(ValueError):
-    """A folder that holds no study; the message says what to do."""
+    """A folder without a finished study; the message says what to do."""
 
 
 def write_page(folder: Path, out: Path) -> None:
@@ -54,20 +54,20 @@ def write_page(folder: Path, out: Path) -> None:
 
     Parameters
     ----------
-    folder : what a study wrote, such as `bearing_sim.studies.deng2017_run.run_study`.
-    out : HTML file.
+    folder : written by a study such as `bearing_sim.studies.deng2017.run.run_study`.
+    out : the HTML file.
 
     Raises
     ------
     NoStudy
-        The folder holds no finished study, or a figure is missing.
+        The folder has no finished study, or a figure is missing.
     """
     try:
         about = json.loads((folder / STUDY_FILE).read_text())
     except FileNotFoundError:
-        raise NoStudy(f"{folder}: no finished study here ({STUDY_FILE} is missing); bearing-sim study deng2017 -o {folder} makes one") from None
-    except ValueError as fault:
-        raise NoStudy(f"{folder / STUDY_FILE}: not readable as JSON: {fault}") from None
+        raise NoStudy(f"{folder}: no finished study ({STUDY_FILE} is missing); run: bearing-sim study deng2017 -o {folder}") from None
+    except ValueError as error:
+        raise NoStudy(f"{folder / STUDY_FILE}: not readable as JSON: {error}") from None
     out.write_text(_page(folder, about))
 
 
@@ -88,13 +88,13 @@ def _page(folder: Path, about: Mapping) -> str:
 
 
 def _opening(about) -> str:
-    warning = "A quick run: few points and short runs, to see that everything works. Its verdicts are not those of the study."
+    warning = "This is a quick run with few points and short simulations, for testing only; its verdicts are not those of the full study."
     quick = f"<p><b>{warning}</b></p>" if about["quick"] else ""
-    levels = "; ".join(f"<b>{escape(level)}</b> {escape(told)}" for level, told in about["levels"].items())
+    levels = "; ".join(f"<b>{escape(level)}</b> {escape(text)}" for level, text in about["levels"].items())
     doi = escape(about["doi"], quote=True)
     statuses = ", ".join(f"{count} {escape(status)}" for status, count in about["statuses"].items())
     return (
-        f"{quick}<p>All parameters are those of the bundled scenes, the same for every figure: nothing is tuned. Every sweep ran at two levels of "
+        f"{quick}<p>All figures use the parameters of the bundled scenes; nothing is tuned. Every sweep ran at two levels of "
         f'fidelity: {levels}.</p><p class="soft">{about["points"]} runs; points of sweeps: {statuses}. '
         f"Made by <code>{escape(about['command'])}</code>. "
         f'The paper: <a href="https://doi.org/{doi}">doi {doi}</a>.</p>'
@@ -103,12 +103,12 @@ def _opening(about) -> str:
 
 def _counts(claims: Sequence[Mapping]) -> str:
     levels = dict.fromkeys(each["level"] for each in claims)
-    told = []
+    counts = []
     for level in levels:
         verdicts = [each["verdict"] for each in claims if each["level"] == level]
         counted = ", ".join(f'<b class="{name}">{verdicts.count(verdict)}</b> {verdict}' for verdict, name in _CLASSES.items())
-        told.append(f"<div>{escape(level)}: {counted}</div>")
-    return f'<div class="counts">{"".join(told)}</div>'
+        counts.append(f"<div>{escape(level)}: {counted}</div>")
+    return f'<div class="counts">{"".join(counts)}</div>'
 
 
 def _claims(claims: Sequence[Mapping]) -> str:
@@ -116,18 +116,14 @@ def _claims(claims: Sequence[Mapping]) -> str:
     for each in claims:
         first = each["claim"] != before
         before = each["claim"]
-        figures = (
-            f'<br><span class="soft">figures {escape(each["figures"])}</span>'
-            if "," in each["figures"]
-            else f'<br><span class="soft">figure {escape(each["figures"])}</span>'
-        )
+        figures = f'<br><span class="soft">figure{"s" * ("," in each["figures"])} {escape(each["figures"])}</span>'
         says = f"{escape(each['says'])}{figures}" if first else ""
         off = f'<p class="off">{escape(each["off"])}</p>' if each["off"] else ""
-        why = f'<p class="soft">Why: {escape(each["why"])}</p>' if each["why"] else ""
+        why = f'<p class="soft">Reason: {escape(each["why"])}</p>' if each["why"] else ""
         opening = '<tr class="first"><td>' + escape(str(each["claim"] or "")) if first else "<tr><td>"
         verdict = f'<td class="verdict {_CLASSES[each["verdict"]]}">{escape(each["verdict"])}</td>'
         rows.append(f"{opening}</td><td>{says}</td><td>{escape(each['level'])}</td>{verdict}<td>{escape(each['gives'])}</td><td>{off}{why}</td></tr>")
-    head = "<thead><tr><th></th><th>Deng 2017 says</th><th>level</th><th>verdict</th><th>this code gives</th><th>off by, and why</th></tr></thead>"
+    head = "<thead><tr><th></th><th>Deng 2017 says</th><th>level</th><th>verdict</th><th>this code</th><th>deviation, and reason</th></tr></thead>"
     return f"<table>{head}<tbody>{''.join(rows)}</tbody></table>"
 
 
@@ -136,7 +132,7 @@ def _figure(folder: Path, each: Mapping) -> str:
     try:
         data = base64.b64encode(path.read_bytes()).decode()
     except FileNotFoundError:
-        raise NoStudy(f"{path}: the figure is missing; run the study again") from None
+        raise NoStudy(f"{path}: figure missing; run the study again") from None
     tables = ", ".join(f"<code>tables/{escape(name)}.csv</code>" for name in each["tables"])
     title = escape(each["title"], quote=True)
     caption = f'<figcaption><b>{title}</b>{escape(each["caption"])} <span class="soft">Numbers: {tables}.</span></figcaption>'
@@ -147,16 +143,16 @@ def _settings(about) -> str:
     rows = []
     for each in about["sweeps"]:
         options = [*(f"--set {item}" for item in each["set"]), *(f"--vary {item}" for item in each["vary"])]
-        told = "<br>".join(map(escape, options))
+        shown = "<br>".join(map(escape, options))
         cells = "".join(f"<td>{escape(each[name])}</td>" for name in ("figures", "title", "scene"))
-        rows.append(f"<tr>{cells}<td><code>{told}</code></td></tr>")
+        rows.append(f"<tr>{cells}<td><code>{shown}</code></td></tr>")
     head = "<thead><tr><th>figures</th><th>varied</th><th>scene</th><th>as options of <code>bearing-sim sweep</code></th></tr></thead>"
     scenes = "".join(
         f"<details><summary>scene <code>{escape(name)}</code>, all values in SI</summary><pre>{escape(text)}</pre></details>"
         for name, text in about["scenes"].items()
     )
     return (
-        f"<p>Each point starts from ideal rolling and runs {about['duration']:g} s, longer where slip has not settled by then; "
+        f"<p>Each point starts from ideal rolling and runs for {about['duration']:g} s, or longer until slip has settled; "
         f'results are means over the last fifth.</p><table class="plain">{head}<tbody>{"".join(rows)}</tbody></table>{scenes}'
     )
 

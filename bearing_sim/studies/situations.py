@@ -1,8 +1,8 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Six situations that an engineer should know by sight, each a short run of the bearing of Deng 2017, Table 1.
+"""Six typical situations, each a short run of the bearing of Deng 2017, Table 1.
 
-Start from rest, steady light load, skid in a loss of load, misaligned rings, heavy load, and a fault: the guide land of
-the running machine closes up, which the model does not know, and the measured cage falls behind the predicted one.
+Start from rest, steady light load, skidding during a loss of load, misaligned rings, heavy load, and a fault: the guide land of
+the running machine closes up, unknown to the model, and the measured cage falls behind the predicted one.
 """
 
 import dataclasses
@@ -12,19 +12,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.events import Event, Level, Measurement
-from bearing_sim.runtime.monitor import Monitor
-from bearing_sim.runtime.residual import ResidualMonitor
-from bearing_sim.scene import Scene
-from bearing_sim.scene_file import load_scene
+from bearing_sim.messages.events import Event, Level, Measurement
+from bearing_sim.monitoring.monitor import Monitor
+from bearing_sim.monitoring.residual import ResidualMonitor
+from bearing_sim.scene.loader import load_scene
+from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Inputs, Simulation, scene_inputs
 
 BASE = "deng2017_table1"
 _RPM = math.pi / 30
 _BLOCK = 10  # samples
-_NOISE = 3e-4  # of a measured slip, a fraction
-_LOOSE = "bearing.outer_raceway.low_radius=34.87 mm"  # little preload: the cage slips soon
-_QUICK = [  # runs of a second cannot wait for half of one before they tell
+_NOISE = 3e-4  # standard deviation of a measured slip, a fraction
+_LOOSE = "bearing.outer_raceway.low_radius=34.87 mm"  # little preload, so that the cage slips early
+_QUICK = [  # short delays of alarms, for runs of a second
     "thresholds.slip_hold={raise_after: 10 ms, clear_after: 50 ms}",
     "thresholds.life_hold={raise_after: 10 ms, clear_after: 50 ms}",
     "thresholds.residual={batch: 10 ms, learning: 1 s, settling: 100 ms, memory: 100 ms, false_alarm_time: 1 h, tolerance: 0.1 %}",
@@ -32,17 +32,17 @@ _QUICK = [  # runs of a second cannot wait for half of one before they tell
 
 
 class Situation(NamedTuple):
-    """A run with a name.
+    """One situation.
 
     Attributes
     ----------
     name : of its files.
-    title : what happens, in a sentence.
-    overrides : what differs from the scene `BASE`.
-    duration, rate : length [s] and samples a second of simulated time.
-    course : what the inputs are at a time, given those of the scene; constant where absent.
-    picture_at : the time of its picture [s].
-    fault : when the machine changes [s], and how, in overrides; a machine is simulated beside the model only where there is one.
+    title : one sentence.
+    overrides : of the scene `BASE`.
+    duration, rate : simulated time [s] and samples per second.
+    course : function of the time [s] and the scene's inputs that returns the inputs; constant by default.
+    picture_at : time of the picture [s].
+    fault : time of a change of the machine [s] and its overrides; None: no separate machine is simulated.
     """
 
     name: str
@@ -55,13 +55,13 @@ class Situation(NamedTuple):
     fault: tuple[float, tuple[str, ...]] | None = None
 
     def scene(self) -> Scene:
-        """Return the scene that the model computes."""
+        """Return the scene of the model."""
         return dataclasses.replace(load_scene(BASE, [*_QUICK, *self.overrides]), name=self.name, description=self.title)
 
 
-def _smooth(share: float) -> float:
-    share = min(max(share, 0.0), 1.0)
-    return share * share * (3.0 - 2.0 * share)
+def _smooth(fraction: float) -> float:
+    fraction = min(max(fraction, 0.0), 1.0)
+    return fraction * fraction * (3.0 - 2.0 * fraction)
 
 
 def _run_up(time: float, inputs: Inputs) -> Inputs:
@@ -69,14 +69,14 @@ def _run_up(time: float, inputs: Inputs) -> Inputs:
 
 
 def _gust(time: float, inputs: Inputs) -> Inputs:
-    share = 1.0 - 0.95 * (_smooth((time - 0.3) / 0.03) - _smooth((time - 0.45) / 0.03))
-    return inputs._replace(load_y=inputs.load_y * share, load_z=inputs.load_z * share)
+    factor = 1.0 - 0.95 * (_smooth((time - 0.3) / 0.03) - _smooth((time - 0.45) / 0.03))
+    return inputs._replace(load_y=inputs.load_y * factor, load_z=inputs.load_z * factor)
 
 
 SITUATIONS = (
     Situation(
         "start_from_rest",
-        "The shaft runs up from rest to 20,000 rpm in half a second; the cage is dragged along.",
+        "The shaft runs up from rest to 20,000 rpm in half a second; the rollers drag the cage along.",
         ("level=planar", "operating.shaft_speed=20000 rpm", "operating.radial_load=300 N"),
         0.6,
         1000.0,
@@ -93,7 +93,7 @@ SITUATIONS = (
     ),
     Situation(
         "skid_in_a_gust",
-        "A gust takes nearly all of the load off for 0.15 s at 33,000 rpm and little preload: the cage skids, and is caught when the load is back.",
+        "A gust removes nearly all of the load for 0.15 s at 33,000 rpm and little preload: the cage skids, and recovers when the load returns.",
         ("level=planar", _LOOSE, "operating.shaft_speed=33000 rpm", "operating.radial_load=1200 N"),
         0.7,
         1500.0,
@@ -102,7 +102,7 @@ SITUATIONS = (
     ),
     Situation(
         "misaligned",
-        "The inner ring is held 2 mrad out of line at 5000 rpm and 2 kN: rollers tilt and skew, their ends press hard.",
+        "The inner ring is misaligned by 2 mrad at 5000 rpm and 2 kN: rollers tilt and skew, with high pressure at their ends.",
         (
             "level=spatial",
             "bearing.roller.crown=iso_log",
@@ -116,7 +116,7 @@ SITUATIONS = (
     ),
     Situation(
         "heavy_load",
-        "6 kN at 15,000 rpm: the loaded rollers drive the cage at its ideal speed, and wear out in hours.",
+        "6 kN at 15,000 rpm: the loaded rollers drive the cage at its ideal speed; the rating life is a few hours.",
         ("level=planar", "operating.shaft_speed=15000 rpm", "operating.radial_load=6 kN"),
         0.1,
         3000.0,
@@ -124,7 +124,7 @@ SITUATIONS = (
     ),
     Situation(
         "fault_injected",
-        "The guide land of the machine closes from 150 to 10 um and brakes the cage; the model does not know: measured slip departs.",
+        "The guide land of the machine closes from 150 to 10 um and brakes the cage, unknown to the model: measured slip departs from prediction.",
         ("level=slip", "operating.shaft_speed=30000 rpm"),
         2.2,
         250.0,
@@ -135,17 +135,17 @@ SITUATIONS = (
 
 
 def play(situation: Situation, scene: Scene) -> Iterator[np.ndarray | Event | Measurement]:
-    """Run a situation; yield blocks of samples, events, and the measurements of the cage where there are any, in order of time.
+    """Run a situation; yield blocks of samples, events and measurements of the cage, in order of time.
 
     Parameters
     ----------
-    situation : what happens.
-    scene : its `Situation.scene`.
+    situation : to run.
+    scene : as returned by `Situation.scene`.
     """
     given = scene_inputs(scene)
     model = Simulation(scene, situation.course(0.0, given))
     machine = Simulation(scene, model.inputs) if situation.fault else None
-    news, samples, lot = _News(scene), round(situation.duration * situation.rate), np.random.default_rng(1)
+    monitors, samples, random = _Monitors(scene), round(situation.duration * situation.rate), np.random.default_rng(1)
     for done in range(0, samples, _BLOCK):
         count = min(_BLOCK, samples - done)
         end = (done + count) / situation.rate
@@ -154,14 +154,14 @@ def play(situation: Situation, scene: Scene) -> Iterator[np.ndarray | Event | Me
         yield block
         if machine is not None:
             machine = _with_fault(machine, situation, done / situation.rate)
-            yield from news.compare(block, machine.advance(count / situation.rate, inputs, count), lot)
-        yield from news.of(block)
+            yield from monitors.compare(block, machine.advance(count / situation.rate, inputs, count), random)
+        yield from monitors.changes(block)
         if machine is not None and done / situation.rate < situation.fault[0] <= end:
-            yield Event(end, Level.OK, "study.fault", "the guide land of the machine closes; the model does not know")
+            yield Event(end, Level.OK, "study.fault", "", "the guide land of the machine closes, unknown to the model")
 
 
 def _with_fault(machine: Simulation, situation: Situation, now: float) -> Simulation:
-    """Return the machine as it is from ``now`` [s] on."""
+    """Return the machine from time ``now`` [s] on."""
     begins, changes = situation.fault
     if now < begins * (1 - 1e-9) or machine.scene.bearing.cage != situation.scene().bearing.cage:
         return machine
@@ -170,31 +170,31 @@ def _with_fault(machine: Simulation, situation: Situation, now: float) -> Simula
     return changed
 
 
-class _News:
-    """What the monitors of one run find, each change once."""
+class _Monitors:
+    """Monitors of one run; each change of a condition is reported once."""
 
     def __init__(self, scene: Scene):
         self._monitor = Monitor(scene)
         self._residual = ResidualMonitor(scene.thresholds.residual, scene.thresholds.slip_from_speed)
         self._held: dict[str, Level] = {}
 
-    def of(self, block: np.ndarray) -> Iterator[Event]:
-        """Yield what a block has changed."""
+    def changes(self, block: np.ndarray) -> Iterator[Event]:
+        """Yield the conditions that changed in a block."""
         self._monitor.take(block)
         now = float(block["time"][-1])
-        held = {event.code: event for event in (*self._monitor.events(now), *self._residual.events(now))}
+        held = {event.kind: event for event in (*self._monitor.events(now), *self._residual.events(now))}
         for code, event in held.items():
             if self._held.get(code) != event.level:
                 yield event
         for code in self._held.keys() - held.keys():
-            yield Event(now, Level.OK, code, "back within its limits")
+            yield Event(now, Level.OK, code, "", "back within its limits")
         self._held = {code: event.level for code, event in held.items()}
 
-    def compare(self, predicted: np.ndarray, true: np.ndarray, lot) -> Iterator[Measurement]:
-        """Yield measurements of the machine with a sensor's noise, and take their residuals in."""
+    def compare(self, predicted: np.ndarray, true: np.ndarray, random: np.random.Generator) -> Iterator[Measurement]:
+        """Yield measurements of the machine with sensor noise, and monitor their residuals."""
         for one, other in zip(predicted, true):
             ideal = float(one["ideal_cage_speed"])
-            speed = float(other["cage_speed"]) + _NOISE * ideal * lot.normal()
+            speed = float(other["cage_speed"]) + _NOISE * ideal * random.normal()
             measured = 1.0 - speed / ideal
             self._residual.take(float(one["time"]), float(one["shaft_speed"]), measured, float(one["cage_slip"]))
             yield Measurement(float(one["time"]), speed, measured - float(one["cage_slip"]))

@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""How results of level ``spatial`` settle as rollers are cut into more slices, and what the slices cost."""
+"""Convergence of level ``spatial`` with the number of slices, and the cost of slices and rollers."""
 
 import dataclasses
 import time
@@ -8,15 +8,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.scene import Scene
+from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Simulation
-from bearing_sim.studies.bench_problem import scaled_scene
+from bearing_sim.studies.bench import scaled_scene
 from bearing_sim.studies.statics import statics
 
 SLICES = (10, 20, 30, 50, 100, 200)
 ROLLERS = (18, 36, 72, 144)
 _RATE = 2000.0  # Hz, of samples
-_PARTS = 6  # of a run, each timed by itself
+_PARTS = 6  # of a run, each timed separately
 
 
 class Sliced(NamedTuple):
@@ -34,28 +34,28 @@ class Sliced(NamedTuple):
 
 
 class Cost(NamedTuple):
-    """Processor time of a step as a straight line over what there is more of."""
+    """Processor time of a step as a linear function of a count (slices or rollers)."""
 
     counts: tuple[int, ...]
     step_seconds: tuple[float, ...]
     fixed: float  # [s]
     each: float  # [s]
-    misfit: float  # largest departure from the line, relative
+    misfit: float  # largest relative deviation from the line
 
 
-def by_slices(scene: Scene, settle: float, duration: float, counts: Sequence[int] = SLICES, tell: Callable[[str], None] = print) -> list[Sliced]:
+def by_slices(scene: Scene, settle: float, duration: float, counts: Sequence[int] = SLICES, progress: Callable[[str], None] = print) -> list[Sliced]:
     """Run a scene with each number of slices.
 
     Parameters
     ----------
     scene : of level ``spatial``.
-    settle, duration : simulated before, and while, results are taken [s].
+    settle, duration : simulated time before and during the averaging [s].
     counts : numbers of slices.
-    tell : takes a line of progress.
+    progress : called with a line of text for each run.
     """
     found = []
     for count in counts:
-        tell(f"{count} slices")
+        progress(f"{count} slices")
         cut = _cut(scene, count)
         block, step_seconds, factor = _timed(Simulation(cut), settle, duration)
         still = statics(cut, count)
@@ -64,7 +64,7 @@ def by_slices(scene: Scene, settle: float, duration: float, counts: Sequence[int
                 count,
                 float(block["cage_slip"].mean()),
                 float(block["inner_load"].max(axis=1).mean()),
-                *(float(1.0 / np.mean(1.0 / block[name])) for name in ("rating_life", "lamina_life")),  # as damage adds up
+                *(float(1.0 / np.mean(1.0 / block[name])) for name in ("rating_life", "lamina_life")),  # damage adds up, so average the rates
                 max(still.inner_pressure, still.outer_pressure),
                 still.lamina_life,
                 step_seconds,
@@ -74,17 +74,17 @@ def by_slices(scene: Scene, settle: float, duration: float, counts: Sequence[int
     return found
 
 
-def by_rollers(speed_rpm: float, settle: float, duration: float, counts: Sequence[int] = ROLLERS, tell: Callable[[str], None] = print) -> Cost:
-    """Return what a step costs on bearings scaled to other numbers of rollers (see `bearing_sim.studies.bench_problem.scaled_scene`)."""
+def by_rollers(speed_rpm: float, settle: float, duration: float, counts: Sequence[int] = ROLLERS, progress: Callable[[str], None] = print) -> Cost:
+    """Return the cost of a step on bearings scaled to other numbers of rollers (see `bearing_sim.studies.bench.scaled_scene`)."""
     seconds = []
     for count in counts:
-        tell(f"{count} rollers")
+        progress(f"{count} rollers")
         seconds.append(_timed(Simulation(scaled_scene("spatial", speed_rpm, count)), settle, duration)[1])
     return line(counts, seconds)
 
 
 def line(counts: Sequence[int], seconds: Sequence[float]) -> Cost:
-    """Fit a straight line with equal weights to relative departures."""
+    """Fit a straight line that minimises relative deviations."""
     matrix = np.stack([np.ones(len(counts)), np.asarray(counts, float)], axis=1) / np.asarray(seconds)[:, None]
     fixed, each = np.linalg.lstsq(matrix, np.ones(len(counts)), rcond=None)[0]
     misfit = np.abs(matrix @ (fixed, each) - 1.0).max()
@@ -97,7 +97,7 @@ def _cut(scene, count):
 
 
 def _timed(run, settle, duration):
-    """Return samples after settling, processor time of a step, the best of some parts, and the real-time factor at that cost."""
+    """Return samples after settling, the processor time of a step (minimum over parts of the run), and the real-time factor."""
     run.advance(settle)
     blocks, costs = [], []
     for _ in range(_PARTS):

@@ -1,15 +1,16 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Statics of a scene: how the load spreads over rollers and slices at its constant conditions, and the lives that follow."""
+"""Statics of a scene: the load distribution over rollers and slices at constant conditions, and the resulting lives."""
 
 import dataclasses
 import math
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.levels.slice_balance import about_yz, balance, leaning, roller_loads, roller_tilts
-from bearing_sim.params import lubricate, pack
-from bearing_sim.rating_life import (
+from bearing_sim.levels.common.slice_balance import about_yz, balance, leaning, roller_loads, roller_tilts
+from bearing_sim.model.params import lubricate, pack
+from bearing_sim.physics.rating_life import (
     ROTATING_EXPONENT,
     STATIONARY_EXPONENT,
     add_slice_powers,
@@ -20,41 +21,42 @@ from bearing_sim.rating_life import (
     stress_risers,
     viscosity_ratio,
 )
-from bearing_sim.scene import Scene
+from bearing_sim.scene.scene import Scene
+from bearing_sim.sweep.table import new_figure
 
 _PITCH_POSITIONS = 10  # cage angles over one roller pitch for the lives
 
 
 class Statics(NamedTuple):
-    """A scene in quasi-static balance, roller 0 on the load line; lengths along a roller count from its middle."""
+    """Quasi-static balance of a scene with roller 0 on the load line; positions along a roller are measured from its middle."""
 
     azimuths: np.ndarray  # of the rollers [rad], shape (Z,)
     inner: np.ndarray  # loads on the inner raceway [N], shape (Z,)
     outer: np.ndarray
-    tilts: np.ndarray  # of the rollers, leaning the +x end outwards [rad], shape (Z,)
-    places: np.ndarray  # slice middles [m], shape (N,)
+    tilts: np.ndarray  # of the rollers, positive with the +x end outwards [rad], shape (Z,)
+    slice_middles: np.ndarray  # along the roller [m], shape (N,)
     inner_slices: np.ndarray  # loads of the slices [N], shape (Z, N)
     outer_slices: np.ndarray
     inner_pressure: float  # largest Hertzian pressure on the inner raceway [Pa]
     outer_pressure: float
     ring: tuple[float, float]  # displacement y, z of the inner ring [m]
-    tilt: tuple[float, float]  # of the inner ring: amount, and azimuth to which its +x end leans [rad]
-    moment: tuple[float, float]  # on the inner ring: amount [N m], and azimuth to which it leans the +x end [rad]
+    tilt: tuple[float, float]  # of the inner ring: magnitude, and azimuth of its +x end [rad]
+    moment: tuple[float, float]  # on the inner ring: magnitude [N m], and azimuth towards which it tilts the +x end [rad]
     equivalent_loads: tuple[float, float]  # Q_ei, Q_ee [N], over one roller pitch
     rating_life: float  # L10 [h]; infinite at rest
     lamina_life: float  # L10r by slices with stress risers [h]
     modified_life: float  # L_nm by the scene's block `life` [h]
     viscosity_ratio: float  # kappa
-    contamination_factor: float  # e_C; NaN where the scene names no cleanliness
+    contamination_factor: float  # e_C; NaN if the scene gives no cleanliness
 
 
 def statics(scene: Scene, slices: int) -> Statics:
-    """Return the statics of a scene at its constant conditions, the cage without slip.
+    """Return the statics of a scene at its constant conditions and without cage slip.
 
     Parameters
     ----------
     scene : of any level.
-    slices : into how many a roller is cut, instead of the scene's number.
+    slices : per roller, instead of the scene's number.
 
     Raises
     ------
@@ -94,7 +96,7 @@ def statics(scene: Scene, slices: int) -> Statics:
         inner=inner,
         outer=outer,
         tilts=roller_tilts(at),
-        places=at.place * at.half_length,
+        slice_middles=at.position * at.half_length,
         inner_slices=at.inner.copy(),
         outer_slices=at.outer.copy(),
         inner_pressure=_pressure(at.inner.max() / width, raceways.inner_curvature_radius, raceways.reduced_modulus),
@@ -112,5 +114,52 @@ def statics(scene: Scene, slices: int) -> Statics:
 
 
 def _pressure(line_load, curvature_radius, reduced_modulus) -> float:
-    """Return Hertz's largest pressure of a line contact [Pa]: sqrt(q E'/(2 pi R)), q the load per length [N/m]."""
+    """Return the maximum Hertzian pressure of a line contact [Pa], sqrt(q E'/(2 pi R)) with the load per length q [N/m]."""
     return float(math.sqrt(line_load * reduced_modulus / (2 * math.pi * curvature_radius)))
+
+
+_INNER, _OUTER = "#b2451f", "#3c5f8a"
+
+
+def draw(path: Path, title: str, found: Statics) -> None:
+    """Draw the results into a file; the suffix of ``path`` gives the format."""
+    figure = new_figure(13, 7.4)
+    grid = figure.add_gridspec(2, 2, width_ratios=(1, 1.25))
+    _draw_around(figure.add_subplot(grid[:, 0], projection="polar"), found)
+    for row, (name, slices) in enumerate((("inner", found.inner_slices), ("outer", found.outer_slices))):
+        _draw_along(figure, figure.add_subplot(grid[row, 1]), name, slices, found)
+    tilt = f"tilt {1e3 * found.tilt[0]:.3g} mrad, " if found.tilt[0] > 1e-9 else ""
+    figure.suptitle(f"{title}\n{tilt}life {_hours(found.rating_life)} by whole rollers, {_hours(found.lamina_life)} by slices")
+    figure.savefig(path, dpi=130)
+
+
+def _hours(life):
+    return f"{life:.4g} h" if np.isfinite(life) else "infinite"
+
+
+def _draw_around(axes, found):
+    """Draw the loads as bars over the azimuth, y to the right and z up."""
+    width = 2 * np.pi / len(found.azimuths)
+    axes.bar(found.azimuths, found.outer, width=0.8 * width, color=_OUTER, alpha=0.45, label="on the outer raceway")
+    axes.bar(found.azimuths, found.inner, width=0.5 * width, color=_INNER, label="on the inner raceway")
+    axes.set_ylim(0, 1.08 * max(found.outer.max(), 1.0))
+    axes.set_title("roller loads [N] by azimuth", fontsize=10)
+    axes.tick_params(labelsize=8)
+    axes.set_rlabel_position(100)
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, -0.16), frameon=False, fontsize=9, ncols=2)
+
+
+def _draw_along(figure, axes, name, slices, found):
+    """Draw load per length over the position along the roller, one row per roller."""
+    width = found.slice_middles[1] - found.slice_middles[0]
+    edges = 1e3 * np.append(found.slice_middles - width / 2, found.slice_middles[-1] + width / 2)
+    count = len(found.azimuths)
+    # order the rollers by azimuth with the load line in the middle
+    order = np.roll(np.arange(count), count // 2)
+    shown = axes.pcolormesh(edges, np.arange(count + 1) - count // 2, 1e-3 * slices[order] / width, cmap="viridis", vmin=0.0)
+    ticks = np.arange(-(count // 2), count - count // 2, max(count // 6, 1))
+    axes.set_yticks(ticks + 0.5, [f"{tick * 360 / count:.0f}°" for tick in ticks])
+    axes.set(ylabel="roller, from the load line", title=f"load per length on the {name} raceway")
+    if name == "outer":
+        axes.set_xlabel("along the roller, x [mm]")
+    figure.colorbar(shown, ax=axes, label="N/mm")

@@ -1,51 +1,232 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Slip and life of a scene whose uncertain fields may be anything within their ranges, and which of them that comes from.
+"""Uncertainty of slip and life: bands, and Sobol' indices of the uncertain fields of a scene.
 
-Fields are taken as independent of each other.  Every point of the design is computed anew at the cheapest level that has all
-that the scene asks for: at level ``steady`` an operating point is solved for, dearer levels march until they have settled.
+The design has two independent samples A and B of the d uncertain numbers and, for each number, A with that column taken from B:
+N (d + 2) points for first-order and total indices (Saltelli et al., Comput. Phys. Commun. 181, 2010, 259).  Both samples come from
+one scrambled Sobol' sequence in 2 d dimensions; bands use both.
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 from pydantic import ValidationError
+from scipy import stats
+from scipy.stats import qmc
 
-from bearing_sim import effects
-from bearing_sim.levels.steady_table import empty_table
-from bearing_sim.scene import Scene
-from bearing_sim.scene_uncertainty import Range, quantities, value_at, with_values
+from bearing_sim.levels.steady.table import empty_table
+from bearing_sim.scene import fidelity as effects
+from bearing_sim.scene.scene import Scene
+from bearing_sim.scene.uncertainty import Range, quantities, value_at, with_values
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation, scene_inputs
-from bearing_sim.studies.sensitivity import Band, Design, Indices, band, design, distribution, indices
-from bearing_sim.sweep.executor import run_tasks
-from bearing_sim.sweep.journal import Journal
-from bearing_sim.sweep.tasks import task
+from bearing_sim.sweep.table import new_figure
+from bearing_sim.sweep.tasks import Journal, run_tasks, task
 
-VALUES = ("cage_slip", "life_hours")
-_MARCH, _SAMPLES, _SETTLED = 0.5, 500, 0.2  # s and samples of a march (Deng 2017, 3.3), and the share at its end that counts
-_ENDLESS = 1e4  # s; longer than any lag of a cage at level steady, where time costs nothing
-_LOT = 64  # points of level steady, milliseconds each, that go to a worker together; of dearer levels each goes alone
-_ABSENT = 0.05  # share of points without an answer beyond which there are no bands
+PROBABILITIES = (0.05, 0.50, 0.95)  # below the low end, the middle and the high end of a band
+CONFIDENCE = 0.95  # of intervals for the sampling error
+_RESAMPLES = 400
 
 
-class UncertaintyError(ValueError):
-    """Uncertainty that cannot be computed; the message says why and what to do."""
-
-
-class Study(NamedTuple):
-    """What came of a study.
+class Design(NamedTuple):
+    """Points at which to evaluate.
 
     Attributes
     ----------
-    level, reason : at which everything was computed, and why.
-    ranges : of the fields that were varied, d of them.
-    design : where it was computed.
-    answers : by name (`VALUES`), at the points of the design, shape ((d + 2) N,); NaN where there is none.
-    own : by name, the value of the scene itself, at that level.
+    base : N, a power of two.
+    points : in SI, shape ((d + 2) N, d): A, B, then A with each column in turn taken from B.
+    """
+
+    base: int
+    points: np.ndarray
+
+
+class Band(NamedTuple):
+    """Quantiles of a value, each with a 95 % confidence interval (low, high) for its sampling error."""
+
+    low: float  # 5 % lie below
+    middle: float
+    high: float  # 95 % lie below
+    low_error: tuple[float, float]
+    middle_error: tuple[float, float]
+    high_error: tuple[float, float]
+
+
+class Indices(NamedTuple):
+    """Sobol' indices of one value, shape (d,), and 95 % confidence intervals of them, shape (d, 2); NaN if the value does not vary.
+
+    first : fraction of the variance that would vanish if this number alone were known.
+    total : fraction that would remain if all other numbers were known.
+    """
+
+    first: np.ndarray
+    total: np.ndarray
+    first_error: np.ndarray
+    total_error: np.ndarray
+
+
+def distribution(one: Range, own: float):
+    """Return the distribution of a range; ``own``, the scene's value [SI], is the peak of a triangular one without a mode."""
+    if one.distribution == "log_uniform":
+        return stats.loguniform(one.low, one.high)
+    width = one.high - one.low
+    if one.distribution == "uniform":
+        return stats.uniform(one.low, width)
+    mode = one.mode if one.mode is not None else own if one.low <= own <= one.high else 0.5 * (one.low + one.high)
+    return stats.triang((mode - one.low) / width, one.low, width)
+
+
+def design(distributions: Sequence, base: int, seed: int) -> Design:
+    """Return the points of a study.
+
+    Parameters
+    ----------
+    distributions : of each number, with a method ``ppf`` (inverse of the distribution function).
+    base : N.
+    seed : of the scrambling; the same seed gives the same points.
+
+    Raises
+    ------
+    ValueError
+        ``base`` is not a power of two, which a balanced Sobol' sequence needs.
+    """
+    if base < 2 or base & (base - 1):
+        raise ValueError(f"{base} samples: expected a power of two, 2 or more")
+    count = len(distributions)
+    uniform = qmc.Sobol(d=2 * count, scramble=True, seed=np.random.default_rng(seed)).random_base2(base.bit_length() - 1)
+    drawn = np.stack([one.ppf(uniform[:, column::count]) for column, one in enumerate(distributions)], axis=-1)
+    first, second = drawn[:, 0], drawn[:, 1]
+    mixed = [np.where(np.arange(count) == column, second, first) for column in range(count)]
+    return Design(base, np.concatenate([first, second, *mixed]))
+
+
+def band(values: np.ndarray) -> Band:
+    """Return the band of values at the points of a design or at any independent points.
+
+    Sampling errors are those of order statistics of independent draws (binomial).  A Sobol' sequence is more even, so they are
+    upper bounds.
+
+    Parameters
+    ----------
+    values : shape (n,); NaN is ignored, infinite values count.
+    """
+    ordered = np.sort(values[~np.isnan(values)])
+    if not len(ordered):
+        return Band(*[np.nan] * 3, *[(np.nan, np.nan)] * 3)
+    found = np.quantile(ordered, PROBABILITIES, method="inverted_cdf")
+    errors = []
+    for probability in PROBABILITIES:
+        ranks = stats.binom.ppf([0.5 - CONFIDENCE / 2, 0.5 + CONFIDENCE / 2], len(ordered), probability).astype(int)
+        errors.append(tuple(float(ordered[rank]) for rank in np.clip(ranks - [1, 0], 0, len(ordered) - 1)))
+    return Band(*map(float, found), *errors)
+
+
+def indices(values: np.ndarray, base: int, seed: int) -> Indices:
+    """Return the Sobol' indices of a value, with bootstrap intervals.
+
+    Parameters
+    ----------
+    values : at the points of a `design`, in its order, shape ((d + 2) base,).
+    base : N.
+    seed : of the bootstrap.
+
+    Raises
+    ------
+    ValueError
+        A value is not finite; without it the design is not balanced.
+    """
+    if not np.isfinite(values).all():
+        raise ValueError(f"{np.count_nonzero(~np.isfinite(values))} of {len(values)} values are not finite; Sobol' indices need finite values")
+    parts = values.reshape(-1, base)
+    count = len(parts) - 2
+    if np.ptp(values) <= 1e-12 * np.abs(values).max():
+        return Indices(*[np.full(count, np.nan)] * 2, *[np.full((count, 2), np.nan)] * 2)
+    found = _both(parts)
+    resampled = stats.bootstrap(
+        (np.arange(base),),
+        lambda rows: _both(parts[:, rows]),
+        vectorized=False,
+        n_resamples=_RESAMPLES,
+        confidence_level=CONFIDENCE,
+        method="percentile",
+        rng=np.random.default_rng(seed),
+    )
+    ends = np.stack(resampled.confidence_interval, axis=-1)
+    return Indices(found[0], found[1], ends[0], ends[1])
+
+
+def _both(parts: np.ndarray) -> np.ndarray:
+    """Return first-order and total indices, shape (2, d)."""
+    if len(parts) == 3:  # SciPy drops the axis of a single number, which explains all of the variance
+        return np.ones((2, 1))
+    found = stats.sobol_indices(func={"f_A": parts[:1], "f_B": parts[1:2], "f_AB": parts[2:, None]}, n=parts.shape[1])
+    return np.array([np.ravel(found.first_order), np.ravel(found.total_order)])
+
+
+class Stretches(NamedTuple):
+    """Operating conditions of a course, averaged over stretches of time; stretches inside a gap are left out.
+
+    Attributes
+    ----------
+    middles : mean time of each [s], shape (m,).
+    seconds : duration of each without its gaps [s], shape (m,).
+    conditions : means over each, columns as the course's, shape (m, 4).
+    """
+
+    middles: np.ndarray
+    seconds: np.ndarray
+    conditions: np.ndarray
+
+
+def stretches(times: np.ndarray, inputs: np.ndarray, in_gap: np.ndarray, most: int) -> Stretches:
+    """Cut a course into stretches of the same length.
+
+    Parameters
+    ----------
+    times, inputs : instants [s], increasing, shape (n,), and the conditions there, linear in between, shape (n, 4).
+    in_gap : whether the interval that ends at an instant is left out, shape (n,).
+    most : largest number of stretches.
+    """
+    edges = np.linspace(times[0], times[-1], most + 1)
+    every = np.union1d(times, edges)
+    step, middle = np.diff(every), 0.5 * (every[1:] + every[:-1])
+    step = np.where(in_gap[np.searchsorted(times, middle)], 0.0, step)
+    stretch = np.clip(np.searchsorted(edges, middle) - 1, 0, most - 1)
+    seconds = np.bincount(stretch, step, most)
+    kept = seconds > 0.0
+
+    def mean(values: np.ndarray) -> np.ndarray:
+        return np.bincount(stretch, step * values, most)[kept] / seconds[kept]
+
+    at_middle = [np.interp(middle, times, column) for column in inputs.T]
+    return Stretches(mean(middle), seconds[kept], np.stack([mean(column) for column in at_middle], axis=-1))
+
+
+VALUES = ("cage_slip", "life_hours")
+_DURATION, _SAMPLES, _SETTLED = 0.5, 500, 0.2  # s and samples of a run (Deng 2017, 3.3), and the fraction at its end that is averaged
+_ENDLESS = 1e4  # s; longer than any lag of a cage; at level steady simulated time costs nothing
+_BATCH = 64  # points of level steady per task, which take milliseconds each; at higher levels each point is a task
+_ABSENT = 0.05  # largest fraction of points without an answer
+
+
+class UncertaintyError(ValueError):
+    """An uncertainty that cannot be computed; the message says why and what to do."""
+
+
+class Study(NamedTuple):
+    """Results of a study.
+
+    Attributes
+    ----------
+    level, reason : level of all runs, and why it was chosen.
+    ranges : of the d varied fields.
+    design : the points of the runs.
+    answers : by name (`VALUES`), at the points of the design, shape ((d + 2) N,); NaN without an answer.
+    own : by name, the value of the scene itself at that level.
     bands : by name.
-    indices : by name; None where a value is not finite at all points.
-    seconds : of each stretch of the course, shape (m,); one stretch where there is no course.
+    indices : by name; None if a value is not finite at some point.
+    seconds : of each stretch of the course, shape (m,); one stretch without a course.
     slips : at each point and stretch, shape ((d + 2) N, m).
     """
 
@@ -62,7 +243,7 @@ class Study(NamedTuple):
 
     @property
     def absent(self) -> int:
-        """Points without an answer."""
+        """Number of points without an answer."""
         return int(np.isnan(self.answers["cage_slip"]).sum())
 
     def slip_bands(self) -> list[Band]:
@@ -70,72 +251,72 @@ class Study(NamedTuple):
         return [band(column) for column in self.slips[: 2 * self.design.base].T]
 
 
-def cheapest_level(scene: Scene, level: str | None = None) -> tuple[Scene, str]:
-    """Return a scene at the cheapest level that has all it asks for, or at a level asked for, and why.
+def lowest_level(scene: Scene, level: str | None = None) -> tuple[Scene, str]:
+    """Return a scene at the given level or at the lowest level that has everything it asks for, and the reason.
 
     Raises
     ------
     UncertaintyError
-        The scene cannot be at that level.
+        The scene cannot be computed at that level.
     """
     found = effects.choose(scene)
-    chosen, reason = (level, "as asked for") if level else (found.level or scene.level, found.reason)
+    chosen, reason = (level, "as requested") if level else (found.level or scene.level, found.reason)
     if chosen == scene.level:
         return scene, reason
     try:
-        # What says how the scene's own level is integrated means nothing at another.
+        # Integration settings belong to the scene's own level; use the defaults at another.
         own = {name: getattr(scene, name) for name in scene.__dataclass_fields__} | {"level": chosen, "level_reason": ""}
         return Scene(**own | {"integration": type(scene.integration)()}), reason
     except ValidationError as error:
-        raise UncertaintyError(f"level {chosen}: {_told(error)}") from None
+        raise UncertaintyError(f"level {chosen}: {_messages(error)}") from None
 
 
 def study(
     scene: Scene, base: int, seed: int, *,
     level: str | None = None, course: tuple[np.ndarray, np.ndarray] | None = None, journal: Journal | None = None,
-    workers: int | None = None, dask: str | None = None, tell: Callable[[int, int], None] = lambda done, pending: None,
+    workers: int | None = None, dask: str | None = None, progress: Callable[[int, int], None] = lambda done, pending: None,
 ) -> Study:  # fmt: skip
     """Return bands and Sobol' indices of slip and life.
 
     Parameters
     ----------
     scene : with ranges in its block ``uncertainty``.
-    base : N, a power of two; the bearing is computed at N (d + 2) points.
+    base : N, a power of two; the study computes N (d + 2) points.
     seed : of the design.
-    level : instead of the cheapest that will do.
-    course : conditions one after the other, columns as `Inputs`, shape (m, 4), an oil temperature of NaN standing for the scene's,
-        and how long each lasts [s], shape (m,); the scene's own conditions where absent.  Slip is then the mean over time, life that
-        under the repeated course.
-    journal : of finished points, which are not computed again; in memory where absent.
-    workers, dask : see `bearing_sim.sweep.executor.run_tasks`.
-    tell : takes how many of the points that are not in the journal are done, and how many there are.
+    level : to use instead of the lowest possible one.
+    course : successive conditions, columns as `Inputs`, shape (m, 4), with NaN for the scene's own oil temperature, and the duration
+        of each [s], shape (m,); None: the scene's own conditions.  With a course, slip is the mean over time and life that under the
+        repeated course.
+    journal : of finished points, which are not computed again; None: kept in memory.
+    workers, dask : see `bearing_sim.sweep.tasks.run_tasks`.
+    progress : called with the number of finished points and of all points that are not in the journal.
 
     Raises
     ------
     UncertaintyError
-        The scene has no ranges, one of them leaves out the scene's own value, numbers in their ranges do not fit together, or too many
+        The scene has no ranges, a range excludes the scene's own value, numbers within the ranges contradict each other, or too many
         points have no answer.
     ClusterError
-        See `bearing_sim.sweep.executor.run_tasks`.
+        See `bearing_sim.sweep.tasks.run_tasks`.
     """
-    scene, reason = cheapest_level(scene, level)
+    scene, reason = lowest_level(scene, level)
     ranges = scene.uncertainty
     _check(scene, course is not None)
     conditions, seconds = course if course is not None else (None, np.ones(1))
-    lots = design([distribution(one, value_at(scene, one.field)) for one in ranges], base, seed)
+    designed = design([distribution(one, value_at(scene, one.field)) for one in ranges], base, seed)
     own = settled(_varied(scene, {}), conditions)
     kept = Journal() if journal is None else journal
-    found = _at_points(scene, [one.field for one in ranges], lots.points, conditions, len(seconds), kept, workers, dask, tell)
+    found = _at_points(scene, [one.field for one in ranges], designed.points, conditions, len(seconds), kept, workers, dask, progress)
     answers = dict(zip(VALUES, _over_course(found, seconds)))
     absent = int(np.isnan(answers["cage_slip"]).sum())
     if absent > _ABSENT * len(found):
-        raise UncertaintyError(f"{absent} of {len(found)} points have no answer at level {scene.level}; narrow the ranges, or ask for another level")
+        raise UncertaintyError(f"{absent} of {len(found)} points have no answer at level {scene.level}; narrow the ranges, or choose another level")
     both = slice(0, 2 * base)
     return Study(
         scene.level,
         reason,
         ranges,
-        lots,
+        designed,
         answers,
         {name: float(value[0]) for name, value in zip(VALUES, _over_course(own[None], seconds))},
         {name: band(answers[name][both]) for name in VALUES},
@@ -145,27 +326,29 @@ def study(
     )
 
 
-def _at_points(scene, fields, points, conditions, stretches, journal, workers, dask, tell) -> np.ndarray:
-    """Return what `settled` says at each point, shape (points, 2, stretches)."""
-    size = _LOT if scene.level == "steady" else 1
+def _at_points(scene, fields, points, conditions, stretches, journal, workers, dask, progress) -> np.ndarray:
+    """Return `settled` at each point, shape (points, 2, stretches)."""
+    size = _BATCH if scene.level == "steady" else 1
     asked = None if conditions is None else tuple(map(tuple, conditions.tolist()))
     parts = [points[first : first + size] for first in range(0, len(points), size)]
-    tasks = [task(scene.level, settled_lot, scene, tuple(fields), tuple(map(tuple, part.tolist())), asked) for part in parts]
-    results = run_tasks(tasks, journal, workers, dask, lambda done, pending: tell(*(min(size * lots, len(points)) for lots in (done, pending))))
+    tasks = [task(scene.level, settled_batch, scene, tuple(fields), tuple(map(tuple, part.tolist())), asked) for part in parts]
+    results = run_tasks(
+        tasks, journal, workers, dask, lambda done, pending: progress(*(min(size * batches, len(points)) for batches in (done, pending)))
+    )
     nothing = [[math.nan] * stretches] * 2
     return np.concatenate([result.get("settled", [nothing] * len(part)) for part, result in zip(parts, results)])
 
 
-def settled_lot(
+def settled_batch(
     scene: Scene, fields: tuple[str, ...], points: tuple[tuple[float, ...], ...], conditions: tuple[tuple[float, ...], ...] | None
 ) -> dict:
-    """Return under ``settled`` what `settled` says of a scene with other numbers, as lists.
+    """Return `settled` of a scene at several points, as lists under the key ``settled``.
 
     Parameters
     ----------
     scene, conditions : see `settled`.
     fields : dotted paths.
-    points : their numbers [SI], point by point.
+    points : numbers of the fields [SI], one tuple per point.
     """
     asked = None if conditions is None else np.array(conditions)
     return {"settled": [settled(_varied(scene, dict(zip(fields, point))), asked).tolist() for point in points]}
@@ -174,19 +357,20 @@ def settled_lot(
 def _check(scene: Scene, on_course: bool) -> None:
     if not scene.uncertainty:
         raise UncertaintyError(
-            "the scene says nothing of what is uncertain; give its block `uncertainty` ranges, such as "
+            "the scene has no uncertain fields; give ranges in its block `uncertainty`, such as "
             '--set "uncertainty.lubricant.mixture_fraction=[0.015, 0.05]"'
         )
     for one in scene.uncertainty:
         own, declared = value_at(scene, one.field), quantities(type(scene))[one.field]
         if on_course and one.field.startswith("operating."):
             raise UncertaintyError(
-                f"uncertainty.{one.field}: speed and load come from the log; take the range away (--set uncertainty.{one.field}=null)"
+                f"uncertainty.{one.field}: speed and load come from the log; remove the range (--set uncertainty.{one.field}=null)"
             )
         if not one.low <= own <= one.high:
             wider = f"[{declared.show(min(own, one.low))}, {declared.show(max(own, one.high))}]"
             raise UncertaintyError(
-                f"uncertainty.{one.field}: {declared.show(one.low)} to {declared.show(one.high)} leaves out the scene's own {declared.show(own)}; "
+                f"uncertainty.{one.field}: {declared.show(one.low)} to {declared.show(one.high)} excludes the scene's own value, "
+                f"{declared.show(own)}; "
                 f'give another range, such as --set "uncertainty.{one.field}={wider}"'
             )
 
@@ -195,21 +379,21 @@ def _varied(scene: Scene, values: dict[str, float]) -> Scene:
     try:
         return with_values(scene, values)
     except ValidationError as error:
-        told = ", ".join(f"{path} = {quantities(type(scene))[path].show(value)}" for path, value in values.items())
-        raise UncertaintyError(f"numbers within the ranges do not fit together ({told}): {_told(error)}; narrow the ranges") from None
+        numbers = ", ".join(f"{path} = {quantities(type(scene))[path].show(value)}" for path, value in values.items())
+        raise UncertaintyError(f"numbers within the ranges contradict each other ({numbers}): {_messages(error)}; narrow the ranges") from None
 
 
-def _told(error: ValidationError) -> str:
-    return "; ".join(fault["msg"].removeprefix("Value error, ") for fault in error.errors())
+def _messages(error: ValidationError) -> str:
+    return "; ".join(each["msg"].removeprefix("Value error, ") for each in error.errors())
 
 
 def settled(scene: Scene, conditions: np.ndarray | None = None) -> np.ndarray:
-    """Return cage slip and life [h] where the bearing has settled, shape (2, m); NaN where it could not be computed.
+    """Return settled cage slip and life [h], shape (2, m); NaN where a run failed.
 
     Parameters
     ----------
-    scene : with its level.
-    conditions : columns as `Inputs`, shape (m, 4); the scene's own where absent.
+    scene : at its own level.
+    conditions : columns as `Inputs`, shape (m, 4); None: the scene's own.
     """
     kelvin = scene.lubricant.temperature
     asked = [scene_inputs(scene)] if conditions is None else [Inputs(*row) for row in conditions.tolist()]
@@ -229,7 +413,7 @@ def settled(scene: Scene, conditions: np.ndarray | None = None) -> np.ndarray:
 
 def _settled_at(simulation: Simulation) -> tuple[float, float]:
     steady = simulation.scene.level == "steady"
-    length, samples = (_ENDLESS, 2) if steady else (_MARCH, _SAMPLES)
+    length, samples = (_ENDLESS, 2) if steady else (_DURATION, _SAMPLES)
     block = simulation.advance(length, samples=samples)
     first = 0 if steady else round((1 - _SETTLED) * samples) - 1
     damage, elapsed = float(block["damage"][-1] - block["damage"][first]), float(block["time"][-1] - block["time"][first])
@@ -237,7 +421,75 @@ def _settled_at(simulation: Simulation) -> tuple[float, float]:
 
 
 def _over_course(found: np.ndarray, seconds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the mean slip over time, and the life under the course (Palmgren, Miner), from what each stretch has."""
-    shares = seconds / seconds.sum()
+    """Return mean slip over time and life under the course (Palmgren, Miner) from slip and life in each stretch."""
+    weights = seconds / seconds.sum()
     with np.errstate(divide="ignore"):
-        return found[:, 0] @ shares, 1.0 / ((1.0 / found[:, 1]) @ shares)
+        return found[:, 0] @ weights, 1.0 / ((1.0 / found[:, 1]) @ weights)
+
+
+_SLIP, _LIFE, _FIRST, _TOTAL = "#0072b2", "#009e73", "#56b4e9", "#0072b2"  # Okabe and Ito: safe for colour-blind readers
+_FEWEST_BINS, _MOST_BINS = 8, 40
+
+
+def draw(path: Path, title: str, found: Study, times: np.ndarray | None = None) -> None:
+    """Draw distributions, indices and the slip over a course into a file.
+
+    Parameters
+    ----------
+    path : its suffix gives the format.
+    title : of the picture.
+    found : the study.
+    times : of the stretches of its course [s], shape (m,); None without a course.
+    """
+    layout = [["slip", "life"], ["slip indices", "life indices"]] + ([["course", "course"]] if times is not None else [])
+    figure = new_figure(12, 4 * len(layout))
+    axes = figure.subplot_mosaic(layout)
+    slip, life = ("cage slip [%]", "rating life [h]") if times is None else ("mean cage slip [%]", "life under the course [h]")
+    _draw_distribution(axes["slip"], 100 * found.answers["cage_slip"], found, "cage_slip", 100.0, slip, _SLIP)
+    _draw_distribution(axes["life"], found.answers["life_hours"], found, "life_hours", 1.0, life, _LIFE)
+    _draw_indices(axes["slip indices"], found, "cage_slip", "slip")
+    _draw_indices(axes["life indices"], found, "life_hours", "life")
+    if times is not None:
+        _draw_course(axes["course"], found, times)
+    figure.suptitle(title)
+    figure.savefig(path, dpi=130)
+
+
+def _draw_distribution(axes, values, found, name, scale, label, colour) -> None:
+    values = values[: 2 * found.design.base]
+    values, band, own = values[np.isfinite(values)], found.bands[name], scale * found.own[name]
+    axes.hist(values, bins=int(np.clip(1.5 * np.sqrt(len(values)), _FEWEST_BINS, _MOST_BINS)), density=True, color=colour, alpha=0.6)
+    axes.axvspan(scale * band.low, scale * band.high, color=colour, alpha=0.12, lw=0)
+    for end, text in ((band.low, "5 %"), (band.middle, "50 %"), (band.high, "95 %")):
+        axes.axvline(scale * end, color=colour, lw=1.5, ls="-" if text == "50 %" else "--", label=f"{text} below {scale * end:.4g}")
+    axes.axvline(own, color="black", lw=1, ls=":", label=f"own values of the scene: {own:.4g}")
+    axes.set(xlabel=label, ylabel="probability density")
+    axes.legend(fontsize=9)
+
+
+def _draw_indices(axes, found, name, varied) -> None:
+    sobol = found.indices[name]
+    if sobol is None or np.isnan(sobol.total).all():
+        axes.text(0.5, 0.5, "does not vary" if sobol is not None else "not finite everywhere", ha="center", transform=axes.transAxes)
+        axes.axis("off")
+        return
+    order = np.argsort(sobol.total)
+    positions = np.arange(len(order))
+    for offset, value, error, colour, text in (
+        (0.2, sobol.first, sobol.first_error, _FIRST, "alone (first order)"),
+        (-0.2, sobol.total, sobol.total_error, _TOTAL, "with its interactions (total)"),
+    ):
+        length = np.clip(np.abs(error[order].T - value[order]), 0.0, None)
+        axes.barh(positions + offset, value[order], height=0.36, color=colour, xerr=length, ecolor="0.3", capsize=2, label=text)
+    axes.set_yticks(positions, [found.ranges[k].field.rpartition(".")[2].replace("_", " ") for k in order])
+    axes.set(xlabel=f"fraction of the variance of {varied}, with 95 % intervals", xlim=(min(0.0, float(sobol.first.min())) - 0.02, None))
+    axes.axvline(0.0, color="0.3", lw=0.8)
+    axes.legend(frameon=False, fontsize=9, loc="lower right")
+
+
+def _draw_course(axes, found, times) -> None:
+    bands = found.slip_bands()
+    axes.fill_between(times, [100 * one.low for one in bands], [100 * one.high for one in bands], color=_SLIP, alpha=0.25, label="5 to 95 %")
+    axes.plot(times, [100 * one.middle for one in bands], color=_SLIP, label="50 %")
+    axes.set(xlabel="time [s]", ylabel="cage slip [%]", ylim=(0, None))
+    axes.legend(frameon=False, fontsize=9)

@@ -1,19 +1,203 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""A sweep: all combinations of the values of its axes, each a run of a scene, as one table."""
+"""Parameter sweeps: the scene fields that a sweep varies, its axes, and the table of all combinations of their values."""
 
+import dataclasses
 import itertools
+import re
+import types
+import typing
 from collections.abc import Callable, Iterable, Sequence
-from typing import NamedTuple
+from typing import Annotated, Any, NamedTuple
 
-from bearing_sim.provenance import git_hash, package_version
-from bearing_sim.scene import Scene
-from bearing_sim.scene_file import SceneError, load_scene, scene_to_yaml
-from bearing_sim.sweep.axis import Axis
-from bearing_sim.sweep.executor import run_tasks
-from bearing_sim.sweep.journal import Journal
+import numpy as np
+
+from bearing_sim.recording.provenance import git_hash, package_version
+from bearing_sim.scene.loader import SceneError, did_you_mean, load_scene, scene_to_yaml
+from bearing_sim.scene.quantity import Quantity, to_si, unit_registry
+from bearing_sim.scene.scene import Scene
 from bearing_sim.sweep.point import DURATION, REFUSED, RESULTS, TEXTS, Column, empty_row, point_row
 from bearing_sim.sweep.table import Table
-from bearing_sim.sweep.tasks import Task, task
+from bearing_sim.sweep.tasks import Journal, Task, run_tasks, task
+
+_TYPES = {int: "a whole number", bool: "true or false", str: "a word"}
+
+
+class FieldError(ValueError):
+    """A field or values that a sweep cannot vary; the message says why."""
+
+
+class Field(NamedTuple):
+    """One field of a scene.
+
+    Attributes
+    ----------
+    path : dotted path.
+    quantity : its declaration; None for counts, words and switches.
+    kinds : plain types that the field accepts besides the quantity.
+    """
+
+    path: str
+    quantity: Quantity | None
+    kinds: tuple[type, ...]
+
+    @property
+    def unit(self) -> str:
+        """The display unit; empty for a pure number or a word."""
+        return (self.quantity.shown_in or self.quantity.unit) if self.quantity is not None else ""
+
+    @property
+    def meaning(self) -> str:
+        """Meaning of the field, in one line."""
+        return self.quantity.meaning if self.quantity is not None else self.path.rpartition(".")[2].replace("_", " ")
+
+    def shown(self, value: float | int | str) -> float | int | str:
+        """Return a value [SI] in `unit`; words and counts are returned unchanged."""
+        if self.quantity is None or isinstance(value, str):
+            return value
+        return in_unit(value, self.quantity.unit, self.unit)
+
+    def words(self) -> str:
+        """Return the accepted values, for error messages."""
+        plain = [_TYPES.get(kind, kind.__name__) for kind in self.kinds]
+        return " or ".join(([f"a quantity in {self.unit}" if self.unit else "a number"] if self.quantity is not None else []) + plain)
+
+
+def in_unit(value: float, unit: str, shown_in: str) -> float:
+    """Return a number in one unit converted to another, rounded to 11 digits."""
+    if unit == shown_in:
+        return value
+    registry = unit_registry()
+    return float(f"{registry.Quantity(value, registry.Unit(unit or 'dimensionless')).to(shown_in or 'dimensionless').magnitude:.11g}")
+
+
+def field_of(path: str) -> Field:
+    """Return the field of a scene at a path such as ``bearing.outer_raceway.low_radius``.
+
+    Raises
+    ------
+    FieldError
+        The field does not exist, or is a block.
+    """
+    options: list[Any] = [Scene]
+    for depth, name in enumerate(path.split(".")):
+        records = [option for option in options if isinstance(option, type) and dataclasses.is_dataclass(option)]
+        known = {field: hint for record in records for field, hint in typing.get_type_hints(record, include_extras=True).items()}
+        if name not in known:
+            at = ".".join(path.split(".")[:depth])
+            expected = f"known {f'in {at}' if at else 'here'}: {', '.join(known)}" if known else f"{at} is a value, not a block"
+            raise FieldError(f"{path}: unknown field{did_you_mean(name, known)}; {expected}")
+        options = [option for record in records for option in _options(typing.get_type_hints(record, include_extras=True).get(name, type(None)))]
+    quantities = [option for option in options if isinstance(option, Quantity)]
+    kinds = tuple(option for option in options if option in (int, float, bool, str))
+    if float in kinds and not quantities:
+        quantities = [Quantity("", path.rpartition(".")[2].replace("_", " "))]
+    if not quantities and not kinds:
+        if any(dataclasses.is_dataclass(option) and "law" in typing.get_type_hints(option) for option in options):
+            return Field(path, None, (str,))  # a law, by name
+        raise FieldError(f"{path}: is a block or a list; expected a single value")
+    return Field(path, quantities[0] if quantities else None, tuple(kind for kind in kinds if kind is not float))
+
+
+def _options(hint) -> list:
+    """Return the quantities, records and plain types that an annotation accepts."""
+    origin = typing.get_origin(hint)
+    if origin is Annotated:
+        inner, *notes = typing.get_args(hint)
+        return [note for note in notes if isinstance(note, Quantity)] or _options(inner)
+    if origin in (typing.Union, types.UnionType):
+        return [option for each in typing.get_args(hint) for option in _options(each)]
+    if origin is typing.Literal:
+        return [type(value) for value in typing.get_args(hint)[:1]]
+    return [hint]
+
+
+MOST_VALUES = 100_000
+_NUMBER_ALONE = re.compile(r"\s*[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\s*")
+
+
+class Axis(NamedTuple):
+    """A field and its values: SI numbers, counts or words."""
+
+    field: Field
+    values: tuple[float | int | str, ...]
+
+    @property
+    def shown(self) -> list:
+        """The values in the display unit."""
+        return [self.field.shown(value) for value in self.values]
+
+    @property
+    def numeric(self) -> bool:
+        """Whether the values are numbers."""
+        return not any(isinstance(value, (str, bool)) for value in self.values)
+
+    def override(self, value: float | int | str) -> str:
+        """Return the override that sets the field to a value (see `bearing_sim.scene.loader.load_scene`)."""
+        return f"{self.field.path}={value if isinstance(value, str) else repr(value)}"
+
+
+def axis(field: str, values) -> Axis:
+    """Return an axis of values in SI, without repetitions, in the given order.
+
+    Parameters
+    ----------
+    field : dotted path in the scene.
+    values : numbers in SI, or words.
+    """
+    return Axis(field_of(field), tuple(dict.fromkeys(values)))
+
+
+def read_axis(text: str) -> Axis:
+    """Return the axis of a text such as ``operating.shaft_speed=15000rpm:52000rpm:8`` or ``bearing.roller.crown=none,iso_log``.
+
+    Raises
+    ------
+    FieldError
+        The field is unknown, or a value has the wrong type; the message says what was expected.
+    """
+    path, equals, given = (part.strip() for part in text.partition("="))
+    if not equals or not path or not given:
+        raise FieldError(f"{text!r}: expected FIELD=START:STOP:N or FIELD=a,b,c")
+    field = field_of(path)
+    if ":" in given:
+        return Axis(field, _range(text, field, given))
+    return Axis(field, tuple(dict.fromkeys(_value(text, field, part.strip()) for part in given.split(","))))
+
+
+def _range(text, field, given) -> tuple:
+    parts = [part.strip() for part in given.split(":")]
+    if len(parts) != 3 or not parts[2].isdigit() or not 1 <= int(parts[2]) <= MOST_VALUES:
+        raise FieldError(f"{text!r}: expected FIELD=START:STOP:N with N from 1 to {MOST_VALUES}")
+    bare = [part for part in parts[:2] if _NUMBER_ALONE.fullmatch(part) and float(part) != 0.0]
+    if len(bare) == 1 and field.unit:
+        raise FieldError(f"{text!r}: only one end has a unit; give both {parts[0]} and {parts[1]} a unit, such as {field.unit}")
+    ends = [_value(text, field, part) for part in parts[:2]]
+    if not all(isinstance(end, (int, float)) and not isinstance(end, bool) for end in ends):
+        raise FieldError(f"{text!r}: a range needs numbers; list the values as FIELD=a,b,c")
+    if field.quantity is None:
+        values = np.linspace(*ends, int(parts[2]))
+        if not np.allclose(values, np.rint(values)):
+            raise FieldError(f"{text!r}: {field.path} takes whole numbers; {parts[2]} values from {parts[0]} to {parts[1]} are not all whole")
+        return tuple(dict.fromkeys(np.rint(values).astype(int).tolist()))
+    # Step in the display unit and convert the text back, so that a point equals, to the last digit, what a scene file would give.
+    values = np.linspace(*map(field.shown, ends), int(parts[2])).tolist()
+    return tuple(dict.fromkeys(to_si(f"{value:.11g} {field.unit}", field.quantity.unit) for value in values))
+
+
+def _value(text, field, part) -> float | int | str:
+    if bool in field.kinds and part.lower() in ("true", "false"):
+        return part.lower()
+    if int in field.kinds and re.fullmatch(r"[-+]?\d+", part):
+        return int(part)
+    if field.quantity is not None:
+        try:
+            return to_si(part, field.quantity.unit)
+        except ValueError as error:
+            raise FieldError(f"{text!r}: {field.path}: {error}") from None
+    if str in field.kinds and part:
+        return part
+    raise FieldError(f"{text!r}: {field.path} takes {field.words()}, got {part!r}")
+
 
 MOST_POINTS = 1_000_000
 
@@ -26,60 +210,60 @@ def sweep(
     duration: float = DURATION,
     workers: int | None = None,
     dask: str | None = None,
-    tell: Callable[[int, int], None] = lambda done, total: None,
+    progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> Table:
     """Run a scene at every combination of values.
 
     Parameters
     ----------
-    name, overrides : of the scene, as `bearing_sim.scene_file.load_scene` takes them.
-    axes : what is varied; the first varies slowest.
-    journal : of finished points.
+    name, overrides : of the scene, as `bearing_sim.scene.loader.load_scene` takes them.
+    axes : the varied fields; the first varies slowest.
+    journal : of finished points, which are not computed again.
     duration : of a run, see `bearing_sim.sweep.point.settle` [s].
-    workers, dask, tell : see `bearing_sim.sweep.executor.run_tasks`.
+    workers, dask, progress : see `bearing_sim.sweep.tasks.run_tasks`.
 
     Returns
     -------
-    one row a point: the varied fields, then `bearing_sim.sweep.point.RESULTS` and `TEXTS`.
+    one row per point: the varied fields, then `bearing_sim.sweep.point.RESULTS` and `TEXTS`.
 
     Raises
     ------
     SceneError
-        No point can be: the faults are those of the first.
+        No point has a valid scene; the errors are those of the first point.
     ClusterError
-        See `bearing_sim.sweep.executor.run_tasks`.
+        See `bearing_sim.sweep.tasks.run_tasks`.
     """
     plan = plan_sweep(name, overrides, axes, duration)
-    return plan.table(run_tasks(plan.tasks, journal, workers, dask, tell))
+    return plan.table(run_tasks(plan.tasks, journal, workers, dask, progress))
 
 
 class Plan(NamedTuple):
-    """A sweep before it is computed: what each combination of values means.
+    """A sweep before it is computed.
 
     Attributes
     ----------
     name, overrides, axes, duration : see `sweep`.
-    places : the combinations, one value of each axis.
-    scenes : what is run at each of them, or why there is no such scene.
+    combinations : of the values, one of each axis.
+    scenes : the scene of each combination, or the error of an invalid one.
     """
 
     name: str
     overrides: tuple[str, ...]
     axes: tuple[Axis, ...]
     duration: float
-    places: tuple[tuple, ...]
+    combinations: tuple[tuple, ...]
     scenes: tuple[Scene | SceneError, ...]
 
     @property
     def tasks(self) -> list[Task]:
-        """What there is to compute: a task for each point that can be."""
+        """One task for each valid point."""
         return [point_task(scene, self.duration) for scene in self.scenes if isinstance(scene, Scene)]
 
     def table(self, results: Iterable[dict]) -> Table:
         """Return the table of all points from the results of `tasks`."""
         results, rows = iter(results), []
-        for place, scene in zip(self.places, self.scenes):
-            shown = {axis.field.path: axis.field.shown(value) for axis, value in zip(self.axes, place)}
+        for combination, scene in zip(self.combinations, self.scenes):
+            shown = {axis.field.path: axis.field.shown(value) for axis, value in zip(self.axes, combination)}
             rows.append(shown | (_complete(next(results)) if isinstance(scene, Scene) else empty_row(REFUSED, _one_line(scene))))
         columns = tuple(Column(axis.field.path, axis.field.unit, axis.field.meaning) for axis in self.axes) + RESULTS + TEXTS
         return Table(columns, rows, self._about())
@@ -100,30 +284,30 @@ class Plan(NamedTuple):
 
 
 def plan_sweep(name: str, overrides: Sequence[str], axes: Sequence[Axis], duration: float = DURATION) -> Plan:
-    """Return what a sweep will compute; parameters and faults as of `sweep`."""
-    places = tuple(itertools.product(*(axis.values for axis in axes)))
-    scenes = tuple(_scene_at(name, overrides, axes, place) for place in places)
+    """Return the plan of a sweep; parameters and errors as for `sweep`."""
+    combinations = tuple(itertools.product(*(axis.values for axis in axes)))
+    scenes = tuple(_scene_at(name, overrides, axes, combination) for combination in combinations)
     if not any(isinstance(scene, Scene) for scene in scenes):
         raise scenes[0]
-    return Plan(name, tuple(overrides), tuple(axes), float(duration), places, scenes)
+    return Plan(name, tuple(overrides), tuple(axes), float(duration), combinations, scenes)
 
 
 def point_task(scene: Scene, duration: float = DURATION) -> Task:
-    """Return the task that makes the row of one point."""
+    """Return the task that computes the row of one point."""
     return task(scene.level, point_row, scene, float(duration))
 
 
-def _scene_at(name, overrides, axes, place) -> Scene | SceneError:
+def _scene_at(name, overrides, axes, combination) -> Scene | SceneError:
     try:
-        return load_scene(name, [*overrides, *(axis.override(value) for axis, value in zip(axes, place))])
-    except SceneError as fault:
-        return fault
+        return load_scene(name, [*overrides, *(axis.override(value) for axis, value in zip(axes, combination))])
+    except SceneError as error:
+        return error
 
 
 def _complete(result: dict) -> dict:
-    """Return a result with all columns: a worker that died left none but status and reason."""
+    """Return a result with all columns; that of a lost worker has only status and reason."""
     return result if len(result) > len(TEXTS) else empty_row(result["status"], result["reason"])
 
 
-def _one_line(fault: SceneError) -> str:
-    return "; ".join(map(str, fault.faults))
+def _one_line(error: SceneError) -> str:
+    return "; ".join(map(str, error.errors))

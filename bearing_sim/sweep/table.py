@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Tidy tables on disk: one row a point, Parquet and CSV, a unit and a meaning to each column."""
+"""Tables of results, one row per point, as Parquet and CSV with units and meanings of the columns; and pictures of sweeps."""
 
 import csv
 import json
@@ -8,10 +8,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-import pyarrow
-import pyarrow.parquet
+import numpy as np
 
-from bearing_sim.sweep.point import Column
+from bearing_sim.sweep.point import OK, UNSETTLED, Column
 
 _ABOUT = b"bearing_sim"
 
@@ -21,9 +20,9 @@ class Table(NamedTuple):
 
     Attributes
     ----------
-    columns : by their names, in order.
-    rows : one a point; the names of all columns in each.
-    about : what the table is of and what made it; texts, numbers, lists and mappings of these.
+    columns : in order.
+    rows : one per point, each with the names of all columns.
+    about : contents and origin of the table; any value that JSON can hold.
     """
 
     columns: tuple[Column, ...]
@@ -31,29 +30,31 @@ class Table(NamedTuple):
     about: dict
 
     def column(self, name: str) -> Column:
-        """Return the column of that name."""
+        """Return a column by name."""
         return next(column for column in self.columns if column.name == name)
 
     def values(self, name: str) -> list:
-        """Return a column's values."""
+        """Return the values of a column."""
         return [row[name] for row in self.rows]
 
 
 def write_table(path: Path, table: Table) -> tuple[Path, Path]:
-    """Write a table as Parquet and, beside it, as CSV; a reader finds the old files or the new ones, never a part.
+    """Write a table as Parquet and CSV; each file is replaced atomically.
 
-    Units and meanings are in the metadata of Parquet's fields, what the table is of in that of its schema, as JSON under
-    ``bearing_sim``.  In CSV a unit stands in brackets behind its column's name.
+    Parquet holds units and meanings in the metadata of its fields, and ``about`` as JSON in the metadata of its schema under
+    ``bearing_sim``.  CSV gives the unit in brackets after the column name.
 
     Parameters
     ----------
-    path : of either; the ending is replaced.
-    table : what to write.
+    path : of either file; the suffix is replaced.
+    table : to write.
 
     Returns
     -------
     paths of the Parquet and of the CSV file.
     """
+    import pyarrow.parquet
+
     parquet, text = path.with_suffix(".parquet"), path.with_suffix(".csv")
     path.parent.mkdir(parents=True, exist_ok=True)
     _replace(parquet, lambda part: pyarrow.parquet.write_table(_arrow(table), part))
@@ -69,7 +70,7 @@ def write_table(path: Path, table: Table) -> tuple[Path, Path]:
 
 
 def headed(column: Column) -> str:
-    """Return a column's name and unit as a heading."""
+    """Return a column heading with its unit."""
     return f"{column.name} [{column.unit}]" if column.unit else column.name
 
 
@@ -82,7 +83,10 @@ def _replace(path, write) -> None:
         part.unlink(missing_ok=True)
 
 
-def _arrow(table) -> pyarrow.Table:
+def _arrow(table):
+    """Return a table as one of Arrow."""
+    import pyarrow
+
     arrays = [pyarrow.array(table.values(column.name)) for column in table.columns]
     fields = [
         pyarrow.field(column.name, array.type, metadata={"unit": column.unit, "meaning": column.meaning})
@@ -99,24 +103,151 @@ def read_table(path: Path) -> Table:
     OSError
         The file cannot be opened.
     ValueError
-        It is no table that this program wrote.
+        The file is not a table written by `write_table`.
     """
+    import pyarrow.parquet
+
     try:
         found = pyarrow.parquet.read_table(path)
-    except pyarrow.ArrowInvalid as fault:
-        raise ValueError(f"{path}: not readable as Parquet: {fault}") from None
+    except pyarrow.ArrowInvalid as error:
+        raise ValueError(f"{path}: not readable as Parquet: {error}") from None
     about = (found.schema.metadata or {}).get(_ABOUT)
     if about is None:
-        raise ValueError(f"{path}: a Parquet file, but no table of bearing-sim")
+        raise ValueError(f"{path}: a Parquet file, but not a table of bearing-sim")
     notes: list[Mapping] = [field.metadata or {} for field in found.schema]
     columns = [Column(field.name, note.get(b"unit", b"").decode(), note.get(b"meaning", b"").decode()) for field, note in zip(found.schema, notes)]
     return Table(tuple(columns), found.to_pylist(), json.loads(about))
 
 
 def select(rows: Sequence[dict], **wanted) -> list[dict]:
-    """Return the rows whose columns have the wanted values; numbers to 9 digits."""
+    """Return the rows with the given column values; numbers are compared to 9 digits."""
 
     def same(value, other):
         return abs(value - other) <= 1e-9 * abs(other) if isinstance(other, float) else value == other
 
     return [row for row in rows if all(same(row[name], value) for name, value in wanted.items())]
+
+
+COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")  # Okabe and Ito: safe for colour-blind readers
+MARKERS = ("o", "s", "^", "D", "v", "P", "X")
+QUANTITIES = ("cage_slip", "rating_life", "inner_load_maximum", "outer_load_maximum")
+_FEWEST_OF_A_MAP = 4  # values of each variable; with fewer, draw lines
+_LABELS = {
+    "cage_slip": "cage slip",
+    "rating_life": "rating life",
+    "inner_load_maximum": "largest inner load",
+    "outer_load_maximum": "largest outer load",
+    "low_radius": "low-point radius R_low",
+    "d_value": "D value",
+}
+
+
+class NotDrawable(ValueError):
+    """A table that cannot be drawn; the message says why."""
+
+
+def label(column: Column) -> str:
+    """Return the axis label of a column, with its unit."""
+    last = column.name.rpartition(".")[2]
+    name = _LABELS.get(last, last.replace("_", " "))
+    return f"{name} [{column.unit}]" if column.unit else name
+
+
+def new_figure(width: float, height: float):
+    """Return an empty figure without a window, of a size in inches."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(width, height), layout="constrained")
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def draw(path: Path, table: Table, quantities: Sequence[str] = QUANTITIES) -> None:
+    """Draw a sweep into a file: lines over one variable, maps over two.
+
+    Parameters
+    ----------
+    path : its suffix gives the format: .png, .svg or .pdf.
+    table : with one or two variables.
+    quantities : columns to draw, each on its own axes.
+
+    Raises
+    ------
+    NotDrawable
+        The table has more variables, or a quantity is missing or not a number.
+    """
+    varied = [table.column(axis["field"]) for axis in table.about["axes"] if len(axis["values"]) > 1]
+    if not 1 <= len(varied) <= 2:
+        raise NotDrawable(f"expected one or two variables, this table has {len(varied)}; fix the others with --set")
+    names = [column.name for column in table.columns]
+    for name in quantities:
+        if name not in names or not isinstance(table.rows[0][name], (int, float)):
+            raise NotDrawable(f"{name}: not a quantity of this table; it has {', '.join(names)}")
+    columns = -(-len(quantities) // 2) if len(quantities) > 3 else len(quantities)
+    rows = -(-len(quantities) // columns)
+    figure = new_figure(5.2 * columns, 0.5 + 3.9 * rows)
+    axes = figure.subplots(rows, columns, squeeze=False).flat
+    mapped = len(varied) == 2 and all(_is_dense(table, column) for column in varied)
+    for each, name in zip(axes, quantities):
+        (_draw_map if mapped else _draw_lines)(each, table, varied, table.column(name))
+    for empty in list(axes):
+        empty.axis("off")
+    if not mapped and len(varied) == 2:
+        handles, labels = figure.axes[0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside lower center", ncols=min(len(labels), 5), frameon=False)
+    figure.suptitle(_title(table), fontsize=11)
+    figure.savefig(path, dpi=130)
+
+
+def _title(table) -> str:
+    without = sum(row["status"] not in (OK, UNSETTLED) for row in table.rows)
+    missing = f"; {without} of {len(table.rows)} points have no result" if without else ""
+    about = table.about
+    return f"{about['scene']} {' '.join(each for each in about['overrides'] if not each.startswith('level='))} at level {about['level']}{missing}"
+
+
+def _is_dense(table, column) -> bool:
+    values = set(table.values(column.name))
+    return len(values) >= _FEWEST_OF_A_MAP and not any(isinstance(value, (str, bool)) for value in values)
+
+
+def _draw_lines(axes, table, varied, quantity) -> None:
+    over, *families = sorted(varied, key=lambda column: not _is_dense(table, column))
+    family = families[0] if families else None
+    members = list(dict.fromkeys(table.values(family.name))) if family is not None else [None]
+    for k, member in enumerate(members):
+        rows = [row for row in table.rows if family is None or row[family.name] == member]
+        if not isinstance(rows[0][over.name], str):
+            rows.sort(key=lambda row: row[over.name])
+        name = f"{label(family)} {member:.6g}" if isinstance(member, float) else str(member)
+        look = {"color": COLOURS[k % len(COLOURS)], "marker": MARKERS[k % len(MARKERS)], "ms": 4, "lw": 1.4, "label": name}
+        axes.plot([row[over.name] for row in rows], [row[quantity.name] for row in rows], **look)
+        drifting = [row for row in rows if row["status"] == UNSETTLED]
+        axes.plot([row[over.name] for row in drifting], [row[quantity.name] for row in drifting], "x", color="black", ms=8)
+    axes.set(xlabel=label(over), ylabel=label(quantity))
+    axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
+    axes.ticklabel_format(axis="x", useOffset=False) if not isinstance(table.rows[0][over.name], str) else None
+    axes.grid(alpha=0.3)
+
+
+def _draw_map(axes, table, varied, quantity) -> None:
+    x, y = varied
+    across, up, field = on_grid(table, x.name, y.name, quantity.name)
+    finite = field[np.isfinite(field)]
+    mesh = axes.pcolormesh(across, up, field, cmap="viridis", shading="nearest")
+    if finite.size and np.ptp(finite) > 0:
+        lines = axes.contour(across, up, field, 5, colors="white", linewidths=0.8)
+        axes.clabel(lines, fontsize=8, fmt="%g")
+    axes.set(xlabel=label(x), ylabel=label(y), facecolor="#dddddd")
+    axes.ticklabel_format(useOffset=False)
+    axes.figure.colorbar(mesh, ax=axes, label=label(quantity))
+
+
+def on_grid(table: Table, x: str, y: str, quantity: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the increasing values of two variables and a quantity over them, shape (values of y, values of x); NaN without a result."""
+    across, up = (np.unique(table.values(name)) for name in (x, y))
+    field = np.full((len(up), len(across)), np.nan)
+    for row in table.rows:
+        field[np.searchsorted(up, row[y]), np.searchsorted(across, row[x])] = row[quantity]
+    return across, up, np.where(np.isfinite(field), field, np.nan)

@@ -1,19 +1,169 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""What can be shown of a recording that others wrote: its speeds, loads and further numbers, and what is missing."""
+"""Recordings that other programs wrote: what can be read of them without knowing the bearing, and how it is shown.
+
+Any rosbag2 recording that `rosbags` opens, MCAP or SQLite, a file or a folder.  Times are those of recording (log times), because not all
+types have a stamp.
+"""
 
 import math
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import rerun as rr
 import rerun.blueprint as rrb
 
-from bearing_sim.events import Event, Level
-from bearing_sim.sinks import colours
-from bearing_sim.sinks.overview import Lines, Overview, Thinned, bucket_for
-from bearing_sim.sinks.rerun_lines import LINES, dim, plottable, range_path
-from bearing_sim.sinks.rerun_series import LOG_LEVELS, TIMELINE
-from bearing_sim.sinks.rerun_view import APPLICATION
+from bearing_sim.messages import topics
+from bearing_sim.messages.events import Event, Level
+from bearing_sim.recording.bag import RecordingError
+from bearing_sim.recording.bag_reader import BagReader, BagTopic
+from bearing_sim.view import colours
+from bearing_sim.view.plots import LINES, LOG_LEVELS, TIMELINE, Lines, Overview, Thinned, bucket_for, dim, plottable, range_path
+from bearing_sim.view.run_view import APPLICATION
+
+ROLES = ("speed", "load", "cage_speed", "temperature")
+_NUMBERS = {
+    f"std_msgs/msg/{kind}" for kind in ("Float64", "Float32", "Int8", "Int16", "Int32", "Int64", "UInt8", "UInt16", "UInt32", "UInt64", "Bool")
+}
+_ARRAYS = {f"std_msgs/msg/{kind}MultiArray" for kind in ("Float64", "Float32", "Int16", "Int32", "Int64")}
+_USUAL = {"speed": "/shaft_speed", "load": "/radial_load", "cage_speed": f"/{topics.MEASURED}", "temperature": "/oil_temperature"}
+_RPM = 30 / math.pi
+_MOST_LINES = 64  # of one array
+
+
+class BagSeries(NamedTuple):
+    """What a recording holds that can be shown.
+
+    Attributes
+    ----------
+    series : by (role or ``""``, name of the line, unit): times [s since the first message] and values, each of shape (n,).
+    events : diagnostics that are warnings or errors, and log messages, in order of time.
+    left_out : lines of text that name the topics that are not shown, with the reason.
+    start_ns : time 0 [ns since the epoch].
+    duration : of the recording [s].
+    """
+
+    series: dict[tuple[str, str, str], tuple[np.ndarray, np.ndarray]]
+    events: list[Event]
+    left_out: list[str]
+    start_ns: int
+    duration: float
+
+
+def read_bag_series(path: str | Path, named: Mapping[str, str] | None = None) -> BagSeries:
+    """Read what can be shown of a recording.
+
+    Parameters
+    ----------
+    path : a file, or the folder of a bag.
+    named : topic by role (`ROLES`), where it differs from the usual name.
+
+    Raises
+    ------
+    RecordingError
+        The file cannot be opened as a recording, lacks a named topic, or holds nothing that can be shown.
+    """
+    path = Path(path)
+    roles = {(named or {}).get(role) or usual: role for role, usual in _USUAL.items()}
+    roles = {topic if topic.startswith("/") else f"/{topic}": role for topic, role in roles.items()}
+    rows: dict[tuple[str, str, str], list[tuple[int, float]]] = {}
+    events, unread, present, times = [], {}, set(), []
+    bag = BagReader(path)
+    for found in bag:
+        if isinstance(found, BagTopic):
+            present.add(found.name)
+            continue
+        (topic, ros_type, decode), log_ns, data = found
+        times.append(log_ns)
+        show = _shower(ros_type)
+        if show is None:
+            unread[topic] = f"{topic}: nothing to plot in {ros_type}"
+            continue
+        try:
+            show(topic, roles.get(topic, ""), decode(data), log_ns, rows, events)
+        except Exception as error:  # decoders raise many kinds of exceptions
+            unread[topic] = f"{topic}: {ros_type} cannot be read ({type(error).__name__}: {error})"
+    _require_named(path, present, named or {})
+    if bag.unfinished:
+        unread[""] = bag.unfinished
+    if not rows:
+        raise RecordingError(f"{path}: nothing in it can be shown: {'; '.join(unread.values()) or 'it has no messages'}")
+    absent = [f"no {role.replace('_', ' ')} ({topic})" for topic, role in roles.items() if not any(key[0] == role for key in rows)]
+    start_ns, duration = min(times), max(max(times) - min(times), 1) * 1e-9
+    origin = sorted((event._replace(time=(event.time - start_ns) * 1e-9) for event in events), key=lambda event: event.time)
+    missing = ["slip, loads, life, powers and pictures of the bearing: they need a model (`bearing-sim replay`)"]
+    return BagSeries(
+        {key: _sorted(values, start_ns) for key, values in rows.items()}, origin, [*unread.values(), *absent, *missing], start_ns, duration
+    )
+
+
+def _require_named(path: Path, present: set[str], named: Mapping[str, str]) -> None:
+    for role, topic in named.items():
+        if topic and (topic if topic.startswith("/") else f"/{topic}") not in present:
+            raise RecordingError(f"{path}: no topic {topic} for the {role.replace('_', ' ')}; it has {', '.join(sorted(present)) or 'none'}")
+
+
+def _sorted(rows: list[tuple[int, float]], start_ns: int) -> tuple[np.ndarray, np.ndarray]:
+    times = np.array([time for time, _ in rows], np.int64)
+    order = np.argsort(times, kind="stable")
+    return (times[order] - start_ns) * 1e-9, np.array([value for _, value in rows], float)[order]
+
+
+def _shower(msgtype: str) -> Callable | None:
+    """Return the function that adds a message of a type to rows or events, or None."""
+    shown = {
+        "sensor_msgs/msg/JointState": _joints,
+        "geometry_msgs/msg/WrenchStamped": lambda topic, role, message, *rest: _wrench(topic, role, message.wrench, *rest),
+        "geometry_msgs/msg/Wrench": _wrench,
+        "sensor_msgs/msg/Temperature": _temperature,
+        "diagnostic_msgs/msg/DiagnosticArray": _diagnostics,
+        "rcl_interfaces/msg/Log": _log,
+    }
+    if msgtype in _NUMBERS:
+        return _number
+    return _array if msgtype in _ARRAYS else shown.get(msgtype)
+
+
+def _enter(rows, role: str, name: str, unit: str, time: int, value: float) -> None:
+    rows.setdefault((role, name, unit), []).append((time, float(value)))
+
+
+def _joints(topic, role, message, time, rows, events) -> None:
+    for index, name in enumerate(message.name):
+        own = role or {topics.SHAFT_JOINT: "speed", topics.CAGE_JOINT: "cage_speed"}.get(name, "")
+        if index < len(message.velocity):
+            _enter(rows, own, f"{topic} {name}", "rpm", time, _RPM * message.velocity[index])
+
+
+def _wrench(topic, role, wrench, time, rows, events) -> None:
+    _enter(rows, role, f"{topic} radial force", "N", time, math.hypot(wrench.force.y, wrench.force.z))
+
+
+def _temperature(topic, role, message, time, rows, events) -> None:
+    _enter(rows, role, f"{topic}", "°C", time, message.temperature)
+
+
+def _number(topic, role, message, time, rows, events) -> None:
+    factor, unit = {"speed": (_RPM, "rpm"), "cage_speed": (_RPM, "rpm"), "load": (1.0, "N"), "temperature": (1.0, "°C")}.get(role, (1.0, "-"))
+    _enter(rows, role, topic, unit, time, factor * float(message.data))
+
+
+def _array(topic, role, message, time, rows, events) -> None:
+    for index, value in enumerate(message.data[:_MOST_LINES]):
+        _enter(rows, role, f"{topic} {index}", "-", time, value)
+
+
+def _diagnostics(topic, role, message, time, rows, events) -> None:
+    for status in message.status:
+        if 0 < int(status.level) <= 2:
+            events.append(Event(time, Level(int(status.level)), status.name, "", status.message))
+
+
+def _log(topic, role, message, time, rows, events) -> None:
+    level = Level.ERROR if message.level >= 40 else Level.WARN if message.level >= 30 else Level.OK
+    events.append(Event(time, level, message.name, "", message.msg))
+
 
 _ROLES = {  # where the same quantity stands in views of our own runs, and the title of its plot
     "speed": ("/speed/shaft", "Speeds [rpm] (blue: shaft, white: cage, measured)"),
@@ -40,7 +190,7 @@ def write_bag_view(
     path : of the file.
     name : of the recording.
     start_ns : time 0 [ns since the epoch].
-    series, events, left_out : as of `bearing_sim.bag_series.BagSeries`.
+    series, events, left_out : as of `bearing_sim.view.bag.BagSeries`.
     """
     recording = rr.RecordingStream(APPLICATION)
     recording.set_log_time_enabled(False)
@@ -58,7 +208,7 @@ def write_bag_view(
         paths.append(entity)
     for event in events:
         recording.set_time(TIMELINE, duration=event.time)
-        recording.log("/log", rr.TextLog(f"{event.text}  [{event.code}]", level=LOG_LEVELS[Level(event.level)]))
+        recording.log("/log", rr.TextLog(f"{event.text}  [{event.kind}]", level=LOG_LEVELS[Level(event.level)]))
     text = "\n".join([f"## {name}", "", "Not written by bearing_sim. Not shown:", "", *(f"- {line}" for line in left_out)])
     recording.log("/about", rr.TextDocument(text, media_type=rr.MediaType.MARKDOWN), static=True)
     recording.send_blueprint(_blueprint(plots))

@@ -7,14 +7,11 @@ from typing import NamedTuple
 import rerun as rr
 import rerun.blueprint as rrb
 
-from bearing_sim.scene import Scene
-from bearing_sim.sinks import section
-from bearing_sim.sinks.load_map import map_bounds
-from bearing_sim.sinks.rerun_cage import ORBIT_EDGE
-from bearing_sim.sinks.rerun_lines import range_path
-from bearing_sim.sinks.rerun_power import CAUSES, SAMPLES
-from bearing_sim.sinks.rerun_power import bounds as power_bounds
-from bearing_sim.sinks.rerun_series import END, TIMELINE
+from bearing_sim.scene.scene import Scene
+from bearing_sim.view import section
+from bearing_sim.view.drawings import CAUSES, ORBIT_EDGE, SAMPLES, power_bounds
+from bearing_sim.view.load_map import map_bounds
+from bearing_sim.view.plots import END, TIMELINE, range_path
 
 LIVE_WINDOW = 30.0  # [s] of history that a live view shows
 _LINKED_UP_TO = 50.0  # [s]

@@ -28,15 +28,15 @@ UNLOADED = (86, 92, 106, 255)
 
 def load_palette(entries: int = 256) -> np.ndarray:
     """Return the colour map from no load to full scale, uint8, shape (entries, 3)."""
-    place = np.linspace(0.0, len(_ANCHORS) - 1, entries)
-    return np.stack([np.interp(place, np.arange(len(_ANCHORS)), _ANCHORS[:, channel]) for channel in range(3)], axis=1).round().astype(np.uint8)
+    position = np.linspace(0.0, len(_ANCHORS) - 1, entries)
+    return np.stack([np.interp(position, np.arange(len(_ANCHORS)), _ANCHORS[:, channel]) for channel in range(3)], axis=1).round().astype(np.uint8)
 
 
 _PALETTE = load_palette()
 
 
 def load_colours(loads: np.ndarray, scale: float) -> np.ndarray:
-    """Return one RGBA colour for each load [N], uint8, shape (..., 4); what carries nothing is grey.
+    """Return one RGBA colour for each load [N], uint8, shape (..., 4); unloaded rollers are grey.
 
     Parameters
     ----------

@@ -1,19 +1,22 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Drawing of the cross-section in rerun: the still parts once, the moving parts frame by frame."""
+"""What is drawn in rerun of one bearing: its cross-section, its bodies in space, the orbit of its cage, and its power by cause.
+
+Each drawing logs its still parts once and its moving parts frame by frame; `bearing_sim.view.section` computes the points.
+"""
 
 import math
 
 import numpy as np
 import rerun as rr
 
-from bearing_sim.scene import Scene
-from bearing_sim.sinks import colours, section
-from bearing_sim.sinks.section import MILLIMETRE, picture, polar
+from bearing_sim.scene.scene import Scene
+from bearing_sim.view import colours, section
+from bearing_sim.view.section import MILLIMETRE, picture, polar
 
-ROOT = "/section"
+SECTION_ROOT = "/section"
 LOAD_ARROW_FACTOR = 2.0  # the radial load's arrow is longer than the contacts' by this, within what the bore has room for
 FIRST_POCKET_SCALE = 20.0  # N; grows by itself when exceeded
-_TURN = np.linspace(0.0, 2 * math.pi, section.CONTOUR_POINTS)
+_CONTOUR_TURN = np.linspace(0.0, 2 * math.pi, section.CONTOUR_POINTS)
 
 
 class SectionDrawing:
@@ -22,7 +25,7 @@ class SectionDrawing:
     Parameters
     ----------
     recording : rerun.RecordingStream to draw into; its time is set by the caller.
-    scene : whose bearing to draw.
+    scene : the scene that holds the bearing.
     load_scale : load [N] at the upper end of the colour map and of the arrows; grows by itself when exceeded.
     """
 
@@ -41,12 +44,12 @@ class SectionDrawing:
     def draw_still_parts(self) -> None:
         """Draw what never changes: outer ring, guide land, axes."""
         bearing, outside = self._bearing, self._outside
-        contour = section.drawn_contour(bearing, self.factor, _TURN)
-        body = np.stack((polar(contour, _TURN), polar(outside, _TURN)), axis=1)
-        half_width = 1.1 * math.pi * outside / len(_TURN)  # a bit more than half the distance: the strips close up
+        contour = section.drawn_contour(bearing, self.factor, _CONTOUR_TURN)
+        body = np.stack((polar(contour, _CONTOUR_TURN), polar(outside, _CONTOUR_TURN)), axis=1)
+        half_width = 1.1 * math.pi * outside / len(_CONTOUR_TURN)  # a bit more than half the distance: the strips close up
         self._still("outer_ring/body", rr.LineStrips2D(body, radii=half_width, colors=colours.DARK_STEEL, draw_order=-5.0))
-        self._still("outer_ring/surface", rr.LineStrips2D([polar(outside, _TURN)], radii=0.1, colors=colours.STEEL, draw_order=-4.0))
-        self._still("outer_ring/raceway", rr.LineStrips2D([polar(contour, _TURN)], radii=0.22, colors=colours.VERMILION, draw_order=8.0))
+        self._still("outer_ring/surface", rr.LineStrips2D([polar(outside, _CONTOUR_TURN)], radii=0.1, colors=colours.STEEL, draw_order=-4.0))
+        self._still("outer_ring/raceway", rr.LineStrips2D([polar(contour, _CONTOUR_TURN)], radii=0.22, colors=colours.VERMILION, draw_order=8.0))
         round_radius = section.ideal_outer_radius(bearing) / MILLIMETRE
         self._still("outer_ring/round_reference", rr.LineStrips2D(_dashes(round_radius, 120), radii=0.06, colors=colours.GREY, draw_order=7.0))
         if self._guide is not None and self._guiding_ring == "outer_ring":
@@ -79,7 +82,7 @@ class SectionDrawing:
         self._still("forces/radial_load", rr.Arrows2D.from_fields(radii=0.5, colors=colours.YELLOW, draw_order=10.0))
 
     def draw(self, sample: np.void) -> None:
-        """Draw the moving parts of one sample at the recording's present time."""
+        """Draw the moving parts of one sample at the recording's current time."""
         largest = max(_largest(sample["inner_load"]), _largest(sample["outer_load"]))
         if largest > 1.05 * self.load_scale:
             self.load_scale = section.round_up(largest)
@@ -173,10 +176,10 @@ class SectionDrawing:
         log(path, labels(places, texts))
 
     def _log(self, path: str, what) -> None:
-        self._recording.log(f"{ROOT}/{path}", what)
+        self._recording.log(f"{SECTION_ROOT}/{path}", what)
 
     def _still(self, path: str, what) -> None:
-        self._recording.log(f"{ROOT}/{path}", what, static=True)
+        self._recording.log(f"{SECTION_ROOT}/{path}", what, static=True)
 
 
 def _largest(loads: np.ndarray) -> float:
@@ -194,3 +197,302 @@ def _dashes(radius: float, count: int, centre=(0.0, 0.0)) -> np.ndarray:
     """Return a dashed circle about a centre (y, z) as ``count`` short strips, shape (count, 3, 2)."""
     starts = np.arange(count) * 2 * math.pi / count
     return polar(radius, starts[:, None] + np.linspace(0.0, 0.55 * 2 * math.pi / count, 3)[None, :], centre)
+
+
+SOLID_ROOT = "/solid"
+_TURN = np.linspace(0.0, 2 * math.pi, 181)
+# Cylinders stand along their third axis: here that is the shaft's, so the drawing's (y, z, x) become (x, y, z) by this turn.
+_TO_BEARING_FRAME = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+
+
+class SolidDrawing:
+    """The bearing of a scene in three dimensions.
+
+    Parameters
+    ----------
+    recording : rerun.RecordingStream to draw into; its time is set by the caller.
+    scene : the scene that holds the bearing.
+    """
+
+    def __init__(self, recording: rr.RecordingStream, scene: Scene):
+        self._recording = recording
+        self._bearing = scene.bearing
+        self._cage_factor = section.cage_magnification(scene)
+        self._factor = section.magnification(scene.bearing)
+        self._tilts, self._tilt_factor = scene.bodies_tilt, section.tilt_magnification(scene)
+        self._skew_factor = section.skew_magnification(scene.bearing)
+        self._half_length = scene.bearing.roller.length / 2 / MILLIMETRE
+
+    def draw_still_parts(self) -> None:
+        """Draw the outer raceway, and what the moving parts keep."""
+        bearing, half = self._bearing, self._half_length
+        self._still("", rr.Transform3D(mat3x3=_TO_BEARING_FRAME))
+        contour = section.drawn_contour(bearing, self._factor, _TURN)
+        ends = [_ring(contour, _TURN, end) for end in (-1.2 * half, 1.2 * half)]
+        self._still("outer_ring/raceway", rr.LineStrips3D(ends, radii=0.25, colors=colours.VERMILION))
+        generators = np.stack((ends[0][::5], ends[1][::5]), axis=1)
+        self._still("outer_ring/generators", rr.LineStrips3D(generators, radii=0.06, colors=colours.STEEL))
+        roller, count = bearing.roller, bearing.roller.count
+        rollers = rr.Cylinders3D(
+            lengths=np.full(count, 2 * half), radii=np.full(count, roller.diameter / 2 / MILLIMETRE), fill_mode=rr.components.FillMode.Solid
+        )
+        self._still("rollers", rollers)
+        ring = bearing.inner_raceway.radius / MILLIMETRE
+        self._still("inner_ring/body", _band(0.6 * ring, ring, 1.2 * half))
+        self._still("inner_ring/shaft_mark", rr.LineStrips3D.from_fields(radii=0.5, colors=colours.BLUE))
+        if self._tilts:
+            self._write_factors()
+        self._still("cage/bars", rr.LineStrips3D.from_fields(radii=0.6 * section.cage_bar_stroke(bearing), colors=self._bar_colours()))
+
+    def _write_factors(self) -> None:
+        """Write under the bearing by what tilts and skews are drawn; the tab's title has no room for it."""
+        text = f"tilt of ring and rollers x{self._tilt_factor}, skew x{self._skew_factor}, tilt of cage x{self._cage_factor}"
+        below = [[0.0, -1.35 * self._bearing.outer_raceway.low_radius / MILLIMETRE, 0.0]]
+        # an arrow of no length: a point of no size would leave a dot
+        self._still(
+            "factors", rr.Arrows3D(origins=below, vectors=[[0.0, 0.0, 0.0]], radii=0.0, colors=colours.WHITE, labels=[text], show_labels=True)
+        )
+
+    def draw(self, sample: np.void, load_scale: float) -> None:
+        """Draw the moving parts of one sample, loads coloured up to ``load_scale`` [N]."""
+        bearing, half = self._bearing, self._half_length
+        radius = (bearing.pitch_radius + self._factor * (sample["roller_radius"] - bearing.pitch_radius)) / MILLIMETRE
+        self._log("rollers", rr.InstancePoses3D(translations=_ring(radius, sample["roller_angle"], 0.0), quaternions=self._roller_turns(sample)))
+        self._log("rollers", rr.Cylinders3D.from_fields(colors=colours.load_colours(sample["inner_load"], load_scale)))
+        y, z = section.ring_displacement(self._factor, sample)
+        ring_tilt, cage_tilt = self._tilt_factor * _lean(sample, "ring"), self._cage_factor * _lean(sample, "cage")
+        turns = section.leaning(*ring_tilt)[None] if self._tilts else None
+        self._log("inner_ring/body", rr.InstancePoses3D(translations=[[y, z, 0.0]], quaternions=turns))
+        mark = _ring(bearing.inner_raceway.radius / MILLIMETRE * np.array([0.6, 1.0]), sample["shaft_angle"], 1.22 * half)
+        mark[:, 2] -= mark[:, :2] @ ring_tilt
+        mark += [y + 1.22 * half * ring_tilt[0], z + 1.22 * half * ring_tilt[1], 0.0]
+        self._log("inner_ring/shaft_mark", rr.LineStrips3D.from_fields(strips=mark[None]))
+        middle = (bearing.cage.bore + bearing.cage.outside) / 2 / MILLIMETRE
+        azimuth = sample["cage_angle"] + (np.arange(bearing.roller.count) - 0.5) * 2 * math.pi / bearing.roller.count
+        cage = [*section.cage_displacement(self._cage_factor, sample), 0.0]
+        leant = np.array([*cage_tilt, 0.0])
+        bars = np.stack([_ring(middle, azimuth, end) + cage + end * leant for end in (-1.1 * half, 1.1 * half)], axis=1)
+        bars[..., 2] -= bars @ leant
+        self._log("cage/bars", rr.LineStrips3D.from_fields(strips=bars))
+
+    def _roller_turns(self, sample) -> np.ndarray | None:
+        if not self._tilts:
+            return None
+        cosine, sine = np.cos(sample["roller_angle"]), np.sin(sample["roller_angle"])
+        tilt, skew = self._tilt_factor * sample["roller_tilt"], self._skew_factor * sample["roller_skew"]
+        return section.leaning(tilt * cosine - skew * sine, tilt * sine + skew * cosine)
+
+    def _bar_colours(self) -> np.ndarray:
+        bars = np.full((self._bearing.roller.count, 4), colours.BRONZE, np.uint8)
+        bars[0] = colours.ORANGE
+        return bars
+
+    def _log(self, path: str, what) -> None:
+        self._recording.log(f"{SOLID_ROOT}/{path}", what)
+
+    def _still(self, path: str, what) -> None:
+        self._recording.log(f"{SOLID_ROOT}/{path}".rstrip("/"), what, static=True)
+
+
+def _lean(sample, body: str) -> np.ndarray:
+    """Return the inclination of ring or cage towards y and z [rad]; none where it is not known."""
+    return np.nan_to_num([float(sample[f"{body}_tilt_{axis}"]) for axis in "yz"])
+
+
+def _band(inner: float, outer: float, half_length: float) -> rr.Mesh3D:
+    """Return a ring of rectangular section about the shaft's axis."""
+    corners = [(inner, -half_length), (outer, -half_length), (outer, half_length), (inner, half_length)]
+    count, faces = len(_TURN), []
+    vertices = [_ring(radius, _TURN, height) for first, second in zip(corners, corners[1:] + corners[:1]) for radius, height in (first, second)]
+    for side in range(len(corners)):  # each side has vertices of its own, so that edges stay sharp
+        a = 2 * side * count + np.arange(count - 1)
+        b = a + count
+        faces += [np.stack((a, a + 1, b), axis=1), np.stack((b, a + 1, b + 1), axis=1)]
+    normals = [_side_normals(first, second) for first, second in zip(corners, corners[1:] + corners[:1]) for _ in range(2)]
+    return rr.Mesh3D(
+        vertex_positions=np.concatenate(vertices),
+        vertex_normals=np.concatenate(normals),
+        triangle_indices=np.concatenate(faces),
+        albedo_factor=colours.STEEL,
+    )
+
+
+def _side_normals(first: tuple[float, float], second: tuple[float, float]) -> np.ndarray:
+    radial, axial = second[1] - first[1], first[0] - second[0]
+    size = math.hypot(radial, axial)
+    return _ring(radial / size, _TURN, axial / size)
+
+
+def _ring(radius, azimuth, height: float) -> np.ndarray:
+    """Return points (y, z, x) [mm] at a radius, azimuth and position along the shaft, shape (n, 3)."""
+    y, z = np.broadcast_arrays(radius * np.cos(azimuth), radius * np.sin(azimuth))
+    return np.stack((y, z, np.full(y.shape, height)), axis=-1)
+
+
+ORBIT_ROOT = "/cage_orbit"
+TURNS = 5.0  # of the cage that the path covers
+ORBIT_EDGE = 1.42  # half the picture's width, in plays of the cage
+_MICROMETRE = 1e-6  # [m]
+_POINTS = (40, 600)  # fewest and most of the path
+_LINE_FROM = 24  # samples a cage turn: fewer are dots, since a line between them would be no path
+
+
+class OrbitPath:
+    """The latest positions of the cage's centre: the last `TURNS` turns of the cage, but no fewer and no more points than a picture can show."""
+
+    def __init__(self, guidance: str = "outer_ring"):
+        self._guidance = guidance
+        self._rows = np.empty((0, 3))  # cage angle [rad], y, z [m]
+
+    def add(self, block: np.ndarray) -> None:
+        """Add the samples of a block, which must not be older than the previous ones."""
+        rows = np.stack((block["cage_angle"], *eccentricity(self._guidance, block)), axis=1)[-_POINTS[1] :]
+        self._rows = np.concatenate((self._rows, rows[np.isfinite(rows).all(axis=1)]))[-_POINTS[1] :]
+
+    def positions(self) -> np.ndarray:
+        """Return y, z [m] of the path, oldest first, shape (n, 2)."""
+        if not len(self._rows):
+            return self._rows[:, 1:]
+        recent = int(np.count_nonzero(np.abs(self._rows[:, 0] - self._rows[-1, 0]) <= 2 * math.pi * TURNS))
+        return self._rows[-max(recent, _POINTS[0]) :, 1:]
+
+    def is_dense(self) -> bool:
+        """Return whether the samples follow each other closely enough for a line."""
+        steps = np.abs(np.diff(self._rows[-_POINTS[0] :, 0]))
+        return bool(len(steps)) and float(steps.mean()) <= 2 * math.pi / _LINE_FROM
+
+
+def eccentricity(guidance: str, samples) -> tuple[np.ndarray, np.ndarray]:
+    """Return y, z [m] of the cage's centre relative to the centre of the body that guides it."""
+    if guidance != "inner_ring":
+        return samples["cage_y"], samples["cage_z"]
+    return samples["cage_y"] - samples["ring_y"], samples["cage_z"] - samples["ring_z"]
+
+
+class CageDrawing:
+    """The orbit of one bearing's cage, in micrometres.
+
+    Parameters
+    ----------
+    recording : rerun.RecordingStream to draw into; its time is set by the caller.
+    scene : the scene that holds the cage.
+    """
+
+    def __init__(self, recording: rr.RecordingStream, scene: Scene):
+        self._recording = recording
+        self._guidance = scene.bearing.cage.guidance
+        self._clearance = scene.bearing.cage.play / _MICROMETRE
+        self._path = OrbitPath(self._guidance)
+        self._line_drawn = False
+
+    def draw_still_parts(self) -> None:
+        """Draw the clearance, the axes, and what the moving parts keep."""
+        reach = self._clearance
+        self._still("clearance", rr.LineStrips2D([polar(reach, _TURN)], radii=0.008 * reach, colors=colours.GREEN, draw_order=-1.0))
+        cross = [picture(np.array([-reach, reach]), 0.0), picture(0.0, np.array([-reach, reach]))]
+        self._still("axes", rr.LineStrips2D(cross, radii=0.004 * reach, colors=colours.STEEL, draw_order=-5.0))
+        self._still("names", labels([picture(1.16 * reach, 0.09 * reach), picture(0.0, 1.26 * reach)], ["Y", "Z"]))
+        self._still("path/dots", rr.Points2D.from_fields(radii=0.026 * reach, draw_order=2.0))
+        self._still("path/line", rr.LineStrips2D.from_fields(radii=0.008 * reach, draw_order=1.0))
+        self._still("centre", rr.Points2D.from_fields(radii=0.05 * reach, colors=colours.ORANGE, draw_order=5.0))
+
+    def add(self, block: np.ndarray) -> None:
+        """Add samples to the path, whether they are drawn or not."""
+        self._path.add(block)
+
+    def draw(self, sample: np.void) -> None:
+        """Draw the path and the current position at the recording's current time."""
+        positions = self._path.positions() / _MICROMETRE
+        points = picture(positions[:, 0], positions[:, 1])
+        fade = _faded(len(points))
+        dense = self._path.is_dense()
+        if dense or self._line_drawn:
+            strips = np.stack((points[:-1], points[1:]), axis=1) if dense else np.empty((0, 2, 2))
+            self._log("path/line", rr.LineStrips2D.from_fields(strips=strips, colors=fade[1:] if dense else fade[:0]))
+        if not dense or not self._line_drawn:
+            self._log("path/dots", rr.Points2D.from_fields(positions=points[:0] if dense else points, colors=fade[:0] if dense else fade))
+        self._line_drawn = dense
+        y, z = (float(position) / _MICROMETRE for position in eccentricity(self._guidance, sample))
+        known = math.isfinite(y) and math.isfinite(z)
+        self._log("centre", rr.Points2D.from_fields(positions=[picture(y, z)] if known else np.empty((0, 2))))
+        text = f"e/c = {sample['land_eccentricity']:.3f}, c = {self._clearance:g} µm" if known else "not recorded"
+        self._log("text", labels([picture(0.0, -1.1 * self._clearance)], [text]))
+
+    def _log(self, path: str, what) -> None:
+        self._recording.log(f"{ORBIT_ROOT}/{path}", what)
+
+    def _still(self, path: str, what) -> None:
+        self._recording.log(f"{ORBIT_ROOT}/{path}", what, static=True)
+
+
+def _faded(count: int) -> np.ndarray:
+    """Return colours from old to new, uint8, shape (count, 4)."""
+    brightness = np.linspace(0.25, 1.0, count)[:, None] if count else np.empty((0, 1))
+    return np.concatenate((brightness * np.array(colours.BLUE[:3]), np.full((count, 1), 255.0)), axis=1).astype(np.uint8)
+
+
+POWER_ROOT = "/power_now"
+SAMPLES = 20  # that the bars are means of
+CAUSES = {
+    "shaft": ("in: shaft", colours.WHITE),
+    "inner_sliding": ("inner sliding", colours.BLUE),
+    "outer_sliding": ("outer sliding", colours.VERMILION),
+    "churning": ("churning", colours.GREEN),
+    "windage": ("cage windage", colours.GREY),
+    "land": ("guide land", colours.ORANGE),
+    "pocket": ("pockets", colours.PURPLE),
+    "damping": ("damping", colours.YELLOW),
+}
+"""Causes with their names and colours, in the order of the bars."""
+
+_WIDTH, _PITCH = 100.0, 12.0  # drawn length of the scale, and distance of two bars
+
+
+class PowerDrawing:
+    """Bars of one run, each on a line of its own with its name and its watts; all on one scale, which fits the longest.
+
+    Means of the newest `SAMPLES`: at an instant the shaft's power is in part stored, in motion and elastic contacts, or given back.
+
+    Parameters
+    ----------
+    recording : rerun.RecordingStream to draw into; its time is set by the caller.
+    """
+
+    def __init__(self, recording: rr.RecordingStream):
+        self._recording = recording
+        self._scale = 1.0  # [W]
+        self._newest = np.empty((0, len(CAUSES)))
+        self._levels = _PITCH * np.arange(len(CAUSES))
+
+    def draw_still_parts(self) -> None:
+        """Write the names, and what the bars keep."""
+        names = np.stack((np.full(len(CAUSES), -0.28 * _WIDTH), self._levels - 0.42 * _PITCH), axis=1)
+        self._recording.log(f"{POWER_ROOT}/names", labels(names, [name for name, _ in CAUSES.values()]), static=True)
+        style = rr.LineStrips2D.from_fields(colors=[colour for _, colour in CAUSES.values()])
+        self._recording.log(f"{POWER_ROOT}/bars", style, static=True)
+
+    def add(self, block: np.ndarray) -> None:
+        """Add the samples of a block, whether they are drawn or not."""
+        rows = np.stack([block[f"{cause}_power"][-SAMPLES:] for cause in CAUSES], axis=1)
+        self._newest = np.concatenate((self._newest, rows))[-SAMPLES:]
+
+    def draw(self) -> None:
+        """Draw the bars at the recording's current time."""
+        powers = self._newest.mean(axis=0)
+        known = np.nan_to_num(powers)
+        largest = float(np.abs(known).max())
+        if largest > 0.0 and not 0.25 * self._scale < largest <= self._scale:
+            self._scale = section.round_up(largest)
+        ends = _WIDTH * known / self._scale
+        radii = np.minimum(0.3 * _PITCH, 0.45 * np.abs(ends))  # the ends of lines are round and stand out by this
+        left, right = np.minimum(ends, 0.0) + radii, np.maximum(ends, 0.0) - radii
+        bars = np.stack((np.stack((left, self._levels), axis=1), np.stack((right, self._levels), axis=1)), axis=1)
+        self._recording.log(f"{POWER_ROOT}/bars", rr.LineStrips2D.from_fields(strips=bars, radii=radii))
+        places = np.stack((np.full(len(ends), 1.28 * _WIDTH), self._levels - 0.42 * _PITCH), axis=1)
+        texts = [f"{power:,.0f} W" if np.isfinite(power) else "unknown" for power in powers]
+        self._recording.log(f"{POWER_ROOT}/watts", labels(places, texts))
+
+
+def power_bounds() -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return the horizontal and vertical range of the bars with their texts."""
+    return (-0.56 * _WIDTH, 1.46 * _WIDTH), (-0.8 * _PITCH, (len(CAUSES) - 0.1) * _PITCH)

@@ -1,13 +1,13 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Load maps: inner contact load by azimuth, or by roller, and time, as small pictures that grow or roll with the run."""
 
+import io
 import math
-import struct
-import zlib
 
 import numpy as np
+from PIL import Image
 
-from bearing_sim.sinks.colours import load_palette
+from bearing_sim.view.colours import load_palette
 
 AZIMUTH_BINS = 72
 COLUMNS = 160
@@ -28,7 +28,7 @@ class LoadMap:
     ----------
     span : time [s] that the columns cover.
     rolling : True keeps the newest ``span`` seconds; False starts at the first sample and doubles the span when the run outgrows it.
-    narrow : True makes pictures for a view that shares its place.
+    narrow : True makes pictures for a view that shares its space.
     rollers : how many rollers have a row each; None for rows by azimuth.
     """
 
@@ -42,7 +42,7 @@ class LoadMap:
         self._counts = np.zeros((rollers or AZIMUTH_BINS, COLUMNS))
 
     def add(self, block: np.ndarray) -> None:
-        """Enter the samples of a block, which must not be older than those before."""
+        """Add the samples of a block, which must not be older than the previous ones."""
         times = block["time"]
         if self.start is None:
             self.start = float(times[0])
@@ -51,9 +51,9 @@ class LoadMap:
         kept = (columns >= 0) & (columns <= COLUMNS)  # a sample on the right edge belongs to the last column
         columns = np.minimum(columns[kept], COLUMNS - 1)
         bins = self._bins(block["roller_angle"][kept])
-        place = (bins, np.broadcast_to(columns[:, None], bins.shape))
-        np.add.at(self._sums, place, np.nan_to_num(block["inner_load"][kept]))
-        np.add.at(self._counts, place, 1.0)
+        cells = (bins, np.broadcast_to(columns[:, None], bins.shape))
+        np.add.at(self._sums, cells, np.nan_to_num(block["inner_load"][kept]))
+        np.add.at(self._counts, cells, 1.0)
 
     def _bins(self, azimuth: np.ndarray) -> np.ndarray:
         if self._rollers:
@@ -105,7 +105,7 @@ class LoadMap:
 
 
 def map_size(narrow: bool = False) -> tuple[int, int]:
-    """Return width and height of the map's picture [px]; a ``narrow`` one suits a view that shares its place."""
+    """Return width and height of the map's picture [px]; a ``narrow`` one suits a view that shares its space."""
     return COLUMNS * _pixels(narrow)[1], AZIMUTH_BINS * _pixels(narrow)[0]
 
 
@@ -132,12 +132,7 @@ def palette_png(index: np.ndarray, palette: np.ndarray) -> bytes:
     index : entries of the palette, uint8, shape (height, width).
     palette : RGB colours, uint8, shape (n, 3), n <= 256.
     """
-    height, width = index.shape
-    rows = np.concatenate((np.zeros((height, 1), np.uint8), index), axis=1)  # each row begins with its filter: none
-
-    def chunk(kind: bytes, content: bytes) -> bytes:
-        return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
-
-    header = struct.pack(">IIBBBBB", width, height, 8, 3, 0, 0, 0)
-    parts = chunk(b"IHDR", header) + chunk(b"PLTE", palette.tobytes()) + chunk(b"IDAT", zlib.compress(rows.tobytes(), 6)) + chunk(b"IEND", b"")
-    return b"\x89PNG\r\n\x1a\n" + parts
+    picture, content = Image.fromarray(index, "P"), io.BytesIO()
+    picture.putpalette(palette.tobytes())
+    picture.save(content, "PNG")
+    return content.getvalue()

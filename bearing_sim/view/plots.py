@@ -1,33 +1,332 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Series of the view: numbers over time as columns, regime lane, log, and the texts beside them."""
+"""What is plotted over time: the series of a run with their paths, names, colours and units, and how a long run is thinned out.
+
+An hour at 1 kHz is 3.6 million rows of a hundred numbers; no viewer needs them and none opens them well.  A long run is therefore sent as the lowest,
+mean and highest values of buckets of time, and in full around events.
+"""
 
 import math
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 import rerun as rr
 
-from bearing_sim.effects import LEVELS, level_of
-from bearing_sim.events import Event, Level
-from bearing_sim.scene import Scene
-from bearing_sim.sinks import colours, section
-from bearing_sim.sinks.overview import FULL_ROWS, Lines, Overview, Thinned, bucket_for
-from bearing_sim.sinks.rerun_lines import (
-    AGGREGATION,
-    EACH,
-    ENDLESS,
-    LINES,
-    RPM,
-    ZERO_CELSIUS,
-    dim,
-    further_series,
-    measured_series,
-    plottable,
-    range_path,
-    roller_series,
-    series,
-    threshold_lines,
-)
+from bearing_sim.messages.events import Event, Level
+from bearing_sim.scene.fidelity import LEVELS, level_of
+from bearing_sim.scene.scene import Scene
+from bearing_sim.view import colours, section
+from bearing_sim.view.drawings import CAUSES
+
+RPM = 30 / math.pi
+ZERO_CELSIUS = 273.15
+ENDLESS = 1e7  # [h]; a bearing that hardly turns has a life of 1e30 h, which would flatten everything else
+
+LINES = {
+    "/speed/shaft": ("shaft", colours.BLUE, 2.0),
+    "/speed/cage": ("cage", colours.ORANGE, 2.5),
+    "/speed/ideal_cage": ("cage without slip", colours.GREY, 1.5),
+    "/slip/cage": ("cage slip", colours.BLUE, 2.5),
+    "/slip/warning": ("warning", colours.YELLOW, 1.0),
+    "/slip/error": ("error", colours.VERMILION, 1.0),
+    "/life/log10_hours": ("life", colours.GREEN, 2.5),
+    "/life/lamina_log10_hours": ("lamina life", colours.WHITE, 2.0),
+    "/life/chosen_log10_hours": ("life by the scene's choice", colours.PURPLE, 2.0),
+    "/slip/measured": ("measured cage slip", colours.WHITE, 1.5),
+    "/slip/residual": ("measured less predicted slip", colours.ORANGE, 2.0),
+    "/slip/no_residual": ("as predicted", colours.GREY, 1.0),
+    "/speed/cage_measured": ("cage, measured", colours.WHITE, 1.5),
+    "/life/warning": ("warning", colours.YELLOW, 1.0),
+    "/life/error": ("error", colours.VERMILION, 1.0),
+    "/damage/ppm": ("damage", colours.PURPLE, 2.5),
+    "/load/radial": ("radial load", colours.YELLOW, 2.0),
+    "/oil/temperature": ("oil", colours.VERMILION, 2.0),
+    "/loads/inner_largest": ("inner, largest", colours.BLUE, 2.0),
+    "/loads/outer_largest": ("outer, largest", colours.VERMILION, 2.0),
+    "/cage/eccentricity": ("cage eccentricity e/c", colours.ORANGE, 2.0),
+    "/loads/pocket_largest": ("on a roller by its pocket, largest", colours.PURPLE, 2.0),
+    "/loads/pocket_warning": ("warning", colours.YELLOW, 1.0),
+    "/loads/pocket_error": ("error", colours.VERMILION, 1.0),
+    "/pressure/inner": ("inner, largest", colours.BLUE, 2.0),
+    "/pressure/outer": ("outer, largest", colours.VERMILION, 2.0),
+    "/pressure/inner_edge": ("inner, end slices", colours.WHITE, 1.0),
+    "/pressure/outer_edge": ("outer, end slices", colours.YELLOW, 1.0),
+    "/tilt/ring_y": ("ring towards y", colours.BLUE, 2.0),
+    "/tilt/ring_z": ("ring towards z", colours.ORANGE, 2.0),
+    "/tilt/cage_y": ("cage towards y", colours.ORANGE, 2.0),
+    "/tilt/cage_z": ("cage towards z", colours.YELLOW, 2.0),
+    "/sink/dropped": ("blocks dropped", colours.WHITE, 1.5),
+} | {f"/power/{cause}": (name, colour, 2.0) for cause, (name, colour) in CAUSES.items()}
+
+EACH = {
+    "/loads/each/inner": "inner",
+    "/loads/each/outer": "outer",
+    "/loads/each/pocket": "pocket",
+    "/rollers/inner_sliding": "inner sliding",
+    "/rollers/outer_sliding": "outer sliding",
+    "/rollers/spin": "spin",
+    "/tilt/each/tilt": "tilt",
+    "/tilt/each/skew": "skew",
+}
+"""Entity paths with a line for each roller, and what a line's name begins with."""
+
+MEASURED = ("/speed/cage_measured", "/slip/measured", "/slip/residual")
+"""Entity paths of what there is only where the cage is measured."""
+
+AGGREGATION = {
+    "/loads/pocket_largest": "Max",
+    "/loads/inner_largest": "Max",
+    "/loads/outer_largest": "Max",
+    "/slip/cage": "Max",
+}  # where many samples share a pixel
+
+
+def plottable(values) -> np.ndarray:
+    """Return float32 values with NaN, a gap in a plot, wherever there is no finite number."""
+    values = np.asarray(values, np.float64)
+    return np.where(np.isfinite(values), values, np.nan).astype(np.float32)
+
+
+def log10_hours(life) -> np.ndarray:
+    """Return log10 of a life in hours, NaN where it is endless (more than `ENDLESS`), zero or unknown."""
+    life = np.asarray(life, np.float64)
+    return np.log10(life, where=(life > 0) & (life <= ENDLESS), out=np.full(life.shape, np.nan))
+
+
+def range_path(path: str) -> str:
+    """Return the entity path of lowest and highest values beside the means of a series in a long run."""
+    return f"{path}/range"
+
+
+def dim(colour: tuple[int, int, int, int]) -> tuple[int, int, int, int]:
+    """Return the colour of the range around a line."""
+    return (*(int(0.6 * part) for part in colour[:3]), 255)
+
+
+def series(block: np.ndarray) -> dict[str, np.ndarray]:
+    """Return what is plotted of a block, in the units that people read, by entity path."""
+    return {
+        "/speed/shaft": RPM * block["shaft_speed"],
+        "/speed/cage": RPM * block["cage_speed"],
+        "/speed/ideal_cage": RPM * block["ideal_cage_speed"],
+        "/slip/cage": 100 * block["cage_slip"],
+        "/life/log10_hours": log10_hours(block["rating_life"]),
+        "/life/hours": block["rating_life"],
+        "/damage/ppm": 1e6 * block["damage"],
+        "/load/radial": np.hypot(block["load_y"], block["load_z"]),
+        "/oil/temperature": block["oil_temperature"] - ZERO_CELSIUS,
+        "/loads/inner_largest": block["inner_load"].max(axis=1),
+        "/loads/outer_largest": block["outer_load"].max(axis=1),
+        "/loads/pocket_largest": np.abs(block["pocket_force"]).max(axis=1),
+        "/loads/each/inner": block["inner_load"],
+        "/loads/each/outer": block["outer_load"],
+        "/loads/each/pocket": block["pocket_force"],
+        "/cage/eccentricity": block["land_eccentricity"],
+    } | {f"/power/{cause}": block[f"{cause}_power"] for cause in CAUSES}
+
+
+def roller_series(scene: Scene, block: np.ndarray) -> dict[str, np.ndarray]:
+    """Return sliding speeds [m/s] and spins [rpm] of all rollers of a block, by entity path, each of shape (n, Z).
+
+    A raceway's surface less the roller's: omega_i R_i - omega_m r_m - omega_b r on the inner ring, and omega_b r - omega_m r_m on the
+    outer one, with the spin omega_b positive where the roller rolls on the outer ring (Deng 2017, section 2.3, about a resting frame).
+    """
+    bearing = scene.bearing
+    surface = block["roller_spin"] * bearing.roller.diameter / 2
+    orbital = block["orbital_speed"] * block["roller_radius"]
+    return {
+        "/rollers/inner_sliding": block["shaft_speed"][:, None] * bearing.inner_raceway.radius - orbital - surface,
+        "/rollers/outer_sliding": surface - orbital,
+        "/rollers/spin": RPM * block["roller_spin"],
+    }
+
+
+def threshold_lines(scene: Scene) -> dict[str, float]:
+    """Return where the scene's thresholds stand in the plots, by entity path; only those there are."""
+    limits = scene.thresholds
+    lines = {"/slip/warning": 100 * limits.slip_warning, "/slip/error": 100 * limits.slip_error}
+    for path, life in (("/life/warning", limits.life_warning), ("/life/error", limits.life_error)):
+        if life > 0.0:
+            lines[path] = float(log10_hours(life))
+    for path, force in (("/loads/pocket_warning", limits.pocket_force_warning), ("/loads/pocket_error", limits.pocket_force_error)):
+        if force is not None:
+            lines[path] = force
+    return lines
+
+
+def measured_series(times: np.ndarray, cage_speed: np.ndarray, residual: np.ndarray, block: np.ndarray) -> dict[str, np.ndarray]:
+    """Return what is plotted of a measured cage, by entity path.
+
+    Parameters
+    ----------
+    times, cage_speed, residual : of the measurements [s, rad/s, fraction], shape (n,).
+    block : samples around these times; they know how fast a cage without slip would be.
+    """
+    ideal = np.interp(times, block["time"], block["ideal_cage_speed"])
+    slip = np.divide(cage_speed, ideal, out=np.full(len(times), np.nan), where=ideal != 0.0)
+    return {"/speed/cage_measured": RPM * cage_speed, "/slip/measured": 100 * (1 - slip), "/slip/residual": 100 * residual}
+
+
+def further_series(scene: Scene, block: np.ndarray) -> dict[str, np.ndarray]:
+    """Return what is plotted besides `series` because only some scenes have it: lives, tilts, pressures by slices."""
+    lines = {}
+    if not scene.life.is_basic:
+        lines["/life/chosen_log10_hours"] = log10_hours(block["modified_rating_life"])
+    if scene.bodies_tilt:
+        lines["/life/lamina_log10_hours"] = log10_hours(block["lamina_life"])
+        lines |= {f"/tilt/{body}_{axis}": 1e3 * block[f"{body}_tilt_{axis}"] for body in ("ring", "cage") for axis in "yz"}
+        lines |= {f"/tilt/each/{name}": 1e3 * block[f"roller_{name}"] for name in ("tilt", "skew")}
+        lines |= {f"/pressure/{place}": 1e-6 * block[f"{place}_pressure"] for place in ("inner", "outer", "inner_edge", "outer_edge")}
+    return lines
+
+
+AROUND = 1.0  # [s] before and after an event that are kept in full
+FULL_ROWS = 100_000  # a run of no more is kept in full
+_BUCKETS = 8000  # of a run whose length is known: four for each pixel of a wide screen
+_LEAST_ROWS = 8  # of a bucket: fewer are not worth it
+_BUCKET_WITHOUT_END = 0.2  # [s], of a run of unknown length
+_PIECE = 256  # rows that are worth sending: a viewer's memory and time go with the number of pieces
+_ROWS_AROUND_EVENTS = 150_000  # kept in full at most; later events are seen in the buckets only
+
+
+class Lines(NamedTuple):
+    """Series over time.
+
+    Attributes
+    ----------
+    times : [s], shape (n,).
+    values : by entity path, each of shape (n,) or (n, k).
+    """
+
+    times: np.ndarray
+    values: dict[str, np.ndarray]
+
+
+class Thinned(NamedTuple):
+    """What is left of series.
+
+    Attributes
+    ----------
+    lines : every row where all is kept, and the means of buckets, at their middles, elsewhere; in order of time.
+    ranges : lowest and highest value of each bucket of a single series, shape (buckets, 2), at the buckets' middles.
+    """
+
+    lines: Lines
+    ranges: Lines
+
+
+def bucket_for(interval: float, duration: float | None) -> float | None:
+    """Return the length of a bucket [s] for rows every ``interval`` [s] over ``duration`` [s] (None: unknown); None where all is kept."""
+    if duration is None:
+        return max(_BUCKET_WITHOUT_END, 2 * _LEAST_ROWS * interval)
+    if duration <= FULL_ROWS * interval:
+        return None
+    return max(duration / _BUCKETS, _LEAST_ROWS * interval)
+
+
+class Overview:
+    """Thins out the series of one run.
+
+    Parameters
+    ----------
+    bucket : length of a bucket [s].
+    full_rows : so many rows at the beginning are kept in full.
+    """
+
+    def __init__(self, bucket: float, full_rows: int = 0):
+        self._bucket = bucket
+        self._whole = full_rows  # rows that are still kept in full
+        self._allowed = _ROWS_AROUND_EVENTS
+        self._marks: list[float] = []
+        self._waiting: list[Lines] = []  # not decided yet: an event may follow
+        self._decided: list[Thinned] = []  # not handed on yet: too few
+
+    def mark(self, time: float) -> None:
+        """Keep in full what lies around an event at ``time`` [s]."""
+        self._marks.append(time)
+
+    def add(self, lines: Lines) -> Thinned | None:
+        """Take in rows that follow those before; return what is decided by now, once it is enough to be worth sending."""
+        if self._whole > 0:
+            self._whole -= len(lines.times)
+            return Thinned(lines, Lines(lines.times[:0], {}))
+        self._waiting.append(lines)
+        newest, oldest = float(lines.times[-1]), float(self._waiting[0].times[0])
+        limit = np.floor((newest - AROUND) / self._bucket) * self._bucket
+        if limit - oldest > max(AROUND, 8 * self._bucket):
+            self._decided.append(self._decide(limit))
+        return self._handed_on() if sum(len(part.lines.times) for part in self._decided) >= _PIECE else None
+
+    def finish(self) -> Thinned | None:
+        """Return what is left of the rows that waited."""
+        if self._waiting:
+            self._decided.append(self._decide(np.inf))
+        return self._handed_on() if self._decided else None
+
+    def _handed_on(self) -> Thinned:
+        parts, self._decided = self._decided, []
+        ranges = [part.ranges for part in parts if len(part.ranges.times)]
+        return Thinned(_joined([part.lines for part in parts]), _joined(ranges) if ranges else parts[0].ranges)
+
+    def _decide(self, limit: float) -> Thinned:
+        whole = _joined(self._waiting)
+        count = int(np.searchsorted(whole.times, limit))
+        decided, rest = _cut(whole, slice(0, count)), _cut(whole, slice(count, None))
+        self._waiting = [rest] if len(rest.times) else []
+        kept = self._around_events(decided.times)
+        full, thin = _cut(decided, kept), _cut(decided, ~kept)
+        if not len(thin.times):
+            return Thinned(full, Lines(thin.times, {}))
+        numbers = np.floor(thin.times / self._bucket)
+        starts = np.flatnonzero(np.diff(numbers, prepend=np.nan) != 0)
+        middles = (numbers[starts] + 0.5) * self._bucket
+        middles = np.clip(middles, thin.times[starts], thin.times[np.append(starts[1:], len(thin.times)) - 1])  # of buckets that events cut
+        means = {path: _bucket_means(values, starts) for path, values in thin.values.items()}
+        ranges = {
+            path: np.stack((np.fmin.reduceat(values, starts), np.fmax.reduceat(values, starts)), axis=1)
+            for path, values in thin.values.items()
+            if values.ndim == 1
+        }
+        return Thinned(_in_order(full, Lines(middles, means)), Lines(middles, ranges))
+
+    def _around_events(self, times: np.ndarray) -> np.ndarray:
+        """Return which rows lie around an event, shape (n,)."""
+        kept = np.zeros(len(times), bool)
+        if not len(times):
+            return kept
+        for mark in self._marks:
+            first, end = np.searchsorted(times, (mark - AROUND, mark + AROUND))
+            if end - first <= self._allowed:
+                self._allowed -= int(np.count_nonzero(~kept[first:end]))
+                kept[first:end] = True
+        self._marks = [mark for mark in self._marks if mark + AROUND > times[-1]]
+        return kept
+
+
+def _joined(parts: list[Lines]) -> Lines:
+    return Lines(
+        np.concatenate([part.times for part in parts]), {path: np.concatenate([part.values[path] for part in parts]) for path in parts[0].values}
+    )
+
+
+def _cut(lines: Lines, which) -> Lines:
+    return Lines(lines.times[which], {path: values[which] for path, values in lines.values.items()})
+
+
+def _in_order(one: Lines, other: Lines) -> Lines:
+    if not len(one.times):
+        return other
+    both = _joined([one, other])
+    return _cut(both, np.argsort(both.times, kind="stable"))
+
+
+def _bucket_means(values: np.ndarray, starts: np.ndarray) -> np.ndarray:
+    """Return the mean of the known values from each start to the next; NaN where none is known."""
+    known = np.isfinite(values)
+    sums = np.add.reduceat(np.where(known, values, 0.0), starts, axis=0, dtype=float)
+    counts = np.add.reduceat(known, starts, axis=0, dtype=float)
+    return np.divide(sums, counts, out=np.full(sums.shape, np.nan), where=counts > 0)
+
 
 TIMELINE = "sim_time"
 END = "/end"  # a point out of sight, a little later than the run: time axes reach it, and their last label has room
@@ -50,7 +349,7 @@ class RunSeries:
     ----------
     recording : rerun.RecordingStream.
     scene : whose thresholds are drawn and whose bearing is described.
-    thin : whether a long run is thinned out (see `bearing_sim.sinks.overview`); for files.
+    thin : whether a long run is thinned out (see `bearing_sim.view.plots`); for files.
     duration : simulated time that will come [s], where known.
     """
 
@@ -103,7 +402,7 @@ class RunSeries:
         self._write_measured()
 
     def note_measurement(self, time: float, cage_speed: float, residual: float) -> None:
-        """Take a measured cage speed [rad/s] and its residual slip (see `bearing_sim.sinks.rerun_sink`); written with the next block."""
+        """Take a measured cage speed [rad/s] and its residual slip (see `bearing_sim.view.sink`); written with the next block."""
         self._measured.append((time, cage_speed, residual))
 
     def finish(self) -> None:
@@ -210,7 +509,7 @@ class RunSeries:
     def write_event(self, event: Event) -> None:
         """Log an event at its own time."""
         self._recording.set_time(TIMELINE, duration=float(event.time))
-        self._recording.log("/log", rr.TextLog(f"{event.text}  [{event.code}]", level=LOG_LEVELS[Level(event.level)]))
+        self._recording.log("/log", rr.TextLog(f"{event.text}  [{event.kind}]", level=LOG_LEVELS[Level(event.level)]))
         self._keep_around(event.time)
 
     def write_readout(self, sample: np.void, dropped: int) -> None:
@@ -254,7 +553,7 @@ class RunSeries:
         """Log how many blocks the view has missed so far."""
         self._recording.set_time(TIMELINE, duration=time)
         self._recording.log("/sink/dropped", rr.Scalars(float(dropped)))
-        text = f"the view missed {dropped} blocks so far: it is slower than the simulation, which goes on undisturbed"
+        text = f"the view has dropped {dropped} blocks so far because it is slower than the simulation; the simulation itself is not affected"
         self._recording.log("/log", rr.TextLog(text, level=rr.TextLogLevel.WARN))
 
 

@@ -1,6 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""What one run looks like in one rerun recording; everything here is called from one thread."""
+"""Everything that is shown of one run: pictures, maps, series, and the text that describes the run."""
 
+import math
 import time as wall
 from pathlib import Path
 from typing import NamedTuple
@@ -8,17 +9,67 @@ from typing import NamedTuple
 import numpy as np
 import rerun as rr
 
-from bearing_sim.events import Event, Level
-from bearing_sim.scene import Scene
-from bearing_sim.sinks import section
-from bearing_sim.sinks.load_map import LoadMap, label_distance, map_size
-from bearing_sim.sinks.rerun_about import about
-from bearing_sim.sinks.rerun_blueprint import LIVE_WINDOW, Extent, blueprint
-from bearing_sim.sinks.rerun_cage import CageDrawing
-from bearing_sim.sinks.rerun_power import PowerDrawing
-from bearing_sim.sinks.rerun_scene import SectionDrawing, labels
-from bearing_sim.sinks.rerun_series import TIMELINE, RunSeries
-from bearing_sim.sinks.rerun_solid import SolidDrawing
+from bearing_sim.messages.events import Event, Level
+from bearing_sim.scene.scene import Scene
+from bearing_sim.view import section
+from bearing_sim.view.blueprint import LIVE_WINDOW, Extent, blueprint
+from bearing_sim.view.drawings import CageDrawing, PowerDrawing, SectionDrawing, SolidDrawing, labels
+from bearing_sim.view.load_map import LoadMap, label_distance, map_size
+from bearing_sim.view.plots import TIMELINE, ZERO_CELSIUS, RunSeries
+
+_WHIRL = """The cage's displacement and its {play} have a factor of their own, which the title says; cage orbit: the position of
+its centre in the {play}{seen} and its path in the last turns, dots where samples are too far apart for a line.
+"""
+_GUIDES = {"outer_ring": "green: guide land on the outer ring. ", "inner_ring": "green: guide land on the inner ring. ", "roller": ""}
+
+
+def _whirl(scene: Scene) -> str:
+    if not scene.cage_whirls:
+        return ""
+    cage = scene.bearing.cage
+    seen = ", seen from the inner ring's centre," if cage.guidance == "inner_ring" else ""
+    return _WHIRL.format(play="guide clearance" if cage.has_lands else "play in the pockets that guide it", seen=seen)
+
+
+_TILTS = """The solid picture draws tilts of ring and rollers and skews by factors of their own, which its title says, and the cage's tilt by
+the cage's factor. Pressures are Hertz's of slices, largest
+of all rollers; those of the end slices say how hard edges press, without the rise at a sharp edge.
+"""
+
+
+def about(scene: Scene, factor: int) -> str:
+    """Return the description of a run as Markdown."""
+    bearing, oil, limits = scene.bearing, scene.lubricant, scene.thresholds
+    raceway, roller = bearing.outer_raceway, bearing.roller
+    return f"""## {scene.name}
+
+{scene.description}
+
+**Bearing** {bearing.name}: {roller.count} rollers {1e3 * roller.diameter:g} x {1e3 * roller.length:g} mm,
+outer raceway with {raceway.lobes} lobes, R_low {1e3 * raceway.low_radius:.4f} mm, D {1e6 * raceway.d_value:g} um,
+low point at {math.degrees(raceway.installation_angle):g} deg,
+play at the low points {1e6 * bearing.radial_clearance_at_low_points:.1f} um (negative: preload).
+
+**Oil** {oil.oil.name}, {oil.temperature - ZERO_CELSIUS:g} °C at the start, {100 * oil.mixture_fraction:g} % in the air,
+traction law {oil.traction.law}.
+
+**Level** {scene.level}.
+
+**Picture**: bodies to scale; every radial departure from the ideal bearing (lobes, play, elastic approach, ring displacement)
+is drawn x{factor}. Seen against the x axis: Y right, Z up; azimuth runs from +Y towards +Z. Red line: outer raceway; dashed: ideal
+round raceway; {_GUIDES[bearing.cage.guidance]}Rollers are coloured by inner contact load, grey ones carry none. Arrows at the raceways: contact
+forces on the rings, full scale of the colours = longest; yellow: radial load on the inner ring, twice that scale as far as there is room.
+The orange cage bar and the white marks show rotation. Purple arrows: forces of the pockets on the rollers, scale in the middle.
+{_whirl(scene)}{_TILTS if scene.bodies_tilt else ""}
+**Power** by cause: what the shaft puts in by the tractions on the inner ring, the mixture in the cage's bore and guide lands of its own is lost, or
+stored for a moment in motion and elastic contacts; the bars are means of the newest samples.
+
+**Thresholds**: slip {100 * limits.slip_warning:g} % warning, {100 * limits.slip_error:g} % error; life below {limits.life_warning:g} h warning.
+
+**Loads** are those of the sampled instants: at constant speed samples may meet the rollers in the same places again and
+again, and then the largest load changes with the speed while the bearing's does not.
+"""
+
 
 APPLICATION = "bearing_sim"
 ROWS_PER_COLUMN = 1000
@@ -35,7 +86,7 @@ class ViewOptions(NamedTuple):
     start_ns : wall time of sample time 0 [ns since the epoch], or None.
     duration : simulated time that will come [s], where known.
     load_scale : load [N] at the upper end of the colour map, where known; grows by itself when exceeded.
-    real_time : True while the run goes on in real time, which pictures must not take processor time from.
+    real_time : True for a run in real time; pictures must not take processor time from it.
     """
 
     start_ns: int | None = None
@@ -48,7 +99,7 @@ NOTHING_KNOWN = ViewOptions()
 
 
 class LiveFrames:
-    """Picks pictures for somebody who watches: at most ``rate`` a second of wall time, each the newest."""
+    """Picks pictures for a live viewer: at most ``rate`` per second of wall time, each of the newest sample."""
 
     def __init__(self, rate: float, clock=wall.monotonic):
         self._interval = 1 / rate
@@ -79,7 +130,7 @@ class FileFrames:
         self._first = self._last = None
 
     def want(self) -> None:
-        """Let the next sample be drawn, whenever it is: something happened."""
+        """Draw the next sample whatever its time, because an event occurred."""
         if self._wanted < _MOST_WANTED and self._last is not None:
             self._wanted += 1
             self._last = -np.inf
@@ -107,7 +158,7 @@ class RunView:
     scene : what runs.
     path : .rrd file to write, or None.
     serve_port : port on 127.0.0.1 where viewers may connect, or None; one of both.
-    options : what else is known.
+    options : what else is known of the run.
     """
 
     def __init__(self, scene: Scene, path: str | Path | None = None, serve_port: int | None = None, options: ViewOptions = NOTHING_KNOWN):
@@ -127,7 +178,7 @@ class RunView:
             self._recording.send_recording_start_time_nanos(start_ns)
         self._series = RunSeries(self._recording, scene, thin=not live, duration=duration)
         self._frames = LiveFrames(_RATE) if live else FileFrames(duration, shortest=2 / _RATE if real_time else 0.0)
-        self._details = LiveFrames(rate=10.0) if live else None  # nobody reads numbers faster
+        self._details = LiveFrames(rate=10.0) if live else None  # numbers that change faster cannot be read
         self._map_times = LiveFrames(rate=2.0) if live else FileFrames(duration, most=30)
         rows = {"/load_map": None, "/load_map_by_roller": scene.bearing.roller.count}
         span, narrow = LIVE_WINDOW if live else duration or 1.0, scene.cage_whirls
@@ -151,7 +202,7 @@ class RunView:
             return
         if self._newest is None:
             self._first_time = float(block["time"][0])
-            self._series.write_event(Event(float(block["time"][0]), Level.OK, "run.start", "the run starts"))
+            self._series.write_event(Event(float(block["time"][0]), Level.OK, "run.start", "", "the run starts"))
         self._newest = block[-1]
         self._pending.append(block)
         drawn = 0
@@ -180,7 +231,7 @@ class RunView:
         self._series.note_measurement(time, cage_speed, residual)
 
     def write_dropped(self, dropped: int) -> None:
-        """Show that ``dropped`` blocks in all never arrived here."""
+        """Show that ``dropped`` blocks in total were dropped before they reached the view."""
         self.dropped = dropped
         self._series.write_dropped(float(self._newest["time"]) if self._newest is not None else 0.0, dropped)
 
@@ -219,7 +270,7 @@ class RunView:
         self._series.write_readout(sample, self.dropped)
 
     def _follow(self, samples: np.ndarray) -> None:
-        """Take samples into what a picture shows of the time before it."""
+        """Add samples to what a picture shows of the time before it."""
         self._power.add(samples)
         if self._cage is not None:
             self._cage.add(samples)
@@ -253,6 +304,6 @@ class RunView:
 
 
 def first_load_scale(scene: Scene) -> float:
-    """Return a load [N] that the fullest roller will hardly exceed at the scene's operating point: five times its fair share, at least 100 N."""
-    share = 5 * scene.operating.radial_load / scene.bearing.roller.count
-    return section.round_up(max(share, 100.0))
+    """Return the first full scale of the colours [N]: five times the mean load of a roller at the scene's operating point, at least 100 N."""
+    load = 5 * scene.operating.radial_load / scene.bearing.roller.count
+    return section.round_up(max(load, 100.0))

@@ -4,22 +4,23 @@
 Needs a Vulkan driver; a software one will do.
 """
 
+import io
 import os
 import socket
-import struct
 import subprocess
 import tempfile
 import time
-import zlib
 from pathlib import Path
 
-from bearing_sim.sinks.priority import in_idle_time
+from PIL import Image
+
+from bearing_sim.recording.priority import in_idle_time
 
 HOW_TO_GET_VULKAN = (
     "the viewer found no graphics driver; a software one is enough: on Debian or Ubuntu "
     "`apt-get install -y --no-install-recommends mesa-vulkan-drivers`, on Fedora `dnf install mesa-vulkan-drivers`, on Arch `pacman -S vulkan-swrast`"
 )
-_NOT_OUR_FAULT = ("oftware rasterizer", "NameHasOwner")  # notices about the machine, not about what is shown
+_HARMLESS_NOTICES = ("oftware rasterizer", "NameHasOwner")  # notices about the machine, not about what is shown
 
 
 class ViewerFailed(RuntimeError):
@@ -35,7 +36,7 @@ class HeadlessViewer:
     size : width and height of the picture [px].
     timeline : the timeline that `seek` moves along.
     ready_within : seconds to wait for the recording to be loaded.
-    in_idle_time : whether it leaves the processor to everything else, as a viewer beside a solver shall.
+    in_idle_time : True runs the viewer in idle time, so that it takes no processor time from a solver on the same machine.
 
     Raises
     ------
@@ -94,7 +95,7 @@ class HeadlessViewer:
         from rerun.experimental import ViewerClient
 
         deadline = time.monotonic() + self._ready_within
-        last_fault = "it did not answer"
+        last_error = "it did not answer"
         while time.monotonic() < deadline:
             if self._process.poll() is not None:
                 raise ViewerFailed(self._why_it_ended())
@@ -103,19 +104,19 @@ class HeadlessViewer:
                 state = self._client.get_state()
                 if state.recordings and state.recordings[0].timelines and not state.loading:
                     return
-                last_fault = "it shows no recording"
-            except (RuntimeError, ConnectionError, OSError, ValueError) as fault:  # not listening yet
-                last_fault = str(fault)
+                last_error = "it shows no recording"
+            except (RuntimeError, ConnectionError, OSError, ValueError) as error:  # not listening yet
+                last_error = str(error)
             time.sleep(0.1)
-        raise ViewerFailed(f"the viewer was not ready after {self._ready_within:g} s: {last_fault}")
+        raise ViewerFailed(f"the viewer was not ready after {self._ready_within:g} s: {last_error}")
 
     def _why_it_ended(self) -> str:
         self._messages.seek(0)
-        said = self._messages.read().decode(errors="replace").strip()
-        lowered = said.lower()
+        output = self._messages.read().decode(errors="replace").strip()
+        lowered = output.lower()
         if "graphics" in lowered or "render context" in lowered or "adapter" in lowered:
             return HOW_TO_GET_VULKAN
-        return f"the viewer ended with code {self._process.returncode}: {said[-800:] or 'no message'}"
+        return f"the viewer ended with code {self._process.returncode}: {output[-800:] or 'no message'}"
 
     @property
     def pid(self) -> int:
@@ -128,7 +129,7 @@ class HeadlessViewer:
         return (line.start or 0) / 1e9, (line.end or 0) / 1e9
 
     def seek(self, seconds: float) -> None:
-        """Go to a time and wait until the picture stands still (lay-out and zoom are animated)."""
+        """Seek to a time and wait until the picture is stable (layout and zoom are animated)."""
         self._client.set_time(self._timeline, duration=seconds, play_state="paused")
         before = None
         for _ in range(40):
@@ -147,27 +148,17 @@ class HeadlessViewer:
         return [view.name for view in self._client.get_state().views]
 
     def problems(self) -> list[str]:
-        """Return what any view or the viewer itself complains about."""
+        """Return the problems that a view or the viewer itself reports."""
         reported = [f"{view.name}: {report.severity} {report.summary}" for view in self._client.get_state().views for report in view.reports]
         logged = [f"{entry.level}: {entry.message}" for entry in self._client.get_logs() if entry.level in ("WARN", "ERROR")]
-        return reported + [text for text in logged if not any(notice in text for notice in _NOT_OUR_FAULT)]
+        return reported + [text for text in logged if not any(notice in text for notice in _HARMLESS_NOTICES)]
 
 
 def smaller_png(content: bytes) -> bytes:
-    """Return the same picture, its pixels compressed harder: a third smaller than what the viewer makes in haste."""
-    before, pixels, after, place = content[:8], b"", b"", 8
-    while place < len(content):
-        end = place + 12 + struct.unpack_from(">I", content, place)[0]
-        kind = content[place + 4 : place + 8]
-        if kind == b"IDAT":
-            pixels += content[place + 8 : end - 4]
-        elif pixels:
-            after += content[place:end]
-        else:
-            before += content[place:end]
-        place = end
-    body = b"IDAT" + zlib.compress(zlib.decompress(pixels), 9)
-    return before + struct.pack(">I", len(body) - 4) + body + struct.pack(">I", zlib.crc32(body)) + after
+    """Return the same picture, compressed harder: about a third smaller than the file that the viewer writes in haste."""
+    smaller = io.BytesIO()
+    Image.open(io.BytesIO(content)).save(smaller, "PNG", optimize=True)
+    return smaller.getvalue()
 
 
 def viewer_program() -> Path:
@@ -178,7 +169,7 @@ def viewer_program() -> Path:
 
 
 def free_port() -> int:
-    """Return a port on 127.0.0.1 that nobody uses."""
+    """Return a free port on 127.0.0.1."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return probe.getsockname()[1]

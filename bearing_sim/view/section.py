@@ -1,7 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""The cross-section as numbers: which points a picture of the bearing is made of, free of any drawing library.
+"""The cross-section as numbers: the points of a picture of the bearing, independent of any drawing library.
 
-One rule draws everything to scale and the play too: bodies keep their size, while every radial departure from the
+One rule draws bodies to scale and still shows the play: bodies keep their size, while every radial departure from the
 ideal bearing (round outer raceway of radius R_i + D_w, no clearance, centred ring) is drawn `magnification` times.  So a
 contour lobe, a gap, an elastic approach (seen as an overlap) and the inner ring's displacement share one factor.
 
@@ -12,8 +12,9 @@ import math
 
 import numpy as np
 
-from bearing_sim.contour import outer_contour
-from bearing_sim.scene import Bearing, Scene
+from bearing_sim.scene.bearing import Bearing
+from bearing_sim.scene.contour import outer_contour
+from bearing_sim.scene.scene import Scene
 
 MILLIMETRE = 1e-3  # [m]
 CONTOUR_POINTS = 361
@@ -21,9 +22,9 @@ _FACTORS = (300, 200, 150, 100, 80, 50, 40, 30, 20, 15, 10, 8, 5, 4, 3, 2)
 
 
 def picture(y, z) -> np.ndarray:
-    """Return points (y, z) as a picture whose vertical axis points down wants them, shape (..., 2).
+    """Return points (y, z) as picture coordinates, whose vertical axis points down, shape (..., 2).
 
-    The only place where the vertical axis is turned over.
+    The only function that flips the vertical axis.
     """
     return np.stack(np.broadcast_arrays(np.asarray(y, float), -np.asarray(z, float)), axis=-1)
 
@@ -92,8 +93,8 @@ def leaning(towards_y, towards_z) -> np.ndarray:
     """Return the turns that incline axes by these slopes towards y and z, quaternions (y, z, x, w), shape (..., 4); unknown ones stay upright."""
     towards_y, towards_z = np.nan_to_num(towards_y), np.nan_to_num(towards_z)
     half = 0.5 * np.arctan(np.hypot(towards_y, towards_z))
-    share = np.sin(half) / np.maximum(np.hypot(towards_y, towards_z), 1e-12)
-    return np.stack((-towards_z * share, towards_y * share, np.zeros(half.shape), np.cos(half)), axis=-1)
+    scale = np.sin(half) / np.maximum(np.hypot(towards_y, towards_z), 1e-12)
+    return np.stack((-towards_z * scale, towards_y * scale, np.zeros(half.shape), np.cos(half)), axis=-1)
 
 
 def drawn_guide_radius(bearing: Bearing, cage_factor: float) -> float | None:

@@ -1,11 +1,11 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""The rerun sink: shows a run while it goes on, or writes it to an .rrd file, without ever holding up the run.
+"""The rerun sink: shows a live run or writes it to an .rrd file, and never delays the run.
 
-In real time the view is a process of its own (`bearing_sim.sinks.rerun_process`): drawing costs milliseconds of
+In real time the view is a process of its own (`bearing_sim.view.worker`): drawing costs milliseconds of
 interpreter time, which a thread in this process would take from the solver between its ticks, and rerun itself may block
-without end behind a viewer that stops reading.  Here a daemon thread only hands on bytes; when the pipe is full, its queue
-fills, and then blocks are dropped and counted.  Pictures alone are drawn in idle time and may be missed where there is none;
-a process that writes a file as well only gives way (see `bearing_sim.sinks.priority`).
+indefinitely behind a viewer that stops reading.  In this process a daemon thread only forwards bytes.  When the pipe is full, its
+queue fills, and then blocks are dropped and counted.  A process that only serves viewers runs in idle time and may miss pictures on a
+busy machine; one that also writes a file runs at low priority (see `bearing_sim.recording.priority`).
 """
 
 import json
@@ -22,15 +22,15 @@ from pathlib import Path
 
 import numpy as np
 
-from bearing_sim.events import Event, Measurement
-from bearing_sim.scene import Scene
-from bearing_sim.sinks.priority import giving_way, in_idle_time
-from bearing_sim.sinks.rerun_thread import QUEUED_ROWS, Dropped, RowQueue, ViewThread
-from bearing_sim.sinks.rerun_view import ViewOptions
-from bearing_sim.topics import Origin
+from bearing_sim.messages.events import Event, Measurement
+from bearing_sim.messages.topics import Origin
+from bearing_sim.recording.priority import in_idle_time, with_low_priority
+from bearing_sim.scene.scene import Scene
+from bearing_sim.view.run_view import ViewOptions
+from bearing_sim.view.worker import QUEUED_ROWS, Dropped, RowQueue, ViewThread
 
-_HAND_ON_EVERY = 0.03  # [s]; the thread that solves is disturbed no more often than that
-_NICENESS = 5  # of a process that writes a file, which nothing should be missing from
+_HAND_ON_EVERY = 0.03  # [s]; the solver is interrupted no more often than this
+_NICENESS = 5  # of a process that writes a file, which must be complete
 _log = logging.getLogger(__name__)
 
 
@@ -39,18 +39,18 @@ class RerunSink:
 
     Parameters
     ----------
-    scene : what runs.
+    scene : the scene that is simulated.
     path : .rrd file to write, or None.
     serve_port : port on 127.0.0.1 at which viewers may connect, or None.
     start_ns : wall time of sample time 0 [ns since the epoch], or None.
-    lossless : True makes the producer wait where blocks would be dropped; for files only, and not for real time.
-    duration : simulated time that will come [s], where known; spreads the pictures of a file over it.
+    lossless : True makes the producer wait instead of dropping blocks; for files only, not in real time.
+    duration : expected simulated time of the run [s], if known; the pictures of a file are spread over it.
     load_scale : load [N] at the upper end of the colours, where known.
 
     Attributes
     ----------
     dropped : blocks, events and measurements dropped so far.
-    fault : why nothing is shown any more, or None.
+    fault : why the view has stopped, or None.
 
     Raises
     ------
@@ -89,7 +89,7 @@ class RerunSink:
 
     @property
     def fault(self) -> str | None:
-        """Why nothing is shown any more, or None."""
+        """Why the view has stopped, or None."""
         return self._view.fault
 
     @property
@@ -107,14 +107,14 @@ class RerunSink:
         self._offer(event)
 
     def write_measurement(self, time: float, cage_speed: float, residual: float, origin: Origin | None = None) -> None:
-        """Take a cage speed [rad/s] measured at ``time`` [s], and by how much its slip is more than the predicted one (a fraction, or NaN).
+        """Take a cage speed [rad/s] measured at ``time`` [s] and its residual slip: measured less predicted (a fraction, or NaN).
 
-        ``origin`` is what recordings keep, and no view shows.
+        ``origin`` is kept by recordings and ignored here.
         """
         self._offer(Measurement(time, cage_speed, residual))
 
     def wait_until_ready(self, timeout: float = 20.0) -> bool:
-        """Wait until the file is there and viewers find the server; return whether that was so within ``timeout`` [s]."""
+        """Wait until the file exists and the server accepts viewers; return whether this happened within ``timeout`` [s]."""
         return self._view.wait_until_ready(timeout)
 
     def close(self, timeout: float | None = None) -> bool:
@@ -122,7 +122,7 @@ class RerunSink:
 
         Parameters
         ----------
-        timeout : longest wait [s]; 5 s, or 120 s in lossless mode, where absent.  What is stuck behind a viewer then ends unfinished.
+        timeout : longest wait [s]; 5 s, or 120 s in lossless mode, where absent.  After that, whatever is blocked by a viewer is abandoned.
 
         Returns
         -------
@@ -148,11 +148,11 @@ class ViewProcess:
 
     Parameters
     ----------
-    scene, path, serve_port, options : as those of `bearing_sim.sinks.rerun_thread.ViewThread`.
+    scene, path, serve_port, options : as those of `bearing_sim.view.worker.ViewThread`.
 
     Attributes
     ----------
-    fault : why nothing is shown any more, or None.
+    fault : why the view has stopped, or None.
     """
 
     def __init__(self, scene: Scene, path: str | Path | None, serve_port: int | None, options: ViewOptions):
@@ -161,12 +161,12 @@ class ViewProcess:
         self._ready = threading.Event()
         self._queue = RowQueue(QUEUED_ROWS)
         self._closed = False
-        paths = os.pathsep.join(place for place in sys.path if place)
-        command = [sys.executable, "-m", "bearing_sim.sinks.rerun_process"]
+        paths = os.pathsep.join(entry for entry in sys.path if entry)
+        command = [sys.executable, "-m", "bearing_sim.view.worker"]
         # Ctrl-C in a terminal reaches neither a session nor a group of its own.
         apart = {"process_group": 0} if path is None else {"start_new_session": True}
         self._process = subprocess.Popen(
-            in_idle_time(command) if path is None else giving_way(command, _NICENESS),
+            in_idle_time(command) if path is None else with_low_priority(command, _NICENESS),
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             env=dict(os.environ, PYTHONPATH=paths),
@@ -199,11 +199,11 @@ class ViewProcess:
             self._dropped_here += 1
 
     def wait_until_ready(self, timeout: float) -> bool:
-        """Wait until viewers find it; return whether that was so within ``timeout`` [s]."""
+        """Wait until viewers can connect; return whether this happened within ``timeout`` [s]."""
         return self._ready.wait(timeout)
 
     def close(self, timeout: float) -> bool:
-        """Show what is queued and end the process, if need be by force after ``timeout`` [s]; return whether all was shown."""
+        """Show the queued items and end the process, by force after ``timeout`` [s]; return whether everything was shown."""
         deadline = wall.monotonic() + timeout
         if self._closed:
             return self.fault is None
@@ -212,7 +212,7 @@ class ViewProcess:
             self._queue.put(None, timeout=timeout)
             finished = self._process.wait(max(0.0, deadline - wall.monotonic())) == 0
         except (queue.Full, subprocess.TimeoutExpired):
-            _log.warning("the view did not finish within %g s; ended", timeout)
+            _log.warning("the view did not finish within %g s and was ended", timeout)
             self._process.kill()
             self._process.wait()
             finished = False
@@ -221,14 +221,14 @@ class ViewProcess:
         return finished and self.fault is None
 
     def _feed(self, first: bytes) -> None:
-        pipe, told = self._process.stdin, 0
+        pipe, reported = self._process.stdin, 0
         try:
             pipe.write(first)
             while True:
                 items, ended = self._gathered()
-                if self._dropped_here > told:
-                    told = self._dropped_here
-                    items.append(Dropped(told))
+                if self._dropped_here > reported:
+                    reported = self._dropped_here
+                    items.append(Dropped(reported))
                 for item in items:
                     pickle.dump(item, pipe, protocol=5)
                 pipe.flush()
@@ -236,11 +236,11 @@ class ViewProcess:
                     break
                 wall.sleep(_HAND_ON_EVERY)
             pipe.close()
-        except OSError:  # the process is gone; the listener says why
+        except OSError:  # the process has ended; the listener reports why
             pass
 
     def _gathered(self) -> tuple[list, bool]:
-        """Return what waits, neighbouring blocks as one, and whether that is all that will ever come."""
+        """Return the queued items, with adjacent blocks joined, and whether the input has ended."""
         gathered = [self._queue.get()]
         while gathered[-1] is not None:
             try:
@@ -257,7 +257,7 @@ class ViewProcess:
         return [np.concatenate(item) if isinstance(item, list) else item for item in items], ended
 
     def _listen(self) -> None:
-        """Take in what the process reports, a line of JSON each time, until it ends."""
+        """Read the reports of the process, one line of JSON each, until it ends."""
         for line in self._process.stdout:
             report = json.loads(line)
             if report["ready"]:
@@ -265,19 +265,19 @@ class ViewProcess:
             self._dropped_there = report["dropped"]
             if report["fault"] is not None and self.fault is None:
                 self.fault = report["fault"]
-                _log.error("rerun stopped, the run goes on without it: %s", self.fault)
+                _log.error("rerun stopped; the run continues without a view: %s", self.fault)
         code = self._process.wait()
         if not self._closed and self.fault is None:
-            self.fault = f"the process of the view ended by itself (code {code})"
-            _log.error("%s; the run goes on without it", self.fault)
+            self.fault = f"the view process exited unexpectedly (code {code})"
+            _log.error("%s; the run continues without a view", self.fault)
 
 
 def _require_free(port: int) -> None:
-    """Raise where ``port`` on 127.0.0.1 cannot be had: the server itself would fail silently, on a thread of its own."""
+    """Raise if ``port`` on 127.0.0.1 is taken; the server itself would fail silently on its own thread."""
     with socket.socket() as probe:
         probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             probe.bind(("127.0.0.1", port))
-        except OSError as fault:
-            text = f"port {port} on 127.0.0.1 cannot be used for the view ({fault.strerror}); close what uses it or choose another port"
-            raise OSError(text) from fault
+        except OSError as error:
+            text = f"port {port} on 127.0.0.1 cannot be used for the view ({error.strerror}); close the program that uses it or choose another port"
+            raise OSError(text) from error

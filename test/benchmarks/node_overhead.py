@@ -1,13 +1,14 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Measure a running bearing_node from outside: ``python -m bearing_sim.ros.measure``.
+"""Measure a running bearing_node from outside: ``python test/benchmarks/node_overhead.py``.
 
-Two processes over DDS on the loopback interface: the node, and this one, which sends speed and load and listens.  Every speed sent is
-another by a millionth, so that an output tells which input it reflects; and the shaft's angle tells how much time was simulated,
-whatever the node says of it.
+Two processes communicate over DDS on the loopback interface: the node, and this one, which publishes speed and load and subscribes to the
+outputs.  Each speed differs from the previous one by a millionth, so that an output identifies the input it reflects; the shaft's angle shows how
+much time was simulated, independently of what the node reports.
 
-**Latency** is the age of the newest input that an output reflects, when the output comes.  The node publishes at ticks of its own, so that
-inputs at exactly the same rate would all have the age of the one phase that the start happened to give.  Inputs are therefore sent at
-`DETUNING` of the rate: every phase occurs equally often in any second or two, and the median does not depend on the start.
+How to read it: **latency** is the age, on arrival, of the newest input that an output reflects.  The node publishes at its own ticks; inputs at
+exactly the same rate would all have the age of whatever phase the start happened to give.  Inputs are therefore sent at `DETUNING` of the
+rate: every phase occurs equally often within a second or two, and the median does not depend on the start.  **CPU without solver** is the node's
+overhead: everything but the thread that integrates.
 """
 
 import json
@@ -23,33 +24,33 @@ from typing import IO, NamedTuple
 
 import click
 
-from bearing_sim.commands.reporting import print_rows
-from bearing_sim.runtime.threads import SOLVER
+from bearing_sim.cli.reporting import print_rows
+from bearing_sim.runtime.solver import THREAD_NAME
 
-_DOMAINS = range(60, 100)  # above what people pick by hand, below where ports collide with those the system hands out
+_DOMAINS = range(60, 100)  # above the usual choices of users, below where ports collide with ephemeral ports
 _START_LIMIT = 600.0  # [s] for the first start, which compiles
-_SETTLING = 10.0  # [s] after which the memory shall not grow
-_LINES_TOLD = 10  # of its log, where it does not begin
-_STEP = 1e-6  # by which one speed sent differs from the next, relative
-_DISTINCT = 1000  # speeds sent until they repeat; an output is never that late
+_SETTLING = 10.0  # [s] after which memory should not grow
+_LINES_SHOWN = 10  # of the node's log, if it does not start
+_STEP = 1e-6  # relative difference between successive speeds
+_DISTINCT = 1000  # number of different speeds; an output is never that late
 ALL = "all"
-DETUNING = 0.97  # rate of the inputs over that of the outputs
+DETUNING = 0.97  # input rate over output rate
 
 
 class Cost(NamedTuple):
-    """What a process has used so far."""
+    """The resources that a process has used so far."""
 
     by_thread: dict[str, float]  # thread's name -> [s] of a core
     memory: float  # resident [bytes]
 
 
 def cost_of(pid: int) -> Cost:
-    """Return what a process has used, by the names of its threads (Linux)."""
+    """Return the resources used by a process, by thread name (Linux)."""
     ticks, spent = os.sysconf("SC_CLK_TCK"), {}
     for task in Path(f"/proc/{pid}/task").iterdir():
         try:
             fields = (task / "stat").read_text()
-        except OSError:  # it has ended meanwhile
+        except OSError:  # it has ended in the meantime
             continue
         name, numbers = fields[fields.index("(") + 1 : fields.rindex(")")], fields[fields.rindex(")") + 2 :].split()
         spent[name] = spent.get(name, 0.0) + (int(numbers[11]) + int(numbers[12])) / ticks
@@ -57,8 +58,8 @@ def cost_of(pid: int) -> Cost:
     return Cost(spent, float(pages * os.sysconf("SC_PAGE_SIZE")))
 
 
-class Heard(NamedTuple):
-    """One bearing_joints message."""
+class Received(NamedTuple):
+    """A bearing_joints message."""
 
     arrival: float  # monotonic [s]
     speed: float  # of the shaft [rad/s]
@@ -66,20 +67,20 @@ class Heard(NamedTuple):
 
 
 class Driver:
-    """Sends inputs at a rate and takes what comes, without an executor, whose own cost would disturb the measurement.
+    """Publishes inputs at a rate and takes outputs, without an executor, whose cost would disturb the measurement.
 
     Parameters
     ----------
     speed : of the shaft [rad/s].
     load : [N].
-    topics_heard : names of the output topics to listen to besides bearing_joints, so that the node has somebody to publish to.
+    subscribed : names of the output topics to subscribe to, in addition to bearing_joints.
     """
 
-    def __init__(self, speed: float, load: float, topics_heard: list[str]):
+    def __init__(self, speed: float, load: float, subscribed: list[str]):
         import rclpy
         from rclpy.qos import qos_profile_sensor_data
 
-        from bearing_sim import topics
+        from bearing_sim.messages import topics
         from bearing_sim.ros.messages import message, message_class
         from bearing_sim.simulation import Inputs
 
@@ -94,24 +95,24 @@ class Driver:
             message_class(topics.OUTPUTS["bearing_joints"].ros_type), "bearing_joints", lambda _: None, 1000
         )
         self._others = [
-            self._node.create_subscription(message_class(topics.OUTPUTS[name].ros_type), name, lambda _: None, 1000) for name in topics_heard
+            self._node.create_subscription(message_class(topics.OUTPUTS[name].ros_type), name, lambda _: None, 1000) for name in subscribed
         ]
         self._reports = self._node.create_subscription(message_class(topics.DIAGNOSTICS[1]), f"/{topics.DIAGNOSTICS[0]}", lambda _: None, 100)
         self.sent: list[float] = []
-        self.heard: list[Heard] = []
+        self.received: list[Received] = []
         self.values: dict[str, str] = {}
 
     def close(self) -> None:
-        """Take the node away."""
+        """Destroy the node."""
         self._node.destroy_node()
 
     @property
     def is_matched(self) -> bool:
-        """Whether the node listens."""
+        """Whether the node subscribes to all inputs."""
         return all(publisher.get_subscription_count() for publisher in self._publishers.values())
 
     def send(self) -> None:
-        """Send both inputs now."""
+        """Publish both inputs now."""
         place = len(self.sent) % _DISTINCT
         inputs = self._inputs._replace(shaft_speed=self._speed * (1.0 + _STEP * place))
         stamp_ns = self._node.get_clock().now().nanoseconds
@@ -123,9 +124,9 @@ class Driver:
             publisher.publish(filled)
 
     def take(self) -> None:
-        """Take all that has come."""
+        """Take all messages that have arrived."""
         for taken in _taken(self._joints):
-            self.heard.append(Heard(time.monotonic(), taken.velocity[0], taken.position[0]))
+            self.received.append(Received(time.monotonic(), taken.velocity[0], taken.position[0]))
         for report in _taken(self._reports):
             self.values = {pair.key: pair.value for pair in report.status[0].values}
         for subscription in self._others:
@@ -133,7 +134,7 @@ class Driver:
                 pass
 
     def drive(self, seconds: float, rate: float) -> None:
-        """Send at a rate [Hz] and take, for a while."""
+        """Publish at a rate [Hz] and take outputs, for a while."""
         start = due = time.monotonic()
         while (now := time.monotonic()) < start + seconds:
             if now >= due:
@@ -143,13 +144,13 @@ class Driver:
             time.sleep(min(1e-3, max(0.0, due - time.monotonic())))
 
     def latencies(self, since: float) -> list[float]:
-        """Return the age of the input that each output after an instant reflects, when it came [s]."""
+        """Return the age, on arrival, of the input that each output after an instant reflects [s]."""
         found = []
-        for heard in self.heard:
-            place = round((heard.speed / self._speed - 1.0) / _STEP) % _DISTINCT
-            sent = [self.sent[k] for k in range(place, len(self.sent), _DISTINCT) if self.sent[k] <= heard.arrival]
-            if heard.arrival >= since and sent:
-                found.append(heard.arrival - sent[-1])
+        for output in self.received:
+            place = round((output.speed / self._speed - 1.0) / _STEP) % _DISTINCT
+            sent = [self.sent[k] for k in range(place, len(self.sent), _DISTINCT) if self.sent[k] <= output.arrival]
+            if output.arrival >= since and sent:
+                found.append(output.arrival - sent[-1])
         return found
 
 
@@ -160,29 +161,29 @@ def _taken(subscription):
 
 
 def measure(level: str, speed_rpm: float, duration: float, rate: float, listen: str = ALL, record: bool = False) -> dict:
-    """Measure a node and return plain numbers.
+    """Measure a node and return its figures.
 
     Parameters
     ----------
-    level : of the model, bearing deng2017_table1 at 800 N.
-    speed_rpm : of the shaft.
+    level : level of the model; bearing deng2017_table1 at 800 N.
+    speed_rpm : shaft speed [rpm].
     duration : of the measurement after the start [s], longer than the first ten seconds.
-    rate : of the node's output topics [Hz]; inputs come at `DETUNING` of it.
-    listen : output topics that have a reliable subscriber, separated by commas, or `ALL`; bearing_joints has one in any case.
-    record : whether the node records meanwhile, to a temporary file.
+    rate : of the node's output topics [Hz]; inputs are sent at `DETUNING` times this rate.
+    listen : output topics with a reliable subscriber, separated by commas, or `ALL`; bearing_joints always has one.
+    record : whether the node records to a temporary file.
 
     Raises
     ------
     ValueError
-        There is no such topic.
+        An unknown topic.
     RuntimeError
-        The node does not begin, or ends; with what it said.
+        The node does not start, or ends early; with its last log lines.
     """
-    from bearing_sim import topics
-    from bearing_sim.scene_file import load_scene
+    from bearing_sim.messages import topics
+    from bearing_sim.scene.loader import load_scene
 
     overrides = [f"level={level}", f"operating.shaft_speed={speed_rpm} rpm"]
-    names = _topics_heard(listen, list(topics.outputs(load_scene("deng2017_table1", overrides))))
+    names = _subscribed_topics(listen, list(topics.outputs(load_scene("deng2017_table1", overrides))))
     words = {"overrides": str(overrides), "publish_rate": str(float(rate)), "governor": "false"}
     with tempfile.TemporaryFile() as log, tempfile.TemporaryDirectory(prefix="bearing_sim_measure_") as folder:
         recording = Path(folder) / "run.mcap"
@@ -193,26 +194,26 @@ def measure(level: str, speed_rpm: float, duration: float, rate: float, listen: 
         node = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT, start_new_session=True)
         driver = Driver(speed_rpm * math.pi / 30, 800.0, names)
         try:
-            _wait_until_heard(driver, node, log)
+            _wait_until_running(driver, node, log)
             driver.drive(2.0, DETUNING * rate)
             began, first = time.monotonic(), cost_of(node.pid)
             driver.drive(min(_SETTLING, duration / 2), DETUNING * rate)
             settled = cost_of(node.pid)
             driver.drive(duration - (time.monotonic() - began), DETUNING * rate)
             if node.poll() is not None:
-                raise RuntimeError(f"the node ended while it was measured; {_last_words(log)}")
+                raise RuntimeError(f"the node ended during the measurement; {_log_tail(log)}")
             ended, last = time.monotonic(), cost_of(node.pid)
         finally:
             driver.close()
             ending = _end(node)
         recorded = recording.stat().st_size if recording.exists() else 0
     found = _figures(driver, began, ended, rate) | _costs(first, settled, last, ended - began)
-    asked = {"level": level, "speed_rpm": speed_rpm, "rate_hz": rate, "input_rate_hz": DETUNING * rate, "topics_heard": len(names) + 1}
+    asked = {"level": level, "speed_rpm": speed_rpm, "rate_hz": rate, "input_rate_hz": DETUNING * rate, "topics_subscribed": len(names) + 1}
     return {**asked, "exit_code": node.returncode, "ending_s": ending, "recorded_mb": recorded / 1e6, **found}
 
 
 def _end(node: subprocess.Popen) -> float:
-    """End a node with SIGTERM, and return how long it took [s]."""
+    """End a node with SIGTERM and return how long that took [s]."""
     began = time.monotonic()
     node.terminate()
     try:
@@ -223,44 +224,44 @@ def _end(node: subprocess.Popen) -> float:
     return time.monotonic() - began
 
 
-def _topics_heard(listen: str, known: list[str]) -> list[str]:
+def _subscribed_topics(listen: str, known: list[str]) -> list[str]:
     wanted = known if listen == ALL else [name.strip() for name in listen.split(",")]
-    if strangers := sorted(set(wanted) - set(known)):
-        raise ValueError(f"no output topic {', '.join(map(repr, strangers))}; there are {', '.join(known)}, or {ALL!r}")
+    if unknown := sorted(set(wanted) - set(known)):
+        raise ValueError(f"unknown output topic {', '.join(map(repr, unknown))}; the topics are {', '.join(known)}, or {ALL!r}")
     return [name for name in known if name in wanted and name != "bearing_joints"]
 
 
-def _wait_until_heard(driver: Driver, node: subprocess.Popen, log: IO[bytes]) -> None:
+def _wait_until_running(driver: Driver, node: subprocess.Popen, log: IO[bytes]) -> None:
     end = time.monotonic() + _START_LIMIT
-    while not (driver.is_matched and driver.heard):
+    while not (driver.is_matched and driver.received):
         if node.poll() is not None or time.monotonic() > end:
-            raise RuntimeError(f"the node did not begin; {_last_words(log)}")
+            raise RuntimeError(f"the node did not start; {_log_tail(log)}")
         if driver.is_matched:
             driver.send()
         driver.take()
         time.sleep(0.02)
 
 
-def _last_words(log: IO[bytes]) -> str:
+def _log_tail(log: IO[bytes]) -> str:
     log.seek(0)
-    said = log.read().decode(errors="replace").strip().splitlines()[-_LINES_TOLD:]
-    return "\n".join(["it said:", *(said or ["nothing"])])
+    lines = log.read().decode(errors="replace").strip().splitlines()[-_LINES_SHOWN:]
+    return "\n".join(["its log:", *(lines or ["empty"])])
 
 
 def _figures(driver: Driver, began: float, ended: float, rate: float) -> dict:
-    heard = [message for message in driver.heard if message.arrival >= began]
-    span = heard[-1].arrival - heard[0].arrival
+    outputs = [message for message in driver.received if message.arrival >= began]
+    span = outputs[-1].arrival - outputs[0].arrival
     latencies = sorted(driver.latencies(began))
-    speed = sum(message.speed for message in heard) / len(heard)
+    speed = sum(message.speed for message in outputs) / len(outputs)
     values = driver.values
     return {
         "seconds": ended - began,
-        "messages": len(heard),
-        "period_ms": 1e3 * span / (len(heard) - 1),
-        "period_error_percent": 100 * (span / (len(heard) - 1) * rate - 1.0),
+        "messages": len(outputs),
+        "period_ms": 1e3 * span / (len(outputs) - 1),
+        "period_error_percent": 100 * (span / (len(outputs) - 1) * rate - 1.0),
         "latency_p50_ms": 1e3 * latencies[len(latencies) // 2],
         "latency_p99_ms": 1e3 * latencies[int(0.99 * (len(latencies) - 1))],
-        "real_time_factor": (heard[-1].angle - heard[0].angle) / (speed * span),
+        "real_time_factor": (outputs[-1].angle - outputs[0].angle) / (speed * span),
         "time_lost_s": float(values.get("time lost [s]", "nan")),
         "solver_factor": float(values.get("real-time factor possible", "nan")),
     }
@@ -268,7 +269,7 @@ def _figures(driver: Driver, began: float, ended: float, rate: float) -> dict:
 
 def _costs(first: Cost, settled: Cost, last: Cost, seconds: float) -> dict:
     spent = {name: last.by_thread[name] - first.by_thread.get(name, 0.0) for name in last.by_thread}
-    solver = sum(cost for name, cost in spent.items() if name.startswith(SOLVER[:15]))
+    solver = sum(cost for name, cost in spent.items() if name.startswith(THREAD_NAME[:15]))
     return {
         "memory_at_10_s_mb": settled.memory / 1e6,
         "memory_at_end_mb": last.memory / 1e6,
@@ -280,14 +281,14 @@ def _costs(first: Cost, settled: Cost, last: Cost, seconds: float) -> dict:
 
 _COLUMNS = {
     "level": "level",
-    "topics_heard": "topics heard",
+    "topics_subscribed": "topics",
     "input_rate_hz": "inputs [Hz]",
     "period_ms": "period [ms]",
     "period_error_percent": "off [%]",
     "latency_p50_ms": "latency p50 [ms]",
     "latency_p99_ms": "p99 [ms]",
     "real_time_factor": "real-time factor",
-    "time_lost_s": "lost [s]",
+    "time_lost_s": "skipped [s]",
     "memory_at_10_s_mb": "memory at 10 s [MB]",
     "memory_at_end_mb": "at the end [MB]",
     "cpu_without_solver_percent": "CPU without solver [%]",
@@ -299,26 +300,26 @@ _COLUMNS = {
 def _print_table(cases: list[dict]) -> None:
     rows = [[value if isinstance(value := case[name], str) else f"{value:.5g}" for name in _COLUMNS] for case in cases]
     print_rows("bearing_node, from another process", list(_COLUMNS.values()), rows, words={"level"}, width=170)
-    click.echo(f"inputs at {100 * DETUNING:.0f} % of the outputs' rate, so that every phase occurs; latency: age of the newest input in an output")
+    click.echo(f"inputs at {100 * DETUNING:.0f} % of the output rate, so that every phase occurs; latency: age of the newest input in an output")
 
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
-@click.option("--level", "levels", multiple=True, default=("slip", "planar"), show_default=True, help="Level; may be repeated.")
+@click.option("--level", "levels", multiple=True, default=("slip", "planar"), show_default=True, help="Level; can be repeated.")
 @click.option("--speed", "speed_rpm", default=15_000.0, show_default=True, help="Shaft speed [rpm].")
-@click.option("--duration", default=60.0, type=click.FloatRange(1.0), show_default=True, help="Seconds for each level.")
+@click.option("--duration", default=60.0, type=click.FloatRange(1.0), show_default=True, help="Duration per level [s].")
 @click.option(
-    "--rate", default=100.0, type=click.FloatRange(1.0, 200.0), show_default=True, help="Rate of the outputs [Hz]; inputs come at 97 % of it."
+    "--rate", default=100.0, type=click.FloatRange(1.0, 200.0), show_default=True, help="Rate of the outputs [Hz]; inputs are sent at 97 % of it."
 )
 @click.option(
     "--listen",
     default=ALL,
     show_default=True,
-    help="Output topics that have a (reliable) subscriber, separated by commas; bearing_joints has one in any case.",
+    help="Output topics with a (reliable) subscriber, separated by commas; bearing_joints always has one.",
 )
-@click.option("--record", is_flag=True, help="Let the node record meanwhile, to a temporary file.")
+@click.option("--record", is_flag=True, help="Let the node record to a temporary file.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON list.")
 def command(levels, speed_rpm, duration, rate, listen, record, as_json):
-    """Measure period, latency, real-time factor, memory and CPU of a bearing_node from another process."""
+    """Measure period, latency, real-time factor, memory and CPU time of a bearing_node from another process."""
     os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
     os.environ.setdefault("ROS_DOMAIN_ID", str(random.SystemRandom().choice(_DOMAINS)))
     import rclpy
@@ -326,8 +327,8 @@ def command(levels, speed_rpm, duration, rate, listen, record, as_json):
     rclpy.init(args=[])
     try:
         cases = [measure(level, speed_rpm, duration, rate, listen, record) for level in levels]
-    except (RuntimeError, ValueError) as fault:
-        raise click.ClickException(str(fault)) from fault
+    except (RuntimeError, ValueError) as error:
+        raise click.ClickException(str(error)) from error
     finally:
         rclpy.try_shutdown()
     if as_json:
@@ -337,4 +338,4 @@ def command(levels, speed_rpm, duration, rate, listen, record, as_json):
 
 
 if __name__ == "__main__":
-    command(prog_name="measure")
+    command()

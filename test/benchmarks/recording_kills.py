@@ -1,45 +1,55 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Kill live recordings at random moments and count what is lost.
+"""How much a killed recording loses: ``python test/benchmarks/recording_kills.py``.
 
-A recording in real time has two processes, the one that simulates and feeds, and the one that writes (`bearing_sim.sinks.recorder`).
+A recording in real time has two processes: one simulates and feeds, the other writes (`bearing_sim.recording.recorder`).  The benchmark kills
+them at random moments, recovers every file, and counts what is missing.
+
+How to read it: "lost" is the time between the last sample handed over and the last sample recovered, by victim; no file may lose more than 1 s
+or have a hole before its last sample.  Exit code 1 otherwise.
 """
 
 import multiprocessing
 import os
 import signal
+import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
+import click
 import numpy as np
 
-from bearing_sim.recording_reader import Recording
-from bearing_sim.recovery import contents, recover
-from bearing_sim.sample import new_block
-from bearing_sim.scene_file import load_scene
+from bearing_sim.cli.options import json_option
+from bearing_sim.cli.reporting import FailedRun, print_json, print_table
+from bearing_sim.model.sample import new_block
+from bearing_sim.recording.bag import RecordingError
+from bearing_sim.recording.reader import Recording
+from bearing_sim.recording.recorder import Recorder
+from bearing_sim.recording.recovery import contents, recover
+from bearing_sim.scene.loader import load_scene
 from bearing_sim.simulation import Inputs
-from bearing_sim.sinks.recorder import Recorder
 
 RATE = 1000.0  # Hz
-_BEAT = 0.005  # [s] between blocks
+_BLOCK_PERIOD = 0.005  # [s] between blocks
 _LONGEST_RUN = 3.0  # [s]
-_START_UP = 60.0  # [s] that processes may take to begin and to end, on a busy machine
-_TOLD = 42  # exit code of a feeder that was told of its writer's end
+_START_UP = 60.0  # [s] for processes to start and to end on a busy machine
+_PROMISE = 1.0  # [s] that a killed recording may lose
+_WRITER_LOST = 42  # exit code of a feeder that noticed the end of its writer
 VICTIMS = ("feeder", "writer", "both")
-"""Processes to kill: the one that feeds, whose file the other one completes; the one that writes, whose file is recovered; both at once."""
+"""Processes to kill: the feeder, whose file the writer completes; the writer, whose file is recovered; both at once."""
 
 
 class Kill(NamedTuple):
-    """What one killed recording left.
+    """The result of killing one recording.
 
     Attributes
     ----------
     victim : one of `VICTIMS`.
     after : when it was killed [s after its first sample].
-    recorded, recovered : samples that it had handed to its recording, and that came back.
-    lost : time of the samples that did not [s].
-    gaps : samples missing before the last one that came back.
+    recorded, recovered : samples handed to the recording, and samples recovered.
+    lost : time between the last sample handed over and the last one recovered [s].
+    gaps : samples missing before the last one recovered.
     """
 
     victim: str
@@ -51,30 +61,30 @@ class Kill(NamedTuple):
 
 
 def kill_recordings(folder: Path, kills: int, seed: int, progress: Callable[[str], None] = lambda text: None) -> list[Kill]:
-    """Start recordings of all observables at `RATE`, end each by SIGKILL at a moment of its own, and read or recover its file.
+    """Start recordings of all observables at `RATE`, end each by SIGKILL at a random moment, and read or recover its file.
 
     Parameters
     ----------
-    folder : where the recordings go; kept.
-    kills : how many; the victims take turns.
+    folder : for the recordings, which are kept.
+    kills : number of recordings; the victims alternate.
     seed : of the moments, uniform over `_LONGEST_RUN`.
-    progress : told what is being done.
+    progress : called with a text after each kill.
 
     Raises
     ------
-    bearing_sim.recovery.RecoveryError
-        Nothing could be recovered of a file.
+    bearing_sim.recording.bag.RecordingError
+        Nothing could be recovered from a file.
     RuntimeError
-        A process did not do what it should.
+        A process did not end as expected.
     """
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload([__name__])
     moments = np.random.default_rng(seed).uniform(0.0, _LONGEST_RUN, kills)
-    told = []
+    kills_done = []
     for number, moment in enumerate(moments.tolist()):
-        told.append(_kill_one(context, folder / f"run_{number}.mcap", moment, VICTIMS[number % len(VICTIMS)]))
-        progress(f"{number + 1} of {kills}: {told[-1].victim} killed after {told[-1].after:.3f} s, lost {told[-1].lost:.3f} s")
-    return told
+        kills_done.append(_kill_one(context, folder / f"run_{number}.mcap", moment, VICTIMS[number % len(VICTIMS)]))
+        progress(f"{number + 1} of {kills}: {kills_done[-1].victim} killed after {kills_done[-1].after:.3f} s, lost {kills_done[-1].lost:.3f} s")
+    return kills_done
 
 
 def _kill_one(context, path: Path, moment: float, victim: str) -> Kill:
@@ -90,8 +100,8 @@ def _kill_one(context, path: Path, moment: float, victim: str) -> Kill:
     if victim != "writer":
         feeder.kill()
     feeder.join()
-    if feeder.exitcode != (_TOLD if victim == "writer" else -signal.SIGKILL):
-        raise RuntimeError(f"the process that feeds {path} ended otherwise than by the death of the {victim}, exit code {feeder.exitcode}")
+    if feeder.exitcode != (_WRITER_LOST if victim == "writer" else -signal.SIGKILL):
+        raise RuntimeError(f"the process that feeds {path} did not end because of the death of the {victim}; exit code {feeder.exitcode}")
     times = _times(path, complete=victim == "feeder")
     if not len(times):
         return Kill(victim, after, recorded.value, 0, recorded.value / RATE, 0)
@@ -100,13 +110,13 @@ def _kill_one(context, path: Path, moment: float, victim: str) -> Kill:
 
 
 def _times(path: Path, complete: bool) -> np.ndarray:
-    """Return the times of the samples that are left [s]; a file is to be complete in a moment, or is recovered."""
+    """Return the times of the remaining samples [s]; the file is either about to be completed, or recovered."""
     if complete:
         _wait_until(path.exists, f"{path} is completed")
     else:
         remains, path = path.with_name(path.name + ".active"), path.with_name(f"{path.stem}_recovered.mcap")
         recover(remains, path)
-    if not contents(path).messages:  # killed before anything left the process
+    if not contents(path).messages:  # killed before anything had left the process
         return np.empty(0)
     return np.concatenate([item["time"] for item in Recording(path) if isinstance(item, np.ndarray)])
 
@@ -115,29 +125,77 @@ def _wait_until(condition: Callable[[], object], what: str) -> None:
     limit = time.monotonic() + _START_UP
     while not condition():
         if time.monotonic() > limit:
-            raise RuntimeError(f"waited {_START_UP:g} s in vain until {what}")
+            raise RuntimeError(f"waited {_START_UP:g} s in vain: {what}")
         time.sleep(0.001)
 
 
 def _record(path: Path, recorded, writer) -> None:
-    """Record samples in real time, and say after each block how many there are; until killed, or told that nobody writes any more."""
+    """Record samples in real time and report their number after each block, until killed or until the writer is gone."""
     scene = load_scene("deng2017_table1")
     inputs = Inputs(4712.0, 800.0, 0.0, 393.15)
     recorder = Recorder()
     sink = recorder.open(path, scene, time.time_ns())
     writer.value = recorder.pid
-    samples = round(_BEAT * RATE)
+    samples = round(_BLOCK_PERIOD * RATE)
     block = new_block(samples, scene.bearing.roller.count)
     noise = np.random.default_rng(1)
     began, done = time.monotonic(), 0
     while True:
-        block["inner_load"] = noise.normal(size=block["inner_load"].shape)  # does not compress away
+        block["inner_load"] = noise.normal(size=block["inner_load"].shape)  # incompressible
         block["time"] = (done + 1 + np.arange(samples)) / RATE
         try:
             sink.write_inputs(done / RATE, inputs)
-            sink.write(block)
+            sink.write(block.copy())
         except OSError:
-            os._exit(_TOLD)
+            os._exit(_WRITER_LOST)
         done += samples
         recorded.value = done
         time.sleep(max(0.0, began + done / RATE - time.monotonic()))
+
+
+@click.command()
+@click.option("--kills", type=click.IntRange(min=1), default=60, show_default=True, metavar="N", help="Number of recordings to kill.")
+@click.option("--seed", type=int, default=1, show_default=True, help="Seed of the random moments.")
+@json_option
+def command(kills, seed, as_json):
+    """Kill recordings of all observables at 1 kHz at random moments (SIGKILL), recover every file, and report what was lost.
+
+    The victims alternate: the feeder, whose file the writer completes; the writer; both at once.
+
+    Exit code 1 if a file lost more than 1 s or has a gap.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        try:
+            done = kill_recordings(Path(folder), kills, seed, lambda text: click.echo(text, err=True))
+        except RecordingError as error:
+            raise FailedRun(str(error)) from None
+    lost = np.array([kill.lost for kill in done])
+    holes = sum(kill.gaps for kill in done)
+    report = {
+        "kills": kills,
+        "seed": seed,
+        "recovered": len(done),
+        "lost_median": float(np.median(lost)),
+        "lost_most": float(lost.max()),
+        "holes": holes,
+    }
+    if as_json:
+        print_json({**report, "each": [kill._asdict() for kill in done]})
+    else:
+        by_victim = {victim: np.array([kill.lost for kill in done if kill.victim == victim]) for victim in VICTIMS}
+        rows = [
+            ("recovered", f"{len(done)} of {kills} files"),
+            *(
+                (f"lost, {victim} killed", f"median {np.median(some):.3f} s, most {some.max():.3f} s")
+                for victim, some in by_victim.items()
+                if len(some)
+            ),
+            ("samples missing before the last", str(holes)),
+        ]
+        print_table(f"recordings of all observables at 1 kHz, killed (seed {seed})", rows)
+    if lost.max() > _PROMISE or holes:
+        raise FailedRun(f"a killed recording lost {lost.max():.3f} s, {holes} samples are missing in between")
+
+
+if __name__ == "__main__":
+    command()

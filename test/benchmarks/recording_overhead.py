@@ -1,11 +1,14 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""What recording and showing cost a live run: the solver's rate, and the worst that its thread is held up, with and without sinks.
+"""What recording and the live view cost a run in real time: ``python test/benchmarks/recording_overhead.py``.
 
-One live model runs on; its sinks, a recording of all observables and a live view with a viewer, get what it computes in every other stretch
-only, and the viewer sleeps in between (see `bearing_sim.studies.paired`).  A viewer that draws does so without a graphics card, on any core, in
-idle time, as ``live.launch.py`` starts it (`bearing_sim.sinks.priority`): it takes every core that is left.  One that only takes stands for a
-viewer with a graphics card, or on another machine.  The time of a tick is split by the kernel's books into the thread's own work, its wait for
-a core, which other programs cause as well, and the rest: waits for the interpreter's lock.
+One live model runs without a break.  Its sinks, a recording of all observables and a live view with a viewer, receive its blocks in every other
+stretch only; in between the viewer is stopped (see `paired`).  The time of a tick is split by the kernel's scheduler statistics into the
+thread's own work, its wait for a core, which other programs cause as well, and the rest: waits for the interpreter's lock.
+
+How to read it: each row compares stretches with sinks to their neighbours without.  The column "control" applies the same arithmetic to
+stretches without sinks; an effect is real where its interval excludes the control's.  A viewer that draws on this machine has no graphics card,
+and takes every core that is left in idle time, as ``live.launch.py`` starts it (`bearing_sim.recording.priority`).  ``--viewer taking`` receives
+everything and draws nothing: it stands for a viewer with a graphics card, or on another machine.
 """
 
 import dataclasses
@@ -20,34 +23,38 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
+import click
 import numpy as np
+from paired import CONTROL, WITH, ThreadStatistics, differences, order, ratios, stolen_share
 
+from bearing_sim.cli.options import json_option, quick_option
+from bearing_sim.cli.reporting import announce_compilation, print_json, print_rows, require_levels
+from bearing_sim.recording.priority import in_idle_time
+from bearing_sim.recording.recorder import Recorder
 from bearing_sim.runtime.live import LiveModel, warmed_up
-from bearing_sim.scene import Scene
-from bearing_sim.screenshot import HeadlessViewer, ViewerFailed, free_port, viewer_program
-from bearing_sim.sinks.priority import in_idle_time
-from bearing_sim.sinks.recorder import Recorder
-from bearing_sim.sinks.rerun_sink import RerunSink
-from bearing_sim.studies.paired import CONTROL, WITH, ThreadBooks, differences, order, ratios, stolen_share
+from bearing_sim.scene.loader import load_scene
+from bearing_sim.scene.scene import Scene
+from bearing_sim.view.screenshot import HeadlessViewer, ViewerFailed, free_port, viewer_program
+from bearing_sim.view.sink import RerunSink
 
-_INPUTS_EVERY = 0.02  # [s] between messages of speed and load
-_REVIEW_EVERY = 0.2  # [s] as the node looks after its sinks
+_INPUT_PERIOD = 0.02  # [s] between messages of speed and load
+_REVIEW_PERIOD = 0.2  # [s] between reviews of the sinks, as in the node
 _ALL = 1e3  # [s]
-_SETTLING = 0.4  # [s] left out at the start of each stretch
+_SETTLING = 0.4  # [s] ignored at the start of each stretch
 _TAKING_WITHIN = 60.0  # [s]
 DRAWING, TAKING, NOBODY, NO_VIEW = VIEWERS = ("drawing", "taking", "nobody", "no-view")
-"""Who looks at the live view: a viewer that draws on this processor, one that takes all that is to be drawn elsewhere, nobody; or no view."""
+"""Viewer of the live view: one that draws on this processor, one that receives everything but draws nothing, none; or no view at all."""
 
 
 class Figures(NamedTuple):
-    """How the solver's thread fared in one stretch.
+    """Performance of the solver's thread in one stretch.
 
     Attributes
     ----------
     rate : simulated time over wall time in the solver.
-    core_rate : likewise over the time in which a core was to be had.
-    processor_rate : likewise over the processor time of its thread.
-    worst_stall, late_stall : the longest that a tick was due, or running, and not computed, and what 99.9 % of ticks stay below [s].
+    core_rate : the same, over the time in which a core was available.
+    processor_rate : the same, over the processor time of its thread.
+    worst_stall, late_stall : longest time, and 99.9 % quantile, for which a tick was due or running and not computed [s].
     worst_held, late_held : the same without the wait for a core [s].
     """
 
@@ -77,17 +84,17 @@ def recording_cost(
     Parameters
     ----------
     scene : what is simulated.
-    seconds : length of each stretch, of which there are four for each pair.
-    sample_rate : samples recorded for each second [Hz].
-    pairs : pairs with, and as many controls.
-    viewer : which viewer the live view has: one of `VIEWERS`.
-    progress : told what is being done.
+    seconds : length of each stretch; there are four per pair.
+    sample_rate : samples recorded per second [Hz].
+    pairs : number of pairs, and of controls.
+    viewer : viewer of the live view: one of `VIEWERS`.
+    progress : called with a text on each stretch.
 
     Returns
     -------
     report : ``with`` and ``control``: for each of `RATES` the ratio, for each of `STALLS` the difference [ms] to the stretches without, as
-        `bearing_sim.studies.paired.Spread`; ``without``: medians of the figures themselves; ``dropped``: blocks that sinks missed; ``viewer``:
-        which, or why there is none; what was written, and how busy the machine was.
+        `paired.Spread`; ``without``: medians of the figures themselves; ``dropped``: blocks that sinks missed; ``viewer``:
+        its kind, or why there is none; amount of data written, and load of the machine.
     """
     kinds = order(pairs)
     stolen = stolen_share()
@@ -95,9 +102,9 @@ def recording_cost(
         path = Path(folder) / "run.mcap"
         watched = _Watched(warmed_up(scene))
         sinks = _Sinks(opened, scene, path, viewer)
-        live = LiveModel(scene, watched, sinks.start_ns, sample_rate, maximum_lag=_ALL)  # no time is given up, so that ticks stay countable
+        live = LiveModel(scene, watched, sinks.start_ns, sample_rate, maximum_lag=_ALL)  # no time is skipped, so that ticks can be counted
         for name, sink in sinks.by_name.items():
-            live.attach(name, sink)
+            live.sinks.attach(name, sink)
         with sinks.fed(True):
             _drive(live, scene, _SETTLING)
         sinks.attach_viewer(opened)
@@ -113,7 +120,7 @@ def recording_cost(
                 shares.append((time.process_time() - busy) / (time.perf_counter() - began))
         live.close()
         written = path.stat().st_size
-    tick = live.cadence.tick
+    tick = live.schedule.tick
     found = watched.stretches(begins, seconds, tick)
     given, all_of_it = (after - before for after, before in zip(stolen_share(), stolen))
     return {
@@ -133,44 +140,44 @@ def recording_cost(
         },
         "recording_mb_per_second": written / 1e6 / (pairs * (seconds + _SETTLING)),
         "dropped": sinks.dropped,
-        "viewer": sinks.viewer_told,
+        "viewer": sinks.viewer_state,
         "load_average": os.getloadavg()[0],
         "stolen_share": given / all_of_it if all_of_it else 0.0,
     }
 
 
 def _compared(kinds: list[str], found: list[Figures], kind: str) -> dict:
-    told = {name: ratios(kinds, [getattr(one, name) for one in found], kind)._asdict() for name in RATES}
-    return told | {f"{name}_ms": differences(kinds, [1e3 * getattr(one, name) for one in found], kind)._asdict() for name in STALLS}
+    figures = {name: ratios(kinds, [getattr(one, name) for one in found], kind)._asdict() for name in RATES}
+    return figures | {f"{name}_ms": differences(kinds, [1e3 * getattr(one, name) for one in found], kind)._asdict() for name in STALLS}
 
 
 def _medians(found: list[Figures]) -> dict:
-    told = {name: float(np.median([getattr(one, name) for one in found])) for name in RATES}
-    return told | {f"{name}_ms": float(1e3 * np.median([getattr(one, name) for one in found])) for name in STALLS}
+    figures = {name: float(np.median([getattr(one, name) for one in found])) for name in RATES}
+    return figures | {f"{name}_ms": float(1e3 * np.median([getattr(one, name) for one in found])) for name in STALLS}
 
 
 class _Watched:
-    """A simulation that notes of each tick when it began and ended, and what the kernel booked for its thread until then."""
+    """A simulation that records start and end of each tick, and the scheduler statistics of its thread."""
 
     def __init__(self, simulation):
         self._simulation = simulation
-        self._books: ThreadBooks | None = None
+        self._statistics: ThreadStatistics | None = None
         self._noted: list[tuple[float, float, float, float, float, float]] = []
 
     def __getattr__(self, name: str):
         return getattr(self._simulation, name)
 
     def advance(self, *arguments):
-        if self._books is None:
-            self._books = ThreadBooks()
-        before = time.perf_counter(), time.thread_time(), self._books.waited()
+        if self._statistics is None:
+            self._statistics = ThreadStatistics()
+        before = time.perf_counter(), time.thread_time(), self._statistics.waited()
         block = self._simulation.advance(*arguments)
-        waited, work = self._books.waited(), time.thread_time()  # within the wall time of the tick, as those before it
+        waited, work = self._statistics.waited(), time.thread_time()  # within the wall time of the tick, as those before it
         self._noted.append((*before, time.perf_counter(), work, waited))
         return block
 
     def stretches(self, begins: list[float], seconds: float, tick: float) -> list[Figures]:
-        """Return the figures of the stretches that began at some moments of `time.perf_counter`."""
+        """Return the figures of the stretches that began at the given values of `time.perf_counter`."""
         noted = np.array(self._noted)
         due = tick * np.arange(len(noted))
         found = []
@@ -181,7 +188,7 @@ class _Watched:
 
 
 def _figures(noted: np.ndarray, due: np.ndarray, tick: float) -> Figures:
-    """Return the figures of a stretch; the first tick only tells where the second begins."""
+    """Return the figures of a stretch; the first tick only provides the start of the second."""
     begun, _, waited_before, ended, _, _ = noted[1:].T
     spent, work, waited = (noted[1:, k + 3] - noted[1:, k] for k in range(3))
     due = due[1:] + np.min(begun - due[1:])  # by the most punctual tick
@@ -202,22 +209,22 @@ def _figures(noted: np.ndarray, due: np.ndarray, tick: float) -> Figures:
 
 
 def _drive(live: LiveModel, scene: Scene, seconds: float) -> None:
-    """Do what a node does, for a while: hand on messages of speed and load, look after the sinks."""
+    """Do what a node does, for a while: pass on messages of speed and load, review the sinks."""
     operating = scene.operating
     load = (operating.radial_load * math.cos(operating.load_angle), operating.radial_load * math.sin(operating.load_angle))
     began, reviewed = time.perf_counter(), -math.inf
     while (now := time.perf_counter() - began) < seconds:
         live.offer("shaft_speed", (operating.shaft_speed * (1.0 + 0.01 * math.sin(now)),), time.time_ns(), time.time_ns())
         live.offer("radial_load", load, time.time_ns(), time.time_ns())
-        if now - reviewed >= _REVIEW_EVERY:
+        if now - reviewed >= _REVIEW_PERIOD:
             reviewed = now
             live.collect(time.time_ns())
-        time.sleep(_INPUTS_EVERY)
+        time.sleep(_INPUT_PERIOD)
 
 
 @contextmanager
 def _taking(url: str) -> Iterator[subprocess.Popen]:
-    """Let a process take all that a viewer would, and draw nothing."""
+    """Run a process that receives everything a viewer would, and draws nothing."""
     with tempfile.TemporaryDirectory() as folder:
         taken = Path(folder) / "taken.rrd"
         command = [str(viewer_program()), url, "--save", str(taken), "--bind", "127.0.0.1", "--port", str(free_port())]
@@ -226,7 +233,7 @@ def _taking(url: str) -> Iterator[subprocess.Popen]:
             limit = time.monotonic() + _TAKING_WITHIN
             while not (taken.exists() and taken.stat().st_size):
                 if process.poll() is not None or time.monotonic() > limit:
-                    raise ViewerFailed(f"rerun took nothing from {url} within {_TAKING_WITHIN:g} s")
+                    raise ViewerFailed(f"rerun received nothing from {url} within {_TAKING_WITHIN:g} s")
                 time.sleep(0.05)
             yield process
         finally:
@@ -235,7 +242,7 @@ def _taking(url: str) -> Iterator[subprocess.Popen]:
 
 
 class _Tap:
-    """A sink that passes on, or not."""
+    """A sink that can be switched off."""
 
     def __init__(self, sink):
         self._sink, self.is_open = sink, False
@@ -246,10 +253,10 @@ class _Tap:
 
 
 class _Sinks:
-    """A recording, and a view with a viewer where there can be one."""
+    """A recording, and a view with a viewer if possible."""
 
     def __init__(self, opened: ExitStack, scene: Scene, path: Path, viewer: str):
-        self.start_ns, self.viewer_told, self._viewer, self._wanted = time.time_ns(), viewer, None, viewer
+        self.start_ns, self.viewer_state, self._viewer, self._wanted = time.time_ns(), viewer, None, viewer
         recorder = opened.enter_context(Recorder())
         self._recording, self._view = recorder.open(path, scene, self.start_ns), None
         self.by_name = {"record": _Tap(self._recording)}
@@ -261,15 +268,15 @@ class _Sinks:
         self.by_name["view"] = _Tap(self._view)
 
     def attach_viewer(self, opened: ExitStack) -> None:
-        """Let the viewer have the view; it needs something to show."""
+        """Attach the viewer to the view, which must have something to show."""
         if self._wanted not in (DRAWING, TAKING):
             return
         url = f"rerun+http://127.0.0.1:{self._port}/proxy"
         viewer = HeadlessViewer(url, size=(800, 600), in_idle_time=True) if self._wanted == DRAWING else _taking(url)
         try:
             self._viewer = opened.enter_context(viewer)
-        except ViewerFailed as fault:
-            self.viewer_told = f"none could be started: {fault}"
+        except ViewerFailed as error:
+            self.viewer_state = f"none could be started: {error}"
             return
         opened.callback(os.kill, self._viewer.pid, signal.SIGCONT)
 
@@ -279,7 +286,7 @@ class _Sinks:
 
     @contextmanager
     def fed(self, wanted: bool) -> Iterator[None]:
-        """Feed the sinks and let the viewer draw for a while, or neither."""
+        """Feed the sinks and let the viewer draw for a while, or stop both."""
         for tap in self.by_name.values():
             tap.is_open = wanted
         if self._viewer is not None:
@@ -290,3 +297,73 @@ class _Sinks:
 def at_level(scene: Scene, level: str | None) -> Scene:
     """Return the scene at another level."""
     return scene if level is None else dataclasses.replace(scene, level=level)
+
+
+_MEANINGS = {
+    "rate": "rate by wall time, relative to without",
+    "core_rate": "rate while a core was available",
+    "processor_rate": "rate by processor time of its thread",
+    "worst_stall_ms": "worst stall [ms], minus that without",
+    "late_stall_ms": "99.9 % quantile of stalls [ms], minus",
+    "worst_held_ms": "worst stall without waits for a core [ms], minus",
+    "late_held_ms": "99.9 % quantile of these [ms], minus",
+}
+
+
+@click.command()
+@click.option("--level", "levels", multiple=True, default=("slip", "planar"), show_default=True, metavar="LEVEL", help="Level; can be repeated.")
+@click.option("--seconds", type=click.FloatRange(min=0.5), default=1.0, show_default=True, metavar="S", help="Length of a stretch.")
+@click.option("--pairs", type=click.IntRange(min=1), default=24, show_default=True, metavar="N", help="Pairs of stretches, with and without.")
+@click.option("--rate", type=click.FloatRange(min=1), default=1000.0, show_default=True, metavar="HZ", help="Samples per second.")
+@click.option(
+    "--viewer",
+    type=click.Choice(VIEWERS),
+    default=DRAWING,
+    show_default=True,
+    help="Viewer of the live view: drawing on this processor, receiving without drawing, none; or no view at all.",
+)
+@quick_option
+@json_option
+def command(levels, seconds, pairs, rate, viewer, quick, as_json):
+    """Run bearing deng2017_table1 in real time alternately with and without sinks, and measure the solver's rate and stalls.
+
+    Every other stretch has no sinks; half of the others have none either and serve as controls.
+    """
+    require_levels(levels)
+    announce_compilation()
+    if quick:
+        seconds, pairs = 0.5, 1
+
+    def progress(level):
+        return lambda text: click.echo(f"{level}: {text} ...", err=True)
+
+    scene = load_scene("deng2017_table1")
+    reports = [recording_cost(at_level(scene, level), seconds, rate, pairs, viewer, progress=progress(level)) for level in levels]
+    if as_json:
+        print_json({"recording": reports})
+        return
+    for report in reports:
+        _print(report)
+
+
+def _print(report) -> None:
+    def spread(found):
+        return f"{found['median']:.3f} ({found['low']:.3f} to {found['high']:.3f})"
+
+    rows = [
+        (meaning, spread(report["with"][name]), spread(report["control"][name]), format(report["without"][name], ".3g"))
+        for name, meaning in _MEANINGS.items()
+    ]
+    title = (
+        f"{report['level']}: recording at {report['sample_rate']:g} Hz and a live view (viewer: {report['viewer']}), {report['pairs']} pairs of "
+        f"stretches of {report['seconds']:g} s"
+    )
+    print_rows(title, ("recording", "with", "control, without", "without"), rows, words=("recording",), width=170)
+    click.echo(
+        f"median, and its 95 % confidence interval; {report['recording_mb_per_second']:.3g} MB/s written, {report['dropped']} blocks missed; "
+        f"load average {report['load_average']:.2f}, {100 * report['stolen_share']:.1f} % of the processors' time stolen by the host"
+    )
+
+
+if __name__ == "__main__":
+    command()

@@ -1,14 +1,13 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""What a live view costs the solver, whatever viewers do, and how an hour at 1 kHz opens.
+"""What a live view costs the solver in every state of its viewers, and how an hour at 1 kHz opens: ``python test/benchmarks/view_overhead.py``.
 
-The solver runs as fast as it can, a thousand samples for each second of wall time, and in every other stretch it hands its blocks to the view
-(see `bearing_sim.studies.paired`).  The time between two ticks is split, by the kernel's own books, into the thread's own work, its wait for
-a processor core, which is other programs' doing, and the rest: waits for the interpreter's lock, a queue, or the disk, which would be the
-view's doing.  Viewers draw without a graphics card, on any core, in idle time, as ``live.launch.py`` starts them
-(`bearing_sim.sinks.priority`): what is found is what a user gets.
+The solver runs as fast as it can, with a thousand samples for each second of wall time.  In every other stretch it hands its blocks to the view
+(see `paired`).  The time between two ticks is split, by the kernel's scheduler statistics, into the thread's own work, its wait for a core, which
+other programs cause, and the rest: waits for the interpreter's lock, a queue or the disk, which the view would cause.  Viewers draw without a
+graphics card, on any core, in idle time, as ``live.launch.py`` starts them (`bearing_sim.recording.priority`).
 
-Cores of one machine are not independent: they share caches, memory, and the heat they may make.  So a last situation has, in the place of the
-view, a program that only counts: what that costs the solver on a core of its own, any program does.
+How to read it: compare each rate with its control, and with the last situation.  Cores of one machine share caches, memory and thermal budget.
+The last situation therefore replaces the view by a program that only counts: what that costs the solver, any program on another core costs.
 """
 
 import os
@@ -23,33 +22,36 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import NamedTuple
 
+import click
 import numpy as np
+from paired import CONTROL, WITH, ThreadStatistics, each_ratio, order, spread, stolen_share
 
-from bearing_sim.scene_file import load_scene
-from bearing_sim.screenshot import HeadlessViewer, free_port
+from bearing_sim.cli.options import json_option, quick_option
+from bearing_sim.cli.reporting import FailedRun, announce_compilation, print_json, print_rows
+from bearing_sim.recording.priority import in_idle_time
+from bearing_sim.scene.loader import load_scene
 from bearing_sim.simulation import Simulation
-from bearing_sim.sinks.priority import in_idle_time
-from bearing_sim.sinks.rerun_sink import RerunSink
-from bearing_sim.studies.paired import CONTROL, WITH, ThreadBooks, each_ratio, order, spread, stolen_share
+from bearing_sim.view.screenshot import HeadlessViewer, ViewerFailed, free_port
+from bearing_sim.view.sink import RerunSink
 
 _SCENE = ("deng2017_table1", ("level=slip", "operating.shaft_speed=15000 rpm"))
-_TICK, _SAMPLES = 0.005, 5  # [s] of wall time that a tick about takes, and samples in it
-_STRETCH, _SETTLING = 0.25, 0.25  # [s] of wall time of a stretch, and what is left out before it: a view is that much behind
+_TICK, _SAMPLES = 0.005, 5  # [s] approximate wall time of a tick, and samples in it
+_STRETCH, _SETTLING = 0.25, 0.25  # [s] of wall time of a stretch, and of the lag of the view, ignored before it
 _PROGRAM = "n = 0\nwhile True: n += 1"
 _HOUR, _RATE = 3600.0, 1000.0  # [s], [Hz]
 
 
 class Stretch(NamedTuple):
-    """How the solver fared for a while.
+    """Performance of the solver in one stretch.
 
     Attributes
     ----------
     wall_rate : simulated seconds for each second of wall time.
-    rate : the same for each second in which a core was to be had.
-    share : of the wall time, in which the thread had a core and computed.  Where the host makes a core slower for a moment, as shared machines
-        do, rates change by more than a view costs, but this does not.
-    processor_rate : the same for each second of the thread's processor time, by the quartile of ticks: the others share caches and memory with
-        whatever runs on other cores.
+    rate : the same for each second in which a core was available.
+    share : fraction of the wall time in which the thread had a core and computed.  When the host slows a core for a moment, as shared
+        machines do, rates change by more than a view costs, but this share does not.
+    processor_rate : simulated seconds for each second of the thread's processor time, from the fastest quartile of ticks: the others share
+        caches and memory with whatever runs on other cores.
     worst_tick : longest wall time of a tick [s].
     worst_wait, late_wait : longest time, and 99.9 % of them, in which a tick neither worked nor waited for a core [s].
     """
@@ -68,19 +70,19 @@ COUNTING = "no view, but a program that counts"
 
 
 def run_view_bench(seconds: float, frozen: float, progress: Callable[[str], None] = lambda text: None) -> dict:
-    """Measure the solver without a view and with one, while viewers are absent, come, freeze, die.
+    """Measure the solver without a view and with one, while viewers are absent, attached, frozen and killed.
 
     Parameters
     ----------
     seconds : wall time of each situation [s].
     frozen : wall time for which viewer, and then view, are frozen [s].
-    progress : told what comes next.
+    progress : called with a text on each situation.
 
     Returns
     -------
-    situations : list of dicts: ``name``; ``with`` and ``control``: for each of `RATES` what the stretches with the view, and those that only
-        pretend, are of the stretches without one beside them, as `bearing_sim.studies.paired.Spread`; the worst times of the stretches with and
-        without; ``dropped``: blocks that the view missed.  In the last, `COUNTING`, a program that counts runs where the view would.
+    situations : list of dicts: ``name``; ``with`` and ``control``: for each of `RATES` the ratio of the stretches with the view, and of the
+        controls, to the neighbouring stretches without, as `paired.Spread`; the worst times of the stretches with and
+        without; ``dropped``: blocks that the view missed.  In the last, `COUNTING`, a program that counts runs in place of the view.
     together : ``with`` and ``control`` of all situations with a view taken together.
     """
     simulation = Simulation(load_scene(*_SCENE))
@@ -131,10 +133,10 @@ def _situations(simulation, tick, seconds, frozen, progress) -> Iterator[dict]:
 
 @contextmanager
 def _counting() -> Iterator[Callable[[bool], None]]:
-    """Have a program beside this one that only counts; yield what lets it go on (True) or stand still."""
+    """Run a program that only counts; yield the function that continues (True) or stops it (False)."""
     program = subprocess.Popen(in_idle_time([sys.executable, "-I", "-S", "-c", _PROGRAM]))
     try:
-        yield lambda goes_on: os.kill(program.pid, signal.SIGCONT if goes_on else signal.SIGSTOP)
+        yield lambda runs: os.kill(program.pid, signal.SIGCONT if runs else signal.SIGSTOP)
     finally:
         program.kill()
         program.wait()
@@ -143,10 +145,10 @@ def _counting() -> Iterator[Callable[[bool], None]]:
 def _measure(
     simulation: Simulation, tick: float, seconds: float, write: Callable[[np.ndarray], None], switch: Callable[[bool], None] = lambda on: None
 ) -> dict:
-    """Run the solver on this thread for a while; in a stretch with what is measured, that is switched on and gets every block."""
+    """Run the solver on this thread for a while; the load under test is switched on, and receives every block, in its stretches only."""
     length = min(_STRETCH, seconds / 5)
     kinds = order(max(1, int(seconds / (4 * (length + _SETTLING)))))
-    books = ThreadBooks()
+    books = ThreadStatistics()
     found = []
     for kind in kinds:
         switch(kind == WITH)
@@ -154,17 +156,17 @@ def _measure(
         _run(simulation, tick, min(_SETTLING, length), fed, books)
         found.append(_stretch(_run(simulation, tick, length, fed, books), tick))
     books.close()
-    told = {(kind, rate): each_ratio(kinds, [getattr(one, rate) for one in found], kind) for kind in (WITH, CONTROL) for rate in RATES}
+    found_ratios = {(kind, rate): each_ratio(kinds, [getattr(one, rate) for one in found], kind) for kind in (WITH, CONTROL) for rate in RATES}
     worst = {
         f"{figure}_{label}": spread(getattr(one, figure) for kind, one in zip(kinds, found) if (kind == WITH) == fed).median
         for figure in ("wall_rate", "worst_tick", "worst_wait", "late_wait")
         for label, fed in (("with", True), ("without", False))
     }
-    return {"seconds": seconds, "ratios": told, **worst}
+    return {"seconds": seconds, "ratios": found_ratios, **worst}
 
 
-def _run(simulation: Simulation, tick: float, seconds: float, write: Callable[[np.ndarray], None] | None, books: ThreadBooks) -> np.ndarray:
-    """Return what each tick took: wall time, processor time of this thread, its wait for a core [s], shape (ticks, 3)."""
+def _run(simulation: Simulation, tick: float, seconds: float, write: Callable[[np.ndarray], None] | None, books: ThreadStatistics) -> np.ndarray:
+    """Return wall time, processor time of this thread and its wait for a core [s] of each tick, shape (ticks, 3)."""
     noted = [(time.perf_counter(), time.thread_time(), books.waited())]
     while noted[-1][0] - noted[0][0] < seconds:
         block = simulation.advance(tick, samples=_SAMPLES)
@@ -191,7 +193,7 @@ def _stretch(ticks: np.ndarray, tick: float) -> Stretch:
 
 @contextmanager
 def _solver_on_a_core_of_its_own() -> Iterator[None]:
-    """Keep this thread, but none that it has started before, on the last core; everything else runs where it likes."""
+    """Keep this thread, but none that it has started, on the last core; everything else runs anywhere."""
     if not hasattr(os, "sched_setaffinity"):
         yield
         return
@@ -204,13 +206,13 @@ def _solver_on_a_core_of_its_own() -> Iterator[None]:
 
 
 def run_hour(seconds: float = _HOUR, progress: Callable[[str], None] = lambda text: None) -> dict:
-    """Write ``seconds`` [s] at 1 kHz, of level slip at a low speed with a load that comes and goes, and open them.
+    """Write ``seconds`` [s] at 1 kHz, of level slip at low speed with a varying load, and open them.
 
     Returns
     -------
     samples, bytes : of the run, and of its file.
-    writing_seconds, opening_seconds : to simulate and write, and until the viewer shows the whole run.
-    viewer_bytes : of memory, at most, that the viewer took.
+    writing_seconds, opening_seconds : time to simulate and write, and until the viewer shows the whole run.
+    viewer_bytes : peak memory of the viewer.
     """
     scene = load_scene("deng2017_table1", ["level=slip", "operating.shaft_speed=1500 rpm"])
     with tempfile.TemporaryDirectory(prefix="bearing_sim_hour_") as folder:
@@ -243,8 +245,61 @@ def _write_hour(scene, path: Path, seconds: float) -> int:
 
 
 def _peak_memory(pid: int) -> int:
-    """Return the most memory [bytes] that a process has had in use."""
+    """Return the peak memory [bytes] of a process."""
     for line in Path(f"/proc/{pid}/status").read_text().splitlines():
         if line.startswith("VmHWM:"):
             return 1024 * int(line.split()[1])
     return 0
+
+
+@click.command()
+@click.option("--seconds", type=click.FloatRange(min=0.1), default=60.0, show_default=True, metavar="S", help="Duration of each situation.")
+@click.option(
+    "--frozen", type=click.FloatRange(min=0.1), default=60.0, show_default=True, metavar="S", help="Duration for which the viewer is frozen."
+)
+@quick_option
+@json_option
+def command(seconds, frozen, quick, as_json):
+    """Measure what a live view costs the solver while viewers are absent, attached, frozen and killed, and how an hour's recording opens.
+
+    Needs a Vulkan driver; a software driver is sufficient.
+    """
+
+    def progress(text):
+        click.echo(f"{text} ...", err=True)
+
+    announce_compilation()
+    try:
+        report = run_view_bench(min(seconds, 1.0) if quick else seconds, min(frozen, 1.0) if quick else frozen, progress)
+        report["hour"] = run_hour(*([120.0] if quick else []), progress=progress)
+    except ViewerFailed as error:
+        raise FailedRun(f"no viewer to measure with: {error}") from None
+    if as_json:
+        print_json(report)
+    else:
+        _print(report)
+
+
+def _print(report) -> None:
+    def spread(found):
+        return f"{found['median']:.4f} ({found['low']:.4f} to {found['high']:.4f})"
+
+    columns = ("while", "pairs", "rate, by wall", "control", "share of time computing", "control", "by processor time", "worst wait [ms]", "missed")
+    shown = (("with", "wall_rate"), ("control", "wall_rate"), ("with", "share"), ("control", "share"), ("with", "processor_rate"))
+    rows = []
+    for row in (*report["situations"], {"name": "all with a view, together", **report["together"]}):
+        spreads = [spread(row[kind][name]) for kind, name in shown]
+        waits = f"{1e3 * row['worst_wait_with']:.2f}, without {1e3 * row['worst_wait_without']:.2f}" if "worst_wait_with" in row else ""
+        rows.append((row["name"], str(row["with"]["rate"]["pairs"]), *spreads, waits, str(row.get("dropped", ""))))
+    title = f"the solver with a live view, 1000 samples per second, relative to stretches of {report['stretch']:g} s without; "
+    print_rows(f"{title}load average {report['load_average']:.2f}", columns, rows, words=("while",), width=220)
+    click.echo("median, and its 95 % confidence interval; a wait is the time in which a tick neither worked nor waited for a core")
+    hour = report["hour"]
+    click.echo(
+        f"{hour['simulated_seconds']:g} s at 1 kHz: {hour['samples']} samples, {hour['bytes'] / 1e6:.1f} MB, made "
+        f"in {hour['writing_seconds']:.0f} s, opened in {hour['opening_seconds']:.1f} s with {hour['viewer_bytes'] / 1e6:.0f} MB in the viewer"
+    )
+
+
+if __name__ == "__main__":
+    command()

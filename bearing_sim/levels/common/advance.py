@@ -1,27 +1,35 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""How every level goes through an interval: a method's drive loop from sample to sample."""
+"""How every level advances over an interval: a time-stepping method from sample to sample."""
 
-from bearing_sim.integrators.status import COUNT, OK
-from bearing_sim.kernels.compilation import template
+from bearing_sim.numerics.compilation import template
+from bearing_sim.numerics.time_stepping import COUNT, OK
 
 
 @template
-def advance_by(drive_to, observe, t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
+def advance_by(
+    method, rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_limit, step_taken, observe,
+    t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows,
+):  # fmt: skip
     """Advance ``y`` in place by ``duration`` [s] and write evenly spaced samples into ``rows``, the last at the end.
 
     Parameters
     ----------
-    drive_to : kernel, a method's drive loop; takes ``stop`` after ``end``, which it may pass, but not ``stop``.
-    observe : kernel of the level, writes a sample.
+    method : template such as `bearing_sim.numerics.rosenbrock2.rosenbrock2`.
+    rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_limit, step_taken : kernels of the level, see
+        `bearing_sim.numerics.time_stepping`.
+    observe : kernel of the level, writes a sample, see `bearing_sim.levels.slip.model.observe`.
     t : time [s].
-    h, maximum_step, counts : as in `bearing_sim.integrators.drive.drive`.
-    budget : steps for the whole call.
+    h : step to try first [s].
+    maximum_step : longest step, or the fixed one [s].
+    budget : steps for the whole call, rejected ones included.
     memory : of the method.
-    previous, rows : flat samples; see `bearing_sim.levels.slip.observe`.
+    counts : work done, see `bearing_sim.numerics.time_stepping.Count`; added to.
+    previous, rows : flat samples; see `observe`.
 
     Returns
     -------
-    status, next step to try [s]
+    status : OK, or a key of `bearing_sim.numerics.time_stepping.REASONS`.
+    h : step to try next [s].
     """
     samples = rows.shape[0]
     interval = duration / samples
@@ -30,7 +38,10 @@ def advance_by(drive_to, observe, t, duration, y, h, maximum_step, budget, model
     for k in range(samples):
         start, end = t + k * interval, t + (k + 1) * interval
         left = budget - (counts[COUNT.steps] + counts[COUNT.rejected_steps] - taken)
-        status, h = drive_to(start, end, stop, y, h, model.tolerance, maximum_step, left, model, work, memory, counts)
+        status, h = method(
+            rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_limit, step_taken,
+            start, end, stop, y, h, maximum_step, left, model, work, memory, counts,
+        )  # fmt: skip
         if status != OK:
             return status, h
         observe(end, y, model, work, interval, before, rows[k], memory.scratch[0])

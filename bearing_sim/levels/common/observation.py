@@ -1,12 +1,13 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""What every level observes in the same way: inputs, slip, life and damage."""
+"""What every level observes in the same way: inputs, slip, life and damage; and running means of loads for lives at dynamic levels."""
 
 import math
 
-from bearing_sim.kernels.compilation import kernel
-from bearing_sim.levels.inputs import load_at, shaft_speed_at
-from bearing_sim.rating_life import modified_life_revolutions, rating_life_revolutions
-from bearing_sim.sample import COLUMN
+from bearing_sim.levels.common.model import load_at, shaft_speed_at
+from bearing_sim.model.sample import COLUMN
+from bearing_sim.numerics.compilation import kernel
+from bearing_sim.numerics.simd import load, square_root, total
+from bearing_sim.physics.rating_life import modified_life_revolutions, rating_life_revolutions
 
 _SLIP_FLOOR = 1.0  # rad/s of ideal cage speed; slip of a bearing at rest is not defined
 
@@ -21,7 +22,7 @@ def observe_course(t, cage_angle, cage_speed, inner_equivalent, outer_equivalent
     inner_equivalent, outer_equivalent : dynamic equivalent roller loads [N].
     model : a level's model with params, lubrication and drive.
     interval : time since the previous sample [s]; damage and angles accumulate over it.
-    previous, row : flat samples, shape (SCALARS + runs * Z,); see `bearing_sim.sample.flat`.
+    previous, row : flat samples, shape (SCALARS + runs * Z,); see `bearing_sim.model.sample.flat`.
     """
     ratio = model.params.raceways.diameter_ratio
     shaft_speed = shaft_speed_at(t, model.drive)
@@ -66,3 +67,25 @@ def observe_life(revolutions, lamina_revolutions, model, interval, previous, row
     row[COLUMN.lamina_life] = hours * lamina_revolutions
     row[COLUMN.modified_rating_life] = hours * modified
     row[COLUMN.damage] = previous[COLUMN.damage] + abs(rotation) / (2.0 * math.pi * modified)
+
+
+@kernel
+def average_powers(fraction, rows, present_row, contacts, load_row, count, means):
+    """Include the loads of this instant in the running means of Q_i^4 and Q_e^4.5 over all rollers.
+
+    Parameters
+    ----------
+    fraction : weight of this instant.
+    rows, present_row : rows of the rollers, and which of them says whether a lane holds one.
+    contacts, load_row : rows of the contacts, those with the inner raceway first, and which of them is the normal force [N].
+    count : number of rollers.
+    means : changed in place, shape (2,).
+    """
+    blocks = rows.shape[0]
+    inner, outer = 0.0, 0.0
+    for block in range(blocks):
+        present, q_i, q_e = load(rows, block, present_row), load(contacts, block, load_row), load(contacts, blocks + block, load_row)
+        inner += total(present * (q_i * q_i) * (q_i * q_i))
+        outer += total(present * (q_e * q_e) * (q_e * q_e) * square_root(q_e))
+    means[0] += fraction * (inner / count - means[0])
+    means[1] += fraction * (outer / count - means[1])

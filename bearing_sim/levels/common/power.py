@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Power by cause: where the work of the shaft goes, the same books at every level.
+"""Power by cause: where the work of the shaft goes; one balance for all levels.
 
 At each instant, with exactly the forces of the level's equations of motion,
 
@@ -12,16 +12,15 @@ the mixture elsewhere is outside the model.
 
 from typing import NamedTuple
 
-from bearing_sim.kernels.compilation import kernel, template
-from bearing_sim.kernels.contact import EXPONENT
-from bearing_sim.kernels.lanes import LANES
-from bearing_sim.kernels.traction import CONTACT
-from bearing_sim.levels.mixture import bore_torque, mixture_torque
-from bearing_sim.sample import COLUMN
+from bearing_sim.model.sample import COLUMN
+from bearing_sim.numerics.compilation import kernel
+from bearing_sim.numerics.simd import LANES
+from bearing_sim.physics.contact import CONTACT
+from bearing_sim.physics.drag import bore_torque, mixture_torque
 
 
 class Powers(NamedTuple):
-    """Power by cause [W]; the fields are those of `bearing_sim.sample` without the ending ``_power``."""
+    """Power by cause [W]; the fields are those of `bearing_sim.model.sample` without the ending ``_power``."""
 
     shaft: float
     inner_sliding: float
@@ -35,7 +34,7 @@ class Powers(NamedTuple):
 
 @kernel
 def write_powers(powers, row):
-    """Write `Powers` into a flat sample (see `bearing_sim.sample.flat`)."""
+    """Write `Powers` into a flat sample (see `bearing_sim.model.sample.flat`)."""
     row[COLUMN.shaft_power] = powers.shaft
     row[COLUMN.inner_sliding_power] = powers.inner_sliding
     row[COLUMN.outer_sliding_power] = powers.outer_sliding
@@ -52,7 +51,7 @@ def sliding_power(contacts, first, count):
 
     Parameters
     ----------
-    contacts : rows `bearing_sim.kernels.traction.CONTACT`, tractions computed.
+    contacts : rows `bearing_sim.physics.contact.CONTACT`, tractions computed.
     first : the raceway's first block.
     count : number of rollers.
     """
@@ -70,7 +69,7 @@ def shaft_traction_power(contacts, count, shaft_speed, inner_radius):
 
     Parameters
     ----------
-    contacts : rows `bearing_sim.kernels.traction.CONTACT`, the inner contacts first.
+    contacts : rows `bearing_sim.physics.contact.CONTACT`, the inner contacts first.
     count : number of rollers.
     shaft_speed : [rad/s].
     inner_radius : R_i [m].
@@ -90,13 +89,7 @@ def windage_powers(cage_speed, shaft_speed, params, lubrication):
     Parameters
     ----------
     cage_speed, shaft_speed : [rad/s].
-    params, lubrication : of the bearing, see `bearing_sim.params`.
+    params, lubrication : of the bearing, see `bearing_sim.model.params`.
     """
     driven = bore_torque(cage_speed, shaft_speed, params, lubrication)[0] * shaft_speed
     return driven, driven - mixture_torque(cage_speed, shaft_speed, params, lubrication)[0] * cage_speed
-
-
-@template
-def elastic_force(penetration, stiffness):
-    """Return Palmgren's K delta^(10/9) [N], the part of a normal force that gives back what it takes; 0 of parted bodies."""
-    return stiffness * max(penetration, 0.0) ** EXPONENT

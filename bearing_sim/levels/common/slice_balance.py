@@ -1,18 +1,18 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The bearing of a scene in quasi-static balance by slices: where ring and rollers are and what every slice carries.
 
-Rollers stand at even steps behind the cage and turn with it; of their motion only the centrifugal force is felt.  This is
-the load distribution of ISO/TS 16281 with both raceways kept apart, so that it holds at speed and with any contour, too.
+Rollers stand at even steps behind the cage and turn with it; of their motion only the centrifugal force matters.  This is the load
+distribution of ISO/TS 16281 with both raceways kept apart, so that it holds at speed and with any contour, too.
 """
 
 import math
 
 import numpy as np
 
-from bearing_sim.kernels.compilation import kernel
-from bearing_sim.kernels.lamina import ROLLER_ROW, balance_slices, new_slices
-from bearing_sim.kernels.raceway import contour_at
-from bearing_sim.params import Params
+from bearing_sim.model.params import Params
+from bearing_sim.numerics.compilation import kernel
+from bearing_sim.physics.lamina import ROLLER_ROW, balance_slices, new_slices
+from bearing_sim.physics.raceway import contour_at
 
 
 @kernel
@@ -22,9 +22,9 @@ def place_rollers(cage_angle, cage_speed, growth, params, slices):
     Parameters
     ----------
     cage_angle, cage_speed : of the cage [rad, rad/s]; roller 0 stands at the cage's angle.
-    growth : of the inner raceway's radius [m], see `bearing_sim.levels.growth`.
-    params : `bearing_sim.params.Params`.
-    slices : `bearing_sim.kernels.lamina.Slices`.
+    growth : of the inner raceway's radius [m], see `bearing_sim.levels.common.model.inner_growth`.
+    params : `bearing_sim.model.params.Params`.
+    slices : `bearing_sim.physics.lamina.Slices`.
     """
     rollers, raceways, row = params.rollers, params.raceways, ROLLER_ROW
     for j in range(rollers.count):
@@ -47,7 +47,7 @@ def balance(
     slices=None,
     growth: float = 0.0,
 ):
-    """Return the bearing in balance, as `bearing_sim.kernels.lamina.Slices`.
+    """Return the bearing in balance, as `bearing_sim.physics.lamina.Slices`.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def balance(
     moment : moment about (y, z) on it [N m]; without effect where the tilts are given.
     tilts : the ring's tilts about (y, z) [rad]; None lets it tilt until the moments balance.
     slices : a balance nearby to start from, overwritten.
-    growth : of the inner raceway's radius by rotation and heat [m], see `bearing_sim.levels.growth`.
+    growth : of the inner raceway's radius by rotation and heat [m], see `bearing_sim.levels.common.model.inner_growth`.
 
     Raises
     ------
@@ -93,5 +93,5 @@ def about_yz(amount: float, azimuth: float) -> tuple[float, float]:
 
 
 def leaning(tilt_y: float, tilt_z: float) -> tuple[float, float]:
-    """Return amount and azimuth [rad] of a tilt or a moment about y and z: `about_yz` the other way round."""
+    """Return amount and azimuth [rad] of a tilt or a moment about y and z: the inverse of `about_yz`."""
     return math.hypot(tilt_y, tilt_z), math.atan2(-tilt_y, tilt_z)

@@ -1,20 +1,59 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""The state of a level that goes on where another level's sample is.
+"""Where the state of a level starts: in ideal rolling, or where the sample of another level is.
 
-Cage angle and speed, the rollers' places, orbital speeds and spins, and what tilts, come from the sample, whole.  What a sample does
-not tell begins at rest: radial speeds, those of the centres of ring and cage, and of all tilts; contacts damp these within a millisecond.
-Spins that a level does not follow (``steady``) begin rolling on the outer raceway.  Where the sample's level has no whirl its cage is in
-the centre of what guides it, and begins to whirl as at the start of a run.
+From a sample come cage angle and speed, the rollers' positions, orbital speeds and spins, and all tilts.  What a sample does not hold
+starts at rest: the radial speeds of rollers and the speeds of ring centre, cage centre and tilts; contacts damp these within a
+millisecond.  Spins that a level does not compute (``steady``) start as rolling on the outer raceway.  If the sample's level has no whirl,
+its cage is in the centre of what guides it and starts to whirl as at the beginning of a run.
 """
 
 import math
 
 import numpy as np
 
-from bearing_sim.levels import planar_algebra, planar_state, spatial_algebra, spatial_state
-from bearing_sim.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT
+from bearing_sim.levels.planar import state as planar
+from bearing_sim.levels.slip import model as slip
+from bearing_sim.levels.slip import state as slip_state
+from bearing_sim.levels.slip.forces import balance_loads, equivalent_loads
+from bearing_sim.levels.spatial import state as spatial
+from bearing_sim.physics.load_balance import LOAD
+from bearing_sim.physics.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT
 
-FIRST_ECCENTRICITY = 0.3  # of the guide clearance; a cage exactly in the centre would have no direction to whirl from
+_FIRST_ECCENTRICITY = 0.3  # of the guide clearance; assumption: a cage exactly in the centre would have no direction to whirl from
+
+
+def rolling_state(at, params, work, shaft_speed, load_y, load_z):
+    """Return ideal rolling with all rollers in the middle of their pockets and in quasi-static balance, and the inner raceway's growth [m].
+
+    Parameters
+    ----------
+    at : module of the level's state, of ``planar`` or ``spatial``.
+    params : of the bearing.
+    work : the level's workspace; its running means start here too.
+    shaft_speed, load_y, load_z : conditions [rad/s, N].
+    """
+    count = params.rollers.count
+    balance, rolling = slip_state.new_work(params), slip.initial_state(params, None, shaft_speed, load_y, load_z)
+    cage_speed = rolling[slip_state.OMEGA]
+    balance.growth[0] = params.growth.by_square_speed * shaft_speed * shaft_speed  # growth by heat, unknown here, comes with the first step
+    inner, outer = equivalent_loads(0.0, cage_speed, load_y, load_z, params, balance)
+    work.load_means[:] = inner**ROTATING_EXPONENT, outer**STATIONARY_EXPONENT
+    balance_loads(0.0, cage_speed, load_y, load_z, params, balance)
+    state = np.zeros(2 * at.BORDER + at.BLOCK * count)
+    state[at.RING_Y], state[at.RING_Z] = balance.ring
+    state[at.OMEGA] = cage_speed
+    rollers = state[at.ROLLERS :].reshape(at.BLOCK, count)
+    rollers[at.R] = balance.loads[LOAD.radius]
+    rollers[at.PHI] = 2.0 * math.pi * np.arange(count) / count
+    rollers[at.PHI_SPEED] = cage_speed
+    rollers[at.SPIN] = rolling[slip_state.SPIN :]
+    return state, balance.growth[0]
+
+
+def first_cage_centre(params, ring_y, ring_z):
+    """Return y, z [m] of a cage that starts to whirl, given the ring's centre: lands of the inner ring are where the ring is."""
+    turning = params.cage.guidance.turning
+    return turning * ring_y + _FIRST_ECCENTRICITY * params.cage.guide_clearance, turning * ring_z
 
 
 def steady_state_at(params, work, sample) -> np.ndarray:
@@ -30,7 +69,7 @@ def slip_state_at(params, work, sample) -> np.ndarray:
     ----------
     params : of the bearing.
     work : the level's workspace; what it remembers of the past starts at the sample's values too.
-    sample : of any level, see `bearing_sim.sample`.
+    sample : of any level, see `bearing_sim.model.sample`.
     """
     work.ring[:] = sample["ring_y"], sample["ring_z"]
     return np.concatenate([[sample["cage_angle"], sample["cage_speed"]], _spins(params, sample)])
@@ -38,56 +77,47 @@ def slip_state_at(params, work, sample) -> np.ndarray:
 
 def planar_state_at(params, work, sample) -> np.ndarray:
     """Return the state of level ``planar`` at a sample; parameters as of `slip_state_at`."""
-    at, count = planar_state, params.rollers.count
-    state = np.zeros(2 * planar_algebra.BORDER + planar_algebra.BLOCK * count)
-    state[at.RING_Y], state[at.RING_Z] = sample["ring_y"], sample["ring_z"]
-    state[at.CAGE_Y], state[at.CAGE_Z] = _cage_centre(params, sample)
-    state[at.THETA], state[at.OMEGA] = sample["cage_angle"], sample["cage_speed"]
-    rollers = state[at.ROLLERS :].reshape(planar_algebra.BLOCK, count)
-    rollers[at.R], rollers[at.PHI] = sample["roller_radius"], _roller_angles(sample)
-    rollers[at.PHI_SPEED], rollers[at.SPIN] = sample["orbital_speed"], _spins(params, sample)
-    _carry_means(work, sample)
-    return state
+    return _dynamic_state_at(planar, params, work, sample)[0]
 
 
 def spatial_state_at(params, work, sample) -> np.ndarray:
     """Return the state of level ``spatial`` at a sample; parameters as of `slip_state_at`."""
-    at, count = spatial_state, params.rollers.count
-    state = np.zeros(2 * spatial_algebra.BORDER + spatial_algebra.BLOCK * count)
-    state[at.RING_Y], state[at.RING_Z] = sample["ring_y"], sample["ring_z"]
+    at = spatial
+    state, rollers = _dynamic_state_at(at, params, work, sample)
     state[at.RING_TILT_Y], state[at.RING_TILT_Z] = sample["ring_tilt_y"], sample["ring_tilt_z"]
-    state[at.CAGE_Y], state[at.CAGE_Z] = _cage_centre(params, sample)
     state[at.CAGE_TILT_Y], state[at.CAGE_TILT_Z] = sample["cage_tilt_y"], sample["cage_tilt_z"]
-    state[at.THETA], state[at.OMEGA] = sample["cage_angle"], sample["cage_speed"]
-    rollers = state[at.ROLLERS :].reshape(spatial_algebra.BLOCK, count)
-    rollers[at.R], rollers[at.PHI] = sample["roller_radius"], _roller_angles(sample)
     rollers[at.TILT], rollers[at.SKEW] = sample["roller_tilt"], sample["roller_skew"]
-    rollers[at.PHI_SPEED], rollers[at.SPIN] = sample["orbital_speed"], _spins(params, sample)
-    _carry_means(work, sample)
     return state
 
 
+def _dynamic_state_at(at, params, work, sample):
+    """Return a state without tilts and its part of the rollers, shape (BLOCK, Z); ``at`` as of `rolling_state`.
+
+    The running means of the rollers' loads continue from the sample; those of slices start with the first step.
+    """
+    count = params.rollers.count
+    state = np.zeros(2 * at.BORDER + at.BLOCK * count)
+    state[at.RING_Y], state[at.RING_Z] = sample["ring_y"], sample["ring_z"]
+    whirls = math.hypot(sample["cage_y"], sample["cage_z"]) > 0.0
+    centre = (sample["cage_y"], sample["cage_z"]) if whirls else first_cage_centre(params, sample["ring_y"], sample["ring_z"])
+    state[at.CAGE_Y], state[at.CAGE_Z] = centre
+    state[at.THETA], state[at.OMEGA] = sample["cage_angle"], sample["cage_speed"]
+    rollers = state[at.ROLLERS :].reshape(at.BLOCK, count)
+    rollers[at.R], rollers[at.PHI] = sample["roller_radius"], _roller_angles(sample)
+    rollers[at.PHI_SPEED], rollers[at.SPIN] = sample["orbital_speed"], _spins(params, sample)
+    work.load_means[:] = sample["inner_equivalent_load"] ** ROTATING_EXPONENT, sample["outer_equivalent_load"] ** STATIONARY_EXPONENT
+    return state, rollers
+
+
 def _spins(params, sample):
-    """Return the rollers' spins; those of a level that does not follow them are of rolling on the outer raceway, as the drags let them."""
+    """Return the rollers' spins; those of a level that does not compute them are of rolling on the outer raceway."""
     rolling = sample["orbital_speed"] * params.raceways.pitch_radius / params.rollers.radius
     return np.where(np.isfinite(sample["roller_spin"]), sample["roller_spin"], rolling)
 
 
-def _cage_centre(params, sample):
-    if math.hypot(sample["cage_y"], sample["cage_z"]) > 0.0:
-        return sample["cage_y"], sample["cage_z"]
-    turning = params.cage.guidance.turning  # lands of the inner ring are where the ring is
-    return turning * sample["ring_y"] + FIRST_ECCENTRICITY * params.cage.guide_clearance, turning * sample["ring_z"]
-
-
 def _roller_angles(sample):
-    """Return the rollers' azimuths counted on with the cage's angle, which a pocket needs; a sample's may have lost whole turns."""
+    """Return the rollers' azimuths with the whole turns of the cage's angle, which a pocket needs; those of a sample may lack them."""
     count = sample["roller_angle"].shape[0]
     pockets = sample["cage_angle"] + 2.0 * math.pi * np.arange(count) / count
     apart = sample["roller_angle"] - pockets
     return pockets + apart - 2.0 * math.pi * np.round(apart / (2.0 * math.pi))
-
-
-def _carry_means(work, sample):
-    """Let the running means of the rollers' loads go on; those of slices begin anew."""
-    work.load_means[:] = sample["inner_equivalent_load"] ** ROTATING_EXPONENT, sample["outer_equivalent_load"] ** STATIONARY_EXPONENT

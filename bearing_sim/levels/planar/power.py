@@ -1,26 +1,25 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Power by cause at level ``planar`` (see `bearing_sim.levels.power`), with the forces of `planar_border` and `planar_rollers`.
+"""Power by cause at level ``planar`` (see `bearing_sim.levels.common.power`), with the forces of `bearing_sim.levels.planar.forces`.
 
-What gives back what it takes, so is no loss: Palmgren's part of every normal force, the spring of the pockets' films, and the
-contour's slope, by which an outer load pushes along the orbit what it is pressed in.  Without that slope (``contour_slope:
-false``, Deng's form) nothing pays for the contour's squeeze, and the books are open by the sum of Q_e R_e' phi'.
+Conservative, hence no loss: Palmgren's part of every normal force, the spring of the pockets' films, and the
+contour's slope, by which an outer load pushes a roller along the orbit.  Without that slope (``contour_slope:
+false``, Deng's form) nothing pays for the contour's squeeze, and the balance is off by the sum of Q_e R_e' phi'.
 
-The film of the guide land pushes the cage across its eccentricity, and so feeds the whirl out of a rotation that pays no
-torque for it; ``land_power`` is net of that, what the land takes from the cage altogether.  Lands of the inner ring turn with the
+The film of the guide land pushes the cage across its eccentricity, and so feeds the whirl from a rotation that has no torque
+for it; ``land_power`` is net of that: what the land takes from the cage in all.  Lands of the inner ring turn with the
 shaft, which pays for what they take and for what they give the cage.
 """
 
 import math
 
-from bearing_sim.kernels.compilation import kernel
-from bearing_sim.kernels.lanes import LANES
-from bearing_sim.kernels.traction import CONTACT
-from bearing_sim.levels.growth import inner_growth
-from bearing_sim.levels.planar_algebra import BORDER
-from bearing_sim.levels.planar_border import LAND_SLIDING
-from bearing_sim.levels.planar_land import land_contact, land_film, place_in_lands
-from bearing_sim.levels.planar_state import CAGE_Y, CAGE_Z, OMEGA, ROLLER
-from bearing_sim.levels.power import Powers, elastic_force, shaft_traction_power, sliding_power, windage_powers
+from bearing_sim.levels.common.model import inner_growth
+from bearing_sim.levels.common.power import Powers, shaft_traction_power, sliding_power, windage_powers
+from bearing_sim.levels.planar.forces import place_in_lands
+from bearing_sim.levels.planar.state import BORDER, CAGE_Y, CAGE_Z, OMEGA, ROLLER
+from bearing_sim.numerics.compilation import kernel
+from bearing_sim.numerics.simd import LANES
+from bearing_sim.physics.contact import CONTACT, elastic_force
+from bearing_sim.physics.land import land_contact, land_film, land_friction
 
 
 @kernel
@@ -80,7 +79,7 @@ def _guiding_pockets(y, params, rows):
         block, lane = j // LANES, j % LANES
         offset, rate, force = rows[block, ROLLER.guide_offset, lane], rows[block, ROLLER.guide_rate, lane], -rows[block, ROLLER.guide_force, lane]
         side = params.rollers.radius if force >= 0.0 else -params.rollers.radius
-        # the wall's own sliding speed counts against the orbit
+        # the wall's own sliding speed is counted against the orbit
         sliding = rows[block, ROLLER.spin, lane] * side + omega * side - rows[block, ROLLER.pocket_rate, lane]
         film = cage.pocket_damping * rate
         wall = math.copysign(elastic_force(abs(offset) - cage.guide_clearance, params.raceways.stiffness), offset)
@@ -99,7 +98,7 @@ def land_powers(y, shaft_speed, model):
     params = model.params
     cage = params.cage
     land = place_in_lands(y, shaft_speed, cage)
-    film = land_film(land, cage, model.lubrication.viscosity)
+    film = land_film(land, params.variants.land_squeeze, cage, model.lubrication.viscosity)
     against_ring = film[2] + land.y * film[1] - land.z * film[0]
     driven = against_ring * land.ring_speed
     lost = driven - (film[0] * land.y_speed + film[1] * land.z_speed + film[2] * land.cage_speed)
@@ -110,7 +109,7 @@ def land_powers(y, shaft_speed, model):
     n_y, n_z = land.y / eccentricity, land.z / eccentricity
     approach, along = n_y * land.y_speed + n_z * land.z_speed, n_y * land.z_speed - n_z * land.y_speed
     side, surface = 1.0 - 2.0 * cage.guidance.turning, (land.cage_speed - land.ring_speed) * cage.guide_radius
-    rubbing = contact * cage.land_friction * surface / math.sqrt(surface * surface + LAND_SLIDING * LAND_SLIDING)
+    rubbing = contact * land_friction(surface, cage.land_friction)[0]
     driven -= rubbing * (cage.guide_radius + side * eccentricity) * land.ring_speed
     lost += rubbing * (surface + side * (along - eccentricity * land.ring_speed))
     return driven, lost, (contact - elastic_force(depth, params.raceways.stiffness)) * approach
@@ -118,7 +117,7 @@ def land_powers(y, shaft_speed, model):
 
 @kernel
 def planar_powers(y, shaft_speed, model, work):
-    """Return `bearing_sim.levels.power.Powers` of a state.
+    """Return `bearing_sim.levels.common.power.Powers` of a state.
 
     Parameters
     ----------

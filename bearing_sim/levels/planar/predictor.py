@@ -1,30 +1,29 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Where a stage's solution is looked for first: so near that one Newton iteration is most often enough.
+"""First guess of a stage's solution, so close that one Newton iteration is usually enough.
 
-Almost all of a stage's nonlinearity is in the normal contacts of each roller, which open and close within a step.  With ring
-and orbit as extrapolation leaves them, each roller's radial equation is a scalar one and rises monotonically: a few Newton
-iterations of its own, all rollers at once, cost a fraction of one iteration of the whole.
+Almost all of a stage's nonlinearity is in the normal contacts of each roller, which open and close within a step.  With ring and orbit
+extrapolated, each roller's radial equation
+
+    r = known r + s r',   r' = known r' + s (r phi'^2 + (Q_i - Q_e)/m_r)
+
+is scalar and rises monotonically: a few Newton iterations for all rollers at once cost a fraction of one iteration of the whole system.
 """
 
-import math
-
-from bearing_sim.kernels.compilation import kernel
-from bearing_sim.kernels.elementary import cosine_sine
-from bearing_sim.kernels.lanes import LANES, floor, highest, larger, load, magnitude, spread, square_root, store
-from bearing_sim.kernels.raceway import contour_lanes
-from bearing_sim.kernels.traction import CONTACT
-from bearing_sim.levels.growth import inner_growth
-from bearing_sim.levels.planar_algebra import BORDER
-from bearing_sim.levels.planar_rollers import normal_forces
-from bearing_sim.levels.planar_state import R_SPEED, RING_Y, RING_Z, ROLLER, ROLLERS, R
+from bearing_sim.levels.common.model import inner_growth
+from bearing_sim.levels.common.rollers import follow_contour
+from bearing_sim.levels.planar.forces import normal_forces
+from bearing_sim.levels.planar.state import BORDER, R_SPEED, RING_Y, RING_Z, ROLLER, ROLLERS, R
+from bearing_sim.numerics.compilation import kernel
+from bearing_sim.numerics.simd import LANES, highest, larger, load, magnitude, spread, square_root, store
+from bearing_sim.physics.contact import CONTACT
 
 _ITERATIONS = 4
-_SETTLED = 5e-5  # m, times the tolerance: what one iteration more would change is left to the whole system's
+_SETTLED = 0.2  # of the position tolerance: what one iteration more would change is left to the iteration of the whole system
 
 
 @kernel
 def _extrapolate(known, shift, slope, count, guess):
-    """Write speeds as their slope takes them on, and the positions that belong to them."""
+    """Extrapolate speeds by their rates, and write the positions that belong to them."""
     for k in range(BORDER):
         guess[BORDER + k] = known[BORDER + k] + shift * slope[BORDER + k]
         guess[k] = known[k] + shift * guess[BORDER + k]
@@ -36,7 +35,7 @@ def _extrapolate(known, shift, slope, count, guess):
 
 @kernel
 def _start(known, shift, guess, count, raceways, rows):
-    """Write azimuths, the contour and what each radial equation builds on; let the rollers follow the contour at first."""
+    """Write azimuths, the contour and the known terms of each radial equation; let the rollers follow the contour at first."""
     last = count - 1
     for j in range(rows.shape[0] * LANES):
         block, lane, roller = j // LANES, j % LANES, ROLLERS + min(j, last)
@@ -45,23 +44,14 @@ def _start(known, shift, guess, count, raceways, rows):
         rows[block, ROLLER.known_radius, lane] = known[roller + R]
         rows[block, ROLLER.known_speed, lane] = known[roller + R_SPEED * count]
     for block in range(rows.shape[0]):
-        turn = load(rows, block, ROLLER.angle) * (0.5 / math.pi)
-        turn -= floor(turn)
-        cosine, sine = cosine_sine(turn)
-        radius, slope, _ = contour_lanes(raceways.contour, turn)
-        store(rows, block, ROLLER.cosine, cosine)
-        store(rows, block, ROLLER.sine, sine)
-        store(rows, block, ROLLER.slope, slope)
-        store(rows, block, ROLLER.contour, radius)
-        follows = load(rows, block, ROLLER.known_radius) + shift * slope * load(rows, block, ROLLER.orbital_speed)
-        store(rows, block, ROLLER.radius, follows)
+        follow_contour(ROLLER, block, shift, raceways.contour, rows)
 
 
 @kernel
 def _balance(guess, shift, inner_radius, params, rows, contacts):
     """Take one Newton step of all radial equations and return the largest change [m].
 
-    r = known + shift r', r' = known' + shift (r phi'^2 + (Q_i - Q_e)/m)
+    The equation is that of the docstring of the module.
     """
     roller_radius, mass, blocks = params.rollers.radius, params.rollers.mass, rows.shape[0]
     per_shift = 1.0 / shift
@@ -105,11 +95,11 @@ def predict(known, shift, slope, model, work, guess):
     """
     params, rows = model.params, work.rollers
     count = params.rollers.count
-    inner_radius = params.raceways.inner_radius + inner_growth(model.drive.shaft_speed, model)  # of where the inputs begin: a guess needs no more
+    inner_radius = params.raceways.inner_radius + inner_growth(model.drive.shaft_speed, model)  # where the inputs start: a guess needs no more
     _extrapolate(known, shift, slope, count, guess)
     _start(known, shift, guess, count, params.raceways, rows)
     for _ in range(_ITERATIONS):
-        if _balance(guess, shift, inner_radius, params, rows, work.contacts) < _SETTLED * model.tolerance:
+        if _balance(guess, shift, inner_radius, params, rows, work.contacts) < _SETTLED * model.tolerances.position:
             break
     per_shift = 1.0 / shift
     for j in range(count):

@@ -11,20 +11,44 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.kernels.compilation import kernel
-from bearing_sim.kernels.lanes import LANES, new_rows
-from bearing_sim.kernels.runs import collect_runs, fill_lanes, spread_runs
-from bearing_sim.kernels.traction import CONTACT
-from bearing_sim.levels.planar_algebra import BORDER, SLOPES, Factored, new_factored
+from bearing_sim.numerics.compilation import kernel
+from bearing_sim.numerics.simd import LANES, collect_runs, fill_lanes, new_rows, spread_runs
+from bearing_sim.physics.contact import CONTACT
 
+BORDER = 5  # positions of ring and cage, and as many speeds
+RING = 2  # of them the ring's
+BLOCK = 5  # states of a roller
+LOCAL = BLOCK + 2 * BORDER  # what a roller depends on
+AT_POSITIONS, AT_SPEEDS = BLOCK, BLOCK + BORDER  # where border positions and speeds stand among them
+JACOBIAN_ROWS = (3 + BORDER) * LOCAL  # rows of derivatives: of r'', phi'', w', then of the border's accelerations, each by `LOCAL` variables
+INVERSE, RIGHT, BELOW = 0, 9, 9 + 3 * BORDER  # rows of a factorisation
+_FACTORED = BELOW + 3 * BORDER
 RING_Y, RING_Z, CAGE_Y, CAGE_Z, THETA = 0, 1, 2, 3, 4
 OMEGA = BORDER + THETA
 ROLLERS = 2 * BORDER  # where the rollers' states begin: a run of Z for each of the five
 R, PHI, R_SPEED, PHI_SPEED, SPIN = 0, 1, 2, 3, 4
 
 
+class Factored(NamedTuple):
+    """A factorisation of I - s J."""
+
+    shift: np.ndarray  # s, shape (1,)
+    rows: np.ndarray  # by roller: inverse block (3x3), that times its coupling to the border's speeds (3x5), the border's to it (5x3)
+    right: np.ndarray  # right sides by roller: r, phi, and the three speeds
+    positions: np.ndarray  # d(border accelerations)/d(border positions), all rollers together, shape (5, 5)
+    schur: np.ndarray  # Schur complement as L U, shape (5, 5)
+    order: np.ndarray  # of its rows, shape (5,)
+
+
+def new_factored(count):
+    """Return a zeroed factorisation for ``count`` rollers."""
+    square = (BORDER, BORDER)
+    rows, right = new_rows(_FACTORED, count), new_rows(BLOCK, count)
+    return Factored(np.zeros(1), rows, right, np.zeros(square), np.zeros(square), np.zeros(BORDER, np.int64))
+
+
 class RollerRow(NamedTuple):
-    """Rows of the rollers array, see `bearing_sim.kernels.lanes.new_rows`."""
+    """Rows of the rollers array, see `bearing_sim.numerics.simd.new_rows`."""
 
     radius: int = 0  # r [m]
     angle: int = 1  # phi [rad]
@@ -54,17 +78,17 @@ class RollerRow(NamedTuple):
     pocket_offset: int = 25  # of the roller from the middle of its pocket [m]
     pocket_rate: int = 26  # its time derivative [m/s]
     pocket_force: int = 27  # of the pocket on the roller along the orbit [N]
-    pocket_stiffness: int = 28  # slopes of the force against the offset [N/m, N s/m]
+    pocket_stiffness: int = 28  # derivatives of the force against the offset, by it and by its rate [N/m, N s/m]
     pocket_damping: int = 29
     pocket_friction: int = 30  # coefficient, with the sign of the spin
-    pocket_friction_slope: int = 31  # by spin [s/rad]
-    contour: int = 32  # from here on, steps of a prediction: R_e where the roller will be [m]
-    known_radius: int = 33  # what its stage builds on [m, m/s]
+    pocket_friction_d_spin: int = 31  # by spin [s/rad]
+    contour: int = 32  # from here on, steps of a prediction: R_e at the roller's new azimuth [m]
+    known_radius: int = 33  # known terms of its stage [m, m/s]
     known_speed: int = 34
     guide_offset: int = 35  # from here on pockets that guide: of the roller outwards from the pocket's middle [m]
     guide_rate: int = 36  # its time derivative [m/s]
     guide_force: int = 37  # of the pocket on the roller, outwards from the cage [N]
-    guide_stiffness: int = 38  # slopes of the force against the offset [N/m, N s/m]
+    guide_stiffness: int = 38  # derivatives of the force against the offset, by it and by its rate [N/m, N s/m]
     guide_damping: int = 39
 
 
@@ -75,13 +99,11 @@ class Work(NamedTuple):
     """Memory that the level writes while it computes."""
 
     rollers: np.ndarray  # rows `ROLLER`
-    contacts: np.ndarray  # rows `bearing_sim.kernels.traction.CONTACT`, those with the inner raceway first
-    slopes: np.ndarray  # derivatives through each roller, see `bearing_sim.levels.planar_algebra.SLOPES`
+    contacts: np.ndarray  # rows `bearing_sim.physics.contact.CONTACT`, those with the inner raceway first
+    jacobian: np.ndarray  # derivatives through each roller, see `bearing_sim.levels.planar.state.JACOBIAN_ROWS`
     border_own: np.ndarray  # derivatives of the border's accelerations by border positions and speeds, shape (5, 10)
     factored: Factored  # of I - gamma h J
     load_means: np.ndarray  # running means of Q_i^4 and Q_e^4.5 over a cage turn, shape (2,)
-    held: np.ndarray  # shift of the factorisation at hand and end of the last step [s], shape (2,)
-    counts: np.ndarray  # right-hand sides, Jacobians and factorisations inside steps, int64
 
 
 def new_work(params):
@@ -95,12 +117,10 @@ def new_work(params):
     return Work(
         rollers,
         np.zeros((2 * rollers.shape[0], len(CONTACT), LANES)),
-        new_rows(SLOPES, count),
+        new_rows(JACOBIAN_ROWS, count),
         np.zeros((BORDER, 2 * BORDER)),
         new_factored(count),
         np.zeros(2),
-        np.zeros(2),
-        np.zeros(3, np.int64),
     )
 
 

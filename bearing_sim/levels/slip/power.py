@@ -1,21 +1,22 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Power by cause at level ``slip`` (see `bearing_sim.levels.power`).
+"""Power by cause at level ``slip`` (see `bearing_sim.levels.common.power`).
 
 Rollers are locked to their pockets and everything radial is quasi-static: nothing is damped, no land is eccentric, and the
-kinetic energy of the books is that of rotation, of cage, orbiting rollers and their spins.  The forces that lean, by the
-contour's slope and the ring's displacement, exchange it with the contacts' elastic energy and the load's, and lose nothing.
+kinetic energy of the balance is that of rotation: of the cage, the orbiting rollers and their spins.  The normal forces that lean, by the
+contour's slope and the ring's displacement, exchange it with the elastic energy of the contacts and the work of the load, without loss.
 """
 
-from bearing_sim.kernels.cage import land_torque, pocket_friction
-from bearing_sim.kernels.compilation import kernel
-from bearing_sim.kernels.drag import churning_force
-from bearing_sim.kernels.load_balance import LOAD
-from bearing_sim.levels.power import Powers, shaft_traction_power, sliding_power, windage_powers
+from bearing_sim.levels.common.power import Powers, shaft_traction_power, sliding_power, windage_powers
+from bearing_sim.numerics.compilation import kernel
+from bearing_sim.physics.drag import churning_force
+from bearing_sim.physics.land import land_torque
+from bearing_sim.physics.load_balance import LOAD
+from bearing_sim.physics.pocket import pocket_friction
 
 
 @kernel
 def slip_powers(cage_speed, cage_acceleration, spins, shaft_speed, model, work):
-    """Return `bearing_sim.levels.power.Powers` of a state.
+    """Return `bearing_sim.levels.common.power.Powers` of a state.
 
     Parameters
     ----------
@@ -37,7 +38,7 @@ def slip_powers(cage_speed, cage_acceleration, spins, shaft_speed, model, work):
         radius = loads[LOAD.radius, j]
         churning += drag * radius * cage_speed
         force = abs(rollers.mass * radius * cage_acceleration - work.tangential[j])
-        pocket += force * pocket_friction(spins[j], cage.pocket_friction) * rollers.radius * (spins[j] + cage.pocket_reaction * cage_speed)
+        pocket += force * pocket_friction(spins[j], cage.pocket_friction) * rollers.radius * (spins[j] + params.variants.pocket_reaction * cage_speed)
     return Powers(
         shaft_traction_power(contacts, count, shaft_speed, params.raceways.inner_radius + work.growth[0]) + bore + land * guide_speed,
         sliding_power(contacts, 0, count),

@@ -1,26 +1,25 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Power by cause at level ``spatial`` (see `bearing_sim.levels.power` and `bearing_sim.levels.planar_power`), summed over slices.
+"""Power by cause at level ``spatial`` (see `bearing_sim.levels.common.power` and `bearing_sim.levels.planar.power`), summed over slices.
 
 Speeds of slices are straight lines along the axis, so that most sums are a force times a speed and a moment times how it changes.
 What a moment on the inner ring puts in stands beside the radial load's power: neither is among the losses.
 """
 
-from bearing_sim.kernels.compilation import kernel
-from bearing_sim.kernels.lanes import larger, load, magnitude, spread, total, where_positive
-from bearing_sim.levels.growth import inner_growth
-from bearing_sim.levels.planar_power import land_powers
-from bearing_sim.levels.power import Powers, windage_powers
-from bearing_sim.levels.spatial_algebra import BORDER
-from bearing_sim.levels.spatial_border import place_land
-from bearing_sim.levels.spatial_slices import SLICED, slice_force
-from bearing_sim.levels.spatial_state import CAGE_TILT_Y, CAGE_TILT_Z, CAGE_Y, CAGE_Z, OMEGA, ROLLER
+from bearing_sim.levels.common.model import inner_growth
+from bearing_sim.levels.common.power import Powers, windage_powers
+from bearing_sim.levels.planar.power import land_powers
+from bearing_sim.levels.spatial.forces import place_land
+from bearing_sim.levels.spatial.state import BORDER, CAGE_TILT_Y, CAGE_TILT_Z, CAGE_Y, CAGE_Z, OMEGA, ROLLER, SLICED
+from bearing_sim.numerics.compilation import kernel
+from bearing_sim.numerics.simd import larger, load, magnitude, spread, total, where_positive
+from bearing_sim.physics.contact import damped_slice
 
 
 @kernel
 def _contact_powers(first, y, params, work):
     """Return the power lost between one raceway and all rollers in the films and by damping [W], and what drives the raceway [N]."""
-    contacts, places, crown = work.contacts, params.slices.places, params.slices.crown
-    count = places.shape[0]
+    contacts, positions, crown = work.contacts, params.slices.positions, params.slices.crown
+    count = positions.shape[0]
     part, damping = params.raceways.stiffness / count, params.ring.contact_damping
     sliding, damped, force = 0.0, 0.0, 0.0
     for block in range(work.rollers.shape[0]):
@@ -31,9 +30,9 @@ def _contact_powers(first, y, params, work):
         slid += 2.0 * pumped * load(contacts, at, SLICED.rolling)
         lost = spread(0.0)
         for k in range(count):
-            depth = load(contacts, at, SLICED.penetration) + load(contacts, at, SLICED.lean) * places[k] - crown[k]
-            rate = load(contacts, at, SLICED.rate) + load(contacts, at, SLICED.lean_rate) * places[k]
-            q, root, _, _ = slice_force(depth, rate, part, damping)
+            depth = load(contacts, at, SLICED.penetration) + load(contacts, at, SLICED.lean) * positions[k] - crown[k]
+            rate = load(contacts, at, SLICED.rate) + load(contacts, at, SLICED.lean_rate) * positions[k]
+            q, root, _, _ = damped_slice(depth, rate, part, damping)
             lost += (q - root * larger(depth, 0.0)) * rate
         sliding += total(present * slid)
         damped += total(present * lost)
@@ -42,16 +41,16 @@ def _contact_powers(first, y, params, work):
 
 
 @kernel
-def _kept_by_walls(offset, rate, skew, skew_rate, clearance, stiffness, params):
+def _kept_d_walls(offset, rate, skew, skew_rate, clearance, stiffness, params):
     """Return the power that the film of two opposite walls damps and the power that film and walls keep [W]; parameters as of `hold_slices`."""
-    places = params.slices.places
-    count = places.shape[0]
+    positions = params.slices.positions
+    count = positions.shape[0]
     film, kept = spread(0.0), spread(0.0)
     for k in range(count):
-        place, speed = offset + skew * places[k], rate + skew_rate * places[k]
-        side, excess = where_positive(place, 1.0, -1.0), magnitude(place) - clearance
-        _, root, _, _ = slice_force(excess, 0.0 * excess, params.raceways.stiffness / count, 0.0)
-        spring = stiffness / count * (magnitude(place) - larger(excess, 0.0)) + root * larger(excess, 0.0)
+        position, speed = offset + skew * positions[k], rate + skew_rate * positions[k]
+        side, excess = where_positive(position, 1.0, -1.0), magnitude(position) - clearance
+        _, root, _, _ = damped_slice(excess, 0.0 * excess, params.raceways.stiffness / count, 0.0)
+        spring = stiffness / count * (magnitude(position) - larger(excess, 0.0)) + root * larger(excess, 0.0)
         film += params.cage.pocket_damping / count * speed * speed
         kept += side * spring * speed
     return film, kept
@@ -75,7 +74,7 @@ def _pocket_powers(y, params, rows):
         leans -= (load(rows, block, ROLLER.skew_speed) + orbital_speed * load(rows, block, ROLLER.tilt)) * s
         leans -= y[BORDER + CAGE_TILT_Y] * p_c + y[BORDER + CAGE_TILT_Z] * p_s
         rubbed = force * slides + moment * leans + magnitude(force) * (spin + omega) * params.rollers.radius
-        film, kept = _kept_by_walls(offset, rate, skew, skew_rate, cage.pocket_clearance, cage.pocket_stiffness, params)
+        film, kept = _kept_d_walls(offset, rate, skew, skew_rate, cage.pocket_clearance, cage.pocket_stiffness, params)
         lost += total(present * (load(rows, block, ROLLER.pocket_friction) * rubbed + film))
         damped += total(present * (force * rate + moment * skew_rate - film - kept))
     return lost, damped
@@ -93,7 +92,7 @@ def _guiding_pocket_powers(y, params, rows):
         lean, lean_rate = load(rows, block, ROLLER.pocket_lean), load(rows, block, ROLLER.guide_lean_rate)
         rubbed = magnitude(force) * (load(rows, block, ROLLER.spin) + omega) * params.rollers.radius
         rubbed -= force * load(rows, block, ROLLER.pocket_rate) + moment * load(rows, block, ROLLER.pocket_skew_rate)
-        film, kept = _kept_by_walls(offset, rate, lean, lean_rate, cage.guide_clearance, 0.0, params)
+        film, kept = _kept_d_walls(offset, rate, lean, lean_rate, cage.guide_clearance, 0.0, params)
         lost += total(present * (friction * rubbed + film))
         damped += total(present * (force * rate + moment * lean_rate - film - kept))
     return lost, damped
@@ -101,9 +100,9 @@ def _guiding_pocket_powers(y, params, rows):
 
 @kernel
 def _land_powers(y, shaft_speed, model, lands):
-    """Return `bearing_sim.levels.planar_power.land_powers` of both guide lands together; each carries half."""
-    place_land(y, model.params.tilts.land_place, lands[0])
-    place_land(y, -model.params.tilts.land_place, lands[1])
+    """Return `bearing_sim.levels.planar.power.land_powers` of both guide lands together; each carries half."""
+    place_land(y, model.params.tilts.land_position, lands[0])
+    place_land(y, -model.params.tilts.land_position, lands[1])
     near_driven, near, near_touching = land_powers(lands[0], shaft_speed, model)
     far_driven, far, far_touching = land_powers(lands[1], shaft_speed, model)
     return 0.5 * (near_driven + far_driven), 0.5 * (near + far), 0.5 * (near_touching + far_touching)
@@ -111,7 +110,7 @@ def _land_powers(y, shaft_speed, model, lands):
 
 @kernel
 def spatial_powers(y, shaft_speed, model, work):
-    """Return `bearing_sim.levels.power.Powers` of a state.
+    """Return `bearing_sim.levels.common.power.Powers` of a state.
 
     Parameters
     ----------

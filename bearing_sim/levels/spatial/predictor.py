@@ -1,20 +1,15 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Where a stage's solution is looked for first, as at level ``planar`` (see `bearing_sim.levels.planar_prediction`).
+"""First guess of a stage's solution, as at level ``planar`` (see `bearing_sim.levels.planar.predictor`).
 
-With ring, cage, orbit and skew as extrapolation leaves them, each roller's place and tilt follow from two scalar equations of its
+With ring, cage, orbit and skew extrapolated, each roller's position and tilt follow from two scalar equations of its
 own normal contacts: a few Newton iterations of all rollers at once.
 """
 
-import math
-
-from bearing_sim.kernels.compilation import kernel
-from bearing_sim.kernels.elementary import cosine_sine
-from bearing_sim.kernels.lanes import LANES, floor, highest, larger, load, magnitude, spread, square_root, store
-from bearing_sim.kernels.raceway import contour_lanes
-from bearing_sim.levels.growth import inner_growth
-from bearing_sim.levels.spatial_algebra import BORDER
-from bearing_sim.levels.spatial_slices import SLICED, normal_slices
-from bearing_sim.levels.spatial_state import (
+from bearing_sim.levels.common.model import inner_growth
+from bearing_sim.levels.common.rollers import follow_contour
+from bearing_sim.levels.spatial.slices import normal_slices
+from bearing_sim.levels.spatial.state import (
+    BORDER,
     PHI,
     PHI_SPEED,
     R_SPEED,
@@ -26,19 +21,22 @@ from bearing_sim.levels.spatial_state import (
     ROLLERS,
     SKEW,
     SKEW_SPEED,
+    SLICED,
     SPIN,
     TILT,
     TILT_SPEED,
     R,
 )
+from bearing_sim.numerics.compilation import kernel
+from bearing_sim.numerics.simd import LANES, highest, larger, load, magnitude, spread, square_root, store
 
 _ITERATIONS = 4
-_SETTLED = 5e-5  # m, times the tolerance, as at level `planar`
+_SETTLED = 0.2  # of the position tolerance: what one iteration more would change is left to the iteration of the whole system
 
 
 @kernel
 def _extrapolate(known, shift, slope, count, guess):
-    """Write speeds as their slope takes them on, and the positions that belong to them."""
+    """Extrapolate speeds by their rates, and write the positions that belong to them."""
     for k in range(BORDER):
         guess[BORDER + k] = known[BORDER + k] + shift * slope[BORDER + k]
         guess[k] = known[k] + shift * guess[BORDER + k]
@@ -50,7 +48,7 @@ def _extrapolate(known, shift, slope, count, guess):
 
 @kernel
 def _start(known, shift, guess, count, raceways, rows):
-    """Write azimuths, the contour and what each equation builds on; let the rollers follow the contour at first."""
+    """Write azimuths, the contour and the known terms of each equation; let the rollers follow the contour at first."""
     last = count - 1
     for j in range(rows.shape[0] * LANES):
         block, lane, roller = j // LANES, j % LANES, ROLLERS + min(j, last)
@@ -64,16 +62,7 @@ def _start(known, shift, guess, count, raceways, rows):
         rows[block, ROLLER.known_tilt, lane] = known[roller + TILT * count]
         rows[block, ROLLER.known_tilt_speed, lane] = known[roller + TILT_SPEED * count]
     for block in range(rows.shape[0]):
-        turn = load(rows, block, ROLLER.angle) * (0.5 / math.pi)
-        turn -= floor(turn)
-        cosine, sine = cosine_sine(turn)
-        radius, slope, _ = contour_lanes(raceways.contour, turn)
-        store(rows, block, ROLLER.cosine, cosine)
-        store(rows, block, ROLLER.sine, sine)
-        store(rows, block, ROLLER.slope, slope)
-        store(rows, block, ROLLER.contour, radius)
-        follows = load(rows, block, ROLLER.known_radius) + shift * slope * load(rows, block, ROLLER.orbital_speed)
-        store(rows, block, ROLLER.radius, follows)
+        follow_contour(ROLLER, block, shift, raceways.contour, rows)
 
 
 @kernel
@@ -111,7 +100,7 @@ def _balance(block, shift, params, rows, contacts):
     tilt_speed = (tilt - load(rows, block, ROLLER.known_tilt)) * per_shift
     force = load(contacts, outer, SLICED.load) - load(contacts, block, SLICED.load)
     force += mass * ((speed - load(rows, block, ROLLER.known_speed)) * per_shift - radius * orbital_speed * orbital_speed)
-    gyroscopic = params.tilts.gyroscopic * params.rollers.inertia * load(rows, block, ROLLER.spin)
+    gyroscopic = params.variants.gyroscopic * params.rollers.inertia * load(rows, block, ROLLER.spin)
     moment = load(contacts, outer, SLICED.tilting) - load(contacts, block, SLICED.tilting)
     moment += inertia * (tilt_speed - load(rows, block, ROLLER.known_tilt_speed)) * per_shift
     moment -= (gyroscopic + 2.0 * inertia * orbital_speed) * load(rows, block, ROLLER.skew_speed)
@@ -153,12 +142,12 @@ def predict(known, shift, slope, model, work, guess):
             normal_slices(block, contacts, params.slices, params.raceways.stiffness, params.ring.contact_damping)
             normal_slices(blocks + block, contacts, params.slices, params.raceways.stiffness, params.ring.contact_damping)
             largest = larger(largest, _balance(block, shift, params, rows, contacts))
-        if highest(largest) < _SETTLED * model.tolerance:
+        if highest(largest) < _SETTLED * model.tolerances.position:
             break
     per_shift = 1.0 / shift
     for j in range(count):
         block, lane = j // LANES, j % LANES
         for k in range(2):
-            place, row = ROLLERS + j + (R if k == 0 else TILT) * count, ROLLER.radius if k == 0 else ROLLER.tilt
-            guess[place] = rows[block, row, lane]
-            guess[place + R_SPEED * count] = (guess[place] - known[place]) * per_shift
+            position, row = ROLLERS + j + (R if k == 0 else TILT) * count, ROLLER.radius if k == 0 else ROLLER.tilt
+            guess[position] = rows[block, row, lane]
+            guess[position + R_SPEED * count] = (guess[position] - known[position]) * per_shift

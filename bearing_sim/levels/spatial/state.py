@@ -13,20 +13,94 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.kernels.compilation import kernel
-from bearing_sim.kernels.lanes import LANES, new_rows
-from bearing_sim.kernels.runs import collect_runs, fill_lanes, spread_runs
-from bearing_sim.levels.spatial_algebra import BLOCK, BORDER, SLOPES, Factored, new_factored
-from bearing_sim.levels.spatial_slices import PIECE_ROWS, SLICED_ROWS
+from bearing_sim.numerics.compilation import kernel
+from bearing_sim.numerics.simd import LANES, collect_runs, fill_lanes, new_rows, spread_runs
+from bearing_sim.physics.contact import CONTACT
 
+RING, CAGE = 4, 5
+BORDER = RING + CAGE  # positions of ring and cage, and as many speeds
+BLOCK = 9  # states of a roller: four positions, their speeds, and the spin
+SPEEDS, POSITIONS = 5, 4
+AT_RING = BLOCK  # where border positions and speeds stand among what a roller depends on
+AT_CAGE = BLOCK + 2 * RING
+AT_CAGE_SPEEDS = AT_CAGE + CAGE
+LOCAL = AT_CAGE + 2 * CAGE
+RING_COLUMNS, CAGE_COLUMNS = BLOCK + 2 * RING, BLOCK + 2 * CAGE
+RING_ROWS = SPEEDS * LOCAL  # where the rows of the ring and the cage begin
+CAGE_ROWS = RING_ROWS + RING * RING_COLUMNS
+JACOBIAN_ROWS = CAGE_ROWS + CAGE * CAGE_COLUMNS
+RIGHT = SPEEDS * SPEEDS  # rows of a factorisation
+BELOW = RIGHT + SPEEDS * BORDER
+_FACTORED = BELOW + BORDER * SPEEDS
+# rows of pieces behind those of a contact: derivatives of a piece's normal force
+D_DEPTH, D_LEAN, D_RATE, D_LEAN_RATE = range(len(CONTACT), len(CONTACT) + 4)
+PIECE_ROWS = len(CONTACT) + 4
+SLICED_ROWS = 46
 RING_Y, RING_Z, RING_TILT_Y, RING_TILT_Z, CAGE_Y, CAGE_Z, CAGE_TILT_Y, CAGE_TILT_Z, THETA = range(BORDER)
 OMEGA = BORDER + THETA
 ROLLERS = 2 * BORDER  # where the rollers' states begin: a run of Z for each of the nine
 R, PHI, TILT, SKEW, R_SPEED, PHI_SPEED, TILT_SPEED, SKEW_SPEED, SPIN = range(BLOCK)
+ROLLER_ROWS = 66
+
+
+class Factored(NamedTuple):
+    """A factorisation of I - s J."""
+
+    shift: np.ndarray  # s, shape (1,)
+    rows: np.ndarray  # by roller: inverse block (5x5), that times its coupling to the border's speeds (5x9), the border's to it (9x5)
+    right: np.ndarray  # right sides by roller: four positions and five speeds
+    positions: np.ndarray  # d(border accelerations)/d(border positions), all rollers together, shape (9, 9)
+    schur: np.ndarray  # factors of the Schur complement, shape (9, 9)
+    order: np.ndarray  # its pivots, int64, shape (9,)
+    block: np.ndarray  # scratch, shape (1, 25, LANES)
+
+
+def new_factored(count):
+    """Return a zeroed factorisation for ``count`` rollers."""
+    square = (BORDER, BORDER)
+    return Factored(
+        np.zeros(1),
+        new_rows(_FACTORED, count),
+        new_rows(BLOCK, count),
+        np.zeros(square),
+        np.zeros(square),
+        np.zeros(BORDER, np.int64),
+        np.zeros((1, SPEEDS * SPEEDS, LANES)),
+    )
+
+
+class SlicedRow(NamedTuple):
+    """Rows of a sliced contacts array: all blocks of inner contacts, then all of outer ones.  Moments are sums of forces times x."""
+
+    load: int = 0  # normal force Q [N]
+    rolling: int = 1  # mean speed u of both surfaces relative to the contact [m/s]
+    sliding: int = 2  # surface-speed difference du in the middle, raceway less roller [m/s]
+    force: int = 3  # traction T on the roller, with the sign of du [N]
+    tilting: int = 4  # moment of the normal forces [N m]
+    skewing: int = 5  # moment of the tractions [N m]
+    penetration: int = 6  # in the middle [m]
+    rate: int = 7  # its time derivative [m/s]
+    lean: int = 8  # slope of the penetration along the axis
+    lean_rate: int = 9  # its time derivative [1/s]
+    sliding_lean: int = 10  # slope of du along the axis [1/s]
+    stiffness: int = 11  # from here on sums over slices of derivatives times 1, x and x^2: of q by penetration
+    damping: int = 14  # of q by its rate
+    of_force: int = 17  # derivatives of the traction by penetration and lean, three rows on by their rates
+    of_skewing: int = 22  # derivatives of its moment by the same
+    d_sliding: int = 27  # sums of dT/d(du) times 1, x and x^2
+    d_rolling: int = 30  # of dT/du times 1 and x
+    pumping: int = 32  # from here on written only where oil is pumped back: its resistance F_R [N]
+    pumping_moment: int = 33  # its moment [N m]
+    of_pumping: int = 34  # derivatives by penetration and lean, three rows on by their rates
+    of_pumping_moment: int = 39
+    pumping_d_rolling: int = 44  # sums of dF_R/du times 1 and x
+
+
+SLICED = SlicedRow()
 
 
 class RollerRow(NamedTuple):
-    """Rows of the rollers array, see `bearing_sim.kernels.lanes.new_rows`; frame: outwards, along the orbit."""
+    """Rows of the rollers array, see `bearing_sim.numerics.simd.new_rows`; frame: outwards, along the orbit."""
 
     radius: int = 0  # r [m]
     angle: int = 1  # phi [rad]
@@ -34,7 +108,7 @@ class RollerRow(NamedTuple):
     skew: int = 3  # and along the orbit
     radial_speed: int = 4  # r' [m/s]
     orbital_speed: int = 5  # phi' [rad/s]
-    tilt_speed: int = 6  # as seen in the frame that turns with the orbit [rad/s]
+    tilt_speed: int = 6  # in the frame that turns with the orbit [rad/s]
     skew_speed: int = 7
     spin: int = 8  # w [rad/s]
     radial_acceleration: int = 9  # r'' [m/s^2]
@@ -69,13 +143,13 @@ class RollerRow(NamedTuple):
     pocket_skew_rate: int = 38  # [rad/s]
     pocket_lean: int = 39  # and outwards [rad]
     pocket_force: int = 40  # of the pocket on the roller along the orbit [N]
-    pocket_moment: int = 41  # sum of force times place along the axis [N m]
+    pocket_moment: int = 41  # sum of force times position along the axis [N m]
     pocket_friction: int = 42  # coefficient, with the sign of the spin
-    pocket_friction_slope: int = 43  # by spin [s/rad]
-    pocket_stiffness: int = 44  # sums over slices of the force's slope by offset, times 1, x, x^2
+    pocket_friction_d_spin: int = 43  # by spin [s/rad]
+    pocket_stiffness: int = 44  # sums over slices of the force's derivative by offset, times 1, x, x^2
     pocket_damping: int = 47  # and by the offset's rate
-    contour: int = 50  # from here on, steps of a prediction: R_e where the roller will be [m]
-    known_radius: int = 51  # what its stage builds on [m, m/s, rad, rad/s]
+    contour: int = 50  # from here on, steps of a prediction: R_e at the roller's new azimuth [m]
+    known_radius: int = 51  # known terms of its stage [m, m/s, rad, rad/s]
     known_speed: int = 52
     known_tilt: int = 53
     known_tilt_speed: int = 54
@@ -83,31 +157,28 @@ class RollerRow(NamedTuple):
     guide_rate: int = 56  # its time derivative [m/s]
     guide_lean_rate: int = 57  # that of ``pocket_lean`` [rad/s]
     guide_force: int = 58  # of the pocket on the roller, outwards from the cage [N]
-    guide_moment: int = 59  # sum of force times place along the axis [N m]
+    guide_moment: int = 59  # sum of force times position along the axis [N m]
     guide_stiffness: int = 60  # as ``pocket_stiffness``
     guide_damping: int = 63
 
 
 ROLLER = RollerRow()
-ROLLER_ROWS = 66
 
 
 class Work(NamedTuple):
     """Memory that the level writes while it computes."""
 
     rollers: np.ndarray  # rows `ROLLER`
-    contacts: np.ndarray  # rows `bearing_sim.levels.spatial_slices.SLICED`, those with the inner raceway first
-    pieces: np.ndarray  # of contacts, see `bearing_sim.levels.spatial_slices.load_pieces`
-    slopes: np.ndarray  # derivatives through each roller, see `bearing_sim.levels.spatial_algebra`
+    contacts: np.ndarray  # rows `bearing_sim.levels.spatial.state.SLICED`, those with the inner raceway first
+    pieces: np.ndarray  # of contacts, see `bearing_sim.levels.spatial.slices.load_pieces`
+    jacobian: np.ndarray  # derivatives through each roller, see `bearing_sim.levels.spatial.state`
     chain: np.ndarray  # scratch for derivatives of one block of rollers, shape (1, 208, LANES)
     border_own: np.ndarray  # derivatives of the border's accelerations by border positions and speeds, shape (9, 18)
     lands: np.ndarray  # scratch of the guide lands, shape (4, 18)
     land_own: np.ndarray  # scratch of the guide lands, shape (2, 5, 10)
     factored: Factored  # of I - gamma h J
     load_means: np.ndarray  # running means of Q_i^4 and Q_e^4.5 over a cage turn, shape (2,)
-    slice_means: np.ndarray  # running means of the slices' loads to the powers 4 (inner) and 4.5, see `bearing_sim.rating_life`, shape (2, N)
-    held: np.ndarray  # shift of the factorisation at hand and end of the last step [s], shape (2,)
-    counts: np.ndarray  # right-hand sides, Jacobians and factorisations inside steps, int64
+    slice_means: np.ndarray  # running means of the slices' loads to the powers 4 (inner) and 4.5, see `bearing_sim.physics.rating_life`, shape (2, N)
 
 
 def new_work(params):
@@ -121,17 +192,15 @@ def new_work(params):
     return Work(
         rollers=rollers,
         contacts=np.zeros((2 * rollers.shape[0], SLICED_ROWS, LANES)),
-        pieces=np.zeros((2 * rollers.shape[0] * -(-len(params.slices.places) // params.slices.together), PIECE_ROWS, LANES)),
-        slopes=new_rows(SLOPES, count),
+        pieces=np.zeros((2 * rollers.shape[0] * -(-len(params.slices.positions) // params.slices.together), PIECE_ROWS, LANES)),
+        jacobian=new_rows(JACOBIAN_ROWS, count),
         chain=np.zeros((1, 208, LANES)),
         border_own=np.zeros((BORDER, 2 * BORDER)),
         lands=np.zeros((4, 2 * BORDER)),
         land_own=np.zeros((2, 5, 10)),
         factored=new_factored(count),
         load_means=np.zeros(2),
-        slice_means=np.zeros((2, len(params.slices.places))),
-        held=np.zeros(2),
-        counts=np.zeros(3, np.int64),
+        slice_means=np.zeros((2, len(params.slices.positions))),
     )
 
 

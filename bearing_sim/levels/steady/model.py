@@ -1,14 +1,13 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Level ``steady``: the periodic state of level ``slip`` at the present inputs, and the cage's first-order lag behind it.
 
-State: y = (theta_c, omega_c) in rad and rad/s.  The cage's speed goes to that of the operating point as exp(-t/T), T from the
-operating point, too; everything else is that of the operating point at once.  Operating points come from a table where there
-is one that holds the inputs, and from `bearing_sim.levels.steady_point` where not, or from a march of level ``slip`` where that
-finds no periodic state: nothing is extrapolated.
+State: y = (theta_c, omega_c) in rad and rad/s.  The cage's speed approaches that of the operating point as exp(-t/T), with T from the
+operating point, too; everything else takes the operating point's value at once.  Operating points come from a table where there is one
+that holds the inputs, otherwise from `bearing_sim.levels.steady.operating_point`: nothing is extrapolated.
 
 A sample has the loads, radii and ring position of level ``slip`` at the cage's angle and speed; equivalent loads, lives and
-powers are means over a roller pitch.  Roller spins, their angles and pocket forces are not given: they are NaN.  Left out,
-besides what level ``slip`` leaves out: all that happens within a cage turn, and the spins' own lag.
+powers are means over a roller pitch.  Roller spins, their angles and pocket forces are not computed: they are NaN.  Left out, besides
+what level ``slip`` leaves out: everything that happens within a cage turn, and the spins' own lag.
 """
 
 import math
@@ -16,29 +15,27 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.integrators.status import COUNT, NOT_EVALUATED, OK, STEP_BUDGET
-from bearing_sim.kernels.compilation import kernel
-from bearing_sim.kernels.load_balance import LOAD
-from bearing_sim.levels import slip
-from bearing_sim.levels.growth import inner_growth
-from bearing_sim.levels.inputs import Drive, load_at, shaft_speed_at
-from bearing_sim.levels.observation import observe_course
-from bearing_sim.levels.slip import OMEGA, THETA, Model
-from bearing_sim.levels.steady_march import March, march, new_march
-from bearing_sim.levels.steady_orbit import Orbit, new_orbit
-from bearing_sim.levels.steady_point import ANSWER, CREEP, FAILED, solve_point
-from bearing_sim.levels.steady_table import Place, Table, covers, empty_table, look_up, new_place
-from bearing_sim.params import Lubrication
-from bearing_sim.sample import COLUMN, SCALARS
+from bearing_sim.levels.common.model import Drive, Model, inner_growth, load_at, shaft_speed_at
+from bearing_sim.levels.common.observation import observe_course
+from bearing_sim.levels.slip import state as slip_state
+from bearing_sim.levels.slip.forces import balance_loads
+from bearing_sim.levels.slip.state import OMEGA, THETA
+from bearing_sim.levels.steady.operating_point import ANSWER, CREEP, FAILED, March, Orbit, march, new_march, new_orbit, solve_point
+from bearing_sim.levels.steady.table import LookUp, Table, covers, empty_table, look_up, new_look_up
+from bearing_sim.model.params import Lubrication
+from bearing_sim.model.sample import COLUMN, SCALARS
+from bearing_sim.numerics.compilation import kernel
+from bearing_sim.numerics.time_stepping import COUNT, NOT_EVALUATED, OK, STEP_BUDGET
+from bearing_sim.physics.load_balance import LOAD
 
 
 class Work(NamedTuple):
     """Memory that the level writes while it computes."""
 
-    bearing: slip.Work  # of level slip
+    bearing: slip_state.Work  # of level slip
     orbit: Orbit
     table: Table
-    place: Place
+    scratch: LookUp
     answer: np.ndarray  # at the newest inputs, shape (len(ANSWER),)
     inputs: np.ndarray  # scratch: speed, loads, temperature, shape (4,)
     asked: np.ndarray  # inputs that were last solved for: speed, loads, temperature, shape (4,)
@@ -50,10 +47,10 @@ class Work(NamedTuple):
 def new_work(params, table: Table | None = None):
     """Return the level's workspace for a bearing; without a table every operating point is solved."""
     return Work(
-        bearing=slip.new_work(params),
+        bearing=slip_state.new_work(params),
         orbit=new_orbit(params.rollers.count),
         table=table if table is not None else empty_table(),
-        place=new_place(),
+        scratch=new_look_up(),
         answer=np.full(len(ANSWER), math.nan),
         inputs=np.zeros(4),
         asked=np.full(4, math.nan),
@@ -85,7 +82,7 @@ def solve_condition(shaft_speed, load_y, load_z, model, work):
     if asked[0] == shaft_speed and asked[1] == load_y and asked[2] == load_z and asked[3] == model.lubrication.temperature:
         return True
     asked[0] = math.nan
-    constant = Model(model.params, model.lubrication, Drive(0.0, shaft_speed, 0.0, load_y, 0.0, load_z, 0.0), model.tolerance)
+    constant = Model(model.params, model.lubrication, Drive(0.0, shaft_speed, 0.0, load_y, 0.0, load_z, 0.0), model.tolerances)
     status = solve_point(constant, work.bearing, work.orbit, work.solved)
     work.solutions[0] += 1
     if status == FAILED:
@@ -105,7 +102,7 @@ def _from_table(inputs, work):
     speed, load, temperature = inputs[0], math.hypot(inputs[1], inputs[2]), inputs[3]
     if not covers(speed, load, temperature, work.table):
         return False
-    look_up(speed, load, temperature, math.atan2(inputs[2], inputs[1]), work.table, work.place, work.answer)
+    look_up(speed, load, temperature, math.atan2(inputs[2], inputs[1]), work.table, work.scratch, work.answer)
     return math.isfinite(work.answer[ANSWER.cage_slip])
 
 
@@ -135,7 +132,7 @@ def _write_sample(t, y, model, work, interval, previous, row):
         row[COLUMN.shaft_power + column] = answer[ANSWER.shaft_power + column]
     load_y, load_z = load_at(t, model.drive)
     work.bearing.growth[0] = inner_growth(shaft_speed_at(t, model.drive), model)
-    slip.balance_loads(cage_angle, cage_speed, load_y, load_z, params, work.bearing)
+    balance_loads(cage_angle, cage_speed, load_y, load_z, params, work.bearing)
     row[COLUMN.ring_y] = work.bearing.ring[0]
     row[COLUMN.ring_z] = work.bearing.ring[1]
     for j in range(count):
@@ -152,7 +149,7 @@ def _write_sample(t, y, model, work, interval, previous, row):
 
 @kernel
 def observe(t, y, model, work, interval, previous, row, rate):
-    """Write the sample of state ``y``; parameters as of `bearing_sim.levels.slip.observe`."""
+    """Write the sample of state ``y``; parameters as of `bearing_sim.levels.slip.model.observe`."""
     load_y, load_z = load_at(t, model.drive)
     if not answer_at(shaft_speed_at(t, model.drive), load_y, load_z, model, work):
         for column in range(work.answer.shape[0]):
@@ -162,7 +159,7 @@ def observe(t, y, model, work, interval, previous, row, rate):
 
 @kernel
 def _follow(before, after, lag, duration, y):
-    """Let the cage follow a speed that goes linearly from one to another, exactly; a lag that is not known counts as none."""
+    """Let the cage follow, exactly, a speed that changes linearly; an unknown lag (NaN) counts as 0."""
     rise = (after - before) / duration
     if not lag > 0.0:
         y[THETA] += 0.5 * (before + after) * duration
@@ -181,7 +178,7 @@ def _settled_speed(shaft_speed, model, work):
 
 @kernel
 def advance(t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
-    """Advance sample by sample; parameters and results as in `bearing_sim.levels.advance.advance_by`.
+    """Advance sample by sample; parameters and results as in `bearing_sim.levels.common.advance.advance_by`.
 
     A step is a sample: the inputs change linearly between samples, and so does the speed that the cage follows.
     """
@@ -208,13 +205,15 @@ def advance(t, duration, y, h, maximum_step, budget, model, work, memory, counts
 
 
 @kernel
-def advance_course(start, times, inputs, kinematic_viscosities, y, model, work, counts, previous, rows):
+def advance_profile(start, stretches, inputs, kinematic_viscosities, y, model, work, counts, previous, rows):
     """Advance from instant to instant of a course of inputs, for as long as the table holds them.
+
+    Time is summed stretch by stretch, as `bearing_sim.simulation.Simulation.advance` does: how a course is cut into calls changes nothing.
 
     Parameters
     ----------
     start : time of the state [s].
-    times : instants, rising [s], shape (n,).
+    stretches : time from each instant to the next [s], positive, shape (n,).
     inputs : shaft speed [rad/s], load y, load z [N], oil temperature [K] before the first instant and at each, shape (n + 1, 4).
     kinematic_viscosities : of the oil at each instant [m^2/s], shape (n,).
     y : state, advanced in place.
@@ -230,12 +229,13 @@ def advance_course(start, times, inputs, kinematic_viscosities, y, model, work, 
     if not _from_table(inputs[0], work):
         return 0
     settled, before, now = _settled_speed(inputs[0, 0], model, work), previous, start
-    for k in range(times.shape[0]):
+    for k in range(stretches.shape[0]):
         if not _from_table(inputs[k + 1], work):
             return k
         speed, load_y, load_z, temperature = inputs[k + 1, 0], inputs[k + 1, 1], inputs[k + 1, 2], inputs[k + 1, 3]
         reached = _settled_speed(speed, model, work)
-        interval = times[k] - now
+        interval = stretches[k]
+        now += interval
         _follow(settled, reached, work.answer[ANSWER.lag], interval, y)
         counts[COUNT.steps] += 1
         there = Model(
@@ -250,12 +250,12 @@ def advance_course(start, times, inputs, kinematic_viscosities, y, model, work, 
                 growth.constant + growth.by_temperature * temperature,
                 kinematic_viscosities[k],
             ),
-            Drive(times[k], speed, 0.0, load_y, 0.0, load_z, 0.0),
-            model.tolerance,
+            Drive(now, speed, 0.0, load_y, 0.0, load_z, 0.0),
+            model.tolerances,
         )
-        _write_sample(times[k], y, there, work, interval, before, rows[k])
-        settled, before, now = reached, rows[k], times[k]
-    return times.shape[0]
+        _write_sample(now, y, there, work, interval, before, rows[k])
+        settled, before = reached, rows[k]
+    return stretches.shape[0]
 
 
 @kernel
@@ -277,18 +277,18 @@ def solve_conditions(conditions, model, work, answers):
 
 
 @kernel
-def look_up_conditions(conditions, table, place, answers):
+def look_up_conditions(conditions, table, scratch, answers):
     """Interpolate in a table; an answer outside of it is NaN.
 
     Parameters
     ----------
     conditions : shaft speed [rad/s], load [N], oil temperature [K] and direction of the load [rad] of each, shape (n, 4).
-    table, place : as in `bearing_sim.levels.steady_table.look_up`.
+    table, scratch : as in `bearing_sim.levels.steady.table.look_up`.
     answers : result, shape (n, len(ANSWER)).
     """
     for k in range(conditions.shape[0]):
         if covers(conditions[k, 0], conditions[k, 1], conditions[k, 2], table):
-            look_up(conditions[k, 0], conditions[k, 1], conditions[k, 2], conditions[k, 3], table, place, answers[k])
+            look_up(conditions[k, 0], conditions[k, 1], conditions[k, 2], conditions[k, 3], table, scratch, answers[k])
         else:
             for column in range(answers.shape[1]):
                 answers[k, column] = math.nan

@@ -1,9 +1,22 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""One operating point of level ``steady``: which periodic state a bearing settles in, and what it is like there.
+"""One operating point of level ``steady``: which periodic state a bearing settles in, and its means there.
 
-Several states may be in balance where slip is large.  A run from ideal rolling settles in the one whose slip comes first: the
-spins follow the cage within a fraction of its own time, so the cage goes down the mean torque until that is zero.  The search
-does the same: from ideal rolling on in steps of slip until the mean torque on the cage changes its sign.
+**The spins of an even cage.** After a roller pitch of cage rotation every roller stands where the one ahead of it stood, and so do loads and
+spins.  Along the orbit a spin obeys
+
+    |omega_c| dw/dtheta = f(theta, w),
+
+f the right-hand side of level ``slip``.  It is solved at N nodes a pitch, Z N in all, by backward differences that close upon themselves
+(`bearing_sim.numerics.linear_algebra`) and Newton's method: means over a pitch are found without marching to them.  The cage's speed is held
+constant; its ripple within a pitch moves the mean slip by far less than the error of the differences (`test/test_level_steady.py`
+measures both).
+
+**The cage's speed.** Where slip is large, several states may be in balance.  A run from ideal rolling settles in the one whose slip comes
+first: the spins follow the cage within a fraction of its own time, so the cage follows the mean torque until that is zero.  The search
+does the same: from ideal rolling in steps of slip until the mean torque on the cage changes its sign.
+
+**Marching.** A traction curve that falls steeply (cold oil, a loaded bearing that creeps) makes spins jump: they have no smooth periodic curve.
+There level ``slip`` is marched until it has settled.
 """
 
 import math
@@ -11,12 +24,24 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.kernels.compilation import kernel
-from bearing_sim.kernels.cyclic import solve_cyclic
-from bearing_sim.levels.slip import OMEGA, SPIN, equivalent_loads, rhs
-from bearing_sim.levels.slip_power import slip_powers
-from bearing_sim.levels.steady_orbit import set_state, solve_spins
+from bearing_sim.levels.slip.forces import equivalent_loads
+from bearing_sim.levels.slip.methods import advance_rosenbrock2
+from bearing_sim.levels.slip.model import rhs, rhs_and_jacobian
+from bearing_sim.levels.slip.power import slip_powers
+from bearing_sim.levels.slip.state import OMEGA, SPIN, THETA
+from bearing_sim.model.sample import COLUMN, flat, new_block
+from bearing_sim.numerics.compilation import kernel
+from bearing_sim.numerics.linear_algebra import ALPHA_0, ARROW, STEPS, backward_difference, solve_cyclic
+from bearing_sim.numerics.time_stepping import OK, STEP_BUDGET, Memory, new_counts, new_memory
+from bearing_sim.physics.load_balance import LOAD
+from bearing_sim.physics.pocket import pocket_friction
 
+ANGLES = 11  # N
+_LEAST_SLOPE = 1e-6  # a spin that nothing brakes or drives keeps what it has
+_FALLING = -0.8  # of alpha_0; more of a falling traction curve would reverse Newton's step
+_SHORTER, _LONGER = 0.4, 1.6
+_SHORTEST_CHANGE = 1e-9
+_LONGEST_CHANGE = 0.3  # of the spin of rolling, in an iteration
 CREEP = 1.0  # rad/s; a slower shaft is answered for as if it turned so fast
 SETTLED, STOPPED, FAILED = 0, 1, 2
 REASONS = {
@@ -24,8 +49,6 @@ REASONS = {
     STOPPED: "nothing drives the cage",
     FAILED: "no periodic state was found",
 }
-
-_SLIPS = np.array([0.0, 1e-3, 4e-3, 0.012, 0.03, 0.06, 0.1, 0.15, 0.2, 0.26, 0.33, 0.4, 0.48, 0.56, 0.64, 0.72, 0.8, 0.88, 0.94, 0.98, 0.995, 0.999])
 _ITERATIONS = 15
 _CAREFUL_ITERATIONS = 150
 _ROUGH, _FINE = 1e-3, 1e-5  # of the spin of rolling
@@ -33,6 +56,175 @@ _SLIP_TOLERANCE = 1e-5
 _LARGEST_LEAD = 0.1  # negative slip; a cage that seems to be driven beyond has spins that were not resolved
 _HALVINGS = 40
 _LAG_CHANGE = 1e-2  # of the slip
+_SAMPLES = 24  # in a window
+_TURNS = 3.37  # of an ideal cage in the first window, no whole number of pitches
+_WINDOWS = 12  # each twice as long as the one before from the second on
+_AGREED, _AGREED_FLOOR = 2e-3, 5e-5  # of slips of two windows
+_FIRST_STEP, _LONGEST_STEP = 1e-6, 1.0  # s
+_AN_INSTANT = 1e-6  # of an ideal cage turn
+
+
+class Orbit(NamedTuple):
+    """State and workspace; M = N Z nodes along the orbit, in the order in which a roller passes them."""
+
+    speed: np.ndarray  # of the cage that the spins belong to [rad/s], shape (1,)
+    spins: np.ndarray  # [rad/s], shape (M,)
+    accelerations: np.ndarray  # of the cage at N angles [rad/s^2], shape (N,)
+    rates: np.ndarray  # dw/dt [rad/s^2], shape (M,)
+    d_spin: np.ndarray  # derivatives of these by the spin itself [1/s], shape (M,)
+    drives: np.ndarray  # derivatives of the cage's acceleration by the spins [1/s], shape (M,)
+    diagonal: np.ndarray  # of the differences' equations, shape (M,)
+    column: np.ndarray  # a right side, and three for the closing of the orbit, shape (M, 1 + 3)
+    beside: np.ndarray  # spins at a cage speed nearby, shape (M,)
+    residual: np.ndarray  # right side of the iteration before, shape (M,)
+    reach: np.ndarray  # how far each spin may go in an iteration [rad/s], shape (M,)
+    state: np.ndarray  # of level slip, shape (Z + 2,)
+    rate: np.ndarray  # shape (Z + 2,)
+
+
+def new_orbit(count: int, angles: int = ANGLES) -> Orbit:
+    """Return zeroed memory for ``count`` rollers and that many angles a pitch."""
+    nodes = count * angles
+    return Orbit(
+        speed=np.ones(1),
+        spins=np.zeros(nodes),
+        accelerations=np.zeros(angles),
+        rates=np.zeros(nodes),
+        d_spin=np.zeros(nodes),
+        drives=np.zeros(nodes),
+        diagonal=np.zeros(nodes),
+        column=np.zeros((nodes, 1 + STEPS)),
+        beside=np.zeros(nodes),
+        residual=np.zeros(nodes),
+        reach=np.zeros(nodes),
+        state=np.zeros(count + 2),
+        rate=np.zeros(count + 2),
+    )
+
+
+@kernel
+def roller_at(i, sense, count):
+    """Return which roller stands i pitches along the orbit from roller 0."""
+    return i if sense > 0.0 else (count - i) % count
+
+
+@kernel
+def set_state(k, speed, sense, params, orbit):
+    """Write the state of level slip at the k-th angle: node k + N i of the orbit is where roller `roller_at` of i stands."""
+    angles, count, state = orbit.accelerations.shape[0], params.rollers.count, orbit.state
+    state[THETA] = sense * 2.0 * math.pi * k / (angles * count)
+    state[OMEGA] = speed
+    for i in range(count):
+        state[SPIN + roller_at(i, sense, count)] = orbit.spins[k + angles * i]
+
+
+@kernel
+def _take_jacobian(k, sense, params, work, orbit):
+    """Take level slip's derivatives at the k-th angle, and add what its Jacobian leaves out: a pocket presses as its roller is driven."""
+    angles, rollers, cage = orbit.accelerations.shape[0], params.rollers, params.cage
+    rows, loads, count = work.jacobian.rows, work.loads, params.rollers.count
+    inertia = cage.inertia
+    for j in range(count):
+        inertia += rollers.mass * loads[LOAD.radius, j] * loads[LOAD.radius, j]
+    for i in range(count):
+        node, j = k + angles * i, roller_at(i, sense, count)
+        radius = loads[LOAD.radius, j]
+        pressed = work.tangential[j] > rollers.mass * radius * orbit.accelerations[k]
+        friction = pocket_friction(orbit.state[SPIN + j], cage.pocket_friction) * (1.0 if pressed else -1.0)
+        driven = rows[ARROW.row, j] / radius  # derivative of the force along the orbit, over the inertia
+        orbit.d_spin[node] = rows[ARROW.diagonal, j] - friction * rollers.radius * inertia * driven / rollers.inertia
+        orbit.drives[node] = rows[ARROW.row, j] - params.variants.pocket_reaction * friction * rollers.radius * driven
+
+
+@kernel
+def _linearise(speed, sense, model, work, orbit):
+    """Evaluate level slip at all angles; write derivatives, and the residuals into ``orbit.column``; return whether loads balanced."""
+    angles, count, nodes = orbit.accelerations.shape[0], model.params.rollers.count, orbit.spins.shape[0]
+    for k in range(angles):
+        set_state(k, speed, sense, model.params, orbit)
+        if not rhs_and_jacobian(0.0, orbit.state, model, work, orbit.rate):
+            return False
+        orbit.accelerations[k] = orbit.rate[OMEGA]
+        for i in range(count):
+            orbit.rates[k + angles * i] = orbit.rate[SPIN + roller_at(i, sense, count)]
+        _take_jacobian(k, sense, model.params, work, orbit)
+    interval = 2.0 * math.pi / (nodes * sense * speed)  # time from node to node
+    for m in range(nodes):
+        orbit.diagonal[m] = max(_LEAST_SLOPE - interval * orbit.d_spin[m], _FALLING * ALPHA_0)
+        orbit.column[m, 0] = interval * orbit.rates[m] - backward_difference(orbit.spins, m)
+    return True
+
+
+@kernel
+def _largest(column):
+    """Return the largest magnitude of a first column; NaN where it holds one."""
+    largest = 0.0
+    for m in range(column.shape[0]):
+        size = abs(column[m, 0])
+        if not size <= largest:
+            largest = size
+    return largest
+
+
+@kernel
+def _adapt_reach(scale, iteration, orbit):
+    """Shorten the reach of a spin that was sent past its root, lengthen it where it was not."""
+    for m in range(orbit.spins.shape[0]):
+        left, longest = orbit.column[m, 0], _LONGEST_CHANGE * scale
+        if iteration == 0:
+            orbit.reach[m] = longest
+        elif left * orbit.residual[m] < 0.0:
+            orbit.reach[m] *= _SHORTER
+        else:
+            orbit.reach[m] = min(orbit.reach[m] * _LONGER, longest)
+        orbit.reach[m] = max(orbit.reach[m], _SHORTEST_CHANGE * scale)
+        orbit.residual[m] = left
+        # where traction falls with sliding, the root lies in the direction of the residual, not in that of the derivative
+        orbit.diagonal[m] = max(orbit.diagonal[m], _LEAST_SLOPE)
+
+
+@kernel
+def solve_spins(speed, sense, model, work, orbit, tolerance, iterations, careful):
+    """Find the spin curve by Newton's method from ``orbit.spins`` on; ``orbit.accelerations`` are those of the last iterate but one.
+
+    Parameters
+    ----------
+    speed : of the cage [rad/s].
+    sense : of rotation, 1.0 or -1.0.
+    model, work : of level slip, the inputs constant.
+    tolerance : longest last change, a fraction of the spin of rolling.
+    iterations : most of them.
+    careful : whether each spin has a reach of its own, which keeps the iteration together on traction curves that rise
+        steeply and are flat beyond, where Newton's leaps from one side to the other.
+
+    Returns
+    -------
+    converged : bool
+    """
+    nodes = orbit.spins.shape[0]
+    scale = abs(speed) * model.params.raceways.pitch_radius / model.params.rollers.radius
+    for iteration in range(iterations):
+        if not _linearise(speed, sense, model, work, orbit):
+            return False
+        if careful:
+            _adapt_reach(scale, iteration, orbit)
+        if not solve_cyclic(orbit.diagonal, orbit.column):
+            return False
+        if careful:
+            for m in range(nodes):
+                orbit.column[m, 0] = min(max(orbit.column[m, 0], -orbit.reach[m]), orbit.reach[m])
+        change = _largest(orbit.column)
+        if not math.isfinite(change):
+            return False
+        fraction = min(1.0, _LONGEST_CHANGE * scale / max(change, 1e-300))
+        for m in range(nodes):
+            orbit.spins[m] += fraction * orbit.column[m, 0]
+        if change <= tolerance * scale:
+            return True
+    return False
+
+
+_SLIPS = np.array([0.0, 1e-3, 4e-3, 0.012, 0.03, 0.06, 0.1, 0.15, 0.2, 0.26, 0.33, 0.4, 0.48, 0.56, 0.64, 0.72, 0.8, 0.88, 0.94, 0.98, 0.995, 0.999])
 
 
 class AnswerColumn(NamedTuple):
@@ -42,7 +234,7 @@ class AnswerColumn(NamedTuple):
     lag: int = 1  # time constant of the cage's way back to it [s]
     inner_equivalent_load: int = 2  # [N]
     outer_equivalent_load: int = 3
-    shaft_power: int = 4  # from here on means in time [W]; the order is that of `bearing_sim.levels.power.Powers`
+    shaft_power: int = 4  # from here on means in time [W]; the order is that of `bearing_sim.levels.common.power.Powers`
     inner_sliding_power: int = 5
     outer_sliding_power: int = 6
     churning_power: int = 7
@@ -125,21 +317,21 @@ def _lag(slip, ideal, sense, model, work, orbit):
     The slope of the mean drive by cage speed, over the inertia: that of cage and orbiting rollers, and of the spins that must
     go with them, felt through the tractions.
     """
-    places, angles = orbit.spins.shape[0], orbit.accelerations.shape[0]
+    nodes, angles = orbit.spins.shape[0], orbit.accelerations.shape[0]
     change = _LAG_CHANGE * max(abs(slip), 1e-3) * ideal
     speed = ideal * (1.0 - slip)
     above = _mean_drive(speed + change, sense, model, work, orbit, _FINE)
-    for m in range(places):
+    for m in range(nodes):
         orbit.beside[m] = orbit.spins[m]
     below = _mean_drive(speed - change, sense, model, work, orbit, _FINE)
     slope = sense * (above - below) / (2.0 * change)
-    interval = 2.0 * math.pi / (places * sense * speed)
-    for m in range(places):
+    interval = 2.0 * math.pi / (nodes * sense * speed)
+    for m in range(nodes):
         orbit.column[m, 0] = interval * (orbit.beside[m] - orbit.spins[m]) / (2.0 * change)
-    if not math.isfinite(slope) or not slope < 0.0 or not solve_cyclic(orbit.slopes, orbit.column):
+    if not math.isfinite(slope) or not slope < 0.0 or not solve_cyclic(orbit.diagonal, orbit.column):
         return math.nan
     inertia = 1.0
-    for m in range(places):
+    for m in range(nodes):
         inertia += orbit.drives[m] * orbit.column[m, 0] / angles
     return -inertia / slope
 
@@ -172,7 +364,7 @@ def solve_point(model, work, orbit, answer):
     ----------
     model : of level slip; inputs constant, the shaft not slower than `CREEP`.
     work : of level slip.
-    orbit : `bearing_sim.levels.steady_orbit.Orbit`; keeps the state that was found, and the cage's accelerations in it.
+    orbit : `bearing_sim.levels.steady.operating_point.Orbit`; keeps the state that was found, and the cage's accelerations in it.
     answer : result, shape (len(ANSWER),); NaN where no state was found.
 
     Returns
@@ -203,4 +395,90 @@ def solve_point(model, work, orbit, answer):
     answer[ANSWER.inner_equivalent_load], answer[ANSWER.outer_equivalent_load] = equivalent_loads(
         0.0, speed, model.drive.load_y, model.drive.load_z, model.params, work
     )
+    return status
+
+
+_BUDGET = np.int64(60_000)  # steps of a window; a Python number would be a literal type, and with it a second compilation of the march
+
+
+class March(NamedTuple):
+    """Memory of a march."""
+
+    state: np.ndarray  # of level slip, shape (Z + 2,)
+    memory: Memory
+    counts: np.ndarray
+    rows: np.ndarray  # flat samples, shape (24, ...)
+
+
+def new_march(count: int) -> March:
+    """Return memory for ``count`` rollers."""
+    return March(np.zeros(count + 2), new_memory(count + 2), new_counts(), flat(new_block(_SAMPLES, count)))
+
+
+@kernel
+def march(model, work, memory, answer):
+    """March from ideal rolling until two windows agree; write the means over the last.
+
+    The lag is the area between the cage's speed and its end, over their first distance.  A march that runs out of steps, because spins
+    jump all the time, is taken as far as it got.
+
+    Parameters
+    ----------
+    model : of level slip; inputs constant.
+    work : of level slip.
+    memory : `March`.
+    answer : result, shape (len(ANSWER),).
+
+    Returns
+    -------
+    status : OK, or STEP_BUDGET where the answer has not settled; anything else means that there is none.
+    """
+    params, y, rows = model.params, memory.state, memory.rows
+    shaft_speed = model.drive.shaft_speed
+    ideal = 0.5 * shaft_speed * (1.0 - params.raceways.diameter_ratio)
+    for i in range(y.shape[0]):
+        y[i] = ideal * params.raceways.pitch_radius / params.rollers.radius
+    y[THETA], y[OMEGA] = 0.0, ideal
+    for i in range(memory.counts.shape[0]):
+        memory.counts[i] = 0
+    work.ring[0], work.ring[1] = 0.0, 0.0
+    time, window, step, before = 0.0, _TURNS * math.tau / abs(ideal), _FIRST_STEP, math.inf
+    mean, turned, status = ideal, 0.0, OK
+    for _ in range(_WINDOWS):
+        angle = y[THETA]
+        status, step = advance_rosenbrock2(
+            time, window, y, step, _LONGEST_STEP, _BUDGET, model, work, memory.memory, memory.counts, rows[rows.shape[0] - 1], rows
+        )
+        if status == STEP_BUDGET:
+            break
+        if status != OK:
+            return status
+        time += window
+        turned = y[THETA]
+        mean = (y[THETA] - angle) / window
+        slipped = 1.0 - mean / ideal
+        if abs(slipped - before) < _AGREED_FLOOR + _AGREED * abs(slipped):
+            break
+        before = slipped
+        window *= 2.0
+    if status == STEP_BUDGET and time == 0.0:
+        mean = y[OMEGA]
+        instant = _AN_INSTANT * window
+        again, step = advance_rosenbrock2(
+            time, instant, y, _FIRST_STEP, _LONGEST_STEP, _BUDGET, model, work, memory.memory, memory.counts, rows[rows.shape[0] - 1], rows
+        )
+        if again != OK:
+            return again
+    answer[ANSWER.cage_slip] = 1.0 - mean / ideal
+    away = ideal - mean
+    lag = (turned - mean * time) / away if abs(away) > 1e-6 * abs(ideal) else 0.0
+    answer[ANSWER.lag] = min(max(lag, 0.0), time)
+    for column in range(ANSWER.inner_equivalent_load, answer.shape[0]):
+        source = COLUMN.inner_equivalent_load + column - ANSWER.inner_equivalent_load
+        if column >= ANSWER.shaft_power:
+            source = COLUMN.shaft_power + column - ANSWER.shaft_power
+        total = 0.0
+        for k in range(rows.shape[0]):
+            total += rows[k, source]
+        answer[column] = total / rows.shape[0]
     return status

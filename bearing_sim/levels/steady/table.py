@@ -1,5 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""A table of operating points of level ``steady`` over shaft speed, load, oil temperature and load direction, and its interpolant.
+"""A table of operating points of level ``steady`` over shaft speed, load, oil temperature and load direction: symmetry and interpolant.
+
+The symmetry of the outer raceway's contour saves directions of the load and the reverse sense of rotation.
 
 Along each line of the grid the interpolant is the monotone cubic of Fritsch and Carlson (SIAM J. Numer. Anal. 17, 1980) with the
 slopes of Fritsch and Butland (SIAM J. Sci. Stat. Comput. 5, 1984).  Within a cell the lines' departures from straight ones are
@@ -12,12 +14,54 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.kernels.compilation import kernel
-from bearing_sim.levels.steady_point import ANSWER
+from bearing_sim.levels.steady.operating_point import ANSWER
+from bearing_sim.numerics.compilation import kernel
 
+_SYMMETRY_TOLERANCE = 1e-9  # m; tables of a contour are good to a fifth of it
+_MOST_LOBES = 12
+_PROBES = 997  # azimuths, a prime number: none falls together with its image
 AXES = ("shaft_speed", "load", "oil_temperature", "load_angle")
 _NODE = 1 + len(AXES)  # rows of a node: values, and slopes along each axis
 _CORNERS = 2 ** len(AXES)
+
+
+def radius_at(contour: np.ndarray, azimuths: np.ndarray) -> np.ndarray:
+    """Return R_e [m] at azimuths [rad] from the periodic cubic table of `bearing_sim.physics.raceway`."""
+    intervals = contour.shape[0]
+    position = np.mod(azimuths / (2.0 * math.pi), 1.0) * intervals
+    index = np.minimum(position.astype(int), intervals - 1)
+    x = (position - index) * (2.0 * math.pi / intervals)
+    a, b, c, d = contour[index].T
+    return ((a * x + b) * x + c) * x + d
+
+
+def contour_period(contour: np.ndarray) -> float:
+    """Return the smallest turn that leaves a contour as it is, 2 pi over a whole number up to 12 [rad]; 0 where any turn does."""
+    probes = np.arange(_PROBES) * (2.0 * math.pi / _PROBES)
+    radii = radius_at(contour, probes)
+    if np.ptp(radii) <= _SYMMETRY_TOLERANCE:
+        return 0.0
+    for lobes in range(_MOST_LOBES, 0, -1):
+        period = 2.0 * math.pi / lobes
+        if np.abs(radius_at(contour, probes + period) - radii).max() <= _SYMMETRY_TOLERANCE:
+            return period
+    return 2.0 * math.pi
+
+
+def mirror_axis(contour: np.ndarray) -> float:
+    """Return the azimuth of an axis about which a contour is its own mirror image [rad]; NaN where there is none."""
+    probes = np.arange(_PROBES) * (2.0 * math.pi / _PROBES)
+    waves = np.fft.rfft(radius_at(contour, probes))
+    waves[0] = 0.0
+    strongest = int(np.abs(waves).argmax())
+    if 2.0 * abs(waves[strongest]) / _PROBES <= _SYMMETRY_TOLERANCE:
+        return 0.0
+    # cos(n phi + a) is even about -a/n and every half wave further on
+    for half in range(2 * strongest):
+        axis = (half * math.pi - np.angle(waves[strongest])) / strongest
+        if np.abs(radius_at(contour, axis + probes) - radius_at(contour, axis - probes)).max() <= _SYMMETRY_TOLERANCE:
+            return float(axis)
+    return math.nan
 
 
 class Table(NamedTuple):
@@ -32,10 +76,10 @@ class Table(NamedTuple):
     nodes: np.ndarray  # values and slopes by axis, shape (senses, speeds, loads, temperatures, angles, 5, len(ANSWER))
 
 
-class Place(NamedTuple):
+class LookUp(NamedTuple):
     """Scratch of a look-up."""
 
-    axes: np.ndarray  # by axis: places of both knots, width, share of it, two cubics of that; shape (4, 6)
+    axes: np.ndarray  # by axis: positions of both knots, width, fraction of it, two cubics of that; shape (4, 6)
     weights: np.ndarray  # of a corner's value and slopes, shape (5,)
     bounds: np.ndarray  # least and largest value at the corners, shape (2, len(ANSWER))
 
@@ -46,9 +90,9 @@ def empty_table() -> Table:
     return Table(nothing, nothing, nothing, nothing, 2.0 * math.pi, math.nan, np.zeros((0, 0, 0, 0, 0, _NODE, len(ANSWER))))
 
 
-def new_place() -> Place:
+def new_look_up() -> LookUp:
     """Return memory for a look-up."""
-    return Place(np.zeros((len(AXES), 6)), np.zeros(_NODE), np.zeros((2, len(ANSWER))))
+    return LookUp(np.zeros((len(AXES), 6)), np.zeros(_NODE), np.zeros((2, len(ANSWER))))
 
 
 def monotone_slopes(knots: np.ndarray, values: np.ndarray, axis: int, period: float = 0.0) -> np.ndarray:
@@ -108,10 +152,10 @@ def _locate(value, knots, period, row):
         width = period - knots[last] + knots[0]
     else:
         width = knots[high] - knots[low]
-    share = (value - knots[low]) / width if width > 0.0 else 0.0
-    left = 1.0 - share
-    row[0], row[1], row[2], row[3] = low, high, width, share
-    row[4], row[5] = share * left * left, share * share * left
+    fraction = (value - knots[low]) / width if width > 0.0 else 0.0
+    left = 1.0 - fraction
+    row[0], row[1], row[2], row[3] = low, high, width, fraction
+    row[4], row[5] = fraction * left * left, fraction * fraction * left
 
 
 @kernel
@@ -127,7 +171,7 @@ def covers(speed, load, temperature, table):
 
 
 @kernel
-def look_up(speed, load, temperature, angle, table, place, answer):
+def look_up(speed, load, temperature, angle, table, scratch, answer):
     """Interpolate between the table's nodes; the condition must be one that it `covers`.
 
     Parameters
@@ -137,7 +181,7 @@ def look_up(speed, load, temperature, angle, table, place, answer):
     temperature : [K].
     angle : direction of the load [rad].
     table : `Table`.
-    place : scratch.
+    scratch : memory of `new_look_up`.
     answer : result, shape (len(ANSWER),); NaN beside a node without an answer.
     """
     sense = 0
@@ -147,7 +191,7 @@ def look_up(speed, load, temperature, angle, table, place, answer):
         else:
             angle = 2.0 * table.mirror - angle
     angle -= table.period * math.floor(angle / table.period)
-    axes, weights, bounds = place.axes, place.weights, place.bounds
+    axes, weights, bounds = scratch.axes, scratch.weights, scratch.bounds
     _locate(abs(speed), table.speeds, 0.0, axes[0])
     _locate(load, table.loads, 0.0, axes[1])
     _locate(temperature, table.temperatures, 0.0, axes[2])

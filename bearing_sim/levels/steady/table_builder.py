@@ -1,32 +1,40 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""A table of operating points, refined until its interpolant agrees with the solver at new points.
+"""Tables of operating points: built by refinement until the interpolant agrees with the solver, and kept on disk.
 
-Knots are added along one axis at a time: between two neighbours, where the interpolant in the middle misses the solver on any
-of some lines of the grid drawn by lot.  What is reported in the end comes from points drawn anywhere in the table.
+Knots are added along one axis at a time: between two neighbours, where the interpolant in the middle is off by too much on any of some
+randomly drawn lines of the grid.  The quality that is reported comes from points drawn anywhere in the table.
+
+On disk each table stands under a hash of all that its numbers depend on; a file that cannot be read counts as none.
 """
 
+import hashlib
+import io
 import itertools
 import math
+import os
+import tempfile
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+import platformdirs
 
-from bearing_sim.cores import cores
-from bearing_sim.levels.inputs import Drive
-from bearing_sim.levels.slip import Model
-from bearing_sim.levels.steady import look_up_conditions, new_work, solve_conditions
-from bearing_sim.levels.steady_point import ANSWER
-from bearing_sim.levels.steady_table import AXES, Table, monotone_slopes, new_place
-from bearing_sim.params import Lubrication, Params
-from bearing_sim.rating_life import rating_life_revolutions
-from bearing_sim.tables.symmetry import contour_period, mirror_axis
+from bearing_sim.levels.common.model import DEFAULT_TOLERANCES, Drive, Model
+from bearing_sim.levels.steady.model import look_up_conditions, new_work, solve_conditions
+from bearing_sim.levels.steady.operating_point import ANSWER
+from bearing_sim.levels.steady.table import AXES, Table, contour_period, mirror_axis, monotone_slopes, new_look_up
+from bearing_sim.model.params import Lubrication, Params, lubricate, pack
+from bearing_sim.numerics.compilation import sources_hash
+from bearing_sim.numerics.cores import cores
+from bearing_sim.physics.rating_life import load_rating, rating_life_revolutions
+from bearing_sim.scene.scene import Scene
 
 _SLIP_FLOOR = 2.5e-4  # absolute error of slip that is allowed besides
-_SHARE = 0.5  # of the error allowed in all, for one axis
+_FRACTION = 0.5  # of the error allowed in all, for one axis
 _LAG_FLOOR, _LAG_LENIENCE = 2e-3, 10.0  # s, and times as much error: a lag shows only while the inputs change
 _LINES = 24  # drawn for each interval
 _ROUNDS = 7  # an interval is halved so many times at most
@@ -35,6 +43,9 @@ _CHECKS = 400
 _CHUNK = 16  # conditions solved in one go by a thread
 _FIRST_SPEEDS, _FIRST_LOADS = (0.0, 0.08, 0.2, 0.4, 0.6, 0.8, 1.0), (0.0, 0.005, 0.03, 0.08, 0.15, 0.25, 0.5, 1.0)
 _FIRST_TEMPERATURES, _FIRST_ANGLES = 4, 6
+_LOAD_FRACTION = 0.5  # of the dynamic load rating: what ISO/TS 16281 is for
+_SPEED_FRACTION = 1.2  # of the operating speed
+_OILS = 9  # temperatures at which the oil goes into the hash
 
 
 class Span(NamedTuple):
@@ -55,7 +66,7 @@ class Quality(NamedTuple):
     solved: int  # operating points solved for
     seconds: float
     tolerance: float
-    within: float  # share of the points checked that keep the tolerance
+    within: float  # fraction of the points checked that keep the tolerance
     slip_error: float  # the largest, absolute
     slip_error_95: float  # 95th percentile
     life_error: float  # relative
@@ -101,7 +112,7 @@ class Solver:
     def _solve_chunk(self, chunk: list[tuple]) -> np.ndarray:
         if not hasattr(self._local, "work"):
             self._local.work = new_work(self._params)
-        model = Model(self._params, self._lubrications[chunk[0][2]], Drive(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), 1e-2)
+        model = Model(self._params, self._lubrications[chunk[0][2]], Drive(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), DEFAULT_TOLERANCES)
         answers = np.empty((len(chunk), len(ANSWER)))
         solve_conditions(np.ascontiguousarray([[key[0], key[1], key[3]] for key in chunk]), model, self._local.work, answers)
         return answers
@@ -121,8 +132,8 @@ def build_table(
     Parameters
     ----------
     params : of the bearing.
-    lubrication : oil temperature [K] -> `bearing_sim.params.Lubrication`.
-    span : what it shall hold.
+    lubrication : oil temperature [K] -> `bearing_sim.model.params.Lubrication`.
+    span : what the table must cover.
     tolerance : relative error allowed in slip (besides 0.025 points) and in life.
     workers : threads; as many as the machine has cores where absent.
     progress : called now and then with the number of operating points solved for.
@@ -139,7 +150,7 @@ def build_table(
         table = grid.table()
         checks = grid.drawn(_CHECKS)
         exact, found = solver.solve(checks), look_up(table, checks)
-        shares = grid.shares(exact, found)
+        fractions = grid.fractions(exact, found)
         slip, life = np.abs(found - exact)[:, ANSWER.cage_slip], np.abs(_lives(found, params) / _lives(exact, params) - 1.0)
         nodes = table.nodes[..., 0, ANSWER.cage_slip]
         quality = Quality(
@@ -148,7 +159,7 @@ def build_table(
             solver.solved,
             time.perf_counter() - began,
             tolerance,
-            float(np.mean(shares <= 1.0)),
+            float(np.mean(fractions <= 1.0)),
             *(float(np.nanquantile(error, q)) for error in (slip, life) for q in (1.0, 0.95)),
         )
     return table, quality
@@ -157,7 +168,7 @@ def build_table(
 def look_up(table: Table, conditions: np.ndarray) -> np.ndarray:
     """Return the table's answers to conditions (speed, load, temperature, angle), shapes (n, 4) and (n, len(ANSWER)); NaN outside."""
     answers = np.empty((len(conditions), len(ANSWER)))
-    look_up_conditions(np.ascontiguousarray(conditions, float), table, new_place(), answers)
+    look_up_conditions(np.ascontiguousarray(conditions, float), table, new_look_up(), answers)
     return answers
 
 
@@ -228,15 +239,15 @@ class _Grid:
         points[..., axis] = middles[:, None]
         points[..., 0] *= self._random.choice(self._senses, (len(middles), _LINES))
         points = points.reshape(-1, len(AXES))
-        shares = self.shares(self._solver.solve(points), look_up(table, points)).reshape(len(middles), _LINES)
-        return np.flatnonzero(np.nanmax(shares, axis=1, initial=0.0) > _SHARE)
+        fractions = self.fractions(self._solver.solve(points), look_up(table, points)).reshape(len(middles), _LINES)
+        return np.flatnonzero(np.nanmax(fractions, axis=1, initial=0.0) > _FRACTION)
 
     def _halve(self, axis: int, intervals: np.ndarray) -> None:
         middles = 0.5 * (self.knots[axis][intervals] + self._ends(axis)[intervals])
         self.knots[axis] = np.sort(np.concatenate((self.knots[axis], middles)))
 
-    def shares(self, exact: np.ndarray, found: np.ndarray) -> np.ndarray:
-        """Return the largest share of what is allowed that the errors of each answer take; NaN where one is missing."""
+    def fractions(self, exact: np.ndarray, found: np.ndarray) -> np.ndarray:
+        """Return the largest fraction of what is allowed that the errors of each answer take; NaN where one is missing."""
         with np.errstate(invalid="ignore"):
             slip = np.abs(found - exact)[:, ANSWER.cage_slip] / (_SLIP_FLOOR + self._tolerance * np.abs(exact[:, ANSWER.cage_slip]))
             life = np.abs(_lives(found, self._params) / _lives(exact, self._params) - 1.0) / self._tolerance
@@ -247,8 +258,166 @@ class _Grid:
         """Return conditions drawn evenly in speed, temperature and direction and in the square root of the load, shape (count, 4)."""
         low, high = (np.array([knots[end] for knots in self.knots]) for end in (0, -1))
         high[3] = self.period
-        places = self._random.random((count, len(AXES)))
-        places[:, 1] **= 2
-        points = low + places * (high - low)
+        positions = self._random.random((count, len(AXES)))
+        positions[:, 1] **= 2
+        points = low + positions * (high - low)
         points[:, 0] *= self._random.choice(self._senses, count)
         return points
+
+
+FOLDER = Path(platformdirs.user_cache_dir("bearing_sim")) / "tables"
+
+
+def span_of(scene: Scene, temperatures: tuple[float, float] | None = None) -> Span:
+    """Return what the table of a scene spans.
+
+    Parameters
+    ----------
+    scene : its block ``table`` says it, or leaves it to operating speed and load rating.
+    temperatures : lowest and highest oil temperature [K], instead of the scene's.
+    """
+    wanted, bearing, limits = scene.table, scene.bearing, scene.input_limits
+    roller = bearing.roller
+    speed = wanted.maximum_speed or min(_SPEED_FRACTION * abs(scene.operating.shaft_speed) or limits.maximum_speed, limits.maximum_speed)
+    rating = load_rating(roller.count, roller.diameter, roller.length, bearing.diameter_ratio)
+    low, high = temperatures or (wanted.minimum_temperature, wanted.maximum_temperature)
+    reverse = limits.reverse_rotation or scene.operating.shaft_speed < 0.0
+    return Span(float(speed), float(wanted.maximum_load or _LOAD_FRACTION * rating), float(low), float(high), bool(reverse))
+
+
+def table_hash(scene: Scene, span: Span) -> str:
+    """Return a hash of what a table's numbers depend on: bearing, oil at the temperatures of the span, tolerance and this program."""
+    params = pack(scene)
+    digest = hashlib.sha256(sources_hash().encode())
+    oils = [lubricate(scene.lubricant, params, float(kelvin)) for kelvin in np.linspace(span.minimum_temperature, span.maximum_temperature, _OILS)]
+    for number in _numbers((params.rollers, params.raceways, params.cage, params.growth, params.variants, oils, span, scene.table.tolerance)):
+        digest.update(number)
+    return digest.hexdigest()[:24]
+
+
+def _numbers(value) -> Iterable[bytes]:
+    if isinstance(value, (tuple, list)):
+        for item in value:
+            yield from _numbers(item)
+    else:
+        yield np.asarray(value, float).tobytes()
+
+
+def table_path(scene: Scene, span: Span) -> Path:
+    """Return where the table of a scene is kept."""
+    return FOLDER / f"{table_hash(scene, span)}.npz"
+
+
+def read_table(path: Path) -> tuple[Table, Quality] | None:
+    """Return a table from disk, or None where there is none, or none that is whole."""
+    try:
+        data = path.read_bytes()
+        with np.load(io.BytesIO(data[:-32]), allow_pickle=False) as file:
+            if hashlib.sha256(data[:-32]).digest() != data[-32:]:
+                return None
+            period, mirror = (float(number) for number in file["symmetry"])
+            quality = Quality(*(kind(number) for kind, number in zip(Quality.__annotations__.values(), file["quality"].tolist())))
+            knots = [np.ascontiguousarray(file[name], float) for name in ("speeds", "loads", "temperatures", "angles")]
+            values = file["values"]
+            if values.shape[1:] != (*map(len, knots), len(ANSWER)):
+                return None
+            return assembled(knots, period, mirror, values), quality
+    except Exception:  # whatever a broken file makes its reader raise, the table is built again
+        return None
+
+
+def write_table(path: Path, table: Table, quality: Quality) -> None:
+    """Write a table atomically: a reader finds the old file or the new one, never a part."""
+    buffer = io.BytesIO()
+    np.savez_compressed(
+        buffer,
+        speeds=table.speeds,
+        loads=table.loads,
+        temperatures=table.temperatures,
+        angles=table.angles,
+        symmetry=np.array([table.period, table.mirror]),
+        values=np.ascontiguousarray(table.nodes[..., 0, :]),
+        quality=np.array(quality, float),
+    )
+    data = buffer.getvalue()
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.NamedTemporaryFile(dir=path.parent, prefix=path.stem, delete=False) as file:
+        file.write(data + hashlib.sha256(data).digest())
+    os.replace(file.name, path)
+
+
+def cached_table(scene: Scene, temperatures: tuple[float, float] | None = None) -> tuple[Table, Quality] | None:
+    """Return the table of a scene that is on disk, or None."""
+    return read_table(table_path(scene, span_of(scene, temperatures)))
+
+
+def obtain_table(
+    scene: Scene,
+    temperatures: tuple[float, float] | None = None,
+    workers: int | None = None,
+    progress: Callable[[int], None] = lambda solved: None,
+    rebuild: bool = False,
+) -> tuple[Table, Quality]:
+    """Return the table of a scene, from disk or built and kept there.
+
+    Parameters
+    ----------
+    scene : its level does not matter.
+    temperatures : as in `span_of`.
+    workers : threads; as many as the machine has cores where absent.
+    progress : called now and then with the number of operating points solved for.
+    rebuild : whether to build it even if there is one.
+    """
+    span = span_of(scene, temperatures)
+    path = table_path(scene, span)
+    found = None if rebuild else read_table(path)
+    if found is None:
+        params = pack(scene)
+        found = build_table(params, lambda kelvin: lubricate(scene.lubricant, params, kelvin), span, float(scene.table.tolerance), workers, progress)
+        try:
+            write_table(path, *found)
+        except OSError:  # a table that cannot be kept is as good for this run
+            pass
+    return found
+
+
+def holds(table: Table, shaft_speed: float, load: float, oil_temperature: float) -> bool:
+    """Return whether a table answers for magnitudes of speed [rad/s] and load [N] and an oil temperature [K]."""
+    if not len(table.speeds) or not math.isfinite(shaft_speed + load + oil_temperature):
+        return False
+    return (
+        abs(shaft_speed) <= table.speeds[-1]
+        and load <= table.loads[-1]
+        and table.temperatures[0] <= oil_temperature <= table.temperatures[-1]
+        and (shaft_speed >= 0.0 or not math.isnan(table.mirror) or table.nodes.shape[0] == 2)
+    )
+
+
+def solve_scene(scene: Scene, shaft_speed: float, load: float, oil_temperature: float, load_angle: float) -> np.ndarray:
+    """Return the answer to one operating point of a scene's bearing, solved for; NaN where none was found, shape (len(ANSWER),).
+
+    Parameters
+    ----------
+    scene : its level does not matter.
+    shaft_speed, load, oil_temperature, load_angle : [rad/s, N, K, rad].
+    """
+    return solve_points(scene, np.array([[shaft_speed, load, oil_temperature, load_angle]], float))[0]
+
+
+def solve_points(scene: Scene, conditions: np.ndarray) -> np.ndarray:
+    """Return the answers to operating points of a scene's bearing, solved for; NaN where none was found, shape (n, len(ANSWER)).
+
+    Parameters
+    ----------
+    scene : its level does not matter.
+    conditions : shaft speed [rad/s], load [N], oil temperature [K] and direction of the load [rad] of each, shape (n, 4).
+    """
+    params, answers = pack(scene), np.empty((len(conditions), len(ANSWER)))
+    work = new_work(params)
+    for temperature in np.unique(conditions[:, 2]):
+        same = np.flatnonzero(conditions[:, 2] == temperature)
+        model = Model(params, lubricate(scene.lubricant, params, float(temperature)), Drive(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), DEFAULT_TOLERANCES)
+        found = np.empty((len(same), len(ANSWER)))
+        solve_conditions(np.ascontiguousarray(conditions[same][:, [0, 1, 3]], float), model, work, found)
+        answers[same] = found
+    return answers

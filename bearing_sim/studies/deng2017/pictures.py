@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""The figures of Deng 2017 from this code's tables, and their captions."""
+"""Figures of Deng 2017 drawn from the tables of this code, and their captions."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -7,11 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.scene_file import load_scene
-from bearing_sim.studies.deng2017 import ANGLE, D_VALUE, LOAD, LOW, LOW_RADII, MASS, MIXTURE, ROUNDNESS, SPEED
+from bearing_sim.scene.loader import load_scene
+from bearing_sim.studies.deng2017.study import ANGLE, D_VALUE, LOAD, LOW, LOW_RADII, MASS, MIXTURE, ROUNDNESS, SPEED
 from bearing_sim.studies.machining import Machined
-from bearing_sim.sweep.picture import COLOURS, MARKERS, label, new_figure, on_grid
-from bearing_sim.sweep.table import Table
+from bearing_sim.sweep.table import COLOURS, MARKERS, Table, label, new_figure, on_grid
 
 Tables = Mapping[tuple[str, str], Table]
 _LOOKS = {"slip": {"ls": "-", "lw": 1.6}, "planar": {"ls": "--", "lw": 1.1}}
@@ -25,46 +24,46 @@ class Pictured(NamedTuple):
     file: str
     title: str
     caption: str
-    tables: tuple[str, ...]  # that it is drawn from, by the stems of their files
+    tables: tuple[str, ...]  # of its data, by the stems of their files
 
 
 def draw_contours(path: Path, rings: Mapping[float, Machined]) -> None:
-    """Write figures 3 and 10: the contours that pre-deformation machining makes, and their low and high points.
+    """Draw figures 3 and 10: contours made by pre-deformation machining, and their low and high points.
 
     Parameters
     ----------
     path : of the picture.
-    rings : by the arc's turn [deg].
+    rings : by the rotation of one arc [deg].
     """
     figure = new_figure(11, 4.2)
     contours, points = figure.subplots(1, 2, width_ratios=(1.5, 1))
     for k, (turn, ring) in enumerate(rings.items()):
         contours.plot(np.degrees(ring.azimuths), 1e3 * ring.radii, color=COLOURS[k % len(COLOURS)], lw=1.3, label=f"{turn:g}°")
     contours.set(xlabel="azimuth [deg]", ylabel="raceway radius [mm]", xlim=(0, 360), xticks=range(0, 361, 60))
-    contours.legend(title="turn of one arc", frameon=False, ncols=3, fontsize=8, loc="upper center", bbox_to_anchor=(0.5, 1.0))
+    contours.legend(title="rotation of one arc", frameon=False, ncols=3, fontsize=8, loc="upper center", bbox_to_anchor=(0.5, 1.0))
     contours.set_ylim(top=contours.get_ylim()[1] + 0.035)
     turns = list(rings)
     for quantity, values, look in (
         ("D value", [1e6 * ring.d_value for ring in rings.values()], 0),
-        ("roundness of the lows", [1e6 * ring.roundness for ring in rings.values()], 1),
-        ("highest high, above that at 0°", [1e6 * (ring.highs[:, 1].max() - rings[turns[0]].highs[:, 1].max()) for ring in rings.values()], 2),
-        ("lowest low, above that at 0°", [1e6 * (ring.lows[:, 1].min() - rings[turns[0]].lows[:, 1].min()) for ring in rings.values()], 3),
+        ("roundness of the low points", [1e6 * ring.roundness for ring in rings.values()], 1),
+        ("rise of the highest high point", [1e6 * (ring.highs[:, 1].max() - rings[turns[0]].highs[:, 1].max()) for ring in rings.values()], 2),
+        ("rise of the lowest low point", [1e6 * (ring.lows[:, 1].min() - rings[turns[0]].lows[:, 1].min()) for ring in rings.values()], 3),
     ):
         points.plot(turns, values, color=COLOURS[look], marker=MARKERS[look], ms=5, label=quantity)
-    points.set(xlabel="turn of one arc [deg]", ylabel="[µm]")
+    points.set(xlabel="rotation of one arc [deg]", ylabel="[µm]")
     points.legend(frameon=False, fontsize=8)
     _finish(figure, path, (contours, points))
 
 
 def draw_lines(path: Path, tables: Tables, name: str, x: str, profiles: Sequence[tuple[str, dict]] = ()) -> None:
-    """Write slip and life along one variable at both levels and, where there are some, load distributions at level slip.
+    """Draw slip and life over one variable at both levels and, if given, load distributions at level slip.
 
     Parameters
     ----------
     path : of the picture.
     tables : by sweep and level.
-    name, x : the sweep, and the column along which it goes.
-    profiles : value in words, and what `bearing_sim.studies.deng2017.load_profile` returned.
+    name, x : the sweep, and the column of the varied field.
+    profiles : value as text, and the result of `bearing_sim.studies.deng2017.study.load_profile`.
     """
     figure = new_figure(15 if profiles else 10, 4.2)
     axes = figure.subplots(1, 3 if profiles else 2)
@@ -94,14 +93,14 @@ def _draw_profiles(axes, profiles) -> None:
 
 
 def draw_families(path: Path, tables: Tables, name: str, x: str, quantities: Sequence[str]) -> None:
-    """Write quantities along one variable for the four low-point radii; solid at level slip, dashed at level planar.
+    """Draw quantities over one variable for the four low-point radii; solid at level slip, dashed at level planar.
 
     Parameters
     ----------
     path : of the picture.
     tables : by sweep and level.
-    name, x : the sweep, and the column along which it goes.
-    quantities : columns, each on axes of its own.
+    name, x : the sweep, and the column of the varied field.
+    quantities : columns, each on its own axes.
     """
     figure = new_figure(5.1 * len(quantities), 4.4)
     axes = figure.subplots(1, len(quantities), squeeze=False)[0]
@@ -109,9 +108,9 @@ def draw_families(path: Path, tables: Tables, name: str, x: str, quantities: Seq
         for k, low in enumerate(LOW_RADII):
             for level in ("planar", "slip"):
                 rows = [row for row in tables[name, level].rows if abs(row[LOW] - low) < 1e-6]
-                told = {"label": f"R_low {low:.4f} mm"} if level == "slip" else {}
+                named = {"label": f"R_low {low:.4f} mm"} if level == "slip" else {}
                 marked = {"marker": MARKERS[k], "ms": 4 if level == "slip" else 3}
-                each.plot(*_pair(rows, x, quantity), color=COLOURS[k], alpha=1.0 if level == "slip" else 0.6, **marked, **told, **_LOOKS[level])
+                each.plot(*_pair(rows, x, quantity), color=COLOURS[k], alpha=1.0 if level == "slip" else 0.6, **marked, **named, **_LOOKS[level])
         table = tables[name, "slip"]
         each.set(xlabel=label(table.column(x)), ylabel=label(table.column(quantity)))
         if quantity == "rating_life":
@@ -128,7 +127,7 @@ def _pair(rows, x, y):
 
 
 def draw_map(path: Path, tables: Tables, slip_below: float = 10.0, life_above: float = 300.0) -> None:
-    """Write figure 21: slip and life over D and R_low at both levels, the limits of the design, and the region that Deng recommends.
+    """Draw figure 21: slip and life over D and R_low at both levels, the limits of the design, and the region recommended by Deng.
 
     Parameters
     ----------
@@ -161,13 +160,13 @@ def draw_map(path: Path, tables: Tables, slip_below: float = 10.0, life_above: f
 
 
 def draw_trajectories(path: Path, found: Mapping[float, dict], guide_clearance: float) -> None:
-    """Write the orbits of the cage's centre and the spin of a roller around the bearing.
+    """Draw the orbit of the cage centre and the spin of a roller over its azimuth.
 
     Parameters
     ----------
     path : of the picture.
-    found : by low-point radius [mm], what `bearing_sim.studies.deng2017.trajectory` returned.
-    guide_clearance : radial, of the cage in its guide [um].
+    found : results of `bearing_sim.studies.deng2017.study.trajectory` by low-point radius [mm].
+    guide_clearance : radial clearance of the cage in its guide [um].
     """
     figure = new_figure(3.6 * len(found), 7)
     axes = figure.subplots(2, len(found), squeeze=False)
@@ -188,7 +187,7 @@ def draw_trajectories(path: Path, found: Mapping[float, dict], guide_clearance: 
 
 
 def draw_reasons(path: Path, tables: Tables) -> None:
-    """Write slip over what Deng does not give: the oil in the air and the mass that moves with the inner ring."""
+    """Draw slip over parameters that Deng does not give: mixture fraction and mass supported by the inner ring."""
     figure = new_figure(10, 4.0)
     axes = figure.subplots(1, 2)
     for each, (name, x) in zip(axes, (("mixture", MIXTURE), ("supported_mass", MASS))):
@@ -216,13 +215,13 @@ def _finish(figure, path, axes) -> None:
         each.grid(alpha=0.3)
         if each.get_yscale() == "linear" and each.get_xscale() == "linear":
             each.ticklabel_format(useOffset=False)
-            if "[deg]" not in each.get_xlabel():  # radii and speeds have long numbers, which would run into each other
+            if "[deg]" not in each.get_xlabel():  # long tick labels of radii and speeds would overlap
                 each.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 2.5, 5, 10]))
     figure.savefig(path, dpi=_DPI)
 
 
 def draw_study(folder: Path, tables: Tables, profiles: Mapping, trajectories: Mapping, rings: Mapping[float, Machined]) -> list[Pictured]:
-    """Write all figures into a folder and return what they show.
+    """Draw all figures into a folder and return their entries.
 
     Parameters
     ----------
@@ -230,7 +229,7 @@ def draw_study(folder: Path, tables: Tables, profiles: Mapping, trajectories: Ma
     tables : of sweeps, by name and level.
     profiles : load distributions by sweep, value and level.
     trajectories : by low-point radius [mm].
-    rings : machined raceways by the turn of an arc [deg].
+    rings : machined raceways by the rotation of one arc [deg].
     """
     both = "Solid: level slip; dashed: level planar."
 
@@ -256,7 +255,7 @@ def draw_study(folder: Path, tables: Tables, profiles: Mapping, trajectories: Ma
         Pictured(
             "fig03_10.png",
             "Figures 3, 10: contour by pre-deformation machining",
-            "Blank pressed over three arcs at 2.0 MPa, one of them turned; ground to the same radius under load. A thin elastic ring.",
+            "Blank pressed over three arcs at 2.0 MPa, one of them rotated; ground to the same radius under load; thin elastic ring.",
             ("machining",),
         ),
         Pictured(
@@ -284,7 +283,7 @@ def draw_study(folder: Path, tables: Tables, profiles: Mapping, trajectories: Ma
         Pictured(
             "fig21.png",
             "Figure 21: slip and life over D and R_low",
-            "Orange: 10 % slip and 300 h. Black: the region that Deng recommends.",
+            "Orange: 10 % slip and 300 h. Black: the region recommended by Deng.",
             ("map_slip", "map_planar"),
         ),
         Pictured("fig22.png", "Figure 22: roundness of the low points", "R_low = 34.8625 mm, D = 0.095 mm.", ("roundness_slip", "roundness_planar")),
@@ -292,13 +291,13 @@ def draw_study(folder: Path, tables: Tables, profiles: Mapping, trajectories: Ma
         Pictured(
             "trajectories.png",
             "Trajectories: cage centre and roller spin",
-            "Twelve cage turns at level planar, 45,000 rpm, 800 N. Dotted: clearance of the guide; a dot is a cage that leans and stands.",
+            "Twelve cage turns at level planar, 45,000 rpm, 800 N. Dotted: clearance of the guide; a single dot is a cage centre at rest.",
             ("trajectories",),
         ),
         Pictured(
             "reasons.png",
-            "Behind the reasons: what the paper does not give",
-            "Oil in the oil-air mixture, and mass of the shaft that moves with the inner ring. Not used to tune anything.",
+            "Parameters that the paper does not give",
+            "Oil fraction of the oil-air mixture, and mass of the shaft that moves with the inner ring. Nothing is tuned with them.",
             ("mixture_slip", "mixture_planar", "supported_mass_slip", "supported_mass_planar"),
         ),
     ]

@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""The study of Deng 2017 in a folder: tables, figures and claims, and a file that says what made them."""
+"""Run the study of Deng 2017 into a folder: tables, figures, claims, and a file with settings and versions."""
 
 import json
 import platform
@@ -9,29 +9,27 @@ from importlib import metadata
 from pathlib import Path
 
 from bearing_sim.levels.level import LEVELS as ALL_LEVELS
-from bearing_sim.provenance import git_hash, package_version
-from bearing_sim.scene_file import load_scene, scene_to_yaml
-from bearing_sim.studies.deng2017 import LEVELS, STUDIES, plan_study
-from bearing_sim.studies.deng2017_claims import Finding, judge
-from bearing_sim.studies.deng2017_contours import contour_finding, machined_rings, machining_table
-from bearing_sim.studies.deng2017_design import answer, write_answer
-from bearing_sim.studies.deng2017_pictures import draw_study
-from bearing_sim.sweep.executor import run_tasks
-from bearing_sim.sweep.journal import Journal
+from bearing_sim.recording.provenance import git_hash, package_version
+from bearing_sim.scene.loader import load_scene, scene_to_yaml
+from bearing_sim.studies.deng2017.claims import Finding, contour_finding, judge, machined_rings, machining_table
+from bearing_sim.studies.deng2017.design import answer, write_answer
+from bearing_sim.studies.deng2017.pictures import draw_study
+from bearing_sim.studies.deng2017.study import LEVELS, STUDIES, plan_study
 from bearing_sim.sweep.point import Column
 from bearing_sim.sweep.table import Table, write_table
+from bearing_sim.sweep.tasks import Journal, run_tasks
 
 STUDY_FILE = "study.json"
 _PACKAGES = ("numba", "numpy", "scipy", "pyarrow", "matplotlib")
 _FINDING_MEANINGS = {
-    "claim": "number; 0 is that of the machined contours",
+    "claim": "number; 0: the machined contours",
     "figures": "of the paper",
     "says": "what Deng 2017 claims",
     "level": "of this code",
     "verdict": "holds, holds in part, does not hold",
-    "gives": "what this code gives",
-    "off": "by how much it does not hold",
-    "why": "why not, where the numbers show it",
+    "gives": "result of this code",
+    "off": "deviation from the claim",
+    "why": "reason for the deviation, if the numbers show it",
 }
 
 
@@ -40,22 +38,22 @@ def run_study(
     quick: bool = False,
     workers: int | None = None,
     dask: str | None = None,
-    tell: Callable[[int, int], None] = lambda done, total: None,
+    progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> list[Finding]:
-    """Compute the study into a folder, or what of it is not there yet, and return the claims.
+    """Compute the study into a folder, reusing finished points, and return the claims.
 
     Parameters
     ----------
-    folder : made where absent; its journal holds every finished point.
-    quick : few points and short runs, to see that everything works.
-    workers, dask, tell : see `bearing_sim.sweep.executor.run_tasks`.
+    folder : created if absent; its journal holds every finished point.
+    quick : few points and short runs, for testing.
+    workers, dask, progress : see `bearing_sim.sweep.tasks.run_tasks`.
 
     Raises
     ------
     ClusterError
-        See `bearing_sim.sweep.executor.run_tasks`.
+        See `bearing_sim.sweep.tasks.run_tasks`.
     JournalInUse
-        Another process is computing into this folder.
+        Another process is writing to this folder.
     """
     began = time.monotonic()
     for part in (folder / "tables", folder / "figures"):
@@ -64,7 +62,7 @@ def run_study(
 
     def counted(done, total):
         counts[:] = done, total
-        tell(done, total)
+        progress(done, total)
 
     with Journal(folder / "study.journal") as journal:
         results = iter(run_tasks(planned.tasks, journal, workers, dask, counted))

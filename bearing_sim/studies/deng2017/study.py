@@ -1,18 +1,17 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""The results of Deng 2017 with this code: which bearings are run for which figure, all parameters as the bundled scenes have them.
+"""Reproduction of Deng 2017: the sweeps behind each figure, with the parameters of the bundled scenes.
 
-Nothing is tuned, for no figure.  Each sweep is run at level ``slip`` and at level ``planar``.
+Nothing is tuned for any figure.  Each sweep runs at level ``slip`` and at level ``planar``.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.scene import Scene
-from bearing_sim.scene_file import load_scene
+from bearing_sim.scene.loader import load_scene
+from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import IntegrationError, Simulation
-from bearing_sim.sweep.axis import read_axis
-from bearing_sim.sweep.grid import Plan, plan_sweep
+from bearing_sim.sweep.grid import Plan, plan_sweep, read_axis
 from bearing_sim.sweep.point import DURATION, settle
 from bearing_sim.sweep.tasks import Task, task
 
@@ -35,10 +34,10 @@ class Study(NamedTuple):
     ----------
     name : of its files.
     figures : of the paper.
-    title : what is varied, in words.
-    scene : bundled.
+    title : what is varied.
+    scene : name of the bundled scene.
     overrides : of the scene.
-    axes : as `bearing_sim.sweep.axis.read_axis` reads them.
+    axes : as `bearing_sim.sweep.grid.read_axis` reads them.
     quick_axes : the same with few points.
     """
 
@@ -89,7 +88,7 @@ STUDIES = (
     ),
 )
 
-# What the reasons in the claims table rest on; no figure of the paper, and nothing is tuned by it.
+# Sweeps behind the reasons in the claims table; they belong to no figure of the paper.
 STUDIES += (
     Study(
         "mixture",
@@ -120,7 +119,7 @@ STUDIES += (
     ),
 )
 
-# Load distributions: name of the sweep they belong to, field, values.
+# Load distributions: name of their sweep, field, values.
 PROFILES = (
     ("low_radius", LOW, ("34.86mm", "34.8625mm", "34.865mm", "34.8675mm")),
     ("d_value", D_VALUE, ("0.08mm", "0.095mm", "0.105mm", "0.12mm")),
@@ -131,14 +130,14 @@ PROFILES = (
 
 
 class Planned(NamedTuple):
-    """All that the study computes.
+    """All computations of the study.
 
     Attributes
     ----------
     sweeps : plans by the name of the sweep and the level.
     profiles : tasks of load distributions by sweep, value and level.
     trajectories : tasks by low-point radius [mm].
-    duration : of a run that settles in it [s].
+    duration : of a run without extension [s].
     """
 
     sweeps: dict[tuple[str, str], Plan]
@@ -153,11 +152,11 @@ class Planned(NamedTuple):
 
 
 def plan_study(quick: bool = False) -> Planned:
-    """Return what the study computes.
+    """Return the plan of the study.
 
     Parameters
     ----------
-    quick : few points and short runs, to see that everything works.
+    quick : few points and short runs, for testing.
     """
     duration = QUICK_DURATION if quick else DURATION
     sweeps = {
@@ -187,8 +186,8 @@ def load_profile(scene: Scene, duration: float) -> dict:
     """
     try:
         window, _, _ = settle(scene, duration)
-    except IntegrationError as fault:
-        return {"status": "failed", "reason": str(fault)}
+    except IntegrationError as error:
+        return {"status": "failed", "reason": str(error)}
     bins = np.floor(np.mod(window["roller_angle"], 2 * np.pi) / (2 * np.pi) * _BINS).astype(int).ravel() % _BINS
     counts = np.bincount(bins, minlength=_BINS)
     with np.errstate(invalid="ignore"):
@@ -197,23 +196,23 @@ def load_profile(scene: Scene, duration: float) -> dict:
 
 
 def trajectory(scene: Scene, duration: float) -> dict:
-    """Return some cage turns of a settled bearing, instant by instant.
+    """Return the motion of a settled bearing over some cage turns.
 
-    Lists ``time`` [s], cage centre ``cage_y``, ``cage_z`` [um], azimuth ``roller_angle`` [deg] and ``spin_ratio`` of roller 0: its spin over
-    that of a roller of a bearing without slip.
+    Lists ``time`` [s], cage centre ``cage_y``, ``cage_z`` [um], and of roller 0 the azimuth ``roller_angle`` [deg] and ``spin_ratio``, its
+    spin relative to that in a bearing without slip.
 
     Parameters
     ----------
     scene : of a level whose cage whirls.
-    duration : run before [s].
+    duration : simulated before [s].
     """
     bearing, run = scene.bearing, Simulation(scene)
     ideal = 0.5 * scene.operating.shaft_speed * (1.0 - bearing.diameter_ratio)
     try:
         run.advance(duration)
         window = run.advance(_ORBIT_TURNS * 2 * np.pi / ideal, samples=_ORBIT_TURNS * _PER_TURN)
-    except IntegrationError as fault:
-        return {"status": "failed", "reason": str(fault)}
+    except IntegrationError as error:
+        return {"status": "failed", "reason": str(error)}
     rolling = ideal * bearing.pitch_radius / (bearing.roller.diameter / 2)
     return {
         "status": "ok",

@@ -1,0 +1,333 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""``bearing-sim bench``, ``trade`` and ``compile``: how fast the model is, what accuracy costs, and compiling ahead of a run."""
+
+import csv
+import time
+from pathlib import Path
+
+import click
+
+from bearing_sim.cli.options import json_option, picture_option, quick_option, scene_argument, set_option
+from bearing_sim.cli.reporting import (
+    FailedRun,
+    announce_compilation,
+    as_file_error,
+    as_usage_error,
+    print_json,
+    print_rows,
+    progress_bar,
+    require_levels,
+)
+
+_WORDS = ("level", "integrator", "solver")  # columns of text
+_WIDTH = 170  # of the tables if there is no terminal
+
+
+@click.command("levels")
+@click.option("--level", "levels", multiple=True, metavar="LEVEL", help="Measure this level; can be repeated [default: all].")
+@click.option("--cold", is_flag=True, help="Also measure the very first start, which compiles.")
+@quick_option
+@json_option
+def levels(levels, cold, quick, as_json):
+    """Measure how fast each level and integration method is, how large its errors are, and what limits its speed.
+
+    Bearing deng2017_table1 at 800 N, 15,000 and 45,000 rpm.  Other solvers use the same compiled right-hand side.  Takes a minute or two per
+    level once compiled, and longer for level spatial.
+    """
+    require_levels(levels)
+    announce_compilation()
+    from bearing_sim.studies.bench import run_bench
+
+    report = run_bench(quick, cold, lambda text: click.echo(f"{text} ...", err=True), levels)
+    if as_json:
+        print_json(report)
+    else:
+        _print_levels(report)
+
+
+def _print_levels(report) -> None:
+    machine = report["machine"]
+    click.echo(f"core {machine['core']} of {machine['cores']} ({machine['processor']}), load average {machine['load_average']:.2f} at the start")
+    click.echo(f"times are on the core, which the benchmark had for {100 * machine['core_fraction']:.0f} % of the time")
+    _print_cases(report["cases"])
+    _print_others(report["others"])
+    _print_references(report["references"])
+    _print_bounds(report["bound"])
+    _print_scaling(report["scaling"])
+    for start in report.get("start_up", []):
+        how = "with an empty cache" if start["cold"] else "warm"
+        click.echo(
+            f"start of {start['level']}, {how}: import {start['import_seconds']:.2f} s, scene {start['scene_seconds']:.2f} s, "
+            f"first advance {start['first_advance_seconds']:.2f} s"
+        )
+
+
+def _number(value, form=".3g") -> str:
+    return "-" if value is None else format(value, form)
+
+
+def _print_cases(cases) -> None:
+    def named(case):
+        return [case["level"], case["integrator"], f"{case['speed_rpm']:.0f}", str(case["rollers"])]
+
+    def cost(case):
+        if case["failure"]:
+            return [*named(case), case["failure"]]
+        steps = case["steps"]
+        counted = ("rejected_steps", "right_hand_sides", "jacobians", "factorisations")
+        per_step = [None if case[name] is None or not steps else case[name] / steps for name in counted]
+        numbers = [case["real_time_factor"], case["step_us"], steps / case["simulated_seconds"], *per_step]
+        return [*named(case), *map(_number, numbers), _number(case["lsoda_ratio"], ".0f"), _number(case["lsoda_ratio_at_our_error"], ".0f")]
+
+    def error(case):
+        shares = [case[name] and 100 * case[name] for name in ("load_error", "orbit_error", "pocket_error")]
+        slip = [_number(case[name], ".3f") for name in ("slip_error", "slip_standard_error")]
+        return [*named(case), *slip, *map(_number, shares), _number(case["trajectory_error"])]
+
+    columns = ("level", "integrator", "rpm", "Z")
+    costs = ("x real time", "us/step", "steps/s", "rejected/step", "rhs/step", "jac/step", "fact/step", "x LSODA", "at our error")
+    errors = ("slip [pp]", "standard error", "loads [%]", "orbit [%]", "pocket [%]", "first 2 ms")
+    print_rows("speed", columns + costs, map(cost, cases), words=_WORDS, width=_WIDTH)
+    print_rows("errors", columns + errors, map(error, [case for case in cases if not case["failure"]]), words=_WORDS, width=_WIDTH)
+
+
+def _print_others(others) -> None:
+    def row(run):
+        numbers = [_number(run[name]) for name in ("tolerance", "core_seconds", "real_time_factor", "right_hand_sides", "trajectory_error")]
+        return [run["level"], f"{run['speed_rpm']:.0f}", run["solver"], *numbers, run["failure"]]
+
+    columns = ("level", "rpm", "solver", "tolerance", "spent [s]", "x real time", "rhs", "2 ms err", "failure")
+    print_rows("other solvers on the same compiled right-hand side, from ideal rolling", columns, map(row, others), words=_WORDS, width=_WIDTH)
+
+
+def _print_references(references) -> None:
+    def row(found):
+        names = ("slip_percent", "slip_standard_error", "settled_slip_change", "settled_load_change", "orbit_radius_um", "trajectory_own_error")
+        return [found["level"], f"{found['speed_rpm']:.0f}", *[_number(found[name], ".4g") for name in names]]
+
+    columns = ("level", "rpm", "slip [%]", "+-", "change of slip [pp]", "of loads", "orbit [um]", "2 ms own err")
+    print_rows(
+        "references: the level's own method at a tight tolerance, its change from a less tight one; DOP853 against CVODE at 1e-10",
+        columns,
+        map(row, references),
+        words=_WORDS,
+        width=_WIDTH,
+    )
+
+
+def _print_bounds(bounds) -> None:
+    names = ("right_hand_side", "jacobian", "factorisation", "solve", "error_norm")
+
+    def row(bound):
+        times, fractions = bound.get("kernel_us", {}), bound.get("fraction", {})
+        numbers = [f"{_number(times.get(name))} us, {100 * fractions.get(name, 0.0):.0f} %" for name in names]
+        steps = [_number(bound.get(name)) for name in ("step_simulated_us", "step_simulated_at_tenfold_tolerance_us")]
+        return [bound["level"], bound["integrator"], f"{bound['speed_rpm']:.0f}", *numbers, f"{100 * fractions.get('rest', 0.0):.0f} %", *steps]
+
+    columns = ("level", "integrator", "rpm", "rhs", "jacobian", "factor", "solve", "norm", "rest", "mean step [us]", "at 10x tolerance")
+    print_rows("what bounds it: a call of each kernel alone, and its fraction of a step", columns, map(row, bounds), words=_WORDS, width=_WIDTH)
+
+
+def _print_scaling(scaling) -> None:
+    for level in scaling:
+        costs = ", ".join(f"{rollers}: {cost:.3g}" for rollers, cost in zip(level["rollers"], level["core_seconds_per_second"]))
+        click.echo(f"{level['level']}, time of a simulated second by rollers: {costs}; power of Z from 18 on {_number(level['exponent'])}")
+
+
+_SPEEDS = (1500.0, 15_000.0, 45_000.0)  # rpm
+_SECONDS, _QUICK_SECONDS = 5.0, 0.5  # per run
+
+
+@click.command("fleet")
+@click.option(
+    "--level", "levels", multiple=True, default=("steady", "slip", "planar"), show_default=True, metavar="LEVEL", help="Level; can be repeated."
+)
+@quick_option
+@json_option
+def fleet(levels, quick, as_json):
+    """Run more and more bearings deng2017_table1 on one core, at 1500, 15,000 and 45,000 rpm, until it no longer holds real time."""
+    require_levels(levels)
+    announce_compilation()
+    report = _measure(levels, quick)
+    if as_json:
+        print_json(report)
+    else:
+        _print_fleet(report)
+
+
+def _measure(levels, quick) -> dict:
+    import os
+
+    from bearing_sim.runtime.fleet import most_bearings
+    from bearing_sim.scene.loader import load_scene
+    from bearing_sim.studies.bench import one_core
+
+    cases = []
+    with one_core() as core:
+        for level in levels:
+            for speed in _SPEEDS[:1] if quick else _SPEEDS:
+                click.echo(f"{level} at {speed:g} rpm ...", err=True)
+                scene = load_scene("deng2017_table1", [f"level={level}", f"operating.shaft_speed={speed} rpm"])
+                cases.append(_case(level, speed, most_bearings(scene, _QUICK_SECONDS if quick else _SECONDS)))
+    return {"bearing": "deng2017_table1", "core": core, "load_average": os.getloadavg()[0], "quick": quick, "cases": cases}
+
+
+def _case(level, speed, runs) -> dict:
+    one, most = next(run for run in runs if run.bearings == 1), runs[-1]
+    return {
+        "level": level,
+        "speed_rpm": speed,
+        "core_share_of_one": one.core_seconds,
+        "expected_from_one": 1.0 / one.core_seconds,
+        "bearings": most.bearings if most.holds else 0,
+        "core_share_of_each": most.core_seconds,
+        "runs": [{**run._asdict(), "holds": run.holds} for run in runs],
+    }
+
+
+def _print_fleet(report) -> None:
+    rows = []
+    for case in report["cases"]:
+        shares = [f"{100 * case[name]:.2f}" for name in ("core_share_of_one", "core_share_of_each")]
+        rows.append((case["level"], f"{case['speed_rpm']:.0f}", shares[0], f"{case['expected_from_one']:.0f}", str(case["bearings"]), shares[1]))
+    columns = ("level", "rpm", "core for one [%]", "expected", "held", "core for each [%]")
+    print_rows("bearings that one core holds in real time, measured by running them, without ROS", columns, rows, words=("level",), width=120)
+    click.echo(f"core {report['core']}, load average {report['load_average']:.2f}; 0 held: the machine was busy")
+
+
+_MEASURED = ("real_time_factor", "slip_error_points", "largest_slip_error_points", "load_error", "life_error")
+_COLUMNS = ("level", "method", "setting", *_MEASURED, "on_front", "failure")
+_FACTORS, _ERRORS = (1.0, 3.0, 10.0, 100.0, 1000.0), (0.01, 0.1, 1.0)
+
+
+@click.command("trade")
+@scene_argument
+@set_option
+@click.option("--level", "levels", multiple=True, metavar="LEVEL", help="Measure this level; can be repeated [default: all].")
+@click.option("--against", metavar="LEVEL", help="Level of the reference [default: planar, or the highest that can compute the scene].")
+@click.option("--factor", type=click.FloatRange(min=0.0, min_open=True), help="Recommend the most accurate setting at this multiple of real time.")
+@click.option(
+    "--error",
+    type=click.FloatRange(min=0.0, min_open=True),
+    help="Recommend the fastest setting with at most this error of slip [percentage points].",
+)
+@click.option("--csv", "table", type=click.Path(path_type=Path), metavar="PATH.csv", help="Write all settings to a table.")
+@picture_option("Draw error against speed")
+@json_option
+@quick_option
+def trade(scene_name, overrides, levels, against, factor, error, table, picture, as_json, quick):
+    """Measure real-time factor and errors in slip, largest roller load and life of every level, integrator and tolerance or step on SCENE.
+
+    All settings run the same manoeuvre from the scene's conditions (the load is halved and restored, the shaft slowed by a fifth) and are
+    compared with a reference at tight tolerances.  Times are processor time of one core; other programs still slow down shared memory.
+    """
+    from bearing_sim.scene.fidelity import LEVELS
+    from bearing_sim.scene.loader import SceneError
+    from bearing_sim.simulation import IntegrationError
+
+    require_levels([*levels, *([against] if against else [])])
+    announce_compilation()
+    from bearing_sim.studies.trade import recommend, settings_of, trade
+
+    total = 1 + sum(len(settings_of(level, quick)) for level in levels or LEVELS)
+    with progress_bar("settings", total) as show, as_usage_error(SceneError, ValueError):
+        done = iter(range(total + 1))
+        try:
+            found = trade(scene_name, overrides, levels, quick, lambda name: show(next(done)), against)
+        except IntegrationError as error:
+            raise FailedRun(f"the reference failed: {error}") from None
+    with as_file_error():
+        if table is not None:
+            _write(table, found)
+        if picture is not None:
+            from bearing_sim.studies.trade import draw
+
+            draw(picture, scene_name, found)
+    best = recommend(found, factor, error) if factor is not None or error is not None else None
+    if as_json:
+        print_json(_report(found) | {"recommended": best and best.setting.name})
+    else:
+        _print_trade(scene_name, found)
+        _print_advice(found, factor, error, best)
+
+
+def _row(found, k):
+    one = found.measured[k]
+    setting = one.setting
+    return dict(zip(_COLUMNS, (setting.level, setting.method, setting.detail, *one[1:6], k in found.front, one.failure)))
+
+
+def _write(path, found) -> None:
+    with open(path, "w", newline="") as file:
+        writer = csv.DictWriter(file, _COLUMNS)
+        writer.writeheader()
+        writer.writerows(_row(found, k) for k in range(len(found.measured)))
+
+
+def _report(found) -> dict:
+    return {
+        "reference": found.reference,
+        "reference_error": dict(zip(_MEASURED[1:], found.own_error)),
+        "simulated_seconds": found.simulated,
+        "left_out": found.left_out,
+        "settings": [_row(found, k) for k in range(len(found.measured))],
+    }
+
+
+def _print_trade(name, found) -> None:
+    rows = []
+    for k in sorted(range(len(found.measured)), key=lambda k: -found.measured[k].real_time_factor):
+        row = _row(found, k)
+        points = f"{row['slip_error_points']:.3f}", f"{row['largest_slip_error_points']:.3f}"
+        values = f"{row['real_time_factor']:.3g}", *points, f"{100 * row['load_error']:.2g}", f"{100 * row['life_error']:.2g}"
+        rows.append(("*" if row["on_front"] else "", row["level"], row["method"], row["setting"], *values, row["failure"]))
+    words, numbers = ("", "level", "method", "setting"), ("x real time", "slip, points", "largest, points", "load, %", "life, %")
+    print_rows(f"{name}: against {found.reference}, over {found.simulated:.3g} s", (*words, *numbers, ""), rows, words)
+    slip, _, load, life = found.own_error
+    click.echo(
+        f"* no setting is both faster and more accurate in slip; error of the reference {slip:.2g} points, {100 * load:.2g} %, {100 * life:.2g} %"
+    )
+    for level, reason in found.left_out.items():
+        click.echo(f"not measured: {level} ({reason})")
+
+
+def _print_advice(found, factor, error, best) -> None:
+    from bearing_sim.studies.trade import recommend
+
+    if factor is not None or error is not None:
+        click.echo(f"recommended: {_recommendation(best)}" if best else "no setting is that fast and that accurate")
+        return
+    for factor in _FACTORS:
+        click.echo(f"for {factor:g} x real time: {_recommendation(recommend(found, factor=factor))}")
+    for error in _ERRORS:
+        click.echo(f"for {error:g} points of slip: {_recommendation(recommend(found, error=error))}")
+
+
+def _recommendation(one) -> str:
+    if one is None:
+        return "none"
+    options = " ".join(f'--set "{item}"' for item in (f"level={one.setting.level}", *one.setting.overrides))
+    return f"{one.setting.name} ({one.real_time_factor:.3g} x real time, {one.slip_error:.2g} points): {options}"
+
+
+@click.command("compile")
+@click.option("--level", "levels", multiple=True, metavar="LEVEL", help="Compile this level; can be repeated [default: all].")
+@click.option("--every-method", is_flag=True, help="Include methods that are not a level's default (integration.method, integration.fixed_step).")
+@click.option("--workers", type=click.IntRange(min=1), metavar="N", help="Number of processes [default: one per core].")
+@click.option("--prune", is_flag=True, help="Afterwards remove the compiled code of other versions of bearing_sim.")
+def compile_levels(levels, every_method, workers, prune):
+    """Compile levels now instead of at their first run, in parallel on all cores.
+
+    Compiled code is cached on disk, per user and version of the model; code that is already in the cache is not compiled again.
+    """
+    from bearing_sim.levels.level import LEVELS
+    from bearing_sim.runtime.precompilation import builds, compile_all, remove_other_versions
+
+    require_levels(levels)
+    wanted, began = builds(levels or tuple(LEVELS), every_method), time.monotonic()
+    with progress_bar("compiling", len(wanted)) as show:
+        for done, build in enumerate(compile_all(wanted, workers), 1):
+            click.echo(f"{build}: compiled ({time.monotonic() - began:.0f} s)", err=True)
+            show(done)
+    if prune:
+        click.echo(f"{remove_other_versions() / 1e6:.0f} MB of other versions removed", err=True)

@@ -1,0 +1,101 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""The command line ``bearing-sim``: its commands and groups.  A command's module is imported only when the command is called."""
+
+import importlib
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import click
+
+
+class Entry(NamedTuple):
+    """A command in a group: where it is, as ``module:function`` below `bearing_sim.cli`, and what it does in one line."""
+
+    place: str
+    help: str
+
+
+_BENCHMARKS = {
+    "levels": Entry("bench:levels", "Speed and error of every level and integration method, and what limits them."),
+    "fleet": Entry("bench:fleet", "How many bearings one core holds in real time."),
+}
+_STUDIES = {
+    "deng2017": Entry("study:deng2017", "Reproduce the results of Deng 2017, claim by claim."),
+    "damage": Entry("study:damage", "Compare the damage of a measured run between levels."),
+    "misalignment": Entry("study:misalignment", "Edge pressure, tilt, skew and life against misalignment of the inner ring."),
+    "situations": Entry("study:situations", "Pictures of six situations, from start to fault, in rerun."),
+    "slices": Entry("study:slices", "Convergence with the number of slices, and the cost of slices and rollers."),
+    "extremes": Entry("study:extremes", "Map which scenes finish, are step-limited, are refused or fail."),
+}
+_COMMANDS = {
+    "run": Entry("run:run", "Run a scene under constant conditions."),
+    "replay": Entry("replay:replay", "Run the model on a recorded log of shaft speed and radial load."),
+    "import-csv": Entry("logs:import_csv", "Convert a measured table to an MCAP log."),
+    "loads": Entry("bearings:loads", "Show a scene's load distribution over rollers and slices, and the lives."),
+    "machine": Entry("bearings:machine", "Compute the raceway that pre-deformation machining produces."),
+    "table": Entry("table:table", "Build or inspect the table of operating points of level steady."),
+    "uncertainty": Entry("uncertainty:uncertainty", "Compute ranges of slip and life from uncertain fields, and each field's share."),
+    "calibrate": Entry("calibrate:calibrate", "Fit fields of a scene to the measured cage speed in a recording."),
+    "sweep": Entry("sweep:sweep", "Run a scene at all combinations of field values, into a table."),
+    "plot": Entry("sweep:plot", "Draw the table of a sweep."),
+    "design": Entry("sweep:design", "Map which outer raceways keep slip and life within limits."),
+    "report": Entry("study:report", "Make one HTML page of a study."),
+    "trade": Entry("bench:trade", "Measure speed against accuracy on a scene, and recommend a setting."),
+    "bench": Entry("main:bench", "Measure how fast the model is on this machine."),
+    "compile": Entry("bench:compile_levels", "Compile levels before their first run."),
+    "study": Entry("main:study", "Study the model itself, and the results of Deng 2017."),
+    "info": Entry("recordings:info", "Show what a recording holds, where it comes from, and whether it is complete."),
+    "compare": Entry("recordings:compare", "Compare two recordings topic by topic."),
+    "recover": Entry("recordings:recover", "Recover the recording of a killed writer."),
+    "to-csv": Entry("recordings:to_csv", "Export a recording as a CSV table."),
+    "to-parquet": Entry("recordings:to_parquet", "Export a recording as a Parquet table."),
+    "view": Entry("view:view", "Show a recording in rerun."),
+    "mission": Entry("logs:mission", "Write the bundled synthetic mission as an MCAP log."),
+    "scenes": Entry("bearings:scenes", "List the bundled scenes, bearings and oils."),
+}
+
+
+class LazyGroup(click.Group):
+    """A group that imports its commands when they are called, so that ``--help`` stays fast (click's lazy-group pattern).
+
+    Parameters
+    ----------
+    entries : the commands by name, in the order in which they are listed.
+    heading : of the list of commands.
+    """
+
+    def __init__(self, *args, entries: Mapping[str, Entry], heading: str, **options):
+        super().__init__(*args, **options)
+        self._entries, self._heading = entries, heading
+
+    def list_commands(self, context):
+        """Return the names in order."""
+        return list(self._entries)
+
+    def get_command(self, context, name):
+        """Return a command by name; None if there is none."""
+        if name not in self._entries:
+            return None
+        module, _, function = self._entries[name].place.partition(":")
+        return getattr(importlib.import_module(f"bearing_sim.cli.{module}"), function)
+
+    def format_commands(self, context, formatter):
+        """Write the list of commands without importing any."""
+        with formatter.section(self._heading):
+            formatter.write_dl([(name, entry.help) for name, entry in self._entries.items()])
+
+
+@click.group(cls=LazyGroup, entries=_COMMANDS, heading="Commands", context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(package_name="bearing_sim")
+def main():
+    """Cage slip and rating life of high-speed roller bearings with lobed raceways."""
+
+
+@click.group("bench", cls=LazyGroup, entries=_BENCHMARKS, heading="Benchmarks")
+def bench():
+    """Measure how fast the model is on this machine, and how many bearings it holds in real time."""
+
+
+@click.group("study", cls=LazyGroup, entries=_STUDIES, heading="Studies")
+def study():
+    """Run a study of the model itself."""

@@ -1,0 +1,43 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Options and arguments that several commands have."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import click
+
+from bearing_sim.cli.reporting import UsageError
+
+_PICTURES = (".png", ".svg", ".pdf")
+
+scene_argument = click.argument("scene_name", metavar="SCENE")
+set_option = click.option("--set", "overrides", multiple=True, metavar="FIELD=VALUE", help="Override a field of the scene; can be repeated.")
+json_option = click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+quick_option = click.option("--quick", is_flag=True, help="Measure almost nothing, to check that everything works.")
+
+
+def executor_options(command: Callable) -> Callable:
+    """Add the options that choose where points are computed."""
+    command = click.option("--dask", metavar="ADDRESS", help="Compute on this Dask cluster, such as tcp://10.0.0.1:8786.")(command)
+    return click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="Number of processes [default: all cores].")(command)
+
+
+def table_option(default: str, beside: str) -> Callable:
+    """Return the option for the output path of many points; ``beside`` is the part of its help that names the files."""
+    kind = click.Path(path_type=Path)
+    text = f"{beside} PATH.journal, from which an interrupted run resumes."
+    return click.option("-o", "--out", type=kind, default=Path(default), show_default=True, metavar="PATH.parquet", help=text)
+
+
+def picture_option(drawn: str) -> Callable:
+    """Return the option ``--picture``, which takes a path with a known suffix; ``drawn`` says what it draws, as in "Draw the map"."""
+
+    def checked(context, parameter, path):
+        if path is not None and path.suffix.lower() not in _PICTURES:
+            raise UsageError(f"--{parameter.name} {path}: expected a name that ends in {', '.join(_PICTURES)}")
+        return path
+
+    kind = click.Path(path_type=Path)
+    return click.option(
+        "--picture", type=kind, callback=checked, metavar="PATH.png", help=f"{drawn} ({', '.join(_PICTURES[:-1])} or {_PICTURES[-1]})."
+    )

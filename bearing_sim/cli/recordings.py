@@ -1,0 +1,294 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Commands on recordings: ``info``, ``compare``, ``recover``, ``to-csv`` and ``to-parquet``."""
+
+import sys
+from collections.abc import Callable
+from datetime import UTC, datetime
+from pathlib import Path
+
+import click
+
+from bearing_sim.cli.options import json_option
+from bearing_sim.cli.reporting import UsageError, as_file_error, as_usage_error, print_json, print_rows, print_table, progress_bar
+
+_OWN = "bearing_sim"
+
+
+@click.command("info")
+@click.argument("recording", type=click.Path(path_type=Path), metavar="RUN.mcap")
+@click.option("--scene", "prints_scene", is_flag=True, help="Print only the recorded scene, as YAML.")
+@json_option
+def info(recording, prints_scene, as_json):
+    """Show what RUN.mcap holds: topics, counts, time span, scene, versions, and whether the file is complete.
+
+    RUN.mcap is any MCAP file, finished or not, or a bag's folder. The whole file is read and its checksums are verified. Exit code 1 if a
+    file is incomplete or damaged.
+    """
+    from bearing_sim.recording.bag import RecordingError, mcap_files
+    from bearing_sim.recording.recovery import contents
+
+    with as_usage_error(RecordingError), as_file_error():
+        files = []
+        for file in mcap_files(recording):
+            with progress_bar(f"reading {file.name}", 1.0) as progress:
+                files.append(contents(file, progress))
+    own = files[0].metadata.get(_OWN, {})
+    if prints_scene:
+        if "scene" not in own:
+            raise UsageError(f"{recording}: no scene in its metadata; it is not a recording of a bearing-sim run")
+        click.echo(own["scene"], nl=False)
+        return
+    if as_json:
+        print_json(
+            {
+                "recording": str(recording),
+                "sound": all(file.is_sound for file in files),
+                "files": [_file_report(file) for file in files],
+                **_origin(own),
+            }
+        )
+    else:
+        _print_info(recording, files, own)
+    sys.exit(0 if all(file.is_sound for file in files) else 1)
+
+
+def _origin(own) -> dict:
+    return {name: own.get(name) for name in ("level", "start_ns", "package_version", "git_hash", "seed")} | {
+        "scene": own.get("scene"),
+        "versions": {name.removeprefix("version_"): version for name, version in own.items() if name.startswith("version_")},
+    }
+
+
+def _file_report(file) -> dict:
+    return {
+        "file": str(file.path),
+        "size": file.size,
+        "profile": file.profile,
+        "library": file.library,
+        "finished": file.is_finished,
+        "ends": file.ends,
+        "damaged": file.damaged,
+        "first_ns": file.first_ns,
+        "last_ns": file.last_ns,
+        "seconds": file.seconds,
+        "messages": file.messages.total(),
+        "out_of_order": file.out_of_order,
+        "attachments": file.attachments,
+        "metadata": list(file.metadata),
+        "topics": {topic: {"type": kind, "messages": file.messages[topic]} for topic, kind in sorted(file.types.items())},
+    }
+
+
+def _print_info(recording, files, own) -> None:
+    rows = []
+    for file in files:
+        health = "complete, all checksums correct" if file.is_sound else f"INCOMPLETE: {_trouble(file)}"
+        rows.append((file.path.name, f"{file.size / 1e6:.4g} MB, {health}"))
+    started = [file.first_ns for file in files if file.messages]
+    if started:
+        first, last = min(started), max(file.last_ns for file in files)
+        span = f"{datetime.fromtimestamp(first * 1e-9, UTC):%Y-%m-%d %H:%M:%S.%f} UTC, {(last - first) * 1e-9:.6g} s"
+        rows.append(("span", span))
+    rows.append(("messages", f"{sum(file.messages.total() for file in files)}, {sum(file.out_of_order for file in files)} out of order"))
+    if own:
+        scene = next((line.partition(":")[2].strip() for line in own.get("scene", "").splitlines() if line.startswith("name:")), "unnamed")
+        rows.append(("scene", f"{scene}, level {own.get('level', 'unknown')} (info --scene prints it)"))
+        origin = _origin(own)
+        versions = [
+            f"bearing_sim {origin['package_version'] or 'not installed'}",
+            origin["git_hash"] or "",
+            *(f"{n} {v}" for n, v in origin["versions"].items()),
+        ]
+        rows.append(("made with", ", ".join(filter(None, versions))))
+        if origin["seed"] is not None:
+            rows.append(("seed", origin["seed"]))
+    else:
+        rows.append(("made with", f"{files[0].library or 'unknown'}; not a recording of a bearing-sim run"))
+    topics = sorted({topic for file in files for topic in file.types})
+    for topic in topics:
+        kind = next(file.types[topic] for file in files if topic in file.types)
+        rows.append((topic, f"{sum(file.messages[topic] for file in files)} x {kind}"))
+    print_table(str(recording), rows)
+
+
+def _trouble(file) -> str:
+    troubles = [file.ends] if file.ends else []
+    troubles += [f"{file.damaged} damaged chunks or records"] if file.damaged else []
+    return "; ".join(troubles) + f" (bearing-sim recover {file.path} -o GOOD.mcap)"
+
+
+@click.command("compare")
+@click.argument("first", type=click.Path(path_type=Path), metavar="RUN.mcap")
+@click.argument("second", type=click.Path(path_type=Path), metavar="AGAIN.mcap")
+@click.option(
+    "--tolerance",
+    "tolerances",
+    multiple=True,
+    metavar="NUMBER | TOPIC=NUMBER",
+    help="Accepted difference relative to the largest magnitude of a quantity, for all topics or for one [default: 1e-6].",
+)
+@json_option
+def compare(first, second, tolerances, as_json):
+    """Compare two recordings topic by topic; messages are matched by their times.
+
+    A topic agrees if both recordings have the same messages and all their numbers agree within the tolerance. Exit code 0 if all topics
+    agree, 1 otherwise. Diagnostics are text and are not compared.
+    """
+    from bearing_sim.recording.bag import RecordingError
+    from bearing_sim.recording.compare import compare
+
+    general, own = _tolerances(tolerances)
+    with as_usage_error(RecordingError), as_file_error():
+        differences, skipped = compare(first, second, general, own)
+    if not differences:
+        raise UsageError(f"{first} and {second} have no messages to compare")
+    unknown = [topic for topic in own if f"/{topic.lstrip('/')}" not in {difference.topic for difference in differences}]
+    if unknown:
+        raise UsageError(f"--tolerance {unknown[0]}=...: unknown topic; the topics are {', '.join(difference.topic for difference in differences)}")
+    agree = all(difference.agrees for difference in differences)
+    if as_json:
+        print_json({"agree": agree, "not_compared": skipped, "topics": [_difference_report(difference) for difference in differences]})
+    else:
+        _print_comparison(first, second, differences, skipped, agree)
+    sys.exit(0 if agree else 1)
+
+
+def _tolerances(given) -> tuple[float, dict[str, float]]:
+    general, own = 1e-6, {}
+    for text in given:
+        topic, is_own, number = text.rpartition("=")
+        try:
+            value = float(number)
+        except ValueError:
+            value = -1.0
+        if not value >= 0.0:
+            raise UsageError(f"--tolerance {text}: expected a number of 0 or more, or TOPIC=NUMBER")
+        if is_own:
+            own[topic] = value
+        else:
+            general = value
+    return general, own
+
+
+def _difference_report(difference) -> dict:
+    worst = difference.worst
+    return {
+        "topic": difference.topic,
+        "type": difference.ros_type,
+        "agrees": difference.agrees,
+        "messages": difference.matched,
+        "only_in_first": difference.only_first,
+        "only_in_second": difference.only_second,
+        "differing": difference.differing,
+        "tolerance": difference.tolerance,
+        "largest_relative": None if worst is None else float(difference.relative[worst]),
+        "largest": None if worst is None else float(difference.largest[worst]),
+        "largest_in": None if worst is None or not difference.differing else difference.numbers[worst],
+        "largest_at_ns": None if worst is None or not difference.differing else int(difference.where_ns[worst]),
+    }
+
+
+def _print_comparison(first, second, differences, skipped, agree) -> None:
+    rows, start = [], min(difference.first_ns for difference in differences)
+    for difference in differences:
+        found = _difference_report(difference)
+        alone = f"{difference.only_first} / {difference.only_second}"
+        numbers = ["-"] * 2 if found["largest"] is None else [f"{found['largest']:.3g}", f"{found['largest_relative']:.2e}"]
+        where = ["", ""] if found["largest_in"] is None else [found["largest_in"], f"{(found['largest_at_ns'] - start) * 1e-9:.6g}"]
+        verdict = "agrees" if difference.agrees else "DIFFERS"
+        counts = str(difference.matched), alone, str(difference.differing)
+        rows.append((difference.topic, *counts, *numbers, f"{difference.tolerance:g}", *where, verdict))
+    columns = ("topic", "messages", "alone", "differing", "largest", "over magnitude", "tolerance", "in", "after [s]", "")
+    print_rows(f"{first} against {second}", columns, rows, words=("topic", "in", ""), width=170, whole=("topic",))
+    if skipped:
+        click.echo(f"not compared: {', '.join(skipped)}")
+    click.echo("the recordings agree" if agree else "the recordings differ")
+
+
+@click.command("recover")
+@click.argument("broken", type=click.Path(path_type=Path, dir_okay=False), metavar="BROKEN.mcap")
+@click.option("-o", "--out", required=True, type=click.Path(path_type=Path), metavar="GOOD.mcap", help="Recovered file; must not exist.")
+@json_option
+def recover(broken, out, as_json):
+    """Recover everything readable from BROKEN.mcap into GOOD.mcap: a file of a killed writer (RUN.mcap.active), truncated or damaged.
+
+    Works with any MCAP file. Messages keep their bytes, times and order; BROKEN.mcap is not changed.
+    """
+    from bearing_sim.recording.bag import RecordingError
+    from bearing_sim.recording.recovery import recover
+
+    with as_usage_error(RecordingError), as_file_error(), progress_bar(f"recovering {broken.name}", 1.0) as progress:
+        found = recover(broken, out, progress)
+    lost = "nothing known to be missing" if found.is_sound else found.ends or "parts of it were damaged"
+    if as_json:
+        report = {"broken": str(broken), "out": str(out), "broken_size": found.size, "size": out.stat().st_size, "seconds": found.seconds}
+        report |= {"messages": found.messages.total(), "messages_by_topic": dict(found.messages), "metadata": list(found.metadata)}
+        print_json({**report, "damaged": found.damaged, "was_finished": found.is_finished, "ends": found.ends})
+        return
+    rows = [
+        ("the file", f"{found.size / 1e6:.4g} MB; {lost}"),
+        ("damaged chunks left out", str(found.damaged)),
+        ("saved", f"{found.messages.total()} messages over {found.seconds:.6g} s, {len(found.metadata)} metadata records"),
+        *((topic, f"{count} messages") for topic, count in sorted(found.messages.items())),
+    ]
+    print_table(f"{broken} recovered into {out}", rows)
+
+
+def with_excerpt(command: Callable) -> Callable:
+    """Add the options that select the part of a recording to export."""
+    for option in (
+        json_option,
+        click.option("--to", "last", type=float, metavar="S", help="Last simulated time [default: the end]."),
+        click.option("--from", "first", type=float, metavar="S", help="First simulated time [default: the beginning]."),
+        click.option("--every", type=click.IntRange(min=1), default=1, show_default=True, metavar="N", help="Export one of N samples."),
+        click.option("--no-rollers", is_flag=True, help="Omit the observables of single rollers."),
+        click.option("--column", "columns", multiple=True, metavar="NAME", help="Export this observable; can be repeated [default: all]."),
+        click.argument("recording", type=click.Path(path_type=Path), metavar="RUN.mcap"),
+    ):
+        command = option(command)
+    return command
+
+
+def export(kind: str, recording: Path, out: Path, columns, no_rollers, every, first, last, as_json) -> None:
+    """Export a recording as a table of a kind, ``csv`` or ``parquet``, and report it."""
+    from bearing_sim.recording.bag import RecordingError
+    from bearing_sim.recording.reader import Recording
+    from bearing_sim.recording.table import Excerpt, TableError, write_csv, write_parquet
+
+    write = {"csv": write_csv, "parquet": write_parquet}[kind]
+    infinity = float("inf")
+    excerpt = Excerpt(tuple(columns), not no_rollers, every, -infinity if first is None else first, infinity if last is None else last)
+    with as_usage_error(RecordingError, TableError), as_file_error():
+        source = Recording(recording)
+        with progress_bar(f"writing {out.name}", source.duration) as progress:
+            rows = write(source, out, excerpt, progress)
+    if source.unfinished:
+        click.echo(f"{recording}: {source.unfinished}", err=True)
+    if as_json:
+        print_json({"recording": str(recording), "out": str(out), "rows": rows, "size": out.stat().st_size})
+    else:
+        click.echo(f"{out}: {rows} samples, {out.stat().st_size / 1e6:.4g} MB")
+
+
+@click.command("to-csv")
+@with_excerpt
+@click.option("-o", "--out", required=True, type=click.Path(path_type=Path, dir_okay=False), metavar="RUN.csv", help="The table.")
+def to_csv(recording, out, columns, no_rollers, every, first, last, as_json):
+    """Export the samples of RUN.mcap, a recording of bearing-sim or the node, as a CSV table.
+
+    One row per sample, one column per observable, or per roller for observables of rollers (inner_load_07). Units are in the header,
+    numbers are in SI.
+    """
+    export("csv", recording, out, columns, no_rollers, every, first, last, as_json)
+
+
+@click.command("to-parquet")
+@with_excerpt
+@click.option("-o", "--out", required=True, type=click.Path(path_type=Path, dir_okay=False), metavar="RUN.parquet", help="The table.")
+def to_parquet(recording, out, columns, no_rollers, every, first, last, as_json):
+    """Export the samples of RUN.mcap, a recording of bearing-sim or the node, as a Parquet table.
+
+    One row per sample, one column per observable, or per roller for observables of rollers (inner_load_07). Units and meanings are in the
+    metadata of the columns, the scene in that of the file; numbers are in SI.
+    """
+    export("parquet", recording, out, columns, no_rollers, every, first, last, as_json)

@@ -1,0 +1,421 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""``bearing-sim study`` and ``report``: studies of the model itself, and the results of Deng 2017."""
+
+import csv
+import math
+from pathlib import Path
+
+import click
+
+from bearing_sim.cli.options import executor_options, json_option, picture_option, set_option
+from bearing_sim.cli.reporting import (
+    FailedRun,
+    Points,
+    announce_compilation,
+    as_file_error,
+    as_usage_error,
+    exit_on_sigterm,
+    print_json,
+    print_rows,
+    print_table,
+    progress_bar,
+    require_levels,
+)
+
+
+@click.command("deng2017")
+@click.option("-o", "--out", type=click.Path(path_type=Path), default=Path("deng2017"), show_default=True, metavar="FOLDER", help="Output folder.")
+@click.option("--quick", is_flag=True, help="Few points and short runs, to check that everything works.")
+@executor_options
+@json_option
+def deng2017(out, quick, workers, dask, as_json):
+    """Reproduce the figures of Deng 2017 at levels slip and planar, with the parameters of the paper, and check its claims.
+
+    Writes tables (Parquet, CSV), figures and claims to FOLDER; `bearing-sim report FOLDER` makes a page of them.  An interrupted study
+    resumes where it stopped.
+    """
+    from bearing_sim.sweep.tasks import ClusterError, JournalInUse
+
+    announce_compilation()
+    from bearing_sim.studies.deng2017.run import run_study
+
+    points = Points("deng2017", 0)
+    with as_file_error(), exit_on_sigterm(), as_usage_error(ClusterError, JournalInUse), points:
+        findings = run_study(out, quick, workers, dask, points.update)
+    if as_json:
+        print_json({"folder": str(out), "computed": points.computed, "claims": [finding._asdict() for finding in findings]})
+        return
+    for finding in findings:
+        click.echo(f"{finding.claim} at level {finding.level}: {finding.verdict}" if finding.claim else f"contours: {finding.verdict}")
+        for name in ("gives", "off", "why"):
+            if getattr(finding, name):
+                click.echo(f"    {name}: {getattr(finding, name)}")
+    click.echo(f"{points.computed} points computed; {out}; make a page of it with bearing-sim report {out}")
+
+
+@click.command("report")
+@click.argument("folder", type=click.Path(path_type=Path))
+@click.option("-o", "--out", type=click.Path(path_type=Path), metavar="PATH.html", help="The page [default: report.html in FOLDER].")
+def report(folder, out):
+    """Make one HTML page of the results of `bearing-sim study deng2017` in FOLDER: claims, figures, settings, versions.
+
+    The page is self-contained: it needs no network and no other file.
+    """
+    from bearing_sim.studies.report_page import NoStudy, write_page
+
+    out = out or folder / "report.html"
+    with as_usage_error(NoStudy), as_file_error():
+        write_page(folder, out)
+    click.echo(f"{out}: {out.stat().st_size / 1e6:.1f} MB")
+
+
+@click.command("damage")
+@click.argument("log", type=click.Path(path_type=Path), metavar="IN.mcap")
+@click.option("--scene", "scene_name", required=True, metavar="SCENE", help="Name of a bundled scene, or a scene file.")
+@set_option
+@click.option("--windows", default=10, show_default=True, type=click.IntRange(1, 1000), help="Number of windows that level planar computes.")
+@click.option("--length", default=1.0, show_default=True, type=click.FloatRange(min=0.01), metavar="S", help="Length of a window.")
+@json_option
+def damage(log, scene_name, overrides, windows, length, as_json):
+    """Run the inputs in IN.mcap at levels steady and slip, and at level planar in windows spread evenly over them."""
+    import numpy as np
+
+    from bearing_sim.inputs.log import InputLogError, read_input_log
+    from bearing_sim.inputs.profile import judge
+    from bearing_sim.scene.loader import SceneError, load_scene
+    from bearing_sim.simulation import Inputs, IntegrationError
+
+    with as_usage_error(SceneError, InputLogError), as_file_error():
+        scene = load_scene(scene_name, [*overrides, "level=steady"])
+        course = judge(read_input_log(log), scene.input_limits, Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature))
+    from bearing_sim.cli.table import build_with_progress
+    from bearing_sim.studies.damage import damages
+
+    announce_compilation()
+    kelvin = scene.lubricant.temperature
+    table = build_with_progress(scene, None if "oil_temperature" in course.stamps else (kelvin, kelvin))[0]
+    in_gap = np.zeros(len(course.instants), bool)
+    for begin, end in course.gaps:
+        in_gap |= (course.instants > begin) & (course.instants <= end)
+    with progress_bar(f"running {log.name}", course.end * 1e-9) as show, as_usage_error(SceneError):
+        try:
+            found = damages(
+                scene_name, overrides, course.instants * 1e-9, course.at(course.instants, kelvin), in_gap,
+                table=table, windows=windows, length=length, progress=show,
+            )  # fmt: skip
+        except IntegrationError as error:
+            raise FailedRun(str(error)) from None
+    if as_json:
+        print_json({"log": log.name, "scene": scene_name, **found._asdict(), "windows": [window._asdict() for window in found.windows]})
+    else:
+        _print_damage(log, scene_name, found)
+
+
+def _print_damage(log, name, found) -> None:
+    import math
+
+    rows = []
+    sums = [sum(getattr(window, level) for window in found.windows) for level in ("steady", "slip", "planar")]
+    for window in found.windows:
+        numbers = [f"{1e6 * value:.4g}" for value in (window.steady, window.slip, window.planar)]
+        where = f"{window.start:.1f}", f"{window.shaft_speed * 30 / math.pi:.0f}", f"{window.radial_load:.0f}"
+        rows.append((*where, *numbers, f"{window.planar / window.slip:.3f}" if window.slip > 0.0 else ""))
+    rows.append(("windows", "", "", *(f"{1e6 * value:.4g}" for value in sums), f"{sums[2] / sums[1]:.3f}" if sums[1] > 0.0 else ""))
+    rows.append(("whole", "", "", f"{1e6 * found.steady:.6g}", f"{1e6 * found.slip:.6g}", "", ""))
+    columns = ("from, s", "rpm", "N", "steady", "slip", "planar", "planar/slip")
+    print_rows(f"{log.name}, {name}: damage in millionths of the life, by level", columns, rows)
+
+
+@click.command("misalignment")
+@click.argument("scene_name", metavar="[SCENE]", default="deng2017_table1")
+@set_option
+@click.option("--largest", default=3.0, show_default=True, type=click.FloatRange(0.0, 20.0), metavar="MRAD", help="Largest misalignment.")
+@click.option("--points", default=7, show_default=True, type=click.IntRange(2, 1000), help="Number of misalignments, starting at 0.")
+@click.option("--crown", "crowns", multiple=True, metavar="LAW", help="Value of bearing.roller.crown; can be repeated [default: none, iso_log].")
+@click.option("--slices", default=30, show_default=True, type=click.IntRange(5, 400), help="Slices per roller (ISO/TS 16281: at least 30).")
+@click.option("--csv", "table", type=click.Path(path_type=Path), metavar="PATH.csv", help="Write the results to a table.")
+@picture_option("Draw the results")
+@json_option
+def misalignment(scene_name, overrides, largest, points, crowns, slices, table, picture, as_json):
+    """Run SCENE at level spatial with its inner ring held at increasing misalignments, with and without a crown."""
+    import numpy as np
+
+    from bearing_sim.scene.loader import SceneError
+    from bearing_sim.simulation import IntegrationError
+
+    announce_compilation()
+    from bearing_sim.studies.misalignment import CROWNS, misalign
+
+    crowns = crowns or CROWNS
+    done = iter(range(points * len(crowns) + 1))
+    with progress_bar("points", points * len(crowns)) as show, as_usage_error(SceneError, ValueError):
+        try:
+            amounts = [round(float(each), 9) for each in 1e-3 * np.linspace(0.0, largest, points)]
+            found = misalign(scene_name, overrides, amounts, crowns, slices, progress=lambda name: show(next(done)))
+        except IntegrationError as error:
+            raise FailedRun(str(error)) from None
+    rows = [_row(one) for one in found]
+    with as_file_error():
+        if table is not None:
+            with open(table, "w", newline="") as file:
+                writer = csv.DictWriter(file, rows[0])
+                writer.writeheader()
+                writer.writerows(rows)
+        if picture is not None:
+            from bearing_sim.studies.misalignment import draw
+
+            draw(picture, f"{scene_name} {' '.join(overrides)}: misalignment of the inner ring, {slices} slices", found)
+    if as_json:
+        print_json({"scene": scene_name, "slices": slices, "points": rows})
+    else:
+        _print_misalignment(scene_name, rows)
+
+
+def _row(one) -> dict:
+    return {
+        "crown": one.crown,
+        "misalignment_mrad": 1e3 * one.misalignment,
+        "slip_percent": 100 * one.slip,
+        "inner_pressure_mpa": 1e-6 * one.inner_pressure,
+        "inner_edge_pressure_mpa": 1e-6 * one.inner_edge_pressure,
+        "outer_edge_pressure_mpa": 1e-6 * one.outer_edge_pressure,
+        "tilt_mrad": 1e3 * one.tilt,
+        "skew_mrad": 1e3 * one.skew,
+        "life_hours": one.rating_life,
+        "lamina_life_hours": one.lamina_life,
+        "static_lamina_life_hours": one.still.lamina_life,
+    }
+
+
+def _print_misalignment(name, rows) -> None:
+    pressures, angles, lives = (
+        ("largest, MPa", "inner edge, MPa", "outer edge, MPa"),
+        ("tilt, mrad", "skew, mrad"),
+        ("life, h", "by slices, h", "no slip, h"),
+    )
+    texts = [(crown, *(format(number, ".4g") for number in numbers)) for crown, *numbers in (row.values() for row in rows)]
+    columns = ("crown", "mrad", "slip, %", *pressures, *angles, *lives)
+    print_rows(f"{name}: misalignment of the inner ring, level spatial", columns, texts, words=("crown",))
+    click.echo("pressures, tilt and skew: time average of the largest value at each instant; no slip: life by slices in quasi-static equilibrium")
+
+
+@click.command("situations")
+@click.option("--out", type=click.Path(path_type=Path), required=True, metavar="FOLDER", help="Folder for NAME.rrd and NAME.png.")
+@click.option("--only", "names", multiple=True, metavar="NAME", help="Run only this situation; can be repeated.")
+@click.option("--size", type=(int, int), default=(1600, 1000), show_default=True, metavar="W H", help="Size of the pictures [px].")
+@click.option("--pictures/--no-pictures", default=True, show_default=True, help="Pictures need a Vulkan driver; a software driver is sufficient.")
+@json_option
+def situations(out, names, size, pictures, as_json):
+    """Run six situations of bearing deng2017_table1 and draw each at its characteristic instant.
+
+    Start from rest, steady light load, skid in a gust, misaligned rings, heavy load, and a fault detected by a measured cage.
+    """
+    from bearing_sim.studies.situations import SITUATIONS
+    from bearing_sim.view.screenshot import HeadlessViewer, ViewerFailed
+
+    known = {situation.name: situation for situation in SITUATIONS}
+    for name in names:
+        if name not in known:
+            raise click.BadParameter(f"{name}: expected one of {', '.join(known)}", param_hint="--only")
+    announce_compilation()
+    report = {}
+    with as_file_error():
+        out.mkdir(parents=True, exist_ok=True)
+        for name in names or known:
+            situation, rrd = known[name], out / f"{name}.rrd"
+            report[name] = _run(situation, rrd)
+            if pictures:
+                try:
+                    with HeadlessViewer(rrd, size) as viewer:
+                        viewer.seek(situation.picture_at)
+                        (out / f"{name}.png").write_bytes(viewer.png())
+                        problems = viewer.problems()
+                except ViewerFailed as error:
+                    raise FailedRun(f"{rrd} is written, but no picture could be made: {error}") from None
+                if problems:
+                    raise FailedRun(f"{rrd}: the viewer reports: {'; '.join(problems)}")
+    if as_json:
+        print_json(report)
+    else:
+        _print_situations(report, out)
+
+
+def _run(situation, rrd: Path) -> dict:
+    """Write the recording of a situation and return its key figures."""
+    import numpy as np
+
+    from bearing_sim.messages.events import Measurement
+    from bearing_sim.studies.situations import play
+    from bearing_sim.view.sink import RerunSink
+
+    scene, blocks, residuals, kinds = situation.scene(), [], [], []
+    with RerunSink(scene, path=rrd, lossless=True, duration=situation.duration) as sink:
+        with progress_bar(situation.name.replace("_", " "), situation.duration) as progress:
+            for item in play(situation, scene):
+                if isinstance(item, np.ndarray):
+                    sink.write(item)
+                    blocks.append(item)
+                    progress(float(item["time"][-1]))
+                elif isinstance(item, Measurement):
+                    sink.write_measurement(*item)
+                    residuals.append(item)
+                else:
+                    sink.write_event(item)
+                    kinds.append(item.kind)
+    if sink.fault:
+        raise FailedRun(f"{rrd}: {sink.fault}")
+    return _figures(situation, np.concatenate(blocks), residuals, kinds)
+
+
+def _figures(situation, block, residuals, kinds) -> dict:
+    import numpy as np
+
+    def around(time):
+        return block[np.abs(block["time"] - time) <= 0.02 * situation.duration]
+
+    then, first = around(situation.picture_at), around(0.35 * situation.duration)
+    late = [residual for time, _, residual in residuals if time > situation.duration - 0.3]
+    return {
+        "level": situation.scene().level,
+        "shaft_speed_rpm": float(then["shaft_speed"][-1]) * 30 / math.pi,
+        "radial_load": float(np.hypot(then["load_y"][-1], then["load_z"][-1])),
+        "slip_at_first": float(np.nanmean(first["cage_slip"])),
+        "slip": float(np.nanmean(then["cage_slip"])),
+        "slip_at_last": float(np.nanmean(block["cage_slip"][-len(then) :])),
+        "rating_life": float(np.median(then["rating_life"])),
+        "largest_load": float(then["inner_load"].max()),
+        "largest_tilt": float(np.abs(then["roller_tilt"]).max()),
+        "largest_skew": float(np.abs(then["roller_skew"]).max()),
+        "residual": float(np.mean(late)) if late else None,
+        "events": kinds,
+    }
+
+
+def _print_situations(report, out) -> None:
+    columns = ("name", "level", "rpm", "N", "slip at start, picture, end [%]", "life [h]", "load [N]", "tilt, skew [mrad]", "residual [points]")
+    rows = []
+    for name, found in report.items():
+        slips = ", ".join(f"{100 * found[key]:.2f}" for key in ("slip_at_first", "slip", "slip_at_last"))
+        leans = f"{1e3 * found['largest_tilt']:.2f}, {1e3 * found['largest_skew']:.2f}"
+        residual = "-" if found["residual"] is None else f"{100 * found['residual']:+.2f}"
+        numbers = (f"{found[key]:.4g}" for key in ("shaft_speed_rpm", "radial_load"))
+        others = (f"{found[key]:.4g}" for key in ("rating_life", "largest_load"))
+        rows.append((name, found["level"], *numbers, slips, *others, leans, residual))
+    print_rows(f"situations in {out}", columns, rows, words=("name", "level"), width=170)
+
+
+@click.command("slices")
+@click.argument("scene_name", metavar="[SCENE]", default="deng2017_table1")
+@set_option
+@click.option("--settle", default=0.15, show_default=True, type=click.FloatRange(min=1e-6), metavar="S", help="Simulated time before measuring.")
+@click.option("--duration", default=0.06, show_default=True, type=click.FloatRange(min=1e-6), metavar="S", help="Simulated time measured.")
+@json_option
+def slices(scene_name, overrides, settle, duration, as_json):
+    """Run SCENE at level spatial with 10 to 200 slices, and bearings with 18 to 144 rollers, and measure the cost of a step."""
+    import math
+
+    from bearing_sim.scene.loader import SceneError, load_scene
+    from bearing_sim.simulation import IntegrationError
+
+    with as_usage_error(SceneError):
+        scene = load_scene(scene_name, [*overrides, "level=spatial"])
+    announce_compilation()
+    from bearing_sim.studies.slices import ROLLERS, SLICES, by_rollers, by_slices, line
+
+    runs = len(SLICES) + len(ROLLERS)
+    done = iter(range(runs + 1))
+    with progress_bar("runs", runs) as show:
+        try:
+            found = by_slices(scene, settle, duration, progress=lambda name: show(next(done)))
+            rpm = abs(scene.operating.shaft_speed) * 30 / math.pi
+            rollers = by_rollers(rpm, settle / 10, duration / 3, progress=lambda name: show(next(done)))
+        except IntegrationError as error:
+            raise FailedRun(str(error)) from None
+    costs = {"slices": line([one.slices for one in found], [one.step_seconds for one in found]), "rollers": rollers}
+    if as_json:
+        print_json({"scene": scene_name, "runs": [one._asdict() for one in found], "cost": {name: cost._asdict() for name, cost in costs.items()}})
+    else:
+        _print_slices(scene_name, found, costs)
+
+
+def _print_slices(name, found, costs) -> None:
+    columns = ("slices", "slip, %", "largest load, N", "life, h", "by slices, h", "static: MPa", "by slices, h", "us per step", "x real time")
+    rows = []
+    for one in found:
+        lives = [format(value, ".4g") for value in (one.inner_load, one.rating_life, one.lamina_life)]
+        still = f"{1e-6 * one.static_pressure:.5g}", f"{one.static_lamina_life:.4g}"
+        rows.append((str(one.slices), f"{100 * one.slip:.4g}", *lives, *still, f"{1e6 * one.step_seconds:.3g}", f"{one.real_time_factor:.3g}"))
+    print_rows(f"{name}: results by number of slices", columns, rows)
+    for what, cost in costs.items():
+        steps = ", ".join(f"{count}: {1e6 * seconds:.3g}" for count, seconds in zip(cost.counts, cost.step_seconds))
+        fit = f"{1e6 * cost.fixed:.3g} + {1e6 * cost.each:.3g} per item, within {100 * cost.misfit:.2g} %"
+        click.echo(f"us per step by {what}: {steps}; straight line: {fit}")
+
+
+_SHOWN = 12  # reasons per table
+
+
+@click.command("extremes")
+@click.option("--samples", default=500, show_default=True, type=click.IntRange(0, 1_000_000), help="Scenes of the Latin hypercube per level.")
+@click.option("--level", "levels", multiple=True, metavar="LEVEL", help="Study this level; can be repeated [default: all].")
+@click.option("--seed", default=0, show_default=True, type=click.IntRange(0), help="Seed of the Latin hypercube.")
+@click.option("--long/--no-long", default=True, show_default=True, help="Also make the long continuous runs.")
+@json_option
+@picture_option("Draw the map")
+@click.option("--csv", "table", type=click.Path(path_type=Path), metavar="PATH.csv", help="Write all cases, one per line.")
+def extremes(samples, levels, seed, long, as_json, picture, table):
+    """Run scenes at the extremes of all parameters and report which finish, are step-limited, are refused or fail.
+
+    Speed, load, play, lobes, rollers, pockets, lands, oil, slices, methods, tolerances and steps from a Latin hypercube, and named corner
+    cases, on all cores available to this process.  Exit code 1 if any case fails.
+    """
+    from bearing_sim.studies.extremes import run_extremes
+
+    require_levels(levels)
+    with progress_bar("extremes", 1.0) as progress:
+        report, outcomes = run_extremes(samples, levels, seed, long, lambda text: click.echo(f"{text} ...", err=True), progress)
+    with as_file_error():
+        if table is not None:
+            from bearing_sim.studies.extremes import write_table
+
+            write_table(table, outcomes)
+        if picture is not None:
+            from bearing_sim.studies.extremes import draw
+
+            draw(picture, outcomes)
+    if as_json:
+        print_json(report)
+    else:
+        for level, results in report["levels"].items():
+            _print_extremes(level, results)
+    if report["failed"]:
+        raise FailedRun(f"{report['failed']} of {sum(report[name] for name in ('finished', 'step_limited', 'refused', 'failed'))} cases failed")
+
+
+def _print_extremes(level, results) -> None:
+    rows = [(name.replace("_", "-"), str(results[name])) for name in ("finished", "step_limited", "refused", "failed")]
+    rows += [(f"step-limited by {reason}", str(count)) for reason, count in list(results["step_limited_by"].items())[:_SHOWN]]
+    rows += [(f"refused for {reason}", str(count)) for reason, count in list(results["refused_by"].items())[:_SHOWN]]
+    rows += [(f"failed: {failure['case']}", failure["reason"]) for failure in results["failures"][:_SHOWN]]
+    worst = {
+        "steps_per_ms": "most steps per simulated ms",
+        "right_hand_sides_per_ms": "most right-hand sides per simulated ms",
+        "core_ms_per_ms": "most core time per simulated ms [ms]",
+        "step_us": "longest step [us of core time]",
+    }
+    for kind, scope in (("worst_by_the_model", ""), ("worst", ", including settings that request small steps")):
+        rows += [
+            (text + scope, f"{results[kind][name]['value']:.4g} ({results[kind][name]['case']})")
+            for name, text in worst.items()
+            if name in results[kind]
+        ]
+    rows += [
+        (
+            f"{run['simulated']:g} s at {run['speed_rpm']:g} rpm",
+            run["failure"]
+            or f"{run['real_time_factor']:.3g} times real time; drift of slip {run['slip_drift']:.1e}, damage rate {run['damage_drift']:.1e}, energy "
+            f"{run['energy_drift']:.1e}; angle errors {run['shaft_angle_error']:.1e} shaft, {run['cage_angle_error']:.1e} cage",
+        )
+        for run in results["long_runs"]
+    ]
+    print_table(f"extremes at level {level}, {results['core_seconds']:.0f} s of core time", rows)

@@ -1,0 +1,668 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""The Jacobian of level ``planar``, and the solution of (I - s J) x = b; ``LANES`` rollers at a time (a block).
+
+A roller depends on 15 variables: its own r, phi, r', phi', w, the border's five positions and their five speeds.  The rows of
+`bearing_sim.levels.planar.state.JACOBIAN_ROWS` are those of r'', phi'' and w', then those that the accelerations of ring and cage (the
+border) have through the roller.  Lanes without a roller contribute nothing to the border.
+
+**Inner contact.** Let a = (a_r, a_t) be the roller's centre relative to the ring's and v its velocity, n = a/|a|, p a right angle ahead of it,
+v_n = n.v, v_p = p.v; k and d the derivatives of Q_i by penetration and by its rate, T_Q, T_s, T_u those of the traction by load, sliding and
+rolling speed.  n turns by h_r da_r + h_t da_t with h_r = -n_t/|a|, h_t = n_r/|a|, and with delta = R_i + R_w - |a|, delta' = -v_n and
+du = omega_i R_i - v_p - w R_w
+
+    Q_ar = -(k n_r + d h_r v_p),  Q_at = -(k n_t + d h_t v_p),  Q_vr = -d n_r,              Q_vt = -d n_t,
+    T_ar = T_Q Q_ar + T_s h_r v_n, T_at = T_Q Q_at + T_s h_t v_n, T_vr = T_Q Q_vr + T_s n_t, T_vt = T_Q Q_vt - T_s n_r
+
+are the derivatives by a and v.  The force in the roller's frame is F = Q n + T p, so that dF = dQ n + dT p + (h.da) (-F_t, F_r).  By the roller's
+own variables (c the ring's centre in the roller's frame):
+
+    d/dr = d/da_r + phi' d/dv_t,   d/dphi = c_r d/da_t - c_t d/da_r + c_r' d/dv_t - c_t' d/dv_r,   d/dr' = d/dv_r,   d/dphi' = r d/dv_t,
+
+and, because the mean rolling speed depends on them, d/dphi' gains T_u (R_w - R_i)/2 and d/dw is (T_u/2 - T_s) R_w.  A ring that moves is
+a roller that moves the other way.
+
+**Outer contact.** delta_e = r + R_w - R_e(phi), delta_e' = r' - R_e' phi', du_e = w R_w - r phi':
+
+    Q_r = k,  Q_phi = -k R_e' - d R_e'' phi',  Q_r' = d,  Q_phi' = -d R_e';   T likewise, with T_s and T_u.
+
+**Pocket.** The force f on the wall depends on s and s' (`bearing_sim.levels.common.rollers.place_in_pockets`), its direction on psi.
+
+**Linear algebra.** (I - s J) x = b for the whole first-order state is reduced to speeds, because every position is x = b + s v: J becomes
+s (d/dv + s d/dq).  What is left is a block arrow, a 3x3 block for each roller and one 5x5 border; the rollers are eliminated one by one into
+the border's Schur complement.  Cost O(Z).
+"""
+
+from bearing_sim.levels.common.rollers import add
+from bearing_sim.levels.planar.state import (
+    AT_POSITIONS,
+    AT_SPEEDS,
+    BELOW,
+    BLOCK,
+    BORDER,
+    CAGE_Y,
+    CAGE_Z,
+    INVERSE,
+    LOCAL,
+    OMEGA,
+    PHI,
+    PHI_SPEED,
+    R_SPEED,
+    RIGHT,
+    RING,
+    RING_Y,
+    RING_Z,
+    ROLLER,
+    SPIN,
+    THETA,
+    R,
+)
+from bearing_sim.numerics.compilation import kernel, template
+from bearing_sim.numerics.linear_algebra import back_substitute, decompose
+from bearing_sim.numerics.simd import LANES, collect_runs, load, magnitude, spread, spread_runs, store, total, where_positive
+from bearing_sim.physics.contact import CONTACT
+
+_RADIAL, _ORBITAL, _SPINNING = 0, LOCAL, 2 * LOCAL  # where the rows of r'', phi'' and w' begin
+_PASSED = 3 * LOCAL  # where those of the border begin
+_CAGE_ROWS = 3 * LOCAL + LOCAL * CAGE_Y  # where the rows of the cage's accelerations begin, see `bearing_sim.levels.planar.state.JACOBIAN_ROWS`
+
+
+@template
+def _in_frame(force, traction, turn, n_r, n_t, radial, along):
+    """Return dF = dQ n + dT p + turn (-F_t, F_r), the change of a contact's force in the roller's frame."""
+    return force * n_r - traction * n_t - turn * along, force * n_t + traction * n_r + turn * radial
+
+
+@template
+def _by_own(columns, y, cosine, sine, radius, orbital_speed):
+    """Return the derivatives by r, phi, r', phi' from those by a and v (see the docstring of the module)."""
+    d_apart_r, d_apart_t, d_speed_r, d_speed_t = columns
+    ring_r, ring_t = y[RING_Y] * cosine + y[RING_Z] * sine, y[RING_Z] * cosine - y[RING_Y] * sine
+    ring_speed_r = y[BORDER + RING_Y] * cosine + y[BORDER + RING_Z] * sine
+    ring_speed_t = y[BORDER + RING_Z] * cosine - y[BORDER + RING_Y] * sine
+    d_angle = d_apart_t * ring_r - d_apart_r * ring_t + d_speed_t * ring_speed_r - d_speed_r * ring_speed_t
+    return d_apart_r + orbital_speed * d_speed_t, d_angle, d_speed_r, radius * d_speed_t
+
+
+@template
+def _own_columns(put, block, jacobian, first, scale, columns, d_spin):
+    """Store or add (``put``) ``scale`` times the columns by r, phi, r', phi', and that by the spin."""
+    put(jacobian, block, first + R, scale * columns[0])
+    put(jacobian, block, first + PHI, scale * columns[1])
+    put(jacobian, block, first + R_SPEED, scale * columns[2])
+    put(jacobian, block, first + PHI_SPEED, scale * columns[3])
+    put(jacobian, block, first + SPIN, d_spin)
+
+
+@template
+def _ring_columns(put, block, jacobian, first, scale, columns, cosine, sine):
+    """Store or add the columns by the ring's position and velocity, from those by a and v: a ring that moves is a roller that moves the other way."""
+    put(jacobian, block, first + AT_POSITIONS + RING_Y, scale * (columns[1] * sine - columns[0] * cosine))
+    put(jacobian, block, first + AT_POSITIONS + RING_Z, -scale * (columns[0] * sine + columns[1] * cosine))
+    put(jacobian, block, first + AT_SPEEDS + RING_Y, scale * (columns[3] * sine - columns[2] * cosine))
+    put(jacobian, block, first + AT_SPEEDS + RING_Z, -scale * (columns[2] * sine + columns[3] * cosine))
+
+
+@template
+def _turned(columns_r, columns_t, c, s):
+    """Return c times the first columns less s times the second."""
+    return (
+        columns_r[0] * c - columns_t[0] * s,
+        columns_r[1] * c - columns_t[1] * s,
+        columns_r[2] * c - columns_t[2] * s,
+        columns_r[3] * c - columns_t[3] * s,
+    )
+
+
+@template
+def _inner_rows(put, block, y, params, rows, force, radial_columns, along_columns, spin_columns, d_orbit, d_spin, per_inertia, jacobian):
+    """Store or add the rows of a block of rollers and of the ring, as far as the inner contact makes them.
+
+    Parameters
+    ----------
+    force : outwards and along the orbit, on the roller [N].
+    radial_columns, along_columns, spin_columns : derivatives by a and v of that force, and of the force that drives the spin.
+    d_orbit, d_spin : what the rolling and sliding speeds add by phi' and w: outwards, along, and to the spin's force.
+    per_inertia : of the spin's force.
+    """
+    cosine, sine = load(rows, block, ROLLER.cosine), load(rows, block, ROLLER.sine)
+    radius, orbital_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.orbital_speed)
+    per_mass = 1.0 / params.rollers.mass
+    per_lever = per_mass / radius
+    radial_r, radial_phi, radial_r_speed, radial_phi_speed = _by_own(radial_columns, y, cosine, sine, radius, orbital_speed)
+    along_r, along_phi, along_r_speed, along_phi_speed = _by_own(along_columns, y, cosine, sine, radius, orbital_speed)
+    spin_r, spin_phi, spin_r_speed, spin_phi_speed = _by_own(spin_columns, y, cosine, sine, radius, orbital_speed)
+    radial_phi_speed, along_phi_speed, spin_phi_speed = radial_phi_speed + d_orbit[0], along_phi_speed + d_orbit[1], spin_phi_speed + d_orbit[2]
+    radial_spin, along_spin = d_spin[0], d_spin[1]
+    _own_columns(put, block, jacobian, _RADIAL, per_mass, (radial_r, radial_phi, radial_r_speed, radial_phi_speed), per_mass * radial_spin)
+    _own_columns(put, block, jacobian, _ORBITAL, per_lever, (along_r, along_phi, along_r_speed, along_phi_speed), per_lever * along_spin)
+    _own_columns(put, block, jacobian, _SPINNING, per_inertia, (spin_r, spin_phi, spin_r_speed, spin_phi_speed), per_inertia * d_spin[2])
+    _ring_columns(put, block, jacobian, _RADIAL, per_mass, radial_columns, cosine, sine)
+    _ring_columns(put, block, jacobian, _ORBITAL, per_lever, along_columns, cosine, sine)
+    _ring_columns(put, block, jacobian, _SPINNING, per_inertia, spin_columns, cosine, sine)
+    scale = load(rows, block, ROLLER.present) * (-1.0 / params.ring.mass)
+    c, s = scale * cosine, scale * sine
+    # the force's direction turns with the roller's azimuth
+    of_radial = radial_r, radial_phi - force[1], radial_r_speed, radial_phi_speed
+    of_along = along_r, along_phi + force[0], along_r_speed, along_phi_speed
+    ring_y, ring_z = _PASSED + LOCAL * RING_Y, _PASSED + LOCAL * RING_Z
+    _own_columns(put, block, jacobian, ring_y, 1.0, _turned(of_radial, of_along, c, s), radial_spin * c - along_spin * s)
+    _own_columns(put, block, jacobian, ring_z, 1.0, _turned(of_radial, of_along, s, -c), radial_spin * s + along_spin * c)
+    _ring_columns(put, block, jacobian, ring_y, 1.0, _turned(radial_columns, along_columns, c, s), cosine, sine)
+    _ring_columns(put, block, jacobian, ring_z, 1.0, _turned(radial_columns, along_columns, s, -c), cosine, sine)
+
+
+@kernel
+def _inner_jacobian(y, inner_radius, params, rows, contacts, jacobian):
+    """Write all rows of ring and rollers as far as the inner contact makes them."""
+    for block in range(rows.shape[0]):
+        n_r, n_t, inverse = load(rows, block, ROLLER.normal_r), load(rows, block, ROLLER.normal_t), load(rows, block, ROLLER.inverse_distance)
+        v_n, v_t = load(rows, block, ROLLER.speed_normal), load(rows, block, ROLLER.speed_tangent)
+        q_i, t_i = load(contacts, block, CONTACT.load), load(contacts, block, CONTACT.force)
+        stiffness, damping = load(contacts, block, CONTACT.stiffness), load(contacts, block, CONTACT.damping)
+        d_load, d_sliding = load(contacts, block, CONTACT.d_load), load(contacts, block, CONTACT.d_sliding)
+        d_rolling = load(contacts, block, CONTACT.d_rolling)
+        radial, along = q_i * n_r - t_i * n_t, q_i * n_t + t_i * n_r
+        turn_r, turn_t = -n_t * inverse, n_r * inverse
+        q_ar, q_at = -(stiffness * n_r + damping * turn_r * v_t), -(stiffness * n_t + damping * turn_t * v_t)
+        q_vr, q_vt = -(damping * n_r), -(damping * n_t)
+        t_ar, t_at = d_load * q_ar + d_sliding * turn_r * v_n, d_load * q_at + d_sliding * turn_t * v_n
+        t_vr, t_vt = d_load * q_vr + d_sliding * n_t, d_load * q_vt - d_sliding * n_r
+        fr_ar, ft_ar = _in_frame(q_ar, t_ar, turn_r, n_r, n_t, radial, along)
+        fr_at, ft_at = _in_frame(q_at, t_at, turn_t, n_r, n_t, radial, along)
+        fr_vr, ft_vr = q_vr * n_r - t_vr * n_t, q_vr * n_t + t_vr * n_r
+        fr_vt, ft_vt = q_vt * n_r - t_vt * n_t, q_vt * n_t + t_vt * n_r
+        t_orbit = 0.5 * d_rolling * (params.rollers.radius - inner_radius)
+        t_spin = (0.5 * d_rolling - d_sliding) * params.rollers.radius
+        d_orbit, d_spin = (-(t_orbit * n_t), t_orbit * n_r, t_orbit), (-(t_spin * n_t), t_spin * n_r, t_spin)
+        columns_r, columns_t, columns_spin = (fr_ar, fr_at, fr_vr, fr_vt), (ft_ar, ft_at, ft_vr, ft_vt), (t_ar, t_at, t_vr, t_vt)
+        per_inertia = params.rollers.radius / params.rollers.inertia
+        _inner_rows(store, block, y, params, rows, (radial, along), columns_r, columns_t, columns_spin, d_orbit, d_spin, per_inertia, jacobian)
+
+
+@kernel
+def _outer_jacobian(y, churning, params, rows, contacts, jacobian):
+    """Add the outer contact, the drag of the mixture and the frame's own rotation to the rows of the rollers."""
+    for block in range(rows.shape[0]):
+        outer = rows.shape[0] + block
+        radius, radial_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.radial_speed)
+        orbital_speed, q_e = load(rows, block, ROLLER.orbital_speed), load(contacts, outer, CONTACT.load)
+        slope, curvature = load(rows, block, ROLLER.slope), load(rows, block, ROLLER.curvature)
+        stiffness, damping = load(contacts, outer, CONTACT.stiffness), load(contacts, outer, CONTACT.damping)
+        d_load, d_sliding = load(contacts, outer, CONTACT.d_load), load(contacts, outer, CONTACT.d_sliding)
+        d_rolling, roller_radius = 0.5 * load(contacts, outer, CONTACT.d_rolling), params.rollers.radius
+        q_phi, q_r_speed, q_phi_speed = -(stiffness * slope) - damping * curvature * orbital_speed, damping, -(damping * slope)
+        t_r = d_load * stiffness + (d_rolling - d_sliding) * orbital_speed
+        t_phi, t_r_speed = d_load * q_phi, d_load * q_r_speed
+        t_phi_speed = d_load * q_phi_speed - d_sliding * radius + d_rolling * (radius + 2.0 * roller_radius)
+        t_spin = (d_sliding + d_rolling) * roller_radius
+        per_mass, per_inertia = 1.0 / params.rollers.mass, -roller_radius / params.rollers.inertia
+        per_radius = 1.0 / radius
+        lean, per_lever = params.variants.contour_slope * slope * per_radius, per_mass * per_radius
+        add(jacobian, block, _RADIAL + R, orbital_speed * orbital_speed - per_mass * stiffness)
+        add(jacobian, block, _RADIAL + PHI, -per_mass * q_phi)
+        add(jacobian, block, _RADIAL + R_SPEED, -per_mass * q_r_speed)
+        add(jacobian, block, _RADIAL + PHI_SPEED, 2.0 * radius * orbital_speed - per_mass * q_phi_speed)
+        arm = q_e * lean * per_radius + churning[1] * orbital_speed
+        acceleration = load(rows, block, ROLLER.orbital_acceleration)
+        add(jacobian, block, _ORBITAL + R, per_lever * (t_r + stiffness * lean - arm) - acceleration * per_radius)
+        bend = params.variants.contour_slope * q_e * curvature * per_radius
+        add(jacobian, block, _ORBITAL + PHI, per_lever * (t_phi + q_phi * lean + bend))
+        add(jacobian, block, _ORBITAL + R_SPEED, per_lever * (t_r_speed + q_r_speed * lean) - 2.0 * orbital_speed * per_radius)
+        add(
+            jacobian,
+            block,
+            _ORBITAL + PHI_SPEED,
+            per_lever * (t_phi_speed + q_phi_speed * lean) - 2.0 * radial_speed * per_radius - churning[1] * per_mass,
+        )
+        add(jacobian, block, _ORBITAL + SPIN, per_lever * t_spin)
+        pitch_speed = params.raceways.pitch_radius * y[OMEGA]
+        store(jacobian, block, _ORBITAL + AT_SPEEDS + THETA, per_lever * (-churning[2] * (radius * orbital_speed - pitch_speed)))
+        add(jacobian, block, _SPINNING + R, per_inertia * t_r)
+        add(jacobian, block, _SPINNING + PHI, per_inertia * t_phi)
+        add(jacobian, block, _SPINNING + R_SPEED, per_inertia * t_r_speed)
+        add(jacobian, block, _SPINNING + PHI_SPEED, per_inertia * t_phi_speed)
+        add(jacobian, block, _SPINNING + SPIN, per_inertia * t_spin)
+
+
+@template
+def _cage_columns(block, jacobian, first, scale, d_position, d_speed):
+    """Write the columns by the cage's position and speed."""
+    store(jacobian, block, first + AT_POSITIONS + CAGE_Y, scale * d_position[0])
+    store(jacobian, block, first + AT_POSITIONS + CAGE_Z, scale * d_position[1])
+    store(jacobian, block, first + AT_POSITIONS + THETA, scale * d_position[2])
+    store(jacobian, block, first + AT_SPEEDS + CAGE_Y, scale * d_speed[0])
+    store(jacobian, block, first + AT_SPEEDS + CAGE_Z, scale * d_speed[1])
+    store(jacobian, block, first + AT_SPEEDS + THETA, scale * d_speed[2])
+
+
+@kernel
+def _pocket_jacobian(y, params, rows, jacobian):
+    """Add the pockets to the rows of the rollers, write those of the cage."""
+    for block in range(rows.shape[0]):
+        mass = params.rollers.mass
+        radius, radial_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.radial_speed)
+        stiffness, damping = load(rows, block, ROLLER.pocket_stiffness), load(rows, block, ROLLER.pocket_damping)
+        force = -load(rows, block, ROLLER.pocket_force)
+        friction, bend = load(rows, block, ROLLER.pocket_friction), load(rows, block, ROLLER.pocket_friction_d_spin)
+        p_c, p_s = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
+        play_c, play_s = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
+        omega = y[OMEGA]
+        cage_r, cage_t = y[CAGE_Y] * p_c + y[CAGE_Z] * p_s, y[CAGE_Z] * p_c - y[CAGE_Y] * p_s
+        speed_r = y[BORDER + CAGE_Y] * p_c + y[BORDER + CAGE_Z] * p_s
+        turning, reach = load(rows, block, ROLLER.orbital_speed) - omega, radius * play_c
+        lever, rise = reach - cage_r, radial_speed * play_c - radius * play_s * turning
+        own = (stiffness * play_s + damping * play_c * turning, stiffness * reach + damping * rise, damping * play_s, damping * reach)
+        at = (
+            stiffness * p_s + damping * (omega * p_c),
+            damping * (omega * p_s) - stiffness * p_c,
+            damping * (speed_r + omega * cage_t - rise) - stiffness * lever,
+        )
+        with_speed = (damping * p_s, -(damping * p_c), -(damping * lever))
+        push_r, push_t = play_s + friction * play_c, play_c - friction * play_s
+        size, side = magnitude(force), where_positive(force, 1.0, -1.0)
+        per_mass, per_lever = -1.0 / mass, (-1.0 / mass) / radius
+        per_inertia = (-params.rollers.radius / params.rollers.inertia) * friction * side
+        _own_columns(add, block, jacobian, _RADIAL, per_mass * push_r, own, per_mass * (force * play_c * bend))
+        _own_columns(add, block, jacobian, _ORBITAL, per_lever * push_t, own, -(per_lever * (force * play_s * bend)))
+        _own_columns(add, block, jacobian, _SPINNING, per_inertia, own, (-params.rollers.radius / params.rollers.inertia) * size * bend)
+        _cage_columns(block, jacobian, _RADIAL, per_mass * push_r, at, with_speed)
+        churned = load(jacobian, block, _ORBITAL + AT_SPEEDS + THETA)
+        _cage_columns(block, jacobian, _ORBITAL, per_lever * push_t, at, with_speed)
+        add(jacobian, block, _ORBITAL + AT_SPEEDS + THETA, churned)
+        _cage_columns(block, jacobian, _SPINNING, per_inertia, at, with_speed)
+        # the force's direction turns with the roller's azimuth and with the pocket
+        add(jacobian, block, _RADIAL + PHI, per_mass * (force * push_t))
+        add(jacobian, block, _RADIAL + AT_POSITIONS + THETA, -per_mass * (force * push_t))
+        add(jacobian, block, _ORBITAL + PHI, -(per_lever * (force * push_r)))
+        add(jacobian, block, _ORBITAL + AT_POSITIONS + THETA, per_lever * (force * push_r))
+        _cage_jacobian(block, params, rows, jacobian, own, at, with_speed, cage_t, lever)
+
+
+@template
+def _cage_jacobian(block, params, rows, jacobian, own, at, with_speed, cage_t, lever):
+    """Write the rows of the cage's accelerations as far as the pockets make them."""
+    cage, present, roller_radius = params.cage, load(rows, block, ROLLER.present), params.rollers.radius
+    radius, offset = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.pocket_offset)
+    force = -load(rows, block, ROLLER.pocket_force)
+    friction, bend = load(rows, block, ROLLER.pocket_friction), load(rows, block, ROLLER.pocket_friction_d_spin)
+    p_c, p_s = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
+    play_c, play_s = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
+    push_y, push_z = friction * p_c - p_s, p_c + friction * p_s
+    arm = lever - friction * (where_positive(force, roller_radius, -roller_radius) + offset)
+    per_mass, per_inertia = present * (1.0 / cage.mass), present * (1.0 / cage.inertia)
+    cage_y, cage_z, theta = _PASSED + LOCAL * CAGE_Y, _PASSED + LOCAL * CAGE_Z, _PASSED + LOCAL * THETA
+    _own_columns(store, block, jacobian, cage_y, per_mass * push_y, own, 0.0)
+    _own_columns(store, block, jacobian, cage_z, per_mass * push_z, own, 0.0)
+    store(jacobian, block, cage_y + SPIN, per_mass * (force * p_c * bend))
+    store(jacobian, block, cage_z + SPIN, per_mass * (force * p_s * bend))
+    _cage_columns(block, jacobian, cage_y, per_mass * push_y, at, with_speed)
+    _cage_columns(block, jacobian, cage_z, per_mass * push_z, at, with_speed)
+    add(jacobian, block, cage_y + AT_POSITIONS + THETA, -(per_mass * (force * push_z)))
+    add(jacobian, block, cage_z + AT_POSITIONS + THETA, per_mass * (force * push_y))
+    braked = force * friction
+    turned = (own[0] * arm - braked * play_s + force * play_c, own[1] * arm - (braked * play_c + force * play_s) * radius, own[2] * arm, own[3] * arm)
+    _own_columns(store, block, jacobian, theta, per_inertia, turned, per_inertia * (-((magnitude(force) * roller_radius + offset * force) * bend)))
+    moved = (
+        at[0] * arm - braked * p_s - force * p_c,
+        at[1] * arm + braked * p_c - force * p_s,
+        at[2] * arm + braked * lever + force * (radius * play_s - cage_t),
+    )
+    _cage_columns(block, jacobian, theta, per_inertia, moved, (with_speed[0] * arm, with_speed[1] * arm, with_speed[2] * arm))
+
+
+@kernel
+def roller_jacobian(y, inner_radius, churning, params, rows, contacts, jacobian):
+    """Write all derivatives through the rollers; their forces have been written.
+
+    Parameters
+    ----------
+    y : state.
+    inner_radius : R_i, grown [m].
+    churning : see `bearing_sim.levels.common.rollers.linear_churning`.
+    params : of the bearing.
+    rows : of the rollers, see `bearing_sim.levels.planar.state.ROLLER`.
+    contacts : see `bearing_sim.physics.contact.CONTACT`.
+    jacobian : takes the derivatives.
+    """
+    _inner_jacobian(y, inner_radius, params, rows, contacts, jacobian)
+    _outer_jacobian(y, churning, params, rows, contacts, jacobian)
+    _pocket_jacobian(y, params, rows, jacobian)
+
+
+@kernel
+def _inner_pumping(y, inner_radius, params, rows, contacts, jacobian):
+    """Add what the inner contacts pump to the rows of ring and rollers."""
+    push = 1.0 - 2.0 * params.raceways.diameter_ratio
+    per_inertia = -params.rollers.radius / params.rollers.inertia
+    for block in range(rows.shape[0]):
+        n_r, n_t, inverse = load(rows, block, ROLLER.normal_r), load(rows, block, ROLLER.normal_t), load(rows, block, ROLLER.inverse_distance)
+        d_load, d_rolling = load(contacts, block, CONTACT.pumping_d_load), 0.5 * load(contacts, block, CONTACT.pumping_d_rolling)
+        stiffness, damping = d_load * load(contacts, block, CONTACT.stiffness), d_load * load(contacts, block, CONTACT.damping)
+        passing = damping * load(rows, block, ROLLER.speed_tangent)
+        turn_r, turn_t = -n_t * inverse, n_r * inverse
+        p_ar, p_at = -(stiffness * n_r + turn_r * passing), -(stiffness * n_t + turn_t * passing)
+        p_vr, p_vt = -(damping * n_r), -(damping * n_t)
+        pushed = push * load(contacts, block, CONTACT.pumping)
+        radial, along = -(pushed * n_t), pushed * n_r
+        fr_ar, ft_ar = -(push * p_ar * n_t) - turn_r * along, push * p_ar * n_r + turn_r * radial
+        fr_at, ft_at = -(push * p_at * n_t) - turn_t * along, push * p_at * n_r + turn_t * radial
+        fr_vr, ft_vr, fr_vt, ft_vt = -(push * p_vr * n_t), push * p_vr * n_r, -(push * p_vt * n_t), push * p_vt * n_r
+        p_orbit, p_spin = d_rolling * (params.rollers.radius - inner_radius), d_rolling * params.rollers.radius
+        d_orbit, d_spin = (-(push * p_orbit * n_t), push * p_orbit * n_r, p_orbit), (-(push * p_spin * n_t), push * p_spin * n_r, p_spin)
+        columns_r, columns_t, columns_spin = (fr_ar, fr_at, fr_vr, fr_vt), (ft_ar, ft_at, ft_vr, ft_vt), (p_ar, p_at, p_vr, p_vt)
+        _inner_rows(add, block, y, params, rows, (radial, along), columns_r, columns_t, columns_spin, d_orbit, d_spin, per_inertia, jacobian)
+
+
+@kernel
+def _outer_pumping(params, rows, contacts, jacobian):
+    """Add what the outer contacts pump to the rows of the rollers."""
+    push, roller_radius = 1.0 + 2.0 * params.raceways.diameter_ratio, params.rollers.radius
+    per_mass, per_inertia = -push / params.rollers.mass, -roller_radius / params.rollers.inertia
+    for block in range(rows.shape[0]):
+        outer, radius, orbital_speed = rows.shape[0] + block, load(rows, block, ROLLER.radius), load(rows, block, ROLLER.orbital_speed)
+        d_load, d_rolling = load(contacts, outer, CONTACT.pumping_d_load), 0.5 * load(contacts, outer, CONTACT.pumping_d_rolling)
+        stiffness, damping = d_load * load(contacts, outer, CONTACT.stiffness), d_load * load(contacts, outer, CONTACT.damping)
+        slope, curvature = load(rows, block, ROLLER.slope), load(rows, block, ROLLER.curvature)
+        d_angle, d_orbit = -(stiffness * slope) - damping * curvature * orbital_speed, d_rolling * (radius + 2.0 * roller_radius)
+        columns = (stiffness + d_rolling * orbital_speed, d_angle, damping, d_orbit - damping * slope)
+        per_lever, d_spin = per_mass / radius, d_rolling * roller_radius
+        _own_columns(add, block, jacobian, _ORBITAL, per_lever, columns, per_lever * d_spin)
+        _own_columns(add, block, jacobian, _SPINNING, per_inertia, columns, per_inertia * d_spin)
+
+
+@kernel
+def pumping_jacobian(y, inner_radius, params, rows, contacts, jacobian):
+    """Add what the oil pumped back does to the derivatives of `roller_jacobian`, which have been written; parameters as there."""
+    _inner_pumping(y, inner_radius, params, rows, contacts, jacobian)
+    _outer_pumping(params, rows, contacts, jacobian)
+
+
+@kernel
+def _guide_by_variable(block, column, d_offset, d_rate, d_place, params, rows, jacobian):
+    """Add to all rows the change by one variable, as far as the directions stay.
+
+    Parameters
+    ----------
+    column : of the variable.
+    d_offset, d_rate : how the offset outwards and its rate change.
+    d_place : how the offset along the orbit does.
+    """
+    cage, rollers, present = params.cage, params.rollers, load(rows, block, ROLLER.present)
+    p_c, p_s = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
+    c, s = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
+    force, friction = -load(rows, block, ROLLER.guide_force), load(rows, block, ROLLER.pocket_friction)
+    change = load(rows, block, ROLLER.guide_stiffness) * d_offset + load(rows, block, ROLLER.guide_damping) * d_rate
+    braking = friction * where_positive(force, rollers.radius, -rollers.radius)
+    arm = load(rows, block, ROLLER.pocket_offset) + friction * (load(rows, block, ROLLER.guide_offset) + cage.guidance.pocket_radius) + braking
+    per_mass = 1.0 / rollers.mass
+    add(jacobian, block, column, -(per_mass * change * (c - friction * s)))
+    add(jacobian, block, LOCAL + column, per_mass * change * (s + friction * c) / load(rows, block, ROLLER.radius))
+    add(jacobian, block, 2 * LOCAL + column, -(change * braking * (1.0 / rollers.inertia)))
+    add(jacobian, block, _CAGE_ROWS + column, present * change * (p_c + friction * p_s) * (1.0 / cage.mass))
+    add(jacobian, block, _CAGE_ROWS + LOCAL + column, present * change * (p_s - friction * p_c) * (1.0 / cage.mass))
+    turned = change * arm + force * (d_place + friction * d_offset)
+    add(jacobian, block, _CAGE_ROWS + 2 * LOCAL + column, -(present * turned * (1.0 / cage.inertia)))
+
+
+@kernel
+def _guide_directions(block, params, rows, jacobian):
+    """Add what the turning of the force with pocket and roller contributes, and what friction does by the spin."""
+    cage, rollers, present = params.cage, params.rollers, load(rows, block, ROLLER.present)
+    p_c, p_s = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
+    c, s = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
+    friction, bend = load(rows, block, ROLLER.pocket_friction), load(rows, block, ROLLER.pocket_friction_d_spin)
+    force = -load(rows, block, ROLLER.guide_force)
+    turned = force * (1.0 / rollers.mass)
+    lever = turned / load(rows, block, ROLLER.radius)
+    theta = AT_POSITIONS + THETA
+    add(jacobian, block, PHI, turned * (s + friction * c))
+    add(jacobian, block, theta, -(turned * (s + friction * c)))
+    add(jacobian, block, SPIN, turned * s * bend)
+    add(jacobian, block, LOCAL + PHI, lever * (c - friction * s))
+    add(jacobian, block, LOCAL + theta, -(lever * (c - friction * s)))
+    add(jacobian, block, LOCAL + SPIN, lever * c * bend)
+    add(jacobian, block, 2 * LOCAL + SPIN, -(magnitude(force) * bend * (rollers.radius / rollers.inertia)))
+    turned = present * force * (1.0 / cage.mass)
+    add(jacobian, block, _CAGE_ROWS + theta, turned * (friction * p_c - p_s))
+    add(jacobian, block, _CAGE_ROWS + SPIN, turned * p_s * bend)
+    add(jacobian, block, _CAGE_ROWS + LOCAL + theta, turned * (p_c + friction * p_s))
+    add(jacobian, block, _CAGE_ROWS + LOCAL + SPIN, -(turned * p_c * bend))
+    slid = force * (load(rows, block, ROLLER.guide_offset) + cage.guidance.pocket_radius) + magnitude(force) * rollers.radius
+    add(jacobian, block, _CAGE_ROWS + 2 * LOCAL + SPIN, -(present * slid * bend * (1.0 / cage.inertia)))
+
+
+@kernel
+def guide_jacobian(y, params, rows, jacobian):
+    """Add the derivatives of `guide_accelerations` to those of everything else through the rollers.
+
+    Parameters
+    ----------
+    y, params, rows : as of `guide_forces`.
+    jacobian : takes the derivatives, see `bearing_sim.levels.planar.state.JACOBIAN_ROWS`.
+    """
+    omega = y[OMEGA]
+    for block in range(rows.shape[0]):
+        radius, radial_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.radial_speed)
+        orbital_speed, offset = load(rows, block, ROLLER.orbital_speed), load(rows, block, ROLLER.pocket_offset)
+        p_c, p_s = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
+        c, s = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
+        speed_t = y[BORDER + CAGE_Z] * p_c - y[BORDER + CAGE_Y] * p_s
+        turning, lever = orbital_speed - omega, load(rows, block, ROLLER.guide_offset) + params.cage.guidance.pocket_radius
+        none = spread(0.0)
+        rise = -(radial_speed * s + radius * c * turning)
+        turned = radial_speed * s + radius * c * orbital_speed - speed_t - omega * lever
+        _guide_by_variable(block, R, c, -(s * turning), s, params, rows, jacobian)
+        _guide_by_variable(block, PHI, -(radius * s), rise, radius * c, params, rows, jacobian)
+        _guide_by_variable(block, R_SPEED, none, c, none, params, rows, jacobian)
+        _guide_by_variable(block, PHI_SPEED, none, -(radius * s), none, params, rows, jacobian)
+        _guide_by_variable(block, AT_POSITIONS + CAGE_Y, -p_c, omega * p_s, p_s, params, rows, jacobian)
+        _guide_by_variable(block, AT_POSITIONS + CAGE_Z, -p_s, -(omega * p_c), -p_c, params, rows, jacobian)
+        _guide_by_variable(block, AT_POSITIONS + THETA, offset, turned, -lever, params, rows, jacobian)
+        _guide_by_variable(block, AT_SPEEDS + CAGE_Y, none, -p_c, none, params, rows, jacobian)
+        _guide_by_variable(block, AT_SPEEDS + CAGE_Z, none, -p_s, none, params, rows, jacobian)
+        _guide_by_variable(block, AT_SPEEDS + THETA, none, offset, none, params, rows, jacobian)
+        _guide_directions(block, params, rows, jacobian)
+
+
+@kernel
+def land_contact_jacobian(contact, d_depth, d_rate, n_y, n_z, along_y, along_z, turn, friction, d_friction, side, cage, own):
+    """Add the derivatives of the land's contact: its direction turns with the cage's centre, the depth's rate with its velocity."""
+    across = side * friction
+    towards_y, towards_z = -n_y + across * n_z, -n_z - across * n_y
+    d_y, d_z = d_depth * n_y + d_rate * along_y * turn, d_depth * n_z + d_rate * along_z * turn
+    n_yy, n_yz, n_zz = n_z * n_z * turn, -n_y * n_z * turn, n_y * n_y * turn
+    own[CAGE_Y, CAGE_Y] += (d_y * towards_y + contact * (-n_yy + across * n_yz)) / cage.mass
+    own[CAGE_Y, CAGE_Z] += (d_z * towards_y + contact * (-n_yz + across * n_zz)) / cage.mass
+    own[CAGE_Z, CAGE_Y] += (d_y * towards_z + contact * (-n_yz - across * n_yy)) / cage.mass
+    own[CAGE_Z, CAGE_Z] += (d_z * towards_z + contact * (-n_zz - across * n_yz)) / cage.mass
+    lever = -friction * cage.guide_radius / cage.inertia
+    own[THETA, CAGE_Y] += lever * d_y
+    own[THETA, CAGE_Z] += lever * d_z
+    own[CAGE_Y, OMEGA] += side * contact * d_friction * n_z / cage.mass
+    own[CAGE_Z, OMEGA] -= side * contact * d_friction * n_y / cage.mass
+    own[THETA, OMEGA] -= d_friction * contact * cage.guide_radius / cage.inertia
+    own[CAGE_Y, BORDER + CAGE_Y] += d_rate * n_y * towards_y / cage.mass
+    own[CAGE_Y, BORDER + CAGE_Z] += d_rate * n_z * towards_y / cage.mass
+    own[CAGE_Z, BORDER + CAGE_Y] += d_rate * n_y * towards_z / cage.mass
+    own[CAGE_Z, BORDER + CAGE_Z] += d_rate * n_z * towards_z / cage.mass
+    own[THETA, BORDER + CAGE_Y] += lever * d_rate * n_y
+    own[THETA, BORDER + CAGE_Z] += lever * d_rate * n_z
+
+
+@kernel
+def react_on_ring(params, own, rate, with_jacobian):
+    """Apply the reaction of its lands to the inner ring; a ring that moves is a cage that moves the other way."""
+    fraction = -params.cage.mass / params.ring.mass
+    for axis in range(2):
+        rate[BORDER + RING_Y + axis] += fraction * rate[BORDER + CAGE_Y + axis]
+    if not with_jacobian:
+        return
+    for axis in range(2):
+        for row in range(3):
+            own[CAGE_Y + row, RING_Y + axis] = -own[CAGE_Y + row, CAGE_Y + axis]
+            own[CAGE_Y + row, BORDER + RING_Y + axis] = -own[CAGE_Y + row, BORDER + CAGE_Y + axis]
+    for axis in range(2):
+        for column in range(2 * BORDER):
+            own[RING_Y + axis, column] = fraction * own[CAGE_Y + axis, column]
+
+
+@template
+def _shifted(jacobian, block, row, position, speed, s):
+    """Return s (d/d(speed) + s d/d(position)): what a speed does within an implicit step."""
+    return s * (load(jacobian, block, row + speed) + s * load(jacobian, block, row + position))
+
+
+@kernel
+def _roller_blocks(block, jacobian, s, rows):
+    """Invert the 3x3 matrices I - s (dv'/dv + s dv'/dq) of a block of rollers by cofactors; return whether all are regular."""
+    a, b = 1.0 - _shifted(jacobian, block, 0, 0, 2, s), -_shifted(jacobian, block, 0, 1, 3, s)
+    d, e = -_shifted(jacobian, block, LOCAL, 0, 2, s), 1.0 - _shifted(jacobian, block, LOCAL, 1, 3, s)
+    g, h = -_shifted(jacobian, block, 2 * LOCAL, 0, 2, s), -_shifted(jacobian, block, 2 * LOCAL, 1, 3, s)
+    c, f, i = -(s * load(jacobian, block, 4)), -(s * load(jacobian, block, LOCAL + 4)), 1.0 - s * load(jacobian, block, 2 * LOCAL + 4)
+    m_0, m_1, m_2 = e * i - f * h, f * g - d * i, d * h - e * g
+    determinant = a * m_0 + b * m_1 + c * m_2
+    scale = 1.0 / determinant
+    store(rows, block, INVERSE, m_0 * scale)
+    store(rows, block, INVERSE + 1, (c * h - b * i) * scale)
+    store(rows, block, INVERSE + 2, (b * f - c * e) * scale)
+    store(rows, block, INVERSE + 3, m_1 * scale)
+    store(rows, block, INVERSE + 4, (a * i - c * g) * scale)
+    store(rows, block, INVERSE + 5, (c * d - a * f) * scale)
+    store(rows, block, INVERSE + 6, m_2 * scale)
+    store(rows, block, INVERSE + 7, (b * g - a * h) * scale)
+    store(rows, block, INVERSE + 8, (a * e - b * d) * scale)
+    return total(where_positive(magnitude(determinant), 1.0, 0.0)) == LANES
+
+
+@kernel
+def _couplings(block, jacobian, s, rows):
+    """Write how a block of rollers and the border act on each other."""
+    for m in range(BORDER):
+        c_0 = _shifted(jacobian, block, m, AT_POSITIONS, AT_SPEEDS, s)
+        c_1 = _shifted(jacobian, block, LOCAL + m, AT_POSITIONS, AT_SPEEDS, s)
+        c_2 = _shifted(jacobian, block, 2 * LOCAL + m, AT_POSITIONS, AT_SPEEDS, s)
+        for k in range(3):
+            row = load(rows, block, 3 * k) * c_0 + load(rows, block, 3 * k + 1) * c_1 + load(rows, block, 3 * k + 2) * c_2
+            store(rows, block, RIGHT + BORDER * k + m, row)
+    for k in range(BORDER):
+        first = (3 + k) * LOCAL
+        store(rows, block, BELOW + 3 * k, _shifted(jacobian, block, first, 0, 2, s))
+        store(rows, block, BELOW + 3 * k + 1, _shifted(jacobian, block, first, 1, 3, s))
+        store(rows, block, BELOW + 3 * k + 2, s * load(jacobian, block, first + 4))
+
+
+@kernel
+def _through_rollers(k, m, rows):
+    """Return what a border speed does to another border equation through all rollers, which yield."""
+    radial, orbital, spinning = spread(0.0), spread(0.0), spread(0.0)
+    for block in range(rows.shape[0]):
+        radial += load(rows, block, BELOW + 3 * k) * load(rows, block, RIGHT + m)
+        orbital += load(rows, block, BELOW + 3 * k + 1) * load(rows, block, RIGHT + BORDER + m)
+        spinning += load(rows, block, BELOW + 3 * k + 2) * load(rows, block, RIGHT + 2 * BORDER + m)
+    return total(radial + orbital + spinning)
+
+
+@kernel
+def _passed_by_rollers(k, m, jacobian):
+    """Return what a border position and its speed do to a border acceleration through all rollers, which are held."""
+    d_position, d_speed = spread(0.0), spread(0.0)
+    first = (3 + k) * LOCAL + m
+    for block in range(jacobian.shape[0]):
+        d_position += load(jacobian, block, first + AT_POSITIONS)
+        d_speed += load(jacobian, block, first + AT_SPEEDS)
+    return total(d_position), total(d_speed)
+
+
+@kernel
+def factor(jacobian, border, s, factored):
+    """Factor I - s J.
+
+    Parameters
+    ----------
+    jacobian : derivatives through each roller, rows as `JACOBIAN_ROWS` says.
+    border : derivatives of the border's accelerations by its own positions and speeds, shape (5, 10).
+    s : gamma h [s].
+    factored : takes the factorisation.
+
+    Returns
+    -------
+    regular : False where a pivot is zero or not finite.
+    """
+    rows, corner = factored.rows, factored.schur
+    factored.shift[0] = s
+    regular = True
+    for block in range(jacobian.shape[0]):
+        regular = _roller_blocks(block, jacobian, s, rows) and regular
+        _couplings(block, jacobian, s, rows)
+    for k in range(BORDER):
+        for m in range(BORDER):
+            corner[k, m] = (1.0 if k == m else 0.0) - s * (border[k, BORDER + m] + s * border[k, m]) - _through_rollers(k, m, rows)
+            factored.positions[k, m] = border[k, m]
+            if (k < RING) == (m < RING):  # ring and cage meet only in the rollers
+                d_position, d_speed = _passed_by_rollers(k, m, jacobian)
+                corner[k, m] -= s * (d_speed + s * d_position)
+                factored.positions[k, m] += d_position
+    return decompose(corner, factored.order) and regular
+
+
+@kernel
+def _eliminate(block, jacobian, s, x, factored):
+    """Reduce a block's right side to speeds, solve for them without the border, and take what they do to it from its own."""
+    rows, right = factored.rows, factored.right
+    radius, angle = load(right, block, 0), load(right, block, 1)
+    b_0 = load(jacobian, block, 0) * radius + load(jacobian, block, 1) * angle
+    b_1 = load(jacobian, block, LOCAL) * radius + load(jacobian, block, LOCAL + 1) * angle
+    b_2 = load(jacobian, block, 2 * LOCAL) * radius + load(jacobian, block, 2 * LOCAL + 1) * angle
+    for m in range(BORDER):
+        b_0 += x[m] * load(jacobian, block, AT_POSITIONS + m)
+        b_1 += x[m] * load(jacobian, block, LOCAL + AT_POSITIONS + m)
+        b_2 += x[m] * load(jacobian, block, 2 * LOCAL + AT_POSITIONS + m)
+    b_0, b_1, b_2 = load(right, block, 2) + s * b_0, load(right, block, 3) + s * b_1, load(right, block, 4) + s * b_2
+    v_0 = load(rows, block, 0) * b_0 + load(rows, block, 1) * b_1 + load(rows, block, 2) * b_2
+    v_1 = load(rows, block, 3) * b_0 + load(rows, block, 4) * b_1 + load(rows, block, 5) * b_2
+    v_2 = load(rows, block, 6) * b_0 + load(rows, block, 7) * b_1 + load(rows, block, 8) * b_2
+    store(right, block, 2, v_0)
+    store(right, block, 3, v_1)
+    store(right, block, 4, v_2)
+    for k in range(BORDER):
+        first, below = (3 + k) * LOCAL, BELOW + 3 * k
+        passed = s * (load(jacobian, block, first) * radius + load(jacobian, block, first + 1) * angle)
+        passed += load(rows, block, below) * v_0 + load(rows, block, below + 1) * v_1 + load(rows, block, below + 2) * v_2
+        x[BORDER + k] += total(passed)
+
+
+@kernel
+def _substitute(block, s, x, factored):
+    """Complete a block's speeds by what the border does to them, and its positions."""
+    rows, right = factored.rows, factored.right
+    v_0, v_1, v_2 = load(right, block, 2), load(right, block, 3), load(right, block, 4)
+    for m in range(BORDER):
+        v_0 += x[BORDER + m] * load(rows, block, RIGHT + m)
+        v_1 += x[BORDER + m] * load(rows, block, RIGHT + BORDER + m)
+        v_2 += x[BORDER + m] * load(rows, block, RIGHT + 2 * BORDER + m)
+    store(right, block, 0, load(right, block, 0) + s * v_0)
+    store(right, block, 1, load(right, block, 1) + s * v_1)
+    store(right, block, 2, v_0)
+    store(right, block, 3, v_1)
+    store(right, block, 4, v_2)
+
+
+@kernel
+def solve(jacobian, factored, x):
+    """Replace the right side ``x``, a whole state, by the solution of (I - s J) x = b."""
+    s = factored.shift[0]
+    count = (x.shape[0] - 2 * BORDER) // BLOCK
+    spread_runs(x, 2 * BORDER, BLOCK, count, factored.right)
+    for k in range(BORDER):
+        through = 0.0
+        for m in range(BORDER):
+            through += factored.positions[k, m] * x[m]
+        x[BORDER + k] += s * through
+    for block in range(jacobian.shape[0]):
+        _eliminate(block, jacobian, s, x, factored)
+    back_substitute(factored.schur, factored.order, x[BORDER : 2 * BORDER])
+    for block in range(jacobian.shape[0]):
+        _substitute(block, s, x, factored)
+    for k in range(BORDER):
+        x[k] += s * x[BORDER + k]
+    collect_runs(factored.right, 0, BLOCK, count, x, 2 * BORDER)

@@ -1,0 +1,105 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Level ``planar``: every roller, the cage and the inner ring move in the plane.  Left out: tilt and skew.
+
+State and memory: `bearing_sim.levels.planar.state`; equations: `bearing_sim.levels.planar.forces`; their Jacobian and the linear algebra of
+implicit steps: `bearing_sim.levels.planar.jacobian`.
+"""
+
+import math
+
+from bearing_sim.levels.common.model import FIFTH_PITCH, orbital_speed_tolerance, pitch_step, shaft_speed_at
+from bearing_sim.levels.common.observation import average_powers, observe_course
+from bearing_sim.levels.common.power import write_powers
+from bearing_sim.levels.common.rollers import land_eccentricity, observe_rollers
+from bearing_sim.levels.common.state_transfer import first_cage_centre, rolling_state
+from bearing_sim.levels.planar import jacobian
+from bearing_sim.levels.planar import state as planar_state
+from bearing_sim.levels.planar.forces import equations
+from bearing_sim.levels.planar.power import planar_powers
+from bearing_sim.levels.planar.state import CAGE_Y, CAGE_Z, OMEGA, RING_Y, RING_Z, ROLLER, ROLLERS, THETA
+from bearing_sim.model.params import Params
+from bearing_sim.model.sample import COLUMN
+from bearing_sim.numerics.compilation import kernel
+from bearing_sim.physics.contact import CONTACT
+from bearing_sim.physics.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT
+
+
+def initial_state(params: Params, work, shaft_speed, load_y, load_z):
+    """Return ideal rolling; see `bearing_sim.levels.common.state_transfer.rolling_state`, also for the parameters."""
+    state, _ = rolling_state(planar_state, params, work, shaft_speed, load_y, load_z)
+    state[CAGE_Y], state[CAGE_Z] = first_cage_centre(params, state[RING_Y], state[RING_Z])
+    return state
+
+
+@kernel
+def rhs(t, y, model, work, rate):
+    """Write dy/dt into ``rate``."""
+    return equations(t, y, model, work, rate, False)
+
+
+@kernel
+def rhs_and_jacobian(t, y, model, work, rate):
+    """Write dy/dt into ``rate`` and all derivatives into ``work``."""
+    return equations(t, y, model, work, rate, True)
+
+
+@kernel
+def factor(shift, work):
+    """Factor I - shift J; return False where it is singular."""
+    return jacobian.factor(work.jacobian, work.border_own, shift, work.factored)
+
+
+@kernel
+def solve(work, x):
+    """Replace the right side ``x`` by the solution with the last factorisation."""
+    jacobian.solve(work.jacobian, work.factored, x)
+
+
+@kernel
+def error_norm(t, y, change, model):
+    """Return the largest ratio of any state's change to its tolerance.
+
+    Positions are the rollers' radii and the ring's centre; play have the rollers in their pockets and the cage.  Spins count by the
+    speed of the roller's surface.  Radial speeds and those of both centres follow the positions and are not weighed.
+    """
+    raceways, rollers = model.params.raceways, model.params.rollers
+    position, play = 1.0 / model.tolerances.position, 1.0 / model.tolerances.play
+    speed = 1.0 / orbital_speed_tolerance(t, y[OMEGA], model)
+    offset, spin = play * raceways.pitch_radius, speed * rollers.radius / raceways.pitch_radius
+    largest = max(max(abs(change[RING_Y]), abs(change[RING_Z])) * position, max(abs(change[CAGE_Y]), abs(change[CAGE_Z])) * play)
+    largest = max(largest, abs(change[OMEGA]) * speed)
+    count = rollers.count
+    for j in range(ROLLERS, ROLLERS + count):
+        ratio = max(abs(change[j]) * position, abs(change[j + count] - change[THETA]) * offset)
+        ratio = max(ratio, abs(change[j + 3 * count]) * speed, abs(change[j + 4 * count]) * spin)
+        if not ratio <= largest:  # NaN goes through
+            largest = ratio
+    return largest
+
+
+@kernel
+def step_limit(t, y, model):
+    """Return the longest sensible step [s] (see `bearing_sim.levels.common.model.pitch_step`)."""
+    return pitch_step(y[OMEGA], model.params.rollers.count, FIFTH_PITCH)
+
+
+@kernel
+def average_loads(h, y, model, work):
+    """Take the loads at the end of a step of length ``h`` [s] into the running means over a cage turn."""
+    count, turned = model.params.rollers.count, h * y[OMEGA]
+    fraction = 1.0 - math.exp(-abs(turned) / (2.0 * math.pi))
+    average_powers(fraction, work.rollers, ROLLER.present, work.contacts, CONTACT.load, count, work.load_means)
+
+
+@kernel
+def observe(t, y, model, work, interval, previous, row, rate):
+    """Write the sample of state ``y``; parameters as in `bearing_sim.levels.slip.model.observe`."""
+    rhs(t, y, model, work, rate)
+    rows, count = work.rollers, model.params.rollers.count
+    inner, outer = work.load_means[0] ** (1.0 / ROTATING_EXPONENT), work.load_means[1] ** (1.0 / STATIONARY_EXPONENT)
+    observe_course(t, y[THETA], y[OMEGA], inner, outer, model, interval, previous, row)
+    row[COLUMN.ring_y], row[COLUMN.ring_z] = y[RING_Y], y[RING_Z]
+    row[COLUMN.cage_y], row[COLUMN.cage_z] = y[CAGE_Y], y[CAGE_Z]
+    row[COLUMN.land_eccentricity] = land_eccentricity(y[RING_Y], y[RING_Z], y[CAGE_Y], y[CAGE_Z], model.params.cage)
+    write_powers(planar_powers(y, shaft_speed_at(t, model.drive), model, work), row)
+    observe_rollers(ROLLER, CONTACT.load, count, interval, rows, work.contacts, previous, row)

@@ -1,0 +1,123 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Level ``slip``: the cage's angle and speed and Z roller spins; everything radial is quasi-static.
+
+Rollers are locked to their pockets, so all of them orbit with the cage; each is held radially by Q_e = Q_i + F_c, and the inner ring by the
+load.  What is left of Deng 2017, eq. 14 to 16, is one balance of angular momentum for cage and rollers together and one spin equation
+for each roller (`bearing_sim.levels.slip.forces`).  Left out: pocket play, radial vibration, cage whirl.
+
+State: `bearing_sim.levels.slip.state`; its Jacobian is an arrow whose border comes first (`bearing_sim.numerics.linear_algebra`).
+"""
+
+import math
+
+import numpy as np
+
+from bearing_sim.levels.common.model import HALF_PITCH, inner_growth, load_at, orbital_speed_tolerance, pitch_step, shaft_speed_at
+from bearing_sim.levels.common.observation import observe_course
+from bearing_sim.levels.common.power import write_powers
+from bearing_sim.levels.slip.forces import equations, equivalent_loads
+from bearing_sim.levels.slip.power import slip_powers
+from bearing_sim.levels.slip.state import OMEGA, SPIN, THETA
+from bearing_sim.model.sample import COLUMN, SCALARS
+from bearing_sim.numerics.compilation import kernel, template
+from bearing_sim.numerics.linear_algebra import factor_shifted, solve_factored
+from bearing_sim.physics.load_balance import LOAD
+
+
+def initial_state(params, work, shaft_speed, load_y, load_z):
+    """Return the state of ideal rolling: the cage at omega_i (1 - gamma)/2, rollers rolling on the outer ring."""
+    cage_speed = 0.5 * shaft_speed * (1 - params.raceways.diameter_ratio)
+    state = np.zeros(params.rollers.count + 2)
+    state[OMEGA] = cage_speed
+    state[SPIN:] = cage_speed * params.raceways.pitch_radius / params.rollers.radius
+    return state
+
+
+@kernel
+def rhs(t, y, model, work, rate):
+    """Write dy/dt into ``rate``; return False where the loads did not balance."""
+    return equations(t, y, model, work, rate, False)
+
+
+@kernel
+def rhs_and_jacobian(t, y, model, work, rate):
+    """Write dy/dt into ``rate`` and its Jacobian by y into ``work.jacobian``.
+
+    The change of loads with cage angle and speed is left out: it is slow, and the integrator's order does not need it.
+    """
+    return equations(t, y, model, work, rate, True)
+
+
+@template
+def error_norm(t, y, change, model):
+    """Return the largest ratio of any state's change to its tolerance.
+
+    Spins count by the speed of the roller's surface.  The cage's angle is not weighed, because nothing restores it.
+    """
+    raceways, rollers = model.params.raceways, model.params.rollers
+    scale = 1.0 / orbital_speed_tolerance(t, y[OMEGA], model)
+    largest = abs(change[OMEGA]) * scale
+    spin_scale = scale * rollers.radius / raceways.pitch_radius
+    for j in range(rollers.count):
+        ratio = abs(change[SPIN + j]) * spin_scale
+        if not ratio <= largest:  # NaN goes through
+            largest = ratio
+    return largest
+
+
+@template
+def step_limit(t, y, model):
+    """Return the longest sensible step [s] (see `bearing_sim.levels.common.model.pitch_step`)."""
+    return pitch_step(y[OMEGA], model.params.rollers.count, HALF_PITCH)
+
+
+@kernel
+def observe(t, y, model, work, interval, previous, row, rate):
+    """Write the sample of state ``y``.
+
+    Parameters
+    ----------
+    interval : time since the previous sample [s]; damage and angles accumulate over it.
+    previous, row : flat samples, shape (SCALARS + runs * Z,); see `bearing_sim.model.sample.flat`.
+    rate : scratch, shape (Z + 2,).
+    """
+    params, loads = model.params, work.loads
+    count, cage_speed = params.rollers.count, y[OMEGA]
+    load_y, load_z = load_at(t, model.drive)
+    work.growth[0] = inner_growth(shaft_speed_at(t, model.drive), model)
+    inner_equivalent, outer_equivalent = equivalent_loads(y[THETA], cage_speed, load_y, load_z, params, work)
+    observe_course(t, y[THETA], cage_speed, inner_equivalent, outer_equivalent, model, interval, previous, row)
+    rhs(t, y, model, work, rate)
+    write_powers(slip_powers(cage_speed, rate[OMEGA], y[SPIN:], shaft_speed_at(t, model.drive), model, work), row)
+    row[COLUMN.ring_y] = work.ring[0]
+    row[COLUMN.ring_z] = work.ring[1]
+    for j in range(count):
+        first = SCALARS + j
+        row[first + COLUMN.roller_angle * count] = y[THETA] + 2.0 * math.pi * j / count
+        row[first + COLUMN.roller_radius * count] = loads[LOAD.radius, j]
+        row[first + COLUMN.roller_spin * count] = y[SPIN + j]
+        before = first + COLUMN.roller_rotation * count
+        spin_before = previous[first + COLUMN.roller_spin * count]
+        row[before] = previous[before] + 0.5 * (spin_before + y[SPIN + j]) * interval
+        row[first + COLUMN.inner_load * count] = loads[LOAD.inner, j]
+        row[first + COLUMN.outer_load * count] = loads[LOAD.outer, j]
+        row[first + COLUMN.orbital_speed * count] = cage_speed
+        drive_force = params.rollers.mass * loads[LOAD.radius, j] * rate[OMEGA]
+        row[first + COLUMN.pocket_force * count] = drive_force - work.tangential[j]
+
+
+@template
+def factor(shift, work):
+    """Factor I - shift J; return False where it is singular."""
+    return factor_shifted(work.jacobian, shift, work.factored)
+
+
+@template
+def solve(work, x):
+    """Replace the right side ``x`` by the solution with the last factorisation."""
+    solve_factored(work.factored, x)
+
+
+@kernel
+def keep_nothing(h, y, model, work):
+    """Keep nothing from step to step."""

@@ -1,0 +1,46 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""What level ``slip`` keeps: the order of its state, and the memory that it writes while it computes.
+
+State: y = (theta_c, omega_c, w_1, ..., w_Z) in rad and rad/s.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from bearing_sim.numerics.linear_algebra import Arrow, new_arrow
+from bearing_sim.numerics.simd import new_rows
+from bearing_sim.physics.contact import CONTACT
+from bearing_sim.physics.load_balance import LOAD
+
+THETA, OMEGA, SPIN = 0, 1, 2
+
+
+class Work(NamedTuple):
+    """Memory that the level writes while it computes."""
+
+    loads: np.ndarray  # rows `bearing_sim.physics.load_balance.LOAD`, shape (10, Z)
+    ring: np.ndarray  # ring centre (y, z) [m], shape (2,); start of the next search
+    contacts: np.ndarray  # rows `bearing_sim.physics.contact.CONTACT`, those with the inner raceway first
+    tangential: np.ndarray  # all forces along the orbit on each roller but the pocket's [N], shape (Z,)
+    growth: np.ndarray  # of the inner raceway at present [m], shape (1,)
+    pitch: np.ndarray  # rows cosine and sine of 2 pi j/Z, and the angle in intervals of the contour table, shape (3, Z)
+    jacobian: Arrow
+    factored: Arrow  # of I - gamma h J
+
+
+def new_work(params):
+    """Return the level's workspace for a bearing."""
+    count = params.rollers.count
+    angles = 2 * math.pi * np.arange(count) / count
+    return Work(
+        loads=np.zeros((len(LOAD), count)),
+        ring=np.zeros(2),
+        contacts=np.concatenate([new_rows(len(CONTACT), count)] * 2),
+        tangential=np.zeros(count),
+        growth=np.zeros(1),
+        pitch=np.array([np.cos(angles), np.sin(angles), params.raceways.contour.shape[0] * np.arange(count) / count]),
+        jacobian=new_arrow(count),
+        factored=new_arrow(count),
+    )

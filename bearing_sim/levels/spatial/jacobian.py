@@ -1,0 +1,919 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""The Jacobian of level ``spatial``, and the solution of (I - s J) x = b; ``LANES`` rollers at a time (a block).
+
+Derivatives through a roller, rows of an array of `bearing_sim.numerics.simd.new_rows`: those of its r'', phi'', tilt'', skew'', w' by its own nine
+variables and the border's 18 first; then those of the ring's four accelerations by its own nine and the ring's eight, because the ring does
+not depend on the cage; then those of the cage's five by its own nine and the cage's ten.  The rows of a roller's accelerations collect forces,
+moments and the torque of the spin first, from contact to contact; at the end they become accelerations.
+
+**Inner contact.** It depends on four pairs: the roller's position a and inclination b relative to the ring, and their rates a', b' in a frame that
+does not turn; each pair along the normal n and across it, along p.  v = a', h = 1/|a|, and n turns at h v_p as the roller passes by.  With delta =
+R_i + R_w - |a|, lean = -b_n, delta' = -v_n and lean' = -(b_n' + h v_p b_p), a quantity X(delta, lean, delta', lean') changes by
+
+    X_a = (h^2 v_p b_p X_lean' - X_delta,   X_lean' (h^2 b_p v_n + h^2 v_p b_n - h b_p') - X_delta' h v_p - X_lean h b_p),
+    X_b = (-X_lean, -h v_p X_lean'),   X_a' = (-X_delta', -h b_p X_lean'),   X_b' = (-X_lean', 0);
+
+a traction depends on the sliding speed and on how it changes along the axis as well (`_chain_row`).  The derivatives by a roller's own
+variables follow as at level ``planar``.
+
+**Pocket.** Force and moment depend on four quantities: how far the roller stands off the pocket's middle, how it is skewed there, and both
+rates.  Their changes by the 18 variables of roller and cage are written once, in ``chain``; every row follows from them.
+
+**Linear algebra.** As at level ``planar`` the system is reduced to speeds: a 5x5 block for each roller and one 9x9 border.  Cost O(Z).
+"""
+
+from bearing_sim.levels.common.rollers import add
+from bearing_sim.levels.planar import state as planar
+from bearing_sim.levels.planar.state import BORDER as PLANAR
+from bearing_sim.levels.spatial.state import (
+    AT_CAGE,
+    AT_CAGE_SPEEDS,
+    AT_RING,
+    BELOW,
+    BLOCK,
+    BORDER,
+    CAGE,
+    CAGE_COLUMNS,
+    CAGE_ROWS,
+    CAGE_TILT_Y,
+    CAGE_TILT_Z,
+    CAGE_Y,
+    CAGE_Z,
+    LOCAL,
+    OMEGA,
+    PHI,
+    PHI_SPEED,
+    POSITIONS,
+    R_SPEED,
+    RIGHT,
+    RING,
+    RING_COLUMNS,
+    RING_ROWS,
+    RING_TILT_Y,
+    RING_TILT_Z,
+    RING_Y,
+    RING_Z,
+    ROLLER,
+    SKEW,
+    SKEW_SPEED,
+    SLICED,
+    SPEEDS,
+    SPIN,
+    THETA,
+    TILT,
+    TILT_SPEED,
+    R,
+)
+from bearing_sim.numerics.compilation import kernel, template
+from bearing_sim.numerics.linear_algebra import back_substitute, decompose
+from bearing_sim.numerics.simd import LANES, collect_runs, load, magnitude, spread, spread_runs, store, total, where_positive
+
+# Rows of forces outwards and along, of moments outwards and along, of the spin's torque; in this order.
+_RADIAL, _ALONG, _TILTING, _SKEWING, _SPINNING = 0, LOCAL, 2 * LOCAL, 3 * LOCAL, 4 * LOCAL
+_PUMPED = 154  # row of ``chain`` behind those of the pockets, which rely on what they never write
+_SEEN = 8  # position, inclination, and their rates, of the roller against the ring: four pairs
+_CHAIN = 40  # row of ``chain`` where this module's part begins
+_OFFSET, _RATE, _INCLINATION, _SKEW_RATE, _LEVER, _LEAN, _KINDS = range(7)  # what depends on a variable: the last two are arms of the cage
+_AT_Y, _AT_Z, _AT_TILT_Y, _AT_TILT_Z, _AT_THETA = range(9, 14)  # columns of the cage among the variables, its speeds are 5 further on
+_VARIABLES = 19
+_RATES = 170  # row of ``chain`` where this module's part begins: changes of the offset's rate and the lean's, by variable
+
+
+@kernel
+def _chain_row(block, row, first, along, rows, contacts, chain):
+    """Write the change of a force or moment by what the inner contact sees, in pairs along the normal and across.
+
+    Parameters
+    ----------
+    row : of ``chain``, where the result begins.
+    first : row of the derivative by penetration; that by lean comes next, and three rows on those by their rates.
+    along : the derivatives by sliding, or -1 for a normal force.
+    """
+    inverse = load(rows, block, ROLLER.inverse_distance)
+    v_n, v_p = load(rows, block, ROLLER.speed_normal) * inverse, load(rows, block, ROLLER.speed_tangent) * inverse
+    b_n, b_p = load(rows, block, ROLLER.lean_normal), load(rows, block, ROLLER.lean_tangent) * inverse
+    turned_n, turned_p = load(rows, block, ROLLER.lean_speed_normal) * inverse, load(rows, block, ROLLER.lean_speed_tangent) * inverse
+    d_depth, d_lean = load(contacts, block, first), load(contacts, block, first + 1)
+    d_rate, d_lean_rate = load(contacts, block, first + 3), load(contacts, block, first + 4)
+    a_p = d_lean_rate * (b_p * v_n + v_p * b_n * inverse - turned_p) - d_rate * v_p - d_lean * b_p
+    speed_p, lean_speed_p = -(d_lean_rate * b_p), spread(0.0)
+    if along >= 0:
+        d_sliding, d_sliding_lean = load(contacts, block, along), load(contacts, block, along + 1)
+        a_p += d_sliding * v_n + d_sliding_lean * turned_n
+        speed_p -= d_sliding
+        lean_speed_p -= d_sliding_lean
+    store(chain, 0, row, d_lean_rate * v_p * b_p - d_depth)
+    store(chain, 0, row + 1, a_p)
+    store(chain, 0, row + 2, -d_lean)
+    store(chain, 0, row + 3, -(d_lean_rate * v_p))
+    store(chain, 0, row + 4, -d_rate)
+    store(chain, 0, row + 5, speed_p)
+    store(chain, 0, row + 6, -d_lean_rate)
+    store(chain, 0, row + 7, lean_speed_p)
+
+
+@kernel
+def _inner_chain(block, pumping, params, rows, contacts, chain):
+    """Write the changes of the inner contact's force (2), moment (2) and spin torque in the roller's frame by what it sees, 5 x 8."""
+    n_r, n_t, inverse = load(rows, block, ROLLER.normal_r), load(rows, block, ROLLER.normal_t), load(rows, block, ROLLER.inverse_distance)
+    b_n, b_p = load(rows, block, ROLLER.lean_normal), load(rows, block, ROLLER.lean_tangent) * inverse
+    q, s = load(contacts, block, SLICED.load), load(contacts, block, SLICED.tilting)
+    t, m = load(contacts, block, SLICED.force), load(contacts, block, SLICED.skewing)
+    _chain_row(block, 0, SLICED.stiffness, -1, rows, contacts, chain)
+    _chain_row(block, 2 * _SEEN, SLICED.stiffness + 1, -1, rows, contacts, chain)
+    _chain_row(block, 4 * _SEEN, SLICED.of_force, SLICED.d_sliding, rows, contacts, chain)
+    _chain_row(block, 3 * _SEEN, SLICED.of_skewing, SLICED.d_sliding + 1, rows, contacts, chain)
+    # the normal forces' own lever, where slices stand apart along the orbit
+    for k in range(_SEEN):
+        store(chain, 0, _SEEN + k, load(chain, 0, 4 * _SEEN + k) + load(chain, 0, 2 * _SEEN + k) * b_p)
+    if pumping:
+        push = 1.0 - 2.0 * params.raceways.diameter_ratio
+        t += push * load(contacts, block, SLICED.pumping)
+        m += push * load(contacts, block, SLICED.pumping_moment)
+        _chain_row(block, _PUMPED, SLICED.of_pumping, -1, rows, contacts, chain)
+        _chain_row(block, _PUMPED + _SEEN, SLICED.of_pumping_moment, -1, rows, contacts, chain)
+        for k in range(_SEEN):
+            pumped, turned = load(chain, 0, _PUMPED + k), load(chain, 0, _PUMPED + _SEEN + k)
+            add(chain, 0, _SEEN + k, push * pumped)
+            add(chain, 0, 3 * _SEEN + k, push * turned)
+            add(chain, 0, 4 * _SEEN + k, -pumped)
+    add(chain, 0, _SEEN, -(s * b_p * inverse))
+    add(chain, 0, _SEEN + 1, -(s * b_n * inverse * inverse))
+    add(chain, 0, _SEEN + 3, s * inverse)
+    # all directions turn with the roller's position
+    add(chain, 0, 1, -((t + s * b_p) * inverse))
+    add(chain, 0, _SEEN + 1, q * inverse)
+    add(chain, 0, 2 * _SEEN + 1, -(m * inverse))
+    add(chain, 0, 3 * _SEEN + 1, s * inverse)
+    for row in range(0, 5 * _SEEN, 2):
+        normal, across = load(chain, 0, row), load(chain, 0, row + 1)
+        store(chain, 0, row, normal * n_r - across * n_t)
+        store(chain, 0, row + 1, normal * n_t + across * n_r)
+    for pair in range(2):
+        for k in range(_SEEN):
+            row = 2 * pair * _SEEN + k
+            normal, across = load(chain, 0, row), load(chain, 0, row + _SEEN)
+            store(chain, 0, row, normal * n_r - across * n_t)
+            store(chain, 0, row + _SEEN, normal * n_t + across * n_r)
+
+
+@kernel
+def _inner_jacobian(block, y, inner_radius, pumping, params, rows, contacts, chain, jacobian):
+    """Write a roller's rows as far as the inner contact makes them."""
+    _inner_chain(block, pumping, params, rows, contacts, chain)
+    c, s = load(rows, block, ROLLER.cosine), load(rows, block, ROLLER.sine)
+    radius, orbital_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.orbital_speed)
+    tilt, skew = load(rows, block, ROLLER.tilt), load(rows, block, ROLLER.skew)
+    ring_r, ring_t = y[RING_Y] * c + y[RING_Z] * s, y[RING_Z] * c - y[RING_Y] * s
+    lean_r, lean_t = y[RING_TILT_Y] * c + y[RING_TILT_Z] * s, y[RING_TILT_Z] * c - y[RING_TILT_Y] * s
+    speed_r, speed_t = y[BORDER + RING_Y] * c + y[BORDER + RING_Z] * s, y[BORDER + RING_Z] * c - y[BORDER + RING_Y] * s
+    turn_r = y[BORDER + RING_TILT_Y] * c + y[BORDER + RING_TILT_Z] * s
+    turn_t = y[BORDER + RING_TILT_Z] * c - y[BORDER + RING_TILT_Y] * s
+    for k in range(5):
+        row, first = k * _SEEN, k * LOCAL
+        a_r, a_t, b_r, b_t = load(chain, 0, row), load(chain, 0, row + 1), load(chain, 0, row + 2), load(chain, 0, row + 3)
+        da_r, da_t, db_r, db_t = load(chain, 0, row + 4), load(chain, 0, row + 5), load(chain, 0, row + 6), load(chain, 0, row + 7)
+        d_angle = a_t * ring_r - a_r * ring_t + b_t * lean_r - b_r * lean_t + da_t * speed_r - da_r * speed_t + db_t * turn_r - db_r * turn_t
+        store(jacobian, block, first + R, a_r + orbital_speed * da_t)
+        store(jacobian, block, first + PHI, d_angle)
+        store(jacobian, block, first + TILT, b_r + orbital_speed * db_t)
+        store(jacobian, block, first + SKEW, b_t - orbital_speed * db_r)
+        store(jacobian, block, first + R_SPEED, da_r)
+        store(jacobian, block, first + PHI_SPEED, radius * da_t + tilt * db_t - skew * db_r)
+        store(jacobian, block, first + TILT_SPEED, db_r)
+        store(jacobian, block, first + SKEW_SPEED, db_t)
+        store(jacobian, block, first + SPIN, 0.0)
+        # a ring that moves is a roller that moves the other way
+        for pair in range(4):
+            d_r, d_t = load(chain, 0, row + 2 * pair), load(chain, 0, row + 2 * pair + 1)
+            store(jacobian, block, first + 9 + 2 * pair, d_t * s - d_r * c)
+            store(jacobian, block, first + 10 + 2 * pair, -(d_r * s + d_t * c))
+    n_r, n_t = load(rows, block, ROLLER.normal_r), load(rows, block, ROLLER.normal_t)
+    d_rolling, d_rolling_x = load(contacts, block, SLICED.d_rolling), load(contacts, block, SLICED.d_rolling + 1)
+    d_sliding, d_sliding_x = load(contacts, block, SLICED.d_sliding), load(contacts, block, SLICED.d_sliding + 1)
+    carried = 0.5 * (params.rollers.radius - inner_radius)
+    for k in range(2):
+        column = PHI_SPEED if k == 0 else SPIN
+        force = d_rolling * carried if k == 0 else (0.5 * d_rolling - d_sliding) * params.rollers.radius
+        moment = d_rolling_x * carried if k == 0 else (0.5 * d_rolling_x - d_sliding_x) * params.rollers.radius
+        add(jacobian, block, _RADIAL + column, -(force * n_t))
+        add(jacobian, block, _ALONG + column, force * n_r)
+        add(jacobian, block, _TILTING + column, -(moment * n_t))
+        add(jacobian, block, _SKEWING + column, moment * n_r)
+        add(jacobian, block, _SPINNING + column, force)
+        if pumping:
+            push, rate = 1.0 - 2.0 * params.raceways.diameter_ratio, carried if k == 0 else 0.5 * params.rollers.radius
+            pumped, turned = rate * load(contacts, block, SLICED.pumping_d_rolling), rate * load(contacts, block, SLICED.pumping_d_rolling + 1)
+            add(jacobian, block, _RADIAL + column, -(push * pumped * n_t))
+            add(jacobian, block, _ALONG + column, push * pumped * n_r)
+            add(jacobian, block, _TILTING + column, -(push * turned * n_t))
+            add(jacobian, block, _SKEWING + column, push * turned * n_r)
+            add(jacobian, block, _SPINNING + column, -pumped)
+
+
+@kernel
+def _ring_jacobian(block, pumping, params, rows, contacts, jacobian):
+    """Write the rows of the ring from those of a roller, which hold nothing but the inner contact yet."""
+    c, s, inverse = load(rows, block, ROLLER.cosine), load(rows, block, ROLLER.sine), load(rows, block, ROLLER.inverse_distance)
+    n_r, n_t = load(rows, block, ROLLER.normal_r), load(rows, block, ROLLER.normal_t)
+    q, tilting = load(contacts, block, SLICED.load), load(contacts, block, SLICED.tilting)
+    across, skewing = load(contacts, block, SLICED.force), load(contacts, block, SLICED.skewing)
+    across += tilting * load(rows, block, ROLLER.lean_tangent) * inverse
+    if pumping:
+        push = 1.0 - 2.0 * params.raceways.diameter_ratio
+        across += push * load(contacts, block, SLICED.pumping)
+        skewing += push * load(contacts, block, SLICED.pumping_moment)
+    present = load(rows, block, ROLLER.present)
+    for pair in range(2):
+        first = 2 * pair * LOCAL
+        to = RING_ROWS + 2 * pair * RING_COLUMNS
+        scale = present * (-1.0 / params.ring.mass if pair == 0 else -params.tilts.ring_free / params.tilts.ring_inertia)
+        for k in range(RING_COLUMNS):
+            d_r, d_t = load(jacobian, block, first + k), load(jacobian, block, first + LOCAL + k)
+            store(jacobian, block, to + k, scale * (d_r * c - d_t * s))
+            store(jacobian, block, to + RING_COLUMNS + k, scale * (d_r * s + d_t * c))
+        normal, tangent = (q, across) if pair == 0 else (tilting, skewing)
+        outwards, along = normal * n_r - tangent * n_t, normal * n_t + tangent * n_r
+        add(jacobian, block, to + PHI, -(scale * (outwards * s + along * c)))
+        add(jacobian, block, to + RING_COLUMNS + PHI, scale * (outwards * c - along * s))
+
+
+@kernel
+def _outer_row(block, first, sign, sums, along, rows, contacts, params, jacobian):
+    """Add a force or moment of the outer contact to a row; parameters as of `_chain_row`, and ``sign`` of what the roller feels."""
+    outer = rows.shape[0] + block
+    radius, orbital_speed, tilt = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.orbital_speed), load(rows, block, ROLLER.tilt)
+    slope, curvature, roller_radius = load(rows, block, ROLLER.slope), load(rows, block, ROLLER.curvature), params.rollers.radius
+    d_depth, d_lean = sign * load(contacts, outer, sums), sign * load(contacts, outer, sums + 1)
+    d_rate, d_lean_rate = sign * load(contacts, outer, sums + 3), sign * load(contacts, outer, sums + 4)
+    add(jacobian, block, first + R, d_depth)
+    add(jacobian, block, first + PHI, -(d_depth * slope) - d_rate * curvature * orbital_speed)
+    add(jacobian, block, first + TILT, d_lean)
+    add(jacobian, block, first + R_SPEED, d_rate)
+    add(jacobian, block, first + PHI_SPEED, -(d_rate * slope))
+    add(jacobian, block, first + TILT_SPEED, d_lean_rate)
+    if along < 0:
+        return
+    d_sliding, d_sliding_lean = sign * load(contacts, outer, along), sign * load(contacts, outer, along + 1)
+    d_rolling = (0.5 * sign) * load(contacts, outer, along + 3)
+    add(jacobian, block, first + R, (d_rolling - d_sliding) * orbital_speed)
+    add(jacobian, block, first + TILT, -(d_sliding_lean * orbital_speed))
+    add(jacobian, block, first + PHI_SPEED, d_rolling * (radius + 2.0 * roller_radius) - d_sliding * radius - d_sliding_lean * tilt)
+    add(jacobian, block, first + SKEW_SPEED, -d_sliding_lean)
+    add(jacobian, block, first + SPIN, (d_sliding + d_rolling) * roller_radius)
+
+
+@kernel
+def _outer_jacobian(block, y, churning, params, rows, contacts, jacobian):
+    """Add the outer contact and the drag of the mixture to a roller's rows."""
+    outer = rows.shape[0] + block
+    _outer_row(block, _RADIAL, -1.0, SLICED.stiffness, -1, rows, contacts, params, jacobian)
+    _outer_row(block, _ALONG, 1.0, SLICED.of_force, SLICED.d_sliding, rows, contacts, params, jacobian)
+    _outer_row(block, _TILTING, -1.0, SLICED.stiffness + 1, -1, rows, contacts, params, jacobian)
+    _outer_row(block, _SKEWING, 1.0, SLICED.of_skewing, SLICED.d_sliding + 1, rows, contacts, params, jacobian)
+    _outer_row(block, _SPINNING, -1.0, SLICED.of_force, SLICED.d_sliding, rows, contacts, params, jacobian)
+    radius, orbital_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.orbital_speed)
+    q, s, skew = load(contacts, outer, SLICED.load), load(contacts, outer, SLICED.tilting), load(rows, block, ROLLER.skew)
+    slope, curvature, inverse = load(rows, block, ROLLER.slope), load(rows, block, ROLLER.curvature), 1.0 / radius
+    # what the contour's slope and the slices' lever make of the normal forces
+    lean = params.variants.contour_slope * slope * inverse
+    lever = skew * inverse
+    for k in range(9):
+        if k == R or k == PHI or k == TILT or k == R_SPEED or k == PHI_SPEED or k == TILT_SPEED:
+            at = k if k < R_SPEED else k - R_SPEED
+            sums = SLICED.stiffness if k < R_SPEED else SLICED.damping
+            d_q, d_s = load(contacts, outer, sums + (1 if at == TILT else 0)), load(contacts, outer, sums + (2 if at == TILT else 1))
+            change = d_q * lean - d_s * lever
+            if at == PHI:
+                change = -(change * slope)
+            add(jacobian, block, _ALONG + k, change)
+    d_q, d_s = load(contacts, outer, SLICED.damping), load(contacts, outer, SLICED.damping + 1)
+    add(jacobian, block, _ALONG + PHI, -(curvature * orbital_speed * (d_q * lean - d_s * lever)))
+    add(jacobian, block, _ALONG + PHI, params.variants.contour_slope * q * curvature * inverse)
+    add(jacobian, block, _ALONG + SKEW, -(s * inverse))
+    add(jacobian, block, _ALONG + R, -((q * lean - s * lever) * inverse) - churning[1] * orbital_speed)
+    add(jacobian, block, _ALONG + PHI_SPEED, -(churning[1] * radius))
+    away = radius * orbital_speed - params.raceways.pitch_radius * y[OMEGA]
+    add(jacobian, block, _ALONG + AT_CAGE_SPEEDS + 4, -(churning[2] * away))
+
+
+@kernel
+def _outer_pumping(block, params, rows, contacts, jacobian):
+    """Add the oil that the outer contact pumps back to a roller's rows."""
+    outer, push = rows.shape[0] + block, -(1.0 + 2.0 * params.raceways.diameter_ratio)
+    _outer_row(block, _ALONG, push, SLICED.of_pumping, -1, rows, contacts, params, jacobian)
+    _outer_row(block, _SKEWING, push, SLICED.of_pumping_moment, -1, rows, contacts, params, jacobian)
+    _outer_row(block, _SPINNING, -1.0, SLICED.of_pumping, -1, rows, contacts, params, jacobian)
+    radius, orbital_speed, roller_radius = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.orbital_speed), params.rollers.radius
+    for k in range(3):
+        column, rate = (R, orbital_speed) if k == 0 else ((PHI_SPEED, radius + 2.0 * roller_radius) if k == 1 else (SPIN, spread(roller_radius)))
+        pumped = 0.5 * rate * load(contacts, outer, SLICED.pumping_d_rolling)
+        add(jacobian, block, _ALONG + column, push * pumped)
+        add(jacobian, block, _SKEWING + column, push * 0.5 * rate * load(contacts, outer, SLICED.pumping_d_rolling + 1))
+        add(jacobian, block, _SPINNING + column, -pumped)
+
+
+@kernel
+def _accelerations(block, params, rows, jacobian):
+    """Make accelerations of a roller's rows of forces, and add what the motion of its frame and its spin add to them."""
+    tilts = params.tilts
+    radius, orbital_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.orbital_speed)
+    acceleration, tilt, skew = load(rows, block, ROLLER.orbital_acceleration), load(rows, block, ROLLER.tilt), load(rows, block, ROLLER.skew)
+    tilt_speed, skew_speed = load(rows, block, ROLLER.tilt_speed), load(rows, block, ROLLER.skew_speed)
+    inverse, per_mass, per_inertia = 1.0 / radius, 1.0 / params.rollers.mass, 1.0 / tilts.roller_inertia
+    per_lever = per_mass * inverse
+    for k in range(LOCAL):
+        store(jacobian, block, _RADIAL + k, per_mass * load(jacobian, block, _RADIAL + k))
+        store(jacobian, block, _ALONG + k, per_lever * load(jacobian, block, _ALONG + k))
+        store(jacobian, block, _SPINNING + k, (params.rollers.radius / params.rollers.inertia) * load(jacobian, block, _SPINNING + k))
+    add(jacobian, block, _RADIAL + R, orbital_speed * orbital_speed)
+    add(jacobian, block, _RADIAL + PHI_SPEED, 2.0 * radius * orbital_speed)
+    add(jacobian, block, _ALONG + R, -(acceleration * inverse))
+    add(jacobian, block, _ALONG + R_SPEED, -2.0 * orbital_speed * inverse)
+    add(jacobian, block, _ALONG + PHI_SPEED, -2.0 * load(rows, block, ROLLER.radial_speed) * inverse)
+    for k in range(LOCAL):
+        turned = load(jacobian, block, _ALONG + k)
+        store(jacobian, block, _TILTING + k, per_inertia * load(jacobian, block, _TILTING + k) + skew * turned)
+        store(jacobian, block, _SKEWING + k, per_inertia * load(jacobian, block, _SKEWING + k) - tilt * turned)
+    fraction = params.variants.gyroscopic * params.rollers.inertia * per_inertia
+    gyroscopic = fraction * load(rows, block, ROLLER.spin)
+    turning, carrying = gyroscopic + 2.0 * orbital_speed, (gyroscopic + orbital_speed) * orbital_speed
+    add(jacobian, block, _TILTING + TILT, carrying)
+    add(jacobian, block, _TILTING + SKEW, acceleration)
+    add(jacobian, block, _TILTING + SKEW_SPEED, turning)
+    add(jacobian, block, _TILTING + PHI_SPEED, 2.0 * skew_speed + turning * tilt)
+    add(jacobian, block, _TILTING + SPIN, fraction * (skew_speed + orbital_speed * tilt))
+    add(jacobian, block, _SKEWING + SKEW, carrying)
+    add(jacobian, block, _SKEWING + TILT, -acceleration)
+    add(jacobian, block, _SKEWING + TILT_SPEED, -turning)
+    add(jacobian, block, _SKEWING + PHI_SPEED, turning * skew - 2.0 * tilt_speed)
+    add(jacobian, block, _SKEWING + SPIN, fraction * (orbital_speed * skew - tilt_speed))
+
+
+@kernel
+def roller_jacobian(y, inner_radius, churning, pumping, params, rows, contacts, chain, jacobian):
+    """Write all derivatives through the rollers; their forces have been written.
+
+    Parameters
+    ----------
+    y : state.
+    inner_radius : R_i, grown [m].
+    churning : drag of the mixture on a roller, its slope by the roller's speed and the slope's by cage speed.
+    pumping : whether the contacts pump oil back.
+    params : of the bearing.
+    rows : of the rollers, see `bearing_sim.levels.spatial.state.ROLLER`.
+    contacts : see `bearing_sim.levels.spatial.state.SLICED`.
+    chain : scratch, see `bearing_sim.levels.spatial.state.Work`.
+    jacobian : takes the derivatives.
+    """
+    for block in range(rows.shape[0]):
+        _inner_jacobian(block, y, inner_radius, pumping, params, rows, contacts, chain, jacobian)
+        _ring_jacobian(block, pumping, params, rows, contacts, jacobian)
+        _pocket_jacobian(block, y, params, rows, chain, jacobian)
+        if not params.cage.guidance.lands:
+            _guide_jacobian(block, y, params, rows, chain, jacobian)
+        _outer_jacobian(block, y, churning, params, rows, contacts, jacobian)
+        if pumping:
+            _outer_pumping(block, params, rows, contacts, jacobian)
+        _accelerations(block, params, rows, jacobian)
+
+
+@template
+def _put(chain, variable, kind, value):
+    store(chain, 0, _CHAIN + _KINDS * variable + kind, value)
+
+
+@kernel
+def _pocket_variables(block, y, rows, chain):
+    """Write how offset, skew, their rates and the arms of a block of rollers change by each variable; the rest of ``chain`` stays 0."""
+    radius, radial_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.radial_speed)
+    tilt, skew = load(rows, block, ROLLER.tilt), load(rows, block, ROLLER.skew)
+    tilt_speed, skew_speed = load(rows, block, ROLLER.tilt_speed), load(rows, block, ROLLER.skew_speed)
+    p_c, p_s = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
+    c, s = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
+    omega = y[OMEGA]
+    turning = load(rows, block, ROLLER.orbital_speed) - omega
+    cage_r, cage_t = y[CAGE_Y] * p_c + y[CAGE_Z] * p_s, y[CAGE_Z] * p_c - y[CAGE_Y] * p_s
+    lean_r, lean_t = y[CAGE_TILT_Y] * p_c + y[CAGE_TILT_Z] * p_s, y[CAGE_TILT_Z] * p_c - y[CAGE_TILT_Y] * p_s
+    speed_r = y[BORDER + CAGE_Y] * p_c + y[BORDER + CAGE_Z] * p_s
+    turn_r = y[BORDER + CAGE_TILT_Y] * p_c + y[BORDER + CAGE_TILT_Z] * p_s
+    rise = radial_speed * c - radius * s * turning
+    outwards, along = tilt * c - skew * s, tilt * s + skew * c
+    inclining = tilt_speed * c - skew_speed * s - turning * along
+    _put(chain, R, _OFFSET, s)
+    _put(chain, R, _RATE, c * turning)
+    _put(chain, R, _LEVER, c)
+    _put(chain, PHI, _OFFSET, radius * c)
+    _put(chain, PHI, _RATE, rise)
+    _put(chain, PHI, _LEVER, -(radius * s))
+    _put(chain, PHI, _INCLINATION, outwards)
+    _put(chain, PHI, _SKEW_RATE, inclining)
+    _put(chain, PHI, _LEAN, -along)
+    _put(chain, TILT, _INCLINATION, s)
+    _put(chain, TILT, _SKEW_RATE, c * turning)
+    _put(chain, TILT, _LEAN, c)
+    _put(chain, SKEW, _INCLINATION, c)
+    _put(chain, SKEW, _SKEW_RATE, -(s * turning))
+    _put(chain, SKEW, _LEAN, -s)
+    _put(chain, R_SPEED, _RATE, s)
+    _put(chain, PHI_SPEED, _RATE, radius * c)
+    _put(chain, PHI_SPEED, _SKEW_RATE, outwards)
+    _put(chain, TILT_SPEED, _SKEW_RATE, s)
+    _put(chain, SKEW_SPEED, _SKEW_RATE, c)
+    for tilted in range(2):
+        y_column, z_column = (_AT_TILT_Y, _AT_TILT_Z) if tilted else (_AT_Y, _AT_Z)
+        kind, arm = (_INCLINATION, _LEAN) if tilted else (_OFFSET, _LEVER)
+        _put(chain, y_column, kind, p_s)
+        _put(chain, z_column, kind, -p_c)
+        _put(chain, y_column, kind + 1, omega * p_c)
+        _put(chain, z_column, kind + 1, omega * p_s)
+        _put(chain, y_column, arm, -p_c)
+        _put(chain, z_column, arm, -p_s)
+        _put(chain, y_column + 5, kind + 1, p_s)
+        _put(chain, z_column + 5, kind + 1, -p_c)
+    _put(chain, _AT_THETA, _OFFSET, cage_r - radius * c)
+    _put(chain, _AT_THETA, _RATE, speed_r + omega * cage_t - rise)
+    _put(chain, _AT_THETA, _LEVER, radius * s - cage_t)
+    _put(chain, _AT_THETA, _INCLINATION, lean_r - outwards)
+    _put(chain, _AT_THETA, _SKEW_RATE, turn_r + omega * lean_t - inclining)
+    _put(chain, _AT_THETA, _LEAN, along - lean_t)
+    _put(chain, _AT_THETA + 5, _RATE, cage_r - radius * c)
+    _put(chain, _AT_THETA + 5, _SKEW_RATE, lean_r - outwards)
+
+
+@kernel
+def _pocket_rows(block, y, params, rows, chain, jacobian):
+    """Add to a roller's rows of forces and moments, and write those of the cage."""
+    cage, tilts, present = params.cage, params.tilts, load(rows, block, ROLLER.present)
+    force, moment, friction = (
+        -load(rows, block, ROLLER.pocket_force),
+        -load(rows, block, ROLLER.pocket_moment),
+        load(rows, block, ROLLER.pocket_friction),
+    )
+    p_c, p_s = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
+    c, s = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
+    k_0, k_1, k_2 = (
+        load(rows, block, ROLLER.pocket_stiffness),
+        load(rows, block, ROLLER.pocket_stiffness + 1),
+        load(rows, block, ROLLER.pocket_stiffness + 2),
+    )
+    d_0, d_1, d_2 = (
+        load(rows, block, ROLLER.pocket_damping),
+        load(rows, block, ROLLER.pocket_damping + 1),
+        load(rows, block, ROLLER.pocket_damping + 2),
+    )
+    push_r, push_t, push_y, push_z = s + friction * c, c - friction * s, friction * p_c - p_s, p_c + friction * p_s
+    reach = load(rows, block, ROLLER.radius) * c - (y[CAGE_Y] * p_c + y[CAGE_Z] * p_s)
+    side = where_positive(force, params.rollers.radius, -params.rollers.radius)
+    arm = reach - friction * (side + load(rows, block, ROLLER.pocket_offset))
+    lean = load(rows, block, ROLLER.pocket_lean) - friction * load(rows, block, ROLLER.pocket_skew)
+    braking = friction * where_positive(force, 1.0, -1.0)
+    per_mass, per_tilt, per_turn = present * (1.0 / cage.mass), present * (1.0 / tilts.cage_inertia), present * (1.0 / cage.inertia)
+    for k in range(_VARIABLES):
+        first = _CHAIN + _KINDS * k
+        offset, rate = load(chain, 0, first + _OFFSET), load(chain, 0, first + _RATE)
+        skew, skew_rate = load(chain, 0, first + _INCLINATION), load(chain, 0, first + _SKEW_RATE)
+        lever, leaning = load(chain, 0, first + _LEVER), load(chain, 0, first + _LEAN)
+        d_f = k_0 * offset + k_1 * skew + d_0 * rate + d_1 * skew_rate
+        d_m = k_1 * offset + k_2 * skew + d_1 * rate + d_2 * skew_rate
+        column = k
+        if k > SPIN:
+            column = AT_CAGE + k - _AT_Y
+            for row in range(5):
+                store(jacobian, block, row * LOCAL + column, 0.0)
+        add(jacobian, block, column, -(d_f * push_r))
+        add(jacobian, block, LOCAL + column, -(d_f * push_t))
+        add(jacobian, block, 2 * LOCAL + column, -(d_m * push_r))
+        add(jacobian, block, 3 * LOCAL + column, -(d_m * push_t))
+        add(jacobian, block, 4 * LOCAL + column, -(d_f * braking))
+        store(jacobian, block, CAGE_ROWS + k, per_mass * (d_f * push_y))
+        store(jacobian, block, CAGE_ROWS + CAGE_COLUMNS + k, per_mass * (d_f * push_z))
+        store(jacobian, block, CAGE_ROWS + 2 * CAGE_COLUMNS + k, per_tilt * (d_m * push_y))
+        store(jacobian, block, CAGE_ROWS + 3 * CAGE_COLUMNS + k, per_tilt * (d_m * push_z))
+        turned = d_f * arm + d_m * lean + force * (lever - friction * offset) + moment * (leaning - friction * skew)
+        store(jacobian, block, CAGE_ROWS + 4 * CAGE_COLUMNS + k, per_turn * turned)
+
+
+@kernel
+def _pocket_directions(block, params, rows, jacobian):
+    """Add that forces and moments turn with pocket and roller, and that friction goes with the spin."""
+    cage, tilts, present = params.cage, params.tilts, load(rows, block, ROLLER.present)
+    friction, bend = load(rows, block, ROLLER.pocket_friction), load(rows, block, ROLLER.pocket_friction_d_spin)
+    p_c, p_s = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
+    c, s = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
+    push_r, push_t, push_y, push_z = s + friction * c, c - friction * s, friction * p_c - p_s, p_c + friction * p_s
+    force, moment = -load(rows, block, ROLLER.pocket_force), -load(rows, block, ROLLER.pocket_moment)
+    theta = AT_CAGE + 4
+    for kind in range(2):
+        push = force if kind == 0 else moment
+        per = present * (1.0 / cage.mass if kind == 0 else 1.0 / tilts.cage_inertia)
+        first, to = 2 * kind * LOCAL, CAGE_ROWS + 2 * kind * CAGE_COLUMNS
+        add(jacobian, block, first + PHI, -(push * push_t))
+        add(jacobian, block, first + theta, push * push_t)
+        add(jacobian, block, first + LOCAL + PHI, push * push_r)
+        add(jacobian, block, first + LOCAL + theta, -(push * push_r))
+        add(jacobian, block, first + SPIN, -(push * c * bend))
+        add(jacobian, block, first + LOCAL + SPIN, push * s * bend)
+        add(jacobian, block, to + _AT_THETA, -(per * push * push_z))
+        add(jacobian, block, to + CAGE_COLUMNS + _AT_THETA, per * push * push_y)
+        add(jacobian, block, to + SPIN, per * push * p_c * bend)
+        add(jacobian, block, to + CAGE_COLUMNS + SPIN, per * push * p_s * bend)
+    size = magnitude(force)
+    add(jacobian, block, 4 * LOCAL + SPIN, -(size * bend))
+    slid = size * params.rollers.radius + load(rows, block, ROLLER.pocket_offset) * force + load(rows, block, ROLLER.pocket_skew) * moment
+    add(jacobian, block, CAGE_ROWS + 4 * CAGE_COLUMNS + SPIN, -(present * (1.0 / cage.inertia) * slid * bend))
+
+
+@kernel
+def _pocket_jacobian(block, y, params, rows, chain, jacobian):
+    """Add the pockets to the rows of a block of rollers and write those of the cage; parameters as of `spatial_jacobian.roller_jacobian`."""
+    _pocket_variables(block, y, rows, chain)
+    _pocket_rows(block, y, params, rows, chain, jacobian)
+    _pocket_directions(block, params, rows, jacobian)
+
+
+@template
+def _put_rates(chain, variable, offset_rate, lean_rate):
+    store(chain, 0, _RATES + 2 * variable, offset_rate)
+    store(chain, 0, _RATES + 2 * variable + 1, lean_rate)
+
+
+@kernel
+def _guide_rates(block, y, params, rows, chain):
+    """Write how the rates of offset and lean change by each variable; the rest of ``chain`` stays 0."""
+    radius, radial_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.radial_speed)
+    tilt, skew = load(rows, block, ROLLER.tilt), load(rows, block, ROLLER.skew)
+    tilt_speed, skew_speed = load(rows, block, ROLLER.tilt_speed), load(rows, block, ROLLER.skew_speed)
+    p_c, p_s = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
+    c, s = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
+    omega, orbital_speed = y[OMEGA], load(rows, block, ROLLER.orbital_speed)
+    turning = orbital_speed - omega
+    outwards, along = tilt * c - skew * s, tilt * s + skew * c
+    rise, inclining = radial_speed * s, tilt_speed * s + skew_speed * c
+    speed_t = y[BORDER + CAGE_Z] * p_c - y[BORDER + CAGE_Y] * p_s
+    turn_t = y[BORDER + CAGE_TILT_Z] * p_c - y[BORDER + CAGE_TILT_Y] * p_s
+    lever, lean = load(rows, block, ROLLER.guide_offset) + params.cage.guidance.pocket_radius, load(rows, block, ROLLER.pocket_lean)
+    _put_rates(chain, R, -(s * turning), 0.0)
+    _put_rates(chain, PHI, -(rise + radius * c * turning), -(inclining + turning * outwards))
+    _put_rates(chain, TILT, 0.0, -(s * turning))
+    _put_rates(chain, SKEW, 0.0, -(c * turning))
+    _put_rates(chain, R_SPEED, c, 0.0)
+    _put_rates(chain, PHI_SPEED, -(radius * s), -along)
+    _put_rates(chain, TILT_SPEED, 0.0, c)
+    _put_rates(chain, SKEW_SPEED, 0.0, -s)
+    _put_rates(chain, _AT_Y, omega * p_s, 0.0)
+    _put_rates(chain, _AT_Y + 1, -(omega * p_c), 0.0)
+    _put_rates(chain, _AT_TILT_Y, 0.0, omega * p_s)
+    _put_rates(chain, _AT_TILT_Y + 1, 0.0, -(omega * p_c))
+    _put_rates(chain, _AT_Y + 5, -p_c, 0.0)
+    _put_rates(chain, _AT_Y + 6, -p_s, 0.0)
+    _put_rates(chain, _AT_TILT_Y + 5, 0.0, -p_c)
+    _put_rates(chain, _AT_TILT_Y + 6, 0.0, -p_s)
+    moved = rise + radius * c * orbital_speed - speed_t - omega * lever
+    _put_rates(chain, _AT_THETA, moved, inclining + orbital_speed * outwards - turn_t - omega * lean)
+    _put_rates(chain, _AT_THETA + 5, load(rows, block, ROLLER.pocket_offset), load(rows, block, ROLLER.pocket_skew))
+
+
+@kernel
+def _guide_rows(block, params, rows, chain, jacobian):
+    """Add to the rows of a roller's forces and moments and to those of the cage, as far as the directions stay."""
+    cage, tilts, present = params.cage, params.tilts, load(rows, block, ROLLER.present)
+    p_c, p_s = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
+    c, s = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
+    force, moment, friction = (
+        -load(rows, block, ROLLER.guide_force),
+        -load(rows, block, ROLLER.guide_moment),
+        load(rows, block, ROLLER.pocket_friction),
+    )
+    k, d = ROLLER.guide_stiffness, ROLLER.guide_damping
+    k_0, k_1, k_2 = load(rows, block, k), load(rows, block, k + 1), load(rows, block, k + 2)
+    d_0, d_1, d_2 = load(rows, block, d), load(rows, block, d + 1), load(rows, block, d + 2)
+    push_r, push_t = c - friction * s, s + friction * c
+    push_y, push_z = p_c + friction * p_s, p_s - friction * p_c
+    braking = friction * where_positive(force, 1.0, -1.0)
+    arm = load(rows, block, ROLLER.pocket_offset) + braking * params.rollers.radius
+    arm += friction * (load(rows, block, ROLLER.guide_offset) + cage.guidance.pocket_radius)
+    skewed = load(rows, block, ROLLER.pocket_skew) + friction * load(rows, block, ROLLER.pocket_lean)
+    per_mass, per_tilt, per_turn = present * (1.0 / cage.mass), present * (1.0 / tilts.cage_inertia), present * (1.0 / cage.inertia)
+    for k in range(_VARIABLES):
+        first, rates = _CHAIN + _KINDS * k, _RATES + 2 * k
+        position, skew = load(chain, 0, first + _OFFSET), load(chain, 0, first + _INCLINATION)
+        outwards, lean = load(chain, 0, first + _LEVER), load(chain, 0, first + _LEAN)
+        rate, lean_rate = load(chain, 0, rates), load(chain, 0, rates + 1)
+        d_f = k_0 * outwards + k_1 * lean + d_0 * rate + d_1 * lean_rate
+        d_m = k_1 * outwards + k_2 * lean + d_1 * rate + d_2 * lean_rate
+        column = k if k <= SPIN else AT_CAGE + k - _AT_Y
+        add(jacobian, block, column, -(d_f * push_r))
+        add(jacobian, block, LOCAL + column, d_f * push_t)
+        add(jacobian, block, 2 * LOCAL + column, -(d_m * push_r))
+        add(jacobian, block, 3 * LOCAL + column, d_m * push_t)
+        add(jacobian, block, 4 * LOCAL + column, -(d_f * braking))
+        add(jacobian, block, CAGE_ROWS + k, per_mass * (d_f * push_y))
+        add(jacobian, block, CAGE_ROWS + CAGE_COLUMNS + k, per_mass * (d_f * push_z))
+        add(jacobian, block, CAGE_ROWS + 2 * CAGE_COLUMNS + k, per_tilt * (d_m * push_y))
+        add(jacobian, block, CAGE_ROWS + 3 * CAGE_COLUMNS + k, per_tilt * (d_m * push_z))
+        turned = d_f * arm + d_m * skewed + force * (position + friction * outwards) + moment * (skew + friction * lean)
+        add(jacobian, block, CAGE_ROWS + 4 * CAGE_COLUMNS + k, -(per_turn * turned))
+
+
+@kernel
+def _guide_directions(block, params, rows, jacobian):
+    """Add that forces and moments turn with pocket and roller, and that friction goes with the spin."""
+    cage, tilts, present = params.cage, params.tilts, load(rows, block, ROLLER.present)
+    friction, bend = load(rows, block, ROLLER.pocket_friction), load(rows, block, ROLLER.pocket_friction_d_spin)
+    p_c, p_s = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
+    c, s = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
+    push_r, push_t = c - friction * s, s + friction * c
+    force, moment = -load(rows, block, ROLLER.guide_force), -load(rows, block, ROLLER.guide_moment)
+    theta = AT_CAGE + _AT_THETA - _AT_Y
+    for kind in range(2):
+        push = force if kind == 0 else moment
+        per = present * (1.0 / cage.mass if kind == 0 else 1.0 / tilts.cage_inertia)
+        first, to = 2 * kind * LOCAL, CAGE_ROWS + 2 * kind * CAGE_COLUMNS
+        add(jacobian, block, first + PHI, push * push_t)
+        add(jacobian, block, first + theta, -(push * push_t))
+        add(jacobian, block, first + SPIN, push * s * bend)
+        add(jacobian, block, first + LOCAL + PHI, push * push_r)
+        add(jacobian, block, first + LOCAL + theta, -(push * push_r))
+        add(jacobian, block, first + LOCAL + SPIN, push * c * bend)
+        add(jacobian, block, to + _AT_THETA, per * push * (friction * p_c - p_s))
+        add(jacobian, block, to + SPIN, per * push * p_s * bend)
+        add(jacobian, block, to + CAGE_COLUMNS + _AT_THETA, per * push * (p_c + friction * p_s))
+        add(jacobian, block, to + CAGE_COLUMNS + SPIN, -(per * push * p_c * bend))
+    add(jacobian, block, 4 * LOCAL + SPIN, -(magnitude(force) * bend))
+    slid = force * (load(rows, block, ROLLER.guide_offset) + cage.guidance.pocket_radius) + magnitude(force) * params.rollers.radius
+    slid += moment * load(rows, block, ROLLER.pocket_lean)
+    add(jacobian, block, CAGE_ROWS + 4 * CAGE_COLUMNS + SPIN, -(present * (1.0 / cage.inertia) * slid * bend))
+
+
+@kernel
+def _guide_jacobian(block, y, params, rows, chain, jacobian):
+    """Add the derivatives of what guiding pockets do, after `pocket_jacobian`; parameters as of `spatial_jacobian.roller_jacobian`."""
+    _guide_rates(block, y, params, rows, chain)
+    _guide_rows(block, params, rows, chain, jacobian)
+    _guide_directions(block, params, rows, jacobian)
+
+
+@kernel
+def land_cage_jacobian(position, lever, lands, own):
+    """Write the derivatives of the cage's accelerations by its positions and speeds from those of both lands."""
+    for which in range(2):
+        first, planar_first = which * BORDER, which * PLANAR
+        for row in range(3):
+            planar_row = planar.CAGE_Y + row
+            for column in range(3):
+                near, far = lands[0, planar_row, planar_first + 2 + column], lands[1, planar_row, planar_first + 2 + column]
+                mean, apart = 0.5 * (near + far), near - far
+                to = first + (THETA if column == 2 else CAGE_Y + column)
+                if row == 2:
+                    own[THETA, to] = mean
+                    if column < 2:
+                        own[THETA, first + CAGE_TILT_Y + column] = 0.5 * position * apart
+                    continue
+                own[CAGE_Y + row, to] = mean
+                own[CAGE_TILT_Y + row, to] = lever * apart
+                if column < 2:
+                    own[CAGE_Y + row, first + CAGE_TILT_Y + column] = 0.5 * position * apart
+                    own[CAGE_TILT_Y + row, first + CAGE_TILT_Y + column] = 2.0 * lever * position * mean
+
+
+@kernel
+def land_ring_jacobian(position, lever, ring_lever, lands, own):
+    """Write what the inner ring's motion does to the cage in its lands, and what both motions do to the ring."""
+    for which in range(2):
+        first, planar_first = which * BORDER, which * PLANAR
+        for axis in range(2):
+            for other in range(2):
+                _land_pair(
+                    CAGE_Y + axis,
+                    CAGE_TILT_Y + axis,
+                    planar.CAGE_Y + axis,
+                    lever,
+                    first + RING_Y + other,
+                    first + RING_TILT_Y + other,
+                    planar_first + planar.RING_Y + other,
+                    position,
+                    lands,
+                    own,
+                )
+                _land_pair(
+                    RING_Y + axis,
+                    RING_TILT_Y + axis,
+                    planar.RING_Y + axis,
+                    ring_lever,
+                    first + RING_Y + other,
+                    first + RING_TILT_Y + other,
+                    planar_first + planar.RING_Y + other,
+                    position,
+                    lands,
+                    own,
+                )
+                _land_pair(
+                    RING_Y + axis,
+                    RING_TILT_Y + axis,
+                    planar.RING_Y + axis,
+                    ring_lever,
+                    first + CAGE_Y + other,
+                    first + CAGE_TILT_Y + other,
+                    planar_first + planar.CAGE_Y + other,
+                    position,
+                    lands,
+                    own,
+                )
+            near, far = lands[0, planar.THETA, planar_first + axis], lands[1, planar.THETA, planar_first + axis]
+            own[THETA, first + RING_Y + axis] = 0.5 * (near + far)
+            own[THETA, first + RING_TILT_Y + axis] = 0.5 * position * (near - far)
+            near = lands[0, planar.RING_Y + axis, planar_first + planar.THETA]
+            far = lands[1, planar.RING_Y + axis, planar_first + planar.THETA]
+            own[RING_Y + axis, first + THETA] = 0.5 * (near + far)
+            own[RING_TILT_Y + axis, first + THETA] = ring_lever * (near - far)
+
+
+@kernel
+def _land_pair(row, tilt_row, planar_row, lever, column, tilt_column, planar_column, position, lands, own):
+    """Write the derivatives of a body's acceleration and tilting by a body's position and tilt, from those of both lands."""
+    near, far = lands[0, planar_row, planar_column], lands[1, planar_row, planar_column]
+    own[row, column] = 0.5 * (near + far)
+    own[row, tilt_column] = 0.5 * position * (near - far)
+    own[tilt_row, column] = lever * (near - far)
+    own[tilt_row, tilt_column] = lever * position * (near + far)
+
+
+@template
+def _shifted(jacobian, block, position, speed, s):
+    """Return s (d/d(speed) + s d/d(position)): what a speed does within an implicit step."""
+    return s * (load(jacobian, block, speed) + s * load(jacobian, block, position))
+
+
+@kernel
+def _own(jacobian, block, first, k, s):
+    """Return what a roller's own k-th speed does to a row within an implicit step."""
+    if k == POSITIONS:
+        return s * load(jacobian, block, first + 2 * POSITIONS)
+    return _shifted(jacobian, block, first + k, first + POSITIONS + k, s)
+
+
+@kernel
+def _invert_blocks(block, jacobian, s, rows, matrix):
+    """Invert I - s (dv'/dv + s dv'/dq) of a block of rollers; return whether all are regular.
+
+    Gauss and Jordan without pivoting: springs, dampers and inertia keep the diagonal above what else is in the matrix.
+    """
+    n = SPEEDS
+    for i in range(n):
+        for j in range(n):
+            store(matrix, 0, n * i + j, (1.0 if i == j else 0.0) - _own(jacobian, block, i * LOCAL, j, s))
+            store(rows, block, n * i + j, 1.0 if i == j else 0.0)
+    regular = True
+    for k in range(n):
+        pivot = load(matrix, 0, n * k + k)
+        regular = regular and total(where_positive(magnitude(pivot), 1.0, 0.0)) == LANES
+        inverse = 1.0 / pivot
+        for j in range(k + 1, n):
+            store(matrix, 0, n * k + j, inverse * load(matrix, 0, n * k + j))
+        for j in range(k + 1):
+            store(rows, block, n * k + j, inverse * load(rows, block, n * k + j))
+        for i in range(n):
+            if i != k:
+                factor = load(matrix, 0, n * i + k)
+                for j in range(k + 1, n):
+                    store(matrix, 0, n * i + j, load(matrix, 0, n * i + j) - factor * load(matrix, 0, n * k + j))
+                for j in range(k + 1):
+                    store(rows, block, n * i + j, load(rows, block, n * i + j) - factor * load(rows, block, n * k + j))
+    return regular
+
+
+@kernel
+def _couplings(block, jacobian, s, rows):
+    """Write how a block of rollers and the border act on each other."""
+    for m in range(BORDER):
+        position = AT_RING + m if m < RING else AT_CAGE + m - RING
+        speed = position + (RING if m < RING else CAGE)
+        c_0, c_1 = _shifted(jacobian, block, position, speed, s), _shifted(jacobian, block, LOCAL + position, LOCAL + speed, s)
+        c_2 = _shifted(jacobian, block, 2 * LOCAL + position, 2 * LOCAL + speed, s)
+        c_3 = _shifted(jacobian, block, 3 * LOCAL + position, 3 * LOCAL + speed, s)
+        c_4 = _shifted(jacobian, block, 4 * LOCAL + position, 4 * LOCAL + speed, s)
+        for k in range(SPEEDS):
+            row = SPEEDS * k
+            value = load(rows, block, row) * c_0 + load(rows, block, row + 1) * c_1 + load(rows, block, row + 2) * c_2
+            value += load(rows, block, row + 3) * c_3 + load(rows, block, row + 4) * c_4
+            store(rows, block, RIGHT + BORDER * k + m, value)
+    for k in range(BORDER):
+        first = RING_ROWS + k * RING_COLUMNS if k < RING else CAGE_ROWS + (k - RING) * CAGE_COLUMNS
+        for m in range(SPEEDS):
+            store(rows, block, BELOW + SPEEDS * k + m, _own(jacobian, block, first, m, s))
+
+
+@kernel
+def _reduce(block, jacobian, s, rows, positions, corner):
+    """Take a block of rollers out of the border's system."""
+    for k in range(BORDER):
+        below = BELOW + SPEEDS * k
+        b_0, b_1, b_2 = load(rows, block, below), load(rows, block, below + 1), load(rows, block, below + 2)
+        b_3, b_4 = load(rows, block, below + 3), load(rows, block, below + 4)
+        on_ring = k < RING
+        first = RING_ROWS + k * RING_COLUMNS if on_ring else CAGE_ROWS + (k - RING) * CAGE_COLUMNS
+        for m in range(BORDER):
+            right = RIGHT + m
+            through = b_0 * load(rows, block, right) + b_1 * load(rows, block, right + BORDER) + b_2 * load(rows, block, right + 2 * BORDER)
+            through += b_3 * load(rows, block, right + 3 * BORDER) + b_4 * load(rows, block, right + 4 * BORDER)
+            if on_ring == (m < RING):
+                column = first + BLOCK + (m if on_ring else m - RING)
+                d_position = load(jacobian, block, column)
+                through += s * (load(jacobian, block, column + (RING if on_ring else CAGE)) + s * d_position)
+                positions[k, m] += total(d_position)
+            corner[k, m] -= total(through)
+
+
+@kernel
+def factor(jacobian, border, s, factored):
+    """Factor I - s J.
+
+    Parameters
+    ----------
+    jacobian : derivatives through each roller.
+    border : derivatives of the border's accelerations by its own positions and speeds, shape (9, 18).
+    s : gamma h [s].
+    factored : takes the factorisation.
+
+    Returns
+    -------
+    regular : False where a pivot is zero or not finite.
+    """
+    rows, positions, corner = factored.rows, factored.positions, factored.schur
+    factored.shift[0] = s
+    for k in range(BORDER):
+        for m in range(BORDER):
+            positions[k, m] = border[k, m]
+            corner[k, m] = (1.0 if k == m else 0.0) - s * (border[k, BORDER + m] + s * border[k, m])
+    regular = True
+    for block in range(jacobian.shape[0]):
+        regular = _invert_blocks(block, jacobian, s, rows, factored.block) and regular
+        _couplings(block, jacobian, s, rows)
+        _reduce(block, jacobian, s, rows, positions, corner)
+    return decompose(corner, factored.order) and regular
+
+
+@kernel
+def _eliminate(block, jacobian, s, x, factored):
+    """Reduce a block's right side to speeds, solve for them without the border, and take what they do to it from its own."""
+    rows, right, reduced = factored.rows, factored.right, factored.block
+    q_0, q_1, q_2, q_3 = load(right, block, 0), load(right, block, 1), load(right, block, 2), load(right, block, 3)
+    for k in range(SPEEDS):
+        first = k * LOCAL
+        value = load(jacobian, block, first) * q_0 + load(jacobian, block, first + 1) * q_1
+        value += load(jacobian, block, first + 2) * q_2 + load(jacobian, block, first + 3) * q_3
+        for m in range(RING):
+            value += x[m] * load(jacobian, block, first + AT_RING + m)
+        for m in range(CAGE):
+            value += x[RING + m] * load(jacobian, block, first + AT_CAGE + m)
+        store(reduced, 0, k, load(right, block, POSITIONS + k) + s * value)
+    b_0, b_1, b_2 = load(reduced, 0, 0), load(reduced, 0, 1), load(reduced, 0, 2)
+    b_3, b_4 = load(reduced, 0, 3), load(reduced, 0, 4)
+    for k in range(SPEEDS):
+        row = SPEEDS * k
+        value = load(rows, block, row) * b_0 + load(rows, block, row + 1) * b_1 + load(rows, block, row + 2) * b_2
+        store(right, block, POSITIONS + k, value + load(rows, block, row + 3) * b_3 + load(rows, block, row + 4) * b_4)
+    v_0, v_1, v_2 = load(right, block, 4), load(right, block, 5), load(right, block, 6)
+    v_3, v_4 = load(right, block, 7), load(right, block, 8)
+    for k in range(BORDER):
+        below = BELOW + SPEEDS * k
+        first = RING_ROWS + k * RING_COLUMNS if k < RING else CAGE_ROWS + (k - RING) * CAGE_COLUMNS
+        passed = load(jacobian, block, first) * q_0 + load(jacobian, block, first + 1) * q_1
+        passed = s * (passed + load(jacobian, block, first + 2) * q_2 + load(jacobian, block, first + 3) * q_3)
+        passed += load(rows, block, below) * v_0 + load(rows, block, below + 1) * v_1 + load(rows, block, below + 2) * v_2
+        x[BORDER + k] += total(passed + load(rows, block, below + 3) * v_3 + load(rows, block, below + 4) * v_4)
+
+
+@kernel
+def _substitute(block, s, x, factored):
+    """Complete a block's speeds by what the border does to them, and its positions."""
+    rows, right = factored.rows, factored.right
+    for k in range(SPEEDS):
+        value = load(right, block, POSITIONS + k)
+        for m in range(BORDER):
+            value += x[BORDER + m] * load(rows, block, RIGHT + BORDER * k + m)
+        store(right, block, POSITIONS + k, value)
+        if k < POSITIONS:
+            store(right, block, k, load(right, block, k) + s * value)
+
+
+@kernel
+def solve(jacobian, factored, x):
+    """Replace the right side ``x``, a whole state, by the solution of (I - s J) x = b."""
+    s = factored.shift[0]
+    count = (x.shape[0] - 2 * BORDER) // BLOCK
+    spread_runs(x, 2 * BORDER, BLOCK, count, factored.right)
+    for k in range(BORDER):
+        through = 0.0
+        for m in range(BORDER):
+            through += factored.positions[k, m] * x[m]
+        x[BORDER + k] += s * through
+    for block in range(jacobian.shape[0]):
+        _eliminate(block, jacobian, s, x, factored)
+    back_substitute(factored.schur, factored.order, x[BORDER : 2 * BORDER])
+    for block in range(jacobian.shape[0]):
+        _substitute(block, s, x, factored)
+    for k in range(BORDER):
+        x[k] += s * x[BORDER + k]
+    collect_runs(factored.right, 0, BLOCK, count, x, 2 * BORDER)

@@ -1,0 +1,202 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Level ``spatial``: every roller in slices, with tilt and skew; tilting cage and inner ring.
+
+State and memory: `bearing_sim.levels.spatial.state`; equations: `bearing_sim.levels.spatial.forces`, contacts of slices:
+`bearing_sim.levels.spatial.slices`; their Jacobian and the linear algebra of implicit steps: `bearing_sim.levels.spatial.jacobian`.  Left out: the
+rollers' motion along their axes, and bending of the rings.
+"""
+
+import math
+
+import numpy as np
+
+from bearing_sim.levels.common.model import FIFTH_PITCH, orbital_speed_tolerance, pitch_step, shaft_speed_at
+from bearing_sim.levels.common.observation import average_powers, observe_course, observe_life
+from bearing_sim.levels.common.power import write_powers
+from bearing_sim.levels.common.rollers import land_eccentricity, observe_rollers
+from bearing_sim.levels.common.slice_balance import balance, roller_tilts
+from bearing_sim.levels.common.state_transfer import first_cage_centre, rolling_state
+from bearing_sim.levels.spatial import jacobian
+from bearing_sim.levels.spatial import state as spatial_state
+from bearing_sim.levels.spatial.forces import equations
+from bearing_sim.levels.spatial.power import spatial_powers
+from bearing_sim.levels.spatial.slices import average_slices, slice_pressures
+from bearing_sim.levels.spatial.state import (
+    BLOCK,
+    CAGE_TILT_Y,
+    CAGE_TILT_Z,
+    CAGE_Y,
+    CAGE_Z,
+    OMEGA,
+    PHI,
+    PHI_SPEED,
+    R_SPEED,
+    RING_TILT_Y,
+    RING_TILT_Z,
+    RING_Y,
+    RING_Z,
+    ROLLER,
+    ROLLERS,
+    SKEW,
+    SLICED,
+    SPIN,
+    THETA,
+    TILT,
+    TILT_SPEED,
+    R,
+)
+from bearing_sim.model.params import Params
+from bearing_sim.model.sample import COLUMN, SCALARS
+from bearing_sim.numerics.compilation import kernel
+from bearing_sim.numerics.simd import LANES
+from bearing_sim.physics.lamina import ROLLER_ROW
+from bearing_sim.physics.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT, lamina_life_revolutions, rating_life_revolutions
+
+_CAGE_STEP = 1e-3  # rad, over which speeds are differences: a hundredth of what a lobe or a roller pitch takes
+
+
+def _has_unequal_slices(params) -> bool:
+    """Return whether crown, moment or misalignment load the slices of a roller unequally."""
+    tilts = params.tilts
+    moved = (tilts.moment_y, tilts.moment_z, tilts.misalignment_y, tilts.misalignment_z)
+    return any(moved) or bool(np.any(params.slices.crown))
+
+
+def _balance_by_slices(params, cage_speed, load, growth, state) -> None:
+    """Enter positions and tilts of ring and rollers in balance into a state, and the speeds at which the rollers follow it.
+
+    The ring stays at rest: it is too heavy to follow every roller that passes.  Where no balance is found only a ring that is held is
+    inclined, and all else starts as it is.
+
+    Parameters
+    ----------
+    params : of the bearing.
+    cage_speed : [rad/s].
+    load : y, z on the inner ring [N].
+    growth : of the inner raceway [m].
+    state : see `bearing_sim.levels.spatial.state`; roller 0 at azimuth 0; changed in place.
+    """
+    count, tilts = params.rollers.count, params.tilts
+    moment = (-tilts.moment_z, tilts.moment_y)  # about y and z what leans towards y and z
+    held = None if tilts.ring_free else (-tilts.misalignment_z, tilts.misalignment_y)
+
+    def rollers_at(cage_angle, near=None):
+        found = balance(params, cage_angle, cage_speed, load, moment, held, near, growth)
+        row = found.roller
+        contour = params.raceways.inner_radius + growth + 2.0 * params.rollers.radius - row[ROLLER_ROW.squeeze]
+        return found, np.stack([contour - params.rollers.radius + row[ROLLER_ROW.penetration], roller_tilts(found)])
+
+    state[RING_TILT_Y], state[RING_TILT_Z] = tilts.misalignment_y, tilts.misalignment_z  # 0 where the ring is free
+    try:
+        found, positions = rollers_at(0.0)
+        ring = found.ring.copy()
+        before, after = rollers_at(-_CAGE_STEP, found)[1], rollers_at(_CAGE_STEP, found)[1]
+    except ArithmeticError:
+        return
+    speeds = (after - before) * (cage_speed / (2.0 * _CAGE_STEP))
+    state[RING_Y], state[RING_Z], state[RING_TILT_Y], state[RING_TILT_Z] = ring[0], ring[1], ring[3], -ring[2]
+    rollers = state[ROLLERS:].reshape(BLOCK, count)
+    rollers[[R, TILT]], rollers[[R_SPEED, TILT_SPEED]] = positions, speeds
+
+
+def initial_state(params: Params, work, shaft_speed, load_y, load_z):
+    """Return ideal rolling; see `bearing_sim.levels.common.state_transfer.rolling_state`, also for the parameters.
+
+    If crown, moment or misalignment load slices unequally, the balance is that by slices, and rollers move as it moves with the cage;
+    otherwise it is the start of level ``planar``, to the last digit.
+    """
+    state, growth = rolling_state(spatial_state, params, work, shaft_speed, load_y, load_z)
+    if _has_unequal_slices(params):
+        _balance_by_slices(params, state[OMEGA], (load_y, load_z), growth, state)
+    turning = params.cage.guidance.turning
+    state[CAGE_Y], state[CAGE_Z] = first_cage_centre(params, state[RING_Y], state[RING_Z])
+    state[CAGE_TILT_Y], state[CAGE_TILT_Z] = turning * state[RING_TILT_Y], turning * state[RING_TILT_Z]
+    return state
+
+
+@kernel
+def rhs(t, y, model, work, rate):
+    """Write dy/dt into ``rate``."""
+    return equations(t, y, model, work, rate, False)
+
+
+@kernel
+def rhs_and_jacobian(t, y, model, work, rate):
+    """Write dy/dt into ``rate`` and all derivatives into ``work``."""
+    return equations(t, y, model, work, rate, True)
+
+
+@kernel
+def factor(shift, work):
+    """Factor I - shift J; return False where it is singular."""
+    return jacobian.factor(work.jacobian, work.border_own, shift, work.factored)
+
+
+@kernel
+def solve(work, x):
+    """Replace the right side ``x`` by the solution with the last factorisation."""
+    jacobian.solve(work.jacobian, work.factored, x)
+
+
+@kernel
+def error_norm(t, y, change, model):
+    """Return the largest ratio of any state's change to its tolerance.
+
+    As at level ``planar``; tilts count by what they move the end of a roller, a raceway or a land.  Skew and the cage's tilts have play.
+    """
+    raceways, rollers, half = model.params.raceways, model.params.rollers, 0.5 * model.params.rollers.length
+    position, play = 1.0 / model.tolerances.position, 1.0 / model.tolerances.play
+    speed = 1.0 / orbital_speed_tolerance(t, y[OMEGA], model)
+    offset, spin = play * raceways.pitch_radius, speed * rollers.radius / raceways.pitch_radius
+    tilt, skew = position * half, play * half
+    largest = max(max(abs(change[RING_Y]), abs(change[RING_Z])) * position, max(abs(change[CAGE_Y]), abs(change[CAGE_Z])) * play)
+    largest = max(largest, abs(change[OMEGA]) * speed, max(abs(change[RING_TILT_Y]), abs(change[RING_TILT_Z])) * tilt)
+    largest = max(largest, max(abs(change[CAGE_TILT_Y]), abs(change[CAGE_TILT_Z])) * play * model.params.tilts.land_position)
+    count = rollers.count
+    for j in range(ROLLERS, ROLLERS + count):
+        ratio = max(abs(change[j]) * position, abs(change[j + PHI * count] - change[THETA]) * offset)
+        ratio = max(ratio, abs(change[j + PHI_SPEED * count]) * speed, abs(change[j + SPIN * count]) * spin)
+        ratio = max(ratio, abs(change[j + TILT * count]) * tilt, abs(change[j + SKEW * count]) * skew)
+        if not ratio <= largest:  # NaN goes through
+            largest = ratio
+    return largest
+
+
+@kernel
+def step_limit(t, y, model):
+    """Return the longest sensible step [s] (see `bearing_sim.levels.common.model.pitch_step`)."""
+    return pitch_step(y[OMEGA], model.params.rollers.count, FIFTH_PITCH)
+
+
+@kernel
+def average_loads(h, y, model, work):
+    """Take the loads at the end of a step of length ``h`` [s] into the running means over a cage turn."""
+    count, turned = model.params.rollers.count, h * y[OMEGA]
+    fraction = 1.0 - math.exp(-abs(turned) / (2.0 * math.pi))
+    average_powers(fraction, work.rollers, ROLLER.present, work.contacts, SLICED.load, count, work.load_means)
+    average_slices(fraction, model.params, work)
+
+
+@kernel
+def observe(t, y, model, work, interval, previous, row, rate):
+    """Write the sample of state ``y``; parameters as in `bearing_sim.levels.slip.model.observe`."""
+    rhs(t, y, model, work, rate)
+    rows, count = work.rollers, model.params.rollers.count
+    inner, outer = work.load_means[0] ** (1.0 / ROTATING_EXPONENT), work.load_means[1] ** (1.0 / STATIONARY_EXPONENT)
+    observe_course(t, y[THETA], y[OMEGA], inner, outer, model, interval, previous, row)
+    life = model.params.life
+    by_slices = lamina_life_revolutions(work.slice_means[0], work.slice_means[1], life)
+    observe_life(rating_life_revolutions(inner, outer, life), by_slices, model, interval, previous, row)
+    row[COLUMN.ring_y], row[COLUMN.ring_z] = y[RING_Y], y[RING_Z]
+    row[COLUMN.cage_y], row[COLUMN.cage_z] = y[CAGE_Y], y[CAGE_Z]
+    row[COLUMN.ring_tilt_y], row[COLUMN.ring_tilt_z] = y[RING_TILT_Y], y[RING_TILT_Z]
+    row[COLUMN.cage_tilt_y], row[COLUMN.cage_tilt_z] = y[CAGE_TILT_Y], y[CAGE_TILT_Z]
+    pressures = slice_pressures(model.params, work)
+    row[COLUMN.inner_pressure], row[COLUMN.outer_pressure], row[COLUMN.inner_edge_pressure], row[COLUMN.outer_edge_pressure] = pressures
+    row[COLUMN.land_eccentricity] = land_eccentricity(y[RING_Y], y[RING_Z], y[CAGE_Y], y[CAGE_Z], model.params.cage)
+    write_powers(spatial_powers(y, shaft_speed_at(t, model.drive), model, work), row)
+    observe_rollers(ROLLER, SLICED.load, count, interval, rows, work.contacts, previous, row)
+    for j in range(count):
+        first, block, lane = SCALARS + j, j // LANES, j % LANES
+        row[first + COLUMN.roller_tilt * count] = rows[block, ROLLER.tilt, lane]
+        row[first + COLUMN.roller_skew * count] = rows[block, ROLLER.skew, lane]

@@ -1,0 +1,212 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Where the fields of a serialised ROS 2 message stand, derived from the definition of its type.
+
+ROS 2 serialises messages as CDR version 1 (OMG DDSI-RTPS 2.5, section 10; OMG CORBA 3.3 part 2, section 9.3): four bytes that name the
+representation, then the fields in the order of the definition, each number aligned to its own size, counted from the end of those four bytes.
+A string is its length in bytes, the text and a zero; a sequence is its count and its items.  Definitions alone therefore fix a layout but
+for the lengths of strings and sequences, and those are read from the message itself.
+
+The definitions are those of ROS 2 Jazzy in the rosbags library.  Serialising samples, reading numbers back from recordings and decoding
+input messages all use this one layout.
+"""
+
+import struct
+from collections.abc import Iterable, Sequence
+from functools import cache, cached_property
+from typing import NamedTuple
+
+import numpy as np
+from rosbags.interfaces import Nodetype
+from rosbags.typesys import Stores, get_typestore
+
+ENCAPSULATION = 4  # [byte] before the fields: two that name the representation, two of options
+STAMP_FIELDS = ("header.stamp.sec", "header.stamp.nanosec")
+_ORDERS = {b"\0\0": ">", b"\0\1": "<"}  # by the name of the representation: CDR version 1, big-endian and little-endian
+_NUMBERS = {"bool": "?", "byte": "u1", "char": "u1", "float32": "f4", "float64": "f8"} | {
+    f"{sign}int{8 * size}": f"{sign or 'i'}{size}" for size in (1, 2, 4, 8) for sign in ("", "u")
+}
+"""NumPy type of each kind of number of message definitions."""
+_NOT_PAYLOAD = {"header", "layout"}  # fields whose numbers describe the message
+
+
+class CdrError(ValueError):
+    """Bytes that are not a message of the given type."""
+
+
+class Field(NamedTuple):
+    """A field of a message, or the count before the items of a sequence.
+
+    Attributes
+    ----------
+    path : where the message has it, such as ``wrench.force.y``, ``velocity`` (all its numbers) or ``status[0].name``.
+    dtype : NumPy type of its numbers; None for a string.
+    begin : first byte in the message; of a string that of its length.
+    count : how many numbers there are; 1 unless it is an array.
+    end : byte after the last one.
+    is_count : whether this is the number of items of the sequence at ``path``.
+    """
+
+    path: str
+    dtype: np.dtype | None
+    begin: int
+    count: int
+    end: int
+    is_count: bool = False
+
+    @property
+    def is_payload(self) -> bool:
+        """Whether it holds numbers that the message is about: neither a count nor text, nor a part of a header or of an array's layout."""
+        return self.dtype is not None and not self.is_count and _NOT_PAYLOAD.isdisjoint(name.partition("[")[0] for name in self.path.split("."))
+
+
+class CdrLayout:
+    """The fields of one message, and of every message that is laid out alike.
+
+    Parameters
+    ----------
+    ros_type : such as ``"sensor_msgs/msg/JointState"``.
+    data : the serialised message.
+
+    Attributes
+    ----------
+    fields : in the order of the message.
+
+    Raises
+    ------
+    CdrError
+        The bytes are not a message of this type.
+    KeyError
+        The type is unknown (see `is_known`).
+    """
+
+    def __init__(self, ros_type: str, data: bytes):
+        order = _ORDERS.get(bytes(data[:2]))
+        if order is None or len(data) < ENCAPSULATION:
+            raise CdrError(f"{len(data)} bytes that do not begin as a message of {ros_type} in CDR version 1")
+        self.fields: list[Field] = []
+        self._data, self._at, self._order = data, ENCAPSULATION, order
+        try:
+            self._walk("", ros_type)
+        except struct.error:
+            self._at = len(data) + 1
+        if self._at > len(data):
+            raise CdrError(f"{len(data)} bytes end within a message of {ros_type}")
+
+    @cached_property
+    def by_path(self) -> dict[str, Field]:
+        """The fields by path, without the counts of sequences."""
+        return {field.path: field for field in self.fields if not field.is_count}
+
+    @property
+    def numbers(self) -> list[Field]:
+        """The fields that hold the numbers of the message (see `Field.is_payload`)."""
+        return [field for field in self.fields if field.is_payload]
+
+    def values(self, data: bytes) -> dict[str, np.ndarray]:
+        """Return the numbers of a message with this layout as float64, by path."""
+        return {field.path: np.frombuffer(data, field.dtype, field.count, field.begin).astype(float) for field in self.numbers}
+
+    def _walk(self, path: str, ros_type: str) -> None:
+        for name, (node, detail) in _definition(ros_type):
+            self._enter(f"{path}.{name}" if path else name, node, detail)
+
+    def _enter(self, path: str, node: Nodetype, detail) -> None:
+        if node == Nodetype.NAME:
+            self._walk(path, detail)
+        elif node == Nodetype.BASE:
+            self._base(path, detail[0], 1)
+        else:
+            (item, item_detail), count = detail
+            if node == Nodetype.SEQUENCE:
+                count = self._length(path, is_count=True)
+            if item == Nodetype.BASE and item_detail[0] in _NUMBERS:
+                self._base(path, item_detail[0], count)
+                return
+            if count > len(self._data) - self._at:  # no item takes less than a byte
+                raise struct.error
+            for k in range(count):
+                self._enter(f"{path}[{k}]", item, item_detail)
+
+    def _base(self, path: str, kind: str, count: int) -> None:
+        if kind not in _NUMBERS:
+            begin = self._align(4)
+            length = self._length(path)
+            self._at += length
+            self.fields.append(Field(path, None, begin, 1, self._at))
+            return
+        dtype = _dtype(self._order + _NUMBERS[kind])
+        begin = self._align(dtype.itemsize) if count else self._at
+        self._at += count * dtype.itemsize
+        self.fields.append(Field(path, dtype, begin, count, self._at))
+
+    def _length(self, path: str, is_count: bool = False) -> int:
+        begin = self._align(4)
+        (length,) = struct.unpack_from(f"{self._order}I", self._data, begin)
+        self._at += 4
+        if is_count:
+            self.fields.append(Field(path, _dtype(f"{self._order}u4"), begin, 1, self._at, True))
+        return length
+
+    def _align(self, size: int) -> int:
+        self._at += -(self._at - ENCAPSULATION) % size
+        return self._at
+
+
+class NumberColumns:
+    """Reads the numbers of many messages at once, or of many rows of several messages, as long as all are laid out alike.
+
+    Every byte but numbers, the stamp of a header, and padding must be the same as in the example: names, frames, counts.
+
+    Parameters
+    ----------
+    example : a message or row, uint8, shape (length,).
+    layouts : (first byte in the row, layout) of the messages that are read.
+    """
+
+    def __init__(self, example: np.ndarray, layouts: Iterable[tuple[int, CdrLayout]]):
+        compared = np.zeros(len(example), np.uint8)
+        runs: list[tuple[int, int, np.dtype]] = []
+        for begin, layout in layouts:
+            compared[begin : begin + ENCAPSULATION] = 255
+            for field in layout.fields:
+                if field.is_payload:
+                    _extend(runs, begin + field.begin, field.count, field.dtype)
+                elif field.path not in STAMP_FIELDS:
+                    compared[begin + field.begin : begin + field.end] = 255
+        self._compared, self._example, self._runs = compared, example.copy(), runs
+        self.count = sum(count for _, count, _ in runs)
+
+    def read(self, rows: np.ndarray) -> np.ndarray | None:
+        """Return the numbers of messages or rows, uint8 of shape (n, length), as float64 of shape (n, count); None where not all are alike."""
+        if ((rows ^ self._example) & self._compared).any():
+            return None
+        parts = [np.ascontiguousarray(rows[:, at : at + count * dtype.itemsize]).view(dtype) for at, count, dtype in self._runs if count]
+        return np.concatenate(parts, axis=1, dtype=float) if parts else np.empty((len(rows), 0))
+
+
+def is_known(ros_type: str) -> bool:
+    """Return whether the definition of a type is known: whether it is one of ROS 2 Jazzy's standard messages."""
+    return ros_type in typestore().types
+
+
+@cache
+def typestore():
+    """Return the message definitions of ROS 2 Jazzy, a store of the rosbags library."""
+    return get_typestore(Stores.ROS2_JAZZY)
+
+
+@cache
+def _definition(ros_type: str) -> Sequence[tuple[str, tuple]]:
+    return typestore().fielddefs[ros_type][1]
+
+
+@cache
+def _dtype(text: str) -> np.dtype:
+    return np.dtype(text)
+
+
+def _extend(runs: list[tuple[int, int, np.dtype]], at: int, count: int, dtype: np.dtype) -> None:
+    """Add numbers to runs of neighbours of one type."""
+    if runs and runs[-1][2] == dtype and runs[-1][0] + runs[-1][1] * dtype.itemsize == at:
+        at, count = runs[-1][0], runs.pop()[1] + count
+    runs.append((at, count, dtype))

@@ -1,0 +1,117 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Serialised messages of samples, filled by copying numbers.
+
+The messages of one output topic differ only in their stamps and numbers.  Each topic is therefore serialised once as a template; where its
+numbers and stamp stand follows from the definition of its type (`bearing_sim.messages.cdr_layout`).  A recording then fills the templates
+of many samples at once, the node those of all topics of one sample.
+"""
+
+import struct
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from bearing_sim.messages.cdr_layout import ENCAPSULATION, STAMP_FIELDS, CdrLayout
+from bearing_sim.messages.ros_types import message_type
+from bearing_sim.messages.topics import Topic
+from bearing_sim.model.sample import new_block, sample_dtype
+
+_STAMP = struct.Struct("<iI")  # builtin_interfaces/Time
+_WORD = 8  # [byte] of a number
+
+
+class NumberRun(NamedTuple):
+    """Numbers that stand side by side both in the sample and in its message."""
+
+    source: int  # column of the sample laid out flat
+    count: int
+    target: int  # [byte] in the message
+
+
+class MessageTemplate(NamedTuple):
+    """The message of one topic, and the places that change from sample to sample."""
+
+    data: bytes
+    runs: tuple[NumberRun, ...]
+    stamp: int | None  # [byte] of the header's stamp; None without a header
+
+
+def message_templates(topics: Sequence[Topic], rollers: int) -> tuple[MessageTemplate, ...]:
+    """Return the templates of some output topics.
+
+    Parameters
+    ----------
+    topics : output topics with observables.
+    rollers : number of rollers of the samples.
+
+    Raises
+    ------
+    ValueError
+        A topic does not carry numbers of the sample, or not as float64.
+    """
+    sample = new_block(1, rollers)[0]
+    return tuple(_template(topic, message_type(topic.ros_type).serialize(topic.message(0, sample)), rollers) for topic in topics)
+
+
+def sample_columns(topic: Topic, rollers: int) -> dict[str, np.ndarray]:
+    """Return the columns, in a sample laid out flat, of the numbers of a topic's message, by field."""
+    dtype = sample_dtype(rollers)
+
+    def columns(name: str) -> np.ndarray:
+        return dtype.fields[name][1] // _WORD + np.arange(dtype[name].itemsize // _WORD)
+
+    return {field: np.concatenate([columns(name) for name in names]) for field, names in topic.observables.items()}
+
+
+def _template(topic: Topic, data: bytes, rollers: int) -> MessageTemplate:
+    layout = CdrLayout(topic.ros_type, data)
+    runs = []
+    for path, columns in sample_columns(topic, rollers).items():
+        field = layout.by_path[path]
+        if field.dtype != np.float64 or field.count != len(columns):
+            raise ValueError(f"topic {topic.name}: {path} has {field.count} numbers of {field.dtype}, expected {len(columns)} of float64")
+        starts = [0, *np.flatnonzero(np.diff(columns) != 1) + 1]
+        runs += [
+            NumberRun(int(columns[start]), int(end - start), field.begin + _WORD * int(start))
+            for start, end in zip(starts, [*starts[1:], len(columns)])
+        ]
+    if not runs:
+        raise ValueError(f"topic {topic.name}: its messages hold no number of a sample; expected Topic.observables to name some")
+    return MessageTemplate(data, tuple(runs), layout.by_path[STAMP_FIELDS[0]].begin if STAMP_FIELDS[0] in layout.by_path else None)
+
+
+class SampleMessages:
+    """The messages of all topics of one sample, filled at once.
+
+    Parameters
+    ----------
+    templates : of the messages (see `message_templates`).
+
+    Attributes
+    ----------
+    parts : tuple[memoryview, ...]
+        The serialised messages, in the order of their templates; `fill` changes them.
+    """
+
+    def __init__(self, templates: Sequence[MessageTemplate]):
+        buffer, slices, self._stamps, pairs = bytearray(), [], [], []
+        for template in templates:
+            buffer += bytes(-(len(buffer) + ENCAPSULATION) % _WORD)  # so that the numbers of all messages are words of the buffer
+            begin = len(buffer)
+            buffer += template.data
+            slices.append(slice(begin, len(buffer)))
+            self._stamps += [] if template.stamp is None else [begin + template.stamp]
+            pairs += [(begin + run.target + _WORD * k, run.source + k) for run in template.runs for k in range(run.count)]
+        buffer += bytes(-len(buffer) % _WORD)
+        targets, sources = np.array(pairs, np.intp).reshape(-1, 2).T
+        self._buffer, self._targets, self._sources = buffer, targets // _WORD, sources
+        whole = memoryview(buffer).toreadonly()
+        self.parts = tuple(whole[part] for part in slices)
+        self._words = np.frombuffer(buffer, np.float64)
+
+    def fill(self, stamp_ns: int, sample: np.void) -> None:
+        """Fill the messages with the numbers of a sample and a stamp [ns since the epoch]."""
+        self._words[self._targets] = np.frombuffer(sample, np.float64)[self._sources]
+        for at in self._stamps:
+            _STAMP.pack_into(self._buffer, at, *divmod(stamp_ns, 1_000_000_000))

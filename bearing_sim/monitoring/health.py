@@ -1,0 +1,150 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""The health of a running model: the events that hold now, and the numbers behind them.
+
+It reads the newest sample, the input gate and the solver, and knows no ROS.
+"""
+
+import math
+from collections.abc import Iterable, Sequence
+from enum import Enum
+from typing import NamedTuple, Protocol
+
+from bearing_sim.inputs.gate import CHANNELS, InputGate
+from bearing_sim.messages import topics
+from bearing_sim.messages.events import Event, Level
+
+_LINGER = 2.0  # [s] how long a momentary event is shown, so that a report at 1 Hz cannot miss it
+
+
+class Phase(Enum):
+    """What the solver is doing."""
+
+    READY = "ready"  # not started
+    WAITING = "waiting for the first input"
+    RUNNING = "running"
+    PAUSED = "paused"
+    STOPPED = "stopped"
+    CRASHED = "crashed"  # by a programming error, which an event reports; everything else keeps working
+
+
+class SolverState(Protocol):
+    """What the health reads from the thread that advances the model (`bearing_sim.runtime.solver.Solver`)."""
+
+    phase: Phase
+    failed_ticks: int
+    dropped: int
+    newest: object
+    pace: object
+
+
+class Condition(NamedTuple):
+    """The health at one instant."""
+
+    events: list[Event]  # that hold now, the worst first
+    values: dict[str, object]  # for diagnostics, the unit in each key
+
+    @property
+    def level(self) -> Level:
+        """The level of the worst event."""
+        return level_of(self.events)
+
+
+class Health:
+    """Collects momentary events, and tells which lasting events are new."""
+
+    def __init__(self):
+        self._momentary: dict[tuple[str, str], Event] = {}
+        self._seen_at: dict[tuple[str, str], float] = {}
+        self._holding: set[tuple[tuple[str, str], Level]] = set()
+        self._lost, self._dropped = 0.0, 0
+        self._news: list[Event] = []
+
+    def note(self, event: Event, at: float | None = None) -> None:
+        """Take a momentary event (a refused message, a failure); while one with the same key is shown it is only counted.
+
+        Parameters
+        ----------
+        event : what has happened.
+        at : when, by the clock of those who read the events [s]; the event's own time by default.
+        """
+        before = self._momentary.get(event.key)
+        self._momentary[event.key] = event if before is None else event._replace(count=before.count + 1)
+        self._seen_at[event.key] = event.time if at is None else at
+        if before is None:
+            self._news.append(event)
+
+    def events(self, now: float, others: Iterable[Event], solver: SolverState) -> list[Event]:
+        """Return the events that hold at ``now``, the worst first, at most one for each key.
+
+        Parameters
+        ----------
+        now : [s], by the clock of those who read the events.
+        others : lasting events that hold, of sinks, monitors and the flow of messages.
+        solver : whose phase and losses are reported.
+        """
+        self._momentary = {key: event for key, event in self._momentary.items() if now - self._seen_at[key] < _LINGER}
+        self._note_losses(now, solver)
+        known = {}
+        for event in sorted([*self._momentary.values(), *others, *solver_events(now, solver)], key=lambda event: -event.level):
+            known.setdefault(event.key, event)
+        return list(known.values())
+
+    def news(self, events: Iterable[Event]) -> list[Event]:
+        """Return the events noted since the last call, and those lasting ``events`` that did not hold then."""
+        lasting = {(event.key, event.level): event for event in events if event.key not in self._momentary}
+        begun = [event for key, event in lasting.items() if key not in self._holding]
+        self._holding = set(lasting)
+        noted, self._news = self._news, []
+        return noted + begun
+
+    def _note_losses(self, now: float, solver: SolverState) -> None:
+        """Turn growing loss counters into momentary events."""
+        pace = solver.pace
+        if pace.lost > self._lost:
+            self._lost = pace.lost
+            reason = (
+                f"the solver or the machine is too slow: {pace.lost:.3g} s were skipped so far; "
+                f"the model runs at {pace.real_time_factor:.3g} of real time, the solver alone would reach {pace.solver_factor:.3g}"
+            )
+            self.note(Event(now, Level.WARN, "pace.lost", "", reason))
+        if solver.dropped > self._dropped:
+            self._dropped = solver.dropped
+            reason = f"{solver.dropped} blocks of samples were dropped because they were not collected in time"
+            self.note(Event(now, Level.WARN, "output.dropped", "", reason))
+
+
+def solver_events(now: float, solver: SolverState) -> list[Event]:
+    """Return the event that the solver's phase calls for, if any."""
+    if solver.phase is Phase.CRASHED:
+        return [Event(now, Level.ERROR, "solver.crashed", "", "the solver thread ended by a programming error", "outputs are held; restart the node")]
+    if solver.failed_ticks:
+        reason = f"time could not be advanced for {solver.failed_ticks} ticks"
+        return [Event(now, Level.ERROR, "solver.failed", "", reason, "the last good state is held and the next inputs are tried")]
+    if solver.phase is Phase.WAITING:
+        return [Event(now, Level.OK, "run.waiting", "", "waiting for the first shaft_speed; nothing is computed yet")]
+    if solver.phase is Phase.PAUSED:
+        return [Event(now, Level.OK, "run.paused", "", "paused: simulated time is held")]
+    return []
+
+
+def level_of(events: Sequence[Event]) -> Level:
+    """Return the level of the worst of the events, which is the first."""
+    return events[0].level if events else Level.OK
+
+
+def numbers(gate: InputGate, solver: SolverState) -> dict[str, object]:
+    """Return the numbers that every diagnostics report has, with the unit in each key."""
+    pace, newest = solver.pace, solver.newest
+    found = topics.condition(newest) if newest is not None else {}
+    found |= {
+        "phase": solver.phase.value,
+        "run time [s]": float(newest["time"]) if newest is not None else 0.0,
+        "real-time factor held": pace.real_time_factor,
+        "real-time factor possible": pace.solver_factor,
+        "time lost [s]": pace.lost,
+        "blocks dropped": solver.dropped,
+        "messages refused": gate.refused.total(),
+    }
+    rates = {channel: gate.rate(channel) for channel in CHANNELS}
+    found |= {f"{channel} rate [Hz]": rate for channel, rate in rates.items() if not math.isnan(rate)}
+    return found | {f"refused: {kind}": count for kind, count in sorted(gate.refused.items())}

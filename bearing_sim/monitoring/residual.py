@@ -1,0 +1,408 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Residual slip: measured minus predicted cage slip, its fading statistics, and whether it has changed.
+
+A model that is slightly wrong gives a residual that is not zero; a machine that changes gives a residual that changes.  So the usual
+residual is learned, and a change detector looks for lasting departures from it: batch means of the residual are made standard normal and
+independent (`Whitener`), and a two-sided cumulative sum with a known false-alarm rate judges them (`Cusum`).  Batches come at even
+intervals, so a run length is a time.  Rest, start-up and changes of speed are left out, because slip is undefined or depends on which of
+two sensors was read first.
+"""
+
+import math
+from bisect import bisect_left, bisect_right, insort
+
+import numpy as np
+from scipy.optimize import brentq
+from scipy.special import ndtri, stdtr
+
+from bearing_sim.messages.events import Event, Level, Measurement
+from bearing_sim.scene.thresholds import ResidualDetection
+
+_HOUR = 3600.0  # [s]
+_SPEED_CHANGE = 0.02  # relative change beyond which the shaft counts as being at another speed
+_GAP = 5.0  # batches without a measurement after which the bearing has to settle again
+_SILENT = 2.0  # [s] without a measurement after which there is no verdict, at least
+_SIDES = {0: "as predicted", 1: "slips more than predicted", -1: "slips less than predicted"}
+
+_REFERENCE = 0.5  # k: half of the smallest change to detect, which is one standard deviation
+_OVERSHOOT = 1.166  # mean overshoot of a sum of normal steps beyond its border, both ends together (Siegmund 1985)
+_LARGEST_THRESHOLD = 1e3  # bracket of the root; the run length of h = 1000 is beyond any time
+_FARTHEST = 4.0  # standard deviations that one batch can count, so that a single wild reading is no change
+_SCATTER_KNOWN = 20  # batches from which on a wild reading can be recognised
+_MOST_CORRELATED = 0.98
+_STEEPEST_TAIL = 8.0  # beyond it, Student's distribution differs from 1 by round-off only
+
+_KEPT = 2000  # outputs: a measurement may arrive this many outputs after its time
+_PREDICTED = ("time", "shaft_speed", "ideal_cage_speed", "cage_slip")
+
+
+def run_length(threshold: float, reference: float = _REFERENCE) -> float:
+    """Return the mean number of standard normal steps from 0 until a two-sided CUSUM reaches its threshold.
+
+    One side: (exp(2 k b) - 2 k b - 1)/(2 k^2) with b = h + 1.166 (Siegmund, Sequential Analysis, 1985; Montgomery 2009, eq. 9.6, for a
+    drift of -k); both sides together half of it.
+
+    Parameters
+    ----------
+    threshold : h, in standard deviations.
+    reference : k, in standard deviations.
+    """
+    exponent = 2.0 * reference * (threshold + _OVERSHOOT)
+    return 0.5 * (math.expm1(exponent) - exponent) / (2.0 * reference**2)
+
+
+def threshold_for(length: float, reference: float = _REFERENCE) -> float:
+    """Return the threshold h whose mean run length without a change is ``length`` steps, the inverse of `run_length`.
+
+    Parameters
+    ----------
+    length : more than the run length of h = 0, some 2 steps.
+    reference : k.
+
+    Raises
+    ------
+    ValueError
+        ``length`` is too short.
+    """
+    shortest = run_length(0.0, reference)
+    if not length > shortest:
+        raise ValueError(f"a mean run of {length:g} steps between false alarms is too short; expected more than {shortest:.3g}")
+    high = min(_LARGEST_THRESHOLD, 300.0 / reference)  # exp(2 k h) must stay finite
+    return brentq(lambda threshold: math.log(run_length(threshold, reference) / length), 0.0, high, xtol=1e-13)
+
+
+class Whitener:
+    """Turns batch means of unknown mean, scatter and correlation into numbers that are standard normal and independent without a change.
+
+    Each batch is compared with the mean and scatter of all batches before it, u = Phi^-1(F(t)) with Student's t of as many degrees of
+    freedom, so that the false-alarm rate holds early on although nothing is known beforehand (Hawkins, The Statistician 36, 1987, 299).
+    Correlated neighbours are decorrelated first: what the batch before predicts by the lag-1 correlation is subtracted (first-order
+    autoregression; Alwan and Roberts, J. Bus. Econ. Stat. 6, 1988, 87-95).
+
+    Parameters
+    ----------
+    tolerance : lasting change that must not count; the scatter is at least so large that this change stays below the reference value.
+
+    Attributes
+    ----------
+    count : batches that mean and scatter are computed from.
+    mean : their mean.
+    """
+
+    def __init__(self, tolerance: float):
+        self._tolerance = tolerance
+        self.count, self.mean = 0, 0.0
+        self._squares = self._products = self._surprises = 0.0
+        self._pairs, self._surprised = 0, 0
+        self._before = math.nan
+
+    def interrupt(self) -> None:
+        """Treat the next batch as no neighbour of the last one."""
+        self._before = math.nan
+
+    @property
+    def correlation(self) -> float:
+        """Lag-1 correlation, 0 to 0.98, one standard error above the estimate: too low a value would cause false alarms.
+
+        The estimate from n pairs is too low by about (1 + 3 r)/n, which is added (Kendall, Biometrika 41, 1954, 403-404).
+        """
+        if self._pairs < 3 or self._squares <= 0.0:
+            return 0.0
+        found = self._products / self._pairs / (self._squares / self.count)
+        likely = max(found + (1.0 + 3.0 * found) / self._pairs, 0.0)
+        return min(likely + math.sqrt(max(1.0 - likely * likely, 0.0) / self._pairs), _MOST_CORRELATED)
+
+    def take(self, value: float, learn: bool = True) -> float:
+        """Return the standard normal number of a batch; NaN where there is nothing to compare it with.
+
+        Parameters
+        ----------
+        value : mean of the batch.
+        learn : whether the batch counts for mean and scatter.
+        """
+        before, self._before = self._before, value
+        if math.isnan(before) or self.count < 3:
+            if learn:
+                self._learn(value, math.nan, math.nan)
+            return math.nan
+        correlation = self.correlation
+        surprise = (value - self.mean) - correlation * (before - self.mean)
+        scatter = math.sqrt(self._surprises / self._surprised) if self._surprised else 0.0
+        deviation = max(scatter, self._tolerance * (1.0 - correlation) / _REFERENCE)
+        number = _normal(surprise / (deviation * math.sqrt(1.0 + 1.0 / self.count)), max(self._surprised, 1))
+        # A wild reading must neither become usual nor make the next reading look wild.
+        farthest = _FARTHEST * deviation if self._surprised >= _SCATTER_KNOWN else math.inf
+        kept = min(max(surprise, -farthest), farthest)
+        self._before = value + kept - surprise
+        if learn:
+            self._learn(self._before, before, kept)
+        return number
+
+    def _learn(self, value: float, before: float, surprise: float) -> None:
+        self.count += 1
+        step = value - self.mean
+        if not math.isnan(surprise):
+            self._surprises += surprise * surprise * (self.count - 1) / self.count
+            self._surprised += 1
+        self.mean += step / self.count
+        self._squares += step * (value - self.mean)
+        if not math.isnan(before):
+            self._pairs += 1
+            self._products += (value - self.mean) * (before - self.mean)
+
+
+class Cusum:
+    """Two-sided cumulative sum of standard normal numbers (Page, Biometrika 41, 1954): S = max(0, S +- u - k), an alarm from S = h on.
+
+    A sum grows no higher than slightly above h, so that an alarm ends soon after its cause; it ends below h/2.
+
+    Parameters
+    ----------
+    threshold : h.
+
+    Attributes
+    ----------
+    up, down : float
+        The two sums.
+    side : int
+        1 if the numbers have risen, -1 if they have fallen, else 0.
+    rising_for, falling_for : int
+        Steps since each sum was 0: the duration of the change.
+    """
+
+    def __init__(self, threshold: float):
+        self.threshold = threshold
+        self.up = self.down = 0.0
+        self.side = self.rising_for = self.falling_for = 0
+
+    @property
+    def height(self) -> float:
+        """The larger sum."""
+        return max(self.up, self.down)
+
+    def take(self, number: float) -> int:
+        """Add a number and return the side; NaN changes nothing."""
+        if math.isnan(number):
+            return self.side
+        number = min(max(number, -_FARTHEST), _FARTHEST)
+        ceiling = 1.25 * self.threshold + _FARTHEST
+        self.up = min(max(self.up + number - _REFERENCE, 0.0), ceiling)
+        self.down = min(max(self.down - number - _REFERENCE, 0.0), ceiling)
+        self.rising_for = self.rising_for + 1 if self.up > 0.0 else 0
+        self.falling_for = self.falling_for + 1 if self.down > 0.0 else 0
+        if self.height >= self.threshold:
+            self.side = 1 if self.up >= self.down else -1
+        elif self.side and (self.up if self.side > 0 else self.down) < 0.5 * self.threshold:
+            self.side = 0
+        return self.side
+
+
+def _normal(t: float, freedom: int) -> float:
+    """Return the standard normal number that is as unlikely as Student's t with these degrees of freedom."""
+    size = min(abs(t), _STEEPEST_TAIL)
+    return math.copysign(-float(ndtri(stdtr(freedom, -size))), t)
+
+
+class ResidualMonitor:
+    """Compares measured with predicted cage slip.
+
+    Parameters
+    ----------
+    detection : settings, see `bearing_sim.scene.thresholds.ResidualDetection`.
+    from_speed : shaft speed from which on slip is judged [rad/s].
+
+    Attributes
+    ----------
+    residual, mean, deviation : float
+        The newest residual, measured minus predicted slip, its fading mean and its fading standard deviation, as fractions; NaN
+        before the first measurement.
+    """
+
+    def __init__(self, detection: ResidualDetection, from_speed: float):
+        self._detection, self._from_speed = detection, from_speed
+        self.restart()
+
+    def adjust(self, detection: ResidualDetection, from_speed: float) -> None:
+        """Use other settings from now on; the usual residual is learned again if batch length or tolerance have changed."""
+        before, self._detection, self._from_speed = self._detection, detection, from_speed
+        if (before.batch, before.tolerance) != (detection.batch, detection.tolerance):
+            self.restart()
+        self._cusum.threshold = self._threshold()
+
+    def restart(self) -> None:
+        """Forget everything, the usual residual included: another machine, or the same one after a repair."""
+        self.residual = self.mean = self.deviation = math.nan
+        self._variance = 0.0
+        self._time = self._measured_at = self._newest_mean = math.nan
+        self._settled_from = -math.inf
+        self._speed = 0.0  # at which the shaft has settled
+        self._batch_start, self._batch_count, self._batch_total = math.nan, 0, 0.0
+        self._whitener, self._cusum = Whitener(self._detection.tolerance), Cusum(self._threshold())
+
+    def _threshold(self) -> float:
+        return threshold_for(self._detection.false_alarm_time / self._detection.batch)
+
+    def take(self, now: float, shaft_speed: float, measured: float, predicted: float) -> None:
+        """Take a measurement.
+
+        Parameters
+        ----------
+        now : its time [s]; a measurement that is not later than the last one is left out.
+        shaft_speed : [rad/s].
+        measured, predicted : cage slip as fractions; NaN at rest, or where there is nothing to compare.
+        """
+        if now <= self._time:
+            return
+        elapsed, self._time = now - self._time, now
+        residual, speed = float(measured - predicted), abs(shaft_speed)
+        if not math.isfinite(residual) or speed < self._from_speed:
+            self._disturb(now, 0.0)
+            return
+        self._measured_at = now
+        self._fade(elapsed, residual)
+        if abs(speed - self._speed) > _SPEED_CHANGE * self._speed or elapsed > _GAP * self._detection.batch:
+            self._disturb(now, speed)
+        if now < self._settled_from:
+            return
+        if now - self._batch_start >= self._detection.batch:
+            self._close_batch()
+        if not self._batch_count:
+            self._batch_start = now
+        self._batch_count, self._batch_total = self._batch_count + 1, self._batch_total + residual
+
+    def interrupt(self, now: float) -> None:
+        """Leave out measurements from ``now`` [s] until the bearing has settled, because the prediction has been reset."""
+        self._disturb(now, self._speed)
+
+    @property
+    def time(self) -> float:
+        """When slip was last compared [s]; NaN before that."""
+        return self._measured_at
+
+    def events(self, now: float) -> list[Event]:
+        """Return the event of a change that holds, stamped ``now`` [s]."""
+        side = self._cusum.side
+        if not side:
+            return []
+        steps, height = (self._cusum.rising_for, self._cusum.up) if side > 0 else (self._cusum.falling_for, self._cusum.down)
+        lasted, rarity = steps * self._detection.batch, self._detection.false_alarm_time / _HOUR
+        reason = (
+            f"the cage {_SIDES[side]} for about {lasted:.3g} s of measurement: now {100 * self._newest_mean:+.3g} points, "
+            f"usually {100 * self._whitener.mean:+.3g} (CUSUM {height:.3g} over {self._cusum.threshold:.3g}, one false alarm in {rarity:.4g} h)"
+        )
+        return [Event(now, Level.WARN, "residual.shift", "residual slip", reason)]
+
+    def values(self, now: float) -> dict[str, object]:
+        """Return diagnostics values and the verdict at ``now`` [s], with the unit in each key; empty before the first measurement."""
+        if math.isnan(self._time):
+            return {}
+        return {
+            "residual slip [points]": 100 * self.residual,
+            "residual slip, mean [points]": 100 * self.mean,
+            "residual slip, deviation [points]": 100 * self.deviation,
+            "residual slip, usual mean [points]": 100 * self._whitener.mean if self._whitener.count else math.nan,
+            "residual slip, CUSUM of its threshold [%]": 100 * self._cusum.height / self._cusum.threshold,
+            "residual slip, verdict": self.verdict(now),
+        }
+
+    def verdict(self, now: float) -> str:
+        """Return the result of the comparison at ``now`` [s] in a few words."""
+        if math.isnan(self._time) or now - self._time > max(_GAP * self._detection.batch, _SILENT):
+            return "no measurement"
+        if self._cusum.side:
+            return _SIDES[self._cusum.side]
+        if self._time != self._measured_at or self._time < self._settled_from:
+            return "not judged: at rest, at a changing speed, or predicted by another level"
+        known = self._whitener.count * self._detection.batch
+        if known < self._detection.learning:
+            return f"learning what is usual: {known:.3g} of {self._detection.learning:.3g} s"
+        return _SIDES[0]
+
+    def _fade(self, elapsed: float, residual: float) -> None:
+        """Update mean and variance, whose weights fade by exp(-t/memory) (West, Comm. ACM 22, 1979)."""
+        self.residual = residual
+        if math.isnan(self.mean):
+            self.mean, self.deviation = residual, 0.0
+            return
+        weight = 1.0 - math.exp(-min(elapsed, self._detection.batch) / self._detection.memory)
+        step = residual - self.mean
+        self.mean += weight * step
+        self._variance = (1.0 - weight) * (self._variance + weight * step * step)
+        self.deviation = math.sqrt(self._variance)
+
+    def _disturb(self, now: float, speed: float) -> None:
+        """Drop the open batch and wait until the bearing has settled at a speed."""
+        self._batch_start, self._batch_count, self._batch_total = math.nan, 0, 0.0
+        self._whitener.interrupt()
+        self._speed, self._settled_from = speed, now + self._detection.settling
+
+    def _close_batch(self) -> None:
+        """Judge the batch that is complete."""
+        quiet = self._cusum.side == 0 and self._cusum.height < 0.5 * self._cusum.threshold  # a possible change must not become usual
+        learned = self._whitener.count * self._detection.batch >= self._detection.learning
+        self._newest_mean = self._batch_total / self._batch_count
+        number = self._whitener.take(self._newest_mean, learn=quiet)
+        if learned:
+            self._cusum.take(number)
+        self._batch_start, self._batch_count, self._batch_total = math.nan, 0, 0.0
+
+
+class Comparison:
+    """Feeds a `ResidualMonitor` each measurement with the prediction at its own stamp, whichever arrives first.
+
+    Predictions are linear between outputs.  A measurement waits for the next output after it; one that is older than all outputs kept
+    is compared with NaN.
+
+    Parameters
+    ----------
+    residual : the monitor to feed.
+    """
+
+    def __init__(self, residual: ResidualMonitor):
+        self.residual = residual
+        self.restart()
+
+    def restart(self) -> None:
+        """Forget outputs and measurements; ``residual`` keeps what it has learned."""
+        self._times: list[float] = []
+        self._rows: list[tuple[float, ...]] = []
+        self._waiting: list[tuple[float, float]] = []
+
+    def measure(self, time: float, cage_speed: float) -> None:
+        """Take a measurement [s, rad/s]."""
+        insort(self._waiting, (time, cage_speed))
+
+    def predict(self, block: np.ndarray) -> list[Measurement]:
+        """Take outputs in order of time (see `bearing_sim.model.sample`) and return the comparisons that they complete."""
+        rows = list(zip(*(block[name].tolist() for name in _PREDICTED)))
+        self._times += [row[0] for row in rows]
+        self._rows += rows
+        found = self.due()
+        if len(self._times) > 2 * _KEPT:
+            del self._times[:-_KEPT], self._rows[:-_KEPT]
+        return found
+
+    def due(self) -> list[Measurement]:
+        """Return the comparisons that measurements since the last call complete."""
+        if not self._times or not self._waiting:
+            return []
+        ready = bisect_right(self._waiting, (self._times[-1], math.inf))
+        taken, self._waiting = self._waiting[:ready], self._waiting[ready:]
+        return [self._compare(time, speed) for time, speed in taken]
+
+    def _compare(self, time: float, cage_speed: float) -> Measurement:
+        _, shaft_speed, ideal, predicted = self._at(time)
+        measured = 1.0 - cage_speed / ideal if ideal else math.nan
+        self.residual.take(time, shaft_speed, measured, predicted)
+        return Measurement(time, cage_speed, measured - predicted)
+
+    def _at(self, time: float) -> tuple[float, ...]:
+        position = bisect_left(self._times, time)
+        after = self._rows[position]
+        if after[0] == time:
+            return after
+        if position == 0:
+            return (time, after[1], math.nan, math.nan)
+        before = self._rows[position - 1]
+        fraction = (time - before[0]) / (after[0] - before[0])
+        return tuple(old + fraction * (new - old) for old, new in zip(before, after))

@@ -1,0 +1,86 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Two-stage singly diagonally implicit Runge-Kutta method of order 2 with a Newton iteration in each stage.
+
+R. Alexander: Diagonally implicit Runge-Kutta methods for stiff O.D.E.'s, SIAM J. Numer. Anal. 14 (1977), theorem 5:
+
+    Y_1 = y + gamma h f(Y_1),    y_new = y + (1 - gamma) h f(Y_1) + gamma h f(y_new).
+
+L-stable and stiffly accurate with gamma = 1 - 1/sqrt 2.  The stages are solved, where a linearly implicit method takes one
+iteration for the solution: this is what carries a step over contacts that open or close within it.
+"""
+
+import math
+
+from bearing_sim.numerics.compilation import template
+from bearing_sim.numerics.newton import NEWTON, solve_implicit
+from bearing_sim.numerics.time_stepping import OK, advance_in_fixed_steps, advance_one_step
+
+GAMMA = 1.0 - 1.0 / math.sqrt(2.0)
+_ENOUGH = 1 / 60  # of the tolerances: the error that the iteration of a stage may leave (assumption)
+
+
+@template
+def sdirk2_attempt(rhs, rhs_and_jacobian, predict, factor, solve, error_norm, t, y, h, model, work, memory, counts):
+    """Compute one step of ``h`` [s] from (t, y); see `bearing_sim.numerics.time_stepping.advance_adaptively`.
+
+    The error estimate is the difference to the embedded method of order 1, y + h f(Y_1), filtered by the iteration's matrix so that
+    stiff components do not dominate it (L. F. Shampine, L. S. Baca: Error estimators for stiff differential equations, J. Comput.
+    Appl. Math. 11, 1984).  Row 8 of ``memory.scratch`` keeps the slope at the end of a step for the next one to predict with.
+    """
+    scratch, newton = memory.scratch, memory.newton
+    result, error = scratch[1], scratch[2]
+    first, known, rate, change, slope, next_slope = scratch[3], scratch[4], scratch[5], scratch[6], scratch[7], scratch[8]
+    shift = GAMMA * h
+    per_shift = 1.0 / shift
+    if abs(memory.derivative_time[0] - t) < 0.01 * h:
+        for i in range(y.shape[0]):
+            slope[i] = next_slope[i]
+    predict(y, shift, slope, model, work, first)
+    newton[NEWTON.shift] = 0.0
+    outcome = solve_implicit(
+        rhs, rhs_and_jacobian, factor, solve, error_norm, False,
+        t + shift, y, shift, _ENOUGH, first, change, rate, change, newton, model, work, counts,
+    )  # fmt: skip
+    if outcome != OK:
+        return outcome
+    for i in range(y.shape[0]):
+        error[i] = (first[i] - y[i]) * per_shift  # the first stage's slope
+        known[i] = y[i] + (1.0 - GAMMA) * h * error[i]
+    predict(known, shift, error, model, work, result)
+    newton[NEWTON.shift] = 0.0
+    outcome = solve_implicit(
+        rhs, rhs_and_jacobian, factor, solve, error_norm, False,
+        t + h, known, shift, _ENOUGH, result, change, rate, change, newton, model, work, counts,
+    )  # fmt: skip
+    if outcome != OK:
+        return outcome
+    for i in range(y.shape[0]):
+        next_slope[i] = (result[i] - known[i]) * per_shift
+        error[i] = shift * (next_slope[i] - error[i])
+    memory.derivative_time[0] = t + h
+    solve(work, error)
+    return OK
+
+
+@template
+def sdirk2(
+    rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_limit, step_taken,
+    t, end, stop, y, h, maximum_step, budget, model, work, memory, counts,
+):  # fmt: skip
+    """Advance with error control; parameters and results as of `bearing_sim.numerics.time_stepping.advance_one_step`."""
+    return advance_one_step(
+        sdirk2_attempt, rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_limit, step_taken,
+        t, end, y, h, maximum_step, budget, model, work, memory, counts,
+    )  # fmt: skip
+
+
+@template
+def sdirk2_fixed(
+    rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_limit, step_taken,
+    t, end, stop, y, h, maximum_step, budget, model, work, memory, counts,
+):  # fmt: skip
+    """Advance in steps of ``maximum_step``; see `bearing_sim.numerics.time_stepping.advance_in_fixed_steps`."""
+    return advance_in_fixed_steps(
+        sdirk2_attempt, rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_taken,
+        t, end, y, maximum_step, budget, model, work, memory, counts,
+    )  # fmt: skip

@@ -1,0 +1,291 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""The loops around a time-stepping method: one with error control for every method, one with a fixed step.
+
+Neither loop knows a bearing or a method.  A method comes in as five templates (`fit_step`, `attempt`, `estimate_error`, `accept`
+and `reject`), a level as eight kernels:
+
+rhs, rhs_and_jacobian : ``(t, y, model, work, rate)`` write dy/dt into ``rate``, the second also the Jacobian into ``work``;
+    return False where they cannot be evaluated.
+predict : ``(known, shift, slope, model, work, guess)`` writes a first guess of the solution of guess = known + shift f(guess),
+    given f a little earlier; `start_from_known` where a level has nothing better.
+factor : ``(shift, work)`` factors I - shift J; returns False where it is singular.
+solve : ``(work, x)`` replaces the right side by the solution with the last factorisation.
+error_norm : ``(t, y, change, model)`` returns the largest ratio of any state's change to what the tolerances allow it.
+step_limit : ``(t, y, model)`` returns the longest sensible step [s].
+step_taken : ``(h, y, model, work)`` is called after each accepted step.
+
+Compiled code raises nothing: how an advance ended is a value.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from bearing_sim.numerics.compilation import kernel, template
+
+OK = 0
+STEP_BUDGET = 1
+NON_FINITE = 2
+NOT_EVALUATED = 3
+NOT_CONVERGED = 4
+
+REASONS = {
+    STEP_BUDGET: "the step budget was used up before the end of the interval",
+    NON_FINITE: "the state stopped being finite",
+    NOT_EVALUATED: "the right-hand side could not be evaluated",
+    NOT_CONVERGED: "the equations of a step could not be solved, not even for the smallest step",
+}
+
+
+class Count(NamedTuple):
+    """Where each kind of work is counted in an int64 array of shape (len(Count),)."""
+
+    steps: int = 0
+    rejected_steps: int = 1
+    non_finite_steps: int = 2
+    right_hand_sides: int = 3
+    jacobians: int = 4
+    factorisations: int = 5
+    smallest_steps: int = 6  # accepted although their error was too large, because no step is smaller
+    unsettled_points: int = 7  # operating points of level steady whose march ended before it had settled
+
+
+COUNT = Count()
+SMALLEST_STEP = 1e-12  # s; a step this small is accepted whatever its error, which is then that of a jump, or round-off
+
+
+def new_counts() -> np.ndarray:
+    """Return zeroed counts."""
+    return np.zeros(len(COUNT), np.int64)
+
+
+class Control(NamedTuple):
+    """Where each number of the step-size controller stands in ``memory.control`` [s]."""
+
+    time: int = 0  # of the newest state
+    step: int = 1  # being attempted, or taken last
+    allowed: int = 2  # by error and bounds, before the step is fitted to the end of the interval
+    next_step: int = 3  # that the error allows
+
+
+CONTROL = Control()
+
+
+class Memory(NamedTuple):
+    """What a one-step method writes; that of a multistep method is `bearing_sim.numerics.bdf.History`."""
+
+    scratch: np.ndarray  # rate, result, error and up to six rows of the method's own, shape (9, n); the first is free between calls
+    control: np.ndarray  # see `Control`
+    newton: np.ndarray  # see `bearing_sim.numerics.newton.Newton`
+    derivative_time: np.ndarray  # where the derivatives that the method keeps belong to [s], NaN where it keeps none, shape (1,)
+
+
+def new_memory(size: int) -> Memory:
+    """Return memory for ``size`` states."""
+    return Memory(np.zeros((9, size)), np.zeros(len(CONTROL)), np.zeros(2), np.full(1, np.nan))
+
+
+@kernel
+def start_from_known(known, shift, slope, model, work, guess):
+    """Guess that a stage ends where it starts."""
+    for i in range(known.shape[0]):
+        guess[i] = known[i]
+
+
+@template
+def advance_adaptively(
+    fit_step, attempt, estimate_error, accept, reject,
+    rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_limit, step_taken,
+    end, stop, y, maximum_step, budget, model, work, memory, counts,
+):  # fmt: skip
+    """Step from ``memory.control``'s time until ``end`` is reached, accepting or rejecting each step by its error.
+
+    Parameters
+    ----------
+    fit_step : ``(limit, maximum_step, stop, memory)`` sets the step to attempt.
+    attempt : ``(kernels of the level, t, y, h, model, work, memory, counts)`` computes a step, returns a status.
+    estimate_error : ``(error_norm, y, model, memory)`` returns the step's error over what the tolerances allow.
+    accept : ``(error_norm, error, stop, y, model, memory)`` takes the step into ``y`` and the time, and chooses the next one.
+    reject : ``(rhs, error_norm, outcome, error, y, model, work, memory, counts)`` chooses a shorter step; returns False where
+        the right-hand side could not be evaluated.
+    rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_limit, step_taken : kernels of the level, see the module's docstring.
+    end : time to reach [s].
+    stop : time that no step may pass, at least ``end`` [s].
+    y : newest state, changed in place.
+    maximum_step : longest step [s].
+    budget : steps allowed, rejected ones included.
+    memory : of the method.
+    counts : work done, see `Count`; added to.
+
+    Returns
+    -------
+    status : OK, or a key of `REASONS`.
+    h : step to try next [s].
+    """
+    control = memory.control
+    while control[CONTROL.time] < end:
+        if budget <= 0:
+            return STEP_BUDGET, control[CONTROL.next_step]
+        budget -= 1
+        fit_step(step_limit(control[CONTROL.time], y, model), maximum_step, stop, memory)
+        step = control[CONTROL.step]
+        outcome = attempt(
+            rhs, rhs_and_jacobian, predict, factor, solve, error_norm, control[CONTROL.time], y, step, model, work, memory, counts,
+        )  # fmt: skip
+        error = math.inf
+        if outcome == OK:
+            error = estimate_error(error_norm, y, model, memory)
+        finite = math.isfinite(error)
+        if error <= 1.0 or (finite and step <= SMALLEST_STEP):
+            counts[COUNT.steps] += 1
+            if error > 1.0:
+                counts[COUNT.smallest_steps] += 1
+            accept(error_norm, error, stop, y, model, memory)
+            step_taken(step, y, model, work)
+            continue
+        counts[COUNT.rejected_steps] += 1
+        if outcome == NON_FINITE or (outcome == OK and not finite):
+            counts[COUNT.non_finite_steps] += 1
+        if not reject(rhs, error_norm, outcome, error, y, model, work, memory, counts):
+            return NOT_EVALUATED, control[CONTROL.next_step]
+        if control[CONTROL.next_step] < SMALLEST_STEP:
+            return outcome if outcome != OK else NON_FINITE, control[CONTROL.next_step]
+    return OK, control[CONTROL.next_step]
+
+
+# The step-size rule of one-step methods.  The form is standard (E. Hairer, G. Wanner: Solving Ordinary Differential Equations II,
+# 2nd ed. 1996, section IV.8); the numbers are an assumption.  The rule aims at a quarter of the tolerances, because a rejected step
+# costs as much as an accepted one, and its growth is damped (_GAIN), because the error of a step with impacts scatters by a factor of
+# ten from one step to the next.
+_ORDER = 2.0  # of the error estimate in the step: that of an embedded method of order 1
+_AIM, _GAIN = 0.24, 0.2
+_LARGEST_GROWTH, _LARGEST_SHRINK, _SHRINK_UNSOLVED = 4.0, 0.2, 0.1
+
+
+@template
+def fit_one_step(limit, maximum_step, stop, memory):
+    """Set the step to attempt; the last two steps before ``stop`` share what is left evenly, because a sliver would spoil the next size."""
+    control = memory.control
+    allowed = min(control[CONTROL.next_step], maximum_step, limit)
+    left = stop - control[CONTROL.time]
+    control[CONTROL.allowed] = allowed
+    control[CONTROL.step] = left if allowed >= left else (0.5 * left if allowed > 0.5 * left else allowed)
+
+
+@template
+def one_step_error(error_norm, y, model, memory):
+    """Return the error of the step attempted over what the tolerances allow."""
+    return error_norm(memory.control[CONTROL.time], y, memory.scratch[2], model)
+
+
+@template
+def accept_one_step(error_norm, error, stop, y, model, memory):
+    """Take the result of the step, and grow or shrink the next one so that its error comes near the aim."""
+    control, result = memory.control, memory.scratch[1]
+    step, allowed = control[CONTROL.step], control[CONTROL.allowed]
+    for i in range(y.shape[0]):
+        y[i] = result[i]
+    control[CONTROL.time] = stop if step == stop - control[CONTROL.time] else control[CONTROL.time] + step
+    growth = min(_LARGEST_GROWTH, (_AIM / (error + 1e-10)) ** (_GAIN / _ORDER))
+    if step < allowed:
+        control[CONTROL.next_step] = max(step * growth, control[CONTROL.next_step])
+    else:
+        control[CONTROL.next_step] = max(allowed * growth, SMALLEST_STEP)
+
+
+@template
+def reject_one_step(rhs, error_norm, outcome, error, y, model, work, memory, counts):
+    """Shorten the step so that its error comes near the aim, or to a tenth where there is no error to go by."""
+    control = memory.control
+    step = control[CONTROL.step]
+    if math.isfinite(error):
+        control[CONTROL.next_step] = max(step * max(_LARGEST_SHRINK, (_AIM / error) ** (1.0 / _ORDER)), SMALLEST_STEP)
+    else:
+        control[CONTROL.next_step] = step * _SHRINK_UNSOLVED
+    return True
+
+
+@template
+def advance_one_step(
+    attempt, rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_limit, step_taken,
+    t, end, y, h, maximum_step, budget, model, work, memory, counts,
+):  # fmt: skip
+    """Advance ``y`` in place from ``t`` to ``end`` by a one-step method with error control.
+
+    Parameters
+    ----------
+    attempt : computes a step: reads ``memory.scratch``, leaves the result in row 1 and the error estimate in row 2.
+    h : step to try first [s].
+
+    The other parameters and the results are those of `advance_adaptively`.
+    """
+    memory.control[CONTROL.time], memory.control[CONTROL.next_step] = t, h
+    return advance_adaptively(
+        fit_one_step, attempt, one_step_error, accept_one_step, reject_one_step,
+        rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_limit, step_taken,
+        end, end, y, maximum_step, budget, model, work, memory, counts,
+    )  # fmt: skip
+
+
+_HALVINGS = 10
+_COARSEST_KEPT = 8  # parts into which a divided step stays divided to its end; finer parts are joined again behind the difficulty
+
+
+@kernel
+def _all_finite(y):
+    for i in range(y.shape[0]):
+        if not math.isfinite(y[i]):
+            return False
+    return True
+
+
+@template
+def advance_in_fixed_steps(
+    attempt, rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_taken, t, end, y, h, budget, model, work, memory, counts
+):
+    """Advance ``y`` in place from ``t`` to ``end`` in equal steps without error control, for hard real time.
+
+    The steps are as long as they can be, but not longer than ``h``.  A step that cannot be solved is divided into two halves,
+    those again into halves, and so on ten times at most; parts finer than an eighth are joined again as soon as they are past
+    the difficulty.  A step in eighths costs eleven attempts, one with an impact in it some twenty, and none more than 2^11.
+
+    Parameters
+    ----------
+    attempt : of a one-step method, as for `advance_one_step`.
+    h : longest step [s].
+
+    The other parameters and the results are those of `advance_adaptively`; the step returned is ``h``.
+    """
+    result = memory.scratch[1]
+    whole = math.ceil((end - t) / h * (1.0 - 1e-9))
+    length = (end - t) / max(whole, 1.0)
+    if abs(length - h) <= 1e-9 * h:
+        length = h  # to the last digit, so that steps do not change from call to call
+    done, parts_done, parts = 0, 0, 1  # whole steps done; parts of the next one done, of how many
+    while done < whole:
+        if budget <= 0:
+            return STEP_BUDGET, h
+        budget -= 1
+        now, step = t + length * (done + parts_done / parts), length / parts
+        outcome = attempt(rhs, rhs_and_jacobian, predict, factor, solve, error_norm, now, y, step, model, work, memory, counts)
+        if outcome == OK and not _all_finite(result):
+            outcome = NON_FINITE
+        if outcome == OK:
+            counts[COUNT.steps] += 1
+            for i in range(y.shape[0]):
+                y[i] = result[i]
+            step_taken(step, y, model, work)
+            parts_done += 1
+            while parts > _COARSEST_KEPT and parts_done % 2 == 0:
+                parts_done, parts = parts_done // 2, parts // 2
+            if parts_done == parts:
+                done, parts_done, parts = done + 1, 0, 1
+            continue
+        counts[COUNT.rejected_steps] += 1
+        if outcome == NON_FINITE:
+            counts[COUNT.non_finite_steps] += 1
+        if parts == 2**_HALVINGS:
+            return outcome, h
+        parts_done, parts = 2 * parts_done, 2 * parts
+    return OK, h

@@ -1,0 +1,396 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Read MCAP files, also those that are unfinished, cut short or damaged, of any writer.
+
+`McapReader` reads a file from end to end, message by message or, where messages repeat, as `Rows`: a recording has the same topics with messages
+of the same lengths, sample after sample.  One by one, the messages of an hour at 1 kHz cost minutes in the interpreter; as rows of a table
+of bytes, NumPy reads a column of them as fast as memory allows.  `read_index` returns what a finished file says at its end, without reading the rest.
+"""
+
+import struct
+import zlib
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import BinaryIO, NamedTuple
+
+import lz4.frame
+import numpy as np
+import zstandard
+
+from bearing_sim.recording.bag import RecordingError
+from bearing_sim.recording.mcap_format import (
+    INDEX,
+    MAGIC,
+    MESSAGE,
+    RECORD,
+    Attachment,
+    Channel,
+    Chunk,
+    ChunkIndex,
+    DamagedRecord,
+    Footer,
+    Header,
+    Message,
+    Metadata,
+    MetadataIndex,
+    Opcode,
+    Schema,
+    Statistics,
+    message_at,
+    packed,
+    parsed,
+)
+
+_BLOCK = 1024 * 1024  # [byte] read at once
+_HEAD = RECORD.size + 2  # [byte] of a message record that identify its kind: opcode, length, channel
+_LOG = RECORD.size + 6  # [byte] of a record before its log time
+_DATA = RECORD.size + MESSAGE.size
+_REMEMBERED = 64  # messages; longer rows are not found
+_MOST_SHAPES = 256
+_CONTENT = (Header, Schema, Channel, Message, Metadata, Attachment)
+
+
+class Rows(NamedTuple):
+    """Messages of some channels that repeat in the same order and lengths.
+
+    Attributes
+    ----------
+    channels : id of the channel of each message of a row.
+    starts : first byte of each record in the row, and the row's length at the end.
+    table : the records, uint8, shape (rows, length).
+    """
+
+    channels: tuple[int, ...]
+    starts: tuple[int, ...]
+    table: np.ndarray
+
+    def log_ns(self, k: int) -> np.ndarray:
+        """Return the log times of the k-th message of every row [ns since the epoch], uint64."""
+        begin = self.starts[k] + _LOG
+        return np.ascontiguousarray(self.table[:, begin : begin + 8]).view("<u8")[:, 0]
+
+    def all_log_ns(self) -> np.ndarray:
+        """Return the log times of all messages [ns since the epoch], uint64, shape (rows, channels)."""
+        places = np.add.outer(np.array(self.starts[:-1]) + _LOG, np.arange(8))
+        return np.ascontiguousarray(self.table[:, places]).view("<u8")[:, :, 0]
+
+    def begin(self, k: int) -> int:
+        """Return the first byte of the k-th serialised message of a row."""
+        return self.starts[k] + _DATA
+
+    def data(self, k: int) -> np.ndarray:
+        """Return the k-th serialised message of every row, uint8, shape (rows, length)."""
+        return self.table[:, self.begin(k) : self.starts[k + 1]]
+
+    def messages(self) -> Iterator[Message]:
+        """Yield the messages one by one, in their order."""
+        for row in self.table:
+            whole = row.tobytes()
+            for start, end in zip(self.starts, self.starts[1:]):
+                yield message_at(whole, start, end)
+
+
+class McapReader:
+    """Everything that can be read of an MCAP file, in file order; a damaged chunk is left out, and what follows it is read.
+
+    Iterate over it for headers, schemas, channels, messages, metadata and attachments (see `bearing_sim.recording.mcap_format`).
+
+    Parameters
+    ----------
+    path : the file.
+    in_rows : whether messages of a topic may come many at once, as `Rows`; none do if absent.
+    stops_at_damage : whether to read nothing after the first damaged chunk or record.
+
+    Attributes
+    ----------
+    is_finished : whether the file has its proper end.
+    ends : why reading ended before that, or ``""``.
+    damaged : chunks and records that could not be read.
+    size, read : length of the file, and how far it was read [byte].
+    topics : topic by channel.
+    types : message type by topic, as far as read.
+
+    Raises
+    ------
+    RecordingError
+        It does not begin as an MCAP file.
+    OSError
+        It cannot be read.
+    """
+
+    def __init__(self, path: str | Path, in_rows: Callable[[str], bool] | None = None, stops_at_damage: bool = False):
+        self.path, self._in_rows, self._stops = Path(path), in_rows, stops_at_damage
+        self.size = self.path.stat().st_size
+        self._decompress = zstandard.ZstdDecompressor().decompress
+        self._restart()
+        with open(self.path, "rb") as stream:
+            if stream.read(len(MAGIC)) != MAGIC:
+                raise RecordingError(f"{self.path}: not an MCAP file ({self.size} bytes); expected a recording, finished or not")
+
+    def _restart(self) -> None:
+        self.read, self.damaged, self.is_finished, self.ends = len(MAGIC), 0, False, ""
+        self.topics: dict[int, str] = {}
+        self.types: dict[str, str] = {}
+        self._schemas: dict[int, str] = {}
+        self._finder = None if self._in_rows is None else _RowFinder(lambda channel: self._in_rows(self.topics.get(channel, "")))
+
+    def __iter__(self) -> Iterator[Header | Schema | Channel | Message | Metadata | Attachment | Rows]:
+        self._restart()
+        with open(self.path, "rb") as stream:
+            stream.seek(len(MAGIC))
+            in_data = True
+            for opcode, content in self._top_level(stream):
+                in_data = in_data and opcode != Opcode.DATA_END
+                if in_data:
+                    yield from self._contained(opcode, content)
+                if self.damaged and self._stops:
+                    self.ends = "what follows is damaged"
+                    return
+                if opcode == Opcode.FOOTER:
+                    stream.seek(self.read)
+                    self.is_finished = stream.read() == MAGIC
+                    self.ends = "" if self.is_finished else "what follows the footer is not the end of an MCAP file"
+                    return
+
+    def _top_level(self, stream: BinaryIO) -> Iterator[tuple[int, bytes]]:
+        """Yield opcode and content of all records but the many small indexes, reading by blocks."""
+        block, at = b"", 0
+
+        def has(length: int) -> bool:
+            nonlocal block, at
+            if len(block) - at < length:
+                block, at = block[at:] + stream.read(max(length, _BLOCK)), 0
+            return len(block) - at >= length
+
+        while has(RECORD.size):
+            opcode, length = RECORD.unpack_from(block, at)
+            if opcode == 0:
+                self.ends = f"there is no record at byte {self.read}"
+                return
+            whole = RECORD.size + length
+            if self.read + whole > self.size or not has(whole):
+                break
+            begin, at = at + RECORD.size, at + whole
+            self.read += whole
+            if opcode != Opcode.MESSAGE_INDEX:
+                yield opcode, block[begin:at]
+        self.ends = "it was not completed" if self.read == self.size else "it ends within a record"
+
+    def _contained(self, opcode: int, content: bytes) -> list:
+        try:
+            record = parsed(opcode, content)
+            return list(self._records_of(self._decompressed(record))) if isinstance(record, Chunk) else self._noted(record)
+        except DamagedRecord:
+            self.damaged += 1
+            return []
+
+    def _noted(self, record) -> list:
+        """Return a record as a list, empty if it is of no use here; remember what later ones refer to."""
+        if isinstance(record, Schema):
+            self._schemas[record.id] = record.name
+        elif isinstance(record, Channel):
+            self.topics[record.id] = record.topic
+            self.types[record.topic] = self._schemas.get(record.schema_id, "")
+        return [record] if isinstance(record, _CONTENT) else []
+
+    def _decompressed(self, chunk: Chunk) -> bytes:
+        """Return the records of a chunk, checked."""
+        if chunk.compression not in ("zstd", "lz4", ""):
+            raise RecordingError(f"{self.path}: a chunk is compressed by {chunk.compression!r}; expected zstd, lz4 or no compression")
+        data = chunk.records
+        try:
+            if chunk.compression == "zstd":
+                data = self._decompress(data, max_output_size=chunk.uncompressed_size)
+            elif chunk.compression == "lz4":
+                data = lz4.frame.decompress(data)
+        except (zstandard.ZstdError, RuntimeError) as error:  # lz4 raises RuntimeError
+            raise DamagedRecord(str(error)) from None
+        if len(data) != chunk.uncompressed_size or chunk.uncompressed_crc not in (0, zlib.crc32(data)):
+            raise DamagedRecord("the checksum of a chunk is wrong")
+        return data
+
+    def _records_of(self, data: bytes) -> Iterator:
+        at = 0
+        while at < len(data):
+            if self._finder is not None and (rows := self._finder.rows_at(data, at)) is not None:
+                yield rows
+                at += rows.table.size
+                continue
+            end = _end_of_record(data, at)
+            if data[at] == Opcode.MESSAGE:
+                yield message_at(data, at, end)
+                if self._finder is not None:
+                    self._finder.learn(data, at)
+            else:
+                yield from self._noted(parsed(data[at], data[at + RECORD.size : end]))
+            at = end
+
+
+def _end_of_record(data: bytes, at: int) -> int:
+    """Return the byte after the record that begins at a byte."""
+    end = len(data) + 1
+    if at + RECORD.size <= len(data):
+        opcode, length = RECORD.unpack_from(data, at)
+        end = at + RECORD.size + length
+        if opcode == Opcode.MESSAGE and length < MESSAGE.size:
+            end = len(data) + 1
+    if end > len(data):
+        raise DamagedRecord("a chunk ends within a record")
+    return end
+
+
+class _RowFinder:
+    """Finds rows in the records of chunks, by the order and the lengths of the messages before.
+
+    Parameters
+    ----------
+    wanted : whether messages of a channel may come in rows.
+    """
+
+    def __init__(self, wanted: Callable[[int], bool]):
+        self._wanted = wanted
+        self._shapes: dict[bytes, _Shape] = {}
+        self._recent: list[bytes] = []
+
+    def rows_at(self, data: bytes, at: int) -> Rows | None:
+        """Return the rows that begin at a byte, as many as follow each other; None if there are none of a known shape."""
+        shape = self._shapes.get(data[at : at + _HEAD])
+        rows = None if shape is None else shape.rows_at(data, at)
+        if rows is not None:
+            self._recent.clear()
+        return rows
+
+    def learn(self, data: bytes, at: int) -> None:
+        """Note a message that came alone."""
+        head = data[at : at + _HEAD]
+        if not self._wanted(int.from_bytes(head[RECORD.size :], "little")):
+            return
+        if head in self._recent:
+            if len(self._shapes) == _MOST_SHAPES:
+                self._shapes.clear()
+            self._shapes[head] = _Shape(self._recent[self._recent.index(head) :])
+            self._recent.clear()
+        self._recent = [*self._recent[1 - _REMEMBERED :], head]
+
+
+class _Shape:
+    """Order and lengths of the messages of a row."""
+
+    def __init__(self, heads: Sequence[bytes]):
+        lengths = [RECORD.size + RECORD.unpack_from(head)[1] for head in heads]
+        self._channels = tuple(int.from_bytes(head[RECORD.size :], "little") for head in heads)
+        self._starts = (0, *np.cumsum(lengths).tolist())
+        self._places = np.concatenate([start + np.arange(_HEAD) for start in self._starts[:-1]])
+        self._heads = np.frombuffer(b"".join(heads), np.uint8)
+
+    def rows_at(self, data: bytes, at: int) -> Rows | None:
+        size = self._starts[-1]
+        table = np.frombuffer(data, np.uint8, offset=at)
+        table = table[: len(table) // size * size].reshape(-1, size)
+        fits = (table[:, self._places] == self._heads).all(axis=1)
+        count = len(fits) if fits.all() else int(fits.argmin())
+        return Rows(self._channels, self._starts, table[:count]) if count else None
+
+
+class FileIndex(NamedTuple):
+    """What a file contains.
+
+    Attributes
+    ----------
+    types : message type by topic.
+    present : topics that have messages.
+    metadata : metadata records by name.
+    log_ns : log times of the messages of the topic asked for [ns since the epoch], uint64.
+    """
+
+    types: dict[str, str]
+    present: set[str]
+    metadata: dict[str, dict[str, str]]
+    log_ns: np.ndarray
+
+
+def read_index(path: str | Path, topic: str) -> FileIndex | None:
+    """Return what a finished file says at its end; None if the file is unfinished, or its index does not cover all messages.
+
+    Parameters
+    ----------
+    path : the file.
+    topic : whose log times are wanted.
+
+    Raises
+    ------
+    OSError
+        It cannot be read.
+    """
+    with open(path, "rb") as stream:
+        try:
+            return _index(stream, Path(path).stat().st_size, topic)
+        except (ValueError, struct.error, OverflowError):  # numbers that make no sense in a file like this
+            return None
+
+
+def _index(stream: BinaryIO, size: int, topic: str) -> FileIndex | None:
+    found: dict[type, list] = {kind: [] for kind in (Schema, Channel, Statistics, ChunkIndex, MetadataIndex)}
+    summary, at = _summary(stream, size), 0
+    while at < len(summary):
+        end = _end_of_record(summary, at)
+        record = parsed(summary[at], summary[at + RECORD.size : end])
+        if type(record) in found:
+            found[type(record)].append(record)
+        at = end
+    schemas = {schema.id: schema.name for schema in found[Schema]}
+    topics = {channel.id: channel.topic for channel in found[Channel]}
+    counts = Counter({channel: count for each in found[Statistics] for channel, count in each.channel_message_counts.items()})
+    if counts.total() != sum(each.message_count for each in found[Statistics]):
+        return None
+    wanted = {channel for channel, name in topics.items() if name == topic}
+    places = [place for chunk in found[ChunkIndex] for channel, place in chunk.message_index_offsets.items() if channel in wanted]
+    log_ns = _log_times(stream, places, wanted)
+    if len(log_ns) != sum(counts[channel] for channel in wanted):
+        return None
+    return FileIndex(
+        {channel.topic: schemas.get(channel.schema_id, "") for channel in found[Channel]},
+        {topics[channel] for channel, count in counts.items() if count and channel in topics},
+        {index.name: parsed(Opcode.METADATA, _content_at(stream, index.offset, Opcode.METADATA)).metadata for index in found[MetadataIndex]},
+        log_ns,
+    )
+
+
+def _summary(stream: BinaryIO, size: int) -> bytes:
+    """Return the records of the summary, checked."""
+    tail = len(packed(Footer(0, 0, 0))) + len(MAGIC)
+    if size < tail + len(MAGIC):
+        raise DamagedRecord("it is too short")
+    stream.seek(size - tail)
+    end = stream.read(tail)
+    footer = parsed(end[0], end[RECORD.size : -len(MAGIC)]) if end.endswith(MAGIC) else None
+    if not isinstance(footer, Footer) or not 0 < footer.summary_start < size:
+        raise DamagedRecord("it has no footer")
+    stream.seek(footer.summary_start)
+    summary = stream.read(size - tail - footer.summary_start)
+    if footer.summary_crc not in (0, zlib.crc32(end[: -len(MAGIC) - 4], zlib.crc32(summary))):
+        raise DamagedRecord("the checksum of the summary is wrong")
+    return summary
+
+
+def _log_times(stream: BinaryIO, places: Iterable[int], channels: set[int]) -> np.ndarray:
+    """Return the log times that the message indexes of some channels list; these stand at ``places``."""
+    parts = [np.empty(0, np.uint64)]
+    for place in places:
+        content = _content_at(stream, place, Opcode.MESSAGE_INDEX)
+        channel, extent = INDEX.unpack_from(content)
+        if channel not in channels or extent != len(content) - INDEX.size:
+            raise DamagedRecord("an index is not where the summary says")
+        parts.append(np.frombuffer(content, "<u8", offset=INDEX.size)[::2])
+    return np.concatenate(parts)
+
+
+def _content_at(stream: BinaryIO, offset: int, expected: Opcode) -> bytes:
+    """Return the content of a record of the file."""
+    stream.seek(offset)
+    head = stream.read(RECORD.size)
+    opcode, length = RECORD.unpack(head)
+    content = stream.read(length) if opcode == expected else b""
+    if opcode != expected or len(content) < length:
+        raise DamagedRecord("a record is not where the summary says")
+    return content

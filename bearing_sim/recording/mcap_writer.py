@@ -1,0 +1,260 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Write MCAP: messages one by one, or those of many samples at once.
+
+Message by message in the interpreter, the topics of one bearing at 1 kHz cost a fifth of a core.  The records of all topics of one
+sample are therefore laid out once, and NumPy fills them for many samples together (`SampleRows`).  `test/benchmarks/mcap_writers.py` compares
+the cost with that of other writers.
+"""
+
+import struct
+import zlib
+from collections.abc import Mapping, Sequence
+from typing import Protocol
+
+import numpy as np
+import zstandard
+
+from bearing_sim.messages.sample_messages import message_templates
+from bearing_sim.messages.topics import Topic
+from bearing_sim.model.sample import flat
+from bearing_sim.recording.mcap_format import (
+    INDEX,
+    MAGIC,
+    MESSAGE,
+    PROFILE,
+    RECORD,
+    Attachment,
+    AttachmentIndex,
+    Channel,
+    Chunk,
+    ChunkIndex,
+    DataEnd,
+    Footer,
+    Header,
+    Message,
+    Metadata,
+    MetadataIndex,
+    Opcode,
+    Schema,
+    Statistics,
+    SummaryOffset,
+    packed,
+    packed_message,
+)
+
+CHUNK_SIZE = 64 * 1024
+"""Length of a chunk before compression [byte].  The writer holds one chunk in memory: small chunks keep each write and each loss short."""
+
+_ENTRY = struct.Struct("<QQ")  # of a message index: log time, offset in the chunk
+
+
+class Output(Protocol):
+    """Where a file goes."""
+
+    def write(self, data: bytes) -> object: ...
+    def tell(self) -> int: ...
+
+
+class SampleRows:
+    """The MCAP records of some topics for one sample, one after the other, and how to fill them for many samples.
+
+    Parameters
+    ----------
+    topics : output topics (see `bearing_sim.messages.sample_messages.message_templates`).
+    rollers : number of rollers of the samples.
+
+    Attributes
+    ----------
+    size : length of the records of one sample [byte].
+    starts : first byte of each topic's record, shape (topics,).
+
+    Raises
+    ------
+    ValueError
+        A topic does not carry numbers of the sample.
+    """
+
+    def __init__(self, topics: Sequence[Topic], rollers: int):
+        self.topics, self.rollers = tuple(topics), rollers
+        row, starts, runs, stamps = b"", [], [], []
+        for template in message_templates(self.topics, rollers):
+            begin = len(row) + RECORD.size + MESSAGE.size
+            starts.append(len(row))
+            runs += [run._replace(target=begin + run.target) for run in template.runs]
+            stamps += [] if template.stamp is None else [begin + template.stamp]
+            row += packed_message(Message(0, 0, 0, 0, template.data))
+        self.size, self.starts = len(row), np.array(starts, np.uint64)
+        self._runs, self._stamps = runs, len(stamps)
+        self._template = np.frombuffer(row, np.uint8).copy()
+        fields = [(f"{part}{k}", start + RECORD.size + at, form) for k, start in enumerate(starts) for part, at, form in _HEAD_FIELDS]
+        fields += [(f"stamp{k}", at, "(2,)<u4") for k, at in enumerate(stamps)]
+        fields += [(f"run{k}", run.target, f"({run.count},)<f8") for k, run in enumerate(runs)]
+        names, offsets, formats = zip(*fields)
+        self._dtype = np.dtype({"names": names, "formats": formats, "offsets": offsets, "itemsize": self.size})
+
+    def filled(self, block: np.ndarray, times_ns: np.ndarray, channels: Sequence[int], first_sequence: int) -> np.ndarray:
+        """Return the records of a block.
+
+        Parameters
+        ----------
+        block : samples, shape (n,).
+        times_ns : log, publish and header time of each [ns since the epoch], uint64.
+        channels : id of each topic's channel.
+        first_sequence : of the first sample's messages.
+
+        Returns
+        -------
+        records : uint8, shape (n, size).
+        """
+        rows = np.empty((len(block), self.size), np.uint8)
+        rows[:] = self._template
+        fields = rows.view(self._dtype)[:, 0]
+        sequence = first_sequence + np.arange(len(block))
+        for k, channel in enumerate(channels):
+            fields[f"channel{k}"], fields[f"sequence{k}"] = channel, sequence
+            fields[f"log{k}"] = fields[f"publish{k}"] = times_ns
+        if self._stamps:
+            both = np.stack(np.divmod(times_ns, np.uint64(1_000_000_000)), axis=1)
+            for k in range(self._stamps):
+                fields[f"stamp{k}"] = both
+        numbers = flat(np.ascontiguousarray(block))
+        for k, run in enumerate(self._runs):
+            fields[f"run{k}"] = numbers[:, run.source : run.source + run.count]
+        return rows
+
+
+_HEAD_FIELDS = (("channel", 0, "<u2"), ("sequence", 2, "<u4"), ("log", 6, "<u8"), ("publish", 14, "<u8"))  # see mcap_format.MESSAGE
+
+
+class McapWriter:
+    """Writes one MCAP file: header, chunks with their indexes, metadata, attachments, and at the end the summary.
+
+    Parameters
+    ----------
+    output : takes whole records: a chunk comes in one call together with its indexes.
+    profile, library : what the header says.
+    """
+
+    def __init__(self, output: Output, profile: str = PROFILE, library: str = "bearing_sim"):
+        self._output, self._compress = output, zstandard.ZstdCompressor().compress
+        self._schemas: list[Schema] = []
+        self._channels: list[Channel] = []
+        self._counts: dict[int, int] = {}
+        self._metadata: list[MetadataIndex] = []
+        self._attachments: list[AttachmentIndex] = []
+        self._chunks: list[bytes] = []  # packed: there are many
+        self._span: tuple[int, int] | None = None
+        self._begin_chunk()
+        output.write(MAGIC + packed(Header(profile, library)))
+
+    def add_schema(self, name: str, encoding: str, data: bytes) -> int:
+        """Add a message type and return its id."""
+        self._schemas.append(Schema(len(self._schemas) + 1, name, encoding, data))
+        self._append(packed(self._schemas[-1]))
+        return self._schemas[-1].id
+
+    def add_channel(self, topic: str, message_encoding: str, schema_id: int, metadata: Mapping[str, str]) -> int:
+        """Add a topic and return its id; ``schema_id`` 0 stands for no schema."""
+        self._channels.append(Channel(len(self._channels) + 1, schema_id, topic, message_encoding, dict(metadata)))
+        self._append(packed(self._channels[-1]))
+        return self._channels[-1].id
+
+    def add_message(self, message: Message) -> None:
+        """Add a message of a channel."""
+        channel, _, log_ns, _, _ = message
+        self._index.setdefault(channel, []).append(_ENTRY.pack(log_ns, self._size))
+        self._counts[channel] = self._counts.get(channel, 0) + 1
+        self._put(packed_message(message), log_ns, log_ns)
+
+    def add_rows(self, layout: SampleRows, rows: np.ndarray, times_ns: np.ndarray, channels: Sequence[int]) -> None:
+        """Add the records of some samples, filled by `SampleRows.filled` with these times and channels."""
+        per_chunk = max(1, CHUNK_SIZE // layout.size)
+        for start in range(0, len(rows), per_chunk):
+            part, times = rows[start : start + per_chunk], times_ns[start : start + per_chunk]
+            entries = np.empty((len(channels), len(part), 2), "<u8")
+            entries[:, :, 0] = times
+            entries[:, :, 1] = np.add.outer(layout.starts, np.uint64(self._size) + np.uint64(layout.size) * np.arange(len(part), dtype=np.uint64))
+            for channel, own in zip(channels, entries):
+                self._index.setdefault(channel, []).append(own.tobytes())
+                self._counts[channel] = self._counts.get(channel, 0) + len(part)
+            self._put(part.data, int(times.min()), int(times.max()))
+
+    def add_metadata(self, name: str, metadata: Mapping[str, str]) -> None:
+        """Add named pairs of text."""
+        self._metadata.append(MetadataIndex(*self._write(packed(Metadata(name, dict(metadata)))), name))
+
+    def add_attachment(self, attachment: Attachment) -> None:
+        """Add a file."""
+        at = self._write(packed(attachment))
+        index = AttachmentIndex(*at, attachment.log_time, attachment.create_time, len(attachment.data), attachment.name, attachment.media_type)
+        self._attachments.append(index)
+
+    def flush(self) -> None:
+        """Write the chunk in progress, if it has a message."""
+        if not self._index:
+            return
+        records = b"".join(self._parts)
+        compressed = self._compress(records)
+        chunk = packed(Chunk(*self._chunk_span, len(records), zlib.crc32(records), "zstd", compressed))
+        offset = self._output.tell()
+        indexes, places, at = [], {}, offset + len(chunk)
+        for channel, entries in self._index.items():
+            joined = b"".join(entries)
+            indexes.append(RECORD.pack(Opcode.MESSAGE_INDEX, INDEX.size + len(joined)) + INDEX.pack(channel, len(joined)) + joined)
+            places[channel] = at
+            at += len(indexes[-1])
+        self._write(b"".join((chunk, *indexes)))
+        index = ChunkIndex(*self._chunk_span, offset, len(chunk), places, at - offset - len(chunk), "zstd", len(compressed), len(records))
+        self._chunks.append(packed(index))
+        self._begin_chunk()
+
+    def finish(self) -> None:
+        """Write the chunk in progress, the summary and the end of the file; nothing may follow."""
+        self.flush()
+        counts = len(self._schemas), len(self._channels), len(self._attachments), len(self._metadata), len(self._chunks)
+        statistics = Statistics(sum(self._counts.values()), *counts, *(self._span or (0, 0)), self._counts)
+        self._write(packed(DataEnd(0)))
+        begin = at = self._output.tell()
+        summary, offsets = b"", b""
+        for opcode, records in (
+            (Opcode.SCHEMA, map(packed, self._schemas)),
+            (Opcode.CHANNEL, map(packed, self._channels)),
+            (Opcode.STATISTICS, [packed(statistics)]),
+            (Opcode.CHUNK_INDEX, self._chunks),
+            (Opcode.ATTACHMENT_INDEX, map(packed, self._attachments)),
+            (Opcode.METADATA_INDEX, map(packed, self._metadata)),
+        ):
+            group = b"".join(records)
+            if group:
+                offsets += packed(SummaryOffset(opcode, at, len(group)))
+            summary, at = summary + group, at + len(group)
+        unchecked = packed(Footer(begin, at, 0))[:-4]
+        self._write(b"".join((summary, offsets, packed(Footer(begin, at, zlib.crc32(summary + offsets + unchecked))), MAGIC)))
+
+    def _write(self, data: bytes) -> tuple[int, int]:
+        """Write whole records; return where they stand and their length."""
+        offset = self._output.tell()
+        self._output.write(data)
+        return offset, len(data)
+
+    def _begin_chunk(self) -> None:
+        self._parts: list[bytes | memoryview] = []
+        self._size = 0
+        self._index: dict[int, list[bytes]] = {}
+        self._chunk_span: tuple[int, int] | None = None
+
+    def _put(self, packed: bytes | memoryview, first: int, last: int) -> None:
+        """Put messages with these lowest and highest log times into the chunk in progress, and write it when it is full."""
+        self._append(packed)
+        self._span, self._chunk_span = widened(self._span, first, last), widened(self._chunk_span, first, last)
+        if self._size > CHUNK_SIZE:
+            self.flush()
+
+    def _append(self, packed: bytes | memoryview) -> None:
+        self._parts.append(packed)
+        self._size += memoryview(packed).nbytes
+
+
+def widened(span: tuple[int, int] | None, first: int, last: int) -> tuple[int, int]:
+    """Return a span of times that also holds ``first`` and ``last``."""
+    return (first, last) if span is None else (min(span[0], first), max(span[1], last))

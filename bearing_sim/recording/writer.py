@@ -1,0 +1,480 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Recordings as ROS 2 messages in MCAP, which rosbag2, Foxglove and rerun read, and of which a killed process loses little.
+
+`McapFile` is one file, `SplitFiles` one or several files of one recording, and `McapSink` records a run in them.
+"""
+
+import math
+import os
+import threading
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from bearing_sim.messages import topics
+from bearing_sim.messages.events import Event, Level
+from bearing_sim.messages.ros_types import message_type
+from bearing_sim.recording.append_file import AppendFile
+from bearing_sim.recording.bag import ACTIVE, QOS_TEXT, UNLIMITED, Limits, Part, TopicCount, bag_metadata, write_bag_metadata
+from bearing_sim.recording.mcap_format import Message
+from bearing_sim.recording.mcap_writer import McapWriter, SampleRows, widened
+from bearing_sim.recording.provenance import git_hash, package_version, versions
+from bearing_sim.scene.loader import scene_to_yaml
+from bearing_sim.scene.scene import Scene
+
+METADATA = "bearing_sim"
+"""Name of the metadata record: scene (YAML), level, start_ns, package_version, git_hash, part, and versions of packages by name."""
+
+
+class _Channel(NamedTuple):
+    """A topic of a file; its message count is kept beside it, by topic."""
+
+    id: int
+    ros_type: str
+
+
+class McapFile:
+    """An MCAP file being written, profile ``ros2``.
+
+    While it is written it is called ``<path>.active``; `close` completes it and removes the suffix.  A chunk goes to the operating system as
+    soon as it is full, and the chunk in progress every ``flush_every`` seconds.  A killed process therefore loses what was written after the
+    last flush and no more; there is no fsync, so a power cut may lose more.  Methods may be called from several threads.
+
+    Parameters
+    ----------
+    path : the finished file; its folder is made if absent.
+    metadata : metadata records by name, each a flat mapping of str to str.
+    custom_data : entries of rosbag2's own metadata record, shown by ``ros2 bag info``.
+    flush_every : time between flushes [s].
+    replace : whether a finished file of the same name is replaced at `close`.
+    keep_free : free space to leave on the disk [byte]; below it writing stops with an OSError.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written there; FileExistsError if it exists and must not be replaced, or if ``<path>.active`` exists: another
+        run is writing it, or a killed run left it.
+    """
+
+    def __init__(
+        self,
+        path: str | Path,
+        metadata: Mapping[str, Mapping[str, str]] | None = None,
+        custom_data: Mapping[str, str] | None = None,
+        flush_every: float = 0.5,
+        replace: bool = False,
+        keep_free: float = 0.0,
+    ):
+        self.path, self._replace = Path(path), replace
+        if self.path.is_dir():
+            raise IsADirectoryError(f"{self.path} is a folder; expected the name of a file to write")
+        if self.path.exists() and not replace:
+            raise FileExistsError(f"{self.path} exists; a recording does not replace another one")
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        active = self.path.with_name(self.path.name + ACTIVE)
+        try:
+            self._file = AppendFile(active, keep_free)
+        except FileExistsError:
+            raise FileExistsError(
+                f"{active} exists: another run is writing it, or a killed run left it; complete it with bearing-sim recover, or rename or remove it"
+            ) from None
+        self._writer = McapWriter(self._file)
+        for name, record in (metadata or {}).items():
+            self._writer.add_metadata(name, record)
+        self._custom_data = dict(custom_data or {})
+        self._schemas: dict[str, int] = {}
+        self._channels: dict[str, _Channel] = {}
+        self._counts: dict[str, int] = {}
+        self._span: tuple[int, int] | None = None
+        self._lock = threading.RLock()
+        self._closing = threading.Event()
+        self._closed = False
+        self._file.check()
+        if self._file.error is not None:
+            self._file.close()
+            self.active_path.unlink(missing_ok=True)
+            raise self._error()
+        # A timer, not a check at each write, so that the last messages before a pause are flushed too.
+        self._flusher = threading.Thread(target=self._flush_regularly, args=(flush_every,), name="mcap-flush", daemon=True)
+        self._flusher.start()
+
+    @property
+    def active_path(self) -> Path:
+        """Name of the file while it is written."""
+        return self._file.path
+
+    @property
+    def length(self) -> int:
+        """Length so far [byte], without the chunk in progress."""
+        return self._file.tell()
+
+    @property
+    def span(self) -> tuple[int, int]:
+        """First and last log time [ns since the epoch]; zeros before the first message."""
+        return self._span or (0, 0)
+
+    def write(self, topic: str, ros_type: str, time_ns: int, message: dict) -> None:
+        """Write one message.
+
+        Parameters
+        ----------
+        topic : full topic name, such as ``"/cage_slip"``.
+        ros_type : such as ``"std_msgs/msg/Float64"``; the first message of a topic decides.
+        time_ns : log and publish time [ns since the epoch].
+        message : nested dict (see `bearing_sim.messages.topics`).
+
+        Raises
+        ------
+        OSError
+            The file cannot be written any more.
+        ValueError
+            The file is closed, or the time is before 1970.
+        """
+        self.write_cdr(topic, ros_type, time_ns, message_type(ros_type).serialize(message))
+
+    def write_cdr(self, topic: str, ros_type: str, time_ns: int, data: bytes, publish_ns: int | None = None) -> None:
+        """Write one serialised message; ``publish_ns`` if its publish time is not its log time.  Raises as `write`."""
+        if time_ns < 0:
+            raise ValueError(f"{topic}: a message {-time_ns * 1e-9:.6g} s before 1970 cannot be recorded")
+        with self._lock:
+            self._require_open()
+            channel = self._channels.get(topic) or self._register(topic, ros_type)
+            self._counts[topic] += 1
+            self._span = widened(self._span, time_ns, time_ns)
+            self._writer.add_message(Message(channel.id, self._counts[topic], time_ns, time_ns if publish_ns is None else publish_ns, data))
+
+    def write_rows(self, layout: SampleRows, block: np.ndarray, times_ns: np.ndarray) -> None:
+        """Write the messages of all topics of a layout for a block of samples.  Raises as `write`.
+
+        Parameters
+        ----------
+        layout : of the topics, which are written in no other way.
+        block : samples, shape (n,).
+        times_ns : log, publish and header time of each [ns since the epoch], uint64.
+        """
+        if not len(block):
+            return
+        with self._lock:
+            self._require_open()
+            names = [f"/{topic.name}" for topic in layout.topics]
+            ids = [(self._channels.get(name) or self._register(name, topic.ros_type)).id for name, topic in zip(names, layout.topics)]
+            self._writer.add_rows(layout, layout.filled(block, times_ns, ids, self._counts[names[0]] + 1), times_ns, ids)
+            for name in names:
+                self._counts[name] += len(block)
+            self._span = widened(self._span, int(times_ns.min()), int(times_ns.max()))
+
+    def __enter__(self) -> "McapFile":
+        return self
+
+    def __exit__(self, *_) -> None:
+        self.close()
+
+    def flush(self) -> None:
+        """Hand everything written so far to the operating system.  Raises as `write`."""
+        with self._lock:
+            self._require_open()
+            self._writer.flush()
+            self._require_open()
+
+    def news(self) -> list[tuple[Level, str, str]]:
+        """Return (level, kind, text) of what happened to the file since the last call."""
+        return [self._file.news.pop(0) for _ in range(len(self._file.news))]
+
+    def close(self) -> None:
+        """Complete the file and give it its name; a second call does nothing.
+
+        Raises
+        ------
+        OSError
+            It could not be completed; what could be written is in ``<path>.active``.
+        """
+        self._closing.set()
+        self._flusher.join()
+        with self._lock:
+            if self._closed:
+                return
+            self._closed = True
+            try:
+                metadata = bag_metadata([self.part()], [self.topic_counts()], self._custom_data)
+                self._writer.add_metadata("rosbag2", {"serialized_metadata": metadata})
+                self._writer.finish()
+                complete = self._file.retry()
+            finally:
+                self._file.close()
+            if not complete:
+                raise self._error()
+            _rename(self.active_path, self.path, self._replace)
+
+    def part(self) -> Part:
+        """Return the entry of this file in the metadata of its bag."""
+        return Part(self.path.name, *self.span, sum(self._counts.values()))
+
+    def topic_counts(self) -> list[TopicCount]:
+        """Return the entries of its topics in the metadata of its bag."""
+        return [
+            TopicCount(topic, channel.ros_type, message_type(channel.ros_type).hash, self._counts[topic]) for topic, channel in self._channels.items()
+        ]
+
+    def _register(self, topic: str, ros_type: str) -> _Channel:
+        kind = message_type(ros_type)
+        if ros_type not in self._schemas:
+            self._schemas[ros_type] = self._writer.add_schema(ros_type, "ros2msg", kind.definition.encode())
+        metadata = {"offered_qos_profiles": QOS_TEXT, "topic_type_hash": kind.hash}
+        self._channels[topic] = _Channel(self._writer.add_channel(topic, "cdr", self._schemas[ros_type], metadata), ros_type)
+        self._counts[topic] = 0
+        return self._channels[topic]
+
+    def _flush_regularly(self, interval: float) -> None:
+        while not self._closing.wait(interval):
+            with self._lock:
+                self._writer.flush()
+                self._file.check()
+
+    def _require_open(self) -> None:
+        if self._closed:
+            raise ValueError(f"{self.path} is closed")
+        if self._file.error is not None:
+            raise self._error()
+
+    def _error(self) -> OSError:
+        return OSError(self._file.error.errno, self._file.error.strerror)
+
+
+def _rename(active: Path, path: Path, replace: bool) -> None:
+    """Give a complete file its name, unless another program has taken it meanwhile."""
+    try:
+        if replace:
+            os.replace(active, path)
+            return
+        try:
+            os.link(active, path)  # unlike renaming, this replaces nothing
+        except FileExistsError:
+            raise FileExistsError(f"{path} was made by another program meanwhile; the complete recording is {active}") from None
+        except OSError:
+            os.rename(active, path)  # a file system without links
+        else:
+            os.unlink(active)
+    except PermissionError as error:
+        raise PermissionError(error.errno, f"{active} is complete, but cannot be renamed to {path.name}: {error.strerror}") from None
+
+
+class SplitFiles:
+    """The files of one recording, one after the other; each can be read alone.
+
+    Parameters
+    ----------
+    path : ``run.mcap`` is one file, or ``run_0.mcap``, ``run_1.mcap`` ... if ``limits`` split it.  A name without ``.mcap`` is a bag: a
+        folder of such files with a ``metadata.yaml``, as rosbag2 makes it.
+    metadata, custom_data, flush_every, replace : see `McapFile`; a bag is never replaced.
+    limits : when the next file begins.
+
+    Raises
+    ------
+    OSError
+        The first file cannot be made; FileExistsError if it exists.
+    """
+
+    def __init__(
+        self,
+        path: str | Path,
+        metadata: Mapping[str, Mapping[str, str]],
+        custom_data: Mapping[str, str],
+        flush_every: float = 0.5,
+        replace: bool = False,
+        limits: Limits = UNLIMITED,
+    ):
+        self.path, self._limits = Path(path), limits
+        self._is_bag = self.path.suffix != ".mcap"
+        self._is_split = math.isfinite(limits.part_size) or math.isfinite(limits.part_duration)
+        if self._is_bag and self.path.exists():
+            what = "is a folder" if self.path.is_dir() else "exists"
+            raise FileExistsError(f"{self.path} {what}; a recording does not replace another one (a name that ends in .mcap makes a single file)")
+        self._metadata, self._custom_data, self._flush_every, self._replace = metadata, custom_data, flush_every, replace
+        self._done: list[tuple[Part, list[TopicCount]]] = []
+        self._news: list[tuple[Level, str, str]] = []
+        self._completing: threading.Thread | None = None
+        self._current = self._open()
+
+    @property
+    def current(self) -> McapFile:
+        """The file to write to, a new one if the last one has reached its limits."""
+        start, end = self._current.span
+        if self._current.length >= self._limits.part_size or end - start >= 1e9 * self._limits.part_duration:
+            self._begin_next()
+        return self._current
+
+    def flush(self) -> None:
+        """Hand everything written so far to the operating system."""
+        self._current.flush()
+
+    def news(self) -> list[tuple[Level, str, str]]:
+        """Return (level, kind, text) of what happened to the files since the last call."""
+        news, self._news = self._news, []
+        return news + self._current.news()
+
+    def close(self) -> None:
+        """Complete the last file and the bag; a second call does nothing."""
+        if self._completing is not None:
+            self._completing.join()
+        self._current.close()
+        if self._is_bag:
+            self._write_metadata([*self._done, (self._current.part(), self._current.topic_counts())])
+
+    def _path_of(self, number: int) -> Path:
+        if self._is_bag:
+            return self.path / f"{self.path.name}_{number}.mcap"
+        return self.path.with_stem(f"{self.path.stem}_{number}") if self._is_split else self.path
+
+    def _open(self) -> McapFile:
+        number = len(self._done)
+        metadata = {name: {**record, "part": str(number)} if name == METADATA else record for name, record in self._metadata.items()}
+        return McapFile(self._path_of(number), metadata, self._custom_data, self._flush_every, self._replace, self._limits.keep_free)
+
+    def _begin_next(self) -> None:
+        full = self._current
+        if self._completing is not None:
+            self._completing.join()
+        self._done.append((full.part(), full.topic_counts()))
+        self._current = self._open()
+        # On a thread of its own, because completing waits for the disk.
+        self._completing = threading.Thread(target=self._complete, args=(full,), name="mcap-complete", daemon=True)
+        self._completing.start()
+
+    def _complete(self, full: McapFile) -> None:
+        try:
+            full.close()
+            if self._is_bag:
+                self._write_metadata(self._done)
+        except OSError as error:
+            self._news.append((Level.ERROR, "recording.part", f"{full.path} could not be completed: {error}"))
+        self._news += full.news()
+
+    def _write_metadata(self, done: list[tuple[Part, list[TopicCount]]]) -> None:
+        write_bag_metadata(self.path, bag_metadata([part for part, _ in done], [counts for _, counts in done], self._custom_data))
+
+
+class McapSink:
+    """Records a run: inputs as they arrived, every observable of every sample, events and diagnostics.
+
+    Parameters
+    ----------
+    path : the finished file, or the folder of a bag (see `SplitFiles`).
+    scene : what is simulated; every file contains its YAML.
+    start_ns : time 0 of the samples [ns since the epoch].
+    metadata : further metadata records by name.
+    flush_every : time between flushes [s] (see `McapFile`).
+    replace : whether a finished file of the same name is replaced.
+    limits : when the next file begins, and the free space to leave on the disk.
+    seed : of the random numbers in the run, if there are any; goes into the metadata.
+    advance : duration [s] and number of samples of each of the run's calls of the model, if they are always the same; goes into the metadata,
+        so that the run can be reproduced by the same calls.
+
+    Raises
+    ------
+    OSError
+        The file cannot be made.
+    """
+
+    def __init__(
+        self,
+        path: str | Path,
+        scene: Scene,
+        start_ns: int,
+        metadata: Mapping[str, Mapping[str, str]] | None = None,
+        flush_every: float = 0.5,
+        replace: bool = False,
+        limits: Limits = UNLIMITED,
+        seed: int | None = None,
+        advance: tuple[float, int] | None = None,
+    ):
+        self.start_ns = int(start_ns)
+        self._bearing = scene.bearing.name
+        self._topics = tuple(topics.recorded(scene).values())
+        self._rows = SampleRows(self._topics, scene.bearing.roller.count)
+        origin = {"package_version": package_version(), "git_hash": git_hash()}
+        packages = {f"version_{name}": version for name, version in versions().items()}
+        record = {"scene": scene_to_yaml(scene), "level": scene.level, "start_ns": str(self.start_ns), **origin, **packages}
+        if seed is not None:
+            record["seed"] = str(seed)
+        if advance is not None:
+            record |= {"advance_seconds": repr(float(advance[0])), "advance_samples": str(advance[1])}
+        self._files = SplitFiles(path, {METADATA: record, **(metadata or {})}, {"generator": "bearing_sim", **origin}, flush_every, replace, limits)
+
+    @property
+    def path(self) -> Path:
+        """The finished file's path, or the bag's."""
+        return self._files.path
+
+    def write(self, block: np.ndarray) -> None:
+        """Write a block of samples (see `bearing_sim.model.sample`); raises as `McapFile.write`, as all that follows."""
+        rollers = block["roller_angle"].shape[1]
+        if rollers != self._rows.rollers:
+            self._rows = SampleRows(self._topics, rollers)
+        times_ns = np.uint64(self.start_ns) + np.rint(block["time"] * 1e9).astype(np.int64).astype(np.uint64)
+        self._files.current.write_rows(self._rows, block, times_ns)
+
+    write_start = write
+    """Write the state from which the run starts, a block of one sample, so that the run can be reproduced; it is not an output of the run."""
+
+    def write_inputs(self, time: float, inputs, channels: Iterable[str] = tuple(topics.INPUTS), origin: topics.Origin | None = None) -> None:
+        """Write the inputs that arrived at ``time`` [s].
+
+        Parameters
+        ----------
+        time : when they were received [s since the start].
+        inputs : the `bearing_sim.simulation.Inputs` of that instant.
+        channels : which of them arrived; each channel may have stamps of its own.
+        origin : the sender's stamp and frame; stamped with ``time`` if absent.
+        """
+        for channel in channels:
+            self._write_input(topics.INPUTS[channel], time, inputs, origin)
+
+    def write_measurement(self, time: float, cage_speed: float, residual: float, origin: topics.Origin | None = None) -> None:
+        """Write a measured cage speed [rad/s] that arrived at ``time`` [s], and its slip less the predicted slip."""
+        for topic, number in zip(topics.MEASUREMENTS.values(), (cage_speed, residual)):
+            self._write_input(topic, time, number, origin)
+
+    def _write_input(self, topic: topics.Topic, time: float, source, origin: topics.Origin | None) -> None:
+        received_ns = self._time_ns(time)
+        sent_ns = received_ns if origin is None or origin.stamp_ns is None else origin.stamp_ns
+        message = topic.message(sent_ns, source)
+        if origin is not None and "header" in message:
+            message["header"]["frame_id"] = origin.frame_id
+        self._files.current.write(f"/{topic.name}", topic.ros_type, received_ns, message)
+
+    def write_received(self, topic: str, ros_type: str, time_ns: int, data: bytes, publish_ns: int | None = None) -> None:
+        """Copy a serialised message of another recording; times are [ns since the epoch]."""
+        self._files.current.write_cdr(topic, ros_type, time_ns, data, publish_ns)
+
+    def write_event(self, event: Event) -> None:
+        """Write one event as diagnostics."""
+        self.write_diagnostics(event.time, [event])
+
+    def write_diagnostics(self, time: float, events: Iterable[Event] = (), values: Mapping[str, object] | None = None) -> None:
+        """Write a diagnostics message (see `bearing_sim.messages.topics.diagnostics`)."""
+        name, ros_type = topics.DIAGNOSTICS
+        time_ns = self._time_ns(time)
+        self._files.current.write(f"/{name}", ros_type, time_ns, topics.diagnostics(time_ns, events, values, hardware_id=self._bearing))
+
+    def news(self) -> list[tuple[Level, str, str]]:
+        """Return (level, kind, text) of what happened to the files since the last call: deleted and restored, not completed."""
+        return self._files.news()
+
+    def flush(self) -> None:
+        """Hand everything written so far to the operating system."""
+        self._files.flush()
+
+    def close(self) -> None:
+        """Complete the recording and give it its name; a second call does nothing."""
+        self._files.close()
+
+    def __enter__(self) -> "McapSink":
+        return self
+
+    def __exit__(self, *_) -> None:
+        self.close()
+
+    def _time_ns(self, time: float) -> int:
+        return self.start_ns + round(time * 1e9)

@@ -1,0 +1,415 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""The bearing of a scene: raceways, rollers, cage, material, and the checks that its parts fit together."""
+
+import math
+from dataclasses import field
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from bearing_sim.scene.contour import form_errors, settled_form
+from bearing_sim.scene.crown import Crown, NoCrown, crown_errors
+from bearing_sim.scene.quantity import quantity, record
+
+LAND_FIELDS = ("guide_radius", "guide_clearance", "guide_land_width", "guide_land_distance")
+_CLOSE = 1e-8  # m; lengths nearer than this are taken as equal
+# Fields that each guidance needs in addition to those of every cage.
+_NEEDS = {
+    "outer_ring": ("inner_radius", "guide_clearance", "guide_land_width"),
+    "inner_ring": ("outer_radius", "guide_clearance", "guide_land_width"),
+    "roller": ("inner_radius", "outer_radius"),
+}
+
+
+@record
+class ContourPoint:
+    """A low or high point of the outer raceway."""
+
+    azimuth: quantity("rad", "azimuth of the point before installation", -2 * math.pi, 2 * math.pi, "deg")
+    radius: quantity("m", "radius there", 1e-3, 2.0, "mm")
+
+
+@record
+class OuterRaceway:
+    """Outer raceway contour R_e(phi) in one of the forms below, each rotated by the installation angle.
+
+    By ``low_radius``, ``d_value`` and ``lobes``: R_low + D/2 - D/2 cos(n phi) (Deng 2017, eq. 2); D = 0 is a round bearing.
+    With ``roundness`` e the low points spread from R_low - e/2 to R_low + e/2, and each high point falls as the low point before it rises.
+    By ``low_points`` and ``high_points``, each with its own azimuth and radius, joined by half cosine waves.
+    By ``contour_file``, points measured over one turn (see `bearing_sim.scene.contour`); ``contour`` holds the text of the file.
+    In the last two forms ``low_radius``, ``d_value`` and ``lobes`` follow from the points.
+    """
+
+    low_radius: quantity("m", "radius at the low points, R_low", 1e-3, 2.0, "mm") | None = None
+    d_value: quantity("m", "high-point radius less low-point radius, D", 0.0, 5e-3, "mm") | None = None
+    lobes: Annotated[int, Field(ge=1, le=12)] | None = None  # number of lobes, n
+    roundness: quantity("m", "highest less lowest of the low points, e", 0.0, 1e-3, "um") = 0.0
+    low_points: tuple[ContourPoint, ...] = ()
+    high_points: tuple[ContourPoint, ...] = ()
+    contour_file: str | None = None  # path of a CSV file of a measured turn, from the folder of the scene file
+    contour: str | None = None  # text of such a file
+    contour_angle_unit: str | None = None  # unit of its angles, if its header has none
+    contour_radius_unit: str | None = None  # unit of its radii, if its header has none
+    installation_angle: quantity("rad", "azimuth of a low point, phi_e", -2 * math.pi, 2 * math.pi, "deg") = 0.0
+    contour_slope: bool = True  # whether normal forces lean with the contour; false is Deng's form
+    outside_radius: quantity("m", "outside radius of the outer ring", 1e-3, 2.0, "mm") | None = None
+
+    @model_validator(mode="after")
+    def _form_is_complete(self):
+        errors, settled = form_errors(self), {}
+        if not errors:
+            settled, errors = settled_form(self)
+        if errors:
+            raise ValueError("; ".join(errors))
+        for name, value in settled.items():
+            object.__setattr__(self, name, value)
+        return self
+
+
+@record
+class InnerRaceway:
+    """Round inner raceway, turning with the shaft."""
+
+    radius: quantity("m", "inner raceway radius, R_i", 1e-3, 2.0, "mm")
+    ring_mass: quantity("kg", "mass of the inner ring", 1e-4, 1e3) = 0.05
+    supported_mass: quantity("kg", "mass of the shaft that moves with the inner ring", 0.0, 1e5) = 0.5
+    polar_inertia: quantity("kg*m^2", "inertia of ring and shaft about the shaft axis; None: a solid cylinder", 1e-12, 1e6) | None = None
+    transverse_inertia: quantity("kg*m^2", "their inertia about a diameter; None: half of the polar one", 1e-12, 1e6) | None = None
+    bore_radius: quantity("m", "bore radius of the inner ring", 1e-3, 2.0, "mm") | None = None
+
+
+@record
+class RingGrowth:
+    """What changes the clearance of the bearing on the drawing: rotation, fits and heat.  All off by default."""
+
+    centrifugal: bool = False  # whether the inner ring grows with the square of the speed
+    shaft_interference: quantity("m", "diametral interference of shaft and inner ring", 0.0, 1e-3, "um") = 0.0
+    shaft_bore_radius: quantity("m", "bore radius of the shaft; 0 is a solid one", 0.0, 2.0, "mm") = 0.0
+    housing_interference: quantity("m", "diametral interference of housing and outer ring", 0.0, 1e-3, "um") = 0.0
+    housing_radius: quantity("m", "outside radius of the housing", 1e-3, 10.0, "mm") | None = None
+    thermal: bool = False  # whether rings and rollers grow with their temperatures
+    expansion: quantity("1/K", "linear thermal expansion of rings and rollers", 0.0, 1e-3) = 1.2e-5
+    reference_temperature: quantity("K", "temperature at which the drawing is valid", 150.0, 800.0, "degC") = 293.15
+    inner_excess: quantity("K", "inner ring's temperature less the oil's", -200.0, 200.0) = 0.0
+    roller_excess: quantity("K", "rollers' temperature less the oil's", -200.0, 200.0) = 0.0
+    outer_excess: quantity("K", "outer ring's temperature less the oil's", -200.0, 200.0) = 0.0
+
+
+@record
+class Roller:
+    """The rollers, all equal.
+
+    Level ``spatial`` cuts each roller into slices; ``slices_per_traction`` neighbours share one traction coefficient, taken at their mean load.
+    """
+
+    count: Annotated[int, Field(ge=3, le=200)]  # number of rollers, Z
+    diameter: quantity("m", "roller diameter, D_w", 0.5e-3, 0.5, "mm")
+    length: quantity("m", "roller effective length, L", 0.5e-3, 0.5, "mm")
+    crown: Crown = field(default_factory=NoCrown)  # see `bearing_sim.scene.crown`
+    slices: Annotated[int, Field(ge=1, le=400)] = 20  # per roller, at level spatial; ISO/TS 16281 requires 30 or more for the life
+    slices_per_traction: Annotated[int, Field(ge=1, le=400)] = 4  # neighbouring slices with one traction coefficient
+
+    @model_validator(mode="after")
+    def _crown_fits(self):
+        errors = crown_errors(self.crown, self.length)
+        if errors:
+            raise ValueError("; ".join(errors))
+        return self
+
+
+@record
+class Contact:
+    """Normal contacts: the spring constant, and dissipation after Hunt and Crossley: Q (1 + a d(delta)/dt), never pulling."""
+
+    spring: Literal["palmgren", "iso"] = "palmgren"  # A_1 of the material, or c_L of ISO/TS 16281, which is for steel
+    damping: quantity("", "a [s/m]; 0.104 is a viscous ratio of 0.05 for a 7 mm roller at 500 N", 0.0, 100.0) = 0.104
+
+
+@record
+class Material:
+    """Elastic constants and density of rings and rollers."""
+
+    youngs_modulus: quantity("Pa", "Young's modulus, E", 1e9, 1e12, "GPa") = 2.06e11
+    poisson_ratio: quantity("", "Poisson's ratio, nu", 0.0, 0.49) = 0.3
+    density: quantity("kg/m^3", "density", 500.0, 25e3) = 7850.0
+
+
+@record
+class Roughness:
+    """Root-mean-square roughness of the rolling surfaces; used only for the lambda ratio of the monitoring."""
+
+    roller: quantity("m", "roughness of the rollers, R_q", 1e-10, 1e-4, "um")
+    raceway: quantity("m", "roughness of the raceways, R_q", 1e-10, 1e-4, "um")
+
+    @property
+    def composite(self) -> float:
+        """Root of the sum of squares, sigma = sqrt(R_q1^2 + R_q2^2) [m]."""
+        return math.hypot(self.roller, self.raceway)
+
+
+@record
+class Cage:
+    """The cage, guided by two lands of a ring or by the rollers in its pockets (Harris and Kotzalas 2006, chapter 18).
+
+    ``outer_ring``: lands of radius R_g on the outer ring around the cage, whose outer surface is at R_g - c.
+    ``inner_ring``: lands of radius R_g on the inner ring within the cage, whose bore is at R_g + c.
+    ``roller``: no lands; pockets that also hold the rollers radially carry the cage.
+    For a cage on lands, give the radius of its running surface or that of the lands, or both if they agree.
+    """
+
+    guidance: Literal["outer_ring", "inner_ring", "roller"] = "outer_ring"  # what guides the cage
+    mass: quantity("kg", "cage mass", 1e-6, 1e3, "g")
+    polar_inertia: quantity("kg*m^2", "cage inertia about the shaft axis", 1e-12, 1e3) | None = None
+    transverse_inertia: quantity("kg*m^2", "cage inertia about a diameter; None: half of the polar one", 1e-12, 1e3) | None = None
+    inner_radius: quantity("m", "radius of the cage's bore", 1e-3, 2.0, "mm") | None = None
+    outer_radius: quantity("m", "radius of the cage's outer surface", 1e-3, 2.0, "mm") | None = None
+    width: quantity("m", "axial width of the cage", 1e-4, 1.0, "mm")
+    guide_radius: quantity("m", "radius of the guiding ring's lands, R_g", 1e-3, 2.0, "mm") | None = None
+    guide_clearance: quantity("m", "radial clearance between cage and guide lands, c", 1e-6, 5e-3, "mm") | None = None
+    guide_land_width: quantity("m", "width of one of the two guide lands", 1e-6, 0.5, "mm") | None = None
+    guide_land_distance: quantity("m", "between the middles of both guide lands; None: at the cage's edges", 0.0, 1.0, "mm") | None = None
+    land_film: quantity("m", "film in the guide land below which surfaces touch", 0.0, 1e-4, "um") = 3e-6
+    land_friction: quantity("", "boundary friction coefficient of the guide land", 0.0, 1.0) = 0.08
+    land_squeeze: bool = True  # the film includes the motion of the cage centre; false: Deng's form for a centre at rest
+    pocket_friction: quantity("", "friction coefficient between roller and pocket, mu_c", 0.0, 1.0) = 0.05
+    # Level slip models neither pocket forces nor whirl; these two fields give it their effect on the cage.
+    pocket_reaction: bool = False  # at level slip, pocket friction brakes the cage as well as the rollers
+    assumed_eccentricity: quantity("", "eccentricity of the cage at level slip, a fraction of the guide clearance", 0.0, 0.999) = 0.0
+    pocket_clearance: quantity("m", "clearance between roller and pocket along the orbit, C_p", 1e-6, 5e-3, "mm") = 1e-4
+    pocket_radial_clearance: quantity("m", "radial clearance of pockets that guide the cage; None: as along the orbit", 1e-6, 5e-3, "mm") | None = (
+        None
+    )
+    pocket_film_force: quantity("N", "force of the pocket's oil film when the clearance is used up", 0.0, 1e4) = 67.0
+    pocket_film_damping: quantity("", "damping of the pocket's oil film [N s/m]", 0.0, 1e4) = 5.0
+
+    @property
+    def has_lands(self) -> bool:
+        """Whether lands guide the cage."""
+        return self.guidance != "roller"
+
+    @property
+    def land_radius(self) -> float:
+        """R_g [m]; NaN where there are no lands."""
+        if not self.has_lands:
+            return float("nan")
+        if self.guide_radius is not None:
+            return self.guide_radius
+        return self.outer_radius + self.guide_clearance if self.guidance == "outer_ring" else self.inner_radius - self.guide_clearance
+
+    @property
+    def outside(self) -> float:
+        """Radius of the outer surface [m]."""
+        return self.land_radius - self.guide_clearance if self.guidance == "outer_ring" else self.outer_radius
+
+    @property
+    def bore(self) -> float:
+        """Radius of the bore [m]."""
+        return self.land_radius + self.guide_clearance if self.guidance == "inner_ring" else self.inner_radius
+
+    @property
+    def play(self) -> float:
+        """How far the cage's centre can move in its guidance [m]: the land clearance, or the radial pocket clearance."""
+        if self.has_lands:
+            return self.guide_clearance
+        return self.pocket_radial_clearance if self.pocket_radial_clearance is not None else self.pocket_clearance
+
+    @model_validator(mode="after")
+    def _guidance_is_complete(self):
+        errors = [f"{name}: missing; a cage with guidance {self.guidance} needs it" for name in _NEEDS[self.guidance] if getattr(self, name) is None]
+        errors += self._errors_with_lands() if self.has_lands else self._errors_without_lands()
+        if errors:
+            raise ValueError("; ".join(errors))
+        return self
+
+    def _errors_with_lands(self) -> list[str]:
+        running, sign = ("outer_radius", 1) if self.guidance == "outer_ring" else ("inner_radius", -1)
+        surface, land, clearance = getattr(self, running), self.guide_radius, self.guide_clearance
+        errors = []
+        if surface is None and land is None:
+            errors.append(f"guide_radius: missing; a cage with guidance {self.guidance} needs the radius of its lands, or {running}")
+        elif None not in (surface, land, clearance) and abs(surface - (land - sign * clearance)) > _CLOSE:
+            errors.append(
+                f"{running}: {1e3 * surface:.6g} mm, but lands at guide_radius {1e3 * land:.6g} mm with guide_clearance {1e3 * clearance:.6g} mm "
+                f"leave it at {1e3 * (land - sign * clearance):.6g} mm; give one of {running} and guide_radius, and leave the other out (null)"
+            )
+        if self.pocket_radial_clearance is not None:
+            errors.append(f"pocket_radial_clearance: lands guide this cage ({self.guidance}); leave it out, or set guidance: roller")
+        return errors
+
+    def _errors_without_lands(self) -> list[str]:
+        errors = [f"{name}: a cage with guidance roller has no lands; leave it out (null)" for name in LAND_FIELDS if getattr(self, name) is not None]
+        if self.assumed_eccentricity:
+            errors.append("assumed_eccentricity: a cage with guidance roller has no lands to be eccentric in; leave it out")
+        return errors
+
+
+@record
+class Bearing:
+    """One cylindrical roller bearing."""
+
+    name: str  # name of the bearing
+    source: str  # where its dimensions come from
+    outer_raceway: OuterRaceway
+    inner_raceway: InnerRaceway
+    roller: Roller
+    cage: Cage
+    material: Material = field(default_factory=Material)
+    contact: Contact = field(default_factory=Contact)
+    ring_growth: RingGrowth = field(default_factory=RingGrowth)
+    roughness: Roughness | None = None  # None: the lambda ratio is neither computed nor monitored
+
+    @property
+    def pitch_radius(self) -> float:
+        """r_m = R_i + R_w [m]."""
+        return self.inner_raceway.radius + self.roller.diameter / 2
+
+    @property
+    def pitch_diameter(self) -> float:
+        """d_m = 2 r_m [m]."""
+        return 2 * self.pitch_radius
+
+    @property
+    def diameter_ratio(self) -> float:
+        """The ratio gamma = D_w / d_m."""
+        return self.roller.diameter / self.pitch_diameter
+
+    @property
+    def radial_clearance_at_low_points(self) -> float:
+        """R_low - R_i - D_w [m]; negative: preload at the low points."""
+        return self.outer_raceway.low_radius - self.inner_raceway.radius - self.roller.diameter
+
+    @model_validator(mode="after")
+    def _parts_fit_together(self):
+        # Collect all errors, so that the author can correct the file in one go.
+        errors = []
+        if self.roller.count * self.roller.diameter > 2 * self.pitch_radius * math.pi:
+            errors.append(
+                f"roller: {self.roller.count} rollers of {1e3 * self.roller.diameter:.6g} mm do not fit on a pitch circle of "
+                f"{2e3 * self.pitch_radius:.6g} mm; use fewer or thinner ones"
+            )
+        clearance = self.radial_clearance_at_low_points
+        if not -0.02 * self.roller.diameter <= clearance <= 0.5 * self.roller.diameter:
+            errors.append(
+                f"outer_raceway.low_radius: {1e3 * self.outer_raceway.low_radius:.6g} mm leaves {1e6 * clearance:.6g} um between inner "
+                f"raceway, roller and low point; expected {-2e4 * self.roller.diameter:.6g} to {5e5 * self.roller.diameter:.6g} um"
+            )
+        errors += cage_errors(self) + play_errors(self) + growth_errors(self)
+        if errors:
+            raise ValueError("; ".join(errors))
+        return self
+
+
+def growth_errors(bearing) -> list[str]:
+    """Return error messages for options of ring growth that are incomplete or contradict the bearing."""
+    growth, inner, outer, errors = bearing.ring_growth, bearing.inner_raceway, bearing.outer_raceway, []
+    if growth.centrifugal or growth.shaft_interference:
+        if inner.bore_radius is None:
+            errors.append("inner_raceway.bore_radius: missing; ring_growth needs it")
+        elif not growth.shaft_bore_radius < inner.bore_radius < inner.radius:
+            errors.append("inner_raceway.bore_radius: expected between the shaft's bore and the raceway")
+    if growth.housing_interference:
+        errors += [
+            f"{name}: missing; ring_growth.housing_interference needs it"
+            for name, value in (("outer_raceway.outside_radius", outer.outside_radius), ("ring_growth.housing_radius", growth.housing_radius))
+            if value is None
+        ]
+        if not errors and not outer.low_radius + outer.d_value < outer.outside_radius < growth.housing_radius:
+            errors.append("outer_raceway.outside_radius: expected between the raceway and the housing's outside")
+    return errors
+
+
+def cage_errors(bearing) -> list[str]:
+    """Return error messages for a cage that does not fit between the rings."""
+    cage, inner, low = bearing.cage, bearing.inner_raceway.radius, bearing.outer_raceway.low_radius
+    errors = []
+    bore_name = "cage.guide_radius" if cage.guidance == "inner_ring" and cage.guide_radius is not None else "cage.inner_radius"
+    outside_name = "cage.guide_radius" if cage.guidance == "outer_ring" and cage.guide_radius is not None else "cage.outer_radius"
+    if cage.bore >= cage.outside:
+        errors.append(
+            f"{bore_name}: the cage's bore, at {1e3 * cage.bore:.6g} mm, lies outside its outer surface, at {1e3 * cage.outside:.6g} mm; "
+            f"expected a bore between the inner raceway ({1e3 * inner:.6g} mm) and there"
+        )
+    if cage.bore <= inner:
+        errors.append(
+            f"{bore_name}: the cage's bore, at {1e3 * cage.bore:.6g} mm, cuts into the inner raceway ({1e3 * inner:.6g} mm); make it larger"
+        )
+    if cage.outside >= low:
+        errors.append(
+            f"{outside_name}: the cage's outer surface, at {1e3 * cage.outside:.6g} mm, cuts into the outer raceway ({1e3 * low:.6g} mm at its low "
+            "points); make it smaller"
+        )
+    errors += _land_errors(bearing) if cage.has_lands else _pocket_errors(bearing)
+    if not errors and cage.guidance != "outer_ring" and cage.play >= min(cage.bore - inner, low - cage.outside):
+        name, room = "guide_clearance" if cage.has_lands else "pocket_radial_clearance", min(cage.bore - inner, low - cage.outside)
+        errors.append(
+            f"cage.{name}: {1e3 * cage.play:.6g} mm lets the cage touch a raceway, {1e3 * room:.6g} mm away, before its guidance stops it; "
+            "expected less, or a slimmer cage"
+        )
+    return errors
+
+
+def _land_errors(bearing) -> list[str]:
+    cage, pitch = bearing.cage, bearing.pitch_radius
+    errors = []
+    outside = cage.land_radius > pitch
+    if outside != (cage.guidance == "outer_ring"):
+        side, other = ("outside", "inner_ring") if cage.guidance == "outer_ring" else ("inside", "outer_ring")
+        errors.append(
+            f"cage.guide_radius: lands of the {cage.guidance.replace('_', ' ')} lie {side} the pitch circle ({1e3 * pitch:.6g} mm), found "
+            f"{1e3 * cage.land_radius:.6g} mm; give a radius there, or set guidance: {other}"
+        )
+    if 2 * cage.guide_land_width > cage.width:
+        errors.append("cage.guide_land_width: the two lands together are wider than the cage")
+    return errors
+
+
+def _pocket_errors(bearing) -> list[str]:
+    """Return an error if the lobes move the rollers by more than the radial clearance of their pockets."""
+    cage, lift = bearing.cage, bearing.outer_raceway.d_value / 2
+    if cage.play > lift:
+        return []
+    return [
+        f"cage.pocket_radial_clearance: the lobes move the rollers outwards and inwards by {1e6 * lift:.6g} um (half the D value), the pockets "
+        f"that guide the cage leave them {1e6 * cage.play:.6g} um; expected more clearance than that"
+    ]
+
+
+def play_errors(bearing) -> list[str]:
+    """Return error messages for clearances of the cage that are too small or too large."""
+    cage, roller, errors = bearing.cage, bearing.roller, []
+    if cage.has_lands and cage.guide_clearance <= cage.land_film:
+        errors.append(
+            f"cage.guide_clearance: {1e6 * cage.guide_clearance:.6g} um is no more than cage.land_film, the film at which surfaces touch, so that "
+            f"the cage would touch its land all round; expected more than {1e6 * cage.land_film:.6g} um, or a smaller land_film"
+        )
+    if cage.guidance == "outer_ring" and cage.land_radius >= bearing.outer_raceway.low_radius:
+        errors.append(
+            f"cage.guide_radius: {1e3 * cage.land_radius:.6g} mm puts the guide lands outside the raceway; expected less than "
+            f"outer_raceway.low_radius, {1e3 * bearing.outer_raceway.low_radius:.6g} mm"
+        )
+    bar = 2 * math.pi * bearing.pitch_radius / roller.count - roller.diameter - 2 * cage.pocket_clearance
+    if bar <= 0.0:
+        bound = cage.pocket_clearance + bar / 2
+        use = f"expected less than {1e3 * bound:.6g} mm" if bound > 0.0 else "use fewer or thinner rollers"
+        errors.append(
+            f"cage.pocket_clearance: {1e3 * cage.pocket_clearance:.6g} mm leaves no bar between the pockets of {roller.count} rollers of "
+            f"{1e3 * roller.diameter:.6g} mm; {use}"
+        )
+    return errors
+
+
+def drop_other_lands(preset: dict, given: dict) -> None:
+    """Remove the land fields from a preset's cage if the file asks for another guidance, in place.
+
+    A cage that moves to the other ring keeps its body and the clearance and width of its lands.
+
+    Parameters
+    ----------
+    preset : block ``cage`` of the preset; modified.
+    given : block ``cage`` of the file.
+    """
+    guidance = given.get("guidance", preset.get("guidance", "outer_ring"))
+    if guidance == preset.get("guidance", "outer_ring"):
+        return
+    for name in LAND_FIELDS if guidance == "roller" else ("guide_radius",):
+        preset.pop(name, None)

@@ -1,0 +1,45 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Sphinx configuration: ``python -m sphinx -W --keep-going -b html doc build/doc``.
+
+The reference pages are generated from the code by ``_extensions/generated_reference.py``, so the package must be importable.
+"""
+
+import re
+import sys
+from pathlib import Path
+
+FOLDER = Path(__file__).resolve().parent
+if not (FOLDER / "_extensions").is_dir():  # rosdoc2 executes this file from a conf.py of its own, in another folder
+    FOLDER = Path(re.search(r'exec\(open\("(.+?)"\)', Path(__file__).read_text())[1]).resolve().parent
+ROOT = FOLDER.parent
+sys.path[:0] = [str(ROOT), str(FOLDER / "_extensions")]
+
+project = "bearing_sim"
+author = "bearing_sim maintainers"
+copyright = "2026, bearing_sim maintainers"
+release = version = next(line.split('"')[1] for line in (ROOT / "setup.py").read_text().splitlines() if line.strip().startswith("version="))
+
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.mathjax", "generated_reference"]
+exclude_patterns = ["_build", "modules.rst", "bearing_sim*.rst"]  # the latter two are made by rosdoc2; reference/ has them
+
+myst_enable_extensions = ["dollarmath", "amsmath", "colon_fence", "deflist", "fieldlist"]
+myst_heading_anchors = 4
+myst_dmath_double_inline = True
+
+# In docstrings, `name` refers to an object where Sphinx knows it, and is plain code where it does not.
+default_role = "py:obj"
+autodoc_member_order = "bysource"
+autodoc_typehints = "none"
+
+html_theme = "alabaster"
+html_theme_options = {
+    "description": "Cage slip and rating life of cylindrical roller bearings, live",
+    "page_width": "1280px",
+    "sidebar_width": "260px",
+    "body_max_width": "980px",
+    "fixed_sidebar": True,
+    "show_relbars": True,
+}
+html_static_path = [str(FOLDER / "_static")]
+html_css_files = ["tables.css"]
+html_copy_source = False

@@ -1,0 +1,77 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""The tutorials, the page on the Python API and the README do what they say: their blocks are executed, in order, in an empty folder.
+
+Blocks marked ``bash`` and ``python`` are executed, those marked ``text`` are not.  The Python blocks of a page share one namespace, as in a notebook.
+``tutorials/live_monitoring.md`` needs a ROS graph: `test_first_ten_minutes` executes its commands.
+"""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+DOC = ROOT / "doc"
+LIVE = "doc/tutorials/live_monitoring.md"
+SOURCES = [ROOT / "README.md", DOC / "python_api.md", *DOC.glob("tutorials/*.md"), *DOC.glob("how-to/*.md")]
+PAGES = sorted(path.relative_to(ROOT).as_posix() for path in SOURCES)
+PROGRAMS = {"bearing-sim": "bearing_sim.cli", "bearing_node": "bearing_sim.ros.node", "bearing_player": "bearing_sim.ros.player"}
+
+# Executes a page: argv holds the language and the text of each block in turn; a failing block ends the run with its text.
+_DRIVER = """
+import subprocess, sys
+namespace = {"__name__": "__main__"}
+for language, text in zip(sys.argv[1::2], sys.argv[2::2]):
+    print(f"--- {language}\\n{text}", flush=True)
+    if language == "bash":
+        subprocess.run(["bash", "-euo", "pipefail", "-c", text], check=True)
+    else:
+        exec(compile(text, "<block>", "exec"), namespace)
+"""
+
+
+def blocks(path):
+    """Return (language, text) of the blocks of a page that are executed, in order."""
+    found = re.findall(r"^```(\w+)\n(.*?)^```$", path.read_text(), flags=re.MULTILINE | re.DOTALL)
+    return [(language, text) for language, text in found if language in ("bash", "python")]
+
+
+def run(path, folder):
+    """Execute the blocks of a page in a folder and return what they print."""
+    programs = folder / ".programs"
+    programs.mkdir()
+    for name, module in PROGRAMS.items():
+        (programs / name).write_text(f'#!/bin/sh\nexec "{sys.executable}" -m {module} "$@"\n')
+        (programs / name).chmod(0o755)
+    environment = {**os.environ, "PATH": f"{programs}:{os.environ['PATH']}", "PYTHONPATH": str(ROOT), "MPLBACKEND": "Agg"}
+    words = [word for block in blocks(path) for word in block]
+    done = subprocess.run(
+        [sys.executable, "-c", _DRIVER, *words], cwd=folder, env=environment, capture_output=True, text=True, timeout=900, check=False
+    )
+    assert done.returncode == 0, f"{done.stdout}\n{done.stderr}"
+    return done.stdout
+
+
+@pytest.mark.timeout(1000)
+@pytest.mark.parametrize("page", [page for page in PAGES if blocks(ROOT / page)])
+def test_the_blocks_of_a_page_run_in_an_empty_folder(page, tmp_path):
+    pytest.importorskip("pandas", reason="pip install 'bearing_sim[tables]'")
+    pytest.importorskip("xarray", reason="pip install 'bearing_sim[tables]'")
+    run(ROOT / page, tmp_path)
+
+
+def test_every_tutorial_is_executed():
+    tutorials = {page for page in PAGES if page.startswith("doc/tutorials/")} - {"doc/tutorials/index.md"}
+    assert {page for page in tutorials if not blocks(ROOT / page)} == {LIVE}
+    assert {language for language, _ in blocks(ROOT / "README.md")} == {"bash", "python"}
+
+
+def test_a_failing_block_fails_the_page(tmp_path):
+    page = tmp_path / "page.md"
+    page.write_text("```python\nx = 1\n```\n\n```bash\ntest -e nothing_here\n```\n")
+    (tmp_path / "folder").mkdir()
+    with pytest.raises(AssertionError, match="nothing_here"):
+        run(page, tmp_path / "folder")

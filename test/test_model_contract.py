@@ -1,0 +1,344 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""What every model does, in wall time and in simulated time alike: one list of claims, run over both."""
+
+import itertools
+import math
+import time
+
+import pytest
+from fake_simulation import FakeSimulation
+from sim_time_bench import START_NS, FalseWall
+
+from bearing_sim.messages.events import Level
+from bearing_sim.monitoring.health import Phase
+from bearing_sim.runtime.live import LiveModel
+from bearing_sim.runtime.sim_time import SimTimeModel
+from bearing_sim.scene.loader import load_scene
+
+pytestmark = pytest.mark.timeout(120)
+PATIENCE = 30.0  # [s]
+STEP = 0.02  # [s] between messages
+OVERRIDES = ["input_limits.minimum_rate=0Hz", "input_limits.stale_after=0.5s"]
+# batches of 20 ms and a second of learning: in wall time the test's time is real
+QUICK = "thresholds.residual={batch: 20 ms, learning: 1 s, settling: 50 ms, memory: 500 ms, false_alarm_time: 1 h, tolerance: 0.1 %}"
+SCENE = load_scene("deng2017_table1", [*OVERRIDES, QUICK])
+
+
+class Sink:
+    """A recorder that keeps what it gets; fails on demand."""
+
+    def __init__(self, start_ns=0):
+        self.start_ns, self.fails = start_ns, False
+        self.times, self.inputs, self.events, self.measurements, self.diagnostics, self.closed = [], [], [], [], [], 0
+
+    def write(self, block):
+        if self.fails:
+            raise OSError("no space left on device")
+        self.times += block["time"].tolist()
+
+    def write_start(self, block):
+        self.write(block)
+
+    def write_inputs(self, time, inputs, channels, origin=None):
+        self.inputs.append((time, inputs, tuple(channels)))
+
+    def write_measurement(self, time, cage_speed, residual, origin=None):
+        self.measurements.append((cage_speed, residual))
+
+    def write_event(self, event):
+        self.events.append(event)
+
+    def write_diagnostics(self, time, events, values):
+        self.diagnostics.append((events, values))
+
+    def close(self):
+        self.closed += 1
+
+
+class Driver:
+    """Sends messages to a model at even intervals and collects, until something holds or for a while of run time."""
+
+    def __init__(self, scene=SCENE):
+        self.scene, self.simulation, self.news, self.output = scene, FakeSimulation(), [], []
+        self.simulation.scene, self.simulation.counters = scene, (0, 0, 0)
+        self.speed, self.cage = 100.0, None
+
+    def step(self, drive=True):
+        """Let one interval pass, with messages of speed, load and, where set, the cage."""
+        self.wait()
+        if drive:
+            self.model.offer("shaft_speed", (self.speed,), self.now_ns, self.now_ns)
+            self.model.offer("radial_load", (800.0, 0.0), self.now_ns, self.now_ns)
+            if self.cage is not None:
+                self.model.offer("cage_speed_measured", (self.cage,), self.now_ns, self.now_ns)
+        self.news += self.model.collect(self.now_ns)
+        self.output += self.model.published()
+
+    def until(self, condition, drive=True):
+        end = time.monotonic() + PATIENCE
+        while not condition():
+            assert time.monotonic() < end, f"waited in vain; {self.model.condition(self.now_ns)}"
+            self.step(drive)
+
+    def run(self, seconds, drive=True):
+        end = self.now_ns + round(seconds * 1e9)
+        self.until(lambda: self.now_ns >= end, drive)
+
+    def condition(self):
+        return self.model.condition(self.now_ns)
+
+    def kinds(self):
+        return {event.kind for event in self.condition().events}
+
+    def newest(self, name):
+        sample = self.model.solver.newest
+        return math.nan if sample is None else float(sample[name])
+
+
+class WallDriver(Driver):
+    """Of a model in wall time."""
+
+    def __init__(self, scene=SCENE, **options):
+        super().__init__(scene)
+        self.began = time.monotonic()
+        self.model = LiveModel(scene, self.simulation, START_NS, **options)
+
+    @property
+    def now_ns(self):
+        return START_NS + round((time.monotonic() - self.began) * 1e9)
+
+    def wait(self):
+        time.sleep(STEP)
+
+
+class SimDriver(Driver):
+    """Of a model in simulated time, whose clock goes as fast as the model follows."""
+
+    def __init__(self, scene=SCENE, **options):
+        super().__init__(scene)
+        self.wall, self.now_ns = FalseWall(), 0
+        self.model = SimTimeModel(scene, self.simulation, wall=self.wall, **options)
+
+    def wait(self):
+        self.now_ns = (self.now_ns or START_NS) + round(STEP * 1e9)
+        self.wall.now += STEP
+        time.sleep(0.001)
+
+
+@pytest.fixture(params=[WallDriver, SimDriver], ids=["wall time", "simulated time"])
+def make(request):
+    """Return a function that makes drivers; their models are closed at the end."""
+    drivers = []
+
+    def made(*given, **named):
+        drivers.append(request.param(*given, **named))
+        return drivers[-1]
+
+    yield made
+    for driver in drivers:
+        driver.simulation.seconds_per_tick = 0.0
+        assert driver.model.close()
+
+
+def test_it_waits_for_the_first_speed_and_runs_from_then_on(make):
+    one = make()
+    one.step(drive=False)
+    assert one.model.solver.newest is None and "run.waiting" in one.kinds()
+    one.until(lambda: one.newest("time") > 0.2)
+    assert one.model.solver.phase is Phase.RUNNING and "run.waiting" not in one.kinds()
+    assert one.newest("shaft_speed") == 100.0 and one.newest("load_y") == 800.0
+
+
+def test_a_refused_message_is_counted_reported_and_leaves_the_inputs_as_they_were(make):
+    one = make()
+    one.until(lambda: one.newest("time") > 0.1)
+    for _ in range(3):
+        one.wait()
+        event = one.model.offer("shaft_speed", (-1.0,), one.now_ns, one.now_ns)
+        assert event.key == ("input.negative", "shaft_speed") and event.level is Level.ERROR
+    unread = one.model.refuse("radial_load", "input.malformed", "3 bytes", one.now_ns)
+    assert unread.key == ("input.malformed", "radial_load")
+    condition = one.condition()
+    assert condition.values["refused: input.negative"] == 3 and condition.values["messages refused"] == 4
+    assert next(event for event in condition.events if event.kind == "input.negative").count == 3
+    one.run(0.2)
+    assert one.newest("shaft_speed") == 100.0
+    assert [event.kind for event in one.news if event.kind.startswith("input.")] == ["input.negative", "input.malformed"]
+
+
+def test_two_publishers_whose_values_jump_to_and_fro_are_an_error_and_of_the_same_value_a_warning(make):
+    one = make()
+    one.model.note_publishers("shaft_speed", 2)
+    one.run(0.6)
+    (event,) = [event for event in one.condition().events if event.kind == "input.publishers"]
+    assert event.level is Level.WARN and event.subject == "shaft_speed"
+    speeds = itertools.cycle([100.0, 150.0])
+    for _ in range(20):
+        one.speed = next(speeds)
+        one.step()
+    (event,) = [event for event in one.condition().events if event.kind == "input.publishers"]
+    assert event.level is Level.ERROR and "between 100 and 150 rad/s" in event.reason
+    one.model.note_publishers("shaft_speed", 1)
+    assert "input.publishers" not in one.kinds()
+
+
+def test_the_oil_temperature_can_be_set_any_number_of_times_and_is_recorded(make):
+    one = make()
+    one.model.open("record", Sink)
+    one.model.set_oil_temperature(350.0, one.now_ns)
+    one.until(lambda: one.newest("oil_temperature") == 350.0)
+    for temperature in (340.0, 330.0, 345.0):
+        one.model.set_oil_temperature(temperature, one.now_ns)
+        one.until(lambda temperature=temperature: one.newest("oil_temperature") == temperature)
+    assert one.model.gate.accepted["oil_temperature"] == 0, "the topic has given none"
+    one.run(0.2)
+    sink = one.model.detach("record")
+    recorded = [inputs.oil_temperature for _, inputs, channels in sink.inputs if "oil_temperature" in channels]
+    assert [temperature for temperature in recorded if temperature != 350.0] == [340.0, 330.0, 345.0]
+    one.wait()
+    assert one.model.offer("oil_temperature", (360.0,), one.now_ns, one.now_ns) is None
+    one.until(lambda: one.newest("oil_temperature") == 360.0)
+    assert one.model.gate.accepted["oil_temperature"] == 1
+
+
+def test_thresholds_can_be_changed_in_mid_run(make):
+    one = make()
+    one.run(0.8)
+    assert "bearing.slip" not in one.kinds()
+    one.model.adjust(load_scene("deng2017_table1", [*OVERRIDES, QUICK, "thresholds.slip_warning=0.5 %"]).thresholds)
+    one.until(lambda: "bearing.slip" in one.kinds())
+    assert sum(event.kind == "bearing.slip" for event in one.news) <= 1
+
+
+def test_a_reset_returns_damage_to_the_start_and_is_reported(make):
+    one = make()
+    one.until(lambda: one.newest("damage") > 1e-8)
+    assert one.model.reset()
+    one.until(lambda: any(event.kind == "run.reset" for event in one.news))
+    assert len(one.simulation.resets) >= 2 and one.newest("damage") < 1e-8 * (1 + one.now_ns)
+    assert one.simulation.angle < 100.0 * (one.now_ns - START_NS) * 1e-9
+
+
+def test_a_pause_holds_the_model_and_a_reset_works_meanwhile(make):
+    one = make()
+    one.until(lambda: one.newest("time") > 0.1)
+    one.model.pause()
+    one.until(lambda: one.model.solver.phase is Phase.PAUSED)
+    calls = len(one.simulation.calls)
+    one.run(0.3)
+    assert len(one.simulation.calls) == calls and "run.paused" in one.kinds()
+    assert one.model.reset()
+    one.until(lambda: one.model.solver.phase is Phase.PAUSED)
+    assert len(one.simulation.calls) == calls
+    one.model.pause(False)
+    one.until(lambda: len(one.simulation.calls) > calls)
+    assert "run.paused" not in one.kinds()
+
+
+def test_sinks_are_opened_with_run_time_0_get_everything_in_order_and_are_completed_once(make):
+    one, opened = make(), []
+
+    def opener(start_ns):
+        opened.append(Sink(start_ns))
+        return opened[-1]
+
+    one.model.open("record", opener, reopen=True)
+    assert one.model.has("record") and not one.model.has("view")
+    one.cage = 39.0
+    one.until(lambda: opened)
+    one.run(0.6)
+    assert len(opened) == 1 and opened[0].start_ns == one.model.start_ns
+    one.model.record_diagnostics(one.condition(), one.now_ns)
+    sink = one.model.detach("record")
+    assert sink is opened[0] and sink.closed == 1 and not one.model.has("record") and one.model.detach("record") is None
+    assert len(sink.times) > 30 and sink.times == sorted(set(sink.times))
+    assert {channel for _, _, channels in sink.inputs for channel in channels} == {"shaft_speed", "radial_load"}
+    assert len(sink.measurements) > 10 and len(sink.diagnostics) == 1
+    written = len(sink.times)
+    one.run(0.2)
+    assert len(sink.times) == written
+
+
+def test_a_sink_that_fails_is_closed_and_reported_and_another_one_can_take_its_place(make):
+    one = make()
+    one.model.open("record", Sink, reopen=True)
+    one.until(lambda: one.newest("time") > 0.1)
+    sink = one.model.sinks.recorders["record"]
+    sink.fails = True
+    one.until(lambda: not one.model.has("record"))
+    assert sink.closed == 1
+    (event,) = [event for event in one.condition().events if event.kind == "sink.failed"]
+    assert event.subject == "record" and event.level is Level.ERROR and "no space left" in event.reason
+    one.model.open("record", Sink, reopen=True)
+    one.run(0.2)
+    assert "sink.failed" not in one.kinds() and one.model.has("record")
+    with pytest.raises(ValueError, match="record"):
+        one.model.open("record", Sink)
+
+
+def test_events_go_to_the_sinks_with_times_of_the_run(make):
+    one = make()
+    one.model.open("record", Sink)
+    one.until(lambda: one.newest("time") > 0.1)
+    one.wait()
+    one.model.offer("shaft_speed", (math.nan,), one.now_ns, one.now_ns)
+    one.step()
+    events = one.model.detach("record").events
+    assert [event.kind for event in events if event.kind.startswith("input")] == ["input.not_finite"]
+    assert all(0.0 <= event.time <= one.model.run_time(one.now_ns) for event in events)
+
+
+def test_outputs_are_stamped_by_the_clock_and_each_comes_once(make):
+    one = make(publish_rate=25.0)
+    one.until(lambda: len(one.output) > 5)
+    stamps = [output.stamp_ns for output in one.output]
+    assert stamps == sorted(set(stamps)) and all(START_NS <= stamp <= one.now_ns for stamp in stamps)
+    assert all(output.stamp_ns == one.model.stamp(float(output.sample["time"])) for output in one.output)
+
+
+def test_the_residual_of_a_measured_cage_is_published_with_its_stamp_and_reported_when_it_shifts(make):
+    one, found = make(), []
+    one.cage = 40.0 * (1 - 0.015)  # the stand-in predicts a slip of 1 % at an ideal 40 rad/s
+    for _ in range(120):
+        one.step()
+        found += one.model.residuals()
+    assert len(found) > 50 and all(residual == pytest.approx(0.005, abs=1e-9) for _, residual in found)
+    stamps = [stamp for stamp, _ in found]
+    assert stamps == sorted(set(stamps)) and START_NS <= stamps[0] and stamps[-1] <= one.now_ns
+    one.cage = 40.0 * (1 - 0.05)
+    one.until(lambda: any(event.kind == "residual.shift" for event in one.news))
+
+
+def test_a_solver_that_fails_is_reported_and_the_run_continues_when_it_can(make):
+    one = make()
+    one.until(lambda: one.newest("time") > 0.1)
+    one.simulation.fails_at = lambda now, inputs: True
+    one.until(lambda: "solver.failed" in one.kinds())
+    assert one.condition().level is Level.ERROR
+    held = one.newest("time")
+    one.simulation.fails_at = lambda now, inputs: False
+    one.model.reset()  # where the run was given up after ten failures in a row
+    one.until(lambda: one.newest("time") > held + 0.1)
+    assert one.model.solver.failed_ticks == 0
+
+
+def test_a_programming_error_in_the_solver_is_reported_and_the_rest_works_on(make):
+    one = make()
+    one.until(lambda: one.newest("time") > 0.1)
+    one.simulation.breaks_at = lambda now: True
+    one.until(lambda: one.model.solver.phase is Phase.CRASHED)
+    one.until(lambda: any(event.kind == "solver.crashed" and "ZeroDivisionError" in event.reason for event in one.news))
+    assert "solver.crashed" in one.kinds() and one.newest("time") > 0.1
+    assert one.model.reset(timeout=0.2) is False
+    assert one.model.offer("shaft_speed", (math.nan,), one.now_ns, one.now_ns).kind == "input.not_finite"
+    assert one.model.close(), "the thread has ended"
+
+
+def test_closing_ends_the_thread_completes_the_sinks_and_keeps_what_was_computed(make):
+    one = make()
+    one.model.open("record", Sink)
+    one.until(lambda: one.newest("time") > 0.1)
+    sink = one.model.sinks.recorders["record"]
+    assert one.model.close()
+    assert sink.closed == 1 and one.model.solver.phase is Phase.STOPPED
+    assert sink.times[-1] == pytest.approx(one.newest("time"), abs=0.0101)
