@@ -14,7 +14,7 @@ from bearing_sim.model.oil import kinematic_viscosities
 from bearing_sim.model.params import lubricate, pack
 from bearing_sim.model.sample import flat, new_block
 from bearing_sim.numerics.compilation import compiled_for
-from bearing_sim.numerics.time_stepping import COUNT, OK, REASONS, new_counts
+from bearing_sim.numerics.time_stepping import COUNT, OK, REASONS, new_counts, new_memory
 from bearing_sim.scene.fidelity import NUMBERS
 from bearing_sim.scene.scene import Integration, Operating, Scene
 
@@ -81,7 +81,6 @@ class Simulation:
         if self._level.advance_profile is not None:
             kept = cached_table(scene) if table is None else (table,)
             self._tables = kept[:1] if kept else ()
-        self._method = self._level.method(scene.integration.method)
         self.reset(inputs)
 
     def reset(self, inputs: Inputs | None = None) -> None:
@@ -141,7 +140,7 @@ class Simulation:
         """Take a state as the present one; sums over time continue from the sample before."""
         self._state = state
         self._compiled = None  # the code of `advance`, from its first call on: the types of its arguments stay
-        self._memory = self._method.new_memory(state.size)
+        self._memory = new_memory(state.size)
         self._step = float(self.scene.integration.first_step)
         self._lubrication = lubricate(self.scene.lubricant, self._params, self.inputs.oil_temperature)
         self._previous = new_block(1, self._params.rollers.count)
@@ -210,7 +209,7 @@ class Simulation:
         block = new_block(samples, self._params.rollers.count)
         state = self._state.copy()
         integration = self.scene.integration
-        advance = self._method.advance if integration.fixed_step is None else self._method.advance_fixed
+        advance = self._level.advance if integration.fixed_step is None else self._level.advance_fixed
         arguments = (
             self.time,
             float(duration),
@@ -230,7 +229,7 @@ class Simulation:
             self._compiled = compiled_for(advance, arguments)
         if status != OK:
             self._work = self._new_work()  # a failed search may have left nonsense to start the next one from
-            self._memory = self._method.new_memory(state.size)
+            self._memory = new_memory(state.size)
             self._step = float(integration.first_step)
             raise IntegrationError(
                 f"{REASONS[status]} between {self.time:.6g} and {self.time + duration:.6g} s (shaft {end.shaft_speed:.6g} rad/s, "
@@ -293,7 +292,7 @@ class Simulation:
 
 
 def tolerances_of(integration: Integration) -> Tolerances:
-    """Return the tolerances of a method.
+    """Return the tolerances of the integration.
 
     With a fixed step they only end the iteration of a stage, and at a bend of a law of friction an iteration cannot come closer
     than the finest ones here, however the step is divided.

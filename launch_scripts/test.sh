@@ -11,7 +11,7 @@ install_package test
 
 cd "$here"
 if [ $# = 0 ]; then # all tests, on all cores
-    "$venv/bin/python" -m bearing_sim.cli compile --every-method # the code of the checkout, which the tests import
+    "$venv/bin/python" -m bearing_sim.cli compile --fixed-step # the code of the checkout, which the tests import
     set -- -n auto --dist loadgroup
 fi
 exec "$venv/bin/python" -m pytest "$@"

@@ -15,6 +15,7 @@ ASKING = {
     "operating.moment": "1",
     "operating.misalignment": "1 mrad",
     "life.lamina": "true",
+    "integration.fixed_step": "10 us",
     "lubricant.pumping": "true",
     "bearing.ring_growth.centrifugal": "true",
     "bearing.ring_growth.thermal": "true",
@@ -97,11 +98,6 @@ def test_what_no_single_level_has_is_an_error_that_names_who_has_what(monkeypatc
     monkeypatch.setattr("bearing_sim.scene.loader.choose", lambda scene: found)
     with pytest.raises(SceneError, match=r"level = 'auto': no level has all of wants.a \(slip\); wants.b"):
         scene("auto")
-
-
-def test_an_integration_method_of_another_level_is_refused_at_the_chosen_one():
-    with pytest.raises(SceneError, match="level steady is integrated by lag"):
-        scene("auto", "integration.method=sdirk2")
 
 
 def test_the_choice_is_kept_in_a_recorded_scene_and_dropped_with_the_level():

@@ -209,14 +209,6 @@ def test_an_eyring_film_is_never_stiffer_than_the_surfaces_creep(viscosity, load
         assert contacts[0, CONTACT.d_sliding, 0] == pytest.approx(stiffest, rel=0.01)
 
 
-def test_backward_differences_keep_the_tightest_tolerance_through_vibrating_contacts():
-    # A history of order 5 that failed thrice went on along its last secant, whose error goes with the step and not with its square.
-    run = Simulation(load_scene(BEARING, ["level=planar", "integration.method=bdf", *tolerance_overrides(1e-8)]))
-    for _ in range(10):
-        run.advance(1e-5)
-    assert run.counters.smallest_steps == 0 and run.counters.rejected_steps < 0.2 * run.counters.steps
-
-
 def test_a_fixed_step_gets_over_rollers_that_go_from_sliding_one_way_to_the_other():
     # A thick Eyring film lets go of all sliding at a thousandth of the rolling speed: plain Newton corrections go to and fro for ever.
     overrides = ["integration.fixed_step=50 us", "operating.shaft_speed=-12000 rpm", "operating.radial_load=16 kN", "lubricant.pumping=true"]

@@ -17,8 +17,8 @@ from bearing_sim.numerics.time_stepping import (
     NOT_EVALUATED,
     OK,
     STEP_BUDGET,
+    advance_adaptively,
     advance_in_fixed_steps,
-    advance_one_step,
     new_counts,
     new_memory,
     start_from_known,
@@ -75,7 +75,7 @@ def keep_longest(h, y, model, work):
 
 @kernel
 def with_error_by_length(t, end, y, h, longest, budget, model, work, memory, counts):
-    return advance_one_step(
+    return advance_adaptively(
         error_by_length, rate_of, rate_and_jacobian, start_from_known, factor, solve, norm, no_limit, keep_longest,
         t, end, y, h, longest, budget, model, work, memory, counts,
     )  # fmt: skip
@@ -85,7 +85,7 @@ def with_error_by_length(t, end, y, h, longest, budget, model, work, memory, cou
 def by_rosenbrock2(t, end, y, h, longest, budget, model, work, memory, counts):
     return rosenbrock2(
         rate_of, rate_and_jacobian, start_from_known, factor, solve, norm, no_limit, step_taken,
-        t, end, end, y, h, longest, budget, model, work, memory, counts,
+        t, end, y, h, longest, budget, model, work, memory, counts,
     )  # fmt: skip
 
 
@@ -93,7 +93,7 @@ def by_rosenbrock2(t, end, y, h, longest, budget, model, work, memory, counts):
 def by_sdirk2(t, end, y, h, longest, budget, model, work, memory, counts):
     return sdirk2(
         rate_of, rate_and_jacobian, start_from_known, factor, solve, norm, no_limit, step_taken,
-        t, end, end, y, h, longest, budget, model, work, memory, counts,
+        t, end, y, h, longest, budget, model, work, memory, counts,
     )  # fmt: skip
 
 
@@ -101,7 +101,7 @@ def by_sdirk2(t, end, y, h, longest, budget, model, work, memory, counts):
 def by_failing_kernels(t, end, y, h, longest, budget, model, work, memory, counts):
     return rosenbrock2(
         failing, failing, start_from_known, factor, solve, norm, no_limit, step_taken,
-        t, end, end, y, h, longest, budget, model, work, memory, counts,
+        t, end, y, h, longest, budget, model, work, memory, counts,
     )  # fmt: skip
 
 
@@ -109,7 +109,7 @@ def by_failing_kernels(t, end, y, h, longest, budget, model, work, memory, count
 def by_rosenbrock2_fixed(t, end, y, h, longest, budget, model, work, memory, counts):
     return rosenbrock2_fixed(
         rate_of, rate_and_jacobian, start_from_known, factor, solve, norm, no_limit, step_taken,
-        t, end, end, y, h, longest, budget, model, work, memory, counts,
+        t, end, y, h, longest, budget, model, work, memory, counts,
     )  # fmt: skip
 
 
@@ -117,7 +117,7 @@ def by_rosenbrock2_fixed(t, end, y, h, longest, budget, model, work, memory, cou
 def by_sdirk2_fixed(t, end, y, h, longest, budget, model, work, memory, counts):
     return sdirk2_fixed(
         rate_of, rate_and_jacobian, start_from_known, factor, solve, norm, no_limit, step_taken,
-        t, end, end, y, h, longest, budget, model, work, memory, counts,
+        t, end, y, h, longest, budget, model, work, memory, counts,
     )  # fmt: skip
 
 
@@ -125,7 +125,7 @@ def by_sdirk2_fixed(t, end, y, h, longest, budget, model, work, memory, counts):
 def by_failing_kernels_fixed(t, end, y, h, longest, budget, model, work, memory, counts):
     return rosenbrock2_fixed(
         failing, failing, start_from_known, factor, solve, norm, no_limit, step_taken,
-        t, end, end, y, h, longest, budget, model, work, memory, counts,
+        t, end, y, h, longest, budget, model, work, memory, counts,
     )  # fmt: skip
 
 

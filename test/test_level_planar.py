@@ -179,10 +179,3 @@ def test_full_preload_presses_three_groups_of_rollers_alike(speed):
     # 25 um of squeeze shared by two equal contacts, less where the centrifugal force lifts rollers off the ring
     at_rest = 4.535e5 * 0.0125 ** (10 / 9)
     assert block["inner_load"].max() == pytest.approx(at_rest, rel=0.1)
-
-
-def test_a_method_of_another_level_is_refused_by_name():
-    from bearing_sim import SceneError
-
-    with pytest.raises(SceneError, match="planar is integrated by sdirk2"):
-        simulation("integration.method=rosenbrock2")

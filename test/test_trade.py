@@ -16,7 +16,7 @@ from bearing_sim.cli.main import main
 from bearing_sim.studies.trade import Course, Setting, Trade, Traded, front_of, recommend, settings_of, trade
 from bearing_sim.studies.trade import _errors as errors
 
-SETTING = Setting("slip", "bdf", "tolerances x 1", ())
+SETTING = Setting("slip", "tolerances x 1", ())
 PAIRS = st.lists(st.tuples(st.floats(0.01, 1e5), st.floats(0.0, 10.0)), min_size=1, max_size=30)
 
 

@@ -196,7 +196,7 @@ def _print_fleet(report) -> None:
 
 
 _MEASURED = ("real_time_factor", "slip_error_points", "largest_slip_error_points", "load_error", "life_error")
-_COLUMNS = ("level", "method", "setting", *_MEASURED, "on_front", "failure")
+_COLUMNS = ("level", "setting", *_MEASURED, "on_front", "failure")
 _FACTORS, _ERRORS = (1.0, 3.0, 10.0, 100.0, 1000.0), (0.01, 0.1, 1.0)
 
 
@@ -216,7 +216,7 @@ _FACTORS, _ERRORS = (1.0, 3.0, 10.0, 100.0, 1000.0), (0.01, 0.1, 1.0)
 @json_option
 @quick_option
 def trade(scene_name, overrides, levels, against, factor, error, table, picture, as_json, quick):
-    """Measure real-time factor and errors in slip, largest roller load and life of every level, integrator and tolerance or step on SCENE.
+    """Measure real-time factor and errors in slip, largest roller load and life of every level and tolerance or step on SCENE.
 
     All settings run the same manoeuvre from the scene's conditions (the load is halved and restored, the shaft slowed by a fifth) and are
     compared with a reference at tight tolerances.  Times are processor time of one core; other programs still slow down shared memory.
@@ -254,7 +254,7 @@ def trade(scene_name, overrides, levels, against, factor, error, table, picture,
 def _row(found, k):
     one = found.measured[k]
     setting = one.setting
-    return dict(zip(_COLUMNS, (setting.level, setting.method, setting.detail, *one[1:6], k in found.front, one.failure)))
+    return dict(zip(_COLUMNS, (setting.level, setting.detail, *one[1:6], k in found.front, one.failure)))
 
 
 def _write(path, found) -> None:
@@ -280,8 +280,8 @@ def _print_trade(name, found) -> None:
         row = _row(found, k)
         points = f"{row['slip_error_points']:.3f}", f"{row['largest_slip_error_points']:.3f}"
         values = f"{row['real_time_factor']:.3g}", *points, f"{100 * row['load_error']:.2g}", f"{100 * row['life_error']:.2g}"
-        rows.append(("*" if row["on_front"] else "", row["level"], row["method"], row["setting"], *values, row["failure"]))
-    words, numbers = ("", "level", "method", "setting"), ("x real time", "slip, points", "largest, points", "load, %", "life, %")
+        rows.append(("*" if row["on_front"] else "", row["level"], row["setting"], *values, row["failure"]))
+    words, numbers = ("", "level", "setting"), ("x real time", "slip, points", "largest, points", "load, %", "life, %")
     print_rows(f"{name}: against {found.reference}, over {found.simulated:.3g} s", (*words, *numbers, ""), rows, words)
     slip, _, load, life = found.own_error
     click.echo(
@@ -312,10 +312,10 @@ def _recommendation(one) -> str:
 
 @click.command("compile")
 @click.option("--level", "levels", multiple=True, metavar="LEVEL", help="Compile this level; can be repeated [default: all].")
-@click.option("--every-method", is_flag=True, help="Include methods that are not a level's default (integration.method, integration.fixed_step).")
+@click.option("--fixed-step", is_flag=True, help="Also compile what a scene with integration.fixed_step needs.")
 @click.option("--workers", type=click.IntRange(min=1), metavar="N", help="Number of processes [default: one per core].")
 @click.option("--prune", is_flag=True, help="Afterwards remove the compiled code of other versions of bearing_sim.")
-def compile_levels(levels, every_method, workers, prune):
+def compile_levels(levels, fixed_step, workers, prune):
     """Compile levels now instead of at their first run, in parallel on all cores.
 
     Compiled code is cached on disk, per user and version of the model; code that is already in the cache is not compiled again.
@@ -324,7 +324,7 @@ def compile_levels(levels, every_method, workers, prune):
     from bearing_sim.runtime.precompilation import builds, compile_all, remove_other_versions
 
     require_levels(levels)
-    wanted, began = builds(levels or tuple(LEVELS), every_method), time.monotonic()
+    wanted, began = builds(levels or tuple(LEVELS), fixed_step), time.monotonic()
     with progress_bar("compiling", len(wanted)) as show:
         for done, build in enumerate(compile_all(wanted, workers), 1):
             click.echo(f"{build}: compiled ({time.monotonic() - began:.0f} s)", err=True)

@@ -13,14 +13,7 @@ out of it.  The embedded method of order 1 is y + h k_1.
 import math
 
 from bearing_sim.numerics.compilation import template
-from bearing_sim.numerics.time_stepping import (
-    COUNT,
-    NOT_CONVERGED,
-    NOT_EVALUATED,
-    OK,
-    advance_in_fixed_steps,
-    advance_one_step,
-)
+from bearing_sim.numerics.time_stepping import COUNT, NOT_CONVERGED, NOT_EVALUATED, OK, advance_adaptively, advance_in_fixed_steps
 
 GAMMA = 1.0 - 1.0 / math.sqrt(2.0)
 
@@ -63,11 +56,11 @@ def rosenbrock2_attempt(rhs, rhs_and_jacobian, predict, factor, solve, error_nor
 @template
 def rosenbrock2(
     rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_limit, step_taken,
-    t, end, stop, y, h, maximum_step, budget, model, work, memory, counts,
+    t, end, y, h, maximum_step, budget, model, work, memory, counts,
 ):  # fmt: skip
-    """Advance with error control; parameters and results as of `bearing_sim.numerics.time_stepping.advance_one_step`."""
+    """Advance with error control; parameters and results as of `bearing_sim.numerics.time_stepping.advance_adaptively`."""
     memory.derivative_time[0] = math.nan
-    return advance_one_step(
+    return advance_adaptively(
         rosenbrock2_attempt, rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_limit, step_taken,
         t, end, y, h, maximum_step, budget, model, work, memory, counts,
     )  # fmt: skip
@@ -76,7 +69,7 @@ def rosenbrock2(
 @template
 def rosenbrock2_fixed(
     rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_limit, step_taken,
-    t, end, stop, y, h, maximum_step, budget, model, work, memory, counts,
+    t, end, y, h, maximum_step, budget, model, work, memory, counts,
 ):  # fmt: skip
     """Advance in steps of ``maximum_step``; see `bearing_sim.numerics.time_stepping.advance_in_fixed_steps`."""
     memory.derivative_time[0] = math.nan

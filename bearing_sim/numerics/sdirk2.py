@@ -12,8 +12,8 @@ iteration for the solution: this is what carries a step over contacts that open 
 import math
 
 from bearing_sim.numerics.compilation import template
-from bearing_sim.numerics.newton import NEWTON, solve_implicit
-from bearing_sim.numerics.time_stepping import OK, advance_in_fixed_steps, advance_one_step
+from bearing_sim.numerics.newton import solve_implicit
+from bearing_sim.numerics.time_stepping import OK, advance_adaptively, advance_in_fixed_steps
 
 GAMMA = 1.0 - 1.0 / math.sqrt(2.0)
 _ENOUGH = 1 / 60  # of the tolerances: the error that the iteration of a stage may leave (assumption)
@@ -27,7 +27,7 @@ def sdirk2_attempt(rhs, rhs_and_jacobian, predict, factor, solve, error_norm, t,
     stiff components do not dominate it (L. F. Shampine, L. S. Baca: Error estimators for stiff differential equations, J. Comput.
     Appl. Math. 11, 1984).  Row 8 of ``memory.scratch`` keeps the slope at the end of a step for the next one to predict with.
     """
-    scratch, newton = memory.scratch, memory.newton
+    scratch = memory.scratch
     result, error = scratch[1], scratch[2]
     first, known, rate, change, slope, next_slope = scratch[3], scratch[4], scratch[5], scratch[6], scratch[7], scratch[8]
     shift = GAMMA * h
@@ -36,10 +36,9 @@ def sdirk2_attempt(rhs, rhs_and_jacobian, predict, factor, solve, error_norm, t,
         for i in range(y.shape[0]):
             slope[i] = next_slope[i]
     predict(y, shift, slope, model, work, first)
-    newton[NEWTON.shift] = 0.0
     outcome = solve_implicit(
-        rhs, rhs_and_jacobian, factor, solve, error_norm, False,
-        t + shift, y, shift, _ENOUGH, first, change, rate, change, newton, model, work, counts,
+        rhs, rhs_and_jacobian, factor, solve, error_norm,
+        t + shift, y, shift, _ENOUGH, first, rate, change, model, work, counts,
     )  # fmt: skip
     if outcome != OK:
         return outcome
@@ -47,10 +46,9 @@ def sdirk2_attempt(rhs, rhs_and_jacobian, predict, factor, solve, error_norm, t,
         error[i] = (first[i] - y[i]) * per_shift  # the first stage's slope
         known[i] = y[i] + (1.0 - GAMMA) * h * error[i]
     predict(known, shift, error, model, work, result)
-    newton[NEWTON.shift] = 0.0
     outcome = solve_implicit(
-        rhs, rhs_and_jacobian, factor, solve, error_norm, False,
-        t + h, known, shift, _ENOUGH, result, change, rate, change, newton, model, work, counts,
+        rhs, rhs_and_jacobian, factor, solve, error_norm,
+        t + h, known, shift, _ENOUGH, result, rate, change, model, work, counts,
     )  # fmt: skip
     if outcome != OK:
         return outcome
@@ -65,10 +63,10 @@ def sdirk2_attempt(rhs, rhs_and_jacobian, predict, factor, solve, error_norm, t,
 @template
 def sdirk2(
     rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_limit, step_taken,
-    t, end, stop, y, h, maximum_step, budget, model, work, memory, counts,
+    t, end, y, h, maximum_step, budget, model, work, memory, counts,
 ):  # fmt: skip
-    """Advance with error control; parameters and results as of `bearing_sim.numerics.time_stepping.advance_one_step`."""
-    return advance_one_step(
+    """Advance with error control; parameters and results as of `bearing_sim.numerics.time_stepping.advance_adaptively`."""
+    return advance_adaptively(
         sdirk2_attempt, rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_limit, step_taken,
         t, end, y, h, maximum_step, budget, model, work, memory, counts,
     )  # fmt: skip
@@ -77,7 +75,7 @@ def sdirk2(
 @template
 def sdirk2_fixed(
     rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_limit, step_taken,
-    t, end, stop, y, h, maximum_step, budget, model, work, memory, counts,
+    t, end, y, h, maximum_step, budget, model, work, memory, counts,
 ):  # fmt: skip
     """Advance in steps of ``maximum_step``; see `bearing_sim.numerics.time_stepping.advance_in_fixed_steps`."""
     return advance_in_fixed_steps(

@@ -1,8 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""The loops around a time-stepping method: one with error control for every method, one with a fixed step.
+"""The loops around a time-stepping method: one with error control, one with a fixed step.
 
-Neither loop knows a bearing or a method.  A method comes in as five templates (`fit_step`, `attempt`, `estimate_error`, `accept`
-and `reject`), a level as eight kernels:
+Neither loop knows a bearing or a method.  A method comes in as the template ``attempt``, a level as eight kernels:
 
 rhs, rhs_and_jacobian : ``(t, y, model, work, rate)`` write dy/dt into ``rate``, the second also the Jacobian into ``work``;
     return False where they cannot be evaluated.
@@ -73,17 +72,16 @@ CONTROL = Control()
 
 
 class Memory(NamedTuple):
-    """What a one-step method writes; that of a multistep method is `bearing_sim.numerics.bdf.History`."""
+    """What a method writes."""
 
     scratch: np.ndarray  # rate, result, error and up to six rows of the method's own, shape (9, n); the first is free between calls
     control: np.ndarray  # see `Control`
-    newton: np.ndarray  # see `bearing_sim.numerics.newton.Newton`
     derivative_time: np.ndarray  # where the derivatives that the method keeps belong to [s], NaN where it keeps none, shape (1,)
 
 
 def new_memory(size: int) -> Memory:
     """Return memory for ``size`` states."""
-    return Memory(np.zeros((9, size)), np.zeros(len(CONTROL)), np.zeros(2), np.full(1, np.nan))
+    return Memory(np.zeros((9, size)), np.zeros(len(CONTROL)), np.full(1, np.nan))
 
 
 @kernel
@@ -93,26 +91,63 @@ def start_from_known(known, shift, slope, model, work, guess):
         guess[i] = known[i]
 
 
+# The step-size rule.  The form is standard (E. Hairer, G. Wanner: Solving Ordinary Differential Equations II, 2nd ed. 1996, section
+# IV.8); the numbers are an assumption.  The rule aims at a quarter of the tolerances, because a rejected step costs as much as an
+# accepted one, and its growth is damped (_GAIN), because the error of a step with impacts scatters by a factor of ten from one step
+# to the next.
+_ORDER = 2.0  # of the error estimate in the step: that of an embedded method of order 1
+_AIM, _GAIN = 0.24, 0.2
+_LARGEST_GROWTH, _LARGEST_SHRINK, _SHRINK_UNSOLVED = 4.0, 0.2, 0.1
+
+
+@kernel
+def _fit(limit, maximum_step, end, control):
+    """Set the step to attempt; the last two steps before ``end`` share what is left evenly, because a sliver would spoil the next size."""
+    allowed = min(control[CONTROL.next_step], maximum_step, limit)
+    left = end - control[CONTROL.time]
+    control[CONTROL.allowed] = allowed
+    control[CONTROL.step] = left if allowed >= left else (0.5 * left if allowed > 0.5 * left else allowed)
+
+
+@kernel
+def _accept(error, end, y, result, control):
+    """Take the result of the step, and grow or shrink the next one so that its error comes near the aim."""
+    step, allowed = control[CONTROL.step], control[CONTROL.allowed]
+    for i in range(y.shape[0]):
+        y[i] = result[i]
+    control[CONTROL.time] = end if step == end - control[CONTROL.time] else control[CONTROL.time] + step
+    growth = min(_LARGEST_GROWTH, (_AIM / (error + 1e-10)) ** (_GAIN / _ORDER))
+    if step < allowed:
+        control[CONTROL.next_step] = max(step * growth, control[CONTROL.next_step])
+    else:
+        control[CONTROL.next_step] = max(allowed * growth, SMALLEST_STEP)
+
+
+@kernel
+def _reject(error, control):
+    """Shorten the step so that its error comes near the aim, or to a tenth where there is no error to go by."""
+    step = control[CONTROL.step]
+    if math.isfinite(error):
+        control[CONTROL.next_step] = max(step * max(_LARGEST_SHRINK, (_AIM / error) ** (1.0 / _ORDER)), SMALLEST_STEP)
+    else:
+        control[CONTROL.next_step] = step * _SHRINK_UNSOLVED
+
+
 @template
 def advance_adaptively(
-    fit_step, attempt, estimate_error, accept, reject,
-    rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_limit, step_taken,
-    end, stop, y, maximum_step, budget, model, work, memory, counts,
+    attempt, rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_limit, step_taken,
+    t, end, y, h, maximum_step, budget, model, work, memory, counts,
 ):  # fmt: skip
-    """Step from ``memory.control``'s time until ``end`` is reached, accepting or rejecting each step by its error.
+    """Advance ``y`` in place from ``t`` to ``end``, accepting or rejecting each step by its error.
 
     Parameters
     ----------
-    fit_step : ``(limit, maximum_step, stop, memory)`` sets the step to attempt.
-    attempt : ``(kernels of the level, t, y, h, model, work, memory, counts)`` computes a step, returns a status.
-    estimate_error : ``(error_norm, y, model, memory)`` returns the step's error over what the tolerances allow.
-    accept : ``(error_norm, error, stop, y, model, memory)`` takes the step into ``y`` and the time, and chooses the next one.
-    reject : ``(rhs, error_norm, outcome, error, y, model, work, memory, counts)`` chooses a shorter step; returns False where
-        the right-hand side could not be evaluated.
+    attempt : ``(kernels of the level, t, y, h, model, work, memory, counts)`` computes a step: leaves the result in row 1 of
+        ``memory.scratch`` and the error estimate in row 2, and returns a status.
     rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_limit, step_taken : kernels of the level, see the module's docstring.
-    end : time to reach [s].
-    stop : time that no step may pass, at least ``end`` [s].
+    t, end : time, and time to reach [s].
     y : newest state, changed in place.
+    h : step to try first [s].
     maximum_step : longest step [s].
     budget : steps allowed, rejected ones included.
     memory : of the method.
@@ -123,109 +158,35 @@ def advance_adaptively(
     status : OK, or a key of `REASONS`.
     h : step to try next [s].
     """
-    control = memory.control
+    control, result = memory.control, memory.scratch[1]
+    control[CONTROL.time], control[CONTROL.next_step] = t, h
     while control[CONTROL.time] < end:
         if budget <= 0:
             return STEP_BUDGET, control[CONTROL.next_step]
         budget -= 1
-        fit_step(step_limit(control[CONTROL.time], y, model), maximum_step, stop, memory)
+        _fit(step_limit(control[CONTROL.time], y, model), maximum_step, end, control)
         step = control[CONTROL.step]
         outcome = attempt(
             rhs, rhs_and_jacobian, predict, factor, solve, error_norm, control[CONTROL.time], y, step, model, work, memory, counts,
         )  # fmt: skip
         error = math.inf
         if outcome == OK:
-            error = estimate_error(error_norm, y, model, memory)
+            error = error_norm(control[CONTROL.time], y, memory.scratch[2], model)
         finite = math.isfinite(error)
         if error <= 1.0 or (finite and step <= SMALLEST_STEP):
             counts[COUNT.steps] += 1
             if error > 1.0:
                 counts[COUNT.smallest_steps] += 1
-            accept(error_norm, error, stop, y, model, memory)
+            _accept(error, end, y, result, control)
             step_taken(step, y, model, work)
             continue
         counts[COUNT.rejected_steps] += 1
         if outcome == NON_FINITE or (outcome == OK and not finite):
             counts[COUNT.non_finite_steps] += 1
-        if not reject(rhs, error_norm, outcome, error, y, model, work, memory, counts):
-            return NOT_EVALUATED, control[CONTROL.next_step]
+        _reject(error, control)
         if control[CONTROL.next_step] < SMALLEST_STEP:
             return outcome if outcome != OK else NON_FINITE, control[CONTROL.next_step]
     return OK, control[CONTROL.next_step]
-
-
-# The step-size rule of one-step methods.  The form is standard (E. Hairer, G. Wanner: Solving Ordinary Differential Equations II,
-# 2nd ed. 1996, section IV.8); the numbers are an assumption.  The rule aims at a quarter of the tolerances, because a rejected step
-# costs as much as an accepted one, and its growth is damped (_GAIN), because the error of a step with impacts scatters by a factor of
-# ten from one step to the next.
-_ORDER = 2.0  # of the error estimate in the step: that of an embedded method of order 1
-_AIM, _GAIN = 0.24, 0.2
-_LARGEST_GROWTH, _LARGEST_SHRINK, _SHRINK_UNSOLVED = 4.0, 0.2, 0.1
-
-
-@template
-def fit_one_step(limit, maximum_step, stop, memory):
-    """Set the step to attempt; the last two steps before ``stop`` share what is left evenly, because a sliver would spoil the next size."""
-    control = memory.control
-    allowed = min(control[CONTROL.next_step], maximum_step, limit)
-    left = stop - control[CONTROL.time]
-    control[CONTROL.allowed] = allowed
-    control[CONTROL.step] = left if allowed >= left else (0.5 * left if allowed > 0.5 * left else allowed)
-
-
-@template
-def one_step_error(error_norm, y, model, memory):
-    """Return the error of the step attempted over what the tolerances allow."""
-    return error_norm(memory.control[CONTROL.time], y, memory.scratch[2], model)
-
-
-@template
-def accept_one_step(error_norm, error, stop, y, model, memory):
-    """Take the result of the step, and grow or shrink the next one so that its error comes near the aim."""
-    control, result = memory.control, memory.scratch[1]
-    step, allowed = control[CONTROL.step], control[CONTROL.allowed]
-    for i in range(y.shape[0]):
-        y[i] = result[i]
-    control[CONTROL.time] = stop if step == stop - control[CONTROL.time] else control[CONTROL.time] + step
-    growth = min(_LARGEST_GROWTH, (_AIM / (error + 1e-10)) ** (_GAIN / _ORDER))
-    if step < allowed:
-        control[CONTROL.next_step] = max(step * growth, control[CONTROL.next_step])
-    else:
-        control[CONTROL.next_step] = max(allowed * growth, SMALLEST_STEP)
-
-
-@template
-def reject_one_step(rhs, error_norm, outcome, error, y, model, work, memory, counts):
-    """Shorten the step so that its error comes near the aim, or to a tenth where there is no error to go by."""
-    control = memory.control
-    step = control[CONTROL.step]
-    if math.isfinite(error):
-        control[CONTROL.next_step] = max(step * max(_LARGEST_SHRINK, (_AIM / error) ** (1.0 / _ORDER)), SMALLEST_STEP)
-    else:
-        control[CONTROL.next_step] = step * _SHRINK_UNSOLVED
-    return True
-
-
-@template
-def advance_one_step(
-    attempt, rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_limit, step_taken,
-    t, end, y, h, maximum_step, budget, model, work, memory, counts,
-):  # fmt: skip
-    """Advance ``y`` in place from ``t`` to ``end`` by a one-step method with error control.
-
-    Parameters
-    ----------
-    attempt : computes a step: reads ``memory.scratch``, leaves the result in row 1 and the error estimate in row 2.
-    h : step to try first [s].
-
-    The other parameters and the results are those of `advance_adaptively`.
-    """
-    memory.control[CONTROL.time], memory.control[CONTROL.next_step] = t, h
-    return advance_adaptively(
-        fit_one_step, attempt, one_step_error, accept_one_step, reject_one_step,
-        rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_limit, step_taken,
-        end, end, y, maximum_step, budget, model, work, memory, counts,
-    )  # fmt: skip
 
 
 _HALVINGS = 10
@@ -252,7 +213,7 @@ def advance_in_fixed_steps(
 
     Parameters
     ----------
-    attempt : of a one-step method, as for `advance_one_step`.
+    attempt : of a method, as for `advance_adaptively`.
     h : longest step [s].
 
     The other parameters and the results are those of `advance_adaptively`; the step returned is ``h``.

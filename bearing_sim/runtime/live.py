@@ -54,15 +54,15 @@ def warmed_up(scene: Scene) -> Simulation:
 def governor_of(simulation: Simulation) -> Governor | None:
     """Return a governor over a simulation's level and the levels of lower fidelity that support its scene; None if there are none.
 
-    Their code is compiled or loaded here.  Lower levels use their own default methods, with the scene's tolerance.
+    Their code is compiled or loaded here.  Lower levels use the scene's tolerances.
 
     Raises
     ------
     IntegrationError
         The scene's own operating conditions cannot be computed at one of them.
     """
-    scene, own = simulation.scene, dataclasses.replace(simulation.scene.integration, method=None, fixed_step=None)
-    lower = [warmed_up(dataclasses.replace(scene, level=level, integration=own)) for level in lower_levels(scene)]
+    scene = dataclasses.replace(simulation.scene, integration=dataclasses.replace(simulation.scene.integration, fixed_step=None))
+    lower = [warmed_up(dataclasses.replace(scene, level=level)) for level in lower_levels(scene)]
     return Governor([simulation, *lower]) if lower else None
 
 

@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Compile levels and methods ahead of time, in parallel processes, and remove the code that older versions have compiled.
+"""Compile levels ahead of time, in parallel processes, and remove the code that older versions have compiled.
 
 Each level is compiled when it first runs, which takes from seconds (`slip`) to minutes (`spatial`) of one core, once per version of the model.
 For a machine image or a test suite it is faster to compile everything at once, on all cores.
@@ -17,48 +17,33 @@ _SECONDS = 1e-4  # a run this short calls everything that has to be compiled
 
 
 class Build(NamedTuple):
-    """Something to compile: a level advanced by a method.
-
-    Attributes
-    ----------
-    level, method : names, see `bearing_sim.levels.level`.
-    fixed_step : with steps of a fixed size instead of error control.
-    """
+    """Something to compile: a level, with error control or in steps of a fixed size."""
 
     level: str
-    method: str
     fixed_step: bool = False
 
     def __str__(self) -> str:
-        return f"{self.level} by {self.method}" + (" in fixed steps" if self.fixed_step else "")
+        return self.level + (" in fixed steps" if self.fixed_step else "")
 
     @property
     def overrides(self) -> list[str]:
         """Overrides that make any scene run this."""
-        return [f"level={self.level}", f"integration.method={self.method}", *(["integration.fixed_step=10 us"] if self.fixed_step else [])]
+        return [f"level={self.level}", *(["integration.fixed_step=10 us"] if self.fixed_step else [])]
 
 
-def builds(levels: Sequence[str], every_method: bool = False) -> list[Build]:
+def builds(levels: Sequence[str], fixed_step: bool = False) -> list[Build]:
     """Return what to compile for some levels, the slowest to compile first so that no core is idle at the end.
 
     Parameters
     ----------
     levels : names.
-    every_method : also the methods that are not a level's default, and fixed steps.
+    fixed_step : also for steps of a fixed size.
     """
     from bearing_sim.levels.level import LEVELS
 
     slowest_first = [level for level in reversed(LEVELS) if level in levels]
-    first = [Build(level, next(iter(LEVELS[level].methods))) for level in slowest_first]
-    if not every_method:
-        return first
-    others = [
-        build
-        for level in slowest_first
-        for name, method in LEVELS[level].methods.items()
-        for build in (Build(level, name), *([Build(level, name, True)] if method.advance_fixed is not None else []))
-    ]
-    return first + [build for build in others if build not in first]
+    others = [Build(level, True) for level in slowest_first if fixed_step and LEVELS[level].advance_fixed is not None]
+    return [*map(Build, slowest_first), *others]
 
 
 def compile_all(wanted: Sequence[Build], workers: int | None = None) -> Iterator[Build]:

@@ -209,7 +209,7 @@ class _Run:
         if level == self._simulation.scene.level:
             return
         self.result.level_changes += 1
-        own = self._scene.integration if level == self._scene.level else dataclasses.replace(self._scene.integration, method=None, fixed_step=None)
+        own = self._scene.integration if level == self._scene.level else dataclasses.replace(self._scene.integration, fixed_step=None)
         self.finish()
         other = Simulation(dataclasses.replace(self._scene, level=level, integration=own), self._simulation.inputs)
         other.take_over(self._simulation)

@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Fidelity levels: what each can compute, the choice of a level for a scene, and the integration methods of each."""
+"""Fidelity levels: what each can compute, and the choice of a level for a scene."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -7,17 +7,6 @@ from typing import Any, NamedTuple
 LEVELS = ("steady", "slip", "planar", "spatial")  # from the lowest to the highest fidelity
 NUMBERS = {"steady": 0, "slip": 1, "planar": 2, "spatial": 3}  # code of a level in a sample
 REDUCES_TO = {"spatial": "planar"}  # equal motion and loads, to round-off, unless the scene uses what only the higher level has
-
-
-# Integration methods of each level, the default first.  Only names: `bearing_sim.levels.level` binds them to code.
-METHODS = {
-    "steady": ("lag",),
-    "slip": ("rosenbrock2", "bdf"),
-    "planar": ("sdirk2", "bdf"),
-    "spatial": ("sdirk2",),
-}
-# Methods that can run with a fixed step; the others need their error estimates.
-FIXED_STEP = ("rosenbrock2", "sdirk2")
 
 
 class Effect(NamedTuple):
@@ -70,6 +59,7 @@ EFFECTS = (
     Effect("operating.moment", ("spatial",), "whose ring tilts", lambda scene: scene.operating.moment is not None),
     Effect("operating.misalignment", ("spatial",), "whose ring tilts", lambda scene: scene.operating.misalignment != 0.0),
     Effect("life.lamina", ("spatial",), "which slices the rollers", lambda scene: scene.life.lamina),
+    Effect("integration.fixed_step", MARCHING, "which take steps", lambda scene: scene.integration.fixed_step is not None),
     Effect("lubricant.pumping", LEVELS, "whose contacts pump oil", lambda scene: scene.lubricant.pumping),
     Effect("bearing.ring_growth.centrifugal", LEVELS, "whose rings grow", lambda scene: scene.bearing.ring_growth.centrifugal),
     Effect("bearing.ring_growth.thermal", LEVELS, "whose rings grow", lambda scene: scene.bearing.ring_growth.thermal),
@@ -124,8 +114,8 @@ def level_of(sample) -> str:
 
 
 def lower_levels(scene) -> list[str]:
-    """Return the levels below a scene's own that have everything it asks for, the highest of them first."""
-    able = levels_with(asked_for(scene))
+    """Return the levels below a scene's own that have everything it asks for, whatever its steps, the highest of them first."""
+    able = levels_with([effect for effect in asked_for(scene) if effect.field != "integration.fixed_step"])
     return [level for level in reversed(LEVELS[: LEVELS.index(scene.level)]) if level in able]
 
 

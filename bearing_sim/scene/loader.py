@@ -152,9 +152,7 @@ def _with_level(tree: Mapping) -> Mapping:
     """
     if tree.get("level") != "auto":
         return tree
-    # Validate at the level with all effects; methods depend on the level and are checked at the chosen one.
-    integration = {name: value for name, value in (tree.get("integration") or {}).items() if name not in ("method", "fixed_step")}
-    found = choose(TypeAdapter(Scene).validate_python({**tree, "level": "spatial", "integration": integration}))
+    found = choose(TypeAdapter(Scene).validate_python({**tree, "level": "spatial"}))  # the level with all effects
     if found.level is None:
         detail = {"type": PydanticCustomError("no_level", "{reason}", {"reason": found.reason}), "loc": ("level",), "input": "auto"}
         raise ValidationError.from_exception_data("Scene", [detail])

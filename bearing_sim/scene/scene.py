@@ -12,7 +12,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from bearing_sim.scene.bearing import Bearing
-from bearing_sim.scene.fidelity import FIXED_STEP, METHODS, WANTS, refusals
+from bearing_sim.scene.fidelity import WANTS, refusals
 from bearing_sim.scene.lubricant import Lubricant
 from bearing_sim.scene.quantity import quantity, record
 from bearing_sim.scene.thresholds import Thresholds
@@ -66,7 +66,6 @@ class Integration:
     the iterations within a step, and first and longest step are not used.
     """
 
-    method: str | None = None  # see `bearing_sim.scene.fidelity`; None is the level's own
     absolute_tolerance: AbsoluteTolerance = field(default_factory=AbsoluteTolerance)
     relative_tolerance: quantity("", "error allowed in a step in a speed, relative to ideal rolling", 1e-12, 1.0, "%") = 0.03
     maximum_step: quantity("s", "longest step", 1e-9, 1.0, "us") = 1e-2
@@ -192,19 +191,6 @@ class Scene:
         errors = refusals(self)
         if errors:
             raise ValueError("; ".join(errors))
-        return self
-
-    @model_validator(mode="after")
-    def _method_is_one_of_the_level(self):
-        names = METHODS.get(self.level)
-        if names is None:  # a level without integration
-            return self
-        method = self.integration.method or names[0]
-        if method not in names:
-            known = " or ".join(filter(None, (", ".join(names[:-1]), names[-1])))
-            raise ValueError(f"integration.method: level {self.level} is integrated by {known}, not by {method}")
-        if self.integration.fixed_step is not None and method not in FIXED_STEP:
-            raise ValueError(f"integration.fixed_step: {method} needs adaptive steps; use {' or '.join(FIXED_STEP)}, or leave fixed_step out")
         return self
 
     @model_validator(mode="after")

@@ -82,7 +82,7 @@ DIMENSIONS: Mapping[str, Callable] = {
     "contour_slope": _choice("true", "true", "false"),
     "land_squeeze": _choice("true", "true", "false"),
     "pocket_friction": _or_zero(0.2, _linear(0.0, 0.3)),
-    "method": lambda u: u,  # mapped below, because each level has its own methods
+    "fixed": _choice(False, False, False, True),
     "tolerances": _logarithmic(1e-8, 1.0),  # times the default ones
     "step": _logarithmic(1e-7, 1e-3),
     "slices": lambda u: 1 + min(int(200 * u * u), 199),
@@ -114,8 +114,7 @@ def sampled_cases(level: str, samples: int, seed: int) -> list[Case]:
         for name in ignored:
             del point[name]
         point["pocket_clearance"] = _logarithmic(1e-6, _LARGEST_PLAY * _room(point["rollers"]))(point["pocket_clearance"])
-        method, fixed = _method(level, point.pop("method"))
-        point |= {"method": method, "fixed": fixed}
+        point["fixed"] = point["fixed"] and LEVELS[level].advance_fixed is not None
         cases.append(Case(f"sample {number}", level, tuple(overrides_of(level, point)), point["course"], point))
     return cases
 
@@ -129,23 +128,13 @@ def _pitch_radius(rollers: int) -> float:
     return (_INNER_RADIUS + _DIAMETER / 2) * max(rollers / _ROLLERS_THAT_FIT, 1.0)
 
 
-def _method(level: str, u: float) -> tuple[str, bool]:
-    """Return a method and whether its step is fixed: the level's default for half of the samples, else any other combination."""
-    methods = LEVELS[level].methods
-    own = next(iter(methods))
-    others = [(name, False) for name in methods if name != own] + [(name, True) for name, method in methods.items() if method.advance_fixed]
-    if u < 0.5 or not others:
-        return own, False
-    return others[min(int((u - 0.5) * 2.0 * len(others)), len(others) - 1)]
-
-
 def overrides_of(level: str, point: Mapping) -> list[str]:
     """Return the overrides for a point of the map.
 
     Parameters
     ----------
     level : of the scene.
-    point : values by dimension, see `DIMENSIONS`, with ``method`` by name and ``fixed``.
+    point : values by dimension, see `DIMENSIONS`.
     """
     outward = _pitch_radius(point["rollers"]) - _pitch_radius(1)
     inner = _INNER_RADIUS + outward
@@ -174,7 +163,6 @@ def overrides_of(level: str, point: Mapping) -> list[str]:
         f"operating.shaft_speed={point['shaft_speed_rpm'] * math.pi / 30!r}",
         f"operating.radial_load={point['radial_load']!r}",
         f"operating.load_angle={point['load_angle']!r}",
-        f"integration.method={point['method']}",
         *tolerance_overrides(point["tolerances"]),
         f"integration.{'fixed' if point['fixed'] else 'maximum'}_step={point['step']!r}",
     ]
@@ -296,20 +284,15 @@ _SLICED = {
 
 
 def corner_cases(level: str) -> list[Case]:
-    """Return all corners of one level: scenes, and its methods at the tightest and loosest tolerances and at long and short steps."""
+    """Return all corners of one level: scenes, the tightest and loosest tolerances, and long and short steps."""
     corners = dict(CORNERS)
     if takes(level, "operating.misalignment=1e-3"):
         corners |= _SLICED
-    for name, method in LEVELS[level].methods.items():
-        chosen = f"integration.method={name}"
-        corners |= {f"{name}, tolerances x {t:g}": ([chosen, *tolerance_overrides(t)], "steady") for t in (1.0, 1e-3, 1e-8)}
-        corners[f"{name}, reversal at 100,000 rpm"] = [chosen, f"{_SPEED}=100000 rpm"], "reversal"
-        corners[f"{name}, steps of 50 kN"] = [chosen, f"{_LOAD}=50 kN"], "load_step"
-        if method.advance_fixed:
-            for step in (1e-7, 1e-6, 1e-5, 1e-4, 1e-3):
-                corners[f"{name}, fixed step {step:g} s"] = [chosen, f"integration.fixed_step={step!r}"], "steady"
-        else:
-            corners[f"{name}, fixed step"] = [chosen, "integration.fixed_step=1e-5"], "steady"
+    corners |= {f"tolerances x {t:g}": (tolerance_overrides(t), "steady") for t in (1.0, 1e-3, 1e-8)}
+    corners["reversal at 100,000 rpm"] = [f"{_SPEED}=100000 rpm"], "reversal"
+    corners["steps of 50 kN"] = [f"{_LOAD}=50 kN"], "load_step"
+    steps = (1e-7, 1e-6, 1e-5, 1e-4, 1e-3)  # a level without steps refuses them
+    corners |= {f"fixed step {step:g} s": ([f"integration.fixed_step={step!r}"], "steady") for step in steps}
     return [Case(name, level, (f"level={level}", *overrides), course, {"course": course}) for name, (overrides, course) in corners.items()]
 
 

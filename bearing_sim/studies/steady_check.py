@@ -45,11 +45,11 @@ def marched(scene: Scene, inputs: Inputs, lag: float) -> tuple[float, float]:
 
     Parameters
     ----------
-    scene : its level and method are replaced, its tolerances tightened.
+    scene : its level is replaced, its tolerances tightened.
     inputs : held constant.
     lag : time constant of the cage [s], from which the length of the windows follows.
     """
-    run = Simulation(replace(scene, level="slip", integration=replace(scene.integration, method=None).with_tolerances(_TIGHTER)), inputs)
+    run = Simulation(replace(scene, level="slip", integration=scene.integration.with_tolerances(_TIGHTER)), inputs)
     run.advance(8 * lag + 0.02)
     before = math.nan
     for _ in range(_WINDOWS):

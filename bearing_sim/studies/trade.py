@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Speed against accuracy: every level, integrator and tolerance or step on the same manoeuvre, against a tight reference.
+"""Speed against accuracy: every level and tolerance or step on the same manoeuvre, against a tight reference.
 
 The manoeuvre starts at a scene's conditions, halves the load, restores it, and slows the shaft by a fifth, so that errors show in
 transients as well as in steady states.  Its parts are measured in cage turns, so that slow and fast bearings see the same manoeuvre.
@@ -39,14 +39,13 @@ class Setting(NamedTuple):
     """One way to compute a scene, as overrides of its file."""
 
     level: str
-    method: str
     detail: str  # tolerances, step or slices, as text
     overrides: tuple[str, ...]
 
     @property
     def name(self) -> str:
         """Name in tables and pictures."""
-        return " ".join(part for part in (self.level, self.method, self.detail) if part)
+        return f"{self.level} {self.detail}"
 
 
 class Course(NamedTuple):
@@ -81,18 +80,18 @@ class Trade(NamedTuple):
 
 
 def settings_of(level: str, quick: bool = False) -> list[Setting]:
-    """Return the settings of a level: methods at tolerances, fixed steps, numbers of slices; only one for a table."""
+    """Return the settings of a level: tolerances, fixed steps, numbers of slices; only one for a table."""
     if LEVELS[level].advance_profile is not None:
-        return [Setting(level, "", "table", ())]
-    methods, found = LEVELS[level].methods, []
-    for method in list(methods)[: 1 if quick else None]:
-        by = f"integration.method={method}"
-        for factor in (1.0,) if quick else _FACTORS:
-            found.append(Setting(level, method, f"tolerances x {factor:g}", (by, *(tolerance_overrides(factor) if factor != 1.0 else ()))))
-        if methods[method].advance_fixed is not None and not quick:
-            found += [Setting(level, method, f"step {step} us", (by, f"integration.fixed_step={step} us")) for step in (5, 10, 20, 40)]
-    if level == "spatial" and not quick:
-        found += [Setting(level, "", f"{count} slices", (f"bearing.roller.slices={count}",)) for count in (5, 10, 50, 200)]
+        return [Setting(level, "table", ())]
+    found = [
+        Setting(level, f"tolerances x {factor:g}", tuple(tolerance_overrides(factor)) if factor != 1.0 else ())
+        for factor in ((1.0,) if quick else _FACTORS)
+    ]
+    if quick:
+        return found
+    found += [Setting(level, f"step {step} us", (f"integration.fixed_step={step} us",)) for step in (5, 10, 20, 40)]
+    if level == "spatial":
+        found += [Setting(level, f"{count} slices", (f"bearing.roller.slices={count}",)) for count in (5, 10, 50, 200)]
     return found
 
 
@@ -145,7 +144,7 @@ def trade(
         for setting in settings_of(level, quick):
             progress(setting.name)
             measured.append(_measure(load_scene(name, [*overrides, f"level={level}", *setting.overrides]), setting, reference, turns))
-    described = f"{best} by {able[best].integration.method or next(iter(LEVELS[best].methods))} with tolerances x {_CHECK if quick else _REFERENCE:g}"
+    described = f"{best} with tolerances x {_CHECK if quick else _REFERENCE:g}"
     return Trade(measured, front_of(measured, own[0]), described, own, turns * _turn(able[best]), left_out)
 
 
@@ -301,5 +300,4 @@ def _draw_front(axes, found):
     axes.step(factors, errors, where="post", color="0.3", lw=1.0, label="Pareto front", zorder=1)
     for level in dict.fromkeys(one.setting.level for one in front):
         best = next(one for one in front if one.setting.level == level)
-        name = f"{best.setting.method} {best.setting.detail}".strip()
-        axes.annotate(name, (best.real_time_factor, max(best.slip_error, _FLOORS[0])), (-4, 9), textcoords="offset points", fontsize=8, ha="right")
+        axes.annotate(best.setting.detail, (best.real_time_factor, max(best.slip_error, _FLOORS[0])), (-4, 9), textcoords="offset points", fontsize=8, ha="right")

@@ -34,13 +34,13 @@ def advance_by(
     samples = rows.shape[0]
     interval = duration / samples
     before = previous
-    taken, stop = counts[COUNT.steps] + counts[COUNT.rejected_steps], t + samples * interval
+    taken = counts[COUNT.steps] + counts[COUNT.rejected_steps]
     for k in range(samples):
         start, end = t + k * interval, t + (k + 1) * interval
         left = budget - (counts[COUNT.steps] + counts[COUNT.rejected_steps] - taken)
         status, h = method(
             rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_limit, step_taken,
-            start, end, stop, y, h, maximum_step, left, model, work, memory, counts,
+            start, end, y, h, maximum_step, left, model, work, memory, counts,
         )  # fmt: skip
         if status != OK:
             return status, h

@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Level ``spatial`` advanced by each of its methods; the scene names which.
+"""Level ``spatial`` advanced with error control, or in fixed steps.
 
 Parameters and results of every function are those of `bearing_sim.levels.common.advance.advance_by`.
 """
@@ -12,8 +12,8 @@ from bearing_sim.numerics.sdirk2 import sdirk2, sdirk2_fixed
 
 
 @kernel
-def advance_sdirk2(t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
-    """Advance by the level's own method with error control."""
+def advance(t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
+    """Advance with error control."""
     return advance_by(
         sdirk2, rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_limit, average_loads, observe,
         t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows,
@@ -21,8 +21,8 @@ def advance_sdirk2(t, duration, y, h, maximum_step, budget, model, work, memory,
 
 
 @kernel
-def advance_sdirk2_fixed(t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
-    """Advance by the level's own method in steps of ``maximum_step`` [s] without error control."""
+def advance_fixed(t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows):
+    """Advance in steps of ``maximum_step`` [s] without error control."""
     return advance_by(
         sdirk2_fixed, rhs, rhs_and_jacobian, predict, factor, solve, error_norm, step_limit, average_loads, observe,
         t, duration, y, h, maximum_step, budget, model, work, memory, counts, previous, rows,

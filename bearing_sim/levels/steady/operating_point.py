@@ -25,7 +25,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.levels.slip.forces import equivalent_loads
-from bearing_sim.levels.slip.methods import advance_rosenbrock2
+from bearing_sim.levels.slip.methods import advance as advance_slip
 from bearing_sim.levels.slip.model import rhs, rhs_and_jacobian
 from bearing_sim.levels.slip.power import slip_powers
 from bearing_sim.levels.slip.state import OMEGA, SPIN, THETA
@@ -446,7 +446,7 @@ def march(model, work, memory, answer):
     mean, turned, status = ideal, 0.0, OK
     for _ in range(_WINDOWS):
         angle = y[THETA]
-        status, step = advance_rosenbrock2(
+        status, step = advance_slip(
             time, window, y, step, _LONGEST_STEP, _BUDGET, model, work, memory.memory, memory.counts, rows[rows.shape[0] - 1], rows
         )
         if status == STEP_BUDGET:
@@ -464,7 +464,7 @@ def march(model, work, memory, answer):
     if status == STEP_BUDGET and time == 0.0:
         mean = y[OMEGA]
         instant = _AN_INSTANT * window
-        again, step = advance_rosenbrock2(
+        again, step = advance_slip(
             time, instant, y, _FIRST_STEP, _LONGEST_STEP, _BUDGET, model, work, memory.memory, memory.counts, rows[rows.shape[0] - 1], rows
         )
         if again != OK:
