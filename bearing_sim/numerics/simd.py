@@ -22,6 +22,7 @@ from numba.extending import intrinsic, lower_builtin
 from bearing_sim.numerics.compilation import template
 
 LANES = 4  # doubles in a 256-bit register; eight gave no gain where registers have 512 bits
+_CACHE_LINE = 8  # doubles
 
 _VECTOR = ir.VectorType(ir.DoubleType(), LANES)
 _INTEGERS = ir.VectorType(ir.IntType(64), LANES)
@@ -267,7 +268,15 @@ def blocks_of(count):
 
 def new_rows(rows, count):
     """Return zeroed rows for ``count`` rollers, shape (blocks, rows, LANES); `by_roller` shows one row."""
-    return np.zeros((blocks_of(count), rows, LANES))
+    return new_blocks(blocks_of(count), rows)
+
+
+def new_blocks(blocks, rows):
+    """Return zeros of shape (blocks, rows, LANES) that begin at a cache line, so that no vector lies across two of them."""
+    size = blocks * rows * LANES
+    memory = np.zeros(size + _CACHE_LINE - 1)
+    first = -memory.ctypes.data // memory.itemsize % _CACHE_LINE
+    return memory[first : first + size].reshape(blocks, rows, LANES)
 
 
 def by_roller(array, row, count):

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.numerics.compilation import kernel
-from bearing_sim.numerics.simd import LANES, collect_runs, fill_lanes, new_rows, spread_runs
+from bearing_sim.numerics.simd import LANES, collect_runs, fill_lanes, new_blocks, new_rows, spread_runs
 from bearing_sim.physics.contact import CONTACT
 
 BORDER = 5  # positions of ring and cage, and as many speeds
@@ -116,7 +116,7 @@ def new_work(params):
     rollers[:, ROLLER.pitch_cosine], rollers[:, ROLLER.pitch_sine] = np.cos(pitch), np.sin(pitch)
     return Work(
         rollers,
-        np.zeros((2 * rollers.shape[0], len(CONTACT), LANES)),
+        new_blocks(2 * rollers.shape[0], len(CONTACT)),
         new_rows(JACOBIAN_ROWS, count),
         np.zeros((BORDER, 2 * BORDER)),
         new_factored(count),

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.numerics.linear_algebra import Arrow, new_arrow
-from bearing_sim.numerics.simd import new_rows
+from bearing_sim.numerics.simd import blocks_of, new_blocks
 from bearing_sim.physics.contact import CONTACT
 from bearing_sim.physics.load_balance import LOAD
 
@@ -37,7 +37,7 @@ def new_work(params):
     return Work(
         loads=np.zeros((len(LOAD), count)),
         ring=np.zeros(2),
-        contacts=np.concatenate([new_rows(len(CONTACT), count)] * 2),
+        contacts=new_blocks(2 * blocks_of(count), len(CONTACT)),
         tangential=np.zeros(count),
         growth=np.zeros(1),
         pitch=np.array([np.cos(angles), np.sin(angles), params.raceways.contour.shape[0] * np.arange(count) / count]),

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.numerics.compilation import kernel
-from bearing_sim.numerics.simd import LANES, collect_runs, fill_lanes, new_rows, spread_runs
+from bearing_sim.numerics.simd import LANES, collect_runs, fill_lanes, new_blocks, new_rows, spread_runs
 from bearing_sim.physics.contact import CONTACT
 
 RING, CAGE = 4, 5
@@ -65,7 +65,7 @@ def new_factored(count):
         np.zeros(square),
         np.zeros(square),
         np.zeros(BORDER, np.int64),
-        np.zeros((1, SPEEDS * SPEEDS, LANES)),
+        new_blocks(1, SPEEDS * SPEEDS),
     )
 
 
@@ -191,10 +191,10 @@ def new_work(params):
     rollers[:, ROLLER.pitch_cosine], rollers[:, ROLLER.pitch_sine] = np.cos(pitch), np.sin(pitch)
     return Work(
         rollers=rollers,
-        contacts=np.zeros((2 * rollers.shape[0], SLICED_ROWS, LANES)),
-        pieces=np.zeros((2 * rollers.shape[0] * -(-len(params.slices.positions) // params.slices.together), PIECE_ROWS, LANES)),
+        contacts=new_blocks(2 * rollers.shape[0], SLICED_ROWS),
+        pieces=new_blocks(2 * rollers.shape[0] * -(-len(params.slices.positions) // params.slices.together), PIECE_ROWS),
         jacobian=new_rows(JACOBIAN_ROWS, count),
-        chain=np.zeros((1, 208, LANES)),
+        chain=new_blocks(1, 208),
         border_own=np.zeros((BORDER, 2 * BORDER)),
         lands=np.zeros((4, 2 * BORDER)),
         land_own=np.zeros((2, 5, 10)),
