@@ -7,12 +7,12 @@ from functools import lru_cache, partial
 from pathlib import Path
 from typing import NamedTuple
 
-import mcap.records
+from mcap.records import Channel, Schema
 from mcap_ros2.decoder import DecoderFactory
 
 from bearing_sim.messages.cdr_layout import typestore
 from bearing_sim.recording.bag import RecordingError, mcap_files
-from bearing_sim.recording.mcap_format import Channel, Message, Schema
+from bearing_sim.recording.mcap_format import Message
 from bearing_sim.recording.mcap_reader import McapReader
 
 
@@ -87,8 +87,9 @@ class BagReader:
             elif isinstance(record, Schema):
                 schemas[record.id] = record
             elif isinstance(record, Channel) and record.id not in found:
-                schema = schemas.get(record.schema_id, Schema(0, "", "", b""))
-                found[record.id] = BagTopic(record.topic, schema.name, partial(_decoded, record.topic, record.message_encoding, *schema[1:]))
+                schema = schemas.get(record.schema_id, Schema(id=0, name="", encoding="", data=b""))
+                described = record.topic, record.message_encoding, schema.name, schema.encoding, schema.data
+                found[record.id] = BagTopic(record.topic, schema.name, partial(_decoded, *described))
                 yield found[record.id]
         if not reader.is_finished:
             text = f"{file.name}: ends early ({reader.ends}); the messages before that are used"
@@ -107,7 +108,7 @@ def _decoded(topic: str, message_encoding: str, name: str, encoding: str, defini
 def _decoder(topic: str, message_encoding: str, name: str, encoding: str, definition: bytes) -> Callable[[bytes], object]:
     if message_encoding != "cdr":
         raise RecordingError(f"{topic} is encoded as {message_encoding!r}; expected cdr")
-    decoder = DecoderFactory().decoder_for(message_encoding, mcap.records.Schema(1, definition, encoding, name))
+    decoder = DecoderFactory().decoder_for(message_encoding, Schema(id=1, name=name, encoding=encoding, data=definition))
     if decoder is not None:
         return decoder
     from rosbags.typesys import Stores, get_types_from_idl, get_typestore

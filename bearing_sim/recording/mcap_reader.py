@@ -16,6 +16,8 @@ from typing import BinaryIO, NamedTuple
 import lz4.frame
 import numpy as np
 import zstandard
+from mcap.opcode import Opcode
+from mcap.records import Attachment, Channel, Chunk, Footer, Header, Metadata, MetadataIndex, Schema, Statistics
 
 from bearing_sim.recording.bag import RecordingError
 from bearing_sim.recording.mcap_format import (
@@ -23,19 +25,9 @@ from bearing_sim.recording.mcap_format import (
     MAGIC,
     MESSAGE,
     RECORD,
-    Attachment,
-    Channel,
-    Chunk,
-    ChunkIndex,
     DamagedRecord,
-    Footer,
-    Header,
     Message,
-    Metadata,
-    MetadataIndex,
-    Opcode,
-    Schema,
-    Statistics,
+    chunk_index_places,
     message_at,
     packed,
     parsed,
@@ -197,7 +189,7 @@ class McapReader:
         """Return the records of a chunk, checked."""
         if chunk.compression not in ("zstd", "lz4", ""):
             raise RecordingError(f"{self.path}: a chunk is compressed by {chunk.compression!r}; expected zstd, lz4 or no compression")
-        data = chunk.records
+        data = chunk.data
         try:
             if chunk.compression == "zstd":
                 data = self._decompress(data, max_output_size=chunk.uncompressed_size)
@@ -330,12 +322,15 @@ def read_index(path: str | Path, topic: str) -> FileIndex | None:
 
 
 def _index(stream: BinaryIO, size: int, topic: str) -> FileIndex | None:
-    found: dict[type, list] = {kind: [] for kind in (Schema, Channel, Statistics, ChunkIndex, MetadataIndex)}
+    found: dict[type, list] = {kind: [] for kind in (Schema, Channel, Statistics, MetadataIndex)}
+    chunks: list[dict[int, int]] = []
     summary, at = _summary(stream, size), 0
     while at < len(summary):
         end = _end_of_record(summary, at)
-        record = parsed(summary[at], summary[at + RECORD.size : end])
-        if type(record) in found:
+        content = summary[at + RECORD.size : end]
+        if summary[at] == Opcode.CHUNK_INDEX:
+            chunks.append(chunk_index_places(content))
+        elif type(record := parsed(summary[at], content)) in found:
             found[type(record)].append(record)
         at = end
     schemas = {schema.id: schema.name for schema in found[Schema]}
@@ -344,7 +339,7 @@ def _index(stream: BinaryIO, size: int, topic: str) -> FileIndex | None:
     if counts.total() != sum(each.message_count for each in found[Statistics]):
         return None
     wanted = {channel for channel, name in topics.items() if name == topic}
-    places = [place for chunk in found[ChunkIndex] for channel, place in chunk.message_index_offsets.items() if channel in wanted]
+    places = [place for chunk in chunks for channel, place in chunk.items() if channel in wanted]
     log_ns = _log_times(stream, places, wanted)
     if len(log_ns) != sum(counts[channel] for channel in wanted):
         return None

@@ -13,16 +13,8 @@ from typing import Protocol
 
 import numpy as np
 import zstandard
-
-from bearing_sim.messages.sample_messages import message_templates
-from bearing_sim.messages.topics import Topic
-from bearing_sim.model.sample import flat
-from bearing_sim.recording.mcap_format import (
-    INDEX,
-    MAGIC,
-    MESSAGE,
-    PROFILE,
-    RECORD,
+from mcap.opcode import Opcode
+from mcap.records import (
     Attachment,
     AttachmentIndex,
     Channel,
@@ -31,16 +23,17 @@ from bearing_sim.recording.mcap_format import (
     DataEnd,
     Footer,
     Header,
-    Message,
     Metadata,
     MetadataIndex,
-    Opcode,
     Schema,
     Statistics,
     SummaryOffset,
-    packed,
-    packed_message,
 )
+
+from bearing_sim.messages.sample_messages import message_templates
+from bearing_sim.messages.topics import Topic
+from bearing_sim.model.sample import flat
+from bearing_sim.recording.mcap_format import INDEX, MAGIC, MESSAGE, PROFILE, RECORD, Message, packed, packed_message
 
 CHUNK_SIZE = 64 * 1024
 """Length of a chunk before compression [byte].  The writer holds one chunk in memory: small chunks keep each write and each loss short."""
@@ -149,15 +142,16 @@ class McapWriter:
 
     def add_schema(self, name: str, encoding: str, data: bytes) -> int:
         """Add a message type and return its id."""
-        self._schemas.append(Schema(len(self._schemas) + 1, name, encoding, data))
+        self._schemas.append(Schema(id=len(self._schemas) + 1, name=name, encoding=encoding, data=data))
         self._append(packed(self._schemas[-1]))
         return self._schemas[-1].id
 
     def add_channel(self, topic: str, message_encoding: str, schema_id: int, metadata: Mapping[str, str]) -> int:
         """Add a topic and return its id; ``schema_id`` 0 stands for no schema."""
-        self._channels.append(Channel(len(self._channels) + 1, schema_id, topic, message_encoding, dict(metadata)))
+        own = len(self._channels) + 1
+        self._channels.append(Channel(id=own, schema_id=schema_id, topic=topic, message_encoding=message_encoding, metadata=dict(metadata)))
         self._append(packed(self._channels[-1]))
-        return self._channels[-1].id
+        return own
 
     def add_message(self, message: Message) -> None:
         """Add a message of a channel."""
@@ -195,7 +189,8 @@ class McapWriter:
             return
         records = b"".join(self._parts)
         compressed = self._compress(records)
-        chunk = packed(Chunk(*self._chunk_span, len(records), zlib.crc32(records), "zstd", compressed))
+        span = {"message_start_time": self._chunk_span[0], "message_end_time": self._chunk_span[1], "compression": "zstd"}
+        chunk = packed(Chunk(data=compressed, uncompressed_size=len(records), uncompressed_crc=zlib.crc32(records), **span))
         offset = self._output.tell()
         indexes, places, at = [], {}, offset + len(chunk)
         for channel, entries in self._index.items():
@@ -204,15 +199,33 @@ class McapWriter:
             places[channel] = at
             at += len(indexes[-1])
         self._write(b"".join((chunk, *indexes)))
-        index = ChunkIndex(*self._chunk_span, offset, len(chunk), places, at - offset - len(chunk), "zstd", len(compressed), len(records))
+        index = ChunkIndex(
+            chunk_start_offset=offset,
+            chunk_length=len(chunk),
+            message_index_offsets=places,
+            message_index_length=at - offset - len(chunk),
+            compressed_size=len(compressed),
+            uncompressed_size=len(records),
+            **span,
+        )
         self._chunks.append(packed(index))
         self._begin_chunk()
 
     def finish(self) -> None:
         """Write the chunk in progress, the summary and the end of the file; nothing may follow."""
         self.flush()
-        counts = len(self._schemas), len(self._channels), len(self._attachments), len(self._metadata), len(self._chunks)
-        statistics = Statistics(sum(self._counts.values()), *counts, *(self._span or (0, 0)), self._counts)
+        first, last = self._span or (0, 0)
+        statistics = Statistics(
+            message_count=sum(self._counts.values()),
+            schema_count=len(self._schemas),
+            channel_count=len(self._channels),
+            attachment_count=len(self._attachments),
+            metadata_count=len(self._metadata),
+            chunk_count=len(self._chunks),
+            message_start_time=first,
+            message_end_time=last,
+            channel_message_counts=self._counts,
+        )
         self._write(packed(DataEnd(0)))
         begin = at = self._output.tell()
         summary, offsets = b"", b""

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 import yaml
+from mcap.records import Metadata
 
 from bearing_sim.messages.cdr_layout import CdrError, CdrLayout, NumberColumns, typestore
 from bearing_sim.messages.events import Event, Level, Measurement
@@ -28,7 +29,7 @@ from bearing_sim.messages.topics import (
 )
 from bearing_sim.model.sample import flat, new_block
 from bearing_sim.recording.bag import RecordingError, mcap_files
-from bearing_sim.recording.mcap_format import Message, Metadata
+from bearing_sim.recording.mcap_format import Message
 from bearing_sim.recording.mcap_reader import FileIndex, McapReader, Rows, read_index
 from bearing_sim.recording.writer import METADATA
 from bearing_sim.scene.loader import SceneError, scene_from_yaml

@@ -9,8 +9,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import BinaryIO
 
+from mcap.records import Attachment, Channel, Header, Metadata, Schema
+
 from bearing_sim.recording.bag import ACTIVE, Part, RecordingError, TopicCount, bag_metadata
-from bearing_sim.recording.mcap_format import PROFILE, Attachment, Channel, Header, Message, Metadata, Schema
+from bearing_sim.recording.mcap_format import PROFILE, Message
 from bearing_sim.recording.mcap_reader import McapReader
 from bearing_sim.recording.mcap_writer import McapWriter
 
