@@ -10,7 +10,7 @@ from click.testing import CliRunner
 from bearing_sim import load_scene
 from bearing_sim.cli.main import main
 from bearing_sim.studies.misalignment import misalign
-from bearing_sim.studies.slices import by_slices, line
+from bearing_sim.studies.slices import by_slices
 
 SLOW = ["operating.shaft_speed=5000 rpm", "operating.radial_load=2 kN"]
 QUIET = {"progress": lambda text: None}
@@ -60,11 +60,6 @@ def test_results_settle_as_a_crowned_roller_is_cut_finer():
         rough, fine, finest = (getattr(one, name) for one in (few, some, many))
         assert abs(fine / finest - 1) < 0.08  # 30 slices, as many as the standard asks for
         assert abs(rough / finest - 1) > 5 * abs(fine / finest - 1)
-
-
-def test_a_straight_line_is_found_in_costs_that_lie_on_one():
-    cost = line((10, 20, 50), (25e-6, 35e-6, 65e-6))
-    assert (cost.fixed, cost.each, cost.misfit) == pytest.approx((15e-6, 1e-6, 0.0), abs=1e-12)
 
 
 def test_command_prints_and_draws(tmp_path):

@@ -19,8 +19,7 @@ from bearing_sim.cli.reporting import (
     require_levels,
 )
 
-_WORDS = ("level", "integrator", "solver")  # columns of text
-_WIDTH = 170  # of the tables if there is no terminal
+_WORDS = ("level", "integrator")  # columns of text
 
 
 @click.command("levels")
@@ -29,10 +28,9 @@ _WIDTH = 170  # of the tables if there is no terminal
 @quick_option
 @json_option
 def levels(levels, cold, quick, as_json):
-    """Measure how fast each level and integration method is, how large its errors are, and what limits its speed.
+    """Measure how fast each level is with error control and with a fixed step, what work it does, and how large its errors are.
 
-    Bearing deng2017_table1 at 800 N, 15,000 and 45,000 rpm.  Other solvers use the same compiled right-hand side.  Takes a minute or two per
-    level once compiled, and longer for level spatial.
+    Bearing deng2017_table1 at 800 N, 15,000 and 45,000 rpm.  Takes less than a minute per level once compiled, and longer for level spatial.
     """
     require_levels(levels)
     announce_compilation()
@@ -50,10 +48,7 @@ def _print_levels(report) -> None:
     click.echo(f"core {machine['core']} of {machine['cores']} ({machine['processor']}), load average {machine['load_average']:.2f} at the start")
     click.echo(f"times are on the core, which the benchmark had for {100 * machine['core_fraction']:.0f} % of the time")
     _print_cases(report["cases"])
-    _print_others(report["others"])
     _print_references(report["references"])
-    _print_bounds(report["bound"])
-    _print_scaling(report["scaling"])
     for start in report.get("start_up", []):
         how = "with an empty cache" if start["cold"] else "warm"
         click.echo(
@@ -68,7 +63,7 @@ def _number(value, form=".3g") -> str:
 
 def _print_cases(cases) -> None:
     def named(case):
-        return [case["level"], case["integrator"], f"{case['speed_rpm']:.0f}", str(case["rollers"])]
+        return [case["level"], case["integrator"], f"{case['speed_rpm']:.0f}"]
 
     def cost(case):
         if case["failure"]:
@@ -77,61 +72,28 @@ def _print_cases(cases) -> None:
         counted = ("rejected_steps", "right_hand_sides", "jacobians", "factorisations")
         per_step = [None if case[name] is None or not steps else case[name] / steps for name in counted]
         numbers = [case["real_time_factor"], case["step_us"], steps / case["simulated_seconds"], *per_step]
-        return [*named(case), *map(_number, numbers), _number(case["lsoda_ratio"], ".0f"), _number(case["lsoda_ratio_at_our_error"], ".0f")]
+        return [*named(case), *map(_number, numbers)]
 
     def error(case):
         shares = [case[name] and 100 * case[name] for name in ("load_error", "orbit_error", "pocket_error")]
         slip = [_number(case[name], ".3f") for name in ("slip_error", "slip_standard_error")]
-        return [*named(case), *slip, *map(_number, shares), _number(case["trajectory_error"])]
+        return [*named(case), *slip, *map(_number, shares)]
 
-    columns = ("level", "integrator", "rpm", "Z")
-    costs = ("x real time", "us/step", "steps/s", "rejected/step", "rhs/step", "jac/step", "fact/step", "x LSODA", "at our error")
-    errors = ("slip [pp]", "standard error", "loads [%]", "orbit [%]", "pocket [%]", "first 2 ms")
-    print_rows("speed", columns + costs, map(cost, cases), words=_WORDS, width=_WIDTH)
-    print_rows("errors", columns + errors, map(error, [case for case in cases if not case["failure"]]), words=_WORDS, width=_WIDTH)
-
-
-def _print_others(others) -> None:
-    def row(run):
-        numbers = [_number(run[name]) for name in ("tolerance", "core_seconds", "real_time_factor", "right_hand_sides", "trajectory_error")]
-        return [run["level"], f"{run['speed_rpm']:.0f}", run["solver"], *numbers, run["failure"]]
-
-    columns = ("level", "rpm", "solver", "tolerance", "spent [s]", "x real time", "rhs", "2 ms err", "failure")
-    print_rows("other solvers on the same compiled right-hand side, from ideal rolling", columns, map(row, others), words=_WORDS, width=_WIDTH)
+    columns = ("level", "integrator", "rpm")
+    costs = ("x real time", "us/step", "steps/s", "rejected/step", "rhs/step", "jac/step", "fact/step")
+    errors = ("slip [pp]", "standard error", "loads [%]", "orbit [%]", "pocket [%]")
+    print_rows("speed", columns + costs, map(cost, cases), words=_WORDS)
+    print_rows("errors", columns + errors, map(error, [case for case in cases if not case["failure"]]), words=_WORDS)
 
 
 def _print_references(references) -> None:
     def row(found):
-        names = ("slip_percent", "slip_standard_error", "settled_slip_change", "settled_load_change", "orbit_radius_um", "trajectory_own_error")
+        names = ("slip_percent", "slip_standard_error", "settled_slip_change", "settled_load_change", "orbit_radius_um")
         return [found["level"], f"{found['speed_rpm']:.0f}", *[_number(found[name], ".4g") for name in names]]
 
-    columns = ("level", "rpm", "slip [%]", "+-", "change of slip [pp]", "of loads", "orbit [um]", "2 ms own err")
-    print_rows(
-        "references: the level's own method at a tight tolerance, its change from a less tight one; DOP853 against CVODE at 1e-10",
-        columns,
-        map(row, references),
-        words=_WORDS,
-        width=_WIDTH,
-    )
-
-
-def _print_bounds(bounds) -> None:
-    names = ("right_hand_side", "jacobian", "factorisation", "solve", "error_norm")
-
-    def row(bound):
-        times, fractions = bound.get("kernel_us", {}), bound.get("fraction", {})
-        numbers = [f"{_number(times.get(name))} us, {100 * fractions.get(name, 0.0):.0f} %" for name in names]
-        steps = [_number(bound.get(name)) for name in ("step_simulated_us", "step_simulated_at_tenfold_tolerance_us")]
-        return [bound["level"], bound["integrator"], f"{bound['speed_rpm']:.0f}", *numbers, f"{100 * fractions.get('rest', 0.0):.0f} %", *steps]
-
-    columns = ("level", "integrator", "rpm", "rhs", "jacobian", "factor", "solve", "norm", "rest", "mean step [us]", "at 10x tolerance")
-    print_rows("what bounds it: a call of each kernel alone, and its fraction of a step", columns, map(row, bounds), words=_WORDS, width=_WIDTH)
-
-
-def _print_scaling(scaling) -> None:
-    for level in scaling:
-        costs = ", ".join(f"{rollers}: {cost:.3g}" for rollers, cost in zip(level["rollers"], level["core_seconds_per_second"]))
-        click.echo(f"{level['level']}, time of a simulated second by rollers: {costs}; power of Z from 18 on {_number(level['exponent'])}")
+    columns = ("level", "rpm", "slip [%]", "+-", "change of slip [pp]", "of loads", "orbit [um]")
+    title = "references: the level's own method at a tight tolerance, and its change from a less tight one"
+    print_rows(title, columns, map(row, references), words=_WORDS)
 
 
 _SPEEDS = (1500.0, 15_000.0, 45_000.0)  # rpm

@@ -16,7 +16,7 @@ class Entry(NamedTuple):
 
 
 _BENCHMARKS = {
-    "levels": Entry("bench:levels", "Speed and error of every level and integration method, and what limits them."),
+    "levels": Entry("bench:levels", "Speed, work and errors of every level, with error control and with a fixed step."),
     "fleet": Entry("bench:fleet", "How many bearings one core holds in real time."),
 }
 _STUDIES = {
@@ -24,7 +24,7 @@ _STUDIES = {
     "damage": Entry("study:damage", "Compare the damage of a measured run between levels."),
     "misalignment": Entry("study:misalignment", "Edge pressure, tilt, skew and life against misalignment of the inner ring."),
     "situations": Entry("study:situations", "Pictures of six situations, from start to fault, in rerun."),
-    "slices": Entry("study:slices", "Convergence with the number of slices, and the cost of slices and rollers."),
+    "slices": Entry("study:slices", "Convergence of level spatial with the number of slices, and their cost."),
     "extremes": Entry("study:extremes", "Map which scenes finish, are step-limited, are refused or fail."),
 }
 _COMMANDS = {

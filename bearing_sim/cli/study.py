@@ -311,34 +311,28 @@ def _print_situations(report, out) -> None:
 @click.option("--duration", default=0.06, show_default=True, type=click.FloatRange(min=1e-6), metavar="S", help="Simulated time measured.")
 @json_option
 def slices(scene_name, overrides, settle, duration, as_json):
-    """Run SCENE at level spatial with 10 to 200 slices, and bearings with 18 to 144 rollers, and measure the cost of a step."""
-    import math
-
+    """Run SCENE at level spatial with 10 to 200 slices, and measure results and the cost of a step."""
     from bearing_sim.scene.loader import SceneError, load_scene
     from bearing_sim.simulation import IntegrationError
 
     with as_usage_error(SceneError):
         scene = load_scene(scene_name, [*overrides, "level=spatial"])
     announce_compilation()
-    from bearing_sim.studies.slices import ROLLERS, SLICES, by_rollers, by_slices, line
+    from bearing_sim.studies.slices import SLICES, by_slices
 
-    runs = len(SLICES) + len(ROLLERS)
-    done = iter(range(runs + 1))
-    with progress_bar("runs", runs) as show:
+    done = iter(range(len(SLICES) + 1))
+    with progress_bar("runs", len(SLICES)) as show:
         try:
             found = by_slices(scene, settle, duration, progress=lambda name: show(next(done)))
-            rpm = abs(scene.operating.shaft_speed) * 30 / math.pi
-            rollers = by_rollers(rpm, settle / 10, duration / 3, progress=lambda name: show(next(done)))
         except IntegrationError as error:
             raise FailedRun(str(error)) from None
-    costs = {"slices": line([one.slices for one in found], [one.step_seconds for one in found]), "rollers": rollers}
     if as_json:
-        print_json({"scene": scene_name, "runs": [one._asdict() for one in found], "cost": {name: cost._asdict() for name, cost in costs.items()}})
+        print_json({"scene": scene_name, "runs": [one._asdict() for one in found]})
     else:
-        _print_slices(scene_name, found, costs)
+        _print_slices(scene_name, found)
 
 
-def _print_slices(name, found, costs) -> None:
+def _print_slices(name, found) -> None:
     columns = ("slices", "slip, %", "largest load, N", "life, h", "by slices, h", "static: MPa", "by slices, h", "us per step", "x real time")
     rows = []
     for one in found:
@@ -346,10 +340,6 @@ def _print_slices(name, found, costs) -> None:
         still = f"{1e-6 * one.static_pressure:.5g}", f"{one.static_lamina_life:.4g}"
         rows.append((str(one.slices), f"{100 * one.slip:.4g}", *lives, *still, f"{1e6 * one.step_seconds:.3g}", f"{one.real_time_factor:.3g}"))
     print_rows(f"{name}: results by number of slices", columns, rows)
-    for what, cost in costs.items():
-        steps = ", ".join(f"{count}: {1e6 * seconds:.3g}" for count, seconds in zip(cost.counts, cost.step_seconds))
-        fit = f"{1e6 * cost.fixed:.3g} + {1e6 * cost.each:.3g} per item, within {100 * cost.misfit:.2g} %"
-        click.echo(f"us per step by {what}: {steps}; straight line: {fit}")
 
 
 _SHOWN = 12  # reasons per table

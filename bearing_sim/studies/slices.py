@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Convergence of level ``spatial`` with the number of slices, and the cost of slices and rollers."""
+"""Convergence of level ``spatial`` with the number of slices, and their cost."""
 
 import dataclasses
 import time
@@ -10,11 +10,9 @@ import numpy as np
 
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Simulation
-from bearing_sim.studies.bench import scaled_scene
 from bearing_sim.studies.statics import statics
 
 SLICES = (10, 20, 30, 50, 100, 200)
-ROLLERS = (18, 36, 72, 144)
 _RATE = 2000.0  # Hz, of samples
 _PARTS = 6  # of a run, each timed separately
 
@@ -31,16 +29,6 @@ class Sliced(NamedTuple):
     static_lamina_life: float  # [h]
     step_seconds: float  # processor time of a step
     real_time_factor: float
-
-
-class Cost(NamedTuple):
-    """Processor time of a step as a linear function of a count (slices or rollers)."""
-
-    counts: tuple[int, ...]
-    step_seconds: tuple[float, ...]
-    fixed: float  # [s]
-    each: float  # [s]
-    misfit: float  # largest relative deviation from the line
 
 
 def by_slices(scene: Scene, settle: float, duration: float, counts: Sequence[int] = SLICES, progress: Callable[[str], None] = print) -> list[Sliced]:
@@ -72,23 +60,6 @@ def by_slices(scene: Scene, settle: float, duration: float, counts: Sequence[int
             )
         )
     return found
-
-
-def by_rollers(speed_rpm: float, settle: float, duration: float, counts: Sequence[int] = ROLLERS, progress: Callable[[str], None] = print) -> Cost:
-    """Return the cost of a step on bearings scaled to other numbers of rollers (see `bearing_sim.studies.bench.scaled_scene`)."""
-    seconds = []
-    for count in counts:
-        progress(f"{count} rollers")
-        seconds.append(_timed(Simulation(scaled_scene("spatial", speed_rpm, count)), settle, duration)[1])
-    return line(counts, seconds)
-
-
-def line(counts: Sequence[int], seconds: Sequence[float]) -> Cost:
-    """Fit a straight line that minimises relative deviations."""
-    matrix = np.stack([np.ones(len(counts)), np.asarray(counts, float)], axis=1) / np.asarray(seconds)[:, None]
-    fixed, each = np.linalg.lstsq(matrix, np.ones(len(counts)), rcond=None)[0]
-    misfit = np.abs(matrix @ (fixed, each) - 1.0).max()
-    return Cost(tuple(counts), tuple(seconds), float(fixed), float(each), float(misfit))
 
 
 def _cut(scene, count):

@@ -300,4 +300,5 @@ def _draw_front(axes, found):
     axes.step(factors, errors, where="post", color="0.3", lw=1.0, label="Pareto front", zorder=1)
     for level in dict.fromkeys(one.setting.level for one in front):
         best = next(one for one in front if one.setting.level == level)
-        axes.annotate(best.setting.detail, (best.real_time_factor, max(best.slip_error, _FLOORS[0])), (-4, 9), textcoords="offset points", fontsize=8, ha="right")
+        point = best.real_time_factor, max(best.slip_error, _FLOORS[0])
+        axes.annotate(best.setting.detail, point, (-4, 9), textcoords="offset points", fontsize=8, ha="right")
