@@ -12,9 +12,8 @@ from synthetic_run import synthetic_block
 from bearing_sim.messages.events import Level
 from bearing_sim.recording.bag import UNLIMITED
 from bearing_sim.recording.reader import Recording
-from bearing_sim.recording.recorder import Recorder
+from bearing_sim.recording.recorder import MOST_RESTARTS, WITHIN, Recorder, RestartingRecorder
 from bearing_sim.recording.recovery import contents, recover
-from bearing_sim.recording.restarting_recorder import MOST_RESTARTS, WITHIN, RestartingRecorder
 from bearing_sim.ros.recordings import open_recording
 from bearing_sim.runtime.pacing import tick_schedule
 from bearing_sim.runtime.sink_registry import SinkRegistry
@@ -85,7 +84,7 @@ class _Doomed:
     def __init__(self, path, is_orphaned):
         self.path, self.is_orphaned = path, is_orphaned
 
-    def write(self, block):
+    def offer(self, name, arguments, size):
         raise OSError("SIGKILL" if self.is_orphaned else "No space left on device")
 
     def news(self):
@@ -104,10 +103,10 @@ class _Dying:
     def __getattr__(self, name):
         return getattr(self._doomed, name)
 
-    def write(self, block):
+    def offer(self, name, arguments, size):
         self._writes += 1
         if self._writes > 1:
-            self._doomed.write(block)
+            self._doomed.offer(name, arguments, size)
 
 
 def test_a_process_that_is_killed_again_and_again_is_not_started_for_ever(tmp_path):

@@ -24,8 +24,8 @@ import sys
 import threading
 import time as wall
 from collections import deque
-from collections.abc import Iterable, Mapping
-from contextlib import suppress
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import AbstractContextManager, suppress
 from pathlib import Path
 
 import numpy as np
@@ -43,6 +43,12 @@ _SMALL = 512  # [byte] approximate size of an operation without a block
 _OPEN_WITHIN = 30.0  # [s] for a process that starts on a busy machine
 _CLOSE_WITHIN = 5.0  # [s]
 _NICENESS = 5  # a file may be a fraction of a second late, the solver may not
+MOST_RESTARTS = 3
+"""How often a recording restarts within `WITHIN`; if its process is killed more often, it is given up."""
+
+WITHIN = 60.0
+"""[s]"""
+
 _log = logging.getLogger(__name__)
 
 
@@ -128,7 +134,51 @@ class Recorder:
             return self._client
 
 
-class LiveRecording:
+class _Recording(AbstractContextManager):
+    """The methods of `bearing_sim.recording.writer.McapSink`, each of which offers its arguments to the process that writes."""
+
+    def offer(self, name: str, arguments: tuple, size: int = 0) -> None:
+        """Take an operation with arguments of about this size [byte]."""
+        raise NotImplementedError
+
+    def write(self, block: np.ndarray) -> None:
+        """Write a block of samples, which must not be changed afterwards.
+
+        Raises
+        ------
+        OSError
+            The recording has failed since the last call: its file cannot be written, or its process was killed too often.
+        ValueError
+            It is closed.
+        """
+        if len(block):
+            numbers = flat(np.ascontiguousarray(block))
+            self.offer("write", (numbers, block["roller_angle"].shape[1]), numbers.nbytes)
+
+    write_start = write
+    """Write the state from which the run starts (see `bearing_sim.recording.writer.McapSink.write_start`)."""
+
+    def write_inputs(self, time: float, inputs, channels: Iterable[str] = tuple(topics.INPUTS), origin: topics.Origin | None = None) -> None:
+        """Write the inputs that arrived at ``time`` [s] (see `bearing_sim.recording.writer.McapSink.write_inputs`)."""
+        self.offer("write_inputs", (time, inputs._asdict(), tuple(channels), origin))  # by name: their class would load the solver over there
+
+    def write_measurement(self, time: float, cage_speed: float, residual: float, origin: topics.Origin | None = None) -> None:
+        """Write a measured cage speed [rad/s] that arrived at ``time`` [s], and its residual slip."""
+        self.offer("write_measurement", (time, cage_speed, residual, origin))
+
+    def write_event(self, event: Event) -> None:
+        """Write one event as diagnostics."""
+        self.offer("write_event", (event,))
+
+    def write_diagnostics(self, time: float, events: Iterable[Event] = (), values: Mapping[str, object] | None = None) -> None:
+        """Write a diagnostics message."""
+        self.offer("write_diagnostics", (time, list(events), None if values is None else dict(values)))
+
+    def __exit__(self, *_) -> None:
+        self.close()
+
+
+class LiveRecording(_Recording):
     """One recording of a `Recorder`, with the methods of `bearing_sim.recording.writer.McapSink`.
 
     Only `wait_until_open` and `close` wait.
@@ -164,39 +214,6 @@ class LiveRecording:
         if self._state.error is not None:
             raise self._state.error
 
-    def write(self, block: np.ndarray) -> None:
-        """Write a block of samples, which must not be changed afterwards.
-
-        Raises
-        ------
-        OSError
-            The recording has failed since the last call.
-        ValueError
-            It is closed.
-        """
-        if len(block):
-            numbers = flat(np.ascontiguousarray(block))
-            self._offer("write", (numbers, block["roller_angle"].shape[1]), numbers.nbytes)
-
-    write_start = write
-    """Write the state from which the run starts (see `bearing_sim.recording.writer.McapSink.write_start`)."""
-
-    def write_inputs(self, time: float, inputs, channels: Iterable[str] = tuple(topics.INPUTS), origin: topics.Origin | None = None) -> None:
-        """Write the inputs that arrived at ``time`` [s] (see `bearing_sim.recording.writer.McapSink.write_inputs`)."""
-        self._offer("write_inputs", (time, inputs._asdict(), tuple(channels), origin))  # by name: their class would load the solver over there
-
-    def write_measurement(self, time: float, cage_speed: float, residual: float, origin: topics.Origin | None = None) -> None:
-        """Write a measured cage speed [rad/s] that arrived at ``time`` [s], and its residual slip."""
-        self._offer("write_measurement", (time, cage_speed, residual, origin))
-
-    def write_event(self, event: Event) -> None:
-        """Write one event as diagnostics."""
-        self._offer("write_event", (event,))
-
-    def write_diagnostics(self, time: float, events: Iterable[Event] = (), values: Mapping[str, object] | None = None) -> None:
-        """Write a diagnostics message."""
-        self._offer("write_diagnostics", (time, list(events), None if values is None else dict(values)))
-
     def news(self) -> list[tuple[Level, str, str]]:
         """Return (level, kind, text) of what happened to the recording since the last call."""
         news = [self._state.news.popleft() for _ in range(len(self._state.news))]
@@ -226,19 +243,86 @@ class LiveRecording:
         if self._state.error is not None:
             raise self._state.error
 
-    def __enter__(self) -> "LiveRecording":
-        return self
-
-    def __exit__(self, *_) -> None:
-        self.close()
-
-    def _offer(self, name: str, arguments: tuple, size: int = 0) -> None:
+    def offer(self, name: str, arguments: tuple, size: int = 0) -> None:
+        """Queue an operation for the process, or drop it and count that if there is no room."""
         if self._closed:
             raise ValueError(f"{self.path} is closed")
         if self._state.error is not None:
             raise self._state.error
         if not self._client.put(self._number, name, arguments, size + _SMALL):
             self.dropped += 1
+
+
+class RestartingRecorder(_Recording):
+    """A `LiveRecording` that is replaced by another one, in a new file, when its process has ended.
+
+    What the killed process had not flushed is lost; the call that notices its end, and all later ones, go to the next file.  Errors of the
+    file itself, such as a full disk, are raised as they are, because another file would fare no better.
+
+    Parameters
+    ----------
+    begin : ``begin(wait)`` begins and returns a recording in a new file, and waits until it is open if ``wait``.
+    clock : [s], monotonic.
+
+    Attributes
+    ----------
+    start_ns : time 0 of the samples [ns since the epoch].
+
+    Raises
+    ------
+    OSError
+        The first recording cannot be begun.
+    """
+
+    def __init__(self, begin: Callable[[bool], LiveRecording], clock: Callable[[], float] = wall.monotonic):
+        self._begin, self._clock = begin, clock
+        self._current = begin(True)
+        self.start_ns = self._current.start_ns
+        self._dropped = 0  # by earlier recordings
+        self._restarts: deque[float] = deque()
+        self._news: list[tuple[Level, str, str]] = []
+
+    @property
+    def path(self) -> Path:
+        """Path of the present file, or bag, once it is finished."""
+        return self._current.path
+
+    @property
+    def dropped(self) -> int:
+        """Blocks, inputs and reports dropped so far because the process did not keep up."""
+        return self._dropped + self._current.dropped
+
+    def offer(self, name: str, arguments: tuple, size: int = 0) -> None:
+        """Offer an operation to the present recording, or to another one if the process of the present one has ended."""
+        try:
+            self._current.offer(name, arguments, size)
+        except OSError as error:
+            if not self._current.is_orphaned:
+                raise
+            self._restart(error)
+            self._current.offer(name, arguments, size)
+
+    def news(self) -> list[tuple[Level, str, str]]:
+        """Return (level, kind, text) of what happened to the recording since the last call."""
+        news, self._news = [*self._news, *self._current.news()], []
+        return news
+
+    def close(self, timeout: float = _CLOSE_WITHIN) -> None:
+        """Complete the recording (see `LiveRecording.close`)."""
+        self._current.close(timeout)
+
+    def _restart(self, error: OSError) -> None:
+        now = self._clock()
+        while self._restarts and now - self._restarts[0] > WITHIN:
+            self._restarts.popleft()
+        if len(self._restarts) == MOST_RESTARTS:
+            raise OSError(f"{error}; it was the {MOST_RESTARTS + 1}th process within {WITHIN:g} s, so no other is started") from None
+        self._restarts.append(now)
+        ended = self._current
+        self._current = self._begin(False)
+        self._dropped += ended.dropped
+        text = f"{ended.path} ends early, and what was not flushed is lost: {error}; the recording continues in {self._current.path}"
+        self._news += [*ended.news(), (Level.WARN, "recording.restarted", text)]
 
 
 class _State:

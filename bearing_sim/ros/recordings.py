@@ -7,16 +7,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bearing_sim.recording.bag import Limits
-from bearing_sim.recording.restarting_recorder import RestartingRecorder
+from bearing_sim.recording.recorder import Recorder, RestartingRecorder
 from bearing_sim.runtime.pacing import TickSchedule
 from bearing_sim.scene.scene import Scene
 
 if TYPE_CHECKING:
-    from bearing_sim.recording.recorder import Recorder
     from bearing_sim.ros.parameters import NodeSettings
 
 
-def prepare(view: bool, recorder: "Recorder | None") -> None:
+def prepare(view: bool, recorder: Recorder | None) -> None:
     """Start or import what recordings need: half a second that would otherwise delay the first message.
 
     Parameters
@@ -35,10 +34,10 @@ def prepare(view: bool, recorder: "Recorder | None") -> None:
     load_message_types()
 
 
-def open_recording(path: Path, scene: Scene, start_ns: int, limits: Limits, schedule: TickSchedule, recorder: "Recorder"):
+def open_recording(path: Path, scene: Scene, start_ns: int, limits: Limits, schedule: TickSchedule, recorder: Recorder):
     """Return a recording in real time, under a fresh name if ``path`` exists.
 
-    If the recording process is killed, the recording continues in another fresh file (see `bearing_sim.recording.restarting_recorder`).
+    If the recording process is killed, the recording continues in another fresh file (see `bearing_sim.recording.recorder.RestartingRecorder`).
 
     Parameters
     ----------
