@@ -121,12 +121,16 @@ def _take_picture(rrd: Path, picture: Path, seconds: float, size: tuple[int, int
 
 def _open(rrd: Path, opens: bool | None) -> None:
     import os
+    import shlex
+    import shutil
     import subprocess
     import sys
 
     has_display = sys.platform in ("darwin", "win32") or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+    rerun = "rerun" if shutil.which("rerun") else str(Path(sys.executable).with_name("rerun"))
     if opens is False or (opens is None and not has_display):
-        click.echo(f"open it with: rerun {rrd}")
+        click.echo(f"open it with: {shlex.join([rerun, str(rrd)])}")
         return
-    subprocess.Popen([sys.executable, "-m", "rerun", str(rrd)], start_new_session=True)
+    command = [sys.executable, "-m", "rerun", str(rrd)]
+    subprocess.Popen(command, start_new_session=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     click.echo(f"{rrd} opens in rerun")

@@ -9,7 +9,6 @@ import ctypes
 import math
 import os
 import random
-import shlex
 import signal
 import subprocess
 import sys
@@ -28,6 +27,7 @@ from bearing_sim.messages.events import Event, Level
 from bearing_sim.recording.mcap_format import Message
 from bearing_sim.recording.mcap_reader import McapReader
 from bearing_sim.recording.reader import Recording
+from bearing_sim.ros.recordings import fresh_path
 from bearing_sim.scene.loader import SceneError, load_scene
 
 _DOMAINS = range(60, 100)  # above the usual choices of users, below where ports collide with ephemeral ports
@@ -57,7 +57,7 @@ class Demo:
         self._environment = {**os.environ, "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", "ROS_DOMAIN_ID": domain}
 
     def run(self, mission: Path) -> None:
-        """Play a mission to a node, record it and write the view.
+        """Play a mission to a node and record it.
 
         Raises
         ------
@@ -69,14 +69,18 @@ class Demo:
             click.echo(f"bearing_node is running (log: {self.log}); on first use it compiles its code, which takes up to two minutes", err=True)
             self._play(mission, node)
             self._end(node)
+
+    def show(self, opens: bool | None) -> None:
+        """Write the view, and open it or print the command that does; None: open it if there is a display."""
         click.echo("writing the view", err=True)
-        self._run_to_end("bearing_sim.cli", "view", str(self.recording), "-o", str(self.view), "--no-open")
+        chosen = {None: (), True: ("--open",), False: ("--no-open",)}[opens]
+        self._run_to_end("view", str(self.recording), "-o", str(self.view), *chosen)
 
     def write_mission(self, duration: float) -> Path:
         """Write the synthetic mission and return its path."""
         path = self.folder / "mission.mcap"
         self.folder.mkdir(parents=True, exist_ok=True)
-        self._run_to_end("bearing_sim.cli", "mission", "-o", str(path), "--duration", str(duration))
+        self._run_to_end("mission", "-o", str(path), "--duration", str(duration), stdout=subprocess.DEVNULL)
         return path
 
     @contextmanager
@@ -118,8 +122,8 @@ class Demo:
             [sys.executable, "-m", module, *arguments], env=self._environment, start_new_session=True, preexec_fn=_end_with_parent, **streams
         )
 
-    def _run_to_end(self, module: str, *arguments: str) -> None:
-        process = self._start(module, *arguments, stdout=subprocess.DEVNULL)
+    def _run_to_end(self, *arguments: str, **streams) -> None:
+        process = self._start("bearing_sim.cli", *arguments, **streams)
         try:
             process.wait()
         finally:
@@ -198,26 +202,6 @@ def _diagnostics(path: Path) -> list[dict[str, str]]:
     return reports
 
 
-def _has_display() -> bool:
-    return sys.platform in ("darwin", "win32") or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
-
-
-def _show(view: Path, opens: bool) -> None:
-    """Open the view, or print the command that opens it."""
-    rerun = Path(sys.executable).with_name("rerun")
-    command = [str(rerun) if rerun.exists() else "rerun", str(view)]
-    if opens:
-        subprocess.Popen(command, start_new_session=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        click.echo("the view opens in rerun; to open it again:")
-    else:
-        click.echo("open the view with:")
-    click.echo(f"  {shlex.join(command)}")
-
-
-def _interrupt(*_) -> None:
-    raise KeyboardInterrupt
-
-
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
 @click.option("--out", type=click.Path(path_type=Path), default=Path("runs"), show_default=True, help="Folder for runs, each in its own subfolder.")
 @click.option("--scene", default="deng2017_table1", show_default=True, help="Bundled scene or scene file.")
@@ -232,10 +216,13 @@ def command(out, scene, overrides, mission, duration, opens):
     except SceneError as error:
         click.echo(f"demo: {error}", err=True)
         sys.exit(2)
-    demo = Demo(_run_folder(out), scene, overrides)
-    before = {number: signal.signal(number, _interrupt) for number in (signal.SIGTERM, signal.SIGHUP)}
+    demo = Demo(fresh_path(out / time.strftime("%Y-%m-%d_%H-%M-%S")), scene, overrides)
+    before = {number: signal.signal(number, signal.default_int_handler) for number in (signal.SIGTERM, signal.SIGHUP)}
     try:
         demo.run(mission or demo.write_mission(duration))
+        click.echo(summary(demo.recording))
+        click.echo(f"recording: {demo.recording}")
+        demo.show(opens)
     except DemoFailed as error:
         click.echo(f"demo: {error}", err=True)
         sys.exit(1)
@@ -245,18 +232,6 @@ def command(out, scene, overrides, mission, duration, opens):
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
-    click.echo(summary(demo.recording))
-    click.echo(f"recording: {demo.recording}")
-    _show(demo.view, _has_display() if opens is None else opens)
-
-
-def _run_folder(out: Path) -> Path:
-    name = time.strftime("%Y-%m-%d_%H-%M-%S")
-    folder, number = out / name, 1
-    while folder.exists():
-        number += 1
-        folder = out / f"{name}_{number}"
-    return folder
 
 
 if __name__ == "__main__":
