@@ -46,6 +46,6 @@ def test_a_simulation_gives_the_same_samples_to_the_last_digit_whichever_way_its
     direct, chosen = Simulation(scene), Simulation(scene)
     for tick in range(12):
         inputs = direct.inputs._replace(shaft_speed=direct.inputs.shaft_speed * (1.0 + 1e-3 * tick), oil_temperature=390.0 + tick // 6)
-        chosen._compiled = chosen._method.advance
+        chosen._compiled = chosen._level.advance
         assert direct.advance(0.005, inputs, 1 + tick % 3).tobytes() == chosen.advance(0.005, inputs, 1 + tick % 3).tobytes()
-    assert direct._compiled not in (None, direct._method.advance), "called directly from the second tick on"
+    assert direct._compiled not in (None, direct._level.advance), "called directly from the second tick on"
