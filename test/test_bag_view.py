@@ -16,7 +16,7 @@ from bearing_sim.messages.events import Level
 from bearing_sim.recording.bag import RecordingError
 from bearing_sim.recording.writer import McapFile, McapSink
 from bearing_sim.scene.loader import load_scene
-from bearing_sim.view.bag import read_bag_series, write_bag_view
+from bearing_sim.view.bag import BagSeries, read_bag_series, write_bag_view
 from bearing_sim.view.screenshot import HOW_TO_GET_VULKAN
 from bearing_sim.view.sink import RerunSink
 
@@ -87,7 +87,7 @@ def test_a_long_bag_is_thinned_out(tmp_path):
     times = 1e-3 * np.arange(300_000)
     values = np.sin(times)
     values[123_456] = 99.0
-    write_bag_view(tmp_path / "run.rrd", "long", START, {("", "/a", "-"): (times, values)}, [], [])
+    write_bag_view(tmp_path / "run.rrd", "long", BagSeries({("", "/a", "-"): (times, values)}, [], [], START, 300.0))
     assert len(column(tmp_path / "run.rrd", "/bag/a")[0]) < 10_000
     ranges = [
         chunk.to_record_batch().column("Scalars:scalars").to_pylist()

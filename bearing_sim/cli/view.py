@@ -69,7 +69,7 @@ def _write_bag(recording: Path, out: Path, seconds: float | None, topics: dict[s
     click.echo(f"shown as a bag from another source ({why}); not shown:", err=True)
     for line in found.left_out:
         click.echo(f"  {line}", err=True)
-    write_bag_view(out, recording.name, found.start_ns, found.series, found.events, found.left_out)
+    write_bag_view(out, recording.name, found)
     return 0.0, found.duration
 
 

@@ -19,7 +19,8 @@ from bearing_sim.messages.events import Event, Level
 from bearing_sim.recording.bag import RecordingError
 from bearing_sim.recording.bag_reader import BagReader, BagTopic
 from bearing_sim.view import colours
-from bearing_sim.view.plots import LINES, LOG_LEVELS, TIMELINE, Lines, Overview, Thinned, bucket_for, dim, plottable, range_path
+from bearing_sim.view.blueprint import log_view, page
+from bearing_sim.view.plots import LINES, Lines, Overview, bucket_for, describe_range, log_event, plottable, range_path, send_columns, send_thinned
 from bearing_sim.view.run_view import APPLICATION
 
 ROLES = ("speed", "load", "cage_speed", "temperature")
@@ -175,30 +176,15 @@ _AROUND = (colours.BLUE, colours.ORANGE, colours.GREEN, colours.YELLOW, colours.
 _MOST_PLOTS = 9
 
 
-def write_bag_view(
-    path: str | Path,
-    name: str,
-    start_ns: int,
-    series: dict[tuple[str, str, str], tuple[np.ndarray, np.ndarray]],
-    events: list[Event],
-    left_out: list[str],
-) -> None:
-    """Write an .rrd file.
-
-    Parameters
-    ----------
-    path : of the file.
-    name : of the recording.
-    start_ns : time 0 [ns since the epoch].
-    series, events, left_out : as of `bearing_sim.view.bag.BagSeries`.
-    """
+def write_bag_view(path: str | Path, name: str, found: BagSeries) -> None:
+    """Write an .rrd file with what was found in a recording of this name."""
     recording = rr.RecordingStream(APPLICATION)
     recording.set_log_time_enabled(False)
     recording.set_sinks(rr.FileSink(str(path)))
     recording.send_recording_name(name)
-    recording.send_recording_start_time_nanos(start_ns)
+    recording.send_recording_start_time_nanos(found.start_ns)
     plots: dict[str, list[str]] = {}
-    for (role, line, unit), (times, values) in series.items():
+    for (role, line, unit), (times, values) in found.series.items():
         entity, title = _ROLES[role] if role else (_entity(line), f"{line.split(' ')[0]} [{unit}]")
         paths = plots.setdefault(title, [])
         if entity in paths:  # a second topic of the same role
@@ -206,10 +192,9 @@ def write_bag_view(
         style = LINES[entity][:2] if entity in LINES else (line, _AROUND[len(paths) % len(_AROUND)])
         _write_line(recording, entity, style, times, plottable(values))
         paths.append(entity)
-    for event in events:
-        recording.set_time(TIMELINE, duration=event.time)
-        recording.log("/log", rr.TextLog(f"{event.text}  [{event.kind}]", level=LOG_LEVELS[Level(event.level)]))
-    text = "\n".join([f"## {name}", "", "Not written by bearing_sim. Not shown:", "", *(f"- {line}" for line in left_out)])
+    for event in found.events:
+        log_event(recording, event)
+    text = "\n".join([f"## {name}", "", "Not written by bearing_sim. Not shown:", "", *(f"- {line}" for line in found.left_out)])
     recording.log("/about", rr.TextDocument(text, media_type=rr.MediaType.MARKDOWN), static=True)
     recording.send_blueprint(_blueprint(plots))
     recording.flush(timeout_sec=30.0)
@@ -223,20 +208,16 @@ def _entity(line: str) -> str:
 def _write_line(recording: rr.RecordingStream, entity: str, style, times: np.ndarray, values: np.ndarray) -> None:
     name, colour = style
     recording.log(entity, rr.SeriesLines(names=[name], colors=[colour], widths=[2.0]), static=True)
-    thinned = Thinned(Lines(times, {entity: values}), Lines(times[:0], {}))
+    lines = Lines(times, {entity: values})
     interval = (times[-1] - times[0]) / max(len(times) - 1, 1)
     bucket = bucket_for(interval, float(times[-1] - times[0])) if interval > 0.0 else None
-    if bucket is not None:
-        overview = Overview(bucket)
-        parts = [part for part in (overview.add(thinned.lines), overview.finish()) if part is not None]
-        recording.log(range_path(entity), rr.SeriesLines(names=[f"{name}, lowest", f"{name}, highest"], colors=[dim(colour)] * 2), static=True)
-    else:
-        parts = [thinned]
-    for part in parts:
-        for lines, path in ((part.lines, entity), (part.ranges, range_path(entity))):
-            if len(lines.times):
-                index = [rr.TimeColumn(TIMELINE, duration=lines.times)]
-                recording.send_columns(path, indexes=index, columns=rr.Scalars.columns(scalars=lines.values[entity].astype(np.float32)))
+    if bucket is None:
+        send_columns(recording, lines)
+        return
+    describe_range(recording, entity, name, colour)
+    overview = Overview(bucket)
+    for thinned in filter(None, (overview.add(lines), overview.finish())):
+        send_thinned(recording, thinned)
 
 
 def _blueprint(plots: dict[str, list[str]]) -> rrb.Blueprint:
@@ -249,13 +230,5 @@ def _blueprint(plots: dict[str, list[str]]) -> rrb.Blueprint:
     rows = math.ceil(len(shown) / columns)
     grid = rrb.Horizontal(*(rrb.Vertical(*shown[k * rows : (k + 1) * rows]) for k in range(columns)))
     about = rrb.TextDocumentView(origin="/about", name="What is not shown")
-    log = rrb.TextLogView(origin="/log", name="Log", columns=rrb.TextLogColumns(timeline_columns=[TIMELINE], text_log_columns=["loglevel", "body"]))
-    beside = rrb.Vertical(about, *([rrb.Tabs(*hidden)] if hidden else []), log)
-    return rrb.Blueprint(
-        rrb.Horizontal(grid, beside, column_shares=[0.68, 0.32]),
-        rrb.BlueprintPanel(state="collapsed"),
-        rrb.SelectionPanel(state="collapsed"),
-        rrb.TimePanel(state="collapsed", timeline=TIMELINE, play_state="following"),
-        auto_views=False,
-        auto_layout=False,
-    )
+    beside = rrb.Vertical(about, *([rrb.Tabs(*hidden)] if hidden else []), log_view())
+    return page(rrb.Horizontal(grid, beside, column_shares=[0.68, 0.32]))

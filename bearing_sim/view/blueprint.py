@@ -52,12 +52,22 @@ def blueprint(scene: Scene, bounds, live: bool, extent: Extent | None = None, me
     measured : whether the cage is measured, and its residual slip has a plot.
     """
     axes = _Axes(live, extent)
-    log = rrb.TextLogView(origin="/log", name="Log", columns=rrb.TextLogColumns(timeline_columns=[TIMELINE], text_log_columns=["loglevel", "body"]))
     lanes = rrb.StateTimelineView(origin="/", contents=["/regime", "/level"], name="Regime by the slip's thresholds, level", time_view=axes.time)
     plots = rrb.Horizontal(_middle(scene, axes, measured), _right(scene, axes), column_shares=[0.58, 0.42])
-    below = rrb.Horizontal(lanes, log, column_shares=[0.58, 0.42])
+    below = rrb.Horizontal(lanes, log_view(), column_shares=[0.58, 0.42])
+    return page(rrb.Horizontal(_left(scene, bounds), rrb.Vertical(plots, below, row_shares=[0.815, 0.185]), column_shares=[0.42, 0.58]))
+
+
+def log_view() -> rrb.TextLogView:
+    """Return the view of events."""
+    columns = rrb.TextLogColumns(timeline_columns=[TIMELINE], text_log_columns=["loglevel", "body"])
+    return rrb.TextLogView(origin="/log", name="Log", columns=columns)
+
+
+def page(contents: rrb.Container) -> rrb.Blueprint:
+    """Return the lay-out of these contents alone, with rerun's own panels collapsed."""
     return rrb.Blueprint(
-        rrb.Horizontal(_left(scene, bounds), rrb.Vertical(plots, below, row_shares=[0.815, 0.185]), column_shares=[0.42, 0.58]),
+        contents,
         rrb.BlueprintPanel(state="collapsed"),
         rrb.SelectionPanel(state="collapsed"),
         rrb.TimePanel(state="collapsed", timeline=TIMELINE, play_state="following"),
@@ -116,28 +126,14 @@ def _window(start: rr.TimeRangeBoundary, end: rr.TimeRangeBoundary) -> rrb.TimeA
 
 
 def _left(scene: Scene, bounds) -> rrb.Vertical:
-    map_x, map_y = map_bounds(narrow=scene.cage_whirls)
     reach = (0.83 if scene.bodies_tilt else 1.0) * bounds[0][1]  # closer where the solid has less room
     eye = rrb.EyeControls3D(position=(2.0 * reach, 1.1 * reach, 0.8 * reach), look_target=(0.0, 0.0, 0.0), eye_up=(0.0, 0.0, 1.0))
     titles = {
         "/load_map": "Load map, colours as above" if scene.cage_whirls else "Load map: load on the inner ring by azimuth and time, colours as above",
         "/load_map_by_roller": "By roller",
     }
-    charts = [
-        rrb.Spatial2DView(
-            origin=root,
-            name=title,
-            visual_bounds=rrb.VisualBounds2D(x_range=map_x, y_range=map_y),
-            background=BACKGROUND,
-        )
-        for root, title in titles.items()
-    ]
-    across = rrb.Spatial2DView(
-        origin="/section",
-        name=section_title(scene),
-        visual_bounds=rrb.VisualBounds2D(x_range=bounds[0], y_range=bounds[1]),
-        background=BACKGROUND,
-    )
+    charts = [_flat(root, title, map_bounds(narrow=scene.cage_whirls)) for root, title in titles.items()]
+    across = _flat("/section", section_title(scene), bounds)
     solid = rrb.Spatial3DView(
         origin="/",
         contents="/solid/**",
@@ -155,14 +151,15 @@ def _left(scene: Scene, bounds) -> rrb.Vertical:
     )
 
 
+def _flat(root: str, title: str, bounds) -> rrb.Spatial2DView:
+    """Return the view of a flat drawing within its horizontal and vertical range."""
+    across, down = bounds
+    return rrb.Spatial2DView(origin=root, name=title, visual_bounds=rrb.VisualBounds2D(x_range=across, y_range=down), background=BACKGROUND)
+
+
 def _orbit(scene: Scene) -> rrb.Spatial2DView:
     edge = ORBIT_EDGE * scene.bearing.cage.play * 1e6
-    return rrb.Spatial2DView(
-        origin="/cage_orbit",
-        name="Cage orbit",
-        visual_bounds=rrb.VisualBounds2D(x_range=(-edge, edge), y_range=(-edge, edge)),
-        background=BACKGROUND,
-    )
+    return _flat("/cage_orbit", "Cage orbit", ((-edge, edge), (-edge, edge)))
 
 
 def _middle(scene: Scene, axes: _Axes, measured: bool) -> rrb.Vertical:
@@ -238,13 +235,7 @@ def _tilts(axes: _Axes) -> rrb.Tabs:
 
 
 def _right(scene: Scene, axes: _Axes) -> rrb.Vertical:
-    across, down = power_bounds()
-    bars = rrb.Spatial2DView(
-        origin="/power_now",
-        name=f"Power: mean of {SAMPLES} samples",
-        visual_bounds=rrb.VisualBounds2D(x_range=across, y_range=down),
-        background=BACKGROUND,
-    )
+    bars = _flat("/power_now", f"Power: mean of {SAMPLES} samples", power_bounds())
     load, damage = axes.plot("Radial load [N]", ["/load/radial"]), axes.plot("Damage [millionths of the life]", ["/damage/ppm"])
     oil = axes.plot("Oil [°C]", ["/oil/temperature"])
     texts = rrb.Tabs(rrb.TextDocumentView(origin="/now", name="Now"), rrb.TextDocumentView(origin="/about", name="About"))

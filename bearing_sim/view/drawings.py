@@ -19,7 +19,26 @@ FIRST_POCKET_SCALE = 20.0  # N; grows by itself when exceeded
 _CONTOUR_TURN = np.linspace(0.0, 2 * math.pi, section.CONTOUR_POINTS)
 
 
-class SectionDrawing:
+class _Drawing:
+    """What is drawn below one entity path.
+
+    Parameters
+    ----------
+    recording : rerun.RecordingStream to draw into; its time is set by the caller.
+    root : the entity path.
+    """
+
+    def __init__(self, recording: rr.RecordingStream, root: str):
+        self._recording, self._root = recording, root
+
+    def _log(self, path: str, what) -> None:
+        self._recording.log(f"{self._root}/{path}", what)
+
+    def _still(self, path: str, what) -> None:
+        self._recording.log(f"{self._root}/{path}".rstrip("/"), what, static=True)
+
+
+class SectionDrawing(_Drawing):
     """The cross-section of one bearing.
 
     Parameters
@@ -30,7 +49,7 @@ class SectionDrawing:
     """
 
     def __init__(self, recording: rr.RecordingStream, scene: Scene, load_scale: float):
-        self._recording = recording
+        super().__init__(recording, SECTION_ROOT)
         self._bearing = scene.bearing
         self._cage_factor = section.cage_magnification(scene)
         self._guide, self._guiding_ring = section.drawn_guide_radius(scene.bearing, self._cage_factor), scene.bearing.cage.guidance
@@ -71,8 +90,7 @@ class SectionDrawing:
         self._still("cage/rims", rr.Ellipses2D.from_fields(half_sizes=sizes, line_radii=0.12, colors=colours.DARK_BRONZE, draw_order=-1.0))
         if self._guiding_ring == "inner_ring":
             self._still("inner_ring/guide_land", rr.LineStrips2D.from_fields(radii=0.08, colors=colours.GREEN, draw_order=1.0))
-        bars = np.full((bearing.roller.count, 4), colours.BRONZE, np.uint8)
-        bars[0] = colours.ORANGE
+        bars = _bar_colours(bearing.roller.count)
         self._still("cage/bars", rr.LineStrips2D.from_fields(radii=section.cage_bar_stroke(bearing), colors=bars, draw_order=3.0))
         self._still("rollers", rr.Points2D.from_fields(radii=bearing.roller.diameter / 2 / MILLIMETRE, draw_order=5.0))
         self._still("spin_marks", rr.LineStrips2D.from_fields(radii=0.22, colors=colours.WHITE, draw_order=6.0))
@@ -120,7 +138,7 @@ class SectionDrawing:
         vector = polar(length, math.atan2(sample["load_z"], sample["load_y"]))
         self._log("forces/radial_load", rr.Arrows2D.from_fields(origins=np.zeros((1, 2)), vectors=vector[None]))
         beside = picture(0.25 * self._bore, (0.22 if sample["load_z"] <= 0 else -0.09) * self._bore)  # where the arrow is not
-        self._text("forces/radial_load_text", [beside], [f"radial load {load:.0f} N"])
+        self._log("forces/radial_load_text", labels([beside], [f"radial load {load:.0f} N"]))
 
     def _draw_pocket_forces(self, sample, centres: np.ndarray) -> None:
         largest = _largest(np.abs(sample["pocket_force"]))
@@ -136,7 +154,9 @@ class SectionDrawing:
         level, start = -0.75 * self._bore, -0.5 * self._bore
         arrow = picture(self._pocket_length, 0.0)
         self._log("legend/pocket", rr.Arrows2D(origins=[picture(start, level)], vectors=[arrow], radii=0.22, colors=colours.PURPLE))
-        self._text("legend/pocket_text", [picture(0.19 * self._bore, level + 0.05 * self._bore)], [f"{self._pocket_scale:g} N on roller by pocket"])
+        self._log(
+            "legend/pocket_text", labels([picture(0.19 * self._bore, level + 0.05 * self._bore)], [f"{self._pocket_scale:g} N on roller by pocket"])
+        )
 
     @property
     def _pocket_length(self) -> float:
@@ -148,7 +168,7 @@ class SectionDrawing:
         origin, vectors = picture(-0.6 * unit, 0.32 * unit), [picture(0.22 * unit, 0.0), picture(0.0, 0.22 * unit)]
         self._still("axes/arrows", rr.Arrows2D(origins=[origin, origin], vectors=vectors, radii=0.2, colors=colours.WHITE))
         places = [picture(-0.27 * unit, 0.38 * unit), picture(-0.6 * unit, 0.7 * unit), picture(-0.46 * unit, 0.27 * unit)]
-        self._text("axes/names", places, ["Y", "Z", "X towards you"], still=True)
+        self._still("axes/names", labels(places, ["Y", "Z", "X towards you"]))
 
     @property
     def _bore(self) -> float:
@@ -168,18 +188,15 @@ class SectionDrawing:
         self._log("legend/map", rr.LineStrips2D(strips, radii=0.03 * unit, colors=colours.load_palette(steps)))
         loads = np.linspace(0.0, self.load_scale, 3)
         names = [f"{load:g}" for load in loads[:-1]] + [f"{loads[-1]:g} N"]
-        self._text("legend/ticks", picture(np.linspace(edges[0], edges[-1], len(loads)), level - 0.06 * unit), names)
-        self._text("legend/title", [picture(0.0, level + 0.19 * unit)], ["load of roller on inner ring"])
+        self._log("legend/ticks", labels(picture(np.linspace(edges[0], edges[-1], len(loads)), level - 0.06 * unit), names))
+        self._log("legend/title", labels([picture(0.0, level + 0.19 * unit)], ["load of roller on inner ring"]))
 
-    def _text(self, path: str, places, texts: list[str], still: bool = False) -> None:
-        log = self._still if still else self._log
-        log(path, labels(places, texts))
 
-    def _log(self, path: str, what) -> None:
-        self._recording.log(f"{SECTION_ROOT}/{path}", what)
-
-    def _still(self, path: str, what) -> None:
-        self._recording.log(f"{SECTION_ROOT}/{path}", what, static=True)
+def _bar_colours(count: int) -> np.ndarray:
+    """Return the colours of the cage's bars, uint8, shape (count, 4); the first one stands out, so that rotation is seen."""
+    bars = np.full((count, 4), colours.BRONZE, np.uint8)
+    bars[0] = colours.ORANGE
+    return bars
 
 
 def _largest(loads: np.ndarray) -> float:
@@ -205,7 +222,7 @@ _TURN = np.linspace(0.0, 2 * math.pi, 181)
 _TO_BEARING_FRAME = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 
 
-class SolidDrawing:
+class SolidDrawing(_Drawing):
     """The bearing of a scene in three dimensions.
 
     Parameters
@@ -215,7 +232,7 @@ class SolidDrawing:
     """
 
     def __init__(self, recording: rr.RecordingStream, scene: Scene):
-        self._recording = recording
+        super().__init__(recording, SOLID_ROOT)
         self._bearing = scene.bearing
         self._cage_factor = section.cage_magnification(scene)
         self._factor = section.magnification(scene.bearing)
@@ -242,7 +259,7 @@ class SolidDrawing:
         self._still("inner_ring/shaft_mark", rr.LineStrips3D.from_fields(radii=0.5, colors=colours.BLUE))
         if self._tilts:
             self._write_factors()
-        self._still("cage/bars", rr.LineStrips3D.from_fields(radii=0.6 * section.cage_bar_stroke(bearing), colors=self._bar_colours()))
+        self._still("cage/bars", rr.LineStrips3D.from_fields(radii=0.6 * section.cage_bar_stroke(bearing), colors=_bar_colours(count)))
 
     def _write_factors(self) -> None:
         """Write under the bearing by what tilts and skews are drawn; the tab's title has no room for it."""
@@ -281,17 +298,6 @@ class SolidDrawing:
         cosine, sine = np.cos(sample["roller_angle"]), np.sin(sample["roller_angle"])
         tilt, skew = self._tilt_factor * sample["roller_tilt"], self._skew_factor * sample["roller_skew"]
         return section.leaning(tilt * cosine - skew * sine, tilt * sine + skew * cosine)
-
-    def _bar_colours(self) -> np.ndarray:
-        bars = np.full((self._bearing.roller.count, 4), colours.BRONZE, np.uint8)
-        bars[0] = colours.ORANGE
-        return bars
-
-    def _log(self, path: str, what) -> None:
-        self._recording.log(f"{SOLID_ROOT}/{path}", what)
-
-    def _still(self, path: str, what) -> None:
-        self._recording.log(f"{SOLID_ROOT}/{path}".rstrip("/"), what, static=True)
 
 
 def _lean(sample, body: str) -> np.ndarray:
@@ -369,7 +375,7 @@ def eccentricity(guidance: str, samples) -> tuple[np.ndarray, np.ndarray]:
     return samples["cage_y"] - samples["ring_y"], samples["cage_z"] - samples["ring_z"]
 
 
-class CageDrawing:
+class CageDrawing(_Drawing):
     """The orbit of one bearing's cage, in micrometres.
 
     Parameters
@@ -379,7 +385,7 @@ class CageDrawing:
     """
 
     def __init__(self, recording: rr.RecordingStream, scene: Scene):
-        self._recording = recording
+        super().__init__(recording, ORBIT_ROOT)
         self._guidance = scene.bearing.cage.guidance
         self._clearance = scene.bearing.cage.play / _MICROMETRE
         self._path = OrbitPath(self._guidance)
@@ -418,12 +424,6 @@ class CageDrawing:
         text = f"e/c = {sample['land_eccentricity']:.3f}, c = {self._clearance:g} µm" if known else "not recorded"
         self._log("text", labels([picture(0.0, -1.1 * self._clearance)], [text]))
 
-    def _log(self, path: str, what) -> None:
-        self._recording.log(f"{ORBIT_ROOT}/{path}", what)
-
-    def _still(self, path: str, what) -> None:
-        self._recording.log(f"{ORBIT_ROOT}/{path}", what, static=True)
-
 
 def _faded(count: int) -> np.ndarray:
     """Return colours from old to new, uint8, shape (count, 4)."""
@@ -448,7 +448,7 @@ CAUSES = {
 _WIDTH, _PITCH = 100.0, 12.0  # drawn length of the scale, and distance of two bars
 
 
-class PowerDrawing:
+class PowerDrawing(_Drawing):
     """Bars of one run, each on a line of its own with its name and its watts; all on one scale, which fits the longest.
 
     Means of the newest `SAMPLES`: at an instant the shaft's power is in part stored, in motion and elastic contacts, or given back.
@@ -459,7 +459,7 @@ class PowerDrawing:
     """
 
     def __init__(self, recording: rr.RecordingStream):
-        self._recording = recording
+        super().__init__(recording, POWER_ROOT)
         self._scale = 1.0  # [W]
         self._newest = np.empty((0, len(CAUSES)))
         self._levels = _PITCH * np.arange(len(CAUSES))
@@ -467,9 +467,9 @@ class PowerDrawing:
     def draw_still_parts(self) -> None:
         """Write the names, and what the bars keep."""
         names = np.stack((np.full(len(CAUSES), -0.28 * _WIDTH), self._levels - 0.42 * _PITCH), axis=1)
-        self._recording.log(f"{POWER_ROOT}/names", labels(names, [name for name, _ in CAUSES.values()]), static=True)
+        self._still("names", labels(names, [name for name, _ in CAUSES.values()]))
         style = rr.LineStrips2D.from_fields(colors=[colour for _, colour in CAUSES.values()])
-        self._recording.log(f"{POWER_ROOT}/bars", style, static=True)
+        self._still("bars", style)
 
     def add(self, block: np.ndarray) -> None:
         """Add the samples of a block, whether they are drawn or not."""
@@ -487,10 +487,10 @@ class PowerDrawing:
         radii = np.minimum(0.3 * _PITCH, 0.45 * np.abs(ends))  # the ends of lines are round and stand out by this
         left, right = np.minimum(ends, 0.0) + radii, np.maximum(ends, 0.0) - radii
         bars = np.stack((np.stack((left, self._levels), axis=1), np.stack((right, self._levels), axis=1)), axis=1)
-        self._recording.log(f"{POWER_ROOT}/bars", rr.LineStrips2D.from_fields(strips=bars, radii=radii))
+        self._log("bars", rr.LineStrips2D.from_fields(strips=bars, radii=radii))
         places = np.stack((np.full(len(ends), 1.28 * _WIDTH), self._levels - 0.42 * _PITCH), axis=1)
         texts = [f"{power:,.0f} W" if np.isfinite(power) else "unknown" for power in powers]
-        self._recording.log(f"{POWER_ROOT}/watts", labels(places, texts))
+        self._log("watts", labels(places, texts))
 
 
 def power_bounds() -> tuple[tuple[float, float], tuple[float, float]]:

@@ -342,6 +342,33 @@ _FALLEN = 0xC8501AFF  # a level that is not the wanted one
 LOG_LEVELS = {Level.OK: rr.TextLogLevel.INFO, Level.WARN: rr.TextLogLevel.WARN, Level.ERROR: rr.TextLogLevel.ERROR}
 
 
+def send_columns(recording: rr.RecordingStream, lines: Lines, named: Callable[[str], str] = str) -> None:
+    """Send series, each in one piece, under the entity paths that ``named`` makes of theirs."""
+    if not len(lines.times):
+        return
+    index = [rr.TimeColumn(TIMELINE, duration=lines.times)]
+    for path, values in lines.values.items():
+        recording.send_columns(named(path), indexes=index, columns=rr.Scalars.columns(scalars=values.astype(np.float32)))
+
+
+def send_thinned(recording: rr.RecordingStream, thinned: Thinned) -> None:
+    """Send what is left of series: lines and ranges."""
+    send_columns(recording, thinned.lines)
+    send_columns(recording, thinned.ranges, range_path)
+
+
+def describe_range(recording: rr.RecordingStream, path: str, name: str, colour: tuple[int, int, int, int]) -> None:
+    """Log names and colour of the lowest and highest values beside a series in a long run."""
+    names = [f"{name}, lowest", f"{name}, highest"]
+    recording.log(range_path(path), rr.SeriesLines(names=names, colors=[dim(colour)] * 2, widths=[1.0, 1.0]), static=True)
+
+
+def log_event(recording: rr.RecordingStream, event: Event) -> None:
+    """Log an event at its own time."""
+    recording.set_time(TIMELINE, duration=float(event.time))
+    recording.log("/log", rr.TextLog(f"{event.text}  [{event.kind}]", level=LOG_LEVELS[Level(event.level)]))
+
+
 class RunSeries:
     """Series of one run into one recording.
 
@@ -425,29 +452,18 @@ class RunSeries:
             self._overview, self._measured_overview = Overview(bucket, whole), Overview(bucket, whole)
             self._keep_around(float(times[0]))
             for path, (name, colour, _) in LINES.items():
-                names = [f"{name}, lowest", f"{name}, highest"]
-                self._recording.log(range_path(path), rr.SeriesLines(names=names, colors=[dim(colour)] * 2, widths=[1.0, 1.0]), static=True)
+                describe_range(self._recording, path, name, colour)
 
     def _send(self, lines: Lines, overview: Overview | None) -> None:
         """Send series, or in a long run what is left of them by now."""
-        if overview is not None:
-            self._send_thinned(overview.add(lines))
-            return
-        self._send_columns(lines, str)
+        self._send_thinned(Thinned(lines, Lines(lines.times[:0], {})) if overview is None else overview.add(lines))
 
     def _send_thinned(self, thinned: Thinned | None) -> None:
-        if thinned is not None:
-            self._send_columns(thinned.lines, str)
-            self._send_columns(thinned.ranges, range_path)
-
-    def _send_columns(self, lines: Lines, named: Callable[[str], str]) -> None:
-        if not len(lines.times):
+        if thinned is None:
             return
-        index = [rr.TimeColumn(TIMELINE, duration=lines.times)]
-        for path, values in lines.values.items():
-            self._recording.send_columns(named(path), indexes=index, columns=rr.Scalars.columns(scalars=values.astype(np.float32)))
-        if "/slip/cage" in lines.values and named is str:
-            self._write_thresholds(lines.times[[0, -1]])
+        send_thinned(self._recording, thinned)
+        if "/slip/cage" in thinned.lines.values and len(thinned.lines.times):
+            self._write_thresholds(thinned.lines.times[[0, -1]])
 
     def _write_measured(self) -> None:
         if not self._measured or not self._newest:
@@ -468,8 +484,7 @@ class RunSeries:
             _widen(self._ranges, path, np.array([value]))
 
     def _send_level(self, path: str, ends: np.ndarray, value: float) -> None:
-        index = [rr.TimeColumn(TIMELINE, duration=ends)]
-        self._recording.send_columns(path, indexes=index, columns=rr.Scalars.columns(scalars=np.full(len(ends), value, np.float32)))
+        send_columns(self._recording, Lines(ends, {path: np.full(len(ends), value)}))
 
     def _note_slip(self, block: np.ndarray) -> None:
         octaves = np.floor(np.log2(np.maximum(np.abs(block["shaft_speed"]), 1e-3)))
@@ -508,8 +523,7 @@ class RunSeries:
 
     def write_event(self, event: Event) -> None:
         """Log an event at its own time."""
-        self._recording.set_time(TIMELINE, duration=float(event.time))
-        self._recording.log("/log", rr.TextLog(f"{event.text}  [{event.kind}]", level=LOG_LEVELS[Level(event.level)]))
+        log_event(self._recording, event)
         self._keep_around(event.time)
 
     def write_readout(self, sample: np.void, dropped: int) -> None:
