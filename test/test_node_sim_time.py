@@ -2,13 +2,14 @@
 """The node under sim time, as a process of its own that a player plays a log to over DDS: the same as an offline replay of the log."""
 
 import signal
+import time
 
 import numpy as np
 import pytest
 
 pytest.importorskip("rclpy", reason="the node needs ROS 2 (pip install 'bearing_sim[ros]', or a ROS installation)")
 
-from ros_bench import Client, NodeProcess, fresh_domain  # noqa: E402
+from ros_bench import GOOD, Client, NodeProcess, fresh_domain  # noqa: E402
 from rosbags.highlevel import AnyReader  # noqa: E402
 from sim_time_bench import RATE, SCENE, course, write  # noqa: E402
 from std_srvs.srv import SetBool  # noqa: E402
@@ -17,6 +18,7 @@ from bearing_sim.inputs.log import read_input_log  # noqa: E402
 from bearing_sim.inputs.profile import judge  # noqa: E402
 from bearing_sim.messages import topics  # noqa: E402
 from bearing_sim.recording.writer import McapSink  # noqa: E402
+from bearing_sim.ros.messages import message, message_class  # noqa: E402
 from bearing_sim.runtime.replay import replay  # noqa: E402
 from bearing_sim.runtime.sim_time import CAUGHT_UP  # noqa: E402
 from bearing_sim.simulation import Inputs  # noqa: E402
@@ -91,8 +93,8 @@ def _numbers(message):
 def assert_published_as_offline(received, expected):
     """Assert that what came over DDS has the values of the offline replay at its stamps."""
     assert len(received) > 0.8 * len(expected), "nearly all come, even to a busy client"
-    for message in received:
-        stamp, numbers = _numbers(message)
+    for joint_state in received:
+        stamp, numbers = _numbers(joint_state)
         np.testing.assert_allclose(numbers, expected[stamp], rtol=1e-9, atol=1e-9)
 
 
@@ -174,3 +176,30 @@ def test_node_without_a_clock_waits_says_so_and_ends_in_order(bench):
     assert told[0] == 1 and told[1].startswith("no /clock: use_sim_time is set")
     assert not client.received["bearing_joints"] and client.values()["phase"] == "waiting for the first input"
     assert node.end(signal.SIGINT) == 0 and "Traceback" not in node.text, node.text
+
+
+def test_a_run_waits_for_a_first_oil_temperature_whose_publisher_appears_with_the_clock(bench):
+    start, client, _ = bench
+    node = start()
+    client.wait_until_matched(node)
+    # The client's inputs are best effort, which is a warning of its own, so that the clock's arrival changes no level and causes no report.
+    client.spin_until(lambda: events(client, "input.lost"), "the best-effort publishers are noticed", node)
+    reports = len(client.received["diagnostics"])
+    client.spin_until(lambda: len(client.received["diagnostics"]) > reports, "a report comes, the next in a second", node)
+    oil = client.node.create_publisher(message_class(topics.INPUTS["oil_temperature"].ros_type), "oil_temperature", 10)
+    clock = client.node.create_publisher(message_class("rosgraph_msgs/msg/Clock"), "/clock", 10)
+    first, begun, joints_of = 1_700_000_000 * SECOND, time.monotonic(), client.received["bearing_joints"]
+    sent = False
+    while not joints_of:
+        passed = time.monotonic() - begun
+        assert passed < 60.0, node.text
+        stamp = first + round(passed * 1e9)
+        clock.publish(message("rosgraph_msgs/msg/Clock", {"clock": topics.stamp(stamp)}))
+        client.send("shaft_speed", stamp)
+        client.send("radial_load", stamp)
+        if passed > 0.8 and not sent:
+            fields = topics.INPUTS["oil_temperature"].message(stamp, GOOD._replace(oil_temperature=350.0))
+            oil.publish(message(topics.INPUTS["oil_temperature"].ros_type, fields))
+            sent = True
+        client.spin(0.05)
+    assert sent, "nothing was computed before"

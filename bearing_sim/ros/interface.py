@@ -21,7 +21,7 @@ from bearing_sim.messages import topics
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.messages.sample_messages import SampleMessages, message_templates
 from bearing_sim.messages.topics import Topic
-from bearing_sim.monitoring.health import Condition
+from bearing_sim.monitoring.health import Condition, Phase
 from bearing_sim.ros.messages import InputReader, Refused, message, message_class
 from bearing_sim.ros.parameters import OIL_TEMPERATURE, BearingSettings, NodeSettings, follows_clock, thresholds_in
 from bearing_sim.ros.recordings import fresh_path, limits_of, open_lossless_recording, open_recording, open_view, prepare
@@ -329,6 +329,8 @@ class BearingInterface:
                 self._report(now_ns, Condition([event], {}))
             return
         self._join_governor(warm_up)
+        if follows_clock(self._node) and self.live.solver.phase is Phase.WAITING:
+            self._count_publishers()  # whether the run waits for a first oil temperature is decided once, when it starts
         for event in self.live.collect(now_ns):
             self._log_event(event)
         self._outputs.update_subscribed()
@@ -343,13 +345,16 @@ class BearingInterface:
     def _report(self, now_ns: int, condition: Condition) -> None:
         """Publish the condition on /diagnostics."""
         if self.live is not None:  # counting publishers once a second is enough
-            for channel, subscription in self._subscriptions.items():
-                self.live.note_publishers(channel, self._node.count_publishers(subscription.topic_name))
+            self._count_publishers()
         self._last_level = condition.level
         self._next_report_ns = time.monotonic_ns() + round((_DIAGNOSTICS_PERIOD - self._node.review_period / 2) * 1e9)
         self._node.publish_diagnostics(now_ns, condition, self.component, self.hardware_id)
         if self.live is not None:
             self.live.record_diagnostics(condition, now_ns)
+
+    def _count_publishers(self) -> None:
+        for channel, subscription in self._subscriptions.items():
+            self.live.note_publishers(channel, self._node.count_publishers(subscription.topic_name))
 
     def reason_to_refuse(self, changes: dict[str, object]) -> str:
         """Return why changes of this bearing's parameters are refused; empty if they can be applied."""
