@@ -2,6 +2,7 @@
 """Commands that run many points: ``sweep``, its ``plot``, and the ``design`` of outer raceways."""
 
 import math
+from collections import Counter
 from pathlib import Path
 
 import click
@@ -111,29 +112,17 @@ def _print_sweep(table, report) -> None:
     names = [column.name.rpartition(".")[2] + (f", {column.unit}" if column.unit else "") for column in columns]
     shown = table.rows if len(table.rows) <= 60 else table.rows[:50]
     rows = [
-        [f"{value:.{8 if name in varied else 5}g}" if isinstance(value, float) else str(value) for name, value in _picked(row, columns)]
+        [f"{row[name]:.{8 if name in varied else 5}g}" if isinstance(row[name], float) else str(row[name]) for name in (*varied, *_SHOWN)]
         for row in shown
     ]
     print_rows(f"{report['scene']} at level {report['level']}", names, rows, words=("status",))
     if len(shown) < len(table.rows):
         click.echo(f"... and {len(table.rows) - len(shown)} more points; all are in the files")
-    for reason, count in _reasons(table).items():
+    reasons = Counter(f"{row['status']}: {row['reason']}" for row in table.rows if row["reason"])
+    for reason, count in reasons.most_common(5):
         click.echo(f"{count} x {reason}")
     counts = f"{report['computed']} points computed, {report['kept_from_before']} kept from before"
     click.echo(f"{counts}; {', '.join(filter(None, (report['parquet'], report['csv'], report['picture'])))}")
-
-
-def _picked(row, columns):
-    return [(column.name, row[column.name]) for column in columns]
-
-
-def _reasons(table) -> dict:
-    counts: dict = {}
-    for row in table.rows:
-        if row["reason"]:
-            reason = f"{row['status']}: {row['reason']}"
-            counts[reason] = counts.get(reason, 0) + 1
-    return dict(sorted(counts.items(), key=lambda item: -item[1])[:5])
 
 
 @click.command("plot")

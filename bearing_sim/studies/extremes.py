@@ -11,10 +11,8 @@ import csv
 import math
 import re
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from concurrent.futures.process import BrokenProcessPool
-from multiprocessing import get_context
 from pathlib import Path
 from typing import NamedTuple
 
@@ -29,6 +27,7 @@ from bearing_sim.scene.scene import Integration, Scene
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation, scene_inputs, tolerances_of
 from bearing_sim.studies.extremes_cases import BEARING, Case, corner_cases, sampled_cases
 from bearing_sim.sweep.table import new_figure
+from bearing_sim.sweep.tasks import Journal, run_tasks, task
 
 FINISHED, STEP_LIMITED, REFUSED, FAILED = OUTCOMES = ("finished", "step_limited", "refused", "failed")
 STEPS = 20_000  # budget of a run whose settings require small steps
@@ -79,6 +78,13 @@ class Segment(NamedTuple):
 
     duration: float  # [s]
     inputs: Inputs
+
+
+def case_result(case: Case) -> dict:
+    """Return the fields of the outcome of one case, without the case."""
+    fields = run_case(case)._asdict()
+    del fields["case"]
+    return fields
 
 
 def run_case(case: Case) -> Outcome:
@@ -305,33 +311,27 @@ class LongRun(NamedTuple):
 
     level: str
     speed_rpm: float
-    simulated: float
-    core_seconds: float
-    real_time_factor: float
-    steps: int
-    rejected_steps: int
-    cage_slip: float
-    slip_drift: float
-    damage_drift: float
-    energy_drift: float
-    shaft_angle_error: float
-    cage_angle_error: float
-    failure: str  # empty if the run was good
+    simulated: float = 0.0
+    core_seconds: float = 0.0
+    real_time_factor: float = math.nan
+    steps: int = 0
+    rejected_steps: int = 0
+    cage_slip: float = math.nan
+    slip_drift: float = math.nan
+    damage_drift: float = math.nan
+    energy_drift: float = math.nan
+    shaft_angle_error: float = math.nan
+    cage_angle_error: float = math.nan
+    failure: str = ""  # empty if the run was good
 
 
-def long_runs(level: str) -> list[tuple[str, float]]:
-    """Return level and simulated seconds of the long runs of a level."""
-    return [(level, _SECONDS.get(level, max(_SECONDS.values())))]
+def long_run_result(level: str, seconds: float) -> dict:
+    """Return the fields of `long_run`."""
+    return long_run(level, seconds)._asdict()
 
 
-def long_run(run: tuple[str, float]) -> LongRun:
-    """Make one long run.
-
-    Parameters
-    ----------
-    run : level and simulated seconds.
-    """
-    level, seconds = run
+def long_run(level: str, seconds: float) -> LongRun:
+    """Make one long run of ``seconds`` of simulated time."""
     simulation = Simulation(load_scene(BEARING, [f"level={level}", f"operating.shaft_speed={_SPEED} rpm"]))
     windows, failure = [], ""
     began = time.process_time()
@@ -343,9 +343,8 @@ def long_run(run: tuple[str, float]) -> LongRun:
             break
     core, counters = time.process_time() - began, simulation.counters
     if failure:
-        nothing = (math.nan,) * 6
         done = (core, simulation.time / core, counters.steps, counters.rejected_steps)
-        return LongRun(level, _SPEED, simulation.time, *done, *nothing, failure)
+        return LongRun(level, _SPEED, simulation.time, *done, failure=failure)
     means = np.array(windows)
     early, late, last = means[1], means[-1], simulation.sample
     slip, damage, surplus = (late - early)[:3] / (1.0, early[1], early[3])
@@ -400,7 +399,7 @@ def run_extremes(
     levels : to study; empty: all.
     seed : of the hypercube.
     long : whether to include the long runs.
-    announce : called with a line of text at the start of each phase.
+    announce : called with a line of text before the start.
     progress : called with the finished fraction of the cases.
 
     Returns
@@ -410,51 +409,25 @@ def run_extremes(
     """
     levels = tuple(levels) or tuple(LEVELS)
     cases = [case for level in levels for case in corner_cases(level) + sampled_cases(level, samples, seed)]
-    runs = [run for level in levels for run in long_runs(level)] if long else []
-    for level in levels:
-        announce(f"compiling level {level} with all its methods, once for this version")
-        _compile(level)
-    if runs:
-        announce(f"{len(runs)} long runs")
-    with _pool() as pool:
-        long_outcomes = list(pool.map(long_run, runs))
-    announce(f"{len(cases)} scenes")
-    outcomes = []
-    for outcome in _outcomes(cases):
-        outcomes.append(outcome)
-        progress(len(outcomes) / len(cases))
-    order = {(case.level, case.name): position for position, case in enumerate(cases)}
-    outcomes.sort(key=lambda outcome: order[outcome.case.level, outcome.case.name])
+    long_levels = levels if long else ()
+    tasks = [task(_compiled_for(case), case_result, case) for case in cases]
+    tasks += [task(level, long_run_result, level, _SECONDS.get(level, max(_SECONDS.values()))) for level in long_levels]
+    announce(f"{len(cases)} scenes, {len(long_levels)} long runs")
+    results = run_tasks(tasks, Journal(), progress=lambda done, total: progress(done / total))
+    outcomes = [Outcome(**{"case": case} | result) for case, result in zip(cases, results)]
+    long_outcomes = [_long_outcome(level, result) for level, result in zip(long_levels, results[len(cases) :])]
     return _report(levels, samples, seed, outcomes, long_outcomes), outcomes
 
 
-def _pool(workers: int | None = None) -> ProcessPoolExecutor:
-    return ProcessPoolExecutor(workers or cores(), mp_context=get_context("spawn"))
+def _compiled_for(case: Case) -> str:
+    """Return which machine code a case needs: that of its level, with error control or with a fixed step."""
+    fixed = any(override.startswith("integration.fixed_step=") for override in case.overrides)
+    return f"{case.level}, fixed step" if fixed else case.level
 
 
-def _compile(level: str) -> None:
-    """Fill the cache of machine code before several processes need it at the same time."""
-    for case in corner_cases(level):
-        if case.name.endswith("tolerances x 1") or "fixed step 1e-05" in case.name:
-            run_case(case._replace(seconds=2e-5))
-
-
-def _outcomes(cases: Sequence[Case]) -> Iterator[Outcome]:
-    """Yield the outcomes as they arrive; after a process died, find the responsible cases by halving."""
-    undone = []
-    with _pool() as pool:
-        futures = {pool.submit(run_case, case): case for case in cases}
-        for future in as_completed(futures):
-            try:
-                yield future.result()
-            except BrokenProcessPool:
-                undone.append(futures[future])
-    if len(undone) == 1 and len(cases) == 1:
-        yield Outcome(undone[0], FAILED, "the process died")
-    elif undone:
-        middle = (len(undone) + 1) // 2
-        yield from _outcomes(undone[:middle])
-        yield from _outcomes(undone[middle:])
+def _long_outcome(level: str, result: dict) -> LongRun:
+    """Return a long run from its result; that of a lost worker has only a reason."""
+    return LongRun(**result) if "failure" in result else LongRun(level, _SPEED, failure=result["reason"])
 
 
 def _report(levels, samples, seed, outcomes, long_outcomes) -> dict:
@@ -504,12 +477,8 @@ def _worst(outcomes: Sequence[Outcome]) -> dict[str, dict]:
 
 def _counted(outcomes: Sequence[Outcome], status: str) -> dict[str, int]:
     """Count the reasons of one outcome without their numbers, most frequent first."""
-    counts: dict[str, int] = {}
-    for outcome in outcomes:
-        if outcome.status == status:
-            for reason in kinds_of_reason(outcome.reason):
-                counts[reason] = counts.get(reason, 0) + 1
-    return dict(sorted(counts.items(), key=lambda item: -item[1]))
+    counts = Counter(reason for outcome in outcomes if outcome.status == status for reason in kinds_of_reason(outcome.reason))
+    return dict(counts.most_common())
 
 
 def kinds_of_reason(reason: str) -> list[str]:
@@ -590,4 +559,4 @@ def write_table(path: Path, outcomes: Sequence[Outcome]) -> None:
 
 
 def _text(value) -> str:
-    return f"{value:.6g}" if isinstance(value, float) and math.isfinite(value) else str(value)
+    return f"{value:.6g}" if isinstance(value, float) else str(value)

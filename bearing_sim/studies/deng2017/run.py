@@ -4,6 +4,7 @@
 import json
 import platform
 import time
+from collections import Counter
 from collections.abc import Callable
 from importlib import metadata
 from pathlib import Path
@@ -98,20 +99,12 @@ def run_study(
         "scenes": {name: scene_to_yaml(load_scene(name)) for name in dict.fromkeys(each.scene for each in STUDIES)},
         "versions": {"bearing_sim": package_version(), "commit": git_hash(), "python": platform.python_version()}
         | {name: metadata.version(name) for name in _PACKAGES},
-        "statuses": _statuses(tables),
+        "statuses": Counter(status for table in tables.values() for status in table.values("status")),
         "claims": [finding._asdict() for finding in findings],
         "figures": [each._asdict() for each in pictured],
     }
     (folder / STUDY_FILE).write_text(json.dumps(about, indent=2))
     return findings
-
-
-def _statuses(tables) -> dict:
-    counts: dict = {}
-    for table in tables.values():
-        for status in table.values("status"):
-            counts[status] = counts.get(status, 0) + 1
-    return counts
 
 
 def _write_tables(folder, tables, profiles, trajectories, rings, findings) -> None:
