@@ -1,7 +1,6 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """``bearing-sim bench``, ``trade`` and ``compile``: how fast the model is, what accuracy costs, and compiling ahead of a run."""
 
-import csv
 import time
 from pathlib import Path
 
@@ -17,6 +16,7 @@ from bearing_sim.cli.reporting import (
     print_rows,
     progress_bar,
     require_levels,
+    write_csv,
 )
 
 _WORDS = ("level", "integrator")  # columns of text
@@ -200,7 +200,7 @@ def trade(scene_name, overrides, levels, against, factor, error, table, picture,
             raise FailedRun(f"the reference failed: {error}") from None
     with as_file_error():
         if table is not None:
-            _write(table, found)
+            write_csv(table, _rows(found))
         if picture is not None:
             from bearing_sim.studies.trade import draw
 
@@ -213,17 +213,10 @@ def trade(scene_name, overrides, levels, against, factor, error, table, picture,
         _print_advice(found, factor, error, best)
 
 
-def _row(found, k):
-    one = found.measured[k]
-    setting = one.setting
-    return dict(zip(_COLUMNS, (setting.level, setting.detail, *one[1:6], k in found.front, one.failure)))
-
-
-def _write(path, found) -> None:
-    with open(path, "w", newline="") as file:
-        writer = csv.DictWriter(file, _COLUMNS)
-        writer.writeheader()
-        writer.writerows(_row(found, k) for k in range(len(found.measured)))
+def _rows(found) -> list[dict]:
+    return [
+        dict(zip(_COLUMNS, (one.setting.level, one.setting.detail, *one[1:6], k in found.front, one.failure))) for k, one in enumerate(found.measured)
+    ]
 
 
 def _report(found) -> dict:
@@ -232,14 +225,13 @@ def _report(found) -> dict:
         "reference_error": dict(zip(_MEASURED[1:], found.own_error)),
         "simulated_seconds": found.simulated,
         "left_out": found.left_out,
-        "settings": [_row(found, k) for k in range(len(found.measured))],
+        "settings": _rows(found),
     }
 
 
 def _print_trade(name, found) -> None:
     rows = []
-    for k in sorted(range(len(found.measured)), key=lambda k: -found.measured[k].real_time_factor):
-        row = _row(found, k)
+    for row in sorted(_rows(found), key=lambda row: -row["real_time_factor"]):
         points = f"{row['slip_error_points']:.3f}", f"{row['largest_slip_error_points']:.3f}"
         values = f"{row['real_time_factor']:.3g}", *points, f"{100 * row['load_error']:.2g}", f"{100 * row['life_error']:.2g}"
         rows.append(("*" if row["on_front"] else "", row["level"], row["setting"], *values, row["failure"]))

@@ -1,6 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Shared by the commands: errors and exit codes, announcements, JSON, tables and progress bars."""
 
+import csv
 import errno
 import json
 import math
@@ -33,6 +34,15 @@ def as_usage_error(*kinds: type[Exception]) -> Iterator[None]:
         yield
     except kinds as error:
         raise UsageError(str(error)) from None
+
+
+@contextmanager
+def as_failed_run(*kinds: type[Exception]) -> Iterator[None]:
+    """Convert exceptions of these types to a `FailedRun`."""
+    try:
+        yield
+    except kinds as error:
+        raise FailedRun(str(error)) from None
 
 
 @contextmanager
@@ -113,6 +123,14 @@ def _finite(value):
     if isinstance(value, float) and not math.isfinite(value):
         return None
     return value
+
+
+def write_csv(path: Path, rows: Sequence[Mapping]) -> None:
+    """Write rows to a CSV table; the keys of the first row are the columns of all."""
+    with open(path, "w", newline="") as file:
+        writer = csv.DictWriter(file, rows[0])
+        writer.writeheader()
+        writer.writerows(rows)
 
 
 def print_table(title: str, rows: Iterable[tuple[str, str]]) -> None:

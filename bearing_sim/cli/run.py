@@ -10,9 +10,9 @@ import click
 
 from bearing_sim.cli.options import json_option, scene_argument, set_option
 from bearing_sim.cli.reporting import (
-    FailedRun,
     announce_compilation,
     announce_replacement,
+    as_failed_run,
     as_file_error,
     as_usage_error,
     print_json,
@@ -56,21 +56,18 @@ def run(scene_name, overrides, duration, level, rate, out, rrd, uncertainty, as_
         scene = load_scene(scene_name, [*overrides, *([f"level={level}"] if level else [])])
     suggest_level(scene)
     samples = max(round(seconds * (rate or min(_RATE, _SAMPLES / seconds))), 5)
-    with as_file_error(), ExitStack() as stack:
+    with as_file_error(), as_failed_run(IntegrationError), ExitStack() as stack:
         sinks = _sinks(stack, scene, seconds, samples, out, rrd)
         progress = stack.enter_context(progress_bar(f"running {scene.name}", seconds))
         started = time.perf_counter()
         announce_compilation()
-        try:
-            simulation = Simulation(scene)
-            simulation.advance(1e-6)  # compile or load machine code, so that it is not timed with the run
-            simulation.reset()
-            for sink in sinks[: out is not None]:
-                sink.write(start_sample(simulation))
-            first = time.perf_counter()
-            settled = _advance(simulation, seconds, samples, sinks, progress)
-        except IntegrationError as error:
-            raise FailedRun(str(error)) from None
+        simulation = Simulation(scene)
+        simulation.advance(1e-6)  # compile or load machine code, so that it is not timed with the run
+        simulation.reset()
+        for sink in sinks[: out is not None]:
+            sink.write(start_sample(simulation))
+        first = time.perf_counter()
+        settled = _advance(simulation, seconds, samples, sinks, progress)
         wall = time.perf_counter() - first
     report = _report(simulation, settled, seconds, wall, first - started)
     bands = bands_of(scene, uncertainty)[1] if uncertainty else None

@@ -1,7 +1,6 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """``bearing-sim study`` and ``report``: studies of the model itself, and the results of Deng 2017."""
 
-import csv
 import math
 from pathlib import Path
 
@@ -12,6 +11,7 @@ from bearing_sim.cli.reporting import (
     FailedRun,
     Points,
     announce_compilation,
+    as_failed_run,
     as_file_error,
     as_usage_error,
     exit_on_sigterm,
@@ -20,6 +20,7 @@ from bearing_sim.cli.reporting import (
     print_table,
     progress_bar,
     require_levels,
+    write_csv,
 )
 
 
@@ -78,8 +79,6 @@ def report(folder, out):
 @json_option
 def damage(log, scene_name, overrides, windows, length, as_json):
     """Run the inputs in IN.mcap at levels steady and slip, and at level planar in windows spread evenly over them."""
-    import numpy as np
-
     from bearing_sim.inputs.log import InputLogError, read_input_log
     from bearing_sim.inputs.profile import judge
     from bearing_sim.scene.loader import SceneError, load_scene
@@ -94,17 +93,11 @@ def damage(log, scene_name, overrides, windows, length, as_json):
     announce_compilation()
     kelvin = scene.lubricant.temperature
     table = build_with_progress(scene, None if "oil_temperature" in course.stamps else (kelvin, kelvin))[0]
-    in_gap = np.zeros(len(course.instants), bool)
-    for begin, end in course.gaps:
-        in_gap |= (course.instants > begin) & (course.instants <= end)
-    with progress_bar(f"running {log.name}", course.end * 1e-9) as show, as_usage_error(SceneError):
-        try:
-            found = damages(
-                scene_name, overrides, course.instants * 1e-9, course.at(course.instants, kelvin), in_gap,
-                table=table, windows=windows, length=length, progress=show,
-            )  # fmt: skip
-        except IntegrationError as error:
-            raise FailedRun(str(error)) from None
+    run = course.segment(None, kelvin)
+    with progress_bar(f"running {log.name}", course.end * 1e-9) as show, as_usage_error(SceneError), as_failed_run(IntegrationError):
+        found = damages(
+            scene_name, overrides, run.instants * 1e-9, run.inputs, run.in_gap, table=table, windows=windows, length=length, progress=show
+        )
     if as_json:
         print_json({"log": log.name, "scene": scene_name, **found._asdict(), "windows": [window._asdict() for window in found.windows]})
     else:
@@ -112,8 +105,6 @@ def damage(log, scene_name, overrides, windows, length, as_json):
 
 
 def _print_damage(log, name, found) -> None:
-    import math
-
     rows = []
     sums = [sum(getattr(window, level) for window in found.windows) for level in ("steady", "slip", "planar")]
     for window in found.windows:
@@ -148,19 +139,13 @@ def misalignment(scene_name, overrides, largest, points, crowns, slices, table, 
 
     crowns = crowns or CROWNS
     done = iter(range(points * len(crowns) + 1))
-    with progress_bar("points", points * len(crowns)) as show, as_usage_error(SceneError, ValueError):
-        try:
-            amounts = [round(float(each), 9) for each in 1e-3 * np.linspace(0.0, largest, points)]
-            found = misalign(scene_name, overrides, amounts, crowns, slices, progress=lambda name: show(next(done)))
-        except IntegrationError as error:
-            raise FailedRun(str(error)) from None
+    amounts = [round(float(each), 9) for each in 1e-3 * np.linspace(0.0, largest, points)]
+    with progress_bar("points", points * len(crowns)) as show, as_usage_error(SceneError, ValueError), as_failed_run(IntegrationError):
+        found = misalign(scene_name, overrides, amounts, crowns, slices, progress=lambda name: show(next(done)))
     rows = [_row(one) for one in found]
     with as_file_error():
         if table is not None:
-            with open(table, "w", newline="") as file:
-                writer = csv.DictWriter(file, rows[0])
-                writer.writeheader()
-                writer.writerows(rows)
+            write_csv(table, rows)
         if picture is not None:
             from bearing_sim.studies.misalignment import draw
 
@@ -321,11 +306,8 @@ def slices(scene_name, overrides, settle, duration, as_json):
     from bearing_sim.studies.slices import SLICES, by_slices
 
     done = iter(range(len(SLICES) + 1))
-    with progress_bar("runs", len(SLICES)) as show:
-        try:
-            found = by_slices(scene, settle, duration, progress=lambda name: show(next(done)))
-        except IntegrationError as error:
-            raise FailedRun(str(error)) from None
+    with progress_bar("runs", len(SLICES)) as show, as_failed_run(IntegrationError):
+        found = by_slices(scene, settle, duration, progress=lambda name: show(next(done)))
     if as_json:
         print_json({"scene": scene_name, "runs": [one._asdict() for one in found]})
     else:

@@ -16,6 +16,7 @@ from bearing_sim.cli.reporting import (
     print_json,
     print_table,
     require_levels,
+    write_csv,
 )
 
 SEED = 2017
@@ -59,7 +60,7 @@ def uncertainty(scene_name, overrides, samples, seed, level, log, stretches, wor
             found, report = bands_of(scene, samples, seed, level, course, journal, workers, dask)
     with as_file_error():
         if table is not None:
-            _write(table, found)
+            write_csv(table, _rows(found))
         if picture is not None:
             from bearing_sim.studies.uncertainty import draw
 
@@ -100,8 +101,6 @@ def _course(log, scene, count):
     import dataclasses
     import math
 
-    import numpy as np
-
     from bearing_sim.inputs.log import InputLogError, read_input_log
     from bearing_sim.inputs.profile import judge
     from bearing_sim.simulation import Inputs
@@ -113,10 +112,8 @@ def _course(log, scene, count):
     if "oil_temperature" in course.stamps and any(one.field == "lubricant.temperature" for one in scene.uncertainty):
         click.echo("the log gives the oil temperature: its range in the scene is not used", err=True)
         scene = dataclasses.replace(scene, uncertainty=tuple(one for one in scene.uncertainty if one.field != "lubricant.temperature"))
-    in_gap = np.zeros(len(course.instants), bool)
-    for begin, end in course.gaps:
-        in_gap |= (course.instants > begin) & (course.instants <= end)
-    return scene, stretches(course.instants * 1e-9, course.at(course.instants, kelvin), in_gap, count)
+    run = course.segment(None, kelvin)
+    return scene, stretches(run.instants * 1e-9, run.inputs, run.in_gap, count)
 
 
 def _report(found, seed, seconds, course) -> dict:
@@ -231,15 +228,13 @@ def print_bands(name, report) -> None:
     )
 
 
-def _write(path, found) -> None:
-    import csv
-
+def _rows(found) -> list[dict]:
     from bearing_sim.scene.scene import Scene
     from bearing_sim.scene.uncertainty import quantities
 
     known = quantities(Scene)
-    with open(path, "w", newline="") as file:
-        writer = csv.writer(file)
-        writer.writerow([f"{one.field} [{known[one.field].unit or '1'}]" for one in found.ranges] + ["cage_slip [1]", "life [h]"])
-        for point, slip, life in zip(found.design.points.tolist(), found.answers["cage_slip"].tolist(), found.answers["life_hours"].tolist()):
-            writer.writerow([*point, slip, life])
+    columns = [f"{one.field} [{known[one.field].unit or '1'}]" for one in found.ranges]
+    answers = zip(found.answers["cage_slip"].tolist(), found.answers["life_hours"].tolist())
+    return [
+        dict(zip(columns, point)) | {"cage_slip [1]": slip, "life [h]": life} for point, (slip, life) in zip(found.design.points.tolist(), answers)
+    ]

@@ -9,6 +9,7 @@ before.  The fit is a least-squares fit of the settled slip; its intervals accou
 import math
 from collections import Counter
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -549,11 +550,7 @@ def _fitted_scene(scene: Scene, fitted: Sequence[Fitted], confidence: float) -> 
         for one in fitted
     }
     scene = with_values(scene, {one.range.field: one.value for one in fitted})
-    return type(scene)(**_fields(scene) | {"uncertainty": tuple(narrowed.get(one.field, one) for one in scene.uncertainty)})
-
-
-def _fields(scene: Scene) -> dict:
-    return {name: getattr(scene, name) for name in scene.__dataclass_fields__}
+    return replace(scene, uncertainty=tuple(narrowed.get(one.field, one) for one in scene.uncertainty))
 
 
 _MEASURED, _BEFORE, _AFTER = "0.45", "#d55e00", "#0072b2"  # Okabe and Ito: safe for colour-blind readers

@@ -8,6 +8,7 @@ one scrambled Sobol' sequence in 2 d dimensions; bands use both.
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -17,8 +18,8 @@ from scipy import stats
 from scipy.stats import qmc
 
 from bearing_sim.levels.steady.table import empty_table
-from bearing_sim.scene import fidelity as effects
-from bearing_sim.scene.scene import Scene
+from bearing_sim.scene import fidelity
+from bearing_sim.scene.scene import Integration, Scene
 from bearing_sim.scene.uncertainty import Range, quantities, value_at, with_values
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation, scene_inputs
 from bearing_sim.sweep.table import new_figure
@@ -259,14 +260,13 @@ def lowest_level(scene: Scene, level: str | None = None) -> tuple[Scene, str]:
     UncertaintyError
         The scene cannot be computed at that level.
     """
-    found = effects.choose(scene)
+    defaults = replace(scene, integration=Integration())  # integration settings belong to the scene's own level
+    found = fidelity.choose(defaults)
     chosen, reason = (level, "as requested") if level else (found.level or scene.level, found.reason)
     if chosen == scene.level:
         return scene, reason
     try:
-        # Integration settings belong to the scene's own level; use the defaults at another.
-        own = {name: getattr(scene, name) for name in scene.__dataclass_fields__} | {"level": chosen, "level_reason": ""}
-        return Scene(**own | {"integration": type(scene.integration)()}), reason
+        return replace(defaults, level=chosen, level_reason=""), reason
     except ValidationError as error:
         raise UncertaintyError(f"level {chosen}: {_messages(error)}") from None
 
