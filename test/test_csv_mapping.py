@@ -3,7 +3,8 @@
 
 import pytest
 
-from bearing_sim.inputs.csv_import import MappingError, load_mapping, mapping_from_yaml, mapping_names
+from bearing_sim.inputs.csv_import import load_mapping, mapping_from_yaml
+from bearing_sim.scene.loader import SceneError, catalog_names
 
 GOOD = """
 name: test rig
@@ -15,7 +16,7 @@ oil_temperature: {column: T, unit: degC}
 
 
 def faults_of(text):
-    with pytest.raises(MappingError) as raised:
+    with pytest.raises(SceneError) as raised:
         mapping_from_yaml(text)
     return {fault.path: fault for fault in raised.value.errors}
 
@@ -72,13 +73,13 @@ oil_temperature: {column: T}
     ],
 )
 def test_a_mapping_that_cannot_be_meant_is_refused(old, new, words):
-    with pytest.raises(MappingError, match=words):
+    with pytest.raises(SceneError, match=words):
         mapping_from_yaml(GOOD.replace(old, new))
 
 
 def test_bundled_mappings_load_and_name_their_assumptions():
-    assert mapping_names() == ["citation_flight", "wind_turbine_scada"]
-    for name in mapping_names():
+    assert catalog_names("mappings") == ["citation_flight", "wind_turbine_scada"]
+    for name in catalog_names("mappings"):
         mapping, text = load_mapping(name)
         assert mapping.name == name and mapping.source and "ASSUMPTION" in text
 
@@ -92,8 +93,8 @@ def test_flight_mapping_is_full_speed_32760_rpm_and_one_g_of_12_kg_at_rest():
 
 
 def test_unknown_mapping_is_told_with_those_there_are(tmp_path):
-    with pytest.raises(MappingError, match="did you mean 'citation_flight'.*wind_turbine_scada"):
+    with pytest.raises(SceneError, match="did you mean 'citation_flight'.*wind_turbine_scada"):
         load_mapping("citation_fligth")
     (tmp_path / "latin.yaml").write_bytes("name: Prüfstand".encode("latin-1"))
-    with pytest.raises(MappingError, match="UTF-8"):
+    with pytest.raises(SceneError, match="UTF-8"):
         load_mapping(tmp_path / "latin.yaml")

@@ -22,9 +22,10 @@ def import_csv(data, mapping_name, out, as_json):
     Gaps, repeated or decreasing times, empty cells and cells that are not numbers are counted and reported by line number; the rows or
     messages concerned are left out, and nothing is filled in.
     """
-    from bearing_sim.inputs.csv_import import MappingError, TableError, load_mapping, read_table, write_log
+    from bearing_sim.inputs.csv_import import TableError, load_mapping, read_table, write_log
+    from bearing_sim.scene.loader import SceneError
 
-    with as_usage_error(MappingError, TableError), as_file_error():
+    with as_usage_error(SceneError, TableError), as_file_error():
         if out.exists() and data.exists() and out.samefile(data):
             raise UsageError(f"{out} is the input table; choose another file")
         announce_replacement(out)

@@ -16,7 +16,6 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from decimal import Decimal, InvalidOperation
-from importlib import resources
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -27,7 +26,7 @@ from pydantic_core import PydanticCustomError
 from bearing_sim.messages import topics
 from bearing_sim.recording.provenance import git_hash, package_version
 from bearing_sim.recording.writer import McapFile
-from bearing_sim.scene.loader import InvalidField, SceneError, did_you_mean, invalid_fields, yaml_mapping
+from bearing_sim.scene.loader import SceneError, did_you_mean, invalid_fields, read_named, yaml_mapping
 from bearing_sim.scene.quantity import quantity, record, to_si
 from bearing_sim.simulation import Inputs
 
@@ -38,10 +37,6 @@ _LINES_KEPT = 5  # of each kind of error; all are counted
 _USUAL_SPACINGS = 3.0  # median spacings above which there is a gap, if the mapping does not set longest_step
 
 _LAWS = frozenset({"sum", "norm", "mass_times_acceleration", "gear_force"})
-
-
-class MappingError(SceneError):
-    """A mapping that cannot be used; ``faults`` lists all errors in it."""
 
 
 def _column(si_unit: str, meaning: str) -> type:
@@ -206,12 +201,6 @@ class Mapping:
         return named + [(f"{name}.column", one.column) for name, one in optional.items() if one]
 
 
-def mapping_names() -> list[str]:
-    """Return the names of the bundled mappings."""
-    folder = resources.files("bearing_sim.scene").joinpath("catalog", "mappings")
-    return sorted(entry.name.removesuffix(".yaml") for entry in folder.iterdir() if entry.name.endswith(".yaml"))
-
-
 def load_mapping(mapping: str | Path) -> tuple[Mapping, str]:
     """Load a mapping by bundled name or file path.
 
@@ -221,34 +210,20 @@ def load_mapping(mapping: str | Path) -> tuple[Mapping, str]:
 
     Raises
     ------
-    MappingError
+    SceneError
         The file is missing, is not YAML, or has errors; all of them are listed.
     """
-    if str(mapping) in mapping_names():
-        text = resources.files("bearing_sim.scene").joinpath("catalog", "mappings", f"{mapping}.yaml").read_text(encoding="utf-8")
-    else:
-        path = Path(mapping)
-        if not path.is_file():
-            known = mapping_names()
-            reason = f"no such file or bundled mapping{did_you_mean(str(mapping), known)}; bundled: {', '.join(known)}"
-            raise MappingError(str(mapping), [InvalidField("mapping", "", reason)])
-        try:
-            text = path.read_text(encoding="utf-8")
-        except UnicodeDecodeError as error:
-            raise MappingError(str(mapping), [InvalidField("mapping", "", f"not readable as UTF-8 text: {error.reason}")]) from None
+    text, _ = read_named(mapping, "catalog/mappings", "mapping")
     return mapping_from_yaml(text, str(mapping)), text
 
 
 def mapping_from_yaml(text: str, origin: str = "mapping") -> Mapping:
     """Build a mapping from YAML text (see `load_mapping`)."""
-    try:
-        tree = yaml_mapping(text, origin, "time, shaft_speed, radial_load ...")
-    except SceneError as error:
-        raise MappingError(origin, error.errors) from None
+    tree = yaml_mapping(text, origin, "time, shaft_speed, radial_load ...")
     try:
         return TypeAdapter(Mapping).validate_python(tree)
     except ValidationError as error:
-        raise MappingError(origin, invalid_fields(error, Mapping, _LAWS)) from None
+        raise SceneError(origin, invalid_fields(error, Mapping, _LAWS)) from None
 
 
 class TableError(ValueError):

@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 
 from bearing_sim.scene.contour import form_errors, settled_form
 from bearing_sim.scene.crown import Crown, NoCrown, crown_errors
-from bearing_sim.scene.quantity import quantity, record
+from bearing_sim.scene.quantity import check, quantity, record
 
 LAND_FIELDS = ("guide_radius", "guide_clearance", "guide_land_width", "guide_land_distance")
 _CLOSE = 1e-8  # m; lengths nearer than this are taken as equal
@@ -109,12 +109,9 @@ class Roller:
     slices: Annotated[int, Field(ge=1, le=400)] = 20  # per roller, at level spatial; ISO/TS 16281 requires 30 or more for the life
     slices_per_traction: Annotated[int, Field(ge=1, le=400)] = 4  # neighbouring slices with one traction coefficient
 
-    @model_validator(mode="after")
-    def _crown_fits(self):
-        errors = crown_errors(self.crown, self.length)
-        if errors:
-            raise ValueError("; ".join(errors))
-        return self
+    @check
+    def _crown_fits(self) -> list[str]:
+        return crown_errors(self.crown, self.length)
 
 
 @record
@@ -213,13 +210,10 @@ class Cage:
             return self.guide_clearance
         return self.pocket_radial_clearance if self.pocket_radial_clearance is not None else self.pocket_clearance
 
-    @model_validator(mode="after")
-    def _guidance_is_complete(self):
+    @check
+    def _guidance_is_complete(self) -> list[str]:
         errors = [f"{name}: missing; a cage with guidance {self.guidance} needs it" for name in _NEEDS[self.guidance] if getattr(self, name) is None]
-        errors += self._errors_with_lands() if self.has_lands else self._errors_without_lands()
-        if errors:
-            raise ValueError("; ".join(errors))
-        return self
+        return errors + (self._errors_with_lands() if self.has_lands else self._errors_without_lands())
 
     def _errors_with_lands(self) -> list[str]:
         running, sign = ("outer_radius", 1) if self.guidance == "outer_ring" else ("inner_radius", -1)
@@ -278,9 +272,8 @@ class Bearing:
         """R_low - R_i - D_w [m]; negative: preload at the low points."""
         return self.outer_raceway.low_radius - self.inner_raceway.radius - self.roller.diameter
 
-    @model_validator(mode="after")
-    def _parts_fit_together(self):
-        # Collect all errors, so that the author can correct the file in one go.
+    @check
+    def _parts_fit_together(self) -> list[str]:
         errors = []
         if self.roller.count * self.roller.diameter > 2 * self.pitch_radius * math.pi:
             errors.append(
@@ -293,10 +286,7 @@ class Bearing:
                 f"outer_raceway.low_radius: {1e3 * self.outer_raceway.low_radius:.6g} mm leaves {1e6 * clearance:.6g} um between inner "
                 f"raceway, roller and low point; expected {-2e4 * self.roller.diameter:.6g} to {5e5 * self.roller.diameter:.6g} um"
             )
-        errors += cage_errors(self) + play_errors(self) + growth_errors(self)
-        if errors:
-            raise ValueError("; ".join(errors))
-        return self
+        return errors + cage_errors(self) + play_errors(self) + growth_errors(self)
 
 
 def growth_errors(bearing) -> list[str]:

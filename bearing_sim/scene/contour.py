@@ -332,25 +332,14 @@ def drop_other_forms(raceway: dict, given: Iterable[str]) -> None:
                     raceway.pop(name, None)
 
 
-def _raceway(tree: Mapping):
-    bearing = tree.get("bearing")
-    raceway = bearing.get("outer_raceway") if isinstance(bearing, Mapping) else None
-    return raceway if isinstance(raceway, Mapping) else {}
-
-
-def anchor_contour(tree: Mapping, folder: Path) -> None:
-    """Resolve the path of a contour file relative to the folder of the scene file, in place."""
-    raceway = _raceway(tree)
-    if isinstance(raceway.get("contour_file"), str) and raceway.get("contour") is None:
-        raceway["contour_file"] = str(folder / raceway["contour_file"])
-
-
 def with_contour_text(tree: Mapping) -> tuple[dict, tuple[str, str] | None]:
     """Return the tree with the text of its contour file, and value and reason of the error if the file cannot be read.
 
     Only the name of the file is kept, not its path, so that recordings do not reveal the paths of the machine.
     """
-    tree, raceway = dict(tree), dict(_raceway(tree))
+    tree, bearing = dict(tree), tree.get("bearing")
+    raceway = bearing.get("outer_raceway") if isinstance(bearing, Mapping) else None
+    raceway = dict(raceway) if isinstance(raceway, Mapping) else {}
     path = raceway.get("contour_file")
     if not isinstance(path, str) or raceway.get("contour") is not None:
         return tree, None

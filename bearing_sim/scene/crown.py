@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, Field
 
-from bearing_sim.scene.quantity import quantity, record
+from bearing_sim.scene.quantity import check, quantity, record
 
 _TABLE_HEADER = "expected a header of two columns, position and drop, each with its unit in brackets, such as position[mm],drop[um]"
 
@@ -44,13 +44,13 @@ class TableCrown:
     positions: tuple[quantity("m", "position along the roller, from its middle", -0.25, 0.25, "mm"), ...]
     drops: tuple[quantity("m", "drop from the cylinder of the largest diameter", 0.0, 5e-3, "um"), ...]
 
-    @model_validator(mode="after")
-    def _points_pair_up(self):
+    @check
+    def _points_pair_up(self) -> list[str]:
         if len(self.positions) != len(self.drops) or len(self.drops) < 2:
-            raise ValueError(f"drops: {len(self.drops)} values for {len(self.positions)} positions; expected the same number, at least two")
+            return [f"drops: {len(self.drops)} values for {len(self.positions)} positions; expected the same number, at least two"]
         if any(b <= a for a, b in zip(self.positions, self.positions[1:])):
-            raise ValueError("positions: expected increasing positions")
-        return self
+            return ["positions: expected increasing positions"]
+        return []
 
 
 def _from_shorthand(value):
@@ -70,21 +70,6 @@ Crown = Annotated[
     BeforeValidator(_from_shorthand),
 ]
 """A crown in a scene: a record, or the bare name of one that needs no numbers (``none``, ``iso_log``)."""
-
-
-def anchor_crown(tree, folder: Path) -> None:
-    """Resolve the path of a crown's file relative to the folder of the scene file.
-
-    Parameters
-    ----------
-    tree : the scene as nested mappings; modified.
-    folder : of the scene file.
-    """
-    node = tree
-    for key in ("bearing", "roller", "crown"):
-        node = node.get(key) if isinstance(node, dict) else None
-    if isinstance(node, dict) and isinstance(node.get("file"), str):
-        node["file"] = str(folder / node["file"])
 
 
 def crown_points(path: str | Path) -> dict[str, list[str]]:

@@ -16,8 +16,7 @@ from pydantic import TypeAdapter, ValidationError
 from pydantic_core import PydanticCustomError
 
 from bearing_sim.scene.bearing import drop_other_lands
-from bearing_sim.scene.contour import UNREAD, anchor_contour, drop_other_forms, with_contour_text
-from bearing_sim.scene.crown import anchor_crown
+from bearing_sim.scene.contour import UNREAD, drop_other_forms, with_contour_text
 from bearing_sim.scene.fidelity import choose
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import drop_ranges_of_lands, override_range, read_ranges, written
@@ -72,11 +71,47 @@ _UniqueKeyLoader.add_constructor(yaml.resolver.BaseResolver.DEFAULT_MAPPING_TAG,
 
 def scene_names() -> list[str]:
     """Return the names of the bundled scenes."""
-    return sorted(
-        entry.name.removesuffix(".yaml")
-        for entry in resources.files("bearing_sim.scene").joinpath("scenes").iterdir()
-        if entry.name.endswith(".yaml")
-    )
+    return _bundled_names("scenes")
+
+
+def catalog_names(kind: str) -> list[str]:
+    """Return the names of the catalog entries of a kind: ``bearings``, ``oils`` or ``mappings``."""
+    return _bundled_names(f"catalog/{kind}")
+
+
+def _bundled_names(folder: str) -> list[str]:
+    entries = resources.files("bearing_sim.scene").joinpath(folder).iterdir()
+    return sorted(entry.name.removesuffix(".yaml") for entry in entries if entry.name.endswith(".yaml"))
+
+
+def _bundled_text(folder: str, name: str) -> str:
+    return resources.files("bearing_sim.scene").joinpath(folder, f"{name}.yaml").read_text(encoding="utf-8")
+
+
+def read_named(name: str | Path, folder: str, kind: str) -> tuple[str, Path | None]:
+    """Return the text of a bundled file by its name, or of any file by its path and then also the folder that it is in.
+
+    Parameters
+    ----------
+    name : of a bundled file, or path of a YAML file.
+    folder : of the bundled files: ``scenes``, or ``catalog/mappings``.
+    kind : what the file holds, for messages.
+
+    Raises
+    ------
+    SceneError
+        There is no such file, or it is not text.
+    """
+    known, path = _bundled_names(folder), Path(name)
+    if str(name) in known:
+        return _bundled_text(folder, str(name)), None
+    if not path.is_file():
+        reason = f"no such file or bundled {kind}{did_you_mean(str(name), known)}; bundled: {', '.join(known)}"
+        raise SceneError(str(name), [InvalidField(kind, "", reason)])
+    try:
+        return path.read_text(encoding="utf-8"), path.parent
+    except UnicodeDecodeError as error:
+        raise SceneError(str(name), [InvalidField(kind, "", f"not readable as UTF-8 text: {error.reason}")]) from None
 
 
 def load_scene(scene: str | Path, overrides: Iterable[str] = ()) -> Scene:
@@ -92,15 +127,7 @@ def load_scene(scene: str | Path, overrides: Iterable[str] = ()) -> Scene:
     SceneError
         The file is absent, is not YAML, or has errors; all of them are listed.
     """
-    folder = None
-    if str(scene) in scene_names():
-        text = resources.files("bearing_sim.scene").joinpath("scenes", f"{scene}.yaml").read_text()
-    else:
-        path = Path(scene)
-        if not path.is_file():
-            known = ", ".join(scene_names())
-            raise SceneError(str(scene), [InvalidField("", "", f"no such file or bundled scene; bundled scenes: {known}")])
-        text, folder = path.read_text(), path.parent
+    text, folder = read_named(scene, "scenes", "scene")
     return scene_from_yaml(text, overrides, origin=str(scene), folder=folder)
 
 
@@ -111,11 +138,20 @@ def scene_from_yaml(text: str, overrides: Iterable[str] = (), origin: str = "sce
     """
     tree = yaml_mapping(text, origin, "bearing, lubricant, operating ...")
     if folder is not None:
-        anchor_contour(tree, folder)
-        anchor_crown(tree, folder)
+        _anchor_files(tree, folder)
     for override in overrides:
         _apply_override(tree, override)
     return scene_from_mapping(tree, origin)
+
+
+def _anchor_files(tree: dict, folder: Path) -> None:
+    """Resolve the paths of the files of contour and crown relative to the folder of the scene file, in place."""
+    for *blocks, name in (("bearing", "outer_raceway", "contour_file"), ("bearing", "roller", "crown", "file")):
+        node = tree
+        for block in blocks:
+            node = node.get(block) if isinstance(node, dict) else None
+        if isinstance(node, dict) and isinstance(node.get(name), str) and node.get("contour") is None:  # with its text, the file is but a name
+            node[name] = str(folder / node[name])
 
 
 def scene_from_mapping(tree: Mapping, origin: str = "scene") -> Scene:
@@ -227,17 +263,11 @@ def _apply_override(tree: dict, override: str) -> None:
         drop_ranges_of_lands(tree)
 
 
-def catalog_names(kind: str) -> list[str]:
-    """Return the names of the catalog entries of a kind: ``bearings``, ``oils`` or ``mappings``."""
-    folder = resources.files("bearing_sim.scene").joinpath("catalog", kind)
-    return sorted(entry.name.removesuffix(".yaml") for entry in folder.iterdir() if entry.name.endswith(".yaml"))
-
-
 def _from_catalog(kind: str, name: str, path: str) -> tuple[dict, list[InvalidField]]:
     names = catalog_names(kind)
     if name not in names:
         return {}, [InvalidField(path, repr(name), f"not in the catalog{did_you_mean(str(name), names)}; known: {', '.join(names)}")]
-    return yaml.load(resources.files("bearing_sim.scene").joinpath("catalog", kind, f"{name}.yaml").read_text(), Loader=_UniqueKeyLoader), []
+    return yaml.load(_bundled_text(f"catalog/{kind}", name), Loader=_UniqueKeyLoader), []
 
 
 def _with_presets(tree: Mapping) -> tuple[dict, list[InvalidField]]:

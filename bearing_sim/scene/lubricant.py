@@ -4,9 +4,9 @@
 from dataclasses import field
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
-from bearing_sim.scene.quantity import quantity, record
+from bearing_sim.scene.quantity import check, quantity, record
 
 
 @record
@@ -63,16 +63,16 @@ class Oil:
     densities: tuple[quantity("kg/m^3", "density at that temperature", 100.0, 3000.0), ...]
     thermal_conductivity: quantity("", "thermal conductivity [W/(m K)]", 0.01, 10.0) = 0.0966
 
-    @model_validator(mode="after")
-    def _density_points_pair_up(self):
+    @check
+    def _density_points_pair_up(self) -> list[str]:
         if len(self.density_temperatures) != len(self.densities) or len(self.densities) < 1:
-            raise ValueError(
+            return [
                 f"densities: {len(self.densities)} values for {len(self.density_temperatures)} density_temperatures; expected the same number, "
                 "at least one"
-            )
+            ]
         if any(b <= a for a, b in zip(self.density_temperatures, self.density_temperatures[1:])):
-            raise ValueError("density_temperatures: expected increasing temperatures")
-        return self
+            return ["density_temperatures: expected increasing temperatures"]
+        return []
 
 
 @record
@@ -89,11 +89,11 @@ class CustomOil:
     pressure_viscosity: quantity("1/Pa", "pressure-viscosity coefficient, alpha", 1e-10, 1e-7, "1/GPa")
     thermal_conductivity: quantity("", "thermal conductivity [W/(m K)]", 0.01, 10.0) = 0.14
 
-    @model_validator(mode="after")
-    def _thins_when_heated(self):
+    @check
+    def _thins_when_heated(self) -> list[str]:
         if self.viscosity_100 >= self.viscosity_40:
-            raise ValueError("viscosity_100: expected less than viscosity_40")
-        return self
+            return ["viscosity_100: expected less than viscosity_40"]
+        return []
 
 
 @record
@@ -125,14 +125,12 @@ class KragelskiiTraction:
     mu_inf: quantity("", "coefficient at high sliding speed", 0.0, 1.0) = 0.036
     rise_speed: quantity("m/s", "sliding speed at which mu_0 is reached", 1e-4, 10.0) = 0.01
 
-    @model_validator(mode="after")
-    def _maximum_is_one(self):
+    @check
+    def _maximum_is_one(self) -> list[str]:
         errors = [f"{name}: expected less than mu_max" for name in ("mu_0", "mu_inf") if getattr(self, name) >= self.mu_max]
         if self.mu_0 > 0.0 and self.rise_speed > 0.1 * self.v_max:
             errors.append("rise_speed: expected at most a tenth of v_max")
-        if errors:
-            raise ValueError("; ".join(errors))
-        return self
+        return errors
 
 
 @record

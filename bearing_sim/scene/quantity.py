@@ -8,12 +8,13 @@ is imported at first use, because importing it takes a quarter of a second, whic
 
 import math
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from typing import Annotated, Any
 
 import pydantic.dataclasses
-from pydantic import ConfigDict
+from pydantic import ConfigDict, model_validator
 from pydantic_core import PydanticCustomError, core_schema
 
 _NUMBER_THEN_UNIT = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|[-+]?(?:nan|inf(?:inity)?))\s*(.*?)\s*$", re.IGNORECASE)
@@ -142,3 +143,19 @@ def quantity(unit: str, meaning: str, minimum: float = -math.inf, maximum: float
 
 record = pydantic.dataclasses.dataclass(frozen=True, kw_only=True, config=ConfigDict(extra="forbid", str_strip_whitespace=True))
 """Decorator of every record of a scene: frozen, keyword-only, and it refuses unknown fields."""
+
+
+def check(errors_of: Callable[[Any], list[str]]):
+    """Return the validator of a record that refuses it for all its errors at once, so that the author can correct the file in one go.
+
+    Parameters
+    ----------
+    errors_of : the method of the record that returns its error messages.
+    """
+
+    def checked(self):
+        if errors := errors_of(self):
+            raise ValueError("; ".join(errors))
+        return self
+
+    return model_validator(mode="after")(checked)

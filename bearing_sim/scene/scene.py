@@ -9,12 +9,12 @@ import math
 from dataclasses import field, replace
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from bearing_sim.scene.bearing import Bearing
 from bearing_sim.scene.fidelity import WANTS, refusals
 from bearing_sim.scene.lubricant import Lubricant
-from bearing_sim.scene.quantity import quantity, record
+from bearing_sim.scene.quantity import check, quantity, record
 from bearing_sim.scene.thresholds import Thresholds
 from bearing_sim.scene.uncertainty import Range, range_errors
 
@@ -33,11 +33,11 @@ class Operating:
     misalignment: quantity("rad", "tilt at which the inner ring is held", 0.0, 0.02, "mrad") = 0.0
     misalignment_angle: quantity("rad", "azimuth to which the ring's +x end leans, from +y", -2 * math.pi, 2 * math.pi, "deg") = 0.0
 
-    @model_validator(mode="after")
-    def _ring_is_held_or_free(self):
+    @check
+    def _ring_is_held_or_free(self) -> list[str]:
         if self.moment is not None and self.misalignment != 0.0:
-            raise ValueError("misalignment: a ring under a moment tilts freely; give the moment or the misalignment")
-        return self
+            return ["misalignment: a ring under a moment tilts freely; give the moment or the misalignment"]
+        return []
 
 
 @record
@@ -148,11 +148,11 @@ class SteadyTable:
     minimum_temperature: quantity("K", "lowest oil temperature", 220.0, 600.0, "degC") = 313.15
     maximum_temperature: quantity("K", "highest oil temperature", 220.0, 600.0, "degC") = 453.15
 
-    @model_validator(mode="after")
-    def _spans_something(self):
+    @check
+    def _spans_something(self) -> list[str]:
         if self.maximum_temperature < self.minimum_temperature:
-            raise ValueError(f"minimum_temperature: {self.minimum_temperature:g} K is above the maximum_temperature, {self.maximum_temperature:g} K")
-        return self
+            return [f"minimum_temperature: {self.minimum_temperature:g} K is above the maximum_temperature, {self.maximum_temperature:g} K"]
+        return []
 
 
 @record
@@ -186,19 +186,13 @@ class Scene:
         """Whether the level tilts rollers, ring and cage, and resolves loads along a roller."""
         return self.level == "spatial"
 
-    @model_validator(mode="after")
-    def _level_has_all_effects(self):
-        errors = refusals(self)
-        if errors:
-            raise ValueError("; ".join(errors))
-        return self
+    @check
+    def _level_has_all_effects(self) -> list[str]:
+        return refusals(self)
 
-    @model_validator(mode="after")
-    def _operation_is_within_bounds(self):
-        errors = step_errors(self) + moment_errors(self) + range_errors(self)
-        if errors:
-            raise ValueError("; ".join(errors))
-        return self
+    @check
+    def _operation_is_within_bounds(self) -> list[str]:
+        return step_errors(self) + moment_errors(self) + range_errors(self)
 
 
 def moment_errors(scene) -> list[str]:

@@ -5,9 +5,9 @@ import dataclasses
 from collections.abc import Mapping
 from dataclasses import field
 
-from pydantic import TypeAdapter, ValidationError, model_validator
+from pydantic import TypeAdapter, ValidationError
 
-from bearing_sim.scene.quantity import quantity, record
+from bearing_sim.scene.quantity import check, quantity, record
 
 
 @record
@@ -30,16 +30,14 @@ class ResidualDetection:
     settling: quantity("s", "time after rest or a change of speed that is ignored", 0.0, 3600.0) = 5.0
     memory: quantity("s", "time constant of the displayed exponential mean and standard deviation", 0.1, 1e6) = 60.0
 
-    @model_validator(mode="after")
-    def _times_fit_together(self):
+    @check
+    def _times_fit_together(self) -> list[str]:
         errors = []
         if self.learning < 30 * self.batch:
             errors.append(f"learning: {self.learning:g} s are {self.learning / self.batch:.3g} batches of {self.batch:g} s; expected 30 or more")
         if self.false_alarm_time < 20 * self.batch:
             errors.append(f"false_alarm_time: {self.false_alarm_time:g} s is less than 20 batches of {self.batch:g} s")
-        if errors:
-            raise ValueError("; ".join(errors))
-        return self
+        return errors
 
 
 @record

@@ -19,10 +19,10 @@ from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from typing import Any, Literal
 
-from pydantic import ValidationError, model_validator
+from pydantic import ValidationError
 from pydantic_core import PydanticCustomError
 
-from bearing_sim.scene.quantity import Quantity, record
+from bearing_sim.scene.quantity import Quantity, check, record
 
 BLOCKS = ("bearing", "lubricant", "operating")  # of a scene; their quantities may have ranges
 _ENDS, _WORDS = ("low", "high", "mode"), ("distribution", "source")
@@ -49,8 +49,8 @@ class Range:
     mode: float | None = None  # most likely value of a triangular distribution
     source: str = ""  # where the range comes from
 
-    @model_validator(mode="after")
-    def _is_a_range(self):
+    @check
+    def _is_a_range(self) -> list[str]:
         errors = []
         if not (math.isfinite(self.low) and math.isfinite(self.high) and self.low < self.high):
             errors.append(f"low: {self.low:g} is not below high, {self.high:g}")
@@ -60,9 +60,7 @@ class Range:
             errors.append(f"mode: only a triangular distribution has one, this one is {self.distribution}")
         elif self.mode is not None and not self.low <= self.mode <= self.high:
             errors.append(f"mode: {self.mode:g} lies outside {self.low:g} to {self.high:g}")
-        if errors:
-            raise ValueError("; ".join(errors))
-        return self
+        return errors
 
 
 @cache
