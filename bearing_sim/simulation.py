@@ -12,7 +12,7 @@ from bearing_sim.levels.steady.table import Table
 from bearing_sim.levels.steady.table_builder import cached_table
 from bearing_sim.model.oil import kinematic_viscosities
 from bearing_sim.model.params import lubricate, pack
-from bearing_sim.model.sample import flat, new_block
+from bearing_sim.model.sample import COLUMN, flat, new_block, sample_dtype
 from bearing_sim.numerics.compilation import compiled_for
 from bearing_sim.numerics.time_stepping import COUNT, OK, REASONS, new_counts, new_memory
 from bearing_sim.scene.fidelity import NUMBERS
@@ -75,7 +75,8 @@ class Simulation:
 
     def __init__(self, scene: Scene, inputs: Inputs | None = None, table: Table | None = None):
         self.scene = scene
-        self._params = pack(scene)
+        self._params, self._tolerances = pack(scene), tolerances_of(scene.integration)
+        self._dtype = sample_dtype(self._params.rollers.count)
         self._level = LEVELS[scene.level]
         self._tables = ()  # what the level's workspace is made of besides the parameters
         if self._level.advance_profile is not None:
@@ -113,7 +114,7 @@ class Simulation:
             raise ValueError(f"cannot continue a bearing of {theirs} rollers with one of {own}: both simulations need the same bearing")
         self.inputs, self.time = other.inputs, other.time
         self._work = self._new_work()
-        before = other._previous.copy()
+        before = other._newest.copy().view(other._dtype)
         for name in ("roller_spin", "roller_rotation"):  # of a level that does not follow them
             before[name] = np.nan_to_num(before[name])
         self._begin(self._level.state_at(self._params, self._work, other.sample), before)
@@ -143,10 +144,10 @@ class Simulation:
         self._memory = new_memory(state.size)
         self._step = float(self.scene.integration.first_step)
         self._lubrication = lubricate(self.scene.lubricant, self._params, self.inputs.oil_temperature)
-        self._previous = new_block(1, self._params.rollers.count)
-        rows, before = flat(self._previous), flat(previous)
-        self._level.observe(self.time, state, self._model(self.inputs, 1.0), self._work, 0.0, before[0], rows[0], self._memory.scratch[0])
-        self._previous["level"] = NUMBERS[self.scene.level]
+        self._newest = flat(new_block(1, self._params.rollers.count))[0]
+        before = flat(previous)[0]
+        self._level.observe(self.time, state, self._model(self.inputs, 1.0), self._work, 0.0, before, self._newest, self._memory.scratch[0])
+        self._newest[COLUMN.level] = NUMBERS[self.scene.level]
 
     def _new_work(self):
         return self._level.new_work(self._params, *self._tables)
@@ -162,12 +163,12 @@ class Simulation:
             now.load_z,
             (end.load_z - now.load_z) / duration,
         )
-        return Model(self._params, self._lubrication, drive, tolerances_of(self.scene.integration))
+        return Model(self._params, self._lubrication, drive, self._tolerances)
 
     @property
     def sample(self) -> np.void:
         """The newest sample (see `bearing_sim.model.sample`)."""
-        return self._previous[0]
+        return self._newest.view(self._dtype)[0]
 
     @property
     def state(self) -> np.ndarray:
@@ -207,6 +208,7 @@ class Simulation:
         if end.oil_temperature != self._lubrication.temperature:
             self._lubrication = lubricate(self.scene.lubricant, self._params, end.oil_temperature)
         block = new_block(samples, self._params.rollers.count)
+        rows = flat(block)
         state = self._state.copy()
         integration = self.scene.integration
         advance = self._level.advance if integration.fixed_step is None else self._level.advance_fixed
@@ -221,8 +223,8 @@ class Simulation:
             self._work,
             self._memory,
             self._counts,
-            flat(self._previous)[0],
-            flat(block),
+            self._newest,
+            rows,
         )
         status, step = (self._compiled or advance)(*arguments)
         if self._compiled is None:
@@ -236,10 +238,9 @@ class Simulation:
                 f"load {math.hypot(end.load_y, end.load_z):.6g} N, {end.oil_temperature:.6g} K); the state before is kept",
                 status,
             )
-        block["level"] = NUMBERS[self.scene.level]
+        rows[:, COLUMN.level] = NUMBERS[self.scene.level]
         self.time += duration
-        self.inputs, self._state, self._step = end, state, step
-        self._previous = _last(block)
+        self.inputs, self._state, self._step, self._newest = end, state, step, rows[-1].copy()
         return block
 
     @property
@@ -269,6 +270,7 @@ class Simulation:
         if not (np.isfinite(inputs).all() and np.isfinite(stretches).all() and (stretches > 0.0).all()):
             raise ValueError("advance_profile takes positive finite stretches and finite inputs")
         block = new_block(len(stretches), self._params.rollers.count)
+        rows = flat(block)
         reached = self._level.advance_profile(
             self.time,
             np.ascontiguousarray(stretches, float),
@@ -278,14 +280,14 @@ class Simulation:
             self._model(self.inputs, 1.0),
             self._work,
             self._counts,
-            flat(self._previous)[0],
-            flat(block),
+            self._newest,
+            rows,
         )
         if reached:
             self.inputs = Inputs(*map(float, inputs[reached - 1]))
             self.time = float(block["time"][reached - 1])
-            block["level"] = NUMBERS[self.scene.level]
-            self._previous = _last(block[:reached])
+            rows[:, COLUMN.level] = NUMBERS[self.scene.level]
+            self._newest = rows[reached - 1].copy()
             if self.inputs.oil_temperature != self._lubrication.temperature:
                 self._lubrication = lubricate(self.scene.lubricant, self._params, self.inputs.oil_temperature)
         return block[:reached]
@@ -305,11 +307,6 @@ def tolerances_of(integration: Integration) -> Tolerances:
 def start_sample(simulation: Simulation) -> np.ndarray:
     """Return the newest sample as a block of its own: at the start of a run a recording begins with it, so that the run can be reproduced."""
     return np.array([simulation.sample])
-
-
-def _last(block: np.ndarray) -> np.ndarray:
-    """Return a copy of a block's last sample, as a block; of its plain numbers, because a copy field by field would take as long as a tick."""
-    return flat(block)[-1].copy().view(block.dtype)
 
 
 def _checked(inputs: Inputs) -> Inputs:

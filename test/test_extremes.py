@@ -120,7 +120,7 @@ def test_a_life_that_rises_with_load_is_a_failure(monkeypatch):
 
     def spoiled(self, inputs=None):
         reset(self, inputs)
-        self._previous["rating_life"] = math.hypot(self.inputs.load_y, self.inputs.load_z)
+        self.sample["rating_life"] = math.hypot(self.inputs.load_y, self.inputs.load_z)
 
     monkeypatch.setattr(Simulation, "reset", spoiled)
     assert run_case(case()).reason.startswith("life rises with load: ")

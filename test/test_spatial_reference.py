@@ -233,7 +233,7 @@ def test_powers_are_those_of_the_plain_numpy_model(variant):
     new_reference, overrides, crown = VARIANTS[variant]
     reference, run = new_reference(), simulation(*overrides, crown=crown)
     for seed in range(3):
-        run._begin(rough_state(run, seed, 0.3), run._previous)
+        run._begin(rough_state(run, seed, 0.3), np.array([run.sample]))
         work, heat = reference.powers(reference.forces(plain(run._state)))
         expected = {
             "shaft_power": work["shaft"],
@@ -280,7 +280,7 @@ def test_energy_is_kept(crown):
 def test_pressures_are_those_of_hertz_under_the_plain_numpy_model_s_slices(variant):
     new_reference, overrides, crown = VARIANTS[variant]
     reference, run = new_reference(), simulation(*overrides, crown=crown)
-    run._begin(rough_state(run, 4, 0.3), run._previous)
+    run._begin(rough_state(run, 4, 0.3), np.array([run.sample]))
     forces, plane = reference.forces(plain(run._state)), reference.planar
     for ring, curvature in (("inner", 1 / plane.roller_radius + 1 / plane.inner_radius), ("outer", 1 / plane.roller_radius - 1 / plane.low_radius)):
         pressure = np.sqrt(getattr(forces, ring) * reference.slices / plane.length * plane.modulus * curvature / (2 * np.pi))
