@@ -8,11 +8,8 @@ import dataclasses
 import json
 import math
 import re
-import types
-import typing
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from functools import reduce
 from pathlib import Path
 from typing import NamedTuple
 
@@ -24,6 +21,7 @@ from bearing_sim.scene.loader import did_you_mean
 from bearing_sim.scene.lubricant import Lubricant
 from bearing_sim.scene.quantity import Quantity
 from bearing_sim.scene.scene import Scene, Thresholds
+from bearing_sim.scene.uncertainty import declared_in, value_at
 
 
 class SettingsError(ValueError):
@@ -135,45 +133,25 @@ class NodeSettings:
     record_keep_free: float
 
 
-def _declarations_of(record: type, path: str, default: object) -> Iterator[tuple[Declaration, bool]]:
-    """Yield the declaration of each quantity of a record and its nested records, and whether it may be None."""
-    hints = typing.get_type_hints(record, include_extras=True)
-    for field in dataclasses.fields(record):
-        hint, value = hints[field.name], getattr(default, field.name, None)
-        if dataclasses.is_dataclass(hint):
-            yield from _declarations_of(hint, f"{path}.{field.name}", value)
-            continue
-        optional = isinstance(hint, types.UnionType) or typing.get_origin(hint) is typing.Union
-        annotated = typing.get_args(hint)[0] if optional else hint
-        for quantity in getattr(annotated, "__metadata__", ()):
-            if isinstance(quantity, Quantity):
-                yield _declaration(f"{path}.{field.name}", quantity, value, optional), optional
-
-
-def _declaration(name: str, quantity: Quantity, default: float | None, optional: bool) -> Declaration:
+def _declaration(name: str, quantity: Quantity, default: float | None) -> Declaration:
     shown, unit = quantity.shown_in or quantity.unit, quantity.unit or ("fraction" if quantity.shown_in else "")
     meaning = f"{quantity.meaning} [{unit}]" if unit else quantity.meaning
     if shown not in ("", quantity.unit):
         meaning += f", {quantity.show(quantity.minimum)} to {quantity.show(quantity.maximum)}"
-    if optional:
+    if default is None:
         meaning = meaning.replace("None: ", "0: ")
+    if name == OIL_TEMPERATURE:
+        meaning += "; a message on the topic oil_temperature takes precedence"
     return Declaration(name, 0.0 if default is None else default, meaning, quantity.minimum, quantity.maximum, per_bearing=True, running=True)
 
 
 OIL_TEMPERATURE = "lubricant.temperature"
-_SCENE_ROWS = [
-    *((row, optional) for row, optional in _declarations_of(Lubricant, "lubricant", None) if row.name == OIL_TEMPERATURE),
-    *_declarations_of(Thresholds, "thresholds", Thresholds()),
-]
-_temperature = next(field.default for field in dataclasses.fields(Lubricant) if field.name == "temperature")
-SCENE_DECLARATIONS = tuple(
-    row._replace(default=_temperature, meaning=f"{row.meaning}; a message on the topic oil_temperature takes precedence")
-    if row.name == OIL_TEMPERATURE
-    else row
-    for row, _ in _SCENE_ROWS
-)
+_SCENE_FIELDS = {OIL_TEMPERATURE: dict(declared_in("lubricant", Lubricant))[OIL_TEMPERATURE], **dict(declared_in("thresholds", Thresholds))}
+_DEFAULTS = {path: value_at(Thresholds(), path.partition(".")[2]) for path in _SCENE_FIELDS}
+_DEFAULTS[OIL_TEMPERATURE] = next(field.default for field in dataclasses.fields(Lubricant) if field.name == "temperature")
+SCENE_DECLARATIONS = tuple(_declaration(path, quantity, _DEFAULTS[path]) for path, quantity in _SCENE_FIELDS.items())
 """Scene fields that can be changed while the scene runs, by their path; fields that are not set keep the scene's values."""
-_OPTIONAL = {row.name for row, optional in _SCENE_ROWS if optional}
+_OPTIONAL = {path for path, default in _DEFAULTS.items() if default is None}
 
 
 def scene_value(name: str, parameter: float) -> float | None:
@@ -183,7 +161,7 @@ def scene_value(name: str, parameter: float) -> float | None:
 
 def parameter_value(name: str, scene: Scene) -> float:
     """Return the parameter value of a scene's field; 0 for None."""
-    value = reduce(getattr, name.split("."), scene)
+    value = value_at(scene, name)
     return 0.0 if value is None else float(value)
 
 

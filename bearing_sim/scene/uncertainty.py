@@ -67,10 +67,11 @@ class Range:
 def quantities(scene_type: type) -> Mapping[str, Quantity]:
     """Return the declarations of all quantities that may have a range, by dotted path, including those of alternative records."""
     hints = typing.get_type_hints(scene_type, include_extras=True)
-    return types.MappingProxyType({path: found for name in BLOCKS for path, found in _declared(name, hints[name])})
+    return types.MappingProxyType({path: found for name in BLOCKS for path, found in declared_in(name, hints[name])})
 
 
-def _declared(path: str, hint) -> Iterator[tuple[str, Quantity]]:
+def declared_in(path: str, hint) -> Iterator[tuple[str, Quantity]]:
+    """Yield the declarations of all quantities in an annotation, such as a record, by dotted paths that begin with ``path``."""
     declared = [note for note in getattr(hint, "__metadata__", ()) if isinstance(note, Quantity)]
     if declared:
         yield path, declared[0]
@@ -79,10 +80,10 @@ def _declared(path: str, hint) -> Iterator[tuple[str, Quantity]]:
         hint = typing.get_args(hint)[0]
     if isinstance(hint, types.UnionType) or typing.get_origin(hint) is typing.Union:
         for option in typing.get_args(hint):
-            yield from _declared(path, option)
+            yield from declared_in(path, option)
     elif dataclasses.is_dataclass(hint):
         for name, inner in typing.get_type_hints(hint, include_extras=True).items():
-            yield from _declared(f"{path}.{name}", inner)
+            yield from declared_in(f"{path}.{name}", inner)
 
 
 def nearest(path: str, known: Iterable[str]) -> str:
