@@ -208,12 +208,12 @@ class BearingInterface:
         self._outputs = Outputs(node, self.scene, self._topic_name, _SIM_TIME_OUTPUT_QOS if follows_clock(node) else STATE_QOS)
         self._publish_soon = DeferredCall(node, self._publish)
         self._services = [
-            node.create_service(kind, self._service_name(name), serve)
-            for kind, name, serve in (
-                (Trigger, "reset", self._serve_reset),
-                (Trigger, "start_recording", self._serve_start_recording),
-                (Trigger, "stop_recording", self._serve_stop_recording),
-                (SetBool, "pause", self._serve_pause),
+            node.create_service(kind, self._service_name(name), self._served(act))
+            for kind, name, act in (
+                (Trigger, "reset", self._reset),
+                (Trigger, "start_recording", self._begin_recording),
+                (Trigger, "stop_recording", self._stop_recording),
+                (SetBool, "pause", self._pause),
             )
         ]
         self._log(f"scene {self.scene.name!r}, bearing {self.scene.bearing.name!r}, level {self.scene.level!r}: warming up")
@@ -484,51 +484,37 @@ class BearingInterface:
 
         self.live.open("record", opened, reopen=True)
 
-    def _refused(self, response) -> bool:
-        """Return whether there is no run to serve, and fill the response if so."""
-        if self.live is None:
-            response.success, response.message = False, f"not running: {self.error or 'activate the node and wait until it has warmed up'}"
-        return self.live is None
+    def _served(self, act: Callable[[object], tuple[bool, str]]) -> Callable:
+        """Return the callback of a service, which answers with what ``act`` makes of the request, or that there is no run to serve."""
 
-    def _serve_start_recording(self, _, response):
-        if self._refused(response):
+        def serve(request, response):
+            response.success, response.message = False, f"not running: {self.error or 'activate the node and wait until it has warmed up'}"
+            if self.live is not None:
+                try:
+                    response.success, response.message = act(request)
+                except OSError as error:
+                    response.message = str(error)
             return response
+
+        return serve
+
+    def _begin_recording(self, _) -> tuple[bool, str]:
         if self.live.has("record"):
-            response.success, response.message = False, "a recording is already running; stop it first"
-            return response
+            return False, "a recording is already running; stop it first"
         name = f"run_{self.settings.name}" if self.settings.name else "run"
         path = fresh_path(Path(self.settings.record or f"recordings/{name}.mcap"))
-        try:
-            self._start_recording(path)
-        except OSError as error:
-            response.success, response.message = False, str(error)
-        else:
-            response.success, response.message = True, str(path.resolve())
-        return response
+        self._start_recording(path)
+        return True, str(path.resolve())
 
-    def _serve_stop_recording(self, _, response):
-        if self._refused(response):
-            return response
-        try:
-            sink = self.live.detach("record")
-        except OSError as error:
-            response.success, response.message = False, str(error)
-        else:
-            response.success = sink is not None
-            response.message = f"{sink.path} is complete" if sink is not None else "there is no recording to stop"
-        return response
+    def _stop_recording(self, _) -> tuple[bool, str]:
+        sink = self.live.detach("record")
+        return sink is not None, f"{sink.path} is complete" if sink is not None else "there is no recording to stop"
 
-    def _serve_reset(self, _, response):
-        if self._refused(response):
-            return response
-        response.success = self.live.reset()
-        late = "not done within two seconds; the reset follows after the running tick"
-        response.message = "state and damage are reset" if response.success else late
-        return response
+    def _reset(self, _) -> tuple[bool, str]:
+        if self.live.reset():
+            return True, "state and damage are reset"
+        return False, "not done within two seconds; the reset follows after the running tick"
 
-    def _serve_pause(self, request, response):
-        if self._refused(response):
-            return response
+    def _pause(self, request) -> tuple[bool, str]:
         self.live.pause(request.data)
-        response.success, response.message = True, "paused" if request.data else "running"
-        return response
+        return True, "paused" if request.data else "running"
