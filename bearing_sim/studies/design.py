@@ -17,7 +17,7 @@ import numpy as np
 from bearing_sim.scene.loader import SceneError, load_scene
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import with_values
-from bearing_sim.sweep.grid import Axis, axis
+from bearing_sim.sweep.grid import Axis, axis, one_line, scene_at
 from bearing_sim.sweep.point import OK, REFUSED, UNSETTLED, Column, point_row
 from bearing_sim.sweep.table import Table, new_figure, on_grid
 from bearing_sim.sweep.tasks import Journal, run_tasks, task
@@ -170,11 +170,11 @@ def design(
     """
     study = _Study(limits, journal, duration, workers, dask, progress)
     points = list(itertools.product(sorted(radii.values), sorted(d_values.values)))
-    scenes = {point: _scene_at(name, overrides, point) for point in points}
+    scenes = {point: scene_at(name, overrides, (radii, d_values), point) for point in points}
     grid = study.rows(scenes)
     if all(row["status"] == REFUSED for row in grid.values()):
         raise scenes[points[0]]
-    thin = {point: _scene_at(name, overrides, point) for point in study.points_in_gaps(scenes, grid)}
+    thin = {point: scene_at(name, overrides, (radii, d_values), point) for point in study.points_in_gaps(scenes, grid)}
     rows = grid | study.rows(thin)
     ends = [end for kind in KINDS for d_value in sorted(d_values.values) for end in _ends(kind, d_value, rows, limits)]
     borders = _borders(ends, study.narrowed_edges(scenes | thin, [edge for end in ends for edge in end]))
@@ -187,13 +187,6 @@ def design(
         "axes": [{"field": each.field.path, "unit": each.field.unit, "values": each.shown} for each in (radii, d_values)],
     }
     return Designed(Table(COLUMNS, [_table_row(point, row, limits) for point, row in grid.items()], about), borders)
-
-
-def _scene_at(name, overrides, point) -> Scene | SceneError:
-    try:
-        return load_scene(name, [*overrides, f"{LOW}={point[0]!r}", f"{D_VALUE}={point[1]!r}"])
-    except SceneError as error:
-        return error
 
 
 class _Study(NamedTuple):
@@ -217,7 +210,7 @@ class _Study(NamedTuple):
         results = dict(zip(valid, self.run([task(scene.level, raceway_row, scene, self.duration, *tolerances) for scene in valid.values()])))
         nothing = dict.fromkeys((column.name for column in _NUMBERS), math.nan)
         return {
-            point: nothing | (results[point] if point in results else {"status": REFUSED, "reason": "; ".join(map(str, scene.errors))})
+            point: nothing | (results[point] if point in results else {"status": REFUSED, "reason": one_line(scene)})
             for point, scene in scenes.items()
         }
 

@@ -264,7 +264,7 @@ class Plan(NamedTuple):
         results, rows = iter(results), []
         for combination, scene in zip(self.combinations, self.scenes):
             shown = {axis.field.path: axis.field.shown(value) for axis, value in zip(self.axes, combination)}
-            rows.append(shown | (_complete(next(results)) if isinstance(scene, Scene) else empty_row(REFUSED, _one_line(scene))))
+            rows.append(shown | (_complete(next(results)) if isinstance(scene, Scene) else empty_row(REFUSED, one_line(scene))))
         columns = tuple(Column(axis.field.path, axis.field.unit, axis.field.meaning) for axis in self.axes) + RESULTS + TEXTS
         return Table(columns, rows, self._about())
 
@@ -286,7 +286,7 @@ class Plan(NamedTuple):
 def plan_sweep(name: str, overrides: Sequence[str], axes: Sequence[Axis], duration: float = DURATION) -> Plan:
     """Return the plan of a sweep; parameters and errors as for `sweep`."""
     combinations = tuple(itertools.product(*(axis.values for axis in axes)))
-    scenes = tuple(_scene_at(name, overrides, axes, combination) for combination in combinations)
+    scenes = tuple(scene_at(name, overrides, axes, combination) for combination in combinations)
     if not any(isinstance(scene, Scene) for scene in scenes):
         raise scenes[0]
     return Plan(name, tuple(overrides), tuple(axes), float(duration), combinations, scenes)
@@ -297,7 +297,8 @@ def point_task(scene: Scene, duration: float = DURATION) -> Task:
     return task(scene.level, point_row, scene, float(duration))
 
 
-def _scene_at(name, overrides, axes, combination) -> Scene | SceneError:
+def scene_at(name: str, overrides: Sequence[str], axes: Sequence[Axis], combination: Sequence) -> Scene | SceneError:
+    """Return the scene at one value of each axis, or the error if it is invalid; the other parameters as for `sweep`."""
     try:
         return load_scene(name, [*overrides, *(axis.override(value) for axis, value in zip(axes, combination))])
     except SceneError as error:
@@ -309,5 +310,6 @@ def _complete(result: dict) -> dict:
     return result if len(result) > len(TEXTS) else empty_row(result["status"], result["reason"])
 
 
-def _one_line(error: SceneError) -> str:
+def one_line(error: SceneError) -> str:
+    """Return all errors of a scene in one line."""
     return "; ".join(map(str, error.errors))

@@ -68,16 +68,21 @@ def draw_lines(path: Path, tables: Tables, name: str, x: str, profiles: Sequence
     figure = new_figure(15 if profiles else 10, 4.2)
     axes = figure.subplots(1, 3 if profiles else 2)
     for each, quantity in zip(axes, ("cage_slip", "rating_life")):
-        for k, level in enumerate(level for sweep, level in tables if sweep == name):
-            rows = tables[name, level].rows
-            each.plot(*_pair(rows, x, quantity), color=COLOURS[k], marker=MARKERS[k], ms=4, label=f"level {level}", **_LOOKS[level])
-        table = tables[name, "slip"]
-        each.set(xlabel=label(table.column(x)), ylabel=label(table.column(quantity)))
-        _from_zero(each)
-        each.legend(frameon=False)
+        _draw_levels(each, tables, name, x, quantity)
     if profiles:
         _draw_profiles(axes[2], profiles)
     _finish(figure, path, axes)
+
+
+def _draw_levels(axes, tables, name, x, quantity) -> None:
+    """Draw a quantity of a sweep over one variable, a line for each level."""
+    for k, level in enumerate(level for sweep, level in tables if sweep == name):
+        rows = tables[name, level].rows
+        axes.plot(*_pair(rows, x, quantity), color=COLOURS[k], marker=MARKERS[k], ms=4, label=f"level {level}", **_LOOKS[level])
+    table = tables[name, "slip"]
+    axes.set(xlabel=label(table.column(x)), ylabel=label(table.column(quantity)))
+    _from_zero(axes)
+    axes.legend(frameon=False)
 
 
 def _draw_profiles(axes, profiles) -> None:
@@ -191,14 +196,7 @@ def draw_reasons(path: Path, tables: Tables) -> None:
     figure = new_figure(10, 4.0)
     axes = figure.subplots(1, 2)
     for each, (name, x) in zip(axes, (("mixture", MIXTURE), ("supported_mass", MASS))):
-        for k, level in enumerate(("slip", "planar")):
-            each.plot(
-                *_pair(tables[name, level].rows, x, "cage_slip"), color=COLOURS[k], marker=MARKERS[k], ms=4, label=f"level {level}", **_LOOKS[level]
-            )
-        table = tables[name, "slip"]
-        each.set(xlabel=label(table.column(x)), ylabel=label(table.column("cage_slip")))
-        _from_zero(each)
-        each.legend(frameon=False)
+        _draw_levels(each, tables, name, x, "cage_slip")
     axes[0].set_title("R_low = 34.8650 mm, D = 0.105 mm", fontsize=10)
     axes[1].set_title("R_low = 34.8675 mm, D = 0.098 mm", fontsize=10)
     _finish(figure, path, axes)

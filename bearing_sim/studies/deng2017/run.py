@@ -5,7 +5,7 @@ import json
 import platform
 import time
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from importlib import metadata
 from pathlib import Path
 
@@ -110,28 +110,29 @@ def run_study(
 def _write_tables(folder, tables, profiles, trajectories, rings, findings) -> None:
     for (name, level), table in tables.items():
         write_table(folder / f"{name}_{level}", table)
-    shown = {"azimuth": "deg", "inner_load": "N", "outer_load": "N"}
-    rows = [
-        {"sweep": sweep, "value": value, "level": level} | dict(zip(shown, numbers))
-        for (sweep, value, level), one in profiles.items()
-        if one["status"] == "ok"
-        for numbers in zip(*(one[name] for name in shown))
-    ]
-    columns = [Column("sweep", "", "which field is varied"), Column("value", "", "of that field"), Column("level", "", "of fidelity")]
-    columns += [
-        Column(name, unit, f"{name.replace('_', ' ')}, mean at that azimuth" if name != "azimuth" else "from the load line")
-        for name, unit in shown.items()
-    ]
-    write_table(folder / "load_distributions", Table(tuple(columns), rows, {"kind": "load distributions"}))
-    shown = {"time": "s", "cage_y": "um", "cage_z": "um", "roller_angle": "deg", "spin_ratio": ""}
-    rows = [
-        {"low_radius": low} | dict(zip(shown, numbers))
-        for low, one in trajectories.items()
-        if one["status"] == "ok"
-        for numbers in zip(*(one[name] for name in shown))
-    ]
-    columns = [Column("low_radius", "mm", "R_low")] + [Column(name, unit, name.replace("_", " ")) for name, unit in shown.items()]
-    write_table(folder / "trajectories", Table(tuple(columns), rows, {"kind": "trajectories"}))
+    columns = Column("sweep", "", "which field is varied"), Column("value", "", "of that field"), Column("level", "", "of fidelity")
+    measured = (
+        Column("azimuth", "deg", "from the load line"),
+        Column("inner_load", "N", "inner load, mean at that azimuth"),
+        Column("outer_load", "N", "outer load, mean at that azimuth"),
+    )
+    write_table(folder / "load_distributions", _table_of_lists(profiles, columns, measured, "load distributions"))
+    units = {"time": "s", "cage_y": "um", "cage_z": "um", "roller_angle": "deg", "spin_ratio": ""}
+    measured = tuple(Column(name, unit, name.replace("_", " ")) for name, unit in units.items())
+    moving = {(low,): one for low, one in trajectories.items()}
+    write_table(folder / "trajectories", _table_of_lists(moving, (Column("low_radius", "mm", "R_low"),), measured, "trajectories"))
     write_table(folder / "machining", machining_table(rings))
     columns = tuple(Column(name, "", meaning) for name, meaning in _FINDING_MEANINGS.items())
     write_table(folder / "claims", Table(columns, [finding._asdict() for finding in findings], {"kind": "claims"}))
+
+
+def _table_of_lists(results: Mapping[tuple, dict], columns: tuple[Column, ...], measured: tuple[Column, ...], kind: str) -> Table:
+    """Return the lists in results as a table: in each row the key of its result, then one element of each list."""
+    names = [column.name for column in (*columns, *measured)]
+    rows = [
+        dict(zip(names, (*key, *numbers)))
+        for key, one in results.items()
+        if one["status"] == "ok"
+        for numbers in zip(*(one[column.name] for column in measured))
+    ]
+    return Table((*columns, *measured), rows, {"kind": kind})
