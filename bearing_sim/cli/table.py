@@ -94,35 +94,10 @@ def _answers(scene, table, condition) -> dict:
     return {**where, "held": holds(table, speed, load, kelvin), "table_and_solution": named}
 
 
-def _look_up_times(table) -> tuple[float, float]:
-    """Return the time of a look-up at random points, in compiled code and called from Python [us]; the best of a few tries."""
-    import time
-
-    import numpy as np
-
-    from bearing_sim.levels.steady.table_builder import look_up
-
-    count, tries = 20_000, 5
-    last = [table.speeds[-1], table.loads[-1], table.temperatures[-1] - table.temperatures[0], 2 * math.pi]
-    conditions = np.random.default_rng(1).random((count, 4)) * last + [0.0, 0.0, table.temperatures[0], 0.0]
-    compiled, called = math.inf, math.inf
-    for _ in range(tries):
-        began = time.perf_counter()
-        look_up(table, conditions)
-        middle = time.perf_counter()
-        for condition in conditions[:200]:
-            look_up(table, condition[None])
-        compiled, called = min(compiled, (middle - began) / count), min(called, (time.perf_counter() - middle) / 200)
-    return 1e6 * compiled, 1e6 * called
-
-
 def _report(scene, table, quality, answers) -> dict:
     from bearing_sim.levels.steady.table_builder import span_of, table_path
 
-    compiled, called = _look_up_times(table)
     return {
-        "look_up_us": compiled,
-        "look_up_from_python_us": called,
         "scene": scene.name,
         "file": str(table_path(scene, span_of(scene))),
         "megabytes": table.nodes.nbytes / 1e6,
@@ -170,7 +145,6 @@ def _print(report) -> None:
             ("load direction", f"all; {len(report['load_angles_deg'])} knots on {report['period_deg']:.6g} deg"),
             ("nodes", f"{report['nodes']}, {report['missing']} without a solution; {report['megabytes']:.3g} MB; {report['file']}"),
             ("built", f"from {report['solved']} operating points in {report['seconds']:.3g} s"),
-            ("look-up time", f"{report['look_up_us']:.3g} us in compiled code, {report['look_up_from_python_us']:.3g} us from Python"),
             ("requested tolerance", f"{100 * report['tolerance']:.3g} % of life, and of slip plus 0.025 points"),
             ("met", f"at {100 * report['within']:.4g} % of random points in the table"),
             ("error of slip", f"{100 * report['slip_error']:.3f} points at most, 95 % below {100 * report['slip_error_95']:.3f}"),

@@ -7,7 +7,7 @@ For a machine image or a test suite it is faster to compile everything at once, 
 
 import multiprocessing
 import shutil
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from typing import NamedTuple
 
@@ -76,7 +76,7 @@ def _compile(build: Build) -> None:
     simulation.advance(_SECONDS, simulation.inputs, 1)
 
 
-def remove_other_versions(tell: Callable[[str], None] = lambda name: None) -> int:
+def remove_other_versions() -> int:
     """Remove the machine code of all other versions of the model; return its size [byte]."""
     from bearing_sim.numerics.compilation import CACHE_FOLDER
 
@@ -85,5 +85,4 @@ def remove_other_versions(tell: Callable[[str], None] = lambda name: None) -> in
         if folder.name != CACHE_FOLDER.name and folder.is_dir():
             removed += sum(file.stat().st_size for file in folder.rglob("*") if file.is_file())
             shutil.rmtree(folder)
-            tell(folder.name)
     return removed

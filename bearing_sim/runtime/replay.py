@@ -119,34 +119,12 @@ def replay(
     return _Run(scene, profile, recording, tuple(watchers), rate, progress).run(model)
 
 
-class _NoRecording:
-    """A recording that drops everything."""
-
-    def write(self, block) -> None:
-        """Drop samples."""
-
-    def write_start(self, block) -> None:
-        """Drop the state at the start."""
-
-    def write_inputs(self, time, inputs, channels) -> None:
-        """Drop inputs."""
-
-    def write_measurement(self, time, cage_speed, residual) -> None:
-        """Drop a measurement."""
-
-    def write_event(self, event) -> None:
-        """Drop an event."""
-
-    def write_diagnostics(self, time, events, values) -> None:
-        """Drop diagnostics."""
-
-
 class _Run:
     """One replay under way."""
 
     def __init__(self, scene: Scene, profile: InputProfile, recording, watchers: tuple, rate: float | None, progress: Callable):
         self._scene, self._profile, self._watchers, self._progress, self._rate = scene, profile, watchers, progress, rate
-        self._recording = recording if recording is not None else _NoRecording()
+        self._recordings = (recording,) if recording is not None else ()
         self._result = Replay(log_seconds=profile.end * 1e-9)
         self._pending_events = list(profile.events)
         self._holding: dict[str, Event] = {}
@@ -159,7 +137,7 @@ class _Run:
 
     def run(self, model: Callable[[Scene, Inputs], Simulation]) -> Replay:
         began, began_cpu = time.perf_counter(), time.process_time()
-        result, outputs_only = self._result, isinstance(self._recording, _NoRecording) and not self._watchers
+        result, outputs_only = self._result, not self._recordings and not self._watchers
         run = ProfileRun(lambda inputs: model(self._scene, inputs), outputs_only)
         segment = self._profile.segment(self._rate, self._scene.lubricant.temperature)
         for k, item in enumerate(run.advance_segment(segment)):
@@ -172,9 +150,11 @@ class _Run:
                 if isinstance(item, Event):
                     self._write_event(item)
                 elif isinstance(item, Begun):
-                    self._recording.write_start(item.block)
+                    for recording in self._recordings:
+                        recording.write_start(item.block)
                 else:
-                    self._recording.write_inputs(*item)
+                    for recording in self._recordings:
+                        recording.write_inputs(*item)
             if k % _PROGRESS_EVERY == 0:
                 self._progress(moment)
         if not run.given_up:
@@ -197,7 +177,8 @@ class _Run:
         for kept, name in ((result.slip, "cage_slip"), (result.speed, "shaft_speed"), (result.life, "rating_life")):
             kept += block[name].tolist()
         result.damage = float(block["damage"][-1])
-        self._recording.write(block)
+        for recording in self._recordings:
+            recording.write(block)
         if self._watchers:
             self._watched.append(block)
             if sum(map(len, self._watched)) >= _WATCHED_BLOCK:
@@ -219,9 +200,8 @@ class _Run:
             self._report(block[k], float(block["time"][k]))
 
     def _write_measured(self, compared) -> None:
-        self._recording.write_measurement(*compared)
-        for watcher in self._watchers:
-            watcher.write_measurement(*compared)
+        for sink in (*self._recordings, *self._watchers):
+            sink.write_measurement(*compared)
 
     def _report(self, sample, moment: float) -> None:
         """Write a change of the bearing's condition at once, and the condition once a second."""
@@ -238,7 +218,8 @@ class _Run:
             self._next_report = (math.floor(moment / _REPORT_EVERY + 0.01) + 0.99) * _REPORT_EVERY
             worst_first = sorted(now.values(), key=lambda event: -event.level)
             values = condition(sample) | further_condition(self._scene, sample) | self._monitor.values | residual.values(moment)
-            self._recording.write_diagnostics(moment, worst_first, values)
+            for recording in self._recordings:
+                recording.write_diagnostics(moment, worst_first, values)
 
     def _write_to_watchers(self) -> None:
         if self._watched:
@@ -249,9 +230,8 @@ class _Run:
 
     def _write_event(self, event: Event) -> None:
         self._result.events[event.kind] += 1
-        self._recording.write_event(event)
-        for watcher in self._watchers:
-            watcher.write_event(event)
+        for sink in (*self._recordings, *self._watchers):
+            sink.write_event(event)
 
     def _write_events_until(self, moment: float) -> None:
         while self._pending_events and self._pending_events[0].time <= moment:

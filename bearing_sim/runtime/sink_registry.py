@@ -79,11 +79,7 @@ class SinkRegistry:
 
     def write(self, now: float, block: np.ndarray) -> None:
         """Write a block of samples to all sinks, at ``now`` [s]."""
-        for name, sink in list(self.by_name.items()):
-            try:
-                sink.write(block)
-            except (OSError, ValueError) as error:
-                self.fail(name, now, error)
+        self._each(self.by_name, now, "write", block)
 
     def write_event(self, event: Event) -> None:
         """Write an event to all sinks."""
@@ -99,11 +95,7 @@ class SinkRegistry:
 
     def write_inputs(self, time: float, inputs: Inputs, channels: Iterable[str], *origin: Origin) -> None:
         """Write inputs that arrived at ``time`` [s] to all recorders."""
-        for name, recorder in list(self.recorders.items()):
-            try:
-                recorder.write_inputs(time, inputs, channels, *origin)
-            except (OSError, ValueError) as error:
-                self.fail(name, time, error)
+        self._each(self.recorders, time, "write_inputs", time, inputs, channels, *origin)
 
     def write_diagnostics(self, time: float, events: Iterable[Event], values: Mapping[str, object]) -> None:
         """Write a diagnostics report to all recorders."""

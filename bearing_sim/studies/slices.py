@@ -1,7 +1,6 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Convergence of level ``spatial`` with the number of slices, and their cost."""
 
-import dataclasses
 import time
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
@@ -10,7 +9,7 @@ import numpy as np
 
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Simulation
-from bearing_sim.studies.statics import statics
+from bearing_sim.studies.statics import statics, with_slices
 
 SLICES = (10, 20, 30, 50, 100, 200)
 _RATE = 2000.0  # Hz, of samples
@@ -44,7 +43,7 @@ def by_slices(scene: Scene, settle: float, duration: float, counts: Sequence[int
     found = []
     for count in counts:
         progress(f"{count} slices")
-        cut = _cut(scene, count)
+        cut = with_slices(scene, count)
         block, step_seconds, factor = _timed(Simulation(cut), settle, duration)
         still = statics(cut, count)
         found.append(
@@ -60,11 +59,6 @@ def by_slices(scene: Scene, settle: float, duration: float, counts: Sequence[int
             )
         )
     return found
-
-
-def _cut(scene, count):
-    roller = dataclasses.replace(scene.bearing.roller, slices=count)
-    return dataclasses.replace(scene, bearing=dataclasses.replace(scene.bearing, roller=roller))
 
 
 def _timed(run, settle, duration):

@@ -50,6 +50,12 @@ class Statics(NamedTuple):
     contamination_factor: float  # e_C; NaN if the scene gives no cleanliness
 
 
+def with_slices(scene: Scene, slices: int) -> Scene:
+    """Return a scene with another number of slices per roller."""
+    roller = dataclasses.replace(scene.bearing.roller, slices=slices)
+    return dataclasses.replace(scene, bearing=dataclasses.replace(scene.bearing, roller=roller))
+
+
 def statics(scene: Scene, slices: int) -> Statics:
     """Return the statics of a scene at its constant conditions and without cage slip.
 
@@ -63,8 +69,7 @@ def statics(scene: Scene, slices: int) -> Statics:
     ArithmeticError
         No balance was found.
     """
-    roller = dataclasses.replace(scene.bearing.roller, slices=slices)
-    scene = dataclasses.replace(scene, bearing=dataclasses.replace(scene.bearing, roller=roller))
+    scene = with_slices(scene, slices)
     params, operating = pack(scene), scene.operating
     count, raceways, life = params.rollers.count, params.raceways, params.life
     cage_speed = 0.5 * operating.shaft_speed * (1.0 - raceways.diameter_ratio)

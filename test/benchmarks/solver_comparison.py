@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Each level against other solvers on the same compiled right-hand side, what bounds a step, and growth with the number of rollers.
+"""Each level against other solvers on the same compiled right-hand side, what bounds a step, growth with the rollers, look-ups.
 
 ``python test/benchmarks/solver_comparison.py --level slip --level planar`` from the root of the tree measures; a few minutes for each
 level once compiled, longer for level spatial.  ``--quick`` measures almost nothing, ``--json`` prints one JSON object.
@@ -27,6 +27,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from bearing_sim.cli.reporting import print_rows
 from bearing_sim.levels.common.model import Drive, Model
 from bearing_sim.levels.level import LEVELS
+from bearing_sim.levels.steady.table_builder import look_up, obtain_table
 from bearing_sim.model.params import lubricate, pack
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.scene import Scene
@@ -357,6 +358,9 @@ def compare(levels: Sequence[str], extent: Extent, progress: Callable[[str], Non
                     bounds.append(named | _bound(scene, course.problem, extent))
         progress("scaling with the number of rollers")
         scaling = [_scaling(level, extent) for level in levels]
+        if "steady" in levels:
+            progress("look-ups of level steady")
+            report["look_up"] = look_up_times(bench_scene("steady", SPEEDS[-1]))
         return report | {"cases": cases, "others": others, "references": references, "bound": bounds, "scaling": scaling}
 
 
@@ -478,6 +482,25 @@ def _scaling(level: str, extent: Extent) -> dict:
     return {"level": level, "rollers": list(own), "core_seconds_per_second": list(own.values()), "exponent": exponent, "cases": cases}
 
 
+def look_up_times(scene: Scene) -> dict[str, float]:
+    """Return the time of a look-up in the table of level steady at random points [us], in compiled code and called from Python."""
+    table, _ = obtain_table(scene)
+    last = [table.speeds[-1], table.loads[-1], table.temperatures[-1] - table.temperatures[0], 2 * np.pi]
+    conditions = np.random.default_rng(1).random((20_000, 4)) * last + [0.0, 0.0, table.temperatures[0], 0.0]
+    few = conditions[:200]
+
+    def one_by_one(calls):
+        for _ in range(calls):
+            for condition in few:
+                look_up(table, condition[None])
+
+    def at_once(calls):
+        for _ in range(calls):
+            look_up(table, conditions)
+
+    return {"compiled_us": _shortest(at_once, 1) / len(conditions), "from_python_us": _shortest(one_by_one, 1) / len(few)}
+
+
 def _number(value, form=".3g") -> str:
     return "-" if value is None else format(value, form)
 
@@ -521,6 +544,10 @@ def print_report(report: dict) -> None:
     for level in report["scaling"]:
         costs = ", ".join(f"{rollers}: {cost:.3g}" for rollers, cost in zip(level["rollers"], level["core_seconds_per_second"]))
         print(f"{level['level']}, time of a simulated second by rollers: {costs}; power of Z from 18 on {level['exponent']:.3g}")
+    if "look_up" in report:
+        print(
+            f"look-up of level steady: {report['look_up']['compiled_us']:.3g} us compiled, {report['look_up']['from_python_us']:.3g} us from Python"
+        )
 
 
 def main() -> None:
