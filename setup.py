@@ -39,7 +39,7 @@ setup(
         "lz4>=4",
         "mcap>=1.6,<2",
         "mcap-ros2-support>=0.5",
-        "numba>=0.61",
+        "numba>=0.61,<0.69",
         "numpy>=2.0",
         "pillow>=10",
         "pint>=0.24",
