@@ -5,7 +5,7 @@ import numpy as np
 import rerun.blueprint as rrb
 from rerun.chunk import RrdReader
 
-from bearing_sim.view.sink import RerunSink
+from bearing_sim.view.worker import RerunFile
 
 
 def views_in(part):
@@ -18,7 +18,7 @@ def views_in(part):
 
 
 def written(path, scene, block):
-    with RerunSink(scene, path=path, lossless=True) as sink:
+    with RerunFile(scene, path) as sink:
         for part in np.array_split(block, 7):
             sink.write(part)
     assert sink.fault is None

@@ -18,7 +18,7 @@ from bearing_sim.recording.writer import McapFile, McapSink
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.view.bag import BagSeries, read_bag_series, write_bag_view
 from bearing_sim.view.screenshot import HOW_TO_GET_VULKAN
-from bearing_sim.view.sink import RerunSink
+from bearing_sim.view.worker import RerunFile
 
 START = 1_700_000_000 * SECOND
 SCENE = load_scene("deng2017_table1")
@@ -155,7 +155,7 @@ def test_a_cage_measured_while_the_shaft_speeds_up_is_compared_with_the_ideal_sp
 
 def test_measurements_that_a_live_view_gets_after_their_block_are_compared_with_it_all_the_same(tmp_path):
     block = synthetic_block(SCENE, 0.002 * np.arange(1, 401))
-    with RerunSink(SCENE, path=tmp_path / "run.rrd", lossless=True) as sink:
+    with RerunFile(SCENE, tmp_path / "run.rrd") as sink:
         for k in range(0, 400, 100):
             sink.write(block[k : k + 100])
             sink.write_measurement(float(block["time"][k + 50]), float(0.9 * block["ideal_cage_speed"][k + 50]), 0.0)

@@ -14,7 +14,7 @@ from rerun.chunk import RrdReader
 from synthetic_run import synthetic_block
 
 from bearing_sim.scene.loader import load_scene
-from bearing_sim.view import sink as rerun_sink
+from bearing_sim.view import worker
 from bearing_sim.view.screenshot import HOW_TO_GET_VULKAN, HeadlessViewer, ViewerFailed, free_port
 from bearing_sim.view.sink import RerunSink
 
@@ -92,7 +92,7 @@ def test_a_viewer_that_dies_is_nobody_elses_trouble_and_the_next_one_finds_every
 
 
 def test_a_frozen_process_of_the_view_never_blocks_the_run_and_what_is_dropped_is_counted(tmp_path, monkeypatch):
-    monkeypatch.setattr(rerun_sink, "QUEUED_ROWS", 2000)
+    monkeypatch.setattr(worker, "QUEUED_ROWS", 2000)
     sink = RerunSink(SCENE, path=tmp_path / "run.rrd")
     assert sink.wait_until_ready()
     feed(sink, 2)
@@ -147,7 +147,7 @@ def test_the_file_of_a_run_that_is_killed_is_finished_all_the_same(tmp_path):
         sink = RerunSink(SCENE, path={str(path)!r})
         sink.wait_until_ready()
         feed(sink, 5, pause=0.1)
-        while sink._view._queue.qsize():  # what is still queued here dies with this process
+        while sink._queue.qsize():  # what is still queued here dies with this process
             time.sleep(0.05)
         time.sleep(1.0)  # on its way into the pipe
         print(sink.pid, flush=True)

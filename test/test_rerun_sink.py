@@ -17,6 +17,7 @@ from bearing_sim.scene.loader import load_scene
 from bearing_sim.view.plots import RunSeries, log10_hours
 from bearing_sim.view.run_view import FileFrames, LiveFrames
 from bearing_sim.view.sink import RerunSink
+from bearing_sim.view.worker import RerunFile
 
 SCENE = load_scene("deng2017_table1")
 TIMES = 0.001 * np.arange(1, 101)
@@ -27,7 +28,7 @@ pytestmark = pytest.mark.usefixtures("strict_rerun")
 
 
 def written(path, block, events=(), **options):
-    with RerunSink(SCENE, path=path, lossless=True, **options) as sink:
+    with RerunFile(SCENE, path, **options) as sink:
         for event in events:
             sink.write_event(event)
         for part in np.array_split(block, 9):
@@ -167,15 +168,15 @@ def _listening_address(port):
     return set()
 
 
-@pytest.mark.parametrize("options", [{}, {"serve_port": 1, "lossless": True}])
-def test_senseless_options_are_refused(options):
+def test_a_sink_without_file_and_port_is_refused():
     with pytest.raises(ValueError):
-        RerunSink(SCENE, **options)
+        RerunSink(SCENE)
 
 
 def test_file_that_cannot_be_written_is_told_at_once(tmp_path):
-    with pytest.raises(OSError):
-        RerunSink(SCENE, path=tmp_path / "absent" / "run.rrd")
+    for kind in (RerunSink, RerunFile):
+        with pytest.raises(OSError):
+            kind(SCENE, tmp_path / "absent" / "run.rrd")
 
 
 def test_pictures_of_a_long_file_stay_few_and_even():

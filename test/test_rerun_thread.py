@@ -10,7 +10,7 @@ from synthetic_run import synthetic_block
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.view import worker as rerun_thread
-from bearing_sim.view.worker import ViewThread
+from bearing_sim.view.worker import RerunFile, ViewThread
 
 SCENE = load_scene("deng2017_table1")
 TIMES = 0.001 * np.arange(1, 101)
@@ -57,7 +57,7 @@ def test_stuck_viewer_never_blocks_the_producer_and_what_is_dropped_is_counted(s
     assert StuckView.newest.blocked.wait(60)
     for block in blocks[1:]:  # were this to block, nothing would ever release the view
         sink.write(block)
-    sink.write(Event(0.0, Level.OK, "a", "", "b"))
+    sink.write_event(Event(0.0, Level.OK, "a", "", "b"))
     assert 0 < sink.dropped < 200
     queued_rows = sum(map(len, blocks)) - 400 * sink.dropped
     assert queued_rows <= 20_000 + 2 * 400, "the queue is bounded by rows"
@@ -77,7 +77,7 @@ def test_close_gives_up_on_a_stuck_viewer(stuck):
 
 
 def test_lossless_sink_makes_the_producer_wait_and_drops_nothing(stuck):
-    sink = ViewThread(SCENE, stuck, None, lossless=True)
+    sink = RerunFile(SCENE, stuck)
     block = synthetic_block(SCENE, LONG)
     producer = threading.Thread(target=lambda: [sink.write(block) for _ in range(200)])
     producer.start()
@@ -101,7 +101,7 @@ def test_failing_viewer_is_told_and_the_run_goes_on(monkeypatch, tmp_path):
     sink.write(synthetic_block(SCENE, TIMES))
     sink.close(timeout=60)
     assert "disk full" in sink.fault
-    lossless = ViewThread(SCENE, tmp_path / "run.rrd", None, lossless=True)
+    lossless = RerunFile(SCENE, tmp_path / "run.rrd")
     with pytest.raises(OSError, match="disk full"):
         for _ in range(1000):
             lossless.write(synthetic_block(SCENE, TIMES[:2]))

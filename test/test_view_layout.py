@@ -15,7 +15,7 @@ from bearing_sim.messages.events import Event, Level
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.view.blueprint import blueprint
 from bearing_sim.view.plots import AROUND, LINES, RunSeries, roller_series, threshold_lines
-from bearing_sim.view.sink import RerunSink
+from bearing_sim.view.worker import RerunFile
 
 SCENES = {level: load_scene("deng2017_table1", [f"level={level}"]) for level in ("steady", "slip", "planar", "spatial")}
 SLIP = SCENES["slip"]
@@ -134,7 +134,7 @@ def test_residual_has_a_plot_where_the_cage_is_measured_and_only_there():
 
 def test_residual_slip_is_written_in_points_and_a_zero_line_beside_it(tmp_path):
     block = synthetic_block(SLIP, 1e-3 * np.arange(1, 101))
-    with RerunSink(SLIP, path=tmp_path / "run.rrd", lossless=True) as sink:
+    with RerunFile(SLIP, tmp_path / "run.rrd") as sink:
         for part in np.array_split(block, 10):
             sink.write(part)
             sink.write_measurement(float(part["time"][-1]), 0.95 * float(part["ideal_cage_speed"][-1]), 0.05 - float(part["cage_slip"][-1]))

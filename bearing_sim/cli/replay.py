@@ -128,9 +128,9 @@ def replay(
                 )
             watchers = []
             if rrd is not None:
-                from bearing_sim.view.sink import RerunSink
+                from bearing_sim.view.worker import RerunFile
 
-                watchers.append(stack.enter_context(RerunSink(scene, path=rrd, start_ns=course.start_ns, lossless=True, duration=seconds)))
+                watchers.append(stack.enter_context(RerunFile(scene, rrd, course.start_ns, seconds)))
             announce_compilation()
             choice = _choice(scene, course)
             started = time.perf_counter()

@@ -85,9 +85,9 @@ def _sinks(stack, scene, seconds, samples, out, rrd) -> list:
         announce_replacement(out)
         sinks.append(stack.enter_context(McapSink(out, scene, start_ns, replace=True, advance=(_BLOCK * (seconds / samples), _BLOCK))))
     if rrd is not None:
-        from bearing_sim.view.sink import RerunSink
+        from bearing_sim.view.worker import RerunFile
 
-        sinks.append(stack.enter_context(RerunSink(scene, path=rrd, start_ns=start_ns, lossless=True, duration=seconds)))
+        sinks.append(stack.enter_context(RerunFile(scene, rrd, start_ns, seconds)))
     return sinks
 
 

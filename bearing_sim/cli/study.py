@@ -231,10 +231,10 @@ def _run(situation, rrd: Path) -> dict:
 
     from bearing_sim.messages.events import Measurement
     from bearing_sim.studies.situations import play
-    from bearing_sim.view.sink import RerunSink
+    from bearing_sim.view.worker import RerunFile
 
     scene, blocks, residuals, kinds = situation.scene(), [], [], []
-    with RerunSink(scene, path=rrd, lossless=True, duration=situation.duration) as sink:
+    with RerunFile(scene, rrd, duration=situation.duration) as sink:
         with progress_bar(situation.name.replace("_", " "), situation.duration) as progress:
             for item in play(situation, scene):
                 if isinstance(item, np.ndarray):

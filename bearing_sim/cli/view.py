@@ -87,12 +87,10 @@ def _size(text: str) -> tuple[int, int]:
 
 def _convert(source, out: Path) -> None:
     from bearing_sim.messages.events import Event, Measurement
-    from bearing_sim.view.sink import RerunSink
+    from bearing_sim.view.worker import RerunFile
 
     with progress_bar(f"reading {source.path.name}", source.duration) as progress:
-        with RerunSink(
-            source.scene, path=out, start_ns=source.start_ns, lossless=True, duration=source.duration, load_scale=source.largest_load or None
-        ) as sink:
+        with RerunFile(source.scene, out, source.start_ns, source.duration, source.largest_load or None) as sink:
             for item in source.with_measurements():
                 if isinstance(item, Measurement):
                     sink.write_measurement(*item)

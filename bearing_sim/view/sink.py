@@ -22,20 +22,18 @@ from pathlib import Path
 
 import numpy as np
 
-from bearing_sim.messages.events import Event, Measurement
-from bearing_sim.messages.topics import Origin
 from bearing_sim.recording.priority import in_idle_time, with_low_priority
 from bearing_sim.scene.scene import Scene
 from bearing_sim.view.run_view import ViewOptions
-from bearing_sim.view.worker import QUEUED_ROWS, Dropped, RowQueue, ViewThread
+from bearing_sim.view.worker import Dropped, View
 
 _HAND_ON_EVERY = 0.03  # [s]; the solver is interrupted no more often than this
 _NICENESS = 5  # of a process that writes a file, which must be complete
 _log = logging.getLogger(__name__)
 
 
-class RerunSink:
-    """Shows blocks of samples, events and measurements in rerun.
+class RerunSink(View):
+    """Shows a run in real time: a file, a server, or both in a process of their own, fed through a pipe.
 
     Parameters
     ----------
@@ -43,124 +41,24 @@ class RerunSink:
     path : .rrd file to write, or None.
     serve_port : port on 127.0.0.1 at which viewers may connect, or None.
     start_ns : wall time of sample time 0 [ns since the epoch], or None.
-    lossless : True makes the producer wait instead of dropping blocks; for files only, not in real time.
-    duration : expected simulated time of the run [s], if known; the pictures of a file are spread over it.
-    load_scale : load [N] at the upper end of the colours, where known.
-
-    Attributes
-    ----------
-    dropped : blocks, events and measurements dropped so far.
-    fault : why the view has stopped, or None.
 
     Raises
     ------
     ValueError
-        Neither ``path`` nor ``serve_port``, or ``lossless`` together with ``serve_port``.
+        Neither ``path`` nor ``serve_port``.
     OSError
         The file cannot be written, or the port is taken.
     """
 
-    def __init__(
-        self,
-        scene: Scene,
-        path: str | Path | None = None,
-        serve_port: int | None = None,
-        start_ns: int | None = None,
-        lossless: bool = False,
-        duration: float | None = None,
-        load_scale: float | None = None,
-    ):
+    def __init__(self, scene: Scene, path: str | Path | None = None, serve_port: int | None = None, start_ns: int | None = None):
         if path is None and serve_port is None:
             raise ValueError("a rerun sink needs a path, a serve_port, or both")
-        if lossless and serve_port is not None:
-            raise ValueError("lossless is for files: a viewer that stops reading would hold up the run")
         if path is not None:
             Path(path).open("wb").close()  # the recorder itself would only log that it cannot write
         if serve_port is not None:
             _require_free(serve_port)
-        self._lossless, self._closed = lossless, False
-        options = ViewOptions(start_ns, duration, load_scale, real_time=not lossless)
-        self._view = ViewThread(scene, path, None, options, lossless=True) if lossless else ViewProcess(scene, path, serve_port, options)
-
-    @property
-    def dropped(self) -> int:
-        """Blocks, events and measurements dropped so far."""
-        return self._view.dropped
-
-    @property
-    def fault(self) -> str | None:
-        """Why the view has stopped, or None."""
-        return self._view.fault
-
-    @property
-    def pid(self) -> int | None:
-        """Number of the view's process; None in lossless mode, which has none."""
-        return None if self._lossless else self._view.pid
-
-    def write(self, block: np.ndarray) -> None:
-        """Take a block of samples; returns at once, except in lossless mode."""
-        if len(block):
-            self._offer(block.copy())
-
-    def write_event(self, event: Event) -> None:
-        """Take an event; returns at once, except in lossless mode."""
-        self._offer(event)
-
-    def write_measurement(self, time: float, cage_speed: float, residual: float, origin: Origin | None = None) -> None:
-        """Take a cage speed [rad/s] measured at ``time`` [s] and its residual slip: measured less predicted (a fraction, or NaN).
-
-        ``origin`` is kept by recordings and ignored here.
-        """
-        self._offer(Measurement(time, cage_speed, residual))
-
-    def wait_until_ready(self, timeout: float = 20.0) -> bool:
-        """Wait until the file exists and the server accepts viewers; return whether this happened within ``timeout`` [s]."""
-        return self._view.wait_until_ready(timeout)
-
-    def close(self, timeout: float | None = None) -> bool:
-        """Show what is queued and finish; a second call does nothing.
-
-        Parameters
-        ----------
-        timeout : longest wait [s]; 5 s, or 120 s in lossless mode, where absent.  After that, whatever is blocked by a viewer is abandoned.
-
-        Returns
-        -------
-        finished : whether everything queued was shown.
-        """
-        self._closed = True
-        return self._view.close(timeout if timeout is not None else (120.0 if self._lossless else 5.0))
-
-    def __enter__(self) -> "RerunSink":
-        return self
-
-    def __exit__(self, *_) -> None:
-        self.close()
-
-    def _offer(self, item) -> None:
-        if self._closed:
-            raise ValueError("the rerun sink is closed")
-        self._view.write(item)
-
-
-class ViewProcess:
-    """A file, a server, or both in a process of their own, fed through a pipe.
-
-    Parameters
-    ----------
-    scene, path, serve_port, options : as those of `bearing_sim.view.worker.ViewThread`.
-
-    Attributes
-    ----------
-    fault : why the view has stopped, or None.
-    """
-
-    def __init__(self, scene: Scene, path: str | Path | None, serve_port: int | None, options: ViewOptions):
-        self.fault: str | None = None
-        self._dropped_here = self._dropped_there = 0
-        self._ready = threading.Event()
-        self._queue = RowQueue(QUEUED_ROWS)
-        self._closed = False
+        super().__init__()
+        self._dropped_there = 0
         paths = os.pathsep.join(entry for entry in sys.path if entry)
         command = [sys.executable, "-m", "bearing_sim.view.worker"]
         # Ctrl-C in a terminal reaches neither a session nor a group of its own.
@@ -172,6 +70,7 @@ class ViewProcess:
             env=dict(os.environ, PYTHONPATH=paths),
             **apart,
         )
+        options = ViewOptions(start_ns, real_time=True)
         first = pickle.dumps((scene, None if path is None else str(Path(path).absolute()), serve_port, options))
         self._feeder = threading.Thread(target=self._feed, args=(first,), name="rerun-feeder", daemon=True)
         self._listener = threading.Thread(target=self._listen, name="rerun-listener", daemon=True)
@@ -181,29 +80,18 @@ class ViewProcess:
     @property
     def dropped(self) -> int:
         """Blocks, events and measurements dropped so far, on this side of the pipe and beyond it."""
-        return self._dropped_here + self._dropped_there
+        return self._dropped + self._dropped_there
 
     @property
     def pid(self) -> int:
         """Number of the process."""
         return self._process.pid
 
-    def write(self, item: np.ndarray | Event | Measurement) -> None:
-        """Take a block of samples, an event or a measurement; returns at once."""
-        if self.fault is not None:
-            self._dropped_here += 1
-            return
-        try:
-            self._queue.put_nowait(item)
-        except queue.Full:
-            self._dropped_here += 1
+    def close(self, timeout: float = 5.0) -> bool:
+        """Show the queued items and end the process, by force after ``timeout`` [s]; return whether everything was shown.
 
-    def wait_until_ready(self, timeout: float) -> bool:
-        """Wait until viewers can connect; return whether this happened within ``timeout`` [s]."""
-        return self._ready.wait(timeout)
-
-    def close(self, timeout: float) -> bool:
-        """Show the queued items and end the process, by force after ``timeout`` [s]; return whether everything was shown."""
+        A second call does nothing.
+        """
         deadline = wall.monotonic() + timeout
         if self._closed:
             return self.fault is None
@@ -226,8 +114,8 @@ class ViewProcess:
             pipe.write(first)
             while True:
                 items, ended = self._gathered()
-                if self._dropped_here > reported:
-                    reported = self._dropped_here
+                if self._dropped > reported:
+                    reported = self._dropped
                     items.append(Dropped(reported))
                 for item in items:
                     pickle.dump(item, pipe, protocol=5)

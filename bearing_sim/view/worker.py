@@ -2,8 +2,8 @@
 """The view of a run on a thread, and the process in which that thread runs in real time.
 
 Logging to rerun may block without end once a viewer stops reading.  The producer therefore only puts blocks into a bounded queue, and one
-daemon thread alone calls rerun.  When the queue is full, a block is dropped and counted, and the view shows the count.  In lossless mode,
-for files only, the producer waits instead.
+daemon thread alone calls rerun.  When the queue is full, a block is dropped and counted, and the view shows the count.  For a file of a run that
+is not in real time (`RerunFile`) the producer waits instead.
 
 As a process (``python -m bearing_sim.view.worker``) the module reads pickled blocks and events from its standard input until that ends.  File and
 server have a thread and a queue each, so that a server that is stuck behind a viewer keeps nothing from the file.  Ctrl-C is left to the
@@ -20,12 +20,14 @@ import sys
 import threading
 import time
 import time as wall
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
 from bearing_sim.messages.events import Event, Measurement
+from bearing_sim.messages.topics import Origin
 from bearing_sim.scene.scene import Scene
 from bearing_sim.view.run_view import NOTHING_KNOWN, RunView, ViewOptions
 
@@ -64,7 +66,66 @@ def _rows(item) -> int:
     return len(item) if isinstance(item, np.ndarray) else 1
 
 
-class ViewThread:
+class View(AbstractContextManager):
+    """What takes blocks of samples, events and measurements for a view, and drops and counts what does not fit into its queue.
+
+    Attributes
+    ----------
+    fault : why the view has stopped, or None.
+    """
+
+    def __init__(self):
+        self._dropped = 0
+        self.fault: str | None = None
+        self._ready = threading.Event()
+        self._queue = RowQueue(QUEUED_ROWS)
+        self._closed = False
+
+    @property
+    def dropped(self) -> int:
+        """Blocks, events and measurements dropped so far."""
+        return self._dropped
+
+    def write(self, block: np.ndarray) -> None:
+        """Take a block of samples; returns at once."""
+        if len(block):
+            self.put(block.copy())
+
+    def write_event(self, event: Event) -> None:
+        """Take an event; returns at once."""
+        self.put(event)
+
+    def write_measurement(self, time: float, cage_speed: float, residual: float, origin: Origin | None = None) -> None:
+        """Take a cage speed [rad/s] measured at ``time`` [s] and its residual slip: measured less predicted (a fraction, or NaN).
+
+        ``origin`` is kept by recordings and ignored here.
+        """
+        self.put(Measurement(time, cage_speed, residual))
+
+    def put(self, item: np.ndarray | Event | Measurement) -> None:
+        """Queue an item, which must not be changed any more; returns at once, except if nothing is dropped."""
+        if self._closed:
+            raise ValueError("the rerun view is closed")
+        self._enqueue(item)
+
+    def _enqueue(self, item) -> None:
+        try:
+            if self.fault is None:
+                self._queue.put_nowait(item)
+                return
+        except queue.Full:
+            pass
+        self._dropped += 1
+
+    def wait_until_ready(self, timeout: float = 20.0) -> bool:
+        """Wait until the file exists and the server accepts viewers; return whether this happened within ``timeout`` [s]."""
+        return self._ready.wait(timeout)
+
+    def __exit__(self, *_) -> None:
+        self.close()
+
+
+class ViewThread(View):
     """Shows blocks of samples, events and measurements in one rerun file, or at one port.
 
     Parameters
@@ -73,48 +134,20 @@ class ViewThread:
     path : .rrd file to write, or None.
     serve_port : port on 127.0.0.1 at which viewers may connect, or None; one of both.
     options : what else the view knows.
-    lossless : True makes the producer wait instead of dropping blocks; for files only, not in real time.
-
-    Attributes
-    ----------
-    dropped : blocks, events and measurements dropped so far.
-    fault : why the view has stopped, or None.
     """
 
-    def __init__(self, scene: Scene, path: str | Path | None, serve_port: int | None, options: ViewOptions = NOTHING_KNOWN, lossless: bool = False):
-        self.dropped = 0
-        self.fault: str | None = None
-        self._ready = threading.Event()
-        self._lossless = lossless
-        self._queue = RowQueue(QUEUED_ROWS)
-        self._closed = False
+    _real_time = True
+
+    def __init__(self, scene: Scene, path: str | Path | None, serve_port: int | None, options: ViewOptions = NOTHING_KNOWN):
+        super().__init__()
         self._dropped_before = 0
         self._worker = threading.Thread(target=self._work, args=(scene, path, serve_port, options), name="rerun", daemon=True)
         self._worker.start()
-
-    def write(self, item: np.ndarray | Event | Measurement) -> None:
-        """Take a block of samples, which must not be changed any more, an event or a measurement; returns at once, except in lossless mode."""
-        if self._closed:
-            raise ValueError("the rerun view is closed")
-        if self._lossless:
-            self._wait_to_put(item)
-            return
-        if self.fault is not None:
-            self.dropped += 1
-            return
-        try:
-            self._queue.put_nowait(item)
-        except queue.Full:
-            self.dropped += 1
 
     @property
     def ready(self) -> bool:
         """Whether the file exists, or the server accepts viewers."""
         return self._ready.is_set()
-
-    def wait_until_ready(self, timeout: float) -> bool:
-        """Wait until `ready`; return whether this happened within ``timeout`` [s]."""
-        return self._ready.wait(timeout)
 
     def note_dropped(self, count: int) -> None:
         """Make the view show that ``count`` blocks in total were dropped before they reached this queue."""
@@ -143,15 +176,6 @@ class ViewThread:
             _log.warning("rerun did not finish within %g s and was abandoned", timeout)
         return not self._worker.is_alive() and self.fault is None
 
-    def _wait_to_put(self, item) -> None:
-        while self.fault is None:
-            try:
-                self._queue.put(item, timeout=0.2)
-                return
-            except queue.Full:
-                continue
-        raise OSError(f"rerun stopped: {self.fault}")
-
     def _work(self, scene: Scene, path, serve_port, options: ViewOptions) -> None:
         try:
             view = RunView(scene, path, serve_port, options)
@@ -173,7 +197,7 @@ class ViewThread:
                 view.write_measurement(*item)
             elif len(item):
                 view.write(item)
-            if not self._lossless and wall.monotonic() - flushed > _FLUSH_EVERY:
+            if self._real_time and wall.monotonic() - flushed > _FLUSH_EVERY:
                 flushed = wall.monotonic()
                 view.flush()
                 if self.dropped + self._dropped_before > reported:
@@ -182,12 +206,47 @@ class ViewThread:
         view.close()
 
     def _next_item(self):
-        if self._lossless:
-            return self._queue.get()
         try:
-            return self._queue.get(timeout=_FLUSH_EVERY)
+            return self._queue.get(timeout=_FLUSH_EVERY if self._real_time else None)
         except queue.Empty:
             return np.empty(0)  # nothing new: flush what is pending
+
+
+class RerunFile(ViewThread):
+    """Shows a run that is not in real time in a file, and makes the producer wait instead of dropping anything.
+
+    Parameters
+    ----------
+    scene : the scene that is simulated.
+    path : .rrd file to write.
+    start_ns : wall time of sample time 0 [ns since the epoch], or None.
+    duration : expected simulated time of the run [s], if known; the pictures are spread over it.
+    load_scale : load [N] at the upper end of the colours, where known.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written.
+    """
+
+    _real_time = False
+
+    def __init__(self, scene: Scene, path: str | Path, start_ns: int | None = None, duration: float | None = None, load_scale: float | None = None):
+        Path(path).open("wb").close()  # rerun itself would only log that it cannot write
+        super().__init__(scene, path, None, ViewOptions(start_ns, duration, load_scale))
+
+    def _enqueue(self, item) -> None:
+        while self.fault is None:
+            try:
+                self._queue.put(item, timeout=0.2)
+                return
+            except queue.Full:
+                continue
+        raise OSError(f"rerun stopped: {self.fault}")
+
+    def close(self, timeout: float = 120.0) -> bool:
+        """Show what is queued and finish within ``timeout`` [s] (see `ViewThread.close`)."""
+        return super().close(timeout)
 
 
 _REPORT_EVERY = 0.1  # [s], where there is news
@@ -209,7 +268,7 @@ def main() -> None:
             if isinstance(item, Dropped):
                 view.note_dropped(item.count)
             else:
-                view.write(item)
+                view.put(item)
     finished = [view.close(_FINISH_WITHIN[is_file]) for is_file, view in views.items()]
     _report(_state(views.values()))
     os._exit(0 if all(finished) else 1)  # rerun's own shutdown may wait for a viewer that stopped reading

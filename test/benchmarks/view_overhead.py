@@ -33,6 +33,7 @@ from bearing_sim.scene.loader import load_scene
 from bearing_sim.simulation import Simulation
 from bearing_sim.view.screenshot import HeadlessViewer, ViewerFailed, free_port
 from bearing_sim.view.sink import RerunSink
+from bearing_sim.view.worker import RerunFile
 
 _SCENE = ("deng2017_table1", ("level=slip", "operating.shaft_speed=15000 rpm"))
 _TICK, _SAMPLES = 0.005, 5  # [s] approximate wall time of a tick, and samples in it
@@ -236,7 +237,7 @@ def _write_hour(scene, path: Path, seconds: float) -> int:
     simulation = Simulation(scene)
     count, written = 500, 0
     given = simulation.inputs
-    with RerunSink(scene, path=path, lossless=True, duration=seconds) as sink:
+    with RerunFile(scene, path, duration=seconds) as sink:
         while written < round(seconds * _RATE):
             share = 1.0 + 0.5 * np.sin(2 * np.pi * written / _RATE / 300.0)
             sink.write(simulation.advance(count / _RATE, given._replace(load_y=given.load_y * share), count))
