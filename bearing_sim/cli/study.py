@@ -341,16 +341,14 @@ def extremes(samples, levels, seed, long, as_json, picture, table):
     Speed, load, play, lobes, rollers, pockets, lands, oil, slices, methods, tolerances and steps from a Latin hypercube, and named corner
     cases, on all cores available to this process.  Exit code 1 if any case fails.
     """
-    from bearing_sim.studies.extremes import run_extremes
+    from bearing_sim.studies.extremes import run_extremes, table_rows
 
     require_levels(levels)
     with progress_bar("extremes", 1.0) as progress:
         report, outcomes = run_extremes(samples, levels, seed, long, lambda text: click.echo(f"{text} ...", err=True), progress)
     with as_file_error():
         if table is not None:
-            from bearing_sim.studies.extremes import write_table
-
-            write_table(table, outcomes)
+            write_csv(table, table_rows(outcomes))
         if picture is not None:
             from bearing_sim.studies.extremes import draw
 

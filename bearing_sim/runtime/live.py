@@ -185,7 +185,7 @@ class Model:
     def collect(self, now_ns: int) -> list[Event]:
         """Pass results of the solver to sinks and monitors and review the health.  Returns the events that are new."""
         self.tick(now_ns)
-        now = (now_ns - self.start_ns) * 1e-9
+        now = self.run_time(now_ns)
         self._take(self.solver.take(), now)
         for event in self.sinks.news(now):
             self._note(event)
@@ -311,11 +311,10 @@ class LiveModel(Model):
     def offer(self, channel: str, values: tuple[float, ...], stamp_ns: int | None, now_ns: int, frame_id: str = "") -> Event | None:
         """Take one message (see `Model.offer`); recorders get it as it is, even if it is refused."""
         self.tick(now_ns)
-        start_ns = self.start_ns
-        now = (now_ns - start_ns) * 1e-9
+        now = self.run_time(now_ns)
         if channel != topics.MEASURED and self.sinks.recorders:
             self.sinks.write_inputs(now, with_values(self.gate.held, channel, values), [channel], topics.Origin(stamp_ns, frame_id))
-        event = self.gate.offer(channel, now if stamp_ns is None else (stamp_ns - start_ns) * 1e-9, values, now)
+        event = self.gate.offer(channel, now if stamp_ns is None else self.run_time(stamp_ns), values, now)
         if event is not None:
             self._note(event)
             return event
@@ -345,7 +344,7 @@ class LiveModel(Model):
         if sample is None or sample["time"] <= self._published_time:
             return []
         self._published_time = float(sample["time"])
-        return [Published(self.start_ns + round(self._published_time * 1e9), sample)]
+        return [Published(self.stamp(self._published_time), sample)]
 
     def govern(self, governor: Governor | None) -> None:
         """Let a governor change levels from now on; None returns to the scene's level (see `bearing_sim.runtime.solver.WallTimeSolver.govern`)."""

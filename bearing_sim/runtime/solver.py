@@ -335,9 +335,7 @@ class WallTimeSolver(Solver):
             self._put(Event(now, Level.OK, "solver.recovered", "", f"time advances again after {self._failed} failed ticks"))
             self._failed = 0
         self.newest = block[-1]
-        if len(self._queue) == self._queue.maxlen:
-            self._dropped += 1  # the deque drops its oldest entry
-        self._queue.append(block)
+        self._put(block)
         if self._advanced is not None:
             self._advanced(now)
         if self._governor is not None:
@@ -393,7 +391,7 @@ class WallTimeSolver(Solver):
         self._shift = max(self._run_time(wall) - time_, floor)
 
     def _put(self, item: Item) -> None:
-        self._dropped += len(self._queue) == self._queue.maxlen
+        self._dropped += len(self._queue) == self._queue.maxlen  # the deque drops its oldest entry
         self._queue.append(item)
 
 

@@ -231,6 +231,11 @@ def value_at(scene, path: str):
     return scene
 
 
+def messages(error: ValidationError) -> str:
+    """Return the messages of all checks that failed, in one line."""
+    return "; ".join(each["msg"].removeprefix("Value error, ") for each in error.errors())
+
+
 def with_values(scene, values: Mapping[str, float]):
     """Return a scene with other numbers [SI] at dotted paths; all checks run again.
 

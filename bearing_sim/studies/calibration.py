@@ -20,7 +20,7 @@ from scipy import optimize, stats
 from bearing_sim.levels.steady.operating_point import ANSWER
 from bearing_sim.levels.steady.table_builder import solve_points
 from bearing_sim.scene.scene import Scene
-from bearing_sim.scene.uncertainty import Range, nearest, quantities, value_at, with_values
+from bearing_sim.scene.uncertainty import Range, messages, nearest, quantities, value_at, with_values
 from bearing_sim.simulation import Inputs
 from bearing_sim.sweep.table import new_figure
 
@@ -230,7 +230,7 @@ def _check_amount(fields: int, blocks: Blocks) -> None:
         )
 
 
-def check_before(scene: Scene, ranges: Sequence[Range], slopes: np.ndarray, blocks: Blocks, points: Points) -> None:
+def check_before(ranges: Sequence[Range], slopes: np.ndarray, points: Points) -> None:
     """Raise for fields without effect on slip, and for fields with the same effect; ``slopes`` at the start, shape (n, p)."""
     effects = np.abs(slopes).max(axis=0)
     for one, effect in zip(ranges, effects):
@@ -282,7 +282,7 @@ def check_fit(scene: Scene, ranges: Sequence[Range], found, slopes: np.ndarray, 
         )
 
 
-def check_interval(scene: Scene, ranges: Sequence[Range], ends: np.ndarray, confidence: float, blocks: Blocks, tau: float) -> None:
+def check_interval(ranges: Sequence[Range], ends: np.ndarray, confidence: float, blocks: Blocks, tau: float) -> None:
     """Raise if an interval is hardly narrower than the range; ``ends`` as positions in the ranges, shape (2, p)."""
     independent = len(blocks.slip) / tau
     if independent < _LEAST_INDEPENDENT + len(ranges):
@@ -396,8 +396,7 @@ class _Model:
         try:
             scene = with_values(self.scene, values)
         except ValidationError as error:
-            messages = "; ".join(each["msg"].removeprefix("Value error, ") for each in error.errors())
-            raise CalibrationError(f"numbers within the ranges contradict each other ({values}): {messages}; narrow the ranges") from None
+            raise CalibrationError(f"numbers within the ranges contradict each other ({values}): {messages(error)}; narrow the ranges") from None
         inputs = self._points.conditions
         kelvin = np.where(np.isnan(inputs[:, 3]), scene.lubricant.temperature, inputs[:, 3])
         load, angle = np.hypot(inputs[:, 1], inputs[:, 2]), np.arctan2(inputs[:, 2], inputs[:, 1])
@@ -451,7 +450,7 @@ def calibrate(
     model = _Model(scene, ranges, blocks, points, progress)
     own = np.array([one.position(value_at(scene, one.range.field)) for one in model.scales])
     start = _start(model, np.clip(own, _EDGE, 1.0 - _EDGE), blocks.slip)
-    check_before(scene, ranges, model.slopes(start), blocks, points)
+    check_before(ranges, model.slopes(start), points)
     found = optimize.least_squares(
         lambda positions: model(positions) - blocks.slip, start, model.slopes, bounds=(0.0, 1.0), xtol=1e-6, ftol=1e-9, max_nfev=40
     )
@@ -464,7 +463,7 @@ def calibrate(
     deviations, correlation = _spread(slopes, residuals, tau)
     reach = stats.t.ppf(0.5 + confidence / 2, spare) * deviations
     ends = np.array([positions - reach, positions + reach])
-    check_interval(scene, ranges, ends, confidence, blocks, tau)
+    check_interval(ranges, ends, confidence, blocks, tau)
     fitted = tuple(
         Fitted(one.range, one.value(positions[k]), one.value(ends[0, k]), one.value(ends[1, k]), value_at(scene, one.range.field))
         for k, one in enumerate(model.scales)

@@ -7,7 +7,6 @@ a step); *refused*, by the scene's checks before it starts; or *failed*: not fin
 died, a hang, too slow without settings that explain it, or a physically impossible value.
 """
 
-import csv
 import math
 import re
 import time
@@ -545,17 +544,16 @@ def _draw_view(axes, outcomes, x, y) -> None:
 _COUNTED = tuple(name for name in Outcome._fields if name != "case")
 
 
-def write_table(path: Path, outcomes: Sequence[Outcome]) -> None:
-    """Write one line per case: its parameters, outcome, cost, and the overrides that reproduce it."""
+def table_rows(outcomes: Sequence[Outcome]) -> list[dict[str, str]]:
+    """Return a row per case: its parameters, outcome, cost, and the overrides that reproduce it."""
     dimensions = list(dict.fromkeys(name for outcome in outcomes for name in outcome.case.point))
-    with path.open("w", newline="") as file:
-        writer = csv.writer(file)
-        writer.writerow(["level", "case", *_COUNTED, *dimensions, "overrides"])
-        for outcome in outcomes:
-            case = outcome.case
-            results = [_text(getattr(outcome, name)) for name in _COUNTED]
-            values = [_text(case.point.get(name, "")) for name in dimensions]
-            writer.writerow([case.level, case.name, *results, *values, " ".join(f"--set '{override}'" for override in case.overrides)])
+    return [
+        {"level": outcome.case.level, "case": outcome.case.name}
+        | {name: _text(getattr(outcome, name)) for name in _COUNTED}
+        | {name: _text(outcome.case.point.get(name, "")) for name in dimensions}
+        | {"overrides": " ".join(f"--set '{override}'" for override in outcome.case.overrides)}
+        for outcome in outcomes
+    ]
 
 
 def _text(value) -> str:

@@ -20,7 +20,7 @@ from scipy.stats import qmc
 from bearing_sim.levels.steady.table import empty_table
 from bearing_sim.scene import fidelity
 from bearing_sim.scene.scene import Integration, Scene
-from bearing_sim.scene.uncertainty import Range, quantities, value_at, with_values
+from bearing_sim.scene.uncertainty import Range, messages, quantities, value_at, with_values
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation, scene_inputs
 from bearing_sim.sweep.table import new_figure
 from bearing_sim.sweep.tasks import Journal, run_tasks, task
@@ -268,7 +268,7 @@ def lowest_level(scene: Scene, level: str | None = None) -> tuple[Scene, str]:
     try:
         return replace(defaults, level=chosen, level_reason=""), reason
     except ValidationError as error:
-        raise UncertaintyError(f"level {chosen}: {_messages(error)}") from None
+        raise UncertaintyError(f"level {chosen}: {messages(error)}") from None
 
 
 def study(
@@ -380,11 +380,7 @@ def _varied(scene: Scene, values: dict[str, float]) -> Scene:
         return with_values(scene, values)
     except ValidationError as error:
         numbers = ", ".join(f"{path} = {quantities(type(scene))[path].show(value)}" for path, value in values.items())
-        raise UncertaintyError(f"numbers within the ranges contradict each other ({numbers}): {_messages(error)}; narrow the ranges") from None
-
-
-def _messages(error: ValidationError) -> str:
-    return "; ".join(each["msg"].removeprefix("Value error, ") for each in error.errors())
+        raise UncertaintyError(f"numbers within the ranges contradict each other ({numbers}): {messages(error)}; narrow the ranges") from None
 
 
 def settled(scene: Scene, conditions: np.ndarray | None = None) -> np.ndarray:

@@ -126,11 +126,6 @@ class Axis(NamedTuple):
         """The values in the display unit."""
         return [self.field.shown(value) for value in self.values]
 
-    @property
-    def numeric(self) -> bool:
-        """Whether the values are numbers."""
-        return not any(isinstance(value, (str, bool)) for value in self.values)
-
     def override(self, value: float | int | str) -> str:
         """Return the override that sets the field to a value (see `bearing_sim.scene.loader.load_scene`)."""
         return f"{self.field.path}={value if isinstance(value, str) else repr(value)}"
@@ -257,7 +252,7 @@ class Plan(NamedTuple):
     @property
     def tasks(self) -> list[Task]:
         """One task for each valid point."""
-        return [point_task(scene, self.duration) for scene in self.scenes if isinstance(scene, Scene)]
+        return [task(scene.level, point_row, scene, self.duration) for scene in self.scenes if isinstance(scene, Scene)]
 
     def table(self, results: Iterable[dict]) -> Table:
         """Return the table of all points from the results of `tasks`."""
@@ -290,11 +285,6 @@ def plan_sweep(name: str, overrides: Sequence[str], axes: Sequence[Axis], durati
     if not any(isinstance(scene, Scene) for scene in scenes):
         raise scenes[0]
     return Plan(name, tuple(overrides), tuple(axes), float(duration), combinations, scenes)
-
-
-def point_task(scene: Scene, duration: float = DURATION) -> Task:
-    """Return the task that computes the row of one point."""
-    return task(scene.level, point_row, scene, float(duration))
 
 
 def scene_at(name: str, overrides: Sequence[str], axes: Sequence[Axis], combination: Sequence) -> Scene | SceneError:

@@ -119,15 +119,6 @@ def read_table(path: Path) -> Table:
     return Table(tuple(columns), found.to_pylist(), json.loads(about))
 
 
-def select(rows: Sequence[dict], **wanted) -> list[dict]:
-    """Return the rows with the given column values; numbers are compared to 9 digits."""
-
-    def same(value, other):
-        return abs(value - other) <= 1e-9 * abs(other) if isinstance(other, float) else value == other
-
-    return [row for row in rows if all(same(row[name], value) for name, value in wanted.items())]
-
-
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")  # Okabe and Ito: safe for colour-blind readers
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 QUANTITIES = ("cage_slip", "rating_life", "inner_load_maximum", "outer_load_maximum")

@@ -13,7 +13,7 @@ import numpy as np
 from bearing_sim.studies.deng2017.study import ANGLE, D_VALUE, LOAD, LOW, LOW_RADII, MASS, MIXTURE, ROUNDNESS, SPEED
 from bearing_sim.studies.machining import Machined, Pressing, RingSection, machine
 from bearing_sim.sweep.point import Column
-from bearing_sim.sweep.table import Table, select
+from bearing_sim.sweep.table import Table
 
 HOLDS, IN_PART, FAILS = "holds", "holds in part", "does not hold"
 NOISE = 0.01  # relative; smaller changes between points do not count
@@ -79,9 +79,9 @@ def course(tables: Tables, name: str, level: str, x: str, y: str, **fixed: float
 
 
 def select_fixed(table: Table, fixed: Mapping[str, float]) -> list[dict]:
-    """Return the rows of a table with the given values, by the last part of their columns' names."""
+    """Return the rows of a table with the given values to 9 digits, by the last part of their columns' names."""
     names = {column.name.rpartition(".")[2]: column.name for column in table.columns}
-    return select(table.rows, **{names[name]: value for name, value in fixed.items()})
+    return [row for row in table.rows if all(math.isclose(row[names[name]], value, rel_tol=1e-9) for name, value in fixed.items())]
 
 
 def _deviation(steps: Sequence[tuple[Course, int]], unit: str) -> tuple[str, str]:
@@ -164,7 +164,7 @@ def d_value(tables: Tables, level: str) -> Judged:
     beside = ", ".join(f"{np.interp(d, slip.x, slip.y):.1f}" for d in shared)
     independent = f"an independent calculation at level slip gives {', '.join(str(INDEPENDENT_SLIP[d]) for d in shared)} %"
     gives = f"{judged.gives}; at R_low = 34.8650 mm {crossed}: {beside} % at D = {', '.join(f'{d:g}' for d in shared)} mm; {independent}"
-    there, needed = float(np.interp(DENG_TEN_PERCENT, slip.x, slip.y)), _mixture_for(tables, level, 10.0)
+    there, needed = float(np.interp(DENG_TEN_PERCENT, slip.x, slip.y)), _crossing(course(tables, "mixture", level, MIXTURE, "cage_slip"), 10.0)
     off = f"at 34.8650 mm and D = {DENG_TEN_PERCENT} mm slip is {there:.1f} %, not 10 %"
     why = "Deng does not give the mixture fraction, which determines the drag; 3 % is the default of this package"
     if np.isfinite(needed):
@@ -175,11 +175,6 @@ def d_value(tables: Tables, level: str) -> Judged:
         off, why = f"{off}; {deviation}", f"{why}; {reason}"
     verdict = IN_PART if judged.verdict == HOLDS and (wrong or abs(there - 10.0) > 1.0) else judged.verdict
     return Judged(verdict, gives, "; ".join(filter(None, (judged.off, off))), "; ".join(filter(None, (judged.why, why))))
-
-
-def _mixture_for(tables, level, slip) -> float:
-    """Return the mixture fraction that gives a slip at R_low = 34.8650 mm and D = 0.105 mm, interpolated linearly."""
-    return _crossing(course(tables, "mixture", level, MIXTURE, "cage_slip"), slip)
 
 
 def _crossing(course: Course, value: float) -> float:
