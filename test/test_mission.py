@@ -11,7 +11,7 @@ from mcap.reader import make_reader
 
 from bearing_sim.cli.main import main
 from bearing_sim.inputs.log import read_input_log
-from bearing_sim.inputs.mission import DURATION, METADATA, PHASES, mission, phase, write_mission
+from bearing_sim.inputs.mission import DURATION, METADATA, PHASES, mission, write_mission
 from bearing_sim.inputs.profile import judge
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.simulation import Inputs
@@ -40,6 +40,11 @@ def test_value_and_slope_are_continuous():
     finer_times, finer = course(points=200_001)
     finer_curvature = np.abs(np.diff(finer, 2, axis=0)).max(axis=0) / finer_times[1] ** 2 / scale
     assert finer_curvature == pytest.approx(curvature, rel=0.05)  # would grow tenfold at a kink, a hundredfold at a jump
+
+
+def phase(time):
+    """Return the name of the phase at a time of the mission."""
+    return next((name for name, end, *_ in PHASES if time / DURATION <= end), PHASES[-1][0])
 
 
 def test_all_phases_scale_with_the_duration():

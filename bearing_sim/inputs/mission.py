@@ -65,12 +65,6 @@ def _gust(fraction: float) -> float:
     return 0.5 * (1.0 + math.cos(2.0 * math.pi * away)) if away < 0.5 else 0.0
 
 
-def phase(time: float, duration: float = DURATION) -> str:
-    """Return the name of the phase at a time of the mission."""
-    fraction = time / duration
-    return next((name for name, end, *_ in PHASES if fraction <= end), PHASES[-1][0])
-
-
 def write_mission(
     path: str | Path, start_ns: int, duration: float = DURATION, rate: float = 50.0, progress: Callable[[float], None] = lambda seconds: None
 ) -> int:

@@ -18,7 +18,6 @@ from bearing_sim.recording.mcap_format import Message
 from bearing_sim.recording.mcap_reader import McapReader, Rows
 
 _BATCH = 4 * 1024 * 1024  # [byte] of a recording compared at once
-_LOOK_AHEAD = 64  # messages, where two recordings are out of step
 _EQUAL_EXAMINED = 32  # one in so many equal messages is examined, for the magnitude
 _TEXT = "diagnostic_msgs/msg/DiagnosticArray"  # text, at times of its own
 
@@ -164,16 +163,6 @@ def _joined(columns: list[_Column]) -> _Column:
     return _Column(np.concatenate(times), np.concatenate(data))
 
 
-def _alone(mine: np.ndarray, others: np.ndarray) -> tuple[int, int]:
-    """Return how many of the first log times of each of two topics the other one lacks, as far as these log times show."""
-    same = mine[:, None] == others
-    if same.any():
-        first = int(same.any(axis=1).argmax())
-        return first, int(same[first].argmax())
-    later = [times > min(mine.max(), others.max()) for times in (mine, others)]  # the other one may still have these
-    return tuple(int(part.argmax()) if part.any() else len(part) for part in later)
-
-
 class _Pairing:
     """Finds the messages of one topic with equal log times, and compares many at once.
 
@@ -198,9 +187,9 @@ class _Pairing:
             if together:
                 self._pair(self._taken(0, together), self._taken(1, together))
             else:
-                for side, count in enumerate(_alone(mine[0].log_ns[:_LOOK_AHEAD], others[0].log_ns[:_LOOK_AHEAD])):
-                    if count:
-                        self._stray(side, count)
+                side = int(mine[0].log_ns[0] > others[0].log_ns[0])
+                is_earlier = self._waiting[side][0].log_ns < self._waiting[1 - side][0].log_ns[0]
+                self._stray(side, len(is_earlier) if is_earlier.all() else int(is_earlier.argmin()))
 
     def finished(self) -> TopicDifference:
         for side in (0, 1):

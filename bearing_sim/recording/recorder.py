@@ -86,7 +86,6 @@ class Recorder:
         start_ns: int,
         limits: Limits = UNLIMITED,
         advance: tuple[float, int] | None = None,
-        replace: bool = False,
         wait: bool = True,
     ) -> "LiveRecording":
         """Begin a recording; the other parameters are those of `bearing_sim.recording.writer.McapSink`.
@@ -100,7 +99,7 @@ class Recorder:
         OSError
             The file cannot be made, or no process can be started.
         """
-        options = {"limits": limits, "advance": advance, "replace": replace}
+        options = {"limits": limits, "advance": advance}
         recording = LiveRecording(self._living_client(), Path(path), scene, int(start_ns), options)
         if wait:
             recording.wait_until_open()

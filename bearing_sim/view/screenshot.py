@@ -15,12 +15,14 @@ from pathlib import Path
 from PIL import Image
 
 from bearing_sim.recording.priority import in_idle_time
+from bearing_sim.view.plots import TIMELINE
 
 HOW_TO_GET_VULKAN = (
     "the viewer found no graphics driver; a software one is enough: on Debian or Ubuntu "
     "`apt-get install -y --no-install-recommends mesa-vulkan-drivers`, on Fedora `dnf install mesa-vulkan-drivers`, on Arch `pacman -S vulkan-swrast`"
 )
 _HARMLESS_NOTICES = ("oftware rasterizer", "NameHasOwner")  # notices about the machine, not about what is shown
+_READY_WITHIN = 90.0  # [s] for the recording to be loaded
 
 
 class ViewerFailed(RuntimeError):
@@ -34,8 +36,6 @@ class HeadlessViewer:
     ----------
     recording : path of an .rrd file, or the URL of a running server.
     size : width and height of the picture [px].
-    timeline : the timeline that `seek` moves along.
-    ready_within : seconds to wait for the recording to be loaded.
     in_idle_time : True runs the viewer in idle time, so that it takes no processor time from a solver on the same machine.
 
     Raises
@@ -44,19 +44,8 @@ class HeadlessViewer:
         On entry, saying why and what to do.
     """
 
-    def __init__(
-        self,
-        recording: str | Path,
-        size: tuple[int, int] = (1600, 1000),
-        timeline: str = "sim_time",
-        ready_within: float = 90.0,
-        in_idle_time: bool = False,
-    ):
-        self._recording = str(recording)
-        self._size = size
-        self._timeline = timeline
-        self._ready_within = ready_within
-        self._in_idle_time = in_idle_time
+    def __init__(self, recording: str | Path, size: tuple[int, int] = (1600, 1000), in_idle_time: bool = False):
+        self._recording, self._size, self._in_idle_time = str(recording), size, in_idle_time
 
     def __enter__(self) -> "HeadlessViewer":
         program = viewer_program()
@@ -94,7 +83,7 @@ class HeadlessViewer:
     def _connect(self, port: int) -> None:
         from rerun.experimental import ViewerClient
 
-        deadline = time.monotonic() + self._ready_within
+        deadline = time.monotonic() + _READY_WITHIN
         last_error = "it did not answer"
         while time.monotonic() < deadline:
             if self._process.poll() is not None:
@@ -108,7 +97,7 @@ class HeadlessViewer:
             except (RuntimeError, ConnectionError, OSError, ValueError) as error:  # not listening yet
                 last_error = str(error)
             time.sleep(0.1)
-        raise ViewerFailed(f"the viewer was not ready after {self._ready_within:g} s: {last_error}")
+        raise ViewerFailed(f"the viewer was not ready after {_READY_WITHIN:g} s: {last_error}")
 
     def _why_it_ended(self) -> str:
         self._messages.seek(0)
@@ -125,12 +114,12 @@ class HeadlessViewer:
 
     def span(self) -> tuple[float, float]:
         """Return first and last time of the recording's timeline [s]."""
-        line = next(line for line in self._client.get_state().recordings[0].timelines if line.name == self._timeline)
+        line = next(line for line in self._client.get_state().recordings[0].timelines if line.name == TIMELINE)
         return (line.start or 0) / 1e9, (line.end or 0) / 1e9
 
     def seek(self, seconds: float) -> None:
         """Seek to a time and wait until the picture is stable (layout and zoom are animated)."""
-        self._client.set_time(self._timeline, duration=seconds, play_state="paused")
+        self._client.set_time(TIMELINE, duration=seconds, play_state="paused")
         before = None
         for _ in range(40):
             now = self._client.take_screenshot(max_size=480)
