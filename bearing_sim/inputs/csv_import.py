@@ -20,14 +20,13 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import Field, TypeAdapter, ValidationError, model_validator
-from pydantic_core import PydanticCustomError
+from pydantic import Field, TypeAdapter, ValidationError
 
 from bearing_sim.messages import topics
 from bearing_sim.recording.provenance import git_hash, package_version
 from bearing_sim.recording.writer import McapFile
 from bearing_sim.scene.loader import SceneError, did_you_mean, invalid_fields, read_named, yaml_mapping
-from bearing_sim.scene.quantity import quantity, record, to_si
+from bearing_sim.scene.quantity import check, conversion, quantity, record, to_si
 from bearing_sim.simulation import Inputs
 
 METADATA = "bearing_sim_import"
@@ -51,26 +50,20 @@ def _column(si_unit: str, meaning: str) -> type:
         scale: quantity(si_unit, f"{meaning} for a cell of 1") | None = None
         offset: quantity(si_unit, f"{meaning} for a cell of 0") | None = None
 
-        @model_validator(mode="after")
-        def _converts(self):
+        @check
+        def _converts(self) -> list[str]:
             if (self.unit is None) == (self.scale is None):
-                raise PydanticCustomError("conversion", "expected either unit, or scale (and offset)")
+                return ["expected either unit, or scale (and offset)"]
             if self.unit is not None and self.offset is not None:
-                raise PydanticCustomError("conversion", "offset does not go with unit; give scale and offset instead")
+                return ["offset does not go with unit; give scale and offset instead"]
             if self.scale is not None and not (math.isfinite(self.scale) and math.isfinite(self.offset or 0.0)):
-                raise PydanticCustomError("conversion", "expected a finite scale and offset")
+                return ["expected a finite scale and offset"]
             self.line()  # a wrong unit is an error of the mapping, not of the data
-            return self
+            return []
 
         def line(self) -> tuple[float, float]:
             """Return (scale, offset) in SI."""
-            if self.unit is None:
-                return self.scale, self.offset or 0.0
-            try:
-                offset = to_si(f"0 {self.unit}", si_unit)
-                return to_si(f"1 {self.unit}", si_unit) - offset, offset
-            except ValueError as error:
-                raise PydanticCustomError("conversion", "{reason}", {"reason": str(error)}) from None
+            return (self.scale, self.offset or 0.0) if self.unit is None else conversion(self.unit, si_unit)
 
     return Column
 
@@ -92,23 +85,20 @@ class TimeColumn:
     epoch: datetime.datetime | datetime.date | str | None = None
     longest_step: quantity("s", "spacing of rows above which there is a gap", 0.0) | None = None
 
-    @model_validator(mode="after")
-    def _reads_one_way(self):
+    @check
+    def _reads_one_way(self) -> list[str]:
         if (self.unit is None) == (self.format is None):
-            raise PydanticCustomError("time", "expected either unit (numbers), or format (timestamps)")
+            return ["expected either unit (numbers), or format (timestamps)"]
         if self.format is not None and self.epoch is not None:
-            raise PydanticCustomError("time", "epoch does not go with format: timestamps contain their date")
+            return ["epoch does not go with format: timestamps contain their date"]
         if self.unit is not None:
             self.nanoseconds_per_unit()
             self.epoch_ns()
-        return self
+        return []
 
     def nanoseconds_per_unit(self) -> float:
         """Return the number of nanoseconds in one unit of the cell."""
-        try:
-            return to_si(f"1 {self.unit}", "s") * 1e9
-        except ValueError as error:
-            raise PydanticCustomError("time", "{reason}", {"reason": str(error)}) from None
+        return to_si(f"1 {self.unit}", "s") * 1e9
 
     def epoch_ns(self) -> int:
         """Return the time of a cell of 0 [ns since 1970]."""
@@ -117,7 +107,7 @@ class TimeColumn:
         try:
             return nanoseconds(datetime.datetime.fromisoformat(str(self.epoch)))
         except ValueError:
-            raise PydanticCustomError("time", "epoch: expected a date such as 2019-03-12 or 2019-03-12T06:00:00Z") from None
+            raise ValueError("epoch: expected a date such as 2019-03-12 or 2019-03-12T06:00:00Z") from None
 
 
 def nanoseconds(moment: datetime.datetime) -> int:
@@ -177,13 +167,11 @@ class Mapping:
     oil_temperature: TemperatureColumn | None = None
     cage_speed: SpeedColumn | None = None  # measured; compared with the model, not an input of it
 
-    @model_validator(mode="after")
-    def _is_complete(self):
+    @check
+    def _is_complete(self) -> list[str]:
         if self.delimiter == self.decimal:
-            raise ValueError("delimiter: expected a character other than the decimal mark")
-        if not self.load_columns():
-            raise ValueError(f"radial_load: the law {self.radial_load.law} needs at least one column")
-        return self
+            return ["delimiter: expected a character other than the decimal mark"]
+        return [] if self.load_columns() else [f"radial_load: the law {self.radial_load.law} needs at least one column"]
 
     def load_columns(self) -> tuple:
         """Return the columns that the load is computed from."""
@@ -393,9 +381,7 @@ class _RowReader:
         if not text:
             raise _BadCell("empty_cell", f"{name} is empty")
         try:
-            if "_" in text or (self._comma and "." in text):  # float() accepts 1_000, and 1.000 where a comma is the mark
-                raise ValueError
-            number = float(text.replace(",", ".") if self._comma else text)
+            number = float(_with_point(text, self._comma))
         except ValueError:
             raise _BadCell("not_a_number", f"{name} = {text!r} is not a number") from None
         if not math.isfinite(number):
@@ -412,13 +398,14 @@ def _time_reader(mapping: Mapping) -> Callable[[str], int]:
         return lambda text: nanoseconds(datetime.datetime.strptime(text, time.format))
     # Decimal keeps every digit of a time; a float would lose nanoseconds.
     factor, epoch, comma = Decimal(repr(time.nanoseconds_per_unit())), time.epoch_ns(), mapping.decimal == ","
+    return lambda text: epoch + round(Decimal(_with_point(text, comma)) * factor)
 
-    def read(text: str) -> int:
-        if "_" in text or (comma and "." in text):
-            raise ValueError(text)
-        return epoch + round(Decimal(text.replace(",", ".") if comma else text) * factor)
 
-    return read
+def _with_point(text: str, comma: bool) -> str:
+    """Return a number with a decimal point; ``comma`` says that its decimal mark is a comma."""
+    if "_" in text or (comma and "." in text):  # float() accepts 1_000, and 1.000 where a comma is the mark
+        raise ValueError(text)
+    return text.replace(",", ".") if comma else text
 
 
 def _load_law(mapping: Mapping) -> Callable[[float, list[float]], float]:

@@ -186,16 +186,11 @@ class InputGate:
         return Event(now, Level.WARN, "input.stale", channel, f"{since}, expected one within {patience:.3g} s", self._used_instead(channel))
 
     def _used_instead(self, channel: str) -> str:
-        held = self.held
         if self._substitute:
             return self._substitute
-        if channel == MEASURED:
-            return f"holding {self.measured:.6g} rad/s"
-        if channel == "shaft_speed":
-            return f"holding {held.shaft_speed:.6g} rad/s"
-        if channel == "radial_load":
-            return f"holding ({held.load_y:.6g}, {held.load_z:.6g}) N"
-        return f"holding {held.oil_temperature:.6g} K"
+        latest = self.latest(channel)
+        shown = f"({latest[0]:.6g}, {latest[1]:.6g})" if isinstance(latest, tuple) else f"{latest:.6g}"
+        return f"holding {shown} {UNITS[channel]}"
 
     def _rate_event(self, channel: str, state: _Channel, now: float) -> Event | None:
         slowest = self.limits.minimum_rate / _SLOW_CHANNEL.get(channel, 1.0)

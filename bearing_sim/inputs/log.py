@@ -20,7 +20,7 @@ from bearing_sim.messages import topics
 from bearing_sim.recording.bag import RecordingError
 from bearing_sim.recording.bag_reader import BagReader, BagTopic
 from bearing_sim.scene.loader import did_you_mean
-from bearing_sim.scene.quantity import to_si
+from bearing_sim.scene.quantity import conversion
 
 _CHANNELS = (*topics.INPUTS, topics.MEASURED)
 _STEP = re.compile(r"\.?([A-Za-z_]\w*)|\[(-?\d+)\]")
@@ -113,15 +113,9 @@ def source(channel: str, text: str | None = None, unit: str | None = None) -> So
         raise ValueError(f"{text}: cannot parse the path of a field; expected for example /servo/state.velocity[0]")
     if len(fields) > (2 if channel == "radial_load" else 1):
         raise ValueError(f"{text}: {channel} has {len(fields)} fields, expected one{', or y and z' if channel == 'radial_load' else ''}")
-    scale, offset = _conversion(channel, unit or ("degC" if channel == "oil_temperature" and fields else None))
+    unit = unit or ("degC" if channel == "oil_temperature" and fields else None)
+    scale, offset = conversion(unit, UNITS[channel]) if unit else (1.0, 0.0)
     return Source(topic if topic.startswith("/") else f"/{topic}", fields, scale, offset)
-
-
-def _conversion(channel: str, unit: str | None) -> tuple[float, float]:
-    if not unit:
-        return 1.0, 0.0
-    offset, one = (to_si(f"{number} {unit}", UNITS[channel]) for number in (0, 1))
-    return one - offset, offset
 
 
 def source_values(channel: str, where: Source, ros_type: str, message, joint: str) -> tuple[float, ...]:

@@ -64,6 +64,12 @@ def to_si(value: object, unit: str) -> float:
         raise ValueError(f"cannot read the unit {written_unit!r} in {value!r}; expected {_expected(unit)}") from None
 
 
+def conversion(written: str, unit: str) -> tuple[float, float]:
+    """Return scale and offset of a unit: a number in SI = scale x the number in the unit ``written`` + offset.  Raises as `to_si`."""
+    offset = to_si(f"0 {written}", unit)
+    return to_si(f"1 {written}", unit) - offset, offset
+
+
 _EXAMPLES = {
     "m": "a length such as '7.0 mm'",
     "rad": "an angle such as '60 deg'",
