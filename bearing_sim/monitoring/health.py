@@ -113,6 +113,20 @@ class Health:
             self.note(Event(now, Level.WARN, "output.dropped", "", reason))
 
 
+class Changes:
+    """Tells changes of the events that hold: each that begins or changes its level, and each that is over, once."""
+
+    def __init__(self):
+        self.holding: dict[tuple[str, str], Event] = {}
+
+    def take(self, now: float, events: Iterable[Event]) -> list[Event]:
+        """Take all events that hold at ``now`` [s] and return the changes since the last call."""
+        before, self.holding = self.holding, {event.key: event for event in events}
+        begun = [event for key, event in self.holding.items() if key not in before or before[key].level != event.level]
+        over = sorted(before.keys() - self.holding.keys())
+        return begun + [Event(now, Level.OK, kind, subject, "back within its limits") for kind, subject in over]
+
+
 def solver_events(now: float, solver: SolverState) -> list[Event]:
     """Return the event that the solver's phase calls for, if any."""
     if solver.phase is Phase.CRASHED:

@@ -10,8 +10,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from bearing_sim.inputs.profile import InputProfile
-from bearing_sim.messages.events import Event, Level
+from bearing_sim.messages.events import Event
 from bearing_sim.messages.topics import condition, further_condition
+from bearing_sim.monitoring.health import Changes
 from bearing_sim.monitoring.monitor import Monitor
 from bearing_sim.monitoring.residual import Comparison, ResidualMonitor
 from bearing_sim.runtime.advance_segment import Begun, Output, ProfileRun
@@ -127,7 +128,7 @@ class _Run:
         self._recordings = (recording,) if recording is not None else ()
         self._result = Replay(log_seconds=profile.end * 1e-9)
         self._pending_events = list(profile.events)
-        self._holding: dict[str, Event] = {}
+        self._changes = Changes()
         self._watched: list[np.ndarray] = []
         self._next_report = 0.0
         self._monitor = Monitor(scene)
@@ -188,7 +189,7 @@ class _Run:
 
     def _judge(self, block: np.ndarray) -> None:
         """Judge outputs one by one, or all at once if none of them can raise or clear an alarm."""
-        if len(block) > 1 and not self._holding and self._monitor.is_calm(block):
+        if len(block) > 1 and not self._changes.holding and self._monitor.is_calm(block):
             self._monitor.take_calm(block[:-1])
             for compared in self._comparison.predict(block[:-1]):
                 self._write_measured(compared)
@@ -206,17 +207,12 @@ class _Run:
     def _report(self, sample, moment: float) -> None:
         """Write a change of the bearing's condition at once, and the condition once a second."""
         residual = self._comparison.residual
-        now = {event.key: event for event in (*self._monitor.events(moment), *residual.events(moment))}
-        for key, event in now.items():
-            if key not in self._holding or self._holding[key].level != event.level:
-                self._write_event(event)
-        for kind, subject in sorted(self._holding.keys() - now.keys()):
-            self._write_event(Event(moment, Level.OK, kind, subject, "back within its limits"))
-        self._holding = now
+        for event in self._changes.take(moment, (*self._monitor.events(moment), *residual.events(moment))):
+            self._write_event(event)
         if moment >= self._next_report:
             # A hundredth early, so that reports stay at whole seconds although stamps jitter.
             self._next_report = (math.floor(moment / _REPORT_EVERY + 0.01) + 0.99) * _REPORT_EVERY
-            worst_first = sorted(now.values(), key=lambda event: -event.level)
+            worst_first = sorted(self._changes.holding.values(), key=lambda event: -event.level)
             values = condition(sample) | further_condition(self._scene, sample) | self._monitor.values | residual.values(moment)
             for recording in self._recordings:
                 recording.write_diagnostics(moment, worst_first, values)

@@ -93,22 +93,20 @@ def _run(scene, crown, misalignment, slices, turns):
 def draw(path: Path, title: str, found: list[Misaligned]) -> None:
     """Draw the results into a file; the suffix of ``path`` gives the format."""
     figure = new_figure(14, 8)
-    axes = figure.subplots(2, 3)
-    _over_misalignment(axes[0, 0], found, lambda one: 1e-6 * one.inner_edge_pressure, lambda one: 1e-6 * _edge_pressure(one))
-    axes[0, 0].set(ylabel="pressure of the end slices, inner raceway [MPa]", ylim=(0, None))
-    _over_misalignment(axes[0, 1], found, lambda one: one.lamina_life, lambda one: one.still.lamina_life)
-    axes[0, 1].set(ylabel="life by slices [h]", ylim=(0, None))
-    _over_misalignment(axes[0, 2], found, lambda one: 100 * one.slip)
-    axes[0, 2].set(ylabel="cage slip [%]", ylim=(0, None))
-    _over_misalignment(axes[1, 0], found, lambda one: 1e3 * one.tilt, lambda one: 1e3 * np.abs(one.still.tilts).max())
-    axes[1, 0].set(ylabel="largest tilt of a roller [mrad]", ylim=(0, None))
-    _over_misalignment(axes[1, 1], found, lambda one: 1e3 * one.skew)
-    axes[1, 1].set(ylabel="largest skew of a roller [mrad]", ylim=(0, None))
-    _along(axes[1, 2], found)
-    for each in axes.flat[:5]:
-        each.set_xlabel("misalignment of the inner ring [mrad]")
+    axes = figure.subplots(2, 3).ravel()
+    panels = (
+        ("pressure of the end slices, inner raceway [MPa]", lambda one: 1e-6 * one.inner_edge_pressure, lambda one: 1e-6 * _edge_pressure(one)),
+        ("life by slices [h]", lambda one: one.lamina_life, lambda one: one.still.lamina_life),
+        ("cage slip [%]", lambda one: 100 * one.slip, None),
+        ("largest tilt of a roller [mrad]", lambda one: 1e3 * one.tilt, lambda one: 1e3 * np.abs(one.still.tilts).max()),
+        ("largest skew of a roller [mrad]", lambda one: 1e3 * one.skew, None),
+    )
+    for each, (label, moving, still) in zip(axes, panels):
+        _over_misalignment(each, found, moving, still)
+        each.set(xlabel="misalignment of the inner ring [mrad]", ylabel=label, ylim=(0, None))
         each.grid(alpha=0.3)
-    handles, labels = axes[0, 0].get_legend_handles_labels()
+    _along(axes[-1], found)
+    handles, labels = axes[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), frameon=False)
     figure.suptitle(title)
     figure.savefig(path, dpi=130)
@@ -120,7 +118,7 @@ def _edge_pressure(one):
     return still.inner_pressure * np.sqrt(still.inner_slices[:, [0, -1]].max() / still.inner_slices.max())
 
 
-def _over_misalignment(axes, found, moving, still=None):
+def _over_misalignment(axes, found, moving, still):
     for crown, colour, marker in zip(dict.fromkeys(one.crown for one in found), COLOURS, MARKERS):
         mine = [one for one in found if one.crown == crown]
         amounts = [1e3 * one.misalignment for one in mine]

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.messages.events import Event, Level, Measurement
+from bearing_sim.monitoring.health import Changes
 from bearing_sim.monitoring.monitor import Monitor
 from bearing_sim.monitoring.residual import ResidualMonitor
 from bearing_sim.scene.loader import load_scene
@@ -176,19 +177,13 @@ class _Monitors:
     def __init__(self, scene: Scene):
         self._monitor = Monitor(scene)
         self._residual = ResidualMonitor(scene.thresholds.residual, scene.thresholds.slip_from_speed)
-        self._held: dict[str, Level] = {}
+        self._changes = Changes()
 
-    def changes(self, block: np.ndarray) -> Iterator[Event]:
-        """Yield the conditions that changed in a block."""
+    def changes(self, block: np.ndarray) -> list[Event]:
+        """Return the conditions that changed in a block."""
         self._monitor.take(block)
         now = float(block["time"][-1])
-        held = {event.kind: event for event in (*self._monitor.events(now), *self._residual.events(now))}
-        for code, event in held.items():
-            if self._held.get(code) != event.level:
-                yield event
-        for code in self._held.keys() - held.keys():
-            yield Event(now, Level.OK, code, "", "back within its limits")
-        self._held = {code: event.level for code, event in held.items()}
+        return self._changes.take(now, (*self._monitor.events(now), *self._residual.events(now)))
 
     def compare(self, predicted: np.ndarray, true: np.ndarray, random: np.random.Generator) -> Iterator[Measurement]:
         """Yield measurements of the machine with sensor noise, and monitor their residuals."""
