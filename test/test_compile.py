@@ -48,7 +48,7 @@ def test_run_after_compile_finds_all_its_code_on_disk():
 
 def test_unknown_level_is_refused_with_the_known_ones():
     result = CliRunner().invoke(main, ["compile", "--level", "plane"])
-    assert result.exit_code == 2 and "--level plane: expected one of steady, slip, planar, spatial" in result.output
+    assert result.exit_code == 2 and "'--level': 'plane' is not one of 'steady', 'slip', 'planar', 'spatial'" in result.output
 
 
 def test_prune_removes_other_versions_and_keeps_this_one(tmp_path, monkeypatch):

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.cli.options import json_option, picture_option, quick_option, scene_argument, set_option
+from bearing_sim.cli.options import json_option, level_type, picture_option, quick_option, scene_argument, set_option
 from bearing_sim.cli.reporting import (
     FailedRun,
     announce_compilation,
@@ -15,7 +15,6 @@ from bearing_sim.cli.reporting import (
     print_json,
     print_rows,
     progress_bar,
-    require_levels,
     write_csv,
 )
 
@@ -23,7 +22,7 @@ _WORDS = ("level", "integrator")  # columns of text
 
 
 @click.command("levels")
-@click.option("--level", "levels", multiple=True, metavar="LEVEL", help="Measure this level; can be repeated [default: all].")
+@click.option("--level", "levels", multiple=True, type=level_type, help="Measure this level; can be repeated [default: all].")
 @click.option("--cold", is_flag=True, help="Also measure the very first start, which compiles.")
 @quick_option
 @json_option
@@ -32,7 +31,6 @@ def levels(levels, cold, quick, as_json):
 
     Bearing deng2017_table1 at 800 N, 15,000 and 45,000 rpm.  Takes less than a minute per level once compiled, and longer for level spatial.
     """
-    require_levels(levels)
     announce_compilation()
     from bearing_sim.studies.bench import run_bench
 
@@ -102,13 +100,12 @@ _SECONDS, _QUICK_SECONDS = 5.0, 0.5  # per run
 
 @click.command("fleet")
 @click.option(
-    "--level", "levels", multiple=True, default=("steady", "slip", "planar"), show_default=True, metavar="LEVEL", help="Level; can be repeated."
+    "--level", "levels", multiple=True, default=("steady", "slip", "planar"), show_default=True, type=level_type, help="Level; can be repeated."
 )
 @quick_option
 @json_option
 def fleet(levels, quick, as_json):
     """Run more and more bearings deng2017_table1 on one core, at 1500, 15,000 and 45,000 rpm, until it no longer holds real time."""
-    require_levels(levels)
     announce_compilation()
     report = _measure(levels, quick)
     if as_json:
@@ -165,8 +162,8 @@ _FACTORS, _ERRORS = (1.0, 3.0, 10.0, 100.0, 1000.0), (0.01, 0.1, 1.0)
 @click.command("trade")
 @scene_argument
 @set_option
-@click.option("--level", "levels", multiple=True, metavar="LEVEL", help="Measure this level; can be repeated [default: all].")
-@click.option("--against", metavar="LEVEL", help="Level of the reference [default: planar, or the highest that can compute the scene].")
+@click.option("--level", "levels", multiple=True, type=level_type, help="Measure this level; can be repeated [default: all].")
+@click.option("--against", type=level_type, help="Level of the reference [default: planar, or the highest that can compute the scene].")
 @click.option("--factor", type=click.FloatRange(min=0.0, min_open=True), help="Recommend the most accurate setting at this multiple of real time.")
 @click.option(
     "--error",
@@ -187,7 +184,6 @@ def trade(scene_name, overrides, levels, against, factor, error, table, picture,
     from bearing_sim.scene.loader import SceneError
     from bearing_sim.simulation import IntegrationError
 
-    require_levels([*levels, *([against] if against else [])])
     announce_compilation()
     from bearing_sim.studies.trade import recommend, settings_of, trade
 
@@ -265,7 +261,7 @@ def _recommendation(one) -> str:
 
 
 @click.command("compile")
-@click.option("--level", "levels", multiple=True, metavar="LEVEL", help="Compile this level; can be repeated [default: all].")
+@click.option("--level", "levels", multiple=True, type=level_type, help="Compile this level; can be repeated [default: all].")
 @click.option("--fixed-step", is_flag=True, help="Also compile what a scene with integration.fixed_step needs.")
 @click.option("--workers", type=click.IntRange(min=1), metavar="N", help="Number of processes [default: one per core].")
 @click.option("--prune", is_flag=True, help="Afterwards remove the compiled code of other versions of bearing_sim.")
@@ -277,7 +273,6 @@ def compile_levels(levels, fixed_step, workers, prune):
     from bearing_sim.levels.level import LEVELS
     from bearing_sim.runtime.precompilation import builds, compile_all, remove_other_versions
 
-    require_levels(levels)
     wanted, began = builds(levels or tuple(LEVELS), fixed_step), time.monotonic()
     with progress_bar("compiling", len(wanted)) as show:
         for done, build in enumerate(compile_all(wanted, workers), 1):

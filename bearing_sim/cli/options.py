@@ -7,9 +7,11 @@ from pathlib import Path
 import click
 
 from bearing_sim.cli.reporting import UsageError
+from bearing_sim.scene.fidelity import LEVELS
 
 _PICTURES = (".png", ".svg", ".pdf")
 
+level_type = click.Choice(LEVELS)
 scene_argument = click.argument("scene_name", metavar="SCENE")
 set_option = click.option("--set", "overrides", multiple=True, metavar="FIELD=VALUE", help="Override a field of the scene; can be repeated.")
 json_option = click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")

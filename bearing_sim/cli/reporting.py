@@ -68,15 +68,6 @@ def exit_on_sigterm() -> Iterator[None]:
         signal.signal(signal.SIGTERM, before)
 
 
-def require_levels(levels: Iterable[str]) -> None:
-    """Raise `UsageError` for an unknown level of fidelity."""
-    from bearing_sim.scene.fidelity import LEVELS
-
-    for level in levels:
-        if level not in LEVELS:
-            raise UsageError(f"--level {level}: expected one of {', '.join(LEVELS)}")
-
-
 def seconds_of(duration: str) -> float:
     """Return ``--duration`` in seconds; raise `UsageError` if it is not a time of at most 1e6 s."""
     from bearing_sim.scene.quantity import to_si

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.cli.options import executor_options, json_option, picture_option, set_option
+from bearing_sim.cli.options import executor_options, json_option, level_type, picture_option, set_option
 from bearing_sim.cli.reporting import (
     FailedRun,
     Points,
@@ -19,7 +19,6 @@ from bearing_sim.cli.reporting import (
     print_rows,
     print_table,
     progress_bar,
-    require_levels,
     write_csv,
 )
 
@@ -329,7 +328,7 @@ _SHOWN = 12  # reasons per table
 
 @click.command("extremes")
 @click.option("--samples", default=500, show_default=True, type=click.IntRange(0, 1_000_000), help="Scenes of the Latin hypercube per level.")
-@click.option("--level", "levels", multiple=True, metavar="LEVEL", help="Study this level; can be repeated [default: all].")
+@click.option("--level", "levels", multiple=True, type=level_type, help="Study this level; can be repeated [default: all].")
 @click.option("--seed", default=0, show_default=True, type=click.IntRange(0), help="Seed of the Latin hypercube.")
 @click.option("--long/--no-long", default=True, show_default=True, help="Also make the long continuous runs.")
 @json_option
@@ -343,7 +342,6 @@ def extremes(samples, levels, seed, long, as_json, picture, table):
     """
     from bearing_sim.studies.extremes import run_extremes, table_rows
 
-    require_levels(levels)
     with progress_bar("extremes", 1.0) as progress:
         report, outcomes = run_extremes(samples, levels, seed, long, lambda text: click.echo(f"{text} ...", err=True), progress)
     with as_file_error():

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.cli.options import executor_options, json_option, picture_option, scene_argument
+from bearing_sim.cli.options import executor_options, json_option, level_type, picture_option, scene_argument
 from bearing_sim.cli.reporting import (
     Points,
     announce_compilation,
@@ -15,7 +15,6 @@ from bearing_sim.cli.reporting import (
     exit_on_sigterm,
     print_json,
     print_table,
-    require_levels,
     write_csv,
 )
 
@@ -29,7 +28,7 @@ SEED = 2017
     "--samples", default=256, show_default=True, type=click.IntRange(2, 65536), help="Size of each of the two samples; rounded up to a power of two."
 )
 @click.option("--seed", default=SEED, show_default=True, type=click.IntRange(0), help="Seed of the samples.")
-@click.option("--level", metavar="LEVEL", help="Level of fidelity [default: the fastest that supports the scene].")
+@click.option("--level", type=level_type, help="Level of fidelity [default: the fastest that supports the scene].")
 @click.option("--log", type=click.Path(path_type=Path), metavar="IN.mcap", help="Compute the ranges over time, for speed and load in a log.")
 @click.option("--stretches", default=24, show_default=True, type=click.IntRange(1, 10_000), help="Number of intervals into which the log is divided.")
 @executor_options
@@ -51,7 +50,6 @@ def uncertainty(scene_name, overrides, samples, seed, level, log, stretches, wor
     from bearing_sim.scene.loader import SceneError, load_scene
     from bearing_sim.sweep.tasks import Journal, JournalInUse
 
-    require_levels([level] if level is not None else ())
     with as_usage_error(SceneError):
         scene = load_scene(scene_name, overrides)
     scene, course = _course(log, scene, stretches) if log is not None else (scene, None)

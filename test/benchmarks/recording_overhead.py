@@ -27,8 +27,8 @@ import click
 import numpy as np
 from paired import CONTROL, WITH, ThreadStatistics, differences, order, ratios, stolen_share
 
-from bearing_sim.cli.options import json_option, quick_option
-from bearing_sim.cli.reporting import announce_compilation, print_json, print_rows, require_levels
+from bearing_sim.cli.options import json_option, level_type, quick_option
+from bearing_sim.cli.reporting import announce_compilation, print_json, print_rows
 from bearing_sim.recording.priority import in_idle_time
 from bearing_sim.recording.recorder import Recorder
 from bearing_sim.runtime.live import LiveModel, warmed_up
@@ -311,7 +311,7 @@ _MEANINGS = {
 
 
 @click.command()
-@click.option("--level", "levels", multiple=True, default=("slip", "planar"), show_default=True, metavar="LEVEL", help="Level; can be repeated.")
+@click.option("--level", "levels", multiple=True, default=("slip", "planar"), show_default=True, type=level_type, help="Level; can be repeated.")
 @click.option("--seconds", type=click.FloatRange(min=0.5), default=1.0, show_default=True, metavar="S", help="Length of a stretch.")
 @click.option("--pairs", type=click.IntRange(min=1), default=24, show_default=True, metavar="N", help="Pairs of stretches, with and without.")
 @click.option("--rate", type=click.FloatRange(min=1), default=1000.0, show_default=True, metavar="HZ", help="Samples per second.")
@@ -329,7 +329,6 @@ def command(levels, seconds, pairs, rate, viewer, quick, as_json):
 
     Every other stretch has no sinks; half of the others have none either and serve as controls.
     """
-    require_levels(levels)
     announce_compilation()
     if quick:
         seconds, pairs = 0.5, 1
