@@ -116,6 +116,16 @@ def test_what_was_not_fitted_shifts_the_result_as_another_fit_with_it_changed_sa
     assert "lubricant.temperature" not in found.depends, "the recording says it"
 
 
+def test_the_search_starts_from_the_scene_s_own_value_where_that_fits_best():
+    evaluations = {}
+    for own in (TRUTH, 0.03):
+        counts = []
+        found = fit(measured(3, noise=1e-5), overrides=[f"{MIXTURE}={own}"], progress=counts.append)
+        assert found.fitted[0].value == pytest.approx(TRUTH, rel=1e-4)
+        evaluations[own] = counts[-1]
+    assert evaluations[TRUTH] < 0.7 * evaluations[0.03], "there is next to nothing left to search"
+
+
 def test_an_error_of_the_model_shows_where_there_are_more_points_than_fields_and_none_shows_where_there_is_none():
     right = fit(measured(4, FIVE_POINTS, 20.0))
     wrong = fit(measured(4, FIVE_POINTS, 20.0, overrides=("bearing.outer_raceway.low_radius=34.8628 mm",)))

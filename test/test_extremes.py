@@ -232,3 +232,19 @@ def test_a_long_run_drifts_in_nothing():
     found = long_run("slip", 1.0)
     assert found.failure == "" and found.simulated == pytest.approx(1.0)
     assert abs(found.shaft_angle_error) < 1e-12 and abs(found.slip_drift) < 1e-4 and abs(found.damage_drift) < 1e-3 and found.cage_slip > 0.0
+
+
+@pytest.mark.parametrize(("column", "unit", "drift"), [("churning_power", "shaft_power", "energy_drift"), ("cage_slip", None, "slip_drift")])
+def test_what_changes_by_5_percent_in_the_second_half_of_a_long_run_is_reported_as_that_drift(monkeypatch, column, unit, drift):
+    advance = Simulation.advance
+
+    def changed(self, *arguments, **options):
+        block = advance(self, *arguments, **options)
+        if self.time > 0.5:  # loses less than its shaft puts in, or slips more
+            block[column] += 0.05 if unit is None else -0.05 * block[unit]
+        return block
+
+    monkeypatch.setattr(Simulation, "advance", changed)
+    found = long_run("slip", 1.0)
+    assert getattr(found, drift) == pytest.approx(0.05, rel=0.03), "settling takes the rest"
+    assert found.failure.startswith(f"drift: {drift} 0.05")

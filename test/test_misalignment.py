@@ -9,8 +9,10 @@ from click.testing import CliRunner
 
 from bearing_sim import load_scene
 from bearing_sim.cli.main import main
+from bearing_sim.studies import misalignment
 from bearing_sim.studies.misalignment import misalign
 from bearing_sim.studies.slices import by_slices
+from bearing_sim.sweep.table import new_figure
 
 SLOW = ["operating.shaft_speed=5000 rpm", "operating.radial_load=2 kN"]
 QUIET = {"progress": lambda text: None}
@@ -60,6 +62,19 @@ def test_results_settle_as_a_crowned_roller_is_cut_finer():
         rough, fine, finest = (getattr(one, name) for one in (few, some, many))
         assert abs(fine / finest - 1) < 0.08  # 30 slices, as many as the standard asks for
         assert abs(rough / finest - 1) > 5 * abs(fine / finest - 1)
+
+
+def test_the_picture_says_what_each_curve_is_drawn_over(found, tmp_path, monkeypatch):
+    figure = new_figure(14, 8)
+    monkeypatch.setattr(misalignment, "new_figure", lambda width, height: figure)
+    misalignment.draw(tmp_path / "m.svg", "misalignment", list(found.values()))
+    *over, along = figure.axes
+    assert {axes.get_xlabel() for axes in over} == {"misalignment of the inner ring [mrad]"}
+    assert along.get_xlabel() == "along the roller, x [mm]"
+    for axes in over:
+        assert [line.get_xdata().tolist() for line in axes.lines] == [[0.0, 1.0, 3.0]] * len(axes.lines)
+    roller = load_scene("deng2017_table1").bearing.roller
+    assert all(np.abs(line.get_xdata()).max() < 0.5e3 * roller.length for line in along.lines), "in millimetres, within the roller"
 
 
 def test_command_prints_and_draws(tmp_path):
