@@ -52,7 +52,7 @@ WITHIN = 60.0
 _log = logging.getLogger(__name__)
 
 
-class Recorder:
+class Recorder(AbstractContextManager):
     """A process that writes recordings, one after the other and several at a time.
 
     Parameters
@@ -119,9 +119,6 @@ class Recorder:
         with self._starting:
             client, self._client = self._client, None
         return client.close(timeout) if client is not None else True
-
-    def __enter__(self) -> "Recorder":
-        return self
 
     def __exit__(self, *_) -> None:
         self.close()

@@ -42,10 +42,7 @@ class TableError(ValueError):
     """An excerpt that names an unknown observable, or a time span without samples."""
 
 
-WHOLE = Excerpt()
-
-
-def write_csv(recording: Recording, path: Path, excerpt: Excerpt = WHOLE, progress: Callable[[float], None] = lambda seconds: None) -> int:
+def write_csv(recording: Recording, path: Path, excerpt: Excerpt, progress: Callable[[float], None]) -> int:
     """Write a recording as CSV and return the number of rows.
 
     Parameters
@@ -65,7 +62,7 @@ def write_csv(recording: Recording, path: Path, excerpt: Excerpt = WHOLE, progre
         return _write(recording, excerpt, schema, writer.write_table, progress)
 
 
-def write_parquet(recording: Recording, path: Path, excerpt: Excerpt = WHOLE, progress: Callable[[float], None] = lambda seconds: None) -> int:
+def write_parquet(recording: Recording, path: Path, excerpt: Excerpt, progress: Callable[[float], None]) -> int:
     """Write a recording as Parquet and return the number of rows; see `write_csv`.  The scene is in the file's metadata."""
     schema = _schema(recording, excerpt, units_in_names=False)
     kept = {name: text for name, text in recording.metadata.items() if text}

@@ -8,6 +8,7 @@ import math
 import os
 import threading
 from collections.abc import Iterable, Mapping
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import NamedTuple
 
@@ -35,7 +36,7 @@ class _Channel(NamedTuple):
     ros_type: str
 
 
-class McapFile:
+class McapFile(AbstractContextManager):
     """An MCAP file being written, profile ``ros2``.
 
     While it is written it is called ``<path>.active``; `close` completes it and removes the suffix.  A chunk goes to the operating system as
@@ -164,9 +165,6 @@ class McapFile:
             for name in names:
                 self._counts[name] += len(block)
             self._span = widened(self._span, int(times_ns.min()), int(times_ns.max()))
-
-    def __enter__(self) -> "McapFile":
-        return self
 
     def __exit__(self, *_) -> None:
         self.close()
@@ -355,7 +353,7 @@ class SplitFiles:
         write_bag_metadata(self.path, bag_metadata([part for part, _ in done], [counts for _, counts in done], self._custom_data))
 
 
-class McapSink:
+class McapSink(AbstractContextManager):
     """Records a run: inputs as they arrived, every observable of every sample, events and diagnostics.
 
     Parameters
@@ -469,9 +467,6 @@ class McapSink:
     def close(self) -> None:
         """Complete the recording and give it its name; a second call does nothing."""
         self._files.close()
-
-    def __enter__(self) -> "McapSink":
-        return self
 
     def __exit__(self, *_) -> None:
         self.close()

@@ -26,6 +26,7 @@ from rclpy.utilities import remove_ros_args
 from rosgraph_msgs.msg import Clock
 from std_srvs.srv import SetBool
 
+from bearing_sim.inputs.gate import with_values
 from bearing_sim.inputs.log import REQUIRED, InputLog, InputLogError, read_input_log
 from bearing_sim.messages import topics
 from bearing_sim.ros.messages import message, message_class
@@ -243,10 +244,7 @@ class Player:
 def _fields(due: ScheduledMessage, stamp_ns: int) -> dict:
     if due.channel == topics.MEASURED:
         return topics.MEASUREMENTS[due.channel].message(stamp_ns, due.values[0])
-    values = (*due.values, 0.0)
-    # The message of a channel uses only its own inputs.
-    inputs = Inputs(shaft_speed=values[0], load_y=values[0], load_z=values[1], oil_temperature=values[0])
-    return topics.INPUTS[due.channel].message(stamp_ns, inputs)
+    return topics.INPUTS[due.channel].message(stamp_ns, with_values(Inputs(0.0, 0.0, 0.0, 0.0), due.channel, due.values))
 
 
 class Progress:

@@ -23,7 +23,6 @@ from bearing_sim.view.blueprint import log_view, page
 from bearing_sim.view.plots import LINES, Lines, Overview, bucket_for, describe_range, log_event, plottable, range_path, send_columns, send_thinned
 from bearing_sim.view.run_view import APPLICATION
 
-ROLES = ("speed", "load", "cage_speed", "temperature")
 _NUMBERS = {
     f"std_msgs/msg/{kind}" for kind in ("Float64", "Float32", "Int8", "Int16", "Int32", "Int64", "UInt8", "UInt16", "UInt32", "UInt64", "Bool")
 }
@@ -58,7 +57,7 @@ def read_bag_series(path: str | Path, named: Mapping[str, str] | None = None) ->
     Parameters
     ----------
     path : a file, or the folder of a bag.
-    named : topic by role (`ROLES`), where it differs from the usual name.
+    named : topic by role (speed, load, cage_speed, temperature), where it differs from the usual name.
 
     Raises
     ------

@@ -70,9 +70,6 @@ EACH = {
 }
 """Entity paths with a line for each roller, and what a line's name begins with."""
 
-MEASURED = ("/speed/cage_measured", "/slip/measured", "/slip/residual")
-"""Entity paths of what there is only where the cage is measured."""
-
 AGGREGATION = {
     "/loads/pocket_largest": "Max",
     "/loads/inner_largest": "Max",
