@@ -337,7 +337,7 @@ _SHOWN = 12  # reasons per table
 def extremes(samples, levels, seed, long, as_json, picture, table):
     """Run scenes at the extremes of all parameters and report which finish, are step-limited, are refused or fail.
 
-    Speed, load, play, lobes, rollers, pockets, lands, oil, slices, methods, tolerances and steps from a Latin hypercube, and named corner
+    Speed, load, play, lobes, rollers, pockets, lands, oil, slices, tolerances and steps from a Latin hypercube, and named corner
     cases, on all cores available to this process.  Exit code 1 if any case fails.
     """
     from bearing_sim.studies.extremes import run_extremes, table_rows

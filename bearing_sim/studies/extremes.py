@@ -293,8 +293,8 @@ def _limits(simulation: Simulation) -> list[str]:
     return limits + (["operating point without a steady state"] if simulation.counters.unsettled_points else [])
 
 
-# Simulated seconds at 15,000 rpm; other levels run as long as the longest.
-_SECONDS = {"slip": 1000.0, "planar": 100.0, "spatial": 10.0}
+# Simulated seconds at 15,000 rpm.
+_SECONDS = {"steady": 1000.0, "slip": 1000.0, "planar": 100.0, "spatial": 10.0}
 _SPEED = 15_000.0  # rpm
 _SAMPLES_PER_SECOND, _BLOCK = 200, 100
 _WINDOWS = 10  # of the run that are compared
@@ -410,7 +410,7 @@ def run_extremes(
     cases = [case for level in levels for case in corner_cases(level) + sampled_cases(level, samples, seed)]
     long_levels = levels if long else ()
     tasks = [task(_compiled_for(case), case_result, case) for case in cases]
-    tasks += [task(level, long_run_result, level, _SECONDS.get(level, max(_SECONDS.values()))) for level in long_levels]
+    tasks += [task(level, long_run_result, level, _SECONDS[level]) for level in long_levels]
     announce(f"{len(cases)} scenes, {len(long_levels)} long runs")
     results = run_tasks(tasks, Journal(), progress=lambda done, total: progress(done / total))
     outcomes = [Outcome(**{"case": case} | result) for case, result in zip(cases, results)]

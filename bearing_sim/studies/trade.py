@@ -261,7 +261,6 @@ def _errors(course, reference):
 
 # Okabe and Ito's colours, safe for colour-blind readers, and a marker for each level
 _LEVELS = {"steady": ("#009e73", "D"), "slip": ("#0072b2", "o"), "planar": ("#d55e00", "s"), "spatial": ("#cc79a7", "^")}
-_OTHER = ("#000000", "x")
 _FLOORS = (1e-4, 1e-4, 1e-4)  # smallest error shown on each logarithmic axis
 
 
@@ -288,7 +287,7 @@ def draw(path: Path, title: str, found: Trade) -> None:
 def _draw_errors(axes, found, name, floor):
     for level in dict.fromkeys(one.setting.level for one in found.measured):
         mine = [one for one in found.measured if one.setting.level == level and not one.failure]
-        colour, marker = _LEVELS.get(level, _OTHER)
+        colour, marker = _LEVELS[level]
         errors = np.maximum([getattr(one, name) for one in mine], floor)
         axes.plot([one.real_time_factor for one in mine], errors, marker, color=colour, ms=6, alpha=0.8, label=level)
 

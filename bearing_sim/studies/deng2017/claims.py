@@ -85,7 +85,9 @@ def select_fixed(table: Table, fixed: Mapping[str, float]) -> list[dict]:
 
 
 def _deviation(steps: Sequence[tuple[Course, int]], unit: str) -> tuple[str, str]:
-    """Return a description of the steps in the wrong direction, and whether a vibrating ring explains them."""
+    """Return a description of the steps in the wrong direction, and whether a vibrating ring explains them; empty without such steps."""
+    if not steps:
+        return "", ""
     worst, at = max(steps, key=lambda step: abs(_change(*step)))
     between = f"between {worst.x[at]:.7g} and {worst.x[at + 1]:.7g} {unit}"
     counted = f"{len(steps)} steps between points go" if len(steps) > 1 else "1 step between points goes"
@@ -113,7 +115,7 @@ def _rise_together(tables, level, name, x, unit) -> Judged:
     slip, life = (course(tables, name, level, x, quantity) for quantity in ("cage_slip", "rating_life"))
     wrong = [(each, k) for each in (slip, life) for k in each.backward()]
     gives = f"slip {_ends(slip)} %, life {_ends(life)} h from {slip.x[0]:.7g} to {slip.x[-1]:.7g} {unit}"
-    return Judged(_verdict(len(wrong), 2 * len(slip.x) - 2), gives, *(_deviation(wrong, unit) if wrong else ()))
+    return Judged(_verdict(len(wrong), 2 * len(slip.x) - 2), gives, *_deviation(wrong, unit))
 
 
 def low_radius(tables: Tables, level: str) -> Judged:
@@ -170,11 +172,13 @@ def d_value(tables: Tables, level: str) -> Judged:
     if np.isfinite(needed):
         why += f", {100 * needed:.1f} % would give 10 %"
     wrong = [(slip, k) for k in slip.backward()]
-    if wrong:
-        deviation, reason = _deviation(wrong, "mm")
-        off, why = f"{off}; {deviation}", f"{why}; {reason}"
+    deviation, reason = _deviation(wrong, "mm")
     verdict = IN_PART if judged.verdict == HOLDS and (wrong or abs(there - 10.0) > 1.0) else judged.verdict
-    return Judged(verdict, gives, "; ".join(filter(None, (judged.off, off))), "; ".join(filter(None, (judged.why, why))))
+    return Judged(verdict, gives, _joined(judged.off, off, deviation), _joined(judged.why, why, reason))
+
+
+def _joined(*texts: str) -> str:
+    return "; ".join(filter(None, texts))
 
 
 def _crossing(course: Course, value: float) -> float:
@@ -197,12 +201,12 @@ def speed(tables: Tables, level: str) -> Judged:
     verdict = _verdict(len(wrong), sum(len(each.x) - 1 for each in slips))
     if verdict == HOLDS and not ordered:
         verdict = IN_PART
-    off, why = _deviation(wrong, "rpm") if wrong else ("", "")
+    off, why = _deviation(wrong, "rpm")
     if not ordered:
-        off = "; ".join(filter(None, (off, "the rise does not increase with the radius")))
+        off = _joined(off, "the rise does not increase with the radius")
         shaken = [f"{low:.4f}" for low, each in zip(LOW_RADII, slips) if each.vibrating[-1]]
         if shaken:
-            why = "; ".join(filter(None, (why, f"at the highest speed the ring vibrates at {', '.join(shaken)} mm")))
+            why = _joined(why, f"at the highest speed the ring vibrates at {', '.join(shaken)} mm")
     return Judged(verdict, gives, off, why)
 
 
@@ -210,7 +214,7 @@ def load(tables: Tables, level: str) -> Judged:
     """Judge claim 4."""
     slips = [course(tables, "load", level, LOAD, "cage_slip", low_radius=low) for low in LOW_RADII]
     tight, *middle, loose = slips
-    parts, off, why = [], [], []
+    parts, off = [], []
     changes = [100 * (each.y[-1] / each.y[0] - 1) for each in slips]
     parts.append(100 * np.ptp(tight.y) / tight.y[0] < 10.0)
     if not parts[-1]:
@@ -222,17 +226,13 @@ def load(tables: Tables, level: str) -> Judged:
             off.append(f"at {low:.4f} mm slip falls by {-1e3 * slopes[0]:.2g} points/kN at first and by {-1e3 * slopes[-1]:.2g} at the end")
     parts.append(loose.y[-1] < 0.9 * loose.y[0] and not loose.backward(rising=False))
     wrong = [(each, k) for each in slips for k in each.backward(rising=False)]
-    if wrong:
-        deviation, reason = _deviation(wrong, "N")
-        off.append(deviation)
-        why.append(reason)
-    elif off:
-        why.append("not explained")
+    deviation, why = _deviation(wrong, "N")
+    why = why or ("not explained" if off else "")
     thresholds = [f"{each.x[np.argmax(each.y < 0.95 * each.y[0])]:.0f}" if (each.y < 0.95 * each.y[0]).any() else "none" for each in slips]
     listed = ", ".join(f"{change:+.0f}" for change in changes)
     gives = f"slip changes by {listed} % of its value over {tight.x[0]:g} to {tight.x[-1]:g} N {AT_RADII}"
     gives += f"; first load with 5 % less slip: {', '.join(thresholds)} N; the fall begins gradually"
-    return Judged(HOLDS if all(parts) else IN_PART if any(parts) else FAILS, gives, "; ".join(off), "; ".join(why))
+    return Judged(HOLDS if all(parts) else IN_PART if any(parts) else FAILS, gives, _joined(*off, deviation), why)
 
 
 def angle(tables: Tables, level: str) -> Judged:
@@ -270,9 +270,9 @@ def preload(tables: Tables, level: str) -> Judged:
     wrong = [(each, k) for each in (rollers, inner) for k in each.backward(rising=False)]
     gives = f"life {', '.join(f'{hours:.0f}' for hours in lives)} h at R_low = 34.8600, 34.8625, 34.8650 mm"
     gives += f"; from 34.8600 to 34.8675 mm loaded rollers {_ends(rollers)}, largest inner load {_ends(inner, '.0f')} N"
-    off, why = _deviation(wrong, "mm") if wrong else ("", "")
+    off, why = _deviation(wrong, "mm")
     if not answered:
-        off = "; ".join(filter(None, ("the radii that meet 300 h differ from Deng's", off)))
+        off = _joined("the radii that meet 300 h differ from Deng's", off)
         why = why or "not explained"
     verdict = _verdict(len(wrong), 2 * len(life.x) - 2)
     return Judged(verdict if answered else FAILS if verdict == FAILS else IN_PART, gives, off, why)
@@ -302,7 +302,7 @@ def table2(tables: Tables, level: str) -> Judged:
     slip = course(tables, "table2", level, SPEED, "cage_slip")
     wrong = [(slip, k) for k in slip.backward()]
     gives = f"slip {_ends(slip)} % from {slip.x[0]:.6g} to {slip.x[-1]:.6g} rpm"
-    return Judged(_verdict(len(wrong), len(slip.x) - 1), gives, *(_deviation(wrong, "rpm") if wrong else ()))
+    return Judged(_verdict(len(wrong), len(slip.x) - 1), gives, *_deviation(wrong, "rpm"))
 
 
 CLAIMS: tuple[tuple[int, str, str, Callable[[Tables, str], Judged]], ...] = (
