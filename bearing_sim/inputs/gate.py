@@ -39,6 +39,9 @@ _SET_ASIDE = 1.0  # [s of wall time] in which a jump of the clock may become kno
 class _Channel:
     """State of one channel: newest stamp, newest arrival, and the count of the open rate window."""
 
+    least: float  # values from here ...
+    largest: float  # ... to here are good
+    is_force: bool
     stamp: float = -math.inf
     arrival: float = -math.inf
     seen: bool = False
@@ -47,9 +50,6 @@ class _Channel:
     rate: float = math.nan
     earlier_stamp: float = -math.inf
     earlier_count: int = 0
-    least: float = 0.0  # values from here ...
-    largest: float = 0.0  # ... to here are good
-    is_force: bool = False
 
 
 class InputGate:
@@ -76,9 +76,7 @@ class InputGate:
         self.measured = math.nan
         self.refused: Counter[str] = Counter()
         self.accepted: Counter[str] = Counter()
-        self._channels = {name: _Channel() for name in CHANNELS}
-        for name, state in self._channels.items():
-            state.least, state.largest, state.is_force = *_good_from_to(name, limits), name == "radial_load"
+        self._channels = {name: _Channel(*_good_from_to(name, limits), is_force=name == "radial_load") for name in CHANNELS}
         self._reported: set[tuple[str, str]] = set()
 
     def offer(self, channel: str, stamp: float, values: tuple[float, ...], arrival: float | None = None) -> Event | None:
@@ -123,7 +121,7 @@ class InputGate:
             error = _value_error(channel, values, state)
         if error is None and not state.stamp < stamp < math.inf:
             error = _stamp_error(state, stamp)
-            if error and arrival is not None and _follows_new_clock(state, stamp):
+            if arrival is not None and _follows_new_clock(state, stamp):
                 error = None
         if error is not None:
             return self.refuse(channel, received, *error)
@@ -220,8 +218,8 @@ def _good_from_to(channel: str, limits: InputLimits) -> tuple[float, float]:
     return -limits.maximum_speed if limits.reverse_rotation else 0.0, limits.maximum_speed
 
 
-def _value_error(channel: str, values: tuple[float, ...], state: _Channel) -> tuple[str, str] | None:
-    """Return kind and reason of what is wrong with the values, or None."""
+def _value_error(channel: str, values: tuple[float, ...], state: _Channel) -> tuple[str, str]:
+    """Return kind and reason of what is wrong with values that are not good."""
     if len(values) != 1 and (len(values) != 2 or channel != "radial_load"):
         return "input.malformed", f"{len(values)} values, expected {'1 or 2' if channel == 'radial_load' else '1'}"
     unit, shown = UNITS[channel], ", ".join(f"{value:.6g}" for value in values)
@@ -229,28 +227,22 @@ def _value_error(channel: str, values: tuple[float, ...], state: _Channel) -> tu
     if not math.isfinite(magnitude) and not all(map(math.isfinite, values)):
         return "input.not_finite", f"{shown} {unit} is not finite"
     if channel == "oil_temperature":
-        if not state.least <= values[0] <= state.largest:
-            kind = "input.too_small" if values[0] < state.least else "input.too_large"
-            return kind, f"{shown} K is outside {state.least:.6g} to {state.largest:.6g} K"
-        return None
+        kind = "input.too_small" if values[0] < state.least else "input.too_large"
+        return kind, f"{shown} K is outside {state.least:.6g} to {state.largest:.6g} K"
     if len(values) == 1 and state.least == 0.0 > values[0]:
         hint = "" if state.is_force else " (input_limits.reverse_rotation is off)"
         return "input.negative", f"{shown} {unit} is negative, expected zero or more{hint}"
-    if magnitude > state.largest:
-        return "input.too_large", f"{magnitude:.6g} {unit} is above the largest accepted, {state.largest:.6g} {unit}"
-    return None
+    return "input.too_large", f"{magnitude:.6g} {unit} is above the largest accepted, {state.largest:.6g} {unit}"
 
 
-def _stamp_error(state: _Channel, stamp: float) -> tuple[str, str, Level] | None:
-    """Return kind, reason and level of what is wrong with the stamp, or None."""
+def _stamp_error(state: _Channel, stamp: float) -> tuple[str, str, Level]:
+    """Return kind, reason and level of what is wrong with a stamp that is not later than the last one, or not finite."""
     if not math.isfinite(stamp):
         return "input.stamp_not_finite", f"stamp {stamp} s is not finite", Level.ERROR
     if stamp == state.stamp:
         return "input.time_repeated", f"stamp {stamp:.6f} s repeats the last one, expected a later one", Level.WARN
-    if stamp < state.stamp:
-        back = state.stamp - stamp
-        return "input.time_backwards", f"stamp {stamp:.6f} s lies {back:.6g} s before the last one, expected a later one", Level.ERROR
-    return None
+    back = state.stamp - stamp
+    return "input.time_backwards", f"stamp {stamp:.6f} s lies {back:.6g} s before the last one, expected a later one", Level.ERROR
 
 
 def _follows_new_clock(state: _Channel, stamp: float) -> bool:
