@@ -9,6 +9,7 @@ import dataclasses
 import itertools
 import math
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -20,7 +21,7 @@ from bearing_sim.scene.uncertainty import with_values
 from bearing_sim.sweep.grid import Axis, axis, one_line, scene_at
 from bearing_sim.sweep.point import OK, REFUSED, UNSETTLED, Column, point_row
 from bearing_sim.sweep.table import Table, new_figure, on_grid
-from bearing_sim.sweep.tasks import Journal, run_tasks, task
+from bearing_sim.sweep.tasks import Journal, Task, run_tasks, task
 
 LOW, D_VALUE = "bearing.outer_raceway.low_radius", "bearing.outer_raceway.d_value"
 NOMINAL, WORST = "nominal", "worst"
@@ -168,7 +169,7 @@ def design(
     SceneError
         No raceway of the grid has a valid scene; the errors are those of the first.
     """
-    study = _Study(limits, journal, duration, workers, dask, progress)
+    study = _Study(limits, duration, partial(run_tasks, journal=journal, workers=workers, dask=dask, progress=progress))
     points = list(itertools.product(sorted(radii.values), sorted(d_values.values)))
     scenes = {point: scene_at(name, overrides, (radii, d_values), point) for point in points}
     grid = study.rows(scenes)
@@ -190,18 +191,11 @@ def design(
 
 
 class _Study(NamedTuple):
-    """How the tasks of one study run."""
+    """What all tasks of one study share, and how they run."""
 
     limits: Limits
-    journal: Journal
     duration: float
-    workers: int | None
-    dask: str | None
-    progress: Callable[[int, int], None]
-
-    def run(self, tasks) -> list[dict]:
-        """Return the results of tasks."""
-        return run_tasks(tasks, self.journal, self.workers, self.dask, self.progress)
+    run: Callable[[Sequence[Task]], list[dict]]
 
     def rows(self, scenes: dict[tuple, Scene | SceneError]) -> dict[tuple, dict]:
         """Return the row of each point (radius, D value)."""
