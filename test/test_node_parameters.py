@@ -28,7 +28,7 @@ from bearing_sim.ros.parameters import (  # noqa: E402
 )
 from bearing_sim.scene.loader import load_scene  # noqa: E402
 from bearing_sim.scene.scene import Thresholds  # noqa: E402
-from bearing_sim.scene.thresholds import with_thresholds  # noqa: E402
+from bearing_sim.scene.uncertainty import messages, with_values  # noqa: E402
 
 pytestmark = pytest.mark.timeout(240)
 EXAMPLE = Path(__file__).resolve().parents[1] / "launch_scripts" / "bearing_node.yaml"
@@ -103,14 +103,16 @@ def test_zero_stands_for_none_where_the_scene_allows_none_and_for_zero_elsewhere
 
 
 def test_thresholds_are_changed_by_their_place_and_faults_are_told():
-    changed = with_thresholds(Thresholds(), {"slip_warning": 0.02, "slip_hold.raise_after": 3.0, "pocket_force_error": None})
+    changed = with_values(Thresholds(), {"slip_warning": 0.02, "slip_hold.raise_after": 3.0, "pocket_force_error": None})
     assert (changed.slip_warning, changed.slip_hold.raise_after, changed.slip_error) == (0.02, 3.0, 0.10)
-    with pytest.raises(ValueError, match="slip_warning.*outside"):
-        with_thresholds(Thresholds(), {"slip_warning": 2.0})
-    with pytest.raises(ValueError, match="expected 30 or more"):
-        with_thresholds(Thresholds(), {"residual.learning": 2.0})
-    with pytest.raises(KeyError):
-        with_thresholds(Thresholds(), {"slip_waning": 0.1})
+    for path, number, reason in (
+        ("slip_warning", 2.0, "slip_warning: 200 % is outside"),
+        ("residual.learning", 2.0, "expected 30 or more"),
+        ("slip_waning", 0.1, "slip_waning: "),
+    ):
+        with pytest.raises(ValueError) as raised:
+            with_values(Thresholds(), {path: number})
+        assert reason in messages(raised.value)
 
 
 def test_each_parameter_is_described_with_range_and_with_when_a_change_counts(running):

@@ -23,7 +23,7 @@ from bearing_sim.messages.sample_messages import SampleMessages, message_templat
 from bearing_sim.messages.topics import Topic
 from bearing_sim.monitoring.health import Condition, Phase
 from bearing_sim.ros.messages import InputReader, Refused, message, message_class
-from bearing_sim.ros.parameters import OIL_TEMPERATURE, BearingSettings, NodeSettings, follows_clock, thresholds_in
+from bearing_sim.ros.parameters import OIL_TEMPERATURE, BearingSettings, NodeSettings, follows_clock, scene_values_in
 from bearing_sim.ros.recordings import fresh_path, limits_of, open_lossless_recording, open_recording, open_view, prepare
 from bearing_sim.ros.warm_up import WarmUp, levels_to_compile, start_compiling
 from bearing_sim.runtime.governor import Governor
@@ -32,7 +32,7 @@ from bearing_sim.runtime.sim_time import SimTimeModel
 from bearing_sim.scene.fidelity import hint
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.scene import Scene
-from bearing_sim.scene.thresholds import with_thresholds
+from bearing_sim.scene.uncertainty import messages, with_values
 from bearing_sim.simulation import IntegrationError, Simulation
 
 _DIAGNOSTICS_PERIOD = 1.0  # [s] (REP 107)
@@ -361,22 +361,18 @@ class BearingInterface:
         if OIL_TEMPERATURE in changes and self.live is not None and self.live.gate.accepted["oil_temperature"]:
             return f"{OIL_TEMPERATURE}: the topic oil_temperature has given the temperature in this run and takes precedence"
         try:
-            with_thresholds(self.scene.thresholds, thresholds_in(changes))
+            with_values(self.scene, scene_values_in(changes))
         except ValueError as error:
-            return str(error)
+            return messages(error)
         return ""
 
     def apply(self, changes: dict[str, object]) -> None:
         """Apply changes of this bearing's parameters."""
-        if found := thresholds_in(changes):
-            thresholds = with_thresholds(self.scene.thresholds, found)
-            self.scene = dataclasses.replace(self.scene, thresholds=thresholds)
-            if self.live is not None:
-                self.live.adjust(thresholds)
-        if OIL_TEMPERATURE in changes:
-            self.scene = dataclasses.replace(self.scene, lubricant=dataclasses.replace(self.scene.lubricant, temperature=changes[OIL_TEMPERATURE]))
-            if self.live is not None:
-                self.live.set_oil_temperature(changes[OIL_TEMPERATURE], self._now_ns())
+        before, self.scene = self.scene, with_values(self.scene, scene_values_in(changes))
+        if self.live is not None and self.scene.thresholds != before.thresholds:
+            self.live.adjust(self.scene.thresholds)
+        if self.live is not None and OIL_TEMPERATURE in changes:
+            self.live.set_oil_temperature(changes[OIL_TEMPERATURE], self._now_ns())
 
     def publish_at(self, rate: float) -> None:
         """Set the publish rate [Hz]; with sim time per simulated second."""

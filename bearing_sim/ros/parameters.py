@@ -165,9 +165,9 @@ def parameter_value(name: str, scene: Scene) -> float:
     return 0.0 if value is None else float(value)
 
 
-def thresholds_in(changes: Mapping[str, object]) -> dict[str, float | None]:
-    """Return the thresholds among parameter changes, by their path in `Thresholds`, as scene values."""
-    return {name.removeprefix("thresholds."): scene_value(name, value) for name, value in changes.items() if name.startswith("thresholds.")}
+def scene_values_in(changes: Mapping[str, object]) -> dict[str, float | None]:
+    """Return the scene's values among parameter changes, by their path in the scene."""
+    return {name: scene_value(name, value) for name, value in changes.items() if name in _SCENE_FIELDS}
 
 
 def checked(declaration: Declaration, name: str, value: object) -> object:

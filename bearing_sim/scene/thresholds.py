@@ -1,11 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The thresholds of a scene: when the condition of a bearing is a warning or an error, and how changes are detected in noise."""
 
-import dataclasses
-from collections.abc import Mapping
 from dataclasses import field
-
-from pydantic import TypeAdapter, ValidationError
 
 from bearing_sim.scene.quantity import check, quantity, record
 
@@ -63,35 +59,3 @@ class Thresholds:
     pocket_force_error: quantity("N", "pocket force that is an error; None: none is", 0.0, 1e6) | None = None
     pocket_force_hold: Hold = field(default_factory=Hold)
     residual: ResidualDetection = field(default_factory=ResidualDetection)
-
-
-def with_thresholds(thresholds: Thresholds, changes: Mapping[str, float | None]) -> Thresholds:
-    """Return thresholds with some numbers changed.
-
-    Parameters
-    ----------
-    thresholds : the current ones.
-    changes : numbers in SI by dotted path, such as ``slip_warning`` or ``slip_hold.raise_after``.
-
-    Raises
-    ------
-    ValueError
-        A number is out of bounds, or the numbers contradict each other; the message lists all errors.
-    KeyError
-        There is no such path.
-    """
-    tree = dataclasses.asdict(thresholds)
-    for path, value in changes.items():
-        *blocks, last = path.split(".")
-        node = tree
-        for block in blocks:
-            node = node[block]
-        if last not in node:
-            raise KeyError(path)
-        node[last] = value
-    try:
-        return TypeAdapter(Thresholds).validate_python(tree)
-    except ValidationError as error:
-        raise ValueError(
-            "; ".join(f"thresholds.{'.'.join(map(str, each['loc']))}: {each['msg'].removeprefix('Value error, ')}" for each in error.errors())
-        ) from None

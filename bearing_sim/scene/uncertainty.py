@@ -232,22 +232,22 @@ def value_at(scene, path: str):
 
 
 def messages(error: ValidationError) -> str:
-    """Return the messages of all checks that failed, in one line."""
-    return "; ".join(each["msg"].removeprefix("Value error, ") for each in error.errors())
+    """Return the messages of all checks that failed, in one line, each with the path of its field."""
+    return "; ".join(": ".join(filter(None, (".".join(map(str, each["loc"])), each["msg"].removeprefix("Value error, ")))) for each in error.errors())
 
 
-def with_values(scene, values: Mapping[str, float]):
-    """Return a scene with other numbers [SI] at dotted paths; all checks run again.
+def with_values(scene, values: Mapping[str, float | None]):
+    """Return a scene, or a record of one, with other numbers [SI] at dotted paths; all checks run again.
 
     Raises
     ------
     pydantic.ValidationError
-        The numbers contradict each other, or one is out of bounds.
+        The numbers contradict each other, one is out of bounds, or a record has no such field.
     """
-    changed: dict[str, dict[str, float]] = {}
+    changed: dict[str, dict[str, float | None]] = {}
     for path, value in values.items():
         name, _, rest = path.partition(".")
-        changed.setdefault(name, {})[rest] = float(value)
+        changed.setdefault(name, {})[rest] = None if value is None else float(value)
     return dataclasses.replace(
         scene, **{name: inner[""] if "" in inner else with_values(getattr(scene, name), inner) for name, inner in changed.items()}
     )
