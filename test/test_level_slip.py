@@ -225,7 +225,7 @@ def test_inputs_that_are_not_finite_are_refused_by_name(bad):
 def test_one_signature_serves_every_run():
     # A second signature would be a compilation of seconds in the middle of a run.
     for rollers in (6, 18, 20):
-        run = simulation(f"bearing.roller.count={rollers}", "operating.shaft_speed=9000")
+        run = simulation(f"bearing.roller.count={rollers}", "operating.shaft_speed=9000 rad/s")
         run.advance(1, Inputs(5000, 1, 2, 390), samples=2) if rollers == 6 else run.advance(1e-3)
     assert len(advance.signatures) == 1
 

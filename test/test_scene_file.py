@@ -8,8 +8,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bearing_sim import SceneError, load_scene
+from bearing_sim.inputs.csv_import import SpeedColumn
+from bearing_sim.inputs.log import source
 from bearing_sim.scene.loader import scene_from_yaml, scene_names, scene_to_yaml
 from bearing_sim.scene.quantity import Quantity, to_si
+from bearing_sim.sweep.grid import read_axis
 
 
 @pytest.mark.parametrize(
@@ -29,6 +32,115 @@ from bearing_sim.scene.quantity import Quantity, to_si
 )
 def test_quantities_come_in_with_units_and_bare_numbers_are_si(text, unit, expected):
     assert to_si(text, unit) == pytest.approx(expected, rel=1e-12)
+
+
+TURNS_A_MINUTE = ("rpm", "RPM", "1/min", "min^-1", "min-1", "r/min", "rev/min", "U/min", "/min", "turns/min")
+TURNS_A_SECOND = ("Hz", "hz", "1/s", "s^-1", "rps", "r/s", "rev/s", "U/s", "turn/s")
+SPEEDS = {
+    **dict.fromkeys(TURNS_A_MINUTE, 60.0),
+    **dict.fromkeys(TURNS_A_SECOND, 1.0),
+    "krpm": 0.06,
+    "kHz": 1e-3,
+    "rad/s": 2 * math.pi,
+    "deg/s": 360.0,
+    "krad/s": 2e-3 * math.pi,
+}  # of one turn a second
+
+
+def by_scene(text):
+    return load_scene("deng2017_table1", [f"operating.shaft_speed={text}"]).operating.shaft_speed
+
+
+def by_file(text):
+    return scene_from_yaml(yaml_of_a_scene(f"operating: {{shaft_speed: {text}, radial_load: 800 N}}")).operating.shaft_speed
+
+
+def yaml_of_a_scene(operating):
+    return f"name: x\nbearing: deng2017_table1\nlubricant: {{oil: mil_l_7808}}\n{operating}\n"
+
+
+def by_range(text):
+    scene = load_scene("deng2017_table1", [f"uncertainty.operating.shaft_speed=[{text}, 100000 rpm]"])
+    return next(one.low for one in scene.uncertainty if one.field == "operating.shaft_speed")
+
+
+def by_sweep(text):
+    return read_axis(f"operating.shaft_speed={text},100000rpm").values[0]
+
+
+def by_table(text):
+    number, _, unit = text.partition(" ")
+    return float(number) * SpeedColumn(column="n", unit=unit).line()[0]
+
+
+def by_option(text):
+    number, _, unit = text.partition(" ")
+    return float(number) * source("shaft_speed", "/servo.speed", unit).scale
+
+
+DOORS = (lambda text: to_si(text, "rad/s"), by_scene, by_file, by_range, by_sweep, by_table, by_option)
+
+
+@pytest.mark.parametrize("door", DOORS)
+@given(turns=st.floats(0.5, 1500.0), unit=st.sampled_from(sorted(SPEEDS)))
+def test_a_rotational_speed_is_the_same_in_every_unit_through_every_door(door, turns, unit):
+    assert door(f"{turns * SPEEDS[unit]!r} {unit}") == pytest.approx(2 * math.pi * turns, rel=1e-9)
+
+
+@pytest.mark.parametrize("door", [by_scene, by_file, by_range, by_sweep])
+@pytest.mark.parametrize("text", ["3000", "3000.0", "3e3", "50"])
+def test_a_rotational_speed_without_a_unit_is_refused_with_what_to_write(door, text):
+    with pytest.raises(ValueError, match="has no unit; write .* rpm for turns a minute, .* Hz for turns a second, or .* rad/s"):
+        door(text)
+
+
+def test_at_rest_needs_no_unit():
+    assert by_scene("0") == by_file("0.0") == 0.0
+
+
+MISUSES = [
+    *(("rad/s", text) for text in ("50 m/s", "3000 1/h", "50 Bq", "50 %", "3000 rmp", "3000 min", "50 rad", "50 N", "1:30:00", "3000 rpm/s")),
+    *(("N", text) for text in ("5 kn", "5 KN", "5 kg", "500 kgf*m", "5 MPa", "5 kN/m", "5 N*m", "5e3 n")),
+    *(("N*m", text) for text in ("5 J", "5 kJ", "1 Wh", "5 N", "5 N/m", "5 W")),
+    *(("K", text) for text in ("5 delta_degC", "9 delta_degF", "70 C", "70 DEGC", "70 degc", "70 deg")),
+    *(("delta_degC", text) for text in ("5 degC", "40 degF", "5 deg")),
+    *(("Hz", text) for text in ("50 rad/s", "3000 rpm", "50 deg/s")),
+    *(("rad", text) for text in ("3 %", "0.1 m/m", "60 degC")),
+    *(("", text) for text in ("3 deg", "1 rad", "1 turn")),
+    *(("m", text) for text in ("7 MM", "7 mm^2", "7 S", '7 "')),
+    *(("Pa", text) for text in ("206 gpa", "206 N/mm", "5 Pa*s")),
+    *(("Pa*s", text) for text in ("5 mPa", "27 mm^2/s", "27 cSt")),
+    *(("s", text) for text in ("0:30", "5 Hz", "5 S")),
+]
+
+
+@pytest.mark.parametrize(("unit", "text"), MISUSES)
+def test_a_quantity_of_another_kind_or_spelling_is_refused_with_what_to_write(unit, text):
+    with pytest.raises(ValueError, match="; expected .* such as|; expected a pure number") as error:
+        to_si(text, unit)
+    assert repr(text) in str(error.value)
+
+
+@pytest.mark.parametrize(("text", "meant"), [("5 kn", "kN"), ("5 KN", "kN"), ("206 gpa", "GPa"), ("7 MM", "mm"), ("70 DEGC", "degC")])
+def test_a_unit_in_other_capitals_is_named_in_the_right_ones(text, meant):
+    with pytest.raises(ValueError, match=f"did you mean '{meant}'"):
+        to_si(text, {"kN": "N", "GPa": "Pa", "mm": "m", "degC": "K"}[meant])
+
+
+@pytest.mark.parametrize("text", ["1:30:00", "1_000", "0x10"])
+def test_numbers_that_yaml_1_1_reads_in_its_own_way_are_refused(text):
+    with pytest.raises(SceneError, match="operating.radial_load"):
+        scene_from_yaml(yaml_of_a_scene(f"operating: {{shaft_speed: 3000 rpm, radial_load: {text}}}"))
+
+
+def test_a_leading_zero_and_an_exponent_without_a_point_are_decimal_numbers():
+    read = [scene_from_yaml(yaml_of_a_scene(f"operating: {{shaft_speed: 3000 rpm, radial_load: {text}}}")) for text in ("010", "1e3")]
+    assert [scene.operating.radial_load for scene in read] == [10.0, 1000.0]
+
+
+def test_a_range_of_a_speed_survives_a_round_trip_through_yaml():
+    scene = load_scene("deng2017_table1", ["uncertainty.operating.shaft_speed={low: 40000 rpm, high: 45000 rpm}", "table.maximum_speed=50 krpm"])
+    assert scene_from_yaml(scene_to_yaml(scene)) == scene
 
 
 @pytest.mark.parametrize(
@@ -150,7 +262,7 @@ def test_both_bearings_have_the_published_geometry():
 
 
 def test_a_tolerance_without_a_kind_is_refused_with_the_fields_that_have_one():
-    with pytest.raises(SceneError, match="integration.tolerance = '1e-3': unknown field.*absolute_tolerance, relative_tolerance"):
+    with pytest.raises(SceneError, match="integration.tolerance = 0.001: unknown field.*absolute_tolerance, relative_tolerance"):
         load_scene("deng2017_table1", ["integration.tolerance=1e-3"])
     with pytest.raises(SceneError, match=r"integration.absolute_tolerance = .*"):
         load_scene("deng2017_table1", ["integration.absolute_tolerance=1 um"])

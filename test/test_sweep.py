@@ -229,7 +229,7 @@ def test_a_finer_sweep_computes_only_what_is_new(tmp_path):
         (["--vary", f"{LOW}=34.86mm:34.87mm:3", "--picture", "a.doc"], "expected a name that ends"),
         (["--vary", f"{LOW}=34.86mm:34.87mm:3", "--duration", "-1"], "more than 0"),
         (["--vary", "nothing=1"], "unknown field"),
-        (["--vary", f"{LOW}=1mm:34.87mm:1000", "--vary", f"{SPEED}=1:2:2000"], "points; a sweep has at most"),
+        (["--vary", f"{LOW}=1mm:34.87mm:1000", "--vary", f"{SPEED}=1rpm:2rpm:2000"], "points; a sweep has at most"),
     ],
 )
 def test_command_refuses_what_it_cannot_mean(words, reported):

@@ -90,9 +90,9 @@ class RingGrowth:
     thermal: bool = False  # whether rings and rollers grow with their temperatures
     expansion: quantity("1/K", "linear thermal expansion of rings and rollers", 0.0, 1e-3) = 1.2e-5
     reference_temperature: quantity("K", "temperature at which the drawing is valid", 150.0, 800.0, "degC") = 293.15
-    inner_excess: quantity("K", "inner ring's temperature less the oil's", -200.0, 200.0) = 0.0
-    roller_excess: quantity("K", "rollers' temperature less the oil's", -200.0, 200.0) = 0.0
-    outer_excess: quantity("K", "outer ring's temperature less the oil's", -200.0, 200.0) = 0.0
+    inner_excess: quantity("delta_degC", "inner ring's temperature less the oil's", -200.0, 200.0, "K") = 0.0
+    roller_excess: quantity("delta_degC", "rollers' temperature less the oil's", -200.0, 200.0, "K") = 0.0
+    outer_excess: quantity("delta_degC", "outer ring's temperature less the oil's", -200.0, 200.0, "K") = 0.0
 
 
 @record

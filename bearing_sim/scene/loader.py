@@ -3,6 +3,7 @@
 
 import dataclasses
 import difflib
+import functools
 import re
 import types
 import typing
@@ -18,8 +19,9 @@ from pydantic_core import PydanticCustomError
 from bearing_sim.scene.bearing import drop_other_lands
 from bearing_sim.scene.contour import UNREAD, drop_other_forms, with_contour_text
 from bearing_sim.scene.fidelity import choose
+from bearing_sim.scene.quantity import SPEED
 from bearing_sim.scene.scene import Scene
-from bearing_sim.scene.uncertainty import drop_ranges_of_lands, override_range, read_ranges, written
+from bearing_sim.scene.uncertainty import declared_in, drop_ranges_of_lands, override_range, read_ranges, written
 
 _UNION_TAGS = frozenset(
     {"oil_4109", "constant", "kragelskii", "eyring", "fitted", "custom", "double_exponential", "reference", "hyperbolic", "power"}
@@ -67,6 +69,20 @@ def _mapping_with_unique_keys(loader: yaml.SafeLoader, node: yaml.MappingNode) -
 
 
 _UniqueKeyLoader.add_constructor(yaml.resolver.BaseResolver.DEFAULT_MAPPING_TAG, _mapping_with_unique_keys)
+
+# Numbers as in YAML 1.2: PyYAML follows YAML 1.1, which reads 1:30:00 as 5400, 010 as 8 and 1_000 as 1000, and 1e-5 as a text.
+_INT, _FLOAT = "tag:yaml.org,2002:int", "tag:yaml.org,2002:float"
+_UniqueKeyLoader.yaml_implicit_resolvers = {
+    first: [(tag, pattern) for tag, pattern in resolvers if tag not in (_INT, _FLOAT)]
+    for first, resolvers in yaml.SafeLoader.yaml_implicit_resolvers.items()
+}
+_UniqueKeyLoader.add_implicit_resolver(_INT, re.compile(r"^[-+]?(?:0|[1-9]\d*)$"), list("-+0123456789"))
+_UniqueKeyLoader.add_implicit_resolver(
+    _FLOAT,
+    re.compile(r"^(?:[-+]?(?:\.\d+|\d+(?:\.\d*)?)(?:[eE][-+]?\d+)?|[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN))$"),
+    list("-+.0123456789"),
+)
+_WRITTEN = {"written": True}  # context of a validation: the values come from a file or an option, see `Quantity.read`
 
 
 def scene_names() -> list[str]:
@@ -168,7 +184,7 @@ def scene_from_mapping(tree: Mapping, origin: str = "scene") -> Scene:
     resolved["uncertainty"] = ranges
     errors += [InvalidField(*error) for error in wrong]
     try:
-        scene = TypeAdapter(Scene).validate_python(_with_level(resolved))
+        scene = TypeAdapter(Scene).validate_python(_with_level(resolved), context=_WRITTEN)
     except ValidationError as error:
         errors += [each for each in invalid_fields(error, Scene, _UNION_TAGS) if not (unread and UNREAD in each.reason)]
     if unread:
@@ -188,7 +204,7 @@ def _with_level(tree: Mapping) -> Mapping:
     """
     if tree.get("level") != "auto":
         return tree
-    found = choose(TypeAdapter(Scene).validate_python({**tree, "level": "spatial"}))  # the level with all effects
+    found = choose(TypeAdapter(Scene).validate_python({**tree, "level": "spatial"}, context=_WRITTEN))  # the level with all effects
     if found.level is None:
         detail = {"type": PydanticCustomError("no_level", "{reason}", {"reason": found.reason}), "loc": ("level",), "input": "auto"}
         raise ValidationError.from_exception_data("Scene", [detail])
@@ -196,9 +212,13 @@ def _with_level(tree: Mapping) -> Mapping:
 
 
 def scene_to_yaml(scene: Scene) -> str:
-    """Return the whole scene as YAML in SI; `scene_from_yaml` reads it back equal."""
+    """Return the whole scene as YAML in SI, rotational speeds with their unit; `scene_from_yaml` reads it back equal."""
     tree = _plain(dataclasses.asdict(scene))
-    return yaml.dump({**tree, "uncertainty": written(tree["uncertainty"])}, Dumper=_LineDumper, sort_keys=False, allow_unicode=True)
+    for path, declared in declared_in("", Scene):
+        *blocks, last = path.split(".")[1:]
+        if declared.unit == SPEED and (block := functools.reduce(dict.get, blocks, tree))[last] is not None:
+            block[last] = declared.written(block[last])
+    return yaml.dump({**tree, "uncertainty": written(tree["uncertainty"], Scene)}, Dumper=_LineDumper, sort_keys=False, allow_unicode=True)
 
 
 class _LineDumper(yaml.SafeDumper):

@@ -4,6 +4,9 @@
 The only module that knows units.  Inside the package every number is SI; here ``7.0 mm`` becomes
 ``0.007``, and a value outside its declared bounds raises one clear message.  The unit library (pint)
 is imported at first use, because importing it takes a quarter of a second, which ``--help`` does not need.
+
+Units of equal dimension may be of different kinds, such as 1/min and rad/s, or N m and J.  A text of another kind is converted where
+it can mean one thing only, and refused elsewhere; it is never read as a number of the wanted unit.
 """
 
 import math
@@ -33,13 +36,14 @@ def to_si(value: object, unit: str) -> float:
 
     Parameters
     ----------
-    value : number (already SI) or str (a number, optionally followed by a unit).
-    unit : the SI unit that the result is in, in pint's spelling; ``""`` for a pure number.
+    value : number (already SI) or str (a number, optionally followed by a unit; a rotational speed needs one unless it is 0).
+    unit : the SI unit that the result is in, in pint's spelling; ``""`` for a pure number, ``"delta_degC"`` for a temperature difference.
 
     Raises
     ------
     ValueError
-        The text is not a quantity, or its unit is unknown or has the wrong dimension.
+        The text is not a quantity, its unit is unknown, has the wrong dimension or is of another kind, or there is none and a bare number
+        could be misread.
     """
     if isinstance(value, bool) or not isinstance(value, (int, float, str)):
         raise ValueError(f"expected {_expected(unit)}, got {value!r}")
@@ -50,18 +54,90 @@ def to_si(value: object, unit: str) -> float:
         raise ValueError(f"expected {_expected(unit)}, got {value!r}")
     number, written_unit = float(match[1]), match[2]
     if not written_unit:
+        if unit == SPEED and number:
+            raise ValueError(bare_speed(value))
         return number
+    if unit == SPEED:
+        written_unit = _TURNS.get("".join(written_unit.casefold().split()), written_unit)
     import pint
 
     registry = unit_registry()
     try:
-        return float(registry.Quantity(number, written_unit).to(registry.Unit(unit or "dimensionless")).magnitude)
+        written = registry.Unit(written_unit)
+        converted = registry.Quantity(number, written).to(registry.Unit(unit or "dimensionless"))
     except pint.UndefinedUnitError:
-        raise ValueError(f"unknown unit {written_unit!r} in {value!r}; expected {_expected(unit)}") from None
+        raise ValueError(f"unknown unit {written_unit!r} in {value!r}{_other_case(written_unit)}; expected {_expected(unit)}") from None
     except pint.DimensionalityError:
-        raise ValueError(f"{value!r} has the wrong dimension; expected {_expected(unit)}") from None
+        raise ValueError(f"{value!r} has the wrong dimension{_other_case(written_unit)}; expected {_expected(unit)}") from None
     except Exception:  # pint's parser passes on any error of Python's tokenizer
         raise ValueError(f"cannot read the unit {written_unit!r} in {value!r}; expected {_expected(unit)}") from None
+    if reason := _other_kind(written, unit):
+        raise ValueError(f"{value!r} is {reason}; expected {_expected(unit)}")
+    return float(converted.magnitude)
+
+
+SPEED = "rad/s"
+"""Unit of rotational speeds, which people write in turns as often as in angles."""
+
+# What people write for turns in a unit of time, without blanks and in lower case, in pint's spelling.
+_TURNS = {
+    **dict.fromkeys(("rpm", "1/min", "/min", "min^-1", "min-1", "min**-1", "min⁻¹", "r/min", "rev/min", "u/min", "turn/min", "turns/min"), "rpm"),
+    **dict.fromkeys(("hz", "1/s", "/s", "s^-1", "s-1", "s**-1", "s⁻¹", "rps", "r/s", "rev/s", "u/s", "turn/s", "turns/s"), "revolution/s"),
+    **dict.fromkeys(("krpm", "1000/min"), "kilorevolution/min"),
+    "khz": "kilorevolution/s",
+}
+_ANGLES = ("radian", "degree", "turn", "revolution", "cycle", "arcminute", "arcsecond", "grade", "revolutions_per_minute", "revolutions_per_second")
+_SPELLINGS = (
+    "N",
+    "kN",
+    "MN",
+    "Pa",
+    "kPa",
+    "MPa",
+    "GPa",
+    "m",
+    "mm",
+    "um",
+    "kg",
+    "g",
+    "s",
+    "ms",
+    "K",
+    "degC",
+    "rpm",
+    "Hz",
+    "kHz",
+    "N*m",
+    "mPa*s",
+    "rad",
+    "deg",
+)
+
+
+def bare_speed(value: object) -> str:
+    """Return the reason why a rotational speed without a unit is refused."""
+    return f"{value!r} has no unit; write {value} rpm for turns a minute, {value} Hz for turns a second, or {value} rad/s"
+
+
+def _other_kind(written, unit: str) -> str:
+    """Return what a unit of the right dimension is instead of the kind of quantity wanted; empty if it is of that kind."""
+    names = list(written._units)
+    has_angle = any(name.endswith(_ANGLES) for name in names)
+    if unit in (SPEED, "rad") and not has_angle:
+        return "no angle" if unit == "rad" else "neither turns nor an angle in a unit of time"
+    if unit in ("", "Hz") and has_angle:
+        return "an angle, not a pure number" if unit == "" else "a rotational speed, not a rate"
+    if unit == "N*m" and any(unit_registry().Unit(name).dimensionality == written.dimensionality for name in names):
+        return "an energy, not a moment"
+    if unit == "K" and any(name.startswith("delta_") for name in names):
+        return "a temperature difference, not a temperature"
+    return ""
+
+
+def _other_case(written_unit: str) -> str:
+    """Return ``" (did you mean ...?)"`` if a unit is a known one but for its capitals, or an empty text."""
+    known = next((spelling for spelling in _SPELLINGS if spelling != written_unit and spelling.casefold() == written_unit.casefold()), None)
+    return f" (did you mean {known!r}?)" if known else ""
 
 
 def conversion(written: str, unit: str) -> tuple[float, float]:
@@ -73,7 +149,8 @@ def conversion(written: str, unit: str) -> tuple[float, float]:
 _EXAMPLES = {
     "m": "a length such as '7.0 mm'",
     "rad": "an angle such as '60 deg'",
-    "rad/s": "a speed such as '45000 rpm'",
+    SPEED: "a speed such as '45000 rpm', '750 Hz' or '4712 rad/s'",
+    "delta_degC": "a temperature difference such as '5 K'",
     "N": "a force such as '800 N'",
     "K": "a temperature such as '120 degC'",
     "kg": "a mass such as '50 g'",
@@ -114,11 +191,19 @@ class Quantity:
     shown_in: str = ""
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> core_schema.CoreSchema:
-        return core_schema.no_info_plain_validator_function(self.read)
+        return core_schema.with_info_plain_validator_function(lambda value, info: self.read(value, bool(info.context)))
 
-    def read(self, value: object) -> float:
-        """Return ``value`` in SI, or raise an error with a message for the author of the scene file."""
+    def read(self, value: object, written: bool = False) -> float:
+        """Return ``value`` in SI, or raise an error with a message for the author of the scene file.
+
+        Parameters
+        ----------
+        value : see `to_si`.
+        written : whether somebody wrote it in a file or an option, so that a rotational speed needs a unit even as a plain number.
+        """
         try:
+            if written and self.unit == SPEED and type(value) in (int, float) and value:
+                raise ValueError(bare_speed(value))
             number = to_si(value, self.unit)
         except ValueError as error:
             raise PydanticCustomError("quantity", "{reason}", {"reason": str(error)}) from None
@@ -132,6 +217,10 @@ class Quantity:
                 {"shown": self.show(number), "low": self.show(self.minimum), "high": self.show(self.maximum)},
             )
         return number
+
+    def written(self, number: float) -> str:
+        """Return ``number`` (SI) as a file has it, to the last digit: a rotational speed with its unit."""
+        return f"{number!r} {SPEED}" if self.unit == SPEED else repr(number)
 
     def show(self, number: float) -> str:
         """Return ``number`` (SI) as text in the display unit."""

@@ -22,7 +22,7 @@ from typing import Any, Literal
 from pydantic import ValidationError
 from pydantic_core import PydanticCustomError
 
-from bearing_sim.scene.quantity import Quantity, check, record
+from bearing_sim.scene.quantity import SPEED, Quantity, check, record
 
 BLOCKS = ("bearing", "lubricant", "operating")  # of a scene; their quantities may have ranges
 _ENDS, _WORDS = ("low", "high", "mode"), ("distribution", "source")
@@ -189,7 +189,7 @@ def _entered(where: str, value, declared: Quantity) -> tuple[dict, list[tuple[st
         if value.get(name) is None:
             continue
         try:
-            entered[name] = declared.read(value[name])
+            entered[name] = declared.read(value[name], written=True)
         except PydanticCustomError as error:
             errors.append((f"{where}.{name}", repr(value[name]), error.message()))
     return entered, errors
@@ -213,13 +213,15 @@ def range_errors(scene) -> list[str]:
     return errors
 
 
-def written(ranges: Iterable[Mapping]) -> dict[str, dict]:
+def written(ranges: Iterable[Mapping], scene_type: type) -> dict[str, dict]:
     """Return ranges as a file has them, without fields at their defaults."""
-    plain = {}
+    plain, known = {}, quantities(scene_type)
     for one in ranges:
         kept = {
             name: value for name, value in one.items() if name != "field" and value not in (None, "") and (name, value) != ("distribution", "uniform")
         }
+        if known[one["field"]].unit == SPEED:
+            kept |= {name: known[one["field"]].written(kept[name]) for name in _ENDS if name in kept}
         plain[one["field"]] = kept
     return plain
 

@@ -160,7 +160,7 @@ def overrides_of(level: str, point: Mapping) -> list[str]:
         f"lubricant.mixture_fraction={point['mixture_fraction']!r}",
         f"lubricant.traction={{law: {point['traction']}}}",
         f"dynamics.gyroscopic={point['gyroscopic']}",
-        f"operating.shaft_speed={point['shaft_speed_rpm'] * math.pi / 30!r}",
+        f"operating.shaft_speed={point['shaft_speed_rpm'] * math.pi / 30!r} rad/s",
         f"operating.radial_load={point['radial_load']!r}",
         f"operating.load_angle={point['load_angle']!r}",
         *tolerance_overrides(point["tolerances"]),

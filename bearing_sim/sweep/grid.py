@@ -128,7 +128,9 @@ class Axis(NamedTuple):
 
     def override(self, value: float | int | str) -> str:
         """Return the override that sets the field to a value (see `bearing_sim.scene.loader.load_scene`)."""
-        return f"{self.field.path}={value if isinstance(value, str) else repr(value)}"
+        declared = self.field.quantity
+        written = value if isinstance(value, str) else repr(value) if declared is None else declared.written(value)
+        return f"{self.field.path}={written}"
 
 
 def axis(field: str, values) -> Axis:
