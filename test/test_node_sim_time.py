@@ -72,8 +72,8 @@ def messages(path):
     """Return of each topic but the diagnostics the log times and bytes of its messages."""
     found = {}
     with AnyReader([path]) as reader:
-        for connection, time, data in reader.messages():
-            found.setdefault(connection.topic, []).append((time, bytes(data)))
+        for connection, log_time, data in reader.messages():
+            found.setdefault(connection.topic, []).append((log_time, bytes(data)))
     found.pop("/diagnostics")
     return found
 
