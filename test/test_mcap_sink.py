@@ -19,8 +19,8 @@ from mcap_ros2.decoder import DecoderFactory
 from rosbags.rosbag2 import Reader
 from rosbags.typesys import Stores, get_typestore
 
+from bearing_sim.messages.cdr import load_message_types
 from bearing_sim.messages.events import Event, Level
-from bearing_sim.messages.ros_types import load_message_types
 from bearing_sim.messages.topics import INPUTS, OUTPUTS, Origin, recorded
 from bearing_sim.model.sample import new_block
 from bearing_sim.recording import provenance

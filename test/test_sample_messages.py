@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from bearing_sim.messages.ros_types import message_type
+from bearing_sim.messages.cdr import message_type
 from bearing_sim.messages.sample_messages import SampleMessages, message_templates
 from bearing_sim.messages.topics import Topic, outputs, recorded
 from bearing_sim.model.sample import new_block

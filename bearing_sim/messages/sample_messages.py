@@ -2,7 +2,7 @@
 """Serialised messages of samples, filled by copying numbers.
 
 The messages of one output topic differ only in their stamps and numbers.  Each topic is therefore serialised once as a template; where its
-numbers and stamp stand follows from the definition of its type (`bearing_sim.messages.cdr_layout`).  A recording then fills the templates
+numbers and stamp stand follows from the definition of its type (`bearing_sim.messages.cdr`).  A recording then fills the templates
 of many samples at once, the node those of all topics of one sample.
 """
 
@@ -12,8 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.messages.cdr_layout import ENCAPSULATION, STAMP_FIELDS, CdrLayout
-from bearing_sim.messages.ros_types import message_type
+from bearing_sim.messages.cdr import ENCAPSULATION, STAMP_FIELDS, CdrLayout, message_type
 from bearing_sim.messages.topics import Topic
 from bearing_sim.model.sample import new_block, sample_dtype
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from mcap.records import Channel, Schema
 from mcap_ros2.decoder import DecoderFactory
 
-from bearing_sim.messages.cdr_layout import typestore
+from bearing_sim.messages.cdr import typestore
 from bearing_sim.recording.bag import RecordingError, mcap_files
 from bearing_sim.recording.mcap_format import Message
 from bearing_sim.recording.mcap_reader import McapReader

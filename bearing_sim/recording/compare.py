@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.messages.cdr_layout import CdrError, CdrLayout, NumberColumns, is_known
+from bearing_sim.messages.cdr import CdrError, CdrLayout, NumberColumns, is_known
 from bearing_sim.messages.topics import ARRAYS
 from bearing_sim.recording.bag import mcap_files
 from bearing_sim.recording.mcap_format import Message

@@ -11,7 +11,7 @@ import numpy as np
 import yaml
 from mcap.records import Metadata
 
-from bearing_sim.messages.cdr_layout import CdrError, CdrLayout, NumberColumns, typestore
+from bearing_sim.messages.cdr import CdrError, CdrLayout, NumberColumns, typestore
 from bearing_sim.messages.events import Event, Level, Measurement
 from bearing_sim.messages.sample_messages import sample_columns
 from bearing_sim.messages.topics import (

@@ -17,7 +17,7 @@ from collections.abc import Iterator
 from types import SimpleNamespace
 from typing import BinaryIO
 
-from bearing_sim.messages.ros_types import load_message_types
+from bearing_sim.messages.cdr import load_message_types
 from bearing_sim.model.sample import sample_dtype
 from bearing_sim.recording.writer import McapSink
 

@@ -15,8 +15,8 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.messages import topics
+from bearing_sim.messages.cdr import message_type
 from bearing_sim.messages.events import Event, Level
-from bearing_sim.messages.ros_types import message_type
 from bearing_sim.recording.append_file import AppendFile
 from bearing_sim.recording.bag import ACTIVE, QOS_TEXT, UNLIMITED, Limits, Part, TopicCount, bag_metadata, write_bag_metadata
 from bearing_sim.recording.mcap_format import Message

@@ -22,7 +22,7 @@ import click
 import numpy as np
 
 from bearing_sim.messages import topics
-from bearing_sim.messages.cdr_layout import typestore
+from bearing_sim.messages.cdr import typestore
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.recording.mcap_format import Message
 from bearing_sim.recording.mcap_reader import McapReader

@@ -19,7 +19,7 @@ import numpy as np
 from rclpy.serialization import deserialize_message
 
 from bearing_sim.messages import topics
-from bearing_sim.messages.cdr_layout import STAMP_FIELDS, CdrLayout
+from bearing_sim.messages.cdr import STAMP_FIELDS, CdrLayout
 
 _MOST_LAYOUTS = 16  # learned per channel: where a sender changes from message to message, learning costs more than objects do
 _WORD = 8  # [byte] of a number

@@ -28,7 +28,7 @@ def prepare(view: bool, recorder: Recorder | None) -> None:
     if recorder is not None:
         recorder.start()
         return
-    from bearing_sim.messages.ros_types import load_message_types
+    from bearing_sim.messages.cdr import load_message_types
 
     importlib.import_module("bearing_sim.recording.writer")
     load_message_types()

@@ -13,7 +13,7 @@ from pathlib import Path
 import click
 import numpy as np
 
-from bearing_sim.messages.ros_types import load_message_types, message_type
+from bearing_sim.messages.cdr import load_message_types, message_type
 from bearing_sim.messages.sample_messages import SampleMessages, message_templates
 from bearing_sim.messages.topics import recorded
 from bearing_sim.model.sample import flat, new_block

@@ -11,7 +11,7 @@ from rosbags.interfaces import Nodetype
 from rosbags.typesys import Stores, get_typestore
 
 from bearing_sim.messages import topics
-from bearing_sim.messages.cdr_layout import CdrError, CdrLayout, NumberColumns, is_known
+from bearing_sim.messages.cdr import CdrError, CdrLayout, NumberColumns, is_known
 
 STORE = get_typestore(Stores.ROS2_JAZZY)
 USED = sorted(
