@@ -2,6 +2,7 @@
 """The comparison with other solvers: they follow the same course, kernels make up a step, and bearings are scaled as described."""
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -25,6 +26,7 @@ def report():
         text=True,
         timeout=600,
         cwd=ROOT,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
         check=True,
     )
     return json.loads(found.stdout)

@@ -1,8 +1,8 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Each level against other solvers on the same compiled right-hand side, what bounds a step, growth with the rollers, look-ups.
 
-``python test/benchmarks/solver_comparison.py --level slip --level planar`` from the root of the tree measures; a few minutes for each
-level once compiled, longer for level spatial.  ``--quick`` measures almost nothing, ``--json`` prints one JSON object.
+``python test/benchmarks/solver_comparison.py --level slip --level planar`` measures the installed package; a few minutes for each level
+once compiled, longer for level spatial.  ``--quick`` measures almost nothing, ``--json`` prints one JSON object.
 
 Reference of a trajectory is DOP853 at a tolerance of 1e-10.  CVODE needs scikit-sundae.  One process on one core measures everything;
 times are processor times, and the minimum of repeats counts (see `bearing_sim.studies.bench`, which measures speed and errors alone).
