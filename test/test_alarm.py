@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from bearing_sim.monitoring.monitor import Alarm
-from bearing_sim.scene.thresholds import Hold
+from bearing_sim.scene.scene import Hold
 
 HOLD = Hold(hysteresis=0.1, raise_after=1.0, clear_after=2.0)
 STEP = 0.1  # s

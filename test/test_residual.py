@@ -9,7 +9,7 @@ from scipy.signal import lfilter
 
 from bearing_sim.monitoring.residual import ResidualMonitor
 from bearing_sim.scene.loader import load_scene
-from bearing_sim.scene.thresholds import ResidualDetection
+from bearing_sim.scene.scene import ResidualDetection
 from bearing_sim.simulation import Simulation
 
 SPEED = 4712.0  # rad/s

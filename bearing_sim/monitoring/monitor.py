@@ -11,8 +11,7 @@ import numpy as np
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.model.sample import joined
 from bearing_sim.monitoring.film_ratio import FilmRatio
-from bearing_sim.scene.scene import Scene
-from bearing_sim.scene.thresholds import Hold, Thresholds
+from bearing_sim.scene.scene import Hold, Scene, Thresholds
 
 _HOUR = 3600.0  # [s]
 _FILM_EVERY = 0.1  # [s] least time between two films: they cost more than all other checks, and follow the slow oil temperature

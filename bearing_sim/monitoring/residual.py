@@ -16,7 +16,7 @@ from scipy.optimize import brentq
 from scipy.special import ndtri, stdtr
 
 from bearing_sim.messages.events import Event, Level, Measurement
-from bearing_sim.scene.thresholds import ResidualDetection
+from bearing_sim.scene.scene import ResidualDetection
 
 _HOUR = 3600.0  # [s]
 _SPEED_CHANGE = 0.02  # relative change beyond which the shaft counts as being at another speed
@@ -208,7 +208,7 @@ class ResidualMonitor:
 
     Parameters
     ----------
-    detection : settings, see `bearing_sim.scene.thresholds.ResidualDetection`.
+    detection : settings, see `bearing_sim.scene.scene.ResidualDetection`.
     from_speed : shaft speed from which on slip is judged [rad/s].
 
     Attributes
