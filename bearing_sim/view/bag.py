@@ -6,7 +6,7 @@ types have a stamp.
 """
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
@@ -27,6 +27,9 @@ _NUMBERS = {
     f"std_msgs/msg/{kind}" for kind in ("Float64", "Float32", "Int8", "Int16", "Int32", "Int64", "UInt8", "UInt16", "UInt32", "UInt64", "Bool")
 }
 _ARRAYS = {f"std_msgs/msg/{kind}MultiArray" for kind in ("Float64", "Float32", "Int16", "Int32", "Int64")}
+_WRENCHES = {"geometry_msgs/msg/Wrench", "geometry_msgs/msg/WrenchStamped"}
+_SHOWN = {"sensor_msgs/msg/JointState", "sensor_msgs/msg/Temperature", "diagnostic_msgs/msg/DiagnosticArray", "rcl_interfaces/msg/Log"}
+_SHOWN |= _NUMBERS | _ARRAYS | _WRENCHES
 _USUAL = {"speed": "/shaft_speed", "load": "/radial_load", "cage_speed": f"/{topics.MEASURED}", "temperature": "/oil_temperature"}
 _RPM = 30 / math.pi
 _MOST_LINES = 64  # of one array
@@ -76,12 +79,14 @@ def read_bag_series(path: str | Path, named: Mapping[str, str] | None = None) ->
             continue
         (topic, ros_type, decode), log_ns, data = found
         times.append(log_ns)
-        show = _shower(ros_type)
-        if show is None:
+        if ros_type not in _SHOWN:
             unread[topic] = f"{topic}: nothing to plot in {ros_type}"
             continue
         try:
-            show(topic, roles.get(topic, ""), decode(data), log_ns, rows, events)
+            message = decode(data)
+            events += _events_in(ros_type, message, log_ns)
+            for *line, value in _numbers_in(ros_type, topic, roles.get(topic, ""), message):
+                rows.setdefault(tuple(line), []).append((log_ns, float(value)))
         except Exception as error:  # decoders raise many kinds of exceptions
             unread[topic] = f"{topic}: {ros_type} cannot be read ({type(error).__name__}: {error})"
     _require_named(path, present, named or {})
@@ -110,59 +115,34 @@ def _sorted(rows: list[tuple[int, float]], start_ns: int) -> tuple[np.ndarray, n
     return (times[order] - start_ns) * 1e-9, np.array([value for _, value in rows], float)[order]
 
 
-def _shower(msgtype: str) -> Callable | None:
-    """Return the function that adds a message of a type to rows or events, or None."""
-    shown = {
-        "sensor_msgs/msg/JointState": _joints,
-        "geometry_msgs/msg/WrenchStamped": lambda topic, role, message, *rest: _wrench(topic, role, message.wrench, *rest),
-        "geometry_msgs/msg/Wrench": _wrench,
-        "sensor_msgs/msg/Temperature": _temperature,
-        "diagnostic_msgs/msg/DiagnosticArray": _diagnostics,
-        "rcl_interfaces/msg/Log": _log,
-    }
-    if msgtype in _NUMBERS:
-        return _number
-    return _array if msgtype in _ARRAYS else shown.get(msgtype)
+def _numbers_in(ros_type: str, topic: str, role: str, message) -> Iterator[tuple[str, str, str, float]]:
+    """Yield role, name of the line, unit and value of each number of a message that is shown."""
+    if ros_type == "sensor_msgs/msg/JointState":
+        for name, velocity in zip(message.name, message.velocity):
+            own = role or {topics.SHAFT_JOINT: "speed", topics.CAGE_JOINT: "cage_speed"}.get(name, "")
+            yield own, f"{topic} {name}", "rpm", _RPM * velocity
+    elif ros_type in _WRENCHES:
+        force = getattr(message, "wrench", message).force
+        yield role, f"{topic} radial force", "N", math.hypot(force.y, force.z)
+    elif ros_type == "sensor_msgs/msg/Temperature":
+        yield role, topic, "°C", message.temperature
+    elif ros_type in _NUMBERS:
+        factor, unit = {"speed": (_RPM, "rpm"), "cage_speed": (_RPM, "rpm"), "load": (1.0, "N"), "temperature": (1.0, "°C")}.get(role, (1.0, "-"))
+        yield role, topic, unit, factor * float(message.data)
+    elif ros_type in _ARRAYS:
+        for index, value in enumerate(message.data[:_MOST_LINES]):
+            yield role, f"{topic} {index}", "-", value
 
 
-def _enter(rows, role: str, name: str, unit: str, time: int, value: float) -> None:
-    rows.setdefault((role, name, unit), []).append((time, float(value)))
-
-
-def _joints(topic, role, message, time, rows, events) -> None:
-    for index, name in enumerate(message.name):
-        own = role or {topics.SHAFT_JOINT: "speed", topics.CAGE_JOINT: "cage_speed"}.get(name, "")
-        if index < len(message.velocity):
-            _enter(rows, own, f"{topic} {name}", "rpm", time, _RPM * message.velocity[index])
-
-
-def _wrench(topic, role, wrench, time, rows, events) -> None:
-    _enter(rows, role, f"{topic} radial force", "N", time, math.hypot(wrench.force.y, wrench.force.z))
-
-
-def _temperature(topic, role, message, time, rows, events) -> None:
-    _enter(rows, role, f"{topic}", "°C", time, message.temperature)
-
-
-def _number(topic, role, message, time, rows, events) -> None:
-    factor, unit = {"speed": (_RPM, "rpm"), "cage_speed": (_RPM, "rpm"), "load": (1.0, "N"), "temperature": (1.0, "°C")}.get(role, (1.0, "-"))
-    _enter(rows, role, topic, unit, time, factor * float(message.data))
-
-
-def _array(topic, role, message, time, rows, events) -> None:
-    for index, value in enumerate(message.data[:_MOST_LINES]):
-        _enter(rows, role, f"{topic} {index}", "-", time, value)
-
-
-def _diagnostics(topic, role, message, time, rows, events) -> None:
-    for status in message.status:
-        if 0 < int(status.level) <= 2:
-            events.append(Event(time, Level(int(status.level)), status.name, "", status.message))
-
-
-def _log(topic, role, message, time, rows, events) -> None:
-    level = Level.ERROR if message.level >= 40 else Level.WARN if message.level >= 30 else Level.OK
-    events.append(Event(time, level, message.name, "", message.msg))
+def _events_in(ros_type: str, message, time: int) -> Iterator[Event]:
+    """Yield the events of a message: diagnostics that are warnings or errors, and log messages."""
+    if ros_type == "diagnostic_msgs/msg/DiagnosticArray":
+        for status in message.status:
+            if 0 < int(status.level) <= 2:
+                yield Event(time, Level(int(status.level)), status.name, "", status.message)
+    elif ros_type == "rcl_interfaces/msg/Log":
+        level = Level.ERROR if message.level >= 40 else Level.WARN if message.level >= 30 else Level.OK
+        yield Event(time, level, message.name, "", message.msg)
 
 
 _ROLES = {  # where the same quantity stands in views of our own runs, and the title of its plot
