@@ -247,31 +247,26 @@ def _fields(due: ScheduledMessage, stamp_ns: int) -> dict:
     return topics.INPUTS[due.channel].message(stamp_ns, with_values(Inputs(0.0, 0.0, 0.0, 0.0), due.channel, due.values))
 
 
-class Progress:
-    """Progress on stderr: a bar on a terminal, otherwise a line every 10 %."""
+@contextmanager
+def progress_of(title: str, total: float) -> Iterator[Callable[[float], None]]:
+    """Show progress on stderr, a bar on a terminal, otherwise a line every 10 %; yields the function that takes how much of ``total`` is done."""
+    if sys.stderr.isatty():
+        from rich.console import Console
+        from rich.progress import Progress
 
-    def __init__(self, title: str, total: float):
-        self._title, self._total, self._next = title, total, 0.1
-        self._bar = None
-        if sys.stderr.isatty():
-            from rich.console import Console
-            from rich.progress import Progress as Bar
+        with Progress(console=Console(stderr=True)) as bar:
+            task = bar.add_task(title, total=total)
+            yield lambda time: bar.update(task, completed=time)
+        return
+    due = 0.1
 
-            self._bar = Bar(console=Console(stderr=True))
-            self._task = self._bar.add_task(title, total=total)
-            self._bar.start()
+    def show(time: float) -> None:
+        nonlocal due
+        if total > 0 and time / total >= due - 1e-9:
+            print(f"{title}: {100 * time / total:.0f} % ({time:.1f} of {total:.1f} s)", file=sys.stderr, flush=True)
+            due = int(10 * time / total) / 10 + 0.1
 
-    def __call__(self, time: float) -> None:
-        if self._bar is not None:
-            self._bar.update(self._task, completed=time)
-        elif self._total > 0 and time / self._total >= self._next - 1e-9:
-            print(f"{self._title}: {100 * time / self._total:.0f} % ({time:.1f} of {self._total:.1f} s)", file=sys.stderr, flush=True)
-            self._next = int(10 * time / self._total) / 10 + 0.1
-
-    def close(self) -> None:
-        """Stop updating the bar."""
-        if self._bar is not None:
-            self._bar.stop()
+    yield show
 
 
 @contextmanager
@@ -361,11 +356,8 @@ def command(context, log, rate, clock_rate, stamps, start_paused, loop, use_limi
 
 def _play(player: Player, messages: list[ScheduledMessage], name: str, use_limit: float) -> bool:
     """Play all messages and wait up to ``use_limit`` [s] until followers of the clock have used them; False after a signal."""
-    progress = Progress(f"playing {name}", messages[-1].time)
-    try:
-        complete = player.play(messages, progress)
-    finally:
-        progress.close()
+    with progress_of(f"playing {name}", messages[-1].time) as show:
+        complete = player.play(messages, show)
     if not (complete and use_limit):
         return complete
     if player.wait_until_used(messages, use_limit):
