@@ -22,10 +22,8 @@ import click
 import numpy as np
 
 from bearing_sim.messages import topics
-from bearing_sim.messages.cdr import typestore
 from bearing_sim.messages.events import Event, Level
-from bearing_sim.recording.mcap_format import Message
-from bearing_sim.recording.mcap_reader import McapReader
+from bearing_sim.recording.bag_reader import BagReader, BagTopic
 from bearing_sim.recording.reader import Recording
 from bearing_sim.ros.recordings import fresh_path
 from bearing_sim.scene.loader import SceneError, load_scene
@@ -192,13 +190,12 @@ def summary(path: Path) -> str:
 
 def _diagnostics(path: Path) -> list[dict[str, str]]:
     """Return the values of all diagnostics reports in a finished recording."""
-    topic, ros_type = topics.DIAGNOSTICS
-    reports, reader = [], McapReader(path)
-    for record in reader:
-        if isinstance(record, Message) and reader.topics[record.channel_id] == f"/{topic}":
-            report = typestore().deserialize_cdr(record.data, ros_type)
-            if report.status[0].values:
-                reports.append({pair.key: pair.value for pair in report.status[0].values})
+    reports = []
+    for found in BagReader(path):
+        if not isinstance(found, BagTopic) and found[0].name == f"/{topics.DIAGNOSTICS[0]}":
+            whole = found[0].decode(found[2]).status[0]
+            if whole.values:
+                reports.append({pair.key: pair.value for pair in whole.values})
     return reports
 
 

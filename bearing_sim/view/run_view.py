@@ -187,11 +187,8 @@ class RunView:
         self._newest: np.void | None = None
         self._first_time = 0.0
         self._scene, self._live, self._laid_out_measured = scene, live, False
-        self._drawing.draw_still_parts()
-        self._solid.draw_still_parts()
-        self._power.draw_still_parts()
-        if self._cage is not None:
-            self._cage.draw_still_parts()
+        for drawing in filter(None, (self._drawing, self._solid, self._power, self._cage)):
+            drawing.draw_still_parts()
         self._series.describe()
         self._recording.log("/about", rr.TextDocument(about(scene, self._drawing.factor), media_type=rr.MediaType.MARKDOWN), static=True)
         self.dropped = 0

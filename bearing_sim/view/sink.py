@@ -18,6 +18,7 @@ import subprocess
 import sys
 import threading
 import time as wall
+from itertools import groupby
 from pathlib import Path
 
 import numpy as np
@@ -130,19 +131,14 @@ class RerunSink(View):
     def _gathered(self) -> tuple[list, bool]:
         """Return the queued items, with adjacent blocks joined, and whether the input has ended."""
         gathered = [self._queue.get()]
-        while gathered[-1] is not None:
-            try:
-                gathered.append(self._queue.get_nowait())
-            except queue.Empty:
-                break
+        while gathered[-1] is not None and not self._queue.empty():  # nobody else takes items
+            gathered.append(self._queue.get())
         ended = gathered[-1] is None
         items: list = []
-        for item in gathered[:-1] if ended else gathered:
-            if isinstance(item, np.ndarray) and items and isinstance(items[-1], list):
-                items[-1].append(item)
-            else:
-                items.append([item] if isinstance(item, np.ndarray) else item)
-        return [np.concatenate(item) if isinstance(item, list) else item for item in items], ended
+        for is_block, run in groupby(gathered[:-1] if ended else gathered, key=lambda item: isinstance(item, np.ndarray)):
+            neighbours = list(run)
+            items += [np.concatenate(neighbours)] if is_block else neighbours
+        return items, ended
 
     def _listen(self) -> None:
         """Read the reports of the process, one line of JSON each, until it ends."""
