@@ -161,6 +161,17 @@ def test_a_cage_at_rest_in_a_turning_bearing_is_driven_up():
     assert finite(block) and block["cage_speed"][-1] > 1500.0
 
 
+def test_equivalent_loads_are_means_over_the_rollers_and_about_the_last_cage_turn_of_the_loads_to_the_powers_of_the_standard():
+    run = simulation(inputs=Inputs(4712.4, 800.0, 0.0, 393.15))
+    run.advance(1e-4, run.inputs._replace(load_y=3000.0))
+    block = run.advance(0.02, samples=4000)  # seven cage turns
+    weights = np.exp((block["cage_angle"] - block["cage_angle"][-1]) / (2 * math.pi))
+    for ring, exponent in (("inner", 4.0), ("outer", 4.5)):
+        means = (block[f"{ring}_load"] ** exponent).mean(axis=1)
+        expected = np.average(means, weights=weights) ** (1 / exponent)
+        assert block[f"{ring}_equivalent_load"][-1] == pytest.approx(expected, rel=0.01)
+
+
 @pytest.mark.parametrize("speed", [0.0, 1000.0])
 def test_loose_rollers_without_load_lie_or_fly_on_the_outer_raceway(speed):
     run = simulation("bearing.outer_raceway.low_radius=34.9 mm", inputs=Inputs(speed, 0.0, 0.0, 393.15))

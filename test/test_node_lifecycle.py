@@ -4,16 +4,22 @@
 import os
 import signal
 import time
+from types import SimpleNamespace
 
 import pytest
 
 pytest.importorskip("rclpy", reason="the node needs ROS 2 (pip install 'bearing_sim[ros]', or a ROS installation)")
 
+import rclpy  # noqa: E402
 from lifecycle_msgs.msg import Transition  # noqa: E402
 from lifecycle_msgs.srv import ChangeState, GetState  # noqa: E402
+from rclpy.lifecycle import TransitionCallbackReturn  # noqa: E402
+from rclpy.task import Future  # noqa: E402
 from ros_bench import Client, NodeProcess, fresh_domain  # noqa: E402
 
 from bearing_sim.recording.reader import Recording  # noqa: E402
+from bearing_sim.ros import interface  # noqa: E402
+from bearing_sim.ros.node import BearingNode  # noqa: E402
 
 pytestmark = pytest.mark.timeout(300)
 STATES = ("unconfigured", "inactive", "active", "finalized")
@@ -163,6 +169,34 @@ def test_a_recording_that_cannot_be_made_refuses_the_activation_and_names_the_fi
     level, _, text = node.told("a_file")
     assert level == 2 and text.startswith("activate failed")
     assert node.change("cleanup") == (True, "unconfigured")
+
+
+def test_a_transition_that_fails_again_is_told_at_the_next_review_though_no_regular_report_is_due(tmp_path, monkeypatch):
+    (tmp_path / "a_file").write_text("")
+    monkeypatch.setattr(interface, "time", SimpleNamespace(monotonic_ns=lambda: 1, time_ns=time.time_ns))  # steady time stands still
+    rclpy.init(args=["--ros-args", "-p", "autostart:=false", "-p", f"record:={tmp_path / 'a_file' / 'run.mcap'}"], domain_id=fresh_domain())
+    node = BearingNode(Future())
+    reports = []
+    monkeypatch.setattr(node, "publish_diagnostics", lambda now_ns, condition, *names: reports.append(condition.events[0].text))
+    try:
+        assert node.trigger_configure() == TransitionCallbackReturn.SUCCESS
+        end = time.monotonic() + 200.0
+        while not node.bearings[0].is_warm:
+            assert time.monotonic() < end, "the model warms up"
+            time.sleep(0.05)
+        node._review()
+        assert reports[-1] == "inactive: ready to be activated"
+        for _ in range(3):
+            assert node.trigger_activate() == TransitionCallbackReturn.FAILURE
+            reports.clear()
+            node._review()
+            assert len(reports) == 1 and reports[0].startswith("activate failed") and "a_file" in reports[0]
+            node._review()
+            assert len(reports) == 1, "told once, until the next regular report"
+    finally:
+        node.close()
+        node.destroy_node()
+        rclpy.shutdown()
 
 
 def test_a_hundred_reconfigures_in_mid_run_leak_no_thread_no_file_no_memory_and_every_recording_is_complete(managed, tmp_path):
