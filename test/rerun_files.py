@@ -21,7 +21,7 @@ def written(path, scene, block):
     with RerunFile(scene, path) as sink:
         for part in np.array_split(block, 7):
             sink.write(part)
-    assert sink.fault is None
+    assert sink.failure is None
     return list(RrdReader(str(path)).stream())
 
 

@@ -66,7 +66,7 @@ def test_a_frozen_viewer_holds_up_neither_run_nor_file_nor_close(tmp_path):
             raise
         pytest.skip(f"needs a Vulkan driver: {fault}")
     assert took < 15.0, "five seconds are allowed; a busy machine may take longer"
-    assert sink.fault is None and sink.dropped == 0
+    assert sink.failure is None and sink.dropped == 0
     assert shown_rows(tmp_path / "run.rrd") == 65 * 200, f"the file is complete (finished: {finished})"
 
 
@@ -88,7 +88,7 @@ def test_a_viewer_that_dies_is_nobody_elses_trouble_and_the_next_one_finds_every
             if HOW_TO_GET_VULKAN not in str(fault):
                 raise
             pytest.skip(f"needs a Vulkan driver: {fault}")
-        assert sink.fault is None and sink.dropped == 0
+        assert sink.failure is None and sink.dropped == 0
 
 
 def test_a_frozen_process_of_the_view_never_blocks_the_run_and_what_is_dropped_is_counted(tmp_path, monkeypatch):
@@ -130,10 +130,10 @@ def test_a_killed_process_of_the_view_is_told_and_the_run_goes_on(tmp_path):
     assert sink.wait_until_ready()
     os.kill(sink.pid, signal.SIGKILL)
     end = time.monotonic() + 30
-    while sink.fault is None and time.monotonic() < end:
+    while sink.failure is None and time.monotonic() < end:
         feed(sink, 1)
         time.sleep(0.02)
-    assert "exited unexpectedly (code -9)" in sink.fault
+    assert "exited unexpectedly (code -9)" in sink.failure
     feed(sink, 3)
     assert sink.dropped >= 3 and sink.close() is False
 

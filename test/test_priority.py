@@ -169,7 +169,7 @@ with Recorder() as recorder, RerunSink(SCENE, path=sys.argv[1] + ".rrd") as view
     time.sleep(1.0)  # it has some seconds for what is left when its input ends
     write()
     record.close(60.0)
-    print(json.dumps([written, view.close(60.0), pictures.fault]), flush=True)
+    print(json.dumps([written, view.close(60.0), pictures.failure]), flush=True)
 """
 
 

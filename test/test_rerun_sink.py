@@ -33,7 +33,7 @@ def written(path, block, events=(), **options):
             sink.write_event(event)
         for part in np.array_split(block, 9):
             sink.write(part)
-    assert sink.fault is None
+    assert sink.failure is None
     return sink
 
 

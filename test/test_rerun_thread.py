@@ -100,7 +100,7 @@ def test_failing_viewer_is_told_and_the_run_goes_on(monkeypatch, tmp_path):
     sink = ViewThread(SCENE, tmp_path / "run.rrd", None)
     sink.write(synthetic_block(SCENE, TIMES))
     sink.close(timeout=60)
-    assert "disk full" in sink.fault
+    assert "disk full" in sink.failure
     lossless = RerunFile(SCENE, tmp_path / "run.rrd")
     with pytest.raises(OSError, match="disk full"):
         for _ in range(1000):

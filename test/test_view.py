@@ -122,4 +122,4 @@ def test_live_view_reaches_a_viewer_that_comes_late():
             if HOW_TO_GET_VULKAN not in str(fault):
                 raise
             pytest.skip(f"needs a Vulkan driver: {fault}")
-    assert sink.dropped == 0 and sink.fault is None
+    assert sink.dropped == 0 and sink.failure is None

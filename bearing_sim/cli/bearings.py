@@ -210,7 +210,7 @@ def machine(
     if as_json:
         print_json({**report, "out": out and str(out), "picture": picture and str(picture)})
     else:
-        _print_machine(report, machined)
+        _print_machine(report)
     if len(machined.lows) != arcs:
         click.echo(f"note: {arcs} arcs give {len(machined.lows)} low points: the turned arc has removed a lobe", err=True)
 
@@ -241,7 +241,7 @@ def _report_machine(section, pressing, machined) -> dict:
     }
 
 
-def _print_machine(report, machined) -> None:
+def _print_machine(report) -> None:
     def points(kind):
         return ", ".join(f"{point['radius_mm']:.4f} mm at {point['angle_deg']:.1f} deg" for point in report[f"{kind}_points"])
 

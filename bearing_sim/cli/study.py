@@ -246,8 +246,8 @@ def _run(situation, rrd: Path) -> dict:
                 else:
                     sink.write_event(item)
                     kinds.append(item.kind)
-    if sink.fault:
-        raise FailedRun(f"{rrd}: {sink.fault}")
+    if sink.failure:
+        raise FailedRun(f"{rrd}: {sink.failure}")
     return _figures(situation, np.concatenate(blocks), residuals, kinds)
 
 

@@ -99,8 +99,8 @@ def _convert(source, out: Path) -> None:
                 else:
                     sink.write(item)
                     progress(float(item["time"][-1]) - source.first_time)
-    if sink.fault:
-        raise FailedRun(f"{out}: {sink.fault}")
+    if sink.failure:
+        raise FailedRun(f"{out}: {sink.failure}")
 
 
 def _take_picture(rrd: Path, picture: Path, seconds: float, size: tuple[int, int]) -> None:

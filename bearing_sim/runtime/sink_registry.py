@@ -120,8 +120,8 @@ class SinkRegistry:
         """Yield what is wrong with sinks at ``now`` [s], for as long as it is wrong."""
         yield from self._failed.values()
         for name, sink in self.by_name.items():
-            if getattr(sink, "fault", None):
-                yield Event(now, Level.WARN, "sink.failed", name, f"has stopped: {sink.fault}")
+            if getattr(sink, "failure", None):
+                yield Event(now, Level.WARN, "sink.failed", name, f"has stopped: {sink.failure}")
 
     def news(self, now: float) -> list[Event]:
         """Return what has happened to sinks since the last call, stamped ``now`` [s]."""

@@ -6,7 +6,6 @@ the running machine closes up, unknown to the model, and the measured cage falls
 """
 
 import dataclasses
-import math
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
@@ -21,7 +20,6 @@ from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Inputs, Simulation, scene_inputs
 
 BASE = "deng2017_table1"
-_RPM = math.pi / 30
 _BLOCK = 10  # samples
 _NOISE = 3e-4  # standard deviation of a measured slip, a fraction
 _LOOSE = "bearing.outer_raceway.low_radius=34.87 mm"  # little preload, so that the cage slips early

@@ -95,7 +95,7 @@ class RerunSink(View):
         """
         deadline = wall.monotonic() + timeout
         if self._closed:
-            return self.fault is None
+            return self.failure is None
         self._closed = True
         try:
             self._queue.put(None, timeout=timeout)
@@ -107,7 +107,7 @@ class RerunSink(View):
             finished = False
         self._feeder.join(1.0)
         self._listener.join(1.0)
-        return finished and self.fault is None
+        return finished and self.failure is None
 
     def _feed(self, first: bytes) -> None:
         pipe, reported = self._process.stdin, 0
@@ -147,13 +147,13 @@ class RerunSink(View):
             if report["ready"]:
                 self._ready.set()
             self._dropped_there = report["dropped"]
-            if report["fault"] is not None and self.fault is None:
-                self.fault = report["fault"]
-                _log.error("rerun stopped; the run continues without a view: %s", self.fault)
+            if report["failure"] is not None and self.failure is None:
+                self.failure = report["failure"]
+                _log.error("rerun stopped; the run continues without a view: %s", self.failure)
         code = self._process.wait()
-        if not self._closed and self.fault is None:
-            self.fault = f"the view process exited unexpectedly (code {code})"
-            _log.error("%s; the run continues without a view", self.fault)
+        if not self._closed and self.failure is None:
+            self.failure = f"the view process exited unexpectedly (code {code})"
+            _log.error("%s; the run continues without a view", self.failure)
 
 
 def _require_free(port: int) -> None:

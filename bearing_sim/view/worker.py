@@ -71,12 +71,12 @@ class View(AbstractContextManager):
 
     Attributes
     ----------
-    fault : why the view has stopped, or None.
+    failure : why the view has stopped, or None.
     """
 
     def __init__(self):
         self._dropped = 0
-        self.fault: str | None = None
+        self.failure: str | None = None
         self._ready = threading.Event()
         self._queue = RowQueue(QUEUED_ROWS)
         self._closed = False
@@ -110,7 +110,7 @@ class View(AbstractContextManager):
 
     def _enqueue(self, item) -> None:
         try:
-            if self.fault is None:
+            if self.failure is None:
                 self._queue.put_nowait(item)
                 return
         except queue.Full:
@@ -174,7 +174,7 @@ class ViewThread(View):
         self._worker.join(max(0.0, deadline - wall.monotonic()))
         if self._worker.is_alive():
             _log.warning("rerun did not finish within %g s and was abandoned", timeout)
-        return not self._worker.is_alive() and self.fault is None
+        return not self._worker.is_alive() and self.failure is None
 
     def _work(self, scene: Scene, path, serve_port, options: ViewOptions) -> None:
         try:
@@ -182,8 +182,8 @@ class ViewThread(View):
             self._ready.set()
             self._show_all(view)
         except Exception as error:  # whatever rerun raises, the run continues; the reason is kept and reported
-            self.fault = f"{type(error).__name__}: {error}"
-            _log.error("rerun stopped; the run continues without a view: %s", self.fault)
+            self.failure = f"{type(error).__name__}: {error}"
+            _log.error("rerun stopped; the run continues without a view: %s", self.failure)
 
     def _show_all(self, view: RunView) -> None:
         flushed, reported = wall.monotonic(), 0
@@ -236,13 +236,13 @@ class RerunFile(ViewThread):
         super().__init__(scene, path, None, ViewOptions(start_ns, duration, load_scale))
 
     def _enqueue(self, item) -> None:
-        while self.fault is None:
+        while self.failure is None:
             try:
                 self._queue.put(item, timeout=0.2)
                 return
             except queue.Full:
                 continue
-        raise OSError(f"rerun stopped: {self.fault}")
+        raise OSError(f"rerun stopped: {self.failure}")
 
     def close(self, timeout: float = 120.0) -> bool:
         """Show what is queued and finish within ``timeout`` [s] (see `ViewThread.close`)."""
@@ -284,8 +284,8 @@ def _items(stream):
 
 
 def _state(views) -> dict:
-    error = next((view.fault for view in views if view.fault), None)
-    return {"ready": all(view.ready for view in views), "dropped": sum(view.dropped for view in views), "fault": error}
+    error = next((view.failure for view in views if view.failure), None)
+    return {"ready": all(view.ready for view in views), "dropped": sum(view.dropped for view in views), "failure": error}
 
 
 def _report_on(views) -> None:
