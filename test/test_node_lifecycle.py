@@ -205,7 +205,8 @@ def test_a_hundred_reconfigures_in_mid_run_leak_no_thread_no_file_no_memory_and_
 
     def reconfigure():
         for label in ("configure", "activate"):
-            assert client.call(ChangeState, "change_state", ChangeState.Request(transition=Transition(label=label)), process).success
+            done = client.call(ChangeState, "change_state", ChangeState.Request(transition=Transition(label=label)), process).success
+            assert done, f"{label}: {client.statuses()[-3:]}\n{process.text[-2000:]}"
         seen = len(client.received["bearing_joints"])
         client.drive_until(lambda: len(client.received["bearing_joints"]) > seen, "the model runs", process)
         for label in ("deactivate", "cleanup"):
