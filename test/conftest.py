@@ -30,6 +30,7 @@ _REAL_TIME = {
 }
 
 
+@pytest.hookimpl(tryfirst=True)  # before xdist reads the groups
 def pytest_collection_modifyitems(items):
     """Keep the tests of a file together, and all files that run something in real time."""
     for item in items:

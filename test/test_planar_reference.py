@@ -99,7 +99,7 @@ VARIANTS = {
     "backwards, oblique load, loose": (
         {"shaft_speed": -1500.0, "load": (300.0, -400.0), "low_radius": 34.88e-3},
         [
-            "operating.shaft_speed=-1500",
+            "operating.shaft_speed=-1500 rad/s",
             "operating.radial_load=500 N",
             "operating.load_angle=-0.9272952180016122",
             "bearing.outer_raceway.low_radius=34.88 mm",
@@ -109,12 +109,12 @@ VARIANTS = {
     "guided on the inner ring": ({"guidance": "inner_ring"}, INNER),
     "guided on the inner ring, backwards, by a film that knows no whirl": (
         {"guidance": "inner_ring", "shaft_speed": -1500.0, "land_squeeze": False},
-        [*INNER, "operating.shaft_speed=-1500", "bearing.cage.land_squeeze=false"],
+        [*INNER, "operating.shaft_speed=-1500 rad/s", "bearing.cage.land_squeeze=false"],
     ),
     "guided by rollers": ({"guidance": "roller"}, ROLLER_GUIDED),
     "guided by rollers, tight and backwards": (
         {"guidance": "roller", "shaft_speed": -1500.0, "pocket_radial_clearance": 0.06e-3},
-        [*ROLLER_GUIDED, "operating.shaft_speed=-1500", "bearing.cage.pocket_radial_clearance=0.06 mm"],
+        [*ROLLER_GUIDED, "operating.shaft_speed=-1500 rad/s", "bearing.cage.pocket_radial_clearance=0.06 mm"],
     ),
     "pumping, and a raceway that grows": (
         {"pumping": True, "growth": GROWN},

@@ -148,7 +148,7 @@ VARIANTS = {
         lambda: SpatialReference(
             Reference(rollers=9, contact_damping=1.0, shaft_speed=-1500.0), crown=CROWN, moment=(2 * math.cos(math.pi / 6), 1.0)
         ),
-        ["bearing.roller.count=9", "bearing.contact.damping=1", "operating.shaft_speed=-1500", *MOMENT],
+        ["bearing.roller.count=9", "bearing.contact.damping=1", "operating.shaft_speed=-1500 rad/s", *MOMENT],
         CROWN,
     ),
 }
