@@ -66,7 +66,7 @@ setup(
             "hypothesis>=6",
             "pymcap-cli>=0.34",
             "pydocstyle>=6.3",
-            "pytest>=8",
+            "pytest>=8,<9.2",  # with 9.2 pytest-xdist 3.8 no longer keeps the tests of a group together
             "pytest-timeout>=2.3",
             "pytest-xdist>=3.5",
             "scikit-sundae>=1.1",

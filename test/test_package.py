@@ -116,3 +116,8 @@ def test_nothing_unusual_lies_at_the_top():
 def test_the_quality_declaration_claims_no_more_than_level_4():
     text = (ROOT / "QUALITY_DECLARATION.md").read_text()
     assert "**Quality Level 4**" in text and not re.search(r"claims \*\*Quality Level [123]", text)
+
+
+def test_on_several_cores_the_tests_of_a_group_stay_on_one_worker(request):
+    if hasattr(request.config, "workerinput"):
+        assert request.node.nodeid.endswith("@test_package"), "this pytest-xdist does not understand this pytest"
