@@ -24,7 +24,7 @@ def advanced(simulation, seconds, scheduler):
 
     ``scheduler(seconds)`` gives the instants [s] at which the messages stamped so far arrive and the model advances as far as it can.
     """
-    profile, walk = OnlineInputProfile(RATE, SCENE.input_limits, SCENE.lubricant.temperature), None
+    profile, walk = OnlineInputProfile(RATE, SCENE.accepted_inputs, SCENE.lubricant.temperature), None
 
     def begin(inputs):
         simulation.reset(inputs)

@@ -78,7 +78,7 @@ def test_a_stock_case_finishes_and_counts_its_work():
 def test_a_scene_that_cannot_be_is_refused_with_the_bound_it_broke():
     outcome = run_case(case("operating.radial_load=-1 N", "bearing.roller.count=2"))
     assert outcome.status == REFUSED and outcome.steps == 0
-    assert "operating.radial_load" in outcome.reason and "outside 0 N to 1e+06 N" in outcome.reason
+    assert "operating.radial_load" in outcome.reason and "outside 0 N to 1e+08 N" in outcome.reason
     found = "bearing: cage.guide_radius: 35 mm puts it outside; expected less than low_radius, 34 mm; cage.pocket_clearance: 2 mm leaves no bar"
     assert kinds_of_reason(found) == ["cage.guide_radius", "cage.pocket_clearance"]
     assert kinds_of_reason("fixed step divided, step budget: 20 steps last for 3 s") == ["fixed step divided", "step budget"]

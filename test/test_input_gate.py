@@ -5,14 +5,17 @@ import math
 import random
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
+from bearing_sim import load_scene
 from bearing_sim.inputs.gate import CHANNELS, InputGate
 from bearing_sim.messages.events import Level
 from bearing_sim.scene.scene import InputLimits
 from bearing_sim.simulation import Inputs
 
 START = Inputs(shaft_speed=100.0, load_y=800.0, load_z=0.0, oil_temperature=393.15)
-LIMITS = InputLimits(maximum_speed=5000.0, maximum_load=2000.0, stale_after=1.0, minimum_rate=5.0, maximum_rate=200.0)
+LIMITS = InputLimits(maximum_speed=5000.0, maximum_load=2000.0, reverse_rotation=False, stale_after=1.0, minimum_rate=5.0, maximum_rate=200.0)
 
 
 @pytest.fixture
@@ -171,3 +174,55 @@ def test_as_many_values_as_the_channel_has_are_accepted_and_no_others(channel, v
 def test_values_so_large_that_their_sum_overflows_are_too_large_and_not_called_infinite():
     event = InputGate(LIMITS, START).offer("radial_load", 1.0, (1e308, 1.7e308))
     assert event.kind == "input.too_large"
+
+
+def test_reverse_rotation_is_good_unless_a_scene_forbids_it():
+    assert InputGate(InputLimits(), START).offer("shaft_speed", 0.1, (-100.0,)) is None
+    refused = InputGate(InputLimits(reverse_rotation=False), START).offer("shaft_speed", 0.1, (-100.0,))
+    assert refused.kind == "input.negative" and "input_limits.reverse_rotation" in refused.text
+
+
+@pytest.mark.parametrize("name", ["deng2017_table1", "deng2017_table2"])
+def test_default_bounds_are_beyond_what_the_bearing_survives_and_given_ones_are_kept(name):
+    scene = load_scene(name)
+    roller, gamma = scene.bearing.roller, scene.bearing.diameter_ratio
+    static = 44 * (1 - gamma) * roller.count * (1e3 * roller.length) * (1e3 * roller.diameter)  # ISO 76
+    assert scene.accepted_inputs.maximum_load == pytest.approx(10 * static)
+    assert scene.accepted_inputs.maximum_speed == pytest.approx(min(350.0 / scene.bearing.inner_raceway.radius, 12000.0))
+    given = load_scene(name, ["input_limits.maximum_load=5 kN", "input_limits.maximum_speed=3000 rpm"]).accepted_inputs
+    assert (given.maximum_load, given.maximum_speed) == (5000.0, pytest.approx(100 * math.pi))
+
+
+MESSAGES = st.lists(st.tuples(st.integers(1, 3000), st.sampled_from(["shaft_speed", "radial_load", "oil_temperature"]), st.booleans()), max_size=300)
+
+
+@given(MESSAGES)
+def test_inputs_are_unknown_from_the_last_good_message_before_a_refused_one_to_the_next_good_one_on_any_channel(messages):
+    gate, good, bad = InputGate(LIMITS, START), {"shaft_speed": 100.0, "radial_load": 800.0, "oil_temperature": 350.0}, 1e6
+    unknown, last, since = set(), {}, {}
+    end = 0
+    for tenths, channel, is_good in sorted(messages, key=lambda message: message[0]):
+        refused = gate.offer(channel, tenths / 10, (good[channel] if is_good else bad,))
+        if refused is not None and refused.kind.startswith("input.time"):
+            continue
+        end = tenths
+        if refused is not None:
+            since.setdefault(channel, last.get(channel, tenths))
+        else:
+            if channel in since:
+                unknown |= set(range(since.pop(channel), tenths))
+            last[channel] = tenths
+    for begin in since.values():
+        unknown |= set(range(begin, end))
+    assert gate.coverage.unknown_until(end / 10) == pytest.approx(len(unknown) / 10, abs=1e-9)
+
+
+def test_what_is_refused_as_too_large_makes_life_an_upper_bound_and_names_the_fields(gate):
+    gate.offer("shaft_speed", 0.1, (math.nan,))
+    assert gate.coverage.verdict == "", "nobody knows whether the speed was higher or lower"
+    gate.offer("radial_load", 0.2, (2500.0,))
+    gate.offer("shaft_speed", 0.3, (6000.0,))
+    assert "life is at most, and the damage at least" in gate.coverage.verdict
+    assert gate.coverage.verdict.endswith("(bound: input_limits.maximum_load, input_limits.maximum_speed)")
+    gate.offer("cage_speed_measured", 0.4, (math.nan,))
+    assert gate.coverage.unknown_until(0.4) == pytest.approx(0.3), "a measured cage is no input of the model"

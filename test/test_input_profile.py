@@ -15,7 +15,7 @@ from bearing_sim.scene.scene import InputLimits
 from bearing_sim.simulation import Inputs
 
 HELD = Inputs(0.0, 0.0, 0.0, 393.15)
-LIMITS = InputLimits(maximum_speed=5000.0, maximum_load=2000.0, stale_after=1.0)
+LIMITS = InputLimits(maximum_speed=5000.0, maximum_load=2000.0, reverse_rotation=False, stale_after=1.0)
 T0 = 1_700_000_000 * SECOND
 
 

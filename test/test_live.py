@@ -52,7 +52,7 @@ class Bench:
     """A live model, a made-up receiver's clock, and every piece of news so far."""
 
     def __init__(self, simulation=None, scene=(), **options):
-        overrides = ["input_limits.stale_after=0.5s", "input_limits.minimum_rate=0Hz", *scene]
+        overrides = ["input_limits.stale_after=0.5s", "input_limits.minimum_rate=0Hz", "input_limits.reverse_rotation=false", *scene]
         self.simulation = simulation or FakeSimulation()
         self.live = LiveModel(load_scene("deng2017_table1", overrides), self.simulation, START_NS, **options)
         self.began = time.monotonic()

@@ -74,7 +74,7 @@ def test_written_mission_passes_the_gate_whole_and_comes_back_equal(tmp_path):
     written = write_mission(tmp_path / "mission.mcap", 10**18, duration=6.0)
     scene = load_scene("deng2017_table1")
     log = read_input_log(tmp_path / "mission.mcap")
-    judged = judge(log, scene.input_limits, Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature))
+    judged = judge(log, scene.accepted_inputs, Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature))
     assert not judged.refused and not judged.events
     assert judged.messages == written == 2 * 301 + 7
     instants = judged.instants

@@ -18,7 +18,7 @@ from bearing_sim.scene.loader import load_scene
 pytestmark = pytest.mark.timeout(120)
 PATIENCE = 30.0  # [s]
 STEP = 0.02  # [s] between messages
-OVERRIDES = ["input_limits.minimum_rate=0Hz", "input_limits.stale_after=0.5s"]
+OVERRIDES = ["input_limits.minimum_rate=0Hz", "input_limits.stale_after=0.5s", "input_limits.reverse_rotation=false"]
 # batches of 20 ms and a second of learning: in wall time the test's time is real
 QUICK = "thresholds.residual={batch: 20 ms, learning: 1 s, settling: 50 ms, memory: 500 ms, false_alarm_time: 1 h, tolerance: 0.1 %}"
 SCENE = load_scene("deng2017_table1", [*OVERRIDES, QUICK])
@@ -342,3 +342,18 @@ def test_closing_ends_the_thread_completes_the_sinks_and_keeps_what_was_computed
     assert one.model.close()
     assert sink.closed == 1 and one.model.solver.phase is Phase.STOPPED
     assert sink.times[-1] == pytest.approx(one.newest("time"), abs=0.0101)
+
+
+def test_after_a_refused_overload_life_is_at_most_and_damage_at_least_until_the_run_is_reset(make):
+    one = make(load_scene("deng2017_table1", [*OVERRIDES, QUICK, "input_limits.maximum_load=5 kN"]))
+    one.until(lambda: one.newest("time") > 0.1)
+    assert one.condition().values["inputs unknown [s]"] == 0.0 and "input.unknown" not in one.kinds()
+    one.model.offer("radial_load", (6000.0, 0.0), one.now_ns + 1000, one.now_ns + 1000)
+    one.run(0.2)
+    condition = one.condition()
+    (event,) = [event for event in condition.events if event.kind == "input.unknown"]
+    assert event.level == Level.WARN and "life is at most, and the damage at least" in event.text and "input_limits.maximum_load" in event.text
+    assert 0.0 < condition.values["inputs unknown [s]"] < 0.2
+    assert one.model.reset()
+    one.until(lambda: "input.unknown" not in one.kinds())
+    assert one.condition().values["inputs unknown [s]"] == 0.0

@@ -33,7 +33,7 @@ def log(tmp_path_factory):
     """A log, and the recording of its offline replay."""
     folder = tmp_path_factory.mktemp("log")
     path = write(folder / "log.mcap", course(SECONDS, cage=True))
-    judged = judge(read_input_log(path), SCENE.input_limits, Inputs(0.0, 0.0, 0.0, SCENE.lubricant.temperature))
+    judged = judge(read_input_log(path), SCENE.accepted_inputs, Inputs(0.0, 0.0, 0.0, SCENE.lubricant.temperature))
     with McapSink(folder / "offline.mcap", SCENE, judged.start_ns) as recording:
         replay(SCENE, judged, recording, rate=RATE)
     return path, folder / "offline.mcap"
@@ -155,6 +155,7 @@ def test_clock_that_jumps_back_is_an_error_where_that_is_asked_for(bench, log, t
     node = start(f"record:={tmp_path / 'run.mcap'}", "clock_jump_back:=error")
     client.spin_until(lambda: events(client, "clock.absent"), "the node says that there is no clock", node, 100.0)
     played(client, node, player(path, "--clock", 20, "--rate", 10, "--wait-until-used", 60))
+    client.spin(1.0)  # what is on its way
     count = len(client.received["bearing_joints"])
     again = player(path, "--clock", 20, "--rate", 1)
     client.spin_until(lambda: events(client, "clock.jumped_back"), "the jump is told", node)

@@ -71,7 +71,7 @@ def run(path, fails_at=None, watchers=(), scene=SCENE, **options):
         return simulation
 
     sink = ListSink()
-    course = judge(read_input_log(path), scene.input_limits, HELD)
+    course = judge(read_input_log(path), scene.accepted_inputs, HELD)
     result = replay(scene, course, sink, watchers, model=model, **options)
     assert [start["time"] for start in sink.starts] == [0.0], "a recording begins with the state at the start"
     return result, sink, made[0]
@@ -216,6 +216,38 @@ def test_command_writes_inputs_and_outputs_and_one_json_object(tmp_path):
     assert counts["/cage_slip"] == counts["/roller_loads"] == counts["/bearing_joints"] == 1 + 20  # the state at the start is the first
     assert ends["/damage"].data == pytest.approx(report["damage"])
     assert "oil_temperature" not in "".join(counts)
+
+
+OVERLOADED = {"log": lambda k: 40e3 if 20 <= k < 39 else 800.0, "ramp": lambda k: 800.0 + 10.0 * k}
+
+
+def overloaded(folder, name):
+    """A log of 6 s at 10 Hz with an overload."""
+    loads = [(0.1 * k, OVERLOADED[name](k), 0.0) for k in range(61)]
+    return write_log(folder / f"{name}.mcap", [(time_, 4000.0) for time_, _, _ in loads], loads)
+
+
+@pytest.mark.parametrize("name", ["log", "ramp"])
+def test_an_overload_counts_by_default(tmp_path, name):
+    result = command(overloaded(tmp_path, name), "--scene", "deng2017_table1", "--json")
+    report = json.loads(result.stdout)
+    assert result.exit_code == 0 and report["inputs_refused"] == 0 and report["unknown_seconds"] == 0.0
+    assert report["sim_seconds"] == pytest.approx(6.0) and report["life_and_damage_are"] == "as given"
+
+
+@pytest.mark.parametrize(("name", "unknown"), [("log", 2.0), ("ramp", 5.0)])
+def test_where_an_overload_was_refused_life_is_at_most_and_the_exit_code_is_3(tmp_path, name, unknown):
+    log = overloaded(tmp_path, name)
+    whole = json.loads(command(log, "--scene", "deng2017_table1", "--json").stdout)
+    bounded = "--set", "input_limits.maximum_load=900 N"
+    result = command(log, "--scene", "deng2017_table1", *bounded, "-o", tmp_path / "run.mcap", "--json")
+    report = json.loads(result.stdout)
+    assert result.exit_code == 3 and "input_limits.maximum_load" in result.stderr
+    assert report["unknown_seconds"] == pytest.approx(unknown) and report["log_seconds"] == pytest.approx(6.0)
+    assert report["life_and_damage_are"] == "at most, at least" and report["life_hours"] > whole["life_hours"] and report["damage"] < whole["damage"]
+    assert report["events"]["input.unknown"] == 1
+    told = command(log, "--scene", "deng2017_table1", *bounded)
+    assert told.exit_code == 3 and "at most" in told.stdout and "at least" in told.stdout
 
 
 @pytest.mark.timeout(120)

@@ -131,7 +131,7 @@ def test_level_steady_goes_its_course_through_operating_points_as_in_a_replay(ma
 
 def test_a_recording_replayed_twice_is_equal_to_the_byte_in_every_message_and_log_time(tmp_path):
     path = write(tmp_path / "log.mcap", course(SECONDS, cage=True))
-    judged = judge(read_input_log(path), SCENE.input_limits, Inputs(0.0, 0.0, 0.0, SCENE.lubricant.temperature))
+    judged = judge(read_input_log(path), SCENE.accepted_inputs, Inputs(0.0, 0.0, 0.0, SCENE.lubricant.temperature))
     found = []
     for name in ("first", "second"):
         with McapSink(tmp_path / f"{name}.mcap", SCENE, judged.start_ns) as recording:
@@ -209,7 +209,7 @@ def test_a_reading_is_settled_half_a_second_later_and_what_is_missing_is_told_af
 
 
 def test_nothing_is_known_beyond_the_clock_though_messages_are_stamped_later():
-    known = OnlineInputProfile(RATE, SCENE.input_limits, 390.0)
+    known = OnlineInputProfile(RATE, SCENE.accepted_inputs, 390.0)
     for channel, value in (("shaft_speed", 100.0), ("radial_load", (800.0, 0.0))):
         for stamp in (100, 1000):
             known.add(channel, stamp, value)
@@ -344,7 +344,7 @@ def test_model_that_cannot_go_on_is_given_up_as_in_a_replay_and_a_reset_revives_
 
 
 def test_gaps_are_told_by_the_spacings_so_far():
-    limits, second = SCENE.input_limits, 1_000_000_000
+    limits, second = SCENE.accepted_inputs, 1_000_000_000
     assert is_gap([second // 10] * 5 + [2 * second], limits)
     assert not is_gap([second // 10] * 5 + [second // 2], limits), "no spacing that is not stale is one"
     assert not is_gap([10 * second] * 5 + [90 * second], limits)

@@ -336,7 +336,7 @@ def test_replay_without_a_recording_comes_to_the_same_as_with_one(small, tmp_pat
     scene, table, _ = small
     names = {"shaft_speed": None, "radial_load": None, "oil_temperature": None}
     log = steady_log(tmp_path / "log.mcap", duration=6.0, speed=4600.0)
-    course = judge(read_input_log(log, names, "shaft", "header"), scene.input_limits, Inputs(0.0, 0.0, 0.0, 393.15))
+    course = judge(read_input_log(log, names, "shaft", "header"), scene.accepted_inputs, Inputs(0.0, 0.0, 0.0, 393.15))
     make = partial(Simulation, table=table)
     silent = replay(scene, course, None, model=make)
     with McapSink(tmp_path / "out.mcap", scene, course.start_ns) as recording:

@@ -1,6 +1,8 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """``bearing-sim view``: from a recording to a file for rerun, and to a picture where a graphics driver is there."""
 
+import shlex
+import shutil
 import socket
 import struct
 

@@ -6,7 +6,16 @@ from pathlib import Path
 import click
 
 from bearing_sim.cli.options import json_option, picture_option
-from bearing_sim.cli.reporting import UsageError, announce_compilation, as_file_error, as_usage_error, print_json, print_table, progress_bar
+from bearing_sim.cli.reporting import (
+    UsageError,
+    announce_compilation,
+    as_file_error,
+    as_usage_error,
+    print_json,
+    print_table,
+    progress_bar,
+    warn_of_unknown_inputs,
+)
 
 _EXPECTED = 30  # evaluations of a typical search, for the progress bar
 _UNLIKELY = 0.01
@@ -96,7 +105,8 @@ def _measured(log, scene, names, joint, stamps, cage_joint):
 
     with as_usage_error(InputLogError), as_file_error():
         recorded = read_input_log(log, names, joint, stamps, cage_joint, (*REQUIRED, MEASURED))
-        course = judge(recorded, scene.input_limits, Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature))
+        course = judge(recorded, scene.accepted_inputs, Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature))
+    warn_of_unknown_inputs(course)
     inputs = course.at(course.instants, math.nan)  # NaN: the scene's own temperature, which may be a fitted field
     gaps = [(begin * 1e-9, end * 1e-9) for begin, end in course.gaps]
     refused = [("refused messages", ", ".join(f"{count} x {code}" for code, count in sorted(course.refused.items())))] if course.refused else []

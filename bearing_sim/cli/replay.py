@@ -10,6 +10,7 @@ import click
 from bearing_sim.cli.options import json_option, set_option
 from bearing_sim.cli.reporting import (
     FailedRun,
+    UnknownInputs,
     UsageError,
     announce_compilation,
     announce_replacement,
@@ -20,6 +21,7 @@ from bearing_sim.cli.reporting import (
     print_table,
     progress_bar,
     suggest_level,
+    unknown_inputs_of,
 )
 
 
@@ -82,7 +84,8 @@ def replay(
     IN.mcap is any rosbag2 recording, MCAP or sqlite3: a file, finished or not, a bag's folder, or several that belong together. It holds
     shaft speed (JointState or Float64) and radial load (WrenchStamped, or Float64 along +y), or such numbers in messages of any other
     type whose definition is in the recording. ROS is not needed. Inputs are interpolated linearly between stamps; bad messages are
-    refused, reported and counted as in a live run.
+    refused, reported and counted as in a live run. If inputs are unknown for some of the time, because their messages were refused, the
+    result says what that means for life and damage, and the exit code is 3.
     """
     if from_recording == bool(scene_name):
         raise UsageError("give either --scene, or --from-recording for a recording made by bearing-sim")
@@ -117,7 +120,7 @@ def replay(
         suggest_level(scene)
         recorded = read_input_log(logs, names, joint, stamps)
         held = Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature)
-        course = judge(recorded, scene.input_limits, held, longest_gap)
+        course = judge(recorded, scene.accepted_inputs, held, longest_gap)
         seconds = course.end * 1e-9
         with ExitStack() as stack:
             recording, names_of = None, [log.name for log in logs]
@@ -148,6 +151,8 @@ def replay(
         _print(result, course, recorded, scene, out)
     if result.given_up:
         raise FailedRun(result.given_up)
+    if said := unknown_inputs_of(course):
+        raise UnknownInputs(f"inputs are unknown for {said}")
 
 
 def _choice(scene, course) -> dict:
@@ -181,6 +186,9 @@ def _report(result, course, recorded, scene, out) -> dict:
         "least_rating_life_hours": result.least_rating_life,
         "damage": result.damage,
         "log_seconds": result.log_seconds,
+        "unknown_seconds": result.unknown_seconds,
+        "life_and_damage_are": "at most, at least" if result.verdict else "as given",
+        "verdict": result.verdict,
         "sim_seconds": result.sim_seconds,
         "gaps": len(course.gaps),
         "gap_seconds": result.gap_seconds,
@@ -216,8 +224,12 @@ def _print(result, course, recorded, scene, out) -> None:
     rows += [
         ("level", scene.level),
         ("cage slip while turning", spread),
-        ("life under these inputs", f"{result.life_hours:.4g} h (smallest instantaneous rating life {result.least_rating_life:.4g} h)"),
-        ("life used", f"{100 * result.damage:.4g} %"),
+        (
+            "life under these inputs",
+            f"{'at most ' * bool(result.verdict)}{result.life_hours:.4g} h (smallest instantaneous rating life {result.least_rating_life:.4g} h)",
+        ),
+        ("life used", f"{'at least ' * bool(result.verdict)}{100 * result.damage:.4g} %"),
+        ("inputs unknown", unknown_inputs_of(course) or "0 s"),
         ("refused inputs", f"{refused} (of {course.messages})"),
         ("gaps", f"{len(course.gaps)}, {result.gap_seconds:.4g} s not simulated"),
         ("simulated", f"{result.sim_seconds:.6g} s of {result.log_seconds:.6g} s, {result.samples} outputs"),

@@ -27,6 +27,12 @@ class FailedRun(click.ClickException):
     exit_code = 1
 
 
+class UnknownInputs(click.ClickException):
+    """A run whose inputs were unknown for some of the time, because they were refused: one message after the result, exit code 3."""
+
+    exit_code = 3
+
+
 @contextmanager
 def as_usage_error(*kinds: type[Exception]) -> Iterator[None]:
     """Convert exceptions of these types to a `UsageError`."""
@@ -66,6 +72,20 @@ def exit_on_sigterm() -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGTERM, before)
+
+
+def unknown_inputs_of(profile) -> str:
+    """Return for how long of a log inputs are unknown and what that means; empty if they are known throughout."""
+    if not profile.unknown_seconds:
+        return ""
+    share = f"{profile.unknown_seconds:.4g} s of {profile.log_seconds:.4g} s ({100 * profile.unknown_seconds / profile.log_seconds:.3g} %)"
+    return "; ".join(filter(None, (f"{share}: their messages were refused", profile.verdict)))
+
+
+def warn_of_unknown_inputs(profile) -> None:
+    """Say on stderr for how long of a log inputs are unknown, because every result that depends on it does."""
+    if said := unknown_inputs_of(profile):
+        click.echo(f"warning: inputs are unknown for {said}", err=True)
 
 
 def seconds_of(duration: str) -> float:

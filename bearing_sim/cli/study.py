@@ -19,6 +19,7 @@ from bearing_sim.cli.reporting import (
     print_rows,
     print_table,
     progress_bar,
+    warn_of_unknown_inputs,
     write_csv,
 )
 
@@ -85,7 +86,8 @@ def damage(log, scene_name, overrides, windows, length, as_json):
 
     with as_usage_error(SceneError, InputLogError), as_file_error():
         scene = load_scene(scene_name, [*overrides, "level=steady"])
-        course = judge(read_input_log(log), scene.input_limits, Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature))
+        course = judge(read_input_log(log), scene.accepted_inputs, Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature))
+    warn_of_unknown_inputs(course)
     from bearing_sim.cli.table import build_with_progress
     from bearing_sim.studies.damage import damages
 

@@ -15,6 +15,7 @@ from bearing_sim.cli.reporting import (
     exit_on_sigterm,
     print_json,
     print_table,
+    warn_of_unknown_inputs,
     write_csv,
 )
 
@@ -105,7 +106,8 @@ def _course(log, scene, count):
     from bearing_sim.studies.uncertainty import stretches
 
     with as_usage_error(InputLogError), as_file_error():
-        course = judge(read_input_log(log), scene.input_limits, Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature))
+        course = judge(read_input_log(log), scene.accepted_inputs, Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature))
+    warn_of_unknown_inputs(course)
     kelvin = math.nan  # the scene's own, which may be uncertain
     if "oil_temperature" in course.stamps and any(one.field == "lubricant.temperature" for one in scene.uncertainty):
         click.echo("the log gives the oil temperature: its range in the scene is not used", err=True)

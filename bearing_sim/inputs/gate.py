@@ -7,7 +7,7 @@ judged exactly as it would have been live.
 
 import math
 from collections import Counter, deque
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import Enum
 from typing import NamedTuple
@@ -34,6 +34,17 @@ _REVERSALS = 4  # large jumps against the jump before, among the values remember
 
 _SET_ASIDE = 1.0  # [s of wall time] in which a jump of the clock may become known
 
+# Messages that are refused for their values leave the inputs unknown; by kind and channel, the field of a scene that changes the bound.
+_BOUNDS = {
+    ("input.too_large", "shaft_speed"): "input_limits.maximum_speed",
+    ("input.too_large", "radial_load"): "input_limits.maximum_load",
+    ("input.too_large", "oil_temperature"): "input_limits.maximum_temperature",
+    ("input.too_small", "oil_temperature"): "input_limits.minimum_temperature",
+    ("input.negative", "shaft_speed"): "input_limits.reverse_rotation",
+}
+_SPANS_KEPT = 100  # of unknown inputs, before old ones are summed up
+_OF_VALUES = {kind for kind, _ in _BOUNDS} | {"input.not_finite", "input.malformed", "input.unreadable"}
+
 
 @dataclass
 class _Channel:
@@ -50,6 +61,72 @@ class _Channel:
     rate: float = math.nan
     earlier_stamp: float = -math.inf
     earlier_count: int = 0
+
+
+class Coverage:
+    """The time for which inputs are unknown, because their messages were refused for their values.
+
+    It lasts, on each channel, from the last good message before a refused one, or the refused one if there is none, to the next good one.
+    Times of several channels are counted once where they overlap.
+
+    Attributes
+    ----------
+    bounds : the fields of a scene that changed the verdict, such as ``input_limits.maximum_load``.
+    is_overloaded : whether a speed or load was refused because it is too large, so that damage is at least, and life at most, what is computed.
+    """
+
+    def __init__(self):
+        self._good: dict[str, float] = {}
+        self._unknown: dict[str, float] = {}  # since when, of the channels that are unknown now
+        self._spans: list[tuple[float, float]] = []  # (from, to), which may overlap
+        self._seconds = 0.0  # of spans that no channel can reach back to
+        self.bounds: list[str] = []
+        self.is_overloaded = False
+
+    def take_good(self, channel: str, time: float) -> None:
+        """Take a good message of a channel."""
+        self._good[channel] = time
+        if channel in self._unknown:
+            self._spans.append((self._unknown.pop(channel), time))
+            if len(self._spans) > _SPANS_KEPT:
+                self._settle(min(*self._good.values(), *self._unknown.values()))
+
+    def take_refused(self, channel: str, time: float, kind: str) -> None:
+        """Take a refused message of a channel; ``kind`` is that of its event."""
+        if kind not in _OF_VALUES or channel == MEASURED:
+            return
+        self._unknown.setdefault(channel, self._good.get(channel, time))
+        self.is_overloaded = self.is_overloaded or (kind == "input.too_large" and channel in REQUIRED)
+        bound = _BOUNDS.get((kind, channel))
+        if bound is not None and bound not in self.bounds:
+            self.bounds.append(bound)
+
+    def is_unknown(self, channel: str) -> bool:
+        """Whether the newest message of a channel that could be judged by its values was refused for them."""
+        return channel in self._unknown
+
+    def unknown_until(self, now: float) -> float:
+        """Return the time for which inputs were unknown up to ``now`` [s]."""
+        return self._seconds + _covered([*self._spans, *((begin, now) for begin in self._unknown.values())])
+
+    def _settle(self, limit: float) -> None:
+        """Sum up the spans as far as ``limit`` [s]."""
+        self._seconds += _covered((begin, min(end, limit)) for begin, end in self._spans if begin < limit)
+        self._spans = [(max(begin, limit), end) for begin, end in self._spans if end > limit]
+
+    @property
+    def verdict(self) -> str:
+        """What this means for lives and damage, and which fields are the bounds; empty if nothing was refused as too large."""
+        return f"the life is at most, and the damage at least, the value given (bound: {', '.join(self.bounds)})" if self.is_overloaded else ""
+
+
+def _covered(spans: Iterable[tuple[float, float]]) -> float:
+    """Return the length of the union of spans (from, to)."""
+    seconds, reached = 0.0, -math.inf
+    for begin, end in sorted(spans):
+        seconds += max(0.0, end - max(begin, reached))
+        reached = max(reached, end)
+    return seconds
 
 
 class InputGate:
@@ -69,6 +146,8 @@ class InputGate:
         The last good cage speed [rad/s]; NaN before the first.
     refused, accepted : collections.Counter
         Messages refused by kind of event, and accepted by channel.
+    coverage : Coverage
+        For how long inputs were unknown.
     """
 
     def __init__(self, limits: InputLimits, held: Inputs, substitute: str = ""):
@@ -76,6 +155,7 @@ class InputGate:
         self.measured = math.nan
         self.refused: Counter[str] = Counter()
         self.accepted: Counter[str] = Counter()
+        self.coverage = Coverage()
         self._channels = {name: _Channel(*_good_from_to(name, limits), is_force=name == "radial_load") for name in CHANNELS}
         self._reported: set[tuple[str, str]] = set()
 
@@ -128,6 +208,7 @@ class InputGate:
         state.stamp, state.earlier_count = stamp, 0
         state.arrival = max(state.arrival, received)
         self.accepted[channel] += 1
+        self.coverage.take_good(channel, received)
         if channel == MEASURED:
             self.measured = float(values[0])
         else:
@@ -141,6 +222,7 @@ class InputGate:
     def refuse(self, channel: str, time: float, kind: str, reason: str, level: Level = Level.ERROR) -> Event:
         """Count a refused message and return its event; for errors that only the caller can see, such as a missing joint."""
         self.refused[kind] += 1
+        self.coverage.take_refused(channel, time, kind)
         return Event(time, level, kind, channel, reason, f"message refused, {self._used_instead(channel)}")
 
     def latest(self, channel: str) -> float | tuple[float, float]:
@@ -210,12 +292,16 @@ def with_values(held: Inputs, channel: str, values: tuple[float, ...]) -> Inputs
 
 
 def _good_from_to(channel: str, limits: InputLimits) -> tuple[float, float]:
-    """Return the least and the largest good value of a message with one value; of a force with two components, the largest magnitude."""
+    """Return the least and the largest good value of a message with one value; of a force with two components, the largest magnitude.
+
+    A limit that is None allows everything.
+    """
+    largest_speed, largest_load = (math.inf if bound is None else bound for bound in (limits.maximum_speed, limits.maximum_load))
     if channel == "oil_temperature":
         return limits.minimum_temperature, limits.maximum_temperature
     if channel == "radial_load":
-        return 0.0, limits.maximum_load
-    return -limits.maximum_speed if limits.reverse_rotation else 0.0, limits.maximum_speed
+        return 0.0, largest_load
+    return -largest_speed if limits.reverse_rotation else 0.0, largest_speed
 
 
 def _value_error(channel: str, values: tuple[float, ...], state: _Channel) -> tuple[str, str]:
@@ -228,11 +314,12 @@ def _value_error(channel: str, values: tuple[float, ...], state: _Channel) -> tu
         return "input.not_finite", f"{shown} {unit} is not finite"
     if channel == "oil_temperature":
         kind = "input.too_small" if values[0] < state.least else "input.too_large"
-        return kind, f"{shown} K is outside {state.least:.6g} to {state.largest:.6g} K"
+        return kind, f"{shown} K is outside {state.least:.6g} to {state.largest:.6g} K ({_BOUNDS[kind, channel]})"
     if len(values) == 1 and state.least == 0.0 > values[0]:
         hint = "" if state.is_force else " (input_limits.reverse_rotation is off)"
         return "input.negative", f"{shown} {unit} is negative, expected zero or more{hint}"
-    return "input.too_large", f"{magnitude:.6g} {unit} is above the largest accepted, {state.largest:.6g} {unit}"
+    bound = _BOUNDS.get(("input.too_large", channel), "input_limits.maximum_speed")  # that of the shaft holds for a measured cage, too
+    return "input.too_large", f"{magnitude:.6g} {unit} is above the largest accepted, {state.largest:.6g} {unit} ({bound})"
 
 
 def _stamp_error(state: _Channel, stamp: float) -> tuple[str, str, Level]:
@@ -369,3 +456,9 @@ class ClockJumpFilter:
         while self._aside and wall - self._aside[0][0] > _SET_ASIDE:
             found.append(self._aside.popleft()[1])
         return found
+
+
+def unknown_inputs(time: float, unknown: float, total: float, verdict: str) -> Event:
+    """Return the event that inputs were unknown for ``unknown`` of ``total`` [s]; ``verdict`` as of `Coverage`."""
+    reason = f"inputs were refused for {unknown:.4g} s of {total:.4g} s ({100 * unknown / max(total, unknown):.3g} %)"
+    return Event(time, Level.WARN, "input.unknown", "", reason, verdict or "the last good values, or lines between them, stand in")

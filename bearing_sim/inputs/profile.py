@@ -223,6 +223,9 @@ class InputProfile:
     refused : messages refused, by kind of event.
     messages : messages offered.
     limits : that they were judged by.
+    log_seconds : for how long the log has messages of both speed and load, whether good or refused for their values.
+    unknown_seconds : for how long of that inputs are unknown, because their messages were refused.
+    verdict : what that means for lives and damage (see `bearing_sim.inputs.gate.Coverage`).
     """
 
     start_ns: int
@@ -234,6 +237,9 @@ class InputProfile:
     refused: Counter
     messages: int
     limits: InputLimits
+    log_seconds: float
+    unknown_seconds: float
+    verdict: str
 
     @property
     def instants(self) -> np.ndarray:
@@ -278,6 +284,7 @@ def judge(log: InputLog, limits: InputLimits, held: Inputs, longest_gap: float |
     stamps: dict[str, list[int]] = {channel: [] for channel in log.series}
     values: dict[str, list] = {channel: [] for channel in log.series}
     events = _Events()
+    seen: dict[str, tuple[float, float]] = {}  # first and last time of messages that are good, or refused for their values
     newest = -np.inf
     messages = 0
     for channel, stamp, given in _in_order(log):
@@ -291,6 +298,9 @@ def judge(log: InputLog, limits: InputLimits, held: Inputs, longest_gap: float |
             for event in gate.onsets(time):
                 events.add(event)
         refusal = gate.offer(channel, time, given)
+        if refusal is None or gate.coverage.is_unknown(channel):
+            first, last = seen.get(channel, (time, time))
+            seen[channel] = min(first, time), max(last, time)
         if refusal is not None:
             events.add(refusal)
             continue
@@ -308,7 +318,9 @@ def judge(log: InputLog, limits: InputLimits, held: Inputs, longest_gap: float |
     shift = (epoch - start) * 1e-9
     kept = sorted((event._replace(time=event.time + shift) for event in events.kept()), key=lambda event: event.time)
     arrays = {channel: np.array(given, float) for channel, given in values.items()}
-    return InputProfile(start, rising, arrays, end - start, gaps, kept, gate.refused, messages, limits)
+    begun, ended = max(seen[channel][0] for channel in REQUIRED), min(seen[channel][1] for channel in REQUIRED)
+    unknown = gate.coverage.unknown_until(ended)
+    return InputProfile(start, rising, arrays, end - start, gaps, kept, gate.refused, messages, limits, ended - begun, unknown, gate.coverage.verdict)
 
 
 def gap_event(time: float, channel: str, gap: tuple[int, int]) -> Event:

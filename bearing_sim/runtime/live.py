@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.inputs.gate import UNITS, InputGate, PublisherConflict, with_values
+from bearing_sim.inputs.gate import UNITS, Coverage, InputGate, PublisherConflict, unknown_inputs, with_values
 from bearing_sim.messages import topics
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.model.sample import joined
@@ -201,6 +201,7 @@ class Model:
         now, newest = self.run_time(now_ns), self.solver.newest
         further = topics.further_condition(self.scene, newest) if newest is not None else {}
         values = numbers(self.gate, self.solver) | {"level": self._running_level} | further
+        values["inputs unknown [s]"] = self.gate.coverage.unknown_until(now)
         return Condition(self._events(now), values | self.monitor.values | self.residual.values(now) | self.sinks.values | self._values())
 
     def record_diagnostics(self, condition: Condition, now_ns: int) -> None:
@@ -243,6 +244,9 @@ class Model:
         """Return the events that hold at ``now`` [s], the worst first."""
         conflicts = [event for conflict in self._conflicts.values() if (event := conflict.event(now)) is not None]
         events = [*self.sinks.events(now), *self.monitor.events(now), *self.residual.events(now), *self._further_events(now), *conflicts]
+        coverage = self.gate.coverage
+        if coverage.is_overloaded:
+            events.append(unknown_inputs(now, coverage.unknown_until(now), now, coverage.verdict))
         return self.health.events(self._review_time(now), events, self.solver)
 
     def _note(self, event: Event) -> None:
@@ -252,6 +256,7 @@ class Model:
         """Note an event of the solver that is seen at ``now`` [s]; after a reset, judge the bearing from the start."""
         self._note(event._replace(time=now))
         if event.kind == "run.reset":
+            self.gate.coverage = Coverage()
             self.monitor.restart()
             self.residual.interrupt(event.time)
 
@@ -295,7 +300,7 @@ class LiveModel(Model):
         self._sample_rate, self.schedule = sample_rate, tick_schedule(sample_rate, publish_rate)
         pacer, capacity = Pacer(1.0, maximum_lag), round(_SLACK / tick_schedule(sample_rate, math.inf).tick)
         solver = WallTimeSolver(simulation, pacer, self.schedule, capacity, clock, governor, self._advanced)
-        super().__init__(scene, InputGate(scene.input_limits, simulation.inputs), solver, start_ns)
+        super().__init__(scene, InputGate(scene.accepted_inputs, simulation.inputs), solver, start_ns)
         self._sample_decimator, self._publish_decimator, self._due = Decimator(sample_rate), Decimator(publish_rate), due
         self._wall_clock = WallClock(start_ns, clock, receiver)
         self._published_time = -math.inf

@@ -143,8 +143,8 @@ class SimTimeModel(Model):
         self._late = self._gaps = 0
         self._openers: dict[str, Callable[[int], Sink]] = {}
         self._published: list[Published] = []
-        profile = OnlineInputProfile(sample_rate, scene.input_limits, self._oil_temperature)
-        super().__init__(scene, InputGate(scene.input_limits, self._first_inputs), SimTimeSolver(simulation, profile, clock=wall), 0)
+        profile = OnlineInputProfile(sample_rate, scene.accepted_inputs, self._oil_temperature)
+        super().__init__(scene, InputGate(scene.accepted_inputs, self._first_inputs), SimTimeSolver(simulation, profile, clock=wall), 0)
         self._comparison = Comparison(self.residual)
         self.solver.start()
 
@@ -330,10 +330,10 @@ class SimTimeModel(Model):
     def _start_again(self) -> None:
         """Leave the profile and begin another one at the clock, with the messages that were set aside."""
         early = self._jump_filter.jump(self._clock.now, self._newest)
-        refused, self.gate = self.gate.refused, InputGate(self.scene.input_limits, self._first_inputs)
+        refused, self.gate = self.gate.refused, InputGate(self.scene.accepted_inputs, self._first_inputs)
         self.gate.refused = refused
         self._newest, self._measured, self._started = {}, [], False
-        self.solver.follow(OnlineInputProfile(self._rate, self.scene.input_limits, self._oil_temperature))
+        self.solver.follow(OnlineInputProfile(self._rate, self.scene.accepted_inputs, self._oil_temperature))
         for message in early:
             self._accept(message)
         self._show_clock()

@@ -18,6 +18,11 @@ from bearing_sim.scene.quantity import check, quantity, record
 from bearing_sim.scene.uncertainty import Range, range_errors
 
 _LONGEST_STEP = 0.5  # roller pitches of cage rotation in a fixed step
+_LARGEST_LOAD = 1e8  # N
+# Inputs that no bearing survives, so that a message beyond them is a fault of a sensor (assumption): a hoop stress of 1 GPa in the inner
+# ring, rho v^2; and a contact pressure of 4 GPa times the root of ten, for C_0 is the load of 4 GPa (ISO 76).
+_BURSTING_SPEED = 350.0  # m/s
+_CRUSHING_LOAD = 10.0  # times C_0r
 
 
 @record
@@ -25,7 +30,7 @@ class Operating:
     """Constant conditions of `bearing-sim run`; a live run uses them until an input arrives."""
 
     shaft_speed: quantity("rad/s", "shaft speed, omega_i", -12000.0, 12000.0, "rpm")
-    radial_load: quantity("N", "radial load on the inner ring, F_r", 0.0, 1e6) = 0.0
+    radial_load: quantity("N", "radial load on the inner ring, F_r", 0.0, _LARGEST_LOAD) = 0.0
     load_angle: quantity("rad", "azimuth of the radial load, from +y", -2 * math.pi, 2 * math.pi, "deg") = 0.0
     moment: quantity("N*m", "moment on the inner ring, which then tilts freely; None: its tilt is held", 0.0, 1e5) | None = None
     moment_angle: quantity("rad", "azimuth to which the moment leans the ring's +x end, from +y", -2 * math.pi, 2 * math.pi, "deg") = 0.0
@@ -93,13 +98,16 @@ def tolerance_overrides(factor: float) -> list[str]:
 
 @record
 class InputLimits:
-    """Limits of input messages; others are rejected and reported, and the last good value is held."""
+    """Limits of input messages; others are faults of a sensor: they are refused and reported, and the last good value is held.
 
-    maximum_speed: quantity("rad/s", "largest shaft speed accepted", 0.0, 12000.0, "rpm") = 100_000 * math.pi / 30
-    maximum_load: quantity("N", "largest radial load accepted", 0.0, 1e6) = 50_000.0
+    Where no largest speed or load is given, it is more than the bearing can take (see `Scene.accepted_inputs`).
+    """
+
+    maximum_speed: quantity("rad/s", "largest shaft speed accepted; None: the inner raceway at 350 m/s", 0.0, 12000.0, "rpm") | None = None
+    maximum_load: quantity("N", "largest radial load accepted; None: ten times the static load rating", 0.0, _LARGEST_LOAD) | None = None
     minimum_temperature: quantity("K", "lowest oil temperature accepted", 150.0, 800.0, "degC") = 233.15
     maximum_temperature: quantity("K", "highest oil temperature accepted", 150.0, 800.0, "degC") = 523.15
-    reverse_rotation: bool = False  # whether negative shaft speeds are accepted
+    reverse_rotation: bool = True  # whether negative shaft speeds are accepted
     stale_after: quantity("s", "age at which an input counts as stale", 1e-3, 3600.0) = 1.0
     minimum_rate: quantity("Hz", "lowest message rate expected", 0.0, 1e5) = 1.0
     maximum_rate: quantity("Hz", "highest message rate expected", 0.0, 1e5) = 2000.0
@@ -198,7 +206,7 @@ class SteadyTable:
 
     tolerance: quantity("", "error allowed in slip, over 0.025 points of it, and in life, relative", 1e-4, 0.5, "%") = 0.02
     maximum_speed: quantity("rad/s", "highest shaft speed; None: a fifth above the operating speed", 1.0, 12000.0, "rpm") | None = None
-    maximum_load: quantity("N", "largest radial load; None: half the bearing's dynamic load rating", 1.0, 1e6) | None = None
+    maximum_load: quantity("N", "largest radial load; None: half the bearing's dynamic load rating", 1.0, _LARGEST_LOAD) | None = None
     minimum_temperature: quantity("K", "lowest oil temperature", 220.0, 600.0, "degC") = 313.15
     maximum_temperature: quantity("K", "highest oil temperature", 220.0, 600.0, "degC") = 453.15
 
@@ -231,6 +239,17 @@ class Scene:
     uncertainty: tuple[Range, ...] = ()  # a mapping of field to range in a file, see `bearing_sim.scene.uncertainty`
 
     @property
+    def accepted_inputs(self) -> InputLimits:
+        """The limits of input messages, those that are not given by what no bearing of this size survives."""
+        limits, bearing = self.input_limits, self.bearing
+        speed, load = _BURSTING_SPEED / bearing.inner_raceway.radius, _CRUSHING_LOAD * static_rating_of(bearing)
+        return replace(
+            limits,
+            maximum_speed=min(speed, 12000.0) if limits.maximum_speed is None else limits.maximum_speed,
+            maximum_load=min(load, _LARGEST_LOAD) if limits.maximum_load is None else limits.maximum_load,
+        )
+
+    @property
     def cage_whirls(self) -> bool:
         """Whether the level moves the cage's centre."""
         return self.level not in ("steady", "slip")
@@ -249,12 +268,16 @@ class Scene:
         return step_errors(self) + moment_errors(self) + range_errors(self)
 
 
+def static_rating_of(bearing: Bearing) -> float:
+    """Return the basic static radial load rating, C_0r = 44 (1 - gamma) Z L D_w in N and mm (ISO 76) [N]."""
+    roller = bearing.roller
+    return 44e6 * (1 - bearing.diameter_ratio) * roller.count * roller.length * roller.diameter
+
+
 def moment_errors(scene) -> list[str]:
     """Return error messages for a moment beyond the capacity of a bearing of this size."""
     bearing, moment = scene.bearing, scene.operating.moment
-    # C_0r = 44 (1 - gamma) Z L D_w in N and mm (ISO 76), at a lever as long as a roller
-    static_rating = 44e6 * (1 - bearing.diameter_ratio) * bearing.roller.count * bearing.roller.length * bearing.roller.diameter
-    bound = static_rating * bearing.roller.length
+    bound = static_rating_of(bearing) * bearing.roller.length
     if moment is None or moment <= bound:
         return []
     return [

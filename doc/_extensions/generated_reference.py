@@ -320,6 +320,10 @@ EVENTS = {
     "input.time_repeated": ("WARN", "message refused: its stamp repeats the last one"),
     "input.too_large": ("ERROR", "message refused: above the limit in `input_limits`"),
     "input.too_small": ("ERROR", "message refused: below the limit in `input_limits`"),
+    "input.unknown": (
+        "WARN",
+        "inputs were refused for some of the time; if they were too large, the life is an upper and the damage a lower bound",
+    ),
     "input.unreadable": ("ERROR", "message of a log that cannot be decoded"),
     "log.unfinished": ("WARN", "a log ends before its proper end, as of a killed writer"),
     "output.dropped": ("WARN", "samples were dropped because nobody collected them in time"),

@@ -276,7 +276,7 @@ def span_of(scene: Scene, temperatures: tuple[float, float] | None = None) -> Sp
     scene : its block ``table`` says it, or leaves it to operating speed and load rating.
     temperatures : lowest and highest oil temperature [K], instead of the scene's.
     """
-    wanted, bearing, limits = scene.table, scene.bearing, scene.input_limits
+    wanted, bearing, limits = scene.table, scene.bearing, scene.accepted_inputs
     roller = bearing.roller
     speed = wanted.maximum_speed or min(_SPEED_FRACTION * abs(scene.operating.shaft_speed) or limits.maximum_speed, limits.maximum_speed)
     rating = load_rating(roller.count, roller.diameter, roller.length, bearing.diameter_ratio)
