@@ -35,7 +35,8 @@ def pytest_collection_modifyitems(items):
     """Keep the tests of a file together, and all files that run something in real time."""
     for item in items:
         name = item.path.stem
-        item.add_marker(pytest.mark.xdist_group("real_time" if name in _REAL_TIME or name.startswith("test_node") else name))
+        is_real_time = name in _REAL_TIME or (name.startswith("test_node") and name != "test_node_lifecycle")  # which is long, and in no hurry
+        item.add_marker(pytest.mark.xdist_group("real_time" if is_real_time else name))
 
 
 @pytest.fixture

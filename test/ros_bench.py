@@ -92,6 +92,7 @@ class Client:
         # What is heard is taken without the executor, which handles one message in the time of a dozen takes: a busy machine falls behind.
         self._ears = rclpy.create_node("test_ears", context=self.context, namespace=namespace, enable_rosout=False, start_parameter_services=False)
         self.received = {name: [] for name in [*topics.OUTPUTS, "diagnostics"]}
+        self._callers = {}  # clients of services, by name
         self._types = {name: topics.INPUTS[name].ros_type for name in ("shaft_speed", "radial_load")}
         if scalar:
             self._types = dict.fromkeys(self._types, "std_msgs/msg/Float64")
@@ -174,9 +175,17 @@ class Client:
         return {pair.key: pair.value for pair in self.received["diagnostics"][-1].status[0].values}
 
     def call(self, kind, service: str, request, process: NodeProcess):
-        """Call a service and return its response."""
-        client = self.node.create_client(kind, f"bearing_node/{service}")
-        self.spin_until(client.service_is_ready, f"the service {service} is there", process)
-        future = client.call_async(request)
+        """Call a service and return its response.
+
+        Clients are kept: a server that has not discovered a new client's reader yet loses the response.
+        """
+        is_new = service not in self._callers
+        if is_new:
+            self._callers[service] = self.node.create_client(kind, f"bearing_node/{service}")
+        caller = self._callers[service]
+        if is_new or not caller.service_is_ready():
+            self.spin_until(caller.service_is_ready, f"the service {service} is there", process)
+            self.spin(0.3)
+        future = caller.call_async(request)
         self.spin_until(future.done, f"the service {service} answers", process)
         return future.result()
