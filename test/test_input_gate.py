@@ -226,3 +226,19 @@ def test_what_is_refused_as_too_large_makes_life_an_upper_bound_and_names_the_fi
     assert gate.coverage.verdict.endswith("(bound: input_limits.maximum_load, input_limits.maximum_speed)")
     gate.offer("cage_speed_measured", 0.4, (math.nan,))
     assert gate.coverage.unknown_until(0.4) == pytest.approx(0.3), "a measured cage is no input of the model"
+
+
+@pytest.mark.parametrize("kind", ["input.frame", "input.not_stamped", "input.malformed"])
+def test_a_message_that_only_the_caller_can_refuse_leaves_its_input_unknown_too(gate, kind):
+    gate.offer("radial_load", 1.0, (800.0,))
+    gate.refuse("radial_load", 1.5, kind, "as the caller says")
+    assert gate.coverage.unknown_until(3.0) == pytest.approx(2.0)
+
+
+def test_years_of_rare_faults_beside_a_silent_channel_are_counted_in_bounded_memory(gate):
+    gate.offer("oil_temperature", 0.0, (350.0,))
+    for k in range(1, 5001):
+        for after, speed in ((0.0, 100.0), (1.0, math.nan), (2.0, 100.0)):
+            gate.offer("shaft_speed", 10.0 * k + after, (speed,))
+    assert gate.coverage.unknown_until(60_000.0) == pytest.approx(2.0 * 5000)
+    assert len(gate.coverage._spans) <= 1001

@@ -189,3 +189,11 @@ def test_a_set_of_the_oil_temperature_is_nothing_to_wait_for_and_acts_from_its_i
     second = profile.take(T0 + 2 * SECOND)
     assert first.inputs[:, 3].tolist() == [300.0] * 6 + [310.0] * 5 and set(second.inputs[:, 3]) == {320.0}
     assert sum(map(len, (first.arrived, second.arrived))) == 5, "start, the temperature before the first set, two sets, end"
+
+
+def test_what_is_unknown_is_a_part_of_the_log_also_where_one_channel_was_refused_before_the_other_begins(tmp_path):
+    loads = [(0.1 * k, 3000.0 if k < 100 else 800.0, 0.0) for k in range(201)]
+    speeds = [(0.1 * k, 100.0) for k in range(50, 201)]
+    course = judge(read_input_log(write_log(tmp_path / "log.mcap", speeds, loads)), LIMITS, HELD)
+    assert course.log_seconds == pytest.approx(15.0) and course.unknown_seconds == pytest.approx(5.0), "speed is known from 5 s on, load from 10 s on"
+    assert course.end * 1e-9 == pytest.approx(10.0)

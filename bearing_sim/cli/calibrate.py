@@ -11,10 +11,10 @@ from bearing_sim.cli.reporting import (
     announce_compilation,
     as_file_error,
     as_usage_error,
+    judged,
     print_json,
     print_table,
     progress_bar,
-    warn_of_unknown_inputs,
 )
 
 _EXPECTED = 30  # evaluations of a typical search, for the progress bar
@@ -98,15 +98,12 @@ def _measured(log, scene, names, joint, stamps, cage_joint):
     import math
 
     from bearing_sim.inputs.log import REQUIRED, InputLogError, read_input_log, summary_lines
-    from bearing_sim.inputs.profile import judge
     from bearing_sim.messages.topics import MEASURED
-    from bearing_sim.simulation import Inputs
     from bearing_sim.studies.calibration import Measured
 
     with as_usage_error(InputLogError), as_file_error():
         recorded = read_input_log(log, names, joint, stamps, cage_joint, (*REQUIRED, MEASURED))
-        course = judge(recorded, scene.accepted_inputs, Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature))
-    warn_of_unknown_inputs(course)
+        course = judged(recorded, scene)
     inputs = course.at(course.instants, math.nan)  # NaN: the scene's own temperature, which may be a fitted field
     gaps = [(begin * 1e-9, end * 1e-9) for begin, end in course.gaps]
     refused = [("refused messages", ", ".join(f"{count} x {code}" for code, count in sorted(course.refused.items())))] if course.refused else []

@@ -21,7 +21,6 @@ from bearing_sim.cli.reporting import (
     print_table,
     progress_bar,
     suggest_level,
-    unknown_inputs_of,
 )
 
 
@@ -151,8 +150,8 @@ def replay(
         _print(result, course, recorded, scene, out)
     if result.given_up:
         raise FailedRun(result.given_up)
-    if said := unknown_inputs_of(course):
-        raise UnknownInputs(f"inputs are unknown for {said}")
+    if course.unknown_seconds:
+        raise UnknownInputs(course.unknown_event.text)
 
 
 def _choice(scene, course) -> dict:
@@ -186,9 +185,9 @@ def _report(result, course, recorded, scene, out) -> dict:
         "least_rating_life_hours": result.least_rating_life,
         "damage": result.damage,
         "log_seconds": result.log_seconds,
-        "unknown_seconds": result.unknown_seconds,
-        "life_and_damage_are": "at most, at least" if result.verdict else "as given",
-        "verdict": result.verdict,
+        "unknown_seconds": course.unknown_seconds,
+        "life_and_damage_are": "at most, at least" if course.verdict else "as given",
+        "verdict": course.verdict,
         "sim_seconds": result.sim_seconds,
         "gaps": len(course.gaps),
         "gap_seconds": result.gap_seconds,
@@ -226,10 +225,10 @@ def _print(result, course, recorded, scene, out) -> None:
         ("cage slip while turning", spread),
         (
             "life under these inputs",
-            f"{'at most ' * bool(result.verdict)}{result.life_hours:.4g} h (smallest instantaneous rating life {result.least_rating_life:.4g} h)",
+            f"{'at most ' * bool(course.verdict)}{result.life_hours:.4g} h (smallest instantaneous rating life {result.least_rating_life:.4g} h)",
         ),
-        ("life used", f"{'at least ' * bool(result.verdict)}{100 * result.damage:.4g} %"),
-        ("inputs unknown", unknown_inputs_of(course) or "0 s"),
+        ("life used", f"{'at least ' * bool(course.verdict)}{100 * result.damage:.4g} %"),
+        ("inputs unknown", course.unknown_event.text if course.unknown_seconds else "0 s"),
         ("refused inputs", f"{refused} (of {course.messages})"),
         ("gaps", f"{len(course.gaps)}, {result.gap_seconds:.4g} s not simulated"),
         ("simulated", f"{result.sim_seconds:.6g} s of {result.log_seconds:.6g} s, {result.samples} outputs"),

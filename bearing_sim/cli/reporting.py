@@ -74,18 +74,15 @@ def exit_on_sigterm() -> Iterator[None]:
         signal.signal(signal.SIGTERM, before)
 
 
-def unknown_inputs_of(profile) -> str:
-    """Return for how long of a log inputs are unknown and what that means; empty if they are known throughout."""
-    if not profile.unknown_seconds:
-        return ""
-    share = f"{profile.unknown_seconds:.4g} s of {profile.log_seconds:.4g} s ({100 * profile.unknown_seconds / profile.log_seconds:.3g} %)"
-    return "; ".join(filter(None, (f"{share}: their messages were refused", profile.verdict)))
+def judged(log, scene):
+    """Return the profile of a log for a scene; a warning on stderr says for how long inputs are unknown, because every result depends on it."""
+    from bearing_sim.inputs.profile import judge
+    from bearing_sim.simulation import Inputs
 
-
-def warn_of_unknown_inputs(profile) -> None:
-    """Say on stderr for how long of a log inputs are unknown, because every result that depends on it does."""
-    if said := unknown_inputs_of(profile):
-        click.echo(f"warning: inputs are unknown for {said}", err=True)
+    profile = judge(log, scene.accepted_inputs, Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature))
+    if profile.unknown_seconds:
+        click.echo(f"warning: {profile.unknown_event.text}", err=True)
+    return profile
 
 
 def seconds_of(duration: str) -> float:

@@ -15,11 +15,11 @@ from bearing_sim.cli.reporting import (
     as_file_error,
     as_usage_error,
     exit_on_sigterm,
+    judged,
     print_json,
     print_rows,
     print_table,
     progress_bar,
-    warn_of_unknown_inputs,
     write_csv,
 )
 
@@ -80,14 +80,12 @@ def report(folder, out):
 def damage(log, scene_name, overrides, windows, length, as_json):
     """Run the inputs in IN.mcap at levels steady and slip, and at level planar in windows spread evenly over them."""
     from bearing_sim.inputs.log import InputLogError, read_input_log
-    from bearing_sim.inputs.profile import judge
     from bearing_sim.scene.loader import SceneError, load_scene
-    from bearing_sim.simulation import Inputs, IntegrationError
+    from bearing_sim.simulation import IntegrationError
 
     with as_usage_error(SceneError, InputLogError), as_file_error():
         scene = load_scene(scene_name, [*overrides, "level=steady"])
-        course = judge(read_input_log(log), scene.accepted_inputs, Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature))
-    warn_of_unknown_inputs(course)
+        course = judged(read_input_log(log), scene)
     from bearing_sim.cli.table import build_with_progress
     from bearing_sim.studies.damage import damages
 

@@ -13,9 +13,9 @@ from bearing_sim.cli.reporting import (
     as_file_error,
     as_usage_error,
     exit_on_sigterm,
+    judged,
     print_json,
     print_table,
-    warn_of_unknown_inputs,
     write_csv,
 )
 
@@ -101,13 +101,10 @@ def _course(log, scene, count):
     import math
 
     from bearing_sim.inputs.log import InputLogError, read_input_log
-    from bearing_sim.inputs.profile import judge
-    from bearing_sim.simulation import Inputs
     from bearing_sim.studies.uncertainty import stretches
 
     with as_usage_error(InputLogError), as_file_error():
-        course = judge(read_input_log(log), scene.accepted_inputs, Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature))
-    warn_of_unknown_inputs(course)
+        course = judged(read_input_log(log), scene)
     kelvin = math.nan  # the scene's own, which may be uncertain
     if "oil_temperature" in course.stamps and any(one.field == "lubricant.temperature" for one in scene.uncertainty):
         click.echo("the log gives the oil temperature: its range in the scene is not used", err=True)

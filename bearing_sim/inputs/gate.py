@@ -34,7 +34,7 @@ _REVERSALS = 4  # large jumps against the jump before, among the values remember
 
 _SET_ASIDE = 1.0  # [s of wall time] in which a jump of the clock may become known
 
-# Messages that are refused for their values leave the inputs unknown; by kind and channel, the field of a scene that changes the bound.
+# By kind of event and channel, the field of a scene that is the bound.
 _BOUNDS = {
     ("input.too_large", "shaft_speed"): "input_limits.maximum_speed",
     ("input.too_large", "radial_load"): "input_limits.maximum_load",
@@ -42,8 +42,8 @@ _BOUNDS = {
     ("input.too_small", "oil_temperature"): "input_limits.minimum_temperature",
     ("input.negative", "shaft_speed"): "input_limits.reverse_rotation",
 }
-_SPANS_KEPT = 100  # of unknown inputs, before old ones are summed up
-_OF_VALUES = {kind for kind, _ in _BOUNDS} | {"input.not_finite", "input.malformed", "input.unreadable"}
+_OLD = ("input.time_repeated", "input.time_backwards")  # a message refused for these leaves nothing unknown: a later one is known
+_SPANS_KEPT = 1000  # of unknown inputs; then old ones are summed up
 
 
 @dataclass
@@ -64,10 +64,11 @@ class _Channel:
 
 
 class Coverage:
-    """The time for which inputs are unknown, because their messages were refused for their values.
+    """The time for which inputs are unknown, because their messages were refused, unless only for an old stamp.
 
     It lasts, on each channel, from the last good message before a refused one, or the refused one if there is none, to the next good one.
-    Times of several channels are counted once where they overlap.
+    Times of several channels are counted once where they overlap; after a thousand of them, a channel that has been silent since is not
+    waited for.
 
     Attributes
     ----------
@@ -79,7 +80,7 @@ class Coverage:
         self._good: dict[str, float] = {}
         self._unknown: dict[str, float] = {}  # since when, of the channels that are unknown now
         self._spans: list[tuple[float, float]] = []  # (from, to), which may overlap
-        self._seconds = 0.0  # of spans that no channel can reach back to
+        self._seconds, self._settled = 0.0, -math.inf  # sum of older spans, and up to when they are summed up
         self.bounds: list[str] = []
         self.is_overloaded = False
 
@@ -89,29 +90,31 @@ class Coverage:
         if channel in self._unknown:
             self._spans.append((self._unknown.pop(channel), time))
             if len(self._spans) > _SPANS_KEPT:
-                self._settle(min(*self._good.values(), *self._unknown.values()))
+                self._settle(max(min(*self._good.values(), *self._unknown.values()), self._spans[_SPANS_KEPT // 2][1]))
 
     def take_refused(self, channel: str, time: float, kind: str) -> None:
         """Take a refused message of a channel; ``kind`` is that of its event."""
-        if kind not in _OF_VALUES or channel == MEASURED:
+        if kind in _OLD or channel == MEASURED:
             return
-        self._unknown.setdefault(channel, self._good.get(channel, time))
+        self._unknown.setdefault(channel, max(self._good.get(channel, time), self._settled))
         self.is_overloaded = self.is_overloaded or (kind == "input.too_large" and channel in REQUIRED)
         bound = _BOUNDS.get((kind, channel))
         if bound is not None and bound not in self.bounds:
             self.bounds.append(bound)
 
     def is_unknown(self, channel: str) -> bool:
-        """Whether the newest message of a channel that could be judged by its values was refused for them."""
+        """Whether a channel has had no good message since one was refused."""
         return channel in self._unknown
 
-    def unknown_until(self, now: float) -> float:
-        """Return the time for which inputs were unknown up to ``now`` [s]."""
-        return self._seconds + _covered([*self._spans, *((begin, now) for begin in self._unknown.values())])
+    def unknown_until(self, now: float, since: float = -math.inf) -> float:
+        """Return the time for which inputs were unknown up to ``now`` [s], from ``since`` [s] on."""
+        spans = [*self._spans, *((begin, now) for begin in self._unknown.values())]
+        return self._seconds + _covered((max(begin, since), min(end, now)) for begin, end in spans)
 
     def _settle(self, limit: float) -> None:
         """Sum up the spans as far as ``limit`` [s]."""
         self._seconds += _covered((begin, min(end, limit)) for begin, end in self._spans if begin < limit)
+        self._settled = limit
         self._spans = [(max(begin, limit), end) for begin, end in self._spans if end > limit]
 
     @property

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.inputs.gate import REQUIRED, InputGate
+from bearing_sim.inputs.gate import REQUIRED, InputGate, unknown_inputs
 from bearing_sim.inputs.log import InputLog, InputLogError, ReadError
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.messages.topics import INPUTS, MEASURED
@@ -242,6 +242,11 @@ class InputProfile:
     verdict: str
 
     @property
+    def unknown_event(self) -> Event:
+        """The event at the end that says for how long inputs are unknown, and what that means."""
+        return unknown_inputs(self.end * 1e-9, self.unknown_seconds, self.log_seconds, self.verdict)
+
+    @property
     def instants(self) -> np.ndarray:
         """Stamps of speed and load from time 0 to the end [ns], each once, int64."""
         together = np.unique(np.concatenate([self.stamps[channel] for channel in REQUIRED]))
@@ -319,7 +324,7 @@ def judge(log: InputLog, limits: InputLimits, held: Inputs, longest_gap: float |
     kept = sorted((event._replace(time=event.time + shift) for event in events.kept()), key=lambda event: event.time)
     arrays = {channel: np.array(given, float) for channel, given in values.items()}
     begun, ended = max(seen[channel][0] for channel in REQUIRED), min(seen[channel][1] for channel in REQUIRED)
-    unknown = gate.coverage.unknown_until(ended)
+    unknown = gate.coverage.unknown_until(ended, begun)
     return InputProfile(start, rising, arrays, end - start, gaps, kept, gate.refused, messages, limits, ended - begun, unknown, gate.coverage.verdict)
 
 

@@ -9,7 +9,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from bearing_sim.inputs.gate import unknown_inputs
 from bearing_sim.inputs.profile import InputProfile
 from bearing_sim.messages.events import Event
 from bearing_sim.messages.topics import condition, further_condition
@@ -34,8 +33,6 @@ class Replay:
     Attributes
     ----------
     log_seconds, sim_seconds, wall_seconds : length of the log, how much of it was simulated, and how long that took.
-    unknown_seconds : for how long of the log inputs are unknown, because their messages were refused.
-    verdict : what that means for life and damage, or ``""``.
     cpu_seconds : processor time of all threads; less than ``wall_seconds`` if other processes used the processor.
     samples : outputs written.
     steps, rejected_steps, non_finite_steps : the integrator's work.
@@ -47,8 +44,6 @@ class Replay:
     """
 
     log_seconds: float
-    unknown_seconds: float = 0.0
-    verdict: str = ""
     sim_seconds: float = 0.0
     wall_seconds: float = 0.0
     cpu_seconds: float = 0.0
@@ -131,7 +126,7 @@ class _Run:
     def __init__(self, scene: Scene, profile: InputProfile, recording, watchers: tuple, rate: float | None, progress: Callable):
         self._scene, self._profile, self._watchers, self._progress, self._rate = scene, profile, watchers, progress, rate
         self._recordings = (recording,) if recording is not None else ()
-        self._result = Replay(profile.log_seconds, profile.unknown_seconds, profile.verdict)
+        self._result = Replay(profile.log_seconds)
         self._pending_events = list(profile.events)
         self._changes = Changes()
         self._watched: list[np.ndarray] = []
@@ -166,8 +161,8 @@ class _Run:
         if not run.given_up:
             self._progress(self._profile.end * 1e-9)
         self._write_events_until(math.inf)
-        if result.unknown_seconds:
-            self._write_event(unknown_inputs(self._profile.end * 1e-9, result.unknown_seconds, result.log_seconds, result.verdict))
+        if self._profile.unknown_seconds:
+            self._write_event(self._profile.unknown_event)
         self._write_to_watchers()
         if run.simulation is not None:
             result.steps, result.rejected_steps, result.non_finite_steps = run.simulation.counters[:3]

@@ -55,7 +55,7 @@ def to_si(value: object, unit: str) -> float:
     number, written_unit = float(match[1]), match[2]
     if not written_unit:
         if unit == SPEED and number:
-            raise ValueError(bare_speed(value))
+            raise ValueError(_bare_speed(value))
         return number
     if unit == SPEED:
         written_unit = _TURNS.get("".join(written_unit.casefold().split()), written_unit)
@@ -114,7 +114,7 @@ _SPELLINGS = (
 )
 
 
-def bare_speed(value: object) -> str:
+def _bare_speed(value: object) -> str:
     """Return the reason why a rotational speed without a unit is refused."""
     return f"{value!r} has no unit; write {value} rpm for turns a minute, {value} Hz for turns a second, or {value} rad/s"
 
@@ -203,7 +203,7 @@ class Quantity:
         """
         try:
             if written and self.unit == SPEED and type(value) in (int, float) and value:
-                raise ValueError(bare_speed(value))
+                raise ValueError(_bare_speed(value))
             number = to_si(value, self.unit)
         except ValueError as error:
             raise PydanticCustomError("quantity", "{reason}", {"reason": str(error)}) from None

@@ -18,7 +18,7 @@ from bearing_sim.scene.quantity import check, quantity, record
 from bearing_sim.scene.uncertainty import Range, range_errors
 
 _LONGEST_STEP = 0.5  # roller pitches of cage rotation in a fixed step
-_LARGEST_LOAD = 1e8  # N
+_LARGEST_SPEED, _LARGEST_LOAD = 12000.0, 1e8  # rad/s, N
 # Inputs that no bearing survives, so that a message beyond them is a fault of a sensor (assumption): a hoop stress of 1 GPa in the inner
 # ring, rho v^2; and a contact pressure of 4 GPa times the root of ten, for C_0 is the load of 4 GPa (ISO 76).
 _BURSTING_SPEED = 350.0  # m/s
@@ -29,7 +29,7 @@ _CRUSHING_LOAD = 10.0  # times C_0r
 class Operating:
     """Constant conditions of `bearing-sim run`; a live run uses them until an input arrives."""
 
-    shaft_speed: quantity("rad/s", "shaft speed, omega_i", -12000.0, 12000.0, "rpm")
+    shaft_speed: quantity("rad/s", "shaft speed, omega_i", -_LARGEST_SPEED, _LARGEST_SPEED, "rpm")
     radial_load: quantity("N", "radial load on the inner ring, F_r", 0.0, _LARGEST_LOAD) = 0.0
     load_angle: quantity("rad", "azimuth of the radial load, from +y", -2 * math.pi, 2 * math.pi, "deg") = 0.0
     moment: quantity("N*m", "moment on the inner ring, which then tilts freely; None: its tilt is held", 0.0, 1e5) | None = None
@@ -103,7 +103,7 @@ class InputLimits:
     Where no largest speed or load is given, it is more than the bearing can take (see `Scene.accepted_inputs`).
     """
 
-    maximum_speed: quantity("rad/s", "largest shaft speed accepted; None: the inner raceway at 350 m/s", 0.0, 12000.0, "rpm") | None = None
+    maximum_speed: quantity("rad/s", "largest shaft speed accepted; None: the inner raceway at 350 m/s", 0.0, _LARGEST_SPEED, "rpm") | None = None
     maximum_load: quantity("N", "largest radial load accepted; None: ten times the static load rating", 0.0, _LARGEST_LOAD) | None = None
     minimum_temperature: quantity("K", "lowest oil temperature accepted", 150.0, 800.0, "degC") = 233.15
     maximum_temperature: quantity("K", "highest oil temperature accepted", 150.0, 800.0, "degC") = 523.15
@@ -150,7 +150,7 @@ class Thresholds:
     slip_warning: quantity("", "cage slip that is a warning", 0.0, 1.0, "%") = 0.05
     slip_error: quantity("", "cage slip that is an error (Deng 2017: 10 %)", 0.0, 1.0, "%") = 0.10
     # Just above rest the slip may be large, but it does no harm.
-    slip_from_speed: quantity("rad/s", "shaft speed above which slip and film are monitored", 0.0, 12000.0, "rpm") = 20.0
+    slip_from_speed: quantity("rad/s", "shaft speed above which slip and film are monitored", 0.0, _LARGEST_SPEED, "rpm") = 20.0
     slip_hold: Hold = field(default_factory=Hold)
     life_warning: quantity("h", "rating life below which there is a warning (Deng 2017: 300 h)", 0.0, 1e9) = 300.0
     life_error: quantity("h", "rating life below which there is an error; 0: never", 0.0, 1e9) = 0.0
@@ -205,7 +205,7 @@ class SteadyTable:
     """The table of operating points of level ``steady``: its tolerance and range; it covers all load directions."""
 
     tolerance: quantity("", "error allowed in slip, over 0.025 points of it, and in life, relative", 1e-4, 0.5, "%") = 0.02
-    maximum_speed: quantity("rad/s", "highest shaft speed; None: a fifth above the operating speed", 1.0, 12000.0, "rpm") | None = None
+    maximum_speed: quantity("rad/s", "highest shaft speed; None: a fifth above the operating speed", 1.0, _LARGEST_SPEED, "rpm") | None = None
     maximum_load: quantity("N", "largest radial load; None: half the bearing's dynamic load rating", 1.0, _LARGEST_LOAD) | None = None
     minimum_temperature: quantity("K", "lowest oil temperature", 220.0, 600.0, "degC") = 313.15
     maximum_temperature: quantity("K", "highest oil temperature", 220.0, 600.0, "degC") = 453.15
@@ -245,7 +245,7 @@ class Scene:
         speed, load = _BURSTING_SPEED / bearing.inner_raceway.radius, _CRUSHING_LOAD * static_rating_of(bearing)
         return replace(
             limits,
-            maximum_speed=min(speed, 12000.0) if limits.maximum_speed is None else limits.maximum_speed,
+            maximum_speed=min(speed, _LARGEST_SPEED) if limits.maximum_speed is None else limits.maximum_speed,
             maximum_load=min(load, _LARGEST_LOAD) if limits.maximum_load is None else limits.maximum_load,
         )
 
