@@ -39,7 +39,7 @@ ROOMS = {
         "numpy numba scipy matplotlib pydantic sksundae",
         "scene numerics physics model levels simulation messages recording monitoring sweep",
     ),
-    "cli": ("click numpy pydantic_core rich", "scene numerics levels simulation messages recording inputs runtime view sweep studies"),
+    "cli": ("click numpy pydantic_core rich", "scene numerics model levels simulation messages recording inputs runtime view sweep studies"),
     "ros": (
         "click launch launch_ros numpy rcl_interfaces rclpy rich rosgraph_msgs std_srvs",
         "scene numerics simulation messages recording inputs monitoring runtime view",

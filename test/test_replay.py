@@ -153,19 +153,21 @@ def test_condition_is_told_when_it_changes_and_reported_every_second(tmp_path, m
 
     monkeypatch.setattr(Monitor, "events", judged)
     _, sink, _ = run(steady_log(tmp_path / "log.mcap", duration=5.0))
-    assert [(round(event.time, 6), event.level, event.kind) for event in sink.events] == [
+    assert [(round(event.time, 6), event.level, event.kind) for event in sink.events if event.kind.startswith("bearing.")] == [
         (2.0, Level.WARN, "bearing.life"),
         (3.6, Level.OK, "bearing.life"),
     ]
     assert [round(time, 6) for time, _, _ in sink.diagnostics] == [0.1, 1.0, 2.0, 3.0, 4.0, 5.0]
-    assert [bool(events) for _, events, _ in sink.diagnostics] == [False, False, True, True, False, False]
+    judged = [[event for event in events if event.kind.startswith("bearing.")] for _, events, _ in sink.diagnostics]
+    assert [bool(events) for events in judged] == [False, False, True, True, False, False]
     assert all(float(values["shaft speed [rpm]"]) == pytest.approx(4000 * 30 / math.pi) for _, _, values in sink.diagnostics)
 
 
 def test_slip_above_its_limit_is_told_by_the_scenes_thresholds(tmp_path):
     scene = load_scene("deng2017_table1", ["thresholds.slip_warning=0.1%", "thresholds.slip_error=0.5%"])
     _, sink, _ = run(steady_log(tmp_path / "log.mcap", duration=1.0), scene=scene)
-    assert [(event.kind, event.level) for event in sink.events] == [("bearing.slip", Level.ERROR)]
+    judged = [(event.kind, event.level) for event in sink.events if event.kind.startswith("bearing.")]
+    assert judged == [("bearing.slip", Level.ERROR)]
 
 
 def test_watchers_get_every_sample_and_event(tmp_path):

@@ -7,7 +7,18 @@ from pathlib import Path
 import click
 
 from bearing_sim.cli.options import json_option, picture_option, scene_argument, set_option
-from bearing_sim.cli.reporting import FailedRun, UsageError, announce_compilation, as_file_error, as_usage_error, print_json, print_table
+from bearing_sim.cli.reporting import (
+    FailedRun,
+    UsageError,
+    announce_compilation,
+    as_file_error,
+    as_usage_error,
+    print_json,
+    print_table,
+    warn_of_limits,
+    warn_of_scene,
+    warnings_report,
+)
 
 
 @click.command("scenes")
@@ -42,7 +53,9 @@ def loads(scene_name, overrides, slices, picture, as_json):
 
     with as_usage_error(SceneError):
         scene = load_scene(scene_name, overrides)
+    warn_of_scene(scene)
     announce_compilation()
+    from bearing_sim.model.validity import outside
     from bearing_sim.studies.statics import statics
 
     try:
@@ -55,10 +68,22 @@ def loads(scene_name, overrides, slices, picture, as_json):
         operating = scene.operating
         with as_file_error():
             draw(picture, f"{scene.name}: {operating.radial_load:g} N, {operating.shaft_speed * 30 / math.pi:.6g} rpm", found)
+    warnings = outside(scene, _still_sample(scene, found))
     if as_json:
-        print_json({**_report_loads(scene, slices, found), "picture": picture and str(picture)})
+        print_json({**_report_loads(scene, slices, found), **warnings_report(scene, warnings), "picture": picture and str(picture)})
     else:
         _print_loads(scene, slices, found)
+    warn_of_limits(scene, warnings)
+
+
+def _still_sample(scene, found):
+    """Return a block of one sample with the loads, the pressures and the life of a static balance."""
+    from bearing_sim.model.validity import still_sample
+
+    sample = still_sample(scene)
+    sample["inner_load"], sample["outer_load"], sample["rating_life"] = found.inner, found.outer, found.rating_life
+    sample["inner_pressure"], sample["outer_pressure"] = found.inner_pressure, found.outer_pressure
+    return sample
 
 
 def _report_loads(scene, slices, found) -> dict:

@@ -15,6 +15,7 @@ from bearing_sim.cli.reporting import (
     print_json,
     print_table,
     progress_bar,
+    warn_of_scene,
 )
 
 _EXPECTED = 30  # evaluations of a typical search, for the progress bar
@@ -54,6 +55,7 @@ def calibrate(
     if out is not None and out.suffix.lower() not in (".yaml", ".yml"):
         raise UsageError(f"--out {out}: expected a name that ends in .yaml")
     scene = _scene(log, scene_name, overrides)
+    warn_of_scene(scene)
     names = {"shaft_speed": speed_topic, "radial_load": load_topic, "oil_temperature": temperature_topic, "cage_speed_measured": cage_topic}
     measured, lines = _measured(log, scene, names, joint, stamps, cage_joint)
     announce_compilation()

@@ -21,6 +21,9 @@ from bearing_sim.cli.reporting import (
     print_table,
     progress_bar,
     suggest_level,
+    warn_of_limits,
+    warn_of_scene,
+    warnings_report,
 )
 
 
@@ -117,6 +120,7 @@ def replay(
             raise UsageError(f"{out} is the input log; choose another file")
         scene = load_scene(scene_name, overrides)
         suggest_level(scene)
+        warn_of_scene(scene)
         recorded = read_input_log(logs, names, joint, stamps)
         held = Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature)
         course = judge(recorded, scene.accepted_inputs, held, longest_gap)
@@ -145,9 +149,10 @@ def replay(
             progress = stack.enter_context(progress_bar(f"replaying {', '.join(names_of)}", seconds))
             result = replay(scene, course, recording, watchers, rate, progress, **choice)
     if as_json:
-        print_json({**_report(result, course, recorded, scene, out), "start_up_seconds": start_up})
+        print_json({**_report(result, course, recorded, scene, out), **warnings_report(scene, result.warnings), "start_up_seconds": start_up})
     else:
         _print(result, course, recorded, scene, out)
+    warn_of_limits(scene, result.warnings)
     if result.given_up:
         raise FailedRun(result.given_up)
     if course.unknown_seconds:

@@ -118,6 +118,40 @@ def suggest_level(scene) -> None:
         click.echo(line, err=True)
 
 
+def warn(lines: Iterable[str]) -> None:
+    """Print warnings on stderr, one on a line."""
+    for line in lines:
+        click.echo(f"warning: {line}", err=True)
+
+
+def warn_of_scene(scene) -> None:
+    """Print on stderr what is implausible about a scene (see `bearing_sim.model.plausibility.plausibility`)."""
+    from bearing_sim.model.plausibility import plausibility
+
+    warn(plausibility(scene))
+
+
+def warn_of_limits(scene, exceedances: Iterable) -> None:
+    """Print on stderr which laws are used outside of their ranges, except for what `warn_of_scene` has printed.
+
+    Parameters
+    ----------
+    scene : of the results.
+    exceedances : see `bearing_sim.model.validity.outside`.
+    """
+    from bearing_sim.model.plausibility import plausibility
+
+    printed = plausibility(scene)
+    warn(each.text for each in exceedances if each.text not in printed)
+
+
+def warnings_report(scene, exceedances: Iterable) -> dict[str, list]:
+    """Return the warnings of a result for JSON: ``warnings``, laws outside of their ranges, and ``implausible``, what is odd about the scene."""
+    from bearing_sim.model.plausibility import plausibility
+
+    return {"warnings": [each.report() for each in exceedances], "implausible": plausibility(scene)}
+
+
 def print_json(report: Mapping) -> None:
     """Print one JSON object and nothing else; NaN and infinity become null."""
     click.echo(json.dumps(_finite(report), indent=2, allow_nan=False))

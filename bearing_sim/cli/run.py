@@ -20,6 +20,9 @@ from bearing_sim.cli.reporting import (
     progress_bar,
     seconds_of,
     suggest_level,
+    warn_of_limits,
+    warn_of_scene,
+    warnings_report,
 )
 
 _BLOCK = 10  # samples
@@ -48,6 +51,8 @@ def run(scene_name, overrides, duration, level, rate, out, rrd, uncertainty, as_
     level that supports the scene; `bearing-sim uncertainty` shows more.
     """
     from bearing_sim.cli.uncertainty import bands_of
+    from bearing_sim.messages.events import validity_event
+    from bearing_sim.model.validity import outside
     from bearing_sim.scene.loader import SceneError, load_scene
     from bearing_sim.simulation import IntegrationError, Simulation, start_sample
 
@@ -55,6 +60,7 @@ def run(scene_name, overrides, duration, level, rate, out, rrd, uncertainty, as_
     with as_usage_error(SceneError):
         scene = load_scene(scene_name, [*overrides, *([f"level={level}"] if level else [])])
     suggest_level(scene)
+    warn_of_scene(scene)
     samples = max(round(seconds * (rate or min(_RATE, _SAMPLES / seconds))), 5)
     with as_file_error(), as_failed_run(IntegrationError), ExitStack() as stack:
         sinks = _sinks(stack, scene, seconds, samples, out, rrd)
@@ -69,12 +75,17 @@ def run(scene_name, overrides, duration, level, rate, out, rrd, uncertainty, as_
         first = time.perf_counter()
         settled = _advance(simulation, seconds, samples, sinks, progress)
         wall = time.perf_counter() - first
-    report = _report(simulation, settled, seconds, wall, first - started)
+        warnings = outside(scene, simulation.sample.reshape(1))
+        for sink in sinks:
+            for each in warnings:
+                sink.write_event(validity_event(simulation.time, each))
+    report = {**_report(simulation, settled, seconds, wall, first - started), **warnings_report(scene, warnings)}
     bands = bands_of(scene, uncertainty)[1] if uncertainty else None
     if as_json:
         print_json({**report, "uncertainty": bands} if bands else report)
     else:
         _print(report, scene, bands)
+    warn_of_limits(scene, warnings)
 
 
 def _sinks(stack, scene, seconds, samples, out, rrd) -> list:

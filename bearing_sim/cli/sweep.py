@@ -3,6 +3,7 @@
 
 import math
 from collections import Counter
+from contextlib import suppress
 from pathlib import Path
 
 import click
@@ -18,6 +19,8 @@ from bearing_sim.cli.reporting import (
     print_json,
     print_rows,
     seconds_of,
+    warn,
+    warn_of_scene,
 )
 
 _SHOWN = ("cage_slip", "rating_life", "inner_load_maximum", "outer_load_maximum", "shaft_power", "status")
@@ -48,7 +51,7 @@ def sweep(scene_name, axes, overrides, level, duration, out, workers, dask, pict
 
     bearing-sim sweep deng2017_table1 --vary bearing.outer_raceway.low_radius=34.86mm:34.8675mm:7 --picture sweep.png
     """
-    from bearing_sim.scene.loader import SceneError
+    from bearing_sim.scene.loader import SceneError, load_scene
     from bearing_sim.sweep.grid import FieldError, read_axis
     from bearing_sim.sweep.tasks import ClusterError, Journal, JournalInUse
 
@@ -56,6 +59,8 @@ def sweep(scene_name, axes, overrides, level, duration, out, workers, dask, pict
     with as_usage_error(FieldError):
         varied = [read_axis(text) for text in axes]
     _check_sweep(varied, level)
+    with suppress(SceneError):  # what varies may be what makes the scene valid
+        warn_of_scene(load_scene(scene_name, overrides))
     announce_compilation()
     from bearing_sim.sweep.grid import sweep
     from bearing_sim.sweep.table import write_table
@@ -93,6 +98,8 @@ def _check_sweep(axes, level) -> None:
 
 
 def _report_sweep(table, points, files, picture) -> dict:
+    from bearing_sim.model.validity import counted
+
     statuses = table.values("status")
     return {
         "scene": table.about["scene"],
@@ -103,6 +110,7 @@ def _report_sweep(table, points, files, picture) -> dict:
         "parquet": str(files[0]),
         "csv": str(files[1]),
         "picture": picture and str(picture),
+        "warnings": counted(row["warnings"] for row in table.rows),
     }
 
 
@@ -121,6 +129,7 @@ def _print_sweep(table, report) -> None:
     reasons = Counter(f"{row['status']}: {row['reason']}" for row in table.rows if row["reason"])
     for reason, count in reasons.most_common(5):
         click.echo(f"{count} x {reason}")
+    warn(report["warnings"])
     counts = f"{report['computed']} points computed, {report['kept_from_before']} kept from before"
     click.echo(f"{counts}; {', '.join(filter(None, (report['parquet'], report['csv'], report['picture'])))}")
 
@@ -170,6 +179,7 @@ def design(
         overrides = [*overrides, f"level={level}"]
         scene = load_scene(scene_name, overrides)
         _check_design(scene)
+        warn_of_scene(scene)
         announce_compilation()
         from bearing_sim.studies import design as studied
         from bearing_sim.sweep.point import DURATION
@@ -240,11 +250,13 @@ def _beside(scene, wanted):
 
 
 def _report_design(scene, designed, beside, files) -> dict:
+    from bearing_sim.model.validity import counted
     from bearing_sim.studies.deng2017.design import radii_within
     from bearing_sim.studies.design import KINDS
 
     about = designed.grid.about
     report = {"scene": scene.name, "level": about["level"], **about["wanted"], "raceways": len(designed.grid.rows)}
+    report["warnings"] = counted(row["warnings"] for row in designed.grid.rows)
     report["without_result"] = sum(row["status"] in ("failed", "refused") for row in designed.grid.rows)
     for kind in KINDS:
         borders = [border for border in designed.borders if border.kind == kind]
@@ -271,4 +283,5 @@ def _print_design(report) -> None:
             found, (left, right), (low, high) = report[f"{kind}_within_deng"], report["deng2017"]["d_value"], report["deng2017"]["low_radius"]
             span = f"R_low {found['low_from']:.5f} to {found['low_to']:.5f} mm" if found else "none in the map"
             click.echo(f"  for every D from {left} to {right} mm: {span}; Deng 2017 has {low:.4f} to {high:.4f} mm")
+    warn(report["warnings"])
     click.echo(", ".join(report["files"]))

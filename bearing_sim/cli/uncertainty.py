@@ -16,6 +16,7 @@ from bearing_sim.cli.reporting import (
     judged,
     print_json,
     print_table,
+    warn_of_scene,
     write_csv,
 )
 
@@ -53,6 +54,7 @@ def uncertainty(scene_name, overrides, samples, seed, level, log, stretches, wor
 
     with as_usage_error(SceneError):
         scene = load_scene(scene_name, overrides)
+    warn_of_scene(scene)
     scene, course = _course(log, scene, stretches) if log is not None else (scene, None)
     with as_file_error(), exit_on_sigterm(), as_usage_error(JournalInUse):
         with Journal(table and table.with_suffix(".journal")) as journal:

@@ -49,6 +49,18 @@ class Event(NamedTuple):
         return text if self.count == 1 else f"{text} ({self.count} times)"
 
 
+def validity_event(time: float, exceedance) -> Event:
+    """Return the event of a law that is used outside of its range.
+
+    Parameters
+    ----------
+    time : [s] since the start of the run.
+    exceedance : `bearing_sim.model.validity.Exceedance`.
+    """
+    law = exceedance.law
+    return Event(time, Level.WARN, law.kind, law.name, f"{law.law}: {exceedance.finding}", law.instead)
+
+
 class Measurement(NamedTuple):
     """A measured cage speed.
 

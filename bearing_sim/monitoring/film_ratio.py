@@ -5,6 +5,7 @@ import numpy as np
 
 from bearing_sim.model.oil import OilState, oil_at
 from bearing_sim.model.params import pack
+from bearing_sim.model.validity import contact_speeds
 from bearing_sim.physics.film import DOWSON_HIGGINSON, films
 from bearing_sim.scene.scene import Scene
 
@@ -42,17 +43,12 @@ class FilmRatio:
         ----------
         samples : shape (n,), see `bearing_sim.model.sample`.
         """
-        raceways, rollers, oil = self._params.raceways, self._params.rollers, self._oil_at(float(samples["oil_temperature"][-1]))
-        orbit, orbital = samples["roller_radius"], samples["orbital_speed"]
-        spin = np.where(np.isnan(samples["roller_spin"]), orbital * orbit / rollers.radius, samples["roller_spin"])
-        surface, shaft = spin * rollers.radius, samples["shaft_speed"][:, None]
-        rolled = surface + orbital * rollers.radius  # the roller's surface, seen from the contact
+        raceways, oil = self._params.raceways, self._oil_at(float(samples["oil_temperature"][-1]))
+        inner, outer = contact_speeds(samples, self._params)
         films = [
-            self._film(oil, raceways.inner_curvature_radius, samples["inner_load"], 0.5 * ((shaft - orbital) * raceways.inner_radius + rolled),
-                       shaft * raceways.inner_radius - orbital * orbit - surface),
-            self._film(oil, raceways.outer_curvature_radius, samples["outer_load"], 0.5 * (orbital * (orbit + rollers.radius) + rolled),
-                       surface - orbital * orbit),
-        ]  # fmt: skip
+            self._film(oil, raceways.inner_curvature_radius, samples["inner_load"], *inner),
+            self._film(oil, raceways.outer_curvature_radius, samples["outer_load"], *outer),
+        ]
         thinnest = np.minimum(*(film.min(axis=1) for film in films))
         return np.where(np.isinf(thinnest), np.nan, thinnest) / self._roughness
 

@@ -18,6 +18,7 @@ from bearing_sim.messages import topics
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.model.sample import joined
 from bearing_sim.monitoring.health import Condition, Health, Phase, level_of, numbers
+from bearing_sim.monitoring.limits import LimitsMonitor
 from bearing_sim.monitoring.monitor import Monitor
 from bearing_sim.monitoring.residual import ResidualMonitor
 from bearing_sim.runtime.governor import Governor
@@ -86,7 +87,7 @@ class Model:
 
     def __init__(self, scene: Scene, gate: InputGate, solver: Solver, start_ns: int):
         self.scene, self.gate, self.solver, self.start_ns = scene, gate, solver, start_ns
-        self.health, self.monitor = Health(), Monitor(scene)
+        self.health, self.monitor, self.limits = Health(), Monitor(scene), LimitsMonitor(scene)
         self.residual = ResidualMonitor(scene.thresholds.residual, scene.thresholds.slip_from_speed)
         self.sinks = SinkRegistry()
         self.level = Level.OK
@@ -243,7 +244,8 @@ class Model:
     def _events(self, now: float) -> list[Event]:
         """Return the events that hold at ``now`` [s], the worst first."""
         conflicts = [event for conflict in self._conflicts.values() if (event := conflict.event(now)) is not None]
-        events = [*self.sinks.events(now), *self.monitor.events(now), *self.residual.events(now), *self._further_events(now), *conflicts]
+        judged = (*self.monitor.events(now), *self.limits.events(now), *self.residual.events(now))
+        events = [*self.sinks.events(now), *judged, *self._further_events(now), *conflicts]
         coverage = self.gate.coverage
         if coverage.is_overloaded:
             events.append(unknown_inputs(now, coverage.unknown_until(now), now, coverage.verdict))
@@ -258,6 +260,7 @@ class Model:
         if event.kind == "run.reset":
             self.gate.coverage = Coverage()
             self.monitor.restart()
+            self.limits.restart()
             self.residual.interrupt(event.time)
 
 
@@ -370,6 +373,8 @@ class LiveModel(Model):
             else:
                 blocks.append(item)
         self.monitor.take_all(blocks[judged:])
+        if blocks[judged:]:
+            self.limits.take(blocks[-1])
         kept = [block for block in blocks if self._sample_decimator.is_due(float(block["time"][-1]))]  # the first is the state at the start
         if kept and self.sinks.by_name:  # all at once: many samples together hold the interpreter's lock far shorter
             self.sinks.write(now, kept[0] if len(kept) == 1 else joined(kept))

@@ -12,7 +12,9 @@ import numpy as np
 from bearing_sim.inputs.profile import InputProfile
 from bearing_sim.messages.events import Event
 from bearing_sim.messages.topics import condition, further_condition
+from bearing_sim.model.validity import Exceedance, in_order
 from bearing_sim.monitoring.health import Changes
+from bearing_sim.monitoring.limits import LimitsMonitor
 from bearing_sim.monitoring.monitor import Monitor
 from bearing_sim.monitoring.residual import Comparison, ResidualMonitor
 from bearing_sim.runtime.advance_segment import Begun, Output, ProfileRun
@@ -41,6 +43,7 @@ class Replay:
     damage : fraction of life used.
     events : number of events by kind.
     given_up : why the run ended before the log did, or ``""``.
+    warnings : laws used outside of their ranges, each with its worst value.
     """
 
     log_seconds: float
@@ -60,6 +63,7 @@ class Replay:
     weight: list[float] = field(default_factory=list)
     events: Counter = field(default_factory=Counter)
     given_up: str = ""
+    warnings: list[Exceedance] = field(default_factory=list)
 
     @property
     def real_time_factor(self) -> float:
@@ -131,7 +135,7 @@ class _Run:
         self._changes = Changes()
         self._watched: list[np.ndarray] = []
         self._next_report = 0.0
-        self._monitor = Monitor(scene)
+        self._monitor, self._limits = Monitor(scene), LimitsMonitor(scene)
         self._comparison = Comparison(ResidualMonitor(scene.thresholds.residual, scene.thresholds.slip_from_speed))
         for time_, speed in profile.measured:
             self._comparison.measure(time_, speed)
@@ -168,6 +172,7 @@ class _Run:
             result.steps, result.rejected_steps, result.non_finite_steps = run.simulation.counters[:3]
         result.sim_seconds, result.gap_seconds = run.simulated_ns * 1e-9, run.in_gaps_ns * 1e-9
         result.failed_ticks, result.given_up = run.failures, run.given_up
+        result.warnings = in_order(self._limits.worst.values())
         result.wall_seconds, result.cpu_seconds = time.perf_counter() - began, time.process_time() - began_cpu
         return result
 
@@ -187,7 +192,10 @@ class _Run:
             if sum(map(len, self._watched)) >= _WATCHED_BLOCK:
                 self._write_to_watchers()
         for begin in range(0, len(block), _JUDGED):
-            self._judge(block[begin : begin + _JUDGED])
+            part = block[begin : begin + _JUDGED]
+            for event in self._limits.take(part):
+                self._write_event(event)
+            self._judge(part)
 
     def _judge(self, block: np.ndarray) -> None:
         """Judge outputs one by one, or all at once if none of them can raise or clear an alarm."""
@@ -214,7 +222,8 @@ class _Run:
         if moment >= self._next_report:
             # A hundredth early, so that reports stay at whole seconds although stamps jitter.
             self._next_report = (math.floor(moment / _REPORT_EVERY + 0.01) + 0.99) * _REPORT_EVERY
-            worst_first = sorted(self._changes.holding.values(), key=lambda event: -event.level)
+            holding = [*self._changes.holding.values(), *self._limits.events(moment)]
+            worst_first = sorted(holding, key=lambda event: -event.level)
             values = condition(sample) | further_condition(self._scene, sample) | self._monitor.values | residual.values(moment)
             for recording in self._recordings:
                 recording.write_diagnostics(moment, worst_first, values)

@@ -362,6 +362,7 @@ class SimTimeModel(Model):
         """Start a profile at run time 0."""
         self.start_ns, self._started = start_ns, True
         self.monitor.restart()
+        self.limits.restart()
         self.residual.interrupt(-math.inf)
         self._comparison.restart()
         measured, self._measured = self._measured, []
@@ -377,6 +378,7 @@ class SimTimeModel(Model):
     def _take_output(self, block: np.ndarray) -> None:
         """Judge, record and publish outputs."""
         self.monitor.take(block)
+        self.limits.take(block)
         self.sinks.write(float(block["time"][-1]), block)
         self._pass_on(self._comparison.predict(block))
         fraction = min(self._publish_rate / self._rate, 1.0)

@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.model.validity import merged
 from bearing_sim.scene.loader import SceneError, load_scene
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import with_values
@@ -43,6 +44,7 @@ COLUMNS = (
     Column("meets_worst", "", "whether they meet the limits within the tolerances"),
     Column("status", "", "ok, unsettled, failed or refused"),
     Column("reason", "", "why the status is not ok"),
+    Column("warnings", "", "laws used outside of their ranges within the tolerances, each with a value"),
 )
 BORDER_COLUMNS = (
     Column("kind", "", "nominal: at the scene's speed and load; worst: within the tolerances"),
@@ -130,7 +132,7 @@ def raceway_row(scene: Scene, duration: float, speed_tolerance: float, load_tole
         )
         rows.append(point_row(dataclasses.replace(scene, operating=operating), duration))
         if rows[-1]["status"] not in (OK, UNSETTLED):
-            return dict.fromkeys((column.name for column in _NUMBERS), math.nan) | {name: rows[-1][name] for name in ("status", "reason")}
+            return dict.fromkeys((column.name for column in _NUMBERS), math.nan) | {name: rows[-1][name] for name in ("status", "reason", "warnings")}
     unsettled = [row["reason"] for row in rows if row["status"] == UNSETTLED]
     return {
         "nominal_slip": rows[0]["cage_slip"],
@@ -139,6 +141,7 @@ def raceway_row(scene: Scene, duration: float, speed_tolerance: float, load_tole
         "worst_life": min(row["modified_rating_life"] for row in rows),
         "status": UNSETTLED if unsettled else OK,
         "reason": unsettled[0] if unsettled else "",
+        "warnings": merged(row["warnings"] for row in rows),
     }
 
 
@@ -204,7 +207,7 @@ class _Study(NamedTuple):
         results = dict(zip(valid, self.run([task(scene.level, raceway_row, scene, self.duration, *tolerances) for scene in valid.values()])))
         nothing = dict.fromkeys((column.name for column in _NUMBERS), math.nan)
         return {
-            point: nothing | (results[point] if point in results else {"status": REFUSED, "reason": one_line(scene)})
+            point: nothing | (results[point] if point in results else {"status": REFUSED, "reason": one_line(scene), "warnings": ""})
             for point, scene in scenes.items()
         }
 
@@ -235,7 +238,7 @@ class _Study(NamedTuple):
 
 def _table_row(point, row, limits) -> dict:
     lengths = {LOW: float(f"{1e3 * point[0]:.9g}"), D_VALUE: float(f"{1e3 * point[1]:.9g}")}
-    texts = {name: row[name] for name in ("status", "reason")}
+    texts = {"status": row["status"], "reason": row["reason"], "warnings": row.get("warnings", "")}  # a lost worker's has none
     return lengths | {column.name: row[column.name] for column in _NUMBERS} | {f"meets_{kind}": limits.met(row, kind) for kind in KINDS} | texts
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from bearing_sim.levels.steady.table import empty_table
 from bearing_sim.model.sample import OBSERVABLES
+from bearing_sim.model.validity import cell, outside
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import IntegrationError, Simulation
 
@@ -54,6 +55,7 @@ RESULTS = (
 TEXTS = (
     Column("status", "", "ok; unsettled: slip was still changing at the end; failed: the run stopped early; refused: the scene is invalid"),
     Column("reason", "", "why the status is not ok"),
+    Column("warnings", "", "laws used outside of their ranges, each with its worst value"),
 )
 
 
@@ -121,9 +123,9 @@ def point_row(scene: Scene, duration: float = DURATION) -> dict:
         found |= {name: 1.0 / np.mean(1.0 / window[name]) for name in _LIVES}  # damage adds up, so average the rates
     found |= {name: window[name].mean() for name in (*_MEANS, *_POWERS)}
     row = {column.name: column.factor * float(found[column.name]) for column in RESULTS}
-    return row | {"status": UNSETTLED if reason else OK, "reason": reason}
+    return row | {"status": UNSETTLED if reason else OK, "reason": reason, "warnings": cell(outside(scene, window))}
 
 
 def empty_row(status: str, reason: str) -> dict:
     """Return the row of a point without results."""
-    return {column.name: math.nan for column in RESULTS} | {"status": status, "reason": reason}
+    return {column.name: math.nan for column in RESULTS} | {"status": status, "reason": reason, "warnings": ""}

@@ -349,11 +349,20 @@ EVENTS = {
     "solver.crashed": ("ERROR", "the solver thread ended by a programming error; restart the node"),
     "solver.failed": ("ERROR", "time could not be advanced; the last good state is held"),
     "solver.recovered": ("OK", "time advances again"),
+    "validity.contact": ("WARN", "the elastic contact is outside of its range, such as a Hertz pressure above 4 GPa"),
+    "validity.drag": ("WARN", "the drag of the oil-air mixture is used outside of its range"),
+    "validity.film": ("WARN", "a film formula is used outside of its range"),
+    "validity.land": ("WARN", "the film of the guide lands is used outside of its range"),
+    "validity.life": ("WARN", "life or static safety are outside of the standards' range, such as P above 0.5 C_r"),
+    "validity.oil": ("WARN", "properties of the oil are extrapolated"),
+    "validity.pocket": ("WARN", "the film of the pockets is used outside of its range"),
+    "validity.speed": ("WARN", "the bearing turns faster than anything that the laws were compared with"),
+    "validity.traction": ("WARN", "the traction law is used outside of its range, such as for another class of oil"),
 }
 """Severity and meaning of each kind of event; `events` compares the kinds with the code."""
 _STATES = {"run.unconfigured", "run.inactive", "run.finalized"}  # kinds that the node makes of the names of its states
 _KIND = re.compile(rf"({'|'.join(sorted({kind.partition('.')[0] for kind in EVENTS}))})\.(?!mcap|rrd)[a-z_]+")
-_ROOMS_WITH_EVENTS = ("inputs", "monitoring", "recording", "ros", "runtime", "view")
+_ROOMS_WITH_EVENTS = ("inputs", "model", "monitoring", "recording", "ros", "runtime", "view")
 
 
 def events() -> str:
@@ -374,6 +383,29 @@ def events() -> str:
         raise LookupError(f"doc/_extensions/generated_reference.py: EVENTS and the code differ in {', '.join(differing)}")
     rows = [[code(kind), *EVENTS[kind], ", ".join(map(code, sorted(found.get(kind, ()))))] for kind in sorted(EVENTS)]
     return table(["kind", "severity", "meaning", "raised in"], rows)
+
+
+def validity() -> str:
+    """Return the limits of all laws: range, source, what happens outside, and the test that drives each out of its range."""
+    from bearing_sim.model.validity import LAWS
+
+    sections = []
+    for kind in dict.fromkeys(law.kind for law in LAWS):
+        rows = [
+            [code(law.name), f"{law.law}: {law.quantity}", law.general_range, law.source, law.instead, code(f"test_validity.py -k {law.name}")]
+            for law in LAWS
+            if law.kind == kind
+        ]
+        head = ["name", "law and quantity", "range", "source", "outside: a warning, and the advice", "tests"]
+        sections.append(f"### `{kind}`\n\n{table(head, rows)}")
+    return "\n\n".join(sections)
+
+
+def unwatched_laws() -> str:
+    """Return the laws for which no range is watched, and why."""
+    from bearing_sim.model.validity import UNWATCHED
+
+    return table(["law", "why it is not watched"], UNWATCHED)
 
 
 # ---------------------------------------------------------------------------------------------------- command line, Python API
@@ -463,7 +495,7 @@ PARTS: dict[str, Callable[[], str]] = {
     function.__name__: function
     for function in (
         *(scene_fields, bundled, input_topics, output_topics, array_rows, observables, recorded_topics),
-        *(parameters, services, events, command_line, modules, rooms, claims, external_links),
+        *(parameters, services, events, validity, unwatched_laws, command_line, modules, rooms, claims, external_links),
     )
 }
 _REQUEST = re.compile(r"^% generated: (\w+)$", re.MULTILINE)

@@ -1,0 +1,182 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Plausibility of a scene: what is allowed and yet looks like a slip of the pen, or like a bearing that nobody would build or run so.
+
+Nothing here refuses a scene.  Each finding has the value, what was expected, and what to do.
+"""
+
+import math
+
+from bearing_sim.model.validity import outside, ratings, still_sample
+from bearing_sim.scene.bearing import Bearing
+from bearing_sim.scene.scene import Scene
+
+# Assumption: a mass within a factor of 2 of its volume's is taken as meant, because pockets and ribs are known roughly only.
+_MASS_FACTOR = 2.0
+_LIGHTEST_CAGE, _HEAVIEST_CAGE = 1100.0, 8600.0  # [kg/m^3] polyamide and brass
+_THINNEST_RING, _WIDEST_RING = 0.05, 2.0  # assumption: thickness over radius of an inner ring at least, width over roller length at most
+_LARGEST_LOBES = 0.005  # assumption: D over pitch diameter; Deng 2017 has 0.0010 to 0.0016
+_HEAVIEST_PRELOAD = {True: 0.001, False: 0.0003}  # assumption: diametral preload over pitch diameter, of lobed and of round raceways
+_BORE_OF_RACEWAY = 0.85  # assumption: bore over inner raceway diameter, where the bore is not given; 0.84 to 0.90 of usual bearings
+_LEAST_FILL, _LARGEST_FILL = 0.4, 0.97  # assumption: rollers' widths over the pitch circle; cages of series leave 0.6 to 0.95
+_MINIMUM_OF_RATING = 0.02  # of C_r: the least load of roller bearings where a maker gives no factor (SKF, Schaeffler)
+# Largest radial internal clearance of cylindrical roller bearings in class C5 by bore up to [mm]: clearance [um] (ISO 5753-1, table for
+# cylindrical bores).
+_C5 = (
+    (24, 90), (30, 95), (40, 105), (50, 125), (65, 140), (80, 165), (100, 190), (120, 220), (140, 245), (160, 275), (180, 300), (200, 330),
+    (225, 365), (250, 395), (280, 440), (315, 485), (355, 535), (400, 600), (450, 665), (500, 735), (560, 810), (630, 900), (710, 1005),
+    (800, 1135), (900, 1265), (1000, 1405),
+)  # fmt: skip
+
+
+def plausibility(scene: Scene) -> list[str]:
+    """Return what is implausible about a scene, one sentence each; empty if there is nothing."""
+    bearing = scene.bearing
+    return [
+        *_rollers(bearing),
+        *_clearance(bearing),
+        *_lobes(bearing),
+        *_cage_radii(bearing),
+        *_cage_mass(bearing),
+        *_ring_mass(bearing),
+        *_speed(scene),
+        *_load(scene),
+        *(each.text for each in outside(scene, still_sample(scene), ("oil_temperature", "speed_factor"))),
+    ]
+
+
+def minimum_load(scene: Scene) -> tuple[float, str]:
+    """Return the load below which makers expect slip at the operating speed [N], and where it comes from.
+
+    P_min = k_r (6 + 4 n/n_r)(d_m/100 mm)^2 (SKF, LYC) where ``bearing.catalogue_limits`` has k_r and n_r, otherwise 0.02 C_r.
+    """
+    limits, bearing = scene.bearing.catalogue_limits, scene.bearing
+    if limits.minimum_load_factor is not None and limits.reference_speed is not None:
+        ratio = abs(scene.operating.shaft_speed) / limits.reference_speed
+        return limits.minimum_load_factor * (6.0 + 4.0 * ratio) * (bearing.pitch_diameter / 0.1) ** 2, "k_r (6 + 4 n/n_r)(d_m/100 mm)^2"
+    return _MINIMUM_OF_RATING * ratings(bearing).dynamic, "0.02 C_r; give minimum_load_factor and reference_speed in bearing.catalogue_limits"
+
+
+def _rollers(bearing: Bearing) -> list[str]:
+    fill = bearing.roller.count * bearing.roller.diameter / (math.pi * bearing.pitch_diameter)
+    if _LEAST_FILL <= fill <= _LARGEST_FILL:
+        return []
+    return [
+        f"bearing.roller: {bearing.roller.count} rollers of {1e3 * bearing.roller.diameter:.6g} mm fill {100 * fill:.3g} % of the pitch circle of "
+        f"{1e3 * bearing.pitch_diameter:.6g} mm; expected {100 * _LEAST_FILL:g} to {100 * _LARGEST_FILL:g} %; check count and diameter"
+    ]
+
+
+def _bore(bearing: Bearing) -> tuple[float, str]:
+    """Return the bore diameter [m], and a word on where it comes from."""
+    radius = bearing.inner_raceway.bore_radius
+    if radius is not None:
+        return 2 * radius, ""
+    return 2 * _BORE_OF_RACEWAY * bearing.inner_raceway.radius, ", estimated from the inner raceway"
+
+
+def _clearance(bearing: Bearing) -> list[str]:
+    """Judge the diametral clearance by ISO 5753-1 and preload by the pitch diameter."""
+    clearance = 2e6 * bearing.radial_clearance_at_low_points
+    bore, estimated = _bore(bearing)
+    largest = next((limit for up_to, limit in _C5 if 1e3 * bore <= up_to), None)
+    dimensions = "check inner_raceway.radius, roller.diameter and outer_raceway.low_radius"
+    if largest is not None and clearance > largest:
+        return [
+            f"bearing: the diametral clearance is {clearance:.4g} um; expected at most {largest} um, class C5 of ISO 5753-1 for a bore of "
+            f"{1e3 * bore:.4g} mm{estimated}; {dimensions}"
+        ]
+    lobed = bearing.outer_raceway.d_value > 0.0
+    preload = 1e6 * _HEAVIEST_PRELOAD[lobed] * bearing.pitch_diameter
+    if -clearance > preload:
+        return [
+            f"bearing: the diametral preload is {-clearance:.4g} um; expected at most {preload:.3g} um, {100 * _HEAVIEST_PRELOAD[lobed]:g} % of the "
+            f"pitch diameter of a {'lobed' if lobed else 'round'} raceway; {dimensions}"
+        ]
+    return []
+
+
+def _lobes(bearing: Bearing) -> list[str]:
+    """Judge the D value by the pitch diameter and by the preload at the low points."""
+    d_value, low = bearing.outer_raceway.d_value, bearing.radial_clearance_at_low_points
+    if not d_value:
+        return []
+    shown, name = f"{1e6 * d_value:.4g} um", "bearing.outer_raceway.d_value"
+    if d_value > _LARGEST_LOBES * bearing.pitch_diameter:
+        return [
+            f"{name}: {shown}; expected at most {1e6 * _LARGEST_LOBES * bearing.pitch_diameter:.4g} um, {100 * _LARGEST_LOBES:g} % of the pitch "
+            "diameter; it is a difference of radii, not of diameters: check its unit"
+        ]
+    if low >= 0.0:
+        return [
+            f"{name}: {shown} with a radial clearance of {1e6 * low:.4g} um at the low points, where lobes do not press rollers; expected preload "
+            "there; lower low_radius, or set d_value to 0 for a round raceway"
+        ]
+    if -low >= d_value:
+        return [
+            f"{name}: {shown} is no more than the radial preload at the low points, {-1e6 * low:.4g} um: no roller is free between lobes; "
+            "expected more; raise d_value or low_radius"
+        ]
+    return []
+
+
+def _cage_radii(bearing: Bearing) -> list[str]:
+    cage, pitch = bearing.cage, bearing.pitch_radius
+    if cage.bore < pitch < cage.outside:
+        return []
+    return [
+        f"bearing.cage: it reaches from {1e3 * cage.bore:.6g} to {1e3 * cage.outside:.6g} mm and leaves out the pitch radius, "
+        f"{1e3 * pitch:.6g} mm, where rollers touch their pockets; expected the pitch radius between; check inner_radius and outer_radius"
+    ]
+
+
+def _cage_mass(bearing: Bearing) -> list[str]:
+    """Judge the mass by that of a ring with pockets, from polyamide to brass."""
+    cage, roller = bearing.cage, bearing.roller
+    body = math.pi * (cage.outside**2 - cage.bore**2) * cage.width
+    pocket = (roller.diameter + 2 * cage.pocket_clearance) * min(roller.length, cage.width) * min(cage.outside - cage.bore, roller.diameter)
+    volume = max(body - roller.count * pocket, 0.1 * body)
+    low, high = _LIGHTEST_CAGE * volume / _MASS_FACTOR, _HEAVIEST_CAGE * volume * _MASS_FACTOR
+    if low <= cage.mass <= high:
+        return []
+    return [
+        f"bearing.cage.mass: {1e3 * cage.mass:.4g} g for about {1e6 * volume:.3g} cm^3 is {1e-3 * cage.mass / volume:.3g} g/cm^3; expected "
+        f"{1e3 * low:.4g} to {1e3 * high:.4g} g (polyamide to brass, within a factor of {_MASS_FACTOR:g}); check mass, width and radii of the cage"
+    ]
+
+
+def _ring_mass(bearing: Bearing) -> list[str]:
+    """Judge the inner ring's mass by its volume, as far as that is known."""
+    ring, length, density = bearing.inner_raceway, bearing.roller.length, bearing.material.density
+    least_bore = (1 - _THINNEST_RING) * ring.radius
+    inside_low, inside_high = (least_bore, 0.0) if ring.bore_radius is None else (ring.bore_radius, ring.bore_radius)
+    low = density * math.pi * (ring.radius**2 - inside_low**2) * length / _MASS_FACTOR
+    high = density * math.pi * (ring.radius**2 - inside_high**2) * length * _WIDEST_RING * _MASS_FACTOR
+    if low <= ring.ring_mass <= high:
+        return []
+    return [
+        f"bearing.inner_raceway.ring_mass: {1e3 * ring.ring_mass:.4g} g; expected {1e3 * low:.4g} to {1e3 * high:.4g} g by raceway, bore and roller "
+        f"length (within a factor of {_MASS_FACTOR:g}); give the mass of the ring; that of the shaft belongs into supported_mass"
+    ]
+
+
+def _speed(scene: Scene) -> list[str]:
+    limit, speed = scene.bearing.catalogue_limits.limiting_speed, abs(scene.operating.shaft_speed)
+    if limit is None or speed <= limit:
+        return []
+    turns = 30.0 / math.pi
+    return [
+        f"operating.shaft_speed: {turns * speed:.6g} rpm; expected at most the limiting speed of the bearing, {turns * limit:.6g} rpm; lower "
+        "the speed, or ask the maker"
+    ]
+
+
+def _load(scene: Scene) -> list[str]:
+    """Judge the load by the makers' minimum; a bearing with preload has its own."""
+    operating = scene.operating
+    least, rule = minimum_load(scene)
+    if not operating.shaft_speed or operating.radial_load >= least or scene.bearing.radial_clearance_at_low_points < 0.0:
+        return []
+    return [
+        f"operating.radial_load: {operating.radial_load:.4g} N; expected at least the makers' minimum, {least:.4g} N ({rule}); below it expect slip: "
+        "raise the load, take a smaller bearing or one with less clearance, or study the slip"
+    ]

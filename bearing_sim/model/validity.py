@@ -1,0 +1,931 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Limits of validity: where each law of the model holds, and what to use beyond.
+
+One entry of `LAWS` for each limit: the quantity, its range, where the range comes from (or the word *assumption*), what to use instead, and how
+the quantity follows from a scene and its samples.  A result outside a range is still computed, but it carries a warning: `outside` finds
+them all, the command line prints them, and `bearing_sim.monitoring.limits` turns them into events.  A new limit is one entry here and
+one case in ``test/test_validity.py``.
+"""
+
+import functools
+import math
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from bearing_sim.model.oil import OilState, oil_at
+from bearing_sim.model.params import Params, pack
+from bearing_sim.model.sample import new_block
+from bearing_sim.physics.rating_life import load_rating, static_rating, viscosity_ratio
+from bearing_sim.scene.bearing import Bearing
+from bearing_sim.scene.crown import NoCrown
+from bearing_sim.scene.lubricant import ConstantTraction, CustomOil, EyringTraction, KragelskiiTraction, Oil, Oil4109Traction
+from bearing_sim.scene.scene import Scene
+
+ZERO_CELSIUS = 273.15  # [K]
+_LOADED_FROM = 1.0  # [N] a contact that carries less takes no part
+_SAME_OIL = 0.5  # [K] samples whose oil differs by less share its properties; viscosity then errs by 2 % at most
+_OIL_TEMPERATURES = (220.0, 600.0)  # [K] bounds of `lubricant.temperature`, within which the fits of oils give numbers
+_VISCOSITY_CLASS_AT = 100.0 + ZERO_CELSIUS  # [K] temperature at which turbine oils are classed
+_EXTRAPOLATED = 60.0  # [K] beyond the two viscosities of a custom oil
+_SEPARATOR = "; "  # of exceedances in a cell of a table
+_SMALL_FRACTION = 0.1  # of the losses that brake the cage: one that stays below it decides nothing
+
+
+class Ratings(NamedTuple):
+    """Basic load ratings of a whole bearing [N]."""
+
+    dynamic: float  # C_r
+    static: float  # C_0r
+
+
+def ratings(bearing: Bearing) -> Ratings:
+    """Return the load ratings by which loads are judged (ISO 281 and ISO 76, from the dimensions)."""
+    roller = bearing.roller
+    dimensions = (roller.count, roller.diameter, roller.length, bearing.diameter_ratio)
+    return Ratings(load_rating(*dimensions), static_rating(*dimensions))
+
+
+def speed_factor(bearing: Bearing, shaft_speed):
+    """Return n d_m in rpm mm of a shaft speed [rad/s]."""
+    return np.abs(shaft_speed) * (30.0 / math.pi) * 1e3 * bearing.pitch_diameter
+
+
+class ContactSpeeds(NamedTuple):
+    """Surface speeds in the contacts of one ring [m/s], arrays of one shape."""
+
+    rolling: np.ndarray  # u, mean speed of both surfaces relative to the contact
+    sliding: np.ndarray  # du, raceway less roller
+
+
+def contact_speeds(samples: np.ndarray, params: Params) -> tuple[ContactSpeeds, ContactSpeeds]:
+    """Return the surface speeds in the contacts of all rollers with inner and outer raceway, shape (n, Z) each.
+
+    Spins that a sample does not hold are those of rolling on the outer ring.
+
+    Parameters
+    ----------
+    samples : shape (n,), see `bearing_sim.model.sample`.
+    params : of the bearing.
+    """
+    raceways, radius = params.raceways, params.rollers.radius
+    orbit, orbital, spin = samples["roller_radius"], samples["orbital_speed"], samples["roller_spin"]
+    surface, shaft = np.where(np.isnan(spin), orbital * orbit / radius, spin) * radius, samples["shaft_speed"][:, None]
+    rolled = surface + orbital * radius  # the roller's surface, seen from the contact
+    inner = ContactSpeeds(0.5 * ((shaft - orbital) * raceways.inner_radius + rolled), shaft * raceways.inner_radius - orbital * orbit - surface)
+    outer = ContactSpeeds(0.5 * (orbital * (orbit + radius) + rolled), surface - orbital * orbit)
+    return inner, outer
+
+
+@functools.lru_cache(maxsize=4096)
+def _oil_state(oil: Oil | CustomOil, temperature: float) -> OilState:
+    return oil_at(oil, temperature)
+
+
+class Conditions:
+    """What laws are evaluated at in samples of a scene; each quantity is computed when a law first asks for it.
+
+    All quantities have the shape (n,).  They are NaN where nothing is judged: while the shaft turns slower than
+    ``thresholds.slip_from_speed``, or where no roller is loaded.
+
+    Parameters
+    ----------
+    scene : of the samples.
+    samples : shape (n,), see `bearing_sim.model.sample`.
+    params : of the scene, if they are known.
+    """
+
+    def __init__(self, scene: Scene, samples: np.ndarray, params: Params | None = None):
+        self.scene, self.samples = scene, samples
+        self.params = pack(scene) if params is None else params
+
+    @functools.cached_property
+    def turning(self) -> np.ndarray:
+        """Whether the shaft turns fast enough to be judged."""
+        return np.abs(self.samples["shaft_speed"]) >= max(self.scene.thresholds.slip_from_speed, 1e-9)
+
+    def while_turning(self, values: np.ndarray) -> np.ndarray:
+        """Return values, NaN where the shaft does not turn."""
+        return np.where(self.turning, values, np.nan)
+
+    @functools.cached_property
+    def _oils(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        temperatures = np.clip(self.samples["oil_temperature"], *_OIL_TEMPERATURES)
+        if np.ptp(temperatures) > 0.0:
+            temperatures = np.round(temperatures / _SAME_OIL) * _SAME_OIL
+        kinds, which = np.unique(temperatures, return_inverse=True)
+        states = [_oil_state(self.scene.lubricant.oil, float(kind)) for kind in kinds]
+        found = ([getattr(state, name) for state in states] for name in ("viscosity", "density", "pressure_viscosity"))
+        return tuple(np.array(each)[which.ravel()] for each in found)
+
+    @property
+    def viscosity(self) -> np.ndarray:
+        """eta_0 of the oil [Pa s]."""
+        return self._oils[0]
+
+    @property
+    def density(self) -> np.ndarray:
+        """Density of the oil [kg/m^3]."""
+        return self._oils[1]
+
+    @property
+    def pressure_viscosity(self) -> np.ndarray:
+        """Pressure coefficient of the viscosity, alpha [1/Pa]."""
+        return self._oils[2]
+
+    @functools.cached_property
+    def _heaviest(self) -> tuple[np.ndarray, ...]:
+        """Q/R [N/m], R [m], rolling and sliding speed [m/s] of the contact with the largest pressure."""
+        raceways = self.params.raceways
+        loads = np.concatenate([self.samples["inner_load"], self.samples["outer_load"]], axis=1)
+        radii = np.repeat([raceways.inner_curvature_radius, raceways.outer_curvature_radius], loads.shape[1] // 2)
+        inner, outer = contact_speeds(self.samples, self.params)
+        place = np.argmax(loads / radii, axis=1)[:, None]
+        load = np.take_along_axis(loads, place, axis=1)[:, 0]
+        radius = radii[place[:, 0]]
+        speeds = (np.take_along_axis(np.concatenate(both, axis=1), place, axis=1)[:, 0] for both in zip(inner, outer))
+        return np.where(load > _LOADED_FROM, load / radius, np.nan), radius, *speeds
+
+    @functools.cached_property
+    def pressure(self) -> np.ndarray:
+        """Largest Hertz pressure of any contact [Pa], of a slice where the level has slices."""
+        per_length = self._heaviest[0] / self.params.rollers.length
+        whole = np.sqrt(per_length * self.params.raceways.reduced_modulus / (2.0 * math.pi))
+        return np.fmax(whole, np.maximum(self.samples["inner_pressure"], self.samples["outer_pressure"]))
+
+    @functools.cached_property
+    def rolling_speed(self) -> np.ndarray:
+        """Rolling speed u of the most heavily loaded contact [m/s]."""
+        return self.while_turning(np.where(np.isnan(self._heaviest[0]), np.nan, np.abs(self._heaviest[2])))
+
+    @functools.cached_property
+    def slide_to_roll(self) -> np.ndarray:
+        """|du|/u of the most heavily loaded contact."""
+        return np.abs(self._heaviest[3]) / np.maximum(self.rolling_speed, 1e-9)
+
+    @property
+    def film_speed(self) -> np.ndarray:
+        """U = eta_0 u/(E' R) of that contact."""
+        return self.viscosity * self.rolling_speed / (self.params.raceways.reduced_modulus * self._heaviest[1])
+
+    @property
+    def film_load(self) -> np.ndarray:
+        """W = Q/(E' R L) of that contact."""
+        return self.while_turning(self._heaviest[0] / (self.params.raceways.reduced_modulus * self.params.rollers.length))
+
+    @property
+    def film_material(self) -> np.ndarray:
+        """G = alpha E'."""
+        return self.while_turning(self.pressure_viscosity * self.params.raceways.reduced_modulus)
+
+    @functools.cached_property
+    def viscosity_ratio(self) -> np.ndarray:
+        """Viscosity ratio kappa of ISO 281."""
+        kinematic, speeds, pitch = self.viscosity / self.density, self.samples["shaft_speed"], self.scene.bearing.pitch_diameter
+        return self.while_turning(np.array([viscosity_ratio(float(nu), float(speed), pitch) for nu, speed in zip(kinematic, speeds)]))
+
+    @functools.cached_property
+    def equivalent_load(self) -> np.ndarray:
+        """The larger of the radial load and the load that gives the computed life, C_r L10^(-3/10), which contains preload [N]."""
+        with np.errstate(divide="ignore", invalid="ignore"):  # at rest the life is infinite
+            revolutions = self.samples["rating_life"] * 3600.0 * np.abs(self.samples["shaft_speed"]) / (2e6 * math.pi)
+            reference = ratings(self.scene.bearing).dynamic * revolutions**-0.3
+        return np.fmax(self.radial_load, np.where(revolutions > 0.0, reference, np.nan))
+
+    @property
+    def radial_load(self) -> np.ndarray:
+        """The radial load on the inner ring [N]."""
+        return np.hypot(self.samples["load_y"], self.samples["load_z"])
+
+    @property
+    def churning_reynolds(self) -> np.ndarray:
+        """Re = rho v D_w/eta of a roller in the oil-air mixture."""
+        speed = np.abs(self.samples["cage_speed"]) * self.params.raceways.pitch_radius
+        density = self.scene.lubricant.mixture_fraction * self.density
+        return self.while_turning(density * speed * 2.0 * self.params.rollers.radius / self.viscosity)
+
+    @property
+    def end_face_reynolds(self) -> np.ndarray:
+        """Re = rho omega R^2/eta of the cage's end faces."""
+        density = self.scene.lubricant.mixture_fraction * self.density
+        return self.while_turning(density * np.abs(self.samples["cage_speed"]) * self.params.cage.outer_radius**2 / self.viscosity)
+
+    @property
+    def land_taylor(self) -> np.ndarray:
+        """Taylor number of the oil in the guide lands; NaN where their drag, with vortices, stays below a tenth of what brakes the cage."""
+        cage, samples = self.params.cage, self.samples
+        sliding = np.abs(samples["cage_speed"] - cage.guidance.turning * samples["shaft_speed"]) * cage.guide_radius
+        number = self.density * sliding * cage.guide_clearance / self.viscosity * math.sqrt(cage.guide_clearance / cage.guide_radius)
+        with_vortices = samples["land_power"] * np.maximum(1.3 * (number / 41.0) ** 0.539, 1.0)
+        decides = with_vortices > _SMALL_FRACTION * (with_vortices + samples["churning_power"] + samples["windage_power"])
+        return self.while_turning(np.where(decides, number, np.nan))
+
+
+Limit = float | Callable[[Scene], float]
+
+
+class Law(NamedTuple):
+    """One limit of one law.
+
+    Attributes
+    ----------
+    name : identifier, unique in `LAWS`.
+    kind : of its events, ``validity.`` and the subject.
+    law : what is evaluated, for people.
+    quantity : whose range is limited.
+    unit : shown behind the value; values in ``degC`` are kept in kelvin.
+    low, high : the range; infinite for none; functions of the scene where it depends on it.
+    source : of the range, or the word *assumption* and its reason.
+    instead : what to use, or to do, outside.
+    applies : whether a scene uses the law.
+    value : the quantity; of the scene alone (a number) if ``of_scene``, otherwise of `Conditions` (an array, NaN where nothing is judged).
+    of_scene : whether the quantity depends on the scene alone.
+    expected : the range in words where it is not two numbers: of a condition that a scene meets (0) or not (1), or that depends on the scene.
+    """
+
+    name: str
+    kind: str
+    law: str
+    quantity: str
+    unit: str
+    low: Limit
+    high: Limit
+    source: str
+    instead: str
+    applies: Callable[[Scene], bool]
+    value: Callable
+    of_scene: bool = False
+    expected: str = ""
+
+    def limits(self, scene: Scene) -> tuple[float, float]:
+        """Return the range for a scene."""
+        low, high = (limit(scene) if callable(limit) else limit for limit in (self.low, self.high))
+        return low, high
+
+    @property
+    def is_condition(self) -> bool:
+        """Whether the law has a condition instead of a range."""
+        return bool(self.expected) and not callable(self.low)
+
+    @property
+    def general_range(self) -> str:
+        """The range in words, whatever the scene."""
+        return self.expected or self.range_text(self.low, self.high)
+
+    def shown(self, value: float) -> float:
+        """Return a value in the unit of the law."""
+        return value - ZERO_CELSIUS if self.unit == "degC" else value
+
+    def range_text(self, low: float, high: float) -> str:
+        """Return a range in words."""
+        if self.is_condition:
+            return self.expected
+        unit, low, high = f" {self.unit}".rstrip(), self.shown(low), self.shown(high)
+        if math.isinf(low):
+            return f"at most {high:.4g}{unit}"
+        return f"at least {low:.4g}{unit}" if math.isinf(high) else f"{low:.4g} to {high:.4g}{unit}"
+
+
+class Exceedance(NamedTuple):
+    """A law that is applied outside of its range."""
+
+    law: Law
+    value: float  # the worst; in kelvin for a temperature
+    low: float
+    high: float
+
+    @property
+    def finding(self) -> str:
+        """What was found and what was expected."""
+        law, expected = self.law, self.law.range_text(self.low, self.high)
+        if law.is_condition:
+            return f"{law.quantity}; expected {expected} ({law.source})"
+        return f"{law.quantity} is {law.shown(self.value):.4g}{f' {law.unit}'.rstrip()}; expected {expected} ({law.source})"
+
+    @property
+    def text(self) -> str:
+        """The warning as a sentence: name, law, value, range, source and alternative."""
+        return f"{self.law.name}: {self.law.law}: {self.finding}; {self.law.instead}"
+
+    @property
+    def short(self) -> str:
+        """Name and value, for a cell of a table."""
+        return self.law.name if self.law.is_condition else f"{self.law.name} {self.law.shown(self.value):.4g} {self.law.unit}".rstrip()
+
+    @property
+    def excess(self) -> float:
+        """How far outside, in relation to the limit; to find the worst of several."""
+        return max(self.low - self.value, self.value - self.high) / max(abs(self.low if self.value < self.low else self.high), 1e-300)
+
+    def report(self) -> dict[str, object]:
+        """Return the fields for JSON."""
+        law, condition = self.law, self.law.is_condition
+        return {
+            "name": law.name,
+            "law": law.law,
+            "quantity": law.quantity,
+            "value": None if condition else law.shown(self.value),
+            "unit": law.unit,
+            "low": None if condition else law.shown(self.low),
+            "high": None if condition else law.shown(self.high),
+            "expected": law.range_text(self.low, self.high),
+            "source": law.source,
+            "instead": law.instead,
+            "text": self.text,
+        }
+
+
+def _with_traction(*laws: type) -> Callable[[Scene], bool]:
+    return lambda scene: isinstance(scene.lubricant.traction, laws)
+
+
+def _has_film(scene: Scene) -> bool:
+    return scene.bearing.roughness is not None or isinstance(scene.lubricant.traction, EyringTraction)
+
+
+def _has_lands(scene: Scene) -> bool:
+    return scene.bearing.cage.has_lands
+
+
+def _always(scene: Scene) -> bool:
+    return True
+
+
+def _class_viscosity(scene: Scene) -> float:
+    oil = oil_at(scene.lubricant.oil, _VISCOSITY_CLASS_AT)
+    return 1e6 * oil.viscosity / oil.density
+
+
+def _is_sample_curve(scene: Scene) -> float:
+    traction = scene.lubricant.traction
+    return float(traction == type(traction)())
+
+
+def _lowest_oil(scene: Scene) -> float:
+    oil = scene.lubricant.oil
+    return 40.0 + ZERO_CELSIUS - _EXTRAPOLATED if isinstance(oil, CustomOil) else min(oil.density_temperatures)
+
+
+def _highest_oil(scene: Scene) -> float:
+    oil = scene.lubricant.oil
+    return 100.0 + ZERO_CELSIUS + _EXTRAPOLATED if isinstance(oil, CustomOil) else max(oil.density_temperatures)
+
+
+def _widest_gap(scene: Scene) -> float:
+    cage, bearing = scene.bearing.cage, scene.bearing
+    outer = (bearing.outer_raceway.low_radius - cage.outside) / cage.outside
+    return max(outer, (cage.bore - bearing.inner_raceway.radius) / cage.bore)
+
+
+def _nominal_speed_factor(scene: Scene) -> float:
+    return float(speed_factor(scene.bearing, scene.operating.shaft_speed)) if scene.operating.shaft_speed else math.nan
+
+
+# The publication of the fit could not be read.  Other rigs for oils of its kind: K. Deng et al. with oils 4010, 4050 and 4102, Wang Yanshuang et
+# al. 2019 with oil 4129; the theory of traction has both.  A product of powers is trusted somewhat beyond what was measured.
+_RIGS = "assumption: {} on rigs for aviation oils, widened {}"
+_OTHER_TRACTION = "use lubricant.traction.law eyring with the oil's own data, or constant or kragelskii with coefficients measured for this oil"
+
+LAWS = (
+    Law(
+        "oil_4109_class",
+        "validity.traction",
+        "traction law oil_4109",
+        "the oil's viscosity at 100 degC",
+        "mm^2/s",
+        2.5,
+        7.5,
+        "assumption: fitted to one aviation turbine oil; oils of its class have 3 to 7 mm^2/s",
+        _OTHER_TRACTION,
+        _with_traction(Oil4109Traction),
+        _class_viscosity,
+        of_scene=True,
+    ),
+    Law(
+        "oil_4109_pressure",
+        "validity.traction",
+        "traction law oil_4109",
+        "the largest Hertz pressure",
+        "GPa",
+        0.5,
+        3.0,
+        _RIGS.format("1.0 to 1.5 GPa", "by a factor of 2"),
+        _OTHER_TRACTION,
+        _with_traction(Oil4109Traction),
+        lambda at: at.while_turning(1e-9 * at.pressure),
+    ),
+    Law(
+        "oil_4109_speed",
+        "validity.traction",
+        "traction law oil_4109",
+        "the rolling speed of the most heavily loaded contact",
+        "m/s",
+        5.0,
+        80.0,
+        _RIGS.format("about 10 to 40 m/s", "by a factor of 2"),
+        _OTHER_TRACTION,
+        _with_traction(Oil4109Traction),
+        lambda at: at.rolling_speed,
+    ),
+    Law(
+        "oil_4109_temperature",
+        "validity.traction",
+        "traction law oil_4109",
+        "the oil temperature",
+        "degC",
+        -5.0 + ZERO_CELSIUS,
+        150.0 + ZERO_CELSIUS,
+        _RIGS.format("25 to 120 degC", "by 30 K"),
+        _OTHER_TRACTION,
+        _with_traction(Oil4109Traction),
+        lambda at: at.while_turning(at.samples["oil_temperature"]),
+    ),
+    Law(
+        "oil_4109_sliding",
+        "validity.traction",
+        "traction law oil_4109",
+        "the slide-to-roll ratio of the most heavily loaded contact",
+        "",
+        -math.inf,
+        0.6,
+        _RIGS.format("0 to 0.3", "by a factor of 2"),
+        "take the slip for gross sliding, not for its value; heating by sliding then decides: use lubricant.traction.law eyring",
+        _with_traction(Oil4109Traction),
+        lambda at: at.slide_to_roll,
+    ),
+    Law(
+        "traction_sample_curve",
+        "validity.traction",
+        "traction law constant or kragelskii",
+        "its coefficients are the defaults, a sample curve of no particular oil",
+        "",
+        -math.inf,
+        0.5,
+        "assumption: the curve has no range but the oil and conditions that it was measured with",
+        "give the coefficients of your oil, measured at the pressure, speed and temperature of the bearing",
+        _with_traction(ConstantTraction, KragelskiiTraction),
+        _is_sample_curve,
+        of_scene=True,
+        expected="coefficients of the oil in use",
+    ),
+    Law(
+        "eyring_stress",
+        "validity.traction",
+        "traction law eyring",
+        "the Eyring stress",
+        "MPa",
+        2.0,
+        10.0,
+        "assumption: values in use for ester and mineral oils, see the theory of traction",
+        "take the stress from a measured traction curve",
+        _with_traction(EyringTraction),
+        lambda scene: 1e-6 * scene.lubricant.traction.eyring_stress,
+        of_scene=True,
+    ),
+    Law(
+        "eyring_limiting_stress",
+        "validity.traction",
+        "traction law eyring",
+        "limiting shear stress over pressure",
+        "",
+        0.03,
+        0.12,
+        "assumption: values in use for ester and mineral oils, see the theory of traction",
+        "take the ratio from the maximum of a measured traction curve",
+        _with_traction(EyringTraction),
+        lambda scene: scene.lubricant.traction.limiting_ratio,
+        of_scene=True,
+    ),
+    Law(
+        "eyring_viscosity",
+        "validity.traction",
+        "traction law eyring, viscosity under pressure by Roelands",
+        "the oil's viscosity",
+        "mPa s",
+        0.2,
+        math.inf,
+        "assumption: three times the pole of Roelands' law (1966) at 0.063 mPa s, near which it gives no pressure dependence",
+        "use lubricant.traction.law constant or kragelskii with measured coefficients",
+        _with_traction(EyringTraction),
+        lambda at: at.while_turning(1e3 * at.viscosity),
+    ),
+    Law(
+        "film_speed",
+        "validity.film",
+        "film formulas of Dowson and Higginson, Dowson and Toyoda",
+        "the speed parameter U = eta_0 u/(E' R) of the most heavily loaded contact",
+        "",
+        1e-13,
+        1e-10,
+        "assumption: range of the numerical solutions behind such formulas; the originals were not read",
+        "read the film as an order of magnitude; at high U oil supply and heating of the inlet limit the film",
+        _has_film,
+        lambda at: at.film_speed,
+    ),
+    Law(
+        "film_load",
+        "validity.film",
+        "film formulas of Dowson and Higginson, Dowson and Toyoda",
+        "the load parameter W = Q/(E' R L) of the most heavily loaded contact",
+        "",
+        1e-5,
+        1e-3,
+        "assumption: range of the numerical solutions behind such formulas; the originals were not read",
+        "at low W the contact is rigid, and the film thicker than computed; at high W lower the load",
+        _has_film,
+        lambda at: at.film_load,
+    ),
+    Law(
+        "film_material",
+        "validity.film",
+        "film formulas of Dowson and Higginson, Dowson and Toyoda",
+        "the material parameter G = alpha E'",
+        "",
+        1e3,
+        1e4,
+        "assumption: steel with oils; Dowson and Higginson's solutions are for G of 2500 and 5000",
+        "for a fluid that hardly thickens under pressure, such as water, use a formula of the isoviscous regime",
+        _has_film,
+        lambda at: at.film_material,
+    ),
+    Law(
+        "mixture_fraction",
+        "validity.drag",
+        "drag of the oil-air mixture",
+        "lubricant.mixture_fraction",
+        "",
+        0.015,
+        0.05,
+        "published for jet-lubricated high-speed bearings, see the theory of drag",
+        "for an oil bath, circulating oil or grease calibrate the fraction with bearing-sim calibrate, or give its range to bearing-sim uncertainty",
+        _always,
+        lambda scene: scene.lubricant.mixture_fraction,
+        of_scene=True,
+    ),
+    Law(
+        "mixture_of_jet",
+        "validity.drag",
+        "drag of the oil-air mixture",
+        "n d_m at operating.shaft_speed",
+        "rpm mm",
+        4e5,
+        math.inf,
+        "assumption: published fractions are of jets, which makers advise from about 400,000; slower bearings run in a bath, in circulating oil or "
+        "in grease",
+        "choose lubricant.mixture_fraction for this kind of lubrication: calibrate it with bearing-sim calibrate, or give its range to bearing-sim "
+        "uncertainty",
+        lambda scene: 0.015 <= scene.lubricant.mixture_fraction <= 0.05,
+        _nominal_speed_factor,
+        of_scene=True,
+    ),
+    Law(
+        "churning_reynolds",
+        "validity.drag",
+        "drag of rollers in the mixture",
+        "the Reynolds number of a roller",
+        "",
+        0.1,
+        1e6,
+        "table of the drag coefficient of a cylinder, H. Schlichting, Boundary-Layer Theory",
+        "read churning as an order of magnitude; calibrate lubricant.mixture_fraction at this speed and temperature",
+        _always,
+        lambda at: at.churning_reynolds,
+    ),
+    Law(
+        "end_face_reynolds",
+        "validity.drag",
+        "drag of the cage's end faces",
+        "the Reynolds number of the end faces",
+        "",
+        -math.inf,
+        1e7,
+        "assumption: the 1/5th power of T. von Karman (1921) follows a velocity profile that holds to about this number",
+        "read the windage of the end faces as an order of magnitude",
+        _always,
+        lambda at: at.end_face_reynolds,
+    ),
+    Law(
+        "cage_gap",
+        "validity.drag",
+        "torque between cage and rings",
+        "the widest gap beside the cage over its radius",
+        "",
+        -math.inf,
+        0.25,
+        "assumption: G. I. Taylor's (1923) critical number 41 is of a narrow gap; it is about 47 at 0.25",
+        "give the cage's inner_radius and outer_radius; in a wide gap the torque of the faces is uncertain by its half",
+        _always,
+        _widest_gap,
+        of_scene=True,
+    ),
+    Law(
+        "land_length",
+        "validity.land",
+        "film of the guide lands",
+        "the width of one land over the land's diameter",
+        "",
+        -math.inf,
+        0.5,
+        "assumption: side flow governs a short bearing, G. B. DuBois and F. W. Ocvirk, NACA Report 1157 (1953)",
+        "reduce bearing.cage.guide_land_width to the width that carries; the forces of a wider land are smaller than computed",
+        _has_lands,
+        lambda scene: scene.bearing.cage.guide_land_width / (2.0 * scene.bearing.cage.land_radius),
+        of_scene=True,
+    ),
+    Law(
+        "land_clearance",
+        "validity.land",
+        "film of the guide lands",
+        "the guide clearance over the land's radius",
+        "",
+        -math.inf,
+        0.02,
+        "assumption: a film is thin, as Reynolds' equation presupposes, at a few hundredths at most",
+        "check bearing.cage.guide_clearance, which is radial; a cage so loose is guided by its rollers: bearing.cage.guidance roller",
+        _has_lands,
+        lambda scene: scene.bearing.cage.guide_clearance / scene.bearing.cage.land_radius,
+        of_scene=True,
+    ),
+    Law(
+        "land_laminar",
+        "validity.land",
+        "film of the guide lands",
+        "the Taylor number in the lands",
+        "",
+        -math.inf,
+        41.0,
+        "G. I. Taylor (1923); judged where the lands are more than a tenth of what brakes the cage",
+        "the drag of the lands is larger than computed, by 1.3 (Ta/41)^0.539; the film is not laminar",
+        _has_lands,
+        lambda at: at.land_taylor,
+    ),
+    Law(
+        "pocket_film",
+        "validity.pocket",
+        "film of the pockets, 67 N at the end of the clearance",
+        "the pocket clearance over the roller diameter",
+        "",
+        0.003,
+        0.05,
+        "assumption: Deng 2017, eq. 10, gives 67 N for 7 mm rollers without a source; clearances in use are 0.05 to 0.3 mm there",
+        "give bearing.cage.pocket_film_force for this clearance, or check bearing.cage.pocket_clearance",
+        lambda scene: scene.cage_whirls,
+        lambda scene: scene.bearing.cage.pocket_clearance / scene.bearing.roller.diameter,
+        of_scene=True,
+    ),
+    Law(
+        "hertz_pressure",
+        "validity.contact",
+        "elastic line contact of Palmgren and Hertz",
+        "the largest Hertz pressure",
+        "GPa",
+        -math.inf,
+        4.0,
+        "ISO 76: C_0 is the load of 4 GPa, which dents raceways by a ten-thousandth of the roller diameter",
+        "lower the load or take a larger bearing; beyond it steel yields, loads spread and the life by fatigue says nothing",
+        _always,
+        lambda at: 1e-9 * at.pressure,
+    ),
+    Law(
+        "iso_spring_steel",
+        "validity.contact",
+        "contact spring of ISO/TS 16281",
+        "Young's modulus",
+        "GPa",
+        200.0,
+        215.0,
+        "ISO/TS 16281:2008: c_L is for bearing steel",
+        "use bearing.contact.spring palmgren, which takes the elastic constants of bearing.material",
+        lambda scene: scene.bearing.contact.spring == "iso",
+        lambda scene: 1e-9 * scene.bearing.material.youngs_modulus,
+        of_scene=True,
+    ),
+    Law(
+        "roller_slenderness",
+        "validity.contact",
+        "line contact, load ratings of cylindrical rollers",
+        "roller length over diameter",
+        "",
+        0.5,
+        3.0,
+        "ISO 5593: a longer roller is a needle; the lower end is an assumption",
+        "for needles and very short rollers take load ratings of the maker; skew and edge loads then decide",
+        _always,
+        lambda scene: scene.bearing.roller.length / scene.bearing.roller.diameter,
+        of_scene=True,
+    ),
+    Law(
+        "diameter_ratio",
+        "validity.life",
+        "load ratings of ISO 281",
+        "roller diameter over pitch diameter, gamma",
+        "",
+        0.01,
+        0.30,
+        "ISO 281:2007, table of f_c for radial roller bearings",
+        "take the load rating of the maker",
+        _always,
+        lambda scene: scene.bearing.diameter_ratio,
+        of_scene=True,
+    ),
+    Law(
+        "life_load",
+        "validity.life",
+        "rating life of ISO 281 and ISO/TS 16281",
+        "equivalent load over the dynamic load rating, P/C_r",
+        "",
+        -math.inf,
+        0.5,
+        "ISO 281:2007: the life equations hold to P = 0.5 C_r",
+        "lower the load or take a larger bearing; beyond it the life is shorter than computed",
+        _always,
+        lambda at: at.while_turning(at.equivalent_load / ratings(at.scene.bearing).dynamic),
+    ),
+    Law(
+        "static_load",
+        "validity.life",
+        "static safety of ISO 76",
+        "radial load over the static load rating, P_0/C_0r",
+        "",
+        -math.inf,
+        1.0,
+        "ISO 76: a static safety below 1 leaves dents",
+        "lower the load or take a larger bearing",
+        _always,
+        lambda at: at.radial_load / ratings(at.scene.bearing).static,
+    ),
+    Law(
+        "viscosity_ratio",
+        "validity.life",
+        "life modification factor a_ISO",
+        "the viscosity ratio kappa",
+        "",
+        0.1,
+        4.0,
+        "ISO 281:2007, 9.3.3.3: a_ISO is defined for 0.1 to 4",
+        "below it surfaces touch: take a thicker oil, the life by fatigue says nothing; above it a_ISO is that of 4: take a thinner oil",
+        lambda scene: scene.life.a_iso != "none",
+        lambda at: at.viscosity_ratio,
+    ),
+    Law(
+        "life_slices",
+        "validity.life",
+        "rating life by slices of ISO/TS 16281",
+        "slices of a roller",
+        "",
+        30.0,
+        math.inf,
+        "ISO/TS 16281:2008, 5.3: at least 30 laminae",
+        "set bearing.roller.slices=30 or more",
+        lambda scene: scene.bodies_tilt,
+        lambda scene: float(scene.bearing.roller.slices),
+        of_scene=True,
+    ),
+    Law(
+        "roller_profile",
+        "validity.life",
+        "rating life by slices of ISO/TS 16281",
+        "the rollers have no profile",
+        "",
+        -math.inf,
+        0.5,
+        "ISO/TS 16281:2008: the stress risers count on a profile; of flat rollers L10r falls with every slice more",
+        "set bearing.roller.crown to the maker's profile, or to iso_log",
+        lambda scene: scene.bodies_tilt,
+        lambda scene: float(isinstance(scene.bearing.roller.crown, NoCrown)),
+        of_scene=True,
+        expected="a crown of the rollers",
+    ),
+    Law(
+        "oil_temperature",
+        "validity.oil",
+        "properties of the oil",
+        "the oil temperature",
+        "degC",
+        _lowest_oil,
+        _highest_oil,
+        "the table of the oil; of a custom oil 60 K beyond its viscosities at 40 and 100 degC (assumption)",
+        "give an oil with data at this temperature (lubricant.oil), or correct lubricant.temperature",
+        _always,
+        lambda at: at.samples["oil_temperature"],
+        expected="the temperatures of a catalogue oil's table; -20 to 160 degC of a custom oil",
+    ),
+    Law(
+        "oil_viscosity",
+        "validity.oil",
+        "viscosity over temperature of a custom oil",
+        "kinematic viscosity",
+        "mm^2/s",
+        0.21,
+        2e7,
+        "ASTM D341: range of its equation",
+        "correct lubricant.oil or lubricant.temperature",
+        lambda scene: isinstance(scene.lubricant.oil, CustomOil),
+        lambda at: 1e6 * at.viscosity / at.density,
+    ),
+    Law(
+        "speed_factor",
+        "validity.speed",
+        "all laws",
+        "n d_m",
+        "rpm mm",
+        -math.inf,
+        3e6,
+        "assumption: the highest speeds of roller bearings on test rigs for aircraft engines",
+        "lower the speed; turn on bearing.ring_growth, and check the stress in ring and cage, which the model does not contain",
+        _always,
+        lambda at: speed_factor(at.scene.bearing, at.samples["shaft_speed"]),
+    ),
+)  # fmt: skip
+"""All limits that are watched, by subject."""
+
+UNWATCHED = (
+    ("contact damping of Hunt and Crossley", "no published range; settled slip and life do not depend on it"),
+    ("pumping resistance, lubricant.pumping", "its numbers have no traced source, so no range; within a factor of 2 (assumption)"),
+    ("heating of the film's inlet", "W. R. D. Wilson and S. Sheu (1983) give no range that we could read; the factor 0.1 is an assumption"),
+    ("pocket friction and boundary friction of the lands", "coefficients, not laws with a range: 0.02 to 0.1 and 0.05 to 0.15 in use"),
+    ("vortex and turbulent torque factors of the cage's faces", "assumptions of 20 to 30 % without a known range; cage_gap limits the geometry"),
+    ("Carter's creep in series with the film", "exact for line contact far from gross sliding; beyond it the film takes the sliding"),
+    ("growth of rings", "elastic, so valid below the yield strength; hoop stress is not computed"),
+    ("linear damage, Miner's sum", "no range; sums at failure scatter from 0.3 to 3"),
+)
+"""Laws with constants for which no range is known or none is needed, and why."""
+
+BY_NAME = {law.name: law for law in LAWS}
+_PLACE = {name: place for place, name in enumerate(BY_NAME)}
+
+
+def scene_exceedances(scene: Scene) -> list[Exceedance]:
+    """Return the limits that a scene exceeds by itself, whatever its samples."""
+    found = []
+    for law in LAWS:
+        if law.of_scene and law.applies(scene):
+            value, (low, high) = law.value(scene), law.limits(scene)
+            if value < low or value > high:
+                found.append(Exceedance(law, value, low, high))
+    return found
+
+
+def sample_laws(scene: Scene) -> list[tuple[Law, float, float]]:
+    """Return the laws of a scene whose quantity depends on the sample, each with its range."""
+    return [(law, *law.limits(scene)) for law in LAWS if not law.of_scene and law.applies(scene)]
+
+
+def outside(scene: Scene, samples: np.ndarray, names: Sequence[str] = ()) -> list[Exceedance]:
+    """Return the limits that a scene or any of its samples exceeds, each with its worst value, in the order of `LAWS`.
+
+    Parameters
+    ----------
+    scene : of the samples.
+    samples : shape (n,), n at least 1, see `bearing_sim.model.sample`.
+    names : of the only laws to judge; all by default.
+    """
+    at, found = Conditions(scene, samples), scene_exceedances(scene)
+    for law, low, high in sample_laws(scene):
+        if not names or law.name in names:
+            found += worst(law, low, high, law.value(at))
+    return in_order(each for each in found if not names or each.law.name in names)
+
+
+def in_order(exceedances: Iterable[Exceedance]) -> list[Exceedance]:
+    """Return exceedances in the order of `LAWS`."""
+    return sorted(exceedances, key=lambda each: _PLACE[each.law.name])
+
+
+def cell(exceedances: Iterable[Exceedance]) -> str:
+    """Return exceedances as one cell of a table, name and value of each; empty for none."""
+    return _SEPARATOR.join(each.short for each in exceedances)
+
+
+def merged(cells: Iterable[str]) -> str:
+    """Return several cells (see `cell`) as one, with the first value of each law."""
+    found = {each.partition(" ")[0]: each for text in reversed(list(cells)) for each in text.split(_SEPARATOR) if each}
+    return _SEPARATOR.join(sorted(found.values()))
+
+
+def counted(cells: Iterable[str]) -> list[str]:
+    """Return one sentence for each law in cells of a table (see `cell`): in how many of them it is outside of its range, and what to do."""
+    names = Counter(each.partition(" ")[0] for text in cells for each in text.split(_SEPARATOR) if each)
+    laws = ((count, BY_NAME[name]) for name, count in names.items())
+    return [f"{count} x {law.name}: {law.law}: {law.quantity}; expected {law.general_range} ({law.source}); {law.instead}" for count, law in laws]
+
+
+def worst(law: Law, low: float, high: float, values: np.ndarray) -> list[Exceedance]:
+    """Return the worst of the values outside a range, or nothing; NaN is inside."""
+    extremes = [Exceedance(law, float(pick(values)), low, high) for pick in (np.fmin.reduce, np.fmax.reduce)]
+    beyond = [each for each in extremes if each.value < low or each.value > high]
+    return [max(beyond, key=lambda each: each.excess)] if beyond else []
+
+
+def still_sample(scene: Scene) -> np.ndarray:
+    """Return a block of one sample at a scene's operating conditions, with ideal rolling and without roller loads, for laws and their checks."""
+    operating, bearing, sample = scene.operating, scene.bearing, new_block(1, scene.bearing.roller.count)
+    cage_speed = 0.5 * operating.shaft_speed * (1.0 - bearing.diameter_ratio)
+    sample["shaft_speed"], sample["oil_temperature"] = operating.shaft_speed, scene.lubricant.temperature
+    sample["load_y"] = operating.radial_load * math.cos(operating.load_angle)
+    sample["load_z"] = operating.radial_load * math.sin(operating.load_angle)
+    sample["cage_speed"] = sample["ideal_cage_speed"] = sample["orbital_speed"] = cage_speed
+    sample["roller_radius"], sample["roller_spin"], sample["rating_life"] = bearing.pitch_radius, math.nan, math.inf
+    return sample

@@ -1,0 +1,116 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Watch whether the laws of a running model are used within their ranges (`bearing_sim.model.validity`).
+
+Samples in, events out.  All times are those of the samples.
+"""
+
+import math
+
+import numpy as np
+
+from bearing_sim.messages.events import Event, Level, validity_event
+from bearing_sim.model.params import pack
+from bearing_sim.model.validity import Conditions, Exceedance, Law, in_order, sample_laws, scene_exceedances, worst
+from bearing_sim.monitoring.monitor import Alarm
+from bearing_sim.scene.scene import Hold, Scene
+
+_EVERY = 0.1  # [s] least time between two samples that are judged: one costs about 0.2 ms
+# A warning is raised at once, because an overload of an instant is enough to dent a raceway, and cleared late, so that it does not flicker.
+_HOLD = Hold(hysteresis=0.02, raise_after=0.0, clear_after=5.0)
+
+
+class _Range:
+    """One law against both ends of its range, with hysteresis and hold times."""
+
+    def __init__(self, law: Law, low: float, high: float):
+        self.law, self.low, self.high = law, low, high
+        # An alarm's hysteresis is a fraction of its limit.
+        self._alarms = [Alarm(limit, _HOLD, below) for limit, below in ((low, True), (high, False)) if math.isfinite(limit)]
+        self.holding: Exceedance | None = None  # the latest, while the warning holds
+
+    @property
+    def is_pending(self) -> bool:
+        """Whether the warning holds, or may change with values inside the range."""
+        return any(alarm.is_pending for alarm in self._alarms)
+
+    def judge(self, now: float, value: float) -> list[Event]:
+        """Take the value at an instant [s] and return the event if the warning begins or ends."""
+        raised, before = [alarm.judge(now, value) for alarm in self._alarms], self.holding
+        beyond = worst(self.law, self.low, self.high, np.array([value]))
+        if beyond:
+            self.holding = beyond[0]
+        elif not any(raised):
+            self.holding = None
+        if (before is None) == (self.holding is None):
+            return []
+        if before is None:
+            return [validity_event(now, self.holding)]
+        return [Event(now, Level.OK, self.law.kind, self.law.name, "back within its range")]
+
+
+class LimitsMonitor:
+    """Judges the samples of a run by the ranges of all laws of its scene.
+
+    Limits that the scene exceeds by itself hold from the first sample to the end.
+
+    Parameters
+    ----------
+    scene : of the run.
+
+    Attributes
+    ----------
+    worst : dict
+        The worst exceedance of each law so far, by its name; hysteresis and hold times have no part in it.
+    """
+
+    def __init__(self, scene: Scene):
+        self._scene, self._params = scene, pack(scene)
+        self._of_scene = scene_exceedances(scene)
+        self.restart()
+
+    def restart(self) -> None:
+        """Forget the run so far."""
+        self._ranges = [_Range(*each) for each in sample_laws(self._scene)]
+        self._next = -math.inf
+        self.worst: dict[str, Exceedance] = {}
+
+    def take(self, block: np.ndarray) -> list[Event]:
+        """Judge samples, only one of those within 0.1 s, and return the warnings that begin or end.
+
+        Parameters
+        ----------
+        block : samples in order, shape (n,), n at least 1; see `bearing_sim.model.sample`.
+        """
+        changes = []
+        if self._next == -math.inf:
+            self.worst = {each.law.name: each for each in self._of_scene}
+            changes = [validity_event(float(block["time"][0]), each) for each in self._of_scene]
+        if block["time"][-1] < self._next:
+            return changes
+        block = block[self._due(block["time"].tolist())]
+        at, times = Conditions(self._scene, block, self._params), block["time"].tolist()
+        for each in self._ranges:
+            values = each.law.value(at)
+            found = worst(each.law, each.low, each.high, values)
+            for one in found:
+                self.worst[one.law.name] = max(self.worst.get(one.law.name, one), one, key=lambda exceedance: exceedance.excess)
+            if found or each.is_pending:
+                for time, value in zip(times, values.tolist()):
+                    changes += each.judge(time, value)
+        return sorted(changes, key=lambda event: event.time)
+
+    def _due(self, times: list[float]) -> list[int]:
+        """Return the places of the samples to judge."""
+        chosen = []
+        for place, time in enumerate(times):
+            if time >= self._next:
+                chosen.append(place)
+                self._next = time + _EVERY * (1 - 1e-9)
+        return chosen
+
+    def events(self, now: float) -> list[Event]:
+        """Return the events that hold, stamped ``now`` [s]."""
+        if self._next == -math.inf:
+            return []
+        holding = [*self._of_scene, *(each.holding for each in self._ranges if each.holding is not None)]
+        return [validity_event(now, each) for each in in_order(holding)]

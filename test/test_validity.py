@@ -1,0 +1,384 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Claims about the limits of validity: every law warns outside of its range, by every door that a user has, and is silent inside it."""
+
+import json
+import math
+import re
+import time
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from recordings import write_log
+
+from bearing_sim import Simulation, load_scene
+from bearing_sim.cli.main import main
+from bearing_sim.messages.events import Event, Level
+from bearing_sim.model.sample import new_block
+from bearing_sim.model.validity import BY_NAME, LAWS, Conditions, Exceedance, cell, counted, merged, outside, ratings, still_sample
+from bearing_sim.monitoring.film_ratio import FilmRatio
+from bearing_sim.monitoring.limits import LimitsMonitor
+from bearing_sim.recording.reader import Recording
+from bearing_sim.runtime.live import LiveModel, warmed_up
+from bearing_sim.sweep.point import point_row
+
+MOTOR = """
+name: nu210
+level: slip
+bearing:
+  name: NU 210
+  source: sketch of a catalogue bearing
+  roller: {count: 16, diameter: 11 mm, length: 12 mm}
+  inner_raceway: {radius: 29.75 mm, ring_mass: 200 g, bore_radius: 25 mm}
+  outer_raceway: {low_radius: 40.7775 mm, d_value: 0 mm}
+  cage: {mass: 60 g, width: 14 mm, inner_radius: 33.5 mm, guide_radius: 38 mm, guide_clearance: 0.3 mm, guide_land_width: 3 mm}
+lubricant: {oil: mil_l_7808, temperature: 70 degC, mixture_fraction: 0.1}
+operating: {shaft_speed: 3000 rpm, radial_load: 5 kN}
+"""
+GEARBOX = """
+name: nu232
+level: slip
+bearing:
+  name: NU 232
+  source: sketch of a catalogue bearing
+  roller: {count: 17, diameter: 38 mm, length: 38 mm}
+  inner_raceway: {radius: 97.5 mm, ring_mass: 6 kg, bore_radius: 80 mm}
+  outer_raceway: {low_radius: 135.55 mm, d_value: 0 mm}
+  cage: {mass: 2 kg, width: 46 mm, inner_radius: 106 mm, guide_radius: 128 mm, guide_clearance: 0.6 mm, guide_land_width: 8 mm}
+lubricant: {oil: mil_l_7808, temperature: 70 degC, mixture_fraction: 0.1}
+operating: {shaft_speed: 1650 rpm, radial_load: 100 kN}
+"""
+FEW_THICK_ROLLERS = """
+name: thick
+level: slip
+bearing:
+  name: seven thick rollers
+  source: made up
+  roller: {count: 7, diameter: 20 mm, length: 20 mm}
+  inner_raceway: {radius: 20 mm, ring_mass: 200 g}
+  outer_raceway: {low_radius: 40.01 mm, d_value: 0 mm}
+  cage: {mass: 60 g, width: 25 mm, inner_radius: 28 mm, guide_radius: 35 mm, guide_clearance: 0.3 mm, guide_land_width: 2 mm}
+lubricant: {oil: mil_l_7808, temperature: 70 degC, mixture_fraction: 0.03}
+operating: {shaft_speed: 3000 rpm, radial_load: 5 kN}
+"""
+VG_320 = (
+    "lubricant.oil={law: custom, viscosity_40: 320 mm^2/s, viscosity_100: 24 mm^2/s, density: 890 kg/m^3, pressure_viscosity: 22 1/GPa}",
+    "lubricant.temperature=60 degC",
+)
+SOLVENT = "lubricant.oil={law: custom, viscosity_40: 0.5 mm^2/s, viscosity_100: 0.3 mm^2/s, density: 800 kg/m^3, pressure_viscosity: 5 1/GPa}"
+WATERY = "lubricant.oil={law: custom, viscosity_40: 1 mm^2/s, viscosity_100: 0.6 mm^2/s, density: 1000 kg/m^3, pressure_viscosity: 1 1/GPa}"
+ROUGH = "bearing.roughness={roller: 0.1 um, raceway: 0.2 um}"
+EYRING = "lubricant.traction={law: eyring}"
+PAPER = "deng2017_table1"
+
+# Law: the command and what drives the law out of its range; the command and what keeps it inside.
+CASES = {
+    "oil_4109_class": (("run", "motor", *VG_320), ("run", "motor")),
+    "oil_4109_pressure": (("run", PAPER, "operating.radial_load=25 kN"), ("run", PAPER)),
+    "oil_4109_speed": (("run", PAPER, "operating.shaft_speed=52000 rpm"), ("run", PAPER)),
+    "oil_4109_temperature": (("run", PAPER, "lubricant.temperature=170 degC"), ("run", PAPER, "lubricant.temperature=140 degC")),
+    "oil_4109_sliding": (
+        ("run", PAPER, "lubricant.traction_scale=0.02", "bearing.outer_raceway.low_radius=34.9 mm", "operating.radial_load=100 N"),
+        ("run", PAPER),
+    ),
+    "traction_sample_curve": (
+        ("run", PAPER, "lubricant.traction={law: constant}"),
+        ("run", PAPER, "lubricant.traction={law: constant, b: 0.5, c: 45, d: 0.02}"),
+    ),
+    "eyring_stress": (("run", PAPER, EYRING, "lubricant.traction.eyring_stress=20 MPa"), ("run", PAPER, EYRING)),
+    "eyring_limiting_stress": (("run", PAPER, EYRING, "lubricant.traction.limiting_ratio=0.2"), ("run", PAPER, EYRING)),
+    "eyring_viscosity": (("loads", PAPER, EYRING, SOLVENT, "lubricant.temperature=150 degC"), ("loads", PAPER, EYRING)),
+    "film_speed": (("run", PAPER, ROUGH), ("run", PAPER, ROUGH, "operating.shaft_speed=15000 rpm")),
+    "film_load": (("run", "motor", ROUGH, "operating.radial_load=100 kN"), ("run", "motor", ROUGH)),
+    "film_material": (("loads", "motor", ROUGH, WATERY), ("loads", "motor", ROUGH)),
+    "mixture_fraction": (("run", "motor"), ("run", PAPER)),
+    "mixture_of_jet": (("run", "motor", *VG_320, "lubricant.mixture_fraction=0.03"), ("run", PAPER)),
+    "churning_reynolds": (
+        ("run", "motor", *VG_320, "lubricant.temperature=0 degC", "operating.shaft_speed=300 rpm", "lubricant.mixture_fraction=0.01"),
+        ("run", "motor"),
+    ),
+    "end_face_reynolds": (
+        ("loads", "gearbox", SOLVENT, "lubricant.mixture_fraction=1", "lubricant.temperature=100 degC", "operating.shaft_speed=6000 rpm"),
+        ("loads", "gearbox"),
+    ),
+    "cage_gap": (("run", "thick"), ("run", "motor")),
+    "land_length": (("run", PAPER, "bearing.cage.width=80 mm", "bearing.cage.guide_land_width=36 mm"), ("run", PAPER)),
+    "land_clearance": (("run", PAPER, "bearing.cage.guide_clearance=0.8 mm"), ("run", PAPER)),
+    "land_laminar": (("run", PAPER, "level=planar"), ("run", PAPER)),
+    "pocket_film": (("run", PAPER, "level=planar", "bearing.cage.pocket_clearance=0.5 mm"), ("run", PAPER, "level=planar")),
+    "hertz_pressure": (("run", "motor", "operating.radial_load=800 kN"), ("run", "motor")),
+    "iso_spring_steel": (
+        ("run", PAPER, "bearing.contact.spring=iso", "bearing.material.youngs_modulus=310 GPa"),
+        ("run", PAPER, "bearing.contact.spring=iso"),
+    ),
+    "roller_slenderness": (("run", PAPER, "bearing.roller.length=25 mm", "bearing.cage.width=30 mm"), ("run", PAPER)),
+    "diameter_ratio": (("run", "thick"), ("run", "motor")),
+    "life_load": (("loads", "motor", "operating.radial_load=40 kN"), ("loads", "motor", "operating.radial_load=30 kN")),
+    "static_load": (("loads", "motor", "operating.radial_load=85 kN"), ("loads", "motor", "operating.radial_load=70 kN")),
+    "viscosity_ratio": (
+        ("loads", "motor", *VG_320, "life.a_iso=bath_17_14"),
+        ("loads", "motor", "life.a_iso=bath_17_14"),
+    ),
+    "life_slices": (("run", PAPER, "level=spatial", "bearing.roller.slices=20"), ("run", PAPER, "level=spatial", "bearing.roller.slices=30")),
+    "roller_profile": (("run", PAPER, "level=spatial"), ("run", PAPER, "level=spatial", "bearing.roller.crown=iso_log")),
+    "oil_temperature": (("run", PAPER, "lubricant.temperature=220 degC"), ("run", PAPER)),
+    "oil_viscosity": (
+        ("loads", "motor", SOLVENT, "lubricant.temperature=170 degC"),
+        ("loads", "motor", *VG_320),
+    ),
+    "speed_factor": (("run", PAPER, "operating.shaft_speed=52000 rpm"), ("run", PAPER)),
+}
+
+
+@pytest.fixture(scope="module")
+def scenes(tmp_path_factory):
+    """Paths of scene files by name."""
+    folder, found = tmp_path_factory.mktemp("scenes"), {PAPER: PAPER}
+    for name, text in (("motor", MOTOR), ("gearbox", GEARBOX), ("thick", FEW_THICK_ROLLERS)):
+        path = folder / f"{name}.yaml"
+        path.write_text(text)
+        found[name] = str(path)
+    return found
+
+
+def invoke(scenes, command, name, *overrides, json_wanted=True):
+    """Run a command on a scene; return the result of click."""
+    arguments = [command, scenes[name], *(word for each in overrides for word in ("--set", each))]
+    arguments += ["--duration", "0.2"] if command == "run" else []
+    return CliRunner().invoke(main, [*arguments, *(["--json"] if json_wanted else [])])
+
+
+def warned(scenes, case):
+    """Return the reported warnings of a command, by name."""
+    result = invoke(scenes, *case)
+    assert result.exit_code == 0, result.output
+    return {each["name"]: each for each in json.loads(result.stdout)["warnings"]}, result.stderr
+
+
+@pytest.mark.parametrize("name", BY_NAME)
+def test_a_law_warns_outside_of_its_range(scenes, name):
+    found, printed = warned(scenes, CASES[name][0])
+    law = BY_NAME[name]
+    assert name in found, printed
+    assert f"warning: {name}: {law.law}: {law.quantity}" in printed and law.instead in printed
+    report = found[name]
+    if not law.is_condition:
+        assert report["value"] < (-math.inf if report["low"] is None else report["low"]) or report["value"] > report["high"]
+
+
+@pytest.mark.parametrize("name", BY_NAME)
+def test_a_law_is_silent_inside_its_range(scenes, name):
+    found, printed = warned(scenes, CASES[name][1])
+    assert name not in found and f"warning: {name}:" not in printed
+
+
+def test_every_law_has_a_case_a_source_and_an_alternative():
+    assert CASES.keys() == BY_NAME.keys() and len(BY_NAME) == len(LAWS)
+    for law in LAWS:
+        assert law.kind.startswith("validity.") and law.source and law.instead and law.quantity, law.name
+        assert law.is_condition or law.expected or law.low < law.high, law.name
+
+
+def test_the_bundled_scenes_are_calm_where_the_papers_laws_are_in_their_range(scenes):
+    for scene in (PAPER, "deng2017_table2"):
+        result = invoke({scene: scene}, "run", scene)
+        report = json.loads(result.stdout)
+        assert report["warnings"] == [] and report["implausible"] == [] and "warning" not in result.stderr
+    fast = invoke({"table2": "deng2017_table2"}, "run", "table2", "operating.shaft_speed=52000 rpm")
+    assert {each["name"] for each in json.loads(fast.stdout)["warnings"]} == {"oil_4109_speed", "speed_factor"}
+
+
+def test_a_gear_oil_with_the_aviation_fit_and_a_jets_mixture_is_told_by_every_command(scenes):
+    """3 % of oil and oil_4109 on ISO VG 320, which once went without a word."""
+    told = {"oil_4109_class", "mixture_of_jet"}
+    for command in ("run", "loads"):
+        result = invoke(scenes, command, "motor", *VG_320, "lubricant.mixture_fraction=0.03")
+        assert told <= {each["name"] for each in json.loads(result.stdout)["warnings"]}
+        assert all(f"warning: {name}: " in result.stderr for name in told)
+    row = point_row(load_scene(scenes["motor"], [*VG_320, "lubricant.mixture_fraction=0.03"]), 0.05)
+    assert "oil_4109_class 24 mm^2/s" in row["warnings"] and "mixture_of_jet" in row["warnings"]
+
+
+def test_an_overload_of_eleven_gigapascals_ends_with_warnings(scenes):
+    result = invoke(scenes, "run", "motor", "operating.radial_load=800 kN", json_wanted=False)
+    assert result.exit_code == 0
+    assert re.search(r"warning: hertz_pressure: .* the largest Hertz pressure is 11\.[45]\d? GPa; expected at most 4 GPa", result.stderr)
+    assert "warning: life_load: " in result.stderr and "warning: static_load: " in result.stderr
+
+
+class ListSink:
+    """Keeps samples and events."""
+
+    def __init__(self):
+        self.blocks, self.events, self.diagnostics = [], [], []
+
+    def write(self, block):
+        self.blocks.append(block)
+
+    def write_event(self, event):
+        self.events.append(event)
+
+    def write_inputs(self, time, inputs, channels, origin):
+        """Inputs are of no interest."""
+
+    def write_measurement(self, *measurement):
+        """Nor are measurements."""
+
+    def write_diagnostics(self, time, events, values):
+        self.diagnostics.append(list(events))
+
+    def close(self):
+        """Nothing is open."""
+
+
+@pytest.mark.parametrize(
+    "overrides, load, expected",
+    [
+        ((*VG_320, "lubricant.mixture_fraction=0.03"), 5e3, {"oil_4109_class", "mixture_of_jet"}),
+        ((), 700e3, {"hertz_pressure", "life_load", "static_load", "mixture_fraction"}),
+    ],
+)
+def test_the_node_reports_a_law_outside_of_its_range_in_diagnostics_and_recording(scenes, overrides, load, expected):
+    scene = load_scene(
+        scenes["motor"], [*overrides, "input_limits.minimum_rate=0 Hz", "thresholds.life_warning=0", "thresholds.remaining_life_warning=0"]
+    )
+    sink, start = ListSink(), 1_700_000_000_000_000_000
+    live = LiveModel(scene, warmed_up(scene), start)
+    live.open("record", lambda start_ns: sink)
+    began = time.monotonic()
+    news = []
+    while time.monotonic() - began < 20.0 and not expected <= {event.subject for event in news}:
+        now = start + round((time.monotonic() - began) * 1e9)
+        live.offer("shaft_speed", (314.0,), now, now)
+        live.offer("radial_load", (load, 0.0), now, now)
+        news += live.collect(now)
+        time.sleep(0.02)
+    condition = live.condition(now)
+    live.record_diagnostics(condition, now)
+    live.close()
+    holding = {event.subject: event for event in condition.events if event.kind.startswith("validity.")}
+    assert expected <= holding.keys() and condition.level >= Level.WARN
+    assert all(event.level is Level.WARN and event.action for event in holding.values())
+    assert expected <= {event.subject for event in sink.events} and expected <= {event.subject for event in sink.diagnostics[-1]}
+    assert len([event for event in news if event.subject in expected]) == len(expected), "each is told once"
+
+
+def block_of(scene, times, loads):
+    """Return samples of made-up roller loads."""
+    block = new_block(len(times), scene.bearing.roller.count)
+    block[:] = still_sample(scene)[0]
+    block["time"], block["inner_load"][:, 0], block["outer_load"][:, 0] = times, loads, loads
+    return block
+
+
+def test_a_warning_comes_once_and_goes_late(scenes):
+    scene = load_scene(scenes["motor"])
+    monitor = LimitsMonitor(scene)
+    times = np.arange(0.0, 20.0, 0.05)
+    loads = np.where((times > 2.0) & (times < 6.0) & (np.round(times * 5) % 2 == 0), 40e3, 1e3)  # flickers beyond 4 GPa
+    changes = [
+        (round(event.time, 1), event.level)
+        for k in range(0, len(times), 7)
+        for event in monitor.take(block_of(scene, times[k : k + 7], loads[k : k + 7]))
+        if event.subject == "hertz_pressure"
+    ]
+    assert [level for _, level in changes] == [Level.WARN, Level.OK]
+    assert 2.0 < changes[0][0] < 2.6 and 10.5 < changes[1][0] < 11.5
+    assert monitor.worst["hertz_pressure"].value == pytest.approx(5.1, abs=0.3)
+    assert not any(event.subject == "hertz_pressure" for event in monitor.events(20.0))
+    monitor.restart()
+    assert monitor.worst == {} and monitor.events(0.0) == []
+
+
+def test_samples_are_judged_at_most_ten_times_a_second(scenes, monkeypatch):
+    scene, judged = load_scene(scenes["motor"]), []
+    monitor = LimitsMonitor(scene)
+
+    def counted_conditions(scene, block, params):
+        judged.append(len(block))
+        return Conditions(scene, block, params)
+
+    monkeypatch.setattr("bearing_sim.monitoring.limits.Conditions", counted_conditions)
+    for k in range(1000):
+        monitor.take(block_of(scene, [k * 1e-3], [1e3]))
+    assert sum(judged) == 10
+
+
+def test_pressure_and_equivalent_load_are_those_of_a_hand_calculation(scenes):
+    scene = load_scene(scenes["motor"])
+    at = Conditions(scene, block_of(scene, [0.0], [2000.0]))
+    radius, modulus = 1 / (1 / 5.5e-3 + 1 / 29.75e-3), 206e9 / (1 - 0.3**2)
+    assert at.pressure[0] == pytest.approx(math.sqrt(2000.0 / 12e-3 * modulus / (2 * math.pi * radius)), rel=1e-9)
+    sample = still_sample(scene)
+    sample["rating_life"] = 1e6 * 2**-1 * 2 * math.pi / (3600 * sample["shaft_speed"])  # half a million revolutions
+    assert Conditions(scene, sample).equivalent_load[0] == pytest.approx(ratings(scene.bearing).dynamic * 2**0.3)
+
+
+def test_the_film_ratio_and_the_limits_see_the_same_contact_speeds(scenes):
+    scene = load_scene(scenes["motor"], [ROUGH])
+    block = Simulation(scene).advance(0.02, samples=2)
+    at = Conditions(scene, block)
+    assert np.all(at.rolling_speed > 5.0) and np.all(at.slide_to_roll < 0.1)
+    assert np.all(FilmRatio(scene).least(block) > 0.0)
+
+
+def test_cells_of_a_table_are_merged_and_counted():
+    pressure, load = (Exceedance(BY_NAME[name], value, -math.inf, 4.0) for name, value in (("hertz_pressure", 5.0), ("life_load", 0.7)))
+    assert cell([pressure, load]) == "hertz_pressure 5 GPa; life_load 0.7" and cell([]) == ""
+    assert merged(["", "life_load 0.7", cell([pressure, load])]) == "hertz_pressure 5 GPa; life_load 0.7"
+    first, second = counted([cell([pressure]), cell([pressure, load]), ""])
+    assert first.startswith("2 x hertz_pressure: ") and second.startswith("1 x life_load: ")
+
+
+def events_of(path):
+    """Return the events of a recording."""
+    return [item for item in Recording(path) if isinstance(item, Event)]
+
+
+def replayed(folder, scene, *options, load=5e3):
+    """Replay 20 s at 3000 rpm with a burst of load from 5 to 8 s; return the result of click."""
+    log, times = folder / "log.mcap", [0.2 * k for k in range(101)]
+    write_log(log, [(time, 314.0) for time in times], [(time, load if 5.0 <= time <= 8.0 else 5e3, 0.0) for time in times])
+    return CliRunner().invoke(main, ["replay", str(log), "--scene", scene, *options])
+
+
+def test_a_replay_tells_a_burst_of_overload_and_records_when(scenes, tmp_path):
+    result = replayed(tmp_path, scenes["motor"], "--json", "-o", str(tmp_path / "out.mcap"), load=700e3)
+    report = json.loads(result.stdout)
+    worst = {each["name"]: each for each in report["warnings"]}
+    assert worst["hertz_pressure"]["value"] == pytest.approx(10.8, abs=0.3)
+    assert worst["static_load"]["value"] == pytest.approx(700e3 / ratings(load_scene(scenes["motor"]).bearing).static, rel=1e-6)
+    assert "warning: hertz_pressure: " in result.stderr
+    events = [(event.time, event.level) for event in events_of(tmp_path / "out.mcap") if event.subject == "hertz_pressure"]
+    begin, end = events
+    assert begin[0] == pytest.approx(5.0, abs=0.21) and begin[1] == Level.WARN
+    assert end[0] == pytest.approx(13.0, abs=0.41) and end[1] == Level.OK, "5 s after the burst"
+
+
+def test_a_calm_replay_is_silent(tmp_path):
+    log, times = tmp_path / "log.mcap", [0.2 * k for k in range(26)]
+    write_log(log, [(time, 4712.0) for time in times], [(time, 800.0, 0.0) for time in times])
+    result = CliRunner().invoke(main, ["replay", str(log), "--scene", PAPER, "--json"])
+    assert json.loads(result.stdout)["warnings"] == [] and "warning" not in result.stderr
+
+
+def test_a_run_records_its_warnings(scenes, tmp_path):
+    path = tmp_path / "run.mcap"
+    arguments = ["run", scenes["motor"], "--duration", "0.05", "--set", "operating.radial_load=800 kN", "--out", str(path)]
+    assert CliRunner().invoke(main, arguments).exit_code == 0
+    assert {"hertz_pressure", "static_load", "life_load"} <= {event.subject for event in events_of(path)}
+
+
+def test_a_sweep_has_a_column_of_warnings(scenes, tmp_path):
+    out = tmp_path / "sweep.parquet"
+    arguments = ["sweep", scenes["motor"], "--vary", "operating.radial_load=5kN,40kN", "--duration", "0.02 s", "-o", str(out), "--workers", "1"]
+    result = CliRunner().invoke(main, [*arguments, "--json"])
+    report = json.loads(result.stdout)
+    assert [("life_load" in row["warnings"]) for row in report["points"]] == [False, True]
+    assert any(text.startswith("1 x life_load: ") for text in report["warnings"])
+    assert "life_load 0.5664" in (tmp_path / "sweep.csv").read_text()
+
+
+def test_at_rest_only_what_needs_no_motion_is_judged(scenes):
+    scene = load_scene(scenes["motor"], ["operating.shaft_speed=0 rpm", "operating.radial_load=90 kN"])
+    assert {each.law.name for each in outside(scene, still_sample(scene))} == {"mixture_fraction", "static_load"}
