@@ -10,11 +10,12 @@ from click.testing import CliRunner
 from bearing_sim import Simulation, load_scene
 from bearing_sim.cli.main import main
 from bearing_sim.studies.design import D_VALUE, LOW, NOMINAL, WORST, Limits, default_axes, design
+from bearing_sim.sweep.conditions import Conditions
 from bearing_sim.sweep.grid import read_axis
 from bearing_sim.sweep.table import read_table
 from bearing_sim.sweep.tasks import Journal
 
-LIMITS = Limits(10.0, 300.0, 0.02, 0.1)
+LIMITS = Limits(10.0, 300.0, Conditions(0.02, 0.1))
 
 
 def found(radii="34.86mm:34.8675mm:6", d_values="0.095mm,0.105mm", limits=LIMITS, overrides=("level=steady",)):
@@ -122,11 +123,12 @@ WORDS = ["design", "deng2017_table1", "--slip-below", "10%", "--life-above", "30
 def test_command_answers_beside_deng_writes_tables_and_picture_and_computes_nothing_twice(tmp_path):
     words = [*WORDS, "--d-value", "0.095mm:0.105mm:2", "-o", str(tmp_path / "d.parquet"), "--picture", str(tmp_path / "d.png")]
     reported = CliRunner().invoke(main, words, catch_exceptions=False)
-    assert reported.exit_code == 0 and "Deng 2017 has 34.8625 to 34.8650 mm" in reported.output and "bound by slip" in reported.output
+    assert reported.exit_code == 0 and "Deng 2017 has 34.8625 to 34.8650 mm" in reported.output and "life, slip" in reported.output
     entries = (tmp_path / "d.journal").read_text().count("\n")
     report = json.loads(CliRunner().invoke(main, [*words, "--json"]).stdout)
     assert (tmp_path / "d.journal").read_text().count("\n") == entries
     within = report["nominal_within_deng"]
+    assert report["verify_level"] == "slip" and "pocket play" in reported.stderr
     assert 34.861 < within["low_from"] < 34.8625 < within["low_to"] < 34.8655
     assert len(read_table(tmp_path / "d.parquet").rows) == 8
     borders = read_table(tmp_path / "d_borders.parquet")

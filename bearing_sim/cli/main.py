@@ -7,6 +7,8 @@ from typing import NamedTuple
 
 import click
 
+from bearing_sim.cli.reporting import ARGUMENTS
+
 
 class Entry(NamedTuple):
     """A command in a group: where it is, as ``module:function`` below `bearing_sim.cli`, and what it does in one line."""
@@ -38,8 +40,8 @@ _COMMANDS = {
     "calibrate": Entry("calibrate:calibrate", "Fit fields of a scene to the measured cage speed in a recording."),
     "sweep": Entry("sweep:sweep", "Run a scene at all combinations of field values, into a table."),
     "plot": Entry("sweep:plot", "Draw the table of a sweep."),
-    "design": Entry("sweep:design", "Map which outer raceways keep slip and life within limits."),
-    "report": Entry("study:report", "Make one HTML page of a study."),
+    "design": Entry("design:design", "Map which outer raceways keep slip and life within limits, and verify them."),
+    "report": Entry("report:report", "Make one HTML page of a study, a sweep, a design or a recorded run."),
     "trade": Entry("bench:trade", "Measure speed against accuracy on a scene, and recommend a setting."),
     "bench": Entry("main:bench", "Measure how fast the model is on this machine."),
     "compile": Entry("bench:compile_levels", "Compile levels before their first run."),
@@ -67,6 +69,12 @@ class LazyGroup(click.Group):
     def __init__(self, *args, entries: Mapping[str, Entry], heading: str, **options):
         super().__init__(*args, **options)
         self._entries, self._heading = entries, heading
+
+    def make_context(self, info_name, args, parent=None, **extra):
+        """Return the context of a call, which keeps the arguments as they were written, so that results can name their command."""
+        context = super().make_context(info_name, [*args], parent, **extra)
+        context.meta.setdefault(ARGUMENTS, list(args))
+        return context
 
     def list_commands(self, context):
         """Return the names in order."""

@@ -5,6 +5,7 @@ import csv
 import errno
 import json
 import math
+import shlex
 import signal
 import sys
 import threading
@@ -94,6 +95,15 @@ def seconds_of(duration: str) -> float:
     if not 0.0 < seconds <= 1e6:
         raise UsageError(f"--duration {duration}: expected more than 0 and at most 1e6 s")
     return seconds
+
+
+ARGUMENTS = "bearing_sim.arguments"
+"""Key of the arguments of the command line in the meta data of click's contexts."""
+
+
+def command_line() -> str:
+    """Return the command line of the running command as it was written."""
+    return shlex.join(["bearing-sim", *click.get_current_context().meta.get(ARGUMENTS, ())])
 
 
 def announce_compilation() -> None:
@@ -251,9 +261,10 @@ class Points:
         return self._stack.__exit__(*error)
 
     def update(self, done: int, pending: int) -> None:
-        """Update the bar: how many of the pending points are done, and how many there are."""
+        """Update the bar: how many of the pending points are done, and how many there are; none done begins a new bar."""
         self.computed, self.kept = done, self._total - pending
-        if self._show is None:
-            kept = f", {self.kept} kept from before" if self.kept else ""
+        if self._show is None or done == 0:
+            self._stack.close()
+            kept = f", {self.kept} kept from before" if self.kept > 0 else ""
             self._show = self._stack.enter_context(progress_bar(f"{self._text}: {pending} points{kept}", max(pending, 1)))
         self._show(done)

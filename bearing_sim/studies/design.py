@@ -1,14 +1,16 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Design study: the outer raceways, over low-point radius and D value, with slip below one limit and life above another.
 
-Speed and load have tolerances: a raceway meets the limits in the worst case if it meets them at all nine combinations of nominal,
-lowest and highest speed and load.  Bisection then locates the borders of the region to a few nanometres of radius.
+At several operating points slip must stay below its limit at each, and life is that of the mission.  Speed, load and dimensions have
+tolerances: a raceway meets the limits in the worst case if it meets them at all nine combinations of nominal, lowest and highest speed
+and load, with every dimension off alone in both directions, and with all of them off together in the directions that are worst.
+Bisection locates the borders of the region to a few nanometres of radius.  A level of higher fidelity then verifies edges and centre of
+each interval of radii, and narrows or withdraws what it refuses.
 """
 
-import dataclasses
 import itertools
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
 from typing import NamedTuple
@@ -16,60 +18,89 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.model.validity import merged
-from bearing_sim.scene.loader import SceneError, load_scene
+from bearing_sim.recording.provenance import git_hash, package_version
+from bearing_sim.scene.fidelity import asked_for, levels_with
+from bearing_sim.scene.loader import SceneError, load_scene, scene_to_yaml
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import with_values
+from bearing_sim.sweep.conditions import Conditions, OperatingPoint, PointError, combined_life, scene_at_point
 from bearing_sim.sweep.grid import Axis, axis, one_line, scene_at
 from bearing_sim.sweep.point import OK, REFUSED, UNSETTLED, Column, point_row
-from bearing_sim.sweep.table import Table, new_figure, on_grid
+from bearing_sim.sweep.table import Table, new_figure, on_grid, read_table, write_table
 from bearing_sim.sweep.tasks import Journal, Task, run_tasks, task
 
 LOW, D_VALUE = "bearing.outer_raceway.low_radius", "bearing.outer_raceway.d_value"
 NOMINAL, WORST = "nominal", "worst"
 KINDS = (NOMINAL, WORST)
+VERIFIED_BY = {"steady": "slip", "slip": "planar", "planar": "spatial"}  # the next level of higher fidelity
+CONFIRMED, NARROWED, WITHDRAWN, NOT_VERIFIED = "confirmed", "narrowed", "withdrawn", "not verified"
 _HALVINGS = 7
+_ROUNDS = 4  # of narrowing an interval until its edges and its centre meet the limits at the level that verifies
 _BELOW, _ABOVE, _RADII = 2.5e-6, 5e-6, 16  # default range of radii about the scene's [m], and their number
 _D_RANGE, _D_VALUES = 0.2, 9  # default range of D values, relative to the scene's, and their number
 _NUMBERS = (
-    Column("nominal_slip", "%", "cage slip at the scene's speed and load"),
-    Column("nominal_life", "h", "rating life there, as chosen in the scene"),
-    Column("worst_slip", "%", "largest cage slip within the tolerances of speed and load"),
-    Column("worst_life", "h", "shortest rating life within the tolerances"),
+    Column("nominal_slip", "%", "cage slip at nominal speed, load and dimensions, the largest of all operating points"),
+    Column("nominal_life", "h", "life there, as chosen in the scene; that of the mission if there are several operating points"),
+    Column("worst_slip", "%", "largest cage slip within the tolerances"),
+    Column("worst_life", "h", "shortest life within the tolerances"),
 )
 COLUMNS = (
     Column(LOW, "mm", "radius at the low points, R_low"),
     Column(D_VALUE, "mm", "high-point radius minus low-point radius, D"),
     *_NUMBERS,
-    Column("meets_nominal", "", "whether slip and life meet the limits at the scene's speed and load"),
+    Column("meets_nominal", "", "whether slip and life meet the limits at nominal speed, load and dimensions"),
     Column("meets_worst", "", "whether they meet the limits within the tolerances"),
     Column("status", "", "ok, unsettled, failed or refused"),
     Column("reason", "", "why the status is not ok"),
     Column("warnings", "", "laws used outside of their ranges within the tolerances, each with a value"),
 )
+_KIND = Column("kind", "", "nominal: at nominal speed, load and dimensions; worst: within the tolerances")
 BORDER_COLUMNS = (
-    Column("kind", "", "nominal: at the scene's speed and load; worst: within the tolerances"),
+    _KIND,
     Column(D_VALUE, "mm", "high-point radius minus low-point radius, D"),
     Column("low_radius_from", "mm", "smallest low-point radius that meets the limits"),
     Column("low_radius_to", "mm", "largest low-point radius that meets the limits"),
     Column("bound_below_by", "", "what bounds the region at low_radius_from: slip, life, no result, or the searched range"),
     Column("bound_above_by", "", "what bounds it at low_radius_to"),
+    Column("verdict", "", "of the level that verifies: confirmed, narrowed, withdrawn; or not verified"),
+    Column("verified_from", "mm", "smallest low-point radius that meets the limits at both levels; NaN if there is none or none was verified"),
+    Column("verified_to", "mm", "largest low-point radius that does"),
+    Column("verified_below_by", "", "what bounds the verified interval at verified_from"),
+    Column("verified_above_by", "", "what bounds it at verified_to"),
+)
+CHECK_COLUMNS = (
+    _KIND,
+    Column(D_VALUE, "mm", "high-point radius minus low-point radius, D"),
+    Column("place", "", "lower edge, centre or upper edge of the interval as it was found, or after verification"),
+    Column(LOW, "mm", "radius at the low points, R_low"),
+    Column("slip", "%", "cage slip at the level of the design"),
+    Column("life", "h", "life at the level of the design"),
+    Column("meets", "", "whether both meet the limits"),
+    Column("verified_slip", "%", "cage slip at the level that verifies"),
+    Column("verified_life", "h", "life at the level that verifies"),
+    Column("verified_meets", "", "whether both meet the limits"),
+    Column("status", "", "of the level that verifies: ok, unsettled, failed or refused"),
+    Column("reason", "", "why the status is not ok"),
 )
 
 
 class Limits(NamedTuple):
-    """Limits of a raceway, and tolerances of speed and load.
+    """Limits of a raceway, and the conditions in which it must meet them.
 
     Attributes
     ----------
     slip_below : limit of the cage slip [%].
     life_above : limit of the life [h].
-    speed_tolerance, load_tolerance : relative, in both directions.
+    conditions : operating points and tolerances.
     """
 
     slip_below: float
     life_above: float
-    speed_tolerance: float = 0.0
-    load_tolerance: float = 0.0
+    conditions: Conditions = Conditions()
+
+    def conditions_of(self, kind: str) -> Conditions:
+        """Return the conditions of one kind of result: the nominal ones have no tolerances."""
+        return self.conditions if kind == WORST else self.conditions.nominal
 
     def met(self, row: dict, kind: str) -> bool:
         """Return whether slip and life of a row meet the limits; False without a result."""
@@ -94,17 +125,114 @@ class Border(NamedTuple):
     above_by: str
 
 
+class Band(NamedTuple):
+    """An interval of radii at one D value, before and after verification.
+
+    Attributes
+    ----------
+    found : at the level of the design.
+    verified : what the level that verifies leaves of it; None if that is nothing, or if nothing was verified.
+    verdict : `CONFIRMED`, `NARROWED`, `WITHDRAWN` or `NOT_VERIFIED`.
+    """
+
+    found: Border
+    verified: Border | None = None
+    verdict: str = NOT_VERIFIED
+
+    @property
+    def recommended(self) -> Border | None:
+        """The interval that the design recommends."""
+        return self.found if self.verdict == NOT_VERIFIED else self.verified
+
+
+class Check(NamedTuple):
+    """A raceway at both levels, see `CHECK_COLUMNS`; lengths in mm."""
+
+    kind: str
+    d_value: float
+    place: str
+    low_radius: float
+    slip: float
+    life: float
+    meets: bool
+    verified_slip: float
+    verified_life: float
+    verified_meets: bool
+    status: str
+    reason: str
+
+
 class Designed(NamedTuple):
-    """Results: all raceways of the grid, and the borders of the regions."""
+    """Results: all raceways of the grid, the intervals that meet the limits, and the raceways that were verified."""
 
     grid: Table
-    borders: list[Border]
+    bands: list[Band]
+    checks: list[Check]
+
+    @property
+    def borders(self) -> list[Border]:
+        """The intervals as they were found at the level of the design."""
+        return [band.found for band in self.bands]
+
+    def recommended(self, kind: str) -> list[Border]:
+        """Return the intervals of one kind that the design recommends."""
+        return [band.recommended for band in self.bands if band.found.kind == kind and band.recommended is not None]
+
+    @property
+    def widest(self) -> Border | None:
+        """The widest recommended interval: in the worst case, or at nominal conditions if none is left in the worst case."""
+        found = self.recommended(WORST) or self.recommended(NOMINAL)
+        return max(found, key=lambda border: border.low_to - border.low_from, default=None)
 
     @property
     def border_table(self) -> Table:
-        """The borders as a table."""
-        names = [column.name for column in BORDER_COLUMNS]
-        return Table(BORDER_COLUMNS, [dict(zip(names, border)) for border in self.borders], self.grid.about | {"kind": "design borders"})
+        """The intervals as a table."""
+        nothing = Border("", math.nan, math.nan, math.nan, "", "")
+        rows = [(*band.found, band.verdict, *(band.verified or nothing)[2:]) for band in self.bands]
+        return self._table(BORDER_COLUMNS, rows, "design borders")
+
+    @property
+    def check_table(self) -> Table:
+        """The verified raceways as a table."""
+        return self._table(CHECK_COLUMNS, self.checks, "design checks")
+
+    def _table(self, columns, rows, kind) -> Table:
+        names = [column.name for column in columns]
+        return Table(columns, [dict(zip(names, row)) for row in rows], self.grid.about | {"kind": kind})
+
+
+def write_design(path: Path, designed: Designed) -> list[Path]:
+    """Write the tables of a design: PATH.parquet, PATH_borders.parquet, PATH_checks.parquet, and CSV of each; return the paths."""
+    tables = {"": designed.grid, "_borders": designed.border_table, "_checks": designed.check_table}
+    return [file for suffix, table in tables.items() for file in write_table(path.with_name(f"{path.stem}{suffix}.parquet"), table)]
+
+
+def read_design(path: Path) -> Designed:
+    """Return a design from the path given to `write_design`; raises as `bearing_sim.sweep.table.read_table`."""
+    grid, borders, checks = (read_table(path.with_name(f"{path.stem}{suffix}.parquet")) for suffix in ("", "_borders", "_checks"))
+    bands = []
+    for row in borders.rows:
+        kind, d_value, low_from, low_to, below_by, above_by, verdict, *rest = row.values()
+        verified = Border(kind, d_value, *rest) if verdict in (CONFIRMED, NARROWED) else None
+        bands.append(Band(Border(kind, d_value, low_from, low_to, below_by, above_by), verified, verdict))
+    return Designed(grid, bands, [Check(*row.values()) for row in checks.rows])
+
+
+def life_name(scene: Scene) -> str:
+    """Return the name of the life that a scene chooses, which a design keeps above its limit."""
+    life = scene.life
+    basic = "L10r of slices with stress risers (ISO/TS 16281)" if life.lamina else "L10 of whole rollers"
+    if life.is_basic or life.lamina and life.reliability == 0.9 and life.a_iso == "none":
+        return basic
+    return f"L_nm = a_1 a_ISO times {basic}, reliability {100 * life.reliability:g} %, cleanliness {life.a_iso}"
+
+
+def verifying_level(scene: Scene) -> str | None:
+    """Return the next level of higher fidelity that has everything a scene asks for; None if there is none."""
+    level, able = VERIFIED_BY.get(scene.level), levels_with(asked_for(scene))
+    while level is not None and level not in able:
+        level = VERIFIED_BY.get(level)
+    return level
 
 
 def default_axes(scene: Scene) -> tuple[Axis, Axis]:
@@ -115,33 +243,70 @@ def default_axes(scene: Scene) -> tuple[Axis, Axis]:
     return tuple(axis(path, [float(f"{value:.9g}") for value in values.tolist()]) for path, values in ((LOW, radii), (D_VALUE, d_values)))
 
 
-def raceway_row(scene: Scene, duration: float, speed_tolerance: float, load_tolerance: float) -> dict:
-    """Return slip and life of a raceway, nominal and worst case within the tolerances.
+class _NoResult(Exception):
+    """A run without a result: its status and its reason."""
+
+
+def raceway_row(scene: Scene, duration: float, conditions: Conditions) -> dict:
+    """Return slip and life of a raceway, nominal and in the worst case within the tolerances.
+
+    Tolerances of speed and load are combined, nine runs at each operating point.  Those of other fields are taken one at a time in both
+    directions, at nominal speed and load, and then all at once in the directions that are worst for slip, and in those that are worst for
+    life, together with the worst speed and load of each point.  All of them change the clearance or the friction of one and the same
+    bearing, so that the effect of each has the same sign whatever the others are; 3^n combinations would find the same corner.
 
     Parameters
     ----------
     scene : with the raceway.
     duration : see `bearing_sim.sweep.point.settle`.
-    speed_tolerance, load_tolerance : relative, in both directions.
+    conditions : operating points and tolerances.
     """
-    deviations = list(itertools.product(*(dict.fromkeys((0.0, -each, each)) for each in (speed_tolerance, load_tolerance))))
-    rows = []
-    for speed, load in deviations:  # the nominal point first
-        operating = dataclasses.replace(
-            scene.operating, shaft_speed=scene.operating.shaft_speed * (1 + speed), radial_load=scene.operating.radial_load * (1 + load)
-        )
-        rows.append(point_row(dataclasses.replace(scene, operating=operating), duration))
-        if rows[-1]["status"] not in (OK, UNSETTLED):
-            return dict.fromkeys((column.name for column in _NUMBERS), math.nan) | {name: rows[-1][name] for name in ("status", "reason", "warnings")}
-    unsettled = [row["reason"] for row in rows if row["status"] == UNSETTLED]
+    points = conditions.points or (OperatingPoint(scene.operating.shaft_speed, scene.operating.radial_load),)
+    tolerances, exact = conditions.tolerances, (0,) * len(conditions.tolerances)
+    found: dict[tuple, dict] = {}
+
+    def result(point, deviation, signs) -> dict:
+        key = point, deviation, signs
+        if key not in found:
+            try:
+                row = point_row(scene_at_point(scene, point, *deviation, tolerances, signs), duration)
+            except PointError as error:
+                raise _NoResult(REFUSED, str(error)) from None
+            if row["status"] not in (OK, UNSETTLED):
+                raise _NoResult(row["status"], row["reason"])
+            found[key] = row
+        return found[key]
+
+    def mission(deviations, signs) -> tuple[float, float]:
+        """Return slip and life of all points, each with its deviation of speed and load."""
+        rows = [result(point, deviation, signs) for point, deviation in zip(points, deviations)]
+        return max(row["cage_slip"] for row in rows), combined_life([row["modified_rating_life"] for row in rows], points)
+
+    both = (dict.fromkeys((0.0, -each, each)) for each in (conditions.speed_tolerance, conditions.load_tolerance))
+    operating, at_nominal = list(itertools.product(*both)), [(0.0, 0.0)] * len(points)
+    try:
+        nominal = mission(at_nominal, exact)
+        most_slip = [max(operating, key=lambda each: result(point, each, exact)["cage_slip"]) for point in points]
+        least_life = [min(operating, key=lambda each: result(point, each, exact)["modified_rating_life"]) for point in points]
+        alone = {
+            (k, sign): mission(at_nominal, tuple(sign * (other == k) for other in range(len(tolerances))))
+            for k, sign in itertools.product(range(len(tolerances)), (-1, 0, 1))
+        }
+        worst_for_slip = tuple(max((0, -1, 1), key=lambda sign: alone[k, sign][0]) for k in range(len(tolerances)))
+        worst_for_life = tuple(min((0, -1, 1), key=lambda sign: alone[k, sign][1]) for k in range(len(tolerances)))
+        together = [mission(most_slip, worst_for_slip), mission(least_life, worst_for_life), mission(most_slip, exact), mission(least_life, exact)]
+    except _NoResult as error:
+        return dict.fromkeys((column.name for column in _NUMBERS), math.nan) | dict(zip(("status", "reason", "warnings"), (*error.args, "")))
+    slips, lives = zip(*alone.values(), *together)
+    unsettled = [row["reason"] for row in found.values() if row["status"] == UNSETTLED]
     return {
-        "nominal_slip": rows[0]["cage_slip"],
-        "nominal_life": rows[0]["modified_rating_life"],
-        "worst_slip": max(row["cage_slip"] for row in rows),
-        "worst_life": min(row["modified_rating_life"] for row in rows),
+        "nominal_slip": nominal[0],
+        "nominal_life": nominal[1],
+        "worst_slip": max(slips),
+        "worst_life": min(lives),
         "status": UNSETTLED if unsettled else OK,
         "reason": unsettled[0] if unsettled else "",
-        "warnings": merged(row["warnings"] for row in rows),
+        "warnings": merged(row["warnings"] for row in found.values()),
     }
 
 
@@ -156,8 +321,9 @@ def design(
     workers: int | None = None,
     dask: str | None = None,
     progress: Callable[[int, int], None] = lambda done, total: None,
+    verify_level: str | None = None,
 ) -> Designed:
-    """Map which raceways meet the limits.
+    """Map which raceways meet the limits, and verify what is found at a level of higher fidelity.
 
     Parameters
     ----------
@@ -166,31 +332,68 @@ def design(
     radii, d_values : of the grid; the region is searched between the smallest and the largest.
     journal : of finished raceways, which are not computed again.
     duration, workers, dask, progress : see `bearing_sim.sweep.grid.sweep`.
+    verify_level : that verifies edges and centre of each interval, see `verified`; None: nothing is verified.
 
     Raises
     ------
     SceneError
-        No raceway of the grid has a valid scene; the errors are those of the first.
+        No raceway of the grid has a valid scene, or the level that verifies cannot compute it; the errors are those of the first.
     """
     study = _Study(limits, duration, partial(run_tasks, journal=journal, workers=workers, dask=dask, progress=progress))
     points = list(itertools.product(sorted(radii.values), sorted(d_values.values)))
     scenes = {point: scene_at(name, overrides, (radii, d_values), point) for point in points}
-    grid = study.rows(scenes)
-    if all(row["status"] == REFUSED for row in grid.values()):
+    if all(isinstance(scene, SceneError) for scene in scenes.values()):
         raise scenes[points[0]]
+    grid = study.rows(scenes)
     thin = {point: scene_at(name, overrides, (radii, d_values), point) for point in study.points_in_gaps(scenes, grid)}
-    rows = grid | study.rows(thin)
+    rows, scenes = grid | study.rows(thin), scenes | thin
     ends = [end for kind in KINDS for d_value in sorted(d_values.values) for end in _ends(kind, d_value, rows, limits)]
-    borders = _borders(ends, study.narrowed_edges(scenes | thin, [edge for end in ends for edge in end]))
+    intervals = _intervals(ends, study.narrowed_edges(scenes, [edge for end in ends for edge in end]))
+    bands, checks = [Band(interval.border) for interval in intervals], []
+    if verify_level is not None:
+        at = [(interval.low, interval.d_value) for interval in intervals]
+        own = [scene_at(name, overrides, (radii, d_values), point) for point in at]
+        higher = [scene_at(name, [*overrides, f"level={verify_level}"], (radii, d_values), point) for point in at]
+        if errors := [scene for scene in higher if isinstance(scene, SceneError)]:
+            raise errors[0]
+        bands, checks = study.verified_bands(intervals, own, higher)
+    scene = load_scene(name, overrides)
     about = {
         "kind": "design",
         "scene": name,
         "overrides": list(overrides),
-        "level": load_scene(name, overrides).level,
-        "wanted": limits._asdict(),
+        "level": scene.level,
+        "verify_level": verify_level,
+        "life": life_name(scene),
+        "wanted": {"slip_below": limits.slip_below, "life_above": limits.life_above} | limits.conditions.as_json(),
         "axes": [{"field": each.field.path, "unit": each.field.unit, "values": each.shown} for each in (radii, d_values)],
+        "duration": duration,
+        "version": package_version(),
+        "commit": git_hash(),
+        "scene_yaml": scene_to_yaml(scene),
     }
-    return Designed(Table(COLUMNS, [_table_row(point, row, limits) for point, row in grid.items()], about), borders)
+    return Designed(Table(COLUMNS, [_table_row(point, row, limits) for point, row in grid.items()], about), bands, checks)
+
+
+class _Interval(NamedTuple):
+    """Radii that meet the limits at one D value [m], from ``low`` to ``high``, and what bounds them."""
+
+    kind: str
+    d_value: float
+    low: float
+    high: float
+    below_by: str
+    above_by: str
+
+    @property
+    def border(self) -> Border:
+        """The interval as shown, in mm."""
+        low, high = round(1e3 * self.low, 6), round(1e3 * self.high, 6)
+        return Border(self.kind, _millimetres(self.d_value), low, high, self.below_by, self.above_by)
+
+
+def _millimetres(length: float) -> float:
+    return float(f"{1e3 * length:.9g}")
 
 
 class _Study(NamedTuple):
@@ -203,8 +406,9 @@ class _Study(NamedTuple):
     def rows(self, scenes: dict[tuple, Scene | SceneError]) -> dict[tuple, dict]:
         """Return the row of each point (radius, D value)."""
         valid = {point: scene for point, scene in scenes.items() if isinstance(scene, Scene)}
-        tolerances = self.limits.speed_tolerance, self.limits.load_tolerance
-        results = dict(zip(valid, self.run([task(scene.level, raceway_row, scene, self.duration, *tolerances) for scene in valid.values()])))
+        results = dict(
+            zip(valid, self.run([task(scene.level, raceway_row, scene, self.duration, self.limits.conditions) for scene in valid.values()]))
+        )
         nothing = dict.fromkeys((column.name for column in _NUMBERS), math.nan)
         return {
             point: nothing | (results[point] if point in results else {"status": REFUSED, "reason": one_line(scene), "warnings": ""})
@@ -219,25 +423,76 @@ class _Study(NamedTuple):
             for left, right in itertools.pairwise(radii):
                 if [self.limits.broken_by(rows[radius, d_value], kind) for radius in (left, right)] == ["life", "slip"]:
                     gaps.append((kind, d_value, left, right))
-        fixed = self.duration, self.limits
-        results = self.run([task("gap", met_between, scenes[left, d_value], *fixed, kind, left, right) for kind, d_value, left, right in gaps])
+        results = self.run([self._search("gap", scenes[left, d_value], kind, "met_between", left, right) for kind, d_value, left, right in gaps])
         return [(result["inside"], gap[1]) for gap, result in zip(gaps, results) if result.get("inside") is not None]
 
     def narrowed_edges(self, scenes: dict[tuple, Scene], edges: list["_Edge"]) -> list[tuple[float, str]]:
         """Return the radius of each edge, and what breaks the limits beyond it."""
         found = {edge: (edge.inside, edge.broken_by) for edge in edges}
         between = [edge for edge in edges if edge.outside is not None]
-        tasks = [
-            task("edge", narrowed, scenes[edge.inside, edge.d_value], self.duration, self.limits, edge.kind, edge.inside, edge.outside)
-            for edge in between
-        ]
+        tasks = [self._search("edge", scenes[edge.inside, edge.d_value], edge.kind, "narrowed", edge.inside, edge.outside) for edge in between]
         for edge, result in zip(between, self.run(tasks)):
             found[edge] = result.get("inside", edge.inside), result.get("broken_by") or edge.broken_by
         return [found[edge] for edge in edges]
 
+    def verified_bands(self, intervals: Sequence[_Interval], own: Sequence[Scene], higher: Sequence[Scene]) -> tuple[list[Band], list[Check]]:
+        """Return each interval with what the level that verifies leaves of it, and the raceways that show the difference.
+
+        Parameters
+        ----------
+        intervals : as found.
+        own, higher : a scene with the D value of each interval, at the level of the design and at the one that verifies.
+        """
+        tasks = [self._search(f"verify {scene.level}", scene, each.kind, "verified", each.low, each.high) for each, scene in zip(intervals, higher)]
+        results, bands, shown = self.run(tasks), [], []
+        for interval, scene, result in zip(intervals, own, results):
+            verdict, after = _judged(interval, result)
+            bands.append(Band(interval.border, after and after.border, verdict))
+            shown += [(interval, scene, result, place, radius) for radius, place in _places(interval, after).items()]
+        lower = self.run(
+            [
+                task("check", raceway_row, with_values(scene, {LOW: radius}), self.duration, self.limits.conditions_of(interval.kind))
+                for interval, scene, _, _, radius in shown
+            ]
+        )
+        return bands, [self._check(*each, row) for each, row in zip(shown, lower)]
+
+    def _search(self, name: str, scene: Scene, kind: str, search: str, first: float, second: float) -> Task:
+        return task(name, searched, scene, self.duration, self.limits, kind, search, first, second)
+
+    def _check(self, interval: _Interval, scene: Scene, result: dict, place: str, radius: float, row: dict) -> Check:
+        """Return a raceway at both levels from the result of verification and from its row at the level of the design."""
+        higher = dict(zip(result.get("radii", ()), result.get("rows", ()))).get(radius, result)  # a lost worker has left its reason only
+        numbers = []
+        for one in (row, higher):
+            one = dict.fromkeys((column.name for column in _NUMBERS), math.nan) | one
+            numbers += [one[f"{interval.kind}_slip"], one[f"{interval.kind}_life"], self.limits.met(one, interval.kind)]
+        lengths = _millimetres(interval.d_value), place, round(1e3 * radius, 6)
+        return Check(interval.kind, *lengths, *numbers, higher["status"], higher["reason"])
+
+
+def _judged(interval: _Interval, result: dict) -> tuple[str, _Interval | None]:
+    """Return the verdict on an interval, and what is left of it."""
+    if result.get("low") is None:
+        return WITHDRAWN, None
+    after = interval._replace(
+        low=result["low"], high=result["high"], below_by=result["below_by"] or interval.below_by, above_by=result["above_by"] or interval.above_by
+    )
+    return (CONFIRMED if (after.low, after.high) == (interval.low, interval.high) else NARROWED), after
+
+
+def _places(interval: _Interval, after: _Interval | None) -> dict[float, str]:
+    """Return the names of the radii that show what verification found."""
+    places: dict[float, str] = {}
+    for one, prefix in ((interval, ""), (after, "verified ")):
+        if one is not None:
+            for radius, place in ((one.low, "lower edge"), (0.5 * (one.low + one.high), "centre"), (one.high, "upper edge")):
+                places.setdefault(radius, prefix + place)
+    return dict(sorted(places.items()))
+
 
 def _table_row(point, row, limits) -> dict:
-    lengths = {LOW: float(f"{1e3 * point[0]:.9g}"), D_VALUE: float(f"{1e3 * point[1]:.9g}")}
+    lengths = {LOW: _millimetres(point[0]), D_VALUE: _millimetres(point[1])}
     texts = {"status": row["status"], "reason": row["reason"], "warnings": row.get("warnings", "")}  # a lost worker's has none
     return lengths | {column.name: row[column.name] for column in _NUMBERS} | {f"meets_{kind}": limits.met(row, kind) for kind in KINDS} | texts
 
@@ -252,78 +507,153 @@ class _Edge(NamedTuple):
     broken_by: str
 
 
-def _row_at_radius(scene: Scene, duration: float, limits: Limits, kind: str, radius: float) -> dict:
-    """Return the row of a scene with another low-point radius [m]; with the tolerances only for the worst case."""
-    tolerances = (limits.speed_tolerance, limits.load_tolerance) if kind == WORST else (0.0, 0.0)
-    return raceway_row(with_values(scene, {LOW: radius}), duration, *tolerances)
-
-
-def narrowed(scene: Scene, duration: float, limits: Limits, kind: str, inside: float, outside: float) -> dict:
-    """Return, by bisection, the radius nearest to ``outside`` that meets the limits, and what breaks them beyond.
-
-    The limits are two conditions on results that may be absent, not one continuous function; hence no root finder.
+class _Raceways:
+    """Raceways of one D value along the low-point radius; each is computed once.
 
     Parameters
     ----------
-    scene : with the D value.
+    scene : with the D value, of any level.
     duration : see `bearing_sim.sweep.point.settle`.
-    limits, kind : limits, and whether they apply at the scene's speed and load or within the tolerances.
-    inside, outside : radii [m]; the first meets the limits, the second does not.
+    limits, kind : limits, and whether they apply at nominal conditions or within the tolerances.
     """
-    broken_by = ""
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (inside + outside)
-        row = _row_at_radius(scene, duration, limits, kind, middle)
-        if limits.met(row, kind):
-            inside = middle
-        else:
-            outside, broken_by = middle, limits.broken_by(row, kind)
-    return {"inside": inside, "outside": outside, "broken_by": broken_by}
+
+    def __init__(self, scene: Scene, duration: float, limits: Limits, kind: str):
+        self._scene, self._duration, self._limits, self._kind = scene, duration, limits, kind
+        self._rows: dict[float, dict] = {}
+
+    def row(self, radius: float) -> dict:
+        """Return the row of the raceway with a low-point radius [m]; with the tolerances only for the worst case."""
+        if radius not in self._rows:
+            self._rows[radius] = raceway_row(with_values(self._scene, {LOW: radius}), self._duration, self._limits.conditions_of(self._kind))
+        return self._rows[radius]
+
+    def met(self, radius: float) -> bool:
+        """Return whether the raceway with a radius meets the limits."""
+        return self._limits.met(self.row(radius), self._kind)
+
+    def broken_by(self, radius: float) -> str:
+        """Return which limit the raceway with a radius violates, see `Limits.broken_by`."""
+        return self._limits.broken_by(self.row(radius), self._kind)
+
+    def narrowed(self, inside: float, outside: float) -> dict:
+        """Return, by bisection, the radius nearest to ``outside`` that meets the limits, and what breaks them beyond.
+
+        The limits are two conditions on results that may be absent, not one continuous function; hence no root finder.
+
+        Parameters
+        ----------
+        inside, outside : radii [m]; the first meets the limits, the second does not.
+        """
+        for _ in range(_HALVINGS):
+            middle = 0.5 * (inside + outside)
+            if self.met(middle):
+                inside = middle
+            else:
+                outside = middle
+        return {"inside": inside, "outside": outside, "broken_by": self.broken_by(outside)}
+
+    def met_between(self, left: float, right: float) -> dict:
+        """Return a radius between two others that meets the limits, or None if none was found.
+
+        Parameters
+        ----------
+        left, right : radii [m]; the first violates only the limit of life, the second only that of slip.
+        """
+        for _ in range(_HALVINGS):
+            middle = 0.5 * (left + right)
+            broken_by = self.broken_by(middle)
+            if not broken_by:
+                return {"inside": middle}
+            if broken_by == "life":
+                left = middle
+            elif broken_by == "slip":
+                right = middle
+            else:
+                break
+        return {"inside": None}
+
+    def verified(self, low: float, high: float) -> dict:
+        """Return what is left of an interval of radii that a level of lower fidelity has found.
+
+        Both edges and the centre must meet the limits.  Where they do not, the widest part of those that do is narrowed by bisection
+        towards its inside, and its centre is verified in turn; where none does, a part is searched between neighbours of which one
+        breaks only the life and the other only the slip.  What lies between the verified radii is taken to be like them, and nothing
+        outside the interval is tried, because the other level refuses it.
+
+        Parameters
+        ----------
+        low, high : ends of the interval [m].
+
+        Returns
+        -------
+        low, high : of the part that is left [m]; None if there is none.
+        below_by, above_by : what bounds it; empty where the end has not moved.
+        radii, rows : what was computed.
+        """
+        left = {"low": None, "high": None, "below_by": "", "above_by": ""}
+        below_by, above_by = "", ""
+        for _ in range(_ROUNDS):
+            radii = sorted({low, 0.5 * (low + high), high})
+            if all(map(self.met, radii)):
+                left = {"low": low, "high": high, "below_by": below_by, "above_by": above_by}
+                break
+            if not any(map(self.met, radii)):
+                gaps = [pair for pair in itertools.pairwise(radii) if tuple(map(self.broken_by, pair)) == ("life", "slip")]
+                radii = sorted([*radii, *(found for gap in gaps if (found := self.met_between(*gap)["inside"]) is not None)])
+            parts = []
+            for first, last in _runs([self.met(radius) for radius in radii]):
+                lower, upper = (radii[first], below_by), (radii[last], above_by)
+                if first > 0:
+                    lower = self._edge(radii[first], radii[first - 1])
+                if last < len(radii) - 1:
+                    upper = self._edge(radii[last], radii[last + 1])
+                parts.append((lower, upper))
+            if not parts:
+                break
+            (low, below_by), (high, above_by) = max(parts, key=lambda part: part[1][0] - part[0][0])
+        return left | {"radii": list(self._rows), "rows": list(self._rows.values())}
+
+    def _edge(self, inside: float, outside: float) -> tuple[float, str]:
+        found = self.narrowed(inside, outside)
+        return found["inside"], found["broken_by"]
 
 
-def met_between(scene: Scene, duration: float, limits: Limits, kind: str, left: float, right: float) -> dict:
-    """Return a radius between two others that meets the limits, or None if none was found.
+def searched(scene: Scene, duration: float, limits: Limits, kind: str, search: str, first: float, second: float) -> dict:
+    """Return what a search along the low-point radius has found.
 
     Parameters
     ----------
-    scene, duration, limits, kind : as for `narrowed`.
-    left, right : radii [m]; the first violates only the limit of life, the second only that of slip.
+    scene, duration, limits, kind : see `_Raceways`.
+    search : name of its method: ``narrowed``, ``met_between`` or ``verified``.
+    first, second : the radii that the method takes [m].
     """
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (left + right)
-        row = _row_at_radius(scene, duration, limits, kind, middle)
-        if limits.met(row, kind):
-            return {"inside": middle}
-        broken_by = limits.broken_by(row, kind)
-        if broken_by == "life":
-            left = middle
-        elif broken_by == "slip":
-            right = middle
-        else:
-            break
-    return {"inside": None}
+    return getattr(_Raceways(scene, duration, limits, kind), search)(first, second)
 
 
-def _borders(ends, narrowed_edges) -> list[Border]:
-    """Return the borders from the ends of the region and, in the same order, radius and violated limit of each edge."""
-    found, borders = iter(narrowed_edges), []
-    for low, _ in ends:
-        (low_from, below_by), (low_to, above_by) = next(found), next(found)
-        borders.append(Border(low.kind, float(f"{1e3 * low.d_value:.9g}"), round(1e3 * low_from, 6), round(1e3 * low_to, 6), below_by, above_by))
-    return borders
+def _runs(met: Sequence[bool]) -> Iterator[tuple[int, int]]:
+    """Yield the first and the last index of every run of true values."""
+    for is_met, run in itertools.groupby(range(len(met)), key=lambda k: met[k]):
+        if is_met:
+            run = list(run)
+            yield run[0], run[-1]
+
+
+def _intervals(ends, narrowed_edges) -> list[_Interval]:
+    """Return the intervals from the ends of the region and, in the same order, radius and violated limit of each edge."""
+    found, intervals = iter(narrowed_edges), []
+    for end, _ in ends:
+        (low, below_by), (high, above_by) = next(found), next(found)
+        intervals.append(_Interval(end.kind, end.d_value, low, high, below_by, above_by))
+    return intervals
 
 
 def _ends(kind, d_value, rows, limits) -> list[tuple[_Edge, _Edge]]:
     """Return both ends of every interval of radii whose rows meet the limits at a D value."""
     radii = sorted(radius for radius, d in rows if d == d_value)
-    met = [limits.met(rows[radius, d_value], kind) for radius in radii]
     found = []
-    for is_met, interval in itertools.groupby(range(len(radii)), key=lambda k: met[k]):
-        if not is_met:
-            continue
-        interval = list(interval)
+    for first, last in _runs([limits.met(rows[radius, d_value], kind) for radius in radii]):
         edges = []
-        for inside, outside in ((interval[0], interval[0] - 1), (interval[-1], interval[-1] + 1)):
+        for inside, outside in ((first, first - 1), (last, last + 1)):
             beyond = radii[outside] if 0 <= outside < len(radii) else None
             broken_by = "range" if beyond is None else limits.broken_by(rows[beyond, d_value], kind)
             edges.append(_Edge(kind, d_value, radii[inside], beyond, broken_by))
@@ -331,13 +661,15 @@ def _ends(kind, d_value, rows, limits) -> list[tuple[_Edge, _Edge]]:
     return found
 
 
-_SLIP, _LIFE = "#b2451f", "#0072b2"
-_REGIONS = {NOMINAL: {"facecolor": "#cfe8d8", "edgecolor": "#3d8b5e", "label": "meets both limits"}}
-_REGIONS[WORST] = {"facecolor": "#7fc49b", "edgecolor": "#1d5c39", "label": "meets both limits within the tolerances"}
+_SLIP, _LIFE, _REFUSED = "#b2451f", "#0072b2", "#c1121f"
+_REGIONS = {NOMINAL: {"facecolor": "#cfe8d8", "edgecolor": "#3d8b5e"}, WORST: {"facecolor": "#7fc49b", "edgecolor": "#1d5c39"}}
+_WORDS = {NOMINAL: "meets both limits", WORST: "meets both limits within the tolerances"}
 
 
 def draw(path: Path, designed: Designed, beside: tuple[str, tuple[float, float], tuple[float, float]] | None = None) -> None:
     """Draw the regions and isolines of slip and life into a file.
+
+    After verification the region that is left is filled, and the one before is outlined.
 
     Parameters
     ----------
@@ -345,39 +677,75 @@ def draw(path: Path, designed: Designed, beside: tuple[str, tuple[float, float],
     designed : the results.
     beside : another answer to show: its label, and its ranges of D values and radii [mm].
     """
-    figure = new_figure(9, 6.2)
+    figure = new_figure(9, 6.8)
     axes = figure.subplots()
+    about, d_values = designed.grid.about, sorted(set(designed.grid.values(D_VALUE)))
+    verify_level, limits = about["verify_level"], about["wanted"]
     for kind, look in _REGIONS.items():
-        _fill(axes, [border for border in designed.borders if border.kind == kind], look)
-    limits = designed.grid.about["wanted"]
+        both = f"{_WORDS[kind]}, at {verify_level} too" if verify_level else _WORDS[kind]
+        _fill(axes, designed.recommended(kind), d_values, look | {"label": both})
+        if verify_level:
+            found = [border for border in designed.borders if border.kind == kind]
+            _outline(axes, found, d_values, {"color": look["edgecolor"], "label": f"{_WORDS[kind]} at {about['level']}"})
+    refused = [check for check in designed.checks if not check.verified_meets]
+    if refused:
+        places = [check.d_value for check in refused], [check.low_radius for check in refused]
+        axes.plot(*places, "x", color=_REFUSED, ms=7, mew=1.8, label=f"refused at {verify_level}")
     for quantity, colour, limit, unit in (("nominal_slip", _SLIP, limits["slip_below"], "%"), ("nominal_life", _LIFE, limits["life_above"], "h")):
         _isolines(axes, designed, quantity, colour, limit, unit)
     if beside is not None:
         name, (left, right), (low, high) = beside
         axes.plot([left, right, right, left, left], [low, low, high, high, low], color="black", lw=1.8, label=name)
-    axes.plot([], [], color=_SLIP, label="cage slip [%]")
-    axes.plot([], [], color=_LIFE, label="life [h]")
+    axes.plot([], [], color=_SLIP, label=f"cage slip at {about['level']} [%]")
+    axes.plot([], [], color=_LIFE, label=f"life at {about['level']} [h]")
     axes.set(xlabel="D value [mm]", ylabel="low-point radius R_low [mm]")
     axes.ticklabel_format(useOffset=False)
-    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False, fontsize=9)
-    tolerances = f"speed ±{100 * limits['speed_tolerance']:g} %, load ±{100 * limits['load_tolerance']:g} %"
-    about = designed.grid.about
+    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False, fontsize=9)
     wanted = f"slip below {limits['slip_below']:g} %, life above {limits['life_above']:g} h"
-    figure.suptitle(f"{about['scene']} at level {about['level']}: {wanted}; tolerances {tolerances}", fontsize=10)
+    verified = f", verified at {verify_level}" if verify_level else ""
+    points = f"{len(limits['points'])} operating points; " if limits["points"] else ""
+    figure.suptitle(f"{about['scene']} at level {about['level']}{verified}: {wanted}\n{points}tolerances: {limits['spread']}", fontsize=10)
     figure.savefig(path, dpi=130)
 
 
-def _fill(axes, borders, look) -> None:
-    """Fill the region; if it has several intervals at a D value, draw each one."""
-    d_values = sorted({border.d_value for border in borders})
-    intervals = {d: sorted((border.low_from, border.low_to) for border in borders if border.d_value == d) for d in d_values}
-    if d_values and all(len(each) == 1 for each in intervals.values()):
-        low, high = ([intervals[d][0][end] for d in d_values] for end in (0, 1))
-        axes.fill_between(d_values, low, high, lw=1.6, **look)
+def _by_d_value(borders: Sequence[Border]) -> dict[float, list[Border]]:
+    """Return the intervals at each D value that has any."""
+    found: dict[float, list[Border]] = {}
+    for border in borders:
+        found.setdefault(border.d_value, []).append(border)
+    return found
+
+
+def _lines(borders: Sequence[Border], d_values: Sequence[float]) -> tuple[list[float], list[float]] | None:
+    """Return the lower and the upper ends over all D values, NaN where there is no interval; None if there are several at one."""
+    found = _by_d_value(borders)
+    if any(len(each) > 1 for each in found.values()):
+        return None
+    return tuple([getattr(found[d][0], end) if d in found else math.nan for d in d_values] for end in ("low_from", "low_to"))
+
+
+def _fill(axes, borders, d_values, look) -> None:
+    """Fill the region between neighbouring D values, and draw each interval, so that one without neighbours is seen."""
+    lines = _lines(borders, d_values)
+    if lines is not None and borders:
+        axes.fill_between(d_values, *lines, lw=1.6, **look)
+    for k, border in enumerate(borders):
+        label = look["label"] if lines is None and k == 0 else None
+        axes.plot([border.d_value] * 2, [border.low_from, border.low_to], color=look["edgecolor"], lw=2, solid_capstyle="butt", label=label)
+
+
+def _outline(axes, borders, d_values, look) -> None:
+    """Draw the ends of the intervals, joined between neighbouring D values where there is one at each."""
+    lines = _lines(borders, d_values)
+    if not borders:
         return
-    for k, (d_value, each) in enumerate(intervals.items()):
-        for low, high in each:
-            axes.plot([d_value, d_value], [low, high], color=look["edgecolor"], lw=6, solid_capstyle="butt", label=look["label"] if k == 0 else None)
+    if lines is None:
+        ends = [[getattr(border, end) for border in borders] for end in ("low_from", "low_to")]
+        for values, label in zip(ends, (look["label"], None)):
+            axes.plot([border.d_value for border in borders], values, "_", ms=9, **look | {"label": label})
+        return
+    for values, label in zip(lines, (look["label"], None)):
+        axes.plot(d_values, values, "--", marker="_", lw=1.2, **look | {"label": label})
 
 
 def _isolines(axes, designed, quantity, colour, limit, unit) -> None:

@@ -9,16 +9,17 @@ import numpy as np
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.studies.deng2017.pictures import DENG_REGION, Pictured
 from bearing_sim.studies.design import D_VALUE, LOW, NOMINAL, WORST, Border, Designed, Limits, default_axes, design, draw
+from bearing_sim.sweep.conditions import Conditions
 from bearing_sim.sweep.grid import Axis, axis
 from bearing_sim.sweep.point import DURATION
 from bearing_sim.sweep.table import write_table
 from bearing_sim.sweep.tasks import Journal
 
-SCENE = "deng2017_table1"
+SCENE, LOBES = "deng2017_table1", 3
 SLIP_BELOW, LIFE_ABOVE = 10.0, 300.0  # %, h: at 45,000 rpm and 800 N
 D_VALUES, RADII = DENG_REGION
 BESIDE = ("recommended by Deng 2017", D_VALUES, RADII)
-_LIMITS = Limits(SLIP_BELOW, LIFE_ABOVE, speed_tolerance=0.02, load_tolerance=0.10)
+_LIMITS = Limits(SLIP_BELOW, LIFE_ABOVE, Conditions(speed_tolerance=0.02, load_tolerance=0.10))
 _QUICK = ((LOW, (34.860e-3, 34.862e-3, 34.864e-3, 34.866e-3)), (D_VALUE, (0.09e-3, 0.1e-3, 0.11e-3)))
 
 

@@ -1,0 +1,307 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""``bearing-sim design``: outer raceways with slip and life within limits, verified at a level of higher fidelity."""
+
+from pathlib import Path
+
+import click
+
+from bearing_sim.cli.options import executor_options, json_option, picture_option, scene_argument, set_option, table_option
+from bearing_sim.cli.reporting import (
+    Points,
+    UsageError,
+    announce_compilation,
+    as_file_error,
+    as_usage_error,
+    command_line,
+    exit_on_sigterm,
+    print_json,
+    print_rows,
+    warn,
+    warn_of_scene,
+)
+
+_NONE = "none"
+# What the next level does not see either, because both solve the same equations for most scenes.
+_ALIKE = {
+    ("steady", "slip"): "level slip integrates the equations whose periodic state level steady solves; pocket play, radial vibration and cage whirl "
+    "are not verified (--verify-level planar)",
+    ("planar", "spatial"): "levels planar and spatial agree but for tilt and skew",
+}
+
+
+@click.command("design")
+@scene_argument
+@click.option("--slip-below", required=True, metavar="SLIP", help="Largest cage slip, such as 10%.")
+@click.option("--life-above", required=True, metavar="LIFE", help="Smallest life, such as 300h; the kind of life is chosen in the scene.")
+@click.option("--speed-tolerance", default="2%", show_default=True, metavar="FRACTION", help="Tolerance of the speed, in both directions.")
+@click.option("--load-tolerance", default="10%", show_default=True, metavar="FRACTION", help="Tolerance of the load, in both directions.")
+@click.option(
+    "--tolerance",
+    "tolerances",
+    multiple=True,
+    metavar="FIELD=AMOUNT",
+    help="Tolerance of another field, in both directions, such as bearing.roller.diameter=1um; can be repeated.",
+)
+@click.option(
+    "--point",
+    "points",
+    multiple=True,
+    metavar="SPEED,LOAD,WEIGHT",
+    help="Operating point of a mission with its share of time, such as '45000 rpm, 800 N, 70%'; an oil temperature may follow; repeat it.",
+)
+@click.option(
+    "--points",
+    "points_file",
+    type=click.Path(path_type=Path),
+    metavar="POINTS.csv",
+    help="Operating points, one a line: shaft_speed [rpm], radial_load [N], weight and, optionally, oil_temperature [degC].",
+)
+@click.option("--low-radius", "radii", metavar="START:STOP:N", help="Radii at the low points [default: 16 values, -2.5 to +5 um about the scene's].")
+@click.option("--d-value", "d_values", metavar="START:STOP:N", help="D values [default: 9 values, 80 to 120 % of the scene's].")
+@set_option
+@click.option("--level", metavar="LEVEL", help="Level of fidelity [default: steady if it supports the scene, otherwise the scene's].")
+@click.option(
+    "--verify-level", metavar="LEVEL", help="Level that verifies edges and centre of each interval, or none [default: the next of higher fidelity]."
+)
+@table_option("design.parquet", "Map; also written: PATH.csv, PATH_borders and PATH_checks (.parquet, .csv), and")
+@executor_options
+@picture_option("Draw the results")
+@json_option
+def design(
+    scene_name,
+    slip_below,
+    life_above,
+    speed_tolerance,
+    load_tolerance,
+    tolerances,
+    points,
+    points_file,
+    radii,
+    d_values,
+    overrides,
+    level,
+    verify_level,
+    out,
+    workers,
+    dask,
+    picture,
+    as_json,
+):
+    """Map which low-point radii and D values keep the slip of SCENE below a limit and its life above another, and verify them.
+
+    With operating points, slip must stay below its limit at each, and the life is that of the mission. In the worst case of the tolerances,
+    speed and load take all nine combinations of nominal, lowest and highest; each other field is off alone in both directions, then all
+    are off together in the directions that are worst. Edges and centre of each interval of radii are computed again at a level of higher
+    fidelity, and what it refuses is narrowed or withdrawn. `bearing-sim report` makes a page of the results.
+
+    bearing-sim design deng2017_table1 --slip-below 10% --life-above 300h --verify-level planar --picture design.png
+    """
+    from bearing_sim.scene.loader import SceneError, load_scene
+    from bearing_sim.sweep.grid import FieldError, read_axis
+    from bearing_sim.sweep.tasks import ClusterError, Journal, JournalInUse
+
+    with as_usage_error(SceneError, FieldError):
+        scene = load_scene(scene_name, overrides)
+        level = level or _cheapest(scene)
+        overrides = [*overrides, f"level={level}"]
+        scene = load_scene(scene_name, overrides)
+        _check_design(scene, points or points_file)
+        warn_of_scene(scene)
+        announce_compilation()
+        from bearing_sim.studies import design as studied
+        from bearing_sim.sweep.point import DURATION
+
+        axes = list(studied.default_axes(scene))
+        for place, (path, text) in enumerate(((studied.LOW, radii), (studied.D_VALUE, d_values))):
+            if text is not None:
+                axes[place] = read_axis(f"{path}={text}")
+    limits = _limits(scene, slip_below, life_above, speed_tolerance, load_tolerance, tolerances, points, points_file)
+    verify_level = _verify_level(verify_level, scene)
+    raceways = Points("raceways", 0)
+    with as_file_error(), exit_on_sigterm(), as_usage_error(SceneError, ClusterError, JournalInUse):
+        with Journal(out.with_suffix(".journal")) as journal, raceways:
+            designed = studied.design(
+                scene_name, overrides, limits, *axes, journal, DURATION, workers, dask, raceways.update, verify_level=verify_level
+            )
+        designed.grid.about["command"] = command_line()
+        files = studied.write_design(out, designed)
+        beside = _beside(scene, limits)
+        if picture is not None:
+            studied.draw(picture, designed, beside)
+            files.append(picture)
+    report = _report_design(scene, designed, beside, files)
+    if as_json:
+        print_json(report)
+    else:
+        _print_design(report)
+
+
+def _cheapest(scene) -> str:
+    from bearing_sim.scene.fidelity import asked_for, levels_with
+
+    return "steady" if "steady" in levels_with(asked_for(scene)) else scene.level
+
+
+def _check_design(scene, has_points) -> None:
+    raceway = scene.bearing.outer_raceway
+    if not raceway.d_value or raceway.contour is not None or raceway.low_points:
+        raise UsageError("bearing.outer_raceway: a design varies low_radius and d_value of even lobes; this raceway is round or given otherwise")
+    if scene.operating.shaft_speed == 0.0 and not has_points:
+        raise UsageError("operating.shaft_speed: 0; there is no slip at rest; give a speed")
+
+
+def _limits(scene, slip_below, life_above, speed_tolerance, load_tolerance, tolerances, points, points_file):
+    from bearing_sim.scene.quantity import to_si
+    from bearing_sim.studies.design import Limits
+    from bearing_sim.sweep.conditions import Conditions, PointError, read_point, read_points, read_tolerance
+
+    found = []
+    for name, text, unit, factor, most in (
+        ("--slip-below", slip_below, "", 100.0, 100.0),
+        ("--life-above", life_above, "h", 1.0, 1e9),
+        ("--speed-tolerance", speed_tolerance, "", 1.0, 0.5),
+        ("--load-tolerance", load_tolerance, "", 1.0, 0.9),
+    ):
+        try:
+            value = factor * to_si(text, unit)
+        except ValueError as error:
+            raise UsageError(f"{name} {text}: {error}") from None
+        if not 0.0 <= value <= most:
+            raise UsageError(f"{name} {text}: expected 0 to {most / factor:g}{f' {unit}' if unit else ''}")
+        found.append(value)
+    if points and points_file:
+        raise UsageError("--point and --points contradict each other; give one of them")
+    with as_usage_error(PointError), as_file_error():
+        mission = read_points(points_file) if points_file else tuple(map(read_point, points))
+        off = tuple(read_tolerance(text, scene) for text in tolerances)
+    for name in {each.field for each in off}:
+        if sum(each.field == name for each in off) > 1:
+            raise UsageError(f"--tolerance {name}: given more than once; give the largest")
+    return Limits(*found[:2], Conditions(*found[2:], off, mission))
+
+
+def _verify_level(asked, scene) -> str | None:
+    """Return the level that verifies; None if none does."""
+    from bearing_sim.scene.fidelity import LEVELS
+    from bearing_sim.studies.design import verifying_level
+
+    if asked == _NONE:
+        return None
+    if asked is None:
+        found = verifying_level(scene)
+        if found is None:
+            click.echo(f"no level of higher fidelity than {scene.level} has all that the scene asks for: nothing is verified", err=True)
+        elif (scene.level, found) in _ALIKE:
+            click.echo(_ALIKE[scene.level, found], err=True)
+        return found
+    if asked not in LEVELS or LEVELS.index(asked) <= LEVELS.index(scene.level):
+        higher = LEVELS[LEVELS.index(scene.level) + 1 :]
+        raise UsageError(f"--verify-level {asked}: expected {', '.join([*higher, _NONE])}; the design is at level {scene.level}")
+    return asked
+
+
+def _beside(scene, limits):
+    from bearing_sim.studies.deng2017 import design as deng
+
+    asked = scene.bearing.name, scene.bearing.outer_raceway.lobes, limits.slip_below, limits.life_above
+    return deng.BESIDE if asked == (deng.SCENE, deng.LOBES, deng.SLIP_BELOW, deng.LIFE_ABOVE) and not limits.conditions.points else None
+
+
+def _report_design(scene, designed, beside, files) -> dict:
+    from bearing_sim.model.validity import counted
+    from bearing_sim.studies.deng2017.design import radii_within
+    from bearing_sim.studies.design import KINDS
+
+    about = designed.grid.about
+    report = {name: about[name] for name in ("level", "verify_level", "life")} | about["wanted"]
+    report = {"scene": scene.name} | report | {"raceways": len(designed.grid.rows)}
+    report["warnings"] = counted(row["warnings"] for row in designed.grid.rows)
+    report["without_result"] = sum(row["status"] in ("failed", "refused") for row in designed.grid.rows)
+    report["unsettled"] = sum(row["status"] == "unsettled" for row in designed.grid.rows)
+    report["unsettled_checks"] = sum(check.status == "unsettled" for check in designed.checks)
+    for kind in KINDS:
+        bands = [band for band in designed.bands if band.found.kind == kind]
+        report[kind] = [band.found._asdict() | {"verdict": band.verdict, "verified": band.verified and band.verified._asdict()} for band in bands]
+        if beside is not None:
+            for name, borders in (("", [band.found for band in bands]), ("_verified", designed.recommended(kind))):
+                found = radii_within(borders, beside[1])
+                report[f"{kind}{name}_within_deng"] = found and {"low_from": found[0], "low_to": found[1]}
+    report["widest"] = designed.widest and designed.widest._asdict()
+    report["checks"] = [check._asdict() for check in designed.checks]
+    return report | {"deng2017": beside and {"d_value": beside[1], "low_radius": beside[2]}, "files": list(map(str, files))}
+
+
+def _print_design(report) -> None:
+    from bearing_sim.studies.design import NOMINAL, WORST
+
+    verify_level = report["verify_level"]
+    verified = f", verified at level {verify_level}" if verify_level else ", not verified at a higher level"
+    wanted = f"slip below {report['slip_below']:g} %, life above {report['life_above']:g} h ({report['life']})"
+    click.echo(f"{report['scene']} at level {report['level']}{verified}: {wanted}")
+    for point in report["points"]:
+        oil = f", oil {point['oil_temperature_degC']:g} degC" if "oil_temperature_degC" in point else ""
+        click.echo(f"  {100 * point['share']:.4g} % of the time {point['shaft_speed_rpm']:g} rpm, {point['radial_load']:g} N{oil}")
+    if report["without_result"]:
+        click.echo(f"{report['without_result']} of {report['raceways']} raceways have no result; the table has the reasons")
+    for name, what, count in (("unsettled", "raceways", report["raceways"]), ("unsettled_checks", "verified raceways", len(report["checks"]))):
+        if report[name]:
+            click.echo(f"{report[name]} of {count} {what} had not settled in some of their runs; the table has the reasons")
+    nominal = "at every operating point" if report["points"] else "at the scene's speed and load"
+    for kind, condition in ((NOMINAL, nominal), (WORST, f"in the worst case of {report['spread']}")):
+        if not report[kind]:
+            click.echo(f"{condition}: no raceway in the map meets both limits")
+            continue
+        _print_bands(condition, report[kind], report["level"], verify_level)
+        if report["deng2017"]:
+            (left, right), (low, high) = report["deng2017"]["d_value"], report["deng2017"]["low_radius"]
+            for name, at in (("", report["level"]), *((("_verified", verify_level),) if verify_level else ())):
+                found = report[f"{kind}{name}_within_deng"]
+                span = f"R_low {found['low_from']:.5f} to {found['low_to']:.5f} mm" if found else "none in the map"
+                click.echo(f"  for every D from {left} to {right} mm, at {at}: {span}; Deng 2017 has {low:.4f} to {high:.4f} mm")
+    _print_checks(report)
+    warn(report["warnings"])
+    click.echo(", ".join(report["files"]))
+
+
+def _print_bands(condition, bands, level, verify_level) -> None:
+    columns = ["D, mm", f"R_low at {level}, mm", "bound by"]
+    rows = []
+    for band in bands:
+        row = [f"{band['d_value']:.4f}", f"{band['low_from']:.5f} to {band['low_to']:.5f}", f"{band['below_by']}, {band['above_by']}"]
+        if verify_level:
+            kept = band["verified"]
+            row += [f"{kept['low_from']:.5f} to {kept['low_to']:.5f}", f"{kept['below_by']}, {kept['above_by']}"] if kept else ["none", ""]
+            row.append(band["verdict"])
+        rows.append(row)
+    if verify_level:
+        columns += [f"verified at {verify_level}, mm", "bound by", "verdict"]
+    print_rows(condition, columns, rows, words=("bound by", "verdict"), whole=columns)
+
+
+def _print_checks(report) -> None:
+    """Print both levels' results at the D value with the widest interval; at the first one if nothing is left."""
+    widest = report["widest"]
+    if report["verify_level"] is None:
+        return
+    if widest is None:
+        click.echo("nothing is recommended: no raceway of the map meets both limits at both levels")
+    else:
+        centre, half = 0.5 * (widest["low_from"] + widest["low_to"]), 0.5e3 * (widest["low_to"] - widest["low_from"])
+        where = "in the worst case" if widest["kind"] == "worst" else "at nominal conditions, none in the worst case"
+        click.echo(f"widest interval {where}: D = {widest['d_value']:.4f} mm, R_low = {centre:.5f} mm +-{half:.2f} um")
+    if not report["checks"]:
+        return
+    kind, d_value = (widest["kind"], widest["d_value"]) if widest else (report["checks"][-1]["kind"], report["checks"][-1]["d_value"])
+    level, verify_level = report["level"], report["verify_level"]
+    rows = [
+        (
+            check["place"],
+            f"{check['low_radius']:.5f}",
+            *(f"{check[name]:.4g}" for name in ("slip", "verified_slip", "life", "verified_life")),
+            "meets both limits" if check["verified_meets"] else f"refused at {verify_level}",
+        )
+        for check in report["checks"]
+        if (check["kind"], check["d_value"]) == (kind, d_value)
+    ]
+    columns = ("raceway", "R_low, mm", f"slip at {level}, %", f"at {verify_level}", f"life at {level}, h", f"at {verify_level} ", "verdict")
+    print_rows(f"both levels at D = {d_value:.4f} mm, {kind} (the others are in the table of checks)", columns, rows, words=("raceway", "verdict"))
