@@ -16,6 +16,7 @@ from bearing_sim.cli.reporting import (
     announce_replacement,
     as_file_error,
     as_usage_error,
+    command_line,
     exit_on_sigterm,
     print_json,
     print_table,
@@ -100,7 +101,7 @@ def replay(
 
     from bearing_sim.inputs.log import InputLogError, read_input_log, source
     from bearing_sim.inputs.profile import judge
-    from bearing_sim.recording.writer import McapSink
+    from bearing_sim.recording.writer import COMMAND, McapSink
     from bearing_sim.runtime.replay import replay
     from bearing_sim.scene.loader import SceneError, load_scene
     from bearing_sim.simulation import Inputs, IntegrationError, Simulation
@@ -129,9 +130,8 @@ def replay(
             recording, names_of = None, [log.name for log in logs]
             if out is not None:
                 announce_replacement(out)
-                recording = stack.enter_context(
-                    McapSink(out, scene, course.start_ns, {"bearing_sim_replay": {"log": " ".join(names_of)}}, replace=True)
-                )
+                metadata = {"bearing_sim_replay": {"log": " ".join(names_of)}, COMMAND: {"command": command_line()}}
+                recording = stack.enter_context(McapSink(out, scene, course.start_ns, metadata, replace=True))
             watchers = []
             if rrd is not None:
                 from bearing_sim.view.worker import RerunFile

@@ -15,6 +15,7 @@ from bearing_sim.cli.reporting import (
     as_failed_run,
     as_file_error,
     as_usage_error,
+    command_line,
     print_json,
     print_table,
     progress_bar,
@@ -91,10 +92,11 @@ def run(scene_name, overrides, duration, level, rate, out, rrd, uncertainty, as_
 def _sinks(stack, scene, seconds, samples, out, rrd) -> list:
     start_ns, sinks = time.time_ns(), []
     if out is not None:
-        from bearing_sim.recording.writer import McapSink
+        from bearing_sim.recording.writer import COMMAND, McapSink
 
         announce_replacement(out)
-        sinks.append(stack.enter_context(McapSink(out, scene, start_ns, replace=True, advance=(_BLOCK * (seconds / samples), _BLOCK))))
+        metadata, advance = {COMMAND: {"command": command_line()}}, (_BLOCK * (seconds / samples), _BLOCK)
+        sinks.append(stack.enter_context(McapSink(out, scene, start_ns, metadata, replace=True, advance=advance)))
     if rrd is not None:
         from bearing_sim.view.worker import RerunFile
 

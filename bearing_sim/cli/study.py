@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""``bearing-sim study`` and ``report``: studies of the model itself, and the results of Deng 2017."""
+"""``bearing-sim study``: studies of the model itself, and the results of Deng 2017."""
 
 import math
 from pathlib import Path
@@ -52,22 +52,6 @@ def deng2017(out, quick, workers, dask, as_json):
             if getattr(finding, name):
                 click.echo(f"    {name}: {getattr(finding, name)}")
     click.echo(f"{points.computed} points computed; {out}; make a page of it with bearing-sim report {out}")
-
-
-@click.command("report")
-@click.argument("folder", type=click.Path(path_type=Path))
-@click.option("-o", "--out", type=click.Path(path_type=Path), metavar="PATH.html", help="The page [default: report.html in FOLDER].")
-def report(folder, out):
-    """Make one HTML page of the results of `bearing-sim study deng2017` in FOLDER: claims, figures, settings, versions.
-
-    The page is self-contained: it needs no network and no other file.
-    """
-    from bearing_sim.studies.report_page import NoStudy, write_page
-
-    out = out or folder / "report.html"
-    with as_usage_error(NoStudy), as_file_error():
-        write_page(folder, out)
-    click.echo(f"{out}: {out.stat().st_size / 1e6:.1f} MB")
 
 
 @click.command("damage")

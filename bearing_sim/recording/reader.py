@@ -31,7 +31,7 @@ from bearing_sim.model.sample import flat, new_block
 from bearing_sim.recording.bag import RecordingError, mcap_files
 from bearing_sim.recording.mcap_format import Message
 from bearing_sim.recording.mcap_reader import FileIndex, McapReader, Rows, read_index
-from bearing_sim.recording.writer import METADATA
+from bearing_sim.recording.writer import COMMAND, METADATA
 from bearing_sim.scene.loader import SceneError, scene_from_yaml
 from bearing_sim.scene.scene import Scene
 
@@ -68,6 +68,7 @@ class Recording:
     ----------
     files : the files of the recording, in order.
     metadata : what its writer said about the run (see `bearing_sim.recording.writer.METADATA`).
+    command : that made the recording; empty if it was not made on the command line.
     scene : what was simulated.
     start_ns : wall time of sample time 0 [ns since the epoch].
     samples : number of samples.
@@ -87,6 +88,7 @@ class Recording:
         parts = [self._index_of(file) for file in self.files]
         metadata = next((part.metadata[METADATA] for part in reversed(parts) if METADATA in part.metadata), None)
         self.metadata: dict[str, str] = metadata or {}
+        self.command = next((part.metadata[COMMAND].get("command", "") for part in parts if COMMAND in part.metadata), "")
         listing = ", ".join(sorted(set().union(*(part.present for part in parts)))) or "no topics"
         if metadata is None:
             raise RecordingError(f"{self.path}: no metadata record {METADATA!r}, so this is no recording of bearing_sim; it has {listing}")

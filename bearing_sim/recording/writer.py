@@ -27,6 +27,8 @@ from bearing_sim.scene.scene import Scene
 
 METADATA = "bearing_sim"
 """Name of the metadata record: scene (YAML), level, start_ns, package_version, git_hash, part, and versions of packages by name."""
+COMMAND = "bearing_sim_command"
+"""Name of the metadata record of a run from the command line: command, as it was written."""
 
 
 class _Channel(NamedTuple):

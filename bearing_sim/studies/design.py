@@ -13,7 +13,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple
+from typing import BinaryIO, NamedTuple
 
 import numpy as np
 
@@ -666,14 +666,14 @@ _REGIONS = {NOMINAL: {"facecolor": "#cfe8d8", "edgecolor": "#3d8b5e"}, WORST: {"
 _WORDS = {NOMINAL: "meets both limits", WORST: "meets both limits within the tolerances"}
 
 
-def draw(path: Path, designed: Designed, beside: tuple[str, tuple[float, float], tuple[float, float]] | None = None) -> None:
+def draw(path: Path | BinaryIO, designed: Designed, beside: tuple[str, tuple[float, float], tuple[float, float]] | None = None) -> None:
     """Draw the regions and isolines of slip and life into a file.
 
     After verification the region that is left is filled, and the one before is outlined.
 
     Parameters
     ----------
-    path : its suffix gives the format: .png, .svg or .pdf.
+    path : its suffix gives the format: .png, .svg or .pdf; or a stream, for .png.
     designed : the results.
     beside : another answer to show: its label, and its ranges of D values and radii [mm].
     """

@@ -1,162 +1,462 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Self-contained HTML page of a study: claims, figures, settings and versions, with embedded pictures and without network access."""
+"""One self-contained HTML page of any result: a design, a sweep, another table, a recorded run or replay, a folder of these, or the study of Deng 2017.
 
-import base64
+A page has the scene and its bearing, tables, pictures, warnings, where the result comes from, and the command that made it.
+"""
+
+import csv
+import io
 import json
+import math
+import re
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from html import escape
 from pathlib import Path
+from typing import NamedTuple
 
+import numpy as np
+
+from bearing_sim.messages.events import Event, Level
+from bearing_sim.messages.topics import ZERO_CELSIUS
+from bearing_sim.model.sample import OBSERVABLES, joined
+from bearing_sim.recording.bag import ACTIVE, RecordingError
+from bearing_sim.recording.provenance import versions
+from bearing_sim.recording.reader import Recording
+from bearing_sim.scene.loader import scene_from_yaml
+from bearing_sim.scene.scene import Scene
+from bearing_sim.scene.uncertainty import quantities, value_at
+from bearing_sim.studies import design as studied
+from bearing_sim.studies.deng2017.page import study_page
 from bearing_sim.studies.deng2017.run import STUDY_FILE
+from bearing_sim.studies.page import NoResults, command, document, folded, pairs, paragraph, picture, rows_table, warnings
+from bearing_sim.sweep.point import OK, Column
+from bearing_sim.sweep.table import COLOURS, NotDrawable, Table, draw, new_figure, read_table
 
-_STYLE = """
-:root { color-scheme: light; --ink: #1c2430; --soft: #5b6675; --line: #d9dee5; --shade: #f5f7f9; --good: #00703c; --part: #9a5b00; --bad: #a3231f; }
-* { box-sizing: border-box; }
-body { margin: 0 auto; max-width: 76rem; padding: 2rem 1.5rem 4rem; font: 16px/1.5 system-ui, sans-serif; color: var(--ink); background: #fff; }
-h1 { font-size: 1.6rem; line-height: 1.25; margin: 0 0 .5rem; }
-h2 { font-size: 1.25rem; margin: 2.6rem 0 .6rem; border-bottom: 1px solid var(--line); padding-bottom: .25rem; }
-p { max-width: 62rem; }
-.soft { color: var(--soft); }
-nav a { margin-right: 1.2rem; }
-table { border-collapse: collapse; width: 100%; font-size: .9rem; }
-th, td { text-align: left; vertical-align: top; padding: .45rem .6rem; border-bottom: 1px solid var(--line); }
-th { background: var(--shade); font-weight: 600; }
-tr.first td { border-top: 2px solid #b8c0cb; }
-td p { margin: 0 0 .4rem; }
-td:nth-child(2) { width: 21%; } td:nth-child(5) { width: 31%; } td:nth-child(6) { width: 31%; }
-table.plain td { width: auto; }
-code { overflow-wrap: anywhere; }
-td.verdict { white-space: nowrap; font-weight: 600; }
-.holds { color: var(--good); } .part { color: var(--part); } .fails { color: var(--bad); }
-.counts { display: flex; gap: 2rem; flex-wrap: wrap; margin: 1rem 0; }
-.counts b { font-size: 1.5rem; }
-figure { margin: 1.8rem 0; }
-figcaption { max-width: 62rem; }
-figcaption b { display: block; }
-img { max-width: 100%; height: auto; border: 1px solid var(--line); }
-code, pre { font: .85em/1.45 ui-monospace, monospace; }
-pre { background: var(--shade); padding: .8rem; overflow-x: auto; }
-@media (max-width: 50rem) {
-  table, tbody, tr, td { display: block; width: auto !important; } thead { display: none; }
-  td { border: 0; padding: .15rem 0; } tr { padding: .6rem 0; border-bottom: 1px solid var(--line); }
-}
-@media print { body { max-width: none; padding: 0; } figure, tr { break-inside: avoid; } }
-"""
-_CLASSES = {"holds": "holds", "holds in part": "part", "does not hold": "fails"}
+_RECORDINGS, _TABLES = (".mcap", ACTIVE), (".parquet", ".csv")
+_MOST_ROWS = 1000  # of a table on a page; the files have all
+_MOST_POINTS = 4000  # of a line in a picture
+_LAST = 0.2  # of a recording, over which its final results are averaged
+_WINDOWS = 400  # of a recording, of each of which a picture shows the largest roller load
+_SECTORS = 72  # of the circle, for the load distribution
+_HEADED = re.compile(r"(.*?)(?: \[(.*)\])?")
 
 
-class NoStudy(ValueError):
-    """A folder without a finished study; the message says what to do."""
+class _Part(NamedTuple):
+    """One result: its title, and HTML by heading."""
+
+    title: str
+    opening: str
+    sections: dict[str, str]
 
 
-def write_page(folder: Path, out: Path) -> None:
-    """Write the page of a study.
+def write_page(source: Path, out: Path) -> None:
+    """Write the page of a result.
 
     Parameters
     ----------
-    folder : written by a study such as `bearing_sim.studies.deng2017.run.run_study`.
+    source : a table (Parquet, or CSV beside it), a recording (MCAP file or bag's folder), or a folder of such files or of a study.
     out : the HTML file.
 
     Raises
     ------
-    NoStudy
-        The folder has no finished study, or a figure is missing.
+    NoResults
+        There is nothing of which a page could be made, or it cannot be read; the message says what to do.
+    OSError
+        A file cannot be opened, or the page cannot be written.
     """
+    if not source.exists():
+        raise NoResults(f"{source}: does not exist; expected a table of sweep or design, a recording of run or replay, or a folder of them")
+    if (source / STUDY_FILE).is_file():
+        page = study_page(source)
+    else:
+        page = document(*_part(source)) if _is_result(source) else _folder_page(source)
+    out.write_text(page)
+
+
+def _is_result(source: Path) -> bool:
+    return source.is_file() or (source / "metadata.yaml").is_file()
+
+
+def _results_in(folder: Path) -> list[Path]:
+    """Return the results in a folder: tables that do not belong to a design, and recordings."""
+    tables = [path for path in sorted(folder.glob("*.parquet")) if not (_is_of_design(path) or path.name.startswith("."))]
+    recordings = [path for suffix in _RECORDINGS for path in sorted(folder.glob(f"*{suffix}"))]
+    bags = [path.parent for path in sorted(folder.glob("*/metadata.yaml"))]
+    if not (found := [*tables, *recordings, *bags]):
+        raise NoResults(
+            f"{folder}: no results; expected the folder of a study ({STUDY_FILE}; run: bearing-sim study deng2017 -o {folder}), or tables (.parquet) "
+            "or recordings (.mcap)"
+        )
+    return found
+
+
+def _is_of_design(path: Path) -> bool:
+    """Return whether a file is one of the further tables of a design, which is shown with it."""
+    return any(path.stem.endswith(suffix) and path.with_name(path.name.replace(suffix, "")).is_file() for suffix in ("_borders", "_checks"))
+
+
+def _folder_page(folder: Path) -> str:
+    """Return the page of all results in a folder, one after the other; files without results are listed with the reason."""
+    parts, skipped = [], []
+    for path in _results_in(folder):
+        try:
+            parts.append(_part(path))
+        except NoResults as error:
+            skipped.append(f"not shown: {error}")
+    if not parts:
+        raise NoResults("\n".join(skipped))
+    if len(parts) == 1:
+        return document(parts[0].title, parts[0].opening + warnings(skipped), parts[0].sections)
+    sections = {}
+    for number, part in enumerate(parts, 1):
+        inner = "".join(f"<h3>{escape(heading)}</h3>{text}" for heading, text in part.sections.items() if text)
+        sections[f"{number}. {part.title}"] = part.opening + inner
+    return document(f"{len(parts)} results in {folder.name}", warnings(skipped), sections)
+
+
+def _part(path: Path) -> _Part:
+    """Return the part of a page on one result."""
+    if path.is_dir() or path.suffix in _RECORDINGS:
+        try:
+            return _recording_part(Recording(path))
+        except RecordingError as error:
+            raise NoResults(str(error)) from None
+    if path.suffix not in _TABLES:
+        raise NoResults(f"{path}: expected a table ({', '.join(_TABLES)}), a recording (.mcap), or a folder")
+    kept = path.with_suffix(".parquet")
     try:
-        about = json.loads((folder / STUDY_FILE).read_text())
-    except FileNotFoundError:
-        raise NoStudy(f"{folder}: no finished study ({STUDY_FILE} is missing); run: bearing-sim study deng2017 -o {folder}") from None
-    except ValueError as error:
-        raise NoStudy(f"{folder / STUDY_FILE}: not readable as JSON: {error}") from None
-    out.write_text(_page(folder, about))
+        table = read_table(kept) if kept.is_file() else _csv_table(path)
+        if table.about.get("kind") == "design":
+            return _design_part(kept, studied.read_design(kept))
+    except (ValueError, FileNotFoundError) as error:
+        raise NoResults(f"{path}: {error}") from None
+    return _table_part(path, table)
 
 
-def _page(folder: Path, about: Mapping) -> str:
-    title = escape(about["title"])
-    parts = [
-        f"<h1>{title}</h1>",
-        _opening(about),
-        '<nav><a href="#claims">Claims</a><a href="#figures">Figures</a><a href="#settings">Settings</a><a href="#versions">Versions</a></nav>',
-        f'<h2 id="claims">Claims</h2>{_counts(about["claims"])}{_claims(about["claims"])}',
-        f'<h2 id="figures">Figures</h2>{"".join(_figure(folder, each) for each in about["figures"])}',
-        f'<h2 id="settings">Settings</h2>{_settings(about)}',
-        f'<h2 id="versions">Versions</h2>{_pairs(about["versions"])}',
-    ]
-    head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1"><title>{title}</title><style>{_STYLE}</style>'
-    body = "\n".join(parts)
-    return f'<!doctype html>\n<html lang="en"><head>{head}</head>\n<body>\n{body}\n</body></html>\n'
+def _csv_table(path: Path) -> Table:
+    """Return a table from CSV alone: columns have their units in brackets, and nothing is known of its origin."""
+    with open(path, newline="", encoding="utf-8-sig") as file:
+        lines = list(csv.reader(file))
+    if len(lines) < 2 or len({len(line) for line in lines}) > 1:
+        raise ValueError("expected a heading and lines with as many values")
+    columns = [Column(found[1], found[2] or "", "") for found in map(_HEADED.fullmatch, lines[0])]
+    return Table(tuple(columns), [{column.name: _number(text) for column, text in zip(columns, line)} for line in lines[1:]], {})
 
 
-def _opening(about) -> str:
-    warning = "This is a quick run with few points and short simulations, for testing only; its verdicts are not those of the full study."
-    quick = f"<p><b>{warning}</b></p>" if about["quick"] else ""
-    levels = "; ".join(f"<b>{escape(level)}</b> {escape(text)}" for level, text in about["levels"].items())
-    doi = escape(about["doi"], quote=True)
-    statuses = ", ".join(f"{count} {escape(status)}" for status, count in about["statuses"].items())
-    return (
-        f"{quick}<p>All figures use the parameters of the bundled scenes; nothing is tuned. Every sweep ran at two levels of "
-        f'fidelity: {levels}.</p><p class="soft">{about["points"]} runs; points of sweeps: {statuses}. '
-        f"Made by <code>{escape(about['command'])}</code>. "
-        f'The paper: <a href="https://doi.org/{doi}">doi {doi}</a>.</p>'
+def _number(text: str) -> float | str:
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def _drawn(into) -> bytes:
+    """Return the PNG file that a function draws into a stream."""
+    stream = io.BytesIO()
+    into(stream)
+    return stream.getvalue()
+
+
+# Sweeps and other tables
+
+
+def _table_part(path: Path, table: Table) -> _Part:
+    about, told = table.about, []
+    if not about:
+        told.append("the origin of these numbers is not known: there is no Parquet file beside the CSV")
+    told += _reasons(table.rows)
+    results = rows_table(table.columns, table.rows[:_MOST_ROWS])
+    if len(table.rows) > _MOST_ROWS:
+        results += paragraph(f"The first {_MOST_ROWS} of {len(table.rows)} rows; {path.name} has all.")
+    kind = about.get("kind", "table")
+    where = f" of {about['scene']} at level {about['level']}" if "scene" in about else ""
+    return _Part(
+        f"{kind.capitalize()}{where}",
+        _opening(about, told),
+        {
+            "Summary": pairs({"rows": len(table.rows), **_statuses(table), **_varied(about)}),
+            "Pictures": _table_pictures(table),
+            "Results": results,
+            **_origin(about),
+        },
     )
 
 
-def _counts(claims: Sequence[Mapping]) -> str:
-    levels = dict.fromkeys(each["level"] for each in claims)
-    counts = []
-    for level in levels:
-        verdicts = [each["verdict"] for each in claims if each["level"] == level]
-        counted = ", ".join(f'<b class="{name}">{verdicts.count(verdict)}</b> {verdict}' for verdict, name in _CLASSES.items())
-        counts.append(f"<div>{escape(level)}: {counted}</div>")
-    return f'<div class="counts">{"".join(counts)}</div>'
+def _reasons(rows: Sequence[Mapping]) -> list[str]:
+    """Return how many rows have each status other than ok, and why."""
+    counted = Counter(f"{row['status']}: {row.get('reason', '')}" for row in rows if row.get("status", OK) != OK)
+    return [f"{count} of {len(rows)} rows {text}" for text, count in counted.most_common(10)]
 
 
-def _claims(claims: Sequence[Mapping]) -> str:
-    rows, before = [], None
-    for each in claims:
-        first = each["claim"] != before
-        before = each["claim"]
-        figures = f'<br><span class="soft">figure{"s" * ("," in each["figures"])} {escape(each["figures"])}</span>'
-        says = f"{escape(each['says'])}{figures}" if first else ""
-        off = f'<p class="off">{escape(each["off"])}</p>' if each["off"] else ""
-        why = f'<p class="soft">Reason: {escape(each["why"])}</p>' if each["why"] else ""
-        opening = '<tr class="first"><td>' + escape(str(each["claim"] or "")) if first else "<tr><td>"
-        verdict = f'<td class="verdict {_CLASSES[each["verdict"]]}">{escape(each["verdict"])}</td>'
-        rows.append(f"{opening}</td><td>{says}</td><td>{escape(each['level'])}</td>{verdict}<td>{escape(each['gives'])}</td><td>{off}{why}</td></tr>")
-    head = "<thead><tr><th></th><th>Deng 2017 says</th><th>level</th><th>verdict</th><th>this code</th><th>deviation, and reason</th></tr></thead>"
-    return f"<table>{head}<tbody>{''.join(rows)}</tbody></table>"
+def _statuses(table: Table) -> dict:
+    if not any(column.name == "status" for column in table.columns):
+        return {}
+    return {"status": ", ".join(f"{count} {status}" for status, count in Counter(table.values("status")).most_common())}
 
 
-def _figure(folder: Path, each: Mapping) -> str:
-    path = folder / "figures" / each["file"]
+def _varied(about: Mapping) -> dict:
+    shown = {}
+    for axis in about.get("axes", ()):
+        values = axis["values"]
+        span = ", ".join(_text(value) for value in values) if len(values) <= 8 else f"{_text(values[0])} to {_text(values[-1])}, {len(values)} values"
+        shown[axis["field"]] = f"{span} {axis['unit']}".strip()
+    return shown
+
+
+def _text(value) -> str:
+    return f"{value:.8g}" if isinstance(value, float) else str(value)
+
+
+def _table_pictures(table: Table) -> str:
+    if table.about.get("kind") != "sweep":
+        return ""
     try:
-        data = base64.b64encode(path.read_bytes()).decode()
-    except FileNotFoundError:
-        raise NoStudy(f"{path}: figure missing; run the study again") from None
-    tables = ", ".join(f"<code>tables/{escape(name)}.csv</code>" for name in each["tables"])
-    title = escape(each["title"], quote=True)
-    caption = f'<figcaption><b>{title}</b>{escape(each["caption"])} <span class="soft">Numbers: {tables}.</span></figcaption>'
-    return f'<figure><img alt="{title}" src="data:image/png;base64,{data}">{caption}</figure>\n'
+        return picture(_drawn(lambda stream: draw(stream, table)), "Results over what was varied")
+    except NotDrawable as error:
+        return paragraph(f"No picture: {error}.")
 
 
-def _settings(about) -> str:
+# Designs
+
+
+def _design_part(path: Path, designed: studied.Designed) -> _Part:
+    about = designed.grid.about
+    wanted, verify_level = about["wanted"], about["verify_level"]
+    told = []
+    if verify_level is None:
+        told.append("nothing was verified at a level of higher fidelity")
+    for verdict in (studied.WITHDRAWN, studied.NARROWED):
+        for kind in studied.KINDS:
+            count = sum(band.verdict == verdict and band.found.kind == kind for band in designed.bands)
+            if count:
+                told.append(f"{count} of {sum(band.found.kind == kind for band in designed.bands)} intervals ({kind}) {verdict} at level {verify_level}")
+    told += _reasons(designed.grid.rows)
+    told += [f"verification: {text}" for text in _reasons([check._asdict() for check in designed.checks])]
+    widest = designed.widest
+    answer = "No raceway of the map meets both limits."
+    if widest is not None:
+        where = "in the worst case" if widest.kind == studied.WORST else "at nominal conditions only"
+        answer = f"Widest interval ({where}): D = {widest.d_value:.4f} mm, R_low = {widest.low_from:.5f} to {widest.low_to:.5f} mm."
+    points = [Column("share", "", "of the time"), Column("shaft_speed_rpm", "rpm", "shaft speed"), Column("radial_load", "N", "radial load")]
+    if any("oil_temperature_degC" in point for point in wanted["points"]):
+        points.append(Column("oil_temperature_degC", "degC", "oil temperature"))
+    rows = [{column.name: point.get(column.name) for column in points} for point in wanted["points"]]
+    summary = {
+        "limits": f"slip below {wanted['slip_below']:g} %, life above {wanted['life_above']:g} h",
+        "life": about["life"],
+        "tolerances": wanted["spread"],
+        "level": about["level"],
+        "verified at level": verify_level or "none",
+        "raceways of the map": len(designed.grid.rows),
+        **_varied(about),
+    }
+    check_columns = [_at_level(column, about) for column in studied.CHECK_COLUMNS]
+    drawn = picture(_drawn(lambda stream: studied.draw(stream, designed)), "Raceways that meet the limits")
+    return _Part(
+        f"Design of {about['scene']} at level {about['level']}",
+        _opening(about, told) + f"<p><b>{escape(answer)}</b></p>",
+        {
+            "Summary": pairs(summary),
+            "Operating points": rows_table(points, rows) if rows else "",
+            "Picture": drawn,
+            "Intervals of radii": rows_table(studied.BORDER_COLUMNS, designed.border_table.rows),
+            "Both levels": rows_table(check_columns, designed.check_table.rows) if designed.checks else "",
+            "Map": rows_table(studied.COLUMNS, designed.grid.rows, f"all {len(designed.grid.rows)} raceways"),
+            **_origin(about),
+        },
+    )
+
+
+def _at_level(column: Column, about: Mapping) -> Column:
+    """Return a column of checks whose unit names the level at which it was computed."""
+    if column.name in ("slip", "life"):
+        return column._replace(unit=f"{column.unit}, {about['level']}")
+    if column.name in ("verified_slip", "verified_life"):
+        return column._replace(unit=f"{column.unit}, {about['verify_level']}")
+    return column
+
+
+# Recordings
+
+
+def _recording_part(recording: Recording) -> _Part:
+    scene, metadata = recording.scene, recording.metadata
+    blocks, events = [], []
+    for item in recording:
+        (events if isinstance(item, Event) else blocks).append(item)
+    block = joined([_thinned(each, recording.samples) for each in blocks])
+    told = [f"the recording ends early: {recording.unfinished}"] if recording.unfinished else []
+    grouped = _grouped([event for event in events if event.level > Level.OK])
+    told += [f"{text} ({'at' if count == 1 else f'{count} times, first at'} {first:.6g} s)" for text, first, count in grouped]
+    settled = block[block["time"] >= recording.last_time - _LAST * recording.duration]
+    about = {
+        "scene": scene.name,
+        "level": scene.level,
+        "scene_yaml": metadata["scene"],
+        "command": recording.command,
+        "reproduced by": f"bearing-sim replay --from-recording {recording.path.name}",
+        "version": metadata.get("package_version", ""),
+        "commit": metadata.get("git_hash", ""),
+    } | {name.removeprefix("version_"): text for name, text in metadata.items() if name.startswith("version_")}
+    used = float(block["damage"][-1] - block["damage"][0])
+    turning = block["cage_slip"][np.isfinite(block["cage_slip"])]
+    summary = {
+        "recording": ", ".join(file.name for file in recording.files),
+        "simulated": f"{recording.duration:.6g} s, {recording.samples} samples",
+        "level": scene.level,
+        "cage slip while turning": f"mean {100 * turning.mean():.2f} %, largest {100 * turning.max():.2f} %" if len(turning) else "none: at rest",
+        "cage slip at the end": f"{100 * np.nanmean(settled['cage_slip']):.2f} %" if np.isfinite(settled["cage_slip"]).any() else "none: at rest",
+        "life used": f"{100 * used:.4g} %",
+        "life under these conditions": f"{recording.duration / 3600 / used:.4g} h" if used > 0.0 else "not used",
+        "events": ", ".join(f"{count} x {kind}" for kind, count in Counter(event.kind for event in events).most_common()) or "none",
+    }
+    columns = Column("time", "s", "since the start"), Column("level", "", "severity"), Column("kind", "", "identifier"), Column("text", "", "what")
+    listed = [dict(zip(("time", "level", "kind", "text"), (event.time, event.level.name, event.kind, event.text))) for event in events[:_MOST_ROWS]]
+    return _Part(
+        f"{scene.name} at level {scene.level}: {recording.path.name}",
+        _opening(about, told),
+        {
+            "Summary": pairs(summary),
+            "Pictures": picture(_drawn(lambda stream: _draw_course(stream, block)), "Conditions and results over time")
+            + picture(
+                _drawn(lambda stream: _draw_loads(stream, settled)),
+                "Load distribution",
+                f"Roller loads over the azimuth from +y, mean over the last {100 * _LAST:g} % of the recording.",
+            ),
+            "Observables": _observables(block, settled),
+            "Events": rows_table(columns, listed, f"{len(events)} events") if events else "",
+            **_origin(about),
+        },
+    )
+
+
+def _thinned(block: np.ndarray, samples: int) -> np.ndarray:
+    """Return every n-th sample of a block, and its last, so that a long recording fits into memory and a picture."""
+    every = max(1, samples // (4 * _MOST_POINTS))
+    kept = np.arange(0, len(block), every)
+    return np.ascontiguousarray(block[np.union1d(kept, [len(block) - 1])])
+
+
+def _grouped(events: Sequence[Event]) -> list[tuple[str, float, int]]:
+    """Return one text for each trouble, when it was first, and how often."""
+    found: dict[tuple, list[Event]] = {}
+    for event in events:
+        found.setdefault(event.key, []).append(event)
+    return [(each[-1].text, each[0].time, sum(event.count for event in each)) for each in found.values()]
+
+
+def _observables(block: np.ndarray, settled: np.ndarray) -> str:
+    """Return a table of all observables that are single numbers and not always 0: the mean at the end, and the range.
+
+    Lives are averaged by their damage rates, because damage adds up.
+    """
+    columns = (
+        Column("observable", "", "name"),
+        Column("unit", "", "unit"),
+        Column("mean at the end", "", f"over the last {100 * _LAST:g} %"),
+        Column("smallest", "", "of the whole recording"),
+        Column("largest", "", "of the whole recording"),
+        Column("meaning", "", "what it is"),
+    )
     rows = []
-    for each in about["sweeps"]:
-        options = [*(f"--set {item}" for item in each["set"]), *(f"--vary {item}" for item in each["vary"])]
-        shown = "<br>".join(map(escape, options))
-        cells = "".join(f"<td>{escape(each[name])}</td>" for name in ("figures", "title", "scene"))
-        rows.append(f"<tr>{cells}<td><code>{shown}</code></td></tr>")
-    head = "<thead><tr><th>figures</th><th>varied</th><th>scene</th><th>as options of <code>bearing-sim sweep</code></th></tr></thead>"
-    scenes = "".join(
-        f"<details><summary>scene <code>{escape(name)}</code>, all values in SI</summary><pre>{escape(text)}</pre></details>"
-        for name, text in about["scenes"].items()
-    )
-    return (
-        f"<p>Each point starts from ideal rolling and runs for {about['duration']:g} s, or longer until slip has settled; "
-        f'results are means over the last fifth.</p><table class="plain">{head}<tbody>{"".join(rows)}</tbody></table>{scenes}'
-    )
+    for one in OBSERVABLES:
+        values = block[one.name] if not one.per_roller else np.empty(0)
+        finite = values[np.isfinite(values)]
+        if one.name != "time" and finite.any():
+            end = settled[one.name][~np.isnan(settled[one.name])]
+            with np.errstate(divide="ignore"):
+                mean = 1.0 / np.mean(1.0 / end) if one.unit == "h" else end.mean()
+            numbers = (float(mean) if len(end) else math.nan, float(finite.min()), float(finite.max()))
+            rows.append(dict(zip((column.name for column in columns), (one.name, one.unit, *numbers, one.meaning))))
+    return rows_table(columns, rows, f"{len(rows)} observables")
 
 
-def _pairs(values: Mapping) -> str:
-    rows = "".join(f"<tr><td>{escape(str(name))}</td><td>{escape(str(value)) or chr(8211)}</td></tr>" for name, value in values.items())
-    return f'<table class="plain"><tbody>{rows}</tbody></table>'
+def _draw_course(stream, block: np.ndarray) -> None:
+    every = max(1, len(block) // _MOST_POINTS)
+    kept = block[::every]
+    windows = np.arange(0, len(block), max(every, len(block) // _WINDOWS))  # of the largest roller load, which swings as rollers pass
+    life = np.where(np.isfinite(kept["modified_rating_life"]), kept["modified_rating_life"], np.nan)
+    loads = {
+        f"{ring} raceway": (block["time"][windows], np.maximum.reduceat(block[f"{ring}_load"].max(axis=1), windows)) for ring in ("inner", "outer")
+    }
+    shown = (
+        ("shaft speed [rpm]", {"": (kept["time"], kept["shaft_speed"] * 30 / math.pi)}),
+        ("radial load [N]", {"": (kept["time"], np.hypot(kept["load_y"], kept["load_z"]))}),
+        ("oil [degC]", {"": (kept["time"], kept["oil_temperature"] - ZERO_CELSIUS)}),
+        ("cage slip [%]", {"": (kept["time"], 100 * kept["cage_slip"])}),
+        ("life [h]", {"": (kept["time"], life)}),
+        ("largest roller load [N]", loads),
+    )
+    figure = new_figure(10, 11)
+    for axes, (label, lines) in zip(figure.subplots(len(shown), 1, sharex=True), shown):
+        for (name, line), colour in zip(lines.items(), COLOURS):
+            axes.plot(*line, lw=1.0, color=colour, label=name)
+        axes.set_ylabel(label, fontsize=9)
+        axes.grid(alpha=0.3)
+        if len(lines) > 1:
+            axes.legend(frameon=False, fontsize=8)
+    shortest, longest = np.nanmin(life, initial=math.inf), np.nanmax(life, initial=0.0)
+    if longest > 20 * shortest > 0.0:  # near rest it grows beyond any scale
+        figure.axes[4].set(yscale="log", ylim=(shortest / 2, min(2 * longest, 1e4 * shortest)))
+    figure.axes[-1].set_xlabel("simulated time [s]")
+    figure.savefig(stream, dpi=110, format="png")
+
+
+def _draw_loads(stream, settled: np.ndarray) -> None:
+    """Draw the mean load of a roller over its azimuth."""
+    sector = np.floor(np.mod(settled["roller_angle"], 2 * math.pi) / (2 * math.pi) * _SECTORS).astype(int).ravel() % _SECTORS
+    counts = np.bincount(sector, minlength=_SECTORS)
+    azimuths = (np.arange(_SECTORS) + 0.5) * 360.0 / _SECTORS
+    figure = new_figure(8, 3.6)
+    axes = figure.subplots()
+    for ring, colour in zip(("inner", "outer"), COLOURS):
+        sums = np.bincount(sector, weights=settled[f"{ring}_load"].ravel(), minlength=_SECTORS)
+        axes.plot(azimuths, np.where(counts > 0, sums / np.maximum(counts, 1), np.nan), color=colour, marker=".", ms=3, label=f"{ring} raceway")
+    axes.set(xlabel="azimuth [deg]", ylabel="roller load [N]", xlim=(0, 360), xticks=range(0, 361, 45))
+    axes.grid(alpha=0.3)
+    axes.legend(frameon=False)
+    figure.savefig(stream, dpi=110, format="png")
+
+
+# What all pages have
+
+
+def _opening(about: Mapping, told: Sequence[str]) -> str:
+    """Return the command and the warnings of a result."""
+    made = command(about["command"]) if about.get("command") else ""
+    again = f"<p>Reproduced by <code>{escape(about['reproduced by'])}</code></p>" if about.get("reproduced by") else ""
+    return made + again + warnings(told)
+
+
+def _origin(about: Mapping) -> dict[str, str]:
+    """Return the sections on the scene, and on where the result comes from."""
+    text = about.get("scene_yaml") or about.get("scene_of_first_point")
+    named = {name: about[name] for name in ("scene", "overrides", "level", "duration", "version", "commit") if about.get(name)}
+    if "overrides" in named:
+        named["overrides"] = " ".join(f"--set {each}" for each in about["overrides"])
+    if "duration" in named:
+        named["duration"] = f"{about['duration']:g} s a run, longer until it has settled"
+    sections = {"Provenance": pairs(named | {name: about[name] for name in versions() if about.get(name)})} if named else {}
+    if text:
+        sections = {"Bearing and conditions": _scene_table(scene_from_yaml(text)) + folded("the scene as YAML, all values in SI", text)} | sections
+    return sections
+
+
+def _scene_table(scene: Scene) -> str:
+    """Return a table of what a scene says of bearing, lubricant and operation."""
+    bearing = scene.bearing
+    named = {
+        "bearing": bearing.name,
+        "rollers": bearing.roller.count,
+        "lobes of the outer raceway": bearing.outer_raceway.lobes,
+        "cage guided by": bearing.cage.guidance.replace("_", " "),
+        "life": studied.life_name(scene),
+    }
+    columns = Column("quantity", "", "dotted path in the scene"), Column("value", "", "with its unit"), Column("meaning", "", "what it is")
+    rows = []
+    for path, declared in quantities(Scene).items():
+        value = value_at(scene, path)
+        if isinstance(value, float):
+            rows.append({"quantity": path, "value": declared.show(value), "meaning": declared.meaning})
+    return pairs({name: value for name, value in named.items() if value}) + rows_table(columns, rows, f"{len(rows)} quantities of the scene")

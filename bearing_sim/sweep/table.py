@@ -6,7 +6,7 @@ import json
 import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import BinaryIO, NamedTuple
 
 import numpy as np
 
@@ -154,12 +154,12 @@ def new_figure(width: float, height: float):
     return figure
 
 
-def draw(path: Path, table: Table, quantities: Sequence[str] = QUANTITIES) -> None:
+def draw(path: Path | BinaryIO, table: Table, quantities: Sequence[str] = QUANTITIES) -> None:
     """Draw a sweep into a file: lines over one variable, maps over two.
 
     Parameters
     ----------
-    path : its suffix gives the format: .png, .svg or .pdf.
+    path : its suffix gives the format: .png, .svg or .pdf; or a stream, for .png.
     table : with one or two variables.
     quantities : columns to draw, each on its own axes.
 
