@@ -38,7 +38,7 @@ class Analytic:
         level, x = scene.level, 1e6 * (scene.bearing.outer_raceway.low_radius - MIDDLE)
         self.runs[level] = self.runs.get(level, 0) + 1
         if any(low < x < high for low, high in self.broken.get(level, ())):
-            return {"status": FAILED, "reason": "the step became too small"}
+            return {"status": FAILED, "reason": "the step became too small", "warnings": ""}
         # Fast and light slips more; fast and heavy lives shorter; thicker rollers and larger lobes press harder.
         speed, load = scene.operating.shaft_speed / NOMINAL_SPEED - 1, scene.operating.radial_load / NOMINAL_LOAD - 1
         thicker = 1e6 * (scene.bearing.roller.diameter - 7e-3)
@@ -48,6 +48,7 @@ class Analytic:
             "modified_rating_life": self.life[level] * math.exp(0.3 * y - speed - 4.0 * load),
             "status": self.status,
             "reason": "" if self.status == OK else "still changing",
+            "warnings": "",
         }
 
     def region(self, level, limits=LIMITS, slip=0.0, life=0.0):

@@ -81,6 +81,7 @@ CHECK_COLUMNS = (
     Column("verified_meets", "", "whether both meet the limits"),
     Column("status", "", "of the level that verifies: ok, unsettled, failed or refused"),
     Column("reason", "", "why the status is not ok"),
+    Column("warnings", "", "laws used outside of their ranges at the level that verifies, each with a value"),
 )
 
 
@@ -160,6 +161,7 @@ class Check(NamedTuple):
     verified_meets: bool
     status: str
     reason: str
+    warnings: str
 
 
 class Designed(NamedTuple):
@@ -468,7 +470,7 @@ class _Study(NamedTuple):
             one = dict.fromkeys((column.name for column in _NUMBERS), math.nan) | one
             numbers += [one[f"{interval.kind}_slip"], one[f"{interval.kind}_life"], self.limits.met(one, interval.kind)]
         lengths = _millimetres(interval.d_value), place, round(1e3 * radius, 6)
-        return Check(interval.kind, *lengths, *numbers, higher["status"], higher["reason"])
+        return Check(interval.kind, *lengths, *numbers, higher["status"], higher["reason"], higher.get("warnings", ""))
 
 
 def _judged(interval: _Interval, result: dict) -> tuple[str, _Interval | None]:

@@ -19,7 +19,9 @@ import numpy as np
 
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.messages.topics import ZERO_CELSIUS
+from bearing_sim.model.plausibility import plausibility
 from bearing_sim.model.sample import OBSERVABLES, joined
+from bearing_sim.model.validity import counted
 from bearing_sim.recording.bag import ACTIVE, RecordingError
 from bearing_sim.recording.provenance import versions
 from bearing_sim.recording.reader import Recording
@@ -184,9 +186,9 @@ def _table_part(path: Path, table: Table) -> _Part:
 
 
 def _reasons(rows: Sequence[Mapping]) -> list[str]:
-    """Return how many rows have each status other than ok, and why."""
-    counted = Counter(f"{row['status']}: {row.get('reason', '')}" for row in rows if row.get("status", OK) != OK)
-    return [f"{count} of {len(rows)} rows {text}" for text, count in counted.most_common(10)]
+    """Return how many rows have each status other than ok, and why, and which laws are used outside of their ranges."""
+    found = Counter(f"{row['status']}: {row.get('reason', '')}" for row in rows if row.get("status", OK) != OK)
+    return [f"{count} of {len(rows)} rows {text}" for text, count in found.most_common(10)] + counted(row.get("warnings") or "" for row in rows)
 
 
 def _statuses(table: Table) -> dict:
@@ -425,13 +427,20 @@ def _draw_loads(stream, settled: np.ndarray) -> None:
 def _opening(about: Mapping, told: Sequence[str]) -> str:
     """Return the command and the warnings of a result."""
     made = command(about["command"]) if about.get("command") else ""
+    text = _scene_text(about)
+    told = [*told, *(plausibility(scene_from_yaml(text)) if text else ())]
     again = f"<p>Reproduced by <code>{escape(about['reproduced by'])}</code></p>" if about.get("reproduced by") else ""
     return made + again + warnings(told)
 
 
+def _scene_text(about: Mapping) -> str:
+    """Return the scene of a result as YAML; empty if it is not known."""
+    return about.get("scene_yaml") or about.get("scene_of_first_point") or ""
+
+
 def _origin(about: Mapping) -> dict[str, str]:
     """Return the sections on the scene, and on where the result comes from."""
-    text = about.get("scene_yaml") or about.get("scene_of_first_point")
+    text = _scene_text(about)
     named = {name: about[name] for name in ("scene", "overrides", "level", "duration", "version", "commit") if about.get(name)}
     if "overrides" in named:
         named["overrides"] = " ".join(f"--set {each}" for each in about["overrides"])
