@@ -36,7 +36,7 @@ def synthetic_block(scene, times, speeds=(520.0, 4700.0), slips=(0.01, 0.16)):
     block["inner_equivalent_load"] = 0.7 * block["inner_load"].max(axis=1)
     block["outer_equivalent_load"] = 0.7 * largest
     block["rating_life"] = 1e9 / block["shaft_speed"] * (500.0 / largest) ** 4
-    block["lamina_life"] = block["modified_rating_life"] = block["rating_life"]
+    block["modified_rating_life"] = block["l10"] = block["l10r"] = block["rating_life"]
     block["damage"] = np.cumsum(step / 3600 / block["rating_life"])
     return block
 

@@ -92,16 +92,15 @@ def test_a_bad_table_is_reported(tmp_path, text, reported):
         scene(f"bearing.roller.crown={{law: table, file: {path}}}")
 
 
-@pytest.mark.parametrize("level", ["slip", "planar"])
-def test_a_level_without_slices_refuses_a_crown_and_names_the_level_it_needs(level):
-    with pytest.raises(SceneError, match=f"iso_log needs level spatial.*level {level} would ignore it"):
-        scene("bearing.roller.crown=iso_log", level=level)
-    assert scene("bearing.roller.crown=none", level=level)
+@pytest.mark.parametrize("level", ["steady", "slip", "planar"])
+def test_a_level_without_slices_takes_a_crown_for_the_life(level):
+    straight, crowned = (scene(f"bearing.roller.crown={crown}", level=level) for crown in ("none", "iso_log"))
+    assert pack(straight).life.laminae.crown.max() == 0.0 < pack(crowned).life.laminae.crown.max()
 
 
 def test_a_level_without_slices_names_everything_that_it_would_ignore():
-    with pytest.raises(SceneError, match="crown.*moment.*lamina"):
-        scene("bearing.roller.crown=iso_log", "operating.moment=1 N*m", "life.lamina=true", level="planar")
+    with pytest.raises(SceneError, match="moment.*tilts"):
+        scene("bearing.roller.crown=iso_log", "operating.moment=1 N*m", level="planar")
     with pytest.raises(SceneError, match="misalignment: needs level spatial"):
         scene("operating.misalignment=1 mrad", level="slip")
 

@@ -11,10 +11,8 @@ from bearing_sim.scene.fidelity import EFFECTS, LEVELS, WANTS, Effect, asked_for
 from bearing_sim.scene.loader import scene_from_yaml, scene_to_yaml
 
 ASKING = {
-    "bearing.roller.crown": "iso_log",
     "operating.moment": "1",
     "operating.misalignment": "1 mrad",
-    "life.lamina": "true",
     "integration.fixed_step": "10 us",
     "lubricant.pumping": "true",
     "bearing.ring_growth.centrifugal": "true",
@@ -45,7 +43,7 @@ def test_a_level_takes_an_effect_that_it_has_and_refuses_any_other_by_name(effec
 
 def test_stock_scene_asks_for_nothing():
     assert asked_for(scene("slip")) == [] and levels_with([]) == list(LEVELS)
-    assert levels_with([effect for effect in EFFECTS if effect.field == "life.lamina"]) == ["spatial"]
+    assert levels_with([effect for effect in EFFECTS if effect.field == "operating.moment"]) == ["spatial"]
 
 
 @pytest.mark.parametrize("override", [None, "lubricant.pumping=true", "bearing.ring_growth.thermal=true", "life.reliability=99 %"])
@@ -55,7 +53,7 @@ def test_a_spatial_scene_without_spatial_effects_gets_a_hint_to_level_planar(ove
     assert "misalignment" in line and "pumping" not in line
 
 
-@pytest.mark.parametrize("field", ["bearing.roller.crown", "operating.moment", "operating.misalignment", "life.lamina"])
+@pytest.mark.parametrize("field", ["operating.moment", "operating.misalignment"])
 def test_a_scene_that_needs_its_level_hears_nothing(field):
     assert hint(scene("spatial", f"{field}={ASKING[field]}")) is None
     assert hint(scene("slip")) is None and hint(scene("planar")) is None
@@ -78,7 +76,7 @@ def test_auto_takes_the_lowest_level_with_everything_the_scene_asks_for_and_says
 
 def test_auto_with_several_wants_takes_the_level_that_has_them_all():
     assert scene("auto", "wants=[slip, cage_orbit, life]").level == "planar"
-    assert scene("auto", "wants=[cage_orbit]", "life.lamina=true").level == "spatial"
+    assert scene("auto", "wants=[cage_orbit]", "operating.moment=1").level == "spatial"
 
 
 def test_auto_reports_all_errors_of_a_scene_as_any_level_does():

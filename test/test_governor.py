@@ -143,7 +143,7 @@ def test_a_bearing_with_other_rollers_cannot_go_on():
 
 
 def test_a_scene_that_needs_its_level_has_no_governor():
-    crowned = load_scene("deng2017_table1", ["level=spatial", "bearing.roller.crown=iso_log", "bearing.roller.slices=5"])
+    crowned = load_scene("deng2017_table1", ["level=spatial", "operating.misalignment=1 mrad", "bearing.roller.slices=5"])
     assert governor_of(Simulation(crowned)) is None
 
 

@@ -12,6 +12,8 @@ from bearing_sim.levels.slip.forces import balance_loads
 from bearing_sim.model.params import pack
 from bearing_sim.physics.contact import EXPONENT
 from bearing_sim.physics.lamina import ROLLER_ROW, new_slices, sliced_contact
+from bearing_sim.physics.lamina_life import EquivalentLoads, add_lamina_powers, equivalent_lamina_loads, stress_risers
+from bearing_sim.physics.rating_life import rate_lives
 from bearing_sim.scene.loader import load_scene
 
 AT_REST = (0.0, 0.0)
@@ -64,6 +66,26 @@ def test_the_published_load_distribution_under_a_moment():
     assert loads(slices)[0].max() == pytest.approx(941.779289, rel=1e-5)
     # the roller stands half way between the raceways where nothing but them holds it
     assert roller_tilts(slices)[0] == pytest.approx(0.5 * slices.ring[3], rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    "bearing, load, rating, slices, crown, life, reference",
+    [
+        ((18, 7, 62.75, 7, 0.02), 800.0, 25e3, 40, "iso_log", 110_512.56, 767.214),
+        ((18, 7, 62.75, 7, 0.02), 800.0, 25e3, 40, "none", 118_150.16, 751.986),
+        ((12, 10, 60, 10, 0.0184), 3000.0, 40e3, 31, "none", 8_868.00, 2_616.449),
+    ],
+)
+def test_the_reference_rating_lives_of_an_independent_code(bearing, load, rating, slices, crown, life, reference):
+    """Digits of the public code minzhun/ISO16281 (its stress risers of the outer ring corrected), one position: roller 0 on the load line."""
+    own = f"life.laminae={slices}", f"bearing.ratings.dynamic={rating} N"
+    params = round_bearing(*bearing, *own, slices=slices, crown=crown)
+    at = balance(params, *AT_REST, (load, 0.0))
+    inner, outer = np.zeros(slices), np.zeros(slices)
+    add_lamina_powers(at.inner, at.outer, stress_risers(slices), 1.0, inner, outer)
+    equivalent = EquivalentLoads(0.0, 0.0, *equivalent_lamina_loads(inner, outer))
+    lives = rate_lives(load, equivalent, 100.0, 1e-5, 0.0628, params.life)
+    assert 1e-6 * lives.l10r == pytest.approx(life, rel=1e-5) and lives.reference_load == pytest.approx(reference, rel=1e-5)
 
 
 @pytest.mark.parametrize("count", [5, 20, 41])

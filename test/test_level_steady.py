@@ -203,7 +203,7 @@ def test_one_operating_point_is_solved_for_once():
 
 
 def test_what_the_level_would_ignore_is_refused():
-    for overrides in (["bearing.roller.crown=iso_log"], ["operating.misalignment=1 mrad"], ["integration.fixed_step=10 us"]):
+    for overrides in (["operating.moment=1 N*m"], ["operating.misalignment=1 mrad"], ["integration.fixed_step=10 us"]):
         with pytest.raises(SceneError):
             scene("level=steady", *overrides)
 

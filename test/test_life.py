@@ -9,20 +9,25 @@ import pytest
 from bearing_sim import Simulation, load_scene
 from bearing_sim.levels.common.slice_balance import balance
 from bearing_sim.model.params import lubricate, pack
+from bearing_sim.physics.lamina_life import (
+    EquivalentLoads,
+    add_lamina_powers,
+    add_load_moments,
+    equivalent_lamina_loads,
+    equivalent_loads,
+    single_load_moments,
+    stress_risers,
+)
 from bearing_sim.physics.rating_life import (
     CLEANLINESS,
-    add_slice_powers,
     contamination_factor,
-    fatigue_limit,
-    lamina_life_revolutions,
     modification_factor,
-    modified_life_revolutions,
+    rate_lives,
     rating_life_revolutions,
     reliability_factor,
-    static_rating,
-    stress_risers,
     viscosity_ratio,
 )
+from bearing_sim.scene.ratings import fatigue_limit, static_rating
 
 PITCH = 62.75e-3
 
@@ -34,8 +39,8 @@ def deng(*overrides, level="spatial"):
 def lamina_life(inner, outer, life, risers=None):
     slices = inner.shape[1]
     inner_means, outer_means = np.zeros(slices), np.zeros(slices)
-    add_slice_powers(inner, outer, np.ones(slices) if risers is None else risers, 1.0, inner_means, outer_means)
-    return lamina_life_revolutions(inner_means, outer_means, life)
+    add_lamina_powers(inner, outer, np.ones(slices) if risers is None else risers, 1.0, inner_means, outer_means)
+    return rating_life_revolutions(*equivalent_lamina_loads(inner_means, outer_means), life)
 
 
 def life_at(tilt, crown="none", speed=2000.0, slices=30, risers=True):
@@ -45,8 +50,8 @@ def life_at(tilt, crown="none", speed=2000.0, slices=30, risers=True):
     inner_means, outer_means, at = np.zeros(slices), np.zeros(slices), None
     for position in range(5):
         at = balance(params, 2 * math.pi * position / (5 * 18), speed, (800.0, 0.0), tilts=(0.0, tilt), slices=at)
-        add_slice_powers(at.inner, at.outer, factors, 1 / (position + 1), inner_means, outer_means)
-    return lamina_life_revolutions(inner_means, outer_means, params.life)
+        add_lamina_powers(at.inner, at.outer, factors, 1 / (position + 1), inner_means, outer_means)
+    return rating_life_revolutions(*equivalent_lamina_loads(inner_means, outer_means), params.life)
 
 
 @pytest.mark.parametrize("slices", [2, 20, 31])
@@ -61,10 +66,11 @@ def test_even_slices_have_the_life_of_whole_rollers(slices):
 def test_no_load_lasts_for_ever():
     life = pack(deng()).life
     assert lamina_life(np.zeros((18, 20)), np.zeros((18, 20)), life) == math.inf
-    assert modified_life_revolutions(math.inf, 4712.0, 2.4e-6, PITCH, life) == math.inf
-    cleaned = pack(deng("life.a_iso=filtered_15_12")).life
-    assert modified_life_revolutions(math.inf, 4712.0, 2.4e-6, PITCH, cleaned) == math.inf
-    assert modified_life_revolutions(math.inf, 0.0, 2.4e-6, PITCH, cleaned) == math.inf
+    nothing, cleaned = EquivalentLoads(0.0, 0.0, 0.0, 0.0), pack(deng("life.a_iso=filtered_15_12")).life
+    for rated, speed in ((life, 4712.0), (cleaned, 4712.0), (cleaned, 0.0)):
+        lives = rate_lives(0.0, nothing, speed, 2.4e-6, PITCH, rated)
+        assert {lives.basic, lives.modified, lives.l10, lives.lnm, lives.l10r, lives.lnmr, lives.static_safety} == {math.inf}
+        assert lives.equivalent_load == lives.reference_load == 0.0
 
 
 def test_stress_risers_by_hand():
@@ -80,7 +86,7 @@ def test_running_means_of_instants_are_their_mean():
     loads, risers = random.uniform(0, 50, (4, 2, 6, 5)), stress_risers(5)
     inner_means, outer_means = np.zeros(5), np.zeros(5)
     for instant, (inner, outer) in enumerate(loads):
-        add_slice_powers(inner, outer, risers, 1 / (instant + 1), inner_means, outer_means)
+        add_lamina_powers(inner, outer, risers, 1 / (instant + 1), inner_means, outer_means)
     np.testing.assert_allclose(inner_means, np.mean((risers * loads[:, 0]) ** 4, axis=(0, 1)), rtol=1e-12)
     np.testing.assert_allclose(outer_means, np.mean((risers * loads[:, 1]) ** 4.5, axis=(0, 1)), rtol=1e-12)
 
@@ -195,10 +201,86 @@ def test_fatigue_limit_by_hand():
     assert fatigue_limit(static, 0.2) == pytest.approx(static / 8.2 * 0.5**0.3)
 
 
-def test_without_a_choice_all_lives_are_the_basic_one():
+@pytest.mark.parametrize("method, basic, modified", [("iso16281", "l10r", "lnmr"), ("iso281", "l10", "lnm")])
+def test_the_method_of_the_scene_chooses_the_life_that_is_shown_and_the_one_that_damage_counts(method, basic, modified):
+    block = Simulation(deng(f"life.method={method}", "life.a_iso=bath_17_14", level="slip")).advance(0.002, samples=4)
+    np.testing.assert_array_equal(block["rating_life"], block[basic])
+    np.testing.assert_array_equal(block["modified_rating_life"], block[modified])
+    np.testing.assert_allclose(block["modified_rating_life"], block["modification_factor"] * block["rating_life"])
+    assert block["damage"][-1] == pytest.approx(np.sum(0.5e-3 / 3600 / block[modified]), rel=1e-6)
+
+
+def test_without_reliability_and_oil_the_modified_life_is_the_basic_one():
     block = Simulation(deng(level="slip")).advance(0.002, samples=4)
-    np.testing.assert_array_equal(block["lamina_life"], block["rating_life"])
     np.testing.assert_array_equal(block["modified_rating_life"], block["rating_life"])
+    assert (block["modification_factor"] == 1.0).all() and np.isnan(block["contamination_factor"]).all()
+
+
+def test_life_of_iso_281_by_hand():
+    # C 73.5 kN, P 5 kN, 3000 rpm: (73.5/5)^(10/3) = 7781.4 million revolutions, 43,230 h
+    overrides = ["bearing.ratings.dynamic=73.5 kN", "operating.shaft_speed=3000 rpm", "operating.radial_load=5 kN", "life.method=iso281"]
+    sample = Simulation(deng(*overrides, level="slip")).advance(0.001)[0]
+    assert sample["rating_life"] == pytest.approx(43230, rel=1e-4) and sample["equivalent_load"] == 5000.0
+
+
+def test_a_makers_ratings_scale_the_lives_of_both_standards_and_the_safety():
+    stock = Simulation(deng(level="slip")).advance(0.001)[0]
+    double = [f"bearing.ratings.dynamic={2 * pack(deng()).life.dynamic_rating} N", "bearing.ratings.static=100 kN"]
+    other = Simulation(deng(*double, level="slip")).advance(0.001)[0]
+    for name in ("l10", "l10r", "rating_life"):
+        assert other[name] / stock[name] == pytest.approx(2 ** (10 / 3 if name == "l10" else 4), rel=1e-12)
+    assert other["static_safety"] == pytest.approx(100e3 / 800)
+
+
+def direct(loads, laminae, power):
+    """Return the mean over rollers of the powers of their lamina loads with risers, each load spread by bisection, shape (N,)."""
+    found = []
+    for load in loads:
+        low, high = 0.0, 1e-3
+        for _ in range(200):
+            middle = 0.5 * (low + high)
+            q = laminae.stiffness * np.maximum(middle - laminae.crown, 0.0) ** (10 / 9)
+            low, high = (middle, high) if q.sum() < load else (low, middle)
+        found.append((laminae.risers * q) ** power)
+    return np.mean(found, axis=0)
+
+
+@pytest.mark.parametrize("crown", ["none", "iso_log", "{law: straight_arc, straight_length: 4 mm, crown_radius: 1.5 m}"])
+@pytest.mark.parametrize("spread", [0.0, 0.3, 1.0])
+def test_moments_of_roller_loads_give_the_equivalent_loads_of_their_laminae(crown, spread):
+    life = pack(deng(f"bearing.roller.crown={crown}", level="slip")).life
+    random = np.random.default_rng(3)
+    inner, outer = (800.0 * (1.0 + spread * random.uniform(-1, 1, 18)) for _ in range(2))
+    moments = np.zeros((2, 4))
+    for q_i, q_e in zip(inner, outer):
+        add_load_moments(q_i, q_e, 1 / 18, moments)
+    found = equivalent_loads(moments, life.laminae)
+    expected = equivalent_lamina_loads(direct(inner, life.laminae, 4), direct(outer, life.laminae, 4.5))
+    # a load errs by 5e-4 at most, a life by four times as much
+    assert (found.inner_lamina, found.outer_lamina) == pytest.approx(expected, rel=1e-5 if spread == 0.0 or crown == "none" else 5e-4)
+    assert found.inner == pytest.approx(np.mean(inner**4) ** 0.25) and found.outer == pytest.approx(np.mean(outer**4.5) ** (1 / 4.5))
+
+
+def test_one_load_has_the_moments_of_rollers_that_all_have_it():
+    moments = np.zeros((2, 4))
+    add_load_moments(300.0, 500.0, 1.0, moments)
+    np.testing.assert_allclose(single_load_moments(300.0, 500.0), moments, rtol=1e-12)
+
+
+@pytest.mark.parametrize("crown", ["none", "iso_log"])
+def test_levels_with_and_without_slices_agree_on_the_reference_life(crown):
+    overrides = [f"bearing.roller.crown={crown}", "bearing.roller.slices=40", "operating.shaft_speed=15000 rpm", "operating.radial_load=3 kN"]
+    spatial, planar = (Simulation(deng(*overrides, level=level)).advance(0.05)[-1] for level in ("spatial", "planar"))
+    # a profile makes contacts softer, which only slices know: the loads differ by some percent, and lives by four times as much
+    assert planar["l10r"] == pytest.approx(spatial["l10r"], rel=0.03 if crown == "none" else 0.3)
+    ratio = {name: planar[f"{name}_lamina_load"] / planar[f"{name}_equivalent_load"] for name in ("inner", "outer")}
+    for name, expected in ratio.items():
+        assert spatial[f"{name}_lamina_load"] / spatial[f"{name}_equivalent_load"] == pytest.approx(expected, rel=0.01)
+
+
+def test_an_unknown_profile_counts_as_that_of_the_standard():
+    spread = [pack(deng(*crown, level="slip")).life.laminae.crown for crown in (["bearing.roller.crown=null"], ["bearing.roller.crown=iso_log"])]
+    np.testing.assert_array_equal(*spread)
 
 
 @pytest.mark.parametrize("level", ["slip", "planar"])
@@ -220,4 +302,26 @@ def test_damage_counts_the_modified_life(level):
 
 def test_at_rest_no_life_is_used():
     sample = Simulation(deng("life.a_iso=bath_15_12", "operating.shaft_speed=0 rpm", level="slip")).advance(0.001)[0]
-    assert math.isinf(sample["modified_rating_life"]) and math.isinf(sample["lamina_life"]) and sample["damage"] == 0.0
+    assert math.isinf(sample["modified_rating_life"]) and math.isinf(sample["l10r"]) and sample["damage"] == 0.0
+
+
+# Calculated by hand from the text of ISO 281:2007, 9.3 and annex A (as GOST 18855-2013 prints it), for ratings of SKF's catalogue:
+# C, C_u [kN], speed [rpm], pitch diameter [mm], viscosity [mm^2/s], cleanliness, P [kN], and kappa, e_C, a_ISO, a_ISO L10 [h].
+MODIFIED = {
+    "NU 210": (73.5, 8.8, 3000, 70, 12, "filtered_17_14", 5, 1.2220, 0.20620, 1.33490, 57_708),
+    "NU 2310": (186, 24.5, 500, 80, 40, "bath_17_14", 20, 1.3821, 0.11315, 0.56692, 31_965),
+    "NU 232": (585, 72, 1650, 225, 20, "filtered_15_12", 100, 2.7080, 0.83580, 5.69872, 20_765),
+    "NU 1014": (76.5, 12, 80, 90, 50, "bath_13_10", 6, 0.4004, 0.46729, 0.29858, 301_200),
+    "NU 2324": (915, 116, 20, 190, 150, "bath_19_16", 150, 0.5522, 0.05813, 0.17425, 60_223),
+}
+
+
+@pytest.mark.parametrize("name", MODIFIED)
+def test_modified_lives_by_hand(name):
+    dynamic, limit, rpm, pitch, viscosity, cleanliness, load, kappa, e_c, a_iso, hours = MODIFIED[name]
+    slope, loss = CLEANLINESS[cleanliness]
+    rated = pack(deng("life.method=iso281", "life.a_iso=bath_13_10")).life
+    rated = rated._replace(dynamic_rating=1e3 * dynamic, fatigue_limit=1e3 * limit, cleanliness_slope=slope, cleanliness_loss=loss)
+    lives = rate_lives(1e3 * load, EquivalentLoads(0.0, 0.0, 0.0, 0.0), rpm * math.pi / 30, 1e-6 * viscosity, 1e-3 * pitch, rated)
+    assert lives.viscosity_ratio == pytest.approx(kappa, rel=1e-3) and lives.contamination_factor == pytest.approx(e_c, rel=2e-3)
+    assert lives.modification_factor == pytest.approx(a_iso, rel=5e-3) and lives.modified / (60 * rpm) == pytest.approx(hours, rel=5e-3)

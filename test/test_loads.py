@@ -25,20 +25,20 @@ def loads(*arguments):
 
 def test_straight_rollers_in_line_have_the_basic_life_of_level_slip():
     sample = Simulation(load_scene("deng2017_table1", ["lubricant.traction_scale=5"])).advance(0.05)[-1]
-    assert found().rating_life == pytest.approx(float(sample["rating_life"]), rel=0.03)  # which slips a little there
+    assert found().lives.basic == pytest.approx(float(sample["rating_life"]), rel=0.03)  # which slips a little there
 
 
 def test_life_in_hours_falls_with_speed_and_is_endless_at_rest():
-    assert math.isinf(found("operating.shaft_speed=0 rpm").lamina_life)
-    assert found("operating.shaft_speed=100 rpm").rating_life > 100 * found().rating_life
+    assert math.isinf(found("operating.shaft_speed=0 rpm").lives.l10r)
+    assert found("operating.shaft_speed=100 rpm").lives.basic > 100 * found().lives.basic
     nothing = found("operating.shaft_speed=0 rpm", "operating.radial_load=0 N", "bearing.outer_raceway.low_radius=34.9 mm")
-    assert not nothing.inner.any() and math.isinf(nothing.modified_life) and not any(np.isnan(nothing.ring))
+    assert not nothing.inner.any() and math.isinf(nothing.lives.modified) and not any(np.isnan(nothing.ring))
 
 
 def test_misalignment_moves_pressure_up_and_life_down():
     cases = [found(*SPATIAL, f"operating.misalignment={tilt} mrad") for tilt in (0.0, 1.0, 2.0, 3.0)]
     for before, after in zip(cases, cases[1:]):
-        assert after.inner_pressure > before.inner_pressure and after.lamina_life < before.lamina_life
+        assert after.inner_pressure > before.inner_pressure and after.lives.l10r < before.lives.l10r
         assert after.moment[0] > before.moment[0]
 
 
@@ -57,10 +57,10 @@ def test_a_roller_on_the_side_to_which_the_end_leans_is_pressed_there():
 
 
 def test_the_scene_chooses_the_life_that_counts():
-    whole, sliced = found(*SPATIAL), found(*SPATIAL, "life.lamina=true")
-    assert whole.modified_life == whole.rating_life and sliced.modified_life == sliced.lamina_life
-    dirty = found(*SPATIAL, "life.lamina=true", "life.a_iso=bath_19_16", "life.reliability=99 %")
-    assert dirty.modified_life < 0.25 * sliced.lamina_life
+    whole, sliced = (found(*SPATIAL, f"life.method={method}").lives for method in ("deng2017", "iso16281"))
+    assert whole.modified == whole.basic > sliced.basic and sliced.modified == sliced.basic == sliced.l10r
+    dirty = found(*SPATIAL, "life.method=iso16281", "life.a_iso=bath_19_16", "life.reliability=99 %").lives
+    assert dirty.modified == dirty.lnmr < 0.25 * sliced.l10r
 
 
 def test_the_command_reports_what_statics_finds(tmp_path):
@@ -68,11 +68,11 @@ def test_the_command_reports_what_statics_finds(tmp_path):
     shown = loads("deng2017_table1", "--json", "--slices", "30", "--picture", str(picture))
     assert shown.exit_code == 0
     report, case = json.loads(shown.stdout), found(slices=30)
-    assert report["inner_loads"] == pytest.approx(case.inner.tolist()) and report["lamina_life_hours"] == pytest.approx(case.lamina_life)
+    assert report["inner_loads"] == pytest.approx(case.inner.tolist()) and report["l10r_hours"] == pytest.approx(case.lives.l10r)
     assert np.shape(report["outer_slice_loads"]) == (18, 30)
     assert picture.read_bytes().startswith(b"\x89PNG")
     text = loads("deng2017_table1", *(part for override in SPATIAL for part in ("--set", override))).stdout
-    assert "3 of 18" in text and "lamina life" in text and "nan" not in text.lower()
+    assert "3 of 18" in text and "L10r" in text and "nan" not in text.lower()
 
 
 def test_the_command_tells_what_it_cannot_use():

@@ -29,14 +29,14 @@ def test_edges_bear_more_and_the_life_falls_as_the_ring_is_misaligned(found, cro
     at = [found[crown, amount] for amount in (0, 1, 3)]
     assert np.all(np.diff([one.inner_edge_pressure for one in at]) > 0)
     assert np.all(np.diff([one.outer_edge_pressure for one in at]) > 0)
-    assert np.all(np.diff([one.lamina_life for one in at]) < 0)
+    assert np.all(np.diff([one.l10r for one in at]) < 0)
 
 
 def test_a_crown_softens_the_edges_and_keeps_more_of_the_life(found):
     for amount in (1, 3):
         flat, crowned = found["none", amount], found["iso_log", amount]
         assert crowned.inner_edge_pressure < 0.8 * flat.inner_edge_pressure
-        assert crowned.lamina_life / found["iso_log", 0].lamina_life > flat.lamina_life / found["none", 0].lamina_life
+        assert crowned.l10r / found["iso_log", 0].l10r > flat.l10r / found["none", 0].l10r
 
 
 def test_heaviest_rollers_stand_halfway_between_both_raceways(found):
@@ -52,16 +52,16 @@ def test_skew_grows_with_misalignment_at_moderate_speed(found):
 
 def test_life_by_slices_in_motion_is_near_that_of_quasi_static_balance(found):
     for one in found.values():
-        assert one.lamina_life == pytest.approx(one.still.lamina_life, rel=0.15)
+        assert one.l10r == pytest.approx(one.still.lives.l10r, rel=0.15)
 
 
 def test_results_settle_as_a_crowned_roller_is_cut_finer():
     scene = load_scene("deng2017_table1", [*SLOW, "level=spatial", "bearing.roller.crown=iso_log", "operating.misalignment=1 mrad"])
     few, some, many = by_slices(scene, 0.1, 0.06, (10, 30, 100), **QUIET)
-    for name in ("lamina_life", "static_lamina_life"):
+    for name, gain in (("l10r", 2), ("static_l10r", 5)):  # in motion the life always takes 40 laminae
         rough, fine, finest = (getattr(one, name) for one in (few, some, many))
         assert abs(fine / finest - 1) < 0.08  # 30 slices, as many as the standard asks for
-        assert abs(rough / finest - 1) > 5 * abs(fine / finest - 1)
+        assert abs(rough / finest - 1) > gain * abs(fine / finest - 1)
 
 
 def test_the_picture_says_what_each_curve_is_drawn_over(found, tmp_path, monkeypatch):

@@ -10,7 +10,7 @@ from bearing_sim.messages.events import Level
 from bearing_sim.model.oil import oil_at
 from bearing_sim.model.params import pack
 from bearing_sim.model.sample import new_block
-from bearing_sim.monitoring.film_ratio import FilmRatio
+from bearing_sim.monitoring.film_ratio import ThinnestFilm
 from bearing_sim.monitoring.monitor import Monitor
 from bearing_sim.scene.loader import SceneError, load_scene
 
@@ -123,7 +123,7 @@ def rolling_block(shaft_speed, force=500.0, count=1):
     return scene, block
 
 
-def test_lambda_is_the_inner_contacts_least_film_over_the_composite_roughness():
+def test_the_thinnest_film_is_that_of_the_inner_contact_and_lambda_is_it_over_the_composite_roughness():
     """Against the published formulas, in pure rolling: there both surfaces run through the contact as fast as the inner one."""
     scene, block = rolling_block(1000.0)
     params, oil = pack(scene), oil_at(scene.lubricant.oil, 393.15)
@@ -132,11 +132,12 @@ def test_lambda_is_the_inner_contacts_least_film_over_the_composite_roughness():
     u, w = oil.viscosity * rolling / (modulus * radius), 500.0 / (modulus * radius * scene.bearing.roller.length)
     film = radius * 2.65 * u**0.70 * (oil.pressure_viscosity * modulus) ** 0.54 * w**-0.13
     film /= 1 + 0.1 * (oil.viscosity * oil.temperature_viscosity * rolling**2 / oil.conductivity) ** 0.64
-    assert FilmRatio(scene).least(block)[0] == pytest.approx(film / math.hypot(0.1e-6, 0.2e-6), rel=0.01)
+    assert ThinnestFilm(scene).least(block)[0] == pytest.approx(film, rel=0.01)
+    assert ThinnestFilm(scene).roughness == pytest.approx(math.hypot(0.1e-6, 0.2e-6))
 
 
-def test_lambda_grows_with_speed_and_falls_with_load_heat_and_sliding():
-    ratio = lambda scene, block: FilmRatio(scene).least(block)[0]  # noqa: E731
+def test_films_grow_with_speed_and_falls_with_load_heat_and_sliding():
+    ratio = lambda scene, block: ThinnestFilm(scene).least(block)[0]  # noqa: E731
     usual = ratio(*rolling_block(1000.0))
     assert ratio(*rolling_block(500.0)) < usual < ratio(*rolling_block(1000.0, force=100.0))
     scene, block = rolling_block(1000.0)
@@ -149,11 +150,11 @@ def test_lambda_grows_with_speed_and_falls_with_load_heat_and_sliding():
 
 def test_spins_that_a_level_does_not_tell_are_those_of_rolling_and_unloaded_rollers_have_no_film():
     scene, block = rolling_block(1000.0)
-    usual = FilmRatio(scene).least(block)[0]
+    usual = ThinnestFilm(scene).least(block)[0]
     block["roller_spin"] = math.nan
-    assert FilmRatio(scene).least(block)[0] == pytest.approx(usual)
+    assert ThinnestFilm(scene).least(block)[0] == pytest.approx(usual)
     block["inner_load"] = block["outer_load"] = 0.0
-    assert math.isnan(FilmRatio(scene).least(block)[0])
+    assert math.isnan(ThinnestFilm(scene).least(block)[0])
 
 
 def test_a_thin_film_is_a_warning_where_the_bearing_has_a_roughness():

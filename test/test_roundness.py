@@ -46,7 +46,7 @@ class Rough(Reference):
             self.held_loads(a, cage_speed) if held else self.loads(a, cage_speed)[:2] for a in np.linspace(0, 2 * np.pi / 18, 10, endpoint=False)
         ]
         inner, outer = (np.concatenate([loads[ring] for loads in places]) for ring in (0, 1))
-        inner_rating, outer_rating = ring_ratings(18, 7e-3, 7e-3, 7 / 62.75)
+        inner_rating, outer_rating = ring_ratings(30.2e3, 18, 7 / 62.75)
         parts = (inner_rating / np.mean(inner**4) ** (1 / 4)) ** -4.5 + (outer_rating / np.mean(outer**4.5) ** (1 / 4.5)) ** -4.5
         return parts ** (-8 / 9) * 1e6 / (60 * 45000)
 

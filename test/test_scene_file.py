@@ -210,7 +210,7 @@ def test_parts_that_do_not_fit_together_are_told_together():
         ("operating.shaft_speed.x=3", "is a value, not a block"),
         ("lubricant.oil=mil_l_7807", "did you mean 'mil_l_7808'?"),
         ("bearing.preset=deng2017_table3", "did you mean 'deng2017_table"),
-        ("bearing.roller.crown=iso_log", "crown"),
+        ("operating.misalignment=1 mrad", "misalignment"),
     ],
 )
 def test_overrides_that_cannot_be_applied_say_why(override, expected):

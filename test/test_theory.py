@@ -19,8 +19,9 @@ from bearing_sim.numerics.simd import LANES
 from bearing_sim.physics.contact import line_contact_stiffness
 from bearing_sim.physics.drag import churning_force, cylinder_torque
 from bearing_sim.physics.load_balance import LOAD
-from bearing_sim.physics.rating_life import load_rating, ring_ratings
+from bearing_sim.physics.rating_life import ring_ratings
 from bearing_sim.physics.traction import CONTACT, traction
+from bearing_sim.scene.ratings import load_rating
 from bearing_sim.studies.machining import Pressing, RingSection, machine
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -137,8 +138,8 @@ CHECK_VALUES = {
     "traction at 0.05": ("traction.md", r"= 0.0013,\ 0.0052,\ 0.0094", 0.0052, lambda: traction_coefficient(0.05)),
     "traction at 0.2": ("traction.md", r"= 0.0013,\ 0.0052,\ 0.0094", 0.0094, lambda: traction_coefficient(0.2)),
     "load rating": ("life.md", "$C_r$ = 30.2 kN", 30.2, lambda: load_rating(*DIMENSIONS) / 1e3),
-    "inner rating": ("life.md", "$Q_{ci}$ = 5681 N", 5681, lambda: ring_ratings(*DIMENSIONS)[0]),
-    "outer rating": ("life.md", "$Q_{ce}$ = 7646 N", 7646, lambda: ring_ratings(*DIMENSIONS)[1]),
+    "inner rating": ("life.md", "$Q_{ci}$ = 5681 N", 5681, lambda: ring_ratings(load_rating(*DIMENSIONS), DIMENSIONS[0], DIMENSIONS[3])[0]),
+    "outer rating": ("life.md", "$Q_{ce}$ = 7646 N", 7646, lambda: ring_ratings(load_rating(*DIMENSIONS), DIMENSIONS[0], DIMENSIONS[3])[1]),
     "MIL-L-7808": ("oil.md", "(120 °C) = 2.09 mPa s", 2.09, lambda: 1e3 * LUBRICATION.viscosity),
     "MIL-L-23699": (
         "oil.md",

@@ -13,7 +13,7 @@ from bearing_sim.scene.loader import load_scene
 from bearing_sim.view import section
 from bearing_sim.view.blueprint import blueprint
 
-CHOICE = ["life.reliability=99 %", "life.lamina=true"]
+CHOICE = ["life.reliability=99 %", "life.method=iso16281"]
 SPATIAL, CHOOSING, PLANAR = (load_scene("deng2017_table1", o) for o in (["level=spatial"], ["level=spatial", *CHOICE], ["level=planar"]))
 
 
@@ -24,7 +24,7 @@ def tilted_block(samples=40):
     block = synthetic_block(SPATIAL, 1e-3 * np.arange(1, samples + 1))
     block["roller_tilt"], block["roller_skew"] = 1e-3 * np.linspace(-0.5, 0.5, 18), 1e-3 * np.linspace(2.0, -3.0, 18)
     block["ring_tilt_y"], block["ring_tilt_z"], block["cage_tilt_y"], block["cage_tilt_z"] = 1e-3, -0.5e-3, 0.2e-3, 0.1e-3
-    block["lamina_life"], block["modified_rating_life"] = 0.8 * block["rating_life"], 0.2 * block["rating_life"]
+    block["l10"], block["modified_rating_life"] = 0.8 * block["rating_life"], 0.2 * block["rating_life"]
     for place, name in enumerate(("inner_pressure", "outer_pressure", "inner_edge_pressure", "outer_edge_pressure")):
         block[name] = (1400 + 100 * place) * 1e6
     return block
@@ -46,10 +46,12 @@ def test_the_solid_picture_says_by_what_it_draws_tilts(tmp_path):
     assert section.tilt_magnification(held) == 15
 
 
-def test_a_chosen_life_is_shown_beside_the_basic_one():
-    titles = [next(name for name in shown(scene) if name.startswith(("Rating life", "Lives"))) for scene in (PLANAR, SPATIAL, CHOOSING)]
-    assert ["lamina" in title for title in titles] == [False, True, True]
-    assert ["choice" in title for title in titles] == [False, False, True]
+def test_the_life_by_the_method_of_the_scene_is_drawn_with_that_of_the_other_standard_and_the_modified_one_where_it_is_wanted():
+    titles = [next(name for name in shown(scene) if name.startswith("Lives")) for scene in (PLANAR, CHOOSING)]
+    assert titles == [
+        "Lives, log10 of hours (green L (Deng 2017), white L10r)",
+        "Lives, log10 of hours (green L10r, white L10, purple L_nmr)",
+    ]
 
 
 def test_series_of_tilts_lives_and_pressures_are_the_samples(tmp_path):
@@ -64,15 +66,21 @@ def test_series_of_tilts_lives_and_pressures_are_the_samples(tmp_path):
     assert [last(f"/tilt/{axis}")[0] for axis in ("ring_y", "ring_z", "cage_y", "cage_z")] == pytest.approx([1.0, -0.5, 0.2, 0.1])
     assert [last(f"/pressure/{place}")[0] for place in ("inner", "outer_edge")] == pytest.approx([1400.0, 1700.0])
     life = np.log10(block["rating_life"][-1])
-    lives = [last(f"/life/{kind}log10_hours")[0] for kind in ("", "lamina_", "chosen_")]
+    lives = [last(f"/life/{kind}log10_hours")[0] for kind in ("", "l10_", "modified_")]
     assert lives == pytest.approx([life, life + np.log10(0.8), life + np.log10(0.2)], rel=1e-6)
     text = last_value(chunks, "/now", "TextDocument:text")[0]
-    assert "lamina life" in text and "life by choice" in text and "1500 MPa, ends 1700 MPa" in text and "0.50, 3.00 mrad" in text
+    assert (
+        "| life, L10r |" in text
+        and "| L10 |" in text
+        and "| modified, L_nmr |" in text
+        and "1500 MPa, ends 1700 MPa" in text
+        and "0.50, 3.00 mrad" in text
+    )
 
 
 def test_a_planar_run_writes_no_series_of_tilts(tmp_path):
     paths = {chunk.entity_path for chunk in written(tmp_path / "run.rrd", PLANAR, tilted_block()) if not chunk.is_static}
-    assert not [path for path in paths if path.startswith(("/tilt", "/pressure", "/life/lamina", "/life/chosen"))]
+    assert not [path for path in paths if path.startswith(("/tilt", "/pressure", "/life/modified"))]
 
 
 def test_rollers_lean_outwards_by_tilt_and_along_the_orbit_by_skew(tmp_path):
@@ -101,11 +109,13 @@ def test_a_recording_that_knows_no_tilts_is_drawn_upright(tmp_path):
 
 def test_diagnostics_tell_further_lives_and_edges_where_the_scene_has_them():
     sample = tilted_block()[-1]
-    assert topics.further_condition(PLANAR, sample) == {}
+    found = topics.further_condition(PLANAR, sample)
+    assert found["life method"] == "deng2017" and set(found) == {"life method", "L10 [h]", "L_nm [h]", "L10r [h]", "L_nmr [h]"}
     found = topics.further_condition(CHOOSING, sample)
-    assert found["lamina life [h]"] == sample["lamina_life"] and found["life by the scene's choice [h]"] == sample["modified_rating_life"]
+    assert found["life method"] == "iso16281" and found["L10 [h]"] == sample["l10"]
+    assert found["modified rating life [h]"] == sample["modified_rating_life"]
     assert found["largest edge pressure [MPa]"] == 1700.0 and found["largest roller skew [mrad]"] == pytest.approx(3.0)
-    assert "life by the scene's choice [h]" not in topics.further_condition(SPATIAL, sample)
+    assert "modified rating life [h]" not in topics.further_condition(SPATIAL, sample)
 
 
 def test_views_of_both_scenes_can_be_laid_out():

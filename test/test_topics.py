@@ -148,7 +148,22 @@ def test_diagnostics_numbers_are_strings_with_the_unit_in_the_key():
 
 # What each row of each array is, written out: label on the wire, observable, unit.  These are promises to readers of recordings and topics.
 WIRE = {
-    "equivalent_loads": ("ring: inner, outer", [("inner_equivalent_load", "N"), ("outer_equivalent_load", "N")]),
+    "equivalent_loads": (
+        "whole rollers inner, outer, laminae inner, outer",
+        [("inner_equivalent_load", "N"), ("outer_equivalent_load", "N"), ("inner_lamina_load", "N"), ("outer_lamina_load", "N")],
+    ),
+    "rating_lives": ("L10, L_nm, L10r, L_nmr", [("l10", "h"), ("lnm", "h"), ("l10r", "h"), ("lnmr", "h")]),
+    "life_factors": (
+        "P, P_ref, kappa, e_C, a_ISO, S_0",
+        [
+            ("equivalent_load", "N"),
+            ("reference_load", "N"),
+            ("viscosity_ratio", ""),
+            ("contamination_factor", ""),
+            ("modification_factor", ""),
+            ("static_safety", ""),
+        ],
+    ),
     "centre_positions": ("inner ring y, z, cage y, z", [("ring_y", "m"), ("ring_z", "m"), ("cage_y", "m"), ("cage_z", "m")]),
     "axis_tilts": (
         "inner ring y, z, cage y, z",
@@ -181,7 +196,7 @@ WIRE = {
     ),
     "roller_places": ("angle, radius, rotation", [("roller_angle", "rad"), ("roller_radius", "m"), ("roller_rotation", "rad")]),
 }
-NUMBERS = {"cage_slip": "", "rating_life": "h", "lamina_life": "h", "modified_rating_life": "h", "level": "", "damage": ""}
+NUMBERS = {"cage_slip": "", "rating_life": "h", "modified_rating_life": "h", "level": "", "damage": ""}
 JOINT_ROWS = {
     "shaft": ("shaft_angle", "shaft_speed"),
     "cage": ("cage_angle", "cage_speed"),

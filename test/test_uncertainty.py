@@ -177,7 +177,7 @@ def test_the_level_is_the_lowest_that_has_what_the_scene_asks_for():
     assert lowest_level(load_scene("deng2017_table1", ["level=spatial", "wants=[cage_orbit]"]))[0].level == "planar"
     assert lowest_level(load_scene("deng2017_table1"), "slip") == (load_scene("deng2017_table1"), "as requested")
     with pytest.raises(UncertaintyError, match="needs level spatial"):
-        lowest_level(load_scene("deng2017_table1", ["level=spatial", "bearing.roller.crown=iso_log"]), "slip")
+        lowest_level(load_scene("deng2017_table1", ["level=spatial", "operating.misalignment=1 mrad"]), "slip")
 
 
 @pytest.mark.parametrize(

@@ -51,7 +51,7 @@ def test_what_two_levels_have_in_common_stands_at_the_same_paths(tmp_path):
     for cheaper, dearer in itertools.pairwise(found):
         assert cheaper <= dearer
     assert {path.split("/")[1] for path in found[2] - found[1]} == {"cage_orbit"}
-    assert {path.split("/")[1] for path in found[3] - found[2]} == {"tilt", "pressure", "life"}
+    assert {path.split("/")[1] for path in found[3] - found[2]} == {"tilt", "pressure"}
 
 
 @pytest.mark.parametrize("level", SCENES)

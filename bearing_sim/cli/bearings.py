@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from bearing_sim.cli.lives import life_rows
 from bearing_sim.cli.options import json_option, picture_option, scene_argument, set_option
 from bearing_sim.cli.reporting import (
     FailedRun,
@@ -40,14 +41,14 @@ def scenes(as_json):
 @scene_argument
 @set_option
 @click.option(
-    "--slices", default=40, show_default=True, type=click.IntRange(5, 400), metavar="N", help="Slices per roller (ISO/TS 16281: at least 30)."
+    "--slices", type=click.IntRange(5, 400), metavar="N", help="Slices per roller, for their loads and the life [default: life.laminae of the scene]."
 )
 @picture_option("Draw the loads")
 @json_option
 def loads(scene_name, overrides, slices, picture, as_json):
     """Show the quasi-static load distribution of SCENE under its constant conditions, without cage slip and with roller 0 on the load line.
 
-    A crown, a moment or a misalignment requires level spatial, in the scene or by --set level=spatial.
+    A moment or a misalignment requires level spatial, in the scene or by --set level=spatial.
     """
     from bearing_sim.scene.loader import SceneError, load_scene
 
@@ -58,6 +59,7 @@ def loads(scene_name, overrides, slices, picture, as_json):
     from bearing_sim.model.validity import outside
     from bearing_sim.studies.statics import statics
 
+    slices = slices or scene.life.laminae
     try:
         found = statics(scene, slices)
     except ArithmeticError as error:
@@ -101,11 +103,7 @@ def _report_loads(scene, slices, found) -> dict:
         "inner_pressure_maximum_mpa": 1e-6 * found.inner_pressure,
         "outer_pressure_maximum_mpa": 1e-6 * found.outer_pressure,
         "equivalent_loads": list(found.equivalent_loads),
-        "life_hours": found.rating_life,
-        "lamina_life_hours": found.lamina_life,
-        "modified_life_hours": found.modified_life,
-        "viscosity_ratio": found.viscosity_ratio,
-        "contamination_factor": found.contamination_factor,
+        **_lives(scene, slices, found),
         "azimuths_deg": [math.degrees(azimuth) for azimuth in found.azimuths],
         "inner_loads": found.inner.tolist(),
         "outer_loads": found.outer.tolist(),
@@ -116,6 +114,13 @@ def _report_loads(scene, slices, found) -> dict:
     }
 
 
+def _lives(scene, slices, found) -> dict:
+    from bearing_sim.studies.rating import report_of
+
+    renamed = {"rating_life": found.lives.basic, "modified_rating_life": found.lives.modified}
+    return report_of(scene, found.lives._asdict() | renamed, found.film) | {"laminae": slices}
+
+
 def _print_loads(scene, slices, found) -> None:
     import numpy as np
 
@@ -123,9 +128,6 @@ def _print_loads(scene, slices, found) -> None:
         return f"{amount:.6g} {unit}, +x end towards {round(math.degrees(azimuth), 1) + 0.0:g} deg" if amount > 1e-9 else "none"
 
     operating = scene.operating
-    oil = f"kappa {found.viscosity_ratio:.3g}"
-    if not math.isnan(found.contamination_factor):
-        oil += f", e_C {found.contamination_factor:.3g} ({scene.life.a_iso})"
     held = "free" if operating.moment is not None else "held"
     print_table(
         f"{scene.name}: {operating.radial_load:g} N at {operating.shaft_speed * 30 / math.pi:.6g} rpm, {slices} slices",
@@ -136,9 +138,7 @@ def _print_loads(scene, slices, found) -> None:
             ("ring displacement", "y {:.6g} um, z {:.6g} um".format(*(round(1e6 * place, 6) + 0.0 for place in found.ring))),
             (f"ring tilt ({held})", lean(1e3 * found.tilt[0], found.tilt[1], "mrad")),
             ("moment on the ring", lean(found.moment[0], found.moment[1], "N m")),
-            ("basic rating life, whole rollers", _hours(found.rating_life)),
-            ("lamina life, with stress risers", _hours(found.lamina_life)),
-            (f"modified life, {100 * scene.life.reliability:g} % reliability", f"{_hours(found.modified_life)}; {oil}"),
+            *life_rows(scene, _lives(scene, slices, found)),
         ],
     )
     rows = []
@@ -147,10 +147,6 @@ def _print_loads(scene, slices, found) -> None:
         carried = f"inner {found.inner[j]:.6g} N (slices {along.min():.4g} to {along.max():.4g} N), outer {found.outer[j]:.6g} N"
         rows.append((f"{j}: {math.degrees(found.azimuths[j]):.0f} deg", f"{carried}, tilt {tilt:.3g} mrad"))
     print_table("rollers between both rings", rows)
-
-
-def _hours(life) -> str:
-    return f"{life:.4g} h" if math.isfinite(life) else "infinite"
 
 
 def _quantity(unit, meaning, minimum, maximum, shown_in):

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from bearing_sim.cli.lives import hours
 from bearing_sim.cli.options import json_option, set_option
 from bearing_sim.cli.reporting import (
     FailedRun,
@@ -186,6 +187,7 @@ def _report(result, course, recorded, scene, out) -> dict:
         "cage_slip_p95": slip["p95"],
         "cage_slip_p99": slip["p99"],
         "cage_slip_maximum": slip["maximum"],
+        "life_method": scene.life.method,
         "life_hours": result.life_hours,
         "least_rating_life_hours": result.least_rating_life,
         "damage": result.damage,
@@ -221,6 +223,7 @@ def _print(result, course, recorded, scene, out) -> None:
     slip = {name: f"{100 * value:.2f} %" for name, value in result.slip_statistics().items()}
     spread = f"mean {slip['mean']}, median {slip['median']}, 95 % below {slip['p95']}, 99 % below {slip['p99']}, largest {slip['maximum']}"
     rejected = f"{result.rejected_steps} rejected, {result.non_finite_steps} of them not finite"
+    symbol = scene.life.symbols[0 if scene.life.is_basic else 1]
     refused = ", ".join(f"{count} x {code}" for code, count in sorted(course.refused.items())) or "none"
     rows = [("log", line) for line in summary_lines(recorded)]
     if recorded.unfinished:
@@ -230,7 +233,8 @@ def _print(result, course, recorded, scene, out) -> None:
         ("cage slip while turning", spread),
         (
             "life under these inputs",
-            f"{'at most ' * bool(course.verdict)}{result.life_hours:.4g} h (smallest instantaneous rating life {result.least_rating_life:.4g} h)",
+            f"{'at most ' * bool(course.verdict)}{hours(result.life_hours)} by {symbol}; "
+            f"least rating life at an instant {hours(result.least_rating_life)}",
         ),
         ("life used", f"{'at least ' * bool(course.verdict)}{100 * result.damage:.4g} %"),
         ("inputs unknown", course.unknown_event.text if course.unknown_seconds else "0 s"),

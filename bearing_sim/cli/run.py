@@ -7,7 +7,9 @@ from contextlib import ExitStack
 from pathlib import Path
 
 import click
+import numpy as np
 
+from bearing_sim.cli.lives import life_rows
 from bearing_sim.cli.options import json_option, scene_argument, set_option
 from bearing_sim.cli.reporting import (
     announce_compilation,
@@ -118,6 +120,8 @@ def _advance(simulation, seconds, samples, sinks, progress) -> list:
 
 
 def _report(simulation, settled, seconds, wall, start_up) -> dict:
+    from bearing_sim.studies.rating import life_report
+
     last, counters = simulation.sample, simulation.counters
     return {
         "scene": simulation.scene.name,
@@ -125,9 +129,7 @@ def _report(simulation, settled, seconds, wall, start_up) -> dict:
         "cage_slip": math.fsum(settled) / len(settled),
         "cage_slip_minimum": min(settled),
         "cage_slip_maximum": max(settled),
-        "life_hours": float(last["rating_life"]),
-        "lamina_life_hours": float(last["lamina_life"]),
-        "modified_life_hours": float(last["modified_rating_life"]),
+        **life_report(simulation.scene, np.array([last])),
         "damage": float(last["damage"]),
         "cage_speed_rpm": float(last["cage_speed"]) * 30 / math.pi,
         "inner_load_maximum": float(last["inner_load"].max()),
@@ -156,7 +158,8 @@ def _print(report, scene, bands) -> None:
                 f"{100 * report['cage_slip']:.2f} % ({100 * report['cage_slip_minimum']:.2f} to {100 * report['cage_slip_maximum']:.2f} %)",
             ),
             ("cage speed", f"{report['cage_speed_rpm']:.6g} rpm"),
-            *_lives(report, scene),
+            *life_rows(scene, report),
+            *_pressures(report, scene),
             ("largest roller load", f"inner {report['inner_load_maximum']:.4g} N, outer {report['outer_load_maximum']:.4g} N"),
             ("simulated", f"{report['sim_seconds']:.4g} s in {report['wall_seconds']:.3g} s, {report['real_time_factor']:.3g} times real time"),
             ("steps", f"{report['steps']}, {rejected}"),
@@ -171,13 +174,10 @@ def _print(report, scene, bands) -> None:
     )
 
 
-def _lives(report, scene) -> list[tuple[str, str]]:
-    """Return the rows of the basic life and of any other lives that the scene or its level has."""
-    rows = [("rating life", f"{report['life_hours']:.4g} h")]
-    if not scene.life.is_basic:
-        rows.append(("life by the scene's choice", f"{report['modified_life_hours']:.4g} h"))
+def _pressures(report, scene) -> list[tuple[str, str]]:
+    """Return the rows of pressures by slices, where the level has them."""
+    rows = []
     if scene.bodies_tilt:
-        rows.append(("lamina life", f"{report['lamina_life_hours']:.4g} h"))
         for ring in ("inner", "outer"):
             whole, edge = report[f"{ring}_pressure_maximum_mpa"], report[f"{ring}_edge_pressure_maximum_mpa"]
             rows.append((f"largest pressure, {ring} raceway", f"{whole:.4g} MPa, end slices {edge:.4g} MPa"))

@@ -150,8 +150,8 @@ def _row(one) -> dict:
         "tilt_mrad": 1e3 * one.tilt,
         "skew_mrad": 1e3 * one.skew,
         "life_hours": one.rating_life,
-        "lamina_life_hours": one.lamina_life,
-        "static_lamina_life_hours": one.still.lamina_life,
+        "l10r_hours": one.l10r,
+        "static_l10r_hours": one.still.lives.l10r,
     }
 
 
@@ -159,7 +159,7 @@ def _print_misalignment(name, rows) -> None:
     pressures, angles, lives = (
         ("largest, MPa", "inner edge, MPa", "outer edge, MPa"),
         ("tilt, mrad", "skew, mrad"),
-        ("life, h", "by slices, h", "no slip, h"),
+        ("life, h", "L10r, h", "L10r, no slip, h"),
     )
     texts = [(crown, *(format(number, ".4g") for number in numbers)) for crown, *numbers in (row.values() for row in rows)]
     columns = ("crown", "mrad", "slip, %", *pressures, *angles, *lives)
@@ -298,11 +298,11 @@ def slices(scene_name, overrides, settle, duration, as_json):
 
 
 def _print_slices(name, found) -> None:
-    columns = ("slices", "slip, %", "largest load, N", "life, h", "by slices, h", "static: MPa", "by slices, h", "us per step", "x real time")
+    columns = ("slices", "slip, %", "largest load, N", "life, h", "L10r, h", "static: MPa", "L10r, h", "us per step", "x real time")
     rows = []
     for one in found:
-        lives = [format(value, ".4g") for value in (one.inner_load, one.rating_life, one.lamina_life)]
-        still = f"{1e-6 * one.static_pressure:.5g}", f"{one.static_lamina_life:.4g}"
+        lives = [format(value, ".4g") for value in (one.inner_load, one.rating_life, one.l10r)]
+        still = f"{1e-6 * one.static_pressure:.5g}", f"{one.static_l10r:.4g}"
         rows.append((str(one.slices), f"{100 * one.slip:.4g}", *lives, *still, f"{1e6 * one.step_seconds:.3g}", f"{one.real_time_factor:.3g}"))
     print_rows(f"{name}: results by number of slices", columns, rows)
 

@@ -124,7 +124,15 @@ class ArrayRows(NamedTuple):
 
 
 ARRAYS = {
-    "equivalent_loads": ArrayRows("ring: inner, outer", ("inner_equivalent_load", "outer_equivalent_load")),
+    "equivalent_loads": ArrayRows(
+        "whole rollers inner, outer, laminae inner, outer",
+        ("inner_equivalent_load", "outer_equivalent_load", "inner_lamina_load", "outer_lamina_load"),
+    ),
+    "rating_lives": ArrayRows("L10, L_nm, L10r, L_nmr", ("l10", "lnm", "l10r", "lnmr")),
+    "life_factors": ArrayRows(
+        "P, P_ref, kappa, e_C, a_ISO, S_0",
+        ("equivalent_load", "reference_load", "viscosity_ratio", "contamination_factor", "modification_factor", "static_safety"),
+    ),
     "centre_positions": ArrayRows("inner ring y, z, cage y, z", ("ring_y", "ring_z", "cage_y", "cage_z")),
     "axis_tilts": ArrayRows("inner ring y, z, cage y, z", ("ring_tilt_y", "ring_tilt_z", "cage_tilt_y", "cage_tilt_z")),
     "slice_pressures": ArrayRows(
@@ -196,9 +204,8 @@ OUTPUTS = {
     topic.name: topic
     for topic in (
         _number("cage_slip", "cage slip [fraction]; NaN at rest"),
-        _number("rating_life", "rating life at the present condition [h]; infinite at rest"),
-        _number("lamina_life", "rating life by slices [h]; the rating life at a level without slices"),
-        _number("modified_rating_life", "life with reliability and oil, by the scene's choice [h]; damage counts it"),
+        _number("rating_life", "basic rating life at the present condition by the method of the scene [h]; infinite at rest"),
+        _number("modified_rating_life", "the same with reliability and oil [h]; damage counts it"),
         _number("level", "level that computed the sample: 0 steady, 1 slip, 2 planar, 3 spatial"),
         _number("damage", "fraction of life used since the start"),
         Topic(
@@ -208,7 +215,9 @@ OUTPUTS = {
             _bearing_joints,
             {"position": tuple(angle for angle, _ in JOINTS.values()), "velocity": tuple(speed for _, speed in JOINTS.values())},
         ),
-        _array("equivalent_loads", "dynamic equivalent roller loads [N], ring (inner, outer)"),
+        _array("equivalent_loads", "dynamic equivalent roller loads [N]: of whole rollers (inner, outer ring), by laminae (inner, outer)"),
+        _array("rating_lives", "rating lives [h] by ISO 281 (L10, L_nm) and by ISO/TS 16281 (L10r, L_nmr)"),
+        _array("life_factors", "equivalent and reference load P, P_ref [N], kappa, e_C, a_ISO, static safety S_0"),
         _array("centre_positions", "displacements [m]: inner ring y, z, cage y, z"),
         _array("axis_tilts", "tilts [rad]: inner ring towards y, z, cage towards y, z", True),
         _array("slice_pressures", "largest Hertzian pressures [Pa]: inner, outer raceway, and of the rollers' end slices alone", True),
@@ -306,13 +315,13 @@ def condition(sample) -> dict[str, float]:
     }
 
 
-def further_condition(scene, sample) -> dict[str, float]:
-    """Return the numbers that only some scenes have, in addition to `condition`: lives beside the basic one, pressures and tilts by slices."""
-    numbers = {}
+def further_condition(scene, sample) -> dict[str, object]:
+    """Return the numbers that depend on the scene, in addition to `condition`: which life, the standards' lives, pressures and tilts by slices."""
+    numbers = {"life method": scene.life.method}
     if not scene.life.is_basic:
-        numbers["life by the scene's choice [h]"] = float(sample["modified_rating_life"])
+        numbers["modified rating life [h]"] = float(sample["modified_rating_life"])
+    numbers |= {f"{symbol} [h]": float(sample[name]) for symbol, name in (("L10", "l10"), ("L_nm", "lnm"), ("L10r", "l10r"), ("L_nmr", "lnmr"))}
     if scene.bodies_tilt:
-        numbers["lamina life [h]"] = float(sample["lamina_life"])
         for name, fields in (("largest", ("inner_pressure", "outer_pressure")), ("largest edge", ("inner_edge_pressure", "outer_edge_pressure"))):
             numbers[f"{name} pressure [MPa]"] = 1e-6 * max(float(sample[field]) for field in fields)
         numbers["largest roller tilt [mrad]"] = 1e3 * float(np.abs(sample["roller_tilt"]).max())

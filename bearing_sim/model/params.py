@@ -10,12 +10,14 @@ from bearing_sim.model.oil import oil_at
 from bearing_sim.model.ring_growth import Growth, fit_growth, running_growth
 from bearing_sim.physics.contact import iso_contact_stiffness, line_contact_stiffness
 from bearing_sim.physics.film import Pumping, pumping_constant
+from bearing_sim.physics.lamina_life import Laminae, new_laminae
 from bearing_sim.physics.raceway import tabulated
-from bearing_sim.physics.rating_life import CLEANLINESS, fatigue_limit, load_rating, reliability_factor, ring_ratings, static_rating, stress_risers
+from bearing_sim.physics.rating_life import CLEANLINESS, METHODS, reliability_factor, ring_ratings
 from bearing_sim.physics.traction import TractionConstants, constant_constants, kragelskii_constants, oil_4109_constants, thermal_eyring_constants
 from bearing_sim.scene.contour import outer_contour
-from bearing_sim.scene.crown import crown_drops
+from bearing_sim.scene.crown import crown_drops, slice_middles
 from bearing_sim.scene.lubricant import ConstantTraction, EyringTraction, KragelskiiTraction
+from bearing_sim.scene.ratings import rate
 from bearing_sim.scene.scene import Bearing, Lubricant, Scene
 
 
@@ -86,7 +88,6 @@ class Slices(NamedTuple):
     positions: np.ndarray  # axial position of each slice's middle from the roller's, x_k [m], shape (N,)
     crown: np.ndarray  # drop of the profile there, C_k [m], shape (N,)
     together: int  # slices that share one evaluation of the traction law
-    risers: np.ndarray  # stress risers f(k) of a life by slices (ISO/TS 16281), shape (N,)
 
 
 class Tilts(NamedTuple):
@@ -108,16 +109,19 @@ class Tilts(NamedTuple):
 
 
 class Life(NamedTuple):
-    """Load ratings of one roller contact (ISO/TS 16281), and what modifies the life (ISO 281)."""
+    """Load ratings of the bearing (ISO 281, ISO 76) and of one roller contact (ISO/TS 16281), and what modifies the life (ISO 281)."""
 
+    method: int  # of `bearing_sim.physics.rating_life.METHODS`
+    dynamic_rating: float  # C [N]
+    static_rating: float  # C_0 [N]
+    fatigue_limit: float  # C_u [N]
     inner_rating: float  # Q_ci [N]
     outer_rating: float  # Q_ce [N]
     reliability_factor: float  # a_1
     modified: bool  # whether a_ISO is taken
     cleanliness_slope: float  # of e_C, see `bearing_sim.physics.rating_life.CLEANLINESS`
     cleanliness_loss: float
-    fatigue_limit_ratio: float  # C_u/C_r
-    lamina: bool  # whether a level with slices computes the life by them
+    laminae: Laminae
 
 
 class Variants(NamedTuple):
@@ -234,9 +238,8 @@ def _slices(bearing: Bearing) -> Slices:
     roller = bearing.roller
     count = roller.slices
     positions = (np.arange(count) - 0.5 * (count - 1)) * (roller.length / count)
-    drops = np.ascontiguousarray(crown_drops(roller.crown, roller.diameter, roller.length, count), np.float64)
-    risers = stress_risers(count) if count > 1 else np.ones(1)
-    return Slices(positions, drops, int(roller.slices_per_traction), risers)
+    drops = np.ascontiguousarray(crown_drops(roller.profile, roller.diameter, roller.length, count), np.float64)
+    return Slices(positions, drops, int(roller.slices_per_traction))
 
 
 def _tilts(scene: Scene, roller_mass: float) -> Tilts:
@@ -263,19 +266,22 @@ def _tilts(scene: Scene, roller_mass: float) -> Tilts:
 
 def _life(scene: Scene) -> Life:
     bearing, choice = scene.bearing, scene.life
-    dimensions = (bearing.roller.count, bearing.roller.diameter, bearing.roller.length, bearing.diameter_ratio)
-    inner_rating, outer_rating = ring_ratings(*dimensions)
+    roller, rated = bearing.roller, rate(bearing)
     slope, loss = CLEANLINESS.get(choice.a_iso, (0.0, 0.0))
-    limit = fatigue_limit(static_rating(*dimensions), bearing.pitch_diameter)
+    inner_rating, outer_rating = ring_ratings(rated.dynamic, roller.count, bearing.diameter_ratio)
+    drops = crown_drops(roller.profile, roller.diameter, roller.length, choice.laminae)
     return Life(
+        method=METHODS[choice.method],
+        dynamic_rating=rated.dynamic,
+        static_rating=rated.static,
+        fatigue_limit=rated.fatigue_limit,
         inner_rating=inner_rating,
         outer_rating=outer_rating,
         reliability_factor=reliability_factor(choice.reliability),
         modified=choice.a_iso != "none",
         cleanliness_slope=slope,
         cleanliness_loss=loss,
-        fatigue_limit_ratio=limit / load_rating(*dimensions),
-        lamina=bool(choice.lamina),
+        laminae=new_laminae(slice_middles(roller.length, choice.laminae), drops, contact_stiffness(bearing), inner_rating),
     )
 
 

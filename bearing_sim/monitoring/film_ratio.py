@@ -1,5 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Lambda ratio: how far the oil film keeps the surfaces of rollers and raceways apart."""
+"""Film thickness: how far the oil keeps the surfaces of rollers and raceways apart, and its ratio to their roughness, lambda."""
+
+import math
 
 import numpy as np
 
@@ -13,31 +15,29 @@ _SAME_OIL = 0.1  # [K] an oil so much warmer is the same oil: its film differs b
 _LOADED_FROM = 1.0  # [N] a roller that is pressed by less is not separated from anything
 
 
-class FilmRatio:
-    """lambda = h_min/sigma of the thinnest film between any loaded roller and either raceway.
+class ThinnestFilm:
+    """h_min of the thinnest film between any loaded roller and either raceway.
 
-    h_min is that of Dowson and Higginson, thinned by the heated inlet (`bearing_sim.physics.film.film_thickness`); sigma is the composite
-    roughness of `bearing_sim.scene.scene.Roughness`.  Almost always the thinnest film is that of the inner ring's most heavily loaded
-    contact, whose effective radius R is smallest.  Spins that a sample does not hold are those of rolling on the outer ring.
+    It is that of Dowson and Higginson, thinned by the heated inlet (`bearing_sim.physics.film.film_thickness`).  Almost always it is that of the
+    inner ring's most heavily loaded contact, whose effective radius R is smallest.  Spins that a sample does not hold are those of rolling
+    on the outer ring.
 
     Parameters
     ----------
-    scene : whose bearing has a roughness.
+    scene : of the bearing and its oil.
 
-    Raises
-    ------
-    ValueError
-        It has none.
+    Attributes
+    ----------
+    roughness : composite roughness sigma [m] (`bearing_sim.scene.bearing.Roughness`); lambda = h_min/sigma.  NaN where the scene gives none.
     """
 
     def __init__(self, scene: Scene):
-        if scene.bearing.roughness is None:
-            raise ValueError("bearing.roughness: missing; a lambda ratio needs the roughness of rollers and raceways")
-        self._params, self._lubricant, self._roughness = pack(scene), scene.lubricant, scene.bearing.roughness.composite
+        self._params, self._lubricant = pack(scene), scene.lubricant
+        self.roughness = scene.bearing.roughness.composite if scene.bearing.roughness is not None else math.nan
         self._oil: OilState | None = None
 
     def least(self, samples: np.ndarray) -> np.ndarray:
-        """Return the lambda ratio of each sample, shape (n,), NaN where no roller is loaded; all of one oil temperature, the last one's.
+        """Return the least thickness in each sample [m], shape (n,), NaN where no roller is loaded; all of one oil temperature, the last one's.
 
         Parameters
         ----------
@@ -50,7 +50,7 @@ class FilmRatio:
             self._film(oil, raceways.outer_curvature_radius, samples["outer_load"], *outer),
         ]
         thinnest = np.minimum(*(film.min(axis=1) for film in films))
-        return np.where(np.isinf(thinnest), np.nan, thinnest) / self._roughness
+        return np.where(np.isinf(thinnest), np.nan, thinnest)
 
     def _film(self, oil: OilState, radius: float, force: np.ndarray, rolling: np.ndarray, sliding: np.ndarray) -> np.ndarray:
         """Return the least thickness [m] of the contacts of one ring, infinite where a roller is not loaded; arrays of one shape."""

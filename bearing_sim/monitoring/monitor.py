@@ -10,7 +10,7 @@ import numpy as np
 
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.model.sample import joined
-from bearing_sim.monitoring.film_ratio import FilmRatio
+from bearing_sim.monitoring.film_ratio import ThinnestFilm
 from bearing_sim.scene.scene import Hold, Scene, Thresholds
 
 _HOUR = 3600.0  # [s]
@@ -141,7 +141,8 @@ class Monitor:
     """
 
     def __init__(self, scene: Scene):
-        self._films = FilmRatio(scene) if scene.bearing.roughness is not None else None
+        self._films = ThinnestFilm(scene)
+        self._symbol = scene.life.symbols[0 if scene.life.is_basic else 1]
         self.adjust(scene.thresholds)
         self._forget()
 
@@ -150,10 +151,19 @@ class Monitor:
         self._thresholds = t = thresholds
         self._watches = {
             "slip": Watch("bearing.slip", "cage slip", "%", 100.0, t.slip_warning, t.slip_error, t.slip_hold),
-            "life": Watch("bearing.life", "life at the present condition", "h", 1.0, t.life_warning, t.life_error, t.life_hold, True),
+            "life": Watch(
+                "bearing.life",
+                f"life at the present condition, {self._symbol}",
+                "h",
+                1.0,
+                t.life_warning,
+                t.life_error,
+                t.life_hold,
+                True,
+            ),
             "remaining": Watch(
                 "bearing.remaining_life",
-                "remaining life at the present rate of damage",
+                f"remaining life at the present rate of damage, by {self._symbol}",
                 "h",
                 1.0,
                 t.remaining_life_warning,
@@ -191,11 +201,11 @@ class Monitor:
             "remaining": self._remaining_life(now, life, float(block["damage"][-1])),
             "pocket": float(np.fmax.reduce(np.abs(block["pocket_force"]), axis=None, initial=math.nan)),
         }
-        if self._films is not None:
-            if not abs(now - self._film_at) < _FILM_EVERY * (1 - 1e-9):
-                self._film = float(self._films.least(block[-1:])[0]) if turning[-1] else math.nan
-                self._film_at = now
-            latest["lambda"] = self._film
+        if not abs(now - self._film_at) < _FILM_EVERY * (1 - 1e-9):
+            self._film = float(self._films.least(block[-1:])[0]) if turning[-1] else math.nan
+            self._film_at = now
+        if not math.isnan(self._films.roughness):
+            latest["lambda"] = self._film / self._films.roughness
         for name, value in latest.items():
             self._watches[name].judge(now, value)
 
@@ -222,8 +232,8 @@ class Monitor:
             "remaining": shortest,
             "pocket": np.abs(block["pocket_force"]),
         }
-        if self._films is not None:
-            values["lambda"] = self._films.least(block[turning])
+        if not math.isnan(self._films.roughness):
+            values["lambda"] = self._films.least(block[turning]) / self._films.roughness
         return damage < 1.0 and all(self._watches[name].is_calm(numbers) for name, numbers in values.items())
 
     def take_calm(self, block: np.ndarray) -> None:
@@ -242,7 +252,8 @@ class Monitor:
     def values(self) -> dict[str, float]:
         """Diagnostics values that only the monitor computes, with the unit in each key; empty before the first sample."""
         names = {"remaining": "remaining life [h]", "lambda": "film over roughness, lambda", "pocket": "largest pocket force [N]"}
-        return {shown: self._latest[name] for name, shown in names.items() if name in self._latest}
+        values = {shown: self._latest[name] for name, shown in names.items() if name in self._latest}
+        return values | ({"film [um]": 1e6 * self._film} if self._latest else {})
 
     def _remaining_life(self, now: float, life: float, damage: float) -> float:
         """Return (1 - D)/(dD/dt) [h] with dD/dt the fading mean of 1/L: damage accumulates 1/L, not L, where the life L fluctuates."""

@@ -23,10 +23,12 @@ from bearing_sim.recording.mcap_format import Message
 from bearing_sim.recording.mcap_writer import McapWriter, SampleRows, widened
 from bearing_sim.recording.provenance import git_hash, package_version, versions
 from bearing_sim.scene.loader import scene_to_yaml
+from bearing_sim.scene.ratings import rate
 from bearing_sim.scene.scene import Scene
 
 METADATA = "bearing_sim"
-"""Name of the metadata record: scene (YAML), level, start_ns, package_version, git_hash, part, and versions of packages by name."""
+"""Name of the metadata record: scene (YAML), level, start_ns, package_version, git_hash, part, versions of packages by name, and the load
+ratings C, C_0 and C_u [N] that the lives are computed with."""
 COMMAND = "bearing_sim_command"
 """Name of the metadata record of a run from the command line: command, as it was written."""
 
@@ -396,6 +398,8 @@ class McapSink(AbstractContextManager):
         origin = {"package_version": package_version(), "git_hash": git_hash()}
         packages = {f"version_{name}": version for name, version in versions().items()}
         record = {"scene": scene_to_yaml(scene), "level": scene.level, "start_ns": str(self.start_ns), **origin, **packages}
+        rated = rate(scene.bearing)
+        record |= {"dynamic_rating": repr(rated.dynamic), "static_rating": repr(rated.static), "fatigue_limit": repr(rated.fatigue_limit)}
         if seed is not None:
             record["seed"] = str(seed)
         if advance is not None:

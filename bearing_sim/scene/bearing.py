@@ -8,8 +8,9 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from bearing_sim.scene.contour import form_errors, settled_form
-from bearing_sim.scene.crown import Crown, NoCrown, crown_errors
+from bearing_sim.scene.crown import Crown, IsoLogCrown, crown_errors
 from bearing_sim.scene.quantity import check, quantity, record
+from bearing_sim.scene.ratings import Ratings
 
 LAND_FIELDS = ("guide_radius", "guide_clearance", "guide_land_width", "guide_land_distance")
 _CLOSE = 1e-8  # m; lengths nearer than this are taken as equal
@@ -105,13 +106,18 @@ class Roller:
     count: Annotated[int, Field(ge=3, le=200)]  # number of rollers, Z
     diameter: quantity("m", "roller diameter, D_w", 0.5e-3, 0.5, "mm")
     length: quantity("m", "roller effective length, L", 0.5e-3, 0.5, "mm")
-    crown: Crown = field(default_factory=NoCrown)  # see `bearing_sim.scene.crown`
+    crown: Crown | None = None  # profile of the rollers, see `bearing_sim.scene.crown`; None: not known, taken as that of ISO/TS 16281
     slices: Annotated[int, Field(ge=1, le=400)] = 20  # per roller, at level spatial; ISO/TS 16281 requires 30 or more for the life
     slices_per_traction: Annotated[int, Field(ge=1, le=400)] = 4  # neighbouring slices with one traction coefficient
 
+    @property
+    def profile(self) -> Crown:
+        """The crown; ISO's logarithmic one where none is given."""
+        return IsoLogCrown() if self.crown is None else self.crown
+
     @check
     def _crown_fits(self) -> list[str]:
-        return crown_errors(self.crown, self.length)
+        return crown_errors(self.profile, self.length)
 
 
 @record
@@ -261,6 +267,7 @@ class Bearing:
     ring_growth: RingGrowth = field(default_factory=RingGrowth)
     roughness: Roughness | None = None  # None: the lambda ratio is neither computed nor monitored
     catalogue_limits: CatalogueLimits = field(default_factory=CatalogueLimits)
+    ratings: Ratings = field(default_factory=Ratings)  # the maker's load ratings, where they are known
 
     @property
     def pitch_radius(self) -> float:

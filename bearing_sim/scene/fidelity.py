@@ -49,16 +49,9 @@ WANTS = {
 }
 
 
-def _crown(scene) -> str:
-    law = scene.bearing.roller.crown.law
-    return law if law != "none" else ""
-
-
 EFFECTS = (
-    Effect("bearing.roller.crown", ("spatial",), "which slices the rollers", _crown),
     Effect("operating.moment", ("spatial",), "whose ring tilts", lambda scene: scene.operating.moment is not None),
     Effect("operating.misalignment", ("spatial",), "whose ring tilts", lambda scene: scene.operating.misalignment != 0.0),
-    Effect("life.lamina", ("spatial",), "which slices the rollers", lambda scene: scene.life.lamina),
     Effect("integration.fixed_step", MARCHING, "which take steps", lambda scene: scene.integration.fixed_step is not None),
     Effect("lubricant.pumping", LEVELS, "whose contacts pump oil", lambda scene: scene.lubricant.pumping),
     Effect("bearing.ring_growth.centrifugal", LEVELS, "whose rings grow", lambda scene: scene.bearing.ring_growth.centrifugal),
@@ -128,5 +121,6 @@ def hint(scene) -> str | None:
         return None
     of_scenes = [effect for effect in EFFECTS if not effect.field.startswith("wants.")]
     missing = ", ".join(effect.field for effect in of_scenes if scene.level in effect.levels and lower not in effect.levels)
-    faster = f"level {lower} computes the same motion and loads several times faster"
+    softer = "" if scene.bearing.roller.profile.law == "none" else ", without the compliance that the profile adds to contacts,"
+    faster = f"level {lower} computes the same motion and loads{softer} several times faster"
     return f"level {scene.level}: nothing in the scene needs it ({missing}); {faster}"

@@ -15,6 +15,7 @@ from bearing_sim.scene.bearing import Bearing
 from bearing_sim.scene.fidelity import WANTS, refusals
 from bearing_sim.scene.lubricant import Lubricant
 from bearing_sim.scene.quantity import check, quantity, record
+from bearing_sim.scene.ratings import rate
 from bearing_sim.scene.uncertainty import Range, range_errors
 
 _LONGEST_STEP = 0.5  # roller pitches of cage rotation in a fixed step
@@ -184,7 +185,11 @@ CLEANLINESS = Literal[
 
 @record
 class LifeRating:
-    """The life from which damage is computed: L_nm = a_1 a_ISO L_10 (ISO 281); all defaults leave the basic life L_10 (Deng 2017).
+    """The rating life that is shown, monitored and counted as damage: L_nm = a_1 a_ISO L_10.
+
+    The method is `iso16281` (ISO/TS 16281:2008: the loads on laminae of every roller, with stress risers: L10r, L_nmr), `iso281` (ISO 281:2007:
+    the load on the bearing, (C/P)^(10/3): L10, L_nm), or `deng2017` (Deng et al. 2017, eq. 18: whole rollers, without stress risers;
+    two to three times a catalogue's life, for their figures only).
 
     a_iso names the oil's cleanliness by the end of its ISO 4406 code: `filtered`, circulating through an in-line filter,
     or `bath`, without a filter or with an off-line filter; `none` sets a_ISO = 1.
@@ -192,12 +197,18 @@ class LifeRating:
 
     reliability: quantity("", "probability of reaching the life", 0.9, 0.9995, "%") = 0.9
     a_iso: CLEANLINESS = "none"  # cleanliness class of the oil for a_ISO; none: a_ISO = 1
-    lamina: bool = False  # lamina life with stress risers (ISO/TS 16281)
+    method: Literal["iso16281", "iso281", "deng2017"] = "iso16281"  # which rating life is shown, monitored and counted as damage
+    laminae: Annotated[int, Field(ge=2, le=400)] = 40  # per roller for L10r; ISO/TS 16281 requires 30 or more
 
     @property
     def is_basic(self) -> bool:
-        """Whether damage is computed from the basic life, L_10."""
-        return self.reliability == 0.9 and self.a_iso == "none" and not self.lamina
+        """Whether damage is computed from a basic life, without reliability and oil."""
+        return self.reliability == 0.9 and self.a_iso == "none"
+
+    @property
+    def symbols(self) -> tuple[str, str]:
+        """The standard's symbols of the basic and the modified life by the method; Deng et al. 2017 write L for both."""
+        return {"iso16281": ("L10r", "L_nmr"), "iso281": ("L10", "L_nm"), "deng2017": ("L (Deng 2017)", "L_nm (Deng 2017)")}[self.method]
 
 
 @record
@@ -242,7 +253,7 @@ class Scene:
     def accepted_inputs(self) -> InputLimits:
         """The limits of input messages, those that are not given by what no bearing of this size survives."""
         limits, bearing = self.input_limits, self.bearing
-        speed, load = _BURSTING_SPEED / bearing.inner_raceway.radius, _CRUSHING_LOAD * static_rating_of(bearing)
+        speed, load = _BURSTING_SPEED / bearing.inner_raceway.radius, _CRUSHING_LOAD * rate(bearing).static
         return replace(
             limits,
             maximum_speed=min(speed, _LARGEST_SPEED) if limits.maximum_speed is None else limits.maximum_speed,
@@ -268,16 +279,10 @@ class Scene:
         return step_errors(self) + moment_errors(self) + range_errors(self)
 
 
-def static_rating_of(bearing: Bearing) -> float:
-    """Return the basic static radial load rating, C_0r = 44 (1 - gamma) Z L D_w in N and mm (ISO 76) [N]."""
-    roller = bearing.roller
-    return 44e6 * (1 - bearing.diameter_ratio) * roller.count * roller.length * roller.diameter
-
-
 def moment_errors(scene) -> list[str]:
     """Return error messages for a moment beyond the capacity of a bearing of this size."""
     bearing, moment = scene.bearing, scene.operating.moment
-    bound = static_rating_of(bearing) * bearing.roller.length
+    bound = rate(bearing).static * bearing.roller.length
     if moment is None or moment <= bound:
         return []
     return [

@@ -45,7 +45,8 @@ _TIGHT, _TIGHT_STEP = Integration().with_tolerances(0.1), 1e-5
 _LEAST_SLIP, _RISE_OF_LIFE = -0.05, 1.01
 _RUNNING = 10.0  # rad/s of the shaft, below which slip and losses are not judged
 _NOT_COMPUTED = {"steady": ("roller_spin", "roller_rotation", "pocket_force")}  # NaN at these levels
-_MAY_BE_INFINITE = ("rating_life", "lamina_life", "modified_rating_life")  # without load or at rest
+_NOT_IN_EVERY_SCENE = ("contamination_factor",)  # NaN without a cleanliness class
+_MAY_BE_INFINITE = ("rating_life", "modified_rating_life", "l10", "lnm", "l10r", "lnmr", "static_safety")  # without load or at rest
 # Losses that cannot be negative at any instant by their laws.  Pocket friction follows spin alone (Deng 2017, eq. 13), and the published
 # torque of the guide land's film omits the power of its eccentric force; both may be negative.
 _LOSSES = ("inner_sliding_power", "outer_sliding_power", "churning_power", "damping_power")
@@ -259,7 +260,7 @@ def _impossible(block: np.ndarray, state: np.ndarray) -> str:
     turning = np.abs(block["shaft_speed"]) >= _RUNNING
     for name in block.dtype.names:
         values = block[name]
-        if name in _NOT_COMPUTED.get(level_of(block[0]), ()):
+        if name in (*_NOT_COMPUTED.get(level_of(block[0]), ()), *_NOT_IN_EVERY_SCENE):
             continue
         if name == "cage_slip":
             values = values[turning]

@@ -31,7 +31,7 @@ class Misaligned(NamedTuple):
     tilt: float  # largest inclination of a roller outwards [rad]
     skew: float  # largest along the orbit [rad]
     rating_life: float  # [h]
-    lamina_life: float  # [h]
+    l10r: float  # [h]
     still: Statics  # quasi-static balance without slip
 
 
@@ -68,7 +68,8 @@ def misalign(
     for crown in crowns:
         for misalignment in misalignments:
             progress(f"crown {crown}, {1e3 * misalignment:g} mrad")
-            own = ("level=spatial", f"bearing.roller.crown={crown}", f"bearing.roller.slices={slices}", f"operating.misalignment={misalignment!r}")
+            cut = (f"bearing.roller.slices={slices}", f"life.laminae={slices}")
+            own = ("level=spatial", f"bearing.roller.crown={crown}", *cut, f"operating.misalignment={misalignment!r}")
             found.append(_run(load_scene(name, [*overrides, *own]), crown, misalignment, slices, turns))
     return found
 
@@ -85,7 +86,7 @@ def _run(scene, crown, misalignment, slices, turns):
         misalignment,
         *(float(block[name].mean()) for name in ("cage_slip", "inner_pressure", "inner_edge_pressure", "outer_edge_pressure")),
         *(float(np.abs(block[name]).max(axis=1).mean()) for name in ("roller_tilt", "roller_skew")),
-        *(float(1.0 / np.mean(1.0 / block[name])) for name in ("rating_life", "lamina_life")),  # damage adds up, so average the rates
+        *(float(1.0 / np.mean(1.0 / block[name])) for name in ("rating_life", "l10r")),  # damage adds up, so average the rates
         statics(scene, slices),
     )
 
@@ -96,7 +97,7 @@ def draw(path: Path, title: str, found: list[Misaligned]) -> None:
     axes = figure.subplots(2, 3).ravel()
     panels = (
         ("pressure of the end slices, inner raceway [MPa]", lambda one: 1e-6 * one.inner_edge_pressure, lambda one: 1e-6 * _edge_pressure(one)),
-        ("life by slices [h]", lambda one: one.lamina_life, lambda one: one.still.lamina_life),
+        ("basic reference rating life L10r [h]", lambda one: one.l10r, lambda one: one.still.lives.l10r),
         ("cage slip [%]", lambda one: 100 * one.slip, None),
         ("largest tilt of a roller [mrad]", lambda one: 1e3 * one.tilt, lambda one: 1e3 * np.abs(one.still.tilts).max()),
         ("largest skew of a roller [mrad]", lambda one: 1e3 * one.skew, None),

@@ -23,9 +23,9 @@ class Sliced(NamedTuple):
     slip: float  # mean cage slip
     inner_load: float  # mean of the largest load on the inner raceway [N]
     rating_life: float  # [h]
-    lamina_life: float
+    l10r: float  # by laminae, whatever the number of slices [h]
     static_pressure: float  # largest Hertzian pressure of a slice in quasi-static balance [Pa]
-    static_lamina_life: float  # [h]
+    static_l10r: float  # by these slices [h]
     step_seconds: float  # processor time of a step
     real_time_factor: float
 
@@ -51,9 +51,9 @@ def by_slices(scene: Scene, settle: float, duration: float, counts: Sequence[int
                 count,
                 float(block["cage_slip"].mean()),
                 float(block["inner_load"].max(axis=1).mean()),
-                *(float(1.0 / np.mean(1.0 / block[name])) for name in ("rating_life", "lamina_life")),  # damage adds up, so average the rates
+                *(float(1.0 / np.mean(1.0 / block[name])) for name in ("rating_life", "l10r")),  # damage adds up, so average the rates
                 max(still.inner_pressure, still.outer_pressure),
-                still.lamina_life,
+                still.lives.l10r,
                 step_seconds,
                 factor,
             )

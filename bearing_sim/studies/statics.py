@@ -9,18 +9,11 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.levels.common.slice_balance import about_yz, balance, leaning, roller_loads, roller_tilts
+from bearing_sim.model.oil import oil_at
 from bearing_sim.model.params import lubricate, pack
-from bearing_sim.physics.rating_life import (
-    ROTATING_EXPONENT,
-    STATIONARY_EXPONENT,
-    add_slice_powers,
-    contamination_factor,
-    lamina_life_revolutions,
-    modified_life_revolutions,
-    rating_life_revolutions,
-    stress_risers,
-    viscosity_ratio,
-)
+from bearing_sim.physics.film import DOWSON_HIGGINSON, films
+from bearing_sim.physics.lamina_life import EquivalentLoads, add_lamina_powers, equivalent_lamina_loads, stress_risers
+from bearing_sim.physics.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT, Lives, rate_lives
 from bearing_sim.scene.scene import Scene
 from bearing_sim.sweep.table import new_figure
 
@@ -42,12 +35,9 @@ class Statics(NamedTuple):
     ring: tuple[float, float]  # displacement y, z of the inner ring [m]
     tilt: tuple[float, float]  # of the inner ring: magnitude, and azimuth of its +x end [rad]
     moment: tuple[float, float]  # on the inner ring: magnitude [N m], and azimuth towards which it tilts the +x end [rad]
-    equivalent_loads: tuple[float, float]  # Q_ei, Q_ee [N], over one roller pitch
-    rating_life: float  # L10 [h]; infinite at rest
-    lamina_life: float  # L10r by slices with stress risers [h]
-    modified_life: float  # L_nm by the scene's block `life` [h]
-    viscosity_ratio: float  # kappa
-    contamination_factor: float  # e_C; NaN if the scene gives no cleanliness
+    equivalent_loads: EquivalentLoads  # over one roller pitch; those by laminae are of the slices
+    lives: Lives  # with the lives in hours; infinite at rest
+    film: float  # least film thickness of the most heavily loaded contact [m]; NaN at rest and without load
 
 
 def with_slices(scene: Scene, slices: int) -> Scene:
@@ -71,7 +61,7 @@ def statics(scene: Scene, slices: int) -> Statics:
     """
     scene = with_slices(scene, slices)
     params, operating = pack(scene), scene.operating
-    count, raceways, life = params.rollers.count, params.raceways, params.life
+    count, raceways = params.rollers.count, params.raceways
     cage_speed = 0.5 * operating.shaft_speed * (1.0 - raceways.diameter_ratio)
     load = (operating.radial_load * math.cos(operating.load_angle), operating.radial_load * math.sin(operating.load_angle))
     moment = about_yz(operating.moment or 0.0, operating.moment_angle)
@@ -88,12 +78,12 @@ def statics(scene: Scene, slices: int) -> Statics:
         inner, outer = roller_loads(at)
         rotating += np.mean(inner**ROTATING_EXPONENT) / _PITCH_POSITIONS
         stationary += np.mean(outer**STATIONARY_EXPONENT) / _PITCH_POSITIONS
-        add_slice_powers(at.inner, at.outer, risers, 1.0 / (_PITCH_POSITIONS - position), inner_means, outer_means)
+        add_lamina_powers(at.inner, at.outer, risers, 1.0 / (_PITCH_POSITIONS - position), inner_means, outer_means)
 
-    equivalent = float(rotating ** (1 / ROTATING_EXPONENT)), float(stationary ** (1 / STATIONARY_EXPONENT))
-    whole, sliced = rating_life_revolutions(*equivalent, life), lamina_life_revolutions(inner_means, outer_means, life)
-    pitch, speed = 2 * raceways.pitch_radius, abs(operating.shaft_speed)
-    kappa = viscosity_ratio(lubrication.kinematic_viscosity, speed, pitch)
+    whole = float(rotating ** (1 / ROTATING_EXPONENT)), float(stationary ** (1 / STATIONARY_EXPONENT))
+    equivalent = EquivalentLoads(*whole, *equivalent_lamina_loads(inner_means, outer_means))
+    speed = abs(operating.shaft_speed)
+    lives = rate_lives(operating.radial_load, equivalent, speed, lubrication.kinematic_viscosity, 2 * raceways.pitch_radius, params.life)
     hours = 2 * math.pi / (3600 * speed) if speed > 0.0 else math.inf
     width = params.rollers.length / slices
     return Statics(
@@ -110,12 +100,20 @@ def statics(scene: Scene, slices: int) -> Statics:
         tilt=leaning(float(at.ring[2]), float(at.ring[3])),
         moment=leaning(float(at.reaction[2]), float(at.reaction[3])),
         equivalent_loads=equivalent,
-        rating_life=hours * whole,
-        lamina_life=hours * sliced,
-        modified_life=hours * modified_life_revolutions(sliced if life.lamina else whole, speed, lubrication.kinematic_viscosity, pitch, life),
-        viscosity_ratio=kappa,
-        contamination_factor=contamination_factor(kappa, life.cleanliness_slope, life.cleanliness_loss, pitch) if life.modified else math.nan,
+        lives=lives._replace(**{name: hours * getattr(lives, name) for name in ("basic", "modified", "l10", "lnm", "l10r", "lnmr")}),
+        film=_least_film(scene, params, speed, float(inner.max())),
     )
+
+
+def _least_film(scene, params, shaft_speed, load) -> float:
+    """Return the least film thickness of the inner contact under a load [N] in ideal rolling, the thinnest of all [m]."""
+    if not shaft_speed > 0.0 or not load > 0.0:
+        return math.nan
+    raceways = params.raceways
+    rolling = 0.5 * shaft_speed * raceways.inner_radius * (1.0 + raceways.diameter_ratio)  # both surfaces, seen from the contact
+    oil = oil_at(scene.lubricant.oil, scene.lubricant.temperature)
+    contact = raceways.inner_curvature_radius, raceways.reduced_modulus, params.rollers.length
+    return float(films(DOWSON_HIGGINSON, oil, *contact, np.array(load), np.array(rolling), np.array(0.0)))
 
 
 def _pressure(line_load, curvature_radius, reduced_modulus) -> float:
@@ -134,7 +132,7 @@ def draw(path: Path, title: str, found: Statics) -> None:
     for row, (name, slices) in enumerate((("inner", found.inner_slices), ("outer", found.outer_slices))):
         _draw_along(figure, figure.add_subplot(grid[row, 1]), name, slices, found)
     tilt = f"tilt {1e3 * found.tilt[0]:.3g} mrad, " if found.tilt[0] > 1e-9 else ""
-    figure.suptitle(f"{title}\n{tilt}life {_hours(found.rating_life)} by whole rollers, {_hours(found.lamina_life)} by slices")
+    figure.suptitle(f"{title}\n{tilt}L10 {_hours(found.lives.l10)} by the load on the bearing, L10r {_hours(found.lives.l10r)} by slices")
     figure.savefig(path, dpi=130)
 
 

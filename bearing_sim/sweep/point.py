@@ -30,7 +30,7 @@ class Column(NamedTuple):
     factor: float = 1.0  # from SI to the unit
 
 
-_LIVES = ("rating_life", "lamina_life", "modified_rating_life")
+_LIVES = ("rating_life", "modified_rating_life", "l10", "lnm", "l10r", "lnmr")
 _MEANS = ("inner_equivalent_load", "outer_equivalent_load", "land_eccentricity")
 _POWERS = tuple(each.name for each in OBSERVABLES if each.name.endswith("_power"))
 _OBSERVED = {each.name: each for each in OBSERVABLES}

@@ -11,7 +11,7 @@ from bearing_sim.scene.scene import Scene
 from bearing_sim.view import section
 from bearing_sim.view.drawings import CAUSES, ORBIT_EDGE, SAMPLES, power_bounds
 from bearing_sim.view.load_map import map_bounds
-from bearing_sim.view.plots import END, TIMELINE, range_path
+from bearing_sim.view.plots import END, TIMELINE, compared_life, range_path
 
 LIVE_WINDOW = 30.0  # [s] of history that a live view shows
 _LINKED_UP_TO = 50.0  # [s]
@@ -214,14 +214,14 @@ def _loads(scene: Scene, axes: _Axes) -> rrb.Tabs:
 
 
 def _lives(scene: Scene, axes: _Axes) -> rrb.TimeSeriesView:
-    """Return the plot of the basic life and of those that scene or level have besides."""
-    paths, others = ["/life/warning", "/life/error", "/life/log10_hours"], []
-    if scene.bodies_tilt:
-        paths, others = [*paths, "/life/lamina_log10_hours"], ["white lamina"]
+    """Return the plot of the life by the scene's method, that of another standard, and the modified one where the scene wants it."""
+    basic, modified = scene.life.symbols
+    other = compared_life(scene)
+    shown = [f"green {basic}", f"white {'L10' if other == 'l10' else 'L10r'}"]
+    paths = ["/life/warning", "/life/error", f"/life/{other}_log10_hours", "/life/log10_hours"]
     if not scene.life.is_basic:
-        paths, others = [*paths, "/life/chosen_log10_hours"], [*others, "purple by choice"]
-    title = "Rating life, log10 of hours: 2 = 100 h, 3 = 1000 h (yellow: warning)"
-    return axes.plot(f"Lives, log10 of hours (green basic, {', '.join(others)})" if others else title, paths, from_zero=False)
+        paths, shown = [*paths, "/life/modified_log10_hours"], [*shown, f"purple {modified}"]
+    return axes.plot(f"Lives, log10 of hours ({', '.join(shown)})", paths, from_zero=False)
 
 
 def _tilts(axes: _Axes) -> rrb.Tabs:

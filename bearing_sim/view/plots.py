@@ -30,8 +30,9 @@ LINES = {
     "/slip/warning": ("warning", colours.YELLOW, 1.0),
     "/slip/error": ("error", colours.VERMILION, 1.0),
     "/life/log10_hours": ("life", colours.GREEN, 2.5),
-    "/life/lamina_log10_hours": ("lamina life", colours.WHITE, 2.0),
-    "/life/chosen_log10_hours": ("life by the scene's choice", colours.PURPLE, 2.0),
+    "/life/modified_log10_hours": ("modified rating life", colours.PURPLE, 2.0),
+    "/life/l10_log10_hours": ("L10, by the load on the bearing", colours.WHITE, 1.5),
+    "/life/l10r_log10_hours": ("L10r, by laminae", colours.WHITE, 1.5),
     "/slip/measured": ("measured cage slip", colours.WHITE, 1.5),
     "/slip/residual": ("measured less predicted slip", colours.ORANGE, 2.0),
     "/slip/no_residual": ("as predicted", colours.GREY, 1.0),
@@ -164,13 +165,18 @@ def measured_series(times: np.ndarray, cage_speed: np.ndarray, residual: np.ndar
     return {"/speed/cage_measured": RPM * cage_speed, "/slip/measured": 100 * (1 - slip), "/slip/residual": 100 * residual}
 
 
+def compared_life(scene: Scene) -> str:
+    """Return the observable of the life that is drawn beside the one by the method of the scene: of another standard."""
+    return "l10" if scene.life.method == "iso16281" else "l10r"
+
+
 def further_series(scene: Scene, block: np.ndarray) -> dict[str, np.ndarray]:
     """Return what is plotted besides `series` because only some scenes have it: lives, tilts, pressures by slices."""
-    lines = {}
+    name = compared_life(scene)
+    lines = {f"/life/{name}_log10_hours": log10_hours(block[name])}
     if not scene.life.is_basic:
-        lines["/life/chosen_log10_hours"] = log10_hours(block["modified_rating_life"])
+        lines["/life/modified_log10_hours"] = log10_hours(block["modified_rating_life"])
     if scene.bodies_tilt:
-        lines["/life/lamina_log10_hours"] = log10_hours(block["lamina_life"])
         lines |= {f"/tilt/{body}_{axis}": 1e3 * block[f"{body}_tilt_{axis}"] for body in ("ring", "cage") for axis in "yz"}
         lines |= {f"/tilt/each/{name}": 1e3 * block[f"roller_{name}"] for name in ("tilt", "skew")}
         lines |= {f"/pressure/{place}": 1e-6 * block[f"{place}_pressure"] for place in ("inner", "outer", "inner_edge", "outer_edge")}
@@ -530,7 +536,7 @@ class RunSeries:
         lines = [
             ("level", _level_state(level_of(sample), self._scene.level)),
             ("cage slip", f"**{100 * slip:.2f} %**" if math.isfinite(slip) else "none (at rest)"),
-            ("rating life", f"**{_hours(life)}**"),
+            (f"life, {self._scene.life.symbols[0]}", f"**{_hours(life)}**"),
             *self._further_readout(sample),
             ("damage", f"{1e6 * float(sample['damage']):.3g} millionths of the life"),
             ("shaft", f"{round(RPM * float(sample['shaft_speed'])):,} rpm"),
@@ -550,11 +556,11 @@ class RunSeries:
         """Return the readout's lines that only some scenes have."""
         lines = []
         if not self._scene.life.is_basic:
-            lines.append(("life by choice", f"**{_hours(float(sample['modified_rating_life']))}**"))
+            lines.append((f"modified, {self._scene.life.symbols[1]}", f"**{_hours(float(sample['modified_rating_life']))}**"))
+        lines.append((compared_life(self._scene).upper().replace("R", "r"), _hours(float(sample[compared_life(self._scene)]))))
         if self._scene.bodies_tilt:
             edge, largest = (1e-6 * max(float(sample[f"{ring}_{kind}"]) for ring in ("inner", "outer")) for kind in ("edge_pressure", "pressure"))
             tilt, skew = (1e3 * float(np.abs(sample[name]).max()) for name in ("roller_tilt", "roller_skew"))
-            lines.append(("lamina life", f"{_hours(float(sample['lamina_life']))}"))
             known = math.isfinite(largest + edge), math.isfinite(tilt + skew)  # an older recording holds neither
             lines.append(("pressure", f"{largest:.0f} MPa, ends {edge:.0f} MPa" if known[0] else "unknown"))
             lines.append(("most tilt, skew", f"{tilt:.2f}, {skew:.2f} mrad" if known[1] else "unknown"))

@@ -6,25 +6,27 @@ import math
 from bearing_sim.levels.common.model import load_at, shaft_speed_at
 from bearing_sim.model.sample import COLUMN
 from bearing_sim.numerics.compilation import kernel
-from bearing_sim.numerics.simd import load, square_root, total
-from bearing_sim.physics.rating_life import modified_life_revolutions, rating_life_revolutions
+from bearing_sim.numerics.simd import load, spread, square_root, total
+from bearing_sim.physics.rating_life import rate_lives
 
 _SLIP_FLOOR = 1.0  # rad/s of ideal cage speed; slip of a bearing at rest is not defined
 
 
 @kernel
-def observe_course(t, cage_angle, cage_speed, inner_equivalent, outer_equivalent, model, interval, previous, row):
-    """Write inputs, cage, slip, life and damage of one instant.
+def observe_course(t, cage_angle, cage_speed, equivalent, model, interval, previous, row):
+    """Write inputs, cage, slip, lives and damage of one instant.
+
+    Damage counts the modified life by the method of the scene.
 
     Parameters
     ----------
     cage_angle, cage_speed : of the cage [rad, rad/s].
-    inner_equivalent, outer_equivalent : dynamic equivalent roller loads [N].
+    equivalent : `bearing_sim.physics.lamina_life.EquivalentLoads`.
     model : a level's model with params, lubrication and drive.
     interval : time since the previous sample [s]; damage and angles accumulate over it.
     previous, row : flat samples, shape (SCALARS + runs * Z,); see `bearing_sim.model.sample.flat`.
     """
-    ratio = model.params.raceways.diameter_ratio
+    params, ratio = model.params, model.params.raceways.diameter_ratio
     shaft_speed = shaft_speed_at(t, model.drive)
     load_y, load_z = load_at(t, model.drive)
     ideal = 0.5 * shaft_speed * (1.0 - ratio)
@@ -40,38 +42,36 @@ def observe_course(t, cage_angle, cage_speed, inner_equivalent, outer_equivalent
     row[COLUMN.ideal_cage_angle] = previous[COLUMN.ideal_cage_angle] + 0.5 * rotation * (1.0 - ratio)
     row[COLUMN.ideal_cage_speed] = ideal
     row[COLUMN.cage_slip] = 1.0 - cage_speed / ideal if abs(ideal) >= _SLIP_FLOOR else math.nan
-    revolutions = rating_life_revolutions(inner_equivalent, outer_equivalent, model.params.life)
-    row[COLUMN.inner_equivalent_load] = inner_equivalent
-    row[COLUMN.outer_equivalent_load] = outer_equivalent
-    observe_life(revolutions, revolutions, model, interval, previous, row)
+    row[COLUMN.inner_equivalent_load] = equivalent.inner
+    row[COLUMN.outer_equivalent_load] = equivalent.outer
+    row[COLUMN.inner_lamina_load] = equivalent.inner_lamina
+    row[COLUMN.outer_lamina_load] = equivalent.outer_lamina
+    viscosity, pitch = model.lubrication.kinematic_viscosity, 2.0 * params.raceways.pitch_radius
+    lives = rate_lives(math.hypot(load_y, load_z), equivalent, shaft_speed, viscosity, pitch, params.life)
+    _write_lives(lives, 2.0 * math.pi / (3600.0 * abs(shaft_speed)), row)
+    row[COLUMN.damage] = previous[COLUMN.damage] + abs(rotation) / (2.0 * math.pi * lives.modified)
 
 
 @kernel
-def observe_life(revolutions, lamina_revolutions, model, interval, previous, row):
-    """Write the lives of one instant and the damage since the start; a level with slices calls it once more with its own.
-
-    Damage counts the modified life: of the lamina life where the scene wants that, of the basic life elsewhere.
-
-    Parameters
-    ----------
-    revolutions : basic life L10.
-    lamina_revolutions : life by slices; L10 at a level without slices.
-    model, interval, previous, row : as in `observe_course`, which has written the shaft's speed.
-    """
-    params, shaft_speed = model.params, row[COLUMN.shaft_speed]
-    chosen = lamina_revolutions if params.life.lamina else revolutions
-    modified = modified_life_revolutions(chosen, shaft_speed, model.lubrication.kinematic_viscosity, 2.0 * params.raceways.pitch_radius, params.life)
-    hours = 2.0 * math.pi / (3600.0 * abs(shaft_speed))
-    rotation = 0.5 * (shaft_speed + previous[COLUMN.shaft_speed]) * interval
-    row[COLUMN.rating_life] = hours * revolutions
-    row[COLUMN.lamina_life] = hours * lamina_revolutions
-    row[COLUMN.modified_rating_life] = hours * modified
-    row[COLUMN.damage] = previous[COLUMN.damage] + abs(rotation) / (2.0 * math.pi * modified)
+def _write_lives(lives, hours, row):
+    """Write lives and what they follow from; ``hours`` is the duration of a revolution [h]."""
+    row[COLUMN.rating_life] = hours * lives.basic
+    row[COLUMN.modified_rating_life] = hours * lives.modified
+    row[COLUMN.l10] = hours * lives.l10
+    row[COLUMN.lnm] = hours * lives.lnm
+    row[COLUMN.l10r] = hours * lives.l10r
+    row[COLUMN.lnmr] = hours * lives.lnmr
+    row[COLUMN.equivalent_load] = lives.equivalent_load
+    row[COLUMN.reference_load] = lives.reference_load
+    row[COLUMN.viscosity_ratio] = lives.viscosity_ratio
+    row[COLUMN.contamination_factor] = lives.contamination_factor
+    row[COLUMN.modification_factor] = lives.modification_factor
+    row[COLUMN.static_safety] = lives.static_safety
 
 
 @kernel
-def average_powers(fraction, rows, present_row, contacts, load_row, count, means):
-    """Include the loads of this instant in the running means of Q_i^4 and Q_e^4.5 over all rollers.
+def average_moments(fraction, rows, present_row, contacts, load_row, count, moments):
+    """Include the loads of this instant in the running means over all rollers of `bearing_sim.physics.lamina_life.add_load_moments`.
 
     Parameters
     ----------
@@ -79,13 +79,32 @@ def average_powers(fraction, rows, present_row, contacts, load_row, count, means
     rows, present_row : rows of the rollers, and which of them says whether a lane holds one.
     contacts, load_row : rows of the contacts, those with the inner raceway first, and which of them is the normal force [N].
     count : number of rollers.
-    means : changed in place, shape (2,).
+    moments : changed in place, shape (2, MOMENTS).
     """
     blocks = rows.shape[0]
-    inner, outer = 0.0, 0.0
+    inner_0, inner_1, inner_2, inner_3 = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
+    outer_0, outer_1, outer_2, outer_3 = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
     for block in range(blocks):
         present, q_i, q_e = load(rows, block, present_row), load(contacts, block, load_row), load(contacts, blocks + block, load_row)
-        inner += total(present * (q_i * q_i) * (q_i * q_i))
-        outer += total(present * (q_e * q_e) * (q_e * q_e) * square_root(q_e))
-    means[0] += fraction * (inner / count - means[0])
-    means[1] += fraction * (outer / count - means[1])
+        inside = present * (q_i * q_i) * (q_i * q_i)
+        outside = present * (q_e * q_e) * (q_e * q_e) * square_root(q_e)
+        inner_0 += inside
+        inner_1 += inside * q_i
+        inner_2 += inside * (q_i * q_i)
+        inner_3 += inside * (q_i * q_i) * q_i
+        outer_0 += outside
+        outer_1 += outside * q_e
+        outer_2 += outside * (q_e * q_e)
+        outer_3 += outside * (q_e * q_e) * q_e
+    share = fraction / count
+    _fade(moments[0], fraction, share, inner_0, inner_1, inner_2, inner_3)
+    _fade(moments[1], fraction, share, outer_0, outer_1, outer_2, outer_3)
+
+
+@kernel
+def _fade(means, fraction, share, power_0, power_1, power_2, power_3):
+    """Take sums over the lanes of four powers into their running means; ``share`` is the fraction over the number of rollers."""
+    means[0] += share * total(power_0) - fraction * means[0]
+    means[1] += share * total(power_1) - fraction * means[1]
+    means[2] += share * total(power_2) - fraction * means[2]
+    means[3] += share * total(power_3) - fraction * means[3]

@@ -14,10 +14,10 @@ import numpy as np
 from bearing_sim.levels.planar import state as planar
 from bearing_sim.levels.slip import model as slip
 from bearing_sim.levels.slip import state as slip_state
-from bearing_sim.levels.slip.forces import balance_loads, equivalent_loads
+from bearing_sim.levels.slip.forces import balance_loads, pitch_loads
 from bearing_sim.levels.spatial import state as spatial
+from bearing_sim.physics.lamina_life import single_load_moments
 from bearing_sim.physics.load_balance import LOAD
-from bearing_sim.physics.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT
 
 _FIRST_ECCENTRICITY = 0.3  # of the guide clearance; assumption: a cage exactly in the centre would have no direction to whirl from
 
@@ -36,8 +36,8 @@ def rolling_state(at, params, work, shaft_speed, load_y, load_z):
     balance, rolling = slip_state.new_work(params), slip.initial_state(params, None, shaft_speed, load_y, load_z)
     cage_speed = rolling[slip_state.OMEGA]
     balance.growth[0] = params.growth.by_square_speed * shaft_speed * shaft_speed  # growth by heat, unknown here, comes with the first step
-    inner, outer = equivalent_loads(0.0, cage_speed, load_y, load_z, params, balance)
-    work.load_means[:] = inner**ROTATING_EXPONENT, outer**STATIONARY_EXPONENT
+    pitch_loads(0.0, cage_speed, load_y, load_z, params, balance)
+    work.load_moments[:] = balance.load_moments
     balance_loads(0.0, cage_speed, load_y, load_z, params, balance)
     state = np.zeros(2 * at.BORDER + at.BLOCK * count)
     state[at.RING_Y], state[at.RING_Z] = balance.ring
@@ -93,7 +93,8 @@ def spatial_state_at(params, work, sample) -> np.ndarray:
 def _dynamic_state_at(at, params, work, sample):
     """Return a state without tilts and its part of the rollers, shape (BLOCK, Z); ``at`` as of `rolling_state`.
 
-    The running means of the rollers' loads continue from the sample; those of slices start with the first step.
+    The running means of the rollers' loads continue from the sample, as if all rollers had its equivalent loads; those of laminae start with
+    the first step.
     """
     count = params.rollers.count
     state = np.zeros(2 * at.BORDER + at.BLOCK * count)
@@ -105,7 +106,7 @@ def _dynamic_state_at(at, params, work, sample):
     rollers = state[at.ROLLERS :].reshape(at.BLOCK, count)
     rollers[at.R], rollers[at.PHI] = sample["roller_radius"], _roller_angles(sample)
     rollers[at.PHI_SPEED], rollers[at.SPIN] = sample["orbital_speed"], _spins(params, sample)
-    work.load_means[:] = sample["inner_equivalent_load"] ** ROTATING_EXPONENT, sample["outer_equivalent_load"] ** STATIONARY_EXPONENT
+    work.load_moments[:] = single_load_moments(sample["inner_equivalent_load"], sample["outer_equivalent_load"])
     return state, rollers
 
 

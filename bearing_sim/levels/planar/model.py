@@ -8,7 +8,7 @@ implicit steps: `bearing_sim.levels.planar.jacobian`.
 import math
 
 from bearing_sim.levels.common.model import FIFTH_PITCH, orbital_speed_tolerance, pitch_step, shaft_speed_at
-from bearing_sim.levels.common.observation import average_powers, observe_course
+from bearing_sim.levels.common.observation import average_moments, observe_course
 from bearing_sim.levels.common.power import write_powers
 from bearing_sim.levels.common.rollers import land_eccentricity, observe_rollers
 from bearing_sim.levels.common.state_transfer import first_cage_centre, rolling_state
@@ -21,7 +21,7 @@ from bearing_sim.model.params import Params
 from bearing_sim.model.sample import COLUMN
 from bearing_sim.numerics.compilation import kernel
 from bearing_sim.physics.contact import CONTACT
-from bearing_sim.physics.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT
+from bearing_sim.physics.lamina_life import equivalent_loads
 
 
 def initial_state(params: Params, work, shaft_speed, load_y, load_z):
@@ -88,7 +88,7 @@ def average_loads(h, y, model, work):
     """Take the loads at the end of a step of length ``h`` [s] into the running means over a cage turn."""
     count, turned = model.params.rollers.count, h * y[OMEGA]
     fraction = 1.0 - math.exp(-abs(turned) / (2.0 * math.pi))
-    average_powers(fraction, work.rollers, ROLLER.present, work.contacts, CONTACT.load, count, work.load_means)
+    average_moments(fraction, work.rollers, ROLLER.present, work.contacts, CONTACT.load, count, work.load_moments)
 
 
 @kernel
@@ -96,8 +96,8 @@ def observe(t, y, model, work, interval, previous, row, rate):
     """Write the sample of state ``y``; parameters as in `bearing_sim.levels.slip.model.observe`."""
     rhs(t, y, model, work, rate)
     rows, count = work.rollers, model.params.rollers.count
-    inner, outer = work.load_means[0] ** (1.0 / ROTATING_EXPONENT), work.load_means[1] ** (1.0 / STATIONARY_EXPONENT)
-    observe_course(t, y[THETA], y[OMEGA], inner, outer, model, interval, previous, row)
+    equivalent = equivalent_loads(work.load_moments, model.params.life.laminae)
+    observe_course(t, y[THETA], y[OMEGA], equivalent, model, interval, previous, row)
     row[COLUMN.ring_y], row[COLUMN.ring_z] = y[RING_Y], y[RING_Z]
     row[COLUMN.cage_y], row[COLUMN.cage_z] = y[CAGE_Y], y[CAGE_Z]
     row[COLUMN.land_eccentricity] = land_eccentricity(y[RING_Y], y[RING_Z], y[CAGE_Y], y[CAGE_Z], model.params.cage)

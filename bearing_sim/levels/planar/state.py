@@ -14,6 +14,7 @@ import numpy as np
 from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.simd import LANES, collect_runs, fill_lanes, new_blocks, new_rows, spread_runs
 from bearing_sim.physics.contact import CONTACT
+from bearing_sim.physics.lamina_life import MOMENTS
 
 BORDER = 5  # positions of ring and cage, and as many speeds
 RING = 2  # of them the ring's
@@ -103,7 +104,8 @@ class Work(NamedTuple):
     jacobian: np.ndarray  # derivatives through each roller, see `bearing_sim.levels.planar.state.JACOBIAN_ROWS`
     border_own: np.ndarray  # derivatives of the border's accelerations by border positions and speeds, shape (5, 10)
     factored: Factored  # of I - gamma h J
-    load_means: np.ndarray  # running means of Q_i^4 and Q_e^4.5 over a cage turn, shape (2,)
+    # of roller loads, running means over a cage turn, see `bearing_sim.physics.lamina_life.add_load_moments`, shape (2, MOMENTS)
+    load_moments: np.ndarray
 
 
 def new_work(params):
@@ -120,7 +122,7 @@ def new_work(params):
         new_rows(JACOBIAN_ROWS, count),
         np.zeros((BORDER, 2 * BORDER)),
         new_factored(count),
-        np.zeros(2),
+        np.zeros((2, MOMENTS)),
     )
 
 

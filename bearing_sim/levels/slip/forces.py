@@ -21,11 +21,11 @@ from bearing_sim.numerics.simd import LANES
 from bearing_sim.physics.contact import CONTACT, line_penetration
 from bearing_sim.physics.drag import churning_force, mixture_torque
 from bearing_sim.physics.film import pump
+from bearing_sim.physics.lamina_life import add_load_moments, equivalent_loads
 from bearing_sim.physics.land import land_torque
 from bearing_sim.physics.load_balance import LOAD, balance_ring
 from bearing_sim.physics.pocket import FRICTION_SPIN, pocket_friction
 from bearing_sim.physics.raceway import contour_at
-from bearing_sim.physics.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT
 from bearing_sim.physics.traction import traction
 
 _PITCH_POSITIONS = 10  # cage angles over one roller pitch for the equivalent loads
@@ -176,20 +176,15 @@ def equations(t, y, model, work, rate, with_jacobian):
 
 
 @kernel
-def equivalent_loads(cage_angle, cage_speed, load_y, load_z, params, work):
-    """Return the dynamic equivalent roller loads Q_ei, Q_ee [N]: power means over all rollers and one roller pitch.
-
-    Exponents 4 for the rotating inner and 4.5 for the stationary outer ring (ISO/TS 16281).
-    """
-    count = params.rollers.count
-    inner, outer = 0.0, 0.0
+def pitch_loads(cage_angle, cage_speed, load_y, load_z, params, work):
+    """Return the `bearing_sim.physics.lamina_life.EquivalentLoads`, means over all rollers and one roller pitch; their moments stay in ``work``."""
+    count, moments = params.rollers.count, work.load_moments
+    moments[:] = 0.0
     for position in range(_PITCH_POSITIONS):
         balance_loads(cage_angle - 2.0 * math.pi * position / (_PITCH_POSITIONS * count), cage_speed, load_y, load_z, params, work)
         for j in range(count):
-            inner += work.loads[LOAD.inner, j] ** ROTATING_EXPONENT
-            outer += work.loads[LOAD.outer, j] ** STATIONARY_EXPONENT
-    samples = _PITCH_POSITIONS * count
-    return (inner / samples) ** (1.0 / ROTATING_EXPONENT), (outer / samples) ** (1.0 / STATIONARY_EXPONENT)
+            add_load_moments(work.loads[LOAD.inner, j], work.loads[LOAD.outer, j], 1.0 / (_PITCH_POSITIONS * count), moments)
+    return equivalent_loads(moments, params.life.laminae)
 
 
 @kernel

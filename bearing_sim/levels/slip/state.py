@@ -12,6 +12,7 @@ import numpy as np
 from bearing_sim.numerics.linear_algebra import Arrow, new_arrow
 from bearing_sim.numerics.simd import blocks_of, new_blocks
 from bearing_sim.physics.contact import CONTACT
+from bearing_sim.physics.lamina_life import MOMENTS
 from bearing_sim.physics.load_balance import LOAD
 
 THETA, OMEGA, SPIN = 0, 1, 2
@@ -26,6 +27,7 @@ class Work(NamedTuple):
     tangential: np.ndarray  # all forces along the orbit on each roller but the pocket's [N], shape (Z,)
     growth: np.ndarray  # of the inner raceway at present [m], shape (1,)
     pitch: np.ndarray  # rows cosine and sine of 2 pi j/Z, and the angle in intervals of the contour table, shape (3, Z)
+    load_moments: np.ndarray  # of roller loads over a pitch, see `bearing_sim.physics.lamina_life.add_load_moments`, shape (2, MOMENTS)
     jacobian: Arrow
     factored: Arrow  # of I - gamma h J
 
@@ -41,6 +43,7 @@ def new_work(params):
         tangential=np.zeros(count),
         growth=np.zeros(1),
         pitch=np.array([np.cos(angles), np.sin(angles), params.raceways.contour.shape[0] * np.arange(count) / count]),
+        load_moments=np.zeros((2, MOMENTS)),
         jacobian=new_arrow(count),
         factored=new_arrow(count),
     )

@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from bearing_sim.levels.common.model import FIFTH_PITCH, orbital_speed_tolerance, pitch_step, shaft_speed_at
-from bearing_sim.levels.common.observation import average_powers, observe_course, observe_life
+from bearing_sim.levels.common.observation import average_moments, observe_course
 from bearing_sim.levels.common.power import write_powers
 from bearing_sim.levels.common.rollers import land_eccentricity, observe_rollers
 from bearing_sim.levels.common.slice_balance import balance, roller_tilts
@@ -20,7 +20,7 @@ from bearing_sim.levels.spatial import jacobian
 from bearing_sim.levels.spatial import state as spatial_state
 from bearing_sim.levels.spatial.forces import equations
 from bearing_sim.levels.spatial.power import spatial_powers
-from bearing_sim.levels.spatial.slices import average_slices, slice_pressures
+from bearing_sim.levels.spatial.slices import average_laminae, slice_pressures
 from bearing_sim.levels.spatial.state import (
     BLOCK,
     CAGE_TILT_Y,
@@ -50,7 +50,8 @@ from bearing_sim.model.sample import COLUMN, SCALARS
 from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.simd import LANES
 from bearing_sim.physics.lamina import ROLLER_ROW
-from bearing_sim.physics.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT, lamina_life_revolutions, rating_life_revolutions
+from bearing_sim.physics.lamina_life import EquivalentLoads, equivalent_lamina_loads
+from bearing_sim.physics.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT
 
 _CAGE_STEP = 1e-3  # rad, over which speeds are differences: a hundredth of what a lobe or a roller pitch takes
 
@@ -173,8 +174,8 @@ def average_loads(h, y, model, work):
     """Take the loads at the end of a step of length ``h`` [s] into the running means over a cage turn."""
     count, turned = model.params.rollers.count, h * y[OMEGA]
     fraction = 1.0 - math.exp(-abs(turned) / (2.0 * math.pi))
-    average_powers(fraction, work.rollers, ROLLER.present, work.contacts, SLICED.load, count, work.load_means)
-    average_slices(fraction, model.params, work)
+    average_moments(fraction, work.rollers, ROLLER.present, work.contacts, SLICED.load, count, work.load_moments)
+    average_laminae(fraction, model.params, work)
 
 
 @kernel
@@ -182,11 +183,9 @@ def observe(t, y, model, work, interval, previous, row, rate):
     """Write the sample of state ``y``; parameters as in `bearing_sim.levels.slip.model.observe`."""
     rhs(t, y, model, work, rate)
     rows, count = work.rollers, model.params.rollers.count
-    inner, outer = work.load_means[0] ** (1.0 / ROTATING_EXPONENT), work.load_means[1] ** (1.0 / STATIONARY_EXPONENT)
-    observe_course(t, y[THETA], y[OMEGA], inner, outer, model, interval, previous, row)
-    life = model.params.life
-    by_slices = lamina_life_revolutions(work.slice_means[0], work.slice_means[1], life)
-    observe_life(rating_life_revolutions(inner, outer, life), by_slices, model, interval, previous, row)
+    inner, outer = work.load_moments[0, 0] ** (1.0 / ROTATING_EXPONENT), work.load_moments[1, 0] ** (1.0 / STATIONARY_EXPONENT)
+    inner_lamina, outer_lamina = equivalent_lamina_loads(work.lamina_means[0], work.lamina_means[1])
+    observe_course(t, y[THETA], y[OMEGA], EquivalentLoads(inner, outer, inner_lamina, outer_lamina), model, interval, previous, row)
     row[COLUMN.ring_y], row[COLUMN.ring_z] = y[RING_Y], y[RING_Z]
     row[COLUMN.cage_y], row[COLUMN.cage_z] = y[CAGE_Y], y[CAGE_Z]
     row[COLUMN.ring_tilt_y], row[COLUMN.ring_tilt_z] = y[RING_TILT_Y], y[RING_TILT_Z]

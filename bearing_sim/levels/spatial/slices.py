@@ -228,34 +228,47 @@ def _store_sums(block, contacts, row, scale, plain, first, second):
 
 
 @kernel
-def average_slices(fraction, params, work):
-    """Include the slices' loads of this instant, with stress risers, in their running means to the exponents of both rings (ISO/TS 16281).
+def average_laminae(fraction, params, work):
+    """Include the laminae's loads of this instant, with stress risers, in their running means to the exponents of both rings (ISO/TS 16281).
 
-    The means are those of `bearing_sim.physics.rating_life.add_slice_powers`; the first instant starts them.
+    The means are those of `bearing_sim.physics.lamina_life.add_lamina_powers`; the first instant starts them.  Laminae are as many as the scene
+    wants for its life, whatever the number of slices that carry the roller: their loads follow from its penetration and lean.
 
     Parameters
     ----------
     fraction : weight of this instant.
     params, work : of the level; the right-hand side has been evaluated into ``work``.
     """
-    slices, contacts, means = params.slices, work.contacts, work.slice_means
-    number, blocks = slices.positions.shape[0], work.rollers.shape[0]
+    laminae, contacts, means = params.life.laminae, work.contacts, work.lamina_means
+    number, blocks, reach = laminae.crown.shape[0], work.rollers.shape[0], laminae.positions[laminae.crown.shape[0] - 1]
     part, damping = params.raceways.stiffness / number, params.ring.contact_damping
     started = 0.0
     for k in range(number):
         started += means[0, k] + means[1, k]
-    weight = fraction if started > 0.0 else 1.0  # the end slices of a crowned roller may never be loaded
+    weight = fraction if started > 0.0 else 1.0  # the end laminae of a crowned roller may never be loaded
     for k in range(number):
-        rotating, stationary = spread(0.0), spread(0.0)
-        for block in range(blocks):
-            present = load(work.rollers, block, ROLLER.present)
-            inner = slices.risers[k] * _slice_load(block, k, contacts, slices, part, damping)
-            outer = slices.risers[k] * _slice_load(blocks + block, k, contacts, slices, part, damping)
-            rotating += present * (inner * inner) * (inner * inner)
-            stationary += present * (outer * outer) * (outer * outer) * square_root(outer)
-        count = params.rollers.count
-        means[0, k] += weight * (total(rotating) / count - means[0, k])
-        means[1, k] += weight * (total(stationary) / count - means[1, k])
+        means[0, k] -= weight * means[0, k]
+        means[1, k] -= weight * means[1, k]
+    share = weight / params.rollers.count
+    for block in range(blocks):
+        present = load(work.rollers, block, ROLLER.present)
+        if touches(block, contacts, reach):
+            for k in range(number):
+                inner = laminae.risers[k] * _lamina_load(block, k, contacts, laminae, part, damping)
+                means[0, k] += share * total(present * (inner * inner) * (inner * inner))
+        if touches(blocks + block, contacts, reach):
+            for k in range(number):
+                outer = laminae.risers[k] * _lamina_load(blocks + block, k, contacts, laminae, part, damping)
+                means[1, k] += share * total(present * (outer * outer) * (outer * outer) * square_root(outer))
+
+
+@kernel
+def _lamina_load(block, k, contacts, laminae, part, damping):
+    """Return the normal force of lamina k of a block of contacts [N]."""
+    x = laminae.positions[k]
+    depth = load(contacts, block, SLICED.penetration) + load(contacts, block, SLICED.lean) * x - (laminae.crown[k] + laminae.highest)
+    rate = load(contacts, block, SLICED.rate) + load(contacts, block, SLICED.lean_rate) * x
+    return damped_slice(depth, rate, part, damping)[0]
 
 
 @kernel

@@ -16,6 +16,7 @@ import numpy as np
 from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.simd import LANES, collect_runs, fill_lanes, new_blocks, new_rows, spread_runs
 from bearing_sim.physics.contact import CONTACT
+from bearing_sim.physics.lamina_life import MOMENTS
 
 RING, CAGE = 4, 5
 BORDER = RING + CAGE  # positions of ring and cage, and as many speeds
@@ -177,8 +178,8 @@ class Work(NamedTuple):
     lands: np.ndarray  # scratch of the guide lands, shape (4, 18)
     land_own: np.ndarray  # scratch of the guide lands, shape (2, 5, 10)
     factored: Factored  # of I - gamma h J
-    load_means: np.ndarray  # running means of Q_i^4 and Q_e^4.5 over a cage turn, shape (2,)
-    slice_means: np.ndarray  # running means of the slices' loads to the powers 4 (inner) and 4.5, see `bearing_sim.physics.rating_life`, shape (2, N)
+    load_moments: np.ndarray  # as at level ``planar``, shape (2, MOMENTS)
+    lamina_means: np.ndarray  # running means of `bearing_sim.physics.lamina_life.add_lamina_powers` over a cage turn, shape (2, laminae)
 
 
 def new_work(params):
@@ -199,8 +200,8 @@ def new_work(params):
         lands=np.zeros((4, 2 * BORDER)),
         land_own=np.zeros((2, 5, 10)),
         factored=new_factored(count),
-        load_means=np.zeros(2),
-        slice_means=np.zeros((2, len(params.slices.positions))),
+        load_moments=np.zeros((2, MOMENTS)),
+        lamina_means=np.zeros((2, len(params.life.laminae.positions))),
     )
 
 

@@ -26,6 +26,7 @@ from bearing_sim.model.params import Lubrication
 from bearing_sim.model.sample import COLUMN, SCALARS
 from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.time_stepping import COUNT, NOT_EVALUATED, OK, STEP_BUDGET
+from bearing_sim.physics.lamina_life import EquivalentLoads
 from bearing_sim.physics.load_balance import LOAD
 
 
@@ -125,9 +126,13 @@ def _write_sample(t, y, model, work, interval, previous, row):
     """Write the sample of a state; ``work.answer`` is that of the inputs at the time."""
     params, loads, answer = model.params, work.bearing.loads, work.answer
     count, cage_angle, cage_speed = params.rollers.count, y[THETA], y[OMEGA]
-    observe_course(
-        t, cage_angle, cage_speed, answer[ANSWER.inner_equivalent_load], answer[ANSWER.outer_equivalent_load], model, interval, previous, row
+    equivalent = EquivalentLoads(
+        answer[ANSWER.inner_equivalent_load],
+        answer[ANSWER.outer_equivalent_load],
+        answer[ANSWER.inner_lamina_load],
+        answer[ANSWER.outer_lamina_load],
     )
+    observe_course(t, cage_angle, cage_speed, equivalent, model, interval, previous, row)
     for column in range(ANSWER.damping_power - ANSWER.shaft_power + 1):
         row[COLUMN.shaft_power + column] = answer[ANSWER.shaft_power + column]
     load_y, load_z = load_at(t, model.drive)

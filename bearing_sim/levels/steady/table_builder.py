@@ -30,7 +30,8 @@ from bearing_sim.levels.steady.table import AXES, Table, contour_period, mirror_
 from bearing_sim.model.params import Lubrication, Params, lubricate, pack
 from bearing_sim.numerics.compilation import sources_hash
 from bearing_sim.numerics.cores import cores
-from bearing_sim.physics.rating_life import load_rating, rating_life_revolutions
+from bearing_sim.physics.rating_life import rating_life_revolutions
+from bearing_sim.scene.ratings import rate
 from bearing_sim.scene.scene import Scene
 
 _SLIP_FLOOR = 2.5e-4  # absolute error of slip that is allowed besides
@@ -151,7 +152,7 @@ def build_table(
         checks = grid.drawn(_CHECKS)
         exact, found = solver.solve(checks), look_up(table, checks)
         fractions = grid.fractions(exact, found)
-        slip, life = np.abs(found - exact)[:, ANSWER.cage_slip], np.abs(_lives(found, params) / _lives(exact, params) - 1.0)
+        slip, life = np.abs(found - exact)[:, ANSWER.cage_slip], _life_errors(found, exact, params)
         nodes = table.nodes[..., 0, ANSWER.cage_slip]
         quality = Quality(
             nodes.size,
@@ -179,8 +180,15 @@ def assembled(knots: list[np.ndarray], period: float, mirror: float, values: np.
 
 
 def _lives(answers: np.ndarray, params: Params) -> np.ndarray:
-    inner, outer = (answers[:, column] for column in (ANSWER.inner_equivalent_load, ANSWER.outer_equivalent_load))
-    return np.array([rating_life_revolutions(a, b, params.life) for a, b in zip(inner.tolist(), outer.tolist())])
+    """Return the lives by roller loads that answers give: of whole rollers and by laminae [revolutions], shape (n, 2)."""
+    whole = answers[:, [ANSWER.inner_equivalent_load, ANSWER.outer_equivalent_load]].tolist()
+    laminae = answers[:, [ANSWER.inner_lamina_load, ANSWER.outer_lamina_load]].tolist()
+    return np.array([[rating_life_revolutions(*loads, params.life) for loads in pair] for pair in zip(whole, laminae)])
+
+
+def _life_errors(found: np.ndarray, exact: np.ndarray, params: Params) -> np.ndarray:
+    """Return the larger of the relative errors of both lives of each answer, shape (n,)."""
+    return np.abs(_lives(found, params) / _lives(exact, params) - 1.0).max(axis=1)
 
 
 class _Grid:
@@ -250,7 +258,7 @@ class _Grid:
         """Return the largest fraction of what is allowed that the errors of each answer take; NaN where one is missing."""
         with np.errstate(invalid="ignore"):
             slip = np.abs(found - exact)[:, ANSWER.cage_slip] / (_SLIP_FLOOR + self._tolerance * np.abs(exact[:, ANSWER.cage_slip]))
-            life = np.abs(_lives(found, self._params) / _lives(exact, self._params) - 1.0) / self._tolerance
+            life = _life_errors(found, exact, self._params) / self._tolerance
             lag = np.abs(found - exact)[:, ANSWER.lag] / (_LAG_FLOOR + _LAG_LENIENCE * self._tolerance * exact[:, ANSWER.lag])
         return np.fmax(np.maximum(slip, life), lag)  # the lag of a stopped cage is not known
 
@@ -277,12 +285,10 @@ def span_of(scene: Scene, temperatures: tuple[float, float] | None = None) -> Sp
     temperatures : lowest and highest oil temperature [K], instead of the scene's.
     """
     wanted, bearing, limits = scene.table, scene.bearing, scene.accepted_inputs
-    roller = bearing.roller
     speed = wanted.maximum_speed or min(_SPEED_FRACTION * abs(scene.operating.shaft_speed) or limits.maximum_speed, limits.maximum_speed)
-    rating = load_rating(roller.count, roller.diameter, roller.length, bearing.diameter_ratio)
     low, high = temperatures or (wanted.minimum_temperature, wanted.maximum_temperature)
     reverse = limits.reverse_rotation or scene.operating.shaft_speed < 0.0
-    return Span(float(speed), float(wanted.maximum_load or _LOAD_FRACTION * rating), float(low), float(high), bool(reverse))
+    return Span(float(speed), float(wanted.maximum_load or _LOAD_FRACTION * rate(bearing).dynamic), float(low), float(high), bool(reverse))
 
 
 def table_hash(scene: Scene, span: Span) -> str:
@@ -290,7 +296,8 @@ def table_hash(scene: Scene, span: Span) -> str:
     params = pack(scene)
     digest = hashlib.sha256(sources_hash().encode())
     oils = [lubricate(scene.lubricant, params, float(kelvin)) for kelvin in np.linspace(span.minimum_temperature, span.maximum_temperature, _OILS)]
-    for number in _numbers((params.rollers, params.raceways, params.cage, params.growth, params.variants, oils, span, scene.table.tolerance)):
+    bearing = params.rollers, params.raceways, params.cage, params.growth, params.variants, params.life.laminae
+    for number in _numbers((bearing, oils, span, scene.table.tolerance)):
         digest.update(number)
     return digest.hexdigest()[:24]
 

@@ -1,0 +1,224 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Rollers cut into laminae for the reference rating life L10r of ISO/TS 16281:2008: lamina loads, stress risers, dynamic equivalent loads.
+
+L10r = [sum over k of (q_kei/q_kci)^(9/2) + (q_kee/q_kce)^(9/2)]^(-8/9) million revolutions, with q_kc = Q_c N^(-7/9) and the power means q_ke
+over the rollers of the lamina loads times the stress risers f_k.
+
+**Both rings as one load each.**  An inner raceway with the *equivalent roller load by laminae*
+
+    Q_ei = N^(7/9) [sum over k of q_kei^(9/2)]^(2/9),
+
+and the outer raceway likewise, makes L10r = [(Q_ei/Q_ci)^(9/2) + (Q_ee/Q_ce)^(9/2)]^(-8/9), the form of whole rollers: laminae that carry equal
+loads without stress risers have the equivalent load of the whole roller.
+
+**Levels without slices.**  An aligned roller's lamina loads follow from its load and its profile: q_k = K/N (delta - C_k)^(10/9), sum q_k = Q.
+How a load is shared by the laminae changes slowly with it, so that the mean over rollers and time of (f_k q_k)^p, a mean of
+Q^p (f_k q_k/Q)^p, is taken at two loads: those of the Gauss quadrature with weight Q^p, which running means of Q^p, Q^(p + 1), Q^(p + 2) and
+Q^(p + 3) give.  It is exact where (f_k q_k/Q)^p is a cubic polynomial of the load.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from bearing_sim.numerics.compilation import kernel
+from bearing_sim.physics.contact import EXPONENT
+from bearing_sim.physics.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT
+
+MOMENTS = 4  # of roller loads, per ring
+_POINTS = 1024  # of the table of penetrations; interpolated shares of a load err by less than 1e-5
+_LEAST_LOAD, _LARGEST_LOAD = 1e-6, 1e2  # its range, in load ratings of a roller; shares change no more below
+_SPREAD = 1e-9  # square of the relative spread of loads that are taken as equal
+
+
+class EquivalentLoads(NamedTuple):
+    """Dynamic equivalent roller loads of both rings [N], of whole rollers and by laminae with stress risers."""
+
+    inner: float
+    outer: float
+    inner_lamina: float
+    outer_lamina: float
+
+
+class Laminae(NamedTuple):
+    """The laminae into which a roller is cut for its life."""
+
+    positions: np.ndarray  # of their middles from the roller's [m], shape (N,)
+    crown: np.ndarray  # drop of the profile there below its highest lamina, C_k [m], shape (N,)
+    highest: float  # drop of that lamina [m]
+    risers: np.ndarray  # stress risers f_k, shape (N,)
+    penetrations: np.ndarray  # ln delta of an aligned roller's contact, at loads in equal steps of ln Q, shape (M,)
+    log_least: float  # ln Q of the first
+    per_log: float  # steps per unit of ln Q
+    stiffness: float  # of a lamina, K/N [N/m^(10/9)]
+
+
+def stress_risers(laminae):
+    """Return f_k = 1 - 0.01/ln(1.985 |(2 k - N - 1)/(2 N - 2)|) of each lamina (ISO/TS 16281, 5.3.3), shape (N,).
+
+    They raise the load of the outer laminae for the stress concentration at the edges; the middle one of an odd number has 1.
+
+    Parameters
+    ----------
+    laminae : their number N, at least 2.
+    """
+    position = np.abs(2.0 * np.arange(1, laminae + 1) - laminae - 1.0) / (2.0 * laminae - 2.0)
+    with np.errstate(divide="ignore"):
+        return 1.0 - 0.01 / np.log(1.985 * position)
+
+
+def new_laminae(positions, crown, stiffness, rating) -> Laminae:
+    """Return the laminae of a roller.
+
+    Parameters
+    ----------
+    positions, crown : of their middles, and the profile's drop there [m], shape (N,).
+    stiffness : K of the whole contact [N/m^(10/9)].
+    rating : load rating of a roller [N]; gives the range of loads.
+    """
+    count, highest = len(crown), float(crown.min())
+    log_loads = np.linspace(math.log(_LEAST_LOAD * rating), math.log(_LARGEST_LOAD * rating), _POINTS)
+    # the load of a grid of penetrations, as dense as needed to invert it
+    deepest = (_LARGEST_LOAD * rating / stiffness) ** (1.0 / EXPONENT) + float(crown.max()) - highest
+    shallowest = 1e-2 * (_LEAST_LOAD * rating / stiffness) ** (1.0 / EXPONENT)
+    depths = np.geomspace(shallowest, deepest, 8 * _POINTS)
+    carried = stiffness / count * (np.maximum(depths[:, None] - (crown - highest), 0.0) ** EXPONENT).sum(axis=1)
+    penetrations = np.interp(log_loads, np.log(carried), np.log(depths))
+    return Laminae(
+        positions=np.ascontiguousarray(positions, np.float64),
+        crown=np.ascontiguousarray(crown - highest, np.float64),
+        highest=highest,
+        risers=stress_risers(count),
+        penetrations=penetrations,
+        log_least=float(log_loads[0]),
+        per_log=float((_POINTS - 1) / (log_loads[-1] - log_loads[0])),
+        stiffness=float(stiffness / count),
+    )
+
+
+@kernel
+def penetration_of(load, laminae):
+    """Return the penetration of an aligned roller's contact [m] and the load that it belongs to [N]: ``load`` within the range of the table.
+
+    Parameters
+    ----------
+    load : of the roller [N].
+    laminae : `Laminae`.
+    """
+    last = laminae.penetrations.shape[0] - 1
+    place = min(max((math.log(max(load, 1e-300)) - laminae.log_least) * laminae.per_log, 0.0), float(last))
+    k = min(int(place), last - 1)
+    log_depth = laminae.penetrations[k] + (place - k) * (laminae.penetrations[k + 1] - laminae.penetrations[k])
+    return math.exp(log_depth), math.exp(laminae.log_least + place / laminae.per_log)
+
+
+@kernel
+def add_load_moments(inner, outer, weight, moments):
+    """Add the loads of one roller to sums of their powers: 4 to 7 of the inner, 4.5 to 7.5 of the outer load.
+
+    Parameters
+    ----------
+    inner, outer : loads of a roller [N].
+    weight : factor of what is added.
+    moments : changed in place, shape (2, MOMENTS).
+    """
+    inside, outside = weight * (inner * inner) * (inner * inner), weight * (outer * outer) * (outer * outer) * math.sqrt(outer)
+    for k in range(MOMENTS):
+        moments[0, k] += inside
+        moments[1, k] += outside
+        inside *= inner
+        outside *= outer
+
+
+def single_load_moments(inner, outer):
+    """Return the moments of rollers that all have the same loads, shape (2, MOMENTS); see `add_load_moments`."""
+    order = np.arange(MOMENTS)
+    return np.stack([float(inner) ** (ROTATING_EXPONENT + order), float(outer) ** (STATIONARY_EXPONENT + order)])
+
+
+@kernel
+def _gauss_loads(moments):
+    """Return two loads and their parts of the weight that have the same four moments: load, weight, load, weight."""
+    weight = moments[0]
+    if not weight > 0.0:
+        return 0.0, 0.0, 0.0, 0.0
+    mean, second, third = moments[1] / weight, moments[2] / weight, moments[3] / weight
+    variance = second - mean * mean
+    if not variance > _SPREAD * mean * mean:
+        return mean, weight, mean, 0.0
+    skew = (third - 3.0 * mean * second + 2.0 * mean * mean * mean) / (2.0 * variance)
+    root = math.sqrt(skew * skew + variance)
+    above, below = skew + root, skew - root
+    return mean + above, -below / (above - below) * weight, max(mean + below, 0.0), above / (above - below) * weight
+
+
+@kernel
+def equivalent_loads(moments, laminae):
+    """Return the `EquivalentLoads` of aligned rollers by moments of their loads.
+
+    Parameters
+    ----------
+    moments : means over rollers and time of the loads' powers, shape (2, MOMENTS); see `add_load_moments`.
+    laminae : `Laminae`.
+    """
+    q_1, w_1, q_2, w_2 = _gauss_loads(moments[0])
+    q_3, w_3, q_4, w_4 = _gauss_loads(moments[1])
+    (d_1, q_1), (d_2, q_2) = penetration_of(q_1, laminae), penetration_of(q_2, laminae)
+    (d_3, q_3), (d_4, q_4) = penetration_of(q_3, laminae), penetration_of(q_4, laminae)
+    inner, outer = 0.0, 0.0
+    for k in range(laminae.crown.shape[0]):
+        drop, stiffness = laminae.crown[k], laminae.risers[k] * laminae.stiffness
+        rotating = w_1 * _share(d_1 - drop, stiffness / q_1) ** 4 + w_2 * _share(d_2 - drop, stiffness / q_2) ** 4
+        inner += rotating ** (4.5 / ROTATING_EXPONENT)
+        outer += w_3 * _share(d_3 - drop, stiffness / q_3) ** 4.5 + w_4 * _share(d_4 - drop, stiffness / q_4) ** 4.5
+    whole_inner, whole_outer = moments[0, 0] ** (1.0 / ROTATING_EXPONENT), moments[1, 0] ** (1.0 / STATIONARY_EXPONENT)
+    count = laminae.crown.shape[0]
+    return EquivalentLoads(whole_inner, whole_outer, _of_laminae(inner, count), _of_laminae(outer, count))
+
+
+@kernel
+def _share(depth, stiffness):
+    """Return a lamina's part of the roller's load, times its stress riser; ``stiffness`` is over the load."""
+    return stiffness * depth**EXPONENT if depth > 0.0 else 0.0
+
+
+@kernel
+def _of_laminae(total, count):
+    """Return N^(7/9) [sum of q_ke^(9/2)]^(2/9) [N]."""
+    return count ** (7.0 / 9.0) * total ** (2.0 / 9.0)
+
+
+@kernel
+def add_lamina_powers(inner, outer, risers, fraction, inner_means, outer_means):
+    """Add one instant to running means of the laminae's loads, stress risers included, to the exponents of both rings.
+
+    m_k is kept up to date as m_k + fraction ((sum over rollers of (f_k q_jk)^p)/Z - m_k): a fraction of 1 restarts the mean, 1/(n + 1) gives
+    the plain mean of n + 1 instants, 1 - exp(-h/T) a mean that forgets.
+
+    Parameters
+    ----------
+    inner, outer : loads of all laminae [N], shape (Z, N).
+    risers : see `stress_risers`, shape (N,).
+    fraction : weight of this instant.
+    inner_means, outer_means : means of the powers 4 and 4.5, shape (N,); changed in place.
+    """
+    rollers, laminae = inner.shape
+    for k in range(laminae):
+        rotating, stationary = 0.0, 0.0
+        for j in range(rollers):
+            q_i, q_e = risers[k] * inner[j, k], risers[k] * outer[j, k]
+            rotating += (q_i * q_i) * (q_i * q_i)
+            stationary += (q_e * q_e) * (q_e * q_e) * math.sqrt(q_e)
+        inner_means[k] += fraction * (rotating / rollers - inner_means[k])
+        outer_means[k] += fraction * (stationary / rollers - outer_means[k])
+
+
+@kernel
+def equivalent_lamina_loads(inner_means, outer_means):
+    """Return the equivalent roller loads by laminae of both rings [N]; parameters as of `add_lamina_powers`."""
+    inner, outer, count = 0.0, 0.0, inner_means.shape[0]
+    for k in range(count):
+        inner += inner_means[k] ** (4.5 / ROTATING_EXPONENT)
+        outer += outer_means[k]
+    return _of_laminae(inner, count), _of_laminae(outer, count)

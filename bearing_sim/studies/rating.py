@@ -1,0 +1,55 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Rating lives of a scene with everything that they follow from, side by side with the standards' symbols."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from bearing_sim.monitoring.film_ratio import ThinnestFilm
+from bearing_sim.scene.ratings import rate
+from bearing_sim.scene.scene import Scene
+
+LIVES = ("rating_life", "modified_rating_life", "l10", "lnm", "l10r", "lnmr")
+FACTORS = ("equivalent_load", "reference_load", "viscosity_ratio", "contamination_factor", "modification_factor", "static_safety")
+
+
+def life_report(scene: Scene, samples: np.ndarray) -> dict:
+    """Return lives, load ratings and life factors, means over samples: of the lives' rates, because damage adds up, of everything else itself.
+
+    Parameters
+    ----------
+    scene : that was run.
+    samples : of a settled bearing, shape (n,), see `bearing_sim.model.sample`.
+    """
+    with np.errstate(divide="ignore"):
+        lives = {name: float(1.0 / np.mean(1.0 / samples[name])) for name in LIVES}
+    films = ThinnestFilm(scene)
+    return report_of(scene, lives | {name: float(np.mean(samples[name])) for name in FACTORS}, float(np.mean(films.least(samples))))
+
+
+def report_of(scene: Scene, values: Mapping[str, float], film: float) -> dict:
+    """Return the report of given lives and factors.
+
+    Parameters
+    ----------
+    scene : whose ratings and choice of life stand in the report.
+    values : by the names of `LIVES` [h] and `FACTORS` [SI].
+    film : least film thickness [m].
+    """
+    rated, roughness = rate(scene.bearing), scene.bearing.roughness
+    return {
+        "life_method": scene.life.method,
+        "life_hours": values["rating_life"],
+        "modified_life_hours": values["modified_rating_life"],
+        **{f"{name}_hours": values[name] for name in LIVES[2:]},
+        **{name: values[name] for name in FACTORS},
+        "dynamic_rating": rated.dynamic,
+        "static_rating": rated.static,
+        "fatigue_limit": rated.fatigue_limit,
+        "computed_ratings": {name: getattr(rated.computed, name) for name in ("dynamic", "static", "fatigue_limit")},
+        "laminae": scene.life.laminae,
+        "profile": scene.bearing.roller.profile.law,
+        "profile_given": scene.bearing.roller.crown is not None,
+        "film_um": 1e6 * film,
+        "film_ratio": film / roughness.composite if roughness is not None else None,
+    }
