@@ -10,8 +10,8 @@ from test_validity import GEARBOX, MOTOR
 
 from bearing_sim.cli.main import main
 from bearing_sim.model.plausibility import minimum_load, plausibility
-from bearing_sim.model.validity import ratings
 from bearing_sim.scene.loader import load_scene, scene_from_yaml
+from bearing_sim.scene.ratings import rate
 
 PAPER = "deng2017_table1"
 
@@ -62,7 +62,7 @@ def test_the_minimum_load_is_that_of_the_makers():
     given = motor("bearing.catalogue_limits.minimum_load_factor=150 N", "bearing.catalogue_limits.reference_speed=9000 rpm")
     assert minimum_load(given)[0] == pytest.approx(150.0 * (6 + 4 * 3000 / 9000) * (0.705**2), rel=1e-4) == pytest.approx(546.7, abs=0.1)
     unknown = motor()
-    assert minimum_load(unknown)[0] == pytest.approx(0.02 * ratings(unknown.bearing).dynamic) == pytest.approx(1412, abs=2)
+    assert minimum_load(unknown)[0] == pytest.approx(0.02 * rate(unknown.bearing).dynamic) == pytest.approx(1412, abs=2)
 
 
 def test_a_preloaded_bearing_and_one_at_rest_need_no_minimum_load():

@@ -83,7 +83,8 @@ def _still_sample(scene, found):
     from bearing_sim.model.validity import still_sample
 
     sample = still_sample(scene)
-    sample["inner_load"], sample["outer_load"], sample["rating_life"] = found.inner, found.outer, found.rating_life
+    sample["inner_load"], sample["outer_load"], sample["rating_life"] = found.inner, found.outer, found.lives.basic
+    sample["reference_load"] = found.lives.reference_load
     sample["inner_pressure"], sample["outer_pressure"] = found.inner_pressure, found.outer_pressure
     return sample
 

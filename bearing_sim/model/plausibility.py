@@ -6,8 +6,9 @@ Nothing here refuses a scene.  Each finding has the value, what was expected, an
 
 import math
 
-from bearing_sim.model.validity import outside, ratings, still_sample
+from bearing_sim.model.validity import outside, still_sample
 from bearing_sim.scene.bearing import Bearing
+from bearing_sim.scene.ratings import rate
 from bearing_sim.scene.scene import Scene
 
 # Assumption: a mass within a factor of 2 of its volume's is taken as meant, because pockets and ribs are known roughly only.
@@ -53,7 +54,7 @@ def minimum_load(scene: Scene) -> tuple[float, str]:
     if limits.minimum_load_factor is not None and limits.reference_speed is not None:
         ratio = abs(scene.operating.shaft_speed) / limits.reference_speed
         return limits.minimum_load_factor * (6.0 + 4.0 * ratio) * (bearing.pitch_diameter / 0.1) ** 2, "k_r (6 + 4 n/n_r)(d_m/100 mm)^2"
-    return _MINIMUM_OF_RATING * ratings(bearing).dynamic, "0.02 C_r; give minimum_load_factor and reference_speed in bearing.catalogue_limits"
+    return _MINIMUM_OF_RATING * rate(bearing).dynamic, "0.02 C_r; give minimum_load_factor and reference_speed in bearing.catalogue_limits"
 
 
 def _rollers(bearing: Bearing) -> list[str]:

@@ -18,10 +18,11 @@ import numpy as np
 from bearing_sim.model.oil import OilState, oil_at
 from bearing_sim.model.params import Params, pack
 from bearing_sim.model.sample import new_block
-from bearing_sim.physics.rating_life import load_rating, static_rating, viscosity_ratio
+from bearing_sim.physics.rating_life import viscosity_ratio
 from bearing_sim.scene.bearing import Bearing
 from bearing_sim.scene.crown import NoCrown
 from bearing_sim.scene.lubricant import ConstantTraction, CustomOil, EyringTraction, KragelskiiTraction, Oil, Oil4109Traction
+from bearing_sim.scene.ratings import rate
 from bearing_sim.scene.scene import Scene
 
 ZERO_CELSIUS = 273.15  # [K]
@@ -32,20 +33,6 @@ _VISCOSITY_CLASS_AT = 100.0 + ZERO_CELSIUS  # [K] temperature at which turbine o
 _EXTRAPOLATED = 60.0  # [K] beyond the two viscosities of a custom oil
 _SEPARATOR = "; "  # of exceedances in a cell of a table
 _SMALL_FRACTION = 0.1  # of the losses that brake the cage: one that stays below it decides nothing
-
-
-class Ratings(NamedTuple):
-    """Basic load ratings of a whole bearing [N]."""
-
-    dynamic: float  # C_r
-    static: float  # C_0r
-
-
-def ratings(bearing: Bearing) -> Ratings:
-    """Return the load ratings by which loads are judged (ISO 281 and ISO 76, from the dimensions)."""
-    roller = bearing.roller
-    dimensions = (roller.count, roller.diameter, roller.length, bearing.diameter_ratio)
-    return Ratings(load_rating(*dimensions), static_rating(*dimensions))
 
 
 def speed_factor(bearing: Bearing, shaft_speed):
@@ -186,13 +173,10 @@ class Conditions:
         kinematic, speeds, pitch = self.viscosity / self.density, self.samples["shaft_speed"], self.scene.bearing.pitch_diameter
         return self.while_turning(np.array([viscosity_ratio(float(nu), float(speed), pitch) for nu, speed in zip(kinematic, speeds)]))
 
-    @functools.cached_property
+    @property
     def equivalent_load(self) -> np.ndarray:
-        """The larger of the radial load and the load that gives the computed life, C_r L10^(-3/10), which contains preload [N]."""
-        with np.errstate(divide="ignore", invalid="ignore"):  # at rest the life is infinite
-            revolutions = self.samples["rating_life"] * 3600.0 * np.abs(self.samples["shaft_speed"]) / (2e6 * math.pi)
-            reference = ratings(self.scene.bearing).dynamic * revolutions**-0.3
-        return np.fmax(self.radial_load, np.where(revolutions > 0.0, reference, np.nan))
+        """The larger of the radial load and the reference load of ISO/TS 16281, which contains preload and centrifugal forces [N]."""
+        return np.fmax(self.samples["equivalent_load"], self.samples["reference_load"])
 
     @property
     def radial_load(self) -> np.ndarray:
@@ -351,6 +335,10 @@ def _has_lands(scene: Scene) -> bool:
 
 def _always(scene: Scene) -> bool:
     return True
+
+
+def _by_laminae(scene: Scene) -> bool:
+    return scene.life.method == "iso16281"
 
 
 def _class_viscosity(scene: Scene) -> float:
@@ -741,7 +729,7 @@ LAWS = (
         "ISO 281:2007: the life equations hold to P = 0.5 C_r",
         "lower the load or take a larger bearing; beyond it the life is shorter than computed",
         _always,
-        lambda at: at.while_turning(at.equivalent_load / ratings(at.scene.bearing).dynamic),
+        lambda at: at.while_turning(at.equivalent_load / rate(at.scene.bearing).dynamic),
     ),
     Law(
         "static_load",
@@ -754,7 +742,7 @@ LAWS = (
         "ISO 76: a static safety below 1 leaves dents",
         "lower the load or take a larger bearing",
         _always,
-        lambda at: at.radial_load / ratings(at.scene.bearing).static,
+        lambda at: at.radial_load / rate(at.scene.bearing).static,
     ),
     Law(
         "viscosity_ratio",
@@ -770,30 +758,30 @@ LAWS = (
         lambda at: at.viscosity_ratio,
     ),
     Law(
-        "life_slices",
+        "life_laminae",
         "validity.life",
-        "rating life by slices of ISO/TS 16281",
-        "slices of a roller",
+        "reference rating life of ISO/TS 16281",
+        "laminae of a roller",
         "",
         30.0,
         math.inf,
         "ISO/TS 16281:2008, 5.3: at least 30 laminae",
-        "set bearing.roller.slices=30 or more",
-        lambda scene: scene.bodies_tilt,
-        lambda scene: float(scene.bearing.roller.slices),
+        "set life.laminae=30 or more",
+        _by_laminae,
+        lambda scene: float(scene.life.laminae),
         of_scene=True,
     ),
     Law(
         "roller_profile",
         "validity.life",
-        "rating life by slices of ISO/TS 16281",
+        "reference rating life of ISO/TS 16281",
         "the rollers have no profile",
         "",
         -math.inf,
         0.5,
-        "ISO/TS 16281:2008: the stress risers count on a profile; of flat rollers L10r falls with every slice more",
+        "ISO/TS 16281:2008: the stress risers count on a profile; of straight rollers L10r depends on the number of laminae",
         "set bearing.roller.crown to the maker's profile, or to iso_log",
-        lambda scene: scene.bodies_tilt,
+        _by_laminae,
         lambda scene: float(isinstance(scene.bearing.roller.crown, NoCrown)),
         of_scene=True,
         expected="a crown of the rollers",
@@ -928,4 +916,5 @@ def still_sample(scene: Scene) -> np.ndarray:
     sample["load_z"] = operating.radial_load * math.sin(operating.load_angle)
     sample["cage_speed"] = sample["ideal_cage_speed"] = sample["orbital_speed"] = cage_speed
     sample["roller_radius"], sample["roller_spin"], sample["rating_life"] = bearing.pitch_radius, math.nan, math.inf
+    sample["equivalent_load"] = operating.radial_load
     return sample

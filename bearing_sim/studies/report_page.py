@@ -6,7 +6,6 @@ A page has the scene and its bearing, tables, pictures, warnings, where the resu
 
 import csv
 import io
-import json
 import math
 import re
 from collections import Counter
@@ -232,7 +231,9 @@ def _design_part(path: Path, designed: studied.Designed) -> _Part:
         for kind in studied.KINDS:
             count = sum(band.verdict == verdict and band.found.kind == kind for band in designed.bands)
             if count:
-                told.append(f"{count} of {sum(band.found.kind == kind for band in designed.bands)} intervals ({kind}) {verdict} at level {verify_level}")
+                told.append(
+                    f"{count} of {sum(band.found.kind == kind for band in designed.bands)} intervals ({kind}) {verdict} at level {verify_level}"
+                )
     told += _reasons(designed.grid.rows)
     told += [f"verification: {text}" for text in _reasons([check._asdict() for check in designed.checks])]
     widest = designed.widest
