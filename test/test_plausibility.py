@@ -9,7 +9,9 @@ from click.testing import CliRunner
 from test_validity import GEARBOX, MOTOR
 
 from bearing_sim.cli.main import main
+from bearing_sim.messages.events import Level
 from bearing_sim.model.plausibility import minimum_load, plausibility
+from bearing_sim.runtime.live import LiveModel, warmed_up
 from bearing_sim.scene.loader import load_scene, scene_from_yaml
 from bearing_sim.scene.ratings import rate
 
@@ -82,6 +84,15 @@ def test_the_catalogues_limits_do_not_change_a_scene():
     with_limits = motor("bearing.catalogue_limits.limiting_speed=9000 rpm")
     plain = dataclasses.replace(with_limits, bearing=dataclasses.replace(with_limits.bearing, catalogue_limits=motor().bearing.catalogue_limits))
     assert plain == motor()
+
+
+def test_the_node_tells_once_what_is_implausible():
+    scene, start = load_scene(PAPER, ["bearing.cage.mass=5 kg"]), 1_700_000_000_000_000_000
+    live = LiveModel(scene, warmed_up(scene), start)
+    news = [event for after in (0, 1, 2) for event in live.collect(start + after * 10**9)]
+    live.close()
+    (told,) = [event for event in news if event.kind == "scene.implausible"]
+    assert told.level is Level.WARN and told.subject == "bearing.cage.mass" and told.reason.startswith("5000 g for about ")
 
 
 @pytest.mark.parametrize("command", [["run", "--duration", "0.01"], ["loads"], ["uncertainty", "--samples", "2", "--level", "slip"]])

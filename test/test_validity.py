@@ -153,6 +153,8 @@ def warned(scenes, case):
     """Return the reported warnings of a command, by name."""
     result = invoke(scenes, *case)
     assert result.exit_code == 0, result.output
+    lines = result.stderr.splitlines()
+    assert len(set(lines)) == len(lines), "each is told once"
     return {each["name"]: each for each in json.loads(result.stdout)["warnings"]}, result.stderr
 
 

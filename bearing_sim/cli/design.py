@@ -17,7 +17,6 @@ from bearing_sim.cli.reporting import (
     print_json,
     print_rows,
     warn,
-    warn_of_scene,
 )
 
 _NONE = "none"
@@ -96,6 +95,7 @@ def design(
 
     bearing-sim design deng2017_table1 --slip-below 10% --life-above 300h --verify-level planar --picture design.png
     """
+    from bearing_sim.model.plausibility import plausibility
     from bearing_sim.scene.loader import SceneError, load_scene
     from bearing_sim.sweep.grid import FieldError, read_axis
     from bearing_sim.sweep.tasks import ClusterError, Journal, JournalInUse
@@ -106,7 +106,7 @@ def design(
         overrides = [*overrides, f"level={level}"]
         scene = load_scene(scene_name, overrides)
         _check_design(scene, points or points_file)
-        warn_of_scene(scene)
+        warn(plausibility(scene))
         announce_compilation()
         from bearing_sim.studies import design as studied
         from bearing_sim.sweep.point import DURATION

@@ -135,10 +135,15 @@ def warn(lines: Iterable[str]) -> None:
 
 
 def warn_of_scene(scene) -> None:
-    """Print on stderr what is implausible about a scene (see `bearing_sim.model.plausibility.plausibility`)."""
-    from bearing_sim.model.plausibility import plausibility
+    """Print on stderr what is implausible about a scene, and which limits of laws it exceeds whatever it is used for."""
+    warn(_warnings_of_scene(scene))
 
-    warn(plausibility(scene))
+
+def _warnings_of_scene(scene) -> list[str]:
+    from bearing_sim.model.plausibility import plausibility
+    from bearing_sim.model.validity import scene_exceedances
+
+    return [*plausibility(scene), *(each.text for each in scene_exceedances(scene))]
 
 
 def warn_of_limits(scene, exceedances: Iterable) -> None:
@@ -149,9 +154,7 @@ def warn_of_limits(scene, exceedances: Iterable) -> None:
     scene : of the results.
     exceedances : see `bearing_sim.model.validity.outside`.
     """
-    from bearing_sim.model.plausibility import plausibility
-
-    printed = plausibility(scene)
+    printed = _warnings_of_scene(scene)
     warn(each.text for each in exceedances if each.text not in printed)
 
 

@@ -21,7 +21,6 @@ from bearing_sim.cli.reporting import (
     print_rows,
     seconds_of,
     warn,
-    warn_of_scene,
 )
 
 _SHOWN = ("cage_slip", "rating_life", "inner_load_maximum", "outer_load_maximum", "shaft_power", "status")
@@ -52,6 +51,7 @@ def sweep(scene_name, axes, overrides, level, duration, out, workers, dask, pict
 
     bearing-sim sweep deng2017_table1 --vary bearing.outer_raceway.low_radius=34.86mm:34.8675mm:7 --picture sweep.png
     """
+    from bearing_sim.model.plausibility import plausibility
     from bearing_sim.scene.loader import SceneError, load_scene
     from bearing_sim.sweep.grid import FieldError, read_axis
     from bearing_sim.sweep.tasks import ClusterError, Journal, JournalInUse
@@ -61,7 +61,7 @@ def sweep(scene_name, axes, overrides, level, duration, out, workers, dask, pict
         varied = [read_axis(text) for text in axes]
     _check_sweep(varied, level)
     with suppress(SceneError):  # what varies may be what makes the scene valid
-        warn_of_scene(load_scene(scene_name, overrides))
+        warn(plausibility(load_scene(scene_name, overrides)))
     announce_compilation()
     from bearing_sim.sweep.grid import sweep
     from bearing_sim.sweep.table import write_table

@@ -74,6 +74,10 @@ class LimitsMonitor:
         self._next = -math.inf
         self.worst: dict[str, Exceedance] = {}
 
+    def adjust(self, scene: Scene) -> None:
+        """Judge from the scene's ``thresholds.slip_from_speed`` on from now on; nothing else may have changed."""
+        self._scene = scene
+
     def take(self, block: np.ndarray) -> list[Event]:
         """Judge samples, only one of those within 0.1 s, and return the warnings that begin or end.
 

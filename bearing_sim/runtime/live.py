@@ -16,6 +16,7 @@ import numpy as np
 from bearing_sim.inputs.gate import UNITS, Coverage, InputGate, PublisherConflict, unknown_inputs, with_values
 from bearing_sim.messages import topics
 from bearing_sim.messages.events import Event, Level
+from bearing_sim.model.plausibility import plausibility
 from bearing_sim.model.sample import joined
 from bearing_sim.monitoring.health import Condition, Health, Phase, level_of, numbers
 from bearing_sim.monitoring.limits import LimitsMonitor
@@ -93,6 +94,9 @@ class Model:
         self.level = Level.OK
         self._conflicts = {channel: PublisherConflict(channel) for channel in UNITS}
         self._residuals: list[tuple[int, float]] = []
+        for finding in plausibility(scene):
+            field, _, reason = finding.partition(": ")
+            self.health.note(Event(0.0, Level.WARN, "scene.implausible", field, reason))
 
     def run_time(self, now_ns: int) -> float:
         """Return the run time [s] of an instant of the clock."""
@@ -143,6 +147,7 @@ class Model:
         """Use other thresholds from now on; what was learned about the measured cage is kept."""
         self.scene = dataclasses.replace(self.scene, thresholds=thresholds)
         self.monitor.adjust(thresholds)
+        self.limits.adjust(self.scene)
         self.residual.adjust(thresholds.residual, thresholds.slip_from_speed)
 
     def open(self, name: str, open_sink: Callable[[int], Sink], reopen: bool = False) -> None:

@@ -12,6 +12,7 @@ import numpy as np
 from bearing_sim.inputs.profile import InputProfile
 from bearing_sim.messages.events import Event
 from bearing_sim.messages.topics import condition, further_condition
+from bearing_sim.model.sample import joined
 from bearing_sim.model.validity import Exceedance, in_order
 from bearing_sim.monitoring.health import Changes
 from bearing_sim.monitoring.limits import LimitsMonitor
@@ -136,6 +137,7 @@ class _Run:
         self._watched: list[np.ndarray] = []
         self._next_report = 0.0
         self._monitor, self._limits = Monitor(scene), LimitsMonitor(scene)
+        self._unjudged: list[np.ndarray] = []
         self._comparison = Comparison(ResidualMonitor(scene.thresholds.residual, scene.thresholds.slip_from_speed))
         for time_, speed in profile.measured:
             self._comparison.measure(time_, speed)
@@ -164,6 +166,7 @@ class _Run:
                 self._progress(moment)
         if not run.given_up:
             self._progress(self._profile.end * 1e-9)
+        self._judge_limits()
         self._write_events_until(math.inf)
         if self._profile.unknown_seconds:
             self._write_event(self._profile.unknown_event)
@@ -193,9 +196,17 @@ class _Run:
                 self._write_to_watchers()
         for begin in range(0, len(block), _JUDGED):
             part = block[begin : begin + _JUDGED]
-            for event in self._limits.take(part):
-                self._write_event(event)
+            self._unjudged.append(part)
+            if sum(map(len, self._unjudged)) >= _JUDGED:
+                self._judge_limits()
             self._judge(part)
+
+    def _judge_limits(self) -> None:
+        """Write which limits of validity the outputs since the last call began or ceased to exceed: many at once cost little more than one."""
+        blocks, self._unjudged = self._unjudged, []
+        if blocks:
+            for event in self._limits.take(joined(blocks)):
+                self._write_event(event)
 
     def _judge(self, block: np.ndarray) -> None:
         """Judge outputs one by one, or all at once if none of them can raise or clear an alarm."""
@@ -217,7 +228,10 @@ class _Run:
     def _report(self, sample, moment: float) -> None:
         """Write a change of the bearing's condition at once, and the condition once a second."""
         residual = self._comparison.residual
-        for event in self._changes.take(moment, (*self._monitor.events(moment), *residual.events(moment))):
+        changes = self._changes.take(moment, (*self._monitor.events(moment), *residual.events(moment)))
+        if changes or moment >= self._next_report:
+            self._judge_limits()  # their events come first
+        for event in changes:
             self._write_event(event)
         if moment >= self._next_report:
             # A hundredth early, so that reports stay at whole seconds although stamps jitter.

@@ -345,6 +345,7 @@ EVENTS = {
     "run.unconfigured": ("OK", "the node waits to be configured"),
     "run.inactive": ("OK", "the node waits to be activated"),
     "run.finalized": ("OK", "the node is shut down"),
+    "scene.implausible": ("WARN", "a field of the scene looks like a slip of the pen; told once, at the start"),
     "sink.failed": ("WARN, ERROR", "a recording or a view has failed or stopped"),
     "solver.crashed": ("ERROR", "the solver thread ended by a programming error; restart the node"),
     "solver.failed": ("ERROR", "time could not be advanced; the last good state is held"),
