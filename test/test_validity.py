@@ -16,7 +16,7 @@ from bearing_sim.cli.main import main
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.model.sample import new_block
 from bearing_sim.model.validity import BY_NAME, LAWS, Conditions, Exceedance, cell, counted, merged, outside, still_sample
-from bearing_sim.monitoring.film_ratio import FilmRatio
+from bearing_sim.monitoring.film_ratio import ThinnestFilm
 from bearing_sim.monitoring.limits import LimitsMonitor
 from bearing_sim.recording.reader import Recording
 from bearing_sim.runtime.live import LiveModel, warmed_up
@@ -323,7 +323,7 @@ def test_the_film_ratio_and_the_limits_see_the_same_contact_speeds(scenes):
     block = Simulation(scene).advance(0.02, samples=2)
     at = Conditions(scene, block)
     assert np.all(at.rolling_speed > 5.0) and np.all(at.slide_to_roll < 0.1)
-    assert np.all(FilmRatio(scene).least(block) > 0.0)
+    assert np.all(ThinnestFilm(scene).least(block) > 0.0)
 
 
 def test_cells_of_a_table_are_merged_and_counted():
