@@ -124,10 +124,14 @@ CASES = {
     "roller_profile": (("run", "motor", "bearing.roller.crown=none"), ("run", "motor")),
     "oil_temperature": (("run", PAPER, "lubricant.temperature=220 degC"), ("run", PAPER)),
     "oil_viscosity": (
-        ("loads", "motor", SOLVENT, "lubricant.temperature=170 degC"),
+        ("loads", "motor", SOLVENT, "lubricant.temperature=210 degC"),
         ("loads", "motor", *VG_320),
     ),
     "speed_factor": (("run", PAPER, "operating.shaft_speed=52000 rpm"), ("run", PAPER)),
+    "limiting_speed": (
+        ("run", "motor", "bearing.catalogue_limits.limiting_speed=2900 rpm"),
+        ("run", "motor", "bearing.catalogue_limits.limiting_speed=9000 rpm"),
+    ),
 }
 
 
@@ -381,6 +385,15 @@ def test_a_sweep_has_a_column_of_warnings(scenes, tmp_path):
     assert [("life_load" in row["warnings"]) for row in report["points"]] == [False, True]
     assert any(text.startswith("1 x life_load: ") for text in report["warnings"])
     assert "life_load 0.5664" in (tmp_path / "sweep.csv").read_text()
+
+
+def test_a_reversed_shaft_is_judged_as_one_that_turns_forwards(scenes):
+    found = [
+        {each.law.name: each.value for each in outside(scene, Simulation(scene).advance(0.02, samples=3))}
+        for scene in (load_scene(scenes["motor"], [f"operating.shaft_speed={sign}1500 rpm", "operating.radial_load=60 kN"]) for sign in ("", "-"))
+    ]
+    assert found[0].keys() == found[1].keys() >= {"oil_4109_speed", "life_load"}
+    assert [found[1][name] for name in found[0]] == pytest.approx(list(found[0].values()), rel=0.02)
 
 
 def test_at_rest_only_what_needs_no_motion_is_judged(scenes):

@@ -9,6 +9,7 @@ import numpy as np
 from bearing_sim.scene.lubricant import CustomOil, DoubleExponentialViscosity, HyperbolicPressureViscosity, Oil
 
 _DENSITY_TEMPERATURE = 288.15  # K, of data sheets
+_LEAST_VISCOSITY = 0.115273843  # mm^2/s, just above where Z of ASTM D341 is 1 and its double logarithm ends
 
 
 class OilState(NamedTuple):
@@ -74,8 +75,10 @@ def walther_viscosity(temperature: float, viscosity_40: float, viscosity_100: fl
     low, high = math.log10(313.15), math.log10(373.15)
     thick, thin = (_lg_lg_z(1e6 * viscosity) for viscosity in (viscosity_40, viscosity_100))
     wanted = thick + (thin - thick) * (math.log10(temperature) - low) / (high - low)
-    # Solved for ln nu, from 0.2 mm^2/s (the standard ends at 0.21): the standard's own inverse is good to three digits only.
-    log_nu = brentq(lambda log: _lg_lg_z(math.exp(log)) - wanted, math.log(0.2), math.log(1e12), xtol=1e-15, rtol=4 * np.finfo(float).eps)
+    # Solved for ln nu, from 0.2 mm^2/s (the standard ends at 0.21): the standard's own inverse is good to three digits only.  A thinner oil
+    # is extrapolated to where Z is 1, so that a hot oil has a viscosity, with a warning (`bearing_sim.model.validity`), and not an error.
+    thinnest = 0.2 if wanted > _lg_lg_z(0.2) else _LEAST_VISCOSITY
+    log_nu = brentq(lambda log: _lg_lg_z(math.exp(log)) - wanted, math.log(thinnest), math.log(1e12), xtol=1e-15, rtol=4 * np.finfo(float).eps)
     return 1e-6 * math.exp(log_nu)
 
 

@@ -39,9 +39,8 @@ def plausibility(scene: Scene) -> list[str]:
         *_cage_radii(bearing),
         *_cage_mass(bearing),
         *_ring_mass(bearing),
-        *_speed(scene),
         *_load(scene),
-        *(each.text for each in outside(scene, still_sample(scene), ("oil_temperature", "speed_factor"))),
+        *(each.text for each in outside(scene, still_sample(scene), ("oil_temperature", "speed_factor", "limiting_speed"))),
     ]
 
 
@@ -157,17 +156,6 @@ def _ring_mass(bearing: Bearing) -> list[str]:
     return [
         f"bearing.inner_raceway.ring_mass: {1e3 * ring.ring_mass:.4g} g; expected {1e3 * low:.4g} to {1e3 * high:.4g} g by raceway, bore and roller "
         f"length (within a factor of {_MASS_FACTOR:g}); give the mass of the ring; that of the shaft belongs into supported_mass"
-    ]
-
-
-def _speed(scene: Scene) -> list[str]:
-    limit, speed = scene.bearing.catalogue_limits.limiting_speed, abs(scene.operating.shaft_speed)
-    if limit is None or speed <= limit:
-        return []
-    turns = 30.0 / math.pi
-    return [
-        f"operating.shaft_speed: {turns * speed:.6g} rpm; expected at most the limiting speed of the bearing, {turns * limit:.6g} rpm; lower "
-        "the speed, or ask the maker"
     ]
 
 

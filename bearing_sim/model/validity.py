@@ -251,7 +251,7 @@ class Law(NamedTuple):
     @property
     def is_condition(self) -> bool:
         """Whether the law has a condition instead of a range."""
-        return bool(self.expected) and not callable(self.low)
+        return bool(self.expected) and not callable(self.low) and not callable(self.high)
 
     @property
     def general_range(self) -> str:
@@ -825,6 +825,20 @@ LAWS = (
         "lower the speed; turn on bearing.ring_growth, and check the stress in ring and cage, which the model does not contain",
         _always,
         lambda at: speed_factor(at.scene.bearing, at.samples["shaft_speed"]),
+    ),
+    Law(
+        "limiting_speed",
+        "validity.speed",
+        "all laws",
+        "the shaft speed",
+        "rpm",
+        -math.inf,
+        lambda scene: scene.bearing.catalogue_limits.limiting_speed * 30.0 / math.pi,
+        "limiting speed of the bearing by its maker",
+        "lower the speed, or ask the maker",
+        lambda scene: scene.bearing.catalogue_limits.limiting_speed is not None,
+        lambda at: np.abs(at.samples["shaft_speed"]) * (30.0 / math.pi),
+        expected="at most bearing.catalogue_limits.limiting_speed, where it is given",
     ),
 )  # fmt: skip
 """All limits that are watched, by subject."""
