@@ -15,7 +15,7 @@ def life_rows(scene, report) -> list[tuple[str, str]]:
     """Return rows of a table from `bearing_sim.studies.rating.report_of`."""
     basic, modified = scene.life.symbols
     profile = _PROFILES[report["profile"]] + ("" if report["profile_given"] else ", assumed because roller.crown is not given")
-    rows = [("rating life", f"{hours(report['life_hours'])}, {basic}: {_BASES[scene.life.method]}")]
+    rows = [("rating life", f"{hours(report['life_hours'])}, {basic}, by {scene.life.loads}")]
     if not scene.life.is_basic:
         reliability = f"reliability {100 * scene.life.reliability:g} %{_oil(scene, report)}"
         rows.append(("modified rating life", f"{hours(report['modified_life_hours'])}, {modified}: {reliability}"))
@@ -35,11 +35,6 @@ def life_rows(scene, report) -> list[tuple[str, str]]:
     ]
 
 
-_BASES = {
-    "iso16281": "loads on the laminae of all rollers",
-    "iso281": "the load on the bearing",
-    "deng2017": "whole rollers, two to three times a catalogue's life",
-}
 _RATINGS = (("C", "dynamic", "dynamic_rating"), ("C_0", "static", "static_rating"), ("C_u", "fatigue_limit", "fatigue_limit"))
 
 

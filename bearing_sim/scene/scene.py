@@ -206,6 +206,15 @@ class LifeRating:
         return self.reliability == 0.9 and self.a_iso == "none"
 
     @property
+    def loads(self) -> str:
+        """By which loads the method rates, in words."""
+        return {
+            "iso16281": "the loads on the laminae of all rollers",
+            "iso281": "the load on the bearing",
+            "deng2017": "the loads on whole rollers, two to three times a catalogue's life",
+        }[self.method]
+
+    @property
     def symbols(self) -> tuple[str, str]:
         """The standard's symbols of the basic and the modified life by the method; Deng et al. 2017 write L for both."""
         return {"iso16281": ("L10r", "L_nmr"), "iso281": ("L10", "L_nm"), "deng2017": ("L (Deng 2017)", "L_nm (Deng 2017)")}[self.method]

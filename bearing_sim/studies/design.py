@@ -223,10 +223,8 @@ def read_design(path: Path) -> Designed:
 def life_name(scene: Scene) -> str:
     """Return the name of the life that a scene chooses, which a design keeps above its limit."""
     life = scene.life
-    basic = "L10r of slices with stress risers (ISO/TS 16281)" if life.lamina else "L10 of whole rollers"
-    if life.is_basic or life.lamina and life.reliability == 0.9 and life.a_iso == "none":
-        return basic
-    return f"L_nm = a_1 a_ISO times {basic}, reliability {100 * life.reliability:g} %, cleanliness {life.a_iso}"
+    name = f"{life.symbols[0 if life.is_basic else 1]}, by {life.loads}"
+    return name if life.is_basic else f"{name}; reliability {100 * life.reliability:g} %, cleanliness {life.a_iso}"
 
 
 def verifying_level(scene: Scene) -> str | None:

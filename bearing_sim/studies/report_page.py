@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""One self-contained HTML page of any result: a design, a sweep, another table, a recorded run or replay, a folder of these, or the study of Deng 2017.
+"""One self-contained HTML page of any result: a design, a sweep or other table, a recorded run or replay, a folder of these, the study of Deng 2017.
 
 A page has the scene and its bearing, tables, pictures, warnings, where the result comes from, and the command that made it.
 """
