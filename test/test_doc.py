@@ -33,6 +33,7 @@ def test_the_documents_build_without_a_warning_and_without_a_broken_internal_lin
 def test_the_generated_reference_has_an_entry_for_what_the_code_declares(built):
     from bearing_sim.messages import topics
     from bearing_sim.model.sample import OBSERVABLES
+    from bearing_sim.model.validity import BY_NAME
 
     _, html = built
     for page, names in {
@@ -41,6 +42,7 @@ def test_the_generated_reference_has_an_entry_for_what_the_code_declares(built):
         "recording": list(topics.RECORDED),
         "scene": ["bearing.outer_raceway", "mixture_fraction", "pocket_friction", "relative_tolerance"],
         "services": ["~/reset", "~/start_recording", "~/stop_recording", "~/pause"],
+        "validity": list(BY_NAME),
         "command_line": ["bearing-sim run", "bearing-sim replay", "bearing-sim calibrate", "bearing_player"],
     }.items():
         text = (html / "reference" / f"{page}.html").read_text()
