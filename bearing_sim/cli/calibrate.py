@@ -15,6 +15,7 @@ from bearing_sim.cli.reporting import (
     print_json,
     print_table,
     progress_bar,
+    unknown_report,
     warn_of_scene,
 )
 
@@ -57,7 +58,7 @@ def calibrate(
     scene = _scene(log, scene_name, overrides)
     warn_of_scene(scene)
     names = {"shaft_speed": speed_topic, "radial_load": load_topic, "oil_temperature": temperature_topic, "cage_speed_measured": cage_topic}
-    measured, lines = _measured(log, scene, names, joint, stamps, cage_joint)
+    measured, lines, unknown = _measured(log, scene, names, joint, stamps, cage_joint)
     announce_compilation()
     from bearing_sim.studies.calibration import CalibrationError, block_length, calibrate, cut
 
@@ -74,7 +75,7 @@ def calibrate(
 
             draw(picture, f"{scene.name} calibrated by {log.name}", found)
     if as_json:
-        print_json(_report(log, scene, found))
+        print_json({**_report(log, scene, found), **unknown})
     else:
         _print(log, scene, found, lines, out)
 
@@ -96,7 +97,7 @@ def _scene(log, scene_name, overrides):
 
 
 def _measured(log, scene, names, joint, stamps, cage_joint):
-    """Return the measured data, and table rows that say where they come from."""
+    """Return the measured data, table rows that say where they come from, and for how long inputs are unknown."""
     import math
 
     from bearing_sim.inputs.log import REQUIRED, InputLogError, read_input_log, summary_lines
@@ -110,7 +111,7 @@ def _measured(log, scene, names, joint, stamps, cage_joint):
     gaps = [(begin * 1e-9, end * 1e-9) for begin, end in course.gaps]
     refused = [("refused messages", ", ".join(f"{count} x {code}" for code, count in sorted(course.refused.items())))] if course.refused else []
     lines = [("log", line) for line in summary_lines(recorded)] + refused
-    return Measured(course.instants * 1e-9, inputs, gaps, course.stamps[MEASURED] * 1e-9, course.values[MEASURED]), lines
+    return Measured(course.instants * 1e-9, inputs, gaps, course.stamps[MEASURED] * 1e-9, course.values[MEASURED]), lines, unknown_report(course)
 
 
 def _override(found) -> list[str]:

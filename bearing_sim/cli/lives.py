@@ -56,4 +56,4 @@ def hours(life: float) -> str:
     """Return a life in words, to four digits."""
     if not math.isfinite(life):
         return "unknown" if math.isnan(life) else "infinite"
-    return f"{float(f'{life:.4g}'):,.0f} h" if 100.0 <= life < 1e9 else f"{life:.4g} h"
+    return f"{float(f'{life:.4g}'):,.0f} h" if 1000.0 <= life < 1e9 else f"{life:.4g} h"

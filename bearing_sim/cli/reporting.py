@@ -86,6 +86,11 @@ def judged(log, scene):
     return profile
 
 
+def unknown_report(profile) -> dict:
+    """Return for how long the inputs of a log are unknown, and what that means for results (``verdict``; empty where all are known), for JSON."""
+    return {"log_seconds": profile.log_seconds, "unknown_seconds": profile.unknown_seconds, "verdict": profile.verdict}
+
+
 def seconds_of(duration: str) -> float:
     """Return ``--duration`` in seconds; raise `UsageError` if it is not a time of at most 1e6 s."""
     from bearing_sim.scene.quantity import to_si

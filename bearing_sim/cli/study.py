@@ -20,6 +20,7 @@ from bearing_sim.cli.reporting import (
     print_rows,
     print_table,
     progress_bar,
+    unknown_report,
     write_csv,
 )
 
@@ -82,7 +83,8 @@ def damage(log, scene_name, overrides, windows, length, as_json):
             scene_name, overrides, run.instants * 1e-9, run.inputs, run.in_gap, table=table, windows=windows, length=length, progress=show
         )
     if as_json:
-        print_json({"log": log.name, "scene": scene_name, **found._asdict(), "windows": [window._asdict() for window in found.windows]})
+        windows = [window._asdict() for window in found.windows]
+        print_json({"log": log.name, "scene": scene_name, **found._asdict(), "windows": windows, **unknown_report(course)})
     else:
         _print_damage(log, scene_name, found)
 

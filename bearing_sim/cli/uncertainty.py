@@ -16,6 +16,7 @@ from bearing_sim.cli.reporting import (
     judged,
     print_json,
     print_table,
+    unknown_report,
     warn_of_scene,
     write_csv,
 )
@@ -55,7 +56,7 @@ def uncertainty(scene_name, overrides, samples, seed, level, log, stretches, wor
     with as_usage_error(SceneError):
         scene = load_scene(scene_name, overrides)
     warn_of_scene(scene)
-    scene, course = _course(log, scene, stretches) if log is not None else (scene, None)
+    scene, course, unknown = _course(log, scene, stretches) if log is not None else (scene, None, {})
     with as_file_error(), exit_on_sigterm(), as_usage_error(JournalInUse):
         with Journal(table and table.with_suffix(".journal")) as journal:
             found, report = bands_of(scene, samples, seed, level, course, journal, workers, dask)
@@ -68,7 +69,7 @@ def uncertainty(scene_name, overrides, samples, seed, level, log, stretches, wor
             ranges = f"{len(found.ranges)} uncertain fields, {found.design.base} samples, level {found.level}"
             draw(picture, f"{scene.name}{'' if log is None else f' under {log.name}'}: {ranges}", found, course and course.middles)
     if as_json:
-        print_json({"scene": scene.name, "log": log and log.name, **report})
+        print_json({"scene": scene.name, "log": log and log.name, **report, **unknown})
     else:
         print_bands(scene.name if log is None else f"{scene.name} under {log.name}", report)
 
@@ -98,7 +99,7 @@ def bands_of(scene, samples, seed=SEED, level=None, course=None, journal=None, w
 
 
 def _course(log, scene, count):
-    """Return the scene, without ranges of fields that the log gives, and the log's inputs in intervals."""
+    """Return the scene, without ranges of fields that the log gives, the log's inputs in intervals, and for how long they are unknown."""
     import dataclasses
     import math
 
@@ -112,7 +113,7 @@ def _course(log, scene, count):
         click.echo("the log gives the oil temperature: its range in the scene is not used", err=True)
         scene = dataclasses.replace(scene, uncertainty=tuple(one for one in scene.uncertainty if one.field != "lubricant.temperature"))
     run = course.segment(None, kelvin)
-    return scene, stretches(run.instants * 1e-9, run.inputs, run.in_gap, count)
+    return scene, stretches(run.instants * 1e-9, run.inputs, run.in_gap, count), unknown_report(course)
 
 
 def _report(found, seed, seconds, course) -> dict:
