@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from recordings import steady_log
+from recordings import steady_log, write_log
 from scipy import stats
 
 from bearing_sim.cli.main import main
@@ -271,6 +271,15 @@ def test_the_command_tells_bands_over_a_log(tmp_path):
     course = json.loads(found.stdout)["course"]
     assert len(course) == 3 and course[0]["p50"] == pytest.approx(course[2]["p50"]) and course[0]["p05"] < course[0]["p95"]
     assert (tmp_path / "course.png").exists()
+
+
+def test_bands_over_a_log_say_for_how_long_its_inputs_are_unknown(tmp_path):
+    loads = [(0.1 * k, 40e3 if 20 <= k < 39 else 800.0, 0.0) for k in range(61)]
+    log = write_log(tmp_path / "log.mcap", [(time, 4000.0) for time, _, _ in loads], loads)
+    found = bands("--samples", 2, "--log", log, "--stretches", 3, "--json", "--set", "input_limits.maximum_load=1 kN")
+    report = json.loads(found.stdout)
+    assert report["unknown_seconds"] == pytest.approx(2.0) and report["log_seconds"] == pytest.approx(6.0)
+    assert "life is at most" in report["verdict"] and "input_limits.maximum_load" in report["verdict"] and "warning" in found.stderr
 
 
 def test_a_run_prints_bands_on_request():
