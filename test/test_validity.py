@@ -336,6 +336,11 @@ def test_cells_of_a_table_are_merged_and_counted():
     assert merged(["", "life_load 0.7", cell([pressure, load])]) == "hertz_pressure 5 GPa; life_load 0.7"
     first, second = counted([cell([pressure]), cell([pressure, load]), ""])
     assert first.startswith("2 x hertz_pressure: ") and second.startswith("1 x life_load: ")
+    assert "the largest Hertz pressure is 5 GPa; expected at most 4 GPa" in first
+    (spread,) = counted([cell([pressure]), cell([pressure._replace(value=9.0)])])
+    assert "is 5 to 9 GPa; expected" in spread
+    (profile,) = counted(["roller_profile"])
+    assert "the rollers have no profile; expected a crown of the rollers" in profile
 
 
 def events_of(path):

@@ -9,7 +9,6 @@ one case in ``test/test_validity.py``.
 
 import functools
 import math
-from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from typing import NamedTuple
 
@@ -257,6 +256,14 @@ class Law(NamedTuple):
     def general_range(self) -> str:
         """The range in words, whatever the scene."""
         return self.expected or self.range_text(self.low, self.high)
+
+    def counted_text(self, values: Sequence[float]) -> str:
+        """Return the warning for several shown values outside of the range."""
+        said = self.quantity
+        if not self.is_condition:
+            ends = dict.fromkeys(f"{value:.4g}" for value in (min(values), max(values)))
+            said = f"{self.quantity} is {' to '.join(ends)} {self.unit}".rstrip()
+        return f"{self.name}: {self.law}: {said}; expected {self.general_range} ({self.source}); {self.instead}"
 
     def shown(self, value: float) -> float:
         """Return a value in the unit of the law."""
@@ -908,10 +915,12 @@ def merged(cells: Iterable[str]) -> str:
 
 
 def counted(cells: Iterable[str]) -> list[str]:
-    """Return one sentence for each law in cells of a table (see `cell`): in how many of them it is outside of its range, and what to do."""
-    names = Counter(each.partition(" ")[0] for text in cells for each in text.split(_SEPARATOR) if each)
-    laws = ((count, BY_NAME[name]) for name, count in names.items())
-    return [f"{count} x {law.name}: {law.law}: {law.quantity}; expected {law.general_range} ({law.source}); {law.instead}" for count, law in laws]
+    """Return one sentence for each law in cells of a table (see `cell`): in how many of them it is outside of its range, its values, and what to do."""
+    values: dict[str, list[float]] = {}
+    for each in (each for text in cells for each in text.split(_SEPARATOR) if each):
+        name, *number = each.split(" ")[:2]
+        values.setdefault(name, []).append(float(number[0]) if number else math.nan)
+    return [f"{len(found)} x {BY_NAME[name].counted_text(found)}" for name, found in values.items()]
 
 
 def worst(law: Law, low: float, high: float, values: np.ndarray) -> list[Exceedance]:
