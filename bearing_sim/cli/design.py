@@ -279,7 +279,9 @@ def _print_bands(condition, bands, level, verify_level) -> None:
 
 
 def _print_checks(report) -> None:
-    """Print both levels' results at the D value with the widest interval; at the first one if nothing is left."""
+    """Print both levels' results at the D value with the widest interval; at the last one if nothing is left."""
+    from bearing_sim.sweep.point import OK
+
     widest = report["widest"]
     if report["verify_level"] is None:
         return
@@ -298,7 +300,7 @@ def _print_checks(report) -> None:
             check["place"],
             f"{check['low_radius']:.5f}",
             *(f"{check[name]:.4g}" for name in ("slip", "verified_slip", "life", "verified_life")),
-            "meets both limits" if check["verified_meets"] else f"refused at {verify_level}",
+            ("meets both limits" if check["verified_meets"] else f"refused at {verify_level}") + ("" if check["status"] == OK else f", {check['status']}"),
         )
         for check in report["checks"]
         if (check["kind"], check["d_value"]) == (kind, d_value)

@@ -10,6 +10,7 @@ each interval of radii, and narrows or withdraws what it refuses.
 
 import itertools
 import math
+import textwrap
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
@@ -361,6 +362,7 @@ def design(
     about = {
         "kind": "design",
         "scene": name,
+        "name": scene.name,
         "overrides": list(overrides),
         "level": scene.level,
         "verify_level": verify_level,
@@ -701,10 +703,10 @@ def draw(path: Path | BinaryIO, designed: Designed, beside: tuple[str, tuple[flo
     axes.set(xlabel="D value [mm]", ylabel="low-point radius R_low [mm]")
     axes.ticklabel_format(useOffset=False)
     figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False, fontsize=9)
-    wanted = f"slip below {limits['slip_below']:g} %, life above {limits['life_above']:g} h"
     verified = f", verified at {verify_level}" if verify_level else ""
-    points = f"{len(limits['points'])} operating points; " if limits["points"] else ""
-    figure.suptitle(f"{about['scene']} at level {about['level']}{verified}: {wanted}\n{points}tolerances: {limits['spread']}", fontsize=10)
+    points = f"{len(limits['points'])} operating points, " if limits["points"] else ""
+    title = f"{about['name']} at level {about['level']}{verified}: slip below {limits['slip_below']:g} %, life above {limits['life_above']:g} h"
+    figure.suptitle("\n".join([title, *textwrap.wrap(f"{about['life']}; {points}tolerances: {limits['spread']}", 120)]), fontsize=10)
     figure.savefig(path, dpi=130)
 
 

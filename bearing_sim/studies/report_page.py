@@ -257,7 +257,7 @@ def _design_part(path: Path, designed: studied.Designed) -> _Part:
     check_columns = [_at_level(column, about) for column in studied.CHECK_COLUMNS]
     drawn = picture(_drawn(lambda stream: studied.draw(stream, designed)), "Raceways that meet the limits")
     return _Part(
-        f"Design of {about['scene']} at level {about['level']}",
+        f"Design of {about['name']} at level {about['level']}",
         _opening(about, told) + f"<p><b>{escape(answer)}</b></p>",
         {
             "Summary": pairs(summary),
@@ -311,7 +311,7 @@ def _recording_part(recording: Recording) -> _Part:
         "cage slip while turning": f"mean {100 * turning.mean():.2f} %, largest {100 * turning.max():.2f} %" if len(turning) else "none: at rest",
         "cage slip at the end": f"{100 * np.nanmean(settled['cage_slip']):.2f} %" if np.isfinite(settled["cage_slip"]).any() else "none: at rest",
         "life used": f"{100 * used:.4g} %",
-        "life under these conditions": f"{recording.duration / 3600 / used:.4g} h" if used > 0.0 else "not used",
+        f"life under these conditions ({studied.life_name(scene)})": f"{recording.duration / 3600 / used:.4g} h" if used > 0.0 else "not used",
         "events": ", ".join(f"{count} x {kind}" for kind, count in Counter(event.kind for event in events).most_common()) or "none",
     }
     columns = Column("time", "s", "since the start"), Column("level", "", "severity"), Column("kind", "", "identifier"), Column("text", "", "what")
