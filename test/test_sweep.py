@@ -17,9 +17,11 @@ from click.testing import CliRunner
 from bearing_sim import SceneError, Simulation, load_scene
 from bearing_sim.cli.main import main
 from bearing_sim.model.sample import OBSERVABLES, new_block
+from bearing_sim.simulation import Counters
 from bearing_sim.sweep import point
 from bearing_sim.sweep.grid import FieldError, axis, read_axis, sweep
 from bearing_sim.sweep.point import RESULTS, point_row
+from bearing_sim.sweep.settling import Outcome
 from bearing_sim.sweep.table import NotDrawable, draw, read_table, write_table
 from bearing_sim.sweep.tasks import Journal
 
@@ -93,7 +95,7 @@ def test_a_point_is_what_a_single_run_says(level):
         assert row["inner_load_maximum"] == pytest.approx(block["inner_load"].max(), rel=5e-3)
         assert row["outer_load_maximum"] == pytest.approx(block["outer_load"].max(), rel=5e-3)
         assert row["shaft_power"] == pytest.approx(block["shaft_power"].mean(), rel=5e-3)
-        assert row["status"] == "ok" and row["simulated"] == pytest.approx(0.3)
+        assert row["status"] == "ok" and row["simulated"] >= 0.3
 
 
 def test_levels_slip_and_steady_agree_at_the_points_of_a_sweep():
@@ -107,11 +109,15 @@ def test_levels_slip_and_steady_agree_at_the_points_of_a_sweep():
 def test_a_run_that_has_not_settled_goes_on_until_it_has():
     scene = load_scene("deng2017_table1", ["level=steady", f"{LOW}=34.8675mm"])  # its cage needs tenths of a second
     short, long = point_row(scene, 0.05), point_row(scene, 5.0)
-    assert 0.05 < short["simulated"] < 0.4 and short["status"] == "ok"
-    assert short["cage_slip"] == pytest.approx(long["cage_slip"], abs=0.25)  # to 1 %, as is promised
+    assert 0.1 < short["simulated"] < 2.0 and short["status"] == "ok"
+    assert short["cage_slip"] == pytest.approx(long["cage_slip"], abs=0.05)  # as is promised
     assert long["simulated"] == pytest.approx(5.0) and long["status"] == "ok"
-    hasty = point_row(scene, 0.002)
-    assert hasty["status"] == "unsettled" and "give a longer duration" in hasty["reason"]
+
+
+def test_a_point_that_does_not_settle_says_what_it_was_doing(monkeypatch):
+    monkeypatch.setattr(point, "longest_run", lambda scene: 0.06)
+    hasty = point_row(load_scene("deng2017_table1", ["level=steady", f"{LOW}=34.8675mm"]), 0.05)
+    assert hasty["status"] == "unsettled" and hasty["reason"].startswith("after 0.06 s cage slip still rises by")
 
 
 def test_points_that_cannot_be_or_fail_are_rows_with_the_reason():
@@ -157,7 +163,8 @@ def test_a_row_says_means_extremes_and_lives_as_damage_adds_up(monkeypatch):
         window[name] = 1.0
     window["cage_slip"], window["rating_life"] = [0.1, 0.3], [100.0, 300.0]
     window["inner_load"], window["outer_load"] = [[0.0, 0.0, 0.0, 5.0], [0.0, 2.0, 3.0, 7.0]], [[9.0] * 4, [9.0, 9.0, 9.0, 11.0]]
-    monkeypatch.setattr(point, "settle", lambda scene, duration: (window, 0.5, ""))
+    pitch, work = window[1:], Counters(*[0] * 6)
+    monkeypatch.setattr(point, "settle", lambda scene, duration: Outcome(True, 0.5, 0.1, "", 0.2, window, pitch, work))
     row = point_row(load_scene("deng2017_table1"))
     assert (row["cage_slip_minimum"], row["cage_slip"], row["cage_slip_maximum"]) == pytest.approx((10.0, 20.0, 30.0))
     assert row["rating_life"] == pytest.approx(150.0), "half of the time at 100 h and half at 300 h uses as much up as 150 h do"

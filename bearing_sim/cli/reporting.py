@@ -34,6 +34,12 @@ class UnknownInputs(click.ClickException):
     exit_code = 3
 
 
+class Unsettled(click.ClickException):
+    """A run that was to go on until it settles and has not: one message after the result, exit code 4."""
+
+    exit_code = 4
+
+
 @contextmanager
 def as_usage_error(*kinds: type[Exception]) -> Iterator[None]:
     """Convert exceptions of these types to a `UsageError`."""
@@ -91,14 +97,16 @@ def unknown_report(profile) -> dict:
     return {"log_seconds": profile.log_seconds, "unknown_seconds": profile.unknown_seconds, "verdict": profile.verdict}
 
 
-def seconds_of(duration: str) -> float:
-    """Return ``--duration`` in seconds; raise `UsageError` if it is not a time of at most 1e6 s."""
+def seconds_of(duration: str, option: str = "--duration") -> float:
+    """Return the time of an option in seconds; raise `UsageError` if it is not a time of at most 1e6 s."""
     from bearing_sim.scene.quantity import to_si
 
-    with as_usage_error(ValueError):
+    try:
         seconds = to_si(duration, "s")
+    except ValueError as error:
+        raise UsageError(f"{option}: {error}") from None
     if not 0.0 < seconds <= 1e6:
-        raise UsageError(f"--duration {duration}: expected more than 0 and at most 1e6 s")
+        raise UsageError(f"{option} {duration}: expected more than 0 and at most 1e6 s")
     return seconds
 
 

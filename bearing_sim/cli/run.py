@@ -5,13 +5,15 @@ import math
 import time
 from contextlib import ExitStack
 from pathlib import Path
+from typing import NamedTuple
 
 import click
-import numpy as np
 
 from bearing_sim.cli.lives import life_rows
 from bearing_sim.cli.options import json_option, scene_argument, set_option
 from bearing_sim.cli.reporting import (
+    Unsettled,
+    UsageError,
     announce_compilation,
     announce_replacement,
     as_failed_run,
@@ -31,15 +33,20 @@ from bearing_sim.cli.reporting import (
 _BLOCK = 10  # samples
 _SAMPLES = 10_000  # of a long run, by default
 _RATE = 1000.0  # [Hz] of a short run
+_LEAST_SAMPLES = 100  # of the shortest run that can be judged
 
 
 @click.command("run")
 @scene_argument
 @set_option
-@click.option("--duration", default="0.5 s", show_default=True, metavar="S", help="Simulated time, such as 0.5 or '300 ms' (Deng 2017: 0.5 s).")
+@click.option("--duration", metavar="S", help="Simulated time, such as 0.5 or '300 ms' [default: until slip and life rest, at least 0.5 s].")
+@click.option("--at-most", metavar="S", help="End a run without --duration here [default: 1000 s, or 2000 cage turns if these take longer].")
 @click.option("--level", metavar="LEVEL", help="Level of fidelity, instead of the scene's.")
 @click.option(
-    "--rate", type=click.FloatRange(min=0, min_open=True), metavar="HZ", help="Samples per simulated second [default: 1000, fewer beyond 10 s]."
+    "--rate",
+    type=click.FloatRange(min=0, min_open=True),
+    metavar="HZ",
+    help="Samples per simulated second [default: 1000, fewer if the run takes more than 10 s at least].",
 )
 @click.option("--out", type=click.Path(path_type=Path), metavar="RUN.mcap", help="Record the run.")
 @click.option("--rrd", type=click.Path(path_type=Path), metavar="RUN.rrd", help="Also write a view for rerun.")
@@ -47,11 +54,16 @@ _RATE = 1000.0  # [Hz] of a short run
     "--uncertainty", type=click.IntRange(2, 65536), metavar="N", help="Also compute ranges of slip and life from N samples of uncertain fields."
 )
 @json_option
-def run(scene_name, overrides, duration, level, rate, out, rrd, uncertainty, as_json):
-    """Run SCENE (a bundled scene or a YAML file) under its constant conditions, starting from ideal rolling.
+def run(scene_name, overrides, duration, at_most, level, rate, out, rrd, uncertainty, as_json):
+    """Run SCENE (a bundled scene or a YAML file) under its constant conditions, starting from ideal rolling, until it has settled.
 
-    Cage slip is the mean over the last fifth of the run, after it has settled. --uncertainty uses the settled bearing at the fastest
-    level that supports the scene; `bearing-sim uncertainty` shows more.
+    A run has settled when cage slip is known to 0.05 points and life to 2 %, and neither is going to change by more. One that has not
+    settled in the longest time says what it was doing, and the exit code is 4. With --duration it ends after exactly that time, settled or
+    not, and says which.
+
+    Slip, cage speed and lives are means over the last fifth of the run; largest loads and pressures are those over the roller pitch of
+    cage rotation that follows. --uncertainty uses the settled bearing at the fastest level that supports the scene; `bearing-sim
+    uncertainty` shows more.
     """
     from bearing_sim.cli.uncertainty import bands_of
     from bearing_sim.messages.events import validity_event
@@ -59,15 +71,19 @@ def run(scene_name, overrides, duration, level, rate, out, rrd, uncertainty, as_
     from bearing_sim.scene.loader import SceneError, load_scene
     from bearing_sim.simulation import IntegrationError, Simulation, start_sample
 
-    seconds = seconds_of(duration)
+    if duration is not None and at_most is not None:
+        raise UsageError("--at-most is for a run without --duration; give one of them")
+    seconds = seconds_of(duration) if duration is not None else None
+    most = seconds_of(at_most, "--at-most") if at_most is not None else None
     with as_usage_error(SceneError):
         scene = load_scene(scene_name, [*overrides, *([f"level={level}"] if level else [])])
     suggest_level(scene)
     warn_of_scene(scene)
-    samples = max(round(seconds * (rate or min(_RATE, _SAMPLES / seconds))), 5)
+    plan = _plan(scene, seconds, most, rate)
     with as_file_error(), as_failed_run(IntegrationError), ExitStack() as stack:
-        sinks = _sinks(stack, scene, seconds, samples, out, rrd)
-        progress = stack.enter_context(progress_bar(f"running {scene.name}", seconds))
+        sinks = _sinks(stack, scene, seconds, plan.interval, out, rrd)
+        until = "" if seconds else f" until it has settled, at most {plan.longest:.4g} s"
+        progress = stack.enter_context(progress_bar(f"running {scene.name}{until}", plan.longest))
         started = time.perf_counter()
         announce_compilation()
         simulation = Simulation(scene)
@@ -76,29 +92,56 @@ def run(scene_name, overrides, duration, level, rate, out, rrd, uncertainty, as_
         for sink in sinks[: out is not None]:
             sink.write(start_sample(simulation))
         first = time.perf_counter()
-        settled = _advance(simulation, seconds, samples, sinks, progress)
+        outcome = _advance(simulation, plan, sinks, progress)
         wall = time.perf_counter() - first
-        warnings = outside(scene, simulation.sample.reshape(1))
+        warnings = outside(scene, outcome.window[-1:])
         for sink in sinks:
             for each in warnings:
-                sink.write_event(validity_event(simulation.time, each))
-    report = {**_report(simulation, settled, seconds, wall, first - started), **warnings_report(scene, warnings)}
+                sink.write_event(validity_event(outcome.simulated, each))
+    report = {**_report(simulation, outcome, wall, first - started), **warnings_report(scene, warnings)}
     bands = bands_of(scene, uncertainty)[1] if uncertainty else None
     if as_json:
         print_json({**report, "uncertainty": bands} if bands else report)
     else:
         _print(report, scene, bands)
     warn_of_limits(scene, warnings)
+    if seconds is None and not outcome.settled:
+        raise Unsettled(f"not settled: {outcome.reason}; give more time with --at-most")
 
 
-def _sinks(stack, scene, seconds, samples, out, rrd) -> list:
+class _Plan(NamedTuple):
+    """How long a run is and how it is sampled; a run of given length has both lengths equal."""
+
+    shortest: float  # s
+    longest: float  # s
+    interval: float  # between samples [s]
+    samples: int | None  # of a run of given length
+
+
+def _plan(scene, seconds, most, rate) -> _Plan:
+    from bearing_sim.sweep.point import DURATION
+    from bearing_sim.sweep.settling import LONGEST, longest_run, shortest_run
+
+    if seconds is not None:
+        samples = max(round(seconds * (rate or min(_RATE, _SAMPLES / seconds))), 5)
+        return _Plan(seconds, seconds, seconds / samples, samples)
+    shortest = shortest_run(scene, DURATION)
+    longest = most if most is not None else longest_run(scene, LONGEST)
+    if longest < shortest:
+        raise UsageError(f"--at-most {longest:g} s: the shortest run of this bearing that can be judged takes {shortest:.4g} s")
+    if rate is not None and rate * shortest < _LEAST_SAMPLES:
+        raise UsageError(f"--rate {rate:g}: too few samples to see whether the run has settled; give {_LEAST_SAMPLES / shortest:.3g} or more")
+    return _Plan(shortest, longest, 1.0 / (rate or min(_RATE, _SAMPLES / shortest)), None)
+
+
+def _sinks(stack, scene, seconds, interval, out, rrd) -> list:
     start_ns, sinks = time.time_ns(), []
     if out is not None:
         from bearing_sim.recording.writer import COMMAND, McapSink
 
         announce_replacement(out)
-        metadata, advance = {COMMAND: {"command": command_line()}}, (_BLOCK * (seconds / samples), _BLOCK)
-        sinks.append(stack.enter_context(McapSink(out, scene, start_ns, metadata, replace=True, advance=advance)))
+        metadata = {COMMAND: {"command": command_line()}}
+        sinks.append(stack.enter_context(McapSink(out, scene, start_ns, metadata, replace=True, advance=(_BLOCK * interval, _BLOCK))))
     if rrd is not None:
         from bearing_sim.view.worker import RerunFile
 
@@ -106,43 +149,54 @@ def _sinks(stack, scene, seconds, samples, out, rrd) -> list:
     return sinks
 
 
-def _advance(simulation, seconds, samples, sinks, progress) -> list:
-    """Advance to the end block by block; return the slips of the settled last fifth as a list of numbers."""
-    interval, settled = seconds / samples, []
-    for done in range(0, samples, _BLOCK):
-        count = min(_BLOCK, samples - done)
-        block = simulation.advance(count * interval, samples=count)
+def _advance(simulation, plan, sinks, progress):
+    """Advance to the end block by block; return how the run ended."""
+    from bearing_sim.sweep.settling import advance_in_calls, advance_until_settled
+
+    def take(block):
         for sink in sinks:
             sink.write(block)
-        settled += [slip for offset, slip in enumerate(block["cage_slip"].tolist()) if done + offset >= 0.8 * samples]
-        progress((done + count) * interval)
-    return settled
+        progress(float(block["time"][-1]))
+
+    def advance(seconds):
+        count = plan.samples or _BLOCK * math.ceil(seconds / (_BLOCK * plan.interval) * (1.0 - 1e-9))  # whole calls, so that they can be repeated
+        return advance_in_calls(simulation, plan.interval, count, _BLOCK, take)
+
+    return advance_until_settled(simulation, plan.shortest, plan.longest, advance)
 
 
-def _report(simulation, settled, seconds, wall, start_up) -> dict:
+def _report(simulation, outcome, wall, start_up) -> dict:
     from bearing_sim.studies.rating import life_report
 
-    last, counters = simulation.sample, simulation.counters
+    window, pitch, last = outcome.window, outcome.pitch, outcome.window[-1]
+    tilts = simulation.scene.bodies_tilt
+
+    def pressure(name):
+        return 1e-6 * float(pitch[name].max()) if tilts else None
+
     return {
         "scene": simulation.scene.name,
         "level": simulation.scene.level,
-        "cage_slip": math.fsum(settled) / len(settled),
-        "cage_slip_minimum": min(settled),
-        "cage_slip_maximum": max(settled),
-        **life_report(simulation.scene, np.array([last])),
+        "settled": outcome.settled,
+        "settling_seconds": outcome.settling_time,
+        "unsettled_reason": outcome.reason,
+        "cage_slip": outcome.slip,
+        "cage_slip_minimum": float(window["cage_slip"].min()),
+        "cage_slip_maximum": float(window["cage_slip"].max()),
+        **life_report(simulation.scene, window),
         "damage": float(last["damage"]),
-        "cage_speed_rpm": float(last["cage_speed"]) * 30 / math.pi,
-        "inner_load_maximum": float(last["inner_load"].max()),
-        "outer_load_maximum": float(last["outer_load"].max()),
-        "inner_pressure_maximum_mpa": 1e-6 * float(last["inner_pressure"]) if simulation.scene.bodies_tilt else None,
-        "outer_pressure_maximum_mpa": 1e-6 * float(last["outer_pressure"]) if simulation.scene.bodies_tilt else None,
-        "inner_edge_pressure_maximum_mpa": 1e-6 * float(last["inner_edge_pressure"]) if simulation.scene.bodies_tilt else None,
-        "outer_edge_pressure_maximum_mpa": 1e-6 * float(last["outer_edge_pressure"]) if simulation.scene.bodies_tilt else None,
-        "sim_seconds": seconds,
+        "cage_speed_rpm": float(window["cage_speed"].mean()) * 30 / math.pi,
+        "inner_load_maximum": float(pitch["inner_load"].max()),
+        "outer_load_maximum": float(pitch["outer_load"].max()),
+        "inner_pressure_maximum_mpa": pressure("inner_pressure"),
+        "outer_pressure_maximum_mpa": pressure("outer_pressure"),
+        "inner_edge_pressure_maximum_mpa": pressure("inner_edge_pressure"),
+        "outer_edge_pressure_maximum_mpa": pressure("outer_edge_pressure"),
+        "sim_seconds": outcome.simulated,
         "wall_seconds": wall,
         "start_up_seconds": start_up,
-        "real_time_factor": seconds / wall,
-        **counters._asdict(),
+        "real_time_factor": outcome.simulated / wall,
+        **outcome.counters._asdict(),
     }
 
 
@@ -153,10 +207,8 @@ def _print(report, scene, bands) -> None:
     print_table(
         f"{report['scene']} at level {report['level']}",
         [
-            (
-                "cage slip",
-                f"{100 * report['cage_slip']:.2f} % ({100 * report['cage_slip_minimum']:.2f} to {100 * report['cage_slip_maximum']:.2f} %)",
-            ),
+            ("cage slip", _slip(report)),
+            ("settled", _settled(report)),
             ("cage speed", f"{report['cage_speed_rpm']:.6g} rpm"),
             *life_rows(scene, report),
             *_pressures(report, scene),
@@ -172,6 +224,18 @@ def _print(report, scene, bands) -> None:
             ),
         ],
     )
+
+
+def _slip(report) -> str:
+    if math.isnan(report["cage_slip"]):
+        return "none, the shaft is at rest"
+    return f"{100 * report['cage_slip']:.2f} % ({100 * report['cage_slip_minimum']:.2f} to {100 * report['cage_slip_maximum']:.2f} %)"
+
+
+def _settled(report) -> str:
+    if not report["settled"]:
+        return f"no: {report['unsettled_reason']}"
+    return f"yes, after {report['settling_seconds']:.3g} s"
 
 
 def _pressures(report, scene) -> list[tuple[str, str]]:

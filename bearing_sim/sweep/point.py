@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""One point of a sweep: a scene run until its slip has settled, and its row in the table."""
+"""One point of a sweep: a scene run until it has settled, and its row in the table."""
 
 import math
 from typing import NamedTuple
@@ -11,13 +11,9 @@ from bearing_sim.model.sample import OBSERVABLES
 from bearing_sim.model.validity import cell, outside
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import IntegrationError, Simulation
+from bearing_sim.sweep.settling import Outcome, advance_until_settled, longest_run, shortest_run
 
-DURATION = 0.5  # s, as Deng 2017 simulates
-_WINDOW = 0.2  # of the duration, over which results are averaged; two more windows before it show whether they still change
-_SAMPLES = 200
-_MOST_DURATIONS = 8
-_DRIFT, _RELATIVE_DRIFT = 1e-3, 0.01  # remaining change of the mean slip that counts as settled
-_SLOWEST = 0.98  # largest ratio of successive changes of slip that is taken as converging
+DURATION = 0.5  # s of the shortest run, as Deng 2017 simulates
 OK, UNSETTLED, FAILED, REFUSED = "ok", "unsettled", "failed", "refused"
 
 
@@ -45,36 +41,29 @@ RESULTS = (
     Column("cage_slip_minimum", "%", "least cage slip at an instant", 100.0),
     Column("cage_slip_maximum", "%", "largest cage slip at an instant", 100.0),
     *_observed(_LIVES),
-    Column("inner_load_maximum", "N", "largest normal force between a roller and the inner raceway at an instant"),
-    Column("outer_load_maximum", "N", "largest normal force between a roller and the outer raceway at an instant"),
+    Column("inner_load_maximum", "N", "largest normal force between a roller and the inner raceway over a roller pitch of cage rotation"),
+    Column("outer_load_maximum", "N", "largest normal force between a roller and the outer raceway over a roller pitch of cage rotation"),
     Column("loaded_rollers", "", "rollers between both raceways at an instant, mean"),
     *_observed(_MEANS),
     *_observed(_POWERS),
     Column("simulated", "s", "simulated time; results are of its end"),
 )
 TEXTS = (
-    Column("status", "", "ok; unsettled: slip was still changing at the end; failed: the run stopped early; refused: the scene is invalid"),
+    Column("status", "", "ok; unsettled: slip or life was still changing at the end; failed: the run stopped early; refused: the scene is invalid"),
     Column("reason", "", "why the status is not ok"),
     Column("warnings", "", "laws used outside of their ranges, each with its worst value"),
 )
 
 
-def settle(scene: Scene, duration: float = DURATION) -> tuple[np.ndarray, float, str]:
-    """Run a scene under its constant conditions from ideal rolling until its slip has settled.
+def settle(scene: Scene, duration: float = DURATION) -> Outcome:
+    """Run a scene under its constant conditions from ideal rolling until slip, temperature and life rest.
 
-    The run ends with three windows, each a fifth of the duration.  Their mean slips give the remaining change of an exponential
-    approach to the settled state; while that exceeds 0.1 points and 1 %, the run is extended by the same duration, up to eight times.
+    See `bearing_sim.sweep.settling` for the criterion.
 
     Parameters
     ----------
     scene : of any level; level ``steady`` solves for its operating point without a table.
-    duration : of the run if it settles without extension [s].
-
-    Returns
-    -------
-    window : samples of the last fifth, see `bearing_sim.model.sample`.
-    simulated : simulated time [s].
-    reason : why it has not settled; empty if it has.
+    duration : of the shortest run [s]; one of a slow bearing takes 15 cage turns.
 
     Raises
     ------
@@ -82,25 +71,7 @@ def settle(scene: Scene, duration: float = DURATION) -> tuple[np.ndarray, float,
         The run stopped early.
     """
     run = Simulation(scene, table=empty_table() if scene.level == "steady" else None)
-    for _ in range(_MOST_DURATIONS):
-        run.advance((1 - 3 * _WINDOW) * duration)
-        windows = [run.advance(_WINDOW * duration, samples=_SAMPLES) for _ in range(3)]
-        window, means = windows[-1], [float(each["cage_slip"].mean()) for each in windows]
-        remaining = _remaining(*means)
-        if not abs(remaining) > max(_DRIFT, _RELATIVE_DRIFT * abs(means[-1])):  # slip is NaN at rest, where nothing changes
-            break
-    else:
-        return window, run.time, f"after {run.time:.3g} s slip is still {100 * remaining:+.2g} points from its limit; give a longer duration"
-    if run.counters.unsettled_points:
-        return window, run.time, "no steady state was found at this operating point"
-    return window, run.time, ""
-
-
-def _remaining(first: float, second: float, third: float) -> float:
-    """Return the remaining change of three successive means if their changes keep shrinking by the same ratio."""
-    change, before = third - second, second - first
-    ratio = min(abs(change / before), _SLOWEST) if before != 0.0 else 0.0
-    return change * max(ratio / (1.0 - ratio), 1.0)
+    return advance_until_settled(run, shortest_run(scene, duration), longest_run(scene))
 
 
 def point_row(scene: Scene, duration: float = DURATION) -> dict:
@@ -111,19 +82,20 @@ def point_row(scene: Scene, duration: float = DURATION) -> dict:
     scene, duration : see `settle`.
     """
     try:
-        window, simulated, reason = settle(scene, duration)
+        outcome = settle(scene, duration)
     except IntegrationError as error:
         return empty_row(FAILED, str(error))
-    slip = window["cage_slip"]
-    found = {"cage_slip": slip.mean(), "cage_slip_minimum": slip.min(), "cage_slip_maximum": slip.max(), "simulated": round(simulated, 9)}
+    window, slip = outcome.window, outcome.window["cage_slip"]
+    found = {"cage_slip": outcome.slip, "cage_slip_minimum": slip.min(), "cage_slip_maximum": slip.max(), "simulated": round(outcome.simulated, 9)}
     for ring in ("inner", "outer"):
-        found[f"{ring}_load_maximum"] = window[f"{ring}_load"].max()
+        found[f"{ring}_load_maximum"] = outcome.pitch[f"{ring}_load"].max()
     found["loaded_rollers"] = (window["inner_load"] > 0.0).sum(axis=1).mean()
     with np.errstate(divide="ignore"):
         found |= {name: 1.0 / np.mean(1.0 / window[name]) for name in _LIVES}  # damage adds up, so average the rates
     found |= {name: window[name].mean() for name in (*_MEANS, *_POWERS)}
     row = {column.name: column.factor * float(found[column.name]) for column in RESULTS}
-    return row | {"status": UNSETTLED if reason else OK, "reason": reason, "warnings": cell(outside(scene, window))}
+    judged = {"status": OK if outcome.settled else UNSETTLED, "reason": outcome.reason}
+    return row | judged | {"warnings": cell(outside(scene, window))}
 
 
 def empty_row(status: str, reason: str) -> dict:

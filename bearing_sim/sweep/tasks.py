@@ -25,7 +25,15 @@ from bearing_sim.numerics.cores import cores
 
 _PACKAGE = Path(__file__).resolve().parents[1]
 # Sources that a result depends on besides compiled code, which `sources_hash` covers: from scene to parameters, and the runs.
-_SOURCES = ("simulation.py", "scene/*.py", "model/*.py", "levels/steady/*.py", "sweep/point.py", "sweep/conditions.py")
+_SOURCES = (
+    "simulation.py",
+    "scene/*.py",
+    "model/*.py",
+    "levels/steady/*.py",
+    "sweep/point.py",
+    "sweep/settling.py",
+    "sweep/conditions.py",
+)
 
 
 class Task(NamedTuple):

@@ -9,8 +9,6 @@ from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.simd import load, spread, square_root, total
 from bearing_sim.physics.rating_life import rate_lives
 
-_SLIP_FLOOR = 1.0  # rad/s of ideal cage speed; slip of a bearing at rest is not defined
-
 
 @kernel
 def observe_course(t, cage_angle, cage_speed, equivalent, model, interval, previous, row):
@@ -41,7 +39,7 @@ def observe_course(t, cage_angle, cage_speed, equivalent, model, interval, previ
     row[COLUMN.cage_speed] = cage_speed
     row[COLUMN.ideal_cage_angle] = previous[COLUMN.ideal_cage_angle] + 0.5 * rotation * (1.0 - ratio)
     row[COLUMN.ideal_cage_speed] = ideal
-    row[COLUMN.cage_slip] = 1.0 - cage_speed / ideal if abs(ideal) >= _SLIP_FLOOR else math.nan
+    row[COLUMN.cage_slip] = 1.0 - cage_speed / ideal if ideal != 0.0 else math.nan
     row[COLUMN.inner_equivalent_load] = equivalent.inner
     row[COLUMN.outer_equivalent_load] = equivalent.outer
     row[COLUMN.inner_lamina_load] = equivalent.inner_lamina

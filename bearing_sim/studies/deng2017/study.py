@@ -162,7 +162,7 @@ def load_profile(scene: Scene, duration: float) -> dict:
     scene, duration : see `bearing_sim.sweep.point.settle`.
     """
     try:
-        window, _, _ = settle(scene, duration)
+        window = settle(scene, duration).window
     except IntegrationError as error:
         return {"status": "failed", "reason": str(error)}
     bins = np.floor(np.mod(window["roller_angle"], 2 * np.pi) / (2 * np.pi) * _BINS).astype(int).ravel() % _BINS
