@@ -66,7 +66,7 @@ from bearing_sim.levels.spatial.state import (
 )
 from bearing_sim.numerics.compilation import kernel, template
 from bearing_sim.numerics.linear_algebra import back_substitute, decompose
-from bearing_sim.numerics.simd import LANES, collect_runs, load, magnitude, spread, spread_runs, store, total, where_positive
+from bearing_sim.numerics.simd import LANES, collect_runs, fill_lanes, load, magnitude, spread, spread_runs, store, total, where_positive
 
 # Rows of forces outwards and along, of moments outwards and along, of the spin's torque; in this order.
 _RADIAL, _ALONG, _TILTING, _SKEWING, _SPINNING = 0, LOCAL, 2 * LOCAL, 3 * LOCAL, 4 * LOCAL
@@ -904,6 +904,7 @@ def solve(jacobian, factored, x):
     s = factored.shift[0]
     count = (x.shape[0] - 2 * BORDER) // BLOCK
     spread_runs(x, 2 * BORDER, BLOCK, count, factored.right)
+    fill_lanes(factored.right, BLOCK, count)  # a NaN of an attempt that failed would stay there and reach the border
     for k in range(BORDER):
         through = 0.0
         for m in range(BORDER):
