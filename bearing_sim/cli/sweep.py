@@ -38,7 +38,7 @@ _SHOWN = ("cage_slip", "rating_life", "inner_load_maximum", "outer_load_maximum"
 )
 @set_option
 @click.option("--level", metavar="LEVEL", help="Level of fidelity, instead of the scene's.")
-@click.option("--duration", default="0.5 s", show_default=True, metavar="S", help="Simulated time per point; extended until the point has settled.")
+@click.option("--duration", default="0.5 s", show_default=True, metavar="S", help="Shortest simulated time per point; extended until it has settled.")
 @table_option("sweep.parquet", "Results; also written: PATH.csv and")
 @executor_options
 @picture_option("Draw the results")
@@ -46,8 +46,9 @@ _SHOWN = ("cage_slip", "rating_life", "inner_load_maximum", "outer_load_maximum"
 def sweep(scene_name, axes, overrides, level, duration, out, workers, dask, picture, as_json):
     """Run SCENE at every combination of values, on all cores, until each point has settled.
 
-    Slip, lives, loads and powers are means over the last fifth of a run, largest loads are those of any instant in it.  An interrupted
-    sweep resumes with the same command; points computed by an earlier sweep into the same file are not computed again.
+    Slip, lives, loads and powers are means over the last fifth of a run, largest loads are those over the roller pitch of cage rotation
+    that follows.  An interrupted sweep resumes with the same command; points computed by an earlier sweep into the same file are not
+    computed again.
 
     bearing-sim sweep deng2017_table1 --vary bearing.outer_raceway.low_radius=34.86mm:34.8675mm:7 --picture sweep.png
     """

@@ -22,8 +22,8 @@ from dataclasses import replace
 import numpy as np
 
 from bearing_sim.cli.reporting import print_rows
-from bearing_sim.physics.rating_life import load_rating
 from bearing_sim.scene.loader import scene_from_mapping, scene_to_yaml
+from bearing_sim.scene.ratings import load_rating, rate
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import IntegrationError, Simulation
 from bearing_sim.sweep.point import DURATION
@@ -120,7 +120,7 @@ def examine(scene: Scene) -> dict:
         "rollers": scene.bearing.roller.count,
         "bore_mm": 2e3 * scene.bearing.inner_raceway.bore_radius,
         "speed_rpm": scene.operating.shaft_speed * 30.0 / math.pi,
-        "load_by_c": scene.operating.radial_load / _rating(scene),
+        "load_by_c": scene.operating.radial_load / rate(scene.bearing).dynamic,
         "lobes": scene.bearing.outer_raceway.lobes if scene.bearing.outer_raceway.d_value else 0,
     }
 
@@ -149,11 +149,6 @@ def examine(scene: Scene) -> dict:
 def _slip_between(before: np.void, after: np.void) -> float:
     turned, ideal = (float(after[name] - before[name]) for name in ("cage_angle", "ideal_cage_angle"))
     return 1.0 - turned / ideal
-
-
-def _rating(scene: Scene) -> float:
-    roller = scene.bearing.roller
-    return load_rating(roller.count, roller.diameter, roller.length, scene.bearing.diameter_ratio)
 
 
 def scenes(bearings: int, seed: int) -> list[Scene]:
