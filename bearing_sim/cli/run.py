@@ -94,7 +94,7 @@ def run(scene_name, overrides, duration, at_most, level, rate, out, rrd, uncerta
         first = time.perf_counter()
         outcome = _advance(simulation, plan, sinks, progress)
         wall = time.perf_counter() - first
-        warnings = outside(scene, outcome.window[-1:])
+        warnings = outside(scene, outcome.window)
         for sink in sinks:
             for each in warnings:
                 sink.write_event(validity_event(outcome.simulated, each))
