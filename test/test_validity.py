@@ -115,6 +115,7 @@ CASES = {
     "roller_slenderness": (("run", PAPER, "bearing.roller.length=25 mm", "bearing.cage.width=30 mm"), ("run", PAPER)),
     "diameter_ratio": (("run", "thick"), ("run", "motor")),
     "life_load": (("loads", "motor", "operating.radial_load=40 kN"), ("loads", "motor", "operating.radial_load=30 kN")),
+    "catalogue_life": (("run", PAPER, "life.method=iso281"), ("run", "motor", "life.method=iso281")),
     "static_load": (("loads", "motor", "operating.radial_load=85 kN"), ("loads", "motor", "operating.radial_load=70 kN")),
     "viscosity_ratio": (
         ("loads", "motor", *VG_320, "life.a_iso=bath_17_14"),

@@ -739,6 +739,20 @@ LAWS = (
         lambda at: at.while_turning(at.equivalent_load / rate(at.scene.bearing).dynamic),
     ),
     Law(
+        "catalogue_life",
+        "validity.life",
+        "rating life of ISO 281",
+        "the rollers' reference load over the radial load, P_ref/P",
+        "",
+        -math.inf,
+        1.5,
+        "assumption: ISO 281 is for normal clearance and alignment, where the two are alike; it takes no account of preload, lobes, "
+        "centrifugal forces or tilt",
+        "use life.method iso16281, which counts what each roller carries",
+        lambda scene: scene.life.method == "iso281",
+        lambda at: at.while_turning(at.samples["reference_load"] / np.maximum(at.samples["equivalent_load"], _LOADED_FROM)),
+    ),
+    Law(
         "static_load",
         "validity.life",
         "static safety of ISO 76",
