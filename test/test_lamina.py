@@ -12,8 +12,8 @@ from bearing_sim.levels.slip.forces import balance_loads
 from bearing_sim.model.params import pack
 from bearing_sim.physics.contact import EXPONENT
 from bearing_sim.physics.lamina import ROLLER_ROW, new_slices, sliced_contact
-from bearing_sim.physics.lamina_life import EquivalentLoads, add_lamina_powers, equivalent_lamina_loads, stress_risers
-from bearing_sim.physics.rating_life import rate_lives
+from bearing_sim.physics.lamina_life import add_lamina_powers, equivalent_lamina_loads, stress_risers
+from bearing_sim.physics.rating_life import OilFactors, rate_lives
 from bearing_sim.scene.loader import load_scene
 
 AT_REST = (0.0, 0.0)
@@ -83,8 +83,8 @@ def test_the_reference_rating_lives_of_an_independent_code(bearing, load, rating
     at = balance(params, *AT_REST, (load, 0.0))
     inner, outer = np.zeros(slices), np.zeros(slices)
     add_lamina_powers(at.inner, at.outer, stress_risers(slices), 1.0, inner, outer)
-    equivalent = EquivalentLoads(0.0, 0.0, *equivalent_lamina_loads(inner, outer))
-    lives = rate_lives(load, equivalent, 100.0, 1e-5, 0.0628, params.life)
+    oil = OilFactors(1.0, math.nan)
+    lives = rate_lives(load, equivalent_lamina_loads(0.0, 0.0, inner, outer, oil, params.life), oil, params.life)
     assert 1e-6 * lives.l10r == pytest.approx(life, rel=1e-5) and lives.reference_load == pytest.approx(reference, rel=1e-5)
 
 

@@ -20,8 +20,10 @@ from bearing_sim.physics.lamina_life import (
 )
 from bearing_sim.physics.rating_life import (
     CLEANLINESS,
+    OilFactors,
     contamination_factor,
     modification_factor,
+    oil_factors,
     rate_lives,
     rating_life_revolutions,
     reliability_factor,
@@ -30,6 +32,7 @@ from bearing_sim.physics.rating_life import (
 from bearing_sim.scene.ratings import fatigue_limit, static_rating
 
 PITCH = 62.75e-3
+OIL = OilFactors(1.0, math.nan)  # of lives that no oil modifies
 
 
 def deng(*overrides, level="spatial"):
@@ -40,18 +43,20 @@ def lamina_life(inner, outer, life, risers=None):
     slices = inner.shape[1]
     inner_means, outer_means = np.zeros(slices), np.zeros(slices)
     add_lamina_powers(inner, outer, np.ones(slices) if risers is None else risers, 1.0, inner_means, outer_means)
-    return rating_life_revolutions(*equivalent_lamina_loads(inner_means, outer_means), life)
+    found = equivalent_lamina_loads(0.0, 0.0, inner_means, outer_means, OIL, life._replace(laminae=life.laminae._replace(crown=np.zeros(slices))))
+    return rating_life_revolutions(found.inner_lamina, found.outer_lamina, life)
 
 
 def life_at(tilt, crown="none", speed=2000.0, slices=30, risers=True):
     """Return the lamina life [revolutions] at a misalignment [rad], the mean over a roller pitch."""
-    params = pack(deng(f"bearing.roller.crown={crown}", f"bearing.roller.slices={slices}"))
+    params = pack(deng(f"bearing.roller.crown={crown}", f"bearing.roller.slices={slices}", f"life.laminae={slices}"))
     factors = stress_risers(slices) if risers else np.ones(slices)
     inner_means, outer_means, at = np.zeros(slices), np.zeros(slices), None
     for position in range(5):
         at = balance(params, 2 * math.pi * position / (5 * 18), speed, (800.0, 0.0), tilts=(0.0, tilt), slices=at)
         add_lamina_powers(at.inner, at.outer, factors, 1 / (position + 1), inner_means, outer_means)
-    return rating_life_revolutions(*equivalent_lamina_loads(inner_means, outer_means), params.life)
+    found = equivalent_lamina_loads(0.0, 0.0, inner_means, outer_means, OIL, params.life)
+    return rating_life_revolutions(found.inner_lamina, found.outer_lamina, params.life)
 
 
 @pytest.mark.parametrize("slices", [2, 20, 31])
@@ -66,9 +71,10 @@ def test_even_slices_have_the_life_of_whole_rollers(slices):
 def test_no_load_lasts_for_ever():
     life = pack(deng()).life
     assert lamina_life(np.zeros((18, 20)), np.zeros((18, 20)), life) == math.inf
-    nothing, cleaned = EquivalentLoads(0.0, 0.0, 0.0, 0.0), pack(deng("life.a_iso=filtered_15_12")).life
+    cleaned = pack(deng("life.a_iso=filtered_15_12")).life
     for rated, speed in ((life, 4712.0), (cleaned, 4712.0), (cleaned, 0.0)):
-        lives = rate_lives(0.0, nothing, speed, 2.4e-6, PITCH, rated)
+        oil = oil_factors(speed, 2.4e-6, PITCH, rated)
+        lives = rate_lives(0.0, equivalent_loads(np.zeros((2, 4)), oil, rated), oil, rated)
         assert {lives.basic, lives.modified, lives.l10, lives.lnm, lives.l10r, lives.lnmr, lives.static_safety} == {math.inf}
         assert lives.equivalent_load == lives.reference_load == 0.0
 
@@ -206,7 +212,8 @@ def test_the_method_of_the_scene_chooses_the_life_that_is_shown_and_the_one_that
     block = Simulation(deng(f"life.method={method}", "life.a_iso=bath_17_14", level="slip")).advance(0.002, samples=4)
     np.testing.assert_array_equal(block["rating_life"], block[basic])
     np.testing.assert_array_equal(block["modified_rating_life"], block[modified])
-    np.testing.assert_allclose(block["modified_rating_life"], block["modification_factor"] * block["rating_life"])
+    factor = block["modification_factor" if method == "iso281" else "reference_modification_factor"]
+    np.testing.assert_allclose(block["modified_rating_life"], factor * block["rating_life"])
     assert block["damage"][-1] == pytest.approx(np.sum(0.5e-3 / 3600 / block[modified]), rel=1e-6)
 
 
@@ -248,17 +255,36 @@ def direct(loads, laminae, power):
 @pytest.mark.parametrize("crown", ["none", "iso_log", "{law: straight_arc, straight_length: 4 mm, crown_radius: 1.5 m}"])
 @pytest.mark.parametrize("spread", [0.0, 0.3, 1.0])
 def test_moments_of_roller_loads_give_the_equivalent_loads_of_their_laminae(crown, spread):
-    life = pack(deng(f"bearing.roller.crown={crown}", level="slip")).life
+    life = pack(deng(f"bearing.roller.crown={crown}", "life.a_iso=bath_17_14", level="slip")).life
     random = np.random.default_rng(3)
     inner, outer = (800.0 * (1.0 + spread * random.uniform(-1, 1, 18)) for _ in range(2))
     moments = np.zeros((2, 4))
     for q_i, q_e in zip(inner, outer):
         add_load_moments(q_i, q_e, 1 / 18, moments)
-    found = equivalent_loads(moments, life.laminae)
-    expected = equivalent_lamina_loads(direct(inner, life.laminae, 4), direct(outer, life.laminae, 4.5))
+    oil = OilFactors(0.8, 0.3)
+    found = equivalent_loads(moments, oil, life)
+    expected = equivalent_lamina_loads(0.0, 0.0, direct(inner, life.laminae, 4), direct(outer, life.laminae, 4.5), oil, life)
     # a load errs by 5e-4 at most, a life by four times as much
-    assert (found.inner_lamina, found.outer_lamina) == pytest.approx(expected, rel=1e-5 if spread == 0.0 or crown == "none" else 5e-4)
+    assert found[2:] == pytest.approx(expected[2:], rel=1e-5 if spread == 0.0 or crown == "none" else 5e-4)
     assert found.inner == pytest.approx(np.mean(inner**4) ** 0.25) and found.outer == pytest.approx(np.mean(outer**4.5) ** (1 / 4.5))
+
+
+@pytest.mark.parametrize("level", ["slip", "planar", "spatial", "steady"])
+def test_the_oil_counts_lamina_by_lamina(level):
+    """Written out for one condition, from the lamina loads: ISO 16281:2025, formulas 31 and 33."""
+    scene = deng("life.a_iso=filtered_15_12", "life.method=iso16281", "operating.shaft_speed=15000 rpm", level=level)
+    sample, life = Simulation(scene).advance(0.02)[-1], pack(scene).life
+    # straight rollers: the laminae differ by their risers alone, which are of the loads that they raise
+    shares = life.laminae.risers * (np.mean(life.laminae.risers**4.5)) ** (-1 / 4.5)
+    inner, outer, count = sample["inner_lamina_load"] * shares / 40, sample["outer_lamina_load"] * shares / 40, 18
+    ratio = 1.038 * life.inner_rating / life.outer_rating
+    loads = 0.323 * count * 40 * ((inner**4.5 + (ratio * outer) ** 4.5) / (1 + ratio**4.5)) ** (2 / 9)
+    factors = np.array([modification_factor(sample["viscosity_ratio"], sample["contamination_factor"] * life.fatigue_limit / load) for load in loads])
+    parts = (inner / life.inner_rating) ** 4.5 + (outer / life.outer_rating) ** 4.5
+    expected = (np.sum(factors ** (-9 / 8) * parts) / np.sum(parts)) ** (-8 / 9)
+    assert sample["reference_modification_factor"] == pytest.approx(expected, rel=1e-3)
+    assert expected < modification_factor(sample["viscosity_ratio"], sample["contamination_factor"] * life.fatigue_limit / sample["reference_load"])
+    assert sample["lnmr"] == pytest.approx(expected * sample["l10r"], rel=1e-3)
 
 
 def test_one_load_has_the_moments_of_rollers_that_all_have_it():
@@ -322,6 +348,7 @@ def test_modified_lives_by_hand(name):
     slope, loss = CLEANLINESS[cleanliness]
     rated = pack(deng("life.method=iso281", "life.a_iso=bath_13_10")).life
     rated = rated._replace(dynamic_rating=1e3 * dynamic, fatigue_limit=1e3 * limit, cleanliness_slope=slope, cleanliness_loss=loss)
-    lives = rate_lives(1e3 * load, EquivalentLoads(0.0, 0.0, 0.0, 0.0), rpm * math.pi / 30, 1e-6 * viscosity, 1e-3 * pitch, rated)
+    oil = oil_factors(rpm * math.pi / 30, 1e-6 * viscosity, 1e-3 * pitch, rated)
+    lives = rate_lives(1e3 * load, EquivalentLoads(0.0, 0.0, 0.0, 0.0, 1.0), oil, rated)
     assert lives.viscosity_ratio == pytest.approx(kappa, rel=1e-3) and lives.contamination_factor == pytest.approx(e_c, rel=2e-3)
     assert lives.modification_factor == pytest.approx(a_iso, rel=5e-3) and lives.modified / (60 * rpm) == pytest.approx(hours, rel=5e-3)

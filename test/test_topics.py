@@ -154,13 +154,14 @@ WIRE = {
     ),
     "rating_lives": ("L10, L_nm, L10r, L_nmr", [("l10", "h"), ("lnm", "h"), ("l10r", "h"), ("lnmr", "h")]),
     "life_factors": (
-        "P, P_ref, kappa, e_C, a_ISO, S_0",
+        "P, P_ref, kappa, e_C, a_ISO at P, a_ISO of laminae, S_0",
         [
             ("equivalent_load", "N"),
             ("reference_load", "N"),
             ("viscosity_ratio", ""),
             ("contamination_factor", ""),
             ("modification_factor", ""),
+            ("reference_modification_factor", ""),
             ("static_safety", ""),
         ],
     ),

@@ -300,7 +300,8 @@ def _print_checks(report) -> None:
             check["place"],
             f"{check['low_radius']:.5f}",
             *(f"{check[name]:.4g}" for name in ("slip", "verified_slip", "life", "verified_life")),
-            ("meets both limits" if check["verified_meets"] else f"refused at {verify_level}") + ("" if check["status"] == OK else f", {check['status']}"),
+            ("meets both limits" if check["verified_meets"] else f"refused at {verify_level}")
+            + ("" if check["status"] == OK else f", {check['status']}"),
         )
         for check in report["checks"]
         if (check["kind"], check["d_value"]) == (kind, d_value)

@@ -41,7 +41,7 @@ _RATINGS = (("C", "dynamic", "dynamic_rating"), ("C_0", "static", "static_rating
 def _oil(scene, report) -> str:
     if scene.life.a_iso == "none":
         return ""
-    return f", a_ISO {report['modification_factor']:.3g} (e_C {report['contamination_factor']:.3g}, {scene.life.a_iso})"
+    return f", a_ISO {report['a_iso']:.3g} (e_C {report['contamination_factor']:.3g}, {scene.life.a_iso})"
 
 
 def _rating(scene, report, symbol, name, key) -> str:

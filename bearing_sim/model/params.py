@@ -269,7 +269,7 @@ def _life(scene: Scene) -> Life:
     roller, rated = bearing.roller, rate(bearing)
     slope, loss = CLEANLINESS.get(choice.a_iso, (0.0, 0.0))
     inner_rating, outer_rating = ring_ratings(rated.dynamic, roller.count, bearing.diameter_ratio)
-    drops = crown_drops(roller.profile, roller.diameter, roller.length, choice.laminae)
+    positions, drops = slice_middles(roller.length, choice.laminae), crown_drops(roller.profile, roller.diameter, roller.length, choice.laminae)
     return Life(
         method=METHODS[choice.method],
         dynamic_rating=rated.dynamic,
@@ -281,7 +281,7 @@ def _life(scene: Scene) -> Life:
         modified=choice.a_iso != "none",
         cleanliness_slope=slope,
         cleanliness_loss=loss,
-        laminae=new_laminae(slice_middles(roller.length, choice.laminae), drops, contact_stiffness(bearing), inner_rating),
+        laminae=new_laminae(positions, drops, contact_stiffness(bearing), inner_rating, outer_rating, roller.count),
     )
 
 

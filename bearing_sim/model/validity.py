@@ -929,7 +929,7 @@ def merged(cells: Iterable[str]) -> str:
 
 
 def counted(cells: Iterable[str]) -> list[str]:
-    """Return one sentence for each law in cells of a table (see `cell`): in how many of them it is outside of its range, its values, and what to do."""
+    """Return one sentence for each law in cells of a table (see `cell`): in how many it is outside of its range, its values, and what to do."""
     values: dict[str, list[float]] = {}
     for each in (each for text in cells for each in text.split(_SEPARATOR) if each):
         name, *number = each.split(" ")[:2]

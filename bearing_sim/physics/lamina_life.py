@@ -2,7 +2,12 @@
 """Rollers cut into laminae for the reference rating life L10r of ISO/TS 16281:2008: lamina loads, stress risers, dynamic equivalent loads.
 
 L10r = [sum over k of (q_kei/q_kci)^(9/2) + (q_kee/q_kce)^(9/2)]^(-8/9) million revolutions, with q_kc = Q_c N^(-7/9) and the power means q_ke
-over the rollers of the lamina loads times the stress risers f_k.
+over the rollers of the lamina loads times the stress risers f_k.  The modified reference rating life takes a_ISO lamina by lamina,
+
+    L_nmr = a_1 {sum over k of a_ISO,k^(-9/8) [(q_kei/q_kci)^(9/2) + (q_kee/q_kce)^(9/2)]}^(-8/9),
+
+each at the load P_sk that would give a bearing of such laminae its life,
+P_sk = 0.323 Z N {[q_kei^(9/2) + (1.038 q_kee Q_ci/Q_ce)^(9/2)]/[1 + (1.038 Q_ci/Q_ce)^(9/2)]}^(2/9) (ISO 16281:2025, formulas 31 and 33).
 
 **Both rings as one load each.**  An inner raceway with the *equivalent roller load by laminae*
 
@@ -24,7 +29,7 @@ import numpy as np
 
 from bearing_sim.numerics.compilation import kernel
 from bearing_sim.physics.contact import EXPONENT
-from bearing_sim.physics.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT
+from bearing_sim.physics.rating_life import LARGEST_MODIFICATION, ROTATING_EXPONENT, STATIONARY_EXPONENT, modification_factor
 
 MOMENTS = 4  # of roller loads, per ring
 _POINTS = 1024  # of the table of penetrations; interpolated shares of a load err by less than 1e-5
@@ -39,6 +44,7 @@ class EquivalentLoads(NamedTuple):
     outer: float
     inner_lamina: float
     outer_lamina: float
+    reference_modification_factor: float  # a_ISO of all laminae together, L_nmr/(a_1 L10r)
 
 
 class Laminae(NamedTuple):
@@ -52,6 +58,8 @@ class Laminae(NamedTuple):
     log_least: float  # ln Q of the first
     per_log: float  # steps per unit of ln Q
     stiffness: float  # of a lamina, K/N [N/m^(10/9)]
+    outer_weight: float  # (1.038 Q_ci/Q_ce)^(9/2)
+    load_factor: float  # P_sk over [q_kei^(9/2) + outer_weight q_kee^(9/2)]^(2/9)
 
 
 def stress_risers(laminae):
@@ -68,15 +76,17 @@ def stress_risers(laminae):
         return 1.0 - 0.01 / np.log(1.985 * position)
 
 
-def new_laminae(positions, crown, stiffness, rating) -> Laminae:
+def new_laminae(positions, crown, stiffness, inner_rating, outer_rating, rollers) -> Laminae:
     """Return the laminae of a roller.
 
     Parameters
     ----------
     positions, crown : of their middles, and the profile's drop there [m], shape (N,).
     stiffness : K of the whole contact [N/m^(10/9)].
-    rating : load rating of a roller [N]; gives the range of loads.
+    inner_rating, outer_rating : load ratings of a roller, Q_ci and Q_ce [N]; the inner one gives the range of loads too.
+    rollers : their number, Z.
     """
+    rating, outer_weight = inner_rating, (1.038 * inner_rating / outer_rating) ** 4.5
     count, highest = len(crown), float(crown.min())
     log_loads = np.linspace(math.log(_LEAST_LOAD * rating), math.log(_LARGEST_LOAD * rating), _POINTS)
     # the load of a grid of penetrations, as dense as needed to invert it
@@ -94,6 +104,8 @@ def new_laminae(positions, crown, stiffness, rating) -> Laminae:
         log_least=float(log_loads[0]),
         per_log=float((_POINTS - 1) / (log_loads[-1] - log_loads[0])),
         stiffness=float(stiffness / count),
+        outer_weight=float(outer_weight),
+        load_factor=float(0.323 * rollers * count / (1.0 + outer_weight) ** (2.0 / 9.0)),
     )
 
 
@@ -154,27 +166,58 @@ def _gauss_loads(moments):
 
 
 @kernel
-def equivalent_loads(moments, laminae):
+def equivalent_loads(moments, oil, life):
     """Return the `EquivalentLoads` of aligned rollers by moments of their loads.
 
     Parameters
     ----------
     moments : means over rollers and time of the loads' powers, shape (2, MOMENTS); see `add_load_moments`.
-    laminae : `Laminae`.
+    oil : `bearing_sim.physics.rating_life.OilFactors`.
+    life : `bearing_sim.model.params.Life`.
     """
+    laminae = life.laminae
     q_1, w_1, q_2, w_2 = _gauss_loads(moments[0])
     q_3, w_3, q_4, w_4 = _gauss_loads(moments[1])
     (d_1, q_1), (d_2, q_2) = penetration_of(q_1, laminae), penetration_of(q_2, laminae)
     (d_3, q_3), (d_4, q_4) = penetration_of(q_3, laminae), penetration_of(q_4, laminae)
-    inner, outer = 0.0, 0.0
+    inner, outer, modified = 0.0, 0.0, 0.0
     for k in range(laminae.crown.shape[0]):
         drop, stiffness = laminae.crown[k], laminae.risers[k] * laminae.stiffness
         rotating = w_1 * _share(d_1 - drop, stiffness / q_1) ** 4 + w_2 * _share(d_2 - drop, stiffness / q_2) ** 4
-        inner += rotating ** (4.5 / ROTATING_EXPONENT)
-        outer += w_3 * _share(d_3 - drop, stiffness / q_3) ** 4.5 + w_4 * _share(d_4 - drop, stiffness / q_4) ** 4.5
+        stationary = w_3 * _share(d_3 - drop, stiffness / q_3) ** 4.5 + w_4 * _share(d_4 - drop, stiffness / q_4) ** 4.5
+        of_inner = rotating ** (4.5 / ROTATING_EXPONENT)
+        inner += of_inner
+        outer += stationary
+        modified += _modified_part(of_inner, stationary, oil, life)
     whole_inner, whole_outer = moments[0, 0] ** (1.0 / ROTATING_EXPONENT), moments[1, 0] ** (1.0 / STATIONARY_EXPONENT)
-    count = laminae.crown.shape[0]
-    return EquivalentLoads(whole_inner, whole_outer, _of_laminae(inner, count), _of_laminae(outer, count))
+    return _summed(whole_inner, whole_outer, inner, outer, modified, life)
+
+
+@kernel
+def _modified_part(inner, outer, oil, life):
+    """Return what a lamina adds to the sum of the modified life, times N^(-7/2).
+
+    Parameters
+    ----------
+    inner, outer : q_kei^(9/2) and q_kee^(9/2) [N^(9/2)].
+    oil, life : as of `equivalent_loads`.
+    """
+    basic = inner / life.inner_rating**4.5 + outer / life.outer_rating**4.5
+    if not life.modified or not basic > 0.0:
+        return basic
+    load = life.laminae.load_factor * (inner + life.laminae.outer_weight * outer) ** (2.0 / 9.0)
+    return modification_factor(oil.viscosity_ratio, oil.contamination_factor * life.fatigue_limit / load) ** -1.125 * basic
+
+
+@kernel
+def _summed(whole_inner, whole_outer, inner, outer, modified, life):
+    """Return the `EquivalentLoads` of whole rollers and of sums over the laminae of q_kei^(9/2), q_kee^(9/2) and `_modified_part`."""
+    basic = inner / life.inner_rating**4.5 + outer / life.outer_rating**4.5
+    factor = 1.0
+    if life.modified:
+        factor = (modified / basic) ** (-8.0 / 9.0) if basic > 0.0 else LARGEST_MODIFICATION
+    count = life.laminae.crown.shape[0]
+    return EquivalentLoads(whole_inner, whole_outer, _of_laminae(inner, count), _of_laminae(outer, count), factor)
 
 
 @kernel
@@ -215,10 +258,19 @@ def add_lamina_powers(inner, outer, risers, fraction, inner_means, outer_means):
 
 
 @kernel
-def equivalent_lamina_loads(inner_means, outer_means):
-    """Return the equivalent roller loads by laminae of both rings [N]; parameters as of `add_lamina_powers`."""
-    inner, outer, count = 0.0, 0.0, inner_means.shape[0]
-    for k in range(count):
-        inner += inner_means[k] ** (4.5 / ROTATING_EXPONENT)
+def equivalent_lamina_loads(whole_inner, whole_outer, inner_means, outer_means, oil, life):
+    """Return the `EquivalentLoads` of rollers whose laminae are known.
+
+    Parameters
+    ----------
+    whole_inner, whole_outer : dynamic equivalent loads of whole rollers [N].
+    inner_means, outer_means : as of `add_lamina_powers`, shape (N,).
+    oil, life : as of `equivalent_loads`.
+    """
+    inner, outer, modified = 0.0, 0.0, 0.0
+    for k in range(inner_means.shape[0]):
+        of_inner = inner_means[k] ** (4.5 / ROTATING_EXPONENT)
+        inner += of_inner
         outer += outer_means[k]
-    return _of_laminae(inner, count), _of_laminae(outer, count)
+        modified += _modified_part(of_inner, outer_means[k], oil, life)
+    return _summed(whole_inner, whole_outer, inner, outer, modified, life)

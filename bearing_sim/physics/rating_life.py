@@ -133,6 +133,29 @@ def modification_factor(kappa, limit_ratio):
     return min(0.1 * left**-9.185, LARGEST_MODIFICATION)
 
 
+class OilFactors(NamedTuple):
+    """What the oil contributes to a modified life."""
+
+    viscosity_ratio: float  # kappa
+    contamination_factor: float  # e_C; NaN where the scene names no cleanliness class
+
+
+@kernel
+def oil_factors(shaft_speed, kinematic_viscosity, pitch_diameter, life):
+    """Return the `OilFactors` of a condition.
+
+    Parameters
+    ----------
+    shaft_speed : [rad/s].
+    kinematic_viscosity : of the oil [m^2/s].
+    pitch_diameter : [m].
+    life : `bearing_sim.model.params.Life`.
+    """
+    kappa = viscosity_ratio(kinematic_viscosity, shaft_speed, pitch_diameter)
+    cleanliness = contamination_factor(kappa, life.cleanliness_slope, life.cleanliness_loss, pitch_diameter) if life.modified else math.nan
+    return OilFactors(kappa, cleanliness)
+
+
 class Lives(NamedTuple):
     """Rating lives of one condition in revolutions, and what they follow from.
 
@@ -151,60 +174,63 @@ class Lives(NamedTuple):
     reference_load: float  # P_ref, under which L10 would be L10r [N]
     viscosity_ratio: float  # kappa
     contamination_factor: float  # e_C; NaN where the scene names no cleanliness class
-    modification_factor: float  # a_ISO by the method of the scene; 1 where it names no cleanliness class
+    modification_factor: float  # a_ISO at P; 1 where the scene names no cleanliness class
+    reference_modification_factor: float  # a_ISO of all laminae together, L_nmr/(a_1 L10r)
     static_safety: float  # S_0 = C_0/P_0
 
 
 @kernel
-def rate_lives(load, equivalent, shaft_speed, kinematic_viscosity, pitch_diameter, life):
+def rate_lives(load, equivalent, oil, life):
     """Return the `Lives` of one condition; infinite without load.
 
-    P = P_0 = F_r, as for every bearing that carries no axial load.  A life modified by oil takes for P the load that gives its basic life,
-    P = C L^(-3/10): F_r by ISO 281, P_ref by ISO/TS 16281, 5.3.4.
+    P = P_0 = F_r, as for every bearing that carries no axial load.
 
     Parameters
     ----------
     load : radial load on the bearing, F_r [N].
     equivalent : `bearing_sim.physics.lamina_life.EquivalentLoads`.
-    shaft_speed : [rad/s].
-    kinematic_viscosity : of the oil [m^2/s].
-    pitch_diameter : [m].
+    oil : `OilFactors`.
     life : `bearing_sim.model.params.Life`.
     """
     l10 = 1e6 * (life.dynamic_rating / load) ** (10.0 / 3.0) if load > 0.0 else math.inf
     l10r = rating_life_revolutions(equivalent.inner_lamina, equivalent.outer_lamina, life)
-    basic = l10r if life.method == ISO16281 else l10
-    if life.method == DENG2017:
+    at_load, of_laminae = modified_by_oil(l10, oil, life), equivalent.reference_modification_factor
+    lnm, lnmr = life.reliability_factor * at_load * l10, life.reliability_factor * of_laminae * l10r
+    basic, modified = l10r, lnmr
+    if life.method == ISO281:
+        basic, modified = l10, lnm
+    elif life.method == DENG2017:
         basic = rating_life_revolutions(equivalent.inner, equivalent.outer, life)
-    kappa = viscosity_ratio(kinematic_viscosity, shaft_speed, pitch_diameter)
-    cleanliness = contamination_factor(kappa, life.cleanliness_slope, life.cleanliness_loss, pitch_diameter) if life.modified else math.nan
+        modified = life.reliability_factor * modified_by_oil(basic, oil, life) * basic
     return Lives(
         basic,
-        life.reliability_factor * modified_by_oil(basic, kappa, cleanliness, life) * basic,
+        modified,
         l10,
-        life.reliability_factor * modified_by_oil(l10, kappa, cleanliness, life) * l10,
+        lnm,
         l10r,
-        life.reliability_factor * modified_by_oil(l10r, kappa, cleanliness, life) * l10r,
+        lnmr,
         load,
         life.dynamic_rating * (1e-6 * l10r) ** -0.3,
-        kappa,
-        cleanliness,
-        modified_by_oil(basic, kappa, cleanliness, life),
+        oil.viscosity_ratio,
+        oil.contamination_factor,
+        at_load,
+        of_laminae,
         life.static_rating / load if load > 0.0 else math.inf,
     )
 
 
 @kernel
-def modified_by_oil(revolutions, kappa, cleanliness, life):
+def modified_by_oil(revolutions, oil, life):
     """Return a_ISO at the load that gives a basic life, P = C L^(-3/10); 1 where no cleanliness class is named.
 
     Parameters
     ----------
     revolutions : the basic life; may be infinite.
-    kappa, cleanliness : viscosity ratio, and e_C.
+    oil : `OilFactors`.
     life : `bearing_sim.model.params.Life`.
     """
     if not life.modified:
         return 1.0
+    cleanliness = oil.contamination_factor
     limit_ratio = cleanliness * life.fatigue_limit / life.dynamic_rating * (revolutions * 1e-6) ** 0.3 if cleanliness > 0.0 else 0.0
-    return modification_factor(kappa, limit_ratio)
+    return modification_factor(oil.viscosity_ratio, limit_ratio)

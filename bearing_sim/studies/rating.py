@@ -6,11 +6,20 @@ from collections.abc import Mapping
 import numpy as np
 
 from bearing_sim.monitoring.film_ratio import ThinnestFilm
+from bearing_sim.physics.rating_life import reliability_factor
 from bearing_sim.scene.ratings import rate
 from bearing_sim.scene.scene import Scene
 
 LIVES = ("rating_life", "modified_rating_life", "l10", "lnm", "l10r", "lnmr")
-FACTORS = ("equivalent_load", "reference_load", "viscosity_ratio", "contamination_factor", "modification_factor", "static_safety")
+FACTORS = (
+    "equivalent_load",
+    "reference_load",
+    "viscosity_ratio",
+    "contamination_factor",
+    "modification_factor",
+    "reference_modification_factor",
+    "static_safety",
+)
 
 
 def life_report(scene: Scene, samples: np.ndarray) -> dict:
@@ -43,6 +52,7 @@ def report_of(scene: Scene, values: Mapping[str, float], film: float) -> dict:
         "modified_life_hours": values["modified_rating_life"],
         **{f"{name}_hours": values[name] for name in LIVES[2:]},
         **{name: values[name] for name in FACTORS},
+        "a_iso": values["modified_rating_life"] / values["rating_life"] / reliability_factor(scene.life.reliability),
         "dynamic_rating": rated.dynamic,
         "static_rating": rated.static,
         "fatigue_limit": rated.fatigue_limit,

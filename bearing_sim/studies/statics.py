@@ -13,7 +13,7 @@ from bearing_sim.model.oil import oil_at
 from bearing_sim.model.params import lubricate, pack
 from bearing_sim.physics.film import DOWSON_HIGGINSON, films
 from bearing_sim.physics.lamina_life import EquivalentLoads, add_lamina_powers, equivalent_lamina_loads, stress_risers
-from bearing_sim.physics.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT, Lives, rate_lives
+from bearing_sim.physics.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT, Lives, oil_factors, rate_lives
 from bearing_sim.scene.scene import Scene
 from bearing_sim.sweep.table import new_figure
 
@@ -60,6 +60,7 @@ def statics(scene: Scene, slices: int) -> Statics:
         No balance was found.
     """
     scene = with_slices(scene, slices)
+    scene = dataclasses.replace(scene, life=dataclasses.replace(scene.life, laminae=slices))  # the slices are the laminae
     params, operating = pack(scene), scene.operating
     count, raceways = params.rollers.count, params.raceways
     cage_speed = 0.5 * operating.shaft_speed * (1.0 - raceways.diameter_ratio)
@@ -81,9 +82,10 @@ def statics(scene: Scene, slices: int) -> Statics:
         add_lamina_powers(at.inner, at.outer, risers, 1.0 / (_PITCH_POSITIONS - position), inner_means, outer_means)
 
     whole = float(rotating ** (1 / ROTATING_EXPONENT)), float(stationary ** (1 / STATIONARY_EXPONENT))
-    equivalent = EquivalentLoads(*whole, *equivalent_lamina_loads(inner_means, outer_means))
     speed = abs(operating.shaft_speed)
-    lives = rate_lives(operating.radial_load, equivalent, speed, lubrication.kinematic_viscosity, 2 * raceways.pitch_radius, params.life)
+    oil = oil_factors(speed, lubrication.kinematic_viscosity, 2 * raceways.pitch_radius, params.life)
+    equivalent = equivalent_lamina_loads(*whole, inner_means, outer_means, oil, params.life)
+    lives = rate_lives(operating.radial_load, equivalent, oil, params.life)
     hours = 2 * math.pi / (3600 * speed) if speed > 0.0 else math.inf
     width = params.rollers.length / slices
     return Statics(

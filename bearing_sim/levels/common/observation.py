@@ -7,11 +7,18 @@ from bearing_sim.levels.common.model import load_at, shaft_speed_at
 from bearing_sim.model.sample import COLUMN
 from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.simd import load, spread, square_root, total
-from bearing_sim.physics.rating_life import rate_lives
+from bearing_sim.physics.rating_life import oil_factors, rate_lives
 
 
 @kernel
-def observe_course(t, cage_angle, cage_speed, equivalent, model, interval, previous, row):
+def oil_at_speed(shaft_speed, model):
+    """Return the `bearing_sim.physics.rating_life.OilFactors` of a level's model at a shaft speed [rad/s]."""
+    params = model.params
+    return oil_factors(shaft_speed, model.lubrication.kinematic_viscosity, 2.0 * params.raceways.pitch_radius, params.life)
+
+
+@kernel
+def observe_course(t, cage_angle, cage_speed, equivalent, oil, model, interval, previous, row):
     """Write inputs, cage, slip, lives and damage of one instant.
 
     Damage counts the modified life by the method of the scene.
@@ -20,6 +27,7 @@ def observe_course(t, cage_angle, cage_speed, equivalent, model, interval, previ
     ----------
     cage_angle, cage_speed : of the cage [rad, rad/s].
     equivalent : `bearing_sim.physics.lamina_life.EquivalentLoads`.
+    oil : `oil_at_speed` of the instant.
     model : a level's model with params, lubrication and drive.
     interval : time since the previous sample [s]; damage and angles accumulate over it.
     previous, row : flat samples, shape (SCALARS + runs * Z,); see `bearing_sim.model.sample.flat`.
@@ -44,8 +52,7 @@ def observe_course(t, cage_angle, cage_speed, equivalent, model, interval, previ
     row[COLUMN.outer_equivalent_load] = equivalent.outer
     row[COLUMN.inner_lamina_load] = equivalent.inner_lamina
     row[COLUMN.outer_lamina_load] = equivalent.outer_lamina
-    viscosity, pitch = model.lubrication.kinematic_viscosity, 2.0 * params.raceways.pitch_radius
-    lives = rate_lives(math.hypot(load_y, load_z), equivalent, shaft_speed, viscosity, pitch, params.life)
+    lives = rate_lives(math.hypot(load_y, load_z), equivalent, oil, params.life)
     _write_lives(lives, 2.0 * math.pi / (3600.0 * abs(shaft_speed)), row)
     row[COLUMN.damage] = previous[COLUMN.damage] + abs(rotation) / (2.0 * math.pi * lives.modified)
 
@@ -64,6 +71,7 @@ def _write_lives(lives, hours, row):
     row[COLUMN.viscosity_ratio] = lives.viscosity_ratio
     row[COLUMN.contamination_factor] = lives.contamination_factor
     row[COLUMN.modification_factor] = lives.modification_factor
+    row[COLUMN.reference_modification_factor] = lives.reference_modification_factor
     row[COLUMN.static_safety] = lives.static_safety
 
 

@@ -8,7 +8,7 @@ implicit steps: `bearing_sim.levels.planar.jacobian`.
 import math
 
 from bearing_sim.levels.common.model import FIFTH_PITCH, orbital_speed_tolerance, pitch_step, shaft_speed_at
-from bearing_sim.levels.common.observation import average_moments, observe_course
+from bearing_sim.levels.common.observation import average_moments, observe_course, oil_at_speed
 from bearing_sim.levels.common.power import write_powers
 from bearing_sim.levels.common.rollers import land_eccentricity, observe_rollers
 from bearing_sim.levels.common.state_transfer import first_cage_centre, rolling_state
@@ -96,8 +96,9 @@ def observe(t, y, model, work, interval, previous, row, rate):
     """Write the sample of state ``y``; parameters as in `bearing_sim.levels.slip.model.observe`."""
     rhs(t, y, model, work, rate)
     rows, count = work.rollers, model.params.rollers.count
-    equivalent = equivalent_loads(work.load_moments, model.params.life.laminae)
-    observe_course(t, y[THETA], y[OMEGA], equivalent, model, interval, previous, row)
+    oil = oil_at_speed(shaft_speed_at(t, model.drive), model)
+    equivalent = equivalent_loads(work.load_moments, oil, model.params.life)
+    observe_course(t, y[THETA], y[OMEGA], equivalent, oil, model, interval, previous, row)
     row[COLUMN.ring_y], row[COLUMN.ring_z] = y[RING_Y], y[RING_Z]
     row[COLUMN.cage_y], row[COLUMN.cage_z] = y[CAGE_Y], y[CAGE_Z]
     row[COLUMN.land_eccentricity] = land_eccentricity(y[RING_Y], y[RING_Z], y[CAGE_Y], y[CAGE_Z], model.params.cage)

@@ -176,7 +176,7 @@ def equations(t, y, model, work, rate, with_jacobian):
 
 
 @kernel
-def pitch_loads(cage_angle, cage_speed, load_y, load_z, params, work):
+def pitch_loads(cage_angle, cage_speed, load_y, load_z, oil, params, work):
     """Return the `bearing_sim.physics.lamina_life.EquivalentLoads`, means over all rollers and one roller pitch; their moments stay in ``work``."""
     count, moments = params.rollers.count, work.load_moments
     moments[:] = 0.0
@@ -184,7 +184,7 @@ def pitch_loads(cage_angle, cage_speed, load_y, load_z, params, work):
         balance_loads(cage_angle - 2.0 * math.pi * position / (_PITCH_POSITIONS * count), cage_speed, load_y, load_z, params, work)
         for j in range(count):
             add_load_moments(work.loads[LOAD.inner, j], work.loads[LOAD.outer, j], 1.0 / (_PITCH_POSITIONS * count), moments)
-    return equivalent_loads(moments, params.life.laminae)
+    return equivalent_loads(moments, oil, params.life)
 
 
 @kernel

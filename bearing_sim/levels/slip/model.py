@@ -13,7 +13,7 @@ import math
 import numpy as np
 
 from bearing_sim.levels.common.model import HALF_PITCH, inner_growth, load_at, orbital_speed_tolerance, pitch_step, shaft_speed_at
-from bearing_sim.levels.common.observation import observe_course
+from bearing_sim.levels.common.observation import observe_course, oil_at_speed
 from bearing_sim.levels.common.power import write_powers
 from bearing_sim.levels.slip.forces import equations, pitch_loads
 from bearing_sim.levels.slip.power import slip_powers
@@ -85,8 +85,9 @@ def observe(t, y, model, work, interval, previous, row, rate):
     count, cage_speed = params.rollers.count, y[OMEGA]
     load_y, load_z = load_at(t, model.drive)
     work.growth[0] = inner_growth(shaft_speed_at(t, model.drive), model)
-    equivalent = pitch_loads(y[THETA], cage_speed, load_y, load_z, params, work)
-    observe_course(t, y[THETA], cage_speed, equivalent, model, interval, previous, row)
+    oil = oil_at_speed(shaft_speed_at(t, model.drive), model)
+    equivalent = pitch_loads(y[THETA], cage_speed, load_y, load_z, oil, params, work)
+    observe_course(t, y[THETA], cage_speed, equivalent, oil, model, interval, previous, row)
     rhs(t, y, model, work, rate)
     write_powers(slip_powers(cage_speed, rate[OMEGA], y[SPIN:], shaft_speed_at(t, model.drive), model, work), row)
     row[COLUMN.ring_y] = work.ring[0]

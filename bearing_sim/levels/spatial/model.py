@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from bearing_sim.levels.common.model import FIFTH_PITCH, orbital_speed_tolerance, pitch_step, shaft_speed_at
-from bearing_sim.levels.common.observation import average_moments, observe_course
+from bearing_sim.levels.common.observation import average_moments, observe_course, oil_at_speed
 from bearing_sim.levels.common.power import write_powers
 from bearing_sim.levels.common.rollers import land_eccentricity, observe_rollers
 from bearing_sim.levels.common.slice_balance import balance, roller_tilts
@@ -50,7 +50,7 @@ from bearing_sim.model.sample import COLUMN, SCALARS
 from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.simd import LANES
 from bearing_sim.physics.lamina import ROLLER_ROW
-from bearing_sim.physics.lamina_life import EquivalentLoads, equivalent_lamina_loads
+from bearing_sim.physics.lamina_life import equivalent_lamina_loads
 from bearing_sim.physics.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT
 
 _CAGE_STEP = 1e-3  # rad, over which speeds are differences: a hundredth of what a lobe or a roller pitch takes
@@ -184,8 +184,9 @@ def observe(t, y, model, work, interval, previous, row, rate):
     rhs(t, y, model, work, rate)
     rows, count = work.rollers, model.params.rollers.count
     inner, outer = work.load_moments[0, 0] ** (1.0 / ROTATING_EXPONENT), work.load_moments[1, 0] ** (1.0 / STATIONARY_EXPONENT)
-    inner_lamina, outer_lamina = equivalent_lamina_loads(work.lamina_means[0], work.lamina_means[1])
-    observe_course(t, y[THETA], y[OMEGA], EquivalentLoads(inner, outer, inner_lamina, outer_lamina), model, interval, previous, row)
+    oil = oil_at_speed(shaft_speed_at(t, model.drive), model)
+    equivalent = equivalent_lamina_loads(inner, outer, work.lamina_means[0], work.lamina_means[1], oil, model.params.life)
+    observe_course(t, y[THETA], y[OMEGA], equivalent, oil, model, interval, previous, row)
     row[COLUMN.ring_y], row[COLUMN.ring_z] = y[RING_Y], y[RING_Z]
     row[COLUMN.cage_y], row[COLUMN.cage_z] = y[CAGE_Y], y[CAGE_Z]
     row[COLUMN.ring_tilt_y], row[COLUMN.ring_tilt_z] = y[RING_TILT_Y], y[RING_TILT_Z]

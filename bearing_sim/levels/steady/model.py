@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.levels.common.model import Drive, Model, inner_growth, load_at, shaft_speed_at
-from bearing_sim.levels.common.observation import observe_course
+from bearing_sim.levels.common.observation import observe_course, oil_at_speed
 from bearing_sim.levels.slip import state as slip_state
 from bearing_sim.levels.slip.forces import balance_loads
 from bearing_sim.levels.slip.state import OMEGA, THETA
@@ -131,8 +131,9 @@ def _write_sample(t, y, model, work, interval, previous, row):
         answer[ANSWER.outer_equivalent_load],
         answer[ANSWER.inner_lamina_load],
         answer[ANSWER.outer_lamina_load],
+        answer[ANSWER.reference_modification_factor],
     )
-    observe_course(t, cage_angle, cage_speed, equivalent, model, interval, previous, row)
+    observe_course(t, cage_angle, cage_speed, equivalent, oil_at_speed(shaft_speed_at(t, model.drive), model), model, interval, previous, row)
     for column in range(ANSWER.damping_power - ANSWER.shaft_power + 1):
         row[COLUMN.shaft_power + column] = answer[ANSWER.shaft_power + column]
     load_y, load_z = load_at(t, model.drive)

@@ -24,6 +24,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.levels.common.observation import oil_at_speed
 from bearing_sim.levels.slip.forces import pitch_loads
 from bearing_sim.levels.slip.methods import advance as advance_slip
 from bearing_sim.levels.slip.model import rhs, rhs_and_jacobian
@@ -236,14 +237,15 @@ class AnswerColumn(NamedTuple):
     outer_equivalent_load: int = 3
     inner_lamina_load: int = 4  # the same by laminae
     outer_lamina_load: int = 5
-    shaft_power: int = 6  # from here on means in time [W]; the order is that of `bearing_sim.levels.common.power.Powers`
-    inner_sliding_power: int = 7
-    outer_sliding_power: int = 8
-    churning_power: int = 9
-    windage_power: int = 10
-    land_power: int = 11
-    pocket_power: int = 12
-    damping_power: int = 13
+    reference_modification_factor: int = 6  # a_ISO of all laminae together
+    shaft_power: int = 7  # from here on means in time [W]; the order is that of `bearing_sim.levels.common.power.Powers`
+    inner_sliding_power: int = 8
+    outer_sliding_power: int = 9
+    churning_power: int = 10
+    windage_power: int = 11
+    land_power: int = 12
+    pocket_power: int = 13
+    damping_power: int = 14
 
 
 ANSWER = AnswerColumn()
@@ -394,9 +396,10 @@ def solve_point(model, work, orbit, answer):
         return FAILED
     answer[ANSWER.cage_slip] = slip if status == SETTLED else 1.0
     _write_powers(speed, sense, model, work, orbit, answer)
-    loads = pitch_loads(0.0, speed, model.drive.load_y, model.drive.load_z, model.params, work)
+    loads = pitch_loads(0.0, speed, model.drive.load_y, model.drive.load_z, oil_at_speed(shaft_speed, model), model.params, work)
     answer[ANSWER.inner_equivalent_load], answer[ANSWER.outer_equivalent_load] = loads.inner, loads.outer
     answer[ANSWER.inner_lamina_load], answer[ANSWER.outer_lamina_load] = loads.inner_lamina, loads.outer_lamina
+    answer[ANSWER.reference_modification_factor] = loads.reference_modification_factor
     return status
 
 

@@ -180,14 +180,15 @@ def assembled(knots: list[np.ndarray], period: float, mirror: float, values: np.
 
 
 def _lives(answers: np.ndarray, params: Params) -> np.ndarray:
-    """Return the lives by roller loads that answers give: of whole rollers and by laminae [revolutions], shape (n, 2)."""
+    """Return the lives by roller loads that answers give [revolutions]: of whole rollers, by laminae, and that modified by oil, shape (n, 3)."""
     whole = answers[:, [ANSWER.inner_equivalent_load, ANSWER.outer_equivalent_load]].tolist()
     laminae = answers[:, [ANSWER.inner_lamina_load, ANSWER.outer_lamina_load]].tolist()
-    return np.array([[rating_life_revolutions(*loads, params.life) for loads in pair] for pair in zip(whole, laminae)])
+    lives = np.array([[rating_life_revolutions(*loads, params.life) for loads in pair] for pair in zip(whole, laminae)])
+    return np.column_stack([lives, lives[:, 1] * answers[:, ANSWER.reference_modification_factor]])
 
 
 def _life_errors(found: np.ndarray, exact: np.ndarray, params: Params) -> np.ndarray:
-    """Return the larger of the relative errors of both lives of each answer, shape (n,)."""
+    """Return the largest of the relative errors of the lives of each answer, shape (n,)."""
     return np.abs(_lives(found, params) / _lives(exact, params) - 1.0).max(axis=1)
 
 
@@ -296,7 +297,7 @@ def table_hash(scene: Scene, span: Span) -> str:
     params = pack(scene)
     digest = hashlib.sha256(sources_hash().encode())
     oils = [lubricate(scene.lubricant, params, float(kelvin)) for kelvin in np.linspace(span.minimum_temperature, span.maximum_temperature, _OILS)]
-    bearing = params.rollers, params.raceways, params.cage, params.growth, params.variants, params.life.laminae
+    bearing = params.rollers, params.raceways, params.cage, params.growth, params.variants, params.life
     for number in _numbers((bearing, oils, span, scene.table.tolerance)):
         digest.update(number)
     return digest.hexdigest()[:24]
