@@ -41,7 +41,7 @@ def test_bearings_as_they_are_built_are_plausible(scene):
         (["bearing.outer_raceway.d_value=1 mm", "bearing.outer_raceway.lobes=3"], "bearing.outer_raceway.d_value", "1000 um", "0.5 % of the pitch"),
         (["bearing.outer_raceway.d_value=50 um", "bearing.outer_raceway.lobes=3"], "bearing.outer_raceway.d_value", "50 um", "do not press rollers"),
         (["bearing.cage.guide_radius=40 mm", "bearing.cage.inner_radius=36 mm"], "bearing.cage", "36 to 39.7 mm", "the pitch radius between"),
-        (["bearing.catalogue_limits.limiting_speed=2000 rpm"], "limiting_speed", "3000 rpm", "at most 2000 rpm"),
+        (["bearing.ratings.limiting_speed=2000 rpm"], "limiting_speed", "3000 rpm", "at most 2000 rpm"),
         (["operating.radial_load=1 kN"], "operating.radial_load", "1000 N", "expect slip"),
         (["operating.shaft_speed=50000 rpm"], "speed_factor", "3.525e+06 rpm mm", "at most 3e+06 rpm mm"),
         (["lubricant.temperature=210 degC"], "oil_temperature", "210 degC", "37.85 to 204.9 degC"),
@@ -61,7 +61,7 @@ def test_lobes_within_their_preload_leave_no_roller_free():
 
 def test_the_minimum_load_is_that_of_the_makers():
     """k_r 150 N (LYC for series 2), n_r 9000 rpm, d_m 70.5 mm: 0.15 (6 + 4/3) 0.705^2 kN."""
-    given = motor("bearing.catalogue_limits.minimum_load_factor=150 N", "bearing.catalogue_limits.reference_speed=9000 rpm")
+    given = motor("bearing.ratings.minimum_load_factor=150 N", "bearing.ratings.reference_speed=9000 rpm")
     assert minimum_load(given)[0] == pytest.approx(150.0 * (6 + 4 * 3000 / 9000) * (0.705**2), rel=1e-4) == pytest.approx(546.7, abs=0.1)
     unknown = motor()
     assert minimum_load(unknown)[0] == pytest.approx(0.02 * rate(unknown.bearing).dynamic) == pytest.approx(1412, abs=2)
@@ -80,9 +80,9 @@ def test_a_bore_that_is_not_given_is_estimated_and_said():
     assert "estimated from the inner raceway" in found
 
 
-def test_the_catalogues_limits_do_not_change_a_scene():
-    with_limits = motor("bearing.catalogue_limits.limiting_speed=9000 rpm")
-    plain = dataclasses.replace(with_limits, bearing=dataclasses.replace(with_limits.bearing, catalogue_limits=motor().bearing.catalogue_limits))
+def test_a_makers_limiting_speed_changes_nothing_else_of_a_scene():
+    with_limits = motor("bearing.ratings.limiting_speed=9000 rpm")
+    plain = dataclasses.replace(with_limits, bearing=dataclasses.replace(with_limits.bearing, ratings=motor().bearing.ratings))
     assert plain == motor()
 
 

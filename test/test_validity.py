@@ -130,8 +130,8 @@ CASES = {
     ),
     "speed_factor": (("run", PAPER, "operating.shaft_speed=52000 rpm"), ("run", PAPER)),
     "limiting_speed": (
-        ("run", "motor", "bearing.catalogue_limits.limiting_speed=2900 rpm"),
-        ("run", "motor", "bearing.catalogue_limits.limiting_speed=9000 rpm"),
+        ("run", "motor", "bearing.ratings.limiting_speed=2900 rpm"),
+        ("run", "motor", "bearing.ratings.limiting_speed=9000 rpm"),
     ),
 }
 

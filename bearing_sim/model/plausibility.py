@@ -47,13 +47,13 @@ def plausibility(scene: Scene) -> list[str]:
 def minimum_load(scene: Scene) -> tuple[float, str]:
     """Return the load below which makers expect slip at the operating speed [N], and where it comes from.
 
-    P_min = k_r (6 + 4 n/n_r)(d_m/100 mm)^2 (SKF, LYC) where ``bearing.catalogue_limits`` has k_r and n_r, otherwise 0.02 C_r.
+    P_min = k_r (6 + 4 n/n_r)(d_m/100 mm)^2 (SKF, LYC) where ``bearing.ratings`` has k_r and n_r, otherwise 0.02 C_r.
     """
-    limits, bearing = scene.bearing.catalogue_limits, scene.bearing
+    limits, bearing = scene.bearing.ratings, scene.bearing
     if limits.minimum_load_factor is not None and limits.reference_speed is not None:
         ratio = abs(scene.operating.shaft_speed) / limits.reference_speed
         return limits.minimum_load_factor * (6.0 + 4.0 * ratio) * (bearing.pitch_diameter / 0.1) ** 2, "k_r (6 + 4 n/n_r)(d_m/100 mm)^2"
-    return _MINIMUM_OF_RATING * rate(bearing).dynamic, "0.02 C_r; give minimum_load_factor and reference_speed in bearing.catalogue_limits"
+    return _MINIMUM_OF_RATING * rate(bearing).dynamic, "0.02 C_r; give minimum_load_factor and reference_speed in bearing.ratings"
 
 
 def _rollers(bearing: Bearing) -> list[str]:

@@ -854,12 +854,12 @@ LAWS = (
         "the shaft speed",
         "rpm",
         -math.inf,
-        lambda scene: scene.bearing.catalogue_limits.limiting_speed * 30.0 / math.pi,
+        lambda scene: scene.bearing.ratings.limiting_speed * 30.0 / math.pi,
         "limiting speed of the bearing by its maker",
         "lower the speed, or ask the maker",
-        lambda scene: scene.bearing.catalogue_limits.limiting_speed is not None,
+        lambda scene: scene.bearing.ratings.limiting_speed is not None,
         lambda at: np.abs(at.samples["shaft_speed"]) * (30.0 / math.pi),
-        expected="at most bearing.catalogue_limits.limiting_speed, where it is given",
+        expected="at most bearing.ratings.limiting_speed, where it is given",
     ),
 )  # fmt: skip
 """All limits that are watched, by subject."""

@@ -151,15 +151,6 @@ class Roughness:
 
 
 @record
-class CatalogueLimits:
-    """What a maker's catalogue says about the use of the bearing; results do not depend on it, warnings do."""
-
-    minimum_load_factor: quantity("N", "minimum load factor, k_r; makers print 0.15 for 0.15 kN or 150 for 150 N", 10.0, 1e4, "kN") | None = None
-    reference_speed: quantity("rad/s", "reference speed, n_r", 1.0, 12000.0, "rpm") | None = None
-    limiting_speed: quantity("rad/s", "limiting speed", 1.0, 12000.0, "rpm") | None = None
-
-
-@record
 class Cage:
     """The cage, guided by two lands of a ring or by the rollers in its pockets (Harris and Kotzalas 2006, chapter 18).
 
@@ -266,8 +257,7 @@ class Bearing:
     contact: Contact = field(default_factory=Contact)
     ring_growth: RingGrowth = field(default_factory=RingGrowth)
     roughness: Roughness | None = None  # None: the lambda ratio is neither computed nor monitored
-    catalogue_limits: CatalogueLimits = field(default_factory=CatalogueLimits)
-    ratings: Ratings = field(default_factory=Ratings)  # the maker's load ratings, where they are known
+    ratings: Ratings = field(default_factory=Ratings)  # what the maker rates the bearing for
 
     @property
     def pitch_radius(self) -> float:

@@ -8,7 +8,7 @@ from bearing_sim.scene.quantity import check, quantity, record
 
 @record
 class Ratings:
-    """A maker's load ratings; what is left out follows from the dimensions by the standards.
+    """A maker's ratings.  Load ratings that are left out follow from the dimensions by the standards; the others serve warnings only.
 
     The ratings of the rollers' contacts (ISO/TS 16281) are in proportion to C, so a maker's C applies to every life.
     """
@@ -16,6 +16,9 @@ class Ratings:
     dynamic: quantity("N", "basic dynamic radial load rating, C", 1.0, 1e9) | None = None
     static: quantity("N", "basic static radial load rating, C_0", 1.0, 1e9) | None = None
     fatigue_limit: quantity("N", "fatigue load limit, C_u", 0.1, 1e8) | None = None
+    minimum_load_factor: quantity("N", "minimum load factor, k_r; makers print 0.15 for 0.15 kN or 150 for 150 N", 10.0, 1e4, "kN") | None = None
+    reference_speed: quantity("rad/s", "reference speed, n_r", 1.0, 12000.0, "rpm") | None = None
+    limiting_speed: quantity("rad/s", "limiting speed", 1.0, 12000.0, "rpm") | None = None
 
     @check
     def _are_of_one_bearing(self) -> list[str]:
