@@ -14,6 +14,7 @@ from click.testing import CliRunner
 
 from bearing_sim import Simulation, load_scene
 from bearing_sim.cli.main import main
+from bearing_sim.scene.fidelity import LEVELS
 from bearing_sim.studies import design as studied
 from bearing_sim.studies.design import CONFIRMED, D_VALUE, LOW, NARROWED, NOMINAL, NOT_VERIFIED, WITHDRAWN, WORST, Limits, design, read_design
 from bearing_sim.sweep.conditions import Conditions, OperatingPoint, Tolerance
@@ -297,6 +298,10 @@ def test_nothing_is_verified_if_nothing_should_be_or_no_level_is_higher(tmp_path
     words = [*ELLIPTICAL, "--d-value", "0.098mm,0.1mm", "--low-radius", "34.862mm,34.863mm", "-o", str(tmp_path / "d.parquet"), "--json"]
     report = json.loads(CliRunner().invoke(main, [*words, "--verify-level", "none"], catch_exceptions=False).stdout)
     assert report["verify_level"] is None and report["checks"] == [] and {each["verdict"] for each in report["worst"]} == {NOT_VERIFIED}
-    assert studied.verifying_level(load_scene("deng2017_table1", ["level=spatial"])) is None
-    levels = {level: studied.verifying_level(load_scene("deng2017_table1", [f"level={level}"])) for level in ("steady", "slip", "planar")}
-    assert levels == {"steady": "slip", "slip": "planar", "planar": "spatial"}
+    spatial = ["--level", "spatial", "--verify-level", "planar"]
+    result = CliRunner().invoke(main, [*words, *spatial])
+    assert result.exit_code == 2 and "expected none; the design is at level spatial" in result.output
+
+
+def test_every_level_but_the_highest_is_verified_by_the_next():
+    assert tuple(studied.VERIFIED_BY.items()) == tuple(itertools.pairwise(LEVELS))

@@ -20,12 +20,6 @@ from bearing_sim.cli.reporting import (
 )
 
 _NONE = "none"
-# What the next level does not see either, because both solve the same equations for most scenes.
-_ALIKE = {
-    ("steady", "slip"): "level slip integrates the equations whose periodic state level steady solves; pocket play, radial vibration and cage whirl "
-    "are not verified (--verify-level planar)",
-    ("planar", "spatial"): "levels planar and spatial agree but for tilt and skew",
-}
 
 
 @click.command("design")
@@ -183,21 +177,19 @@ def _limits(scene, slip_below, life_above, speed_tolerance, load_tolerance, tole
 def _verify_level(asked, scene) -> str | None:
     """Return the level that verifies; None if none does."""
     from bearing_sim.scene.fidelity import LEVELS
-    from bearing_sim.studies.design import verifying_level
+    from bearing_sim.studies.design import ALIKE, VERIFIED_BY
 
     if asked == _NONE:
         return None
-    if asked is None:
-        found = verifying_level(scene)
-        if found is None:
-            click.echo(f"no level of higher fidelity than {scene.level} has all that the scene asks for: nothing is verified", err=True)
-        elif (scene.level, found) in _ALIKE:
-            click.echo(_ALIKE[scene.level, found], err=True)
-        return found
-    if asked not in LEVELS or LEVELS.index(asked) <= LEVELS.index(scene.level):
-        higher = LEVELS[LEVELS.index(scene.level) + 1 :]
+    higher = LEVELS[LEVELS.index(scene.level) + 1 :]
+    if asked is not None and asked not in higher:
         raise UsageError(f"--verify-level {asked}: expected {', '.join([*higher, _NONE])}; the design is at level {scene.level}")
-    return asked
+    found = asked or VERIFIED_BY.get(scene.level)
+    if found is None:
+        click.echo(f"no level is of higher fidelity than {scene.level}: nothing is verified", err=True)
+    elif (scene.level, found) in ALIKE:
+        click.echo(ALIKE[scene.level, found], err=True)
+    return found
 
 
 def _beside(scene, limits):

@@ -20,7 +20,6 @@ import numpy as np
 
 from bearing_sim.model.validity import merged
 from bearing_sim.recording.provenance import git_hash, package_version
-from bearing_sim.scene.fidelity import asked_for, levels_with
 from bearing_sim.scene.loader import SceneError, load_scene, scene_to_yaml
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import with_values
@@ -34,6 +33,12 @@ LOW, D_VALUE = "bearing.outer_raceway.low_radius", "bearing.outer_raceway.d_valu
 NOMINAL, WORST = "nominal", "worst"
 KINDS = (NOMINAL, WORST)
 VERIFIED_BY = {"steady": "slip", "slip": "planar", "planar": "spatial"}  # the next level of higher fidelity
+# What a level does not verify of another, because it leaves out the same.
+ALIKE = {
+    ("steady", "slip"): "level slip integrates the equations whose periodic state level steady solves; pocket play, radial vibration and cage whirl are "
+    "not verified (--verify-level planar)",
+    ("planar", "spatial"): "level spatial adds tilt and skew only; without a moment or misalignment it agrees with level planar",
+}
 CONFIRMED, NARROWED, WITHDRAWN, NOT_VERIFIED = "confirmed", "narrowed", "withdrawn", "not verified"
 _HALVINGS = 7
 _ROUNDS = 4  # of narrowing an interval until its edges and its centre meet the limits at the level that verifies
@@ -226,14 +231,6 @@ def life_name(scene: Scene) -> str:
     life = scene.life
     name = f"{life.symbols[0 if life.is_basic else 1]}, by {life.loads}"
     return name if life.is_basic else f"{name}; reliability {100 * life.reliability:g} %, cleanliness {life.a_iso}"
-
-
-def verifying_level(scene: Scene) -> str | None:
-    """Return the next level of higher fidelity that has everything a scene asks for; None if there is none."""
-    level, able = VERIFIED_BY.get(scene.level), levels_with(asked_for(scene))
-    while level is not None and level not in able:
-        level = VERIFIED_BY.get(level)
-    return level
 
 
 def default_axes(scene: Scene) -> tuple[Axis, Axis]:

@@ -227,6 +227,8 @@ def _design_part(path: Path, designed: studied.Designed) -> _Part:
     told = []
     if verify_level is None:
         told.append("nothing was verified at a level of higher fidelity")
+    if (about["level"], verify_level) in studied.ALIKE:
+        told.append(studied.ALIKE[about["level"], verify_level])
     for verdict in (studied.WITHDRAWN, studied.NARROWED):
         for kind in studied.KINDS:
             count = sum(band.verdict == verdict and band.found.kind == kind for band in designed.bands)
