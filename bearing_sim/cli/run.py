@@ -235,7 +235,8 @@ def _slip(report) -> str:
 def _settled(report) -> str:
     if not report["settled"]:
         return f"no: {report['unsettled_reason']}"
-    return f"yes, after {report['settling_seconds']:.3g} s"
+    seconds = report["settling_seconds"]
+    return f"yes, after {seconds:.3g} s" if seconds > 0.0 else "yes, from the start"
 
 
 def _pressures(report, scene) -> list[tuple[str, str]]:
