@@ -91,7 +91,7 @@ def test_the_page_of_a_design_shows_both_bands_both_levels_points_tolerances_and
         "bearing.roller.diameter ±0.0001 mm",
     ):
         assert text in page.text
-    assert "life [h, steady]" in page.text and "verified life [h, planar]" in page.text and "Widest interval" in page.text
+    assert "life [h at steady]" in page.text and "verified life [h at planar]" in page.text and "Widest interval" in page.text
     narrowed = sum(row["verdict"] == "narrowed" for row in borders.rows)
     assert (narrowed > 0) == ("narrowed at level planar" in page.text)
 
@@ -143,6 +143,15 @@ def test_warnings_open_the_page(tmp_path):
     page = page_of(tmp_path / "t.parquet", tmp_path / "t.html")
     assert "1 warning 2 of 3 rows unsettled: slip was still <changing>" in page.text and "Sweep of <b> at level slip" in page.text
     assert "No picture: expected one or two variables" in page.text
+
+
+def test_a_scene_of_another_version_is_shown_as_text_with_a_warning(folder, tmp_path):
+    table = read_table(folder / "sweep.parquet")
+    older = table.about["scene_of_first_point"].replace("mixture_fraction", "mixture_of_another_version")
+    write_table(tmp_path / "t", table._replace(about=table.about | {"scene_of_first_point": older, "version": "9.9"}))
+    page = page_of(tmp_path / "t.parquet", tmp_path / "t.html")
+    assert "written by another version of bearing_sim (9.9)" in page.text and "mixture_of_another_version: 0.03" in page.text
+    assert f"{table.rows[0]['cage_slip']:.5g}" in page.text
 
 
 def test_a_csv_alone_says_that_its_origin_is_unknown(tmp_path):

@@ -24,7 +24,7 @@ from bearing_sim.model.validity import counted
 from bearing_sim.recording.bag import ACTIVE, RecordingError
 from bearing_sim.recording.provenance import versions
 from bearing_sim.recording.reader import Recording
-from bearing_sim.scene.loader import scene_from_yaml
+from bearing_sim.scene.loader import SceneError, scene_from_yaml
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import quantities, value_at
 from bearing_sim.studies import design as studied
@@ -276,9 +276,9 @@ def _design_part(path: Path, designed: studied.Designed) -> _Part:
 def _at_level(column: Column, about: Mapping) -> Column:
     """Return a column of checks whose unit names the level at which it was computed."""
     if column.name in ("slip", "life"):
-        return column._replace(unit=f"{column.unit}, {about['level']}")
+        return column._replace(unit=f"{column.unit} at {about['level']}")
     if column.name in ("verified_slip", "verified_life"):
-        return column._replace(unit=f"{column.unit}, {about['verify_level']}")
+        return column._replace(unit=f"{column.unit} at {about['verify_level']}")
     return column
 
 
@@ -430,9 +430,12 @@ def _draw_loads(stream, settled: np.ndarray) -> None:
 def _opening(about: Mapping, told: Sequence[str]) -> str:
     """Return the command and the warnings of a result."""
     made = command(about["command"]) if about.get("command") else ""
-    text = _scene_text(about)
-    told = [*told, *(plausibility(scene_from_yaml(text)) if text else ())]
     again = f"<p>Reproduced by <code>{escape(about['reproduced by'])}</code></p>" if about.get("reproduced by") else ""
+    scene = _scene(about)
+    if isinstance(scene, SceneError):
+        told = [*told, f"the scene was written by another version of bearing_sim ({about.get('version') or 'unknown'}) and is shown as text only: {scene}"]
+    elif scene is not None:
+        told = [*told, *plausibility(scene)]
     return made + again + warnings(told)
 
 
@@ -441,9 +444,17 @@ def _scene_text(about: Mapping) -> str:
     return about.get("scene_yaml") or about.get("scene_of_first_point") or ""
 
 
+def _scene(about: Mapping) -> Scene | SceneError | None:
+    """Return the scene of a result; the error if this version cannot read it, None if it is not known."""
+    try:
+        return scene_from_yaml(_scene_text(about)) if _scene_text(about) else None
+    except SceneError as error:
+        return error
+
+
 def _origin(about: Mapping) -> dict[str, str]:
     """Return the sections on the scene, and on where the result comes from."""
-    text = _scene_text(about)
+    scene, text = _scene(about), _scene_text(about)
     named = {name: about[name] for name in ("scene", "overrides", "level", "duration", "version", "commit") if about.get(name)}
     if "overrides" in named:
         named["overrides"] = " ".join(f"--set {each}" for each in about["overrides"])
@@ -451,7 +462,8 @@ def _origin(about: Mapping) -> dict[str, str]:
         named["duration"] = f"{about['duration']:g} s a run, longer until it has settled"
     sections = {"Provenance": pairs(named | {name: about[name] for name in versions() if about.get(name)})} if named else {}
     if text:
-        sections = {"Bearing and conditions": _scene_table(scene_from_yaml(text)) + folded("the scene as YAML, all values in SI", text)} | sections
+        table = _scene_table(scene) if isinstance(scene, Scene) else ""
+        sections = {"Bearing and conditions": table + folded("the scene as YAML, all values in SI", text)} | sections
     return sections
 
 
