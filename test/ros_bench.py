@@ -166,6 +166,11 @@ class Client:
             assert process.process.poll() is None, f"the node ended early: {what}\n{process.text}"
             self.drive(0.1, rate, **values)
 
+    def is_calm(self, report=-1):
+        """Whether the given report of diagnostics tells of nothing but limits of validity, which hold as long as the condition does."""
+        told = self.received["diagnostics"][report].status[1:]
+        return not any(status.level[0] for status in told if ": validity." not in status.name)
+
     def statuses(self, since: int = 0) -> list[tuple[int, str, str]]:
         """Return (level, name, message) of every status in the diagnostics from the message number ``since`` on."""
         return [(s.level[0], s.name, s.message) for report in self.received["diagnostics"][since:] for s in report.status]

@@ -121,7 +121,17 @@ WORDS = ["design", "deng2017_table1", "--slip-below", "10%", "--life-above", "30
 
 
 def test_command_answers_beside_deng_writes_tables_and_picture_and_computes_nothing_twice(tmp_path):
-    words = [*WORDS, "--d-value", "0.095mm:0.105mm:2", "-o", str(tmp_path / "d.parquet"), "--picture", str(tmp_path / "d.png")]
+    words = [
+        *WORDS,
+        "--d-value",
+        "0.095mm:0.105mm:2",
+        "-o",
+        str(tmp_path / "d.parquet"),
+        "--picture",
+        str(tmp_path / "d.png"),
+        "--verify-level",
+        "slip",
+    ]
     reported = CliRunner().invoke(main, words, catch_exceptions=False)
     assert reported.exit_code == 0 and "Deng 2017 has 34.8625 to 34.8650 mm" in reported.output and "life, slip" in reported.output
     entries = (tmp_path / "d.journal").read_text().count("\n")
@@ -138,7 +148,7 @@ def test_command_answers_beside_deng_writes_tables_and_picture_and_computes_noth
 
 def test_what_stands_beside_the_paper_spans_its_d_values_whatever_the_grid(tmp_path):
     def within(d_values):
-        words = [*WORDS, "--d-value", d_values, "-o", str(tmp_path / "w.parquet"), "--json"]
+        words = [*WORDS, "--d-value", d_values, "-o", str(tmp_path / "w.parquet"), "--verify-level", "none", "--json"]
         return json.loads(CliRunner().invoke(main, words, catch_exceptions=False).stdout)["nominal_within_deng"]
 
     ours, other = within("0.095mm:0.105mm:2"), within("0.09mm:0.11mm:2")

@@ -265,9 +265,15 @@ def test_table_belongs_to_bearing_oil_and_span_and_to_nothing_else():
         scene = load_scene("deng2017_table1", [*SMALL, *overrides])
         return table_hash(scene, span_of(scene))
 
-    same = ["name=other", "operating.radial_load=500 N", "life.reliability=99 %", "thresholds.life_warning=10 h", "level=slip"]
+    same = ["name=other", "operating.radial_load=500 N", "life.reliability=99 %", "life.method=iso281", "thresholds.life_warning=10 h", "level=slip"]
     other = ["bearing.outer_raceway.low_radius=34.861 mm", "lubricant.oil=mil_l_23699", "lubricant.pumping=true", "table.maximum_load=1 kN"]
-    other += ["bearing.cage.pocket_friction=0.04", "table.tolerance=3 %", "bearing.outer_raceway.roundness=2 um"]
+    other += [
+        "life.a_iso=bath_17_14",
+        "bearing.roller.crown=iso_log",
+        "bearing.cage.pocket_friction=0.04",
+        "table.tolerance=3 %",
+        "bearing.outer_raceway.roundness=2 um",
+    ]
     assert {of(change) for change in same} == {of()}
     assert len({of(), *map(of, other)}) == len(other) + 1
 

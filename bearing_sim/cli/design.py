@@ -54,7 +54,7 @@ _NONE = "none"
 @set_option
 @click.option("--level", metavar="LEVEL", help="Level of fidelity [default: steady if it supports the scene, otherwise the scene's].")
 @click.option(
-    "--verify-level", metavar="LEVEL", help="Level that verifies edges and centre of each interval, or none [default: the next of higher fidelity]."
+    "--verify-level", metavar="LEVEL", help="Level that verifies edges and centre of each interval, or none [default: planar; of planar, spatial]."
 )
 @table_option("design.parquet", "Map; also written: PATH.csv, PATH_borders and PATH_checks (.parquet, .csv), and")
 @executor_options
@@ -87,7 +87,7 @@ def design(
     are off together in the directions that are worst. Edges and centre of each interval of radii are computed again at a level of higher
     fidelity, and what it refuses is narrowed or withdrawn. `bearing-sim report` makes a page of the results.
 
-    bearing-sim design deng2017_table1 --slip-below 10% --life-above 300h --verify-level planar --picture design.png
+    bearing-sim design deng2017_table1 --slip-below 10% --life-above 300h --picture design.png
     """
     from bearing_sim.model.plausibility import plausibility
     from bearing_sim.scene.loader import SceneError, load_scene

@@ -32,10 +32,13 @@ from bearing_sim.sweep.tasks import Journal, Task, run_tasks, task
 LOW, D_VALUE = "bearing.outer_raceway.low_radius", "bearing.outer_raceway.d_value"
 NOMINAL, WORST = "nominal", "worst"
 KINDS = (NOMINAL, WORST)
-VERIFIED_BY = {"steady": "slip", "slip": "planar", "planar": "spatial"}  # the next level of higher fidelity
+VERIFIED_BY = {"steady": "planar", "slip": "planar", "planar": "spatial"}  # the next level that includes what the level leaves out
 # What a level does not verify of another, because it leaves out the same.
 ALIKE = {
-    ("steady", "slip"): "level slip integrates the equations whose periodic state level steady solves; pocket play, radial vibration and cage whirl are "
+    (
+        "steady",
+        "slip",
+    ): "level slip integrates the equations whose periodic state level steady solves; pocket play, radial vibration and cage whirl are "
     "not verified (--verify-level planar)",
     ("planar", "spatial"): "level spatial adds tilt and skew only; without a moment or misalignment it agrees with level planar",
 }

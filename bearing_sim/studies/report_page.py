@@ -433,7 +433,10 @@ def _opening(about: Mapping, told: Sequence[str]) -> str:
     again = f"<p>Reproduced by <code>{escape(about['reproduced by'])}</code></p>" if about.get("reproduced by") else ""
     scene = _scene(about)
     if isinstance(scene, SceneError):
-        told = [*told, f"the scene was written by another version of bearing_sim ({about.get('version') or 'unknown'}) and is shown as text only: {scene}"]
+        told = [
+            *told,
+            f"the scene was written by another version of bearing_sim ({about.get('version') or 'unknown'}) and is shown as text only: {scene}",
+        ]
     elif scene is not None:
         told = [*told, *plausibility(scene)]
     return made + again + warnings(told)
