@@ -146,9 +146,12 @@ def test_command_answers_beside_deng_writes_tables_and_picture_and_computes_noth
     assert (tmp_path / "d.png").stat().st_size > 20_000
 
 
+EXACT = ["--speed-tolerance", "0", "--load-tolerance", "0", "--verify-level", "none"]
+
+
 def test_what_stands_beside_the_paper_spans_its_d_values_whatever_the_grid(tmp_path):
     def within(d_values):
-        words = [*WORDS, "--d-value", d_values, "-o", str(tmp_path / "w.parquet"), "--verify-level", "none", "--json"]
+        words = [*WORDS, "--d-value", d_values, "-o", str(tmp_path / "w.parquet"), *EXACT, "--json"]
         return json.loads(CliRunner().invoke(main, words, catch_exceptions=False).stdout)["nominal_within_deng"]
 
     ours, other = within("0.095mm:0.105mm:2"), within("0.09mm:0.11mm:2")

@@ -14,7 +14,7 @@ from bearing_sim.sweep.table import Table, read_table, write_table
 
 LOW = "bearing.outer_raceway.low_radius"
 DESIGN = ["design", "deng2017_table1", "--slip-below", "10%", "--life-above", "300h", "--low-radius", "34.861mm:34.865mm:3", "--workers", "1"]
-DESIGN += ["--d-value", "0.098mm,0.1mm", "--speed-tolerance", "0", "--load-tolerance", "0", "--verify-level", "planar"]
+DESIGN += ["--d-value", "0.098mm,0.1mm", "--speed-tolerance", "0", "--load-tolerance", "0", "--verify-level", "slip"]
 DESIGN += ["--point", "45000 rpm, 800 N, 3", "--point", "40000 rpm, 600 N, 1", "--tolerance", "bearing.roller.diameter=0.1um"]
 
 
@@ -91,9 +91,9 @@ def test_the_page_of_a_design_shows_both_bands_both_levels_points_tolerances_and
         "bearing.roller.diameter ±0.0001 mm",
     ):
         assert text in page.text
-    assert "life [h at steady]" in page.text and "verified life [h at planar]" in page.text and "Widest interval" in page.text
+    assert "life [h at steady]" in page.text and "verified life [h at slip]" in page.text and "Widest interval" in page.text
     narrowed = sum(row["verdict"] == "narrowed" for row in borders.rows)
-    assert (narrowed > 0) == ("narrowed at level planar" in page.text)
+    assert (narrowed > 0) == ("narrowed at level slip" in page.text)
 
 
 def test_the_page_of_a_sweep_shows_every_row_the_picture_the_scene_and_the_command(folder, tmp_path):
