@@ -19,6 +19,8 @@ _LARGEST_LOBES = 0.005  # assumption: D over pitch diameter; Deng 2017 has 0.001
 _HEAVIEST_PRELOAD = {True: 0.001, False: 0.0003}  # assumption: diametral preload over pitch diameter, of lobed and of round raceways
 _BORE_OF_RACEWAY = 0.85  # assumption: bore over inner raceway diameter, where the bore is not given; 0.84 to 0.90 of usual bearings
 _LEAST_FILL, _LARGEST_FILL = 0.4, 0.97  # assumption: rollers' widths over the pitch circle; cages of series leave 0.6 to 0.95
+# A maker's rating over that by the standards (assumption: catalogues give 0.85 to 1.17 times C, fatigue limits differ more).
+_RATING_RATIO = {"dynamic": (0.65, 1.5), "static": (0.65, 1.5), "fatigue_limit": (0.4, 2.5)}
 _MINIMUM_OF_RATING = 0.02  # of C_r: the least load of roller bearings where a maker gives no factor (SKF, Schaeffler)
 # Largest radial internal clearance of cylindrical roller bearings in class C5 by bore up to [mm]: clearance [um] (ISO 5753-1, table for
 # cylindrical bores).
@@ -39,6 +41,7 @@ def plausibility(scene: Scene) -> list[str]:
         *_cage_radii(bearing),
         *_cage_mass(bearing),
         *_ring_mass(bearing),
+        *_ratings(bearing),
         *_load(scene),
         *(each.text for each in outside(scene, still_sample(scene), ("oil_temperature", "speed_factor", "limiting_speed"))),
     ]
@@ -64,6 +67,19 @@ def _rollers(bearing: Bearing) -> list[str]:
         f"bearing.roller: {bearing.roller.count} rollers of {1e3 * bearing.roller.diameter:.6g} mm fill {100 * fill:.3g} % of the pitch circle of "
         f"{1e3 * bearing.pitch_diameter:.6g} mm; expected {100 * _LEAST_FILL:g} to {100 * _LARGEST_FILL:g} %; check count and diameter"
     ]
+
+
+def _ratings(bearing: Bearing) -> list[str]:
+    given, computed = bearing.ratings, rate(bearing).computed
+    found = []
+    for name, (low, high) in _RATING_RATIO.items():
+        rating, standard = getattr(given, name), getattr(computed, name)
+        if rating is not None and not low * standard <= rating <= high * standard:
+            found.append(
+                f"bearing.ratings.{name}: {rating:.4g} N is {rating / standard:.3g} times the {standard:.4g} N by the standard from the dimensions; "
+                f"expected {low:g} to {high:g} times; check its unit, and count, diameter and length of the rollers"
+            )
+    return found
 
 
 def _bore(bearing: Bearing) -> tuple[float, str]:
