@@ -1,6 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The parameters of compiled code: plain numbers in nested named tuples; `pack` makes them from a scene."""
 
+import functools
 import math
 from typing import NamedTuple
 
@@ -14,6 +15,7 @@ from bearing_sim.physics.lamina_life import Laminae, new_laminae
 from bearing_sim.physics.raceway import tabulated
 from bearing_sim.physics.rating_life import CLEANLINESS, METHODS, reliability_factor, ring_ratings
 from bearing_sim.physics.traction import TractionConstants, constant_constants, kragelskii_constants, oil_4109_constants, thermal_eyring_constants
+from bearing_sim.scene.bearing import Roller
 from bearing_sim.scene.contour import outer_contour
 from bearing_sim.scene.crown import crown_drops, slice_middles
 from bearing_sim.scene.lubricant import ConstantTraction, EyringTraction, KragelskiiTraction
@@ -269,7 +271,6 @@ def _life(scene: Scene) -> Life:
     roller, rated = bearing.roller, rate(bearing)
     slope, loss = CLEANLINESS.get(choice.a_iso, (0.0, 0.0))
     inner_rating, outer_rating = ring_ratings(rated.dynamic, roller.count, bearing.diameter_ratio)
-    positions, drops = slice_middles(roller.length, choice.laminae), crown_drops(roller.profile, roller.diameter, roller.length, choice.laminae)
     return Life(
         method=METHODS[choice.method],
         dynamic_rating=rated.dynamic,
@@ -281,8 +282,15 @@ def _life(scene: Scene) -> Life:
         modified=choice.a_iso != "none",
         cleanliness_slope=slope,
         cleanliness_loss=loss,
-        laminae=new_laminae(positions, drops, contact_stiffness(bearing), inner_rating, outer_rating, roller.count),
+        laminae=_laminae(roller, choice.laminae, contact_stiffness(bearing), inner_rating, outer_rating),
     )
+
+
+@functools.lru_cache(maxsize=64)
+def _laminae(roller: Roller, count: int, stiffness: float, inner_rating: float, outer_rating: float) -> Laminae:
+    """Return the laminae of a roller; a sweep asks for the same ones at every point, and their table takes longer than all other parameters."""
+    positions, drops = slice_middles(roller.length, count), crown_drops(roller.profile, roller.diameter, roller.length, count)
+    return new_laminae(positions, drops, stiffness, inner_rating, outer_rating, roller.count)
 
 
 def lubricate(lubricant: Lubricant, params: Params, temperature: float) -> Lubrication:

@@ -93,7 +93,8 @@ def new_laminae(positions, crown, stiffness, inner_rating, outer_rating, rollers
     deepest = (_LARGEST_LOAD * rating / stiffness) ** (1.0 / EXPONENT) + float(crown.max()) - highest
     shallowest = 1e-2 * (_LEAST_LOAD * rating / stiffness) ** (1.0 / EXPONENT)
     depths = np.geomspace(shallowest, deepest, 8 * _POINTS)
-    carried = stiffness / count * (np.maximum(depths[:, None] - (crown - highest), 0.0) ** EXPONENT).sum(axis=1)
+    drops, laminae = np.unique(crown - highest, return_counts=True)  # both halves of a profile are usually alike
+    carried = stiffness / count * (np.maximum(depths[:, None] - drops, 0.0) ** EXPONENT @ laminae)
     penetrations = np.interp(log_loads, np.log(carried), np.log(depths))
     return Laminae(
         positions=np.ascontiguousarray(positions, np.float64),
