@@ -79,12 +79,12 @@ def loads(scene_name, overrides, slices, picture, as_json):
 
 
 def _still_sample(scene, found):
-    """Return a block of one sample with the loads, the pressures and the life of a static balance."""
+    """Return a block of one sample with the loads, the pressures and the viscosity ratio of a static balance."""
     from bearing_sim.model.validity import still_sample
 
     sample = still_sample(scene)
-    sample["inner_load"], sample["outer_load"], sample["rating_life"] = found.inner, found.outer, found.lives.basic
-    sample["reference_load"] = found.lives.reference_load
+    sample["inner_load"], sample["outer_load"] = found.inner, found.outer
+    sample["reference_load"], sample["viscosity_ratio"] = found.lives.reference_load, found.lives.viscosity_ratio
     sample["inner_pressure"], sample["outer_pressure"] = found.inner_pressure, found.outer_pressure
     return sample
 

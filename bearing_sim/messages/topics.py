@@ -168,6 +168,9 @@ ARRAYS = {
 }
 """The topics of samples that carry arrays, by name; a second dimension ``roller`` where rows have a number for each roller."""
 
+LIFE_SYMBOLS = dict(zip(ARRAYS["rating_lives"].fields, ARRAYS["rating_lives"].label.split(", ")))
+"""The standards' symbols of rating lives, by observable."""
+
 
 def _array(name: str, meaning: str, of_tilting_levels: bool = False) -> Topic:
     """Return the topic of an array."""
@@ -328,7 +331,7 @@ def further_condition(scene, sample) -> dict[str, object]:
     numbers = {"life method": scene.life.method}
     if not scene.life.is_basic:
         numbers["modified rating life [h]"] = float(sample["modified_rating_life"])
-    numbers |= {f"{symbol} [h]": float(sample[name]) for symbol, name in (("L10", "l10"), ("L_nm", "lnm"), ("L10r", "l10r"), ("L_nmr", "lnmr"))}
+    numbers |= {f"{symbol} [h]": float(sample[name]) for name, symbol in LIFE_SYMBOLS.items()}
     if scene.bodies_tilt:
         for name, fields in (("largest", ("inner_pressure", "outer_pressure")), ("largest edge", ("inner_edge_pressure", "outer_edge_pressure"))):
             numbers[f"{name} pressure [MPa]"] = 1e-6 * max(float(sample[field]) for field in fields)

@@ -17,7 +17,6 @@ import numpy as np
 from bearing_sim.model.oil import OilState, oil_at
 from bearing_sim.model.params import Params, pack
 from bearing_sim.model.sample import new_block
-from bearing_sim.physics.rating_life import viscosity_ratio
 from bearing_sim.scene.bearing import Bearing
 from bearing_sim.scene.crown import NoCrown
 from bearing_sim.scene.lubricant import ConstantTraction, CustomOil, EyringTraction, KragelskiiTraction, Oil, Oil4109Traction
@@ -165,12 +164,6 @@ class Conditions:
     def film_material(self) -> np.ndarray:
         """G = alpha E'."""
         return self.while_turning(self.pressure_viscosity * self.params.raceways.reduced_modulus)
-
-    @functools.cached_property
-    def viscosity_ratio(self) -> np.ndarray:
-        """Viscosity ratio kappa of ISO 281."""
-        kinematic, speeds, pitch = self.viscosity / self.density, self.samples["shaft_speed"], self.scene.bearing.pitch_diameter
-        return self.while_turning(np.array([viscosity_ratio(float(nu), float(speed), pitch) for nu, speed in zip(kinematic, speeds)]))
 
     @property
     def equivalent_load(self) -> np.ndarray:
@@ -776,7 +769,7 @@ LAWS = (
         "ISO 281:2007, 9.3.3.3: a_ISO is defined for 0.1 to 4",
         "below it surfaces touch: take a thicker oil, the life by fatigue says nothing; above it a_ISO is that of 4: take a thinner oil",
         lambda scene: scene.life.a_iso != "none",
-        lambda at: at.viscosity_ratio,
+        lambda at: at.while_turning(at.samples["viscosity_ratio"]),
     ),
     Law(
         "life_laminae",
@@ -952,6 +945,6 @@ def still_sample(scene: Scene) -> np.ndarray:
     sample["load_y"] = operating.radial_load * math.cos(operating.load_angle)
     sample["load_z"] = operating.radial_load * math.sin(operating.load_angle)
     sample["cage_speed"] = sample["ideal_cage_speed"] = sample["orbital_speed"] = cage_speed
-    sample["roller_radius"], sample["roller_spin"], sample["rating_life"] = bearing.pitch_radius, math.nan, math.inf
+    sample["roller_radius"], sample["roller_spin"] = bearing.pitch_radius, math.nan
     sample["equivalent_load"] = operating.radial_load
     return sample

@@ -25,6 +25,7 @@ from bearing_sim.scene.loader import SceneError, load_scene
 from bearing_sim.scene.scene import Integration, Scene
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation, scene_inputs, tolerances_of
 from bearing_sim.studies.extremes_cases import BEARING, Case, corner_cases, sampled_cases
+from bearing_sim.sweep.point import LIVES
 from bearing_sim.sweep.table import new_figure
 from bearing_sim.sweep.tasks import Journal, run_tasks, task
 
@@ -46,7 +47,7 @@ _LEAST_SLIP, _RISE_OF_LIFE = -0.05, 1.01
 _RUNNING = 10.0  # rad/s of the shaft, below which slip and losses are not judged
 _NOT_COMPUTED = {"steady": ("roller_spin", "roller_rotation", "pocket_force")}  # NaN at these levels
 _NOT_IN_EVERY_SCENE = ("contamination_factor",)  # NaN without a cleanliness class
-_MAY_BE_INFINITE = ("rating_life", "modified_rating_life", "l10", "lnm", "l10r", "lnmr", "static_safety")  # without load or at rest
+_MAY_BE_INFINITE = (*LIVES, "static_safety")  # without load or at rest
 # Losses that cannot be negative at any instant by their laws.  Pocket friction follows spin alone (Deng 2017, eq. 13), and the published
 # torque of the guide land's film omits the power of its eccentric force; both may be negative.
 _LOSSES = ("inner_sliding_power", "outer_sliding_power", "churning_power", "damping_power")

@@ -13,6 +13,7 @@ import numpy as np
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.simulation import Simulation
 from bearing_sim.studies.statics import Statics, statics
+from bearing_sim.sweep.point import mean_life
 from bearing_sim.sweep.table import COLOURS, MARKERS, new_figure
 
 CROWNS = ("none", "iso_log")
@@ -86,7 +87,7 @@ def _run(scene, crown, misalignment, slices, turns):
         misalignment,
         *(float(block[name].mean()) for name in ("cage_slip", "inner_pressure", "inner_edge_pressure", "outer_edge_pressure")),
         *(float(np.abs(block[name]).max(axis=1).mean()) for name in ("roller_tilt", "roller_skew")),
-        *(float(1.0 / np.mean(1.0 / block[name])) for name in ("rating_life", "l10r")),  # damage adds up, so average the rates
+        *(mean_life(block[name]) for name in ("rating_life", "l10r")),
         statics(scene, slices),
     )
 

@@ -5,21 +5,14 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from bearing_sim.messages.topics import ARRAYS, LIFE_SYMBOLS
 from bearing_sim.monitoring.film_ratio import ThinnestFilm
 from bearing_sim.physics.rating_life import reliability_factor
 from bearing_sim.scene.ratings import rate
 from bearing_sim.scene.scene import Scene
+from bearing_sim.sweep.point import LIVES, mean_life
 
-LIVES = ("rating_life", "modified_rating_life", "l10", "lnm", "l10r", "lnmr")
-FACTORS = (
-    "equivalent_load",
-    "reference_load",
-    "viscosity_ratio",
-    "contamination_factor",
-    "modification_factor",
-    "reference_modification_factor",
-    "static_safety",
-)
+FACTORS = ARRAYS["life_factors"].fields
 
 
 def life_report(scene: Scene, samples: np.ndarray) -> dict:
@@ -30,9 +23,7 @@ def life_report(scene: Scene, samples: np.ndarray) -> dict:
     scene : that was run.
     samples : of a settled bearing, shape (n,), see `bearing_sim.model.sample`.
     """
-    with np.errstate(divide="ignore"):
-        lives = {name: float(1.0 / np.mean(1.0 / samples[name])) for name in LIVES}
-    films = ThinnestFilm(scene)
+    lives, films = {name: mean_life(samples[name]) for name in LIVES}, ThinnestFilm(scene)
     return report_of(scene, lives | {name: float(np.mean(samples[name])) for name in FACTORS}, float(np.mean(films.least(samples))))
 
 
@@ -50,7 +41,7 @@ def report_of(scene: Scene, values: Mapping[str, float], film: float) -> dict:
         "life_method": scene.life.method,
         "life_hours": values["rating_life"],
         "modified_life_hours": values["modified_rating_life"],
-        **{f"{name}_hours": values[name] for name in LIVES[2:]},
+        **{f"{name}_hours": values[name] for name in LIFE_SYMBOLS},
         **{name: values[name] for name in FACTORS},
         "a_iso": values["modified_rating_life"] / values["rating_life"] / reliability_factor(scene.life.reliability),
         "dynamic_rating": rated.dynamic,

@@ -31,7 +31,7 @@ from bearing_sim.studies import design as studied
 from bearing_sim.studies.deng2017.page import study_page
 from bearing_sim.studies.deng2017.run import STUDY_FILE
 from bearing_sim.studies.page import NoResults, command, document, folded, pairs, paragraph, picture, rows_table, warnings
-from bearing_sim.sweep.point import OK, Column
+from bearing_sim.sweep.point import OK, Column, mean_life
 from bearing_sim.sweep.table import COLOURS, NotDrawable, Table, draw, new_figure, read_table
 
 _RECORDINGS, _TABLES = (".mcap", ACTIVE), (".parquet", ".csv")
@@ -370,8 +370,7 @@ def _observables(block: np.ndarray, settled: np.ndarray) -> str:
         finite = values[np.isfinite(values)]
         if one.name != "time" and finite.any():
             end = settled[one.name][~np.isnan(settled[one.name])]
-            with np.errstate(divide="ignore"):
-                mean = 1.0 / np.mean(1.0 / end) if one.unit == "h" else end.mean()
+            mean = mean_life(end) if one.unit == "h" else end.mean()
             numbers = (float(mean) if len(end) else math.nan, float(finite.min()), float(finite.max()))
             rows.append(dict(zip((column.name for column in columns), (one.name, one.unit, *numbers, one.meaning))))
     return rows_table(columns, rows, f"{len(rows)} observables")

@@ -10,6 +10,7 @@ import numpy as np
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Simulation
 from bearing_sim.studies.statics import statics, with_slices
+from bearing_sim.sweep.point import mean_life
 
 SLICES = (10, 20, 30, 50, 100, 200)
 _RATE = 2000.0  # Hz, of samples
@@ -51,7 +52,7 @@ def by_slices(scene: Scene, settle: float, duration: float, counts: Sequence[int
                 count,
                 float(block["cage_slip"].mean()),
                 float(block["inner_load"].max(axis=1).mean()),
-                *(float(1.0 / np.mean(1.0 / block[name])) for name in ("rating_life", "l10r")),  # damage adds up, so average the rates
+                *(mean_life(block[name]) for name in ("rating_life", "l10r")),
                 max(still.inner_pressure, still.outer_pressure),
                 still.lives.l10r,
                 step_seconds,

@@ -26,7 +26,7 @@ class Column(NamedTuple):
     factor: float = 1.0  # from SI to the unit
 
 
-_LIVES = ("rating_life", "modified_rating_life", "l10", "lnm", "l10r", "lnmr")
+LIVES = tuple(each.name for each in OBSERVABLES if each.unit == "h")
 _MEANS = ("inner_equivalent_load", "outer_equivalent_load", "land_eccentricity")
 _POWERS = tuple(each.name for each in OBSERVABLES if each.name.endswith("_power"))
 _OBSERVED = {each.name: each for each in OBSERVABLES}
@@ -40,7 +40,7 @@ RESULTS = (
     Column("cage_slip", "%", "cage slip, 1 - cage speed / ideal cage speed (Deng 2017, eq. 17), mean", 100.0),
     Column("cage_slip_minimum", "%", "least cage slip at an instant", 100.0),
     Column("cage_slip_maximum", "%", "largest cage slip at an instant", 100.0),
-    *_observed(_LIVES),
+    *_observed(LIVES),
     Column("inner_load_maximum", "N", "largest normal force between a roller and the inner raceway over a roller pitch of cage rotation"),
     Column("outer_load_maximum", "N", "largest normal force between a roller and the outer raceway over a roller pitch of cage rotation"),
     Column("loaded_rollers", "", "rollers between both raceways at an instant, mean"),
@@ -90,12 +90,17 @@ def point_row(scene: Scene, duration: float = DURATION) -> dict:
     for ring in ("inner", "outer"):
         found[f"{ring}_load_maximum"] = outcome.pitch[f"{ring}_load"].max()
     found["loaded_rollers"] = (window["inner_load"] > 0.0).sum(axis=1).mean()
-    with np.errstate(divide="ignore"):
-        found |= {name: 1.0 / np.mean(1.0 / window[name]) for name in _LIVES}  # damage adds up, so average the rates
+    found |= {name: mean_life(window[name]) for name in LIVES}
     found |= {name: window[name].mean() for name in (*_MEANS, *_POWERS)}
     row = {column.name: column.factor * float(found[column.name]) for column in RESULTS}
     judged = {"status": OK if outcome.settled else UNSETTLED, "reason": outcome.reason}
     return row | judged | {"warnings": cell(outside(scene, window))}
+
+
+def mean_life(lives: np.ndarray) -> float:
+    """Return the life under conditions that have these lives for equally long: damage adds up, so it is the rates that are averaged."""
+    with np.errstate(divide="ignore"):
+        return float(1.0 / np.mean(1.0 / lives))
 
 
 def empty_row(status: str, reason: str) -> dict:

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import rerun as rr
 import rerun.blueprint as rrb
 
+from bearing_sim.messages.topics import LIFE_SYMBOLS
 from bearing_sim.scene.scene import Scene
 from bearing_sim.view import section
 from bearing_sim.view.drawings import CAUSES, ORBIT_EDGE, SAMPLES, power_bounds
@@ -217,7 +218,7 @@ def _lives(scene: Scene, axes: _Axes) -> rrb.TimeSeriesView:
     """Return the plot of the life by the scene's method, that of another standard, and the modified one where the scene wants it."""
     basic, modified = scene.life.symbols
     other = compared_life(scene)
-    shown = [f"green {basic}", f"white {'L10' if other == 'l10' else 'L10r'}"]
+    shown = [f"green {basic}", f"white {LIFE_SYMBOLS[other]}"]
     paths = ["/life/warning", "/life/error", f"/life/{other}_log10_hours", "/life/log10_hours"]
     if not scene.life.is_basic:
         paths, shown = [*paths, "/life/modified_log10_hours"], [*shown, f"purple {modified}"]

@@ -13,6 +13,7 @@ import numpy as np
 import rerun as rr
 
 from bearing_sim.messages.events import Event, Level
+from bearing_sim.messages.topics import LIFE_SYMBOLS
 from bearing_sim.scene.fidelity import LEVELS, level_of
 from bearing_sim.scene.scene import Scene
 from bearing_sim.view import colours, section
@@ -557,7 +558,8 @@ class RunSeries:
         lines = []
         if not self._scene.life.is_basic:
             lines.append((f"modified, {self._scene.life.symbols[1]}", f"**{_hours(float(sample['modified_rating_life']))}**"))
-        lines.append((compared_life(self._scene).upper().replace("R", "r"), _hours(float(sample[compared_life(self._scene)]))))
+        compared = compared_life(self._scene)
+        lines.append((LIFE_SYMBOLS[compared], _hours(float(sample[compared]))))
         if self._scene.bodies_tilt:
             edge, largest = (1e-6 * max(float(sample[f"{ring}_{kind}"]) for ring in ("inner", "outer")) for kind in ("edge_pressure", "pressure"))
             tilt, skew = (1e3 * float(np.abs(sample[name]).max()) for name in ("roller_tilt", "roller_skew"))
