@@ -12,22 +12,28 @@ from bearing_sim.levels.steady.table import Table
 from bearing_sim.levels.steady.table_builder import cached_table
 from bearing_sim.model.oil import kinematic_viscosities
 from bearing_sim.model.params import lubricate, pack
-from bearing_sim.model.sample import COLUMN, flat, new_block, sample_dtype
+from bearing_sim.model.sample import COLUMN, RING_TEMPERATURES, flat, new_block, sample_dtype
 from bearing_sim.numerics.compilation import compiled_for
 from bearing_sim.numerics.time_stepping import COUNT, OK, REASONS, new_counts, new_memory
 from bearing_sim.scene.fidelity import NUMBERS
 from bearing_sim.scene.scene import Integration, Operating, Scene
 
+_MEASURED_COLUMNS = [getattr(COLUMN, f"{name}_measured") for name in RING_TEMPERATURES]
 _FINEST_WITH_FIXED_STEP = Tolerances(position=2.5e-11, play=5e-11, speed=1e-7, relative=3e-7)
 
 
 class Inputs(NamedTuple):
-    """What drives the bearing from outside, in SI."""
+    """What drives the bearing from outside, and last the temperatures that are measured on it; in SI, NaN where they are not measured."""
 
     shaft_speed: float
     load_y: float
     load_z: float
     oil_temperature: float
+    inner_ring_temperature: float = math.nan
+    outer_ring_temperature: float = math.nan
+
+
+_INPUT_OBSERVABLES = tuple(f"{name}_measured" if name in RING_TEMPERATURES else name for name in Inputs._fields)
 
 
 class Counters(NamedTuple):
@@ -63,6 +69,11 @@ def scene_inputs(scene: Scene) -> Inputs:
     return Inputs(operating.shaft_speed, load_y, load_z, scene.lubricant.temperature)
 
 
+def inputs_of(sample: np.void) -> Inputs:
+    """Return the inputs that a sample holds (see `bearing_sim.model.sample`)."""
+    return Inputs(*(float(sample[name]) for name in _INPUT_OBSERVABLES))
+
+
 class Simulation:
     """One bearing in time.
 
@@ -90,7 +101,7 @@ class Simulation:
         Raises
         ------
         ValueError
-            An input is not finite.
+            An input is not finite, except for a measured temperature that is NaN.
         """
         self.inputs = _checked(inputs if inputs is not None else scene_inputs(self.scene))
         self.time = 0.0
@@ -128,7 +139,7 @@ class Simulation:
         ----------
         sample : all observables of an instant (see `bearing_sim.model.sample`); its time becomes the simulation's.
         """
-        self.inputs = _checked(Inputs(*(sample[name] for name in Inputs._fields)))
+        self.inputs = _checked(inputs_of(sample))
         self.time = float(sample["time"])
         self._work = self._new_work()
         before = new_block(1, self._params.rollers.count)
@@ -148,6 +159,7 @@ class Simulation:
         before = flat(previous)[0]
         self._level.observe(self.time, state, self._model(self.inputs, 1.0), self._work, 0.0, before, self._newest, self._memory.scratch[0])
         self._newest[COLUMN.level] = NUMBERS[self.scene.level]
+        self._newest[_MEASURED_COLUMNS] = self.inputs[-len(RING_TEMPERATURES) :]
 
     def _new_work(self):
         return self._level.new_work(self._params, *self._tables)
@@ -183,7 +195,7 @@ class Simulation:
     def advance(self, duration: float, inputs: Inputs | None = None, samples: int = 1) -> np.ndarray:
         """Advance by ``duration`` [s] while the inputs change linearly from their present values to ``inputs``.
 
-        The oil temperature takes its new value at the start: it changes slowly, and every oil property depends on it.
+        Temperatures take their new values at the start: they change slowly, and every oil property depends on that of the oil.
 
         Parameters
         ----------
@@ -200,7 +212,8 @@ class Simulation:
         IntegrationError
             With the reason; time and state stay as they were.
         ValueError
-            ``duration`` is not positive and finite, ``samples`` is below 1, or an input is not finite.
+            ``duration`` is not positive and finite, ``samples`` is below 1, or an input is not finite, except for a measured temperature
+            that is NaN.
         """
         if not 0.0 < duration < math.inf or samples < 1:
             raise ValueError(f"advance takes a positive finite duration and at least one sample, got {duration!r} s and {samples!r}")
@@ -239,6 +252,7 @@ class Simulation:
                 status,
             )
         rows[:, COLUMN.level] = NUMBERS[self.scene.level]
+        rows[:, _MEASURED_COLUMNS] = end[-len(RING_TEMPERATURES) :]
         self.time += duration
         self.inputs, self._state, self._step, self._newest = end, state, step, rows[-1].copy()
         return block
@@ -254,7 +268,7 @@ class Simulation:
         Parameters
         ----------
         stretches : time from each instant to the next [s], positive, shape (n,).
-        inputs : conditions at the instants, columns as `Inputs`, shape (n, 4); linear in between.
+        inputs : conditions at the instants, columns as `Inputs`, shape (n, 6); linear in between.
 
         Returns
         -------
@@ -263,11 +277,13 @@ class Simulation:
         Raises
         ------
         ValueError
-            The level takes no courses, a stretch is not positive and finite, or an input is not finite.
+            The level takes no courses, a stretch is not positive and finite, or an input is not finite, except for a measured
+            temperature that is NaN.
         """
         if not self.takes_profiles:
             raise ValueError(f"level {self.scene.level} without a table takes no courses of inputs; use advance")
-        if not (np.isfinite(inputs).all() and np.isfinite(stretches).all() and (stretches > 0.0).all()):
+        are_usable = np.isfinite(inputs[:, : -len(RING_TEMPERATURES)]).all() and not np.isinf(inputs).any()
+        if not (are_usable and np.isfinite(stretches).all() and (stretches > 0.0).all()):
             raise ValueError("advance_profile takes positive finite stretches and finite inputs")
         block = new_block(len(stretches), self._params.rollers.count)
         rows = flat(block)
@@ -287,6 +303,7 @@ class Simulation:
             self.inputs = Inputs(*map(float, inputs[reached - 1]))
             self.time = float(block["time"][reached - 1])
             rows[:, COLUMN.level] = NUMBERS[self.scene.level]
+            rows[:reached, _MEASURED_COLUMNS] = inputs[:reached, -len(RING_TEMPERATURES) :]
             self._newest = rows[reached - 1].copy()
             if self.inputs.oil_temperature != self._lubrication.temperature:
                 self._lubrication = lubricate(self.scene.lubricant, self._params, self.inputs.oil_temperature)
@@ -312,6 +329,6 @@ def start_sample(simulation: Simulation) -> np.ndarray:
 def _checked(inputs: Inputs) -> Inputs:
     inputs = Inputs(*(float(value) for value in inputs))
     for name, value in inputs._asdict().items():
-        if not math.isfinite(value):
+        if not (math.isfinite(value) or name in RING_TEMPERATURES and math.isnan(value)):
             raise ValueError(f"{name} = {value}: expected a finite number")
     return inputs

@@ -55,6 +55,7 @@ class FakeSimulation:
         sample = new_block(1, self.rollers)[0]
         sample["time"], sample["shaft_speed"], sample["shaft_angle"] = now, inputs.shaft_speed, self.angle
         sample["load_y"], sample["load_z"], sample["oil_temperature"] = inputs.load_y, inputs.load_z, inputs.oil_temperature
+        sample["inner_ring_temperature_measured"], sample["outer_ring_temperature_measured"] = inputs[4:]
         sample["ideal_cage_speed"], sample["cage_speed"], sample["cage_slip"] = 0.4 * inputs.shaft_speed, 0.396 * inputs.shaft_speed, 0.01
         sample["rating_life"] = sample["modified_rating_life"] = sample["l10"] = sample["l10r"] = 1000.0
         sample["damage"] = 1e-9 * self.angle

@@ -59,10 +59,10 @@ def write(path, messages: list[Message]):
             fields = {
                 "shaft_speed": lambda m=message, ns=ns: joint_state(ns, m.values[0]),
                 "radial_load": lambda m=message, ns=ns: wrench(ns, *m.values),
-                "oil_temperature": lambda m=message, ns=ns: temperature(ns, m.values[0] - topics.ZERO_CELSIUS),
+                **dict.fromkeys(topics.TEMPERATURES, lambda m=message, ns=ns: temperature(ns, m.values[0] - topics.ZERO_CELSIUS)),
                 topics.MEASURED: lambda m=message, ns=ns: joint_state(ns, m.values[0], "cage"),
             }[message.channel]()
-            kind = {"radial_load": WRENCH, "oil_temperature": TEMPERATURE}.get(message.channel, JOINTS)
+            kind = ({"radial_load": WRENCH} | dict.fromkeys(topics.TEMPERATURES, TEMPERATURE)).get(message.channel, JOINTS)
             recording.write(f"/{message.channel}", kind, ns, fields)
     return path
 
@@ -83,7 +83,8 @@ class ListSink:
         self.write(block)
 
     def write_inputs(self, time, inputs, channels):
-        self.inputs.append((self._ns(time), inputs, tuple(channels)))
+        known = {name: value for name, value in inputs._asdict().items() if not math.isnan(value)}  # NaN is not equal to itself
+        self.inputs.append((self._ns(time), known, tuple(channels)))
 
     def write_measurement(self, time, cage_speed, residual):
         self.measurements.append((self._ns(time), cage_speed, residual))

@@ -55,12 +55,14 @@ def test_good_messages_of_all_channels_are_held_together(gate):
         ("oil_temperature", (20.0,), "input.too_small", "233.15"),
         ("oil_temperature", (1e9,), "input.too_large", "523.15"),
         ("oil_temperature", (math.nan,), "input.not_finite", "nan K"),
+        ("inner_ring_temperature", (20.0,), "input.too_small", "233.15"),
+        ("outer_ring_temperature", (1e9,), "input.too_large", "input_limits.maximum_temperature"),
     ],
 )
 def test_a_bad_value_is_refused_with_its_reason_and_the_last_good_one_held(gate, channel, values, code, words):
     event = gate.offer(channel, 0.5, values)
     assert (event.kind, event.level, event.time) == (code, Level.ERROR, 0.5)
-    assert words in event.text and event.text.startswith(channel) and "holding" in event.text
+    assert words in event.text and event.text.startswith(channel) and ("holding" in event.text or channel.endswith("ring_temperature"))
     assert gate.held == START
     assert gate.refused == {code: 1}
     assert gate.offer("shaft_speed", 0.6, (200.0,)) is None, "the gate works on after a refusal"
@@ -242,3 +244,34 @@ def test_years_of_rare_faults_beside_a_silent_channel_are_counted_in_bounded_mem
             gate.offer("shaft_speed", 10.0 * k + after, (speed,))
     assert gate.coverage.unknown_until(60_000.0) == pytest.approx(2.0 * 5000)
     assert len(gate.coverage._spans) <= 1001
+
+
+@pytest.mark.parametrize("law, stands_in", [("network", "the thermal network"), ("given", "given in the scene")])
+def test_a_ring_temperature_that_dies_leaves_the_held_inputs_after_ten_stale_times_says_what_stands_in_and_comes_back(law, stands_in):
+    gate = InputGate(LIMITS, START, heat_law=law)
+    assert gate.offer("inner_ring_temperature", 1.0, (350.0,)) is None
+    assert not gate.expire(11.0) and gate.held.inner_ring_temperature == 350.0, "stale after 1 s, a temperature after ten times that"
+    assert gate.expire(11.5) and math.isnan(gate.held.inner_ring_temperature)
+    assert not gate.expire(12.0), "told once"
+    (stale,) = [event for event in gate.check(12.0) if event.subject == "inner_ring_temperature"]
+    assert stale.kind == "input.stale" and stale.level == Level.WARN and "11 s" in stale.reason and stands_in in stale.action
+    assert gate.held._replace(inner_ring_temperature=math.nan)[:4] == START[:4], "what drives the bearing is held however old it is"
+    assert gate.take_returned() == []
+    assert gate.offer("inner_ring_temperature", 20.0, (355.0,)) is None and gate.held.inner_ring_temperature == 355.0
+    (returned,) = gate.take_returned()
+    assert (returned.kind, returned.level, returned.subject, returned.time) == ("input.returned", Level.OK, "inner_ring_temperature", 20.0)
+    assert "input.stale" not in {event.kind for event in gate.check(20.0) if event.subject == "inner_ring_temperature"} and gate.take_returned() == []
+
+
+def test_a_refused_ring_temperature_leaves_no_input_unknown_because_the_model_predicts_it():
+    gate = InputGate(LIMITS, START, heat_law="network")
+    gate.offer("inner_ring_temperature", 1.0, (350.0,))
+    refused = gate.offer("inner_ring_temperature", 2.0, (math.nan,))
+    assert refused.action == "message refused, holding 350 K" and gate.coverage.unknown_until(5.0) == 0.0
+
+
+def test_oil_and_rings_do_not_share_their_temperatures():
+    gate = InputGate(LIMITS, START, heat_law="network")
+    for channel, kelvin in (("oil_temperature", 340.0), ("inner_ring_temperature", 350.0), ("outer_ring_temperature", 345.0)):
+        assert gate.offer(channel, 1.0, (kelvin,)) is None
+    assert gate.held == (100.0, 800.0, 0.0, 340.0, 350.0, 345.0)

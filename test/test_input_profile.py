@@ -30,7 +30,7 @@ def codes(course):
 def test_inputs_are_linear_between_stamps_of_each_channel(tmp_path):
     course = course_of(write_log(tmp_path / "log.mcap", [(0.0, 100.0), (0.4, 300.0)], [(0.0, 0.0, 50.0), (0.1, 100.0, 50.0), (0.4, 100.0, -10.0)]))
     middle = course.at(np.array([200_000_000]), 393.15)[0]
-    assert middle == pytest.approx([200.0, 100.0, 30.0, 393.15])
+    assert middle == pytest.approx([200.0, 100.0, 30.0, 393.15, math.nan, math.nan], nan_ok=True)
     assert list(course.instants) == [0, 100_000_000, 400_000_000]
 
 
@@ -172,9 +172,11 @@ def test_a_run_that_expects_an_oil_temperature_waits_for_it_ten_stale_times_and_
         profile.add("shaft_speed", stamp, 100.0)
         profile.add("radial_load", stamp, (800.0, 0.0))
     clock = T0 + 60 * SECOND
-    assert profile.known_until(clock, T0 + 10 * SECOND, True) == -1 and profile.awaited(T0 + 10 * SECOND, True) == ["oil_temperature"]
-    assert profile.known_until(clock, T0 + 10 * SECOND + 1, True) == T0 + 10 * SECOND + 1
-    assert profile.known_until(clock, T0, False) == clock, "without a publisher it does not wait"
+    assert profile.known_until(clock, T0 + 10 * SECOND, ["oil_temperature"]) == -1 and profile.awaited(T0 + 10 * SECOND, ["oil_temperature"]) == [
+        "oil_temperature"
+    ]
+    assert profile.known_until(clock, T0 + 10 * SECOND + 1, ["oil_temperature"]) == T0 + 10 * SECOND + 1
+    assert profile.known_until(clock, T0, []) == clock, "without a publisher it does not wait"
 
 
 def test_a_set_of_the_oil_temperature_is_nothing_to_wait_for_and_acts_from_its_instant_or_where_the_model_is():
@@ -183,7 +185,7 @@ def test_a_set_of_the_oil_temperature_is_nothing_to_wait_for_and_acts_from_its_i
         profile.add("shaft_speed", stamp, 100.0)
         profile.add("radial_load", stamp, (800.0, 0.0))
     profile.set_oil_temperature(T0 + SECOND // 2, 310.0)
-    assert profile.known_until(T0 + 2 * SECOND, T0, False) == T0 + 2 * SECOND
+    assert profile.known_until(T0 + 2 * SECOND, T0, []) == T0 + 2 * SECOND
     first = profile.take(T0 + SECOND)
     profile.set_oil_temperature(T0 + SECOND // 2, 320.0)
     second = profile.take(T0 + 2 * SECOND)
@@ -197,3 +199,49 @@ def test_what_is_unknown_is_a_part_of_the_log_also_where_one_channel_was_refused
     course = judge(read_input_log(write_log(tmp_path / "log.mcap", speeds, loads)), LIMITS, HELD)
     assert course.log_seconds == pytest.approx(15.0) and course.unknown_seconds == pytest.approx(5.0), "speed is known from 5 s on, load from 10 s on"
     assert course.end * 1e-9 == pytest.approx(10.0)
+
+
+def test_a_measured_temperature_counts_for_ten_stale_times_after_its_stamp_and_then_is_not_measured():
+    stamps = {"shaft_speed": np.array([0, 100 * SECOND]), "radial_load": np.array([0, 100 * SECOND])}
+    stamps["inner_ring_temperature"] = np.array([2 * SECOND, 30 * SECOND])
+    values = {"shaft_speed": np.array([100.0, 100.0]), "radial_load": np.zeros((2, 2)), "inner_ring_temperature": np.array([350.0, 360.0])}
+    instants = np.array([0, 1, 12, 13, 29, 30, 40, 41]) * SECOND
+    found = inputs_at(instants, Messages(stamps, values), LIMITS, 300.0)  # stale after 1 s
+    np.testing.assert_array_equal(found[:, 4], [350.0, 350.0, 350.0, math.nan, math.nan, 360.0, 360.0, math.nan])
+    assert np.isnan(found[:, 5]).all() and (found[:, 3] == 300.0).all()
+
+
+def test_a_run_under_way_has_the_measured_temperatures_of_the_whole_log_however_it_is_cut():
+    whole, channels = random.Random(4), ("shaft_speed", "radial_load", "oil_temperature", "inner_ring_temperature")
+    measured = [(T0 + whole.randrange(0, 60 * SECOND), 340.0 + k) for k in range(8)]
+    sent = {"shaft_speed": [(T0, 100.0), (T0 + 60 * SECOND, 100.0)], "radial_load": [(T0, (800.0, 0.0)), (T0 + 60 * SECOND, (800.0, 0.0))]}
+    sent["inner_ring_temperature"] = sorted(measured)
+    stamps = {channel: np.array([stamp for stamp, _ in found]) - T0 for channel, found in sent.items()}
+    values = {channel: np.array([value for _, value in found]) for channel, found in sent.items()}
+    profile = OnlineInputProfile(2.0, LIMITS, 300.0, channels)
+    for channel, found in sent.items():
+        for stamp, value in found:
+            profile.add(channel, stamp, value)
+    taken, until = [], T0
+    while until < T0 + 60 * SECOND:
+        until = min(until + whole.randrange(1, 5 * SECOND), T0 + 60 * SECOND)
+        while (part := profile.take(until)) is not None:
+            taken.append(part)
+    instants, found = np.concatenate([part.instants for part in taken]), np.concatenate([part.inputs for part in taken])
+    expected = inputs_at(instants, Messages(stamps, values), LIMITS, 300.0)
+    np.testing.assert_array_equal(found, expected)
+    assert 0 < np.isnan(expected[:, 4]).sum() < len(expected)
+
+
+def test_measured_temperatures_of_a_log_are_left_out_and_told_where_the_scene_has_no_law_of_heat(tmp_path):
+    from sim_time_bench import Message, write
+
+    at = [0.0, 1.0, 2.0]
+    found = [Message(time, channel, values) for time in at for channel, values in (("shaft_speed", (100.0,)), ("radial_load", (800.0, 0.0)))]
+    path = write(tmp_path / "log.mcap", [*found, *(Message(time, "inner_ring_temperature", (350.0,)) for time in at)])
+    log = read_input_log(path)
+    used, unused = (judge(log, LIMITS, HELD, heat_law=law) for law in ("network", "none"))
+    assert used.at(np.array([SECOND]), 300.0)[0, 4] == 350.0 and "input.unused" not in codes(used)
+    assert "inner_ring_temperature" not in unused.stamps and math.isnan(unused.at(np.array([SECOND]), 300.0)[0, 4])
+    (told,) = [event for event in unused.events if event.kind == "input.unused"]
+    assert told.subject == "inner_ring_temperature" and "set heat.law to given or network" in told.action

@@ -21,7 +21,7 @@ RPM = math.pi / 30
 
 def course(duration=DURATION, points=20_001):
     times = np.linspace(0.0, duration, points)
-    return times, np.array([mission(time, duration) for time in times])
+    return times, np.array([mission(time, duration)[:4] for time in times])
 
 
 def test_shaft_starts_and_ends_at_rest_and_peaks_at_45000_rpm():
@@ -49,7 +49,7 @@ def phase(time):
 
 def test_all_phases_scale_with_the_duration():
     for share in np.linspace(0, 1, 41):
-        assert mission(share * 30.0, 30.0) == pytest.approx(mission(share * DURATION))
+        assert mission(share * 30.0, 30.0)[:4] == pytest.approx(mission(share * DURATION)[:4])
 
 
 def test_gust_strikes_during_the_descent_and_turns_the_load():

@@ -213,7 +213,7 @@ def test_nothing_is_known_beyond_the_clock_though_messages_are_stamped_later():
     for channel, value in (("shaft_speed", 100.0), ("radial_load", (800.0, 0.0))):
         for stamp in (100, 1000):
             known.add(channel, stamp, value)
-    assert [known.known_until(clock, clock, False) for clock in (500, 1000, 2000)] == [500, 1000, 1000]
+    assert [known.known_until(clock, clock, []) for clock in (500, 1000, 2000)] == [500, 1000, 1000]
 
 
 def test_of_messages_set_aside_a_jump_takes_those_nearer_to_where_the_clock_has_gone():

@@ -195,6 +195,7 @@ WIRE = {
         "load y, z, oil temperature, land eccentricity",
         [("load_y", "N"), ("load_z", "N"), ("oil_temperature", "K"), ("land_eccentricity", "")],
     ),
+    "measured_temperatures": ("inner ring, outer ring", [("inner_ring_temperature_measured", "K"), ("outer_ring_temperature_measured", "K")]),
     "roller_places": ("angle, radius, rotation", [("roller_angle", "rad"), ("roller_radius", "m"), ("roller_rotation", "rad")]),
 }
 NUMBERS = {"cage_slip": "", "rating_life": "h", "modified_rating_life": "h", "level": "", "damage": ""}

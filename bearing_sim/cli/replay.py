@@ -52,9 +52,15 @@ from bearing_sim.cli.reporting import (
     metavar="TOPIC",
     help="Oil temperature, likewise [default: /oil_temperature, if present].",
 )
+@click.option(
+    "--inner-ring-temperature", metavar="TOPIC", help="Of the inner ring as measured, likewise [default: /inner_ring_temperature, if present]."
+)
+@click.option(
+    "--outer-ring-temperature", metavar="TOPIC", help="Of the outer ring as measured, likewise [default: /outer_ring_temperature, if present]."
+)
 @click.option("--speed-unit", metavar="UNIT", help="Unit of the shaft speed in the log, such as rpm [default: rad/s].")
 @click.option("--load-unit", metavar="UNIT", help="Unit of the load in the log, such as kN [default: N].")
-@click.option("--temperature-unit", metavar="UNIT", help="Unit of the oil temperature in the log [default: degC].")
+@click.option("--temperature-unit", metavar="UNIT", help="Unit of the temperatures in the log [default: degC].")
 @click.option("--joint", default="shaft", show_default=True, metavar="NAME", help="Name of the shaft's joint in JointState messages.")
 @click.option("--stamps", type=click.Choice(["header", "log"]), default="header", show_default=True, help="Use header stamps or log times.")
 @click.option(
@@ -75,6 +81,8 @@ def replay(
     speed,
     load,
     temperature,
+    inner_ring_temperature,
+    outer_ring_temperature,
     speed_unit,
     load_unit,
     temperature_unit,
@@ -94,7 +102,7 @@ def replay(
     if from_recording == bool(scene_name):
         raise UsageError("give either --scene, or --from-recording for a recording made by bearing-sim")
     if from_recording:
-        if len(logs) > 1 or overrides or rate or rrd or speed or load or temperature:
+        if len(logs) > 1 or overrides or rate or rrd or speed or load or temperature or inner_ring_temperature or outer_ring_temperature:
             raise UsageError("--from-recording takes exactly one recording and reproduces it as it was; it can be combined with -o and --json only")
         reproduce(logs[0], out, as_json)
         return
@@ -114,6 +122,8 @@ def replay(
                 ("shaft_speed", speed, speed_unit),
                 ("radial_load", load, load_unit),
                 ("oil_temperature", temperature, temperature_unit),
+                ("inner_ring_temperature", inner_ring_temperature, temperature_unit if inner_ring_temperature else None),
+                ("outer_ring_temperature", outer_ring_temperature, temperature_unit if outer_ring_temperature else None),
             )
             if text or unit
         }
@@ -125,7 +135,7 @@ def replay(
         warn_of_scene(scene)
         recorded = read_input_log(logs, names, joint, stamps)
         held = Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature)
-        course = judge(recorded, scene.accepted_inputs, held, longest_gap)
+        course = judge(recorded, scene.accepted_inputs, held, longest_gap, scene.heat_law)
         seconds = course.end * 1e-9
         with ExitStack() as stack:
             recording, names_of = None, [log.name for log in logs]

@@ -86,7 +86,8 @@ def judged(log, scene):
     from bearing_sim.inputs.profile import judge
     from bearing_sim.simulation import Inputs
 
-    profile = judge(log, scene.accepted_inputs, Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature))
+    held = Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature)
+    profile = judge(log, scene.accepted_inputs, held, heat_law=scene.heat_law)
     if profile.unknown_seconds:
         click.echo(f"warning: {profile.unknown_event.text}", err=True)
     return profile

@@ -22,6 +22,7 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, TypeAdapter, ValidationError
 
+from bearing_sim.inputs.gate import with_values
 from bearing_sim.messages import topics
 from bearing_sim.recording.provenance import git_hash, package_version
 from bearing_sim.recording.writer import McapFile
@@ -71,7 +72,7 @@ def _column(si_unit: str, meaning: str) -> type:
 SpeedColumn = _column("rad/s", "shaft speed")
 ForceColumn = _column("N", "force")
 AccelerationColumn = _column("m/s^2", "acceleration")
-TemperatureColumn = _column("K", "oil temperature")
+TemperatureColumn = _column("K", "temperature of oil or of a ring")
 PowerColumn = _column("W", "power")
 
 
@@ -165,6 +166,8 @@ class Mapping:
     shaft_speed: SpeedColumn
     radial_load: Annotated[SumLoad | NormLoad | MassTimesAcceleration | GearForce, Field(discriminator="law")]
     oil_temperature: TemperatureColumn | None = None
+    inner_ring_temperature: TemperatureColumn | None = None
+    outer_ring_temperature: TemperatureColumn | None = None
     cage_speed: SpeedColumn | None = None  # measured; compared with the model, not an input of it
 
     @check
@@ -185,8 +188,8 @@ class Mapping:
         named = [(f"only.{name}", name) for name in self.only]
         named += [("time.column", self.time.column), ("shaft_speed.column", self.shaft_speed.column)]
         named += [("radial_load", one.column) for one in self.load_columns()]
-        optional = {"oil_temperature": self.oil_temperature, "cage_speed": self.cage_speed}
-        return named + [(f"{name}.column", one.column) for name, one in optional.items() if one]
+        optional = ((name, getattr(self, name)) for name in (*topics.TEMPERATURES, "cage_speed"))
+        return named + [(f"{name}.column", one.column) for name, one in optional if one]
 
 
 def load_mapping(mapping: str | Path) -> tuple[Mapping, str]:
@@ -323,7 +326,7 @@ class _RowReader:
         self._speed = (columns[mapping.shaft_speed.column], mapping.shaft_speed.column, *mapping.shaft_speed.line())
         self._load_columns = [(columns[one.column], one.column, *one.line()) for one in mapping.load_columns()]
         self._load = _load_law(mapping)
-        optional = {"oil_temperature": mapping.oil_temperature, topics.MEASURED: mapping.cage_speed}
+        optional = {channel: getattr(mapping, channel) for channel in topics.TEMPERATURES} | {topics.MEASURED: mapping.cage_speed}
         self._optional = {channel: (columns[one.column], one.column, *one.line()) for channel, one in optional.items() if one}
         self.newest: int | None = None
 
@@ -454,8 +457,7 @@ def write_log(table: Table, mapping_text: str, source: str | Path, out: str | Pa
     with McapFile(out, {METADATA: metadata}, {"generator": "bearing_sim", **origin}, replace=True) as recording:
         for done, (stamp, channel, k) in enumerate(messages):
             topic, value = (topics.INPUTS | topics.MEASUREMENTS)[channel], table.values[channel][k]
-            # An input's message contains its own channel only; the other inputs do not matter.
-            content = value if channel == topics.MEASURED else Inputs(value, value, 0.0, value)
+            content = value if channel == topics.MEASURED else with_values(Inputs(0.0, 0.0, 0.0, 0.0), channel, (value,))
             recording.write(f"/{topic.name}", topic.ros_type, stamp, topic.message(stamp, content))
             if done % 1000 == 0:
                 progress(done)

@@ -13,19 +13,19 @@ from enum import Enum
 from typing import NamedTuple
 
 from bearing_sim.messages.events import Event, Level
-from bearing_sim.messages.topics import MEASURED
+from bearing_sim.messages.topics import MEASURED, RING_TEMPERATURES, TEMPERATURES
 from bearing_sim.scene.scene import InputLimits
 from bearing_sim.simulation import Inputs
 
-CHANNELS = ("shaft_speed", "radial_load", "oil_temperature", MEASURED)  # the last is compared with the model, not an input of it
+CHANNELS = ("shaft_speed", "radial_load", *TEMPERATURES, MEASURED)  # the last is compared with the model, not an input of it
 REQUIRED = ("shaft_speed", "radial_load")
-UNITS = {"shaft_speed": "rad/s", "radial_load": "N", "oil_temperature": "K", MEASURED: "rad/s"}
+UNITS = {"shaft_speed": "rad/s", "radial_load": "N", **dict.fromkeys(TEMPERATURES, "K"), MEASURED: "rad/s"}
 """SI unit of the values of each channel."""
 
-_OPTIONAL = ("oil_temperature", MEASURED)
+_OPTIONAL = (*TEMPERATURES, MEASURED)
 _RATE_WINDOW = 1.0  # [s] a rate is the number of messages over at least this long
 _RATE_TOLERANCE = 0.1  # relative, because timers jitter
-_SLOW_CHANNEL = {"oil_temperature": 10.0}  # oil warms up in minutes: its messages may be rarer by this factor
+_SLOW_CHANNEL = dict.fromkeys(TEMPERATURES, 10.0)  # oil and rings warm up in minutes: their messages may be rarer by this factor
 _RISING_TO_FOLLOW = 3  # refused messages in a row with rising stamps after which the sender's clock counts as set
 
 _REMEMBERED = 16  # values of a channel in which a conflict of publishers is looked for
@@ -38,10 +38,16 @@ _SET_ASIDE = 1.0  # [s of wall time] in which a jump of the clock may become kno
 _BOUNDS = {
     ("input.too_large", "shaft_speed"): "input_limits.maximum_speed",
     ("input.too_large", "radial_load"): "input_limits.maximum_load",
-    ("input.too_large", "oil_temperature"): "input_limits.maximum_temperature",
-    ("input.too_small", "oil_temperature"): "input_limits.minimum_temperature",
     ("input.negative", "shaft_speed"): "input_limits.reverse_rotation",
+    **{("input.too_large", channel): "input_limits.maximum_temperature" for channel in TEMPERATURES},
+    **{("input.too_small", channel): "input_limits.minimum_temperature" for channel in TEMPERATURES},
 }
+_STANDS_IN = {
+    "none": "it is not used",
+    "given": "the temperature given in the scene stands in",
+    "network": "the temperature of the thermal network stands in",
+}
+"""What is used where the temperature of a ring is not measured, by the law of heat."""
 _OLD = ("input.time_repeated", "input.time_backwards")  # a message refused for these leaves nothing unknown: a later one is known
 _SPANS_KEPT = 1000  # of unknown inputs; then old ones are summed up
 
@@ -94,7 +100,7 @@ class Coverage:
 
     def take_refused(self, channel: str, time: float, kind: str) -> None:
         """Take a refused message of a channel; ``kind`` is that of its event."""
-        if kind in _OLD or channel == MEASURED:
+        if kind in _OLD or channel == MEASURED or channel in RING_TEMPERATURES:  # the model predicts what these measure
             return
         self._unknown.setdefault(channel, max(self._good.get(channel, time), self._settled))
         self.is_overloaded = self.is_overloaded or (kind == "input.too_large" and channel in REQUIRED)
@@ -140,6 +146,7 @@ class InputGate:
     limits : what a message may contain (see `bearing_sim.scene.scene.InputLimits`).
     held : the inputs before the first message.
     substitute : what the model uses while good messages are missing, for the texts of events; by default the held value.
+    heat_law : the scene's; what stands in for a ring's temperature that is not measured depends on it.
 
     Attributes
     ----------
@@ -153,14 +160,16 @@ class InputGate:
         For how long inputs were unknown.
     """
 
-    def __init__(self, limits: InputLimits, held: Inputs, substitute: str = ""):
-        self.limits, self.held, self._substitute = limits, held, substitute
+    def __init__(self, limits: InputLimits, held: Inputs, substitute: str = "", heat_law: str = "none"):
+        self.limits, self.held, self._substitute, self._stands_in = limits, held, substitute, _STANDS_IN[heat_law]
         self.measured = math.nan
         self.refused: Counter[str] = Counter()
         self.accepted: Counter[str] = Counter()
         self.coverage = Coverage()
         self._channels = {name: _Channel(*_good_from_to(name, limits), is_force=name == "radial_load") for name in CHANNELS}
         self._reported: set[tuple[str, str]] = set()
+        self._expired: set[str] = set()
+        self._returned: list[Event] = []
 
     def offer(self, channel: str, stamp: float, values: tuple[float, ...], arrival: float | None = None) -> Event | None:
         """Judge one message; take its values into ``held`` if they are good.
@@ -214,9 +223,27 @@ class InputGate:
         self.coverage.take_good(channel, received)
         if channel == MEASURED:
             self.measured = float(values[0])
-        else:
-            self.held = with_values(self.held, channel, values)
+            return None
+        if channel in self._expired:
+            self._expired.remove(channel)
+            self._returned.append(Event(received, Level.OK, "input.returned", channel, "it is measured again", "the measured temperature is used"))
+        self.held = with_values(self.held, channel, values)
         return None
+
+    def expire(self, now: float) -> bool:
+        """Give up measured temperatures of rings whose last good message is too old at ``now`` [s]; return whether ``held`` has changed.
+
+        Other inputs are held however old they are, because nothing else tells what they are; `check` reports both alike.
+        """
+        stale = [name for name in RING_TEMPERATURES if self.accepted[name] and name not in self._expired and self._is_stale(name, now)]
+        self._expired.update(stale)
+        self.held = self.held._replace(**dict.fromkeys(stale, math.nan))
+        return bool(stale)
+
+    def take_returned(self) -> list[Event]:
+        """Return the events since the last call of temperatures that are measured again after `expire` gave them up."""
+        returned, self._returned = self._returned, []
+        return returned
 
     def hold_oil_temperature(self, temperature: float) -> None:
         """Hold another oil temperature [K] that did not come as a message."""
@@ -261,14 +288,22 @@ class InputGate:
         return self._channels[channel].rate
 
     def _stale_event(self, channel: str, state: _Channel, now: float) -> Event | None:
-        patience = self.limits.stale_after * _SLOW_CHANNEL.get(channel, 1.0)
-        age = now - max(state.arrival, 0.0)
+        patience, age = self._patience(channel), now - max(state.arrival, 0.0)
         if age <= patience or (channel in _OPTIONAL and not state.seen):
             return None
         since = f"no good message for {age:.3g} s" if state.arrival > -math.inf else f"no good message since the start {age:.3g} s ago"
         return Event(now, Level.WARN, "input.stale", channel, f"{since}, expected one within {patience:.3g} s", self._used_instead(channel))
 
+    def _patience(self, channel: str) -> float:
+        """Return the age from which on a channel is stale [s]."""
+        return self.limits.stale_after * _SLOW_CHANNEL.get(channel, 1.0)
+
+    def _is_stale(self, channel: str, now: float) -> bool:
+        return now - self._channels[channel].arrival > self._patience(channel)
+
     def _used_instead(self, channel: str) -> str:
+        if channel in RING_TEMPERATURES and math.isnan(getattr(self.held, channel)):
+            return self._stands_in
         if self._substitute:
             return self._substitute
         latest = self.latest(channel)
@@ -286,12 +321,12 @@ class InputGate:
 
 def with_values(held: Inputs, channel: str, values: tuple[float, ...]) -> Inputs:
     """Return inputs in which the values of one channel replace the held ones."""
-    speed, load_y, load_z, temperature = held
+    speed, load_y, load_z, *temperatures = held
     if channel == "shaft_speed":
-        return Inputs(float(values[0]), load_y, load_z, temperature)
+        return Inputs(float(values[0]), load_y, load_z, *temperatures)
     if channel == "radial_load":
-        return Inputs(speed, float(values[0]), float(values[1]) if len(values) == 2 else 0.0, temperature)
-    return Inputs(speed, load_y, load_z, float(values[0]))
+        return Inputs(speed, float(values[0]), float(values[1]) if len(values) == 2 else 0.0, *temperatures)
+    return held._replace(**{channel: float(values[0])})
 
 
 def _good_from_to(channel: str, limits: InputLimits) -> tuple[float, float]:
@@ -300,7 +335,7 @@ def _good_from_to(channel: str, limits: InputLimits) -> tuple[float, float]:
     A limit that is None allows everything.
     """
     largest_speed, largest_load = (math.inf if bound is None else bound for bound in (limits.maximum_speed, limits.maximum_load))
-    if channel == "oil_temperature":
+    if channel in TEMPERATURES:
         return limits.minimum_temperature, limits.maximum_temperature
     if channel == "radial_load":
         return 0.0, largest_load
@@ -315,7 +350,7 @@ def _value_error(channel: str, values: tuple[float, ...], state: _Channel) -> tu
     magnitude = math.hypot(*values)
     if not math.isfinite(magnitude) and not all(map(math.isfinite, values)):
         return "input.not_finite", f"{shown} {unit} is not finite"
-    if channel == "oil_temperature":
+    if channel in TEMPERATURES:
         kind = "input.too_small" if values[0] < state.least else "input.too_large"
         return kind, f"{shown} K is outside {state.least:.6g} to {state.largest:.6g} K ({_BOUNDS[kind, channel]})"
     if len(values) == 1 and state.least == 0.0 > values[0]:
@@ -459,6 +494,12 @@ class ClockJumpFilter:
         while self._aside and wall - self._aside[0][0] > _SET_ASIDE:
             found.append(self._aside.popleft()[1])
         return found
+
+
+def unused_event(time: float, channel: str) -> Event:
+    """Return the event that the measured temperature of a ring is there, but not used."""
+    reason = "heat.law is none, so that the model does not know the temperatures of the rings"
+    return Event(time, Level.WARN, "input.unused", channel, reason, "its messages are not read; set heat.law to given or network to use them")
 
 
 def unknown_inputs(time: float, unknown: float, total: float, verdict: str) -> Event:

@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Input logs: shaft speed, radial load, oil temperature and measured cage speed from recordings of any origin, complete or cut short.
+"""Input logs: shaft speed, radial load, temperatures of oil and rings and measured cage speed from recordings of any origin, complete or cut short.
 
 MCAP files are read record by record, which works without their end; all other bags are read by the rosbags library.
 
@@ -67,7 +67,7 @@ class InputLog:
     Attributes
     ----------
     path : the recording; several of them are joined with ``+``.
-    series : by channel (``shaft_speed``, ``radial_load`` and, where recorded, ``oil_temperature`` and ``cage_speed_measured``).
+    series : by channel (see `bearing_sim.inputs.gate.CHANNELS`): ``shaft_speed``, ``radial_load`` and the others where recorded.
     unfinished : why reading stopped before the end of a file, or ``""``.
     """
 
@@ -97,7 +97,7 @@ def source(channel: str, text: str | None = None, unit: str | None = None) -> So
 
     Parameters
     ----------
-    channel : ``shaft_speed``, ``radial_load``, ``oil_temperature`` or ``cage_speed_measured``.
+    channel : one of `bearing_sim.inputs.gate.CHANNELS`.
     text : ``/topic`` (the slash is optional), or ``/topic.path.to[0].number``; a load may have two paths, ``/topic.force.y,force.z``.  By
         default the channel's own name.
     unit : of the numbers, such as ``rpm``, also for standard types; by default rad/s, N or degC.
@@ -113,7 +113,7 @@ def source(channel: str, text: str | None = None, unit: str | None = None) -> So
         raise ValueError(f"{text}: cannot parse the path of a field; expected for example /servo/state.velocity[0]")
     if len(fields) > (2 if channel == "radial_load" else 1):
         raise ValueError(f"{text}: {channel} has {len(fields)} fields, expected one{', or y and z' if channel == 'radial_load' else ''}")
-    unit = unit or ("degC" if channel == "oil_temperature" and fields else None)
+    unit = unit or ("degC" if channel in topics.TEMPERATURES and fields else None)
     scale, offset = conversion(unit, UNITS[channel]) if unit else (1.0, 0.0)
     return Source(topic if topic.startswith("/") else f"/{topic}", fields, scale, offset)
 
@@ -130,7 +130,7 @@ def source_values(channel: str, where: Source, ros_type: str, message, joint: st
         numbers = topics.input_values(channel, ros_type, message, joint)
         if where.scale == 1.0 and not where.offset:
             return numbers
-        if channel == "oil_temperature":  # in degC by its type, but the user has named another unit
+        if channel in topics.TEMPERATURES:  # in degC by its type, but the user has named another unit
             numbers = tuple(number - topics.ZERO_CELSIUS for number in numbers)
     else:
         numbers = tuple(_number(message, field) for field in where.fields)
@@ -168,8 +168,7 @@ def read_input_log(
     Parameters
     ----------
     path : an MCAP file, finished or not (``*.mcap.active``), an sqlite3 file or a bag's folder; or a sequence of them.
-    names : by channel, topic or topic and field (see `source`), if it is not ``/shaft_speed``, ``/radial_load``, ``/oil_temperature``,
-        ``/cage_speed_measured``.
+    names : by channel, topic or topic and field (see `source`), if it is not the channel's own name, such as ``/shaft_speed``.
     joint, cage_joint : names of the joints of shaft and cage in JointState messages.
     stamps : ``"header"`` takes header stamps if the type has them and they are set, otherwise log times; ``"log"`` takes log times only.
     required : channels that must be present.

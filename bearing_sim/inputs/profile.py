@@ -8,17 +8,17 @@ the same functions, so the model sees the same instants and the same inputs eith
 
 from bisect import bisect_left, bisect_right
 from collections import Counter, deque
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from heapq import merge
 from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.inputs.gate import REQUIRED, InputGate, unknown_inputs
-from bearing_sim.inputs.log import InputLog, InputLogError, ReadError
+from bearing_sim.inputs.gate import REQUIRED, InputGate, unknown_inputs, unused_event
+from bearing_sim.inputs.log import InputLog, InputLogError, ReadError, Series
 from bearing_sim.messages.events import Event, Level
-from bearing_sim.messages.topics import INPUTS, MEASURED
+from bearing_sim.messages.topics import INPUTS, MEASURED, RING_TEMPERATURES, TEMPERATURES
 from bearing_sim.scene.scene import InputLimits
 from bearing_sim.simulation import Inputs
 
@@ -31,7 +31,7 @@ _GAP_IN_SPACINGS = 10
 _SPACINGS_KNOWN = 100  # of a channel, from which the median is taken
 _FEW_SPACINGS = 3
 _LONGEST_UNKNOWN = 3600.0  # [s] longest spacing that is no gap while there are only a few spacings to compare it with
-_SILENT_OIL = 10.0  # times the age at which an input is stale: oil warms up in minutes, its messages are rare
+_SILENT = 10.0  # times the age at which an input is stale: oil and rings warm up in minutes, their messages are rare
 
 _SEGMENT = 1_000_000_000  # [ns] longest segment of an online profile, so that requests are obeyed and the newest messages are used
 _PRUNED = 10_000  # messages before the segment that are kept before they are dropped
@@ -64,11 +64,11 @@ class Segment(NamedTuple):
     Attributes
     ----------
     instants : the stamps of speed and load and the times of outputs [ns], int64, rising, shape (n,).
-    inputs : at the instants, columns as `bearing_sim.simulation.Inputs`, shape (n, 4).
+    inputs : at the instants, columns as `bearing_sim.simulation.Inputs`, shape (n, 6).
     is_output : whether each instant is an output, shape (n,).
     in_gap : whether the time before each instant is a gap, which is not simulated, shape (n,).
     arrived : stamps of messages of any input [ns], rising, shape (m,).
-    arrived_inputs : at these, shape (m, 4).
+    arrived_inputs : at these, shape (m, 6).
     arrived_channels : by channel, whether it has a message with each of these stamps, shape (m,).
     """
 
@@ -90,35 +90,39 @@ class Segment(NamedTuple):
 
 
 def inputs_at(instants: np.ndarray, messages: Messages, limits: InputLimits, temperature: float) -> np.ndarray:
-    """Return the inputs at instants [ns], shape (n, 4): speed and load linear between their messages, the oil temperature held.
+    """Return the inputs at instants [ns], shape (n, 6): speed and load linear between their messages, temperatures held.
 
-    The temperature is held, not interpolated, because a run under way cannot know the next one.  Before its first message it is that of
-    the first if this comes soon, otherwise ``temperature``.
+    Temperatures are held, not interpolated, because a run under way cannot know the next one.  Before the first message a temperature is that
+    of the first if this comes soon; otherwise that of the oil is ``temperature``, and that of a ring is not measured, NaN.  Nor is it where the
+    newest message is too old, so that the model's own temperature stands in for a sensor that has died.
 
     Parameters
     ----------
     instants : [ns since the start of the profile], shape (n,).
     messages : those of speed and load must enclose the instants.
-    limits : see `oil_patience_ns`.
-    temperature : of the scene [K].
+    limits : see `patience_ns`.
+    temperature : of the oil, of the scene [K].
     """
     stamps, values = messages
-    columns = np.empty((len(instants), 4))
+    columns = np.empty((len(instants), len(Inputs._fields)))
     columns[:, 0] = np.interp(instants, stamps["shaft_speed"], values["shaft_speed"])
     for axis in range(2):
         columns[:, 1 + axis] = np.interp(instants, stamps["radial_load"], values["radial_load"][:, axis])
-    columns[:, 3] = temperature
-    known = stamps.get(OIL, ())
-    if len(known):
-        newest = np.searchsorted(known, instants, "right") - 1
-        is_known = (newest >= 0) | (known[0] <= oil_patience_ns(limits))
-        columns[is_known, 3] = np.asarray(values[OIL])[np.maximum(newest, 0)][is_known]
+    for column, channel in enumerate(TEMPERATURES, start=Inputs._fields.index(OIL)):
+        columns[:, column] = temperature if channel == OIL else np.nan
+        known = stamps.get(channel, ())
+        if len(known):
+            newest = np.searchsorted(known, instants, "right") - 1
+            is_known = (newest >= 0) | (known[0] <= patience_ns(limits))
+            if channel in RING_TEMPERATURES:
+                is_known &= instants - known[np.maximum(newest, 0)] <= patience_ns(limits)
+            columns[is_known, column] = np.asarray(values[channel])[np.maximum(newest, 0)][is_known]
     return columns
 
 
-def oil_patience_ns(limits: InputLimits) -> int:
-    """Return how long after the start a first oil temperature still counts for the start [ns]: ten times ``limits.stale_after``."""
-    return round(_SILENT_OIL * limits.stale_after * 1e9)
+def patience_ns(limits: InputLimits) -> int:
+    """Return the time [ns] for which a temperature counts: after the start for a first one, and after its stamp for that of a ring."""
+    return round(_SILENT * limits.stale_after * 1e9)
 
 
 def is_gap(spacings: Sequence[int], limits: InputLimits, longest_gap: float | None = None) -> bool:
@@ -208,7 +212,7 @@ def _outputs(rate: float, after: int, until: int, gaps: Sequence[tuple[int, int]
 
 @dataclass(frozen=True)
 class InputProfile:
-    """Inputs as functions of time, speed and load linear between accepted messages, the oil temperature held.
+    """Inputs as functions of time, speed and load linear between accepted messages, temperatures held (see `inputs_at`).
 
     Time 0 is the first instant at which shaft speed and radial load are both known; the profile ends where the first of them ends.
 
@@ -268,7 +272,7 @@ class InputProfile:
         return list(zip((self.stamps[MEASURED] * 1e-9).tolist(), self.values[MEASURED].tolist()))
 
 
-def judge(log: InputLog, limits: InputLimits, held: Inputs, longest_gap: float | None = None) -> InputProfile:
+def judge(log: InputLog, limits: InputLimits, held: Inputs, longest_gap: float | None = None, heat_law: str = "none") -> InputProfile:
     """Pass every message of a log through the gate, each channel in the order of recording.
 
     Parameters
@@ -278,21 +282,26 @@ def judge(log: InputLog, limits: InputLimits, held: Inputs, longest_gap: float |
     held : inputs before the first message.
     longest_gap : spacing of good messages [s] above which the time between them is a gap; by default ten times the channel's median
         spacing so far, and at least ``limits.stale_after`` (`is_gap`).
+    heat_law : the scene's; with ``none``, measured temperatures of rings are left out, which an event says.
 
     Raises
     ------
     InputLogError
         There is no time for which good messages of both shaft speed and radial load are known.
     """
-    gate = InputGate(limits, held, _SUBSTITUTE)
+    gate = InputGate(limits, held, _SUBSTITUTE, heat_law)
     epoch = log.series["shaft_speed"].stamps[0]
-    stamps: dict[str, list[int]] = {channel: [] for channel in log.series}
-    values: dict[str, list] = {channel: [] for channel in log.series}
+    unused = [channel for channel in RING_TEMPERATURES if channel in log.series and heat_law == "none"]
+    used = {channel: series for channel, series in log.series.items() if channel not in unused}
+    stamps: dict[str, list[int]] = {channel: [] for channel in used}
+    values: dict[str, list] = {channel: [] for channel in used}
     events = _Events()
+    for channel in unused:
+        events.add(unused_event(0.0, channel))
     seen: dict[str, tuple[float, float]] = {}  # first and last time of messages that are good, or refused for their values
     newest = -np.inf
     messages = 0
-    for channel, stamp, given in _in_order(log):
+    for channel, stamp, given in _in_order(used):
         messages += 1
         if isinstance(given, ReadError):
             events.add(gate.refuse(channel, max(newest, 0.0), given.kind, given.reason))
@@ -300,9 +309,12 @@ def judge(log: InputLog, limits: InputLimits, held: Inputs, longest_gap: float |
         time = (stamp - epoch) * 1e-9
         if time > newest:
             newest = time
+            gate.expire(time)
             for event in gate.onsets(time):
                 events.add(event)
         refusal = gate.offer(channel, time, given)
+        for event in gate.take_returned():
+            events.add(event)
         if refusal is None or gate.coverage.is_unknown(channel):
             first, last = seen.get(channel, (time, time))
             seen[channel] = min(first, time), max(last, time)
@@ -334,14 +346,14 @@ def gap_event(time: float, channel: str, gap: tuple[int, int]) -> Event:
     return Event(time, Level.WARN, "input.gap", channel, reason, "this time is not simulated, the state is held")
 
 
-def _in_order(log: InputLog) -> Iterator[tuple[str, int, tuple | ReadError]]:
+def _in_order(found: Mapping[str, Series]) -> Iterator[tuple[str, int, tuple | ReadError]]:
     """Yield (channel, stamp, values or error): each channel in the order of recording, all channels merged by the newest stamp so far.
 
     Log times do not order the channels among each other, because a sender may lag behind.
     """
 
     def messages(channel):
-        series = log.series[channel]
+        series = found[channel]
         good = zip(series.log_times, series.stamps, series.values)
         bad = ((error.log_ns, None, error) for error in series.errors)
         newest = series.stamps[0] if series.stamps else 0
@@ -349,7 +361,7 @@ def _in_order(log: InputLog) -> Iterator[tuple[str, int, tuple | ReadError]]:
             newest = max(newest, stamp or newest)
             yield newest, channel, stamp, given
 
-    for _, channel, stamp, given in merge(*map(messages, log.series), key=lambda message: message[0]):
+    for _, channel, stamp, given in merge(*map(messages, found), key=lambda message: message[0]):
         yield channel, stamp, given
 
 
@@ -393,7 +405,7 @@ class OnlineInputProfile:
 
     Topics have no common order: a load may arrive before or after a speed with the same stamp.  Speed and load are linear between their
     messages, so an instant is known once each of the two has a message stamped at or after it, in whatever order they arrived; neither can be
-    late.  The oil temperature is held, so it is known at an instant once a later message has arrived, or the clock passed the instant long
+    late.  Temperatures are held, so each is known at an instant once a later message has arrived, or the clock passed the instant long
     enough ago for its messages to have arrived; a message that arrives later than that is late, and refused.
 
     Parameters
@@ -401,6 +413,7 @@ class OnlineInputProfile:
     rate : outputs per simulated second [Hz].
     limits : of the scene.
     temperature : of the oil before the first message or set [K].
+    channels : the inputs that messages may carry.
 
     Attributes
     ----------
@@ -410,11 +423,12 @@ class OnlineInputProfile:
         End of the last segment that was taken [ns since the epoch].
     """
 
-    def __init__(self, rate: float, limits: InputLimits, temperature: float):
+    def __init__(self, rate: float, limits: InputLimits, temperature: float, channels: Collection[str] = (*REQUIRED, OIL)):
         self._rate, self._limits, self._temperature = rate, limits, temperature
-        self._stamps: dict[str, list[int]] = {channel: [] for channel in INPUTS}
-        self._values: dict[str, list] = {channel: [] for channel in INPUTS}
-        self._newest_oil: int | None = None  # stamp of its newest message; sets are in _stamps too
+        self._stamps: dict[str, list[int]] = {channel: [] for channel in channels}
+        self._values: dict[str, list] = {channel: [] for channel in channels}
+        self._held = [channel for channel in channels if channel in TEMPERATURES]
+        self._newest: dict[str, int] = {}  # stamps of the newest messages of temperatures; sets are in _stamps too
         self._spacings = {channel: deque(maxlen=_SPACINGS_KNOWN) for channel in REQUIRED}
         self._gaps: list[tuple[int, int]] = []
         self.start: int | None = None
@@ -441,8 +455,8 @@ class OnlineInputProfile:
             if is_gap(self._spacings[channel], self._limits):
                 gap = (stamps[-1], stamp)
                 self._gaps.append(gap)
-        if channel == OIL:
-            self._newest_oil = stamp
+        if channel in self._held:
+            self._newest[channel] = stamp
         self._insert(channel, stamp, value)
         if self.start is None and all(self._stamps[required] for required in REQUIRED):
             self.start = max(self._stamps[required][0] for required in REQUIRED)
@@ -477,37 +491,38 @@ class OnlineInputProfile:
         stamps.insert(k, stamp)
         self._values[channel].insert(k, value)
 
-    def awaited(self, settled: int, expects_oil: bool) -> list[str]:
+    def awaited(self, settled: int, expected: Collection[str]) -> list[str]:
         """Return the channels that an advance to the instant ``settled`` waits for (see `known_until`)."""
         if missing := [channel for channel in REQUIRED if not self._stamps[channel]]:
             return missing
         last = min(REQUIRED, key=lambda channel: self._stamps[channel][-1])
         if self._stamps[last][-1] < settled:
             return [last]
-        return [OIL] if expects_oil and self._oil_until(settled) < settled else []
+        return [channel for channel in self._held if channel in expected and self._held_until(channel, settled) < settled]
 
-    def known_until(self, clock: int, settled: int, expects_oil: bool) -> int:
+    def known_until(self, clock: int, settled: int, expected: Collection[str]) -> int:
         """Return the last instant at which everything is known [ns since the epoch]; -1 if there is none.
 
         Parameters
         ----------
         clock : now [ns since the epoch]; nothing acts before its time.
         settled : an earlier reading of the clock, old enough for every message stamped before it to have arrived [ns since the epoch].
-        expects_oil : whether the oil temperature has a publisher.
+        expected : the temperatures that have a publisher.
         """
         if self.start is None:
             return -1
         known = min(clock, *(self._stamps[channel][-1] for channel in REQUIRED))
-        if expects_oil or self._newest_oil is not None:
-            known = min(known, self._oil_until(settled))
-        elif settled < self.start:  # a publisher of it may not have been discovered yet
-            return -1
+        for channel in self._held:
+            if channel in expected or channel in self._newest:
+                known = min(known, self._held_until(channel, settled))
+            elif settled < self.start:  # a publisher of it may not have been discovered yet
+                return -1
         return known if known >= self.start else -1
 
-    def _oil_until(self, settled: int) -> int:
-        if self._newest_oil is not None:
-            return max(self._newest_oil, settled)
-        return settled if self.start is not None and settled > self.start + oil_patience_ns(self._limits) else -1
+    def _held_until(self, channel: str, settled: int) -> int:
+        if channel in self._newest:
+            return max(self._newest[channel], settled)
+        return settled if self.start is not None and settled > self.start + patience_ns(self._limits) else -1
 
     def take(self, known_until: int) -> Segment | None:
         """Return the next segment, up to ``known_until`` [ns since the epoch] or a second long, or None if there is none yet."""

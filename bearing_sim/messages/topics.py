@@ -17,10 +17,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from bearing_sim.messages.events import Event, Level
+from bearing_sim.model.sample import RING_TEMPERATURES
 
 SHAFT_JOINT, CAGE_JOINT = "shaft", "cage"
 FRAME = "bearing"  # x along the shaft
 ZERO_CELSIUS = 273.15  # [K]
+TEMPERATURES = ("oil_temperature", *RING_TEMPERATURES)
+"""The input channels that carry a temperature."""
 
 
 class Topic(NamedTuple):
@@ -36,6 +39,7 @@ class Topic(NamedTuple):
     observables : of an output topic, by field of its message: the observables whose numbers stand there one after the other,
         exactly as in the sample.
     of_tilting_levels : whether levels without tilts and slices omit it.
+    of_heat : whether scenes without a law of heat omit it.
     """
 
     name: str
@@ -44,6 +48,7 @@ class Topic(NamedTuple):
     message: Callable[[int, Any], dict]
     observables: Mapping[str, tuple[str, ...]] = MappingProxyType({})
     of_tilting_levels: bool = False
+    of_heat: bool = False
 
 
 def stamp(stamp_ns: int) -> dict:
@@ -84,8 +89,13 @@ def _radial_load(stamp_ns: int, inputs) -> dict:
     return {"header": header(stamp_ns, FRAME), "wrench": {"force": force, "torque": {"x": 0.0, "y": 0.0, "z": 0.0}}}
 
 
-def _oil_temperature(stamp_ns: int, inputs) -> dict:
-    return {"header": header(stamp_ns, FRAME), "temperature": float(inputs.oil_temperature) - ZERO_CELSIUS, "variance": 0.0}
+def _temperature(name: str, meaning: str, of_heat: bool = False) -> Topic:
+    """Return the topic of an input that is a temperature."""
+
+    def message(stamp_ns: int, inputs) -> dict:
+        return {"header": header(stamp_ns, FRAME), "temperature": float(getattr(inputs, name)) - ZERO_CELSIUS, "variance": 0.0}
+
+    return Topic(name, "sensor_msgs/msg/Temperature", meaning, message, of_heat=of_heat)
 
 
 def _cage_speed(stamp_ns: int, speed: float) -> dict:
@@ -164,6 +174,7 @@ ARRAYS = {
     "roller_tilts": ArrayRows("inclination: outwards, along the orbit", ("roller_tilt", "roller_skew")),
     "roller_loads": ArrayRows("ring", ("inner_load", "outer_load")),
     "operating_point": ArrayRows("load y, z, oil temperature, land eccentricity", ("load_y", "load_z", "oil_temperature", "land_eccentricity")),
+    "measured_temperatures": ArrayRows("inner ring, outer ring", tuple(f"{name}_measured" for name in RING_TEMPERATURES)),
     "roller_places": ArrayRows("angle, radius, rotation", ("roller_angle", "roller_radius", "roller_rotation")),
 }
 """The topics of samples that carry arrays, by name; a second dimension ``roller`` where rows have a number for each roller."""
@@ -172,7 +183,7 @@ LIFE_SYMBOLS = dict(zip(ARRAYS["rating_lives"].fields, ARRAYS["rating_lives"].la
 """The standards' symbols of rating lives, by observable."""
 
 
-def _array(name: str, meaning: str, of_tilting_levels: bool = False) -> Topic:
+def _array(name: str, meaning: str, of_tilting_levels: bool = False, of_heat: bool = False) -> Topic:
     """Return the topic of an array."""
     label, fields = ARRAYS[name]
 
@@ -183,7 +194,7 @@ def _array(name: str, meaning: str, of_tilting_levels: bool = False) -> Topic:
             dim.append({"label": "roller", "size": data.shape[1], "stride": data.shape[1]})
         return {"layout": {"dim": dim, "data_offset": 0}, "data": data.ravel()}
 
-    return Topic(name, "std_msgs/msg/Float64MultiArray", meaning, message, {"data": fields}, of_tilting_levels)
+    return Topic(name, "std_msgs/msg/Float64MultiArray", meaning, message, {"data": fields}, of_tilting_levels, of_heat)
 
 
 INPUTS = {
@@ -191,10 +202,14 @@ INPUTS = {
     for topic in (
         Topic("shaft_speed", "sensor_msgs/msg/JointState", "velocity of the joint 'shaft' [rad/s]", _shaft_speed),
         Topic("radial_load", "geometry_msgs/msg/WrenchStamped", "force.y, force.z on the inner ring in the bearing frame [N]", _radial_load),
-        Topic("oil_temperature", "sensor_msgs/msg/Temperature", "oil temperature [degC]", _oil_temperature),
+        _temperature("oil_temperature", "optional: oil temperature [degC]"),
+        _temperature("inner_ring_temperature", "optional: measured temperature of the inner ring [degC]; without a law of heat it is not read", True),
+        _temperature("outer_ring_temperature", "optional: measured temperature of the outer ring [degC]; without a law of heat it is not read", True),
     )
 }
 """The input topics by channel (`bearing_sim.inputs.gate` uses the same channel names)."""
+ALWAYS_KNOWN = tuple(name for name in INPUTS if name not in RING_TEMPERATURES)
+"""The input channels that have a value at every instant of a run."""
 
 MEASURED, RESIDUAL = "cage_speed_measured", "cage_slip_residual"
 MEASUREMENTS = {
@@ -247,6 +262,7 @@ RECORDED = {
     topic.name: topic
     for topic in (
         _array("operating_point", "inputs as the model had them: load y, z [N], oil [K]; land eccentricity"),
+        _array("measured_temperatures", "measured temperatures [K] as the model had them: inner ring, outer ring; NaN: not measured", of_heat=True),
         _array("roller_places", "(azimuth [rad], distance from the centre [m], rotation [rad]) x roller"),
     )
 }
@@ -255,12 +271,23 @@ RECORDED = {
 
 def recorded(scene) -> dict[str, Topic]:
     """Return the topics that hold all observables of a scene's level, by name, in the order in which a recording has them."""
-    return {**RECORDED, **outputs(scene)}
+    return {**_of_scene(RECORDED, scene), **outputs(scene)}
 
 
 def outputs(scene) -> dict[str, Topic]:
-    """Return the output topics that a scene's level has, by name."""
-    return {name: topic for name, topic in OUTPUTS.items() if scene.bodies_tilt or not topic.of_tilting_levels}
+    """Return the output topics that a scene has, by name."""
+    return _of_scene(OUTPUTS, scene)
+
+
+def inputs(scene) -> dict[str, Topic]:
+    """Return the input topics that a scene uses, by channel."""
+    return _of_scene(INPUTS, scene)
+
+
+def _of_scene(table: Mapping[str, Topic], scene) -> dict[str, Topic]:
+    absent = [topic.name for topic in table.values() if topic.of_tilting_levels and not scene.bodies_tilt]
+    absent += [topic.name for topic in table.values() if topic.of_heat and not scene.uses_ring_temperatures]
+    return {name: topic for name, topic in table.items() if name not in absent}
 
 
 DIAGNOSTICS = ("diagnostics", "diagnostic_msgs/msg/DiagnosticArray")
@@ -344,7 +371,7 @@ def input_types(channel: str) -> tuple[str, ...]:
     """Return the message types that can carry a channel."""
     if channel == MEASURED:
         return (MEASUREMENTS[channel].ros_type,)
-    scalar = ("std_msgs/msg/Float64",) if channel != "oil_temperature" else ()
+    scalar = ("std_msgs/msg/Float64",) if channel not in TEMPERATURES else ()
     return (INPUTS[channel].ros_type, *scalar)
 
 
@@ -353,7 +380,7 @@ def input_values(channel: str, ros_type: str, message, joint: str = SHAFT_JOINT)
 
     Parameters
     ----------
-    channel : ``"shaft_speed"`` -> (speed,), ``"radial_load"`` -> (force_y, force_z), ``"oil_temperature"`` -> (kelvin,),
+    channel : ``"shaft_speed"`` -> (speed,), ``"radial_load"`` -> (force_y, force_z), a temperature -> (kelvin,),
         ``"cage_speed_measured"`` -> (speed,).
     ros_type : one of `input_types`; a scalar load gives (force,), a magnitude along +y.
     message : any object with the fields of that type as attributes.
@@ -368,7 +395,7 @@ def input_values(channel: str, ros_type: str, message, joint: str = SHAFT_JOINT)
         raise ValueError(f"{ros_type} cannot carry {channel}; expected {' or '.join(input_types(channel))}")
     if ros_type == "std_msgs/msg/Float64":
         return (float(message.data),)
-    if channel == "oil_temperature":
+    if channel in TEMPERATURES:
         return (float(message.temperature) + ZERO_CELSIUS,)
     if channel == "radial_load":
         return (float(message.wrench.force.y), float(message.wrench.force.z))

@@ -22,6 +22,9 @@ class Observable(NamedTuple):
     per_roller: bool = False
 
 
+RING_TEMPERATURES = ("inner_ring_temperature", "outer_ring_temperature")
+"""The inputs that are measurements of what the model predicts; a sample holds them under these names with ``_measured``."""
+
 OBSERVABLES = (
     Observable("time", "s", "simulated time since the start of the run"),
     Observable("shaft_angle", "rad", "shaft rotation since the start"),
@@ -29,6 +32,10 @@ OBSERVABLES = (
     Observable("load_y", "N", "radial load on the inner ring along y"),
     Observable("load_z", "N", "radial load on the inner ring along z"),
     Observable("oil_temperature", "K", "oil temperature"),
+    *(
+        Observable(f"{name}_measured", "K", f"measured temperature of the {ring} ring; NaN where it is not measured")
+        for name, ring in zip(RING_TEMPERATURES, ("inner", "outer"))
+    ),
     Observable("level", "", "level that computed the sample: 0 steady, 1 slip, 2 planar, 3 spatial"),
     Observable("cage_angle", "rad", "cage rotation since the start"),
     Observable("cage_speed", "rad/s", "cage angular speed"),

@@ -154,7 +154,7 @@ class _Recording(AbstractContextManager):
     write_start = write
     """Write the state from which the run starts (see `bearing_sim.recording.writer.McapSink.write_start`)."""
 
-    def write_inputs(self, time: float, inputs, channels: Iterable[str] = tuple(topics.INPUTS), origin: topics.Origin | None = None) -> None:
+    def write_inputs(self, time: float, inputs, channels: Iterable[str] = topics.ALWAYS_KNOWN, origin: topics.Origin | None = None) -> None:
         """Write the inputs that arrived at ``time`` [s] (see `bearing_sim.recording.writer.McapSink.write_inputs`)."""
         self.offer("write_inputs", (time, inputs._asdict(), tuple(channels), origin))  # by name: their class would load the solver over there
 

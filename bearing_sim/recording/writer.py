@@ -422,7 +422,7 @@ class McapSink(AbstractContextManager):
     write_start = write
     """Write the state from which the run starts, a block of one sample, so that the run can be reproduced; it is not an output of the run."""
 
-    def write_inputs(self, time: float, inputs, channels: Iterable[str] = tuple(topics.INPUTS), origin: topics.Origin | None = None) -> None:
+    def write_inputs(self, time: float, inputs, channels: Iterable[str] = topics.ALWAYS_KNOWN, origin: topics.Origin | None = None) -> None:
         """Write the inputs that arrived at ``time`` [s].
 
         Parameters

@@ -276,7 +276,7 @@ class BearingInterface:
             self._start_recording(Path(settings.record))
         if settings.rrd or settings.rerun_port:
             self.live.open("view", lambda start_ns: open_view(self.scene, start_ns, settings.rrd, settings.rerun_port))
-        for channel, topic in topics.INPUTS.items():
+        for channel, topic in topics.inputs(self.scene).items():
             self._subscribe(channel, _SCALAR if shared.input_type == "scalar" and _SCALAR in topics.input_types(channel) else topic.ros_type)
         self._subscribe(topics.MEASURED, topics.MEASUREMENTS[topics.MEASURED].ros_type)
         self._log("ready: listening to shaft_speed and radial_load")
@@ -353,8 +353,10 @@ class BearingInterface:
             self.live.record_diagnostics(condition, now_ns)
 
     def _count_publishers(self) -> None:
-        for channel, subscription in self._subscriptions.items():
-            self.live.note_publishers(channel, self._node.count_publishers(subscription.topic_name))
+        names = {channel: subscription.topic_name for channel, subscription in self._subscriptions.items()}
+        unused = {channel: self._node.resolve_topic_name(self._topic_name(channel)) for channel in topics.INPUTS if channel not in names}
+        for channel, name in (names | unused).items():
+            self.live.note_publishers(channel, self._node.count_publishers(name))
 
     def reason_to_refuse(self, changes: dict[str, object]) -> str:
         """Return why changes of this bearing's parameters are refused; empty if they can be applied."""

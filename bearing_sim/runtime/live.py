@@ -13,11 +13,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.inputs.gate import UNITS, Coverage, InputGate, PublisherConflict, unknown_inputs, with_values
+from bearing_sim.inputs.gate import UNITS, Coverage, InputGate, PublisherConflict, unknown_inputs, unused_event, with_values
 from bearing_sim.messages import topics
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.model.plausibility import plausibility
-from bearing_sim.model.sample import joined
+from bearing_sim.model.sample import RING_TEMPERATURES, joined
 from bearing_sim.monitoring.health import Condition, Health, Phase, level_of, numbers
 from bearing_sim.monitoring.limits import LimitsMonitor
 from bearing_sim.monitoring.monitor import Monitor
@@ -93,6 +93,7 @@ class Model:
         self.sinks = SinkRegistry()
         self.level = Level.OK
         self._conflicts = {channel: PublisherConflict(channel) for channel in UNITS}
+        self._unused: set[str] = set()
         self._residuals: list[tuple[int, float]] = []
         for finding in plausibility(scene):
             field, _, reason = finding.partition(": ")
@@ -140,8 +141,10 @@ class Model:
         return event
 
     def note_publishers(self, channel: str, count: int) -> None:
-        """Take the number of publishers of a channel; more than one is reported."""
+        """Take the number of publishers of a channel; more than one is reported, and any one of a channel that the scene does not use."""
         self._conflicts[channel].publishers = count
+        if channel in RING_TEMPERATURES and not self.scene.uses_ring_temperatures:
+            self._unused = self._unused | {channel} if count else self._unused - {channel}
 
     def adjust(self, thresholds: Thresholds) -> None:
         """Use other thresholds from now on; what was learned about the measured cage is kept."""
@@ -249,6 +252,7 @@ class Model:
     def _events(self, now: float) -> list[Event]:
         """Return the events that hold at ``now`` [s], the worst first."""
         conflicts = [event for conflict in self._conflicts.values() if (event := conflict.event(now)) is not None]
+        conflicts += [unused_event(now, channel) for channel in sorted(self._unused)]
         judged = (*self.monitor.events(now), *self.limits.events(now), *self.residual.events(now))
         events = [*self.sinks.events(now), *judged, *self._further_events(now), *conflicts]
         coverage = self.gate.coverage
@@ -308,7 +312,8 @@ class LiveModel(Model):
         self._sample_rate, self.schedule = sample_rate, tick_schedule(sample_rate, publish_rate)
         pacer, capacity = Pacer(1.0, maximum_lag), round(_SLACK / tick_schedule(sample_rate, math.inf).tick)
         solver = WallTimeSolver(simulation, pacer, self.schedule, capacity, clock, governor, self._advanced)
-        super().__init__(scene, InputGate(scene.accepted_inputs, simulation.inputs), solver, start_ns)
+        held = simulation.inputs._replace(**dict.fromkeys(RING_TEMPERATURES, math.nan))  # measured in this run or not at all
+        super().__init__(scene, InputGate(scene.accepted_inputs, held, heat_law=scene.heat_law), solver, start_ns)
         self._sample_decimator, self._publish_decimator, self._due = Decimator(sample_rate), Decimator(publish_rate), due
         self._wall_clock = WallClock(start_ns, clock, receiver)
         self._published_time = -math.inf
@@ -331,6 +336,8 @@ class LiveModel(Model):
         if event is not None:
             self._note(event)
             return event
+        for returned in self.gate.take_returned():
+            self._note(returned)
         self._conflicts[channel].take(values)
         if channel == topics.MEASURED:
             self._compare(now, topics.Origin(stamp_ns, frame_id))
@@ -345,6 +352,12 @@ class LiveModel(Model):
         if self.gate.accepted["shaft_speed"]:
             self.solver.post(self.gate.held)
         self.sinks.write_inputs(self.run_time(now_ns), self.gate.held, ["oil_temperature"], topics.Origin(None, ""))
+
+    def collect(self, now_ns: int) -> list[Event]:
+        """Pass results of the solver on and review the health (see `Model.collect`)."""
+        if self.gate.expire(self.run_time(now_ns)) and self.gate.accepted["shaft_speed"]:
+            self.solver.post(self.gate.held)
+        return super().collect(now_ns)
 
     def publish_at(self, rate: float) -> None:
         """Change the rate of published outputs [Hz]."""

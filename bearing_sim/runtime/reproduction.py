@@ -19,10 +19,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from bearing_sim.messages.events import Event, Level
-from bearing_sim.model.sample import new_block
+from bearing_sim.model.sample import RING_TEMPERATURES, new_block
 from bearing_sim.recording.reader import Received, Recording
 from bearing_sim.scene.fidelity import NUMBERS
-from bearing_sim.simulation import Inputs, IntegrationError, Simulation, start_sample
+from bearing_sim.simulation import Inputs, IntegrationError, Simulation, inputs_of, start_sample
 
 _SKIPPED = 0.25  # fraction of a spacing by which angle and stamps may disagree before time counts as skipped
 _LEVELS = {number: name for name, number in NUMBERS.items()}
@@ -217,7 +217,7 @@ class _Run:
 
 
 def _inputs(sample: np.void) -> Inputs:
-    inputs = Inputs(*(float(sample[name]) for name in Inputs._fields))
-    if not all(map(math.isfinite, inputs)):
+    inputs = inputs_of(sample)
+    if not all(map(math.isfinite, inputs[: -len(RING_TEMPERATURES)])):
         raise ValueError("the recording does not contain the inputs of every sample; replay its inputs with --scene instead")
     return inputs

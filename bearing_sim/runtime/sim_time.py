@@ -16,8 +16,8 @@ from enum import Enum
 
 import numpy as np
 
-from bearing_sim.inputs.gate import ClockJumpFilter, InputGate, Message, Verdict
-from bearing_sim.inputs.profile import OIL, Arrival, OnlineInputProfile, gap_event
+from bearing_sim.inputs.gate import REQUIRED, ClockJumpFilter, InputGate, Message, Verdict
+from bearing_sim.inputs.profile import Arrival, OnlineInputProfile, gap_event
 from bearing_sim.messages import topics
 from bearing_sim.messages.events import Event, Level, Measurement
 from bearing_sim.monitoring.residual import Comparison
@@ -139,12 +139,12 @@ class SimTimeModel(Model):
         self._held_until: int | None = None  # while a jump back is an error
         self._newest: dict[str, int] = {}
         self._measured: list[tuple[int, float]] = []  # until the profile starts
-        self._started = self._expects_oil = False
+        self._started = False
+        self._expected: tuple[str, ...] = ()  # the temperatures that have a publisher
         self._late = self._gaps = 0
         self._openers: dict[str, Callable[[int], Sink]] = {}
         self._published: list[Published] = []
-        profile = OnlineInputProfile(sample_rate, scene.accepted_inputs, self._oil_temperature)
-        super().__init__(scene, InputGate(scene.accepted_inputs, self._first_inputs), SimTimeSolver(simulation, profile, clock=wall), 0)
+        super().__init__(scene, self._new_gate(scene), SimTimeSolver(simulation, self._new_profile(scene), clock=wall), 0)
         self._comparison = Comparison(self.residual)
         self.solver.start()
 
@@ -193,10 +193,11 @@ class SimTimeModel(Model):
         self.solver.set_oil_temperature(self._clock.now, self._oil_temperature)
 
     def note_publishers(self, channel: str, count: int) -> None:
-        """Take the number of publishers of a channel; if there is one of the oil temperature, the model waits for a first message."""
+        """Take the number of publishers of a channel; if there is one of a temperature, the model waits for a first message."""
         super().note_publishers(channel, count)
-        if channel == OIL:
-            self._expects_oil = count > 0
+        if channel in topics.TEMPERATURES:
+            others = tuple(name for name in self._expected if name != channel)
+            self._expected = (*others, channel) if count > 0 else others
 
     def note_loss(self, reason: str) -> None:
         """Take a report that messages were lost, or may have been; ``reason`` names the channel."""
@@ -240,6 +241,9 @@ class SimTimeModel(Model):
         self.tick(now_ns)
         for message in self._jump_filter.expired(self._wall()):
             self._accept(message)
+        overdue = self._clock.overdue(self._wall())
+        if overdue >= 0 and self._epoch is not None and self._held_until is None:
+            self.gate.expire((overdue - self._epoch) * 1e-9)
         return super().collect(now_ns)
 
     def _values(self) -> dict[str, object]:
@@ -285,7 +289,14 @@ class SimTimeModel(Model):
         overdue = self._clock.overdue(self._wall())
         if overdue < 0 or self._epoch is None or self._held_until is not None:
             return []
-        return [event._replace(action="the model waits where it is") for event in self.gate.check((overdue - self._epoch) * 1e-9)]
+        events = self.gate.check((overdue - self._epoch) * 1e-9)
+        return [event._replace(action="the model waits where it is") if event.subject in REQUIRED else event for event in events]
+
+    def _new_gate(self, scene: Scene) -> InputGate:
+        return InputGate(scene.accepted_inputs, self._first_inputs, heat_law=scene.heat_law)
+
+    def _new_profile(self, scene: Scene) -> OnlineInputProfile:
+        return OnlineInputProfile(self._rate, scene.accepted_inputs, self._oil_temperature, tuple(topics.inputs(scene)))
 
     def _accept(self, message: Message) -> Event | None:
         """Pass a message through the gate into the profile."""
@@ -294,6 +305,8 @@ class SimTimeModel(Model):
         if event is not None:
             self._note(event)
             return event
+        for returned in self.gate.take_returned():
+            self._note(returned)
         self._newest[channel] = stamp
         self._conflicts[channel].take(values)
         if channel == topics.MEASURED:
@@ -330,10 +343,10 @@ class SimTimeModel(Model):
     def _start_again(self) -> None:
         """Leave the profile and begin another one at the clock, with the messages that were set aside."""
         early = self._jump_filter.jump(self._clock.now, self._newest)
-        refused, self.gate = self.gate.refused, InputGate(self.scene.accepted_inputs, self._first_inputs)
+        refused, self.gate = self.gate.refused, self._new_gate(self.scene)
         self.gate.refused = refused
         self._newest, self._measured, self._started = {}, [], False
-        self.solver.follow(OnlineInputProfile(self._rate, self.scene.accepted_inputs, self._oil_temperature))
+        self.solver.follow(self._new_profile(self.scene))
         for message in early:
             self._accept(message)
         self._show_clock()
@@ -342,7 +355,7 @@ class SimTimeModel(Model):
         """Tell the solver how far it may advance."""
         if self._clock.now is not None and self._held_until is None:
             self._jump_filter.reach(self._clock.now)
-            self.solver.see_clock(self._clock.now, self._clock.settled(self._wall()), self._expects_oil)
+            self.solver.see_clock(self._clock.now, self._clock.settled(self._wall()), self._expected)
 
     def _take(self, items: Iterable, now: float) -> None:
         for item in items:

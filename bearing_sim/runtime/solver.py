@@ -11,7 +11,7 @@ import threading
 import time
 import traceback
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from pathlib import Path
 from typing import NamedTuple
 
@@ -414,7 +414,8 @@ class SimTimeSolver(Solver):
         self._capacity = capacity
         self._profile, self._run = profile, ProfileRun(self._begin)
         self._sim_clock = self._settled = -1  # readings of /clock [ns since the epoch]
-        self._expects_oil = self._has_started = False
+        self._expected: Collection[str] = ()
+        self._has_started = False
         self._busy_since: float | None = None
 
     def add(self, channel: str, stamp: int, value) -> tuple[int, int] | None:
@@ -429,10 +430,10 @@ class SimTimeSolver(Solver):
         with self._changed:
             self._profile.set_oil_temperature(stamp, temperature)
 
-    def see_clock(self, clock: int, settled: int, expects_oil: bool) -> None:
+    def see_clock(self, clock: int, settled: int, expected: Collection[str]) -> None:
         """Take a reading of the clock (see `bearing_sim.inputs.profile.OnlineInputProfile.known_until`)."""
         with self._changed:
-            self._sim_clock, self._settled, self._expects_oil = clock, settled, expects_oil
+            self._sim_clock, self._settled, self._expected = clock, settled, expected
             self._changed.notify_all()
 
     def follow(self, profile: OnlineInputProfile) -> None:
@@ -494,12 +495,12 @@ class SimTimeSolver(Solver):
         return known - max(self._profile.claimed, (self._profile.start or 0) - 1) if known >= 0 else 0
 
     def _known_until(self) -> int:
-        return self._profile.known_until(self._sim_clock, self._settled, self._expects_oil)
+        return self._profile.known_until(self._sim_clock, self._settled, self._expected)
 
     def awaited(self) -> list[str]:
         """Return the channels whose messages the model is waiting for."""
         with self._changed:
-            return self._profile.awaited(self._settled, self._expects_oil)
+            return self._profile.awaited(self._settled, self._expected)
 
     @property
     def waiting(self) -> int:

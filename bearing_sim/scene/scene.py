@@ -106,8 +106,8 @@ class InputLimits:
 
     maximum_speed: quantity("rad/s", "largest shaft speed accepted; None: the inner raceway at 350 m/s", 0.0, _LARGEST_SPEED, "rpm") | None = None
     maximum_load: quantity("N", "largest radial load accepted; None: ten times the static load rating", 0.0, _LARGEST_LOAD) | None = None
-    minimum_temperature: quantity("K", "lowest oil temperature accepted", 150.0, 800.0, "degC") = 233.15
-    maximum_temperature: quantity("K", "highest oil temperature accepted", 150.0, 800.0, "degC") = 523.15
+    minimum_temperature: quantity("K", "lowest temperature accepted, of oil and rings", 150.0, 800.0, "degC") = 233.15
+    maximum_temperature: quantity("K", "highest temperature accepted, of oil and rings", 150.0, 800.0, "degC") = 523.15
     reverse_rotation: bool = True  # whether negative shaft speeds are accepted
     stale_after: quantity("s", "age at which an input counts as stale", 1e-3, 3600.0) = 1.0
     minimum_rate: quantity("Hz", "lowest message rate expected", 0.0, 1e5) = 1.0
@@ -268,6 +268,17 @@ class Scene:
             maximum_speed=min(speed, _LARGEST_SPEED) if limits.maximum_speed is None else limits.maximum_speed,
             maximum_load=min(load, _LARGEST_LOAD) if limits.maximum_load is None else limits.maximum_load,
         )
+
+    @property
+    def uses_ring_temperatures(self) -> bool:
+        """Whether the temperatures of the rings matter, so that measured ones are used."""
+        return self.heat_law != "none"
+
+    @property
+    def heat_law(self) -> str:
+        """Where the temperatures of the bearing's parts come from."""
+        heat = getattr(self, "heat", None)
+        return "none" if heat is None else heat.law
 
     @property
     def cage_whirls(self) -> bool:

@@ -314,7 +314,12 @@ EVENTS = {
     "input.not_stamped": ("ERROR", "message refused: it has no stamp, and no clock can stand in"),
     "input.publishers": ("WARN, ERROR", "several publishers of one input; ERROR if their values disagree"),
     "input.rate": ("WARN", "messages arrive below `input_limits.minimum_rate` or above `maximum_rate`"),
-    "input.stale": ("WARN", "no message for longer than `input_limits.stale_after`; the last value is used"),
+    "input.returned": ("OK", "the temperature of a ring is measured again; the measured one is used"),
+    "input.stale": (
+        "WARN",
+        "no message for longer than `input_limits.stale_after`, of temperatures than ten times that; the last value is used, for the temperature "
+        "of a ring that of the model",
+    ),
     "input.stamp_not_finite": ("ERROR", "message refused: its stamp is not finite"),
     "input.time_backwards": ("ERROR", "message refused: its stamp lies before the last one"),
     "input.time_repeated": ("WARN", "message refused: its stamp repeats the last one"),
@@ -324,6 +329,7 @@ EVENTS = {
         "WARN",
         "inputs were refused for some of the time; if they were too large, the life is an upper and the damage a lower bound",
     ),
+    "input.unused": ("WARN", "the temperature of a ring is measured, but `heat.law: none` does not use it"),
     "input.unreadable": ("ERROR", "message of a log that cannot be decoded"),
     "log.unfinished": ("WARN", "a log ends before its proper end, as of a killed writer"),
     "output.dropped": ("WARN", "samples were dropped because nobody collected them in time"),
