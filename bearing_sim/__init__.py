@@ -9,7 +9,7 @@ room             purpose
 ``scene``        what a user writes: records with units and bounds, the loader, the catalogue, the bundled scenes
 ``numerics``     compiled helpers that know no bearing: linear algebra, integrators, compilation, lanes
 ``physics``      the laws, one file each: contact, traction, film, drag, cage, raceway, rating life
-``model``        from a scene to numbers: parameters, oil, ring growth, the sample record and its tables
+``model``        from a scene to numbers: parameters, oil, running clearance, the sample record and its tables
 ``levels``       the equations of motion at each level of fidelity: steady, slip, planar, spatial
 ``simulation``   the facade: `Simulation`, `Inputs`
 ``messages``     what topics and recordings carry: topics, events, the CDR layout of messages

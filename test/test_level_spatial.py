@@ -33,7 +33,7 @@ def by_roller(state):
     return state[2 * BORDER :].reshape(BLOCK, -1)
 
 
-GROWTH = "bearing.ring_growth={centrifugal: true, thermal: true, inner_excess: 10 K}"
+GROWTH = "bearing.dimensions_at=cold"
 
 
 @pytest.mark.parametrize(
@@ -73,7 +73,7 @@ STARTS = {
     "crown, misalignment, a ring that has grown": [
         "bearing.roller.crown=iso_log",
         "operating.misalignment=1 mrad",
-        "bearing.ring_growth.centrifugal=true",
+        "bearing.dimensions_at=cold",
     ],
 }
 

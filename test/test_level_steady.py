@@ -67,7 +67,7 @@ def test_slip_and_life_are_those_of_the_marched_level_at_points_drawn_by_lot(nam
     [
         ["bearing.outer_raceway.low_radius=34.8675 mm"],  # slips by a quarter
         ["lubricant.pumping=true", "bearing.cage.pocket_reaction=true", "bearing.cage.assumed_eccentricity=0.9"],
-        ["bearing.ring_growth.centrifugal=true", "bearing.outer_raceway.contour_slope=false"],
+        ["bearing.dimensions_at=cold", "bearing.outer_raceway.contour_slope=false"],
         ["bearing.outer_raceway.roundness=8 um", "bearing.outer_raceway.installation_angle=17 deg"],
         ["bearing.outer_raceway.lobes=2", "lubricant.traction={law: kragelskii}"],
         ["bearing.outer_raceway.d_value=0 mm", "lubricant.mixture_fraction=0.01", "bearing.outer_raceway.low_radius=34.87 mm"],

@@ -86,9 +86,10 @@ def kinds(count):
 
 INNER = ["bearing.cage.guidance=inner_ring", "bearing.cage.outer_radius=33.35 mm"]
 ROLLER_GUIDED = ["bearing.cage.guidance=roller", "bearing.cage.outer_radius=33.35 mm"]
-# rho R^3/E omega^2 of the ring's mean radius, and alpha by 100 K of inner ring (5 K more), rollers and outer raceway
-GROWN = 7850 * ((25.0135e-3 + 27.875e-3) / 2) ** 3 / 2.06e11 * (45000 * math.pi / 30) ** 2
-GROWN += 1.2e-5 * (105 * 27.875e-3 + 100 * 7e-3 - 100 * 34.9115e-3)
+# A turning disc with a hole at its outer radius, the diameter of spinning rollers, and alpha by 100 K of inner ring, rollers and outer raceway
+GROWN = 7850 * (45000 * math.pi / 30) ** 2 * 27.875e-3 / (4 * 2.06e11) * (0.7 * 27.875e-3**2 + 3.3 * 25.0135e-3**2)
+GROWN += 2 * 0.7 * 7850 * (45000 * math.pi / 30 * (62.75 / 14 - 7 / 125.5)) ** 2 * 3.5e-3**3 / (4 * 2.06e11)
+GROWN += 1.2e-5 * 100 * (27.875e-3 + 7e-3 - 34.9115e-3)
 
 VARIANTS = {
     "stock": ({}, []),
@@ -118,7 +119,7 @@ VARIANTS = {
     ),
     "pumping, and a raceway that grows": (
         {"pumping": True, "growth": GROWN},
-        ["lubricant.pumping=true", "bearing.ring_growth={centrifugal: true, thermal: true, inner_excess: 5 K}"],
+        ["lubricant.pumping=true", "bearing.dimensions_at=cold"],
     ),
     "nine rollers, damped": ({"rollers": 9, "contact_damping": 1.0}, ["bearing.roller.count=9", "bearing.contact.damping=1"]),
 }

@@ -145,7 +145,7 @@ def test_what_the_shaft_gives_in_a_turn_of_the_cage_is_lost_or_stored():
 OPTIONS = (
     ["bearing.cage.pocket_friction=0.2"],
     INNER,
-    ["lubricant.pumping=true", "bearing.ring_growth.centrifugal=true", "lubricant.traction.law=eyring"],
+    ["lubricant.pumping=true", "bearing.dimensions_at=cold", "lubricant.traction.law=eyring"],
 )
 
 

@@ -141,7 +141,7 @@ VARIANTS = {
     ),
     "pumping, and a raceway that grows": (
         lambda: SpatialReference(Reference(pumping=True, growth=GROWN), moment=(2 * math.cos(math.pi / 6), 1.0), crown=CROWN),
-        [*MOMENT, "lubricant.pumping=true", "bearing.ring_growth={centrifugal: true, thermal: true, inner_excess: 5 K}"],
+        [*MOMENT, "lubricant.pumping=true", "bearing.dimensions_at=cold"],
         CROWN,
     ),
     "nine rollers backwards, crown": (

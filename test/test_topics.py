@@ -165,6 +165,17 @@ WIRE = {
             ("static_safety", ""),
         ],
     ),
+    "running_clearance": (
+        "running, initial, fits, rotation, heat, contour",
+        [
+            ("running_clearance", "m"),
+            ("initial_clearance", "m"),
+            ("fit_clearance", "m"),
+            ("rotation_clearance", "m"),
+            ("heat_clearance", "m"),
+            ("contour_clearance", "m"),
+        ],
+    ),
     "centre_positions": ("inner ring y, z, cage y, z", [("ring_y", "m"), ("ring_z", "m"), ("cage_y", "m"), ("cage_z", "m")]),
     "axis_tilts": (
         "inner ring y, z, cage y, z",

@@ -56,7 +56,7 @@ bearing:
   name: seven thick rollers
   source: made up
   roller: {count: 7, diameter: 20 mm, length: 20 mm}
-  inner_raceway: {radius: 20 mm, ring_mass: 200 g}
+  inner_raceway: {radius: 20 mm, ring_mass: 200 g, bore_radius: 15 mm}
   outer_raceway: {low_radius: 40.01 mm, d_value: 0 mm}
   cage: {mass: 60 g, width: 25 mm, inner_radius: 28 mm, guide_radius: 35 mm, guide_clearance: 0.3 mm, guide_land_width: 2 mm}
 lubricant: {oil: mil_l_7808, temperature: 70 degC, mixture_fraction: 0.03}
@@ -129,6 +129,14 @@ CASES = {
         ("loads", "motor", *VG_320),
     ),
     "speed_factor": (("run", PAPER, "operating.shaft_speed=52000 rpm"), ("run", PAPER)),
+    "inner_ring_stress": (
+        ("run", "motor", "mounting.shaft.interference=500 um"),
+        ("run", "motor", "mounting.shaft.interference=30 um"),
+    ),
+    "shaft_seat": (
+        ("run", PAPER, "bearing.dimensions_at=cold", "mounting.shaft.interference=10 um"),
+        ("run", "motor", "mounting.shaft.fit=k5"),
+    ),
     "limiting_speed": (
         ("run", "motor", "bearing.ratings.limiting_speed=2900 rpm"),
         ("run", "motor", "bearing.ratings.limiting_speed=9000 rpm"),

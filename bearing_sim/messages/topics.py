@@ -151,6 +151,10 @@ ARRAYS = {
             "static_safety",
         ),
     ),
+    "running_clearance": ArrayRows(
+        "running, initial, fits, rotation, heat, contour",
+        ("running_clearance", "initial_clearance", "fit_clearance", "rotation_clearance", "heat_clearance", "contour_clearance"),
+    ),
     "centre_positions": ArrayRows("inner ring y, z, cage y, z", ("ring_y", "ring_z", "cage_y", "cage_z")),
     "axis_tilts": ArrayRows("inner ring y, z, cage y, z", ("ring_tilt_y", "ring_tilt_z", "cage_tilt_y", "cage_tilt_z")),
     "slice_pressures": ArrayRows(
@@ -244,6 +248,7 @@ OUTPUTS = {
         _array("equivalent_loads", "dynamic equivalent roller loads [N]: of whole rollers (inner, outer ring), by laminae (inner, outer)"),
         _array("rating_lives", "rating lives [h] by ISO 281 (L10, L_nm) and by ISO/TS 16281 (L10r, L_nmr)"),
         _array("life_factors", "equivalent and reference load P, P_ref [N], kappa, e_C, a_ISO at P and of the laminae, static safety S_0"),
+        _array("running_clearance", "diametral clearance [m], negative is preload: of the running bearing, and its parts"),
         _array("centre_positions", "displacements [m]: inner ring y, z, cage y, z"),
         _array("axis_tilts", "tilts [rad]: inner ring towards y, z, cage towards y, z", True),
         _array("slice_pressures", "largest Hertzian pressures [Pa]: inner, outer raceway, and of the rollers' end slices alone", True),

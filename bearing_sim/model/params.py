@@ -8,9 +8,10 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.model.oil import oil_at
-from bearing_sim.model.ring_growth import Growth, fit_growth, running_growth
+from bearing_sim.model.running_clearance import mounted, uniform
 from bearing_sim.physics.contact import iso_contact_stiffness, line_contact_stiffness
 from bearing_sim.physics.film import Pumping, pumping_constant
+from bearing_sim.physics.growth import Growth, Mounted, Temperatures, growth_at
 from bearing_sim.physics.lamina_life import Laminae, new_laminae
 from bearing_sim.physics.raceway import tabulated
 from bearing_sim.physics.rating_life import CLEANLINESS, METHODS, reliability_factor, ring_ratings
@@ -41,6 +42,7 @@ class Raceways(NamedTuple):
     pitch_radius: float  # r_m = R_i + R_w [m]
     diameter_ratio: float  # gamma = D_w / d_m
     contour: np.ndarray  # R_e(phi), periodic cubic table, shape (n, 4)
+    contour_dip: float  # lowest radius of the contour less R_low, at most 0 [m]
     stiffness: float  # K of Q = K delta^(10/9) [N/m^(10/9)]
     inner_curvature_radius: float  # effective radius of the inner contact [m]
     outer_curvature_radius: float  # effective radius of the outer contact [m]
@@ -143,7 +145,7 @@ class Params(NamedTuple):
     cage: CageBody
     ring: Ring
     life: Life
-    growth: Growth  # of the inner raceway with speed and temperature
+    mounted: Mounted  # what the clearance of the running bearing follows from
     slices: Slices
     tilts: Tilts
     variants: Variants
@@ -158,8 +160,8 @@ class Lubrication(NamedTuple):
     mixture_density: float  # of the oil-air mixture [kg/m^3]
     temperature: float  # of the oil [K]
     pumping: Pumping  # resistance to rolling
-    ring_growth: float  # of the inner raceway by heat [m]
-    kinematic_viscosity: float  # nu of the oil [m^2/s]
+    growth: Growth  # of the inner raceway by fits, rotation and heat
+    kinematic_viscosity: float  # nu of the oil in the films, for the life [m^2/s]
 
 
 def contact_stiffness(bearing: Bearing) -> float:
@@ -174,12 +176,11 @@ def pack(scene: Scene) -> Params:
     bearing = scene.bearing
     roller_radius = bearing.roller.diameter / 2
     mass = math.pi * roller_radius**2 * bearing.roller.length * bearing.material.density
-    inner_growth, outer_growth = fit_growth(bearing)
-    inner_radius, low_radius = bearing.inner_raceway.radius + inner_growth, bearing.outer_raceway.low_radius + outer_growth
+    inner_radius, low_radius = bearing.inner_raceway.radius, bearing.outer_raceway.low_radius
     compliance = 2 * (1 - bearing.material.poisson_ratio**2) / bearing.material.youngs_modulus
     cage = bearing.cage
     land_width = 2 * cage.guide_land_width if cage.has_lands else 0.0
-    contour = tabulated(lambda azimuth: outer_contour(bearing.outer_raceway, azimuth)) + [0.0, 0.0, 0.0, outer_growth]
+    contour = tabulated(lambda azimuth: outer_contour(bearing.outer_raceway, azimuth))
     return Params(
         rollers=Rollers(
             count=int(bearing.roller.count),
@@ -194,6 +195,7 @@ def pack(scene: Scene) -> Params:
             pitch_radius=bearing.pitch_radius,
             diameter_ratio=bearing.diameter_ratio,
             contour=contour,
+            contour_dip=min(0.0, float(contour[:, 3].min()) - low_radius),
             stiffness=contact_stiffness(bearing),
             inner_curvature_radius=1 / (1 / roller_radius + 1 / inner_radius),
             outer_curvature_radius=1 / (1 / roller_radius - 1 / low_radius),
@@ -224,7 +226,7 @@ def pack(scene: Scene) -> Params:
         ),
         ring=Ring(bearing.inner_raceway.ring_mass + bearing.inner_raceway.supported_mass, bearing.contact.damping),
         life=_life(scene),
-        growth=running_growth(bearing),
+        mounted=mounted(bearing, scene.mounting),
         slices=_slices(bearing),
         tilts=_tilts(scene, mass),
         variants=Variants(
@@ -293,16 +295,26 @@ def _laminae(roller: Roller, count: int, stiffness: float, inner_rating: float, 
     return new_laminae(positions, drops, stiffness, inner_rating, outer_rating, roller.count)
 
 
-def lubricate(lubricant: Lubricant, params: Params, temperature: float) -> Lubrication:
-    """Return what the lubricant does at a temperature [K].
+def lubricate(lubricant: Lubricant, params: Params, temperature: float, temperatures: Temperatures | None = None) -> Lubrication:
+    """Return what the lubricant does, and how far the bearing has grown, at given temperatures.
 
-    *Assumption*: the oil-air mixture has the mixture fraction times the oil's density, and the oil's viscosity.
+    *Assumptions*: the film of a contact has the mean temperature of the two surfaces; the oil-air mixture has the oil's temperature, the
+    mixture fraction times its density, and its viscosity.
+
+    Parameters
+    ----------
+    lubricant : of the scene.
+    params : of the bearing.
+    temperature : of the oil [K].
+    temperatures : of rings, rollers, shaft and housing; the oil's where absent.
     """
     oil = oil_at(lubricant.oil, temperature)
-    raceways, growth, length = params.raceways, params.growth, params.rollers.length
+    solids = uniform(temperature) if temperatures is None else temperatures
+    raceways, length = params.raceways, params.rollers.length
     radii = raceways.inner_curvature_radius, raceways.outer_curvature_radius
-    inner, outer = (_traction_constants(lubricant, oil, radius, raceways.reduced_modulus, length) for radius in radii)
-    pumped = (pumping_constant(oil.viscosity, raceways.reduced_modulus, radius, length) for radius in radii)
+    films = [oil if temperatures is None else oil_at(lubricant.oil, 0.5 * (ring + solids.rollers)) for ring in (solids.inner_ring, solids.outer_ring)]
+    inner, outer = (_traction_constants(lubricant, film, radius, raceways.reduced_modulus, length) for film, radius in zip(films, radii))
+    pumped = (pumping_constant(film.viscosity, raceways.reduced_modulus, radius, length) for film, radius in zip(films, radii))
     return Lubrication(
         inner=inner,
         outer=outer,
@@ -310,8 +322,8 @@ def lubricate(lubricant: Lubricant, params: Params, temperature: float) -> Lubri
         mixture_density=lubricant.mixture_fraction * oil.density,
         temperature=oil.temperature,
         pumping=Pumping(int(lubricant.pumping), *pumped),
-        ring_growth=growth.constant + growth.by_temperature * oil.temperature,
-        kinematic_viscosity=oil.viscosity / oil.density,
+        growth=growth_at(params.mounted, solids),
+        kinematic_viscosity=sum(film.viscosity / film.density for film in films) / 2,
     )
 
 

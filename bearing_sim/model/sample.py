@@ -36,6 +36,12 @@ OBSERVABLES = (
         Observable(f"{name}_measured", "K", f"measured temperature of the {ring} ring; NaN where it is not measured")
         for name, ring in zip(RING_TEMPERATURES, ("inner", "outer"))
     ),
+    Observable("running_clearance", "m", "diametral clearance of the running bearing at its lowest point; negative: preload"),
+    Observable("initial_clearance", "m", "the part of it that is on the drawing, 2 (R_low - R_i - D_w)"),
+    Observable("fit_clearance", "m", "the part by the fits of the rings"),
+    Observable("rotation_clearance", "m", "the part by rotation of inner ring, shaft and rollers"),
+    Observable("heat_clearance", "m", "the part by temperatures"),
+    Observable("contour_clearance", "m", "the part by points of the contour that lie below R_low"),
     Observable("level", "", "level that computed the sample: 0 steady, 1 slip, 2 planar, 3 spatial"),
     Observable("cage_angle", "rad", "cage rotation since the start"),
     Observable("cage_speed", "rad/s", "cage angular speed"),

@@ -16,6 +16,7 @@ import numpy as np
 
 from bearing_sim.model.oil import OilState, oil_at
 from bearing_sim.model.params import Params, pack
+from bearing_sim.model.running_clearance import largest_hoop_stress, mounted, seat_pressure
 from bearing_sim.model.sample import new_block
 from bearing_sim.scene.bearing import Bearing
 from bearing_sim.scene.crown import NoCrown
@@ -836,9 +837,36 @@ LAWS = (
         -math.inf,
         3e6,
         "assumption: the highest speeds of roller bearings on test rigs for aircraft engines",
-        "lower the speed; turn on bearing.ring_growth, and check the stress in ring and cage, which the model does not contain",
+        "lower the speed; check the stress in the cage, which the model does not contain",
         _always,
         lambda at: speed_factor(at.scene.bearing, at.samples["shaft_speed"]),
+    ),
+    Law(
+        "inner_ring_stress",
+        "validity.clearance",
+        "growth of rings",
+        "the tangential stress at the bore of the inner ring",
+        "MPa",
+        -math.inf,
+        lambda scene: 1e-6 * scene.bearing.material.strength,
+        "the material's tensile strength, at which the ring bursts",
+        "lower the speed, take a lighter fit, or correct bearing.material.strength",
+        lambda scene: scene.bearing.dimensions_at == "cold",
+        lambda at: 1e-6 * largest_hoop_stress(at.scene.bearing, at.scene.mounting, at.samples["shaft_speed"]),
+        expected="at most bearing.material.strength",
+    ),
+    Law(
+        "shaft_seat",
+        "validity.clearance",
+        "growth of rings",
+        "the pressure of the shaft's fit at rest and 20 degC less what the speed takes of it",
+        "MPa",
+        0.0,
+        math.inf,
+        "a seat without pressure lets the ring creep on the shaft, and no longer centres it",
+        "take a tighter fit (mounting.shaft), or lower the speed",
+        lambda scene: scene.bearing.dimensions_at == "cold" and mounted(scene.bearing, scene.mounting).shaft.pressure > 0.0,
+        lambda at: 1e-6 * seat_pressure(at.params.mounted, at.samples["shaft_speed"]),
     ),
     Law(
         "limiting_speed",
@@ -864,7 +892,7 @@ UNWATCHED = (
     ("pocket friction and boundary friction of the lands", "coefficients, not laws with a range: 0.02 to 0.1 and 0.05 to 0.15 in use"),
     ("vortex and turbulent torque factors of the cage's faces", "assumptions of 20 to 30 % without a known range; cage_gap limits the geometry"),
     ("Carter's creep in series with the film", "exact for line contact far from gross sliding; beyond it the film takes the sliding"),
-    ("growth of rings", "elastic, so valid below the yield strength; hoop stress is not computed"),
+    ("growth of rings", "linear elastic and plane; inner_ring_stress watches the stress; ribs and the ends of seats are left out"),
     ("linear damage, Miner's sum", "no range; sums at failure scatter from 0.3 to 3"),
 )
 """Laws with constants for which no range is known or none is needed, and why."""

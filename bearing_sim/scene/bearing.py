@@ -2,16 +2,21 @@
 """The bearing of a scene: raceways, rollers, cage, material, and the checks that its parts fit together."""
 
 import math
-from dataclasses import field
+from dataclasses import field, replace
 from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
 from bearing_sim.scene.contour import form_errors, settled_form
 from bearing_sim.scene.crown import Crown, IsoLogCrown, crown_errors
-from bearing_sim.scene.quantity import check, quantity, record
+from bearing_sim.scene.material import Material
+from bearing_sim.scene.mounting import CLEARANCE_GROUPS, clearance_limits
+from bearing_sim.scene.quantity import QuantityOrName, check, quantity, record
 from bearing_sim.scene.ratings import Ratings
 
+_CLEARANCE = QuantityOrName(
+    "m", "radial internal clearance, diametral: 2 (R_low - R_i - D_w); or its group by ISO 5753-1", -1e-3, 5e-3, "um", CLEARANCE_GROUPS
+)
 LAND_FIELDS = ("guide_radius", "guide_clearance", "guide_land_width", "guide_land_distance")
 _CLOSE = 1e-8  # m; lengths nearer than this are taken as equal
 # Fields that each guidance needs in addition to those of every cage.
@@ -80,23 +85,6 @@ class InnerRaceway:
 
 
 @record
-class RingGrowth:
-    """What changes the clearance of the bearing on the drawing: rotation, fits and heat.  All off by default."""
-
-    centrifugal: bool = False  # whether the inner ring grows with the square of the speed
-    shaft_interference: quantity("m", "diametral interference of shaft and inner ring", 0.0, 1e-3, "um") = 0.0
-    shaft_bore_radius: quantity("m", "bore radius of the shaft; 0 is a solid one", 0.0, 2.0, "mm") = 0.0
-    housing_interference: quantity("m", "diametral interference of housing and outer ring", 0.0, 1e-3, "um") = 0.0
-    housing_radius: quantity("m", "outside radius of the housing", 1e-3, 10.0, "mm") | None = None
-    thermal: bool = False  # whether rings and rollers grow with their temperatures
-    expansion: quantity("1/K", "linear thermal expansion of rings and rollers", 0.0, 1e-3) = 1.2e-5
-    reference_temperature: quantity("K", "temperature at which the drawing is valid", 150.0, 800.0, "degC") = 293.15
-    inner_excess: quantity("delta_degC", "inner ring's temperature less the oil's", -200.0, 200.0, "K") = 0.0
-    roller_excess: quantity("delta_degC", "rollers' temperature less the oil's", -200.0, 200.0, "K") = 0.0
-    outer_excess: quantity("delta_degC", "outer ring's temperature less the oil's", -200.0, 200.0, "K") = 0.0
-
-
-@record
 class Roller:
     """The rollers, all equal.
 
@@ -129,15 +117,6 @@ class Contact:
 
 
 @record
-class Material:
-    """Elastic constants and density of rings and rollers."""
-
-    youngs_modulus: quantity("Pa", "Young's modulus, E", 1e9, 1e12, "GPa") = 2.06e11
-    poisson_ratio: quantity("", "Poisson's ratio, nu", 0.0, 0.49) = 0.3
-    density: quantity("kg/m^3", "density", 500.0, 25e3) = 7850.0
-
-
-@record
 class Roughness:
     """Root-mean-square roughness of the rolling surfaces; used only for the lambda ratio of the monitoring."""
 
@@ -167,6 +146,7 @@ class Cage:
     inner_radius: quantity("m", "radius of the cage's bore", 1e-3, 2.0, "mm") | None = None
     outer_radius: quantity("m", "radius of the cage's outer surface", 1e-3, 2.0, "mm") | None = None
     width: quantity("m", "axial width of the cage", 1e-4, 1.0, "mm")
+    material: Material = field(default_factory=Material)
     guide_radius: quantity("m", "radius of the guiding ring's lands, R_g", 1e-3, 2.0, "mm") | None = None
     guide_clearance: quantity("m", "radial clearance between cage and guide lands, c", 1e-6, 5e-3, "mm") | None = None
     guide_land_width: quantity("m", "width of one of the two guide lands", 1e-6, 0.5, "mm") | None = None
@@ -249,15 +229,55 @@ class Bearing:
 
     name: str  # name of the bearing
     source: str  # where its dimensions come from
+    # Whether dimensions are those of the running bearing, or those on the drawing, which fits, rotation and heat change.
+    dimensions_at: Literal["cold", "running"] = "cold"
+    reference_temperature: quantity("K", "temperature at which cold dimensions are valid", 150.0, 800.0, "degC") = 293.15
+    # Instead of outer_raceway.low_radius; the middle of the limits is taken for a group.
+    clearance: Annotated[float | str, _CLEARANCE] | None = None
     outer_raceway: OuterRaceway
     inner_raceway: InnerRaceway
     roller: Roller
     cage: Cage
     material: Material = field(default_factory=Material)
     contact: Contact = field(default_factory=Contact)
-    ring_growth: RingGrowth = field(default_factory=RingGrowth)
     roughness: Roughness | None = None  # None: the lambda ratio is neither computed nor monitored
     ratings: Ratings = field(default_factory=Ratings)  # what the maker rates the bearing for
+
+    @model_validator(mode="after")
+    def _raceway_has_a_radius(self):
+        if error := self._error_of_clearance():
+            raise ValueError(error)
+        if self.outer_raceway.low_radius is None:
+            object.__setattr__(self, "outer_raceway", replace(self.outer_raceway, low_radius=self._low_radius_by_clearance()))
+        return self
+
+    def _low_radius_by_clearance(self) -> float:
+        clearance = self.clearance
+        if isinstance(clearance, str):
+            clearance = clearance_limits(clearance, 2 * self.inner_raceway.bore_radius).mean
+        return self.inner_raceway.radius + self.roller.diameter + clearance / 2
+
+    def _error_of_clearance(self) -> str:
+        raceway, inner = self.outer_raceway, self.inner_raceway
+        if self.clearance is None:
+            missing = "outer_raceway.low_radius: missing; give it, or bearing.clearance, or low_points and high_points, or contour_file"
+            return missing if raceway.low_radius is None else ""
+        if isinstance(self.clearance, str):
+            if inner.bore_radius is None:
+                return f"inner_raceway.bore_radius: missing; the clearance of group {self.clearance} (ISO 5753-1) follows from the bore"
+            try:
+                clearance_limits(self.clearance, 2 * inner.bore_radius)
+            except ValueError as error:
+                return f"clearance: {error}"
+        if raceway.low_points or raceway.contour is not None:
+            return "clearance: the points of the contour give the raceway's radius; leave clearance out (null)"
+        low = self._low_radius_by_clearance()
+        if raceway.low_radius is not None and abs(raceway.low_radius - low) > _CLOSE:
+            return (
+                f"clearance: outer_raceway.low_radius is {1e3 * raceway.low_radius:.6g} mm, but this clearance makes it {1e3 * low:.6g} mm; give one "
+                "of the two, and leave the other out (null)"
+            )
+        return ""
 
     @property
     def pitch_radius(self) -> float:
@@ -293,26 +313,7 @@ class Bearing:
                 f"outer_raceway.low_radius: {1e3 * self.outer_raceway.low_radius:.6g} mm leaves {1e6 * clearance:.6g} um between inner "
                 f"raceway, roller and low point; expected {-2e4 * self.roller.diameter:.6g} to {5e5 * self.roller.diameter:.6g} um"
             )
-        return errors + cage_errors(self) + play_errors(self) + growth_errors(self)
-
-
-def growth_errors(bearing) -> list[str]:
-    """Return error messages for options of ring growth that are incomplete or contradict the bearing."""
-    growth, inner, outer, errors = bearing.ring_growth, bearing.inner_raceway, bearing.outer_raceway, []
-    if growth.centrifugal or growth.shaft_interference:
-        if inner.bore_radius is None:
-            errors.append("inner_raceway.bore_radius: missing; ring_growth needs it")
-        elif not growth.shaft_bore_radius < inner.bore_radius < inner.radius:
-            errors.append("inner_raceway.bore_radius: expected between the shaft's bore and the raceway")
-    if growth.housing_interference:
-        errors += [
-            f"{name}: missing; ring_growth.housing_interference needs it"
-            for name, value in (("outer_raceway.outside_radius", outer.outside_radius), ("ring_growth.housing_radius", growth.housing_radius))
-            if value is None
-        ]
-        if not errors and not outer.low_radius + outer.d_value < outer.outside_radius < growth.housing_radius:
-            errors.append("outer_raceway.outside_radius: expected between the raceway and the housing's outside")
-    return errors
+        return errors + cage_errors(self) + play_errors(self)
 
 
 def cage_errors(bearing) -> list[str]:

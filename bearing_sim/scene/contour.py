@@ -98,8 +98,6 @@ def form_errors(raceway) -> list[str]:
     ]
     if given == ["low_points and high_points"]:
         return errors + _point_errors(raceway)
-    if raceway.low_radius is None:
-        errors.append("low_radius: missing; give it, or low_points and high_points, or contour_file")
     if raceway.roundness and (raceway.lobes or 3) < 2:
         errors.append("roundness: needs two or more low points; expected lobes of at least 2")
     if raceway.roundness and raceway.roundness >= (raceway.d_value or 0.0):

@@ -54,8 +54,7 @@ EFFECTS = (
     Effect("operating.misalignment", ("spatial",), "whose ring tilts", lambda scene: scene.operating.misalignment != 0.0),
     Effect("integration.fixed_step", MARCHING, "which take steps", lambda scene: scene.integration.fixed_step is not None),
     Effect("lubricant.pumping", LEVELS, "whose contacts pump oil", lambda scene: scene.lubricant.pumping),
-    Effect("bearing.ring_growth.centrifugal", LEVELS, "whose rings grow", lambda scene: scene.bearing.ring_growth.centrifugal),
-    Effect("bearing.ring_growth.thermal", LEVELS, "whose rings grow", lambda scene: scene.bearing.ring_growth.thermal),
+    Effect("bearing.dimensions_at", LEVELS, "whose rings grow", lambda scene: scene.bearing.dimensions_at == "cold"),
     *(Effect(f"wants.{name}", want.levels, want.because, lambda scene, name=name: name in scene.wants) for name, want in WANTS.items()),
 )
 

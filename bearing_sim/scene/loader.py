@@ -7,7 +7,7 @@ import functools
 import re
 import types
 import typing
-from collections.abc import Hashable, Iterable, Mapping
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
@@ -82,6 +82,12 @@ _UniqueKeyLoader.add_implicit_resolver(
     re.compile(r"^(?:[-+]?(?:\.\d+|\d+(?:\.\d*)?)(?:[eE][-+]?\d+)?|[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN))$"),
     list("-+.0123456789"),
 )
+_MATERIALS = (("bearing", "material"), ("bearing", "cage", "material"), ("mounting", "shaft", "material"), ("mounting", "housing", "material"))
+_RACEWAY_RADII = tuple(f"outer_raceway.{name}" for name in ("low_radius", "low_points", "high_points", "contour", "contour_file"))
+# What older scenes say, and what says it now.
+_RENAMED = {
+    "bearing.ring_growth": "bearing.dimensions_at: cold computes rotation, mounting the fits, heat the temperatures",
+}
 _WRITTEN = {"written": True}  # context of a validation: the values come from a file or an option, see `Quantity.read`
 
 
@@ -91,7 +97,7 @@ def scene_names() -> list[str]:
 
 
 def catalog_names(kind: str) -> list[str]:
-    """Return the names of the catalog entries of a kind: ``bearings``, ``oils`` or ``mappings``."""
+    """Return the names of the catalog entries of a kind: ``bearings``, ``oils``, ``materials`` or ``mappings``."""
     return _bundled_names(f"catalog/{kind}")
 
 
@@ -279,8 +285,19 @@ def _apply_override(tree: dict, override: str) -> None:
     node[keys[-1]] = value
     if keys[:-1] == ["bearing", "outer_raceway"]:
         drop_other_forms(node, (keys[-1],))
+    if keys[0] == "bearing":
+        _keep_one_clearance(tree["bearing"], ".".join(keys[1:]))
     if keys == ["bearing", "cage", "guidance"] and value == "roller":
         drop_ranges_of_lands(tree)
+
+
+def _keep_one_clearance(bearing: dict, given: str) -> None:
+    """Remove from a block ``bearing`` what says the same as a field that was just given: the clearance, or the radius that follows from it."""
+    raceway = bearing.get("outer_raceway")
+    if given in _RACEWAY_RADII:
+        bearing.pop("clearance", None)
+    elif isinstance(raceway, dict) and (given == "clearance" or given in ("inner_raceway.radius", "roller.diameter") and "clearance" in bearing):
+        bearing["outer_raceway"] = {name: value for name, value in raceway.items() if name != "low_radius"}
 
 
 def _from_catalog(kind: str, name: str, path: str) -> tuple[dict, list[InvalidField]]:
@@ -301,12 +318,19 @@ def _with_presets(tree: Mapping) -> tuple[dict, list[InvalidField]]:
         raceway = bearing.get("outer_raceway")
         if isinstance(raceway, Mapping) and "outer_raceway" in preset:
             drop_other_forms(preset["outer_raceway"], raceway)
+            if any(f"outer_raceway.{name}" in _RACEWAY_RADII for name in raceway):
+                preset.pop("clearance", None)
+        if "clearance" in bearing and "outer_raceway" in preset:
+            preset["outer_raceway"].pop("low_radius", None)
         cage = bearing.get("cage")
         if isinstance(cage, Mapping) and "cage" in preset:
             drop_other_lands(preset["cage"], cage)
         tree["bearing"] = _merged(preset, {key: value for key, value in bearing.items() if key != "preset"})
         if unknown:  # its missing fields are consequences
             raise SceneError("scene", errors)
+    for path in _MATERIALS:
+        tree, unknown = _with_material(tree, path)
+        errors += unknown
     lubricant = tree.get("lubricant")
     if isinstance(lubricant, Mapping) and isinstance(lubricant.get("oil"), str):
         oil, unknown = _from_catalog("oils", lubricant["oil"], "lubricant.oil")
@@ -322,6 +346,21 @@ def _with_presets(tree: Mapping) -> tuple[dict, list[InvalidField]]:
     if isinstance(lubricant, Mapping) and isinstance(lubricant.get("oil"), Mapping) and "law" not in lubricant["oil"]:
         tree["lubricant"] = {**lubricant, "oil": {"law": "fitted", **lubricant["oil"]}}
     return tree, errors
+
+
+def _with_material(tree: Mapping, path: Sequence[str], walked: str = "") -> tuple[dict, list[InvalidField]]:
+    """Return a block with the material at a path below it, if that is a name, replaced by the entry of the catalog."""
+    block, rest = dict(tree), path[1:]
+    here, child = f"{walked}{path[0]}", block.get(path[0])
+    if rest:
+        if not isinstance(child, Mapping):
+            return block, []
+        block[path[0]], unknown = _with_material(child, rest, f"{here}.")
+        return block, unknown
+    if not isinstance(child, str):
+        return block, []
+    material, unknown = _from_catalog("materials", child, here)
+    return {**block, path[0]: material}, unknown
 
 
 def _merged(base: dict, over: Mapping) -> dict:
@@ -362,6 +401,8 @@ def _invalid_field(problem: Mapping, record: type, laws: frozenset[str]) -> Inva
         tag, known = problem["ctx"]["tag"], problem["ctx"]["expected_tags"]
         return InvalidField(f"{path}.law", repr(tag), f"expected one of {known}{did_you_mean(str(tag), re.findall(r'[a-z_0-9]+', known))}")
     if kind == "unexpected_keyword_argument":
+        if path in _RENAMED:
+            return InvalidField(path, shown, f"no longer a field; {_RENAMED[path]}")
         known = _field_names(problem["loc"][:-1], record, laws)
         return InvalidField(path, shown, f"unknown field{did_you_mean(str(problem['loc'][-1]), known)}; known here: {', '.join(known)}")
     return InvalidField(path, shown, re.sub(r"^(Value error, |Input should be )", lambda m: "" if m[1].startswith("Value") else "expected ", reason))

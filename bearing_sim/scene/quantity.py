@@ -231,6 +231,23 @@ class Quantity:
         return f"{number:.6g} {unit}".rstrip()
 
 
+@dataclass(frozen=True)
+class QuantityOrName(Quantity):
+    """A quantity for which a standard has names, too."""
+
+    names: tuple[str, ...] = ()
+
+    def read(self, value: object, written: bool = False) -> float | str:
+        """Return ``value`` in SI, or the name as the standard writes it; see `Quantity.read`."""
+        if isinstance(value, str) and value.strip().upper() in self.names:
+            return value.strip().upper()
+        try:
+            return super().read(value, written)
+        except PydanticCustomError as error:
+            reason = f"{error.message()}; or one of {', '.join(self.names)}"
+            raise PydanticCustomError("quantity", "{reason}", {"reason": reason}) from None
+
+
 def quantity(unit: str, meaning: str, minimum: float = -math.inf, maximum: float = math.inf, shown_in: str = ""):
     """Return the annotated float type of a scene field (see `Quantity`)."""
     return Annotated[float, Quantity(unit, meaning, minimum, maximum, shown_in)]

@@ -14,6 +14,7 @@ from pydantic import Field
 from bearing_sim.scene.bearing import Bearing
 from bearing_sim.scene.fidelity import WANTS, refusals
 from bearing_sim.scene.lubricant import Lubricant
+from bearing_sim.scene.mounting import Mounting, mounting_errors
 from bearing_sim.scene.quantity import check, quantity, record
 from bearing_sim.scene.ratings import rate
 from bearing_sim.scene.uncertainty import Range, range_errors
@@ -250,6 +251,7 @@ class Scene:
     bearing: Bearing
     lubricant: Lubricant
     operating: Operating
+    mounting: Mounting = field(default_factory=Mounting)
     dynamics: Dynamics = field(default_factory=Dynamics)
     integration: Integration = field(default_factory=Integration)
     input_limits: InputLimits = field(default_factory=InputLimits)
@@ -296,7 +298,7 @@ class Scene:
 
     @check
     def _operation_is_within_bounds(self) -> list[str]:
-        return step_errors(self) + moment_errors(self) + range_errors(self)
+        return step_errors(self) + moment_errors(self) + mounting_errors(self.bearing, self.mounting) + range_errors(self)
 
 
 def moment_errors(scene) -> list[str]:

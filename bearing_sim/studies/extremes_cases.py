@@ -78,7 +78,7 @@ DIMENSIONS: Mapping[str, Callable] = {
     "mixture_fraction": _or_zero(0.1, lambda u: u * u),
     "traction": _choice(*_TRACTIONS),
     "pumping": _choice("false", "false", "true"),
-    "centrifugal": _choice("false", "false", "true"),
+    "dimensions_at": _choice("running", "running", "cold"),
     "contour_slope": _choice("true", "true", "false"),
     "land_squeeze": _choice("true", "true", "false"),
     "pocket_friction": _or_zero(0.2, _linear(0.0, 0.3)),
@@ -93,7 +93,6 @@ DIMENSIONS: Mapping[str, Callable] = {
 # Fields that some levels refuse, according to the checks of the scene.
 _BY_LEVEL = {
     "pumping": ("lubricant.pumping={}", "true"),
-    "centrifugal": ("bearing.ring_growth.centrifugal={}", "true"),
     "crown": ("bearing.roller.crown={}", "iso_log"),
     "misalignment": ("operating.misalignment={!r}", 1e-3),
 }
@@ -140,6 +139,7 @@ def overrides_of(level: str, point: Mapping) -> list[str]:
     inner = _INNER_RADIUS + outward
     overrides = [
         f"level={level}",
+        f"bearing.dimensions_at={point['dimensions_at']}",
         f"bearing.roller.count={point['rollers']}",
         f"bearing.inner_raceway.radius={inner!r}",
         f"bearing.inner_raceway.bore_radius={inner - 2.8615e-3!r}",

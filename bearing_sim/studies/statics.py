@@ -12,6 +12,7 @@ from bearing_sim.levels.common.slice_balance import about_yz, balance, leaning, 
 from bearing_sim.model.oil import oil_at
 from bearing_sim.model.params import lubricate, pack
 from bearing_sim.physics.film import DOWSON_HIGGINSON, films
+from bearing_sim.physics.growth import total_growth
 from bearing_sim.physics.lamina_life import EquivalentLoads, add_lamina_powers, equivalent_lamina_loads, stress_risers
 from bearing_sim.physics.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT, Lives, oil_factors, rate_lives
 from bearing_sim.scene.scene import Scene
@@ -69,7 +70,7 @@ def statics(scene: Scene, slices: int) -> Statics:
     tilts = about_yz(operating.misalignment, operating.misalignment_angle) if operating.moment is None else None
 
     lubrication = lubricate(scene.lubricant, params, scene.lubricant.temperature)
-    growth = lubrication.ring_growth + params.growth.by_square_speed * operating.shaft_speed**2
+    growth = total_growth(operating.shaft_speed, lubrication.growth)
 
     inner_means, outer_means, risers = np.zeros(slices), np.zeros(slices), stress_risers(slices)
     rotating, stationary, at = 0.0, 0.0, None

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from bearing_sim.model.params import Lubrication, Params
 from bearing_sim.numerics.compilation import template
+from bearing_sim.physics.growth import total_growth
 
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)  # golden section: the number that ratios of integers approximate worst
 HALF_PITCH = 1.0 / (2.0 + 1.0 / (3.0 + GOLDEN))  # 0.4393
@@ -39,14 +40,14 @@ def load_at(t, drive):
 
 @template
 def inner_growth(shaft_speed, model):
-    """Return the growth of the inner raceway's radius [m] by rotation and heat; fits are in the radius itself.
+    """Return the growth of the inner raceway's radius [m] by fits, rotation and heat (see `bearing_sim.physics.growth`).
 
     Parameters
     ----------
     shaft_speed : [rad/s].
     model : `bearing_sim.levels.common.model.Model`.
     """
-    return model.lubrication.ring_growth + model.params.growth.by_square_speed * shaft_speed * shaft_speed
+    return total_growth(shaft_speed, model.lubrication.growth)
 
 
 @template

@@ -7,6 +7,7 @@ from bearing_sim.levels.common.model import load_at, shaft_speed_at
 from bearing_sim.model.sample import COLUMN
 from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.simd import load, spread, square_root, total
+from bearing_sim.physics.growth import clearance_at
 from bearing_sim.physics.rating_life import oil_factors, rate_lives
 
 
@@ -43,6 +44,7 @@ def observe_course(t, cage_angle, cage_speed, equivalent, oil, model, interval, 
     row[COLUMN.load_y] = load_y
     row[COLUMN.load_z] = load_z
     row[COLUMN.oil_temperature] = model.lubrication.temperature
+    _write_clearance(clearance_at(shaft_speed, model.lubrication.growth, params), row)
     row[COLUMN.cage_angle] = cage_angle
     row[COLUMN.cage_speed] = cage_speed
     row[COLUMN.ideal_cage_angle] = previous[COLUMN.ideal_cage_angle] + 0.5 * rotation * (1.0 - ratio)
@@ -55,6 +57,17 @@ def observe_course(t, cage_angle, cage_speed, equivalent, oil, model, interval, 
     lives = rate_lives(math.hypot(load_y, load_z), equivalent, oil, params.life)
     _write_lives(lives, 2.0 * math.pi / (3600.0 * abs(shaft_speed)), row)
     row[COLUMN.damage] = previous[COLUMN.damage] + abs(rotation) / (2.0 * math.pi * lives.modified)
+
+
+@kernel
+def _write_clearance(clearance, row):
+    """Write a `bearing_sim.physics.growth.Clearance`."""
+    row[COLUMN.running_clearance] = clearance.running
+    row[COLUMN.initial_clearance] = clearance.initial
+    row[COLUMN.fit_clearance] = clearance.fits
+    row[COLUMN.rotation_clearance] = clearance.rotation
+    row[COLUMN.heat_clearance] = clearance.heat
+    row[COLUMN.contour_clearance] = clearance.contour
 
 
 @kernel

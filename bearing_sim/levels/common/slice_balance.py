@@ -57,7 +57,7 @@ def balance(
     moment : moment about (y, z) on it [N m]; without effect where the tilts are given.
     tilts : the ring's tilts about (y, z) [rad]; None lets it tilt until the moments balance.
     slices : a balance nearby to start from, overwritten.
-    growth : of the inner raceway's radius by rotation and heat [m], see `bearing_sim.levels.common.model.inner_growth`.
+    growth : of the inner raceway's radius [m], see `bearing_sim.levels.common.model.inner_growth`.
 
     Raises
     ------

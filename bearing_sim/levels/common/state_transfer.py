@@ -16,6 +16,7 @@ from bearing_sim.levels.slip import model as slip
 from bearing_sim.levels.slip import state as slip_state
 from bearing_sim.levels.slip.forces import balance_loads, pitch_loads
 from bearing_sim.levels.spatial import state as spatial
+from bearing_sim.physics.growth import cold_growth, total_growth
 from bearing_sim.physics.lamina_life import single_load_moments
 from bearing_sim.physics.load_balance import LOAD
 from bearing_sim.physics.rating_life import OilFactors
@@ -36,7 +37,7 @@ def rolling_state(at, params, work, shaft_speed, load_y, load_z):
     count = params.rollers.count
     balance, rolling = slip_state.new_work(params), slip.initial_state(params, None, shaft_speed, load_y, load_z)
     cage_speed = rolling[slip_state.OMEGA]
-    balance.growth[0] = params.growth.by_square_speed * shaft_speed * shaft_speed  # growth by heat, unknown here, comes with the first step
+    balance.growth[0] = total_growth(shaft_speed, cold_growth(params.mounted))  # growth by heat, unknown here, comes with the first step
     pitch_loads(0.0, cage_speed, load_y, load_z, OilFactors(1.0, 1.0), params, balance)  # for the moments, which no oil changes
     work.load_moments[:] = balance.load_moments
     balance_loads(0.0, cage_speed, load_y, load_z, params, balance)

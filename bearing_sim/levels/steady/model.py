@@ -26,6 +26,7 @@ from bearing_sim.model.params import Lubrication
 from bearing_sim.model.sample import COLUMN, SCALARS
 from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.time_stepping import COUNT, NOT_EVALUATED, OK, STEP_BUDGET
+from bearing_sim.physics.growth import Temperatures, growth_at
 from bearing_sim.physics.lamina_life import EquivalentLoads
 from bearing_sim.physics.load_balance import LOAD
 
@@ -231,7 +232,7 @@ def advance_profile(start, stretches, inputs, kinematic_viscosities, y, model, w
     -------
     how many instants were reached; the state is that of the last of them.
     """
-    growth, lubrication = model.params.growth, model.lubrication
+    lubrication, mounted = model.lubrication, model.params.mounted
     if not _from_table(inputs[0], work):
         return 0
     settled, before, now = _settled_speed(inputs[0, 0], model, work), previous, start
@@ -253,7 +254,7 @@ def advance_profile(start, stretches, inputs, kinematic_viscosities, y, model, w
                 lubrication.mixture_density,
                 temperature,
                 lubrication.pumping,
-                growth.constant + growth.by_temperature * temperature,
+                growth_at(mounted, Temperatures(temperature, temperature, temperature, temperature, temperature)),
                 kinematic_viscosities[k],
             ),
             Drive(now, speed, 0.0, load_y, 0.0, load_z, 0.0),

@@ -1,0 +1,111 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""The running clearance of a scene: from fits, materials and dimensions on the drawing to the numbers of `bearing_sim.physics.growth`."""
+
+import math
+
+import numpy as np
+
+from bearing_sim.physics.growth import AS_RUNNING, Expansion, Growth, HousingFit, Mounted, ShaftFit, Temperatures
+from bearing_sim.physics.layers import Layer, State, displacement, hoop_stress, spinning_roller_growth
+from bearing_sim.scene.bearing import Bearing
+from bearing_sim.scene.material import Material
+from bearing_sim.scene.mounting import Mounting, housing_interference, shaft_interference, smoothed
+
+_HOUSING_RATIO = 1.5  # assumption: outside radius of a housing over that of the ring; from 1.3 to 3 the ring shrinks by a third more or less
+
+
+def uniform(temperature: float) -> Temperatures:
+    """Return one temperature [K] for everything."""
+    return Temperatures(*(temperature,) * 5)
+
+
+def mounted(bearing: Bearing, mounting: Mounting) -> Mounted:
+    """Return what the growth of a bearing follows from; nothing where its dimensions are those of the running bearing."""
+    if bearing.dimensions_at == "running":
+        return AS_RUNNING
+    inner, outer, roller = bearing.inner_raceway, bearing.outer_raceway, bearing.roller
+    alpha = bearing.material.expansion
+    # Rollers that roll on the outer raceway without slip spin at w (1 - gamma^2)/(2 gamma).
+    spin = 0.5 * (1 - bearing.diameter_ratio**2) / bearing.diameter_ratio
+    return Mounted(
+        shaft=_shaft_fit(bearing, mounting),
+        housing=_housing_fit(bearing, mounting),
+        expansion=Expansion(alpha * inner.radius, alpha * roller.diameter, alpha * _mean_raceway(outer), bearing.reference_temperature),
+        roller_free=2 * spinning_roller_growth(_layer(0.0, roller.diameter / 2, bearing.material), spin * spin),
+    )
+
+
+def _mean_raceway(outer) -> float:
+    return outer.low_radius + outer.d_value / 2
+
+
+def _layer(inside: float, outside: float, material: Material) -> Layer:
+    return Layer(inside, outside, material.youngs_modulus, material.poisson_ratio, material.density, material.expansion)
+
+
+def shaft_layers(bearing: Bearing, mounting: Mounting) -> tuple[Layer, Layer]:
+    """Return shaft and inner ring, from bore to raceway."""
+    inner, shaft = bearing.inner_raceway, mounting.shaft
+    return _layer(shaft.bore_radius, inner.bore_radius, shaft.material), _layer(inner.bore_radius, inner.radius, bearing.material)
+
+
+def housing_layers(bearing: Bearing, mounting: Mounting) -> tuple[Layer, Layer]:
+    """Return outer ring, from its mean raceway outwards, and housing."""
+    outer, housing = bearing.outer_raceway, mounting.housing
+    around = housing.outside_radius if housing.outside_radius is not None else _HOUSING_RATIO * outer.outside_radius
+    return _layer(_mean_raceway(outer), outer.outside_radius, bearing.material), _layer(outer.outside_radius, around, housing.material)
+
+
+def _seat(inside: Layer, outside: Layer, interference: float) -> tuple[float, float, float, float]:
+    """Return the pressure between two rings [Pa] and what the square of the speed of both, and the temperature of each, change of it."""
+    radius = inside.outer_radius
+    compliance = displacement(outside, radius, State(inner_pressure=1.0)) - displacement(inside, radius, State(outer_pressure=1.0))
+    turned = displacement(inside, radius, State(square_speed=1.0)) - displacement(outside, radius, State(square_speed=1.0))
+    return interference / 2 / compliance, turned / compliance, inside.expansion * radius / compliance, -outside.expansion * radius / compliance
+
+
+def _shaft_fit(bearing: Bearing, mounting: Mounting) -> ShaftFit:
+    core, ring = shaft_layers(bearing, mounting)
+    raceway = ring.outer_radius
+    free = displacement(ring, raceway, State(square_speed=1.0))
+    limits = shaft_interference(mounting.shaft, 2 * ring.inner_radius)
+    if limits is None:
+        return ShaftFit(free, 0.0, 0.0, 0.0, 0.0, 0.0)
+    pressure, by_square_speed, by_shaft, by_ring = _seat(core, ring, smoothed(limits.mean, mounting.shaft))
+    return ShaftFit(free, displacement(ring, raceway, State(inner_pressure=1.0)), pressure, by_square_speed, by_shaft, by_ring)
+
+
+def _housing_fit(bearing: Bearing, mounting: Mounting) -> HousingFit:
+    outside = bearing.outer_raceway.outside_radius
+    limits = None if outside is None else housing_interference(mounting.housing, 2 * outside)
+    if limits is None:
+        return HousingFit(0.0, 0.0, 0.0, 0.0)
+    ring, around = housing_layers(bearing, mounting)
+    pressure, _, by_ring, by_housing = _seat(ring, around, smoothed(limits.mean, mounting.housing))
+    return HousingFit(-displacement(ring, ring.inner_radius, State(outer_pressure=1.0)), pressure, by_ring, by_housing)
+
+
+def lift_off_speed(growth: Growth) -> float:
+    """Return the shaft speed at which the fit of the shaft is lost [rad/s]: infinite without a fit, 0 where it is loose at rest."""
+    if not growth.fitted or growth.pressure_by_square_speed >= 0.0:
+        return math.inf
+    return math.sqrt(max(0.0, growth.pressure) / -growth.pressure_by_square_speed)
+
+
+def seat_pressure(parts: Mounted, shaft_speed):
+    """Return the pressure between shaft and inner ring at a speed [Pa], at the reference temperature; negative where they have parted."""
+    return parts.shaft.pressure + parts.shaft.by_square_speed * shaft_speed * shaft_speed
+
+
+def largest_hoop_stress(bearing: Bearing, mounting: Mounting, shaft_speed):
+    """Return the tangential stress at the bore of the inner ring [Pa], by rotation and fit at the reference temperature.
+
+    Parameters
+    ----------
+    bearing : with a bore radius.
+    mounting : of the scene.
+    shaft_speed : [rad/s], a number or an array.
+    """
+    ring, fit, square = shaft_layers(bearing, mounting)[1], _shaft_fit(bearing, mounting), shaft_speed * shaft_speed
+    pressure = np.maximum(0.0, fit.pressure + fit.by_square_speed * square)
+    return hoop_stress(ring, ring.inner_radius, State(inner_pressure=pressure, square_speed=square))
