@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Residual slip: synthetic faults are found, made with the model itself; noise, rest, start-up and lost sensors are none."""
+"""Residual slip and temperatures: synthetic faults are found; noise, rest, start-up and lost sensors are none."""
 
 import math
 
@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
+from bearing_sim.model.sample import new_block
+from bearing_sim.monitoring.monitor import Monitor
 from bearing_sim.monitoring.residual import ResidualMonitor
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.scene import ResidualDetection
@@ -160,3 +162,64 @@ def test_other_settings_in_mid_run_keep_what_was_learned_unless_batches_change()
     assert one.verdict(now) == "as predicted"
     one.adjust(ResidualDetection(batch=2.0), 20.0)
     assert one.verdict(now) == "no measurement"
+
+
+HEATED = ["heat={law: network}"]
+
+
+def temperatures(seconds, inner, outer, start=0.0, seed=3):
+    """Return samples at 10 Hz with measured rings that are warmer than predicted by so much [K], and the noise of a sensor."""
+    draw, count = np.random.default_rng(seed), round(10.0 * seconds)
+    block = new_block(count, 18)
+    block["time"], block["shaft_speed"], block["oil_temperature"] = start + 0.1 * np.arange(1, count + 1), SPEED, 393.15
+    block["rating_life"] = block["modified_rating_life"] = 1e4
+    for name, kelvin in (("inner_ring_temperature", inner), ("outer_ring_temperature", outer)):
+        block[name], block[f"{name}_measured"] = 400.0, 400.0 + kelvin + 0.2 * draw.normal(size=count)
+    return block
+
+
+def told_of(monitor, block):
+    """Return the events of residuals and the time of each when it begins, feeding ten samples at a time."""
+    found = {}
+    for k in range(0, len(block), 10):
+        monitor.take(block[k : k + 10])
+        now = float(block["time"][k : k + 10][-1])
+        for event in monitor.events(now):
+            if event.kind == "residual.shift":
+                found.setdefault(event.subject, (now, event))
+    return found
+
+
+def test_a_ring_that_becomes_warmer_than_predicted_is_found_and_named_and_one_that_is_always_warmer_is_not():
+    one = Monitor(load_scene("deng2017_table1", HEATED))
+    assert told_of(one, temperatures(1800.0, 1.0, 0.0)) == {}, "the network is wrong by a kelvin, always"
+    assert one.values["residual temperature of the inner ring, usual mean [K]"] == pytest.approx(1.0, abs=0.05)
+    assert one.values["residual temperature of the inner ring, verdict"] == "as predicted"
+    told = told_of(one, temperatures(600.0, 1.0, 1.5, start=1800.0))
+    assert [*told] == ["residual temperature of the outer ring"]
+    at, event = told["residual temperature of the outer ring"]
+    assert at < 1800.0 + 300.0 and "the outer ring is warmer than predicted" in event.text and " K, usually " in event.text
+    assert one.values["residual temperature of the outer ring, verdict"] == "is warmer than predicted"
+
+
+def test_a_ring_that_is_not_measured_or_not_predicted_has_no_residual():
+    unmeasured = temperatures(60.0, 0.0, 0.0)
+    unmeasured["inner_ring_temperature_measured"] = math.nan
+    one = Monitor(load_scene("deng2017_table1", HEATED))
+    told_of(one, unmeasured)
+    assert "residual temperature of the outer ring [K]" in one.values
+    assert not any("inner ring" in key for key in one.values)
+    given = Monitor(load_scene("deng2017_table1", ["heat={law: given, inner_ring: 127 degC}"]))
+    told_of(given, temperatures(60.0, 5.0, 5.0))
+    assert not any(key.startswith("residual") for key in given.values), "nothing predicts it: measured replaces given"
+
+
+def test_temperature_sensors_that_are_lost_leave_the_verdict_and_a_reset_lets_the_bearing_settle():
+    one = Monitor(load_scene("deng2017_table1", HEATED))
+    told_of(one, temperatures(1800.0, 0.0, 0.0))
+    lost = temperatures(120.0, 0.0, 0.0, start=1800.0)
+    for ring in ("inner", "outer"):
+        lost[f"{ring}_ring_temperature_measured"] = math.nan
+    assert told_of(one, lost) == {} and one.values["residual temperature of the inner ring, verdict"] == "no measurement"
+    one.restart()
+    assert told_of(one, temperatures(50.0, 9.0, 9.0)) == {}, "after a reset the run's time may begin again; it settles for a minute first"

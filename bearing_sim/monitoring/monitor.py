@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Compare the samples of a run with the scene's thresholds: slip, life, remaining life, lambda ratio and pocket force.
+"""Compare the samples of a run with the scene's thresholds: slip, life, remaining life, lambda ratio, pocket force and ring temperatures.
 
 Samples in, events out.  All times are those of the samples.
 """
@@ -11,6 +11,7 @@ import numpy as np
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.model.sample import joined
 from bearing_sim.monitoring.film_ratio import ThinnestFilm
+from bearing_sim.monitoring.residual import TemperatureResiduals
 from bearing_sim.scene.scene import Hold, Scene, Thresholds
 
 _HOUR = 3600.0  # [s]
@@ -141,7 +142,7 @@ class Monitor:
     """
 
     def __init__(self, scene: Scene):
-        self._films = ThinnestFilm(scene)
+        self._films, self._temperatures = ThinnestFilm(scene), TemperatureResiduals(scene)
         self._symbol = scene.life.symbols[0 if scene.life.is_basic else 1]
         self.adjust(scene.thresholds)
         self._forget()
@@ -149,6 +150,7 @@ class Monitor:
     def adjust(self, thresholds: Thresholds) -> None:
         """Use other thresholds from now on; hold times start again."""
         self._thresholds = t = thresholds
+        self._temperatures.adjust(thresholds)
         self._watches = {
             "slip": Watch("bearing.slip", "cage slip", "%", 100.0, t.slip_warning, t.slip_error, t.slip_hold),
             "life": Watch(
@@ -178,6 +180,7 @@ class Monitor:
     def restart(self) -> None:
         """Forget the run so far, after state and damage have returned to the start."""
         self.adjust(self._thresholds)
+        self._temperatures.interrupt()
         self._forget()
 
     def _forget(self) -> None:
@@ -208,6 +211,7 @@ class Monitor:
             latest["lambda"] = self._film / self._films.roughness
         for name, value in latest.items():
             self._watches[name].judge(now, value)
+        self._temperatures.take(block)
 
     def take_all(self, blocks: list[np.ndarray]) -> None:
         """Judge blocks as successive calls of `take` would, in one go if only the last can raise or clear an alarm."""
@@ -240,20 +244,22 @@ class Monitor:
         """Take samples for which `is_calm` is true."""
         for time, life, damage in zip(block["time"].tolist(), block["modified_rating_life"].tolist(), block["damage"].tolist()):
             self._remaining_life(time, life, damage)
+        self._temperatures.take(block)
 
     def events(self, now: float) -> list[Event]:
         """Return the events that hold, stamped ``now`` [s]."""
         events = [event for watch in self._watches.values() if (event := watch.event(now)) is not None]
+        events += self._temperatures.events(now)
         if self._damage >= 1.0:
             events.append(Event(now, Level.ERROR, "bearing.life_used", "damage", f"{self._damage:.3g} of the rating life is used up"))
         return events
 
     @property
-    def values(self) -> dict[str, float]:
+    def values(self) -> dict[str, object]:
         """Diagnostics values that only the monitor computes, with the unit in each key; empty before the first sample."""
         names = {"remaining": "remaining life [h]", "lambda": "film over roughness, lambda", "pocket": "largest pocket force [N]"}
         values = {shown: self._latest[name] for name, shown in names.items() if name in self._latest}
-        return values | ({"film [um]": 1e6 * self._film} if self._latest else {})
+        return values | ({"film [um]": 1e6 * self._film} if self._latest else {}) | self._temperatures.values(self._time)
 
     def _remaining_life(self, now: float, life: float, damage: float) -> float:
         """Return (1 - D)/(dD/dt) [h] with dD/dt the fading mean of 1/L: damage accumulates 1/L, not L, where the life L fluctuates."""

@@ -1,28 +1,30 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Residual slip: measured minus predicted cage slip, its fading statistics, and whether it has changed.
+"""Residuals: measured minus predicted cage slip and ring temperatures, their fading statistics, and whether they have changed.
 
 A model that is slightly wrong gives a residual that is not zero; a machine that changes gives a residual that changes.  So the usual
 residual is learned, and a change detector looks for lasting departures from it: batch means of the residual are made standard normal and
 independent (`Whitener`), and a two-sided cumulative sum with a known false-alarm rate judges them (`Cusum`).  Batches come at even
 intervals, so a run length is a time.  Rest, start-up and changes of speed are left out, because slip is undefined or depends on which of
-two sensors was read first.
+two sensors was read first; temperatures follow a change late.
 """
 
 import math
 from bisect import bisect_left, bisect_right, insort
+from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import brentq
 from scipy.special import ndtri, stdtr
 
 from bearing_sim.messages.events import Event, Level, Measurement
-from bearing_sim.scene.scene import ResidualDetection
+from bearing_sim.messages.topics import RING_TEMPERATURES
+from bearing_sim.scene.scene import ResidualDetection, Scene, TemperatureResidualDetection, Thresholds
 
 _HOUR = 3600.0  # [s]
 _SPEED_CHANGE = 0.02  # relative change beyond which the shaft counts as being at another speed
 _GAP = 5.0  # batches without a measurement after which the bearing has to settle again
 _SILENT = 2.0  # [s] without a measurement after which there is no verdict, at least
-_SIDES = {0: "as predicted", 1: "slips more than predicted", -1: "slips less than predicted"}
+_SAMPLES = 10  # of a batch that a residual of temperatures is made of
 
 _REFERENCE = 0.5  # k: half of the smallest change to detect, which is one standard deviation
 _OVERSHOOT = 1.166  # mean overshoot of a sum of normal steps beyond its border, both ends together (Siegmund 1985)
@@ -34,6 +36,42 @@ _STEEPEST_TAIL = 8.0  # beyond it, Student's distribution differs from 1 by roun
 
 _KEPT = 2000  # outputs: a measurement may arrive this many outputs after its time
 _PREDICTED = ("time", "shaft_speed", "ideal_cage_speed", "cage_slip")
+
+
+class Comparand(NamedTuple):
+    """What is compared, in words for people.
+
+    Attributes
+    ----------
+    what : the residual; the subject of its event and the first words of its diagnostics.
+    whose : the part that is measured.
+    unit, factor : unit shown, and the factor from SI to that unit.
+    verdicts : by the side to which the residual has changed: 0 for none, 1 up, -1 down.
+    unjudged : the verdict where nothing can be said.
+    """
+
+    what: str
+    whose: str
+    unit: str
+    factor: float
+    verdicts: dict[int, str]
+    unjudged: str
+
+
+SLIP = Comparand(
+    "residual slip",
+    "the cage",
+    "points",
+    100.0,
+    {0: "as predicted", 1: "slips more than predicted", -1: "slips less than predicted"},
+    "not judged: at rest, at a changing speed, or predicted by another level",
+)
+
+
+def temperature_of(ring: str) -> Comparand:
+    """Return the words for the temperature of a ring, inner or outer."""
+    verdicts = {0: "as predicted", 1: "is warmer than predicted", -1: "is colder than predicted"}
+    return Comparand(f"residual temperature of the {ring} ring", f"the {ring} ring", "K", 1.0, verdicts, "not judged: not measured, or at a changing speed")
 
 
 def run_length(threshold: float, reference: float = _REFERENCE) -> float:
@@ -204,25 +242,26 @@ def _normal(t: float, freedom: int) -> float:
 
 
 class ResidualMonitor:
-    """Compares measured with predicted cage slip.
+    """Compares a measured with a predicted quantity, such as cage slip.
 
     Parameters
     ----------
     detection : settings, see `bearing_sim.scene.scene.ResidualDetection`.
-    from_speed : shaft speed from which on slip is judged [rad/s].
+    from_speed : shaft speed from which on the residual is judged [rad/s].
+    of : what is compared.
 
     Attributes
     ----------
     residual, mean, deviation : float
-        The newest residual, measured minus predicted slip, its fading mean and its fading standard deviation, as fractions; NaN
-        before the first measurement.
+        The newest residual, measured minus predicted, its fading mean and its fading standard deviation, in SI; NaN before the first
+        measurement.
     """
 
-    def __init__(self, detection: ResidualDetection, from_speed: float):
-        self._detection, self._from_speed = detection, from_speed
+    def __init__(self, detection: ResidualDetection | TemperatureResidualDetection, from_speed: float, of: Comparand = SLIP):
+        self._detection, self._from_speed, self._of = detection, from_speed, of
         self.restart()
 
-    def adjust(self, detection: ResidualDetection, from_speed: float) -> None:
+    def adjust(self, detection: ResidualDetection | TemperatureResidualDetection, from_speed: float) -> None:
         """Use other settings from now on; the usual residual is learned again if batch length or tolerance have changed."""
         before, self._detection, self._from_speed = self._detection, detection, from_speed
         if (before.batch, before.tolerance) != (detection.batch, detection.tolerance):
@@ -249,7 +288,7 @@ class ResidualMonitor:
         ----------
         now : its time [s]; a measurement that is not later than the last one is left out.
         shaft_speed : [rad/s].
-        measured, predicted : cage slip as fractions; NaN at rest, or where there is nothing to compare.
+        measured, predicted : in SI; NaN where there is nothing to compare, as the slip at rest.
         """
         if now <= self._time:
             return
@@ -271,12 +310,16 @@ class ResidualMonitor:
         self._batch_count, self._batch_total = self._batch_count + 1, self._batch_total + residual
 
     def interrupt(self, now: float) -> None:
-        """Leave out measurements from ``now`` [s] until the bearing has settled, because the prediction has been reset."""
+        """Leave out measurements from ``now`` [s] until the bearing has settled, because the prediction has been reset.
+
+        The next measurement may be earlier than the last one: a run that starts again counts its time from 0.
+        """
+        self._time = -math.inf
         self._disturb(now, self._speed)
 
     @property
     def time(self) -> float:
-        """When slip was last compared [s]; NaN before that."""
+        """When measured and predicted were last compared [s]; NaN before that."""
         return self._measured_at
 
     def events(self, now: float) -> list[Event]:
@@ -285,24 +328,26 @@ class ResidualMonitor:
         if not side:
             return []
         steps, height = (self._cusum.rising_for, self._cusum.up) if side > 0 else (self._cusum.falling_for, self._cusum.down)
-        lasted, rarity = steps * self._detection.batch, self._detection.false_alarm_time / _HOUR
+        lasted, rarity, of = steps * self._detection.batch, self._detection.false_alarm_time / _HOUR, self._of
         reason = (
-            f"the cage {_SIDES[side]} for about {lasted:.3g} s of measurement: now {100 * self._newest_mean:+.3g} points, "
-            f"usually {100 * self._whitener.mean:+.3g} (CUSUM {height:.3g} over {self._cusum.threshold:.3g}, one false alarm in {rarity:.4g} h)"
+            f"{of.whose} {of.verdicts[side]} for about {lasted:.3g} s of measurement: now {of.factor * self._newest_mean:+.3g} {of.unit}, "
+            f"usually {of.factor * self._whitener.mean:+.3g} "
+            f"(CUSUM {height:.3g} over {self._cusum.threshold:.3g}, one false alarm in {rarity:.4g} h)"
         )
-        return [Event(now, Level.WARN, "residual.shift", "residual slip", reason)]
+        return [Event(now, Level.WARN, "residual.shift", of.what, reason)]
 
     def values(self, now: float) -> dict[str, object]:
         """Return diagnostics values and the verdict at ``now`` [s], with the unit in each key; empty before the first measurement."""
-        if math.isnan(self._time):
+        if math.isnan(self._measured_at):
             return {}
+        what, unit, factor = self._of.what, self._of.unit, self._of.factor
         return {
-            "residual slip [points]": 100 * self.residual,
-            "residual slip, mean [points]": 100 * self.mean,
-            "residual slip, deviation [points]": 100 * self.deviation,
-            "residual slip, usual mean [points]": 100 * self._whitener.mean if self._whitener.count else math.nan,
-            "residual slip, CUSUM of its threshold [%]": 100 * self._cusum.height / self._cusum.threshold,
-            "residual slip, verdict": self.verdict(now),
+            f"{what} [{unit}]": factor * self.residual,
+            f"{what}, mean [{unit}]": factor * self.mean,
+            f"{what}, deviation [{unit}]": factor * self.deviation,
+            f"{what}, usual mean [{unit}]": factor * self._whitener.mean if self._whitener.count else math.nan,
+            f"{what}, CUSUM of its threshold [%]": 100 * self._cusum.height / self._cusum.threshold,
+            f"{what}, verdict": self.verdict(now),
         }
 
     def verdict(self, now: float) -> str:
@@ -310,13 +355,13 @@ class ResidualMonitor:
         if math.isnan(self._time) or now - self._time > max(_GAP * self._detection.batch, _SILENT):
             return "no measurement"
         if self._cusum.side:
-            return _SIDES[self._cusum.side]
+            return self._of.verdicts[self._cusum.side]
         if self._time != self._measured_at or self._time < self._settled_from:
-            return "not judged: at rest, at a changing speed, or predicted by another level"
+            return self._of.unjudged
         known = self._whitener.count * self._detection.batch
         if known < self._detection.learning:
             return f"learning what is usual: {known:.3g} of {self._detection.learning:.3g} s"
-        return _SIDES[0]
+        return self._of.verdicts[0]
 
     def _fade(self, elapsed: float, residual: float) -> None:
         """Update mean and variance, whose weights fade by exp(-t/memory) (West, Comm. ACM 22, 1979)."""
@@ -345,6 +390,55 @@ class ResidualMonitor:
         if learned:
             self._cusum.take(number)
         self._batch_start, self._batch_count, self._batch_total = math.nan, 0, 0.0
+
+
+class TemperatureResiduals:
+    """Compares the measured temperatures of the rings with those of the thermal network, sample by sample: a sample holds both.
+
+    Parameters
+    ----------
+    scene : nothing is compared where its `heat.law` is not network, for then nothing predicts what is measured.
+    """
+
+    def __init__(self, scene: Scene):
+        detection = scene.thresholds.temperature_residual
+        rings = RING_TEMPERATURES if scene.heat_law == "network" else ()
+        self._monitors = {name: ResidualMonitor(detection, 0.0, temperature_of(name.partition("_")[0])) for name in rings}
+        self._interval, self._next = detection.batch / _SAMPLES, -math.inf
+
+    def adjust(self, thresholds: Thresholds) -> None:
+        """Use other thresholds from now on (see `ResidualMonitor.adjust`)."""
+        detection = thresholds.temperature_residual
+        self._interval = detection.batch / _SAMPLES
+        for monitor in self._monitors.values():
+            monitor.adjust(detection, 0.0)
+
+    def interrupt(self) -> None:
+        """Wait until the network has settled after a reset; what is usual is kept."""
+        self._next = -math.inf
+        for monitor in self._monitors.values():
+            monitor.interrupt(-math.inf)
+
+    def take(self, block: np.ndarray) -> None:
+        """Take samples in order, shape (n,) (see `bearing_sim.model.sample`)."""
+        if not self._monitors:
+            return
+        times, place = block["time"], 0
+        while (place := place + int(np.searchsorted(times[place:], self._next))) < len(block):
+            sample = block[place]
+            now, speed = float(sample["time"]), float(sample["shaft_speed"])
+            self._next = now + self._interval * (1 - 1e-9)
+            for name, monitor in self._monitors.items():
+                if not math.isnan(measured := float(sample[f"{name}_measured"])):
+                    monitor.take(now, speed, measured, float(sample[name]))
+
+    def events(self, now: float) -> list[Event]:
+        """Return the events of changes that hold, stamped ``now`` [s]."""
+        return [event for monitor in self._monitors.values() for event in monitor.events(now)]
+
+    def values(self, now: float) -> dict[str, object]:
+        """Return diagnostics values and verdicts at ``now`` [s] of the rings that have been measured."""
+        return {key: value for monitor in self._monitors.values() for key, value in monitor.values(now).items()}
 
 
 class Comparison:

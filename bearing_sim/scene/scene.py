@@ -124,6 +124,16 @@ class Hold:
     clear_after: quantity("s", "time back within the limit before the alarm clears", 0.0, 86400.0) = 2.0
 
 
+def _detection_errors(detection: "ResidualDetection | TemperatureResidualDetection") -> list[str]:
+    """Return why the times of a detection do not fit together."""
+    batch, errors = detection.batch, []
+    if detection.learning < 30 * batch:
+        errors.append(f"learning: {detection.learning:g} s are {detection.learning / batch:.3g} batches of {batch:g} s; expected 30 or more")
+    if detection.false_alarm_time < 20 * batch:
+        errors.append(f"false_alarm_time: {detection.false_alarm_time:g} s is less than 20 batches of {batch:g} s")
+    return errors
+
+
 @record
 class ResidualDetection:
     """How measured slip is compared with predicted slip (see `bearing_sim.monitoring.residual`)."""
@@ -137,12 +147,26 @@ class ResidualDetection:
 
     @check
     def _times_fit_together(self) -> list[str]:
-        errors = []
-        if self.learning < 30 * self.batch:
-            errors.append(f"learning: {self.learning:g} s are {self.learning / self.batch:.3g} batches of {self.batch:g} s; expected 30 or more")
-        if self.false_alarm_time < 20 * self.batch:
-            errors.append(f"false_alarm_time: {self.false_alarm_time:g} s is less than 20 batches of {self.batch:g} s")
-        return errors
+        return _detection_errors(self)
+
+
+@record
+class TemperatureResidualDetection:
+    """How measured temperatures of rings are compared with those of the thermal network (see `bearing_sim.monitoring.residual`).
+
+    The measured temperatures correct the network, so that a wrong heat balance shows as a small difference that lasts.
+    """
+
+    false_alarm_time: quantity("s", "mean time between false alarms", 60.0, 1e10, "h") = 3.6e6
+    tolerance: quantity("delta_degC", "lasting change of the residual that is not a fault: the error of the network", 1e-6, 100.0, "K") = 0.2
+    batch: quantity("s", "time over which residuals are averaged before the test", 0.01, 3600.0) = 10.0
+    learning: quantity("s", "measured time from which the reference mean and scatter of the residual are learned", 1.0, 1e6) = 600.0
+    settling: quantity("s", "time after a change of speed that is ignored", 0.0, 36000.0) = 60.0
+    memory: quantity("s", "time constant of the displayed exponential mean and standard deviation", 0.1, 1e6) = 300.0
+
+    @check
+    def _times_fit_together(self) -> list[str]:
+        return _detection_errors(self)
 
 
 @record
@@ -168,6 +192,7 @@ class Thresholds:
     pocket_force_error: quantity("N", "pocket force that is an error; None: none is", 0.0, 1e6) | None = None
     pocket_force_hold: Hold = field(default_factory=Hold)
     residual: ResidualDetection = field(default_factory=ResidualDetection)
+    temperature_residual: TemperatureResidualDetection = field(default_factory=TemperatureResidualDetection)
 
 
 CLEANLINESS = Literal[
