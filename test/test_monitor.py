@@ -216,3 +216,27 @@ def test_blocks_judged_together_leave_the_same_events_and_numbers_as_one_by_one(
         begin += size
     together.take_all([])
     assert {"bearing.slip", "bearing.life"} <= told_ones
+
+
+@pytest.mark.parametrize("limit, clearances", [(20.0, (30.0, 10.0, 30.0)), (0.0, (5.0, -1.0, 5.0)), (-10.0, (-5.0, -12.0, -5.0))])
+def test_a_running_clearance_below_its_limit_is_a_warning_on_either_side_of_preload(limit, clearances):
+    one = monitor(f"thresholds.clearance_warning={limit} um")
+    block = course(150, running_clearance=1e-6 * np.repeat(clearances, 50))
+    assert told(one, block) == [(5.6, "bearing.clearance", Level.WARN)]
+    assert not one.events(15.0), "it is over once the clearance has been back for long enough"
+    one.take(course(1, running_clearance=1e-6 * clearances[1]))
+
+
+def test_a_preload_flickers_around_its_limit_in_one_event_and_an_error_outranks_the_warning():
+    one = monitor("thresholds.clearance_warning=-10 um", "thresholds.clearance_error=-20 um")
+    flicker = -10e-6 + 0.8e-6 * np.random.default_rng(2).uniform(-1, 1, 3000)  # within the hysteresis of a tenth
+    assert [event[1:] for event in told(one, course(3000, running_clearance=flicker))] == [("bearing.clearance", Level.WARN)]
+    gone = course(20, running_clearance=np.full(20, -30e-6))
+    gone["time"] += 300.0
+    assert [event[1:] for event in told(one, gone)] == [("bearing.clearance", Level.WARN), ("bearing.clearance", Level.ERROR)]
+    (event,) = one.events(302.0)
+    assert event.text == "running clearance: -30 um is below -20 um"
+
+
+def test_no_running_clearance_is_wrong_unless_the_scene_says_so():
+    assert told(monitor(), course(50, running_clearance=np.full(50, -200e-6))) == []

@@ -352,6 +352,7 @@ def condition(sample) -> dict[str, float]:
         "shaft speed [rpm]": float(sample["shaft_speed"]) * 30 / math.pi,
         "radial load [N]": math.hypot(sample["load_y"], sample["load_z"]),
         "oil temperature [degC]": float(sample["oil_temperature"]) - ZERO_CELSIUS,
+        "running clearance [um]": 1e6 * float(sample["running_clearance"]),
         "cage slip [%]": 100 * float(sample["cage_slip"]),
         "rating life [h]": float(sample["rating_life"]),
         "damage [% of life]": 100 * float(sample["damage"]),
@@ -364,6 +365,9 @@ def further_condition(scene, sample) -> dict[str, object]:
     if not scene.life.is_basic:
         numbers["modified rating life [h]"] = float(sample["modified_rating_life"])
     numbers |= {f"{symbol} [h]": float(sample[name]) for name, symbol in LIFE_SYMBOLS.items()}
+    for name in RING_TEMPERATURES:
+        if not math.isnan(measured := float(sample[f"{name}_measured"])) and scene.uses_ring_temperatures:
+            numbers[f"{name.replace('_', ' ')}, measured [degC]"] = measured - ZERO_CELSIUS
     if scene.bodies_tilt:
         for name, fields in (("largest", ("inner_pressure", "outer_pressure")), ("largest edge", ("inner_edge_pressure", "outer_edge_pressure"))):
             numbers[f"{name} pressure [MPa]"] = 1e-6 * max(float(sample[field]) for field in fields)

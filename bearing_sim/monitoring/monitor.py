@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Compare the samples of a run with the scene's thresholds: slip, life, remaining life, lambda ratio, pocket force and ring temperatures.
+"""Compare the samples of a run with the scene's thresholds: slip, life, remaining life, lambda, pocket force, clearance, ring temperatures.
 
 Samples in, events out.  All times are those of the samples.
 """
@@ -49,7 +49,8 @@ class Alarm:
     @property
     def back_at(self) -> float:
         """The value at which the alarm counts as back."""
-        return self.limit * (1.0 + self._hold.hysteresis if self._below else 1.0 - self._hold.hysteresis)
+        margin = self._hold.hysteresis * abs(self.limit)
+        return self.limit + margin if self._below else self.limit - margin
 
     @property
     def is_pending(self) -> bool:
@@ -175,6 +176,9 @@ class Monitor:
             ),
             "lambda": Watch("bearing.lambda", "film over roughness", "", 1.0, t.lambda_warning, t.lambda_error, t.lambda_hold, True),
             "pocket": Watch("bearing.pocket_force", "pocket force", "N", 1.0, t.pocket_force_warning, t.pocket_force_error, t.pocket_force_hold),
+            "clearance": Watch(
+                "bearing.clearance", "running clearance", "um", 1e6, t.clearance_warning, t.clearance_error, t.clearance_hold, True
+            ),
         }
 
     def restart(self) -> None:
@@ -203,6 +207,7 @@ class Monitor:
             "life": life,
             "remaining": self._remaining_life(now, life, float(block["damage"][-1])),
             "pocket": float(np.fmax.reduce(np.abs(block["pocket_force"]), axis=None, initial=math.nan)),
+            "clearance": float(np.fmin.reduce(block["running_clearance"], initial=math.nan)),
         }
         if not abs(now - self._film_at) < _FILM_EVERY * (1 - 1e-9):
             self._film = float(self._films.least(block[-1:])[0]) if turning[-1] else math.nan
@@ -235,6 +240,7 @@ class Monitor:
             "life": lives,
             "remaining": shortest,
             "pocket": np.abs(block["pocket_force"]),
+            "clearance": block["running_clearance"],
         }
         if not math.isnan(self._films.roughness):
             values["lambda"] = self._films.least(block[turning]) / self._films.roughness

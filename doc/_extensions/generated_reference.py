@@ -290,6 +290,7 @@ def _reached(path: Path) -> list[Path]:
 
 EVENTS = {
     "bearing.slip": ("WARN, ERROR", "cage slip above its threshold"),
+    "bearing.clearance": ("WARN, ERROR", "running clearance below its threshold; a preload may be wanted, so that there is none by default"),
     "bearing.life": ("WARN, ERROR", "life at the present condition below its threshold"),
     "bearing.remaining_life": ("WARN, ERROR", "remaining life below its threshold"),
     "bearing.life_used": ("ERROR", "damage has reached 1: the rating life is used up"),
@@ -339,7 +340,7 @@ EVENTS = {
     "recording.restarted": ("WARN", "the writer ended early; the recording continues in a new file"),
     "recording.restored": ("WARN", "a file was deleted or replaced while it was written, and was restored"),
     "reproduction.failed": ("ERROR", "a sample of a recording could not be computed again; the run continues from the recorded one"),
-    "residual.shift": ("WARN", "lasting change of the measured against the predicted slip"),
+    "residual.shift": ("WARN", "lasting change of the measured against the predicted slip, or of a measured against a predicted ring temperature"),
     "run.behind": ("WARN", "the model lags behind `/clock` and catches up"),
     "run.failed": ("ERROR", "a transition of the node failed"),
     "run.given_up": ("ERROR", "the model could not be advanced ten times in a row; it waits for `~/reset`"),
