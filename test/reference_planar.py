@@ -89,7 +89,7 @@ class Reference:
     guide_clearance: float = 0.15e-3
     guidance: str = "outer_ring"
     pocket_radial_clearance: float = 0.1e-3
-    pumping: bool = False  # resistance of the oil that inlets pump back
+    rolling_resistance: bool = False
     growth: float = 0.0  # of the inner raceway's radius while running [m]
 
     def __post_init__(self):
@@ -104,6 +104,9 @@ class Reference:
         self.modulus = 2 / (2 * (1 - 0.3**2) / 2.06e11)
         self.temperature = 393.15
         self.viscosity = 9.997e-4 * (np.exp(np.exp(22.216 - 3.7048 * np.log(393.15))) - 0.87)
+        self.pressure_viscosity = 7.5808e-10 + 1.0742e-6 / (393.15 - 215.56)
+        warmer, colder = (np.log(9.997e-4 * (np.exp(np.exp(22.216 - 3.7048 * np.log(t))) - 0.87)) for t in (393.25, 393.05))
+        self.thinning = (colder - warmer) / 0.2
         self.density = 0.03 * (914 + (870 - 914) * (393.15 - 367) / (422 - 367))
         self.outside, self.inside, self.width, self.land_width = 33.35e-3, 29.6e-3, 12e-3, 2.5e-3  # two lands
         self.guide_radius = {"outer_ring": 33.5e-3, "inner_ring": 29.6e-3 - self.guide_clearance, "roller": np.nan}[self.guidance]
@@ -145,12 +148,18 @@ class Reference:
         s = magnitude(sliding) / rolling
         return load * np.where(np.real(sliding) >= 0, 1, -1) * ((a + b * s) * np.exp(-c * s) - a)
 
-    def pumped(self, load, rolling, curvature_radius):
-        """Resistance of each surface to the oil pumped back; fades out below a load of 1 N, and linear in slow rolling."""
+    def resistance(self, load, rolling, curvature_radius):
+        """Goksem and Hargreaves 1978 with the rigid regime of Biboulet and Houpert 2010 and SKF's replenishment; fades out below a load of 1 N."""
         stiffness = self.modulus * curvature_radius
         slow = np.sqrt(rolling**2 + 0.05**2)
-        force = 0.715 * stiffness * self.length * (self.viscosity * slow / (2 * stiffness)) ** 0.71 * rolling / slow
-        return (1.0 if self.pumping else 0.0) * force * load / (load + 1.0)
+        u, g, w = self.viscosity * slow / stiffness, self.pressure_viscosity * self.modulus, larger(load, 1e-3) / (stiffness * self.length)
+        elastic, rigid = 4.318 * (g * u) ** 0.658 * w**0.0126 / g, 1.42 * np.sqrt(2 * u * w)
+        heated = 1 + 0.411483 * (self.viscosity * self.thinning * slow**2 / 0.0966) ** 0.707071
+        gamma, kinematic = self.roller_radius / self.pitch_radius, 1e6 * self.viscosity * 0.03 / self.density
+        turns = slow * 60 / np.pi / (self.pitch_radius * (1 - gamma**2))  # of the shaft a minute
+        starved = np.exp(-3e-8 * kinematic * turns * (73.4 + 50.027) * np.sqrt(5.1 / (2 * (73.4 - 50.027))))
+        force = stiffness * self.length * (elastic**-10 + rigid**-10) ** -0.1 * starved / heated * rolling / slow
+        return (1.0 if self.rolling_resistance else 0.0) * force * load / (load + 1.0)
 
     def pocket(self, offset, rate, clearance, film_force):
         """Force of a pocket's walls against a roller's offset, its elastic part, and the energy of that."""
@@ -267,8 +276,8 @@ class Reference:
         f.outer_slide = state.spin * r_w - f.orbit
         f.roll_i = roll_i = ((omega_i - turning) * self.raceway + (state.spin + turning) * r_w) / 2
         f.roll_e = roll_e = (turning * (f.radius + r_w) + (state.spin + turning) * r_w) / 2
-        f.inner_pumped = self.pumped(f.inner, roll_i, 1 / (1 / r_w + 1 / r_i))
-        f.outer_pumped = self.pumped(f.outer, roll_e, 1 / (1 / r_w - 1 / self.low_radius))
+        f.inner_resistance = self.resistance(f.inner, roll_i, 1 / (1 / r_w + 1 / r_i))
+        f.outer_resistance = self.resistance(f.outer, roll_e, 1 / (1 / r_w - 1 / self.low_radius))
         f.inner_traction = self.traction(f.inner, roll_i, f.inner_slide, 1 / (1 / r_w + 1 / r_i))
         f.outer_traction = self.traction(f.outer, roll_e, f.outer_slide, 1 / (1 / r_w - 1 / self.low_radius))
         f.churning, _ = self.churning(f.orbit)
@@ -306,13 +315,13 @@ class Reference:
     def accelerations(self, f):
         """Of ring, cage, cage angle, rollers and spins, under the forces ``f``."""
         r_w = self.roller_radius
-        inner = f.inner * f.normal + (f.inner_traction + self.pushing[0] * f.inner_pumped) * ahead(f.normal)
-        outer = -f.outer * f.outward + (f.outer * f.lean + f.outer_traction - self.pushing[1] * f.outer_pumped) * f.along
+        inner = f.inner * f.normal + (f.inner_traction + self.pushing[0] * f.inner_resistance) * ahead(f.normal)
+        outer = -f.outer * f.outward + (f.outer * f.lean + f.outer_traction - self.pushing[1] * f.outer_resistance) * f.along
         # a wall pushes back along the orbit, and its friction drags along the wall, against the turning surface
         pocket = -f.pocket * (f.pocket_along + f.pocket_smooth * f.pocket_outward)
         guide = -f.guide * (f.pocket_outward - f.pocket_smooth * f.pocket_along)
         rubbed = f.pocket_smooth * (magnitude(f.pocket) + magnitude(f.guide))
-        spin_torque = r_w * (f.inner_traction - f.outer_traction - f.inner_pumped - f.outer_pumped - rubbed)
+        spin_torque = r_w * (f.inner_traction - f.outer_traction - f.inner_resistance - f.outer_resistance - rubbed)
         touch = f.from_cage + np.where(np.real(f.pocket) >= 0, r_w, -r_w) * f.pocket_along
         guide_touch = f.from_cage + np.where(np.real(f.guide) >= 0, r_w, -r_w) * f.pocket_outward
         cage_torque = f.land.torque + f.bore_torque + f.case_torque + np.sum(cross(touch, -pocket)) + np.sum(cross(guide_touch, -guide))
@@ -332,12 +341,14 @@ class Reference:
         wall_slide = wall_slide - f.guide * f.pocket_rate + magnitude(f.guide) * self.roller_radius * (state.spin + omega)
         turning = omega_i if self.guidance == "inner_ring" else 0.0
         work = {
-            "shaft": omega_i * (self.raceway * (f.inner_traction + f.inner_pumped).sum() + f.bore_torque) - turning * f.land.on_ring,
+            "shaft": omega_i * (self.raceway * (f.inner_traction + f.inner_resistance).sum() + f.bore_torque) - turning * f.land.on_ring,
             "load": dot(self.load, state.ring_velocity),
         }
         heat = {
-            "inner traction": np.sum(f.inner_traction * f.inner_slide + 2 * f.inner_pumped * f.roll_i),
-            "outer traction": np.sum(f.outer_traction * f.outer_slide + 2 * f.outer_pumped * f.roll_e),
+            "inner traction": np.sum(f.inner_traction * f.inner_slide),
+            "outer traction": np.sum(f.outer_traction * f.outer_slide),
+            "inner rolling": np.sum(2 * f.inner_resistance * f.roll_i),
+            "outer rolling": np.sum(2 * f.outer_resistance * f.roll_e),
             "normal damping": np.sum((f.inner - f.inner_elastic) * f.inner_rate + (f.outer - f.outer_elastic) * f.outer_rate),
             "pocket damping": np.sum((f.pocket - f.pocket_elastic) * f.pocket_rate + (f.guide - f.guide_elastic) * f.guide_rate),
             "pocket friction": np.sum(f.pocket_smooth * wall_slide),

@@ -35,8 +35,8 @@ class State:
 
 
 def sum_of_films(pieces):
-    """Heat in the films of one raceway: by sliding, and by pumping oil back with both surfaces."""
-    return np.sum(pieces.force * pieces.slide + 2 * pieces.pumped * pieces.roll)
+    """Heat in the films of one raceway: by sliding, and by resistance to rolling of both surfaces."""
+    return np.sum(pieces.force * pieces.slide), np.sum(2 * pieces.resistance * pieces.roll)
 
 
 @dataclass
@@ -72,8 +72,8 @@ class SpatialReference:
         shares = np.array([len(self.x[part]) / self.slices for part in parts])
         slides = sliding(places)
         force = shares * self.planar.traction(loads, rolling[:, None], slides, curvature_radius)
-        pumped = shares * self.planar.pumped(loads, rolling[:, None], curvature_radius)
-        return SimpleNamespace(x=places, slide=slides, roll=rolling[:, None], force=force, pumped=pumped)
+        resistance = shares * self.planar.resistance(loads, rolling[:, None], curvature_radius)
+        return SimpleNamespace(x=places, slide=slides, roll=rolling[:, None], force=force, resistance=resistance)
 
     def forces(self, state):
         """All forces at a state, by name; those of slices have a last axis over slices."""
@@ -162,15 +162,15 @@ class SpatialReference:
         p, x, state, r_w = self.planar, self.x, f.state, self.planar.roller_radius
         dragged_i, dragged_e = f.inner_traction.force.sum(1), f.outer_traction.force.sum(1)
         skewed_i, skewed_e = (f.inner_traction.force * f.inner_traction.x).sum(1), (f.outer_traction.force * f.outer_traction.x).sum(1)
-        pumped_i, pumped_e = f.inner_traction.pumped.sum(1), f.outer_traction.pumped.sum(1)
-        skewed_i = skewed_i + p.pushing[0] * (f.inner_traction.pumped * f.inner_traction.x).sum(1)
-        skewed_e = skewed_e - p.pushing[1] * (f.outer_traction.pumped * f.outer_traction.x).sum(1)
-        inner = (f.inner * f.inner_way).sum(2) + (dragged_i + p.pushing[0] * pumped_i) * f.across
-        outer = -f.outer.sum(1) * f.outward + ((f.outer * f.outer_lean).sum(1) + dragged_e - p.pushing[1] * pumped_e) * f.along
+        resistance_i, resistance_e = f.inner_traction.resistance.sum(1), f.outer_traction.resistance.sum(1)
+        skewed_i = skewed_i + p.pushing[0] * (f.inner_traction.resistance * f.inner_traction.x).sum(1)
+        skewed_e = skewed_e - p.pushing[1] * (f.outer_traction.resistance * f.outer_traction.x).sum(1)
+        inner = (f.inner * f.inner_way).sum(2) + (dragged_i + p.pushing[0] * resistance_i) * f.across
+        outer = -f.outer.sum(1) * f.outward + ((f.outer * f.outer_lean).sum(1) + dragged_e - p.pushing[1] * resistance_e) * f.along
         pocket = -f.pocket * (f.pocket_along + f.pocket_smooth * f.pocket_outward)[:, :, None]
         pocket = pocket - f.guide * (f.pocket_outward - f.pocket_smooth * f.pocket_along)[:, :, None]
         pressed_on = magnitude(f.pocket_whole) + magnitude(f.guide_whole)
-        spin_torque = r_w * (dragged_i - dragged_e - pumped_i - pumped_e - f.pocket_smooth * pressed_on)
+        spin_torque = r_w * (dragged_i - dragged_e - resistance_i - resistance_e - f.pocket_smooth * pressed_on)
         # both walls push at the roller's surface
         reach = np.where(np.real(f.pocket_whole) >= 0, r_w, -r_w) * cross(f.pocket_along, f.pocket_whole * f.pocket_smooth * f.pocket_outward)
         reach = reach + np.where(np.real(f.guide_whole) >= 0, r_w, -r_w) * cross(f.pocket_outward, -f.guide_whole * f.pocket_smooth * f.pocket_along)
@@ -212,14 +212,17 @@ class SpatialReference:
         wall_slide = (f.pocket * f.pocket_slide - f.guide * f.pocket_rate).sum(1) + pressed_on * p.roller_radius * (state.spin + omega)
         turning = omega_i if p.guidance == "inner_ring" else 0.0
         work = {
-            "shaft": omega_i * (p.raceway * (f.inner_traction.force + f.inner_traction.pumped).sum() + f.bore_torque)
+            "shaft": omega_i * (p.raceway * (f.inner_traction.force + f.inner_traction.resistance).sum() + f.bore_torque)
             - turning * sum(land.on_ring for land in f.lands) / 2,
             "load": dot(p.load, state.ring_velocity),
             "moment": dot(self.moment, state.ring_leaning),
         }
+        (inner_sliding, inner_rolling), (outer_sliding, outer_rolling) = sum_of_films(f.inner_traction), sum_of_films(f.outer_traction)
         heat = {
-            "inner traction": sum_of_films(f.inner_traction),
-            "outer traction": sum_of_films(f.outer_traction),
+            "inner traction": inner_sliding,
+            "outer traction": outer_sliding,
+            "inner rolling": inner_rolling,
+            "outer rolling": outer_rolling,
             "normal damping": np.sum((f.inner - f.inner_elastic) * f.inner_rate + (f.outer - f.outer_elastic) * f.outer_rate),
             "pocket damping": np.sum((f.pocket - f.pocket_elastic) * f.pocket_rate + (f.guide - f.guide_elastic) * f.guide_rate),
             "pocket friction": np.sum(f.pocket_smooth * wall_slide),

@@ -178,7 +178,7 @@ def test_public_things_have_docstrings_whose_parameters_match_the_signature():
 def test_every_observable_has_a_unit_a_meaning_and_its_column():
     for observable in OBSERVABLES:
         assert observable.meaning and re.fullmatch(r"[a-z][a-z0-9_]*", observable.name)
-        assert observable.unit in {"", "s", "rad", "rad/s", "N", "K", "m", "h", "W", "Pa"}
+        assert observable.unit in {"", "s", "rad", "rad/s", "N", "K", "m", "h", "W", "Pa", "N*m"}
     dtype, rollers = sample_dtype(5), 5
     for name, column in COLUMN._asdict().items():
         per_roller = dtype[name].shape != ()

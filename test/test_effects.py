@@ -14,7 +14,9 @@ ASKING = {
     "operating.moment": "1",
     "operating.misalignment": "1 mrad",
     "integration.fixed_step": "10 us",
-    "lubricant.pumping": "true",
+    "lubricant.rolling_resistance": "hydrodynamic",
+    "lubricant.supply": "oil_bath",
+    "bearing.seals": "{law: constant_moment, moment: 0.1}",
     "bearing.dimensions_at": "cold",
 }
 OVERRIDES = {field: f"{field}={value}" for field, value in ASKING.items()} | {f"wants.{name}": f"wants=[{name}]" for name in WANTS}
@@ -45,11 +47,11 @@ def test_stock_scene_asks_for_nothing():
     assert levels_with([effect for effect in EFFECTS if effect.field == "operating.moment"]) == ["spatial"]
 
 
-@pytest.mark.parametrize("override", [None, "lubricant.pumping=true", "bearing.dimensions_at=cold", "life.reliability=99 %"])
+@pytest.mark.parametrize("override", [None, "lubricant.rolling_resistance=hydrodynamic", "bearing.dimensions_at=cold", "life.reliability=99 %"])
 def test_a_spatial_scene_without_spatial_effects_gets_a_hint_to_level_planar(override):
     line = hint(scene("spatial", *([override] if override else [])))
     assert "nothing in the scene needs it" in line and "level planar computes the same" in line and "\n" not in line
-    assert "misalignment" in line and "pumping" not in line
+    assert "misalignment" in line and "rolling" not in line
 
 
 @pytest.mark.parametrize("field", ["operating.moment", "operating.misalignment"])

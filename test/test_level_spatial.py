@@ -42,12 +42,12 @@ GROWTH = "bearing.dimensions_at=cold"
         ([], []),
         ([], ["bearing.roller.slices=7", "bearing.roller.slices_per_traction=3"]),
         ([], ["operating.moment=0"]),
-        (["lubricant.pumping=true"], []),
+        (["lubricant.rolling_resistance=hydrodynamic"], []),
         ([GROWTH], []),
         (INNER, ["operating.moment=0"]),
         (ROLLER_GUIDED, ["operating.moment=0"]),
-        (["lubricant.pumping=true", GROWTH, *INNER], []),
-        (["lubricant.pumping=true", GROWTH], ["bearing.roller.slices=7", "operating.moment=0"]),
+        (["lubricant.rolling_resistance=hydrodynamic", GROWTH, *INNER], []),
+        (["lubricant.rolling_resistance=hydrodynamic", GROWTH], ["bearing.roller.slices=7", "operating.moment=0"]),
     ],
 )
 def test_an_aligned_bearing_without_crown_runs_as_at_level_planar(at_both, overrides):

@@ -66,7 +66,7 @@ def test_slip_and_life_are_those_of_the_marched_level_at_points_drawn_by_lot(nam
     "overrides",
     [
         ["bearing.outer_raceway.low_radius=34.8675 mm"],  # slips by a quarter
-        ["lubricant.pumping=true", "bearing.cage.pocket_reaction=true", "bearing.cage.assumed_eccentricity=0.9"],
+        ["lubricant.rolling_resistance=hydrodynamic", "bearing.cage.pocket_reaction=true", "bearing.cage.assumed_eccentricity=0.9"],
         ["bearing.dimensions_at=cold", "bearing.outer_raceway.contour_slope=false"],
         ["bearing.outer_raceway.roundness=8 um", "bearing.outer_raceway.installation_angle=17 deg"],
         ["bearing.outer_raceway.lobes=2", "lubricant.traction={law: kragelskii}"],
@@ -105,7 +105,7 @@ def test_ripple_of_the_cage_speed_within_a_pitch_is_next_to_nothing(rpm):
 
 @pytest.mark.parametrize(("rpm", "load"), [(45000.0, 800.0), (-30000.0, 3000.0), (8000.0, 100.0)])
 def test_what_the_shaft_puts_in_is_what_the_losses_take(rpm, load):
-    found = answer(scene("lubricant.pumping=true", "bearing.cage.pocket_reaction=true"), rpm, load)
+    found = answer(scene("lubricant.rolling_resistance=hydrodynamic", "bearing.cage.pocket_reaction=true"), rpm, load)
     # the bearing turns evenly: nothing is stored, and the load moves nothing in the mean
     assert found.shaft_power == pytest.approx(sum(found[ANSWER.inner_sliding_power :]), rel=5e-3)
 

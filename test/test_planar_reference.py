@@ -117,9 +117,9 @@ VARIANTS = {
         {"guidance": "roller", "shaft_speed": -1500.0, "pocket_radial_clearance": 0.06e-3},
         [*ROLLER_GUIDED, "operating.shaft_speed=-1500 rad/s", "bearing.cage.pocket_radial_clearance=0.06 mm"],
     ),
-    "pumping, and a raceway that grows": (
-        {"pumping": True, "growth": GROWN},
-        ["lubricant.pumping=true", "bearing.dimensions_at=cold"],
+    "rolling resistance, and a raceway that grows": (
+        {"rolling_resistance": True, "growth": GROWN},
+        ["lubricant.rolling_resistance=hydrodynamic", "bearing.dimensions_at=cold"],
     ),
     "nine rollers, damped": ({"rollers": 9, "contact_damping": 1.0}, ["bearing.roller.count=9", "bearing.contact.damping=1"]),
 }

@@ -139,9 +139,9 @@ VARIANTS = {
         ],
         CROWN,
     ),
-    "pumping, and a raceway that grows": (
-        lambda: SpatialReference(Reference(pumping=True, growth=GROWN), moment=(2 * math.cos(math.pi / 6), 1.0), crown=CROWN),
-        [*MOMENT, "lubricant.pumping=true", "bearing.dimensions_at=cold"],
+    "rolling resistance, and a raceway that grows": (
+        lambda: SpatialReference(Reference(rolling_resistance=True, growth=GROWN), moment=(2 * math.cos(math.pi / 6), 1.0), crown=CROWN),
+        [*MOMENT, "lubricant.rolling_resistance=hydrodynamic", "bearing.dimensions_at=cold"],
         CROWN,
     ),
     "nine rollers backwards, crown": (
@@ -239,6 +239,8 @@ def test_powers_are_those_of_the_plain_numpy_model(variant):
             "shaft_power": work["shaft"],
             "inner_sliding_power": heat["inner traction"],
             "outer_sliding_power": heat["outer traction"],
+            "inner_rolling_power": heat["inner rolling"],
+            "outer_rolling_power": heat["outer rolling"],
             "churning_power": heat["churning"],
             "windage_power": heat["mixture on the cage"],
         }
@@ -264,7 +266,7 @@ def test_energy_is_kept(crown):
         work, heat = reference.powers(forces)
         return np.concatenate([rate_of(reference, y[:size], forces), list(work.values()), list(heat.values())])
 
-    absolute = np.full(size + 12, 1e-12)
+    absolute = np.full(size + 14, 1e-12)
     absolute[BORDER_STATES + 8 * 18 : size] = 1e-6
     absolute[BORDER_STATES + 4 * 18 : BORDER_STATES + 8 * 18] = 1e-9
     with np.errstate(all="ignore"):

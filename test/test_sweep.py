@@ -46,7 +46,7 @@ def swept(*axes, overrides=(), duration=0.05, scene="deng2017_table1"):
         ("bearing.roller.count=12:18:3", (12, 15, 18), ""),
         ("bearing.roller.crown=none,iso_log", ("none", "iso_log"), ""),
         ("level=steady,slip", ("steady", "slip"), ""),
-        ("lubricant.pumping=true,false", ("true", "false"), ""),
+        ("bearing.cage.land_squeeze=true,false", ("true", "false"), ""),
     ],
 )
 def test_a_text_says_which_values_a_field_takes(text, values, unit):

@@ -266,7 +266,12 @@ def test_table_belongs_to_bearing_oil_and_span_and_to_nothing_else():
         return table_hash(scene, span_of(scene))
 
     same = ["name=other", "operating.radial_load=500 N", "life.reliability=99 %", "life.method=iso281", "thresholds.life_warning=10 h", "level=slip"]
-    other = ["bearing.outer_raceway.low_radius=34.861 mm", "lubricant.oil=mil_l_23699", "lubricant.pumping=true", "table.maximum_load=1 kN"]
+    other = [
+        "bearing.outer_raceway.low_radius=34.861 mm",
+        "lubricant.oil=mil_l_23699",
+        "lubricant.rolling_resistance=hydrodynamic",
+        "table.maximum_load=1 kN",
+    ]
     other += [
         "life.a_iso=bath_17_14",
         "bearing.roller.crown=iso_log",

@@ -188,7 +188,7 @@ WIRE = {
         [("inner_pressure", "Pa"), ("outer_pressure", "Pa"), ("inner_edge_pressure", "Pa"), ("outer_edge_pressure", "Pa")],
     ),
     "power": (
-        "shaft, inner sliding, outer sliding, churning, windage, land, pocket, damping",
+        "shaft, inner sliding, outer sliding, churning, windage, land, pocket, damping, inner rolling, outer rolling, seal, friction moment",
         [
             ("shaft_power", "W"),
             ("inner_sliding_power", "W"),
@@ -198,6 +198,10 @@ WIRE = {
             ("land_power", "W"),
             ("pocket_power", "W"),
             ("damping_power", "W"),
+            ("inner_rolling_power", "W"),
+            ("outer_rolling_power", "W"),
+            ("seal_power", "W"),
+            ("friction_moment", "N*m"),
         ],
     ),
     "roller_speeds": ("speed: orbital, spin", [("orbital_speed", "rad/s"), ("roller_spin", "rad/s")]),

@@ -161,7 +161,7 @@ ARRAYS = {
         "inner, outer, inner end slices, outer end slices", ("inner_pressure", "outer_pressure", "inner_edge_pressure", "outer_edge_pressure")
     ),
     "power": ArrayRows(
-        "shaft, inner sliding, outer sliding, churning, windage, land, pocket, damping",
+        "shaft, inner sliding, outer sliding, churning, windage, land, pocket, damping, inner rolling, outer rolling, seal, friction moment",
         (
             "shaft_power",
             "inner_sliding_power",
@@ -171,6 +171,10 @@ ARRAYS = {
             "land_power",
             "pocket_power",
             "damping_power",
+            "inner_rolling_power",
+            "outer_rolling_power",
+            "seal_power",
+            "friction_moment",
         ),
     ),
     "roller_speeds": ArrayRows("speed: orbital, spin", ("orbital_speed", "roller_spin")),
@@ -252,7 +256,7 @@ OUTPUTS = {
         _array("centre_positions", "displacements [m]: inner ring y, z, cage y, z"),
         _array("axis_tilts", "tilts [rad]: inner ring towards y, z, cage towards y, z", True),
         _array("slice_pressures", "largest Hertzian pressures [Pa]: inner, outer raceway, and of the rollers' end slices alone", True),
-        _array("power", "power [W]: what the shaft puts in, then what is lost, by cause"),
+        _array("power", "power [W]: what the shaft puts in, then what is lost, by cause; and the frictional moment [N*m]"),
         _array("roller_speeds", "speeds [rad/s], (orbital, spin) x roller"),
         _array("pocket_forces", "forces of the pockets on the rollers [N], positive where they drive"),
         _array("roller_tilts", "inclinations [rad], (tilt outwards, skew along the orbit) x roller", True),

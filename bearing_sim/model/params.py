@@ -10,7 +10,8 @@ import numpy as np
 from bearing_sim.model.oil import oil_at
 from bearing_sim.model.running_clearance import mounted, uniform
 from bearing_sim.physics.contact import iso_contact_stiffness, line_contact_stiffness
-from bearing_sim.physics.film import Pumping, pumping_constant
+from bearing_sim.physics.drag import Bath, bath_drag
+from bearing_sim.physics.film import RollingResistance, replenishment_rate, resistance_constants
 from bearing_sim.physics.growth import Growth, Mounted, Temperatures, growth_at
 from bearing_sim.physics.lamina_life import Laminae, new_laminae
 from bearing_sim.physics.raceway import tabulated
@@ -19,7 +20,7 @@ from bearing_sim.physics.traction import TractionConstants, constant_constants, 
 from bearing_sim.scene.bearing import Roller
 from bearing_sim.scene.contour import outer_contour
 from bearing_sim.scene.crown import crown_drops, slice_middles
-from bearing_sim.scene.lubricant import ConstantTraction, EyringTraction, KragelskiiTraction
+from bearing_sim.scene.lubricant import ConstantTraction, EyringTraction, HydrodynamicRollingResistance, KragelskiiTraction, OilBath
 from bearing_sim.scene.ratings import rate
 from bearing_sim.scene.scene import Bearing, Lubricant, Scene
 
@@ -112,6 +113,15 @@ class Tilts(NamedTuple):
     misalignment_z: float
 
 
+class Envelope(NamedTuple):
+    """Boundary dimensions of the bearing, and its seals."""
+
+    bore_diameter: float  # d [m]
+    outside_diameter: float  # D [m]
+    width: float  # B [m]
+    seal_moment: float  # frictional moment of the seals on the shaft [N m]
+
+
 class Life(NamedTuple):
     """Load ratings of the bearing (ISO 281, ISO 76) and of one roller contact (ISO/TS 16281), and what modifies the life (ISO 281)."""
 
@@ -149,6 +159,7 @@ class Params(NamedTuple):
     slices: Slices
     tilts: Tilts
     variants: Variants
+    envelope: Envelope
 
 
 class Lubrication(NamedTuple):
@@ -159,7 +170,8 @@ class Lubrication(NamedTuple):
     viscosity: float  # eta_0 of the oil [Pa s]
     mixture_density: float  # of the oil-air mixture [kg/m^3]
     temperature: float  # of the oil [K]
-    pumping: Pumping  # resistance to rolling
+    rolling_resistance: RollingResistance
+    bath: Bath  # drag of an oil bath on the rollers, zero without one
     growth: Growth  # of the inner raceway by fits, rotation and heat
     kinematic_viscosity: float  # nu of the oil in the films, for the life [m^2/s]
 
@@ -235,6 +247,7 @@ def pack(scene: Scene) -> Params:
             pocket_reaction=float(cage.pocket_reaction),
             gyroscopic=float(scene.dynamics.gyroscopic),
         ),
+        envelope=Envelope(bearing.bore_diameter, bearing.outside_diameter, bearing.boundary_width, bearing.seal_moment),
     )
 
 
@@ -314,17 +327,50 @@ def lubricate(lubricant: Lubricant, params: Params, temperature: float, temperat
     radii = raceways.inner_curvature_radius, raceways.outer_curvature_radius
     films = [oil if temperatures is None else oil_at(lubricant.oil, 0.5 * (ring + solids.rollers)) for ring in (solids.inner_ring, solids.outer_ring)]
     inner, outer = (_traction_constants(lubricant, film, radius, raceways.reduced_modulus, length) for film, radius in zip(films, radii))
-    pumped = (pumping_constant(film.viscosity, raceways.reduced_modulus, radius, length) for film, radius in zip(films, radii))
     return Lubrication(
         inner=inner,
         outer=outer,
         viscosity=oil.viscosity,
         mixture_density=lubricant.mixture_fraction * oil.density,
         temperature=oil.temperature,
-        pumping=Pumping(int(lubricant.pumping), *pumped),
+        rolling_resistance=_rolling_resistance(lubricant, params, films),
+        bath=_bath(lubricant, params, oil),
         growth=growth_at(params.mounted, solids),
         kinematic_viscosity=sum(film.viscosity / film.density for film in films) / 2,
     )
+
+
+_SPARSE = 3e-8  # K_rs of oil jets and low baths, see `bearing_sim.physics.film.replenishment_rate`
+
+
+def _rolling_resistance(lubricant, params, films) -> RollingResistance:
+    """Return the constants of both kinds of contact by the lubricant's law, from the state of the oil in each kind's films."""
+    law, raceways, envelope = lubricant.rolling_resistance, params.raceways, params.envelope
+    on = isinstance(law, HydrodynamicRollingResistance)
+    constant = law.replenishment if on else 0.0
+    if constant is None:
+        constant = 0.0 if isinstance(lubricant.supply, OilBath) and _bath_level(lubricant, params) > params.rollers.radius else _SPARSE
+    boundary = envelope.bore_diameter, envelope.outside_diameter
+    constants = []
+    for film, radius in zip(films, (raceways.inner_curvature_radius, raceways.outer_curvature_radius)):
+        rate = replenishment_rate(constant, film.viscosity / film.density, 2.0 * raceways.pitch_radius, raceways.diameter_ratio, *boundary)
+        heated = on and law.inlet_heating
+        constants.append(resistance_constants(film, raceways.reduced_modulus, radius, params.rollers.length, rate, heated))
+    return RollingResistance(int(on), *constants)
+
+
+def _bath_level(lubricant, params) -> float:
+    """Return the level of the oil bath above the lowest point of the outer raceway [m]."""
+    return params.rollers.radius if lubricant.supply.level is None else lubricant.supply.level
+
+
+def _bath(lubricant, params, oil) -> Bath:
+    """Return the drag of the oil bath, if there is one."""
+    if not isinstance(lubricant.supply, OilBath):
+        return Bath(0.0, 0.0)
+    envelope = params.envelope
+    boundary = envelope.bore_diameter, envelope.outside_diameter, envelope.width
+    return bath_drag(_bath_level(lubricant, params), oil.viscosity / oil.density, params.rollers, params.raceways, *boundary)
 
 
 def _traction_constants(lubricant, oil, curvature_radius, reduced_modulus, length) -> TractionConstants:

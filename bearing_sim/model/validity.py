@@ -887,7 +887,6 @@ LAWS = (
 
 UNWATCHED = (
     ("contact damping of Hunt and Crossley", "no published range; settled slip and life do not depend on it"),
-    ("pumping resistance, lubricant.pumping", "its numbers have no traced source, so no range; within a factor of 2 (assumption)"),
     ("heating of the film's inlet", "W. R. D. Wilson and S. Sheu (1983) give no range that we could read; the factor 0.1 is an assumption"),
     ("pocket friction and boundary friction of the lands", "coefficients, not laws with a range: 0.02 to 0.1 and 0.05 to 0.15 in use"),
     ("vortex and turbulent torque factors of the cage's faces", "assumptions of 20 to 30 % without a known range; cage_gap limits the geometry"),

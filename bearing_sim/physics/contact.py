@@ -37,9 +37,9 @@ class ContactRow(NamedTuple):
     stiffness: int = 16  # dQ by penetration [N/m]
     damping: int = 17  # dQ by its rate [N s/m]
     log_penetration: int = 18
-    pumping: int = 19  # F_R, against the motion of each surface through the contact [N]
-    pumping_d_rolling: int = 20  # its slopes [N s/m]
-    pumping_d_load: int = 21
+    resistance: int = 19  # F_R, against the motion of each surface through the contact [N]
+    resistance_d_rolling: int = 20  # its slopes [N s/m]
+    resistance_d_load: int = 21
 
 
 CONTACT = ContactRow()

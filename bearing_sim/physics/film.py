@@ -13,8 +13,8 @@ import numpy as np
 
 from bearing_sim.numerics.compilation import kernel, template
 from bearing_sim.numerics.elementary import exponential, logarithm
-from bearing_sim.numerics.simd import larger, load, store
-from bearing_sim.physics.contact import CONTACT, ROLLING_SPEED_FLOOR
+from bearing_sim.numerics.simd import larger, load, square_root, store
+from bearing_sim.physics.contact import CONTACT, LOAD_FLOOR, ROLLING_SPEED_FLOOR
 
 
 class FilmLaw(NamedTuple):
@@ -33,8 +33,13 @@ DOWSON_HIGGINSON = FilmLaw(2.65, 0.70, 0.54, -0.13)
 DOWSON_TOYODA = FilmLaw(3.06, 0.69, 0.56, -0.10)
 # Heating of the inlet, see `film_thickness`.
 _HEAT_FACTOR, _HEAT_EXPONENT, _SHEAR_FACTOR, _SHEAR_EXPONENT = 0.1, 0.64, 14.8, 0.83
-_PUMPED = 0.71  # exponent of the pumping resistance, see `pumping_constant`
-_LOADED_FROM = 1.0  # N; assumption: a contact that carries less has no film to pump
+# Resistance to rolling, see `resistance_constants` and `replenishment_rate`.
+_ELASTIC, _ELASTIC_SPEED, _ELASTIC_LOAD = 4.318, 0.658, 0.0126
+_RIGID = 1.42
+_SHARPNESS = 10.0  # of the passage between both regimes
+_INLET_HEAT, _INLET_HEAT_EXPONENT = 0.411483, 0.707071
+_STARVED_SHAPE = 5.1  # K_Z
+_LOADED_FROM = 1.0  # N; assumption: a contact that carries less has no film to roll through
 _LEAST_RATIO = 1e-30  # of sliding to rolling speed, for its logarithm
 
 
@@ -114,59 +119,114 @@ def films(law, oil, curvature_radius, reduced_modulus, length, load, rolling, sl
     return uncompiled(np.exp, law, constants, np.log(rolling), np.log(load), np.log(ratio))[0]
 
 
-class Pumping(NamedTuple):
-    """ln F_R of fast contacts less 0.71 ln u, and whether it counts at all."""
+class RollingResistance(NamedTuple):
+    """Resistance to rolling of both kinds of contact; see `resistance_constants`."""
 
-    on: int
-    inner: float
-    outer: float
+    on: int  # whether it counts at all
+    inner: "ResistanceConstants"
+    outer: "ResistanceConstants"
 
 
-def pumping_constant(viscosity, reduced_modulus, curvature_radius, length):
-    """Return the constant of `Pumping` of one contact.
+class ResistanceConstants(NamedTuple):
+    """What the resistance of one contact depends on besides speed and load; logarithms of numbers in SI units."""
+
+    elastic: float  # ln F_E without its powers of u and Q
+    rigid: float  # ln F_I likewise
+    heating: float  # ln of what multiplies u^(2 x 0.707071) in the thermal factor; -inf without heating
+    replenishment: float  # k of exp(-k u) [s/m]; 0 where the inlet is always full
+
+
+def resistance_constants(oil, reduced_modulus, curvature_radius, length, replenishment, heated=True):
+    """Return the `ResistanceConstants` of one contact.
 
     The oil that the inlet pumps back resists each surface's motion through the contact with
 
-        F_R = 0.715 E' R L (eta_0 u/(2 E' R))^0.71,
+        F_R = [F_I^-10 + F_E^-10]^(-1/10) exp(-k u)/(1 + 0.411483 L^0.707071),   L = eta_0 beta u^2/k_oil,
+        F_E = 4.318 E' R L_c (G U)^0.658 W^0.0126/G,   F_I = 1.42 E' R L_c (2 U)^(1/2) W^(1/2),   U = eta_0 u/(E' R), L_c the length,
 
-    and presses the roller's centre along that motion by 2 F_R R/R_w = 2 F_R (1 -/+ gamma), gamma = D_w/d_m, which is
-    1.43 (1 -/+ gamma) E' R L (...)^0.71.  The contact passes on no net force, and loses the power 2 F_R u.  *Assumption*: the two numbers
-    are common in dynamic models of roller bearings; their first source has not been found.  Fully flooded, isothermal.
+    and presses the roller's centre along that motion by 2 F_R R/R_w = 2 F_R (1 -/+ gamma), gamma = D_w/d_m.  The contact passes on no net
+    force, and loses the power 2 F_R u.
+
+    F_E, the elastic and piezoviscous regime, and the factor for the heat of the inlet: P. K. Goksem, R. A. Hargreaves, The effect of viscous shear
+    heating on both film thickness and rolling traction in an EHL line contact, J. Lubr. Technol. 100 (1978) 346-352, whose factor is
+    multiplied by a power of the load between 0.97 and 1.08 that is left out here.  F_I, the isoviscous and rigid regime, and the passage between
+    both: N. Biboulet, L. Houpert, Hydrodynamic force and moment in pure rolling lubricated contacts, part 1: line contacts, Proc. IMechE
+    J 224 (2010) 765-775, eq. 32 (twice the force on the centre), 40, 42 and 45 (power).  Their own elastic asymptote, 1.47 E' R L_c (2 U)^(3/4),
+    is equal to F_E at 2 U = 1e-11 and 1.2 times as large at 1e-10.  Range of both: 2 U from 6e-13 to 1.6e-10, W from 1.6e-7 to 2.5e-3.
 
     Parameters
     ----------
-    viscosity : eta_0 [Pa s].
+    oil : `bearing_sim.model.oil.OilState`.
     reduced_modulus : E' [Pa].
     curvature_radius : effective radius R of the contact [m].
-    length : L [m].
+    length : L_c [m].
+    replenishment : k [s/m], see `replenishment_rate`.
+    heated : whether the inlet heats itself.
     """
     stiffness = reduced_modulus * curvature_radius
-    return math.log(0.715 * stiffness * length) + _PUMPED * math.log(viscosity / (2 * stiffness))
+    scale, speed, load = math.log(stiffness * length), math.log(oil.viscosity / stiffness), -math.log(stiffness * length)
+    material = math.log(oil.pressure_viscosity * reduced_modulus)
+    heat = math.log(_INLET_HEAT) + _INLET_HEAT_EXPONENT * math.log(oil.viscosity * oil.temperature_viscosity / oil.conductivity)
+    return ResistanceConstants(
+        elastic=math.log(_ELASTIC) + scale + _ELASTIC_SPEED * (speed + material) + _ELASTIC_LOAD * load - material,
+        rigid=math.log(_RIGID) + scale + 0.5 * (math.log(2.0) + speed + load),
+        heating=heat if heated else -math.inf,
+        replenishment=replenishment,
+    )
+
+
+def replenishment_rate(constant, kinematic_viscosity, pitch_diameter, diameter_ratio, bore_diameter, outside_diameter):
+    """Return k of the factor exp(-k u) by which a contact resists less that is rolled over before oil flows back [s/m].
+
+    SKF's exp(-K_rs nu n (d + D) sqrt(K_Z/(2 (D - d)))) [mm^2/s, rpm, mm] with K_Z = 5.1 of cylindrical roller bearings with a cage (SKF, The SKF
+    model for calculating the frictional moment), with the shaft's speed n expressed by the mean surface speed of a contact that rolls,
+    u = (pi/60) n d_m (1 - gamma^2)/2.
+
+    Parameters
+    ----------
+    constant : K_rs; SKF: 3e-8 for oil jet and a low level of a bath, 6e-8 for grease and oil-air, 0 where contacts are flooded.
+    kinematic_viscosity : nu [m^2/s].
+    pitch_diameter, diameter_ratio : d_m [m] and gamma.
+    bore_diameter, outside_diameter : d and D of the bearing [m].
+    """
+    speed_by_rolling = 60.0 / math.pi * 2.0 / (pitch_diameter * (1.0 - diameter_ratio**2))  # rpm in a m/s
+    root = math.sqrt(_STARVED_SHAPE / (2e3 * (outside_diameter - bore_diameter)))
+    return constant * 1e6 * kinematic_viscosity * speed_by_rolling * 1e3 * (bore_diameter + outside_diameter) * root
 
 
 @kernel
-def _pump(contacts, first, end, constant):
+def _resist_rolling(contacts, first, end, constants):
     for block in range(first, end):
         rolling, force = load(contacts, block, CONTACT.rolling), larger(load(contacts, block, CONTACT.load), 0.0)
         square = rolling * rolling + ROLLING_SPEED_FLOOR * ROLLING_SPEED_FLOOR
-        whole, fraction = exponential(constant + 0.5 * (_PUMPED - 1.0) * logarithm(square)), 1.0 / (force + _LOADED_FROM)
-        strength = whole * (force * fraction)
-        store(contacts, block, CONTACT.pumping, strength * rolling)
-        store(contacts, block, CONTACT.pumping_d_load, whole * rolling * (_LOADED_FROM * fraction * fraction))
-        store(contacts, block, CONTACT.pumping_d_rolling, strength * (1.0 + (_PUMPED - 1.0) * rolling * rolling / square))
+        log_speed, log_load = 0.5 * logarithm(square), logarithm(larger(force, LOAD_FLOOR))
+        rigid = constants.rigid + 0.5 * (log_speed + log_load)
+        # with r = (F_I/F_E)^10, F = F_I (1 + r)^(-1/10), and its exponents are those of F_E in the proportion r/(1 + r)
+        ratio = exponential(_SHARPNESS * (rigid - constants.elastic - _ELASTIC_SPEED * log_speed - _ELASTIC_LOAD * log_load))
+        elastic = ratio / (1.0 + ratio)
+        heat = exponential(constants.heating + 2.0 * _INLET_HEAT_EXPONENT * log_speed)
+        cooler, starved = 1.0 / (1.0 + heat), constants.replenishment * square_root(square)
+        whole = exponential(rigid - logarithm(1.0 + ratio) / _SHARPNESS - log_speed - starved) * cooler
+        loaded = 1.0 / (force + _LOADED_FROM)
+        strength = whole * (force * loaded)
+        by_speed = 0.5 + (_ELASTIC_SPEED - 0.5) * elastic - 2.0 * _INLET_HEAT_EXPONENT * heat * cooler - starved - 1.0
+        by_load = 0.5 + (_ELASTIC_LOAD - 0.5) * elastic
+        store(contacts, block, CONTACT.resistance, strength * rolling)
+        store(contacts, block, CONTACT.resistance_d_load, whole * rolling * loaded * (by_load + _LOADED_FROM * loaded))
+        store(contacts, block, CONTACT.resistance_d_rolling, strength * (1.0 + by_speed * rolling * rolling / square))
 
 
 @kernel
-def pump(contacts, pumping):
-    """Write the pumping resistance F_R of all contacts and its derivatives.
+def resist_rolling(contacts, resistance):
+    """Write the resistance to rolling F_R of all contacts and its derivatives.
 
     As Q/(Q + 1 N) it fades out where a contact carries next to nothing, and it is smooth through u = 0.
 
     Parameters
     ----------
     contacts : array with rows `CONTACT`; load and rolling go in.
-    pumping : `Pumping`.
+    resistance : `RollingResistance`.
     """
     blocks = contacts.shape[0]
-    _pump(contacts, 0, blocks // 2, pumping.inner)
-    _pump(contacts, blocks // 2, blocks, pumping.outer)
+    _resist_rolling(contacts, 0, blocks // 2, resistance.inner)
+    _resist_rolling(contacts, blocks // 2, blocks, resistance.outer)

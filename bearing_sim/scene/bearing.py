@@ -5,18 +5,21 @@ import math
 from dataclasses import field, replace
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from bearing_sim.scene.contour import form_errors, settled_form
 from bearing_sim.scene.crown import Crown, IsoLogCrown, crown_errors
 from bearing_sim.scene.material import Material
 from bearing_sim.scene.mounting import CLEARANCE_GROUPS, clearance_limits
-from bearing_sim.scene.quantity import QuantityOrName, check, quantity, record
+from bearing_sim.scene.quantity import QuantityOrName, check, named_law, quantity, record
 from bearing_sim.scene.ratings import Ratings
 
 _CLEARANCE = QuantityOrName(
     "m", "radial internal clearance, diametral: 2 (R_low - R_i - D_w); or its group by ISO 5753-1", -1e-3, 5e-3, "um", CLEARANCE_GROUPS
 )
+# Assumption where a scene does not name boundary dimensions; within 15 % of those of cylindrical roller bearings of series 10, 2, 3, 22 and 23.
+_SECTION = 0.27  # roller diameter over D - d
+_WIDTH = 0.6  # effective roller length over B
 LAND_FIELDS = ("guide_radius", "guide_clearance", "guide_land_width", "guide_land_distance")
 _CLOSE = 1e-8  # m; lengths nearer than this are taken as equal
 # Fields that each guidance needs in addition to those of every cage.
@@ -224,6 +227,40 @@ class Cage:
 
 
 @record
+class NoSeals:
+    """An open bearing."""
+
+    law: Literal["none"] = "none"
+
+
+@record
+class SealMoment:
+    """Seals that rub on the shaft with a constant moment."""
+
+    law: Literal["constant_moment"] = "constant_moment"
+    moment: quantity("N*m", "frictional moment of all seals together", 0.0, 1e4)
+
+
+@record
+class SkfSeals:
+    """Two contact seals by SKF's K_S1 d_s^beta + K_S2 in N mm and mm (SKF, The SKF model for calculating the frictional moment).
+
+    The defaults are its constants for LS seals of cylindrical roller bearings with outside diameters from 42 to 360 mm; one seal has half the moment.
+    """
+
+    law: Literal["skf"] = "skf"
+    diameter: quantity("m", "diameter of the counterface, d_s; None: that of the outer raceway, E", 1e-3, 4.0, "mm") | None = None
+    exponent: quantity("", "beta", 0.0, 3.0) = 2.0
+    factor: quantity("", "K_S1", 0.0, 10.0) = 0.032
+    offset: quantity("", "K_S2 [N mm]", 0.0, 1e4) = 50.0
+    count: Annotated[int, Field(ge=1, le=2)] = 2  # seals
+
+
+Seals = Annotated[NoSeals | SealMoment | SkfSeals, Field(discriminator="law"), BeforeValidator(named_law)]
+"""A record, or its bare name (``none``, ``skf``)."""
+
+
+@record
 class Bearing:
     """One cylindrical roller bearing."""
 
@@ -242,6 +279,35 @@ class Bearing:
     contact: Contact = field(default_factory=Contact)
     roughness: Roughness | None = None  # None: the lambda ratio is neither computed nor monitored
     ratings: Ratings = field(default_factory=Ratings)  # what the maker rates the bearing for
+    width: quantity("m", "width of the bearing, B; None: estimated from the rollers' length", 1e-3, 2.0, "mm") | None = None
+    seals: Seals = field(default_factory=NoSeals)
+
+    @property
+    def bore_diameter(self) -> float:
+        """d [m]: the inner ring's, or an estimate from the rollers' diameter (assumption)."""
+        bore = self.inner_raceway.bore_radius
+        return 2 * bore if bore is not None else max(self.pitch_diameter - self.roller.diameter / (2 * _SECTION), 0.2 * self.inner_raceway.radius)
+
+    @property
+    def outside_diameter(self) -> float:
+        """D [m]: the outer ring's, or an estimate from the rollers' diameter (assumption)."""
+        outside = self.outer_raceway.outside_radius
+        return 2 * outside if outside is not None else self.pitch_diameter + self.roller.diameter / (2 * _SECTION)
+
+    @property
+    def boundary_width(self) -> float:
+        """B [m], or an estimate from the rollers' length (assumption)."""
+        return self.width if self.width is not None else self.roller.length / _WIDTH
+
+    @property
+    def seal_moment(self) -> float:
+        """Frictional moment of the seals [N m]."""
+        if self.seals.law == "constant_moment":
+            return self.seals.moment
+        if self.seals.law == "skf":
+            diameter = self.seals.diameter if self.seals.diameter is not None else 2 * self.outer_raceway.low_radius
+            return 1e-3 * self.seals.count / 2 * (self.seals.factor * (1e3 * diameter) ** self.seals.exponent + self.seals.offset)
+        return 0.0
 
     @model_validator(mode="after")
     def _raceway_has_a_radius(self):

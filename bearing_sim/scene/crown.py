@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import BeforeValidator, Field
 
-from bearing_sim.scene.quantity import check, quantity, record
+from bearing_sim.scene.quantity import check, named_law, quantity, record
 
 _TABLE_HEADER = "expected a header of two columns, position and drop, each with its unit in brackets, such as position[mm],drop[um]"
 
@@ -55,13 +55,11 @@ class TableCrown:
 
 def _from_shorthand(value):
     """Return the record for a bare name or for the path of a CSV file."""
-    if isinstance(value, str):
-        return {"law": value.strip()}
     if isinstance(value, dict) and "file" in value and value.get("law", "table") == "table":
         if not isinstance(value["file"], (str, Path)) or "positions" in value or "drops" in value:
             raise ValueError("file: expected the path of a CSV file; give either file, or positions and drops")
         return {"law": "table", **{key: item for key, item in value.items() if key != "file"}, **crown_points(value["file"])}
-    return value
+    return named_law(value)
 
 
 Crown = Annotated[

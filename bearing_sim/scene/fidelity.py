@@ -53,7 +53,9 @@ EFFECTS = (
     Effect("operating.moment", ("spatial",), "whose ring tilts", lambda scene: scene.operating.moment is not None),
     Effect("operating.misalignment", ("spatial",), "whose ring tilts", lambda scene: scene.operating.misalignment != 0.0),
     Effect("integration.fixed_step", MARCHING, "which take steps", lambda scene: scene.integration.fixed_step is not None),
-    Effect("lubricant.pumping", LEVELS, "whose contacts pump oil", lambda scene: scene.lubricant.pumping),
+    Effect("lubricant.rolling_resistance", LEVELS, "whose contacts resist rolling", lambda scene: scene.lubricant.rolling_resistance.law != "none"),
+    Effect("lubricant.supply", LEVELS, "whose rollers and cage move through oil", lambda scene: scene.lubricant.supply.law == "oil_bath"),
+    Effect("bearing.seals", LEVELS, "whose seals rub on the shaft", lambda scene: scene.bearing.seals.law != "none"),
     Effect("bearing.dimensions_at", LEVELS, "whose rings grow", lambda scene: scene.bearing.dimensions_at == "cold"),
     *(Effect(f"wants.{name}", want.levels, want.because, lambda scene, name=name: name in scene.wants) for name, want in WANTS.items()),
 )

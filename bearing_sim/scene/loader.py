@@ -25,7 +25,7 @@ from bearing_sim.scene.uncertainty import declared_in, drop_ranges_of_lands, ove
 
 _UNION_TAGS = frozenset(
     {"oil_4109", "constant", "kragelskii", "eyring", "fitted", "custom", "double_exponential", "reference", "hyperbolic", "power"}
-    | {"none", "iso_log", "straight_arc", "table"}
+    | {"none", "iso_log", "straight_arc", "table", "hydrodynamic", "oil_jet", "oil_bath", "constant_moment", "skf"}
 )
 
 
@@ -86,6 +86,7 @@ _MATERIALS = (("bearing", "material"), ("bearing", "cage", "material"), ("mounti
 _RACEWAY_RADII = tuple(f"outer_raceway.{name}" for name in ("low_radius", "low_points", "high_points", "contour", "contour_file"))
 # What older scenes say, and what says it now.
 _RENAMED = {
+    "lubricant.pumping": "give lubricant.rolling_resistance: hydrodynamic, or none",
     "bearing.ring_growth": "bearing.dimensions_at: cold computes rotation, mounting the fits, heat the temperatures",
 }
 _WRITTEN = {"written": True}  # context of a validation: the values come from a file or an option, see `Quantity.read`

@@ -4,9 +4,9 @@
 from dataclasses import field
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field, model_validator
 
-from bearing_sim.scene.quantity import check, quantity, record
+from bearing_sim.scene.quantity import check, named_law, quantity, record
 
 
 @record
@@ -146,12 +146,63 @@ Traction = Annotated[Oil4109Traction | ConstantTraction | KragelskiiTraction | E
 
 
 @record
+class NoRollingResistance:
+    """Contacts that roll without resistance, as in Deng 2017."""
+
+    law: Literal["none"] = "none"
+
+
+@record
+class HydrodynamicRollingResistance:
+    """Resistance of the oil that contact inlets pump back (see `bearing_sim.physics.film.resistance_constants`)."""
+
+    law: Literal["hydrodynamic"] = "hydrodynamic"
+    inlet_heating: bool = True  # whether the inlet heats itself and thins its oil
+    replenishment: (
+        quantity("", "K_rs of SKF's replenishment factor, 0: flooded; None: 3e-8, or 0 in a bath above half a roller", 0.0, 1e-6) | None
+    ) = None
+
+
+RollingResistance = Annotated[NoRollingResistance | HydrodynamicRollingResistance, Field(discriminator="law"), BeforeValidator(named_law)]
+"""A record, or its bare name (``none``, ``hydrodynamic``)."""
+
+
+@record
+class OilJet:
+    """Oil that is sprayed in and drained: rollers and cage move in a mixture of oil and air."""
+
+    law: Literal["oil_jet"] = "oil_jet"
+
+
+@record
+class OilBath:
+    """Oil that stands in a bearing whose shaft is horizontal (see `bearing_sim.physics.drag.bath_moment`)."""
+
+    law: Literal["oil_bath"] = "oil_bath"
+    level: quantity("m", "oil level above the lowest point of the outer raceway, H; None: the middle of the lowest roller", 0.0, 4.0, "mm") | None = (
+        None
+    )
+
+
+Supply = Annotated[OilJet | OilBath, Field(discriminator="law"), BeforeValidator(named_law)]
+"""A record, or its bare name (``oil_jet``, ``oil_bath``)."""
+_MIXTURE_FRACTION = {"oil_jet": 0.03, "oil_bath": 0.0}  # an assumption; SKF's drag in a bath is that of rollers and cage together
+
+
+@record
 class Lubricant:
-    """The oil, its fraction in the oil-air mixture inside the bearing, and its traction law."""
+    """The oil and how it is supplied, its fraction in the oil-air mixture inside the bearing, its traction law and its resistance to rolling."""
 
     oil: Annotated[Oil | CustomOil, Field(discriminator="law")]
     temperature: quantity("K", "oil temperature", 220.0, 600.0, "degC") = 393.15
-    mixture_fraction: quantity("", "volume fraction of oil in the oil-air mixture", 0.0, 1.0) = 0.03
+    supply: Supply = field(default_factory=OilJet)
+    mixture_fraction: quantity("", "volume fraction of oil in the oil-air mixture; None: 0.03, or 0 in a bath", 0.0, 1.0) | None = None
     traction_scale: quantity("", "factor on every traction coefficient", 0.0, 100.0) = 1.0
     traction: Traction = field(default_factory=Oil4109Traction)
-    pumping: bool = False  # hydrodynamic rolling resistance of the contact inlets
+    rolling_resistance: RollingResistance = field(default_factory=HydrodynamicRollingResistance)
+
+    @model_validator(mode="after")
+    def _fraction_of_the_supply(self):
+        if self.mixture_fraction is None:
+            object.__setattr__(self, "mixture_fraction", _MIXTURE_FRACTION[self.supply.law])
+        return self

@@ -257,6 +257,11 @@ record = pydantic.dataclasses.dataclass(frozen=True, kw_only=True, config=Config
 """Decorator of every record of a scene: frozen, keyword-only, and it refuses unknown fields."""
 
 
+def named_law(value: object) -> object:
+    """Return the block of a record that was given by the name of its law alone; anything else as it is."""
+    return {"law": value.strip()} if isinstance(value, str) else value
+
+
 def check(errors_of: Callable[[Any], list[str]]):
     """Return the validator of a record that refuses it for all its errors at once, so that the author can correct the file in one go.
 

@@ -50,7 +50,15 @@ _NOT_IN_EVERY_SCENE = ("contamination_factor",)  # NaN without a cleanliness cla
 _MAY_BE_INFINITE = (*LIVES, "static_safety")  # without load or at rest
 # Losses that cannot be negative at any instant by their laws.  Pocket friction follows spin alone (Deng 2017, eq. 13), and the published
 # torque of the guide land's film omits the power of its eccentric force; both may be negative.
-_LOSSES = ("inner_sliding_power", "outer_sliding_power", "churning_power", "damping_power")
+_LOSSES = (
+    "inner_sliding_power",
+    "outer_sliding_power",
+    "inner_rolling_power",
+    "outer_rolling_power",
+    "churning_power",
+    "damping_power",
+    "seal_power",
+)
 _FIRST_PARTS = (1e-3, 9e-3, 9e-2, 0.9)  # of the first segment, to distinguish stuck from slow runs
 
 

@@ -77,7 +77,7 @@ DIMENSIONS: Mapping[str, Callable] = {
     "temperature": _linear(233.15, 523.15),
     "mixture_fraction": _or_zero(0.1, lambda u: u * u),
     "traction": _choice(*_TRACTIONS),
-    "pumping": _choice("false", "false", "true"),
+    "rolling_resistance": _choice("none", "none", "hydrodynamic"),
     "dimensions_at": _choice("running", "running", "cold"),
     "contour_slope": _choice("true", "true", "false"),
     "land_squeeze": _choice("true", "true", "false"),
@@ -92,7 +92,7 @@ DIMENSIONS: Mapping[str, Callable] = {
 }
 # Fields that some levels refuse, according to the checks of the scene.
 _BY_LEVEL = {
-    "pumping": ("lubricant.pumping={}", "true"),
+    "rolling_resistance": ("lubricant.rolling_resistance={}", "hydrodynamic"),
     "crown": ("bearing.roller.crown={}", "iso_log"),
     "misalignment": ("operating.misalignment={!r}", 1e-3),
 }

@@ -6,10 +6,11 @@ At each instant, with exactly the forces of the level's equations of motion,
     shaft_power + (power of the radial load) = sum of the losses + d(kinetic + elastic energy)/dt.
 
 A loss is force times sliding speed, or force times rate of approach.  The shaft puts power in through the tractions on the inner
-ring, through the mixture in the cage's bore, and through guide lands where they are the inner ring's; what the ring and the shaft do to
-the mixture elsewhere is outside the model.
+ring, through the resistance to rolling there, through the mixture in the cage's bore, through guide lands where they are the inner ring's, and
+through seals; what the ring and the shaft do to the mixture elsewhere is outside the model.
 """
 
+import math
 from typing import NamedTuple
 
 from bearing_sim.model.sample import COLUMN
@@ -25,29 +26,43 @@ class Powers(NamedTuple):
     shaft: float
     inner_sliding: float
     outer_sliding: float
+    inner_rolling: float
+    outer_rolling: float
     churning: float
     windage: float
     land: float
     pocket: float
     damping: float
+    seal: float
 
 
 @kernel
 def write_powers(powers, row):
-    """Write `Powers` into a flat sample (see `bearing_sim.model.sample.flat`)."""
+    """Write `Powers` into a flat sample (see `bearing_sim.model.sample.flat`), which has its shaft speed."""
     row[COLUMN.shaft_power] = powers.shaft
     row[COLUMN.inner_sliding_power] = powers.inner_sliding
     row[COLUMN.outer_sliding_power] = powers.outer_sliding
+    row[COLUMN.inner_rolling_power] = powers.inner_rolling
+    row[COLUMN.outer_rolling_power] = powers.outer_rolling
     row[COLUMN.churning_power] = powers.churning
     row[COLUMN.windage_power] = powers.windage
     row[COLUMN.land_power] = powers.land
     row[COLUMN.pocket_power] = powers.pocket
     row[COLUMN.damping_power] = powers.damping
+    row[COLUMN.seal_power] = powers.seal
+    write_friction_moment(row)
+
+
+@kernel
+def write_friction_moment(row):
+    """Write the frictional moment, shaft power over shaft speed [N m], into a flat sample that has both; NaN at rest."""
+    speed = row[COLUMN.shaft_speed]
+    row[COLUMN.friction_moment] = row[COLUMN.shaft_power] / speed if speed != 0.0 else math.nan
 
 
 @kernel
 def sliding_power(contacts, first, count):
-    """Return the power lost in the films between one raceway and all rollers [W]: T du of each, and 2 F_R u by pumping.
+    """Return the power lost by sliding between one raceway and all rollers [W]: T du of each.
 
     Parameters
     ----------
@@ -59,13 +74,28 @@ def sliding_power(contacts, first, count):
     for j in range(count):
         block, lane = first + j // LANES, j % LANES
         lost += contacts[block, CONTACT.force, lane] * contacts[block, CONTACT.sliding, lane]
-        lost += 2.0 * contacts[block, CONTACT.pumping, lane] * contacts[block, CONTACT.rolling, lane]
     return lost
 
 
 @kernel
+def rolling_power(contacts, first, count):
+    """Return the power lost by resistance to rolling between one raceway and all rollers [W]: 2 F_R u of each; parameters as of `sliding_power`."""
+    lost = 0.0
+    for j in range(count):
+        block, lane = first + j // LANES, j % LANES
+        lost += 2.0 * contacts[block, CONTACT.resistance, lane] * contacts[block, CONTACT.rolling, lane]
+    return lost
+
+
+@kernel
+def seal_power(shaft_speed, params):
+    """Return the power that seals take from the shaft, and lose [W]."""
+    return params.envelope.seal_moment * abs(shaft_speed)
+
+
+@kernel
 def shaft_traction_power(contacts, count, shaft_speed, inner_radius):
-    """Return the power of the shaft through the tractions and the pumping on the inner ring [W]: their torque times its speed.
+    """Return the power of the shaft through the tractions and the resistance to rolling on the inner ring [W]: their torque times its speed.
 
     Parameters
     ----------
@@ -76,7 +106,7 @@ def shaft_traction_power(contacts, count, shaft_speed, inner_radius):
     """
     force = 0.0
     for j in range(count):
-        force += contacts[j // LANES, CONTACT.force, j % LANES] + contacts[j // LANES, CONTACT.pumping, j % LANES]
+        force += contacts[j // LANES, CONTACT.force, j % LANES] + contacts[j // LANES, CONTACT.resistance, j % LANES]
     return force * inner_radius * shaft_speed
 
 

@@ -14,7 +14,7 @@ from bearing_sim.model.sample import COLUMN, SCALARS
 from bearing_sim.numerics.compilation import kernel, template
 from bearing_sim.numerics.elementary import cosine_sine
 from bearing_sim.numerics.simd import LANES, floor, load, square_root, store
-from bearing_sim.physics.drag import churning_force
+from bearing_sim.physics.drag import roller_drag
 from bearing_sim.physics.raceway import contour_lanes
 
 
@@ -155,7 +155,7 @@ def place_outwards(row, block, cage, guidance, rows):
 
 @kernel
 def linear_churning(cage_speed, model):
-    """Return the drag of the mixture on a roller, linearised about the cage's speed.
+    """Return the drag of mixture and bath on a roller, linearised about the cage's speed.
 
     Rollers orbit about as fast as the cage, so F(v) = F(v_c) + F'(v_c) (v - v_c), v_c = r_m omega_c, costs one evaluation for all of them.
 
@@ -163,9 +163,9 @@ def linear_churning(cage_speed, model):
     -------
     F(v_c) [N], F'(v_c) [N s/m], and the derivative of F'(v_c) by cage speed [N s^2/(m rad)], taking F for the local power of v
     """
-    rollers, lubrication, pitch_radius = model.params.rollers, model.lubrication, model.params.raceways.pitch_radius
-    speed = pitch_radius * cage_speed
-    force, d_speed = churning_force(speed, lubrication.mixture_density, lubrication.viscosity, 2.0 * rollers.radius, rollers.length)
+    pitch_radius = model.params.raceways.pitch_radius
+    force, d_cage_speed = roller_drag(cage_speed, model.params, model.lubrication)
+    d_speed, speed = d_cage_speed / pitch_radius, pitch_radius * cage_speed
     bend = d_speed * (d_speed / force - 1.0 / speed) * pitch_radius if force != 0.0 else 0.0
     return force, d_speed, bend
 

@@ -9,7 +9,7 @@ and the frame (r, t) of the roller,
     m_r (r phi'' + 2 r' phi')  = (Q_i n + T_i' p)_t + T_e' + Q_e R_e'/r - F_d - f (cos psi - mu sin psi),
     J_r w'                     = R_w (T_i - T_e - F_Ri - F_Re - mu |f|),
 
-F_d the drag of the mixture, F_R the resistance of pumped oil, of which the roller's centre receives T_i' = T_i + (1 - 2 gamma) F_Ri and T_e' =
+F_d the drag of mixture and bath, F_R the resistance to rolling, of which the roller's centre receives T_i' = T_i + (1 - 2 gamma) F_Ri and T_e' =
 T_e - (1 + 2 gamma) F_Re.  The term Q_e R_e'/r is the lean of the outer normal (``contour_slope``).  Whatever a roller receives from ring and
 cage acts back on them, so that momentum is conserved.
 
@@ -28,7 +28,7 @@ import math
 
 from bearing_sim.levels.common.model import inner_growth, load_at, shaft_speed_at
 from bearing_sim.levels.common.rollers import add, linear_churning, place_in_pockets, place_outwards, place_rollers
-from bearing_sim.levels.planar.jacobian import guide_jacobian, land_contact_jacobian, pumping_jacobian, react_on_ring, roller_jacobian
+from bearing_sim.levels.planar.jacobian import guide_jacobian, land_contact_jacobian, react_on_ring, resistance_jacobian, roller_jacobian
 from bearing_sim.levels.planar.state import (
     BORDER,
     CAGE_Y,
@@ -45,7 +45,7 @@ from bearing_sim.numerics.compilation import kernel, template
 from bearing_sim.numerics.simd import load, magnitude, store, total, where_positive
 from bearing_sim.physics.contact import CONTACT, damped_line_contact, log_penetration
 from bearing_sim.physics.drag import mixture_torque
-from bearing_sim.physics.film import pump
+from bearing_sim.physics.film import resist_rolling
 from bearing_sim.physics.land import Land, land_contact, land_film, land_friction
 from bearing_sim.physics.pocket import pocket_friction_lanes, wall_force
 from bearing_sim.physics.traction import traction
@@ -176,9 +176,9 @@ def _accelerate(y, churning, model, rows, contacts, rate):
         t_i, t_e = load(contacts, block, CONTACT.force), load(contacts, outer, CONTACT.force)
         force, friction = -load(rows, block, ROLLER.pocket_force), load(rows, block, ROLLER.pocket_friction)
         play_cosine, play_sine = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
-        # Pumped oil acts on both surfaces and on the roller's centre: F_R (1 -/+ 2 gamma) along the orbit, F_R against its spin.
-        pumped_i, pumped_e = load(contacts, block, CONTACT.pumping), load(contacts, outer, CONTACT.pumping)
-        push_i = t_i + pumped_i * (1.0 - 2.0 * params.raceways.diameter_ratio)
+        # Resistance to rolling acts on both surfaces and on the roller's centre: F_R (1 -/+ 2 gamma) along the orbit, F_R against its spin.
+        resistance_i, resistance_e = load(contacts, block, CONTACT.resistance), load(contacts, outer, CONTACT.resistance)
+        push_i = t_i + resistance_i * (1.0 - 2.0 * params.raceways.diameter_ratio)
         radial, along = q_i * n_r - push_i * n_t, q_i * n_t + push_i * n_r
         pitch_speed = params.raceways.pitch_radius * y[OMEGA]
         drag = churning[0] + churning[1] * (radius * orbital_speed - pitch_speed)
@@ -188,7 +188,7 @@ def _accelerate(y, churning, model, rows, contacts, rate):
         f_t = (
             along
             + t_e
-            - pumped_e * (1.0 + 2.0 * params.raceways.diameter_ratio)
+            - resistance_e * (1.0 + 2.0 * params.raceways.diameter_ratio)
             + q_e * slope / radius
             - drag
             - force * (play_cosine - friction * play_sine)
@@ -196,7 +196,7 @@ def _accelerate(y, churning, model, rows, contacts, rate):
         store(rows, block, ROLLER.churning, drag)
         store(rows, block, ROLLER.radial_acceleration, radius * orbital_speed * orbital_speed + f_r * (1.0 / mass))
         store(rows, block, ROLLER.orbital_acceleration, (f_t * (1.0 / mass) - 2.0 * radial_speed * orbital_speed) / radius)
-        spin_acceleration = (t_i - t_e - pumped_i - pumped_e - friction * magnitude(force)) * (roller_radius / params.rollers.inertia)
+        spin_acceleration = (t_i - t_e - resistance_i - resistance_e - friction * magnitude(force)) * (roller_radius / params.rollers.inertia)
         store(rows, block, ROLLER.spin_acceleration, spin_acceleration)
         present, cosine, sine = load(rows, block, ROLLER.present), load(rows, block, ROLLER.cosine), load(rows, block, ROLLER.sine)
         pocket_cosine, pocket_sine = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
@@ -227,8 +227,8 @@ def equations(t, y, model, work, rate, with_jacobian):
     place_rollers(ROLLER, CONTACT, ring, shaft_speed, inner_radius, params, rows, contacts)
     normal_forces(params, contacts)
     traction(contacts, model.lubrication.inner, model.lubrication.outer)
-    if model.lubrication.pumping.on:
-        pump(contacts, model.lubrication.pumping)
+    if model.lubrication.rolling_resistance.on:
+        resist_rolling(contacts, model.lubrication.rolling_resistance)
     _pocket_forces(y, params, rows)
     _accelerate(y, churning, model, rows, contacts, rate)
     pockets_guide = not params.cage.guidance.lands
@@ -237,8 +237,8 @@ def equations(t, y, model, work, rate, with_jacobian):
         guide_accelerations(params, rows, rate)
     if with_jacobian:
         roller_jacobian(y, inner_radius, churning, params, rows, contacts, work.jacobian)
-        if model.lubrication.pumping.on:
-            pumping_jacobian(y, inner_radius, params, rows, contacts, work.jacobian)
+        if model.lubrication.rolling_resistance.on:
+            resistance_jacobian(y, inner_radius, params, rows, contacts, work.jacobian)
         if pockets_guide:
             guide_jacobian(y, params, rows, work.jacobian)
     collect_rates(y, params.rollers.count, rows, rate)

@@ -330,19 +330,19 @@ def roller_jacobian(y, inner_radius, churning, params, rows, contacts, jacobian)
 
 
 @kernel
-def _inner_pumping(y, inner_radius, params, rows, contacts, jacobian):
-    """Add what the inner contacts pump to the rows of ring and rollers."""
+def _inner_resistance(y, inner_radius, params, rows, contacts, jacobian):
+    """Add the inner contacts' resistance to rolling to the rows of ring and rollers."""
     push = 1.0 - 2.0 * params.raceways.diameter_ratio
     per_inertia = -params.rollers.radius / params.rollers.inertia
     for block in range(rows.shape[0]):
         n_r, n_t, inverse = load(rows, block, ROLLER.normal_r), load(rows, block, ROLLER.normal_t), load(rows, block, ROLLER.inverse_distance)
-        d_load, d_rolling = load(contacts, block, CONTACT.pumping_d_load), 0.5 * load(contacts, block, CONTACT.pumping_d_rolling)
+        d_load, d_rolling = load(contacts, block, CONTACT.resistance_d_load), 0.5 * load(contacts, block, CONTACT.resistance_d_rolling)
         stiffness, damping = d_load * load(contacts, block, CONTACT.stiffness), d_load * load(contacts, block, CONTACT.damping)
         passing = damping * load(rows, block, ROLLER.speed_tangent)
         turn_r, turn_t = -n_t * inverse, n_r * inverse
         p_ar, p_at = -(stiffness * n_r + turn_r * passing), -(stiffness * n_t + turn_t * passing)
         p_vr, p_vt = -(damping * n_r), -(damping * n_t)
-        pushed = push * load(contacts, block, CONTACT.pumping)
+        pushed = push * load(contacts, block, CONTACT.resistance)
         radial, along = -(pushed * n_t), pushed * n_r
         fr_ar, ft_ar = -(push * p_ar * n_t) - turn_r * along, push * p_ar * n_r + turn_r * radial
         fr_at, ft_at = -(push * p_at * n_t) - turn_t * along, push * p_at * n_r + turn_t * radial
@@ -354,13 +354,13 @@ def _inner_pumping(y, inner_radius, params, rows, contacts, jacobian):
 
 
 @kernel
-def _outer_pumping(params, rows, contacts, jacobian):
-    """Add what the outer contacts pump to the rows of the rollers."""
+def _outer_resistance(params, rows, contacts, jacobian):
+    """Add the outer contacts' resistance to rolling to the rows of the rollers."""
     push, roller_radius = 1.0 + 2.0 * params.raceways.diameter_ratio, params.rollers.radius
     per_mass, per_inertia = -push / params.rollers.mass, -roller_radius / params.rollers.inertia
     for block in range(rows.shape[0]):
         outer, radius, orbital_speed = rows.shape[0] + block, load(rows, block, ROLLER.radius), load(rows, block, ROLLER.orbital_speed)
-        d_load, d_rolling = load(contacts, outer, CONTACT.pumping_d_load), 0.5 * load(contacts, outer, CONTACT.pumping_d_rolling)
+        d_load, d_rolling = load(contacts, outer, CONTACT.resistance_d_load), 0.5 * load(contacts, outer, CONTACT.resistance_d_rolling)
         stiffness, damping = d_load * load(contacts, outer, CONTACT.stiffness), d_load * load(contacts, outer, CONTACT.damping)
         slope, curvature = load(rows, block, ROLLER.slope), load(rows, block, ROLLER.curvature)
         d_angle, d_orbit = -(stiffness * slope) - damping * curvature * orbital_speed, d_rolling * (radius + 2.0 * roller_radius)
@@ -371,10 +371,10 @@ def _outer_pumping(params, rows, contacts, jacobian):
 
 
 @kernel
-def pumping_jacobian(y, inner_radius, params, rows, contacts, jacobian):
-    """Add what the oil pumped back does to the derivatives of `roller_jacobian`, which have been written; parameters as there."""
-    _inner_pumping(y, inner_radius, params, rows, contacts, jacobian)
-    _outer_pumping(params, rows, contacts, jacobian)
+def resistance_jacobian(y, inner_radius, params, rows, contacts, jacobian):
+    """Add what resistance to rolling does to the derivatives of `roller_jacobian`, which have been written; parameters as there."""
+    _inner_resistance(y, inner_radius, params, rows, contacts, jacobian)
+    _outer_resistance(params, rows, contacts, jacobian)
 
 
 @kernel

@@ -13,7 +13,7 @@ shaft, which pays for what they take and for what they give the cage.
 import math
 
 from bearing_sim.levels.common.model import inner_growth
-from bearing_sim.levels.common.power import Powers, shaft_traction_power, sliding_power, windage_powers
+from bearing_sim.levels.common.power import Powers, rolling_power, seal_power, shaft_traction_power, sliding_power, windage_powers
 from bearing_sim.levels.planar.forces import place_in_lands
 from bearing_sim.levels.planar.state import BORDER, CAGE_Y, CAGE_Z, OMEGA, ROLLER
 from bearing_sim.numerics.compilation import kernel
@@ -36,7 +36,7 @@ def _raceway_damping(params, work):
 
 @kernel
 def _churning(rows, count):
-    """Return the power of the mixture's drag on all rollers [W]."""
+    """Return the power of the drag of mixture and bath on all rollers [W]."""
     lost = 0.0
     for j in range(count):
         block, lane = j // LANES, j % LANES
@@ -134,13 +134,17 @@ def planar_powers(y, shaft_speed, model, work):
     else:
         guided, touching = _guiding_pockets(y, params, work.rollers)
         pocket += guided
+    blocks, seals = work.rollers.shape[0], seal_power(shaft_speed, params)
     return Powers(
-        shaft_traction_power(contacts, count, shaft_speed, params.raceways.inner_radius + inner_growth(shaft_speed, model)) + bore + driven,
+        shaft_traction_power(contacts, count, shaft_speed, params.raceways.inner_radius + inner_growth(shaft_speed, model)) + bore + driven + seals,
         sliding_power(contacts, 0, count),
-        sliding_power(contacts, work.rollers.shape[0], count),
+        sliding_power(contacts, blocks, count),
+        rolling_power(contacts, 0, count),
+        rolling_power(contacts, blocks, count),
         _churning(work.rollers, count),
         windage,
         land,
         pocket,
         _raceway_damping(params, work) + walls + touching,
+        seals,
     )

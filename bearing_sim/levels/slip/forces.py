@@ -7,7 +7,7 @@ the cage body and S = J_c + sum m_r r_j^2,
     omega_c' = [M_c + sum r_j F_j - B]/S,    J_r w_j' = R_w (T_i - T_e - F_Ri - F_Re) - R_w mu |P_j|,    P_j = F_j - m_r r_j (M_c + sum r_j F_j)/S,
 
 P_j what the pocket takes from the roller, mu its coefficient of friction (Deng 2017, eq. 13), B = R_w sum mu |P_j| the reaction of pocket
-friction on the cage (0 with ``pocket_reaction: false``), F_R the resistance of pumped oil.  Deng 2017,
+friction on the cage (0 with ``pocket_reaction: false``), F_R the resistance to rolling.  Deng 2017,
 eq. 14 to 16, are the equations of the free roller, ring and cage from which these follow.
 """
 
@@ -19,8 +19,8 @@ from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.linear_algebra import ARROW
 from bearing_sim.numerics.simd import LANES
 from bearing_sim.physics.contact import CONTACT, line_penetration
-from bearing_sim.physics.drag import churning_force, mixture_torque
-from bearing_sim.physics.film import pump
+from bearing_sim.physics.drag import mixture_torque, roller_drag
+from bearing_sim.physics.film import resist_rolling
 from bearing_sim.physics.lamina_life import add_load_moments, equivalent_loads
 from bearing_sim.physics.land import land_torque
 from bearing_sim.physics.load_balance import LOAD, balance_ring
@@ -75,8 +75,8 @@ def _tractions(cage_speed, shaft_speed, y, model, work):
         contacts[blocks + block, CONTACT.sliding, lane] = surface - orbital
         contacts[blocks + block, CONTACT.load, lane] = loads[LOAD.outer, j]
     traction(contacts, model.lubrication.inner, model.lubrication.outer)
-    if model.lubrication.pumping.on:
-        pump(contacts, model.lubrication.pumping)
+    if model.lubrication.rolling_resistance.on:
+        resist_rolling(contacts, model.lubrication.rolling_resistance)
 
 
 @kernel
@@ -91,16 +91,6 @@ def _leaning_force(cage_speed, params, work):
     for j in range(params.rollers.count):
         lean = loads[LOAD.outer, j] * loads[LOAD.contour_slope, j] + loads[LOAD.inner, j] * (y * loads[LOAD.sine, j] - z * loads[LOAD.cosine, j])
         work.tangential[j] = params.variants.contour_slope * (lean / loads[LOAD.radius, j] - coriolis * loads[LOAD.contour_slope, j])
-
-
-@kernel
-def _churning(cage_speed, model):
-    """Return the drag of the mixture on one roller [N] and its derivative by cage speed [N s]; all orbit at the pitch radius, to 0.3 %."""
-    rollers, lubrication, pitch_radius = model.params.rollers, model.lubrication, model.params.raceways.pitch_radius
-    force, d_speed = churning_force(
-        pitch_radius * cage_speed, lubrication.mixture_density, lubrication.viscosity, 2.0 * rollers.radius, rollers.length
-    )
-    return force, pitch_radius * d_speed
 
 
 @kernel
@@ -124,7 +114,7 @@ def equations(t, y, model, work, rate, with_jacobian):
     if not balance_loads(y[THETA], cage_speed, load_y, load_z, params, work):
         return False
     torque, d_torque = _cage_torque(cage_speed, shaft_speed, model)
-    churning, d_churning = _churning(cage_speed, model)
+    churning, d_churning = roller_drag(cage_speed, params, model.lubrication)
     _leaning_force(cage_speed, params, work)
     _tractions(cage_speed, shaft_speed, y, model, work)
     contacts, jacobian, border = work.contacts, work.jacobian.rows, work.jacobian.border
@@ -145,10 +135,10 @@ def equations(t, y, model, work, rate, with_jacobian):
             jacobian[ARROW.row, j] = radius * (inner_d_spin + outer_d_spin)
             jacobian[ARROW.column, j] = roller_radius * (inner_d_cage - outer_d_cage) / rollers.inertia
             jacobian[ARROW.diagonal, j] = roller_radius * (inner_d_spin - outer_d_spin) / rollers.inertia
-    pumping = model.lubrication.pumping.on
-    if pumping:
-        pumped, d_pumped = _push_rollers(inner_radius, params, work, with_jacobian)
-        torque, d_torque = torque + pumped, d_torque + d_pumped
+    resistance = model.lubrication.rolling_resistance.on
+    if resistance:
+        resisted, d_resisted = _push_rollers(inner_radius, params, work, with_jacobian)
+        torque, d_torque = torque + resisted, d_torque + d_resisted
     cage_acceleration = torque / inertia
     rate[THETA] = cage_speed
     reaction = 0.0
@@ -160,8 +150,8 @@ def equations(t, y, model, work, rate, with_jacobian):
         reaction += roller_radius * brake
         block, lane = j // LANES, j % LANES
         turning = contacts[block, CONTACT.force, lane] - contacts[blocks + block, CONTACT.force, lane]
-        if pumping:
-            turning -= contacts[block, CONTACT.pumping, lane] + contacts[blocks + block, CONTACT.pumping, lane]
+        if resistance:
+            turning -= contacts[block, CONTACT.resistance, lane] + contacts[blocks + block, CONTACT.resistance, lane]
         rate[SPIN + j] = roller_radius * (turning - brake) / rollers.inertia
         if with_jacobian:
             smooth = math.sqrt(spin * spin + FRICTION_SPIN * FRICTION_SPIN)
@@ -189,15 +179,15 @@ def pitch_loads(cage_angle, cage_speed, load_y, load_z, oil, params, work):
 
 @kernel
 def _push_rollers(inner_radius, params, work, with_jacobian):
-    """Add to forces and Jacobian of the rollers what the oil pumped back does; return the torque on the cage [N m] and its derivative by cage speed.
+    """Add to forces and Jacobian of the rollers what resists rolling; return the torque on the cage [N m] and its derivative by cage speed.
 
-    A roller feels what both surfaces and its centre feel (`bearing_sim.physics.film.pumping_constant`): F_R (1 - 2 gamma) inside,
+    A roller feels what both surfaces and its centre feel (`bearing_sim.physics.film.resistance_constants`): F_R (1 - 2 gamma) inside,
     -F_R (1 + 2 gamma) outside along the orbit; both brake its spin, which `equations` takes into account.
 
     Parameters
     ----------
     inner_radius : R_i, grown [m].
-    params, work : of the level; `bearing_sim.physics.film.pump` has written into ``work.contacts``.
+    params, work : of the level; `bearing_sim.physics.film.resist_rolling` has written into ``work.contacts``.
     with_jacobian : whether to add to the Jacobian.
     """
     contacts, jacobian, rollers, blocks = work.contacts, work.jacobian.rows, params.rollers, work.contacts.shape[0] // 2
@@ -205,8 +195,8 @@ def _push_rollers(inner_radius, params, work, with_jacobian):
     for j in range(rollers.count):
         radius, block, lane = work.loads[LOAD.radius, j], j // LANES, j % LANES
         inner_push, outer_push = (inner_radius - rollers.radius) / radius, 1.0 + 2.0 * rollers.radius / radius  # 1 -/+ 2 gamma
-        push = inner_push * contacts[block, CONTACT.pumping, lane] - outer_push * contacts[blocks + block, CONTACT.pumping, lane]
-        inner, outer = 0.5 * contacts[block, CONTACT.pumping_d_rolling, lane], 0.5 * contacts[blocks + block, CONTACT.pumping_d_rolling, lane]
+        push = inner_push * contacts[block, CONTACT.resistance, lane] - outer_push * contacts[blocks + block, CONTACT.resistance, lane]
+        inner, outer = 0.5 * contacts[block, CONTACT.resistance_d_rolling, lane], 0.5 * contacts[blocks + block, CONTACT.resistance_d_rolling, lane]
         inner_d_cage, outer_d_cage = (rollers.radius - inner_radius) * inner, (2.0 * rollers.radius + radius) * outer
         work.tangential[j] += push
         torque += radius * push

@@ -6,9 +6,9 @@ kinetic energy of the balance is that of rotation: of the cage, the orbiting rol
 contour's slope and the ring's displacement, exchange it with the elastic energy of the contacts and the work of the load, without loss.
 """
 
-from bearing_sim.levels.common.power import Powers, shaft_traction_power, sliding_power, windage_powers
+from bearing_sim.levels.common.power import Powers, rolling_power, seal_power, shaft_traction_power, sliding_power, windage_powers
 from bearing_sim.numerics.compilation import kernel
-from bearing_sim.physics.drag import churning_force
+from bearing_sim.physics.drag import roller_drag
 from bearing_sim.physics.land import land_torque
 from bearing_sim.physics.load_balance import LOAD
 from bearing_sim.physics.pocket import pocket_friction
@@ -30,9 +30,8 @@ def slip_powers(cage_speed, cage_acceleration, spins, shaft_speed, model, work):
     guide_speed = cage.guidance.turning * shaft_speed
     land = land_torque(cage_speed, guide_speed, cage.assumed_eccentricity, lubrication.viscosity, cage)[0]
     bore, windage = windage_powers(cage_speed, shaft_speed, params, lubrication)
-    drag = churning_force(
-        params.raceways.pitch_radius * cage_speed, lubrication.mixture_density, lubrication.viscosity, 2.0 * rollers.radius, rollers.length
-    )[0]
+    drag, seals = roller_drag(cage_speed, params, lubrication)[0], seal_power(shaft_speed, params)
+    blocks = contacts.shape[0] // 2
     churning, pocket = 0.0, 0.0
     for j in range(count):
         radius = loads[LOAD.radius, j]
@@ -40,12 +39,15 @@ def slip_powers(cage_speed, cage_acceleration, spins, shaft_speed, model, work):
         force = abs(rollers.mass * radius * cage_acceleration - work.tangential[j])
         pocket += force * pocket_friction(spins[j], cage.pocket_friction) * rollers.radius * (spins[j] + params.variants.pocket_reaction * cage_speed)
     return Powers(
-        shaft_traction_power(contacts, count, shaft_speed, params.raceways.inner_radius + work.growth[0]) + bore + land * guide_speed,
+        shaft_traction_power(contacts, count, shaft_speed, params.raceways.inner_radius + work.growth[0]) + bore + land * guide_speed + seals,
         sliding_power(contacts, 0, count),
-        sliding_power(contacts, contacts.shape[0] // 2, count),
+        sliding_power(contacts, blocks, count),
+        rolling_power(contacts, 0, count),
+        rolling_power(contacts, blocks, count),
         churning,
         windage,
         land * (guide_speed - cage_speed),
         pocket,
         0.0,
+        seals,
     )

@@ -29,7 +29,7 @@ from bearing_sim.levels.planar import state as planar
 from bearing_sim.levels.planar.forces import border_accelerations as planar_accelerations
 from bearing_sim.levels.planar.state import BORDER as PLANAR
 from bearing_sim.levels.spatial.jacobian import land_cage_jacobian, land_ring_jacobian, roller_jacobian
-from bearing_sim.levels.spatial.slices import load_pieces, sum_pumping, sum_tractions
+from bearing_sim.levels.spatial.slices import load_pieces, sum_resistance, sum_tractions
 from bearing_sim.levels.spatial.state import (
     BORDER,
     CAGE_TILT_Y,
@@ -50,7 +50,7 @@ from bearing_sim.levels.spatial.state import (
 from bearing_sim.numerics.compilation import kernel, template
 from bearing_sim.numerics.simd import larger, load, magnitude, spread, store, total, where_positive
 from bearing_sim.physics.contact import EXPONENT, damped_slice
-from bearing_sim.physics.film import pump
+from bearing_sim.physics.film import resist_rolling
 from bearing_sim.physics.pocket import pocket_friction_lanes
 from bearing_sim.physics.traction import traction
 
@@ -287,23 +287,23 @@ def _accelerate(block, y, churning, model, rows, contacts, rate):
     t_i, t_e = load(contacts, block, SLICED.force), load(contacts, outer, SLICED.force)
     s_i, s_e = load(contacts, block, SLICED.tilting), load(contacts, outer, SLICED.tilting)
     m_i, m_e = load(contacts, block, SLICED.skewing), load(contacts, outer, SLICED.skewing)
-    # the oil pumped back, as at level `planar`
-    pumped_i, pumped_e = load(contacts, block, SLICED.pumping), load(contacts, outer, SLICED.pumping)
+    # the resistance to rolling, as at level `planar`
+    resistance_i, resistance_e = load(contacts, block, SLICED.resistance), load(contacts, outer, SLICED.resistance)
     push_i, push_e = 1.0 - 2.0 * params.raceways.diameter_ratio, 1.0 + 2.0 * params.raceways.diameter_ratio
-    m_i += push_i * load(contacts, block, SLICED.pumping_moment)
-    m_e -= push_e * load(contacts, outer, SLICED.pumping_moment)
+    m_i += push_i * load(contacts, block, SLICED.resistance_moment)
+    m_e -= push_e * load(contacts, outer, SLICED.resistance_moment)
     force, moment = -load(rows, block, ROLLER.pocket_force), -load(rows, block, ROLLER.pocket_moment)
     friction = load(rows, block, ROLLER.pocket_friction)
     play_cosine, play_sine = load(rows, block, ROLLER.play_cosine), load(rows, block, ROLLER.play_sine)
     push_r, push_t = play_sine + friction * play_cosine, play_cosine - friction * play_sine
-    across = t_i + pumped_i * push_i + s_i * load(rows, block, ROLLER.lean_tangent) * load(rows, block, ROLLER.inverse_distance)
+    across = t_i + resistance_i * push_i + s_i * load(rows, block, ROLLER.lean_tangent) * load(rows, block, ROLLER.inverse_distance)
     radial, along = q_i * n_r - across * n_t, q_i * n_t + across * n_r
     tilting, skewing = s_i * n_r - m_i * n_t, s_i * n_t + m_i * n_r
     drag = churning[0] + churning[1] * (radius * orbital_speed - params.raceways.pitch_radius * y[OMEGA])
     drag = where_positive(drag * orbital_speed, drag, 0.0)  # extrapolated, it would push a roller that is far slower than the cage
     slope = params.variants.contour_slope * load(rows, block, ROLLER.slope)
     f_r = radial - q_e - force * push_r
-    f_t = along + t_e - pumped_e * push_e + (q_e * slope - s_e * skew) / radius - drag - force * push_t
+    f_t = along + t_e - resistance_e * push_e + (q_e * slope - s_e * skew) / radius - drag - force * push_t
     m_r, m_t = tilting - s_e - moment * push_r, skewing + m_e - moment * push_t
     orbital_acceleration = (f_t * (1.0 / mass) - 2.0 * radial_speed * orbital_speed) / radius
     store(rows, block, ROLLER.churning, drag)
@@ -316,7 +316,7 @@ def _accelerate(block, y, churning, model, rows, contacts, rate):
     store(rows, block, ROLLER.tilt_acceleration, m_r * (1.0 / tilts.roller_inertia) + bend)
     bend = carrying * skew - turning * load(rows, block, ROLLER.tilt_speed) - orbital_acceleration * tilt
     store(rows, block, ROLLER.skew_acceleration, m_t * (1.0 / tilts.roller_inertia) + bend)
-    spin_acceleration = (t_i - t_e - pumped_i - pumped_e - friction * magnitude(force)) * (roller_radius / params.rollers.inertia)
+    spin_acceleration = (t_i - t_e - resistance_i - resistance_e - friction * magnitude(force)) * (roller_radius / params.rollers.inertia)
     store(rows, block, ROLLER.spin_acceleration, spin_acceleration)
     present, cosine, sine = load(rows, block, ROLLER.present), load(rows, block, ROLLER.cosine), load(rows, block, ROLLER.sine)
     p_c, p_s = load(rows, block, ROLLER.pocket_cosine), load(rows, block, ROLLER.pocket_sine)
@@ -344,7 +344,7 @@ def equations(t, y, model, work, rate, with_jacobian):
     """
     params, rows, contacts = model.params, work.rollers, work.contacts
     shaft_speed, churning = shaft_speed_at(t, model.drive), linear_churning(y[OMEGA], model)
-    inner_radius, pumping = params.raceways.inner_radius + inner_growth(shaft_speed, model), model.lubrication.pumping.on
+    inner_radius, resistance = params.raceways.inner_radius + inner_growth(shaft_speed, model), model.lubrication.rolling_resistance.on
     spread_state(y, params.rollers.count, rows)
     border_accelerations(t, y, model, work, rate, with_jacobian)
     for k in range(BORDER):
@@ -354,9 +354,9 @@ def equations(t, y, model, work, rate, with_jacobian):
     load_pieces(contacts, work.pieces, params.slices, params.raceways.stiffness, params.ring.contact_damping)
     traction(work.pieces, model.lubrication.inner, model.lubrication.outer)
     sum_tractions(contacts, work.pieces, params.slices)
-    if pumping:
-        pump(work.pieces, model.lubrication.pumping)
-        sum_pumping(contacts, work.pieces, params.slices)
+    if resistance:
+        resist_rolling(work.pieces, model.lubrication.rolling_resistance)
+        sum_resistance(contacts, work.pieces, params.slices)
     for block in range(rows.shape[0]):
         _lie_in_pockets(block, y, cage_cosine, cage_sine, rows)
         pocket_forces(block, params, rows)
@@ -367,7 +367,7 @@ def equations(t, y, model, work, rate, with_jacobian):
             guide_forces(block, y, params, rows)
             guide_accelerations(block, params, rows, rate)
     if with_jacobian:
-        roller_jacobian(y, inner_radius, churning, pumping, params, rows, contacts, work.chain, work.jacobian)
+        roller_jacobian(y, inner_radius, churning, resistance, params, rows, contacts, work.chain, work.jacobian)
     collect_rates(y, params.rollers.count, rows, rate)
     return True
 

@@ -70,7 +70,7 @@ from bearing_sim.numerics.simd import LANES, collect_runs, fill_lanes, load, mag
 
 # Rows of forces outwards and along, of moments outwards and along, of the spin's torque; in this order.
 _RADIAL, _ALONG, _TILTING, _SKEWING, _SPINNING = 0, LOCAL, 2 * LOCAL, 3 * LOCAL, 4 * LOCAL
-_PUMPED = 154  # row of ``chain`` behind those of the pockets, which rely on what they never write
+_RESISTANCE = 154  # row of ``chain`` behind those of the pockets, which rely on what they never write
 _SEEN = 8  # position, inclination, and their rates, of the roller against the ring: four pairs
 _CHAIN = 40  # row of ``chain`` where this module's part begins
 _OFFSET, _RATE, _INCLINATION, _SKEW_RATE, _LEVER, _LEAN, _KINDS = range(7)  # what depends on a variable: the last two are arms of the cage
@@ -113,7 +113,7 @@ def _chain_row(block, row, first, along, rows, contacts, chain):
 
 
 @kernel
-def _inner_chain(block, pumping, params, rows, contacts, chain):
+def _inner_chain(block, resistance, params, rows, contacts, chain):
     """Write the changes of the inner contact's force (2), moment (2) and spin torque in the roller's frame by what it sees, 5 x 8."""
     n_r, n_t, inverse = load(rows, block, ROLLER.normal_r), load(rows, block, ROLLER.normal_t), load(rows, block, ROLLER.inverse_distance)
     b_n, b_p = load(rows, block, ROLLER.lean_normal), load(rows, block, ROLLER.lean_tangent) * inverse
@@ -126,17 +126,17 @@ def _inner_chain(block, pumping, params, rows, contacts, chain):
     # the normal forces' own lever, where slices stand apart along the orbit
     for k in range(_SEEN):
         store(chain, 0, _SEEN + k, load(chain, 0, 4 * _SEEN + k) + load(chain, 0, 2 * _SEEN + k) * b_p)
-    if pumping:
+    if resistance:
         push = 1.0 - 2.0 * params.raceways.diameter_ratio
-        t += push * load(contacts, block, SLICED.pumping)
-        m += push * load(contacts, block, SLICED.pumping_moment)
-        _chain_row(block, _PUMPED, SLICED.of_pumping, -1, rows, contacts, chain)
-        _chain_row(block, _PUMPED + _SEEN, SLICED.of_pumping_moment, -1, rows, contacts, chain)
+        t += push * load(contacts, block, SLICED.resistance)
+        m += push * load(contacts, block, SLICED.resistance_moment)
+        _chain_row(block, _RESISTANCE, SLICED.of_resistance, -1, rows, contacts, chain)
+        _chain_row(block, _RESISTANCE + _SEEN, SLICED.of_resistance_moment, -1, rows, contacts, chain)
         for k in range(_SEEN):
-            pumped, turned = load(chain, 0, _PUMPED + k), load(chain, 0, _PUMPED + _SEEN + k)
-            add(chain, 0, _SEEN + k, push * pumped)
+            resisted, turned = load(chain, 0, _RESISTANCE + k), load(chain, 0, _RESISTANCE + _SEEN + k)
+            add(chain, 0, _SEEN + k, push * resisted)
             add(chain, 0, 3 * _SEEN + k, push * turned)
-            add(chain, 0, 4 * _SEEN + k, -pumped)
+            add(chain, 0, 4 * _SEEN + k, -resisted)
     add(chain, 0, _SEEN, -(s * b_p * inverse))
     add(chain, 0, _SEEN + 1, -(s * b_n * inverse * inverse))
     add(chain, 0, _SEEN + 3, s * inverse)
@@ -158,9 +158,9 @@ def _inner_chain(block, pumping, params, rows, contacts, chain):
 
 
 @kernel
-def _inner_jacobian(block, y, inner_radius, pumping, params, rows, contacts, chain, jacobian):
+def _inner_jacobian(block, y, inner_radius, resistance, params, rows, contacts, chain, jacobian):
     """Write a roller's rows as far as the inner contact makes them."""
-    _inner_chain(block, pumping, params, rows, contacts, chain)
+    _inner_chain(block, resistance, params, rows, contacts, chain)
     c, s = load(rows, block, ROLLER.cosine), load(rows, block, ROLLER.sine)
     radius, orbital_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.orbital_speed)
     tilt, skew = load(rows, block, ROLLER.tilt), load(rows, block, ROLLER.skew)
@@ -201,28 +201,28 @@ def _inner_jacobian(block, y, inner_radius, pumping, params, rows, contacts, cha
         add(jacobian, block, _TILTING + column, -(moment * n_t))
         add(jacobian, block, _SKEWING + column, moment * n_r)
         add(jacobian, block, _SPINNING + column, force)
-        if pumping:
+        if resistance:
             push, rate = 1.0 - 2.0 * params.raceways.diameter_ratio, carried if k == 0 else 0.5 * params.rollers.radius
-            pumped, turned = rate * load(contacts, block, SLICED.pumping_d_rolling), rate * load(contacts, block, SLICED.pumping_d_rolling + 1)
-            add(jacobian, block, _RADIAL + column, -(push * pumped * n_t))
-            add(jacobian, block, _ALONG + column, push * pumped * n_r)
+            resisted, turned = rate * load(contacts, block, SLICED.resistance_d_rolling), rate * load(contacts, block, SLICED.resistance_d_rolling + 1)
+            add(jacobian, block, _RADIAL + column, -(push * resisted * n_t))
+            add(jacobian, block, _ALONG + column, push * resisted * n_r)
             add(jacobian, block, _TILTING + column, -(push * turned * n_t))
             add(jacobian, block, _SKEWING + column, push * turned * n_r)
-            add(jacobian, block, _SPINNING + column, -pumped)
+            add(jacobian, block, _SPINNING + column, -resisted)
 
 
 @kernel
-def _ring_jacobian(block, pumping, params, rows, contacts, jacobian):
+def _ring_jacobian(block, resistance, params, rows, contacts, jacobian):
     """Write the rows of the ring from those of a roller, which hold nothing but the inner contact yet."""
     c, s, inverse = load(rows, block, ROLLER.cosine), load(rows, block, ROLLER.sine), load(rows, block, ROLLER.inverse_distance)
     n_r, n_t = load(rows, block, ROLLER.normal_r), load(rows, block, ROLLER.normal_t)
     q, tilting = load(contacts, block, SLICED.load), load(contacts, block, SLICED.tilting)
     across, skewing = load(contacts, block, SLICED.force), load(contacts, block, SLICED.skewing)
     across += tilting * load(rows, block, ROLLER.lean_tangent) * inverse
-    if pumping:
+    if resistance:
         push = 1.0 - 2.0 * params.raceways.diameter_ratio
-        across += push * load(contacts, block, SLICED.pumping)
-        skewing += push * load(contacts, block, SLICED.pumping_moment)
+        across += push * load(contacts, block, SLICED.resistance)
+        skewing += push * load(contacts, block, SLICED.resistance_moment)
     present = load(rows, block, ROLLER.present)
     for pair in range(2):
         first = 2 * pair * LOCAL
@@ -298,19 +298,19 @@ def _outer_jacobian(block, y, churning, params, rows, contacts, jacobian):
 
 
 @kernel
-def _outer_pumping(block, params, rows, contacts, jacobian):
-    """Add the oil that the outer contact pumps back to a roller's rows."""
+def _outer_resistance(block, params, rows, contacts, jacobian):
+    """Add the outer contact's resistance to rolling to a roller's rows."""
     outer, push = rows.shape[0] + block, -(1.0 + 2.0 * params.raceways.diameter_ratio)
-    _outer_row(block, _ALONG, push, SLICED.of_pumping, -1, rows, contacts, params, jacobian)
-    _outer_row(block, _SKEWING, push, SLICED.of_pumping_moment, -1, rows, contacts, params, jacobian)
-    _outer_row(block, _SPINNING, -1.0, SLICED.of_pumping, -1, rows, contacts, params, jacobian)
+    _outer_row(block, _ALONG, push, SLICED.of_resistance, -1, rows, contacts, params, jacobian)
+    _outer_row(block, _SKEWING, push, SLICED.of_resistance_moment, -1, rows, contacts, params, jacobian)
+    _outer_row(block, _SPINNING, -1.0, SLICED.of_resistance, -1, rows, contacts, params, jacobian)
     radius, orbital_speed, roller_radius = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.orbital_speed), params.rollers.radius
     for k in range(3):
         column, rate = (R, orbital_speed) if k == 0 else ((PHI_SPEED, radius + 2.0 * roller_radius) if k == 1 else (SPIN, spread(roller_radius)))
-        pumped = 0.5 * rate * load(contacts, outer, SLICED.pumping_d_rolling)
-        add(jacobian, block, _ALONG + column, push * pumped)
-        add(jacobian, block, _SKEWING + column, push * 0.5 * rate * load(contacts, outer, SLICED.pumping_d_rolling + 1))
-        add(jacobian, block, _SPINNING + column, -pumped)
+        resisted = 0.5 * rate * load(contacts, outer, SLICED.resistance_d_rolling)
+        add(jacobian, block, _ALONG + column, push * resisted)
+        add(jacobian, block, _SKEWING + column, push * 0.5 * rate * load(contacts, outer, SLICED.resistance_d_rolling + 1))
+        add(jacobian, block, _SPINNING + column, -resisted)
 
 
 @kernel
@@ -351,7 +351,7 @@ def _accelerations(block, params, rows, jacobian):
 
 
 @kernel
-def roller_jacobian(y, inner_radius, churning, pumping, params, rows, contacts, chain, jacobian):
+def roller_jacobian(y, inner_radius, churning, resistance, params, rows, contacts, chain, jacobian):
     """Write all derivatives through the rollers; their forces have been written.
 
     Parameters
@@ -359,7 +359,7 @@ def roller_jacobian(y, inner_radius, churning, pumping, params, rows, contacts, 
     y : state.
     inner_radius : R_i, grown [m].
     churning : drag of the mixture on a roller, its slope by the roller's speed and the slope's by cage speed.
-    pumping : whether the contacts pump oil back.
+    resistance : whether the contacts resist rolling.
     params : of the bearing.
     rows : of the rollers, see `bearing_sim.levels.spatial.state.ROLLER`.
     contacts : see `bearing_sim.levels.spatial.state.SLICED`.
@@ -367,14 +367,14 @@ def roller_jacobian(y, inner_radius, churning, pumping, params, rows, contacts, 
     jacobian : takes the derivatives.
     """
     for block in range(rows.shape[0]):
-        _inner_jacobian(block, y, inner_radius, pumping, params, rows, contacts, chain, jacobian)
-        _ring_jacobian(block, pumping, params, rows, contacts, jacobian)
+        _inner_jacobian(block, y, inner_radius, resistance, params, rows, contacts, chain, jacobian)
+        _ring_jacobian(block, resistance, params, rows, contacts, jacobian)
         _pocket_jacobian(block, y, params, rows, chain, jacobian)
         if not params.cage.guidance.lands:
             _guide_jacobian(block, y, params, rows, chain, jacobian)
         _outer_jacobian(block, y, churning, params, rows, contacts, jacobian)
-        if pumping:
-            _outer_pumping(block, params, rows, contacts, jacobian)
+        if resistance:
+            _outer_resistance(block, params, rows, contacts, jacobian)
         _accelerations(block, params, rows, jacobian)
 
 

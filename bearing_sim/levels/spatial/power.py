@@ -6,7 +6,7 @@ What a moment on the inner ring puts in stands beside the radial load's power: n
 """
 
 from bearing_sim.levels.common.model import inner_growth
-from bearing_sim.levels.common.power import Powers, windage_powers
+from bearing_sim.levels.common.power import Powers, seal_power, windage_powers
 from bearing_sim.levels.planar.power import land_powers
 from bearing_sim.levels.spatial.forces import place_land
 from bearing_sim.levels.spatial.state import BORDER, CAGE_TILT_Y, CAGE_TILT_Z, CAGE_Y, CAGE_Z, OMEGA, ROLLER, SLICED
@@ -17,17 +17,16 @@ from bearing_sim.physics.contact import damped_slice
 
 @kernel
 def _contact_powers(first, y, params, work):
-    """Return the power lost between one raceway and all rollers in the films and by damping [W], and what drives the raceway [N]."""
+    """Return the power lost between one raceway and all rollers by sliding, rolling and damping [W], and what drives the raceway [N]."""
     contacts, positions, crown = work.contacts, params.slices.positions, params.slices.crown
     count = positions.shape[0]
     part, damping = params.raceways.stiffness / count, params.ring.contact_damping
-    sliding, damped, force = 0.0, 0.0, 0.0
+    sliding, rolling, damped, force = 0.0, 0.0, 0.0, 0.0
     for block in range(work.rollers.shape[0]):
         at, present = first + block, load(work.rollers, block, ROLLER.present)
         traction = load(contacts, at, SLICED.force)
         slid = traction * load(contacts, at, SLICED.sliding) + load(contacts, at, SLICED.skewing) * load(contacts, at, SLICED.sliding_lean)
-        pumped = load(contacts, at, SLICED.pumping)
-        slid += 2.0 * pumped * load(contacts, at, SLICED.rolling)
+        resistance = load(contacts, at, SLICED.resistance)
         lost = spread(0.0)
         for k in range(count):
             depth = load(contacts, at, SLICED.penetration) + load(contacts, at, SLICED.lean) * positions[k] - crown[k]
@@ -35,9 +34,10 @@ def _contact_powers(first, y, params, work):
             q, root, _, _ = damped_slice(depth, rate, part, damping)
             lost += (q - root * larger(depth, 0.0)) * rate
         sliding += total(present * slid)
+        rolling += total(present * 2.0 * resistance * load(contacts, at, SLICED.rolling))
         damped += total(present * lost)
-        force += total(present * (traction + pumped))
-    return sliding, damped, force
+        force += total(present * (traction + resistance))
+    return sliding, rolling, damped, force
 
 
 @kernel
@@ -120,8 +120,8 @@ def spatial_powers(y, shaft_speed, model, work):
     """
     params, rows = model.params, work.rollers
     bore, windage = windage_powers(y[OMEGA], shaft_speed, params, model.lubrication)
-    inner, inner_damped, driving = _contact_powers(0, y, params, work)
-    outer, outer_damped, _ = _contact_powers(rows.shape[0], y, params, work)
+    inner, inner_rolling, inner_damped, driving = _contact_powers(0, y, params, work)
+    outer, outer_rolling, outer_damped, _ = _contact_powers(rows.shape[0], y, params, work)
     pocket, walls = _pocket_powers(y, params, rows)
     driven, land, touching = 0.0, 0.0, 0.0
     if params.cage.guidance.lands:
@@ -133,13 +133,17 @@ def spatial_powers(y, shaft_speed, model, work):
     for block in range(rows.shape[0]):
         drag = load(rows, block, ROLLER.present) * load(rows, block, ROLLER.churning)
         churning += total(drag * load(rows, block, ROLLER.radius) * load(rows, block, ROLLER.orbital_speed))
+    seals = seal_power(shaft_speed, params)
     return Powers(
-        driving * (params.raceways.inner_radius + inner_growth(shaft_speed, model)) * shaft_speed + bore + driven,
+        driving * (params.raceways.inner_radius + inner_growth(shaft_speed, model)) * shaft_speed + bore + driven + seals,
         inner,
         outer,
+        inner_rolling,
+        outer_rolling,
         churning,
         windage,
         land,
         pocket,
         inner_damped + outer_damped + walls + touching,
+        seals,
     )

@@ -194,24 +194,24 @@ def sum_tractions(contacts, pieces, slices):
 
 
 @kernel
-def sum_pumping(contacts, pieces, slices):
-    """Write resistances of pumped oil, their moments and derivatives of all contacts from those of the pieces, which have been written."""
+def sum_resistance(contacts, pieces, slices):
+    """Write resistances to rolling, their moments and derivatives of all contacts from those of the pieces, which have been written."""
     count, together, number = slices.positions.shape[0], slices.together, pieces.shape[0] // contacts.shape[0]
     for block in range(contacts.shape[0]):
-        for row in range(SLICED.pumping, SLICED_ROWS):
+        for row in range(SLICED.resistance, SLICED_ROWS):
             store(contacts, block, row, 0.0)
         for which in range(number):
             first, piece = which * together, block * number + which
             end = min(first + together, count)
             fraction, position = (end - first) / count, 0.5 * (slices.positions[first] + slices.positions[end - 1])
-            d_load = load(pieces, piece, CONTACT.pumping_d_load)
-            force, d_rolling = fraction * load(pieces, piece, CONTACT.pumping), fraction * load(pieces, piece, CONTACT.pumping_d_rolling)
-            _add_with_moment(block, contacts, SLICED.pumping, 1, force, position)
-            _add_with_moment(block, contacts, SLICED.pumping_d_rolling, 1, d_rolling, position)
-            _add_with_moment(block, contacts, SLICED.of_pumping, 5, d_load * load(pieces, piece, D_DEPTH), position)
-            _add_with_moment(block, contacts, SLICED.of_pumping + 1, 5, d_load * load(pieces, piece, D_LEAN), position)
-            _add_with_moment(block, contacts, SLICED.of_pumping + 3, 5, d_load * load(pieces, piece, D_RATE), position)
-            _add_with_moment(block, contacts, SLICED.of_pumping + 4, 5, d_load * load(pieces, piece, D_LEAN_RATE), position)
+            d_load = load(pieces, piece, CONTACT.resistance_d_load)
+            force, d_rolling = fraction * load(pieces, piece, CONTACT.resistance), fraction * load(pieces, piece, CONTACT.resistance_d_rolling)
+            _add_with_moment(block, contacts, SLICED.resistance, 1, force, position)
+            _add_with_moment(block, contacts, SLICED.resistance_d_rolling, 1, d_rolling, position)
+            _add_with_moment(block, contacts, SLICED.of_resistance, 5, d_load * load(pieces, piece, D_DEPTH), position)
+            _add_with_moment(block, contacts, SLICED.of_resistance + 1, 5, d_load * load(pieces, piece, D_LEAN), position)
+            _add_with_moment(block, contacts, SLICED.of_resistance + 3, 5, d_load * load(pieces, piece, D_RATE), position)
+            _add_with_moment(block, contacts, SLICED.of_resistance + 4, 5, d_load * load(pieces, piece, D_LEAN_RATE), position)
 
 
 @template

@@ -90,11 +90,11 @@ class SlicedRow(NamedTuple):
     of_skewing: int = 22  # derivatives of its moment by the same
     d_sliding: int = 27  # sums of dT/d(du) times 1, x and x^2
     d_rolling: int = 30  # of dT/du times 1 and x
-    pumping: int = 32  # from here on written only where oil is pumped back: its resistance F_R [N]
-    pumping_moment: int = 33  # its moment [N m]
-    of_pumping: int = 34  # derivatives by penetration and lean, three rows on by their rates
-    of_pumping_moment: int = 39
-    pumping_d_rolling: int = 44  # sums of dF_R/du times 1 and x
+    resistance: int = 32  # from here on written only where contacts resist rolling: F_R [N]
+    resistance_moment: int = 33  # its moment [N m]
+    of_resistance: int = 34  # derivatives by penetration and lean, three rows on by their rates
+    of_resistance_moment: int = 39
+    resistance_d_rolling: int = 44  # sums of dF_R/du times 1 and x
 
 
 SLICED = SlicedRow()

@@ -17,6 +17,7 @@ import numpy as np
 
 from bearing_sim.levels.common.model import Drive, Model, inner_growth, load_at, shaft_speed_at
 from bearing_sim.levels.common.observation import observe_course, oil_at_speed
+from bearing_sim.levels.common.power import write_friction_moment
 from bearing_sim.levels.slip import state as slip_state
 from bearing_sim.levels.slip.forces import balance_loads
 from bearing_sim.levels.slip.state import OMEGA, THETA
@@ -135,8 +136,9 @@ def _write_sample(t, y, model, work, interval, previous, row):
         answer[ANSWER.reference_modification_factor],
     )
     observe_course(t, cage_angle, cage_speed, equivalent, oil_at_speed(shaft_speed_at(t, model.drive), model), model, interval, previous, row)
-    for column in range(ANSWER.damping_power - ANSWER.shaft_power + 1):
+    for column in range(ANSWER.seal_power - ANSWER.shaft_power + 1):
         row[COLUMN.shaft_power + column] = answer[ANSWER.shaft_power + column]
+    write_friction_moment(row)
     load_y, load_z = load_at(t, model.drive)
     work.bearing.growth[0] = inner_growth(shaft_speed_at(t, model.drive), model)
     balance_loads(cage_angle, cage_speed, load_y, load_z, params, work.bearing)
@@ -253,7 +255,8 @@ def advance_profile(start, stretches, inputs, kinematic_viscosities, y, model, w
                 lubrication.viscosity,
                 lubrication.mixture_density,
                 temperature,
-                lubrication.pumping,
+                lubrication.rolling_resistance,
+                lubrication.bath,
                 growth_at(mounted, Temperatures(temperature, temperature, temperature, temperature, temperature)),
                 kinematic_viscosities[k],
             ),

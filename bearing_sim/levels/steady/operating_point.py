@@ -241,11 +241,14 @@ class AnswerColumn(NamedTuple):
     shaft_power: int = 7  # from here on means in time [W]; the order is that of `bearing_sim.levels.common.power.Powers`
     inner_sliding_power: int = 8
     outer_sliding_power: int = 9
-    churning_power: int = 10
-    windage_power: int = 11
-    land_power: int = 12
-    pocket_power: int = 13
-    damping_power: int = 14
+    inner_rolling_power: int = 10
+    outer_rolling_power: int = 11
+    churning_power: int = 12
+    windage_power: int = 13
+    land_power: int = 14
+    pocket_power: int = 15
+    damping_power: int = 16
+    seal_power: int = 17
 
 
 ANSWER = AnswerColumn()
@@ -344,7 +347,7 @@ def _lag(slip, ideal, sense, model, work, orbit):
 def _write_powers(speed, sense, model, work, orbit, answer):
     """Write powers, means over a pitch."""
     angles, rate = orbit.accelerations.shape[0], orbit.rate
-    for column in range(ANSWER.shaft_power, ANSWER.damping_power + 1):
+    for column in range(ANSWER.shaft_power, ANSWER.seal_power + 1):
         answer[column] = 0.0
     for k in range(angles):
         set_state(k, speed, sense, model.params, orbit)
@@ -353,11 +356,14 @@ def _write_powers(speed, sense, model, work, orbit, answer):
         answer[ANSWER.shaft_power] += powers.shaft / angles
         answer[ANSWER.inner_sliding_power] += powers.inner_sliding / angles
         answer[ANSWER.outer_sliding_power] += powers.outer_sliding / angles
+        answer[ANSWER.inner_rolling_power] += powers.inner_rolling / angles
+        answer[ANSWER.outer_rolling_power] += powers.outer_rolling / angles
         answer[ANSWER.churning_power] += powers.churning / angles
         answer[ANSWER.windage_power] += powers.windage / angles
         answer[ANSWER.land_power] += powers.land / angles
         answer[ANSWER.pocket_power] += powers.pocket / angles
         answer[ANSWER.damping_power] += powers.damping / angles
+        answer[ANSWER.seal_power] += powers.seal / angles
 
 
 @kernel

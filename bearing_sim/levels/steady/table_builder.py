@@ -298,7 +298,7 @@ def table_hash(scene: Scene, span: Span) -> str:
     digest = hashlib.sha256(sources_hash().encode())
     oils = [lubricate(scene.lubricant, params, float(kelvin)) for kelvin in np.linspace(span.minimum_temperature, span.maximum_temperature, _OILS)]
     life = params.life._replace(method=0, reliability_factor=1.0)  # which choose among lives, and change no operating point
-    bearing = params.rollers, params.raceways, params.cage, params.mounted, params.variants, life
+    bearing = params.rollers, params.raceways, params.cage, params.mounted, params.variants, params.envelope, life
     for number in _numbers((bearing, oils, span, scene.table.tolerance)):
         digest.update(number)
     return digest.hexdigest()[:24]
