@@ -270,7 +270,7 @@ def test_energy_is_kept(crown):
     absolute[BORDER_STATES + 8 * 18 : size] = 1e-6
     absolute[BORDER_STATES + 4 * 18 : BORDER_STATES + 8 * 18] = 1e-9
     with np.errstate(all="ignore"):
-        solution = solve_ivp(rate, (0.0, duration), np.concatenate([state, np.zeros(12)]), "DOP853", rtol=1e-9, atol=absolute, first_step=1e-8)
+        solution = solve_ivp(rate, (0.0, duration), np.concatenate([state, np.zeros(14)]), "DOP853", rtol=1e-9, atol=absolute, first_step=1e-8)
     end = solution.y[:, -1]
     work, heat = end[size : size + 3].sum(), end[size + 3 :]
     before, after = (reference.forces(plain(y)) for y in (state, end[:size]))
