@@ -131,6 +131,14 @@ def test_rolling_resistance_makes_the_cage_slip_more():
     assert slip("lubricant.rolling_resistance=hydrodynamic") > slip() + 0.005
 
 
+def test_rolling_resistance_makes_the_cage_slip_more_at_level_planar():
+    slips = [
+        Simulation(load_scene("deng2017_table1", ["level=planar", f"lubricant.rolling_resistance={law}"])).advance(0.05, samples=50)["cage_slip"]
+        for law in ("none", "hydrodynamic")
+    ]
+    assert slips[1][40:].mean() > slips[0][40:].mean() + 0.002
+
+
 def test_rolling_resistance_is_on_unless_a_scene_switches_it_off():
     scene = load_scene("deng2017_table1", ["lubricant={oil: mil_l_7808}"])
     assert scene.lubricant.rolling_resistance.law == "hydrodynamic" and load_scene("deng2017_table1").lubricant.rolling_resistance.law == "none"
