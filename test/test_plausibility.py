@@ -34,7 +34,12 @@ def test_bearings_as_they_are_built_are_plausible(scene):
         (["bearing.cage.mass=0.5 g"], "bearing.cage.mass", "0.5 g", "polyamide to brass"),
         (["bearing.inner_raceway.ring_mass=20 kg"], "bearing.inner_raceway.ring_mass", "2e+04 g", "by raceway, bore and roller length"),
         (["bearing.inner_raceway.ring_mass=5 g"], "bearing.inner_raceway.ring_mass", "5 g", "by raceway, bore and roller length"),
-        (["bearing.inner_raceway.bore_radius=null", "bearing.inner_raceway.ring_mass=1 g"], "bearing.inner_raceway.ring_mass", "1 g", "expected"),
+        (
+            ["bearing.dimensions_at=running", "bearing.inner_raceway.bore_radius=null", "bearing.inner_raceway.ring_mass=1 g"],
+            "bearing.inner_raceway.ring_mass",
+            "1 g",
+            "expected",
+        ),
         (["bearing.roller.count=5"], "bearing.roller", "24.8 %", "40 to 97 %"),
         (["bearing.outer_raceway.low_radius=40.9 mm"], "bearing", "300 um", "at most 125 um, class C5"),
         (["bearing.outer_raceway.low_radius=40.72 mm"], "bearing", "60 um", "of a round raceway"),
@@ -78,7 +83,7 @@ def test_a_preloaded_bearing_and_one_at_rest_need_no_minimum_load():
 
 
 def test_a_bore_that_is_not_given_is_estimated_and_said():
-    scene = motor("bearing.inner_raceway.bore_radius=null", "bearing.outer_raceway.low_radius=40.9 mm")
+    scene = motor("bearing.dimensions_at=running", "bearing.inner_raceway.bore_radius=null", "bearing.outer_raceway.low_radius=40.9 mm")
     (found,) = plausibility(scene)
     assert "estimated from the inner raceway" in found
 

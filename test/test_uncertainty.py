@@ -51,7 +51,7 @@ def test_ranges_are_read_in_units_by_path_or_nested_and_written_back():
     [
         ("uncertainty.lubricant.mixture_fractoin=[0.01, 0.05]", "unknown field (did you mean 'lubricant.mixture_fraction'?)"),
         ("uncertainty.temperature=[380, 390]", "did you mean 'lubricant.temperature'?"),
-        ("uncertainty.integration.first_step=[1 us, 2 us]", "expected a quantity of bearing, lubricant or operating"),
+        ("uncertainty.integration.first_step=[1 us, 2 us]", "expected a quantity of bearing, lubricant, operating or mounting"),
         ("uncertainty.lubricant.temperature=[1 mm, 400]", "has the wrong dimension; expected a temperature"),
         ("uncertainty.lubricant.temperature=[120 degC, 900 degC]", "900 degC is outside"),
         ("uncertainty.lubricant.temperature=[120 degC, 110 degC]", "is not below high"),

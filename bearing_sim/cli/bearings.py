@@ -104,6 +104,7 @@ def _report_loads(scene, slices, found) -> dict:
         "inner_pressure_maximum_mpa": 1e-6 * found.inner_pressure,
         "outer_pressure_maximum_mpa": 1e-6 * found.outer_pressure,
         "equivalent_loads": list(found.equivalent_loads),
+        **_clearance(scene, found),
         **_lives(scene, slices, found),
         "azimuths_deg": [math.degrees(azimuth) for azimuth in found.azimuths],
         "inner_loads": found.inner.tolist(),
@@ -122,8 +123,17 @@ def _lives(scene, slices, found) -> dict:
     return report_of(scene, found.lives._asdict() | renamed, found.film) | {"laminae": slices}
 
 
+def _clearance(scene, found) -> dict:
+    from bearing_sim.studies.clearance import PARTS, clearance_of
+
+    at = found.clearance
+    return clearance_of(scene, dict(zip(PARTS, (at.running, at.initial, at.fits, at.rotation, at.heat, at.contour))))
+
+
 def _print_loads(scene, slices, found) -> None:
     import numpy as np
+
+    from bearing_sim.studies.clearance import clearance_row
 
     def lean(amount, azimuth, unit):
         return f"{amount:.6g} {unit}, +x end towards {round(math.degrees(azimuth), 1) + 0.0:g} deg" if amount > 1e-9 else "none"
@@ -139,6 +149,7 @@ def _print_loads(scene, slices, found) -> None:
             ("ring displacement", "y {:.6g} um, z {:.6g} um".format(*(round(1e6 * place, 6) + 0.0 for place in found.ring))),
             (f"ring tilt ({held})", lean(1e3 * found.tilt[0], found.tilt[1], "mrad")),
             ("moment on the ring", lean(found.moment[0], found.moment[1], "N m")),
+            clearance_row(scene, _clearance(scene, found)),
             *life_rows(scene, _lives(scene, slices, found)),
         ],
     )

@@ -166,6 +166,7 @@ def _advance(simulation, plan, sinks, progress):
 
 
 def _report(simulation, outcome, wall, start_up) -> dict:
+    from bearing_sim.studies.clearance import clearance_report
     from bearing_sim.studies.rating import life_report
 
     window, pitch, last = outcome.window, outcome.pitch, outcome.window[-1]
@@ -183,6 +184,7 @@ def _report(simulation, outcome, wall, start_up) -> dict:
         "cage_slip": outcome.slip,
         "cage_slip_minimum": float(window["cage_slip"].min()),
         "cage_slip_maximum": float(window["cage_slip"].max()),
+        **clearance_report(simulation.scene, window),
         **life_report(simulation.scene, window),
         "damage": float(last["damage"]),
         "cage_speed_rpm": float(window["cage_speed"].mean()) * 30 / math.pi,
@@ -202,6 +204,7 @@ def _report(simulation, outcome, wall, start_up) -> dict:
 
 def _print(report, scene, bands) -> None:
     from bearing_sim.cli.uncertainty import band_rows
+    from bearing_sim.studies.clearance import clearance_row
 
     rejected = f"{report['rejected_steps']} rejected, {report['non_finite_steps']} of which not finite"
     print_table(
@@ -210,6 +213,7 @@ def _print(report, scene, bands) -> None:
             ("cage slip", _slip(report)),
             ("settled", _settled(report)),
             ("cage speed", f"{report['cage_speed_rpm']:.6g} rpm"),
+            clearance_row(scene, report),
             *life_rows(scene, report),
             *_pressures(report, scene),
             ("largest roller load", f"inner {report['inner_load_maximum']:.4g} N, outer {report['outer_load_maximum']:.4g} N"),

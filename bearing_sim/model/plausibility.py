@@ -8,6 +8,7 @@ import math
 
 from bearing_sim.model.validity import outside, still_sample
 from bearing_sim.scene.bearing import Bearing
+from bearing_sim.scene.mounting import LARGEST_BORE, clearance_limits
 from bearing_sim.scene.ratings import rate
 from bearing_sim.scene.scene import Scene
 
@@ -22,13 +23,6 @@ _LEAST_FILL, _LARGEST_FILL = 0.4, 0.97  # assumption: rollers' widths over the p
 # A maker's rating over that by the standards (assumption: catalogues give 0.85 to 1.17 times C, fatigue limits differ more).
 _RATING_RATIO = {"dynamic": (0.65, 1.5), "static": (0.65, 1.5), "fatigue_limit": (0.4, 2.5)}
 _MINIMUM_OF_RATING = 0.02  # of C_r: the least load of roller bearings where a maker gives no factor (SKF, Schaeffler)
-# Largest radial internal clearance of cylindrical roller bearings in class C5 by bore up to [mm]: clearance [um] (ISO 5753-1, table for
-# cylindrical bores).
-_C5 = (
-    (24, 90), (30, 95), (40, 105), (50, 125), (65, 140), (80, 165), (100, 190), (120, 220), (140, 245), (160, 275), (180, 300), (200, 330),
-    (225, 365), (250, 395), (280, 440), (315, 485), (355, 535), (400, 600), (450, 665), (500, 735), (560, 810), (630, 900), (710, 1005),
-    (800, 1135), (900, 1265), (1000, 1405),
-)  # fmt: skip
 
 
 def plausibility(scene: Scene) -> list[str]:
@@ -94,11 +88,11 @@ def _clearance(bearing: Bearing) -> list[str]:
     """Judge the diametral clearance by ISO 5753-1 and preload by the pitch diameter."""
     clearance = 2e6 * bearing.radial_clearance_at_low_points
     bore, estimated = _bore(bearing)
-    largest = next((limit for up_to, limit in _C5 if 1e3 * bore <= up_to), None)
+    largest = 1e6 * clearance_limits("C5", bore).largest if bore <= LARGEST_BORE else None
     dimensions = "check inner_raceway.radius, roller.diameter and outer_raceway.low_radius"
     if largest is not None and clearance > largest:
         return [
-            f"bearing: the diametral clearance is {clearance:.4g} um; expected at most {largest} um, class C5 of ISO 5753-1 for a bore of "
+            f"bearing: the diametral clearance is {clearance:.4g} um; expected at most {largest:.4g} um, class C5 of ISO 5753-1 for a bore of "
             f"{1e3 * bore:.4g} mm{estimated}; {dimensions}"
         ]
     lobed = bearing.outer_raceway.d_value > 0.0

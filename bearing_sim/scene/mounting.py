@@ -59,7 +59,34 @@ _OUTSIDE_TOLERANCES = (8, 9, 11, 13, 15, 18, 25, 30, 35, 40, 45, 50)
 _FLATTENED = 0.4  # of the roughness of both surfaces, see `smoothed`
 
 CLEARANCE_GROUPS = ("C2", "CN", "C3", "C4", "C5")
-_CLEARANCE_RANGES = (24, 30, 40, 50, 65, 80, 100, 120, 140, 160, 180, 200, 225, 250, 280, 315, 355, 400, 450, 500)  # bore [mm]
+_CLEARANCE_RANGES = (
+    24,
+    30,
+    40,
+    50,
+    65,
+    80,
+    100,
+    120,
+    140,
+    160,
+    180,
+    200,
+    225,
+    250,
+    280,
+    315,
+    355,
+    400,
+    450,
+    500,
+    560,
+    630,
+    710,
+    800,
+    900,
+    1000,
+)  # bore [mm]
 _CLEARANCES = (  # least and largest clearance of the groups [um] (ISO 5753-1:2009, table for cylindrical roller bearings)
     ((0, 25), (20, 45), (35, 60), (50, 75), (65, 90)),
     ((0, 25), (20, 45), (35, 60), (50, 75), (70, 95)),
@@ -81,7 +108,16 @@ _CLEARANCES = (  # least and largest clearance of the groups [um] (ISO 5753-1:20
     ((100, 190), (190, 280), (280, 370), (370, 460), (510, 600)),
     ((110, 210), (210, 310), (310, 410), (410, 510), (565, 665)),
     ((110, 220), (220, 330), (330, 440), (440, 550), (625, 735)),
+    ((120, 240), (240, 360), (360, 480), (480, 600), (690, 810)),
+    ((140, 260), (260, 380), (380, 500), (500, 620), (780, 900)),
+    ((145, 285), (285, 425), (425, 565), (565, 705), (865, 1005)),
+    ((150, 310), (310, 470), (470, 630), (630, 790), (975, 1135)),
+    ((180, 350), (350, 520), (520, 690), (690, 860), (1095, 1265)),
+    ((200, 390), (390, 580), (580, 770), (770, 960), (1215, 1405)),
 )
+
+
+LARGEST_BORE = 1e-3 * _CLEARANCE_RANGES[-1]  # for which ISO 5753-1 has clearances [m]
 
 
 class Limits(NamedTuple):
@@ -99,8 +135,8 @@ class Limits(NamedTuple):
 def _row(ranges: tuple[int, ...], diameter: float, what: str) -> int:
     millimetres = 1e3 * diameter
     row = bisect.bisect_left(ranges, millimetres - 1e-9)
-    if row == len(ranges) or millimetres < 3.0:
-        raise ValueError(f"{what} is tabulated for diameters of 3 to {ranges[-1]} mm, found {millimetres:.6g} mm; give a number instead")
+    if row == len(ranges):
+        raise ValueError(f"{what} is tabulated for diameters up to {ranges[-1]} mm, found {millimetres:.6g} mm; give a number instead")
     return row
 
 

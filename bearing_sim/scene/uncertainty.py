@@ -24,7 +24,7 @@ from pydantic_core import PydanticCustomError
 
 from bearing_sim.scene.quantity import SPEED, Quantity, check, record
 
-BLOCKS = ("bearing", "lubricant", "operating")  # of a scene; their quantities may have ranges
+BLOCKS = ("bearing", "lubricant", "operating", "mounting")  # of a scene; their quantities may have ranges
 _ENDS, _WORDS = ("low", "high", "mode"), ("distribution", "source")
 _CLOSE_ENOUGH = 0.6  # of difflib's ratio
 

@@ -12,7 +12,7 @@ from bearing_sim.levels.common.slice_balance import about_yz, balance, leaning, 
 from bearing_sim.model.oil import oil_at
 from bearing_sim.model.params import lubricate, pack
 from bearing_sim.physics.film import DOWSON_HIGGINSON, films
-from bearing_sim.physics.growth import total_growth
+from bearing_sim.physics.growth import Clearance, clearance_at, total_growth
 from bearing_sim.physics.lamina_life import EquivalentLoads, add_lamina_powers, equivalent_lamina_loads, stress_risers
 from bearing_sim.physics.rating_life import ROTATING_EXPONENT, STATIONARY_EXPONENT, Lives, oil_factors, rate_lives
 from bearing_sim.scene.scene import Scene
@@ -38,6 +38,7 @@ class Statics(NamedTuple):
     moment: tuple[float, float]  # on the inner ring: magnitude [N m], and azimuth towards which it tilts the +x end [rad]
     equivalent_loads: EquivalentLoads  # over one roller pitch; those by laminae are of the slices
     lives: Lives  # with the lives in hours; infinite at rest
+    clearance: Clearance  # of the running bearing, with its parts
     film: float  # least film thickness of the most heavily loaded contact [m]; NaN at rest and without load
 
 
@@ -104,6 +105,7 @@ def statics(scene: Scene, slices: int) -> Statics:
         moment=leaning(float(at.reaction[2]), float(at.reaction[3])),
         equivalent_loads=equivalent,
         lives=lives._replace(**{name: hours * getattr(lives, name) for name in ("basic", "modified", "l10", "lnm", "l10r", "lnmr")}),
+        clearance=clearance_at(operating.shaft_speed, lubrication.growth, params),
         film=_least_film(scene, params, speed, float(inner.max())),
     )
 

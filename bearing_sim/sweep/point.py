@@ -27,6 +27,7 @@ class Column(NamedTuple):
 
 
 LIVES = tuple(each.name for each in OBSERVABLES if each.unit == "h")
+_CLEARANCES = tuple(each.name for each in OBSERVABLES if each.name.endswith("_clearance"))
 _MEANS = ("inner_equivalent_load", "outer_equivalent_load", "land_eccentricity")
 _POWERS = tuple(each.name for each in OBSERVABLES if each.name.endswith("_power"))
 _OBSERVED = {each.name: each for each in OBSERVABLES}
@@ -44,6 +45,7 @@ RESULTS = (
     Column("inner_load_maximum", "N", "largest normal force between a roller and the inner raceway over a roller pitch of cage rotation"),
     Column("outer_load_maximum", "N", "largest normal force between a roller and the outer raceway over a roller pitch of cage rotation"),
     Column("loaded_rollers", "", "rollers between both raceways at an instant, mean"),
+    *(Column(name, "um", f"{_OBSERVED[name].meaning}; mean", 1e6) for name in _CLEARANCES),
     *_observed(_MEANS),
     *_observed(_POWERS),
     Column("simulated", "s", "simulated time; results are of its end"),
@@ -91,7 +93,7 @@ def point_row(scene: Scene, duration: float = DURATION) -> dict:
         found[f"{ring}_load_maximum"] = outcome.pitch[f"{ring}_load"].max()
     found["loaded_rollers"] = (window["inner_load"] > 0.0).sum(axis=1).mean()
     found |= {name: mean_life(window[name]) for name in LIVES}
-    found |= {name: window[name].mean() for name in (*_MEANS, *_POWERS)}
+    found |= {name: window[name].mean() for name in (*_CLEARANCES, *_MEANS, *_POWERS)}
     row = {column.name: column.factor * float(found[column.name]) for column in RESULTS}
     judged = {"status": OK if outcome.settled else UNSETTLED, "reason": outcome.reason}
     return row | judged | {"warnings": cell(outside(scene, window))}

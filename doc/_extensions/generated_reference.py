@@ -357,6 +357,7 @@ EVENTS = {
     "solver.crashed": ("ERROR", "the solver thread ended by a programming error; restart the node"),
     "solver.failed": ("ERROR", "time could not be advanced; the last good state is held"),
     "solver.recovered": ("OK", "time advances again"),
+    "validity.clearance": ("WARN", "the inner ring is stressed beyond its strength, or has lost its fit on the shaft"),
     "validity.contact": ("WARN", "the elastic contact is outside of its range, such as a Hertz pressure above 4 GPa"),
     "validity.drag": ("WARN", "the drag of the oil-air mixture is used outside of its range"),
     "validity.film": ("WARN", "a film formula is used outside of its range"),
