@@ -157,6 +157,7 @@ class Simulation:
         self._lubrication = lubricate(self.scene.lubricant, self._params, self.inputs.oil_temperature)
         self._newest = flat(new_block(1, self._params.rollers.count))[0]
         before = flat(previous)[0]
+        self._newest[COLUMN.shaft_angle] = before[COLUMN.shaft_angle]
         self._level.observe(self.time, state, self._model(self.inputs, 1.0), self._work, 0.0, before, self._newest, self._memory.scratch[0])
         self._newest[COLUMN.level] = NUMBERS[self.scene.level]
         self._newest[_MEASURED_COLUMNS] = self.inputs[-len(RING_TEMPERATURES) :]
@@ -174,6 +175,7 @@ class Simulation:
             (end.load_y - now.load_y) / duration,
             now.load_z,
             (end.load_z - now.load_z) / duration,
+            float(self._newest[COLUMN.shaft_angle]),
         )
         return Model(self._params, self._lubrication, drive, self._tolerances)
 

@@ -16,7 +16,7 @@ from bearing_sim.numerics.simd import LANES
 INDEPENDENT = [
     "integration.fixed_step=10 us",  # loose rollers hit hard and ring at 70 kHz: longer steps are 10 % off where slip is largest
     "bearing.contact.damping=0.3",
-    "bearing.inner_raceway.supported_mass=0.25",
+    "support.shaft.mass=0.25",
     "bearing.outer_raceway.contour_slope=false",
     "bearing.cage.land_film=4.5 um",
     "bearing.cage.land_squeeze=false",

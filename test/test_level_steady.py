@@ -38,7 +38,7 @@ def answer(of, rpm=45000.0, load=800.0, kelvin=393.15, angle=0.0):
 def problem(of, rpm=45000.0, load=800.0, kelvin=393.15, angles=11):
     """Model, workspace and orbit of an operating point."""
     params = pack(of)
-    drive = Drive(0.0, rpm * RPM, 0.0, load, 0.0, 0.0, 0.0)
+    drive = Drive(0.0, rpm * RPM, 0.0, load, 0.0, 0.0, 0.0, 0.0)
     model = Model(params, lubricate(of.lubricant, params, kelvin), drive, DEFAULT_TOLERANCES)
     return model, slip_state.new_work(params), new_orbit(params.rollers.count, angles)
 

@@ -130,7 +130,7 @@ def power_at(run, state):
     model = run._model(run.inputs, 1.0)
     model = model._replace(drive=model.drive._replace(shaft_speed=SHAFT_SPEED))
     equations(0.0, state, model, run._work, np.zeros_like(state), False)
-    return planar_powers(state, SHAFT_SPEED, model, run._work)
+    return planar_powers(0.0, state, SHAFT_SPEED, model, run._work)
 
 
 @pytest.mark.parametrize("eccentricity", [0.1, 0.5, 0.9])

@@ -17,8 +17,8 @@ from bearing_sim.numerics.simd import by_roller
 from bearing_sim.physics.contact import CONTACT
 from bearing_sim.physics.load_balance import LOAD as LOAD_ROW
 
-LOSSES = ("inner_sliding", "outer_sliding", "inner_rolling", "outer_rolling", "churning", "windage", "land", "pocket", "damping", "seal")
-ABSENT = ("inner_rolling", "outer_rolling", "seal")  # in the stock scene
+LOSSES = ("inner_sliding", "outer_sliding", "inner_rolling", "outer_rolling", "churning", "windage", "land", "pocket", "damping", "seal", "support")
+ABSENT = ("inner_rolling", "outer_rolling", "seal", "support")  # in the stock scene
 LOAD = np.array([700.0, -300.0])
 SHAFT_SPEED = 4500.0
 
@@ -28,7 +28,7 @@ def simulation(level, *overrides):
 
 
 def model_of(run):
-    return run._model(run.inputs, 1.0)._replace(drive=Drive(0.0, SHAFT_SPEED, 3e4, LOAD[0], 0.0, LOAD[1], 0.0))
+    return run._model(run.inputs, 1.0)._replace(drive=Drive(0.0, SHAFT_SPEED, 3e4, LOAD[0], 0.0, LOAD[1], 0.0, 0.0))
 
 
 def rollers_of(state):
@@ -97,7 +97,7 @@ def planar_gap(run, state):
     """Power given less power lost and stored, and the largest of them all [W]."""
     rate, model = np.zeros_like(state), model_of(run)
     planar.rhs(0.0, state, model, run._work, rate)
-    powers = planar_powers(state, SHAFT_SPEED, model, run._work)
+    powers = planar_powers(0.0, state, SHAFT_SPEED, model, run._work)
     stored = energy_rate(run, state, rate)
     return powers.shaft + LOAD @ state[5:7] - sum(powers[1:]) - stored, max(*powers, abs(stored)), powers
 
@@ -169,7 +169,7 @@ def test_every_force_of_level_slip_stands_in_the_books(seed, options):
     leaning = state[1] * (lever - 2 * mass * state[1] ** 2 * slope * radius).sum()
     assert powers.shaft + leaning - sum(powers[1:]) == pytest.approx(stored, abs=1e-9 * sum(map(abs, powers)))
     resisted, sealed = "lubricant.rolling_resistance=hydrodynamic" in options, "bearing.seals=skf" in options
-    absent = {"damping", *(() if resisted else ("inner_rolling", "outer_rolling")), *(() if sealed else ("seal",))}
+    absent = {"damping", "support", *(() if resisted else ("inner_rolling", "outer_rolling")), *(() if sealed else ("seal",))}
     assert all((lost == 0.0) if name in absent else (lost > 0.0) for name, lost in powers._asdict().items() if name != "shaft")
 
 

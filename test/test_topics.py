@@ -178,7 +178,10 @@ WIRE = {
             ("contour_clearance", "m"),
         ],
     ),
-    "centre_positions": ("inner ring y, z, cage y, z", [("ring_y", "m"), ("ring_z", "m"), ("cage_y", "m"), ("cage_z", "m")]),
+    "centre_positions": (
+        "inner ring y, z, cage y, z, outer ring y, z, shaft y, z",
+        [(f"{body}_{axis}", "m") for body in ("ring", "cage", "outer_ring", "shaft") for axis in "yz"],
+    ),
     "axis_tilts": (
         "inner ring y, z, cage y, z",
         [("ring_tilt_y", "rad"), ("ring_tilt_z", "rad"), ("cage_tilt_y", "rad"), ("cage_tilt_z", "rad")],
@@ -188,7 +191,7 @@ WIRE = {
         [("inner_pressure", "Pa"), ("outer_pressure", "Pa"), ("inner_edge_pressure", "Pa"), ("outer_edge_pressure", "Pa")],
     ),
     "power": (
-        "shaft, inner sliding, outer sliding, churning, windage, land, pocket, damping, inner rolling, outer rolling, seal, friction moment",
+        "shaft, inner sliding, outer sliding, churning, windage, land, pocket, damping, inner rolling, outer rolling, seal, support, friction moment",
         [
             ("shaft_power", "W"),
             ("inner_sliding_power", "W"),
@@ -201,6 +204,7 @@ WIRE = {
             ("inner_rolling_power", "W"),
             ("outer_rolling_power", "W"),
             ("seal_power", "W"),
+            ("support_power", "W"),
             ("friction_moment", "N*m"),
         ],
     ),

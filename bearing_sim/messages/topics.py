@@ -155,13 +155,16 @@ ARRAYS = {
         "running, initial, fits, rotation, heat, contour",
         ("running_clearance", "initial_clearance", "fit_clearance", "rotation_clearance", "heat_clearance", "contour_clearance"),
     ),
-    "centre_positions": ArrayRows("inner ring y, z, cage y, z", ("ring_y", "ring_z", "cage_y", "cage_z")),
+    "centre_positions": ArrayRows(
+        "inner ring y, z, cage y, z, outer ring y, z, shaft y, z",
+        ("ring_y", "ring_z", "cage_y", "cage_z", "outer_ring_y", "outer_ring_z", "shaft_y", "shaft_z"),
+    ),
     "axis_tilts": ArrayRows("inner ring y, z, cage y, z", ("ring_tilt_y", "ring_tilt_z", "cage_tilt_y", "cage_tilt_z")),
     "slice_pressures": ArrayRows(
         "inner, outer, inner end slices, outer end slices", ("inner_pressure", "outer_pressure", "inner_edge_pressure", "outer_edge_pressure")
     ),
     "power": ArrayRows(
-        "shaft, inner sliding, outer sliding, churning, windage, land, pocket, damping, inner rolling, outer rolling, seal, friction moment",
+        "shaft, inner sliding, outer sliding, churning, windage, land, pocket, damping, inner rolling, outer rolling, seal, support, friction moment",
         (
             "shaft_power",
             "inner_sliding_power",
@@ -174,6 +177,7 @@ ARRAYS = {
             "inner_rolling_power",
             "outer_rolling_power",
             "seal_power",
+            "support_power",
             "friction_moment",
         ),
     ),
@@ -253,7 +257,7 @@ OUTPUTS = {
         _array("rating_lives", "rating lives [h] by ISO 281 (L10, L_nm) and by ISO/TS 16281 (L10r, L_nmr)"),
         _array("life_factors", "equivalent and reference load P, P_ref [N], kappa, e_C, a_ISO at P and of the laminae, static safety S_0"),
         _array("running_clearance", "diametral clearance [m], negative is preload: of the running bearing, and its parts"),
-        _array("centre_positions", "displacements [m]: inner ring y, z, cage y, z"),
+        _array("centre_positions", "displacements [m]: inner ring and cage from the outer ring, outer ring and shaft in space, y, z each"),
         _array("axis_tilts", "tilts [rad]: inner ring towards y, z, cage towards y, z", True),
         _array("slice_pressures", "largest Hertzian pressures [Pa]: inner, outer raceway, and of the rollers' end slices alone", True),
         _array("power", "power [W]: what the shaft puts in, then what is lost, by cause; and the frictional moment [N*m]"),

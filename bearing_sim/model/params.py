@@ -16,6 +16,7 @@ from bearing_sim.physics.growth import Growth, Mounted, Temperatures, growth_at
 from bearing_sim.physics.lamina_life import Laminae, new_laminae
 from bearing_sim.physics.raceway import tabulated
 from bearing_sim.physics.rating_life import CLEANLINESS, METHODS, reliability_factor, ring_ratings
+from bearing_sim.physics.squeeze_film import SqueezeFilm, new_squeeze_film
 from bearing_sim.physics.traction import TractionConstants, constant_constants, kragelskii_constants, oil_4109_constants, thermal_eyring_constants
 from bearing_sim.scene.bearing import Roller
 from bearing_sim.scene.contour import outer_contour
@@ -23,6 +24,7 @@ from bearing_sim.scene.crown import crown_drops, slice_middles
 from bearing_sim.scene.lubricant import ConstantTraction, EyringTraction, HydrodynamicRollingResistance, KragelskiiTraction, OilBath
 from bearing_sim.scene.ratings import rate
 from bearing_sim.scene.scene import Bearing, Lubricant, Scene
+from bearing_sim.scene.support import settled_support
 
 
 class Rollers(NamedTuple):
@@ -78,6 +80,35 @@ class CageBody(NamedTuple):
     inner_radius: float  # of the cage [m]
     outer_width: float  # of its outer surface, without what runs on lands [m]
     inner_width: float  # of its bore, likewise [m]
+
+
+class Mount(NamedTuple):
+    """A body on a spring and a damper in each direction."""
+
+    mass: float  # [kg]
+    stiffness_y: float  # [N/m]
+    stiffness_z: float
+    damping_y: float  # [N s/m]
+    damping_z: float
+
+
+class Unbalance(NamedTuple):
+    """Unbalance of the shaft."""
+
+    amount: float  # m e [kg m]
+    angle: float  # of the eccentricity before the shaft's angle [rad]
+
+
+class Support(NamedTuple):
+    """What carries the bearing, see `bearing_sim.levels.common.support`; what does not move has mass 1 and neither spring nor damper."""
+
+    active: bool  # whether anything of this is there
+    shaft_bends: float  # 1 where the shaft's mass is a body of its own behind a spring, 0 where it moves with the inner ring
+    outer_moves: float  # 1 where the outer ring is a body on springs, 0 where it is held
+    shaft: Mount
+    outer_ring: Mount
+    film: SqueezeFilm  # around the outer ring
+    unbalance: Unbalance
 
 
 class Ring(NamedTuple):
@@ -158,6 +189,7 @@ class Params(NamedTuple):
     mounted: Mounted  # what the clearance of the running bearing follows from
     slices: Slices
     tilts: Tilts
+    support: Support
     variants: Variants
     envelope: Envelope
 
@@ -236,11 +268,12 @@ def pack(scene: Scene) -> Params:
             outer_width=cage.width - (land_width if cage.guidance == "outer_ring" else 0.0),
             inner_width=cage.width - (land_width if cage.guidance == "inner_ring" else 0.0),
         ),
-        ring=Ring(bearing.inner_raceway.ring_mass + bearing.inner_raceway.supported_mass, bearing.contact.damping),
+        ring=Ring(bearing.inner_raceway.ring_mass + (0.0 if scene.support.shaft_bends else scene.support.shaft.mass), bearing.contact.damping),
         life=_life(scene),
         mounted=mounted(bearing, scene.mounting),
         slices=_slices(bearing),
         tilts=_tilts(scene, mass),
+        support=_support(scene),
         variants=Variants(
             contour_slope=float(bearing.outer_raceway.contour_slope),
             land_squeeze=float(cage.land_squeeze),
@@ -263,7 +296,7 @@ def _tilts(scene: Scene, roller_mass: float) -> Tilts:
     bearing, operating = scene.bearing, scene.operating
     cage, inner = bearing.cage, bearing.inner_raceway
     polar = cage.polar_inertia if cage.polar_inertia is not None else cage.mass * bearing.pitch_radius**2
-    ring_polar = inner.polar_inertia if inner.polar_inertia is not None else 0.5 * (inner.ring_mass + inner.supported_mass) * inner.radius**2
+    ring_polar = inner.polar_inertia if inner.polar_inertia is not None else 0.5 * (inner.ring_mass + scene.support.shaft.mass) * inner.radius**2
     at_edges = cage.width - cage.guide_land_width if cage.has_lands else cage.width
     distance = cage.guide_land_distance if cage.guide_land_distance is not None else at_edges
     moment = operating.moment if operating.moment is not None else 0.0
@@ -279,6 +312,27 @@ def _tilts(scene: Scene, roller_mass: float) -> Tilts:
         misalignment_y=operating.misalignment * math.cos(operating.misalignment_angle),
         misalignment_z=operating.misalignment * math.sin(operating.misalignment_angle),
     )
+
+
+def _support(scene: Scene) -> Support:
+    given = scene.support
+    settled = settled_support(given, scene.bearing)
+    film = settled.outer_ring.squeeze_film if settled.outer_ring is not None else None
+    return Support(
+        active=given.is_active,
+        shaft_bends=float(given.shaft_bends),
+        outer_moves=float(given.outer_ring_moves),
+        shaft=_mount(settled.shaft if given.shaft_bends else None),
+        outer_ring=_mount(settled.outer_ring),
+        film=SqueezeFilm(0.0, 1.0) if film is None else new_squeeze_film(film.radius, film.length, film.clearance, film.cavitates),
+        unbalance=Unbalance(given.unbalance.amount, given.unbalance.angle),
+    )
+
+
+def _mount(body) -> Mount:
+    if body is None:
+        return Mount(1.0, 0.0, 0.0, 0.0, 0.0)
+    return Mount(body.mass, body.stiffness, body.stiffness_z, body.damping, body.damping_z)
 
 
 def _life(scene: Scene) -> Life:

@@ -165,7 +165,7 @@ def _ring_mass(bearing: Bearing) -> list[str]:
         return []
     return [
         f"bearing.inner_raceway.ring_mass: {1e3 * ring.ring_mass:.4g} g; expected {1e3 * low:.4g} to {1e3 * high:.4g} g by raceway, bore and roller "
-        f"length (within a factor of {_MASS_FACTOR:g}); give the mass of the ring; that of the shaft belongs into supported_mass"
+        f"length (within a factor of {_MASS_FACTOR:g}); give the mass of the ring; that of the shaft belongs into support.shaft.mass"
     ]
 
 

@@ -81,7 +81,6 @@ class InnerRaceway:
 
     radius: quantity("m", "inner raceway radius, R_i", 1e-3, 2.0, "mm")
     ring_mass: quantity("kg", "mass of the inner ring", 1e-4, 1e3) = 0.05
-    supported_mass: quantity("kg", "mass of the shaft that moves with the inner ring", 0.0, 1e5) = 0.5
     polar_inertia: quantity("kg*m^2", "inertia of ring and shaft about the shaft axis; None: a solid cylinder", 1e-12, 1e6) | None = None
     transverse_inertia: quantity("kg*m^2", "their inertia about a diameter; None: half of the polar one", 1e-12, 1e6) | None = None
     bore_radius: quantity("m", "bore radius of the inner ring", 1e-3, 2.0, "mm") | None = None

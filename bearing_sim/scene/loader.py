@@ -86,6 +86,7 @@ _MATERIALS = (("bearing", "material"), ("bearing", "cage", "material"), ("mounti
 _RACEWAY_RADII = tuple(f"outer_raceway.{name}" for name in ("low_radius", "low_points", "high_points", "contour", "contour_file"))
 # What older scenes say, and what says it now.
 _RENAMED = {
+    "bearing.inner_raceway.supported_mass": "the shaft's mass is support.shaft.mass",
     "lubricant.pumping": "give lubricant.rolling_resistance: hydrodynamic, or none",
     "bearing.ring_growth": "bearing.dimensions_at: cold computes rotation, mounting the fits, heat the temperatures",
 }

@@ -17,6 +17,7 @@ from bearing_sim.scene.lubricant import Lubricant
 from bearing_sim.scene.mounting import Mounting, mounting_errors
 from bearing_sim.scene.quantity import check, quantity, record
 from bearing_sim.scene.ratings import rate
+from bearing_sim.scene.support import Support, support_errors
 from bearing_sim.scene.uncertainty import Range, range_errors
 
 _LONGEST_STEP = 0.5  # roller pitches of cage rotation in a fixed step
@@ -281,6 +282,7 @@ class Scene:
     lubricant: Lubricant
     operating: Operating
     mounting: Mounting = field(default_factory=Mounting)
+    support: Support = field(default_factory=Support)
     dynamics: Dynamics = field(default_factory=Dynamics)
     integration: Integration = field(default_factory=Integration)
     input_limits: InputLimits = field(default_factory=InputLimits)
@@ -327,7 +329,8 @@ class Scene:
 
     @check
     def _operation_is_within_bounds(self) -> list[str]:
-        return step_errors(self) + moment_errors(self) + mounting_errors(self.bearing, self.mounting) + range_errors(self)
+        errors = step_errors(self) + moment_errors(self) + mounting_errors(self.bearing, self.mounting) + support_errors(self)
+        return errors + range_errors(self)
 
 
 def moment_errors(scene) -> list[str]:

@@ -84,7 +84,8 @@ def scaled_scene(level: str, speed_rpm: float, rollers: int) -> Scene:
     rollers : Z.
     """
     ratio = rollers / STOCK_ROLLERS
-    bearing = load_scene(BEARING).bearing
+    scene = load_scene(BEARING)
+    bearing = scene.bearing
     outward = bearing.pitch_radius * (ratio - 1.0)
     inner, cage = bearing.inner_raceway, bearing.cage
     overrides = [
@@ -96,7 +97,7 @@ def scaled_scene(level: str, speed_rpm: float, rollers: int) -> Scene:
         f"bearing.cage.guide_radius={cage.guide_radius + outward}",
         f"bearing.cage.mass={cage.mass * ratio}",
         f"bearing.inner_raceway.ring_mass={inner.ring_mass * ratio}",
-        f"bearing.inner_raceway.supported_mass={inner.supported_mass * ratio}",
+        f"support.shaft.mass={scene.support.shaft.mass * ratio}",
     ]
     return bench_scene(level, speed_rpm / ratio, overrides)
 
@@ -108,7 +109,7 @@ def bare_problem(scene: Scene) -> Problem | None:
         return None
     params, inputs = pack(scene), scene_inputs(scene)
     lubrication = lubricate(scene.lubricant, params, inputs.oil_temperature)
-    drive = Drive(0.0, inputs.shaft_speed, 0.0, inputs.load_y, 0.0, inputs.load_z, 0.0)
+    drive = Drive(0.0, inputs.shaft_speed, 0.0, inputs.load_y, 0.0, inputs.load_z, 0.0, 0.0)
     model = Model(params, lubrication, drive, tolerances_of(scene.integration))
     return Problem(kernels, model, LEVELS[scene.level].new_work(params), Simulation(scene).state)
 

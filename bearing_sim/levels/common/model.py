@@ -23,12 +23,20 @@ class Drive(NamedTuple):
     load_y_rate: float  # [N/s]
     load_z: float
     load_z_rate: float
+    shaft_angle: float  # at the start [rad]
 
 
 @template
 def shaft_speed_at(t, drive):
     """Return the shaft speed [rad/s] at a time [s]."""
     return drive.shaft_speed + drive.shaft_acceleration * (t - drive.start)
+
+
+@template
+def shaft_angle_at(t, drive):
+    """Return the shaft's angle [rad] at a time [s]."""
+    elapsed = t - drive.start
+    return drive.shaft_angle + (drive.shaft_speed + 0.5 * drive.shaft_acceleration * elapsed) * elapsed
 
 
 @template

@@ -6,8 +6,8 @@ At each instant, with exactly the forces of the level's equations of motion,
     shaft_power + (power of the radial load) = sum of the losses + d(kinetic + elastic energy)/dt.
 
 A loss is force times sliding speed, or force times rate of approach.  The shaft puts power in through the tractions on the inner
-ring, through the resistance to rolling there, through the mixture in the cage's bore, through guide lands where they are the inner ring's, and
-through seals; what the ring and the shaft do to the mixture elsewhere is outside the model.
+ring, through the resistance to rolling there, through the mixture in the cage's bore, through guide lands where they are the inner ring's, through
+seals, and through an unbalance; what the ring and the shaft do to the mixture elsewhere is outside the model.
 """
 
 import math
@@ -34,6 +34,7 @@ class Powers(NamedTuple):
     pocket: float
     damping: float
     seal: float
+    support: float
 
 
 @kernel
@@ -50,6 +51,7 @@ def write_powers(powers, row):
     row[COLUMN.pocket_power] = powers.pocket
     row[COLUMN.damping_power] = powers.damping
     row[COLUMN.seal_power] = powers.seal
+    row[COLUMN.support_power] = powers.support
     write_friction_moment(row)
 
 

@@ -4,13 +4,15 @@
 From a sample come cage angle and speed, the rollers' positions, orbital speeds and spins, and all tilts.  What a sample does not hold
 starts at rest: the radial speeds of rollers and the speeds of ring centre, cage centre and tilts; contacts damp these within a
 millisecond.  Spins that a level does not compute (``steady``) start as rolling on the outer raceway.  If the sample's level has no whirl,
-its cage is in the centre of what guides it and starts to whirl as at the beginning of a run.
+its cage is in the centre of what guides it and starts to whirl as at the beginning of a run; if it has no vibration, outer ring and
+shaft start where load and springs hold them.
 """
 
 import math
 
 import numpy as np
 
+from bearing_sim.levels.common.support import place_support, resume_support, tail_of
 from bearing_sim.levels.planar import state as planar
 from bearing_sim.levels.slip import model as slip
 from bearing_sim.levels.slip import state as slip_state
@@ -20,7 +22,9 @@ from bearing_sim.physics.growth import cold_growth, total_growth
 from bearing_sim.physics.lamina_life import single_load_moments
 from bearing_sim.physics.load_balance import LOAD
 from bearing_sim.physics.rating_life import OilFactors
+from bearing_sim.scene.fidelity import NUMBERS, WHIRLING
 
+_VIBRATING = tuple(NUMBERS[level] for level in WHIRLING)
 _FIRST_ECCENTRICITY = 0.3  # of the guide clearance; assumption: a cage exactly in the centre would have no direction to whirl from
 
 
@@ -41,10 +45,9 @@ def rolling_state(at, params, work, shaft_speed, load_y, load_z):
     pitch_loads(0.0, cage_speed, load_y, load_z, OilFactors(1.0, 1.0), params, balance)  # for the moments, which no oil changes
     work.load_moments[:] = balance.load_moments
     balance_loads(0.0, cage_speed, load_y, load_z, params, balance)
-    state = np.zeros(2 * at.BORDER + at.BLOCK * count)
+    state, rollers = _new_state(at, params)
     state[at.RING_Y], state[at.RING_Z] = balance.ring
     state[at.OMEGA] = cage_speed
-    rollers = state[at.ROLLERS :].reshape(at.BLOCK, count)
     rollers[at.R] = balance.loads[LOAD.radius]
     rollers[at.PHI] = 2.0 * math.pi * np.arange(count) / count
     rollers[at.PHI_SPEED] = cage_speed
@@ -98,18 +101,27 @@ def _dynamic_state_at(at, params, work, sample):
     The running means of the rollers' loads continue from the sample, as if all rollers had its equivalent loads; those of laminae start with
     the first step.
     """
-    count = params.rollers.count
-    state = np.zeros(2 * at.BORDER + at.BLOCK * count)
+    state, rollers = _new_state(at, params)
     state[at.RING_Y], state[at.RING_Z] = sample["ring_y"], sample["ring_z"]
     whirls = math.hypot(sample["cage_y"], sample["cage_z"]) > 0.0
     centre = (sample["cage_y"], sample["cage_z"]) if whirls else first_cage_centre(params, sample["ring_y"], sample["ring_z"])
     state[at.CAGE_Y], state[at.CAGE_Z] = centre
     state[at.THETA], state[at.OMEGA] = sample["cage_angle"], sample["cage_speed"]
-    rollers = state[at.ROLLERS :].reshape(at.BLOCK, count)
     rollers[at.R], rollers[at.PHI] = sample["roller_radius"], _roller_angles(sample)
     rollers[at.PHI_SPEED], rollers[at.SPIN] = sample["orbital_speed"], _spins(params, sample)
     work.load_moments[:] = single_load_moments(sample["inner_equivalent_load"], sample["outer_equivalent_load"])
+    if sample["level"] in _VIBRATING:
+        resume_support(params, state, sample)
+    else:
+        place_support(params, state, (sample["ring_y"], sample["ring_z"]), (sample["load_y"], sample["load_z"]))
     return state, rollers
+
+
+def _new_state(at, params):
+    """Return a zeroed state of a level with the tail of its support, and its part of the rollers, shape (BLOCK, Z)."""
+    rollers, count = 2 * at.BORDER, params.rollers.count
+    state = np.zeros(rollers + at.BLOCK * count + tail_of(params.support))
+    return state, state[rollers : rollers + at.BLOCK * count].reshape(at.BLOCK, count)
 
 
 def _spins(params, sample):

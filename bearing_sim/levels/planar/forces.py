@@ -28,7 +28,15 @@ import math
 
 from bearing_sim.levels.common.model import inner_growth, load_at, shaft_speed_at
 from bearing_sim.levels.common.rollers import add, linear_churning, place_in_pockets, place_outwards, place_rollers
-from bearing_sim.levels.planar.jacobian import guide_jacobian, land_contact_jacobian, react_on_ring, resistance_jacobian, roller_jacobian
+from bearing_sim.levels.common.support import follow_frame, momentum_rate, support_accelerations, support_jacobian
+from bearing_sim.levels.planar.jacobian import (
+    guide_jacobian,
+    land_contact_jacobian,
+    react_on_ring,
+    react_on_support,
+    resistance_jacobian,
+    roller_jacobian,
+)
 from bearing_sim.levels.planar.state import (
     BORDER,
     CAGE_Y,
@@ -241,8 +249,25 @@ def equations(t, y, model, work, rate, with_jacobian):
             resistance_jacobian(y, inner_radius, params, rows, contacts, work.jacobian)
         if pockets_guide:
             guide_jacobian(y, params, rows, work.jacobian)
+    if params.support.active:
+        _carry(t, y, model, work, rate, with_jacobian)
     collect_rates(y, params.rollers.count, rows, rate)
     return True
+
+
+@kernel
+def _carry(t, y, model, work, rate, with_jacobian):
+    """Let the support move the outer ring and the shaft, and everything else with them; see `bearing_sim.levels.common.support`."""
+    params, rows, support = model.params, work.rollers, work.support
+    momentum_y, momentum_z = momentum_rate(ROLLER, params, rows)
+    momentum_y += params.ring.mass * rate[BORDER + RING_Y] + params.cage.mass * rate[BORDER + CAGE_Y]
+    momentum_z += params.ring.mass * rate[BORDER + RING_Z] + params.cage.mass * rate[BORDER + CAGE_Z]
+    support_accelerations(t, y, BORDER, CAGE_Y, momentum_y, momentum_z, model, rate, support)
+    if with_jacobian:
+        support_jacobian(y, BORDER, CAGE_Y, model, support)
+        react_on_support(params, rows, work.border_own, work.jacobian, support)
+    for block in range(rows.shape[0]):
+        follow_frame(ROLLER, block, support.frame, rows)
 
 
 @kernel

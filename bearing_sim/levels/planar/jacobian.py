@@ -33,6 +33,7 @@ the border's Schur complement.  Cost O(Z).
 """
 
 from bearing_sim.levels.common.rollers import add
+from bearing_sim.levels.common.support import react_by_border, react_by_rollers, turn_frame
 from bearing_sim.levels.planar.state import (
     AT_POSITIONS,
     AT_SPEEDS,
@@ -52,6 +53,7 @@ from bearing_sim.levels.planar.state import (
     RING_Y,
     RING_Z,
     ROLLER,
+    ROLLERS,
     SPIN,
     THETA,
     R,
@@ -504,6 +506,38 @@ def react_on_ring(params, own, rate, with_jacobian):
     for axis in range(2):
         for column in range(2 * BORDER):
             own[RING_Y + axis, column] = fraction * own[CAGE_Y + axis, column]
+
+
+@kernel
+def react_on_support(params, rows, own, jacobian, support):
+    """Write what all bodies do to the outer ring that a support carries; see `bearing_sim.levels.common.support`.
+
+    Parameters
+    ----------
+    params : of the bearing.
+    rows : of the rollers; accelerations and derivatives as they are without the frame's acceleration.
+    own : derivatives of the border's accelerations by border positions and speeds.
+    jacobian : derivatives through each roller; changed by how the frame's acceleration turns with them.
+    support : `bearing_sim.levels.common.support.SupportWork`; changed.
+    """
+    count, per_mass = params.rollers.count, params.support.outer_moves / params.support.outer_ring.mass
+    at = R, PHI, R_SPEED, PHI_SPEED, BLOCK, ROLLERS
+    react_by_rollers(ROLLER, at, LOCAL, count, per_mass * params.rollers.mass, rows, jacobian, support)
+    for m in range(2 * BORDER):
+        column = AT_POSITIONS + m
+        react_by_border(m, column, LOCAL, ROLLER.cosine, ROLLER.sine, ROLLER.radius, count, per_mass * params.rollers.mass, rows, jacobian, support)
+    for k in range(CAGE_Z + 1):
+        mass, reaction = per_mass * (params.ring.mass if k < RING else params.cage.mass), support.reaction[k % 2]
+        for m in range(2 * BORDER):
+            reaction[m] -= mass * own[k, m]
+        for j in range(count):
+            block, lane, first = j // LANES, j % LANES, _PASSED + LOCAL * k
+            for m in range(BLOCK):
+                reaction[ROLLERS + m * count + j] -= mass * jacobian[block, first + m, lane]
+            for m in range(2 * BORDER):
+                reaction[m] -= mass * jacobian[block, first + AT_POSITIONS + m, lane]
+    for block in range(rows.shape[0]):
+        turn_frame(at, LOCAL, ROLLER, block, support.frame, rows, jacobian)
 
 
 @template

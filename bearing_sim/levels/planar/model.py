@@ -12,11 +12,12 @@ from bearing_sim.levels.common.observation import average_moments, observe_cours
 from bearing_sim.levels.common.power import write_powers
 from bearing_sim.levels.common.rollers import land_eccentricity, observe_rollers
 from bearing_sim.levels.common.state_transfer import first_cage_centre, rolling_state
+from bearing_sim.levels.common.support import factor_supported, observe_support, place_support, solve_supported, support_change
 from bearing_sim.levels.planar import jacobian
 from bearing_sim.levels.planar import state as planar_state
 from bearing_sim.levels.planar.forces import equations
 from bearing_sim.levels.planar.power import planar_powers
-from bearing_sim.levels.planar.state import CAGE_Y, CAGE_Z, OMEGA, RING_Y, RING_Z, ROLLER, ROLLERS, THETA
+from bearing_sim.levels.planar.state import BORDER, CAGE_Y, CAGE_Z, OMEGA, RING_Y, RING_Z, ROLLER, ROLLERS, THETA
 from bearing_sim.model.params import Params
 from bearing_sim.model.sample import COLUMN
 from bearing_sim.numerics.compilation import kernel
@@ -28,6 +29,7 @@ def initial_state(params: Params, work, shaft_speed, load_y, load_z):
     """Return ideal rolling; see `bearing_sim.levels.common.state_transfer.rolling_state`, also for the parameters."""
     state, _ = rolling_state(planar_state, params, work, shaft_speed, load_y, load_z)
     state[CAGE_Y], state[CAGE_Z] = first_cage_centre(params, state[RING_Y], state[RING_Z])
+    place_support(params, state, (state[RING_Y], state[RING_Z]), (load_y, load_z))
     return state
 
 
@@ -46,13 +48,13 @@ def rhs_and_jacobian(t, y, model, work, rate):
 @kernel
 def factor(shift, work):
     """Factor I - shift J; return False where it is singular."""
-    return jacobian.factor(work.jacobian, work.border_own, shift, work.factored)
+    return factor_supported(jacobian.factor, jacobian.solve, BORDER, shift, work)
 
 
 @kernel
 def solve(work, x):
     """Replace the right side ``x`` by the solution with the last factorisation."""
-    jacobian.solve(work.jacobian, work.factored, x)
+    solve_supported(jacobian.solve, BORDER, work, x)
 
 
 @kernel
@@ -69,6 +71,8 @@ def error_norm(t, y, change, model):
     largest = max(max(abs(change[RING_Y]), abs(change[RING_Z])) * position, max(abs(change[CAGE_Y]), abs(change[CAGE_Z])) * play)
     largest = max(largest, abs(change[OMEGA]) * speed)
     count = rollers.count
+    if model.params.support.active:
+        largest = max(largest, support_change(change) * position)
     for j in range(ROLLERS, ROLLERS + count):
         ratio = max(abs(change[j]) * position, abs(change[j + count] - change[THETA]) * offset)
         ratio = max(ratio, abs(change[j + 3 * count]) * speed, abs(change[j + 4 * count]) * spin)
@@ -101,6 +105,7 @@ def observe(t, y, model, work, interval, previous, row, rate):
     observe_course(t, y[THETA], y[OMEGA], equivalent, oil, model, interval, previous, row)
     row[COLUMN.ring_y], row[COLUMN.ring_z] = y[RING_Y], y[RING_Z]
     row[COLUMN.cage_y], row[COLUMN.cage_z] = y[CAGE_Y], y[CAGE_Z]
+    observe_support(y, y[RING_Y], y[RING_Z], model.params.support, row)
     row[COLUMN.land_eccentricity] = land_eccentricity(y[RING_Y], y[RING_Z], y[CAGE_Y], y[CAGE_Z], model.params.cage)
-    write_powers(planar_powers(y, shaft_speed_at(t, model.drive), model, work), row)
+    write_powers(planar_powers(t, y, shaft_speed_at(t, model.drive), model, work), row)
     observe_rollers(ROLLER, CONTACT.load, count, interval, rows, work.contacts, previous, row)

@@ -14,6 +14,7 @@ import math
 
 from bearing_sim.levels.common.model import inner_growth
 from bearing_sim.levels.common.power import Powers, rolling_power, seal_power, shaft_traction_power, sliding_power, windage_powers
+from bearing_sim.levels.common.support import support_powers
 from bearing_sim.levels.planar.forces import place_in_lands
 from bearing_sim.levels.planar.state import BORDER, CAGE_Y, CAGE_Z, OMEGA, ROLLER
 from bearing_sim.numerics.compilation import kernel
@@ -116,11 +117,12 @@ def land_powers(y, shaft_speed, model):
 
 
 @kernel
-def planar_powers(y, shaft_speed, model, work):
+def planar_powers(t, y, shaft_speed, model, work):
     """Return `bearing_sim.levels.common.power.Powers` of a state.
 
     Parameters
     ----------
+    t : time [s].
     y : the state.
     shaft_speed : [rad/s].
     model, work : of the level; the right-hand side at ``y`` has been evaluated into ``work``.
@@ -135,8 +137,12 @@ def planar_powers(y, shaft_speed, model, work):
         guided, touching = _guiding_pockets(y, params, work.rollers)
         pocket += guided
     blocks, seals = work.rollers.shape[0], seal_power(shaft_speed, params)
+    driven_unbalance, support = 0.0, 0.0
+    if params.support.active:
+        driven_unbalance, support = support_powers(t, y, BORDER, model)
+    inner_radius = params.raceways.inner_radius + inner_growth(shaft_speed, model)
     return Powers(
-        shaft_traction_power(contacts, count, shaft_speed, params.raceways.inner_radius + inner_growth(shaft_speed, model)) + bore + driven + seals,
+        shaft_traction_power(contacts, count, shaft_speed, inner_radius) + bore + driven + driven_unbalance + seals,
         sliding_power(contacts, 0, count),
         sliding_power(contacts, blocks, count),
         rolling_power(contacts, 0, count),
@@ -147,4 +153,5 @@ def planar_powers(y, shaft_speed, model, work):
         pocket,
         _raceway_damping(params, work) + walls + touching,
         seals,
+        support,
     )

@@ -11,8 +11,9 @@ is scalar and rises monotonically: a few Newton iterations for all rollers at on
 
 from bearing_sim.levels.common.model import inner_growth
 from bearing_sim.levels.common.rollers import follow_contour
+from bearing_sim.levels.common.support import extrapolate_support
 from bearing_sim.levels.planar.forces import normal_forces
-from bearing_sim.levels.planar.state import BORDER, R_SPEED, RING_Y, RING_Z, ROLLER, ROLLERS, R
+from bearing_sim.levels.planar.state import BLOCK, BORDER, R_SPEED, RING_Y, RING_Z, ROLLER, ROLLERS, R
 from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.simd import LANES, highest, larger, load, magnitude, spread, square_root, store
 from bearing_sim.physics.contact import CONTACT
@@ -31,6 +32,7 @@ def _extrapolate(known, shift, slope, count, guess):
         guess[j] = known[j] + shift * slope[j]
     for j in range(ROLLERS + count, ROLLERS + 2 * count):
         guess[j] = known[j] + shift * guess[j + 2 * count]
+    extrapolate_support(known, shift, slope, ROLLERS + BLOCK * count, guess)
 
 
 @kernel

@@ -2,8 +2,9 @@
 """What the planar level keeps: the order of its state, and the memory that it writes while it computes.
 
 State: y = (positions of the border, speeds of the border, r of all rollers, phi, r', phi', w); the border is inner ring y and
-z, cage y, z and angle.  A roller sees 15 variables: its own five, the border's five positions and five speeds; all derivatives
-are rows over these.
+z, cage y, z and angle.  With a support its `bearing_sim.levels.common.support.TAIL` states follow behind the rollers'.
+
+A roller sees 15 variables: its own five, the border's five positions and five speeds; all derivatives are rows over these.
 """
 
 import math
@@ -11,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.levels.common.support import SupportWork, new_support
 from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.simd import LANES, collect_runs, fill_lanes, new_blocks, new_rows, spread_runs
 from bearing_sim.physics.contact import CONTACT
@@ -104,6 +106,7 @@ class Work(NamedTuple):
     jacobian: np.ndarray  # derivatives through each roller, see `bearing_sim.levels.planar.state.JACOBIAN_ROWS`
     border_own: np.ndarray  # derivatives of the border's accelerations by border positions and speeds, shape (5, 10)
     factored: Factored  # of I - gamma h J
+    support: SupportWork
     # of roller loads, running means over a cage turn, see `bearing_sim.physics.lamina_life.add_load_moments`, shape (2, MOMENTS)
     load_moments: np.ndarray
 
@@ -122,6 +125,7 @@ def new_work(params):
         new_rows(JACOBIAN_ROWS, count),
         np.zeros((BORDER, 2 * BORDER)),
         new_factored(count),
+        new_support(params.support, 2 * BORDER + BLOCK * count),
         np.zeros((2, MOMENTS)),
     )
 

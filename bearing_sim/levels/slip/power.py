@@ -50,4 +50,5 @@ def slip_powers(cage_speed, cage_acceleration, spins, shaft_speed, model, work):
         pocket,
         0.0,
         seals,
+        0.0,
     )

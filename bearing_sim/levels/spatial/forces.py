@@ -25,10 +25,11 @@ import numpy as np
 
 from bearing_sim.levels.common.model import inner_growth, shaft_speed_at
 from bearing_sim.levels.common.rollers import add, linear_churning, place_in_pockets, place_outwards, place_rollers
+from bearing_sim.levels.common.support import follow_frame, momentum_rate, support_accelerations, support_jacobian
 from bearing_sim.levels.planar import state as planar
 from bearing_sim.levels.planar.forces import border_accelerations as planar_accelerations
 from bearing_sim.levels.planar.state import BORDER as PLANAR
-from bearing_sim.levels.spatial.jacobian import land_cage_jacobian, land_ring_jacobian, roller_jacobian
+from bearing_sim.levels.spatial.jacobian import land_cage_jacobian, land_ring_jacobian, react_on_support, roller_jacobian
 from bearing_sim.levels.spatial.slices import load_pieces, sum_resistance, sum_tractions
 from bearing_sim.levels.spatial.state import (
     BORDER,
@@ -368,8 +369,30 @@ def equations(t, y, model, work, rate, with_jacobian):
             guide_accelerations(block, params, rows, rate)
     if with_jacobian:
         roller_jacobian(y, inner_radius, churning, resistance, params, rows, contacts, work.chain, work.jacobian)
+    if params.support.active:
+        _carry(t, y, model, work, rate, with_jacobian)
     collect_rates(y, params.rollers.count, rows, rate)
     return True
+
+
+@kernel
+def _carry(t, y, model, work, rate, with_jacobian):
+    """Let the support move the outer ring and the shaft, and everything else with them; see `bearing_sim.levels.common.support`."""
+    params, rows, support = model.params, work.rollers, work.support
+    momentum_y, momentum_z = momentum_rate(ROLLER, params, rows)
+    momentum_y += params.ring.mass * rate[BORDER + RING_Y] + params.cage.mass * rate[BORDER + CAGE_Y]
+    momentum_z += params.ring.mass * rate[BORDER + RING_Z] + params.cage.mass * rate[BORDER + CAGE_Z]
+    support_accelerations(t, y, BORDER, CAGE_Y, momentum_y, momentum_z, model, rate, support)
+    if with_jacobian:
+        support_jacobian(y, BORDER, CAGE_Y, model, support)
+        react_on_support(params, rows, work.border_own, work.jacobian, support)
+    for block in range(rows.shape[0]):
+        turned = load(rows, block, ROLLER.orbital_acceleration)
+        follow_frame(ROLLER, block, support.frame, rows)
+        turned = load(rows, block, ROLLER.orbital_acceleration) - turned
+        # a roller's axis is described in the frame that turns with the orbit
+        add(rows, block, ROLLER.tilt_acceleration, turned * load(rows, block, ROLLER.skew))
+        add(rows, block, ROLLER.skew_acceleration, -(turned * load(rows, block, ROLLER.tilt)))
 
 
 @kernel

@@ -23,6 +23,7 @@ rates.  Their changes by the 18 variables of roller and cage are written once, i
 """
 
 from bearing_sim.levels.common.rollers import add
+from bearing_sim.levels.common.support import react_by_border, react_by_rollers, turn_frame
 from bearing_sim.levels.planar import state as planar
 from bearing_sim.levels.planar.state import BORDER as PLANAR
 from bearing_sim.levels.spatial.state import (
@@ -54,6 +55,7 @@ from bearing_sim.levels.spatial.state import (
     RING_Y,
     RING_Z,
     ROLLER,
+    ROLLERS,
     SKEW,
     SKEW_SPEED,
     SLICED,
@@ -737,6 +739,64 @@ def _land_pair(row, tilt_row, planar_row, lever, column, tilt_column, planar_col
     own[row, tilt_column] = 0.5 * position * (near - far)
     own[tilt_row, column] = lever * (near - far)
     own[tilt_row, tilt_column] = lever * position * (near + far)
+
+
+@template
+def _border_state(m):
+    """Return which state of the border the m-th of the border's columns of a roller's rows belongs to."""
+    if m < 2 * RING:
+        return m if m < RING else BORDER + m - RING
+    at_cage = m - 2 * RING
+    return RING + at_cage if at_cage < CAGE else BORDER + RING + at_cage - CAGE
+
+
+@kernel
+def react_on_support(params, rows, own, jacobian, support):
+    """Write what all bodies do to the outer ring that a support carries, as `bearing_sim.levels.planar.jacobian.react_on_support`."""
+    count, per_mass = params.rollers.count, params.support.outer_moves / params.support.outer_ring.mass
+    at = R, PHI, R_SPEED, PHI_SPEED, BLOCK, ROLLERS
+    react_by_rollers(ROLLER, at, LOCAL, count, per_mass * params.rollers.mass, rows, jacobian, support)
+    for m in range(2 * BORDER):
+        state, per_roller = _border_state(m), per_mass * params.rollers.mass
+        react_by_border(state, BLOCK + m, LOCAL, ROLLER.cosine, ROLLER.sine, ROLLER.radius, count, per_roller, rows, jacobian, support)
+    for body in range(2):
+        mass, columns = per_mass * (params.ring.mass if body == 0 else params.cage.mass), 2 * (RING if body == 0 else CAGE)
+        for axis in range(2):
+            reaction, row = support.reaction[axis], (RING_Y if body == 0 else CAGE_Y) + axis
+            first = RING_ROWS + axis * RING_COLUMNS if body == 0 else CAGE_ROWS + axis * CAGE_COLUMNS
+            for m in range(2 * BORDER):
+                reaction[m] -= mass * own[row, m]
+            for j in range(count):
+                block, lane = j // LANES, j % LANES
+                for m in range(BLOCK):
+                    reaction[ROLLERS + m * count + j] -= mass * jacobian[block, first + m, lane]
+                for m in range(columns):
+                    state = _border_state(m if body == 0 else 2 * RING + m)
+                    reaction[state] -= mass * jacobian[block, first + BLOCK + m, lane]
+    for j in range(count):  # a roller's axis is described in the frame that turns with the orbit
+        block, lane = j // LANES, j % LANES
+        tilt, skew = rows[block, ROLLER.tilt, lane], rows[block, ROLLER.skew, lane]
+        for axis in range(2):
+            turned = support.following[axis, ROLLERS + PHI_SPEED * count + j]
+            support.following[axis, ROLLERS + TILT_SPEED * count + j] = turned * skew
+            support.following[axis, ROLLERS + SKEW_SPEED * count + j] = -(turned * tilt)
+    for block in range(rows.shape[0]):
+        _turn_frame(block, support.frame, rows, jacobian)
+
+
+@kernel
+def _turn_frame(block, frame, rows, jacobian):
+    """Add to a block's rows how the frame's acceleration turns with a roller's azimuth."""
+    turn_frame((R, PHI), LOCAL, ROLLER, block, frame, rows, jacobian)
+    cosine, sine, inverse = load(rows, block, ROLLER.cosine), load(rows, block, ROLLER.sine), 1.0 / load(rows, block, ROLLER.radius)
+    outwards, along = frame[0] * cosine + frame[1] * sine, frame[1] * cosine - frame[0] * sine
+    tilt, skew, turned = load(rows, block, ROLLER.tilt), load(rows, block, ROLLER.skew), -(along * inverse)
+    add(jacobian, block, _TILTING + SKEW, turned)
+    add(jacobian, block, _TILTING + PHI, skew * outwards * inverse)
+    add(jacobian, block, _TILTING + R, -(skew * turned * inverse))
+    add(jacobian, block, _SKEWING + TILT, -turned)
+    add(jacobian, block, _SKEWING + PHI, -(tilt * outwards * inverse))
+    add(jacobian, block, _SKEWING + R, tilt * turned * inverse)
 
 
 @template

@@ -16,6 +16,7 @@ from bearing_sim.levels.common.power import write_powers
 from bearing_sim.levels.common.rollers import land_eccentricity, observe_rollers
 from bearing_sim.levels.common.slice_balance import balance, roller_tilts
 from bearing_sim.levels.common.state_transfer import first_cage_centre, rolling_state
+from bearing_sim.levels.common.support import factor_supported, observe_support, place_support, solve_supported, support_change
 from bearing_sim.levels.spatial import jacobian
 from bearing_sim.levels.spatial import state as spatial_state
 from bearing_sim.levels.spatial.forces import equations
@@ -23,6 +24,7 @@ from bearing_sim.levels.spatial.power import spatial_powers
 from bearing_sim.levels.spatial.slices import average_laminae, slice_pressures
 from bearing_sim.levels.spatial.state import (
     BLOCK,
+    BORDER,
     CAGE_TILT_Y,
     CAGE_TILT_Z,
     CAGE_Y,
@@ -96,7 +98,7 @@ def _balance_by_slices(params, cage_speed, load, growth, state) -> None:
         return
     speeds = (after - before) * (cage_speed / (2.0 * _CAGE_STEP))
     state[RING_Y], state[RING_Z], state[RING_TILT_Y], state[RING_TILT_Z] = ring[0], ring[1], ring[3], -ring[2]
-    rollers = state[ROLLERS:].reshape(BLOCK, count)
+    rollers = state[ROLLERS : ROLLERS + BLOCK * count].reshape(BLOCK, count)
     rollers[[R, TILT]], rollers[[R_SPEED, TILT_SPEED]] = positions, speeds
 
 
@@ -112,6 +114,7 @@ def initial_state(params: Params, work, shaft_speed, load_y, load_z):
     turning = params.cage.guidance.turning
     state[CAGE_Y], state[CAGE_Z] = first_cage_centre(params, state[RING_Y], state[RING_Z])
     state[CAGE_TILT_Y], state[CAGE_TILT_Z] = turning * state[RING_TILT_Y], turning * state[RING_TILT_Z]
+    place_support(params, state, (state[RING_Y], state[RING_Z]), (load_y, load_z))
     return state
 
 
@@ -130,13 +133,13 @@ def rhs_and_jacobian(t, y, model, work, rate):
 @kernel
 def factor(shift, work):
     """Factor I - shift J; return False where it is singular."""
-    return jacobian.factor(work.jacobian, work.border_own, shift, work.factored)
+    return factor_supported(jacobian.factor, jacobian.solve, BORDER, shift, work)
 
 
 @kernel
 def solve(work, x):
     """Replace the right side ``x`` by the solution with the last factorisation."""
-    jacobian.solve(work.jacobian, work.factored, x)
+    solve_supported(jacobian.solve, BORDER, work, x)
 
 
 @kernel
@@ -154,6 +157,8 @@ def error_norm(t, y, change, model):
     largest = max(largest, abs(change[OMEGA]) * speed, max(abs(change[RING_TILT_Y]), abs(change[RING_TILT_Z])) * tilt)
     largest = max(largest, max(abs(change[CAGE_TILT_Y]), abs(change[CAGE_TILT_Z])) * play * model.params.tilts.land_position)
     count = rollers.count
+    if model.params.support.active:
+        largest = max(largest, support_change(change) * position)
     for j in range(ROLLERS, ROLLERS + count):
         ratio = max(abs(change[j]) * position, abs(change[j + PHI * count] - change[THETA]) * offset)
         ratio = max(ratio, abs(change[j + PHI_SPEED * count]) * speed, abs(change[j + SPIN * count]) * spin)
@@ -189,12 +194,13 @@ def observe(t, y, model, work, interval, previous, row, rate):
     observe_course(t, y[THETA], y[OMEGA], equivalent, oil, model, interval, previous, row)
     row[COLUMN.ring_y], row[COLUMN.ring_z] = y[RING_Y], y[RING_Z]
     row[COLUMN.cage_y], row[COLUMN.cage_z] = y[CAGE_Y], y[CAGE_Z]
+    observe_support(y, y[RING_Y], y[RING_Z], model.params.support, row)
     row[COLUMN.ring_tilt_y], row[COLUMN.ring_tilt_z] = y[RING_TILT_Y], y[RING_TILT_Z]
     row[COLUMN.cage_tilt_y], row[COLUMN.cage_tilt_z] = y[CAGE_TILT_Y], y[CAGE_TILT_Z]
     pressures = slice_pressures(model.params, work)
     row[COLUMN.inner_pressure], row[COLUMN.outer_pressure], row[COLUMN.inner_edge_pressure], row[COLUMN.outer_edge_pressure] = pressures
     row[COLUMN.land_eccentricity] = land_eccentricity(y[RING_Y], y[RING_Z], y[CAGE_Y], y[CAGE_Z], model.params.cage)
-    write_powers(spatial_powers(y, shaft_speed_at(t, model.drive), model, work), row)
+    write_powers(spatial_powers(t, y, shaft_speed_at(t, model.drive), model, work), row)
     observe_rollers(ROLLER, SLICED.load, count, interval, rows, work.contacts, previous, row)
     for j in range(count):
         first, block, lane = SCALARS + j, j // LANES, j % LANES

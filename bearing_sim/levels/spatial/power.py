@@ -7,6 +7,7 @@ What a moment on the inner ring puts in stands beside the radial load's power: n
 
 from bearing_sim.levels.common.model import inner_growth
 from bearing_sim.levels.common.power import Powers, seal_power, windage_powers
+from bearing_sim.levels.common.support import support_powers
 from bearing_sim.levels.planar.power import land_powers
 from bearing_sim.levels.spatial.forces import place_land
 from bearing_sim.levels.spatial.state import BORDER, CAGE_TILT_Y, CAGE_TILT_Z, CAGE_Y, CAGE_Z, OMEGA, ROLLER, SLICED
@@ -109,11 +110,12 @@ def _land_powers(y, shaft_speed, model, lands):
 
 
 @kernel
-def spatial_powers(y, shaft_speed, model, work):
+def spatial_powers(t, y, shaft_speed, model, work):
     """Return `bearing_sim.levels.common.power.Powers` of a state.
 
     Parameters
     ----------
+    t : time [s].
     y : the state.
     shaft_speed : [rad/s].
     model, work : of the level; the right-hand side at ``y`` has been evaluated into ``work``.
@@ -134,8 +136,12 @@ def spatial_powers(y, shaft_speed, model, work):
         drag = load(rows, block, ROLLER.present) * load(rows, block, ROLLER.churning)
         churning += total(drag * load(rows, block, ROLLER.radius) * load(rows, block, ROLLER.orbital_speed))
     seals = seal_power(shaft_speed, params)
+    driven_unbalance, support = 0.0, 0.0
+    if params.support.active:
+        driven_unbalance, support = support_powers(t, y, BORDER, model)
+    inner_radius = params.raceways.inner_radius + inner_growth(shaft_speed, model)
     return Powers(
-        driving * (params.raceways.inner_radius + inner_growth(shaft_speed, model)) * shaft_speed + bore + driven + seals,
+        driving * inner_radius * shaft_speed + bore + driven + driven_unbalance + seals,
         inner,
         outer,
         inner_rolling,
@@ -146,4 +152,5 @@ def spatial_powers(y, shaft_speed, model, work):
         pocket,
         inner_damped + outer_damped + walls + touching,
         seals,
+        support,
     )

@@ -7,8 +7,10 @@ own normal contacts: a few Newton iterations of all rollers at once.
 
 from bearing_sim.levels.common.model import inner_growth
 from bearing_sim.levels.common.rollers import follow_contour
+from bearing_sim.levels.common.support import extrapolate_support
 from bearing_sim.levels.spatial.slices import normal_slices
 from bearing_sim.levels.spatial.state import (
+    BLOCK,
     BORDER,
     PHI,
     PHI_SPEED,
@@ -44,6 +46,7 @@ def _extrapolate(known, shift, slope, count, guess):
         guess[j] = known[j] + shift * slope[j]
     for j in range(ROLLERS + PHI * count, ROLLERS + (SKEW + 1) * count):
         guess[j] = known[j] + shift * guess[j + (PHI_SPEED - PHI) * count]
+    extrapolate_support(known, shift, slope, ROLLERS + BLOCK * count, guess)
 
 
 @kernel

@@ -2,7 +2,8 @@
 """What the spatial level keeps: the order of its state, and the memory that it writes while it computes.
 
 State: y = (positions of the border, speeds of the border, r of all rollers, phi, tilt, skew, r', phi', tilt', skew', w); the
-border is inner ring y and z, its tilts, cage y and z, its tilts, and cage angle.
+border is inner ring y and z, its tilts, cage y and z, its tilts, and cage angle.  With a support its
+`bearing_sim.levels.common.support.TAIL` states follow behind the rollers'.
 
 Every tilt is the inclination of an axis, so that the middle of a slice at x stands off the body's centre by x times it: tilt and
 skew of a roller incline its axis outwards and along the orbit, those of ring and cage incline theirs towards y and z.
@@ -13,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.levels.common.support import SupportWork, new_support
 from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.simd import LANES, collect_runs, fill_lanes, new_blocks, new_rows, spread_runs
 from bearing_sim.physics.contact import CONTACT
@@ -178,6 +180,7 @@ class Work(NamedTuple):
     lands: np.ndarray  # scratch of the guide lands, shape (4, 18)
     land_own: np.ndarray  # scratch of the guide lands, shape (2, 5, 10)
     factored: Factored  # of I - gamma h J
+    support: SupportWork
     load_moments: np.ndarray  # as at level ``planar``, shape (2, MOMENTS)
     lamina_means: np.ndarray  # running means of `bearing_sim.physics.lamina_life.add_lamina_powers` over a cage turn, shape (2, laminae)
 
@@ -200,6 +203,7 @@ def new_work(params):
         lands=np.zeros((4, 2 * BORDER)),
         land_own=np.zeros((2, 5, 10)),
         factored=new_factored(count),
+        support=new_support(params.support, 2 * BORDER + BLOCK * count),
         load_moments=np.zeros((2, MOMENTS)),
         lamina_means=np.zeros((2, len(params.life.laminae.positions))),
     )

@@ -85,7 +85,7 @@ def solve_condition(shaft_speed, load_y, load_z, model, work):
     if asked[0] == shaft_speed and asked[1] == load_y and asked[2] == load_z and asked[3] == model.lubrication.temperature:
         return True
     asked[0] = math.nan
-    constant = Model(model.params, model.lubrication, Drive(0.0, shaft_speed, 0.0, load_y, 0.0, load_z, 0.0), model.tolerances)
+    constant = Model(model.params, model.lubrication, Drive(0.0, shaft_speed, 0.0, load_y, 0.0, load_z, 0.0, 0.0), model.tolerances)
     status = solve_point(constant, work.bearing, work.orbit, work.solved)
     work.solutions[0] += 1
     if status == FAILED:
@@ -260,7 +260,7 @@ def advance_profile(start, stretches, inputs, kinematic_viscosities, y, model, w
                 growth_at(mounted, Temperatures(temperature, temperature, temperature, temperature, temperature)),
                 kinematic_viscosities[k],
             ),
-            Drive(now, speed, 0.0, load_y, 0.0, load_z, 0.0),
+            Drive(now, speed, 0.0, load_y, 0.0, load_z, 0.0, 0.0),
             model.tolerances,
         )
         _write_sample(now, y, there, work, interval, before, rows[k])

@@ -113,7 +113,7 @@ class Solver:
     def _solve_chunk(self, chunk: list[tuple]) -> np.ndarray:
         if not hasattr(self._local, "work"):
             self._local.work = new_work(self._params)
-        model = Model(self._params, self._lubrications[chunk[0][2]], Drive(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), DEFAULT_TOLERANCES)
+        model = Model(self._params, self._lubrications[chunk[0][2]], Drive(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), DEFAULT_TOLERANCES)
         answers = np.empty((len(chunk), len(ANSWER)))
         solve_conditions(np.ascontiguousarray([[key[0], key[1], key[3]] for key in chunk]), model, self._local.work, answers)
         return answers
@@ -425,7 +425,7 @@ def solve_points(scene: Scene, conditions: np.ndarray) -> np.ndarray:
     work = new_work(params)
     for temperature in np.unique(conditions[:, 2]):
         same = np.flatnonzero(conditions[:, 2] == temperature)
-        model = Model(params, lubricate(scene.lubricant, params, float(temperature)), Drive(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), DEFAULT_TOLERANCES)
+        model = Model(params, lubricate(scene.lubricant, params, float(temperature)), Drive(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), DEFAULT_TOLERANCES)
         found = np.empty((len(same), len(ANSWER)))
         solve_conditions(np.ascontiguousarray(conditions[same][:, [0, 1, 3]], float), model, work, found)
         answers[same] = found

@@ -137,10 +137,10 @@ def low_radius(tables: Tables, level: str) -> Judged:
 
 
 def _by_mass(tables, level) -> str:
-    """Return a description of slip and life with other supported masses, and of multiple steady states."""
+    """Return a description of slip and life with other shaft masses, and of multiple steady states."""
     rows = tables["supported_mass", level].rows
     results = ", ".join(f"{row[MASS]:g} kg {row['cage_slip']:.1f} % and {row['rating_life']:.0f} h" for row in rows)
-    text = f"it depends on the supported mass, at 34.8675 mm {results}"
+    text = f"it depends on the shaft's mass, at 34.8675 mm {results}"
     near = tables["neighbours", level].rows
     slips = np.sort([row["cage_slip"] for row in near])
     widest = int(np.argmax(np.diff(slips)))

@@ -18,7 +18,7 @@ from bearing_sim.sweep.tasks import Task, task
 LEVELS = ("slip", "planar")
 LOW, D_VALUE, SPEED, LOAD = "bearing.outer_raceway.low_radius", "bearing.outer_raceway.d_value", "operating.shaft_speed", "operating.radial_load"
 ANGLE, ROUNDNESS = "bearing.outer_raceway.installation_angle", "bearing.outer_raceway.roundness"
-MIXTURE, MASS = "lubricant.mixture_fraction", "bearing.inner_raceway.supported_mass"
+MIXTURE, MASS = "lubricant.mixture_fraction", "support.shaft.mass"
 LOW_RADII = (34.8600, 34.8625, 34.8650, 34.8675)  # mm, of the figures with four curves
 _FOUR = "34.86mm,34.8625mm,34.865mm,34.8675mm"
 _LOADS = "100,200,400,600,800,1000,1250,1500,1750,2000,2500,3000"

@@ -1,0 +1,449 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""What carries the bearing at the dynamic levels: an outer ring on springs and dampers, a shaft behind a spring, an unbalance.
+
+**Frame.** Ring, cage, rollers and shaft are described from the centre O of the outer ring, so that contacts, pockets and lands do not know
+that it moves.  The frame accelerates at a_O, and every body in it at -a_O less than the forces on it say:
+
+    m_O a_O   = R - k_O x_O - c_O v_O - f(x_O, v_O),     R = F - sum of m_b a_b,
+    m_i x_i'' = ... + k (x_s - x_i) + c (v_s - v_i) - m_i a_O,
+    m_s x_s'' = F + U - k (x_s - x_i) - c (v_s - v_i) - m_s a_O,
+
+x_O the outer ring's displacement in space, f the force of a squeeze film, F the load, U the force of the unbalance; R is what the bearing
+does to the outer ring: what the load F and the forces a_b of the bodies' own equations leave of it, because forces between bodies cancel.  So no
+force is written down twice, momentum is conserved, and what the mixture brakes the outer ring's housing takes up.  Where the shaft is rigid on
+the ring, F and U act on the ring and there is no x_s; where the outer ring is rigid in space, a_O = 0.
+
+**State.** Behind the rollers' states stand x_O, x_s (y and z each) and their speeds: `TAIL` numbers.  Without a support there are none.
+
+**Linear algebra.** With a_O = alpha held, (I - s J) x = b is the block arrow of the level and, for each direction, one scalar equation of the
+shaft, eliminated into the ring's row in closed form.  alpha itself is linear in all states, alpha = V x: a correction of rank two (M. A. Woodbury,
+Inverting modified matrices, Princeton, 1950),
+
+    x = x_0 + W (I - V W)^-1 V x_0,    (I - s J_0) x_0 = b,    (I - s J_0) W = s U,
+
+U what a unit of alpha does to every state's rate.  It costs two more solutions for each factorisation.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from bearing_sim.levels.common.model import load_at, shaft_angle_at, shaft_speed_at
+from bearing_sim.levels.common.rollers import add
+from bearing_sim.model.sample import COLUMN
+from bearing_sim.numerics.compilation import kernel, template
+from bearing_sim.numerics.simd import LANES, load, spread, total
+from bearing_sim.physics.squeeze_film import squeeze_force
+
+OUTER, SHAFT, SPEEDS = 0, 2, 4  # where the outer ring and the shaft begin in the tail of a state, y and z each, and where their speeds begin
+TAIL = 8
+
+
+class SupportWork(NamedTuple):
+    """Memory of the support; without one all arrays are empty."""
+
+    frame: np.ndarray  # a_O [m/s^2], shape (2,)
+    reaction: np.ndarray  # V, derivatives of a_O by every state, shape (2, n)
+    following: np.ndarray  # U, derivatives of every state's rate by a_O, shape (2, n)
+    response: np.ndarray  # W, shape (2, n)
+    yielding: np.ndarray  # (I - V W)^-1, shape (2, 2)
+    chain: np.ndarray  # by direction: k/m_i, c/m_i, k/m_s and c/m_s of the last Jacobian, then what `factor` makes of them, shape (2, 6)
+    shift: np.ndarray  # s of the last factorisation, shape (1,)
+
+
+_BY_RING, _DAMPED_RING, _BY_SHAFT, _DAMPED_SHAFT, _ON_RING, _ON_SHAFT = range(6)  # columns of ``chain``
+
+
+def new_support(support, size: int) -> SupportWork:
+    """Return the memory for a support (`bearing_sim.model.params.Support`) behind ``size`` states of the level."""
+    if not support.active:
+        return SupportWork(*(np.zeros((0,) * rank) for rank in (1, 2, 2, 2, 2, 2, 1)))
+    states = 2, size + TAIL
+    return SupportWork(np.zeros(2), np.zeros(states), np.zeros(states), np.zeros(states), np.zeros((2, 2)), np.zeros((2, 6)), np.zeros(1))
+
+
+def tail_of(support) -> int:
+    """Return how many states a support adds to a level's."""
+    return TAIL if support.active else 0
+
+
+def place_support(params, state, ring, given) -> None:
+    """Enter where load and springs hold the outer ring and the shaft into the tail of a state, in place.
+
+    Parameters
+    ----------
+    ring : y, z of the inner ring from the outer ring's centre [m].
+    given : load y, z [N].
+    """
+    support = params.support
+    if not support.active:
+        return
+    tail = state[-TAIL:]
+    for axis, (shaft, outer) in enumerate(_stiffnesses(support)):
+        tail[OUTER + axis] = given[axis] / outer if support.outer_moves else 0.0
+        tail[SHAFT + axis] = ring[axis] + given[axis] / shaft if support.shaft_bends else 0.0
+
+
+def _stiffnesses(support):
+    shaft, outer = support.shaft, support.outer_ring
+    return (shaft.stiffness_y, outer.stiffness_y), (shaft.stiffness_z, outer.stiffness_z)
+
+
+def resume_support(params, state, sample) -> None:
+    """Enter where a sample has the outer ring and the shaft into the tail of a state, in place; they start at rest."""
+    support = params.support
+    if not support.active:
+        return
+    tail = state[-TAIL:]
+    for axis, name in enumerate("yz"):
+        outer = sample[f"outer_ring_{name}"]
+        tail[OUTER + axis] = outer if support.outer_moves else 0.0
+        tail[SHAFT + axis] = sample[f"shaft_{name}"] - outer if support.shaft_bends else 0.0
+
+
+@kernel
+def unbalance_at(t, model):
+    """Return the force of the unbalance [N]: what its mass at the eccentricity (cos, sin) of the shaft's angle resists with.
+
+    m e (w^2 cos + w' sin, w^2 sin - w' cos), w the shaft's speed.
+    """
+    drive, unbalance = model.drive, model.params.support.unbalance
+    angle, speed = shaft_angle_at(t, drive) + unbalance.angle, shaft_speed_at(t, drive)
+    cosine, sine = math.cos(angle), math.sin(angle)
+    square, changing = speed * speed, drive.shaft_acceleration
+    return unbalance.amount * (square * cosine + changing * sine), unbalance.amount * (square * sine - changing * cosine)
+
+
+@kernel
+def support_accelerations(t, y, border, cage, momentum_y, momentum_z, model, rate, work):
+    """Write the rates of the tail and a_O, and add what the support does to ring and cage; the rollers follow in the level.
+
+    Parameters
+    ----------
+    border, cage : how many positions the border has, and which of them is the cage's y; the ring's y and z are the first.
+    momentum_y, momentum_z : sum of m_b a_b of ring, cage and rollers by the level's equations, with the load on the ring [N].
+    rate : the level's part is written; changed.
+    work : `SupportWork`.
+    """
+    support = model.params.support
+    shaft, outer, film = support.shaft, support.outer_ring, support.film
+    ring_mass, tail = model.params.ring.mass, y.shape[0] - TAIL
+    given, momentum, unbalance = load_at(t, model.drive), (momentum_y, momentum_z), unbalance_at(t, model)
+    pressed = squeeze_force(
+        y[tail + OUTER], y[tail + OUTER + 1], y[tail + SPEEDS + OUTER], y[tail + SPEEDS + OUTER + 1], model.lubrication.viscosity, film
+    )
+    for axis in range(2):
+        stiffness, damping = (shaft.stiffness_y, shaft.damping_y) if axis == 0 else (shaft.stiffness_z, shaft.damping_z)
+        carried, damped = (outer.stiffness_y, outer.damping_y) if axis == 0 else (outer.stiffness_z, outer.damping_z)
+        outer_speed, shaft_speed = y[tail + SPEEDS + OUTER + axis], y[tail + SPEEDS + SHAFT + axis]
+        held = carried * y[tail + OUTER + axis] + damped * outer_speed + pressed[axis]
+        frame = support.outer_moves * (given[axis] - momentum[axis] - held) / outer.mass
+        bent = stiffness * (y[tail + SHAFT + axis] - y[axis]) + damping * (shaft_speed - y[border + axis])
+        apart = support.shaft_bends
+        rate[border + axis] += (apart * (bent - given[axis]) + (1.0 - apart) * unbalance[axis]) / ring_mass - frame
+        rate[border + cage + axis] -= frame
+        rate[tail + OUTER + axis], rate[tail + SHAFT + axis] = outer_speed, shaft_speed
+        rate[tail + SPEEDS + OUTER + axis] = frame
+        rate[tail + SPEEDS + SHAFT + axis] = apart * ((given[axis] + unbalance[axis] - bent) / shaft.mass - frame)
+        work.frame[axis] = frame
+
+
+@kernel
+def support_jacobian(y, border, cage, model, work):
+    """Write V and U as far as ring, cage and tail make them; the rollers and their reactions follow in the level.
+
+    Parameters as of `support_accelerations`, which has been called.
+    """
+    support, chain = model.params.support, work.chain
+    shaft, outer = support.shaft, support.outer_ring
+    ring_mass, tail, per_mass = model.params.ring.mass, y.shape[0] - TAIL, support.outer_moves / support.outer_ring.mass
+    pressed = squeeze_force(
+        y[tail + OUTER], y[tail + OUTER + 1], y[tail + SPEEDS + OUTER], y[tail + SPEEDS + OUTER + 1], model.lubrication.viscosity, support.film
+    )
+    for axis in range(2):
+        stiffness, damping = (shaft.stiffness_y, shaft.damping_y) if axis == 0 else (shaft.stiffness_z, shaft.damping_z)
+        carried, damped = (outer.stiffness_y, outer.damping_y) if axis == 0 else (outer.stiffness_z, outer.damping_z)
+        chain[axis, _BY_RING], chain[axis, _DAMPED_RING] = stiffness / ring_mass, damping / ring_mass
+        chain[axis, _BY_SHAFT], chain[axis, _DAMPED_SHAFT] = stiffness / shaft.mass, damping / shaft.mass
+        reaction, following = work.reaction[axis], work.following[axis]
+        for i in range(y.shape[0]):
+            reaction[i], following[i] = 0.0, 0.0
+        for other in range(2):
+            here = 1.0 if other == axis else 0.0
+            reaction[tail + OUTER + other] = -per_mass * (pressed[2 + 4 * axis + other] + here * carried)
+            reaction[tail + SPEEDS + OUTER + other] = -per_mass * (pressed[4 + 4 * axis + other] + here * damped)
+        following[border + axis], following[border + cage + axis] = -1.0, -1.0
+        following[tail + SPEEDS + OUTER + axis], following[tail + SPEEDS + SHAFT + axis] = 1.0, -support.shaft_bends
+
+
+@template
+def momentum_rate(row, params, rows):
+    """Return the sum of the forces y, z on all rollers by their own accelerations [N].
+
+    Parameters
+    ----------
+    row : rows of the rollers, of level ``planar`` or ``spatial``.
+    params : of the bearing.
+    rows : of the rollers, their accelerations written.
+    """
+    along_y, along_z = spread(0.0), spread(0.0)
+    for block in range(rows.shape[0]):
+        radius, orbital_speed = load(rows, block, row.radius), load(rows, block, row.orbital_speed)
+        outwards = load(rows, block, row.radial_acceleration) - radius * orbital_speed * orbital_speed
+        along = radius * load(rows, block, row.orbital_acceleration) + 2.0 * load(rows, block, row.radial_speed) * orbital_speed
+        present, cosine, sine = load(rows, block, row.present), load(rows, block, row.cosine), load(rows, block, row.sine)
+        along_y += present * (outwards * cosine - along * sine)
+        along_z += present * (outwards * sine + along * cosine)
+    return params.rollers.mass * total(along_y), params.rollers.mass * total(along_z)
+
+
+@template
+def follow_frame(row, block, frame, rows):
+    """Add to the accelerations of a block of rollers that their frame accelerates; see `momentum_rate`, ``frame`` as in `SupportWork`."""
+    cosine, sine = load(rows, block, row.cosine), load(rows, block, row.sine)
+    outwards, along = frame[0] * cosine + frame[1] * sine, frame[1] * cosine - frame[0] * sine
+    add(rows, block, row.radial_acceleration, -outwards)
+    add(rows, block, row.orbital_acceleration, -(along / load(rows, block, row.radius)))
+
+
+@template
+def turn_frame(at, local, row, block, frame, rows, jacobian):
+    """Add to a block's rows of r'' and phi'' how the frame's acceleration turns with a roller's azimuth; parameters as of `react_by_rollers`."""
+    r, phi = at[0], at[1]
+    cosine, sine, inverse = load(rows, block, row.cosine), load(rows, block, row.sine), 1.0 / load(rows, block, row.radius)
+    outwards, along = frame[0] * cosine + frame[1] * sine, frame[1] * cosine - frame[0] * sine
+    add(jacobian, block, phi, -along)
+    add(jacobian, block, local + phi, outwards * inverse)
+    add(jacobian, block, local + r, along * inverse * inverse)
+
+
+@template
+def react_by_rollers(row, at, local, count, per_mass, rows, jacobian, work):
+    """Add to V what the rollers' own states do to the outer ring through the rollers, and write the rollers' part of U.
+
+    Parameters
+    ----------
+    row : rows of the rollers.
+    at : positions of a roller's r, phi, r' and phi' among its own variables, how many it has, and where their runs begin in a state.
+    local : what a roller depends on in all; the derivatives of r'' are the first so many rows of the Jacobian, those of phi'' the next.
+    count : of rollers.
+    per_mass : m_r over the outer ring's mass; 0 where that is held.
+    rows : of the rollers; accelerations and Jacobian as they are without the frame's acceleration.
+    jacobian : derivatives through each roller.
+    work : `SupportWork`.
+    """
+    r, phi, r_speed, phi_speed, own, first = at
+    reaction, following = work.reaction, work.following
+    for j in range(count):
+        block, lane = j // LANES, j % LANES
+        cosine, sine, radius = rows[block, row.cosine, lane], rows[block, row.sine, lane], rows[block, row.radius, lane]
+        radial_speed, orbital_speed = rows[block, row.radial_speed, lane], rows[block, row.orbital_speed, lane]
+        turning = rows[block, row.orbital_acceleration, lane]
+        outwards = rows[block, row.radial_acceleration, lane] - radius * orbital_speed * orbital_speed
+        along = radius * turning + 2.0 * radial_speed * orbital_speed
+        for k in range(own):
+            d_outwards, d_along = jacobian[block, k, lane], radius * jacobian[block, local + k, lane]
+            if k == r:
+                d_outwards -= orbital_speed * orbital_speed
+                d_along += turning
+            elif k == r_speed:
+                d_along += 2.0 * orbital_speed
+            elif k == phi_speed:
+                d_outwards -= 2.0 * radius * orbital_speed
+                d_along += 2.0 * radial_speed
+            elif k == phi:  # the direction of the force turns
+                d_outwards, d_along = d_outwards - along, d_along + outwards
+            reaction[0, first + k * count + j] -= per_mass * (cosine * d_outwards - sine * d_along)
+            reaction[1, first + k * count + j] -= per_mass * (sine * d_outwards + cosine * d_along)
+        following[0, first + r_speed * count + j], following[1, first + r_speed * count + j] = -cosine, -sine
+        following[0, first + phi_speed * count + j], following[1, first + phi_speed * count + j] = sine / radius, -cosine / radius
+
+
+@kernel
+def react_by_border(state, column, local, cosine_row, sine_row, radius_row, count, per_mass, rows, jacobian, work):
+    """Add to V what one state of the border does to the outer ring through all rollers.
+
+    Parameters
+    ----------
+    state : the state.
+    column : where a roller's derivatives by it stand, see `react_by_rollers` for these and for the other parameters.
+    cosine_row, sine_row, radius_row : rows of the rollers.
+    """
+    along_y, along_z = 0.0, 0.0
+    for j in range(count):
+        block, lane = j // LANES, j % LANES
+        cosine, sine = rows[block, cosine_row, lane], rows[block, sine_row, lane]
+        d_outwards, d_along = jacobian[block, column, lane], rows[block, radius_row, lane] * jacobian[block, local + column, lane]
+        along_y += cosine * d_outwards - sine * d_along
+        along_z += sine * d_outwards + cosine * d_along
+    work.reaction[0, state] -= per_mass * along_y
+    work.reaction[1, state] -= per_mass * along_z
+
+
+@kernel
+def _stiffen_ring(shift, border, own, work):
+    """Eliminate the shaft: keep what `_bend_shaft` and `_follow_shaft` need, and take what it does to the ring into the border's derivatives.
+
+    Within a step the shaft's speed is (b_s + g/m_s v_i)/D with D = 1 + g/m_s, g = s c + s^2 k, so that the ring feels g/D.
+    """
+    work.shift[0] = shift
+    for axis in range(2):
+        chain = work.chain[axis]
+        on_shaft = shift * (chain[_DAMPED_SHAFT] + shift * chain[_BY_SHAFT])
+        chain[_ON_RING] = shift * (chain[_DAMPED_RING] + shift * chain[_BY_RING]) / (1.0 + on_shaft)
+        chain[_ON_SHAFT] = on_shaft
+        own[axis, border + axis] -= chain[_ON_RING] / shift
+
+
+@kernel
+def _bend_shaft(border, x, work):
+    """Take the shaft out of a right side ``x`` before the level solves it with alpha held."""
+    s, tail = work.shift[0], x.shape[0] - TAIL
+    for axis in range(2):
+        chain = work.chain[axis]
+        bent = x[tail + SHAFT + axis] - x[axis]
+        x[tail + SPEEDS + SHAFT + axis] -= s * chain[_BY_SHAFT] * bent
+        x[border + axis] += s * chain[_BY_RING] * bent + chain[_ON_RING] * x[tail + SPEEDS + SHAFT + axis]
+
+
+@kernel
+def _follow_shaft(border, x, work):
+    """Complete the tail of a solution ``x`` that the level has found with alpha held."""
+    s, tail = work.shift[0], x.shape[0] - TAIL
+    for axis in range(2):
+        on_shaft, at = work.chain[axis, _ON_SHAFT], tail + SPEEDS + SHAFT + axis
+        x[at] = (x[at] + on_shaft * x[border + axis]) / (1.0 + on_shaft)
+    for k in range(SPEEDS):
+        x[tail + k] += s * x[tail + SPEEDS + k]
+
+
+@kernel
+def _reaction_to(x, axis, work):
+    """Return a component of V x."""
+    through, reaction = 0.0, work.reaction[axis]
+    for i in range(x.shape[0]):
+        through += reaction[i] * x[i]
+    return through
+
+
+@kernel
+def _invert_yielding(work):
+    """Invert I - V W; return False where it is singular."""
+    a, b = 1.0 - _reaction_to(work.response[0], 0, work), -_reaction_to(work.response[1], 0, work)
+    c, d = -_reaction_to(work.response[0], 1, work), 1.0 - _reaction_to(work.response[1], 1, work)
+    determinant = a * d - b * c
+    inverse = 1.0 / determinant
+    yielding = work.yielding
+    yielding[0, 0], yielding[0, 1], yielding[1, 0], yielding[1, 1] = d * inverse, -b * inverse, -c * inverse, a * inverse
+    return abs(determinant) > 0.0
+
+
+@kernel
+def _yield_frame(x, work):
+    """Complete a solution ``x`` with alpha held by what alpha does."""
+    through_y, through_z = _reaction_to(x, 0, work), _reaction_to(x, 1, work)
+    frame_y = work.yielding[0, 0] * through_y + work.yielding[0, 1] * through_z
+    frame_z = work.yielding[1, 0] * through_y + work.yielding[1, 1] * through_z
+    by_y, by_z = work.response[0], work.response[1]
+    for i in range(x.shape[0]):
+        x[i] += frame_y * by_y[i] + frame_z * by_z[i]
+
+
+@template
+def _solve_held(solve, border, work, x):
+    """Solve with a_O held."""
+    support = work.support
+    _bend_shaft(border, x, support)
+    solve(work.jacobian, work.factored, x[: x.shape[0] - TAIL])
+    _follow_shaft(border, x, support)
+
+
+@template
+def factor_supported(factor, solve, border, shift, work):
+    """Factor I - s J of a level with or without a support; return False where it is singular.
+
+    Parameters
+    ----------
+    factor, solve : kernels of the level's block arrow.
+    border : how many positions its border has.
+    shift : s [s].
+    work : of the level.
+    """
+    support, own = work.support, work.border_own
+    if support.frame.shape[0] == 0:
+        return factor(work.jacobian, own, shift, work.factored)
+    along_y, along_z = own[0, border], own[1, border + 1]
+    _stiffen_ring(shift, border, own, support)
+    regular = factor(work.jacobian, own, shift, work.factored)
+    own[0, border], own[1, border + 1] = along_y, along_z
+    for axis in range(2):
+        response = support.response[axis]
+        for i in range(response.shape[0]):
+            response[i] = shift * support.following[axis, i]
+        _solve_held(solve, border, work, response)
+    return _invert_yielding(support) and regular
+
+
+@template
+def solve_supported(solve, border, work, x):
+    """Replace the right side ``x`` by the solution with the last `factor_supported`; parameters as there."""
+    if work.support.frame.shape[0] == 0:
+        solve(work.jacobian, work.factored, x)
+        return
+    _solve_held(solve, border, work, x)
+    _yield_frame(x, work.support)
+
+
+@kernel
+def support_powers(t, y, border, model):
+    """Return the power of the unbalance, which the shaft puts in, and what the dampers of shaft and outer ring lose [W].
+
+    Parameters
+    ----------
+    border : how many positions the level's border has; the ring's y and z are the first.
+    """
+    support = model.params.support
+    shaft, outer, tail = support.shaft, support.outer_ring, y.shape[0] - TAIL
+    unbalance = unbalance_at(t, model)
+    pressed = squeeze_force(
+        y[tail + OUTER], y[tail + OUTER + 1], y[tail + SPEEDS + OUTER], y[tail + SPEEDS + OUTER + 1], model.lubrication.viscosity, support.film
+    )
+    driven, lost = 0.0, 0.0
+    for axis in range(2):
+        outer_speed, apart = y[tail + SPEEDS + OUTER + axis], support.shaft_bends
+        shaft_speed = apart * y[tail + SPEEDS + SHAFT + axis] + (1.0 - apart) * y[border + axis]
+        bending = shaft_speed - y[border + axis]
+        driven += unbalance[axis] * (outer_speed + shaft_speed)
+        lost += (shaft.damping_y if axis == 0 else shaft.damping_z) * bending * bending
+        lost += ((outer.damping_y if axis == 0 else outer.damping_z) * outer_speed + pressed[axis]) * outer_speed
+    return driven, lost
+
+
+@template
+def support_change(change):
+    """Return the largest change of a position in the tail of ``change`` [m]."""
+    tail = change.shape[0] - TAIL
+    largest = max(abs(change[tail + OUTER]), abs(change[tail + OUTER + 1]))
+    return max(largest, abs(change[tail + SHAFT]), abs(change[tail + SHAFT + 1]))
+
+
+@template
+def extrapolate_support(known, shift, slope, tail, guess):
+    """Extrapolate the tail of a state that begins at ``tail``: speeds by their rates, positions by the new speeds."""
+    for k in range(tail + SPEEDS, known.shape[0]):
+        guess[k] = known[k] + shift * slope[k]
+        guess[k - SPEEDS] = known[k - SPEEDS] + shift * guess[k]
+
+
+@template
+def observe_support(y, ring_y, ring_z, support, row):
+    """Write where outer ring and shaft are; ``ring_y`` and ``ring_z`` are the inner ring's."""
+    row[COLUMN.shaft_y], row[COLUMN.shaft_z] = ring_y, ring_z
+    if support.active:
+        tail = y.shape[0] - TAIL
+        outer_y, outer_z = y[tail + OUTER], y[tail + OUTER + 1]
+        row[COLUMN.outer_ring_y], row[COLUMN.outer_ring_z] = outer_y, outer_z
+        bent = support.shaft_bends
+        row[COLUMN.shaft_y] = outer_y + ring_y + bent * (y[tail + SHAFT] - ring_y)
+        row[COLUMN.shaft_z] = outer_z + ring_z + bent * (y[tail + SHAFT + 1] - ring_z)
