@@ -67,8 +67,28 @@ def test_bars_are_as_long_as_the_mean_of_their_newest_powers(tmp_path):
     radii = np.array(last_value(chunks, "/power_now/bars", "LineStrips2D:radii"))
     length = strips[:, 1, 0] - strips[:, 0, 0] + 2 * radii
     powers = np.array([block[f"{cause}_power"][-20:].mean() for cause in CAUSES])
-    assert last_value(chunks, "/power_now/watts", "Arrows2D:labels") == [f"{power:,.0f} W" for power in powers]
+    assert last_value(chunks, "/power_now/values", "Arrows2D:labels") == [f"{power:,.0f} W" for power in powers]
     np.testing.assert_allclose(length, powers * length[-1] / powers[-1], rtol=1e-5)
+
+
+def test_bars_of_the_running_clearance_and_its_parts_stand_on_either_side_of_zero_and_old_recordings_have_none(tmp_path):
+    block = whirling_block()
+    parts = {"running": -4.0, "initial": 20.0, "fit": -10.0, "rotation": -6.0, "heat": -8.0, "contour": -0.01}  # um
+    for part, micrometres in parts.items():
+        block[f"{part}_clearance"] = 1e-6 * micrometres
+    chunks = written(tmp_path / "run.rrd", PLANAR, block)
+    strips = np.array(last_value(chunks, "/clearance_now/bars", "LineStrips2D:strips"))
+    radii = np.array(last_value(chunks, "/clearance_now/bars", "LineStrips2D:radii"))
+    ends = np.array(
+        [strip[:, 0].min() - radius if value < 0.0 else strip[:, 0].max() + radius for strip, radius, value in zip(strips, radii, parts.values())]
+    )
+    np.testing.assert_allclose(ends / ends[1], np.array([*parts.values()]) / 20.0, atol=1e-6)
+    assert last_value(chunks, "/clearance_now/values", "Arrows2D:labels") == ["-4.0 µm", "20.0 µm", "-10.0 µm", "-6.0 µm", "-8.0 µm", "0.0 µm"]
+    assert last_value(chunks, "/clearance/running", "Scalars:scalars") == [pytest.approx(-4.0)]
+    for part in parts:
+        block[f"{part}_clearance"] = np.nan
+    old = written(tmp_path / "old.rrd", PLANAR, block)
+    assert set(last_value(old, "/clearance_now/values", "Arrows2D:labels")) == {"unknown"}
 
 
 def test_path_holds_the_last_turns_of_the_cage():
@@ -94,7 +114,7 @@ def test_recording_that_does_not_know_the_cages_place_is_shown_without(tmp_path)
         block[name] = np.nan
     chunks = written(tmp_path / "run.rrd", PLANAR, block)
     assert last_value(chunks, "/cage_orbit/text", "Arrows2D:labels") == ["not recorded"]
-    assert set(last_value(chunks, "/power_now/watts", "Arrows2D:labels")) == {"unknown"}
+    assert set(last_value(chunks, "/power_now/values", "Arrows2D:labels")) == {"unknown"}
 
 
 def test_line_and_dots_take_turns_as_the_sampling_does(tmp_path):

@@ -226,6 +226,7 @@ class InputGate:
             return None
         if channel in self._expired:
             self._expired.remove(channel)
+            state.window_start, state.window_count, state.rate = received, 0, math.nan  # the silence says nothing about its rate
             self._returned.append(Event(received, Level.OK, "input.returned", channel, "it is measured again", "the measured temperature is used"))
         self.held = with_values(self.held, channel, values)
         return None

@@ -20,6 +20,8 @@ from bearing_sim.scene.ratings import rate
 from bearing_sim.scene.support import Support, support_errors
 from bearing_sim.scene.uncertainty import Range, range_errors
 
+NO_CLEARANCE_LIMIT = -1e-3
+"""A threshold of the running clearance that none falls below [m]."""
 _LONGEST_STEP = 0.5  # roller pitches of cage rotation in a fixed step
 _LARGEST_SPEED, _LARGEST_LOAD = 12000.0, 1e8  # rad/s, N
 # Inputs that no bearing survives, so that a message beyond them is a fault of a sensor (assumption): a hoop stress of 1 GPa in the inner
@@ -193,8 +195,8 @@ class Thresholds:
     pocket_force_error: quantity("N", "pocket force that is an error; None: none is", 0.0, 1e6) | None = None
     pocket_force_hold: Hold = field(default_factory=Hold)
     # A preload may be wanted, so that no clearance is wrong for every bearing.
-    clearance_warning: quantity("m", "running clearance below which there is a warning; -1 mm: never", -1e-3, 1e-2, "um") = -1e-3
-    clearance_error: quantity("m", "running clearance below which there is an error; -1 mm: never", -1e-3, 1e-2, "um") = -1e-3
+    clearance_warning: quantity("m", "running clearance below which there is a warning; -1 mm: never", NO_CLEARANCE_LIMIT, 1e-2, "um") = NO_CLEARANCE_LIMIT
+    clearance_error: quantity("m", "running clearance below which there is an error; -1 mm: never", NO_CLEARANCE_LIMIT, 1e-2, "um") = NO_CLEARANCE_LIMIT
     clearance_hold: Hold = field(default_factory=Hold)
     residual: ResidualDetection = field(default_factory=ResidualDetection)
     temperature_residual: TemperatureResidualDetection = field(default_factory=TemperatureResidualDetection)

@@ -10,7 +10,8 @@ import rerun.blueprint as rrb
 from bearing_sim.messages.topics import LIFE_SYMBOLS
 from bearing_sim.scene.scene import Scene
 from bearing_sim.view import section
-from bearing_sim.view.drawings import CAUSES, ORBIT_EDGE, SAMPLES, power_bounds
+from bearing_sim.messages.topics import RING_TEMPERATURES
+from bearing_sim.view.drawings import BODIES, CAUSES, CLEARANCES, HEAT_ROOT, ORBIT_EDGE, SAMPLES, bar_bounds, heat_bounds
 from bearing_sim.view.load_map import map_bounds
 from bearing_sim.view.plots import END, TIMELINE, compared_life, range_path
 
@@ -134,6 +135,8 @@ def _left(scene: Scene, bounds) -> rrb.Vertical:
         "/load_map_by_roller": "By roller",
     }
     charts = [_flat(root, title, map_bounds(narrow=scene.cage_whirls)) for root, title in titles.items()]
+    if scene.uses_ring_temperatures:
+        charts.insert(0, _flat(HEAT_ROOT, "Temperatures (housing not to scale)", heat_bounds(scene)))
     across = _flat("/section", section_title(scene), bounds)
     solid = rrb.Spatial3DView(
         origin="/",
@@ -236,11 +239,29 @@ def _tilts(axes: _Axes) -> rrb.Tabs:
 
 
 def _right(scene: Scene, axes: _Axes) -> rrb.Vertical:
-    bars = _flat("/power_now", f"Power: mean of {SAMPLES} samples", power_bounds())
+    bars = _flat("/power_now", f"Power: mean of {SAMPLES} samples", bar_bounds(len(CAUSES)))
+    clearance_bars = _flat("/clearance_now", "Running clearance", bar_bounds(len(CLEARANCES), signed=True))
+    clearance = _clearance(axes)
     load, damage = axes.plot("Radial load [N]", ["/load/radial"]), axes.plot("Damage [millionths of the life]", ["/damage/ppm"])
     oil = axes.plot("Oil [°C]", ["/oil/temperature"])
     texts = rrb.Tabs(rrb.TextDocumentView(origin="/now", name="Now"), rrb.TextDocumentView(origin="/about", name="About"))
-    powers = rrb.Tabs(bars, axes.plot("Plot [W]", [f"/power/{cause}" for cause in CAUSES]), active_tab=0)
+    plot = axes.plot("Plot [W]", [f"/power/{cause}" for cause in CAUSES])
+    if scene.uses_ring_temperatures:
+        clearances, powers = rrb.Tabs(clearance_bars, clearance, active_tab=0), rrb.Tabs(bars, plot, active_tab=0)
+        courses = rrb.Tabs(_temperatures(axes), load, damage, oil, active_tab=0)
+        return rrb.Vertical(texts, powers, clearances, courses, row_shares=[0.33, 0.22, 0.24, 0.21])
+    powers = rrb.Tabs(bars, plot, active_tab=0)
     if scene.bodies_tilt:  # with so many numbers now
-        return rrb.Vertical(texts, powers, rrb.Tabs(load, damage, oil, active_tab=0), row_shares=[0.53, 0.27, 0.2])
-    return rrb.Vertical(texts, powers, load, rrb.Tabs(damage, oil, active_tab=0), row_shares=[0.43, 0.255, 0.1575, 0.1575])
+        return rrb.Vertical(texts, powers, rrb.Tabs(load, clearance_bars, clearance, damage, oil, active_tab=0), row_shares=[0.53, 0.27, 0.2])
+    loads = rrb.Tabs(load, clearance_bars, clearance, active_tab=0)
+    return rrb.Vertical(texts, powers, loads, rrb.Tabs(damage, oil, active_tab=0), row_shares=[0.43, 0.255, 0.1575, 0.1575])
+
+
+def _clearance(axes: _Axes) -> rrb.TimeSeriesView:
+    paths = ["/clearance/warning", "/clearance/error", *(f"/clearance/{part}" for part in reversed(CLEARANCES))]
+    return axes.plot("Clearance [µm]: white running, grey initial, orange fits, blue rotation, purple heat, green contour", paths)
+
+
+def _temperatures(axes: _Axes) -> rrb.TimeSeriesView:
+    paths = [f"/temperature/{body}" for body in BODIES] + [f"/temperature/{ring}_measured" for ring in RING_TEMPERATURES]
+    return axes.plot("Temperatures [°C]: blue inner, red outer ring, yellow rollers, white measured", paths, from_zero=False)

@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""What is drawn in rerun of one bearing: its cross-section, its bodies in space, the orbit of its cage, and its power by cause.
+"""What is drawn in rerun of one bearing: cross-section, bodies in space, orbit of the cage, temperatures, and bars of powers and clearances.
 
 Each drawing logs its still parts once and its moving parts frame by frame; `bearing_sim.view.section` computes the points.
 """
@@ -9,6 +9,7 @@ import math
 import numpy as np
 import rerun as rr
 
+from bearing_sim.messages.topics import ZERO_CELSIUS
 from bearing_sim.scene.scene import Scene
 from bearing_sim.view import colours, section
 from bearing_sim.view.section import MILLIMETRE, picture, polar
@@ -445,41 +446,62 @@ CAUSES = {
 }
 """Causes with their names and colours, in the order of the bars."""
 
+CLEARANCE_ROOT = "/clearance_now"
+CLEARANCES = {
+    "running": ("running", colours.WHITE),
+    "initial": ("initial", colours.GREY),
+    "fit": ("fits", colours.ORANGE),
+    "rotation": ("rotation", colours.BLUE),
+    "heat": ("heat", colours.PURPLE),
+    "contour": ("contour", colours.GREEN),
+}
+"""The running clearance and its parts with their names and colours, in the order of the bars."""
+
 _WIDTH, _PITCH = 100.0, 12.0  # drawn length of the scale, and distance of two bars
 
 
-class PowerDrawing(_Drawing):
-    """Bars of one run, each on a line of its own with its name and its watts; all on one scale, which fits the longest.
-
-    Means of the newest `SAMPLES`: at an instant the shaft's power is in part stored, in motion and elastic contacts, or given back.
+class BarDrawing(_Drawing):
+    """Bars of one run, each on a line of its own with its name and its value; all on one scale, which fits the longest.
 
     Parameters
     ----------
     recording : rerun.RecordingStream to draw into; its time is set by the caller.
+    root : the entity path.
+    bars : name and colour of each bar, by what it shows.
+    observable : ``observable.format(name)`` is the observable of a bar.
+    factor, unit : from SI to the unit shown.
+    digits : after the point.
+    signed : whether values are as often negative as positive: there is room for bars to the left, too.
     """
 
-    def __init__(self, recording: rr.RecordingStream):
-        super().__init__(recording, POWER_ROOT)
-        self._scale = 1.0  # [W]
-        self._newest = np.empty((0, len(CAUSES)))
-        self._levels = _PITCH * np.arange(len(CAUSES))
+    def __init__(self, recording, root: str, bars: dict, observable: str, factor: float, unit: str, digits: int = 0, signed: bool = False):
+        super().__init__(recording, root)
+        self._bars, self._observables = bars, [observable.format(name) for name in bars]
+        self._factor, self._unit, self._digits, self._signed = factor, unit, digits, signed
+        self._scale = 1.0  # in the unit shown
+        self._newest = np.empty((0, len(bars)))
+        self._levels = _PITCH * np.arange(len(bars))
 
     def draw_still_parts(self) -> None:
         """Write the names, and what the bars keep."""
-        names = np.stack((np.full(len(CAUSES), -0.28 * _WIDTH), self._levels - 0.42 * _PITCH), axis=1)
-        self._still("names", labels(names, [name for name, _ in CAUSES.values()]))
-        style = rr.LineStrips2D.from_fields(colors=[colour for _, colour in CAUSES.values()])
+        left = -0.28 * _WIDTH - (_WIDTH if self._signed else 0.0)
+        names = np.stack((np.full(len(self._bars), left), self._levels - 0.42 * _PITCH), axis=1)
+        self._still("names", labels(names, [name for name, _ in self._bars.values()]))
+        style = rr.LineStrips2D.from_fields(colors=[colour for _, colour in self._bars.values()])
         self._still("bars", style)
+        if self._signed:
+            zero = [[0.0, -0.7 * _PITCH], [0.0, (len(self._bars) - 0.3) * _PITCH]]
+            self._still("zero", rr.LineStrips2D([zero], radii=0.15, colors=colours.STEEL, draw_order=-1.0))
 
     def add(self, block: np.ndarray) -> None:
         """Add the samples of a block, whether they are drawn or not."""
-        rows = np.stack([block[f"{cause}_power"][-SAMPLES:] for cause in CAUSES], axis=1)
+        rows = np.stack([block[name][-SAMPLES:] for name in self._observables], axis=1)
         self._newest = np.concatenate((self._newest, rows))[-SAMPLES:]
 
     def draw(self) -> None:
-        """Draw the bars at the recording's current time."""
-        powers = self._newest.mean(axis=0)
-        known = np.nan_to_num(powers)
+        """Draw the bars at the recording's current time: means of the newest `SAMPLES`."""
+        values = self._factor * self._newest.mean(axis=0)
+        known = np.nan_to_num(values)
         largest = float(np.abs(known).max())
         if largest > 0.0 and not 0.25 * self._scale < largest <= self._scale:
             self._scale = section.round_up(largest)
@@ -489,10 +511,111 @@ class PowerDrawing(_Drawing):
         bars = np.stack((np.stack((left, self._levels), axis=1), np.stack((right, self._levels), axis=1)), axis=1)
         self._log("bars", rr.LineStrips2D.from_fields(strips=bars, radii=radii))
         places = np.stack((np.full(len(ends), 1.28 * _WIDTH), self._levels - 0.42 * _PITCH), axis=1)
-        texts = [f"{power:,.0f} W" if np.isfinite(power) else "unknown" for power in powers]
-        self._log("watts", labels(places, texts))
+        rounded = np.round(values, self._digits) + 0.0  # no minus before a zero
+        texts = [f"{value:,.{self._digits}f} {self._unit}" if np.isfinite(value) else "unknown" for value in rounded]
+        self._log("values", labels(places, texts))
 
 
-def power_bounds() -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return the horizontal and vertical range of the bars with their texts."""
-    return (-0.56 * _WIDTH, 1.46 * _WIDTH), (-0.8 * _PITCH, (len(CAUSES) - 0.1) * _PITCH)
+def bar_bounds(count: int, signed: bool = False) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return the horizontal and vertical range of so many bars with their texts."""
+    return (-(1.56 if signed else 0.56) * _WIDTH, 1.46 * _WIDTH), (-0.8 * _PITCH, (count - 0.1) * _PITCH)
+
+
+def power_drawing(recording: rr.RecordingStream) -> BarDrawing:
+    """Return the bars of the powers: means, for at an instant the shaft's power is in part stored, in motion and elastic contacts, or given back."""
+    return BarDrawing(recording, POWER_ROOT, CAUSES, "{}_power", 1.0, "W")
+
+
+def clearance_drawing(recording: rr.RecordingStream) -> BarDrawing:
+    """Return the bars of the running clearance and its parts, which add up to it."""
+    return BarDrawing(recording, CLEARANCE_ROOT, CLEARANCES, "{}_clearance", 1e6, "µm", digits=1, signed=True)
+
+
+HEAT_ROOT = "/temperatures"
+BODIES = {
+    "housing": ("housing", "housing_temperature", colours.GREY),
+    "outer_ring": ("outer ring", "outer_ring_temperature", colours.VERMILION),
+    "rollers": ("rollers", "roller_temperature", colours.YELLOW),
+    "inner_ring": ("inner ring", "inner_ring_temperature", colours.BLUE),
+    "shaft": ("shaft", "shaft_temperature", colours.PURPLE),
+    "oil_outlet": ("oil, leaving", "oil_outlet_temperature", colours.GREEN),
+}
+"""What has a temperature: name, observable and colour of its line, from the outside to the inside."""
+_NARROWEST = 10.0  # [K] least span of the colours, so that equal temperatures look alike
+
+
+class HeatDrawing(_Drawing):
+    """The cross-section of one bearing with shaft and housing, coloured by temperature.
+
+    Parameters
+    ----------
+    recording : rerun.RecordingStream to draw into; its time is set by the caller.
+    scene : the scene that holds the bearing.
+    """
+
+    def __init__(self, recording: rr.RecordingStream, scene: Scene):
+        super().__init__(recording, HEAT_ROOT)
+        self._bearing, self._radii = scene.bearing, section.heat_radii(scene.bearing)
+        self._round = ("housing", "outer_ring", "inner_ring", "shaft")
+        self._scale = (math.inf, -math.inf)  # [degC]
+        self._edge = self._radii["housing"][1]
+
+    def draw_still_parts(self) -> None:
+        """Draw what the moving parts keep: bodies to scale, except for the housing."""
+        spans = np.array([self._radii[name] for name in self._round])
+        middle, half = spans.mean(axis=1), 0.5 * np.diff(spans, axis=1)[:, 0]
+        self._still("bodies", rr.Ellipses2D.from_fields(half_sizes=np.stack((middle, middle), axis=1), line_radii=half, draw_order=0.0))
+        edges = spans[:, 1]
+        self._still("edges", rr.Ellipses2D(half_sizes=np.stack((edges, edges), axis=1), line_radii=0.004 * self._edge, colors=colours.STEEL))
+        circle, radius = self._radii["rollers"]
+        azimuth = 2 * math.pi * np.arange(self._bearing.roller.count) / self._bearing.roller.count
+        self._still("rollers", rr.Points2D.from_fields(positions=polar(circle, azimuth), radii=radius, draw_order=5.0))
+
+    def draw(self, sample: np.void) -> None:
+        """Draw the temperatures of one sample at the recording's current time."""
+        kelvin = {name: float(sample[observable]) for name, (_, observable, _) in BODIES.items()}
+        celsius = {name: value - ZERO_CELSIUS for name, value in kelvin.items()}
+        self._widen([value for value in celsius.values() if math.isfinite(value)])
+        colour = {name: colours.heat_colours(np.array([value]), self._drawn_scale)[0] for name, value in celsius.items()}
+        self._log("bodies", rr.Ellipses2D.from_fields(colors=np.array([colour[name] for name in self._round])))
+        self._log("rollers", rr.Points2D.from_fields(colors=colour["rollers"][None]))
+        rows = -0.78 * self._edge + 0.24 * self._edge * np.arange(len(BODIES))
+        self._log("keys", rr.Points2D(np.stack((np.full(len(rows), 1.35 * self._edge), rows), axis=1), radii=0.08 * self._edge, colors=[*colour.values()]))
+        texts = [f"{label} {_celsius(celsius[name])}{self._measured(sample, name)}" for name, (label, _, _) in BODIES.items()]
+        self._log("texts", labels(np.stack((np.full(len(rows), 2.25 * self._edge), rows - 0.09 * self._edge), axis=1), texts))
+
+    @staticmethod
+    def _measured(sample: np.void, name: str) -> str:
+        observable = f"{name}_temperature_measured"
+        known = observable in sample.dtype.names and math.isfinite(sample[observable])
+        return f", measured {_celsius(float(sample[observable]) - ZERO_CELSIUS)}" if known else ""
+
+    @property
+    def _drawn_scale(self) -> tuple[float, float]:
+        return self._scale if self._scale[0] < self._scale[1] else (0.0, _NARROWEST)
+
+    def _widen(self, celsius: list[float]) -> None:
+        """Widen the scale of the colours so that it holds these temperatures, and draw it again."""
+        if not celsius or (self._scale[0] <= min(celsius) and max(celsius) <= self._scale[1]):
+            return
+        low, high = min(celsius + [self._scale[0]]), max(celsius + [self._scale[1]])
+        low = 5.0 * math.floor(low / 5.0)
+        high = max(5.0 * math.ceil(high / 5.0), low + _NARROWEST)
+        self._scale = (low, high)
+        steps, level = 64, 0.78 * self._edge
+        places = np.linspace(1.3 * self._edge, 2.9 * self._edge, steps + 1)
+        strips = np.stack((np.stack((places[:-1], np.full(steps, level)), axis=1), np.stack((places[1:], np.full(steps, level)), axis=1)), axis=1)
+        self._log("legend/map", rr.LineStrips2D(strips, radii=0.05 * self._edge, colors=colours.heat_palette(steps)))
+        ticks = np.linspace(low, high, 3)
+        across = np.linspace(places[0], places[-1], len(ticks))
+        self._log("legend/ticks", labels(np.stack((across, np.full(len(ticks), level + 0.06 * self._edge)), axis=1), [_celsius(tick, 0) for tick in ticks]))
+
+
+def heat_bounds(scene: Scene) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return the horizontal and vertical range of the temperatures' picture with its numbers [mm]."""
+    edge = section.heat_radii(scene.bearing)["housing"][1]
+    return (-1.05 * edge, 3.1 * edge), (-1.05 * edge, 1.05 * edge)
+
+
+def _celsius(value: float, digits: int = 1) -> str:
+    return f"{value:.{digits}f} °C" if math.isfinite(value) else "unknown"

@@ -13,14 +13,13 @@ import numpy as np
 import rerun as rr
 
 from bearing_sim.messages.events import Event, Level
-from bearing_sim.messages.topics import LIFE_SYMBOLS
+from bearing_sim.messages.topics import LIFE_SYMBOLS, RING_TEMPERATURES, ZERO_CELSIUS
 from bearing_sim.scene.fidelity import LEVELS, level_of
-from bearing_sim.scene.scene import Scene
+from bearing_sim.scene.scene import NO_CLEARANCE_LIMIT, Scene
 from bearing_sim.view import colours, section
-from bearing_sim.view.drawings import CAUSES
+from bearing_sim.view.drawings import BODIES, CAUSES, CLEARANCES
 
 RPM = 30 / math.pi
-ZERO_CELSIUS = 273.15
 ENDLESS = 1e7  # [h]; a bearing that hardly turns has a life of 1e30 h, which would flatten everything else
 
 LINES = {
@@ -58,7 +57,13 @@ LINES = {
     "/tilt/cage_y": ("cage towards y", colours.ORANGE, 2.0),
     "/tilt/cage_z": ("cage towards z", colours.YELLOW, 2.0),
     "/sink/dropped": ("blocks dropped", colours.WHITE, 1.5),
-} | {f"/power/{cause}": (name, colour, 2.0) for cause, (name, colour) in CAUSES.items()}
+    "/clearance/warning": ("warning", colours.YELLOW, 1.0),
+    "/clearance/error": ("error", colours.VERMILION, 1.0),
+}
+LINES |= {f"/power/{cause}": (name, colour, 2.0) for cause, (name, colour) in CAUSES.items()}
+LINES |= {f"/clearance/{part}": (name, colour, 2.0) for part, (name, colour) in CLEARANCES.items()}
+LINES |= {f"/temperature/{body}": (name, colour, 2.0) for body, (name, _, colour) in BODIES.items()}
+LINES |= {f"/temperature/{name}_measured": (f"{name.partition('_')[0]} ring, measured", colours.WHITE, 1.5) for name in RING_TEMPERATURES}
 
 EACH = {
     "/loads/each/inner": "inner",
@@ -121,7 +126,9 @@ def series(block: np.ndarray) -> dict[str, np.ndarray]:
         "/loads/each/outer": block["outer_load"],
         "/loads/each/pocket": block["pocket_force"],
         "/cage/eccentricity": block["land_eccentricity"],
-    } | {f"/power/{cause}": block[f"{cause}_power"] for cause in CAUSES}
+        **{f"/power/{cause}": block[f"{cause}_power"] for cause in CAUSES},
+        **{f"/clearance/{part}": 1e6 * block[f"{part}_clearance"] for part in CLEARANCES},
+    }
 
 
 def roller_series(scene: Scene, block: np.ndarray) -> dict[str, np.ndarray]:
@@ -150,6 +157,9 @@ def threshold_lines(scene: Scene) -> dict[str, float]:
     for path, force in (("/loads/pocket_warning", limits.pocket_force_warning), ("/loads/pocket_error", limits.pocket_force_error)):
         if force is not None:
             lines[path] = force
+    for path, clearance in (("/clearance/warning", limits.clearance_warning), ("/clearance/error", limits.clearance_error)):
+        if clearance > NO_CLEARANCE_LIMIT:
+            lines[path] = 1e6 * clearance
     return lines
 
 
@@ -177,6 +187,9 @@ def further_series(scene: Scene, block: np.ndarray) -> dict[str, np.ndarray]:
     lines = {f"/life/{name}_log10_hours": log10_hours(block[name])}
     if not scene.life.is_basic:
         lines["/life/modified_log10_hours"] = log10_hours(block["modified_rating_life"])
+    if scene.uses_ring_temperatures:
+        lines |= {f"/temperature/{body}": block[observable] - ZERO_CELSIUS for body, (_, observable, _) in BODIES.items()}
+        lines |= {f"/temperature/{ring}_measured": block[f"{ring}_measured"] - ZERO_CELSIUS for ring in RING_TEMPERATURES}
     if scene.bodies_tilt:
         lines |= {f"/tilt/{body}_{axis}": 1e3 * block[f"{body}_tilt_{axis}"] for body in ("ring", "cage") for axis in "yz"}
         lines |= {f"/tilt/each/{name}": 1e3 * block[f"roller_{name}"] for name in ("tilt", "skew")}
@@ -543,6 +556,7 @@ class RunSeries:
             ("shaft", f"{round(RPM * float(sample['shaft_speed'])):,} rpm"),
             ("cage", f"{round(RPM * float(sample['cage_speed'])):,} rpm"),
             ("radial load", f"{math.hypot(sample['load_y'], sample['load_z']):,.0f} N"),
+            ("running clearance", _micrometres(float(sample["running_clearance"]))),
             ("oil", f"{float(sample['oil_temperature']) - ZERO_CELSIUS:.1f} °C"),
             ("rollers loaded", f"{np.count_nonzero(sample['inner_load'] > 0)} of {len(sample['inner_load'])}"),
             ("largest load", f"inner {_newton(sample['inner_load'])}, outer {_newton(sample['outer_load'])}"),
@@ -592,6 +606,10 @@ def _hours(life: float) -> str:
     if not math.isfinite(life):
         return "endless (at rest)" if life > 0 else "unknown"
     return f"{life:,.0f} h" if life < ENDLESS else "endless"
+
+
+def _micrometres(clearance: float) -> str:
+    return f"{1e6 * clearance:.1f} µm" if math.isfinite(clearance) else "unknown"
 
 
 def _newton(loads: np.ndarray) -> str:

@@ -10,12 +10,13 @@ import numpy as np
 import rerun as rr
 
 from bearing_sim.messages.events import Event, Level
+from bearing_sim.messages.topics import ZERO_CELSIUS
 from bearing_sim.scene.scene import Scene
 from bearing_sim.view import section
 from bearing_sim.view.blueprint import LIVE_WINDOW, Extent, blueprint
-from bearing_sim.view.drawings import CageDrawing, PowerDrawing, SectionDrawing, SolidDrawing, labels
+from bearing_sim.view.drawings import CageDrawing, HeatDrawing, SectionDrawing, SolidDrawing, clearance_drawing, labels, power_drawing
 from bearing_sim.view.load_map import LoadMap, label_distance, map_size
-from bearing_sim.view.plots import TIMELINE, ZERO_CELSIUS, RunSeries
+from bearing_sim.view.plots import TIMELINE, RunSeries
 
 _WHIRL = """The cage's displacement and its {play} have a factor of their own, which the title says; cage orbit: the position of
 its centre in the {play}{seen} and its path in the last turns, dots where samples are too far apart for a line.
@@ -31,6 +32,9 @@ def _whirl(scene: Scene) -> str:
     return _WHIRL.format(play="guide clearance" if cage.has_lands else "play in the pockets that guide it", seen=seen)
 
 
+_HEAT = """**Temperatures** colour shaft, rings, rollers and housing; the housing is drawn as thick as a ring.
+
+"""
 _TILTS = """The solid picture draws tilts of ring and rollers and skews by factors of their own, which its title says, and the cage's tilt by
 the cage's factor. Pressures are Hertz's of slices, largest
 of all rollers; those of the end slices say how hard edges press, without the rise at a sharp edge.
@@ -64,7 +68,10 @@ The orange cage bar and the white marks show rotation. Purple arrows: forces of 
 **Power** by cause: what the shaft puts in by the tractions on the inner ring, the mixture in the cage's bore and guide lands of its own is lost, or
 stored for a moment in motion and elastic contacts; the bars are means of the newest samples.
 
-**Thresholds**: slip {100 * limits.slip_warning:g} % warning, {100 * limits.slip_error:g} % error; life below {limits.life_warning:g} h warning.
+**Running clearance** of the lowest points, diametral, negative: preload, is the sum of what is on the drawing and what fits, rotation, heat and
+the contour change; the bars are means of the newest samples.
+
+{_HEAT if scene.uses_ring_temperatures else ""}**Thresholds**: slip {100 * limits.slip_warning:g} % warning, {100 * limits.slip_error:g} % error; life below {limits.life_warning:g} h warning.
 
 **Loads** are those of the sampled instants: at constant speed samples may meet the rollers in the same places again and
 again, and then the largest load changes with the speed while the bearing's does not.
@@ -170,7 +177,8 @@ class RunView:
         self._drawing = SectionDrawing(self._recording, scene, scale)
         self._solid = SolidDrawing(self._recording, scene)
         self._cage = CageDrawing(self._recording, scene) if scene.cage_whirls else None
-        self._power = PowerDrawing(self._recording)
+        self._bars = (power_drawing(self._recording), clearance_drawing(self._recording))
+        self._heat = HeatDrawing(self._recording, scene) if scene.uses_ring_temperatures else None
         sink = rr.GrpcServerSink("127.0.0.1", serve_port, server_memory_limit=_SERVER_MEMORY) if live else rr.FileSink(str(path))
         self._recording.set_sinks(sink, default_blueprint=blueprint(scene, self._drawing.bounds(), live))
         self._recording.send_recording_name(scene.name)
@@ -187,7 +195,7 @@ class RunView:
         self._newest: np.void | None = None
         self._first_time = 0.0
         self._scene, self._live, self._laid_out_measured = scene, live, False
-        for drawing in filter(None, (self._drawing, self._solid, self._power, self._cage)):
+        for drawing in filter(None, (self._drawing, self._solid, *self._bars, self._cage, self._heat)):
             drawing.draw_still_parts()
         self._series.describe()
         self._recording.log("/about", rr.TextDocument(about(scene, self._drawing.factor), media_type=rr.MediaType.MARKDOWN), static=True)
@@ -261,14 +269,16 @@ class RunView:
         self._drawing.draw(sample)
         self._solid.draw(sample, self._drawing.load_scale)
         if self._details is None or self._details.pick(sample["time"][None]):
-            self._power.draw()
-            if self._cage is not None:
-                self._cage.draw(sample)
+            for bars in self._bars:
+                bars.draw()
+            for drawing in filter(None, (self._cage, self._heat)):
+                drawing.draw(sample)
         self._series.write_readout(sample, self.dropped)
 
     def _follow(self, samples: np.ndarray) -> None:
         """Add samples to what a picture shows of the time before it."""
-        self._power.add(samples)
+        for bars in self._bars:
+            bars.add(samples)
         if self._cage is not None:
             self._cage.add(samples)
 

@@ -128,6 +128,26 @@ def outer_surface_radius(bearing: Bearing, factor: float) -> float:
     return float(highest + 0.25 * bearing.roller.diameter / MILLIMETRE)
 
 
+def heat_radii(bearing: Bearing) -> dict[str, tuple[float, float]]:
+    """Return the inside and outside radius [mm] of each body that has a temperature, rollers as their centres' circle and radius.
+
+    Rings without a bore or an outside radius in the scene are 0.4 roller diameters thick; the housing is drawn as thick as that.
+    """
+    roller, inner, outer = bearing.roller, bearing.inner_raceway, bearing.outer_raceway
+    thickness = 0.4 * roller.diameter
+    bore = inner.bore_radius if inner.bore_radius is not None else inner.radius - thickness
+    raceway = inner.radius + roller.diameter
+    outside = outer.outside_radius if outer.outside_radius is not None else raceway + thickness
+    bodies = {
+        "shaft": (0.0, bore),
+        "inner_ring": (bore, inner.radius),
+        "rollers": (bearing.pitch_radius, roller.diameter / 2),
+        "outer_ring": (raceway, outside),
+        "housing": (outside, outside + thickness),
+    }
+    return {name: (inside / MILLIMETRE, beyond / MILLIMETRE) for name, (inside, beyond) in bodies.items()}
+
+
 def roller_centres(bearing: Bearing, factor: float, sample) -> np.ndarray:
     """Return the drawn roller centres (picture points, mm), shape (Z, 2)."""
     pitch = bearing.pitch_radius
