@@ -17,7 +17,7 @@ from bearing_sim.scene.ratings import Ratings
 _CLEARANCE = QuantityOrName(
     "m", "radial internal clearance, diametral: 2 (R_low - R_i - D_w); or its group by ISO 5753-1", -1e-3, 5e-3, "um", CLEARANCE_GROUPS
 )
-# Assumption where a scene does not name boundary dimensions; within 15 % of those of cylindrical roller bearings of series 10, 2, 3, 22 and 23.
+# Assumption where a scene does not name boundary dimensions: diameters within 15 %, widths within 40 % of those of the bearings of the catalogue.
 _SECTION = 0.27  # roller diameter over D - d
 _WIDTH = 0.6  # effective roller length over B
 LAND_FIELDS = ("guide_radius", "guide_clearance", "guide_land_width", "guide_land_distance")
