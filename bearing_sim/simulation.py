@@ -7,12 +7,15 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.levels.common.model import Drive, Model, Tolerances
+from bearing_sim.levels.common.thermal_state import THERMAL, ThermalState
 from bearing_sim.levels.level import LEVELS
+from bearing_sim.levels.steady.equilibrium import thermal_equilibrium
 from bearing_sim.levels.steady.table import Table
 from bearing_sim.levels.steady.table_builder import cached_table
 from bearing_sim.model.oil import kinematic_viscosities
-from bearing_sim.model.params import lubricate, pack
+from bearing_sim.model.params import pack
 from bearing_sim.model.sample import COLUMN, RING_TEMPERATURES, flat, new_block, sample_dtype
+from bearing_sim.model.temperatures import given_temperatures, lubricate_scene
 from bearing_sim.numerics.compilation import compiled_for
 from bearing_sim.numerics.time_stepping import COUNT, OK, REASONS, new_counts, new_memory
 from bearing_sim.scene.fidelity import NUMBERS
@@ -88,9 +91,12 @@ class Simulation:
         self.scene = scene
         self._params, self._tolerances = pack(scene), tolerances_of(scene.integration)
         self._dtype = sample_dtype(self._params.rollers.count)
+        self._cold = self._params  # before temperatures change them
         self._level = LEVELS[scene.level]
+        self._thermal: ThermalState | None = None  # of a thermal network
+        self._temperatures = np.full(THERMAL.stop - THERMAL.start, math.nan)  # without one: those that are given
         self._tables = ()  # what the level's workspace is made of besides the parameters
-        if self._level.advance_profile is not None:
+        if self._level.advance_profile is not None and scene.heat_law == "none":  # tables know no temperatures but the oil's
             kept = cached_table(scene) if table is None else (table,)
             self._tables = kept[:1] if kept else ()
         self.reset(inputs)
@@ -107,6 +113,13 @@ class Simulation:
         self.time = 0.0
         self._work = self._new_work()
         self._counts = new_counts()
+        self._thermal = self._new_thermal()
+        if self._thermal is not None and self.scene.heat.start == "equilibrium":
+            found = thermal_equilibrium(self.scene, self.inputs)
+            if not found.converged:
+                raise IntegrationError(f"{found.reason}; start the network with heat.start=oil to see how it runs away")
+            self._thermal.temperatures[:] = found.temperatures
+        self._take_temperatures()
         self._begin(self._level.initial_state(self._params, self._work, *self.inputs[:3]), new_block(1, self._params.rollers.count))
 
     def take_over(self, other: "Simulation") -> None:
@@ -125,6 +138,10 @@ class Simulation:
             raise ValueError(f"cannot continue a bearing of {theirs} rollers with one of {own}: both simulations need the same bearing")
         self.inputs, self.time = other.inputs, other.time
         self._work = self._new_work()
+        self._thermal = self._new_thermal()
+        if self._thermal is not None and other._thermal is not None:
+            self._thermal.take_over(other._thermal)
+        self._take_temperatures()
         before = other._newest.copy().view(other._dtype)
         for name in ("roller_spin", "roller_rotation"):  # of a level that does not follow them
             before[name] = np.nan_to_num(before[name])
@@ -144,6 +161,10 @@ class Simulation:
         self._work = self._new_work()
         before = new_block(1, self._params.rollers.count)
         before[0] = sample
+        self._thermal = self._new_thermal()
+        if self._thermal is not None:
+            self._thermal.resume(flat(before)[0])
+        self._take_temperatures()
         for name in ("roller_spin", "roller_rotation"):  # of a level that does not follow them
             before[name] = np.nan_to_num(before[name])
         self._begin(self._level.state_at(self._params, self._work, before[0]), before)
@@ -154,13 +175,71 @@ class Simulation:
         self._compiled = None  # the code of `advance`, from its first call on: the types of its arguments stay
         self._memory = new_memory(state.size)
         self._step = float(self.scene.integration.first_step)
-        self._lubrication = lubricate(self.scene.lubricant, self._params, self.inputs.oil_temperature)
         self._newest = flat(new_block(1, self._params.rollers.count))[0]
         before = flat(previous)[0]
         self._newest[COLUMN.shaft_angle] = before[COLUMN.shaft_angle]
         self._level.observe(self.time, state, self._model(self.inputs, 1.0), self._work, 0.0, before, self._newest, self._memory.scratch[0])
         self._newest[COLUMN.level] = NUMBERS[self.scene.level]
         self._newest[_MEASURED_COLUMNS] = self.inputs[-len(RING_TEMPERATURES) :]
+        self._write_temperatures(self._newest)
+
+    def _new_thermal(self) -> ThermalState | None:
+        if self.scene.heat_law != "network":
+            return None
+        return ThermalState(self.scene, self._cold, self.inputs.oil_temperature)
+
+    def _take_temperatures(self) -> None:
+        """Let radii, clearances and oil follow the present temperatures."""
+        if self._thermal is None:
+            self._follow_inputs(self.inputs)
+            return
+        self._params, self._lubrication = self._thermal.model(self._cold, self.inputs.oil_temperature, self.inputs.shaft_speed)
+        if self._level.forget is not None:
+            self._level.forget(self._work)
+
+    def _follow_inputs(self, inputs: Inputs) -> None:
+        """Let radii and oil follow the temperatures that come from outside."""
+        oil, measured = inputs.oil_temperature, inputs[-len(RING_TEMPERATURES) :]
+        if self._thermal is not None:
+            self._lubrication = self._lubrication._replace(temperature=oil)  # that of the oil that comes in
+            return
+        self._lubrication = lubricate_scene(self.scene, self._params, oil, measured)
+        if self.scene.heat_law == "given":
+            solids = given_temperatures(self.scene.heat, oil, measured)
+            self._temperatures[: len(solids)] = solids
+        if self._level.forget is not None:
+            self._level.forget(self._work)
+
+    def _write_temperatures(self, rows: np.ndarray) -> None:
+        if self._thermal is None:
+            rows[..., THERMAL] = self._temperatures
+        else:
+            self._thermal.write(rows)
+
+    @property
+    def thermal(self) -> ThermalState | None:
+        """The state of the thermal network; None where the scene has none."""
+        return self._thermal
+
+    def set_temperatures(self, nodes: np.ndarray, held: bool = True) -> None:
+        """Set the temperatures of the thermal network's nodes.
+
+        Parameters
+        ----------
+        nodes : [K], in the order of `bearing_sim.physics.thermal_network.NODE`.
+        held : whether they stay so, however long the simulation advances; otherwise the network goes on from them.
+
+        Raises
+        ------
+        ValueError
+            The scene has no thermal network.
+        """
+        if self._thermal is None:
+            raise ValueError(f"heat.law is {self.scene.heat_law}: only a network has temperatures to set; choose heat.law=network")
+        self._thermal.temperatures[:] = nodes
+        self._thermal.held = held
+        self._take_temperatures()
+        self._write_temperatures(self._newest)
 
     def _new_work(self):
         return self._level.new_work(self._params, *self._tables)
@@ -220,8 +299,8 @@ class Simulation:
         if not 0.0 < duration < math.inf or samples < 1:
             raise ValueError(f"advance takes a positive finite duration and at least one sample, got {duration!r} s and {samples!r}")
         end = self.inputs if inputs is None else _checked(inputs)
-        if end.oil_temperature != self._lubrication.temperature:
-            self._lubrication = lubricate(self.scene.lubricant, self._params, end.oil_temperature)
+        if end.oil_temperature != self._lubrication.temperature or self._rings_changed(end):
+            self._follow_inputs(end)
         block = new_block(samples, self._params.rollers.count)
         rows = flat(block)
         state = self._state.copy()
@@ -255,9 +334,19 @@ class Simulation:
             )
         rows[:, COLUMN.level] = NUMBERS[self.scene.level]
         rows[:, _MEASURED_COLUMNS] = end[-len(RING_TEMPERATURES) :]
+        self._write_temperatures(rows)
         self.time += duration
-        self.inputs, self._state, self._step, self._newest = end, state, step, rows[-1].copy()
+        self.inputs, self._state, self._step = end, state, step
+        if self._thermal is not None and self._thermal.take(rows, duration, end.oil_temperature, end[-len(RING_TEMPERATURES) :]):
+            self._take_temperatures()
+        self._newest = rows[-1].copy()
         return block
+
+    def _rings_changed(self, end: Inputs) -> bool:
+        """Return whether measured temperatures stand for given ones and have changed."""
+        if self.scene.heat_law != "given":
+            return False
+        return str(end[-len(RING_TEMPERATURES) :]) != str(self.inputs[-len(RING_TEMPERATURES) :])  # as text NaN equals NaN
 
     @property
     def takes_profiles(self) -> bool:
@@ -307,8 +396,9 @@ class Simulation:
             rows[:, COLUMN.level] = NUMBERS[self.scene.level]
             rows[:reached, _MEASURED_COLUMNS] = inputs[:reached, -len(RING_TEMPERATURES) :]
             self._newest = rows[reached - 1].copy()
+            self._write_temperatures(rows[:reached])
             if self.inputs.oil_temperature != self._lubrication.temperature:
-                self._lubrication = lubricate(self.scene.lubricant, self._params, self.inputs.oil_temperature)
+                self._follow_inputs(self.inputs)
         return block[:reached]
 
 

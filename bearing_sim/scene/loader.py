@@ -25,7 +25,7 @@ from bearing_sim.scene.uncertainty import declared_in, drop_ranges_of_lands, ove
 
 _UNION_TAGS = frozenset(
     {"oil_4109", "constant", "kragelskii", "eyring", "fitted", "custom", "double_exponential", "reference", "hyperbolic", "power"}
-    | {"none", "iso_log", "straight_arc", "table", "hydrodynamic", "oil_jet", "oil_bath", "constant_moment", "skf"}
+    | {"none", "iso_log", "straight_arc", "table", "hydrodynamic", "oil_jet", "oil_bath", "constant_moment", "skf", "given", "network"}
 )
 
 

@@ -62,6 +62,7 @@ class Oil:
     density_temperatures: tuple[quantity("K", "temperature of a density point", 150.0, 800.0, "degC"), ...]
     densities: tuple[quantity("kg/m^3", "density at that temperature", 100.0, 3000.0), ...]
     thermal_conductivity: quantity("", "thermal conductivity [W/(m K)]", 0.01, 10.0) = 0.0966
+    specific_heat: quantity("J/(kg*K)", "specific heat; None: by density and temperature (Cragoe 1929)", 100.0, 1e4) | None = None
 
     @check
     def _density_points_pair_up(self) -> list[str]:
@@ -88,6 +89,7 @@ class CustomOil:
     expansion: quantity("1/K", "thermal expansion of the volume", 0.0, 1e-2) = 6.5e-4
     pressure_viscosity: quantity("1/Pa", "pressure-viscosity coefficient, alpha", 1e-10, 1e-7, "1/GPa")
     thermal_conductivity: quantity("", "thermal conductivity [W/(m K)]", 0.01, 10.0) = 0.14
+    specific_heat: quantity("J/(kg*K)", "specific heat; None: by density and temperature (Cragoe 1929)", 100.0, 1e4) | None = None
 
     @check
     def _thins_when_heated(self) -> list[str]:

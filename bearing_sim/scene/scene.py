@@ -13,6 +13,7 @@ from pydantic import Field
 
 from bearing_sim.scene.bearing import Bearing
 from bearing_sim.scene.fidelity import WANTS, refusals
+from bearing_sim.scene.heat import Heat, NoHeat
 from bearing_sim.scene.lubricant import Lubricant
 from bearing_sim.scene.mounting import Mounting, mounting_errors
 from bearing_sim.scene.quantity import check, quantity, record
@@ -285,6 +286,7 @@ class Scene:
     operating: Operating
     mounting: Mounting = field(default_factory=Mounting)
     support: Support = field(default_factory=Support)
+    heat: Heat = field(default_factory=NoHeat)
     dynamics: Dynamics = field(default_factory=Dynamics)
     integration: Integration = field(default_factory=Integration)
     input_limits: InputLimits = field(default_factory=InputLimits)
@@ -312,8 +314,7 @@ class Scene:
     @property
     def heat_law(self) -> str:
         """Where the temperatures of the bearing's parts come from."""
-        heat = getattr(self, "heat", None)
-        return "none" if heat is None else heat.law
+        return self.heat.law
 
     @property
     def cage_whirls(self) -> bool:

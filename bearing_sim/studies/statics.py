@@ -10,7 +10,8 @@ import numpy as np
 
 from bearing_sim.levels.common.slice_balance import about_yz, balance, leaning, roller_loads, roller_tilts
 from bearing_sim.model.oil import oil_at
-from bearing_sim.model.params import lubricate, pack
+from bearing_sim.model.params import pack
+from bearing_sim.model.temperatures import lubricate_scene
 from bearing_sim.physics.film import DOWSON_HIGGINSON, films
 from bearing_sim.physics.growth import Clearance, clearance_at, total_growth
 from bearing_sim.physics.lamina_life import EquivalentLoads, add_lamina_powers, equivalent_lamina_loads, stress_risers
@@ -70,7 +71,7 @@ def statics(scene: Scene, slices: int) -> Statics:
     moment = about_yz(operating.moment or 0.0, operating.moment_angle)
     tilts = about_yz(operating.misalignment, operating.misalignment_angle) if operating.moment is None else None
 
-    lubrication = lubricate(scene.lubricant, params, scene.lubricant.temperature)
+    lubrication = lubricate_scene(scene, params, scene.lubricant.temperature)
     growth = total_growth(operating.shaft_speed, lubrication.growth)
 
     inner_means, outer_means, risers = np.zeros(slices), np.zeros(slices), stress_risers(slices)

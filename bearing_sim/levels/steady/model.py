@@ -63,6 +63,11 @@ def new_work(params, table: Table | None = None):
     )
 
 
+def forget(work):
+    """Let the next operating point be solved anew: parameters or lubrication have changed at the same inputs."""
+    work.asked[:] = math.nan
+
+
 def initial_state(params, work, shaft_speed, load_y, load_z):
     """Return the state of ideal rolling: the cage at omega_i (1 - gamma)/2."""
     return np.array([0.0, 0.5 * shaft_speed * (1 - params.raceways.diameter_ratio)])

@@ -81,10 +81,11 @@ class Orbit(NamedTuple):
     reach: np.ndarray  # how far each spin may go in an iteration [rad/s], shape (M,)
     state: np.ndarray  # of level slip, shape (Z + 2,)
     rate: np.ndarray  # shape (Z + 2,)
+    tolerances: np.ndarray  # of the slip, over 0.01 + slip, and of spins, over the spin of rolling, shape (2,)
 
 
-def new_orbit(count: int, angles: int = ANGLES) -> Orbit:
-    """Return zeroed memory for ``count`` rollers and that many angles a pitch."""
+def new_orbit(count: int, angles: int = ANGLES, tolerances: tuple[float, float] = (_SLIP_TOLERANCE, _FINE)) -> Orbit:
+    """Return zeroed memory for ``count`` rollers and that many angles a pitch; see `Orbit` for the tolerances."""
     nodes = count * angles
     return Orbit(
         speed=np.ones(1),
@@ -100,6 +101,7 @@ def new_orbit(count: int, angles: int = ANGLES) -> Orbit:
         reach=np.zeros(nodes),
         state=np.zeros(count + 2),
         rate=np.zeros(count + 2),
+        tolerances=np.array(tolerances),
     )
 
 
@@ -304,10 +306,10 @@ def _narrow(low, drive_low, high, drive_high, ideal, sense, model, work, orbit):
     slip, slope = high, (drive_high - drive_low) / (high - low)
     for _ in range(_HALVINGS):
         slip = low - drive_low * (high - low) / (drive_high - drive_low)
-        drive = _mean_drive(ideal * (1.0 - slip), sense, model, work, orbit, _FINE)
+        drive = _mean_drive(ideal * (1.0 - slip), sense, model, work, orbit, orbit.tolerances[1])
         if not math.isfinite(drive):
             return math.nan
-        if min(abs(drive / slope), abs(high - low)) < _SLIP_TOLERANCE * (1e-2 + abs(slip)):
+        if min(abs(drive / slope), abs(high - low)) < orbit.tolerances[0] * (1e-2 + abs(slip)):
             return slip
         if drive * drive_high > 0.0:
             drive_low *= 0.5
@@ -398,7 +400,7 @@ def solve_point(model, work, orbit, answer):
         return FAILED
     answer[ANSWER.lag] = _lag(slip, ideal, sense, model, work, orbit)
     speed = ideal * (1.0 - slip)
-    if not math.isfinite(_mean_drive(speed, sense, model, work, orbit, _FINE)):
+    if not math.isfinite(_mean_drive(speed, sense, model, work, orbit, orbit.tolerances[1])):
         return FAILED
     answer[ANSWER.cage_slip] = slip if status == SETTLED else 1.0
     _write_powers(speed, sense, model, work, orbit, answer)

@@ -27,7 +27,8 @@ from bearing_sim.levels.common.model import DEFAULT_TOLERANCES, Drive, Model
 from bearing_sim.levels.steady.model import look_up_conditions, new_work, solve_conditions
 from bearing_sim.levels.steady.operating_point import ANSWER
 from bearing_sim.levels.steady.table import AXES, Table, contour_period, mirror_axis, monotone_slopes, new_look_up
-from bearing_sim.model.params import Lubrication, Params, lubricate, pack
+from bearing_sim.model.params import Lubrication, Params, pack
+from bearing_sim.model.temperatures import lubricate_scene
 from bearing_sim.numerics.compilation import sources_hash
 from bearing_sim.numerics.cores import cores
 from bearing_sim.physics.rating_life import rating_life_revolutions
@@ -296,7 +297,7 @@ def table_hash(scene: Scene, span: Span) -> str:
     """Return a hash of what a table's numbers depend on: bearing, oil at the temperatures of the span, tolerance and this program."""
     params = pack(scene)
     digest = hashlib.sha256(sources_hash().encode())
-    oils = [lubricate(scene.lubricant, params, float(kelvin)) for kelvin in np.linspace(span.minimum_temperature, span.maximum_temperature, _OILS)]
+    oils = [lubricate_scene(scene, params, float(kelvin)) for kelvin in np.linspace(span.minimum_temperature, span.maximum_temperature, _OILS)]
     life = params.life._replace(method=0, reliability_factor=1.0)  # which choose among lives, and change no operating point
     bearing = params.rollers, params.raceways, params.cage, params.mounted, params.variants, params.envelope, life
     for number in _numbers((bearing, oils, span, scene.table.tolerance)):
@@ -382,7 +383,7 @@ def obtain_table(
     found = None if rebuild else read_table(path)
     if found is None:
         params = pack(scene)
-        found = build_table(params, lambda kelvin: lubricate(scene.lubricant, params, kelvin), span, float(scene.table.tolerance), workers, progress)
+        found = build_table(params, lambda kelvin: lubricate_scene(scene, params, kelvin), span, float(scene.table.tolerance), workers, progress)
         try:
             write_table(path, *found)
         except OSError:  # a table that cannot be kept is as good for this run
@@ -425,7 +426,8 @@ def solve_points(scene: Scene, conditions: np.ndarray) -> np.ndarray:
     work = new_work(params)
     for temperature in np.unique(conditions[:, 2]):
         same = np.flatnonzero(conditions[:, 2] == temperature)
-        model = Model(params, lubricate(scene.lubricant, params, float(temperature)), Drive(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), DEFAULT_TOLERANCES)
+        lubrication = lubricate_scene(scene, params, float(temperature))
+        model = Model(params, lubrication, Drive(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), DEFAULT_TOLERANCES)
         found = np.empty((len(same), len(ANSWER)))
         solve_conditions(np.ascontiguousarray(conditions[same][:, [0, 1, 3]], float), model, work, found)
         answers[same] = found

@@ -1,0 +1,159 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""The thermal network of a run: temperatures that advance beside a level, heated by the losses that the level's samples hold.
+
+Temperatures change by seconds, a bearing moves by microseconds.  So losses are summed call by call, and at most once in an interval of
+simulated time the network takes a step, from whose temperatures radii, viscosities and tractions follow.  A measured ring temperature then
+corrects all nodes by a Kalman filter in its steady state: its gain belongs to the scene's operating point and the length of the step.
+"""
+
+import math
+
+import numpy as np
+
+from bearing_sim.model.params import Lubrication, Params
+from bearing_sim.model.sample import COLUMN, SCALARS
+from bearing_sim.model.temperatures import local_model
+from bearing_sim.model.thermal_network import NODE_OBSERVABLES, POWERS, fit_gaps, seats, start_temperatures, thermal_network
+from bearing_sim.numerics.compilation import compiled_for
+from bearing_sim.physics.thermal_filter import filter_gain, network_matrix
+from bearing_sim.physics.thermal_network import BOOK, NODE, NODES, NetworkInputs, new_work, step, write_conductances
+from bearing_sim.scene.scene import Scene
+
+_TEMPERATURES = slice(getattr(COLUMN, NODE_OBSERVABLES[0]), getattr(COLUMN, NODE_OBSERVABLES[-1]) + 1)
+THERMAL = slice(COLUMN.shaft_temperature, COLUMN.heat_to_ambient + 1)
+"""Columns of a flat sample that hold temperatures and flows of heat."""
+_FLOWS = slice(COLUMN.heat_to_oil, COLUMN.heat_to_ambient + 1)
+_POWERS = np.array([getattr(COLUMN, name) for name in POWERS])
+_RINGS = (NODE.inner_ring, NODE.outer_ring)
+_LOADED = 0.3  # fraction of the rollers that a typical load rests on
+
+
+class ThermalState:
+    """Temperatures of the nodes in time.
+
+    Parameters
+    ----------
+    scene : whose `heat.law` is network.
+    params : of its bearing.
+    inlet : temperature of the oil at the start [K].
+
+    Attributes
+    ----------
+    temperatures : of the nodes [K], shape (NODES,), see `bearing_sim.physics.thermal_network.NODE`.
+    flows : heat to the oil and to ambient over the last step [W], shape (2,).
+    books : of energy since the start [J], shape (4,), see `bearing_sim.physics.thermal_network.BOOK`.
+    corrected : energy that corrections by measured temperatures have put into the nodes [J].
+    held : whether the temperatures stay as they are.
+    """
+
+    def __init__(self, scene: Scene, params: Params, inlet: float):
+        self.network = thermal_network(scene, params)
+        self.temperatures = start_temperatures(scene.heat, inlet)
+        self.flows, self.books, self.corrected, self.held = np.full(2, math.nan), np.zeros(len(BOOK)), 0.0, False
+        self._fits, self._gaps = (0.0, 0.0, 0.0, 0.0), fit_gaps(scene)  # see `bearing_sim.model.thermal_network.seats`
+        self._scene, self._work = scene, new_work()
+        self._interval = scene.heat.interval * (1.0 - 1e-9)
+        self._compiled = None
+        self._gains: dict[tuple[float, bool, bool], np.ndarray] = {}
+        self._losses, self._loads = np.zeros(len(POWERS)), np.zeros((2, params.rollers.count))
+        self._forget()
+
+    def _forget(self) -> None:
+        self._losses[:] = 0.0  # [J] by cause
+        self._elapsed = self._shaft = self._cage = 0.0
+
+    def take_over(self, other: "ThermalState") -> None:
+        """Continue from the temperatures, the books and the losses not yet taken of another state of the same bearing."""
+        self.temperatures[:], self.books[:], self.flows[:] = other.temperatures, other.books, other.flows
+        self.corrected, self.held, self._fits = other.corrected, other.held, other._fits
+        self._losses[:], self._loads[:] = other._losses, other._loads
+        self._elapsed, self._shaft, self._cage = other._elapsed, other._shaft, other._cage
+
+    def resume(self, row: np.ndarray) -> None:
+        """Continue from the temperatures of a recorded sample, laid out flat; they stay as they are where it has none."""
+        if np.isfinite(row[_TEMPERATURES]).all():
+            self.temperatures[:] = row[_TEMPERATURES]
+            self.flows[:] = row[_FLOWS]
+        self._forget()
+
+    def model(self, params: Params, inlet: float, shaft_speed: float) -> tuple[Params, Lubrication]:
+        """Return parameters and lubrication at the present temperatures, and let the fits follow.
+
+        Parameters
+        ----------
+        params : of the bearing before its temperatures change it.
+        inlet : temperature of the oil that comes in [K].
+        shaft_speed : [rad/s].
+        """
+        warm, lubrication = local_model(self._scene, params, inlet, self.temperatures)
+        self._fits = seats(params, lubrication.growth, shaft_speed, self._gaps)
+        return warm, lubrication
+
+    def write(self, rows: np.ndarray) -> None:
+        """Write temperatures and flows of heat into samples, laid out flat."""
+        rows[..., _TEMPERATURES] = self.temperatures
+        rows[..., _FLOWS] = self.flows
+
+    def take(self, rows: np.ndarray, duration: float, inlet: float, measured: tuple[float, float]) -> bool:
+        """Take the losses of a call, and step where an interval is over; return whether temperatures have changed.
+
+        Parameters
+        ----------
+        rows : samples of the call, evenly spaced, laid out flat; the temperatures at its end are written into the last.
+        duration : of the call [s].
+        inlet : temperature of the oil that comes in [K].
+        measured : temperatures of inner and outer ring [K]; NaN where they are not measured.
+        """
+        last, share = rows[-1], duration / len(rows)
+        self._losses += share * rows[:, _POWERS].sum(axis=0)
+        self._elapsed += duration
+        self._shaft += share * float(rows[:, COLUMN.shaft_speed].sum())
+        self._cage += share * float(rows[:, COLUMN.cage_speed].sum())
+        if self._elapsed < self._interval:
+            return False
+        count = self._loads.shape[1]
+        for side, column in enumerate((COLUMN.inner_load, COLUMN.outer_load)):
+            self._loads[side] = last[SCALARS + column * count : SCALARS + (column + 1) * count]
+        changed = self._advance(inlet, measured) if not self.held else False
+        self._forget()
+        self.write(last)
+        return changed
+
+    def _advance(self, inlet: float, measured: tuple[float, float]) -> bool:
+        elapsed = self._elapsed
+        inputs = NetworkInputs(self._shaft / elapsed, self._cage / elapsed, inlet, *self._fits)
+        arguments = (elapsed, self.temperatures, self._losses / elapsed, self._loads, inputs, self.network, self._work)
+        (self._compiled or step)(*arguments)
+        if self._compiled is None:
+            self._compiled = compiled_for(step, arguments)
+        books = self._work.books
+        self.books += books
+        self.flows[0], self.flows[1] = books[BOOK.to_oil] / elapsed, books[BOOK.to_ambient] / elapsed
+        self._correct(elapsed, measured)
+        return True
+
+    def _correct(self, elapsed: float, measured: tuple[float, float]) -> None:
+        seen = tuple(math.isfinite(reading) for reading in measured)
+        if not any(seen):
+            return
+        places = [node for node, is_seen in zip(_RINGS, seen) if is_seen]
+        key = (float(f"{elapsed:.3g}"), *seen)
+        if key not in self._gains:
+            noise = self._scene.heat.filter
+            walks = np.array([noise.shaft, noise.inner_ring, noise.rollers, noise.outer_ring, noise.housing, noise.oil])
+            self._gains[key] = filter_gain(self._matrix(), key[0], walks, places, noise.sensor)
+        innovation = np.array([reading for reading, is_seen in zip(measured, seen) if is_seen]) - self.temperatures[places]
+        correction = self._gains[key] @ innovation
+        self.temperatures += correction
+        self.corrected += float(self.network.capacities @ correction)
+
+    def _matrix(self) -> np.ndarray:
+        """Return the matrix of dT/dt = A T [1/s] at the scene's operating point, all parts as warm as the oil."""
+        scene, work, count = self._scene, new_work(), self._loads.shape[1]
+        speed, inlet = scene.operating.shaft_speed, scene.lubricant.temperature
+        loads = np.zeros((2, count))
+        loads[:, : max(round(_LOADED * count), 1)] = scene.operating.radial_load / max(_LOADED * count, 1.0)
+        inputs = NetworkInputs(speed, 0.5 * speed * (1.0 - scene.bearing.diameter_ratio), inlet, 0.0, 0.0, 0.0, 0.0)
+        write_conductances(np.full(NODES, inlet), loads, inputs, self.network, work.conductances)
+        return network_matrix(work.conductances, self.network.capacities)
+

@@ -1,0 +1,129 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Heat of a scene: where the temperatures of rings, rollers, shaft and housing come from."""
+
+from dataclasses import field
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from bearing_sim.scene.quantity import check, quantity, record
+
+BODIES = ("shaft", "inner_ring", "rollers", "outer_ring", "housing")
+"""Bodies that have a temperature of their own, from the inside to the outside."""
+
+
+@record
+class NoHeat:
+    """All parts have the temperature of the oil."""
+
+    law: Literal["none"] = "none"
+
+
+@record
+class GivenHeat:
+    """Temperatures that are known, each constant; a part without one has the temperature of the oil.
+
+    A measured temperature of a ring replaces the one given here.
+    """
+
+    law: Literal["given"] = "given"
+    shaft: quantity("K", "temperature of the shaft; None: the inner ring's", 220.0, 600.0, "degC") | None = None
+    inner_ring: quantity("K", "temperature of the inner ring; None: the oil's", 220.0, 600.0, "degC") | None = None
+    rollers: quantity("K", "temperature of the rollers; None: the mean of both rings", 220.0, 600.0, "degC") | None = None
+    outer_ring: quantity("K", "temperature of the outer ring; None: the oil's", 220.0, 600.0, "degC") | None = None
+    housing: quantity("K", "temperature of the housing; None: the outer ring's", 220.0, 600.0, "degC") | None = None
+
+
+@record
+class Housing:
+    """The housing as it gives off heat, by default a split plummer block; its material is that of `mounting.housing`."""
+
+    height: quantity("m", "height; None: 1.25 times the outside diameter of the bearing", 1e-3, 10.0, "mm") | None = None
+    width: quantity("m", "width along the shaft; None: 0.9 times the outside diameter of the bearing", 1e-3, 10.0, "mm") | None = None
+    area: quantity("m^2", "surface that gives off heat; None: pi H (B + H/2) of height and width", 0.0, 1e3) | None = None
+    mass: quantity("kg", "mass; None: 3500 kg/m^3 times the cube of the bearing's outside diameter", 1e-3, 1e6) | None = None
+    emissivity: quantity("", "emissivity of the surface, 0.9: painted or cast", 0.0, 1.0) = 0.9
+
+
+@record
+class ShaftEnds:
+    """The shaft outside of the bearing, two fins in the air; its bore and material are those of `mounting.shaft`."""
+
+    front: quantity("m", "length before the bearing; None: 2.5 times its bore diameter; 0: no heat leaves there", 0.0, 100.0, "mm") | None = None
+    back: quantity("m", "length behind the bearing, likewise", 0.0, 100.0, "mm") | None = None
+    emissivity: quantity("", "emissivity of its surface, 0.3: machined steel", 0.0, 1.0) = 0.3
+
+
+def _conductance(between: str):
+    return quantity("W/K", f"{between}; None: computed", 0.0, 1e9) | None
+
+
+@record
+class Conductances:
+    """Thermal conductances that are known; those that are left out are computed (see `bearing_sim.physics.heat`)."""
+
+    shaft_inner_ring: _conductance("shaft to inner ring, through their fit") = None
+    inner_ring_rollers: _conductance("inner ring to rollers, through their contacts") = None
+    rollers_outer_ring: _conductance("rollers to outer ring, through their contacts") = None
+    outer_ring_housing: _conductance("outer ring to housing, through their fit") = None
+    inner_ring_oil: _conductance("inner ring to the oil in the bearing") = None
+    rollers_oil: _conductance("rollers and cage to the oil in the bearing") = None
+    outer_ring_oil: _conductance("outer ring to the oil in the bearing") = None
+    housing_oil: _conductance("housing to the oil in the bearing") = None
+    oil_flow: _conductance("heat capacity of the oil that flows through, density x specific heat x flow") = None
+    housing_ambient: _conductance("housing to ambient") = None
+    shaft_ambient: _conductance("shaft to ambient, both ends") = None
+
+
+@record
+class ThermalFilter:
+    """Noise of the filter that corrects the network by measured ring temperatures: a Kalman filter in its steady state.
+
+    Each node's temperature drifts from the network's by a random walk of the standard deviation given here after one second: what heat
+    and conductances that are not known do to it.  The defaults are assumptions; a sensor counts for more the less its noise.  A reading that is
+    held counts at each step of the network.
+    """
+
+    shaft: quantity("K/s^0.5", "process noise of the shaft", 0.0, 100.0) = 0.1
+    inner_ring: quantity("K/s^0.5", "process noise of the inner ring", 0.0, 100.0) = 0.5
+    rollers: quantity("K/s^0.5", "process noise of the rollers", 0.0, 100.0) = 0.5
+    outer_ring: quantity("K/s^0.5", "process noise of the outer ring", 0.0, 100.0) = 0.5
+    housing: quantity("K/s^0.5", "process noise of the housing", 0.0, 100.0) = 0.1
+    oil: quantity("K/s^0.5", "process noise of the oil", 0.0, 100.0) = 1.0
+    sensor: quantity("delta_degC", "noise of a measured ring temperature, standard deviation of a reading", 1e-3, 100.0, "K") = 0.5
+
+
+@record
+class NetworkHeat:
+    """Temperatures of a network of lumped nodes: shaft, inner ring, rollers with cage, outer ring, housing and the oil in the bearing.
+
+    The losses heat them; conduction, convection, the flow of oil and the ambient air cool them (see ``doc/theory/heat.md``).
+    """
+
+    law: Literal["network"] = "network"
+    ambient_temperature: quantity("K", "temperature of the air around housing and shaft", 200.0, 500.0, "degC") = 293.15
+    oil_flow: quantity("m^3/s", "oil that flows through the bearing; None: of a bath 0, of a jet 5.6e-4 m^2/s x bore", 0.0, 1.0) | None = None
+    oil_volume: quantity("m^3", "oil in the bearing; None: by the oil's fraction of its space", 1e-9, 10.0) | None = None
+    start: Literal["oil", "ambient", "equilibrium"] = "oil"  # temperatures at time 0: all the oil's, all the air's, or those of equilibrium
+    limit: quantity("K", "highest temperature of a thermal equilibrium; beyond it the bearing runs away", 300.0, 590.0, "degC") = 573.15
+    interval: quantity("s", "longest time between two steps of the network", 1e-3, 100.0) = 0.1
+    convection_factor: quantity("", "factor on the convection of rings, rollers and cage to the oil", 0.0, 100.0) = 1.0
+    oil_to_housing: quantity("W/(m^2*K)", "heat transfer coefficient of the oil on the housing's inside", 0.0, 1e5) = 200.0
+    housing: Housing = field(default_factory=Housing)
+    shaft: ShaftEnds = field(default_factory=ShaftEnds)
+    conductances: Conductances = field(default_factory=Conductances)
+    filter: ThermalFilter = field(default_factory=ThermalFilter)
+
+    @check
+    def _heat_leaves(self) -> list[str]:
+        """Refuse a network without a sink."""
+        given = self.conductances
+        no_flow = given.oil_flow == 0.0 if given.oil_flow is not None else self.oil_flow == 0.0
+        no_housing = given.housing_ambient == 0.0 if given.housing_ambient is not None else self.housing.area == 0.0
+        no_shaft = given.shaft_ambient == 0.0 if given.shaft_ambient is not None else self.shaft.front == self.shaft.back == 0.0
+        if no_flow and no_housing and no_shaft:
+            return ["oil_flow: no oil flows through, and housing and shaft give off no heat: the network has no sink; open one of the three"]
+        return []
+
+
+Heat = Annotated[NoHeat | GivenHeat | NetworkHeat, Field(discriminator="law")]
