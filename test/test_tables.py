@@ -22,9 +22,11 @@ from bearing_sim.levels.steady.table_builder import (
     assembled,
     build_table,
     cached_table,
+    holds,
     look_up,
     obtain_table,
     read_table,
+    solve_points,
     solve_scene,
     span_of,
     table_hash,
@@ -68,6 +70,7 @@ def drawn(table, count, seed=5):
             table.loads[-1] * lot.random(count) ** 2,
             lot.uniform(table.temperatures[0], table.temperatures[-1], count),
             lot.uniform(-math.pi, math.pi, count),
+            lot.uniform(table.growths[0], table.growths[-1], count),
         ]
     )
 
@@ -80,7 +83,7 @@ def synthetic(values_of, knots):
 
 def uneven_knots(n):
     even = np.linspace(0.0, 1.0, n)
-    return [5 * even**1.3, 3 * even**1.5, 300 + 100 * even, np.arange(n) * (2 * math.pi / 3 / n)]
+    return [5 * even**1.3, 3 * even**1.5, 300 + 100 * even, np.arange(n) * (2 * math.pi / 3 / n), 1e-5 * even**1.2]
 
 
 def test_slopes_along_an_axis_are_those_of_scipys_monotone_cubic():
@@ -91,18 +94,18 @@ def test_slopes_along_an_axis_are_those_of_scipys_monotone_cubic():
 
 def test_interpolant_follows_scipys_monotone_cubic_along_every_line_of_the_grid():
     lot, knots = np.random.default_rng(4), uneven_knots(5)
-    grid = lot.normal(size=(5, 5, 5, 5))
+    grid = lot.normal(size=(5, 5, 5, 5, 5))
     table = assembled(knots, 2 * math.pi / 3, 0.0, np.repeat(grid[None, ..., None], len(ANSWER), -1))
-    for axis in range(3):
-        where = np.tile([knots[other][2] for other in range(4)], (50, 1))
+    for axis in (0, 1, 2, 4):
+        where = np.tile([knots[other][2] for other in range(5)], (50, 1))
         where[:, axis] = np.linspace(knots[axis][0], knots[axis][-1], 50)
-        line = grid[tuple(slice(None) if other == axis else 2 for other in range(4))]
+        line = grid[tuple(slice(None) if other == axis else 2 for other in range(5))]
         np.testing.assert_allclose(look_up(table, where)[:, 0], PchipInterpolator(knots[axis], line)(where[:, axis]), rtol=1e-9, atol=1e-9)
 
 
 def test_interpolant_never_leaves_what_the_corners_of_its_cell_hold():
     lot, knots = np.random.default_rng(6), uneven_knots(4)
-    grid = lot.normal(size=(4, 4, 4, 4)) ** 3
+    grid = lot.normal(size=(4, 4, 4, 4, 4)) ** 3
     table = assembled(knots, 2 * math.pi / 3, 0.0, np.repeat(grid[None, ..., None], len(ANSWER), -1))
     points = drawn(table, 3000)
     points[:, 0] = np.abs(points[:, 0])
@@ -112,26 +115,25 @@ def test_interpolant_never_leaves_what_the_corners_of_its_cell_hold():
         place = np.mod(place, table.period) if axis == 3 else place
         low = np.clip(np.searchsorted(knots[axis], place, "right") - 1, 0, 3 if axis == 3 else 2)
         corners.append((low, (low + 1) % 4))
-    values = np.array([grid[tuple(corners[axis][(corner >> axis) & 1] for axis in range(4))] for corner in range(16)])
+    values = np.array([grid[tuple(corners[axis][(corner >> axis) & 1] for axis in range(5))] for corner in range(32)])
     assert np.all(found >= values.min(axis=0) - 1e-12) and np.all(found <= values.max(axis=0) + 1e-12)
 
 
 def test_interpolant_is_monotone_where_the_knots_are():
-    table = synthetic(lambda a, b, c, d: np.tanh(2 * a - 3) + 0.3 * a + np.sqrt(b + 0.01) + 0.01 * c + 0 * d, uneven_knots(6))
+    table = synthetic(lambda a, b, c, d, e: np.tanh(2 * a - 3) + 0.3 * a + np.sqrt(b + 0.01) + 0.01 * c + 0 * d + 1e5 * e, uneven_knots(6))
     points = drawn(table, 400)
     points[:, 0] = np.abs(points[:, 0])
-    for axis in range(3):
+    for axis in (0, 1, 2, 4):
         lines = np.repeat(points[:, None, :], 40, axis=1)
-        lines[..., axis] = np.linspace(
-            (table.speeds, table.loads, table.temperatures)[axis][0], (table.speeds, table.loads, table.temperatures)[axis][-1], 40
-        )
-        rises = np.diff(look_up(table, lines.reshape(-1, 4))[:, 0].reshape(400, 40), axis=1)
+        knots = (table.speeds, table.loads, table.temperatures, table.angles, table.growths)[axis]
+        lines[..., axis] = np.linspace(knots[0], knots[-1], 40)
+        rises = np.diff(look_up(table, lines.reshape(-1, 5))[:, 0].reshape(400, 40), axis=1)
         assert rises.min() > -1e-9
 
 
 def test_error_falls_by_more_than_the_third_power_of_the_spacing():
-    def smooth(a, b, c, d):
-        return np.exp(0.3 * a) * (1 + 0.1 * np.sin(b)) + (c / 300) ** 2
+    def smooth(a, b, c, d, e):
+        return np.exp(0.3 * a) * (1 + 0.1 * np.sin(b)) + (c / 300) ** 2 + np.cos(1e5 * e)
 
     errors = []
     for n in (9, 17):
@@ -146,7 +148,7 @@ def test_table_keeps_its_tolerance_at_points_that_it_has_not_seen(small):
     scene, table, quality = small
     points = drawn(table, 120)
     found = look_up(table, points)
-    exact = np.array([solve_scene(scene, *point) for point in points])
+    exact = solve_points(scene, points)
     off = np.abs(found - exact)[:, ANSWER.cage_slip]
     assert np.mean(off <= 2.5e-4 + 0.02 * np.abs(exact[:, ANSWER.cage_slip])) > 0.97
     for column in (ANSWER.inner_equivalent_load, ANSWER.outer_equivalent_load):
@@ -182,10 +184,23 @@ def test_condition_outside_the_table_is_solved_for_and_not_extrapolated(small, i
     assert np.isnan(look_up(table, [(inputs[0], math.hypot(*inputs[1:3]), inputs[3], 0.0)])).all()
 
 
+def test_table_with_an_axis_of_growth_agrees_with_the_solver_between_its_knots():
+    scene = load_scene("deng2017_table1", [*SMALL, "bearing.dimensions_at=cold", "bearing.clearance=20 um", "table.tolerance=5 %"])
+    params = pack(scene)
+    span = span_of(scene)._replace(minimum_growth=-4e-6, maximum_growth=8e-6, reverse=False)
+    table, quality = build_table(params, lambda kelvin: lubricate(scene.lubricant, params, kelvin), span, 0.05, workers=1, most_nodes=8000)
+    points = np.abs(drawn(table, 60)) * [1, 1, 1, 1, 0] + [0, 0, 0, 0, 1] * np.linspace(-4e-6, 8e-6, 60)[:, None]
+    found, exact = look_up(table, points), solve_points(scene, points)
+    off = np.abs(found - exact)[:, ANSWER.cage_slip]
+    assert np.mean(off <= 2.5e-4 + 0.05 * np.abs(exact[:, ANSWER.cage_slip])) > 0.9 and quality.missing == 0
+    assert (np.diff(look_up(table, [(4000.0, 500.0, 393.15, 0.0, growth) for growth in table.growths])[:, ANSWER.inner_equivalent_load]) > 0.0).all()
+    assert not holds(table, 4000.0, 500.0, 393.15, 9e-6) and np.isnan(look_up(table, [(4000.0, 500.0, 393.15, 0.0, 9e-6)])).all()
+
+
 def test_course_of_inputs_is_the_same_as_one_advance_after_the_other(small):
     scene, table, _ = small
     times = np.linspace(0.1, 4.0, 40)
-    inputs = np.column_stack([3000 + 400 * times, 500 + 100 * np.sin(times), 200 * np.cos(times), np.full(40, 393.15)])
+    inputs = np.column_stack([3000 + 400 * times, 500 + 100 * np.sin(times), 200 * np.cos(times), np.full(40, 393.15), *np.full((2, 40), math.nan)])
     one, other = Simulation(scene, table=table), Simulation(scene, table=table)
     block = one.advance_profile(np.full(40, 0.1), inputs)
     singles = np.concatenate([other.advance(0.1, Inputs(*row)) for row in inputs])
@@ -216,7 +231,7 @@ def test_course_by_table_under_a_clock_is_that_of_a_replay_to_the_last_bit(small
 
 def test_course_ends_where_the_table_does(small):
     scene, table, _ = small
-    inputs = np.column_stack([np.linspace(3000, 6000, 30), np.full(30, 500.0), np.zeros(30), np.full(30, 393.15)])
+    inputs = np.column_stack([np.linspace(3000, 6000, 30), np.full(30, 500.0), np.zeros(30), np.full(30, 393.15), *np.full((2, 30), math.nan)])
     reached = Simulation(scene, table=table).advance_profile(np.full(30, 0.1), inputs)
     assert 0 < len(reached) < 30 and reached["shaft_speed"].max() <= table.speeds[-1]
 

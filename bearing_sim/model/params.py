@@ -206,6 +206,7 @@ class Lubrication(NamedTuple):
     bath: Bath  # drag of an oil bath on the rollers, zero without one
     growth: Growth  # of the inner raceway by fits, rotation and heat
     kinematic_viscosity: float  # nu of the oil in the films, for the life [m^2/s]
+    film_temperature: float  # mean of the films of both raceways [K]
 
 
 def contact_stiffness(bearing: Bearing) -> float:
@@ -391,6 +392,7 @@ def lubricate(lubricant: Lubricant, params: Params, temperature: float, temperat
         bath=_bath(lubricant, params, oil),
         growth=growth_at(params.mounted, solids),
         kinematic_viscosity=sum(film.viscosity / film.density for film in films) / 2,
+        film_temperature=0.5 * (films[0].temperature + films[1].temperature),
     )
 
 

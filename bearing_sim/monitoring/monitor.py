@@ -176,9 +176,7 @@ class Monitor:
             ),
             "lambda": Watch("bearing.lambda", "film over roughness", "", 1.0, t.lambda_warning, t.lambda_error, t.lambda_hold, True),
             "pocket": Watch("bearing.pocket_force", "pocket force", "N", 1.0, t.pocket_force_warning, t.pocket_force_error, t.pocket_force_hold),
-            "clearance": Watch(
-                "bearing.clearance", "running clearance", "um", 1e6, t.clearance_warning, t.clearance_error, t.clearance_hold, True
-            ),
+            "clearance": Watch("bearing.clearance", "running clearance", "um", 1e6, t.clearance_warning, t.clearance_error, t.clearance_hold, True),
         }
 
     def restart(self) -> None:

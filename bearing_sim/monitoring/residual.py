@@ -71,7 +71,9 @@ SLIP = Comparand(
 def temperature_of(ring: str) -> Comparand:
     """Return the words for the temperature of a ring, inner or outer."""
     verdicts = {0: "as predicted", 1: "is warmer than predicted", -1: "is colder than predicted"}
-    return Comparand(f"residual temperature of the {ring} ring", f"the {ring} ring", "K", 1.0, verdicts, "not judged: not measured, or at a changing speed")
+    return Comparand(
+        f"residual temperature of the {ring} ring", f"the {ring} ring", "K", 1.0, verdicts, "not judged: not measured, or at a changing speed"
+    )
 
 
 def run_length(threshold: float, reference: float = _REFERENCE) -> float:

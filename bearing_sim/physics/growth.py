@@ -106,6 +106,21 @@ def total_growth(shaft_speed, growth):
     return growth.heat + growth.housing + growth.free * square + growth.fitted * fit
 
 
+@kernel
+def excess_growth(shaft_speed, temperature, growth, mounted):
+    """Return by how much a `Growth` exceeds that of the same bearing at one temperature [K], in metres; 0 where temperatures are uniform.
+
+    Parameters
+    ----------
+    shaft_speed : [rad/s].
+    temperature : at which the bearing is compared.
+    growth : `Growth` at the present temperatures.
+    mounted : `Mounted`.
+    """
+    even = growth_at(mounted, Temperatures(temperature, temperature, temperature, temperature, temperature))
+    return total_growth(shaft_speed, growth) - total_growth(shaft_speed, even)
+
+
 class Clearance(NamedTuple):
     """Running clearance and its parts, diametral [m]; positive is play, negative preload.  The parts sum to the running clearance."""
 

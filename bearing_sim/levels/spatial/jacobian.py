@@ -205,7 +205,10 @@ def _inner_jacobian(block, y, inner_radius, resistance, params, rows, contacts, 
         add(jacobian, block, _SPINNING + column, force)
         if resistance:
             push, rate = 1.0 - 2.0 * params.raceways.diameter_ratio, carried if k == 0 else 0.5 * params.rollers.radius
-            resisted, turned = rate * load(contacts, block, SLICED.resistance_d_rolling), rate * load(contacts, block, SLICED.resistance_d_rolling + 1)
+            resisted, turned = (
+                rate * load(contacts, block, SLICED.resistance_d_rolling),
+                rate * load(contacts, block, SLICED.resistance_d_rolling + 1),
+            )
             add(jacobian, block, _RADIAL + column, -(push * resisted * n_t))
             add(jacobian, block, _ALONG + column, push * resisted * n_r)
             add(jacobian, block, _TILTING + column, -(push * turned * n_t))

@@ -27,7 +27,7 @@ from bearing_sim.model.params import Lubrication
 from bearing_sim.model.sample import COLUMN, SCALARS
 from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.time_stepping import COUNT, NOT_EVALUATED, OK, STEP_BUDGET
-from bearing_sim.physics.growth import Temperatures, growth_at
+from bearing_sim.physics.growth import Temperatures, excess_growth, growth_at, total_growth
 from bearing_sim.physics.lamina_life import EquivalentLoads
 from bearing_sim.physics.load_balance import LOAD
 
@@ -40,8 +40,7 @@ class Work(NamedTuple):
     table: Table
     scratch: LookUp
     answer: np.ndarray  # at the newest inputs, shape (len(ANSWER),)
-    inputs: np.ndarray  # scratch: speed, loads, temperature, shape (4,)
-    asked: np.ndarray  # inputs that were last solved for: speed, loads, temperature, shape (4,)
+    asked: np.ndarray  # what was last solved for: speed, loads, oil temperature, viscosity in the films, growth, shape (6,)
     solved: np.ndarray  # the answer to them, shape (len(ANSWER),)
     march: March  # for operating points without a periodic state
     solutions: np.ndarray  # operating points solved so far, and how many of them by marching, and without an end to it, int64, shape (3,)
@@ -55,8 +54,7 @@ def new_work(params, table: Table | None = None):
         table=table if table is not None else empty_table(),
         scratch=new_look_up(),
         answer=np.full(len(ANSWER), math.nan),
-        inputs=np.zeros(4),
-        asked=np.full(4, math.nan),
+        asked=np.full(6, math.nan),
         solved=np.full(len(ANSWER), math.nan),
         march=new_march(params.rollers.count),
         solutions=np.zeros(3, np.int64),
@@ -86,8 +84,10 @@ def solve_condition(shaft_speed, load_y, load_z, model, work):
     """
     if abs(shaft_speed) < CREEP:
         shaft_speed = -CREEP if shaft_speed < 0.0 else CREEP
-    asked = work.asked
-    if asked[0] == shaft_speed and asked[1] == load_y and asked[2] == load_z and asked[3] == model.lubrication.temperature:
+    asked, lubrication = work.asked, model.lubrication
+    growth = total_growth(shaft_speed, lubrication.growth)
+    same_oil = asked[3] == lubrication.temperature and asked[4] == lubrication.kinematic_viscosity
+    if same_oil and asked[0] == shaft_speed and asked[1] == load_y and asked[2] == load_z and asked[5] == growth:
         return True
     asked[0] = math.nan
     constant = Model(model.params, model.lubrication, Drive(0.0, shaft_speed, 0.0, load_y, 0.0, load_z, 0.0, 0.0), model.tolerances)
@@ -100,26 +100,27 @@ def solve_condition(shaft_speed, load_y, load_z, model, work):
             work.solutions[2] += 1
         elif marched != OK:
             return False
-    asked[0], asked[1], asked[2], asked[3] = shaft_speed, load_y, load_z, model.lubrication.temperature
+    asked[0], asked[1], asked[2] = shaft_speed, load_y, load_z
+    asked[3], asked[4], asked[5] = lubrication.temperature, lubrication.kinematic_viscosity, growth
     return True
 
 
 @kernel
-def _from_table(inputs, work):
-    """Write the table's answer to speed, loads and temperature into ``work.answer``; return whether it has one."""
-    speed, load, temperature = inputs[0], math.hypot(inputs[1], inputs[2]), inputs[3]
-    if not covers(speed, load, temperature, work.table):
+def _from_table(speed, load_y, load_z, temperature, growth, work):
+    """Write the table's answer to a condition into ``work.answer``; return whether it has one."""
+    load = math.hypot(load_y, load_z)
+    if not covers(speed, load, temperature, growth, work.table):
         return False
-    look_up(speed, load, temperature, math.atan2(inputs[2], inputs[1]), work.table, work.scratch, work.answer)
+    look_up(speed, load, temperature, math.atan2(load_z, load_y), growth, work.table, work.scratch, work.answer)
     return math.isfinite(work.answer[ANSWER.cage_slip])
 
 
 @kernel
 def answer_at(shaft_speed, load_y, load_z, model, work):
     """Write the operating point of a condition into ``work.answer``; return whether there is one.  Parameters as of `solve_condition`."""
-    inputs = work.inputs
-    inputs[0], inputs[1], inputs[2], inputs[3] = shaft_speed, load_y, load_z, model.lubrication.temperature
-    if _from_table(inputs, work):
+    lubrication = model.lubrication
+    growth = excess_growth(shaft_speed, lubrication.film_temperature, lubrication.growth, model.params.mounted)
+    if _from_table(shaft_speed, load_y, load_z, lubrication.film_temperature, growth, work):
         return True
     if not solve_condition(shaft_speed, load_y, load_z, model, work):
         return False
@@ -240,13 +241,13 @@ def advance_profile(start, stretches, inputs, kinematic_viscosities, y, model, w
     how many instants were reached; the state is that of the last of them.
     """
     lubrication, mounted = model.lubrication, model.params.mounted
-    if not _from_table(inputs[0], work):
+    if not _from_table(inputs[0, 0], inputs[0, 1], inputs[0, 2], inputs[0, 3], 0.0, work):
         return 0
     settled, before, now = _settled_speed(inputs[0, 0], model, work), previous, start
     for k in range(stretches.shape[0]):
-        if not _from_table(inputs[k + 1], work):
-            return k
         speed, load_y, load_z, temperature = inputs[k + 1, 0], inputs[k + 1, 1], inputs[k + 1, 2], inputs[k + 1, 3]
+        if not _from_table(speed, load_y, load_z, temperature, 0.0, work):
+            return k
         reached = _settled_speed(speed, model, work)
         interval = stretches[k]
         now += interval
@@ -264,6 +265,7 @@ def advance_profile(start, stretches, inputs, kinematic_viscosities, y, model, w
                 lubrication.bath,
                 growth_at(mounted, Temperatures(temperature, temperature, temperature, temperature, temperature)),
                 kinematic_viscosities[k],
+                temperature,
             ),
             Drive(now, speed, 0.0, load_y, 0.0, load_z, 0.0, 0.0),
             model.tolerances,
@@ -297,13 +299,14 @@ def look_up_conditions(conditions, table, scratch, answers):
 
     Parameters
     ----------
-    conditions : shaft speed [rad/s], load [N], oil temperature [K] and direction of the load [rad] of each, shape (n, 4).
+    conditions : shaft speed [rad/s], load [N], oil temperature [K], direction of the load [rad] and growth [m] of each, shape (n, 5).
     table, scratch : as in `bearing_sim.levels.steady.table.look_up`.
     answers : result, shape (n, len(ANSWER)).
     """
     for k in range(conditions.shape[0]):
-        if covers(conditions[k, 0], conditions[k, 1], conditions[k, 2], table):
-            look_up(conditions[k, 0], conditions[k, 1], conditions[k, 2], conditions[k, 3], table, scratch, answers[k])
+        speed, load, temperature, angle, growth = conditions[k, 0], conditions[k, 1], conditions[k, 2], conditions[k, 3], conditions[k, 4]
+        if covers(speed, load, temperature, growth, table):
+            look_up(speed, load, temperature, angle, growth, table, scratch, answers[k])
         else:
             for column in range(answers.shape[1]):
                 answers[k, column] = math.nan

@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""A table of operating points of level ``steady`` over shaft speed, load, oil temperature and load direction: symmetry and interpolant.
+"""A table of operating points of level ``steady`` over shaft speed, load, temperature, load direction and growth: symmetry and interpolant.
 
 The symmetry of the outer raceway's contour saves directions of the load and the reverse sense of rotation.
 
@@ -20,9 +20,10 @@ from bearing_sim.numerics.compilation import kernel
 _SYMMETRY_TOLERANCE = 1e-9  # m; tables of a contour are good to a fifth of it
 _MOST_LOBES = 12
 _PROBES = 997  # azimuths, a prime number: none falls together with its image
-AXES = ("shaft_speed", "load", "oil_temperature", "load_angle")
+AXES = ("shaft_speed", "load", "oil_temperature", "load_angle", "growth")
 _NODE = 1 + len(AXES)  # rows of a node: values, and slopes along each axis
 _CORNERS = 2 ** len(AXES)
+_SAME_GROWTH = 1e-9  # m; a table of one growth answers for growths so near
 
 
 def radius_at(contour: np.ndarray, azimuths: np.ndarray) -> np.ndarray:
@@ -71,23 +72,24 @@ class Table(NamedTuple):
     loads: np.ndarray  # from 0 on [N]
     temperatures: np.ndarray  # [K]; one of them answers for itself alone
     angles: np.ndarray  # of the load, from 0 to below the period [rad]
+    growths: np.ndarray  # of the inner raceway beyond that of a bearing of one temperature [m]; 0 alone where temperatures are uniform
     period: float  # of the contour, 2 pi over a whole number [rad]
     mirror: float  # azimuth of an axis of symmetry of the contour [rad], NaN where there is none
-    nodes: np.ndarray  # values and slopes by axis, shape (senses, speeds, loads, temperatures, angles, 5, len(ANSWER))
+    nodes: np.ndarray  # values and slopes by axis, shape (senses, speeds, loads, temperatures, angles, growths, 6, len(ANSWER))
 
 
 class LookUp(NamedTuple):
     """Scratch of a look-up."""
 
-    axes: np.ndarray  # by axis: positions of both knots, width, fraction of it, two cubics of that; shape (4, 6)
-    weights: np.ndarray  # of a corner's value and slopes, shape (5,)
+    axes: np.ndarray  # by axis: positions of both knots, width, fraction of it, two cubics of that; shape (5, 6)
+    weights: np.ndarray  # of a corner's value and slopes, shape (6,)
     bounds: np.ndarray  # least and largest value at the corners, shape (2, len(ANSWER))
 
 
 def empty_table() -> Table:
     """Return a table that answers nothing."""
     nothing = np.zeros(0)
-    return Table(nothing, nothing, nothing, nothing, 2.0 * math.pi, math.nan, np.zeros((0, 0, 0, 0, 0, _NODE, len(ANSWER))))
+    return Table(nothing, nothing, nothing, nothing, nothing, 2.0 * math.pi, math.nan, np.zeros((0, 0, 0, 0, 0, 0, _NODE, len(ANSWER))))
 
 
 def new_look_up() -> LookUp:
@@ -159,7 +161,7 @@ def _locate(value, knots, period, row):
 
 
 @kernel
-def covers(speed, load, temperature, table):
+def covers(speed, load, temperature, growth, table):
     """Return whether the table answers for a condition; see `look_up`."""
     if table.nodes.shape[1] == 0:
         return False
@@ -167,11 +169,13 @@ def covers(speed, load, temperature, table):
         return False
     if abs(speed) > table.speeds[-1] or load > table.loads[-1]:
         return False
+    if growth < table.growths[0] - _SAME_GROWTH or growth > table.growths[-1] + _SAME_GROWTH:
+        return False
     return table.temperatures[0] <= temperature <= table.temperatures[-1]
 
 
 @kernel
-def look_up(speed, load, temperature, angle, table, scratch, answer):
+def look_up(speed, load, temperature, angle, growth, table, scratch, answer):
     """Interpolate between the table's nodes; the condition must be one that it `covers`.
 
     Parameters
@@ -180,6 +184,7 @@ def look_up(speed, load, temperature, angle, table, scratch, answer):
     load : magnitude [N].
     temperature : [K].
     angle : direction of the load [rad].
+    growth : of the inner raceway beyond that of a bearing of one temperature [m].
     table : `Table`.
     scratch : memory of `new_look_up`.
     answer : result, shape (len(ANSWER),); NaN beside a node without an answer.
@@ -196,22 +201,24 @@ def look_up(speed, load, temperature, angle, table, scratch, answer):
     _locate(load, table.loads, 0.0, axes[1])
     _locate(temperature, table.temperatures, 0.0, axes[2])
     _locate(angle, table.angles, table.period, axes[3])
+    _locate(min(max(growth, table.growths[0]), table.growths[-1]), table.growths, 0.0, axes[4])
     columns = answer.shape[0]
     for column in range(columns):
         answer[column] = 0.0
         bounds[0, column], bounds[1, column] = math.inf, -math.inf
-    for corner in range(_CORNERS):
+    corners = _CORNERS if table.growths.shape[0] > 1 else _CORNERS // 2
+    for corner in range(corners):
         straight, skip = 1.0, False
-        for axis in range(4):
+        for axis in range(5):
             upper = (corner >> axis) & 1
             straight *= axes[axis, 3] if upper else 1.0 - axes[axis, 3]
             skip = skip or (upper == 1 and axes[axis, 2] == 0.0)  # an axis of one knot
         if skip:
             continue
         weights[0] = straight
-        for axis in range(4):
+        for axis in range(5):
             upper, others = (corner >> axis) & 1, 1.0
-            for other in range(4):
+            for other in range(5):
                 if other != axis:
                     others *= axes[other, 3] if (corner >> other) & 1 else 1.0 - axes[other, 3]
             bend = axes[axis, 4] - axes[axis, 5]
@@ -225,6 +232,7 @@ def look_up(speed, load, temperature, angle, table, scratch, answer):
             int(axes[1, (corner >> 1) & 1]),
             int(axes[2, (corner >> 2) & 1]),
             int(axes[3, (corner >> 3) & 1]),
+            int(axes[4, (corner >> 4) & 1]),
         ]
         for column in range(columns):
             value = node[0, column]
@@ -234,6 +242,7 @@ def look_up(speed, load, temperature, angle, table, scratch, answer):
                 + weights[2] * node[2, column]
                 + weights[3] * node[3, column]
                 + weights[4] * node[4, column]
+                + weights[5] * node[5, column]
             )
             bounds[0, column], bounds[1, column] = min(bounds[0, column], value), max(bounds[1, column], value)
     for column in range(columns):

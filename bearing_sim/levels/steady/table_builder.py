@@ -44,9 +44,10 @@ _MOST_NODES = 60_000
 _CHECKS = 400
 _CHUNK = 16  # conditions solved in one go by a thread
 _FIRST_SPEEDS, _FIRST_LOADS = (0.0, 0.08, 0.2, 0.4, 0.6, 0.8, 1.0), (0.0, 0.005, 0.03, 0.08, 0.15, 0.25, 0.5, 1.0)
-_FIRST_TEMPERATURES, _FIRST_ANGLES = 4, 6
+_FIRST_TEMPERATURES, _FIRST_ANGLES, _FIRST_GROWTHS = 4, 6, 5
 _LOAD_FRACTION = 0.5  # of the dynamic load rating: what ISO/TS 16281 is for
 _SPEED_FRACTION = 1.2  # of the operating speed
+_NO_DRIVE = Drive(*(0.0,) * len(Drive._fields))  # of conditions, which bring their own
 _OILS = 9  # temperatures at which the oil goes into the hash
 
 
@@ -58,6 +59,8 @@ class Span(NamedTuple):
     minimum_temperature: float  # [K]
     maximum_temperature: float  # [K]
     reverse: bool  # whether reverse rotation is wanted, too
+    minimum_growth: float = 0.0  # of the inner raceway beyond that of a bearing of one temperature [m]
+    maximum_growth: float = 0.0
 
 
 class Quality(NamedTuple):
@@ -97,11 +100,11 @@ class Solver:
         return len(self._known)
 
     def solve(self, conditions: np.ndarray) -> np.ndarray:
-        """Return the answers to conditions (speed, load, temperature, angle), shapes (n, 4) and (n, len(ANSWER))."""
+        """Return the answers to conditions (speed, load, temperature, angle, growth), shapes (n, 5) and (n, len(ANSWER))."""
         keys = [tuple(row) for row in conditions.tolist()]
-        new = sorted({key for key in keys if key not in self._known}, key=lambda key: (key[2], key[1], key[3], key[0]))
+        new = sorted({key for key in keys if key not in self._known}, key=lambda key: (key[2], key[4], key[1], key[3], key[0]))
         chunks = []
-        for _, same in itertools.groupby(new, key=lambda key: key[2]):
+        for _, same in itertools.groupby(new, key=lambda key: (key[2], key[4])):
             same = list(same)
             chunks += [same[begin : begin + _CHUNK] for begin in range(0, len(same), _CHUNK)]
         for temperature in {chunk[0][2] for chunk in chunks} - self._lubrications.keys():
@@ -114,10 +117,15 @@ class Solver:
     def _solve_chunk(self, chunk: list[tuple]) -> np.ndarray:
         if not hasattr(self._local, "work"):
             self._local.work = new_work(self._params)
-        model = Model(self._params, self._lubrications[chunk[0][2]], Drive(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), DEFAULT_TOLERANCES)
+        model = Model(self._params, with_growth(self._lubrications[chunk[0][2]], chunk[0][4]), _NO_DRIVE, DEFAULT_TOLERANCES)
         answers = np.empty((len(chunk), len(ANSWER)))
         solve_conditions(np.ascontiguousarray([[key[0], key[1], key[3]] for key in chunk]), model, self._local.work, answers)
         return answers
+
+
+def with_growth(lubrication: Lubrication, growth: float) -> Lubrication:
+    """Return a lubrication whose inner raceway has grown by so much more [m]."""
+    return lubrication._replace(growth=lubrication.growth._replace(heat=lubrication.growth.heat + growth))
 
 
 def build_table(
@@ -168,10 +176,23 @@ def build_table(
 
 
 def look_up(table: Table, conditions: np.ndarray) -> np.ndarray:
-    """Return the table's answers to conditions (speed, load, temperature, angle), shapes (n, 4) and (n, len(ANSWER)); NaN outside."""
+    """Return the table's answers to conditions, NaN outside, shape (n, len(ANSWER)).
+
+    Parameters
+    ----------
+    table : of operating points.
+    conditions : speed, load, temperature and angle of each, and growth where it is not 0, shape (n, 4) or (n, 5).
+    """
     answers = np.empty((len(conditions), len(ANSWER)))
-    look_up_conditions(np.ascontiguousarray(conditions, float), table, new_look_up(), answers)
+    look_up_conditions(with_growths(conditions), table, new_look_up(), answers)
     return answers
+
+
+def with_growths(conditions: np.ndarray) -> np.ndarray:
+    """Return conditions with a column of growths, 0 where there was none, shape (n, 5)."""
+    conditions = np.asarray(conditions, float)
+    missing = np.zeros((len(conditions), len(AXES) - conditions.shape[1]))
+    return np.ascontiguousarray(np.hstack([conditions, missing]))
 
 
 def assembled(knots: list[np.ndarray], period: float, mirror: float, values: np.ndarray) -> Table:
@@ -208,13 +229,14 @@ class _Grid:
             span.maximum_load * np.array(_FIRST_LOADS),
             np.linspace(span.minimum_temperature, span.maximum_temperature, _FIRST_TEMPERATURES if warm else 1),
             np.arange(_FIRST_ANGLES) * self.period / _FIRST_ANGLES if turn else np.zeros(1),
+            np.linspace(span.minimum_growth, span.maximum_growth, _FIRST_GROWTHS) if span.maximum_growth > span.minimum_growth else np.zeros(1),
         ]
         self._random = np.random.default_rng(1)
 
     def values(self) -> np.ndarray:
         points = np.stack(np.meshgrid(*self.knots, indexing="ij"), axis=-1).reshape(-1, len(AXES))
         shape = (len(self._senses), *map(len, self.knots), len(ANSWER))
-        return np.concatenate([self._solver.solve(points * [sense, 1.0, 1.0, 1.0]) for sense in self._senses]).reshape(shape)
+        return np.concatenate([self._solver.solve(points * [sense, 1.0, 1.0, 1.0, 1.0]) for sense in self._senses]).reshape(shape)
 
     def table(self) -> Table:
         return assembled(self.knots, self.period, self.mirror, self.values())
@@ -265,7 +287,7 @@ class _Grid:
         return np.fmax(np.maximum(slip, life), lag)  # the lag of a stopped cage is not known
 
     def drawn(self, count: int) -> np.ndarray:
-        """Return conditions drawn evenly in speed, temperature and direction and in the square root of the load, shape (count, 4)."""
+        """Return conditions drawn evenly in speed, temperature, direction and growth and in the square root of the load, shape (count, 5)."""
         low, high = (np.array([knots[end] for knots in self.knots]) for end in (0, -1))
         high[3] = self.period
         positions = self._random.random((count, len(AXES)))
@@ -327,7 +349,7 @@ def read_table(path: Path) -> tuple[Table, Quality] | None:
                 return None
             period, mirror = (float(number) for number in file["symmetry"])
             quality = Quality(*(kind(number) for kind, number in zip(Quality.__annotations__.values(), file["quality"].tolist())))
-            knots = [np.ascontiguousarray(file[name], float) for name in ("speeds", "loads", "temperatures", "angles")]
+            knots = [np.ascontiguousarray(file[name], float) for name in ("speeds", "loads", "temperatures", "angles", "growths")]
             values = file["values"]
             if values.shape[1:] != (*map(len, knots), len(ANSWER)):
                 return None
@@ -345,6 +367,7 @@ def write_table(path: Path, table: Table, quality: Quality) -> None:
         loads=table.loads,
         temperatures=table.temperatures,
         angles=table.angles,
+        growths=table.growths,
         symmetry=np.array([table.period, table.mirror]),
         values=np.ascontiguousarray(table.nodes[..., 0, :]),
         quality=np.array(quality, float),
@@ -391,14 +414,15 @@ def obtain_table(
     return found
 
 
-def holds(table: Table, shaft_speed: float, load: float, oil_temperature: float) -> bool:
-    """Return whether a table answers for magnitudes of speed [rad/s] and load [N] and an oil temperature [K]."""
+def holds(table: Table, shaft_speed: float, load: float, oil_temperature: float, growth: float = 0.0) -> bool:
+    """Return whether a table answers for magnitudes of speed [rad/s] and load [N], an oil temperature [K] and a growth [m]."""
     if not len(table.speeds) or not math.isfinite(shaft_speed + load + oil_temperature):
         return False
     return (
         abs(shaft_speed) <= table.speeds[-1]
         and load <= table.loads[-1]
         and table.temperatures[0] <= oil_temperature <= table.temperatures[-1]
+        and table.growths[0] <= growth <= table.growths[-1]
         and (shaft_speed >= 0.0 or not math.isnan(table.mirror) or table.nodes.shape[0] == 2)
     )
 
@@ -420,14 +444,15 @@ def solve_points(scene: Scene, conditions: np.ndarray) -> np.ndarray:
     Parameters
     ----------
     scene : its level does not matter.
-    conditions : shaft speed [rad/s], load [N], oil temperature [K] and direction of the load [rad] of each, shape (n, 4).
+    conditions : shaft speed [rad/s], load [N], oil temperature [K] and direction of the load [rad] of each, and growth [m], shape (n, 4) or (n, 5).
     """
     params, answers = pack(scene), np.empty((len(conditions), len(ANSWER)))
     work = new_work(params)
-    for temperature in np.unique(conditions[:, 2]):
-        same = np.flatnonzero(conditions[:, 2] == temperature)
-        lubrication = lubricate_scene(scene, params, float(temperature))
-        model = Model(params, lubrication, Drive(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), DEFAULT_TOLERANCES)
+    conditions = with_growths(conditions)
+    for temperature, growth in np.unique(conditions[:, [2, 4]], axis=0):
+        same = np.flatnonzero((conditions[:, 2] == temperature) & (conditions[:, 4] == growth))
+        lubrication = with_growth(lubricate_scene(scene, params, float(temperature)), float(growth))
+        model = Model(params, lubrication, _NO_DRIVE, DEFAULT_TOLERANCES)
         found = np.empty((len(same), len(ANSWER)))
         solve_conditions(np.ascontiguousarray(conditions[same][:, [0, 1, 3]], float), model, work, found)
         answers[same] = found
