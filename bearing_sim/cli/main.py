@@ -27,6 +27,7 @@ _STUDIES = {
     "misalignment": Entry("study:misalignment", "Edge pressure, tilt, skew and life against misalignment of the inner ring."),
     "situations": Entry("study:situations", "Pictures of six situations, from start to fault, in rerun."),
     "slices": Entry("study:slices", "Convergence of level spatial with the number of slices, and their cost."),
+    "friction": Entry("study:friction", "Frictional moment and thermal reference speed against makers' models."),
     "extremes": Entry("study:extremes", "Map which scenes finish, are step-limited, are refused or fail."),
 }
 _COMMANDS = {

@@ -10,6 +10,7 @@ from bearing_sim.cli.options import executor_options, json_option, level_type, p
 from bearing_sim.cli.reporting import (
     FailedRun,
     Points,
+    UsageError,
     announce_compilation,
     as_failed_run,
     as_file_error,
@@ -307,6 +308,105 @@ def _print_slices(name, found) -> None:
         still = f"{1e-6 * one.static_pressure:.5g}", f"{one.static_l10r:.4g}"
         rows.append((str(one.slices), f"{100 * one.slip:.4g}", *lives, *still, f"{1e6 * one.step_seconds:.3g}", f"{one.real_time_factor:.3g}"))
     print_rows(f"{name}: results by number of slices", columns, rows)
+
+
+@click.command("friction")
+@click.argument("scene_name", metavar="[SCENE]", required=False)
+@set_option
+@click.option("--series", metavar="SERIES", help="Series of SCENE's bearing: 10, 2, 3, 22 or 23 [default: that in its name].")
+@click.option("--csv", "table", type=click.Path(path_type=Path), metavar="PATH.csv", help="Write all operating points to a table.")
+@json_option
+def friction(scene_name, overrides, series, table, as_json):
+    """Compare the frictional moment with makers' models, for the bearings of the catalogue or for SCENE at its operating point.
+
+    Catalogue bearings stand in an oil bath under the conditions of ISO 15312, from 0.02 to 0.2 C_0 and from 500 rpm to the reference speed;
+    a second table has the speeds at which friction reaches the standard's heat flow, against those that makers print.
+    """
+    from bearing_sim.scene.loader import SceneError, load_scene
+    from bearing_sim.studies.friction import SERIES, compare, series_of
+
+    announce_compilation()
+    if scene_name is None:
+        if overrides or series:
+            raise UsageError("--set and --series are for a SCENE; give one")
+        _friction_of_catalogue(table, as_json)
+        return
+    with as_usage_error(SceneError):
+        scene = load_scene(scene_name, overrides)
+    series = series or series_of(scene.bearing.name)
+    if series not in SERIES:
+        raise UsageError(f"--series: makers' factors are known for series {', '.join(SERIES)}; name that of {scene.bearing.name!r}")
+    with as_usage_error(ValueError):
+        found = compare(scene, series)
+    if as_json:
+        print_json({"scene": scene.name, **found._asdict()})
+        return
+    rows = (
+        ("model", found.model),
+        ("model without rolling resistance", found.without_resistance),
+        ("M_0 + M_1 with f_0 and f_1", found.simple),
+        ("SKF's friction model", found.skf),
+        ("coefficient 0.0011", found.coefficient),
+    )
+    title = f"{scene.name}: friction at {abs(scene.operating.shaft_speed) * 30 / math.pi:.6g} rpm and {scene.operating.radial_load:.6g} N"
+    print_table(title, [(name, f"{watts:.4g} W") for name, watts in rows])
+
+
+def _friction_of_catalogue(table, as_json) -> None:
+    from bearing_sim.studies.friction import moment_table, thermal_speeds
+
+    found, speeds = moment_table(), thermal_speeds()
+    rows = [{**one._asdict(), "simple": one.simple, "ratio": one.ratio, "reason": one.reason} for one in found]
+    if table is not None:
+        with as_file_error():
+            write_csv(table, rows)
+    medians = _medians(found, speeds)
+    if as_json:
+        print_json({"moments": rows, "thermal_speeds": [one._asdict() for one in speeds], "medians": medians})
+        return
+    _print_moments(found)
+    _print_thermal_speeds(speeds)
+    print_table("medians", [(name, f"{value:.2f}") for name, value in medians.items()])
+
+
+def _medians(found, speeds) -> dict[str, float]:
+    import numpy as np
+
+    return {
+        "moment over M_0 + M_1": float(np.median([one.ratio for one in found])),
+        "moment over SKF's friction model": float(np.median([one.model / one.skf for one in found])),
+        "thermal speed over NKE's": float(np.nanmedian([one.model / one.nke for one in speeds])),
+        "thermal speed over SKF's": float(np.median([one.model / one.skf for one in speeds])),
+        "thermal speed over that of SKF's friction model": float(np.median([one.model / one.skf_model for one in speeds])),
+    }
+
+
+def _print_moments(found) -> None:
+    rows = [
+        (
+            one.bearing,
+            f"{one.load:.2f}",
+            *(f"{value:.4g}" for value in (one.speed, one.model, one.rolling, one.sliding, one.drag, one.pocket, one.viscous, one.by_load, one.skf)),
+            f"{one.ratio:.2f}",
+        )
+        for one in found
+    ]
+    columns = ("bearing", "P/C_0", "rpm", "model, N mm", "rolling", "sliding", "drag", "pockets", "M_0", "M_1", "SKF", "ratio")
+    print_rows("frictional moment, and its ratio to M_0 + M_1", columns, rows, words=("bearing",))
+    far = [(one.bearing, f"{one.load:.2f}", f"{one.speed:.4g}", f"{one.ratio:.2f}", one.reason) for one in found if one.reason]
+    print_rows("ratios beyond a factor of 2", ("bearing", "P/C_0", "rpm", "ratio", "why"), far, words=("bearing", "why"))
+
+
+def _print_thermal_speeds(speeds) -> None:
+    def shown(value):
+        return "" if math.isnan(value) else f"{value:.4g}"
+
+    rows = [
+        (one.bearing, *(shown(value) for value in (one.model, one.simple, one.skf_model, one.nke, one.skf, one.model / one.nke, one.model / one.skf)))
+        for one in speeds
+    ]
+    columns = ("bearing", "model", "M_0 + M_1", "SKF's friction model", "NKE prints", "SKF prints", "model/NKE", "model/SKF")
+    print_rows("thermal reference speed, rpm (ISO 15312)", columns, rows, words=("bearing",))
 
 
 _SHOWN = 12  # reasons per table

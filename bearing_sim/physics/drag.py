@@ -146,7 +146,7 @@ def cylinder_torque(relative_speed, radius, clearance, width, density, viscosity
 
         1,   1.3 (Ta/41)^0.539 (Taylor vortices),   3.0 (Re/2500)^0.856 (turbulence),    Re = rho omega R c/eta, Ta = Re sqrt(c/R),
 
-    so that nothing jumps between the regimes.  41 is the critical Taylor number of a narrow gap whose inner cylinder turns (G. I. Taylor, Phil.
+    so that nothing jumps between the regimes; air without oil has none.  41 is the critical Taylor number of a narrow gap whose inner cylinder turns (G. I. Taylor, Phil.
     Trans. R. Soc. A 223 (1923)); the two factors and their exponents are *assumptions*, common in dynamic models of roller bearings.
 
     Parameters
@@ -155,6 +155,8 @@ def cylinder_torque(relative_speed, radius, clearance, width, density, viscosity
     radius, clearance, width : [m].
     density, viscosity : of the mixture [kg/m^3, Pa s].
     """
+    if density == 0.0:
+        return 0.0, 0.0
     petroff = 2.0 * math.pi * viscosity * radius**3 * width / clearance
     reynolds = density * abs(relative_speed) * radius * clearance / viscosity
     factor, exponent = 1.0, 0.0
