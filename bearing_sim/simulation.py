@@ -96,7 +96,7 @@ class Simulation:
         self._thermal: ThermalState | None = None  # of a thermal network
         self._temperatures = np.full(THERMAL.stop - THERMAL.start, math.nan)  # without one: those that are given
         self._tables = ()  # what the level's workspace is made of besides the parameters
-        if self._level.advance_profile is not None and scene.heat_law == "none":  # tables know no temperatures but the oil's
+        if self._level.advance_profile is not None and scene.heat.law == "none":  # tables know no temperatures but the oil's
             kept = cached_table(scene) if table is None else (table,)
             self._tables = kept[:1] if kept else ()
         self.reset(inputs)
@@ -184,7 +184,7 @@ class Simulation:
         self._write_temperatures(self._newest)
 
     def _new_thermal(self) -> ThermalState | None:
-        if self.scene.heat_law != "network":
+        if self.scene.heat.law != "network":
             return None
         return ThermalState(self.scene, self._cold, self.inputs.oil_temperature)
 
@@ -204,7 +204,7 @@ class Simulation:
             self._lubrication = self._lubrication._replace(temperature=oil)  # that of the oil that comes in
             return
         self._lubrication = lubricate_scene(self.scene, self._params, oil, measured)
-        if self.scene.heat_law == "given":
+        if self.scene.heat.law == "given":
             solids = given_temperatures(self.scene.heat, oil, measured)
             self._temperatures[: len(solids)] = solids
         if self._level.forget is not None:
@@ -235,7 +235,7 @@ class Simulation:
             The scene has no thermal network.
         """
         if self._thermal is None:
-            raise ValueError(f"heat.law is {self.scene.heat_law}: only a network has temperatures to set; choose heat.law=network")
+            raise ValueError(f"heat.law is {self.scene.heat.law}: only a network has temperatures to set; choose heat.law=network")
         self._thermal.temperatures[:] = nodes
         self._thermal.held = held
         self._take_temperatures()
@@ -344,7 +344,7 @@ class Simulation:
 
     def _rings_changed(self, end: Inputs) -> bool:
         """Return whether measured temperatures stand for given ones and have changed."""
-        if self.scene.heat_law != "given":
+        if self.scene.heat.law != "given":
             return False
         return str(end[-len(RING_TEMPERATURES) :]) != str(self.inputs[-len(RING_TEMPERATURES) :])  # as text NaN equals NaN
 

@@ -104,7 +104,8 @@ class ListSink:
 
 def replayed(path, scene=SCENE, rate: float = RATE, model=Simulation) -> ListSink:
     """Return what an offline replay writes."""
-    judged = judge(read_input_log(path), scene.accepted_inputs, Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature))
+    held = Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature)
+    judged = judge(read_input_log(path), scene.accepted_inputs, held, heat_law=scene.heat.law)
     sink = ListSink(judged.start_ns)
     replay(scene, judged, sink, rate=rate, model=model)
     return sink

@@ -77,7 +77,8 @@ class User:
                 raise AssertionError(f"a command of the tutorial that is not run here: {shlex.join(words)}")
 
     def _list_topics(self):
-        wanted = {f"/{name}" for name in (*topics.outputs(load_scene("deng2017_table1")), *topics.INPUTS, topics.MEASURED, "diagnostics")}
+        scene = load_scene("deng2017_table1")
+        wanted = {f"/{name}" for name in (*topics.outputs(scene), *topics.inputs(scene), topics.MEASURED, "diagnostics")}
         self._wait(lambda: wanted <= {name for name, _ in self.client.node.get_topic_names_and_types()}, "all topics are there")
 
     def _wait(self, condition, what):

@@ -61,16 +61,18 @@ class Driver:
     def __init__(self, scene=SCENE):
         self.scene, self.simulation, self.news, self.output = scene, FakeSimulation(), [], []
         self.simulation.scene, self.simulation.counters = scene, (0, 0, 0)
-        self.speed, self.cage = 100.0, None
+        self.speed, self.cage, self.rings = 100.0, None, {}
 
     def step(self, drive=True):
-        """Let one interval pass, with messages of speed, load and, where set, the cage."""
+        """Let one interval pass, with messages of speed, load and, where set, the cage and the temperatures of the rings."""
         self.wait()
         if drive:
             self.model.offer("shaft_speed", (self.speed,), self.now_ns, self.now_ns)
             self.model.offer("radial_load", (800.0, 0.0), self.now_ns, self.now_ns)
             if self.cage is not None:
                 self.model.offer("cage_speed_measured", (self.cage,), self.now_ns, self.now_ns)
+            for channel, kelvin in self.rings.items():
+                self.model.offer(channel, (kelvin,), self.now_ns, self.now_ns)
         self.news += self.model.collect(self.now_ns)
         self.output += self.model.published()
 
@@ -199,6 +201,37 @@ def test_the_oil_temperature_can_be_set_any_number_of_times_and_is_recorded(make
     assert one.model.offer("oil_temperature", (360.0,), one.now_ns, one.now_ns) is None
     one.until(lambda: one.newest("oil_temperature") == 360.0)
     assert one.model.gate.accepted["oil_temperature"] == 1
+
+
+@pytest.mark.parametrize("law, stands_in", [("given", "given in the scene"), ("network", "the thermal network")])
+def test_a_ring_temperature_that_dies_falls_back_says_so_and_returns(make, law, stands_in):
+    one = make(scene=load_scene("deng2017_table1", [*OVERRIDES, "input_limits.stale_after=60 ms", f"heat.law={law}"]))
+    one.model.note_publishers("inner_ring_temperature", 1)
+    one.rings = {"inner_ring_temperature": 380.0}
+    one.until(lambda: one.newest("inner_ring_temperature_measured") == 380.0)
+    assert math.isnan(one.newest("outer_ring_temperature_measured")), "each is optional"
+    one.rings = {}
+    one.until(lambda: math.isnan(one.newest("inner_ring_temperature_measured")))
+    one.until(lambda: ("input.stale", "inner_ring_temperature") in {event.key for event in one.news})
+    (stale,) = [event for event in one.condition().events if event.key == ("input.stale", "inner_ring_temperature")]
+    assert stale.level is Level.WARN and stands_in in stale.action
+    assert one.newest("shaft_speed") == 100.0, "the model runs on"
+    one.rings = {"inner_ring_temperature": 385.0}
+    one.until(lambda: one.newest("inner_ring_temperature_measured") == 385.0)
+    one.until(lambda: "input.returned" in {event.kind for event in one.news})
+    one.run(0.1)
+    assert ("input.stale", "inner_ring_temperature") not in {event.key for event in one.condition().events}
+    assert [event.kind for event in one.news if event.subject == "inner_ring_temperature"].count("input.returned") == 1
+
+
+def test_a_publisher_of_a_ring_temperature_is_told_that_a_scene_without_a_law_of_heat_does_not_read_it(make):
+    one = make()
+    one.model.note_publishers("outer_ring_temperature", 1)
+    one.run(0.3)
+    (unused,) = [event for event in one.condition().events if event.kind == "input.unused"]
+    assert unused.subject == "outer_ring_temperature" and unused.level is Level.WARN and "heat.law" in unused.reason
+    one.model.note_publishers("outer_ring_temperature", 0)
+    assert "input.unused" not in one.kinds()
 
 
 def test_thresholds_can_be_changed_in_mid_run(make):

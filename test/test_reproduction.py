@@ -2,6 +2,7 @@
 """A recorded run is computed again from its recording alone; killed recordings come back without gaps; a clock that is set does no harm."""
 
 import json
+import math
 import time
 
 import numpy as np
@@ -12,6 +13,7 @@ from recording_kills import kill_recordings
 from recordings import steady_log
 
 from bearing_sim.cli.main import main
+from bearing_sim.model.sample import joined
 from bearing_sim.recording.compare import compare
 from bearing_sim.recording.reader import Recording
 from bearing_sim.recording.recovery import contents
@@ -30,8 +32,13 @@ def invoke(*arguments, code=0):
     return done.stdout
 
 
-def live_run(scene, path, rate=1000.0, publish_rate=100.0, from_start=True, steady=False, reset_at=(), skip_at=(), ticks=120):
-    """Record a run as a live one makes it: tick by tick to inputs that step, in the blocks of a tick schedule, with time that is skipped."""
+def live_run(
+    scene, path, rate=1000.0, publish_rate=100.0, from_start=True, steady=False, reset_at=(), skip_at=(), ticks=120, measured=lambda tick: ()
+):
+    """Record a run as a live one makes it: tick by tick to inputs that step, in the blocks of a tick schedule, with time that is skipped.
+
+    ``measured(tick)`` are the temperatures of the rings [K].
+    """
     simulation, beat, shift = Simulation(scene, Inputs(3000.0, 700.0, 0.0, 393.15)), tick_schedule(rate, publish_rate), 0.5
     with McapSink(path, scene, START, advance=(beat.tick, beat.samples)) as sink:
         if from_start:
@@ -40,7 +47,7 @@ def live_run(scene, path, rate=1000.0, publish_rate=100.0, from_start=True, stea
             sink.write(block)
         for tick in range(ticks):
             inputs = (
-                Inputs(3000.0, 700.0, 0.0, 393.15)
+                Inputs(3000.0, 700.0, 0.0, 393.15, *measured(tick))
                 if steady
                 else Inputs(3000.0 + 40.0 * (tick // 7), 700.0 - 3.0 * tick, 2.0 * tick, 393.15 + 0.1 * (tick // 40))
             )
@@ -74,6 +81,21 @@ def test_a_run_from_its_start_is_repeated_to_round_off_and_to_the_bit_under_cons
     assert told["starts"] == ["ideal rolling"] and told["failed"] == 0 and told["skipped_seconds"] == pytest.approx(0.0, abs=1e-9)
     assert all(not (difference.only_first or difference.only_second) for difference in differences)
     assert worst(differences) <= tolerance and {d.topic for d in differences} > {"/shaft_speed", "/roller_loads", "/roller_places"}
+
+
+@pytest.mark.parametrize("law", ["given", "network"])
+def test_a_run_with_measured_temperatures_that_come_and_go_is_repeated_to_the_bit(tmp_path, law):
+    scene = load_scene("deng2017_table1", [f"heat.law={law}"])
+
+    def measured(tick):
+        return (math.nan, math.nan) if not 20 < tick < 40 else (395.0 + 0.1 * tick, math.nan if tick < 30 else 394.0)
+
+    path = live_run(scene, tmp_path / "run.mcap", 100.0, 50.0, steady=True, ticks=60, measured=measured)
+    told, differences = repeated(path, tmp_path)
+    assert told["failed"] == 0 and worst(differences) == 0.0
+    assert {"/measured_temperatures", "/predicted_temperatures"} <= {difference.topic for difference in differences}
+    samples = joined([item for item in Recording(path) if isinstance(item, np.ndarray)])
+    assert 0 < np.isnan(samples["inner_ring_temperature_measured"]).sum() < np.isnan(samples["outer_ring_temperature_measured"]).sum() < len(samples)
 
 
 def test_time_that_a_live_run_gave_up_and_its_resets_are_repeated(tmp_path):

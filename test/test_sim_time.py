@@ -99,6 +99,31 @@ def test_any_pace_of_the_clock_and_any_order_of_topics_give_what_a_replay_gives_
     assert len(got.measurements) == 12 and run.values()["late inputs"] == 0 and run.values()["messages refused"] == 0
 
 
+@pytest.mark.parametrize("law", ["given", "network"])
+def test_measured_temperatures_that_die_and_return_give_what_a_replay_gives_to_the_last_bit(make, tmp_path, law):
+    """A sensor counts as dead 0.2 s after its last message: the inner ring's does from 0.6 to 0.9 s."""
+    scene = load_scene("deng2017_table1", [f"heat.law={law}", "input_limits.stale_after=20 ms"])
+    times = [0.02, 0.1, 0.2, 0.3, 0.4, 0.9, 1.0, 1.1]
+    measured = [Message(time + 0.0003, "inner_ring_temperature", (395.0 + 20.0 * time,)) for time in times]
+    measured += [Message(0.1 * k + 0.0007, "outer_ring_temperature", (394.0,)) for k in range(12)]
+    messages = sorted([*course(SECONDS), *measured])
+    expected = replayed(write(tmp_path / "log.mcap", messages), scene)
+    run = make(Simulation(scene), scene)
+    for channel in topics.TEMPERATURES:
+        run.model.note_publishers(channel, 1)
+    run.player.play(messages, ticks(SECONDS, 0.1), random.Random(3))
+    got = run.finish()
+    assert_same_samples(got.samples, expected.samples)
+    assert got.inputs == expected.inputs
+    known = {round((ns - START_NS) * 1e-9, 2): float(sample["inner_ring_temperature_measured"]) for ns, sample in got.samples.items()}
+    dead = {time for time, kelvin in known.items() if np.isnan(kelvin)}
+    assert {time for time in known if 0.61 < time < 0.89} <= dead and not {time for time in known if 0.01 < time < 0.59 or time > 0.91} & dead
+    rings = {float(sample["inner_ring_temperature"]) for sample in got.samples.values()}
+    assert len(rings) > 5, "the model follows what is measured"
+    kinds = {event.kind for event in expected.events}
+    assert {"input.stale", "input.returned"} <= kinds and "input.unused" not in kinds
+
+
 def test_a_pause_of_the_clock_and_of_the_model_and_a_machine_that_lags_change_nothing(make, manoeuvre):
     messages, expected = manoeuvre
     run = make(Simulation(SCENE))

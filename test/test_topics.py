@@ -216,6 +216,18 @@ WIRE = {
         "load y, z, oil temperature, land eccentricity",
         [("load_y", "N"), ("load_z", "N"), ("oil_temperature", "K"), ("land_eccentricity", "")],
     ),
+    "predicted_temperatures": (
+        "shaft, inner ring, rollers, outer ring, housing, oil that leaves",
+        [
+            ("shaft_temperature", "K"),
+            ("inner_ring_temperature", "K"),
+            ("roller_temperature", "K"),
+            ("outer_ring_temperature", "K"),
+            ("housing_temperature", "K"),
+            ("oil_outlet_temperature", "K"),
+        ],
+    ),
+    "heat_flows": ("to the oil, to ambient", [("heat_to_oil", "W"), ("heat_to_ambient", "W")]),
     "measured_temperatures": ("inner ring, outer ring", [("inner_ring_temperature_measured", "K"), ("outer_ring_temperature_measured", "K")]),
     "roller_places": ("angle, radius, rotation", [("roller_angle", "rad"), ("roller_radius", "m"), ("roller_rotation", "rad")]),
 }

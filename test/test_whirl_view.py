@@ -10,7 +10,7 @@ from synthetic_run import synthetic_block
 
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.view.blueprint import blueprint
-from bearing_sim.view.drawings import CAUSES, TURNS, OrbitPath
+from bearing_sim.view.drawings import CAUSES, TURNS, OrbitPath, causes_of
 
 SLIP, PLANAR = (load_scene("deng2017_table1", [f"level={level}"]) for level in ("slip", "planar"))
 
@@ -54,7 +54,7 @@ def test_orbit_is_in_micrometres_with_z_upwards(tmp_path):
 def test_series_of_powers_and_eccentricity_are_the_samples(tmp_path):
     block = whirling_block()
     chunks = written(tmp_path / "run.rrd", PLANAR, block)
-    for cause in CAUSES:
+    for cause in causes_of(PLANAR):
         assert last_value(chunks, f"/power/{cause}", "Scalars:scalars") == pytest.approx([block[f"{cause}_power"][-1]])
     assert last_value(chunks, "/cage/eccentricity", "Scalars:scalars") == pytest.approx([2 / 3])
     assert last_value(chunks, "/loads/pocket_largest", "Scalars:scalars") == [27.0]
@@ -66,9 +66,20 @@ def test_bars_are_as_long_as_the_mean_of_their_newest_powers(tmp_path):
     strips = np.array(last_value(chunks, "/power_now/bars", "LineStrips2D:strips"))
     radii = np.array(last_value(chunks, "/power_now/bars", "LineStrips2D:radii"))
     length = strips[:, 1, 0] - strips[:, 0, 0] + 2 * radii
-    powers = np.array([block[f"{cause}_power"][-20:].mean() for cause in CAUSES])
+    powers = np.array([block[f"{cause}_power"][-20:].mean() for cause in causes_of(PLANAR)])
     assert last_value(chunks, "/power_now/values", "Arrows2D:labels") == [f"{power:,.0f} W" for power in powers]
     np.testing.assert_allclose(length, powers * length[-1] / powers[-1], rtol=1e-5)
+
+
+def test_a_scene_shows_the_losses_that_it_can_have():
+    absent = {"inner_rolling", "outer_rolling", "seal", "support"}
+    assert CAUSES.keys() - causes_of(PLANAR).keys() == absent
+    more = [
+        "lubricant.rolling_resistance=hydrodynamic",
+        "bearing.seals={law: constant_moment, moment: 0.1 N*m}",
+        "support={elastic: true, shaft: {mass: 2 kg}}",
+    ]
+    assert causes_of(load_scene("deng2017_table1", ["level=planar", *more])).keys() == CAUSES.keys()
 
 
 def test_bars_of_the_running_clearance_and_its_parts_stand_on_either_side_of_zero_and_old_recordings_have_none(tmp_path):

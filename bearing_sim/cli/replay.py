@@ -135,7 +135,7 @@ def replay(
         warn_of_scene(scene)
         recorded = read_input_log(logs, names, joint, stamps)
         held = Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature)
-        course = judge(recorded, scene.accepted_inputs, held, longest_gap, scene.heat_law)
+        course = judge(recorded, scene.accepted_inputs, held, longest_gap, scene.heat.law)
         seconds = course.end * 1e-9
         with ExitStack() as stack:
             recording, names_of = None, [log.name for log in logs]

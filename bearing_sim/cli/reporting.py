@@ -87,7 +87,7 @@ def judged(log, scene):
     from bearing_sim.simulation import Inputs
 
     held = Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature)
-    profile = judge(log, scene.accepted_inputs, held, heat_law=scene.heat_law)
+    profile = judge(log, scene.accepted_inputs, held, heat_law=scene.heat.law)
     if profile.unknown_seconds:
         click.echo(f"warning: {profile.unknown_event.text}", err=True)
     return profile

@@ -186,6 +186,18 @@ ARRAYS = {
     "roller_tilts": ArrayRows("inclination: outwards, along the orbit", ("roller_tilt", "roller_skew")),
     "roller_loads": ArrayRows("ring", ("inner_load", "outer_load")),
     "operating_point": ArrayRows("load y, z, oil temperature, land eccentricity", ("load_y", "load_z", "oil_temperature", "land_eccentricity")),
+    "predicted_temperatures": ArrayRows(
+        "shaft, inner ring, rollers, outer ring, housing, oil that leaves",
+        (
+            "shaft_temperature",
+            "inner_ring_temperature",
+            "roller_temperature",
+            "outer_ring_temperature",
+            "housing_temperature",
+            "oil_outlet_temperature",
+        ),
+    ),
+    "heat_flows": ArrayRows("to the oil, to ambient", ("heat_to_oil", "heat_to_ambient")),
     "measured_temperatures": ArrayRows("inner ring, outer ring", tuple(f"{name}_measured" for name in RING_TEMPERATURES)),
     "roller_places": ArrayRows("angle, radius, rotation", ("roller_angle", "roller_radius", "roller_rotation")),
 }
@@ -260,6 +272,8 @@ OUTPUTS = {
         _array("centre_positions", "displacements [m]: inner ring and cage from the outer ring, outer ring and shaft in space, y, z each"),
         _array("axis_tilts", "tilts [rad]: inner ring towards y, z, cage towards y, z", True),
         _array("slice_pressures", "largest Hertzian pressures [Pa]: inner, outer raceway, and of the rollers' end slices alone", True),
+        _array("predicted_temperatures", "temperatures [K] of shaft, rings, rollers, housing and the oil that leaves, given or computed", of_heat=True),
+        _array("heat_flows", "heat [W] that the oil takes along, and that housing and shaft give off; NaN without a network", of_heat=True),
         _array("power", "power [W]: what the shaft puts in, then what is lost, by cause; and the frictional moment [N*m]"),
         _array("roller_speeds", "speeds [rad/s], (orbital, spin) x roller"),
         _array("pocket_forces", "forces of the pockets on the rollers [N], positive where they drive"),
@@ -373,9 +387,10 @@ def further_condition(scene, sample) -> dict[str, object]:
     if not scene.life.is_basic:
         numbers["modified rating life [h]"] = float(sample["modified_rating_life"])
     numbers |= {f"{symbol} [h]": float(sample[name]) for name, symbol in LIFE_SYMBOLS.items()}
-    for name in RING_TEMPERATURES:
-        if not math.isnan(measured := float(sample[f"{name}_measured"])) and scene.uses_ring_temperatures:
-            numbers[f"{name.replace('_', ' ')}, measured [degC]"] = measured - ZERO_CELSIUS
+    if scene.uses_ring_temperatures:
+        shown = (*ARRAYS["predicted_temperatures"].fields, *(f"{name}_measured" for name in RING_TEMPERATURES))
+        celsius = {name: float(sample[name]) - ZERO_CELSIUS for name in shown}
+        numbers |= {f"{name.replace('_', ' ')} [degC]": value for name, value in celsius.items() if not math.isnan(value)}
     if scene.bodies_tilt:
         for name, fields in (("largest", ("inner_pressure", "outer_pressure")), ("largest edge", ("inner_edge_pressure", "outer_edge_pressure"))):
             numbers[f"{name} pressure [MPa]"] = 1e-6 * max(float(sample[field]) for field in fields)

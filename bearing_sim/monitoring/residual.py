@@ -404,7 +404,7 @@ class TemperatureResiduals:
 
     def __init__(self, scene: Scene):
         detection = scene.thresholds.temperature_residual
-        rings = RING_TEMPERATURES if scene.heat_law == "network" else ()
+        rings = RING_TEMPERATURES if scene.heat.law == "network" else ()
         self._monitors = {name: ResidualMonitor(detection, 0.0, temperature_of(name.partition("_")[0])) for name in rings}
         self._interval, self._next = detection.batch / _SAMPLES, -math.inf
 

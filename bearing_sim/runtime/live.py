@@ -313,7 +313,7 @@ class LiveModel(Model):
         pacer, capacity = Pacer(1.0, maximum_lag), round(_SLACK / tick_schedule(sample_rate, math.inf).tick)
         solver = WallTimeSolver(simulation, pacer, self.schedule, capacity, clock, governor, self._advanced)
         held = simulation.inputs._replace(**dict.fromkeys(RING_TEMPERATURES, math.nan))  # measured in this run or not at all
-        super().__init__(scene, InputGate(scene.accepted_inputs, held, heat_law=scene.heat_law), solver, start_ns)
+        super().__init__(scene, InputGate(scene.accepted_inputs, held, heat_law=scene.heat.law), solver, start_ns)
         self._sample_decimator, self._publish_decimator, self._due = Decimator(sample_rate), Decimator(publish_rate), due
         self._wall_clock = WallClock(start_ns, clock, receiver)
         self._published_time = -math.inf

@@ -309,12 +309,7 @@ class Scene:
     @property
     def uses_ring_temperatures(self) -> bool:
         """Whether the temperatures of the rings matter, so that measured ones are used."""
-        return self.heat_law != "none"
-
-    @property
-    def heat_law(self) -> str:
-        """Where the temperatures of the bearing's parts come from."""
-        return self.heat.law
+        return self.heat.law != "none"
 
     @property
     def cage_whirls(self) -> bool:

@@ -11,7 +11,7 @@ from bearing_sim.messages.topics import LIFE_SYMBOLS
 from bearing_sim.scene.scene import Scene
 from bearing_sim.view import section
 from bearing_sim.messages.topics import RING_TEMPERATURES
-from bearing_sim.view.drawings import BODIES, CAUSES, CLEARANCES, HEAT_ROOT, ORBIT_EDGE, SAMPLES, bar_bounds, heat_bounds
+from bearing_sim.view.drawings import BODIES, CLEARANCES, HEAT_ROOT, ORBIT_EDGE, SAMPLES, bar_bounds, causes_of, heat_bounds
 from bearing_sim.view.load_map import map_bounds
 from bearing_sim.view.plots import END, TIMELINE, compared_life, range_path
 
@@ -239,13 +239,13 @@ def _tilts(axes: _Axes) -> rrb.Tabs:
 
 
 def _right(scene: Scene, axes: _Axes) -> rrb.Vertical:
-    bars = _flat("/power_now", f"Power: mean of {SAMPLES} samples", bar_bounds(len(CAUSES)))
+    bars = _flat("/power_now", f"Power: mean of {SAMPLES} samples", bar_bounds(len(causes_of(scene))))
     clearance_bars = _flat("/clearance_now", "Running clearance", bar_bounds(len(CLEARANCES), signed=True))
     clearance = _clearance(axes)
     load, damage = axes.plot("Radial load [N]", ["/load/radial"]), axes.plot("Damage [millionths of the life]", ["/damage/ppm"])
     oil = axes.plot("Oil [°C]", ["/oil/temperature"])
     texts = rrb.Tabs(rrb.TextDocumentView(origin="/now", name="Now"), rrb.TextDocumentView(origin="/about", name="About"))
-    plot = axes.plot("Plot [W]", [f"/power/{cause}" for cause in CAUSES])
+    plot = axes.plot("Plot [W]", [f"/power/{cause}" for cause in causes_of(scene)])
     if scene.uses_ring_temperatures:
         clearances, powers = rrb.Tabs(clearance_bars, clearance, active_tab=0), rrb.Tabs(bars, plot, active_tab=0)
         courses = rrb.Tabs(_temperatures(axes), load, damage, oil, active_tab=0)

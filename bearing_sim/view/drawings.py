@@ -438,13 +438,17 @@ CAUSES = {
     "shaft": ("in: shaft", colours.WHITE),
     "inner_sliding": ("inner sliding", colours.BLUE),
     "outer_sliding": ("outer sliding", colours.VERMILION),
+    "inner_rolling": ("inner rolling", colours.DARK_BLUE),
+    "outer_rolling": ("outer rolling", colours.DARK_VERMILION),
     "churning": ("churning", colours.GREEN),
     "windage": ("cage windage", colours.GREY),
     "land": ("guide land", colours.ORANGE),
     "pocket": ("pockets", colours.PURPLE),
     "damping": ("damping", colours.YELLOW),
+    "seal": ("seals", colours.LIME),
+    "support": ("support", colours.SAND),
 }
-"""Causes with their names and colours, in the order of the bars."""
+"""Causes with their names and colours, in the order of the bars; a scene has those of `causes_of`."""
 
 CLEARANCE_ROOT = "/clearance_now"
 CLEARANCES = {
@@ -521,9 +525,17 @@ def bar_bounds(count: int, signed: bool = False) -> tuple[tuple[float, float], t
     return (-(1.56 if signed else 0.56) * _WIDTH, 1.46 * _WIDTH), (-0.8 * _PITCH, (count - 0.1) * _PITCH)
 
 
-def power_drawing(recording: rr.RecordingStream) -> BarDrawing:
+def causes_of(scene: Scene) -> dict[str, tuple]:
+    """Return the causes of losses that a scene can have."""
+    absent = {"inner_rolling", "outer_rolling"} if scene.lubricant.rolling_resistance.law == "none" else set()
+    absent |= {"seal"} if scene.bearing.seals.law == "none" else set()
+    absent |= set() if scene.support.is_active else {"support"}
+    return {cause: shown for cause, shown in CAUSES.items() if cause not in absent}
+
+
+def power_drawing(recording: rr.RecordingStream, scene: Scene) -> BarDrawing:
     """Return the bars of the powers: means, for at an instant the shaft's power is in part stored, in motion and elastic contacts, or given back."""
-    return BarDrawing(recording, POWER_ROOT, CAUSES, "{}_power", 1.0, "W")
+    return BarDrawing(recording, POWER_ROOT, causes_of(scene), "{}_power", 1.0, "W")
 
 
 def clearance_drawing(recording: rr.RecordingStream) -> BarDrawing:

@@ -17,7 +17,7 @@ from bearing_sim.messages.topics import LIFE_SYMBOLS, RING_TEMPERATURES, ZERO_CE
 from bearing_sim.scene.fidelity import LEVELS, level_of
 from bearing_sim.scene.scene import NO_CLEARANCE_LIMIT, Scene
 from bearing_sim.view import colours, section
-from bearing_sim.view.drawings import BODIES, CAUSES, CLEARANCES
+from bearing_sim.view.drawings import BODIES, CAUSES, CLEARANCES, causes_of
 
 RPM = 30 / math.pi
 ENDLESS = 1e7  # [h]; a bearing that hardly turns has a life of 1e30 h, which would flatten everything else
@@ -126,7 +126,6 @@ def series(block: np.ndarray) -> dict[str, np.ndarray]:
         "/loads/each/outer": block["outer_load"],
         "/loads/each/pocket": block["pocket_force"],
         "/cage/eccentricity": block["land_eccentricity"],
-        **{f"/power/{cause}": block[f"{cause}_power"] for cause in CAUSES},
         **{f"/clearance/{part}": 1e6 * block[f"{part}_clearance"] for part in CLEARANCES},
     }
 
@@ -182,9 +181,9 @@ def compared_life(scene: Scene) -> str:
 
 
 def further_series(scene: Scene, block: np.ndarray) -> dict[str, np.ndarray]:
-    """Return what is plotted besides `series` because only some scenes have it: lives, tilts, pressures by slices."""
+    """Return what is plotted besides `series` because only some scenes have it: lives, powers, temperatures, tilts, pressures by slices."""
     name = compared_life(scene)
-    lines = {f"/life/{name}_log10_hours": log10_hours(block[name])}
+    lines = {f"/life/{name}_log10_hours": log10_hours(block[name])} | {f"/power/{cause}": block[f"{cause}_power"] for cause in causes_of(scene)}
     if not scene.life.is_basic:
         lines["/life/modified_log10_hours"] = log10_hours(block["modified_rating_life"])
     if scene.uses_ring_temperatures:

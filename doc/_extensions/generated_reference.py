@@ -188,7 +188,9 @@ def output_topics() -> str:
 
     tilting = [topic.name for topic in topics.OUTPUTS.values() if topic.of_tilting_levels]
     listed = table(["topic", "type", "meaning"], _topic_rows([*topics.OUTPUTS.values(), topics.MEASUREMENTS[topics.RESIDUAL]]))
-    return f"{listed}\nOnly level `spatial` publishes {', '.join(map(code, tilting))}.\n"
+    warm = [topic.name for topic in topics.OUTPUTS.values() if topic.of_heat]
+    only = f"Only level `spatial` publishes {', '.join(map(code, tilting))}, and only scenes with a law of heat {', '.join(map(code, warm))}."
+    return f"{listed}\n{only}\n"
 
 
 def array_rows() -> str:

@@ -156,4 +156,3 @@ class ThermalState:
         inputs = NetworkInputs(speed, 0.5 * speed * (1.0 - scene.bearing.diameter_ratio), inlet, 0.0, 0.0, 0.0, 0.0)
         write_conductances(np.full(NODES, inlet), loads, inputs, self.network, work.conductances)
         return network_matrix(work.conductances, self.network.capacities)
-
