@@ -70,6 +70,7 @@ SOLVENT = "lubricant.oil={law: custom, viscosity_40: 0.5 mm^2/s, viscosity_100: 
 WATERY = "lubricant.oil={law: custom, viscosity_40: 1 mm^2/s, viscosity_100: 0.6 mm^2/s, density: 1000 kg/m^3, pressure_viscosity: 1 1/GPa}"
 ROUGH = "bearing.roughness={roller: 0.1 um, raceway: 0.2 um}"
 EYRING = "lubricant.traction={law: eyring}"
+BATH = "lubricant.supply=oil_bath"
 PAPER = "deng2017_table1"
 
 # Law: the command and what drives the law out of its range; the command and what keeps it inside.
@@ -92,6 +93,12 @@ CASES = {
     "film_speed": (("run", PAPER, ROUGH), ("run", PAPER, ROUGH, "operating.shaft_speed=15000 rpm")),
     "film_load": (("run", "motor", ROUGH, "operating.radial_load=100 kN"), ("run", "motor", ROUGH)),
     "film_material": (("loads", "motor", ROUGH, WATERY), ("loads", "motor", ROUGH)),
+    "rolling_speed": (("run", "motor", *VG_320), ("run", "motor")),
+    "bath_viscosity": (("run", "motor", *VG_320, "lubricant.temperature=20 degC", BATH), ("run", "motor", *VG_320, BATH)),
+    "bath_speed": (
+        ("run", "motor", BATH, "bearing.ratings.reference_speed=2900 rpm"),
+        ("run", "motor", BATH, "bearing.ratings.reference_speed=8000 rpm"),
+    ),
     "mixture_fraction": (("run", "motor"), ("run", PAPER)),
     "mixture_of_jet": (("run", "motor", *VG_320, "lubricant.mixture_fraction=0.03"), ("run", PAPER)),
     "churning_reynolds": (

@@ -167,6 +167,7 @@ def _advance(simulation, plan, sinks, progress):
 
 def _report(simulation, outcome, wall, start_up) -> dict:
     from bearing_sim.studies.clearance import clearance_report
+    from bearing_sim.studies.losses import loss_report
     from bearing_sim.studies.rating import life_report
 
     window, pitch, last = outcome.window, outcome.pitch, outcome.window[-1]
@@ -188,6 +189,7 @@ def _report(simulation, outcome, wall, start_up) -> dict:
         **life_report(simulation.scene, window),
         "damage": float(last["damage"]),
         "cage_speed_rpm": float(window["cage_speed"].mean()) * 30 / math.pi,
+        **loss_report(window),
         "inner_load_maximum": float(pitch["inner_load"].max()),
         "outer_load_maximum": float(pitch["outer_load"].max()),
         "inner_pressure_maximum_mpa": pressure("inner_pressure"),
@@ -205,6 +207,7 @@ def _report(simulation, outcome, wall, start_up) -> dict:
 def _print(report, scene, bands) -> None:
     from bearing_sim.cli.uncertainty import band_rows
     from bearing_sim.studies.clearance import clearance_row
+    from bearing_sim.studies.losses import loss_text
 
     rejected = f"{report['rejected_steps']} rejected, {report['non_finite_steps']} of which not finite"
     print_table(
@@ -215,6 +218,7 @@ def _print(report, scene, bands) -> None:
             ("cage speed", f"{report['cage_speed_rpm']:.6g} rpm"),
             clearance_row(scene, report),
             *life_rows(scene, report),
+            ("friction", loss_text(report)),
             *_pressures(report, scene),
             ("largest roller load", f"inner {report['inner_load_maximum']:.4g} N, outer {report['outer_load_maximum']:.4g} N"),
             ("simulated", f"{report['sim_seconds']:.4g} s in {report['wall_seconds']:.3g} s, {report['real_time_factor']:.3g} times real time"),

@@ -326,6 +326,14 @@ def _with_traction(*laws: type) -> Callable[[Scene], bool]:
     return lambda scene: isinstance(scene.lubricant.traction, laws)
 
 
+def _has_bath(scene: Scene) -> bool:
+    return scene.lubricant.supply.law == "oil_bath"
+
+
+def _has_mixture(scene: Scene) -> bool:
+    return not _has_bath(scene) or scene.lubricant.mixture_fraction > 0.0
+
+
 def _has_film(scene: Scene) -> bool:
     return scene.bearing.roughness is not None or isinstance(scene.lubricant.traction, EyringTraction)
 
@@ -540,6 +548,46 @@ LAWS = (
         lambda at: at.film_material,
     ),
     Law(
+        "rolling_speed",
+        "validity.film",
+        "hydrodynamic resistance to rolling",
+        "the speed parameter 2 eta_0 u/(E' R) of the most heavily loaded contact",
+        "",
+        6e-13,
+        1.6e-10,
+        "N. Biboulet and L. Houpert, Proc. IMechE J 224 (2010) 765, of their numerical solutions",
+        "read rolling powers as good to a factor of 1.5; at high speed heating and supply of oil limit them, see "
+        "lubricant.rolling_resistance.replenishment",
+        lambda scene: scene.lubricant.rolling_resistance.law != "none",
+        lambda at: 2.0 * at.film_speed,
+    ),
+    Law(
+        "bath_viscosity",
+        "validity.drag",
+        "drag in an oil bath",
+        "the kinematic viscosity",
+        "mm^2/s",
+        -math.inf,
+        500.0,
+        "SKF, The SKF model for calculating the frictional moment: for levels up to half of D",
+        "warm the oil, or read churning as an order of magnitude",
+        _has_bath,
+        lambda at: at.while_turning(1e6 * at.viscosity / at.density),
+    ),
+    Law(
+        "bath_speed",
+        "validity.drag",
+        "drag in an oil bath",
+        "the shaft speed over bearing.ratings.reference_speed",
+        "",
+        -math.inf,
+        1.0,
+        "SKF, The SKF model for calculating the frictional moment: its diagram ends at the reference speed",
+        "lower the speed, or supply the oil by jet",
+        lambda scene: _has_bath(scene) and scene.bearing.ratings.reference_speed is not None,
+        lambda at: np.abs(at.samples["shaft_speed"]) / at.scene.bearing.ratings.reference_speed,
+    ),
+    Law(
         "mixture_fraction",
         "validity.drag",
         "drag of the oil-air mixture",
@@ -549,7 +597,7 @@ LAWS = (
         0.05,
         "published for jet-lubricated high-speed bearings, see the theory of drag",
         "for an oil bath, circulating oil or grease calibrate the fraction with bearing-sim calibrate, or give its range to bearing-sim uncertainty",
-        _always,
+        _has_mixture,
         lambda scene: scene.lubricant.mixture_fraction,
         of_scene=True,
     ),
@@ -579,7 +627,7 @@ LAWS = (
         1e6,
         "table of the drag coefficient of a cylinder, H. Schlichting, Boundary-Layer Theory",
         "read churning as an order of magnitude; calibrate lubricant.mixture_fraction at this speed and temperature",
-        _always,
+        _has_mixture,
         lambda at: at.churning_reynolds,
     ),
     Law(

@@ -1,0 +1,32 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""The frictional moment and the losses by cause, for reports."""
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+
+CAUSES = {
+    "rolling": ("inner_rolling_power", "outer_rolling_power"),
+    "sliding": ("inner_sliding_power", "outer_sliding_power"),
+    "drag": ("churning_power",),
+    "cage": ("windage_power", "land_power", "pocket_power"),
+    "damping": ("damping_power",),
+    "seals": ("seal_power",),
+}
+"""Losses of `bearing_sim.model.sample` by what people call their cause; drag is that of rollers, and in an oil bath of the cage too."""
+
+
+def loss_report(samples: np.ndarray) -> dict:
+    """Return the frictional moment [N m], the power of the shaft and the losses by cause [W], means over samples of shape (n,)."""
+    power, speed = float(samples["shaft_power"].mean()), float(samples["shaft_speed"].mean())
+    losses = {f"{cause}_loss": float(sum(samples[name].mean() for name in names)) for cause, names in CAUSES.items()}
+    return {"friction_moment": power / speed if speed else math.nan, "shaft_power": power, **losses}
+
+
+def loss_text(report: Mapping) -> str:
+    """Return the friction in words, from `loss_report`."""
+    if math.isnan(report["friction_moment"]):
+        return "none, the shaft is at rest"
+    shown = ", ".join(f"{cause} {report[f'{cause}_loss']:.4g}" for cause in CAUSES if report[f"{cause}_loss"])
+    return f"{report['friction_moment']:.4g} N m, {report['shaft_power']:.4g} W: {shown}"
