@@ -13,6 +13,7 @@ CAUSES = {
     "cage": ("windage_power", "land_power", "pocket_power"),
     "damping": ("damping_power",),
     "seals": ("seal_power",),
+    "supports": ("support_power",),
 }
 """Losses of `bearing_sim.model.sample` by what people call their cause; drag is that of rollers, and in an oil bath of the cage too."""
 
