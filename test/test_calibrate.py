@@ -39,7 +39,7 @@ def measured(seed, points=ONE_POINT, seconds=60.0, noise=READING, correlation=0.
     """Return a course that stays at each point for a while, its cage as the model has it with the true scene, and a noisy sensor."""
     each = round(seconds * RATE)
     times, place = np.arange(each * len(points)) / RATE, np.repeat(np.arange(len(points)), each)
-    inputs = np.array([[rpm * RPM, load, 0.0, KELVIN] for rpm, load in points])[place]
+    inputs = np.array([Inputs(rpm * RPM, load, 0.0, KELVIN) for rpm, load in points])[place]
     draws = np.random.default_rng(seed).normal(size=len(times) + 500)
     wobble = noise * lfilter([math.sqrt(1 - correlation**2)], [1, -correlation], draws)[500:]
     ideal = 0.5 * inputs[:, 0] * (1 - load_scene("deng2017_table1").bearing.diameter_ratio)
@@ -76,7 +76,7 @@ def test_two_fields_come_back_together_from_several_operating_points():
 def test_the_cages_lag_behind_a_rising_speed_is_not_taken_for_slip():
     truth = load_scene("deng2017_table1", ["level=steady", f"{MIXTURE}={TRUTH}"])
     times = np.arange(200) / RATE
-    inputs = np.array([[(40000 + 500 * time) * RPM, 100.0, 0.0, KELVIN] for time in times])
+    inputs = np.array([Inputs((40000 + 500 * time) * RPM, 100.0, 0.0, KELVIN) for time in times])
     simulation = Simulation(truth, Inputs(*inputs[0]), empty_table())
     simulation.advance(5.0)
     cage = [simulation.sample["cage_speed"], *(simulation.advance(1 / RATE, Inputs(*row))["cage_speed"][0] for row in inputs[1:])]
@@ -176,7 +176,7 @@ def test_too_little_data_is_refused_by_what_was_left_out():
     ramped = course.inputs.copy()
     ramped[:, 0] *= 1.0 + 0.05 * np.sin(course.times)
     assert "at a changing speed" in refused(course._replace(inputs=ramped))
-    resting = course.inputs * [0.0, 1.0, 1.0, 1.0]
+    resting = course.inputs * [0.0, *np.ones(5)]
     assert "at rest" in refused(course._replace(inputs=resting))
 
 

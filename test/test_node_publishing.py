@@ -15,6 +15,7 @@ from rclpy.utilities import get_rmw_implementation_identifier  # noqa: E402
 from ros_bench import Client, NodeProcess, fresh_domain  # noqa: E402
 from std_srvs.srv import SetBool  # noqa: E402
 
+from bearing_sim.messages import topics  # noqa: E402
 from bearing_sim.recording.reader import Recording  # noqa: E402
 from bearing_sim.ros.interface import DeferredCall  # noqa: E402
 
@@ -145,7 +146,7 @@ def test_a_listener_that_comes_later_is_served_and_one_that_is_not_there_costs_n
     client.drive_until(lambda: len(late) > 10, "the late listener hears", process)
     client.listen("std_msgs/msg/Float64", "damage", again.append)
     client.drive_until(lambda: len(again) > 10, "another listener hears", process)
-    assert late[-1].layout.dim[0].size == len(late[-1].data) == 8 and 0.0 < again[-1].data < 1e-3
+    assert late[-1].layout.dim[0].size == len(late[-1].data) == len(topics.ARRAYS["power"].fields) and 0.0 < again[-1].data < 1e-3
 
 
 @pytest.mark.skipif(not hasattr(os, "SCHED_BATCH") or not Path("/proc/self/task").is_dir(), reason="needs Linux' policies and its /proc")

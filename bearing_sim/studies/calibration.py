@@ -43,7 +43,7 @@ class Blocks(NamedTuple):
     slip : mean measured cage slip, shape (n,).
     scatter : standard deviation of the slip of single messages in a block, shape (n,).
     lead : shaft acceleration over shaft speed [1/s], shape (n,); times the cage's lag it gives the slip that the lag adds.
-    conditions : mean inputs at the times of the messages, columns as `bearing_sim.simulation.Inputs`, shape (n, 4); NaN stands
+    conditions : mean inputs at the times of the messages, columns as `bearing_sim.simulation.Inputs`, shape (n, 6); NaN stands
         for the scene's oil temperature.
     left_out : number of blocks left out, by reason.
     """
@@ -62,7 +62,7 @@ class Points(NamedTuple):
 
     Attributes
     ----------
-    conditions : means over the blocks of each point, shape (m, 4).
+    conditions : means over the blocks of each point, shape (m, 6).
     index : of the operating point of each block, shape (n,).
     """
 
@@ -76,7 +76,7 @@ class Measured(NamedTuple):
     Attributes
     ----------
     times : instants of the inputs [s], increasing, shape (k,).
-    inputs : conditions there, linear in between, shape (k, 4).
+    inputs : conditions there, linear in between, shape (k, 6).
     gaps : (from, to) [s] without good inputs.
     cage_times, cage_speeds : of the measured cage [s], increasing, and [rad/s], shape (q,).
     """
@@ -166,7 +166,7 @@ def shared_points(conditions: np.ndarray) -> Points:
     known = np.nan_to_num(conditions)
     largest = np.maximum(np.abs(known).max(axis=0), 1e-9)
     load = max(np.hypot(known[:, 1], known[:, 2]).max(), 1e-9)
-    near = np.array([_NEAR[0] * largest[0], _NEAR[1] * load, _NEAR[2] * load, _NEAR[3]])
+    near = np.array([_NEAR[0] * largest[0], _NEAR[1] * load, _NEAR[2] * load, *np.full(known.shape[1] - 3, _NEAR[3])])
     while True:
         _, index = np.unique(np.round(known / near), axis=0, return_inverse=True)
         index = index.ravel()

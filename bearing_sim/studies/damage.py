@@ -43,7 +43,7 @@ def damages(
     Parameters
     ----------
     name, overrides : of the scene, as `bearing_sim.scene.loader.load_scene` takes them; its level is ignored.
-    times, inputs : instants [s], shape (n,), and conditions there, shape (n, 4), columns as `Inputs`; linear in between.
+    times, inputs : instants [s], shape (n,), and conditions there, shape (n, 6), columns as `Inputs`; linear in between.
     in_gap : whether the interval that ends at an instant is left out, shape (n,).
     table : of level ``steady``; None: the one on disk, if any.
     windows, length : number of evenly spaced windows of level ``planar``, and the length of each [s].

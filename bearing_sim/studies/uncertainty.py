@@ -172,7 +172,7 @@ class Stretches(NamedTuple):
     ----------
     middles : mean time of each [s], shape (m,).
     seconds : duration of each without its gaps [s], shape (m,).
-    conditions : means over each, columns as the course's, shape (m, 4).
+    conditions : means over each, columns as the course's, shape (m, 6).
     """
 
     middles: np.ndarray
@@ -185,7 +185,7 @@ def stretches(times: np.ndarray, inputs: np.ndarray, in_gap: np.ndarray, most: i
 
     Parameters
     ----------
-    times, inputs : instants [s], increasing, shape (n,), and the conditions there, linear in between, shape (n, 4).
+    times, inputs : instants [s], increasing, shape (n,), and the conditions there, linear in between, shape (n, 6).
     in_gap : whether the interval that ends at an instant is left out, shape (n,).
     most : largest number of stretches.
     """
@@ -284,7 +284,7 @@ def study(
     base : N, a power of two; the study computes N (d + 2) points.
     seed : of the design.
     level : to use instead of the lowest possible one.
-    course : successive conditions, columns as `Inputs`, shape (m, 4), with NaN for the scene's own oil temperature, and the duration
+    course : successive conditions, columns as `Inputs`, shape (m, 6), with NaN for the scene's own oil temperature, and the duration
         of each [s], shape (m,); None: the scene's own conditions.  With a course, slip is the mean over time and life that under the
         repeated course.
     journal : of finished points, which are not computed again; None: kept in memory.
@@ -389,7 +389,7 @@ def settled(scene: Scene, conditions: np.ndarray | None = None) -> np.ndarray:
     Parameters
     ----------
     scene : at its own level.
-    conditions : columns as `Inputs`, shape (m, 4); None: the scene's own.
+    conditions : columns as `Inputs`, shape (m, 6); None: the scene's own.
     """
     kelvin = scene.lubricant.temperature
     asked = [scene_inputs(scene)] if conditions is None else [Inputs(*row) for row in conditions.tolist()]
