@@ -15,6 +15,7 @@ from bearing_sim.levels.steady.table_builder import cached_table
 from bearing_sim.model.oil import kinematic_viscosities
 from bearing_sim.model.params import pack
 from bearing_sim.model.sample import COLUMN, RING_TEMPERATURES, flat, new_block, sample_dtype
+from bearing_sim.model.thermal_network import NODE_OBSERVABLES
 from bearing_sim.model.temperatures import given_temperatures, lubricate_scene
 from bearing_sim.numerics.compilation import compiled_for
 from bearing_sim.numerics.time_stepping import COUNT, OK, REASONS, new_counts, new_memory
@@ -65,6 +66,11 @@ class IntegrationError(RuntimeError):
         self.status = status
 
 
+def thermal_nodes(sample: np.void) -> np.ndarray:
+    """Return the temperatures of the thermal network's nodes that a sample holds [K], shape (NODES,)."""
+    return np.array([float(sample[name]) for name in NODE_OBSERVABLES])
+
+
 def scene_inputs(scene: Scene) -> Inputs:
     """Return the operating conditions of a scene as inputs."""
     operating: Operating = scene.operating
@@ -101,24 +107,28 @@ class Simulation:
             self._tables = kept[:1] if kept else ()
         self.reset(inputs)
 
-    def reset(self, inputs: Inputs | None = None) -> None:
+    def reset(self, inputs: Inputs | None = None, nodes: np.ndarray | None = None) -> None:
         """Return to time 0, no damage, and the state of ideal rolling at ``inputs``.
+
+        Parameters
+        ----------
+        inputs : conditions at time 0; the scene's operating block where absent.
+        nodes : temperatures of the thermal network's nodes [K]; those of the scene's start where absent, or without a network.
 
         Raises
         ------
         ValueError
             An input is not finite, except for a measured temperature that is NaN.
+        IntegrationError
+            The scene starts in thermal equilibrium, and there is none.
         """
         self.inputs = _checked(inputs if inputs is not None else scene_inputs(self.scene))
         self.time = 0.0
         self._work = self._new_work()
         self._counts = new_counts()
         self._thermal = self._new_thermal()
-        if self._thermal is not None and self.scene.heat.start == "equilibrium":
-            found = thermal_equilibrium(self.scene, self.inputs)
-            if not found.converged:
-                raise IntegrationError(f"{found.reason}; start the network with heat.start=oil to see how it runs away")
-            self._thermal.temperatures[:] = found.temperatures
+        if self._thermal is not None:
+            self._thermal.temperatures[:] = self._start_temperatures() if nodes is None else nodes
         self._take_temperatures()
         self._begin(self._level.initial_state(self._params, self._work, *self.inputs[:3]), new_block(1, self._params.rollers.count))
 
@@ -187,6 +197,14 @@ class Simulation:
         if self.scene.heat.law != "network":
             return None
         return ThermalState(self.scene, self._cold, self.inputs.oil_temperature)
+
+    def _start_temperatures(self) -> np.ndarray:
+        if self.scene.heat.start != "equilibrium":
+            return self._thermal.temperatures
+        found = thermal_equilibrium(self.scene, self.inputs)
+        if not found.converged:
+            raise IntegrationError(f"{found.reason}; start the network with heat.start=oil to see how it runs away")
+        return found.temperatures
 
     def _take_temperatures(self) -> None:
         """Let radii, clearances and oil follow the present temperatures."""
@@ -337,7 +355,7 @@ class Simulation:
         self._write_temperatures(rows)
         self.time += duration
         self.inputs, self._state, self._step = end, state, step
-        if self._thermal is not None and self._thermal.take(rows, duration, end.oil_temperature, end[-len(RING_TEMPERATURES) :]):
+        if self._thermal is not None and self._thermal.take(self._newest, rows, duration, end.oil_temperature, end[-len(RING_TEMPERATURES) :]):
             self._take_temperatures()
         self._newest = rows[-1].copy()
         return block

@@ -64,6 +64,7 @@ FORMULAS = {
     "fit_coefficient": ((45.0, CONDUCTIVITY), (0.14, CONDUCTIVITY), (1e-6, "m"), (1e7, "Pa"), (2.5e9, "Pa"), (0.0, "m"), COEFFICIENT),
     "oil_coefficient": ((0.14, CONDUCTIVITY), (1e-5, "m^2/s"), (8e-8, "m^2/s"), (500.0, "1/s"), COEFFICIENT),
     "natural_convection_coefficient": ((340.0, "K"), (293.0, "K"), (0.1, "m"), COEFFICIENT),
+    "moving_air_coefficient": ((340.0, "K"), (293.0, "K"), (0.1, "m"), (1.2, "m/s"), COEFFICIENT),
     "radiation_coefficient": ((340.0, "K"), (293.0, "K"), (0.9, ""), COEFFICIENT),
     "rotating_shaft_coefficient": ((340.0, "K"), (293.0, "K"), (0.05, "m"), (300.0, "1/s"), COEFFICIENT),
     "fin_conductance": ((60.0, COEFFICIENT), (0.157, "m"), (45.0, CONDUCTIVITY), (2e-3, "m^2"), (0.125, "m"), CONDUCTANCE),
@@ -96,6 +97,14 @@ def test_air_is_that_of_the_tables_within_two_percent():
 def test_natural_convection_agrees_with_a_published_example():
     """Incropera and DeWitt, example 9.4: a horizontal pipe of 0.1 m at 165 degC in air of 23 degC: Nu = 23.3, 7.29 W/(m^2 K)."""
     assert heat.natural_convection_coefficient(438.15, 296.15, 0.1) == pytest.approx(7.29, rel=0.02)
+
+
+def test_moving_air_is_that_of_the_standard_for_housings_within_a_third():
+    """DIN 31652-1: 7 + 12 v^(1/2) W/(m^2 K) from 1.2 m/s on, radiation included, for housings of some 100 mm."""
+    for speed in (1.2, 3.0, 6.0):
+        own = heat.moving_air_coefficient(330.0, 293.0, 0.15, speed) + heat.radiation_coefficient(330.0, 293.0, 0.9)
+        assert own == pytest.approx(7.0 + 12.0 * math.sqrt(speed), rel=0.33)
+    assert heat.moving_air_coefficient(330.0, 293.0, 0.15, 0.0) == pytest.approx(heat.natural_convection_coefficient(330.0, 293.0, 0.15), rel=1e-3)
 
 
 def test_a_rotating_shaft_agrees_with_a_second_published_measurement():

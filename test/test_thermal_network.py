@@ -24,7 +24,7 @@ COLD = [
 
 
 def scene(*overrides, level="slip"):
-    return load_scene("deng2017_table1", [f"level={level}", "heat.law=network", *overrides])
+    return load_scene("deng2017_table1", [f"level={level}", "heat.law=network", "heat.interval=0.1", *overrides])
 
 
 def network_of(*overrides):

@@ -72,6 +72,8 @@ ROUGH = "bearing.roughness={roller: 0.1 um, raceway: 0.2 um}"
 EYRING = "lubricant.traction={law: eyring}"
 BATH = "lubricant.supply=oil_bath"
 PAPER = "deng2017_table1"
+HOT = ("heat.law=given",)
+NETWORK = ("heat.law=network", "level=steady")
 
 # Law: the command and what drives the law out of its range; the command and what keeps it inside.
 CASES = {
@@ -131,6 +133,11 @@ CASES = {
     "life_laminae": (("run", "motor", "life.laminae=20"), ("run", "motor")),
     "roller_profile": (("run", "motor", "bearing.roller.crown=none"), ("run", "motor")),
     "oil_temperature": (("run", PAPER, "lubricant.temperature=220 degC"), ("run", PAPER)),
+    "local_temperature": (("run", PAPER, *HOT, "heat.inner_ring=250 degC"), ("run", PAPER, *HOT, "heat.inner_ring=150 degC")),
+    "shaft_in_air": (
+        ("run", PAPER, *NETWORK, "operating.shaft_speed=60000 rpm", "bearing.inner_raceway.bore_radius=27 mm"),
+        ("run", PAPER, *NETWORK),
+    ),
     "oil_viscosity": (
         ("loads", "motor", SOLVENT, "lubricant.temperature=210 degC"),
         ("loads", "motor", *VG_320),

@@ -34,6 +34,16 @@ _BLOCK = 10  # samples
 _SAMPLES = 10_000  # of a long run, by default
 _RATE = 1000.0  # [Hz] of a short run
 _LEAST_SAMPLES = 100  # of the shortest run that can be judged
+_CELSIUS = 273.15
+_TEMPERATURES = {
+    "shaft_temperature": "shaft",
+    "inner_ring_temperature": "inner ring",
+    "roller_temperature": "rollers",
+    "outer_ring_temperature": "outer ring",
+    "housing_temperature": "housing",
+    "oil_outlet_temperature": "oil that leaves",
+}
+_FLOWS = ("heat_to_oil", "heat_to_ambient")
 
 
 @click.command("run")
@@ -59,7 +69,7 @@ def run(scene_name, overrides, duration, at_most, level, rate, out, rrd, uncerta
 
     A run has settled when cage slip is known to 0.05 points and life to 2 %, and neither is going to change by more. One that has not
     settled in the longest time says what it was doing, and the exit code is 4. With --duration it ends after exactly that time, settled or
-    not, and says which.
+    not, and says which. With heat.law network it begins in thermal equilibrium; where there is none, the run fails and says why.
 
     Slip, cage speed and lives are means over the last fifth of the run; largest loads and pressures are those over the roller pitch of
     cage rotation that follows. --uncertainty uses the settled bearing at the fastest level that supports the scene; `bearing-sim
@@ -70,6 +80,7 @@ def run(scene_name, overrides, duration, at_most, level, rate, out, rrd, uncerta
     from bearing_sim.model.validity import outside
     from bearing_sim.scene.loader import SceneError, load_scene
     from bearing_sim.simulation import IntegrationError, Simulation, start_sample
+    from bearing_sim.sweep.thermal import begin_in_equilibrium
 
     if duration is not None and at_most is not None:
         raise UsageError("--at-most is for a run without --duration; give one of them")
@@ -89,6 +100,7 @@ def run(scene_name, overrides, duration, at_most, level, rate, out, rrd, uncerta
         simulation = Simulation(scene)
         simulation.advance(1e-6)  # compile or load machine code, so that it is not timed with the run
         simulation.reset()
+        begin_in_equilibrium(simulation, plan.shortest, plan.longest)
         for sink in sinks[: out is not None]:
             sink.write(start_sample(simulation))
         first = time.perf_counter()
@@ -186,6 +198,7 @@ def _report(simulation, outcome, wall, start_up) -> dict:
         "cage_slip_minimum": float(window["cage_slip"].min()),
         "cage_slip_maximum": float(window["cage_slip"].max()),
         **clearance_report(simulation.scene, window),
+        **_thermal_report(window),
         **life_report(simulation.scene, window),
         "damage": float(last["damage"]),
         "cage_speed_rpm": float(window["cage_speed"].mean()) * 30 / math.pi,
@@ -204,6 +217,22 @@ def _report(simulation, outcome, wall, start_up) -> dict:
     }
 
 
+def _thermal_report(window) -> dict:
+    """Return temperatures [degC] and flows of heat [W] at the end, where the scene has a law of heat."""
+    last = window[-1]
+    temperatures = {f"{name}_c": float(last[name]) - _CELSIUS for name in _TEMPERATURES if not math.isnan(last[name])}
+    return temperatures | {f"{name}_w": float(last[name]) for name in _FLOWS if not math.isnan(last[name])}
+
+
+def _thermal_rows(report) -> list[tuple[str, str]]:
+    rows, known = [], [f"{words} {report[f'{name}_c']:.1f}" for name, words in _TEMPERATURES.items() if f"{name}_c" in report]
+    if known:
+        rows.append(("temperatures", f"{', '.join(known)} degC"))
+    if "heat_to_oil_w" in report:
+        rows.append(("heat", f"{report['heat_to_oil_w']:.4g} W to the oil that flows through, {report['heat_to_ambient_w']:.4g} W to the air"))
+    return rows
+
+
 def _print(report, scene, bands) -> None:
     from bearing_sim.cli.uncertainty import band_rows
     from bearing_sim.studies.clearance import clearance_row
@@ -217,6 +246,7 @@ def _print(report, scene, bands) -> None:
             ("settled", _settled(report)),
             ("cage speed", f"{report['cage_speed_rpm']:.6g} rpm"),
             clearance_row(scene, report),
+            *_thermal_rows(report),
             *life_rows(scene, report),
             ("friction", loss_text(report)),
             *_pressures(report, scene),

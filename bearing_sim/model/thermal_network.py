@@ -51,7 +51,7 @@ _PARTITION = {
     "support_power": {NODE.housing: 1.0},
 }
 # Assumptions where the scene names no value.
-_HOUSING_HEIGHT, _HOUSING_WIDTH = 1.25, 0.9  # of the outside diameter: split plummer blocks of dimension series 5 have about 1.2 to 1.4, 0.8 to 1.3
+_HOUSING_HEIGHT, _HOUSING_WIDTH = 1.25, 0.6  # of the outside diameter; split plummer blocks: height 1.2 to 1.4, width less the bearing's 0.5 to 0.8
 _HOUSING_DENSITY = 3500.0  # kg/m^3; mass of such a block over the cube of the bearing's outside diameter, 3000 to 4000
 _SHAFT_LENGTH = 2.5  # of the bore diameter
 _JET = 5.6e-4  # m^2/s; flow over bore: 4 l/min at 118 mm, of the 1.9 to 10.2 l/min of F. T. Schuller, NASA TP-1413 (1979)
@@ -97,7 +97,7 @@ def thermal_network(scene: Scene, params: Params) -> Network:
     material, shaft, housing = bearing.material, heat.shaft, heat.housing
     shaft_seat, housing_seat = scene.mounting.shaft, scene.mounting.housing
     height = housing.height if housing.height is not None else _HOUSING_HEIGHT * 2.0 * size.outside_radius
-    width = housing.width if housing.width is not None else _HOUSING_WIDTH * 2.0 * size.outside_radius
+    width = housing.width if housing.width is not None else size.width + _HOUSING_WIDTH * 2.0 * size.outside_radius
     inner_radius, outer_radius = params.raceways.inner_radius, float(params.raceways.contour[:, 3].mean())
     bore = min(shaft_seat.bore_radius, 0.99 * size.bore_radius)
     front, back = (_SHAFT_LENGTH * 2.0 * size.bore_radius if length is None else length for length in (shaft.front, shaft.back))
@@ -136,6 +136,7 @@ def thermal_network(scene: Scene, params: Params) -> Network:
             2.0 * math.pi * size.outside_radius * (size.outside_radius + max(width - size.width, 0.0)),
             housing.area if housing.area is not None else plummer_block_area(height, width),
             housing.emissivity,
+            heat.air_speed,
             front,
             back,
             shaft.emissivity,

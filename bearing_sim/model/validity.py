@@ -29,6 +29,8 @@ _LOADED_FROM = 1.0  # [N] a contact that carries less takes no part
 _SAME_OIL = 0.5  # [K] samples whose oil differs by less share its properties; viscosity then errs by 2 % at most
 _OIL_TEMPERATURES = (220.0, 600.0)  # [K] bounds of `lubricant.temperature`, within which the fits of oils give numbers
 _VISCOSITY_CLASS_AT = 100.0 + ZERO_CELSIUS  # [K] temperature at which turbine oils are classed
+_LOCAL = ("inner_ring_temperature", "roller_temperature", "outer_ring_temperature", "oil_outlet_temperature")
+_AIR_VISCOSITY = 1.8e-5  # [m^2/s] of air at 50 degC
 _EXTRAPOLATED = 60.0  # [K] beyond the two viscosities of a custom oil
 _SEPARATOR = "; "  # of exceedances in a cell of a table
 _SMALL_FRACTION = 0.1  # of the losses that brake the cage: one that stays below it decides nothing
@@ -98,7 +100,9 @@ class Conditions:
 
     @functools.cached_property
     def _oils(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        temperatures = np.clip(self.samples["oil_temperature"], *_OIL_TEMPERATURES)
+        in_the_bearing = self.samples["oil_outlet_temperature"]  # of a thermal network
+        oil = np.where(np.isfinite(in_the_bearing) & (in_the_bearing > 0.0), in_the_bearing, self.samples["oil_temperature"])
+        temperatures = np.clip(oil, *_OIL_TEMPERATURES)
         if np.ptp(temperatures) > 0.0:
             temperatures = np.round(temperatures / _SAME_OIL) * _SAME_OIL
         kinds, which = np.unique(temperatures, return_inverse=True)
@@ -864,6 +868,33 @@ LAWS = (
         expected="the temperatures of a catalogue oil's table; -20 to 160 degC of a custom oil",
     ),
     Law(
+        "local_temperature",
+        "validity.oil",
+        "properties of the oil in the films and in the bearing, by heat.law",
+        "the highest temperature of rings, rollers and the oil that leaves",
+        "degC",
+        -math.inf,
+        _highest_oil,
+        "the table of the oil; of a custom oil 60 K beyond its viscosities at 40 and 100 degC (assumption)",
+        "give an oil with data at this temperature (lubricant.oil), or more heat a way out: heat.oil_flow, heat.housing, heat.shaft",
+        lambda scene: scene.heat.law != "none",
+        lambda at: np.fmax.reduce([at.samples[name] for name in _LOCAL]),
+        expected="at most the highest temperature of a catalogue oil's table; 160 degC of a custom oil",
+    ),
+    Law(
+        "shaft_in_air",
+        "validity.heat",
+        "convection of the rotating shaft",
+        "Reynolds number of the shaft in air, by its surface speed",
+        "",
+        -math.inf,
+        4e5,
+        "K. M. Becker (1963): measured to 4e5",
+        "give heat.conductances.shaft_ambient; beyond it the law is extrapolated",
+        lambda scene: scene.heat.law == "network" and scene.heat.conductances.shaft_ambient is None,
+        lambda at: at.while_turning(np.abs(at.samples["shaft_speed"]) * at.scene.bearing.bore_diameter**2 / (2.0 * _AIR_VISCOSITY)),
+    ),
+    Law(
         "oil_viscosity",
         "validity.oil",
         "viscosity over temperature of a custom oil",
@@ -939,6 +970,9 @@ UNWATCHED = (
     ("pocket friction and boundary friction of the lands", "coefficients, not laws with a range: 0.02 to 0.1 and 0.05 to 0.15 in use"),
     ("vortex and turbulent torque factors of the cage's faces", "assumptions of 20 to 30 % without a known range; cage_gap limits the geometry"),
     ("Carter's creep in series with the film", "exact for line contact far from gross sliding; beyond it the film takes the sliding"),
+    ("convection of rings, rollers and cage to the oil", "known to a factor of 3, see the theory of heat; heat.convection_factor is its knob"),
+    ("conductance of fits and contacts", "assumptions within a factor of 2 to 3; the network depends little on them, see the theory of heat"),
+    ("surface of the housing", "an assumption where the scene gives none: ISO 15312's heat flow at reference conditions is met within two"),
     ("growth of rings", "linear elastic and plane; inner_ring_stress watches the stress; ribs and the ends of seats are left out"),
     ("linear damage, Miner's sum", "no range; sums at failure scatter from 0.3 to 3"),
 )

@@ -34,20 +34,20 @@ class ThinnestFilm:
     def __init__(self, scene: Scene):
         self._params, self._lubricant = pack(scene), scene.lubricant
         self.roughness = scene.bearing.roughness.composite if scene.bearing.roughness is not None else math.nan
-        self._oil: OilState | None = None
+        self._oils: dict[str, OilState] = {}
 
     def least(self, samples: np.ndarray) -> np.ndarray:
-        """Return the least thickness in each sample [m], shape (n,), NaN where no roller is loaded; all of one oil temperature, the last one's.
+        """Return the least thickness in each sample [m], shape (n,), NaN where no roller is loaded; all of the temperatures of the last one.
 
         Parameters
         ----------
         samples : shape (n,), see `bearing_sim.model.sample`.
         """
-        raceways, oil = self._params.raceways, self._oil_at(float(samples["oil_temperature"][-1]))
+        raceways = self._params.raceways
         inner, outer = contact_speeds(samples, self._params)
         films = [
-            self._film(oil, raceways.inner_curvature_radius, samples["inner_load"], *inner),
-            self._film(oil, raceways.outer_curvature_radius, samples["outer_load"], *outer),
+            self._film(self._oil_at("inner", samples[-1]), raceways.inner_curvature_radius, samples["inner_load"], *inner),
+            self._film(self._oil_at("outer", samples[-1]), raceways.outer_curvature_radius, samples["outer_load"], *outer),
         ]
         thinnest = np.minimum(*(film.min(axis=1) for film in films))
         return np.where(np.isinf(thinnest), np.nan, thinnest)
@@ -58,7 +58,12 @@ class ThinnestFilm:
         modulus, length = self._params.raceways.reduced_modulus, self._params.rollers.length
         return np.where(force > _LOADED_FROM, films(DOWSON_HIGGINSON, oil, radius, modulus, length, pressed, rolling, sliding), np.inf)
 
-    def _oil_at(self, temperature: float) -> OilState:
-        if self._oil is None or abs(self._oil.temperature - temperature) > _SAME_OIL:
-            self._oil = oil_at(self._lubricant.oil, temperature)
-        return self._oil
+    def _oil_at(self, ring: str, sample: np.void) -> OilState:
+        """Return the oil in the contacts of a ring: at the mean temperature of ring and rollers where they have one, else at the oil's."""
+        temperature = 0.5 * float(sample[f"{ring}_ring_temperature"] + sample["roller_temperature"])
+        if not temperature > 0.0:
+            temperature = float(sample["oil_temperature"])
+        before = self._oils.get(ring)
+        if before is None or abs(before.temperature - temperature) > _SAME_OIL:
+            self._oils[ring] = before = oil_at(self._lubricant.oil, temperature)
+        return before

@@ -204,6 +204,27 @@ def natural_convection_coefficient(surface, ambient, diameter):
 
 
 @kernel
+def moving_air_coefficient(surface, ambient, diameter, air_speed):
+    """Return the heat transfer coefficient of a horizontal cylinder in air that moves across it [W/(m^2 K)].
+
+    Forced: Nu = 0.3 + 0.62 Re^(1/2) Pr^(1/3)/[1 + (0.4/Pr)^(2/3)]^(1/4) [1 + (Re/282,000)^(5/8)]^(4/5), Re = v d/nu (S. W. Churchill, M. Bernstein,
+    J. Heat Transfer 99 (1977) 300), Re Pr above 0.2.  *Assumption*: with natural convection as the cube root of the sum of both cubes, as S. W. Churchill
+    (AIChE J. 23 (1977) 10) combines them.
+
+    Parameters
+    ----------
+    surface, ambient : temperatures [K].
+    diameter : d [m].
+    air_speed : v [m/s]; 0 is still air.
+    """
+    air = air_at((surface + ambient) / 2.0)
+    reynolds = air_speed * diameter / air.viscosity
+    slope = 0.62 * air.prandtl ** (1.0 / 3.0) / (1.0 + (0.4 / air.prandtl) ** (2.0 / 3.0)) ** 0.25
+    forced = air.conductivity / diameter * (0.3 + slope * reynolds**0.5 * (1.0 + (reynolds / 282e3) ** 0.625) ** 0.8)
+    return (forced**3 + natural_convection_coefficient(surface, ambient, diameter) ** 3) ** (1.0 / 3.0)
+
+
+@kernel
 def radiation_coefficient(surface, ambient, emissivity):
     """Return the heat transfer coefficient of radiation to wide surroundings [W/(m^2 K)], eps sigma (T_s^2 + T_a^2)(T_s + T_a) (Stefan, Boltzmann).
 

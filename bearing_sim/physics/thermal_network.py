@@ -25,8 +25,8 @@ from bearing_sim.physics.heat import (
     hertz_half_width,
     in_series,
     mean_radius,
+    moving_air_coefficient,
     moving_contact_conductance,
-    natural_convection_coefficient,
     oil_coefficient,
     radiation_coefficient,
     rotating_shaft_coefficient,
@@ -116,6 +116,7 @@ class Surfaces(NamedTuple):
     housing_inside: float
     housing: float  # area to the air [m^2]
     housing_emissivity: float
+    air_speed: float  # of the air across it [m/s]
     front: float  # length of the shaft before the bearing [m]
     back: float
     shaft_emissivity: float
@@ -304,7 +305,7 @@ def write_conductances(temperatures, loads, inputs, network, conductances):
     arriving = oil_properties(inputs.inlet, oils)[1]
     conductances[LINK.oil_flow] = flow_conductance(arriving, middle[2], surfaces.oil_flow)
     air, wall, shaft = network.ambient, temperatures[NODE.housing], temperatures[NODE.shaft]
-    coefficient = natural_convection_coefficient(wall, air, 2.0 * bodies.housing_radius)
+    coefficient = moving_air_coefficient(wall, air, 2.0 * bodies.housing_radius, surfaces.air_speed)
     conductances[LINK.housing_ambient] = (coefficient + radiation_coefficient(wall, air, surfaces.housing_emissivity)) * surfaces.housing
     coefficient = rotating_shaft_coefficient(shaft, air, 2.0 * bodies.bore_radius, inputs.shaft_speed)
     coefficient += radiation_coefficient(shaft, air, surfaces.shaft_emissivity)

@@ -22,7 +22,7 @@ from bearing_sim.messages.events import Event, Level
 from bearing_sim.model.sample import RING_TEMPERATURES, new_block
 from bearing_sim.recording.reader import Received, Recording
 from bearing_sim.scene.fidelity import NUMBERS
-from bearing_sim.simulation import Inputs, IntegrationError, Simulation, inputs_of, start_sample
+from bearing_sim.simulation import Inputs, IntegrationError, Simulation, inputs_of, start_sample, thermal_nodes
 
 _SKIPPED = 0.25  # fraction of a spacing by which angle and stamps may disagree before time counts as skipped
 _LEVELS = {number: name for name, number in NUMBERS.items()}
@@ -184,6 +184,8 @@ class _Run:
         """Start at the run's own start if that is at most two intervals or so before the sample; return the time to the sample [s]."""
         self.finish()
         self._simulation = Simulation(self._scene, inputs)
+        if self._simulation.thermal is not None:  # a run may start from temperatures that its scene does not name
+            self._simulation.reset(inputs, thermal_nodes(sample))
         angle, speed = float(sample["shaft_angle"]), inputs.shaft_speed
         if angle == 0.0:
             self.result.starts.append("ideal rolling")

@@ -39,7 +39,7 @@ class Housing:
     """The housing as it gives off heat, by default a split plummer block; its material is that of `mounting.housing`."""
 
     height: quantity("m", "height; None: 1.25 times the outside diameter of the bearing", 1e-3, 10.0, "mm") | None = None
-    width: quantity("m", "width along the shaft; None: 0.9 times the outside diameter of the bearing", 1e-3, 10.0, "mm") | None = None
+    width: quantity("m", "width along the shaft; None: that of the bearing and 0.6 times its outside diameter", 1e-3, 10.0, "mm") | None = None
     area: quantity("m^2", "surface that gives off heat; None: pi H (B + H/2) of height and width", 0.0, 1e3) | None = None
     mass: quantity("kg", "mass; None: 3500 kg/m^3 times the cube of the bearing's outside diameter", 1e-3, 1e6) | None = None
     emissivity: quantity("", "emissivity of the surface, 0.9: painted or cast", 0.0, 1.0) = 0.9
@@ -102,11 +102,13 @@ class NetworkHeat:
 
     law: Literal["network"] = "network"
     ambient_temperature: quantity("K", "temperature of the air around housing and shaft", 200.0, 500.0, "degC") = 293.15
+    # Air that a running machine stirs; DIN 31652-1 counts 7 + 12 v^(1/2) W/(m^2 K) from 1.2 m/s on.  0 is still air.
+    air_speed: quantity("m/s", "speed of the air across the housing", 0.0, 100.0) = 1.2
     oil_flow: quantity("m^3/s", "oil that flows through the bearing; None: of a bath 0, of a jet 5.6e-4 m^2/s x bore", 0.0, 1.0) | None = None
     oil_volume: quantity("m^3", "oil in the bearing; None: by the oil's fraction of its space", 1e-9, 10.0) | None = None
     start: Literal["oil", "ambient", "equilibrium"] = "oil"  # temperatures at time 0: all the oil's, all the air's, or those of equilibrium
     limit: quantity("K", "highest temperature of a thermal equilibrium; beyond it the bearing runs away", 300.0, 590.0, "degC") = 573.15
-    interval: quantity("s", "longest time between two steps of the network", 1e-3, 100.0) = 0.1
+    interval: quantity("s", "least simulated time between two steps of the network", 1e-3, 100.0) = 1.0
     convection_factor: quantity("", "factor on the convection of rings, rollers and cage to the oil", 0.0, 100.0) = 1.0
     oil_to_housing: quantity("W/(m^2*K)", "heat transfer coefficient of the oil on the housing's inside", 0.0, 1e5) = 200.0
     housing: Housing = field(default_factory=Housing)

@@ -12,6 +12,7 @@ from bearing_sim.model.validity import cell, outside
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import IntegrationError, Simulation
 from bearing_sim.sweep.settling import Outcome, advance_until_settled, longest_run, shortest_run
+from bearing_sim.sweep.thermal import begin_in_equilibrium
 
 DURATION = 0.5  # s of the shortest run, as Deng 2017 simulates
 OK, UNSETTLED, FAILED, REFUSED = "ok", "unsettled", "failed", "refused"
@@ -58,7 +59,7 @@ TEXTS = (
 
 
 def settle(scene: Scene, duration: float = DURATION) -> Outcome:
-    """Run a scene under its constant conditions from ideal rolling until slip, temperature and life rest.
+    """Run a scene under its constant conditions from ideal rolling until slip, temperature and life rest; with a thermal network in equilibrium.
 
     See `bearing_sim.sweep.settling` for the criterion.
 
@@ -70,9 +71,10 @@ def settle(scene: Scene, duration: float = DURATION) -> Outcome:
     Raises
     ------
     IntegrationError
-        The run stopped early.
+        The run stopped early, or there is no thermal equilibrium.
     """
     run = Simulation(scene, table=empty_table() if scene.level == "steady" else None)
+    begin_in_equilibrium(run, shortest_run(scene, duration), longest_run(scene))
     return advance_until_settled(run, shortest_run(scene, duration), longest_run(scene))
 
 

@@ -364,6 +364,7 @@ EVENTS = {
     "validity.drag": ("WARN", "the drag of the oil-air mixture is used outside of its range"),
     "validity.film": ("WARN", "a film formula is used outside of its range"),
     "validity.land": ("WARN", "the film of the guide lands is used outside of its range"),
+    "validity.heat": ("WARN", "a conductance of the thermal network is extrapolated"),
     "validity.life": ("WARN", "life or static safety are outside of the standards' range, such as P above 0.5 C_r"),
     "validity.oil": ("WARN", "properties of the oil are extrapolated"),
     "validity.pocket": ("WARN", "the film of the pockets is used outside of its range"),

@@ -16,14 +16,13 @@ from bearing_sim.model.temperatures import local_model
 from bearing_sim.model.thermal_network import NODE_OBSERVABLES, POWERS, fit_gaps, seats, start_temperatures, thermal_network
 from bearing_sim.numerics.compilation import compiled_for
 from bearing_sim.physics.thermal_filter import filter_gain, network_matrix
-from bearing_sim.physics.thermal_network import BOOK, NODE, NODES, NetworkInputs, new_work, step, write_conductances
+from bearing_sim.physics.thermal_network import BOOK, NODE, NODES, NetworkInputs, new_work, settle, step, write_conductances
 from bearing_sim.scene.scene import Scene
 
 _TEMPERATURES = slice(getattr(COLUMN, NODE_OBSERVABLES[0]), getattr(COLUMN, NODE_OBSERVABLES[-1]) + 1)
 THERMAL = slice(COLUMN.shaft_temperature, COLUMN.heat_to_ambient + 1)
 """Columns of a flat sample that hold temperatures and flows of heat."""
-_FLOWS = slice(COLUMN.heat_to_oil, COLUMN.heat_to_ambient + 1)
-_POWERS = np.array([getattr(COLUMN, name) for name in POWERS])
+_POWERS = slice(getattr(COLUMN, POWERS[0]), getattr(COLUMN, POWERS[-1]) + 1)
 _RINGS = (NODE.inner_ring, NODE.outer_ring)
 _LOADED = 0.3  # fraction of the rollers that a typical load rests on
 
@@ -48,8 +47,10 @@ class ThermalState:
 
     def __init__(self, scene: Scene, params: Params, inlet: float):
         self.network = thermal_network(scene, params)
-        self.temperatures = start_temperatures(scene.heat, inlet)
-        self.flows, self.books, self.corrected, self.held = np.full(2, math.nan), np.zeros(len(BOOK)), 0.0, False
+        self._values = np.full(THERMAL.stop - THERMAL.start, math.nan)  # as a sample has them
+        self.temperatures, self.flows = self._values[:NODES], self._values[NODES:]
+        self.temperatures[:] = start_temperatures(scene.heat, inlet)
+        self.books, self.corrected, self.held, self._angles = np.zeros(len(BOOK)), 0.0, False, (0.0, 0.0)
         self._fits, self._gaps = (0.0, 0.0, 0.0, 0.0), fit_gaps(scene)  # see `bearing_sim.model.thermal_network.seats`
         self._scene, self._work = scene, new_work()
         self._interval = scene.heat.interval * (1.0 - 1e-9)
@@ -60,20 +61,19 @@ class ThermalState:
 
     def _forget(self) -> None:
         self._losses[:] = 0.0  # [J] by cause
-        self._elapsed = self._shaft = self._cage = 0.0
+        self._elapsed = 0.0
 
     def take_over(self, other: "ThermalState") -> None:
         """Continue from the temperatures, the books and the losses not yet taken of another state of the same bearing."""
         self.temperatures[:], self.books[:], self.flows[:] = other.temperatures, other.books, other.flows
         self.corrected, self.held, self._fits = other.corrected, other.held, other._fits
         self._losses[:], self._loads[:] = other._losses, other._loads
-        self._elapsed, self._shaft, self._cage = other._elapsed, other._shaft, other._cage
+        self._elapsed, self._angles = other._elapsed, other._angles
 
     def resume(self, row: np.ndarray) -> None:
         """Continue from the temperatures of a recorded sample, laid out flat; they stay as they are where it has none."""
         if np.isfinite(row[_TEMPERATURES]).all():
-            self.temperatures[:] = row[_TEMPERATURES]
-            self.flows[:] = row[_FLOWS]
+            self._values[:] = row[THERMAL]
         self._forget()
 
     def model(self, params: Params, inlet: float, shaft_speed: float) -> tuple[Params, Lubrication]:
@@ -91,37 +91,53 @@ class ThermalState:
 
     def write(self, rows: np.ndarray) -> None:
         """Write temperatures and flows of heat into samples, laid out flat."""
-        rows[..., _TEMPERATURES] = self.temperatures
-        rows[..., _FLOWS] = self.flows
+        rows[..., THERMAL] = self._values
 
-    def take(self, rows: np.ndarray, duration: float, inlet: float, measured: tuple[float, float]) -> bool:
+    def take(self, before: np.ndarray, rows: np.ndarray, duration: float, inlet: float, measured: tuple[float, float]) -> bool:
         """Take the losses of a call, and step where an interval is over; return whether temperatures have changed.
 
         Parameters
         ----------
+        before : sample before the call, laid out flat.
         rows : samples of the call, evenly spaced, laid out flat; the temperatures at its end are written into the last.
         duration : of the call [s].
         inlet : temperature of the oil that comes in [K].
         measured : temperatures of inner and outer ring [K]; NaN where they are not measured.
         """
-        last, share = rows[-1], duration / len(rows)
-        self._losses += share * rows[:, _POWERS].sum(axis=0)
+        if self._elapsed == 0.0:
+            self._angles = before[COLUMN.shaft_angle], before[COLUMN.cage_angle]
+        self._losses += duration / len(rows) * np.add.reduce(rows[:, _POWERS], axis=0)
         self._elapsed += duration
-        self._shaft += share * float(rows[:, COLUMN.shaft_speed].sum())
-        self._cage += share * float(rows[:, COLUMN.cage_speed].sum())
         if self._elapsed < self._interval:
             return False
+        last = rows[-1]
         count = self._loads.shape[1]
         for side, column in enumerate((COLUMN.inner_load, COLUMN.outer_load)):
             self._loads[side] = last[SCALARS + column * count : SCALARS + (column + 1) * count]
-        changed = self._advance(inlet, measured) if not self.held else False
+        speeds = (last[COLUMN.shaft_angle] - self._angles[0]) / self._elapsed, (last[COLUMN.cage_angle] - self._angles[1]) / self._elapsed
+        changed = self._advance(speeds, inlet, measured) if not self.held else False
         self._forget()
         self.write(last)
         return changed
 
-    def _advance(self, inlet: float, measured: tuple[float, float]) -> bool:
+    def rest(self, samples: np.ndarray, inlet: float) -> np.ndarray:
+        """Return the temperatures of the nodes at which the mean losses of samples leave [K], shape (NODES,).
+
+        Parameters
+        ----------
+        samples : of a settled run, see `bearing_sim.model.sample`.
+        inlet : temperature of the oil that comes in [K].
+        """
+        losses = np.array([samples[name].mean() for name in POWERS])
+        loads = np.ascontiguousarray([samples["inner_load"][-1], samples["outer_load"][-1]])
+        inputs = NetworkInputs(float(samples["shaft_speed"].mean()), float(samples["cage_speed"].mean()), inlet, *self._fits)
+        nodes = self.temperatures.copy()
+        settle(nodes, losses, loads, inputs, self.network, np.zeros(NODES), self._work)
+        return nodes
+
+    def _advance(self, speeds: tuple[float, float], inlet: float, measured: tuple[float, float]) -> bool:
         elapsed = self._elapsed
-        inputs = NetworkInputs(self._shaft / elapsed, self._cage / elapsed, inlet, *self._fits)
+        inputs = NetworkInputs(*map(float, speeds), inlet, *self._fits)
         arguments = (elapsed, self.temperatures, self._losses / elapsed, self._loads, inputs, self.network, self._work)
         (self._compiled or step)(*arguments)
         if self._compiled is None:
@@ -144,7 +160,7 @@ class ThermalState:
             self._gains[key] = filter_gain(self._matrix(), key[0], walks, places, noise.sensor)
         innovation = np.array([reading for reading, is_seen in zip(measured, seen) if is_seen]) - self.temperatures[places]
         correction = self._gains[key] @ innovation
-        self.temperatures += correction
+        self.temperatures[:] += correction
         self.corrected += float(self.network.capacities @ correction)
 
     def _matrix(self) -> np.ndarray:

@@ -1,0 +1,56 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""The thermal equilibrium that a run under constant conditions ends in, found before the run instead of by minutes of it."""
+
+import numpy as np
+
+from bearing_sim.levels.steady.equilibrium import thermal_equilibrium
+from bearing_sim.simulation import IntegrationError, Simulation
+from bearing_sim.sweep.settling import advance_until_settled
+
+_ROUNDS = 8
+_AGREED = 0.3  # K; temperatures by the losses of two rounds
+
+
+def begin_in_equilibrium(simulation: Simulation, shortest: float, longest: float) -> None:
+    """Bring a simulation with a thermal network to its start, with the temperatures in which it will stay; without a network do nothing.
+
+    The equilibrium is that of level steady.  At another level its own losses correct it: run until settled with temperatures held, let the
+    network rest with the losses of the run's end, and again, until temperatures agree to 0.3 K.
+
+    Parameters
+    ----------
+    simulation : under constant conditions.
+    shortest, longest : simulated time of the shortest and the longest run [s], see `bearing_sim.sweep.settling.advance_until_settled`.
+
+    Raises
+    ------
+    IntegrationError
+        There is no equilibrium: it says why; or the losses of the level scatter so much that none was found.
+    """
+    if simulation.thermal is None:
+        return
+    inputs = simulation.inputs
+    found = thermal_equilibrium(simulation.scene, inputs)
+    if not found.converged:
+        raise IntegrationError(found.reason)
+    nodes = found.temperatures
+    if simulation.scene.level != "steady":
+        nodes = _refined(simulation, nodes, shortest, longest)
+    simulation.reset(inputs, nodes)
+
+
+def _refined(simulation: Simulation, nodes: np.ndarray, shortest: float, longest: float) -> np.ndarray:
+    simulation.reset(simulation.inputs, nodes)
+    for _ in range(_ROUNDS):
+        simulation.set_temperatures(nodes)
+        outcome = advance_until_settled(simulation, shortest, longest)
+        before, nodes = nodes, simulation.thermal.rest(outcome.window, simulation.inputs.oil_temperature)
+        change = float(np.abs(nodes - before).max())
+        if change < _AGREED:
+            return nodes
+        if nodes.max() >= simulation.scene.heat.limit:
+            limit = simulation.scene.heat.limit - 273.15
+            raise IntegrationError(f"no thermal equilibrium below the limit of {limit:.4g} degC at level {simulation.scene.level}")
+    raise IntegrationError(
+        f"no thermal equilibrium at level {simulation.scene.level}: temperatures still change by {change:.3g} K from round to round"
+    )
