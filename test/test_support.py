@@ -17,6 +17,7 @@ from bearing_sim import Inputs, Simulation, load_scene
 from bearing_sim.levels.common.support import TAIL
 from bearing_sim.levels.planar import model as planar
 from bearing_sim.levels.spatial import model as spatial
+from bearing_sim.model.params import SUPPORT
 from bearing_sim.physics.squeeze_film import new_squeeze_film, squeeze_force
 from bearing_sim.scene.loader import SceneError
 from bearing_sim.scene.scene import tolerance_overrides
@@ -67,8 +68,8 @@ def rough_state(level, run, seed):
     inside = (planar_test if level == "planar" else spatial_test).rough_state(_Inside(run), seed, 0.3)
     random, support = np.random.default_rng(seed), run._params.support
     tail = np.array([*random.normal(size=2) * 2e-5, *random.normal(size=2) * 3e-5, *random.normal(size=4) * 0.05])
-    tail[[0, 1, 4, 5]] *= support.outer_moves
-    tail[[2, 3, 6, 7]] *= support.shaft_bends
+    tail[[0, 1, 4, 5]] *= support[SUPPORT.outer_moves]
+    tail[[2, 3, 6, 7]] *= support[SUPPORT.shaft_bends]
     return np.concatenate([inside, tail])
 
 

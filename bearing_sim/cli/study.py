@@ -28,23 +28,25 @@ from bearing_sim.cli.reporting import (
 
 @click.command("deng2017")
 @click.option("-o", "--out", type=click.Path(path_type=Path), default=Path("deng2017"), show_default=True, metavar="FOLDER", help="Output folder.")
+@set_option
 @click.option("--quick", is_flag=True, help="Few points and short runs, to check that everything works.")
 @executor_options
 @json_option
-def deng2017(out, quick, workers, dask, as_json):
+def deng2017(out, overrides, quick, workers, dask, as_json):
     """Reproduce the figures of Deng 2017 at levels slip and planar, with the parameters of the paper, and check its claims.
 
     Writes tables (Parquet, CSV), figures and claims to FOLDER; `bearing-sim report FOLDER` makes a page of them.  An interrupted study
-    resumes where it stopped.
+    resumes where it stopped.  With --set every scene of the study departs from the paper, for example by a support.
     """
+    from bearing_sim.scene.loader import SceneError
     from bearing_sim.sweep.tasks import ClusterError, JournalInUse
 
     announce_compilation()
     from bearing_sim.studies.deng2017.run import run_study
 
     points = Points("deng2017", 0)
-    with as_file_error(), exit_on_sigterm(), as_usage_error(ClusterError, JournalInUse), points:
-        findings = run_study(out, quick, workers, dask, points.update)
+    with as_file_error(), exit_on_sigterm(), as_usage_error(SceneError, ClusterError, JournalInUse), points:
+        findings = run_study(out, quick, workers, dask, points.update, overrides)
     if as_json:
         print_json({"folder": str(out), "computed": points.computed, "claims": [finding._asdict() for finding in findings]})
         return

@@ -82,33 +82,28 @@ class CageBody(NamedTuple):
     inner_width: float  # of its bore, likewise [m]
 
 
-class Mount(NamedTuple):
-    """A body on a spring and a damper in each direction."""
+class SupportNumber(NamedTuple):
+    """Where each number of what carries the bearing stands in ``Params.support``, see `bearing_sim.levels.common.support`.
 
-    mass: float  # [kg]
-    stiffness_y: float  # [N/m]
-    stiffness_z: float
-    damping_y: float  # [N s/m]
-    damping_z: float
+    What does not move has mass 1 and neither spring nor damper.
+    """
+
+    active: int = 0  # 1 where any of this is there
+    shaft_bends: int = 1  # 1 where the shaft's mass is a body of its own behind a spring, 0 where it moves with the inner ring
+    outer_moves: int = 2  # 1 where the outer ring is a body on springs, 0 where it is held
+    shaft_mass: int = 3  # [kg]
+    shaft_stiffness: int = 4  # y and z [N/m]
+    shaft_damping: int = 6  # y and z [N s/m]
+    outer_mass: int = 8
+    outer_stiffness: int = 9
+    outer_damping: int = 11
+    film_geometry: int = 13  # of `bearing_sim.physics.squeeze_film.SqueezeFilm`
+    film_clearance: int = 14
+    unbalance: int = 15  # m e [kg m]
+    unbalance_angle: int = 16  # of the eccentricity before the shaft's angle [rad]
 
 
-class Unbalance(NamedTuple):
-    """Unbalance of the shaft."""
-
-    amount: float  # m e [kg m]
-    angle: float  # of the eccentricity before the shaft's angle [rad]
-
-
-class Support(NamedTuple):
-    """What carries the bearing, see `bearing_sim.levels.common.support`; what does not move has mass 1 and neither spring nor damper."""
-
-    active: bool  # whether anything of this is there
-    shaft_bends: float  # 1 where the shaft's mass is a body of its own behind a spring, 0 where it moves with the inner ring
-    outer_moves: float  # 1 where the outer ring is a body on springs, 0 where it is held
-    shaft: Mount
-    outer_ring: Mount
-    film: SqueezeFilm  # around the outer ring
-    unbalance: Unbalance
+SUPPORT = SupportNumber()
 
 
 class Ring(NamedTuple):
@@ -189,7 +184,7 @@ class Params(NamedTuple):
     mounted: Mounted  # what the clearance of the running bearing follows from
     slices: Slices
     tilts: Tilts
-    support: Support
+    support: np.ndarray  # what carries the bearing, numbers `SUPPORT`
     variants: Variants
     envelope: Envelope
 
@@ -315,25 +310,19 @@ def _tilts(scene: Scene, roller_mass: float) -> Tilts:
     )
 
 
-def _support(scene: Scene) -> Support:
+def _support(scene: Scene) -> np.ndarray:
     given = scene.support
     settled = settled_support(given, scene.bearing)
     film = settled.outer_ring.squeeze_film if settled.outer_ring is not None else None
-    return Support(
-        active=given.is_active,
-        shaft_bends=float(given.shaft_bends),
-        outer_moves=float(given.outer_ring_moves),
-        shaft=_mount(settled.shaft if given.shaft_bends else None),
-        outer_ring=_mount(settled.outer_ring),
-        film=SqueezeFilm(0.0, 1.0) if film is None else new_squeeze_film(film.radius, film.length, film.clearance, film.cavitates),
-        unbalance=Unbalance(given.unbalance.amount, given.unbalance.angle),
-    )
+    packed = SqueezeFilm(0.0, 1.0) if film is None else new_squeeze_film(film.radius, film.length, film.clearance, film.cavitates)
+    shaft, outer_ring = _mount(settled.shaft if given.shaft_bends else None), _mount(settled.outer_ring)
+    moving = given.is_active, given.shaft_bends, given.outer_ring_moves
+    return np.array([*moving, *shaft, *outer_ring, *packed, given.unbalance.amount, given.unbalance.angle], float)
 
 
-def _mount(body) -> Mount:
-    if body is None:
-        return Mount(1.0, 0.0, 0.0, 0.0, 0.0)
-    return Mount(body.mass, body.stiffness, body.stiffness_z, body.damping, body.damping_z)
+def _mount(body) -> tuple[float, float, float, float, float]:
+    """Return mass, stiffness along y and z, damping along y and z."""
+    return (1.0, 0.0, 0.0, 0.0, 0.0) if body is None else (body.mass, body.stiffness, body.stiffness_z, body.damping, body.damping_z)
 
 
 def _life(scene: Scene) -> Life:

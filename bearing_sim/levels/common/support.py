@@ -25,47 +25,43 @@ U what a unit of alpha does to every state's rate.  It costs two more solutions 
 """
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
 from bearing_sim.levels.common.model import load_at, shaft_angle_at, shaft_speed_at
 from bearing_sim.levels.common.rollers import add
+from bearing_sim.model.params import SUPPORT
 from bearing_sim.model.sample import COLUMN
 from bearing_sim.numerics.compilation import kernel, template
 from bearing_sim.numerics.simd import LANES, load, spread, total
-from bearing_sim.physics.squeeze_film import squeeze_force
+from bearing_sim.physics.squeeze_film import SqueezeFilm, squeeze_force
 
 OUTER, SHAFT, SPEEDS = 0, 2, 4  # where the outer ring and the shaft begin in the tail of a state, y and z each, and where their speeds begin
 TAIL = 8
 
 
-class SupportWork(NamedTuple):
-    """Memory of the support; without one all arrays are empty."""
+# Rows of the memory, an array of shape (7, n), n the states of the level with the tail; two for y and z each.  It is one array, because every
+# array and every number in a level's memory is passed to every kernel anew.
+REACTION = 0  # V, derivatives of a_O by every state
+FOLLOWING = 2  # U, derivatives of every state's rate by a_O
+RESPONSE = 4  # W
+_NUMBERS = 6  # numbers that are not of a state, at the columns below
+_ROWS = 7
+_FRAME = 0  # a_O, y and z [m/s^2]
+_YIELDING = 2  # (I - V W)^-1, row by row
+_SHIFT = 6  # s of the last factorisation
+_CHAIN = 7  # by direction: k/m_i, c/m_i, k/m_s and c/m_s of the last Jacobian, then what a factorisation makes of them
+_BY_RING, _DAMPED_RING, _BY_SHAFT, _DAMPED_SHAFT, _ON_RING, _ON_SHAFT, _CHAIN_NUMBERS = range(7)
 
-    frame: np.ndarray  # a_O [m/s^2], shape (2,)
-    reaction: np.ndarray  # V, derivatives of a_O by every state, shape (2, n)
-    following: np.ndarray  # U, derivatives of every state's rate by a_O, shape (2, n)
-    response: np.ndarray  # W, shape (2, n)
-    yielding: np.ndarray  # (I - V W)^-1, shape (2, 2)
-    chain: np.ndarray  # by direction: k/m_i, c/m_i, k/m_s and c/m_s of the last Jacobian, then what `factor` makes of them, shape (2, 6)
-    shift: np.ndarray  # s of the last factorisation, shape (1,)
 
-
-_BY_RING, _DAMPED_RING, _BY_SHAFT, _DAMPED_SHAFT, _ON_RING, _ON_SHAFT = range(6)  # columns of ``chain``
-
-
-def new_support(support, size: int) -> SupportWork:
-    """Return the memory for a support (`bearing_sim.model.params.Support`) behind ``size`` states of the level."""
-    if not support.active:
-        return SupportWork(*(np.zeros((0,) * rank) for rank in (1, 2, 2, 2, 2, 2, 1)))
-    states = 2, size + TAIL
-    return SupportWork(np.zeros(2), np.zeros(states), np.zeros(states), np.zeros(states), np.zeros((2, 2)), np.zeros((2, 6)), np.zeros(1))
+def new_support(support, size: int) -> np.ndarray:
+    """Return the memory for a support (see `bearing_sim.model.params.SUPPORT`) behind ``size`` states of the level; empty without one."""
+    return np.zeros((_ROWS, size + TAIL) if support[SUPPORT.active] else (0, 0))
 
 
 def tail_of(support) -> int:
     """Return how many states a support adds to a level's."""
-    return TAIL if support.active else 0
+    return TAIL if support[SUPPORT.active] else 0
 
 
 def place_support(params, state, ring, given) -> None:
@@ -77,29 +73,25 @@ def place_support(params, state, ring, given) -> None:
     given : load y, z [N].
     """
     support = params.support
-    if not support.active:
+    if not support[SUPPORT.active]:
         return
     tail = state[-TAIL:]
-    for axis, (shaft, outer) in enumerate(_stiffnesses(support)):
-        tail[OUTER + axis] = given[axis] / outer if support.outer_moves else 0.0
-        tail[SHAFT + axis] = ring[axis] + given[axis] / shaft if support.shaft_bends else 0.0
-
-
-def _stiffnesses(support):
-    shaft, outer = support.shaft, support.outer_ring
-    return (shaft.stiffness_y, outer.stiffness_y), (shaft.stiffness_z, outer.stiffness_z)
+    for axis in range(2):
+        outer, shaft = support[SUPPORT.outer_stiffness + axis], support[SUPPORT.shaft_stiffness + axis]
+        tail[OUTER + axis] = given[axis] / outer if support[SUPPORT.outer_moves] else 0.0
+        tail[SHAFT + axis] = ring[axis] + given[axis] / shaft if support[SUPPORT.shaft_bends] else 0.0
 
 
 def resume_support(params, state, sample) -> None:
     """Enter where a sample has the outer ring and the shaft into the tail of a state, in place; they start at rest."""
     support = params.support
-    if not support.active:
+    if not support[SUPPORT.active]:
         return
     tail = state[-TAIL:]
     for axis, name in enumerate("yz"):
         outer = sample[f"outer_ring_{name}"]
-        tail[OUTER + axis] = outer if support.outer_moves else 0.0
-        tail[SHAFT + axis] = sample[f"shaft_{name}"] - outer if support.shaft_bends else 0.0
+        tail[OUTER + axis] = outer if support[SUPPORT.outer_moves] else 0.0
+        tail[SHAFT + axis] = sample[f"shaft_{name}"] - outer if support[SUPPORT.shaft_bends] else 0.0
 
 
 @kernel
@@ -108,11 +100,33 @@ def unbalance_at(t, model):
 
     m e (w^2 cos + w' sin, w^2 sin - w' cos), w the shaft's speed.
     """
-    drive, unbalance = model.drive, model.params.support.unbalance
-    angle, speed = shaft_angle_at(t, drive) + unbalance.angle, shaft_speed_at(t, drive)
+    drive, support = model.drive, model.params.support
+    angle, speed, amount = shaft_angle_at(t, drive) + support[SUPPORT.unbalance_angle], shaft_speed_at(t, drive), support[SUPPORT.unbalance]
     cosine, sine = math.cos(angle), math.sin(angle)
     square, changing = speed * speed, drive.shaft_acceleration
-    return unbalance.amount * (square * cosine + changing * sine), unbalance.amount * (square * sine - changing * cosine)
+    return amount * (square * cosine + changing * sine), amount * (square * sine - changing * cosine)
+
+
+@template
+def _chain(axis, work):
+    """Return the numbers of the chain in a direction."""
+    first = _CHAIN + axis * _CHAIN_NUMBERS
+    return work[_NUMBERS, first : first + _CHAIN_NUMBERS]
+
+
+@template
+def frame_of(work):
+    """Return a_O [m/s^2], y and z."""
+    return work[_NUMBERS, _FRAME], work[_NUMBERS, _FRAME + 1]
+
+
+@kernel
+def _film_force(y, model):
+    """Return `squeeze_force` of the film around the outer ring."""
+    tail, support = y.shape[0] - TAIL, model.params.support
+    film = SqueezeFilm(support[SUPPORT.film_geometry], support[SUPPORT.film_clearance])
+    outer, speeds = tail + OUTER, tail + SPEEDS + OUTER
+    return squeeze_force(y[outer], y[outer + 1], y[speeds], y[speeds + 1], model.lubrication.viscosity, film)
 
 
 @kernel
@@ -124,29 +138,26 @@ def support_accelerations(t, y, border, cage, momentum_y, momentum_z, model, rat
     border, cage : how many positions the border has, and which of them is the cage's y; the ring's y and z are the first.
     momentum_y, momentum_z : sum of m_b a_b of ring, cage and rollers by the level's equations, with the load on the ring [N].
     rate : the level's part is written; changed.
-    work : `SupportWork`.
+    work : memory of the support.
     """
     support = model.params.support
-    shaft, outer, film = support.shaft, support.outer_ring, support.film
+    bends, moves = support[SUPPORT.shaft_bends], support[SUPPORT.outer_moves]
     ring_mass, tail = model.params.ring.mass, y.shape[0] - TAIL
     given, momentum, unbalance = load_at(t, model.drive), (momentum_y, momentum_z), unbalance_at(t, model)
-    pressed = squeeze_force(
-        y[tail + OUTER], y[tail + OUTER + 1], y[tail + SPEEDS + OUTER], y[tail + SPEEDS + OUTER + 1], model.lubrication.viscosity, film
-    )
+    pressed = _film_force(y, model)
     for axis in range(2):
-        stiffness, damping = (shaft.stiffness_y, shaft.damping_y) if axis == 0 else (shaft.stiffness_z, shaft.damping_z)
-        carried, damped = (outer.stiffness_y, outer.damping_y) if axis == 0 else (outer.stiffness_z, outer.damping_z)
+        stiffness, damping = support[SUPPORT.shaft_stiffness + axis], support[SUPPORT.shaft_damping + axis]
+        carried, damped = support[SUPPORT.outer_stiffness + axis], support[SUPPORT.outer_damping + axis]
         outer_speed, shaft_speed = y[tail + SPEEDS + OUTER + axis], y[tail + SPEEDS + SHAFT + axis]
         held = carried * y[tail + OUTER + axis] + damped * outer_speed + pressed[axis]
-        frame = support.outer_moves * (given[axis] - momentum[axis] - held) / outer.mass
+        frame = moves * (given[axis] - momentum[axis] - held) / support[SUPPORT.outer_mass]
         bent = stiffness * (y[tail + SHAFT + axis] - y[axis]) + damping * (shaft_speed - y[border + axis])
-        apart = support.shaft_bends
-        rate[border + axis] += (apart * (bent - given[axis]) + (1.0 - apart) * unbalance[axis]) / ring_mass - frame
+        rate[border + axis] += (bends * (bent - given[axis]) + (1.0 - bends) * unbalance[axis]) / ring_mass - frame
         rate[border + cage + axis] -= frame
         rate[tail + OUTER + axis], rate[tail + SHAFT + axis] = outer_speed, shaft_speed
         rate[tail + SPEEDS + OUTER + axis] = frame
-        rate[tail + SPEEDS + SHAFT + axis] = apart * ((given[axis] + unbalance[axis] - bent) / shaft.mass - frame)
-        work.frame[axis] = frame
+        rate[tail + SPEEDS + SHAFT + axis] = bends * ((given[axis] + unbalance[axis] - bent) / support[SUPPORT.shaft_mass] - frame)
+        work[_NUMBERS, _FRAME + axis] = frame
 
 
 @kernel
@@ -155,18 +166,15 @@ def support_jacobian(y, border, cage, model, work):
 
     Parameters as of `support_accelerations`, which has been called.
     """
-    support, chain = model.params.support, work.chain
-    shaft, outer = support.shaft, support.outer_ring
-    ring_mass, tail, per_mass = model.params.ring.mass, y.shape[0] - TAIL, support.outer_moves / support.outer_ring.mass
-    pressed = squeeze_force(
-        y[tail + OUTER], y[tail + OUTER + 1], y[tail + SPEEDS + OUTER], y[tail + SPEEDS + OUTER + 1], model.lubrication.viscosity, support.film
-    )
+    support, ring_mass, tail = model.params.support, model.params.ring.mass, y.shape[0] - TAIL
+    shaft_mass, per_mass = support[SUPPORT.shaft_mass], support[SUPPORT.outer_moves] / support[SUPPORT.outer_mass]
+    pressed = _film_force(y, model)
     for axis in range(2):
-        stiffness, damping = (shaft.stiffness_y, shaft.damping_y) if axis == 0 else (shaft.stiffness_z, shaft.damping_z)
-        carried, damped = (outer.stiffness_y, outer.damping_y) if axis == 0 else (outer.stiffness_z, outer.damping_z)
-        chain[axis, _BY_RING], chain[axis, _DAMPED_RING] = stiffness / ring_mass, damping / ring_mass
-        chain[axis, _BY_SHAFT], chain[axis, _DAMPED_SHAFT] = stiffness / shaft.mass, damping / shaft.mass
-        reaction, following = work.reaction[axis], work.following[axis]
+        stiffness, damping = support[SUPPORT.shaft_stiffness + axis], support[SUPPORT.shaft_damping + axis]
+        carried, damped = support[SUPPORT.outer_stiffness + axis], support[SUPPORT.outer_damping + axis]
+        chain, reaction, following = _chain(axis, work), work[REACTION + axis], work[FOLLOWING + axis]
+        chain[_BY_RING], chain[_DAMPED_RING] = stiffness / ring_mass, damping / ring_mass
+        chain[_BY_SHAFT], chain[_DAMPED_SHAFT] = stiffness / shaft_mass, damping / shaft_mass
         for i in range(y.shape[0]):
             reaction[i], following[i] = 0.0, 0.0
         for other in range(2):
@@ -174,7 +182,7 @@ def support_jacobian(y, border, cage, model, work):
             reaction[tail + OUTER + other] = -per_mass * (pressed[2 + 4 * axis + other] + here * carried)
             reaction[tail + SPEEDS + OUTER + other] = -per_mass * (pressed[4 + 4 * axis + other] + here * damped)
         following[border + axis], following[border + cage + axis] = -1.0, -1.0
-        following[tail + SPEEDS + OUTER + axis], following[tail + SPEEDS + SHAFT + axis] = 1.0, -support.shaft_bends
+        following[tail + SPEEDS + OUTER + axis], following[tail + SPEEDS + SHAFT + axis] = 1.0, -support[SUPPORT.shaft_bends]
 
 
 @template
@@ -200,7 +208,7 @@ def momentum_rate(row, params, rows):
 
 @template
 def follow_frame(row, block, frame, rows):
-    """Add to the accelerations of a block of rollers that their frame accelerates; see `momentum_rate`, ``frame`` as in `SupportWork`."""
+    """Add to the accelerations of a block of rollers that their frame accelerates; see `momentum_rate`, ``frame`` as of `frame_of`."""
     cosine, sine = load(rows, block, row.cosine), load(rows, block, row.sine)
     outwards, along = frame[0] * cosine + frame[1] * sine, frame[1] * cosine - frame[0] * sine
     add(rows, block, row.radial_acceleration, -outwards)
@@ -231,10 +239,9 @@ def react_by_rollers(row, at, local, count, per_mass, rows, jacobian, work):
     per_mass : m_r over the outer ring's mass; 0 where that is held.
     rows : of the rollers; accelerations and Jacobian as they are without the frame's acceleration.
     jacobian : derivatives through each roller.
-    work : `SupportWork`.
+    work : memory of the support.
     """
     r, phi, r_speed, phi_speed, own, first = at
-    reaction, following = work.reaction, work.following
     for j in range(count):
         block, lane = j // LANES, j % LANES
         cosine, sine, radius = rows[block, row.cosine, lane], rows[block, row.sine, lane], rows[block, row.radius, lane]
@@ -254,10 +261,10 @@ def react_by_rollers(row, at, local, count, per_mass, rows, jacobian, work):
                 d_along += 2.0 * radial_speed
             elif k == phi:  # the direction of the force turns
                 d_outwards, d_along = d_outwards - along, d_along + outwards
-            reaction[0, first + k * count + j] -= per_mass * (cosine * d_outwards - sine * d_along)
-            reaction[1, first + k * count + j] -= per_mass * (sine * d_outwards + cosine * d_along)
-        following[0, first + r_speed * count + j], following[1, first + r_speed * count + j] = -cosine, -sine
-        following[0, first + phi_speed * count + j], following[1, first + phi_speed * count + j] = sine / radius, -cosine / radius
+            work[REACTION, first + k * count + j] -= per_mass * (cosine * d_outwards - sine * d_along)
+            work[REACTION + 1, first + k * count + j] -= per_mass * (sine * d_outwards + cosine * d_along)
+        work[FOLLOWING, first + r_speed * count + j], work[FOLLOWING + 1, first + r_speed * count + j] = -cosine, -sine
+        work[FOLLOWING, first + phi_speed * count + j], work[FOLLOWING + 1, first + phi_speed * count + j] = sine / radius, -cosine / radius
 
 
 @kernel
@@ -277,8 +284,8 @@ def react_by_border(state, column, local, cosine_row, sine_row, radius_row, coun
         d_outwards, d_along = jacobian[block, column, lane], rows[block, radius_row, lane] * jacobian[block, local + column, lane]
         along_y += cosine * d_outwards - sine * d_along
         along_z += sine * d_outwards + cosine * d_along
-    work.reaction[0, state] -= per_mass * along_y
-    work.reaction[1, state] -= per_mass * along_z
+    work[REACTION, state] -= per_mass * along_y
+    work[REACTION + 1, state] -= per_mass * along_z
 
 
 @kernel
@@ -287,9 +294,9 @@ def _stiffen_ring(shift, border, own, work):
 
     Within a step the shaft's speed is (b_s + g/m_s v_i)/D with D = 1 + g/m_s, g = s c + s^2 k, so that the ring feels g/D.
     """
-    work.shift[0] = shift
+    work[_NUMBERS, _SHIFT] = shift
     for axis in range(2):
-        chain = work.chain[axis]
+        chain = _chain(axis, work)
         on_shaft = shift * (chain[_DAMPED_SHAFT] + shift * chain[_BY_SHAFT])
         chain[_ON_RING] = shift * (chain[_DAMPED_RING] + shift * chain[_BY_RING]) / (1.0 + on_shaft)
         chain[_ON_SHAFT] = on_shaft
@@ -299,9 +306,9 @@ def _stiffen_ring(shift, border, own, work):
 @kernel
 def _bend_shaft(border, x, work):
     """Take the shaft out of a right side ``x`` before the level solves it with alpha held."""
-    s, tail = work.shift[0], x.shape[0] - TAIL
+    s, tail = work[_NUMBERS, _SHIFT], x.shape[0] - TAIL
     for axis in range(2):
-        chain = work.chain[axis]
+        chain = _chain(axis, work)
         bent = x[tail + SHAFT + axis] - x[axis]
         x[tail + SPEEDS + SHAFT + axis] -= s * chain[_BY_SHAFT] * bent
         x[border + axis] += s * chain[_BY_RING] * bent + chain[_ON_RING] * x[tail + SPEEDS + SHAFT + axis]
@@ -310,9 +317,9 @@ def _bend_shaft(border, x, work):
 @kernel
 def _follow_shaft(border, x, work):
     """Complete the tail of a solution ``x`` that the level has found with alpha held."""
-    s, tail = work.shift[0], x.shape[0] - TAIL
+    s, tail = work[_NUMBERS, _SHIFT], x.shape[0] - TAIL
     for axis in range(2):
-        on_shaft, at = work.chain[axis, _ON_SHAFT], tail + SPEEDS + SHAFT + axis
+        on_shaft, at = _chain(axis, work)[_ON_SHAFT], tail + SPEEDS + SHAFT + axis
         x[at] = (x[at] + on_shaft * x[border + axis]) / (1.0 + on_shaft)
     for k in range(SPEEDS):
         x[tail + k] += s * x[tail + SPEEDS + k]
@@ -321,7 +328,7 @@ def _follow_shaft(border, x, work):
 @kernel
 def _reaction_to(x, axis, work):
     """Return a component of V x."""
-    through, reaction = 0.0, work.reaction[axis]
+    through, reaction = 0.0, work[REACTION + axis]
     for i in range(x.shape[0]):
         through += reaction[i] * x[i]
     return through
@@ -330,12 +337,12 @@ def _reaction_to(x, axis, work):
 @kernel
 def _invert_yielding(work):
     """Invert I - V W; return False where it is singular."""
-    a, b = 1.0 - _reaction_to(work.response[0], 0, work), -_reaction_to(work.response[1], 0, work)
-    c, d = -_reaction_to(work.response[0], 1, work), 1.0 - _reaction_to(work.response[1], 1, work)
+    a, b = 1.0 - _reaction_to(work[RESPONSE], 0, work), -_reaction_to(work[RESPONSE + 1], 0, work)
+    c, d = -_reaction_to(work[RESPONSE], 1, work), 1.0 - _reaction_to(work[RESPONSE + 1], 1, work)
     determinant = a * d - b * c
     inverse = 1.0 / determinant
-    yielding = work.yielding
-    yielding[0, 0], yielding[0, 1], yielding[1, 0], yielding[1, 1] = d * inverse, -b * inverse, -c * inverse, a * inverse
+    yielding = work[_NUMBERS, _YIELDING : _YIELDING + 4]
+    yielding[0], yielding[1], yielding[2], yielding[3] = d * inverse, -b * inverse, -c * inverse, a * inverse
     return abs(determinant) > 0.0
 
 
@@ -343,9 +350,9 @@ def _invert_yielding(work):
 def _yield_frame(x, work):
     """Complete a solution ``x`` with alpha held by what alpha does."""
     through_y, through_z = _reaction_to(x, 0, work), _reaction_to(x, 1, work)
-    frame_y = work.yielding[0, 0] * through_y + work.yielding[0, 1] * through_z
-    frame_z = work.yielding[1, 0] * through_y + work.yielding[1, 1] * through_z
-    by_y, by_z = work.response[0], work.response[1]
+    yielding, by_y, by_z = work[_NUMBERS, _YIELDING : _YIELDING + 4], work[RESPONSE], work[RESPONSE + 1]
+    frame_y = yielding[0] * through_y + yielding[1] * through_z
+    frame_z = yielding[2] * through_y + yielding[3] * through_z
     for i in range(x.shape[0]):
         x[i] += frame_y * by_y[i] + frame_z * by_z[i]
 
@@ -361,7 +368,7 @@ def _solve_held(solve, border, work, x):
 
 @template
 def factor_supported(factor, solve, border, shift, work):
-    """Factor I - s J of a level with or without a support; return False where it is singular.
+    """Factor I - s J of a level with its support; return False where it is singular.
 
     Parameters
     ----------
@@ -371,16 +378,14 @@ def factor_supported(factor, solve, border, shift, work):
     work : of the level.
     """
     support, own = work.support, work.border_own
-    if support.frame.shape[0] == 0:
-        return factor(work.jacobian, own, shift, work.factored)
     along_y, along_z = own[0, border], own[1, border + 1]
     _stiffen_ring(shift, border, own, support)
     regular = factor(work.jacobian, own, shift, work.factored)
     own[0, border], own[1, border + 1] = along_y, along_z
     for axis in range(2):
-        response = support.response[axis]
+        response = support[RESPONSE + axis]
         for i in range(response.shape[0]):
-            response[i] = shift * support.following[axis, i]
+            response[i] = shift * support[FOLLOWING + axis, i]
         _solve_held(solve, border, work, response)
     return _invert_yielding(support) and regular
 
@@ -388,9 +393,6 @@ def factor_supported(factor, solve, border, shift, work):
 @template
 def solve_supported(solve, border, work, x):
     """Replace the right side ``x`` by the solution with the last `factor_supported`; parameters as there."""
-    if work.support.frame.shape[0] == 0:
-        solve(work.jacobian, work.factored, x)
-        return
     _solve_held(solve, border, work, x)
     _yield_frame(x, work.support)
 
@@ -403,20 +405,17 @@ def support_powers(t, y, border, model):
     ----------
     border : how many positions the level's border has; the ring's y and z are the first.
     """
-    support = model.params.support
-    shaft, outer, tail = support.shaft, support.outer_ring, y.shape[0] - TAIL
-    unbalance = unbalance_at(t, model)
-    pressed = squeeze_force(
-        y[tail + OUTER], y[tail + OUTER + 1], y[tail + SPEEDS + OUTER], y[tail + SPEEDS + OUTER + 1], model.lubrication.viscosity, support.film
-    )
+    support, tail = model.params.support, y.shape[0] - TAIL
+    unbalance, apart = unbalance_at(t, model), support[SUPPORT.shaft_bends]
+    pressed = _film_force(y, model)
     driven, lost = 0.0, 0.0
     for axis in range(2):
-        outer_speed, apart = y[tail + SPEEDS + OUTER + axis], support.shaft_bends
+        outer_speed = y[tail + SPEEDS + OUTER + axis]
         shaft_speed = apart * y[tail + SPEEDS + SHAFT + axis] + (1.0 - apart) * y[border + axis]
         bending = shaft_speed - y[border + axis]
         driven += unbalance[axis] * (outer_speed + shaft_speed)
-        lost += (shaft.damping_y if axis == 0 else shaft.damping_z) * bending * bending
-        lost += ((outer.damping_y if axis == 0 else outer.damping_z) * outer_speed + pressed[axis]) * outer_speed
+        lost += support[SUPPORT.shaft_damping + axis] * bending * bending
+        lost += (support[SUPPORT.outer_damping + axis] * outer_speed + pressed[axis]) * outer_speed
     return driven, lost
 
 
@@ -440,10 +439,10 @@ def extrapolate_support(known, shift, slope, tail, guess):
 def observe_support(y, ring_y, ring_z, support, row):
     """Write where outer ring and shaft are; ``ring_y`` and ``ring_z`` are the inner ring's."""
     row[COLUMN.shaft_y], row[COLUMN.shaft_z] = ring_y, ring_z
-    if support.active:
+    if support[SUPPORT.active]:
         tail = y.shape[0] - TAIL
         outer_y, outer_z = y[tail + OUTER], y[tail + OUTER + 1]
         row[COLUMN.outer_ring_y], row[COLUMN.outer_ring_z] = outer_y, outer_z
-        bent = support.shaft_bends
+        bent = support[SUPPORT.shaft_bends]
         row[COLUMN.shaft_y] = outer_y + ring_y + bent * (y[tail + SHAFT] - ring_y)
         row[COLUMN.shaft_z] = outer_z + ring_z + bent * (y[tail + SHAFT + 1] - ring_z)

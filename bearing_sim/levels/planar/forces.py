@@ -28,7 +28,7 @@ import math
 
 from bearing_sim.levels.common.model import inner_growth, load_at, shaft_speed_at
 from bearing_sim.levels.common.rollers import add, linear_churning, place_in_pockets, place_outwards, place_rollers
-from bearing_sim.levels.common.support import follow_frame, momentum_rate, support_accelerations, support_jacobian
+from bearing_sim.levels.common.support import follow_frame, frame_of, momentum_rate, support_accelerations, support_jacobian
 from bearing_sim.levels.planar.jacobian import (
     guide_jacobian,
     land_contact_jacobian,
@@ -249,7 +249,7 @@ def equations(t, y, model, work, rate, with_jacobian):
             resistance_jacobian(y, inner_radius, params, rows, contacts, work.jacobian)
         if pockets_guide:
             guide_jacobian(y, params, rows, work.jacobian)
-    if params.support.active:
+    if work.support.shape[0] > 0:
         _carry(t, y, model, work, rate, with_jacobian)
     collect_rates(y, params.rollers.count, rows, rate)
     return True
@@ -267,7 +267,7 @@ def _carry(t, y, model, work, rate, with_jacobian):
         support_jacobian(y, BORDER, CAGE_Y, model, support)
         react_on_support(params, rows, work.border_own, work.jacobian, support)
     for block in range(rows.shape[0]):
-        follow_frame(ROLLER, block, support.frame, rows)
+        follow_frame(ROLLER, block, frame_of(support), rows)
 
 
 @kernel

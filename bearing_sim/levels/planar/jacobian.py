@@ -33,7 +33,7 @@ the border's Schur complement.  Cost O(Z).
 """
 
 from bearing_sim.levels.common.rollers import add
-from bearing_sim.levels.common.support import react_by_border, react_by_rollers, turn_frame
+from bearing_sim.levels.common.support import REACTION, frame_of, react_by_border, react_by_rollers, turn_frame
 from bearing_sim.levels.planar.state import (
     AT_POSITIONS,
     AT_SPEEDS,
@@ -58,6 +58,7 @@ from bearing_sim.levels.planar.state import (
     THETA,
     R,
 )
+from bearing_sim.model.params import SUPPORT
 from bearing_sim.numerics.compilation import kernel, template
 from bearing_sim.numerics.linear_algebra import back_substitute, decompose
 from bearing_sim.numerics.simd import LANES, collect_runs, fill_lanes, load, magnitude, spread, spread_runs, store, total, where_positive
@@ -518,16 +519,16 @@ def react_on_support(params, rows, own, jacobian, support):
     rows : of the rollers; accelerations and derivatives as they are without the frame's acceleration.
     own : derivatives of the border's accelerations by border positions and speeds.
     jacobian : derivatives through each roller; changed by how the frame's acceleration turns with them.
-    support : `bearing_sim.levels.common.support.SupportWork`; changed.
+    support : memory of the support; changed.
     """
-    count, per_mass = params.rollers.count, params.support.outer_moves / params.support.outer_ring.mass
+    count, per_mass = params.rollers.count, params.support[SUPPORT.outer_moves] / params.support[SUPPORT.outer_mass]
     at = R, PHI, R_SPEED, PHI_SPEED, BLOCK, ROLLERS
     react_by_rollers(ROLLER, at, LOCAL, count, per_mass * params.rollers.mass, rows, jacobian, support)
     for m in range(2 * BORDER):
         column = AT_POSITIONS + m
         react_by_border(m, column, LOCAL, ROLLER.cosine, ROLLER.sine, ROLLER.radius, count, per_mass * params.rollers.mass, rows, jacobian, support)
     for k in range(CAGE_Z + 1):
-        mass, reaction = per_mass * (params.ring.mass if k < RING else params.cage.mass), support.reaction[k % 2]
+        mass, reaction = per_mass * (params.ring.mass if k < RING else params.cage.mass), support[REACTION + k % 2]
         for m in range(2 * BORDER):
             reaction[m] -= mass * own[k, m]
         for j in range(count):
@@ -537,7 +538,7 @@ def react_on_support(params, rows, own, jacobian, support):
             for m in range(2 * BORDER):
                 reaction[m] -= mass * jacobian[block, first + AT_POSITIONS + m, lane]
     for block in range(rows.shape[0]):
-        turn_frame(at, LOCAL, ROLLER, block, support.frame, rows, jacobian)
+        turn_frame(at, LOCAL, ROLLER, block, frame_of(support), rows, jacobian)
 
 
 @template

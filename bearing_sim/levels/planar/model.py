@@ -17,7 +17,7 @@ from bearing_sim.levels.planar import jacobian
 from bearing_sim.levels.planar import state as planar_state
 from bearing_sim.levels.planar.forces import equations
 from bearing_sim.levels.planar.power import planar_powers
-from bearing_sim.levels.planar.state import BORDER, CAGE_Y, CAGE_Z, OMEGA, RING_Y, RING_Z, ROLLER, ROLLERS, THETA
+from bearing_sim.levels.planar.state import BLOCK, BORDER, CAGE_Y, CAGE_Z, OMEGA, RING_Y, RING_Z, ROLLER, ROLLERS, THETA
 from bearing_sim.model.params import Params
 from bearing_sim.model.sample import COLUMN
 from bearing_sim.numerics.compilation import kernel
@@ -48,13 +48,18 @@ def rhs_and_jacobian(t, y, model, work, rate):
 @kernel
 def factor(shift, work):
     """Factor I - shift J; return False where it is singular."""
-    return factor_supported(jacobian.factor, jacobian.solve, BORDER, shift, work)
+    if work.support.shape[0] > 0:
+        return factor_supported(jacobian.factor, jacobian.solve, BORDER, shift, work)
+    return jacobian.factor(work.jacobian, work.border_own, shift, work.factored)
 
 
 @kernel
 def solve(work, x):
     """Replace the right side ``x`` by the solution with the last factorisation."""
-    solve_supported(jacobian.solve, BORDER, work, x)
+    if work.support.shape[0] > 0:
+        solve_supported(jacobian.solve, BORDER, work, x)
+    else:
+        jacobian.solve(work.jacobian, work.factored, x)
 
 
 @kernel
@@ -71,7 +76,7 @@ def error_norm(t, y, change, model):
     largest = max(max(abs(change[RING_Y]), abs(change[RING_Z])) * position, max(abs(change[CAGE_Y]), abs(change[CAGE_Z])) * play)
     largest = max(largest, abs(change[OMEGA]) * speed)
     count = rollers.count
-    if model.params.support.active:
+    if change.shape[0] > ROLLERS + BLOCK * count:
         largest = max(largest, support_change(change) * position)
     for j in range(ROLLERS, ROLLERS + count):
         ratio = max(abs(change[j]) * position, abs(change[j + count] - change[THETA]) * offset)

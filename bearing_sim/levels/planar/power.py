@@ -138,7 +138,7 @@ def planar_powers(t, y, shaft_speed, model, work):
         pocket += guided
     blocks, seals = work.rollers.shape[0], seal_power(shaft_speed, params)
     driven_unbalance, support = 0.0, 0.0
-    if params.support.active:
+    if work.support.shape[0] > 0:
         driven_unbalance, support = support_powers(t, y, BORDER, model)
     inner_radius = params.raceways.inner_radius + inner_growth(shaft_speed, model)
     return Powers(

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.levels.common.support import SupportWork, new_support
+from bearing_sim.levels.common.support import new_support
 from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.simd import LANES, collect_runs, fill_lanes, new_blocks, new_rows, spread_runs
 from bearing_sim.physics.contact import CONTACT
@@ -106,7 +106,7 @@ class Work(NamedTuple):
     jacobian: np.ndarray  # derivatives through each roller, see `bearing_sim.levels.planar.state.JACOBIAN_ROWS`
     border_own: np.ndarray  # derivatives of the border's accelerations by border positions and speeds, shape (5, 10)
     factored: Factored  # of I - gamma h J
-    support: SupportWork
+    support: np.ndarray  # memory of the support, see `bearing_sim.levels.common.support.new_support`
     # of roller loads, running means over a cage turn, see `bearing_sim.physics.lamina_life.add_load_moments`, shape (2, MOMENTS)
     load_moments: np.ndarray
 

@@ -25,7 +25,7 @@ import numpy as np
 
 from bearing_sim.levels.common.model import inner_growth, shaft_speed_at
 from bearing_sim.levels.common.rollers import add, linear_churning, place_in_pockets, place_outwards, place_rollers
-from bearing_sim.levels.common.support import follow_frame, momentum_rate, support_accelerations, support_jacobian
+from bearing_sim.levels.common.support import follow_frame, frame_of, momentum_rate, support_accelerations, support_jacobian
 from bearing_sim.levels.planar import state as planar
 from bearing_sim.levels.planar.forces import border_accelerations as planar_accelerations
 from bearing_sim.levels.planar.state import BORDER as PLANAR
@@ -369,7 +369,7 @@ def equations(t, y, model, work, rate, with_jacobian):
             guide_accelerations(block, params, rows, rate)
     if with_jacobian:
         roller_jacobian(y, inner_radius, churning, resistance, params, rows, contacts, work.chain, work.jacobian)
-    if params.support.active:
+    if work.support.shape[0] > 0:
         _carry(t, y, model, work, rate, with_jacobian)
     collect_rates(y, params.rollers.count, rows, rate)
     return True
@@ -388,7 +388,7 @@ def _carry(t, y, model, work, rate, with_jacobian):
         react_on_support(params, rows, work.border_own, work.jacobian, support)
     for block in range(rows.shape[0]):
         turned = load(rows, block, ROLLER.orbital_acceleration)
-        follow_frame(ROLLER, block, support.frame, rows)
+        follow_frame(ROLLER, block, frame_of(support), rows)
         turned = load(rows, block, ROLLER.orbital_acceleration) - turned
         # a roller's axis is described in the frame that turns with the orbit
         add(rows, block, ROLLER.tilt_acceleration, turned * load(rows, block, ROLLER.skew))

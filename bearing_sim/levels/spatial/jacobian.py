@@ -23,7 +23,7 @@ rates.  Their changes by the 18 variables of roller and cage are written once, i
 """
 
 from bearing_sim.levels.common.rollers import add
-from bearing_sim.levels.common.support import react_by_border, react_by_rollers, turn_frame
+from bearing_sim.levels.common.support import FOLLOWING, REACTION, frame_of, react_by_border, react_by_rollers, turn_frame
 from bearing_sim.levels.planar import state as planar
 from bearing_sim.levels.planar.state import BORDER as PLANAR
 from bearing_sim.levels.spatial.state import (
@@ -66,6 +66,7 @@ from bearing_sim.levels.spatial.state import (
     TILT_SPEED,
     R,
 )
+from bearing_sim.model.params import SUPPORT
 from bearing_sim.numerics.compilation import kernel, template
 from bearing_sim.numerics.linear_algebra import back_substitute, decompose
 from bearing_sim.numerics.simd import LANES, collect_runs, fill_lanes, load, magnitude, spread, spread_runs, store, total, where_positive
@@ -756,7 +757,7 @@ def _border_state(m):
 @kernel
 def react_on_support(params, rows, own, jacobian, support):
     """Write what all bodies do to the outer ring that a support carries, as `bearing_sim.levels.planar.jacobian.react_on_support`."""
-    count, per_mass = params.rollers.count, params.support.outer_moves / params.support.outer_ring.mass
+    count, per_mass = params.rollers.count, params.support[SUPPORT.outer_moves] / params.support[SUPPORT.outer_mass]
     at = R, PHI, R_SPEED, PHI_SPEED, BLOCK, ROLLERS
     react_by_rollers(ROLLER, at, LOCAL, count, per_mass * params.rollers.mass, rows, jacobian, support)
     for m in range(2 * BORDER):
@@ -765,7 +766,7 @@ def react_on_support(params, rows, own, jacobian, support):
     for body in range(2):
         mass, columns = per_mass * (params.ring.mass if body == 0 else params.cage.mass), 2 * (RING if body == 0 else CAGE)
         for axis in range(2):
-            reaction, row = support.reaction[axis], (RING_Y if body == 0 else CAGE_Y) + axis
+            reaction, row = support[REACTION + axis], (RING_Y if body == 0 else CAGE_Y) + axis
             first = RING_ROWS + axis * RING_COLUMNS if body == 0 else CAGE_ROWS + axis * CAGE_COLUMNS
             for m in range(2 * BORDER):
                 reaction[m] -= mass * own[row, m]
@@ -780,11 +781,11 @@ def react_on_support(params, rows, own, jacobian, support):
         block, lane = j // LANES, j % LANES
         tilt, skew = rows[block, ROLLER.tilt, lane], rows[block, ROLLER.skew, lane]
         for axis in range(2):
-            turned = support.following[axis, ROLLERS + PHI_SPEED * count + j]
-            support.following[axis, ROLLERS + TILT_SPEED * count + j] = turned * skew
-            support.following[axis, ROLLERS + SKEW_SPEED * count + j] = -(turned * tilt)
+            turned = support[FOLLOWING + axis, ROLLERS + PHI_SPEED * count + j]
+            support[FOLLOWING + axis, ROLLERS + TILT_SPEED * count + j] = turned * skew
+            support[FOLLOWING + axis, ROLLERS + SKEW_SPEED * count + j] = -(turned * tilt)
     for block in range(rows.shape[0]):
-        _turn_frame(block, support.frame, rows, jacobian)
+        _turn_frame(block, frame_of(support), rows, jacobian)
 
 
 @kernel

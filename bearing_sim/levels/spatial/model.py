@@ -133,13 +133,18 @@ def rhs_and_jacobian(t, y, model, work, rate):
 @kernel
 def factor(shift, work):
     """Factor I - shift J; return False where it is singular."""
-    return factor_supported(jacobian.factor, jacobian.solve, BORDER, shift, work)
+    if work.support.shape[0] > 0:
+        return factor_supported(jacobian.factor, jacobian.solve, BORDER, shift, work)
+    return jacobian.factor(work.jacobian, work.border_own, shift, work.factored)
 
 
 @kernel
 def solve(work, x):
     """Replace the right side ``x`` by the solution with the last factorisation."""
-    solve_supported(jacobian.solve, BORDER, work, x)
+    if work.support.shape[0] > 0:
+        solve_supported(jacobian.solve, BORDER, work, x)
+    else:
+        jacobian.solve(work.jacobian, work.factored, x)
 
 
 @kernel
@@ -157,7 +162,7 @@ def error_norm(t, y, change, model):
     largest = max(largest, abs(change[OMEGA]) * speed, max(abs(change[RING_TILT_Y]), abs(change[RING_TILT_Z])) * tilt)
     largest = max(largest, max(abs(change[CAGE_TILT_Y]), abs(change[CAGE_TILT_Z])) * play * model.params.tilts.land_position)
     count = rollers.count
-    if model.params.support.active:
+    if change.shape[0] > ROLLERS + BLOCK * count:
         largest = max(largest, support_change(change) * position)
     for j in range(ROLLERS, ROLLERS + count):
         ratio = max(abs(change[j]) * position, abs(change[j + PHI * count] - change[THETA]) * offset)

@@ -137,7 +137,7 @@ def spatial_powers(t, y, shaft_speed, model, work):
         churning += total(drag * load(rows, block, ROLLER.radius) * load(rows, block, ROLLER.orbital_speed))
     seals = seal_power(shaft_speed, params)
     driven_unbalance, support = 0.0, 0.0
-    if params.support.active:
+    if work.support.shape[0] > 0:
         driven_unbalance, support = support_powers(t, y, BORDER, model)
     inner_radius = params.raceways.inner_radius + inner_growth(shaft_speed, model)
     return Powers(

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.levels.common.support import SupportWork, new_support
+from bearing_sim.levels.common.support import new_support
 from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.simd import LANES, collect_runs, fill_lanes, new_blocks, new_rows, spread_runs
 from bearing_sim.physics.contact import CONTACT
@@ -180,7 +180,7 @@ class Work(NamedTuple):
     lands: np.ndarray  # scratch of the guide lands, shape (4, 18)
     land_own: np.ndarray  # scratch of the guide lands, shape (2, 5, 10)
     factored: Factored  # of I - gamma h J
-    support: SupportWork
+    support: np.ndarray  # memory of the support, see `bearing_sim.levels.common.support.new_support`
     load_moments: np.ndarray  # as at level ``planar``, shape (2, MOMENTS)
     lamina_means: np.ndarray  # running means of `bearing_sim.physics.lamina_life.add_lamina_powers` over a cage turn, shape (2, laminae)
 

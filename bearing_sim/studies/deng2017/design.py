@@ -23,7 +23,9 @@ _LIMITS = Limits(SLIP_BELOW, LIFE_ABOVE, Conditions(speed_tolerance=0.02, load_t
 _QUICK = ((LOW, (34.860e-3, 34.862e-3, 34.864e-3, 34.866e-3)), (D_VALUE, (0.09e-3, 0.1e-3, 0.11e-3)))
 
 
-def answer(journal: Journal, quick: bool, workers: int | None = None, dask: str | None = None) -> Designed:
+def answer(
+    journal: Journal, quick: bool, workers: int | None = None, dask: str | None = None, overrides: Sequence[str] = ()
+) -> Designed:
     """Return the map of raceways at level steady.
 
     Parameters
@@ -31,8 +33,9 @@ def answer(journal: Journal, quick: bool, workers: int | None = None, dask: str 
     journal : of finished raceways, which are not computed again.
     quick : use a coarse grid, for testing.
     workers, dask : see `bearing_sim.sweep.tasks.run_tasks`.
+    overrides : of the scene.
     """
-    overrides = ["level=steady"]
+    overrides = [*overrides, "level=steady"]
     axes: Sequence[Axis] = [axis(*each) for each in _QUICK] if quick else default_axes(load_scene(SCENE, overrides))
     return design(SCENE, overrides, _LIMITS, *axes, journal, DURATION, workers, dask)
 

@@ -3,9 +3,10 @@
 
 import json
 import platform
+import shlex
 import time
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from importlib import metadata
 from pathlib import Path
 
@@ -40,6 +41,7 @@ def run_study(
     workers: int | None = None,
     dask: str | None = None,
     progress: Callable[[int, int], None] = lambda done, total: None,
+    overrides: Sequence[str] = (),
 ) -> list[Finding]:
     """Compute the study into a folder, reusing finished points, and return the claims.
 
@@ -48,9 +50,12 @@ def run_study(
     folder : created if absent; its journal holds every finished point.
     quick : few points and short runs, for testing.
     workers, dask, progress : see `bearing_sim.sweep.tasks.run_tasks`.
+    overrides : of every scene of the study, such as ``support.elastic=true``.
 
     Raises
     ------
+    SceneError
+        A scene with the overrides is invalid.
     ClusterError
         See `bearing_sim.sweep.tasks.run_tasks`.
     JournalInUse
@@ -59,7 +64,7 @@ def run_study(
     began = time.monotonic()
     for part in (folder / "tables", folder / "figures"):
         part.mkdir(parents=True, exist_ok=True)
-    planned, counts = plan_study(quick), [0, 0]
+    planned, counts = plan_study(quick, overrides), [0, 0]
 
     def counted(done, total):
         counts[:] = done, total
@@ -67,7 +72,7 @@ def run_study(
 
     with Journal(folder / "study.journal") as journal:
         results = iter(run_tasks(planned.tasks, journal, workers, dask, counted))
-        designed = answer(journal, quick, workers, dask)
+        designed = answer(journal, quick, workers, dask, overrides)
     tables = {key: plan.table([next(results) for _ in plan.tasks]) for key, plan in planned.sweeps.items()}
     profiles = {key: next(results) for key in planned.profiles}
     trajectories = {low: next(results) for low in planned.trajectories}
@@ -78,7 +83,7 @@ def run_study(
     about = {
         "title": "Deng et al. 2017, Cage slip characteristics of a cylindrical roller bearing with a trilobe-raceway: the results with bearing_sim",
         "doi": "10.1016/j.cja.2017.07.001",
-        "command": f"bearing-sim study deng2017 -o {folder.name}{' --quick' if quick else ''}",
+        "command": shlex.join(["bearing-sim", "study", "deng2017", "-o", folder.name, *(["--quick"] if quick else []), *_as_options(overrides)]),
         "quick": quick,
         "points": len(planned.tasks),
         "computed": counts[0],
@@ -91,12 +96,12 @@ def run_study(
                 "figures": each.figures,
                 "title": each.title,
                 "scene": each.scene,
-                "set": [*each.overrides],
+                "set": [*overrides, *each.overrides],
                 "vary": list(each.quick_axes if quick else each.axes),
             }
             for each in STUDIES
         ],
-        "scenes": {name: scene_to_yaml(load_scene(name)) for name in dict.fromkeys(each.scene for each in STUDIES)},
+        "scenes": {name: scene_to_yaml(load_scene(name, overrides)) for name in dict.fromkeys(each.scene for each in STUDIES)},
         "versions": {"bearing_sim": package_version(), "commit": git_hash(), "python": platform.python_version()}
         | {name: metadata.version(name) for name in _PACKAGES},
         "statuses": Counter(status for table in tables.values() for status in table.values("status")),
@@ -105,6 +110,10 @@ def run_study(
     }
     (folder / STUDY_FILE).write_text(json.dumps(about, indent=2))
     return findings
+
+
+def _as_options(overrides: Sequence[str]) -> list[str]:
+    return [part for text in overrides for part in ("--set", text)]
 
 
 def _write_tables(folder, tables, profiles, trajectories, rings, findings) -> None:

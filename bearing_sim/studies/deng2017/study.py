@@ -4,6 +4,7 @@
 Nothing is tuned for any figure.  Each sweep runs at level ``slip`` and at level ``planar``.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -128,29 +129,30 @@ class Planned(NamedTuple):
         return [each for plan in self.sweeps.values() for each in plan.tasks] + [*self.profiles.values(), *self.trajectories.values()]
 
 
-def plan_study(quick: bool = False) -> Planned:
+def plan_study(quick: bool = False, overrides: Sequence[str] = ()) -> Planned:
     """Return the plan of the study.
 
     Parameters
     ----------
     quick : few points and short runs, for testing.
+    overrides : of every scene besides what a sweep sets, such as a support.
     """
     duration = QUICK_DURATION if quick else DURATION
     sweeps = {
         (each.name, level): plan_sweep(
-            each.scene, [*each.overrides, f"level={level}"], [read_axis(text) for text in (each.quick_axes if quick else each.axes)], duration
+            each.scene, [*overrides, *each.overrides, f"level={level}"], [read_axis(text) for text in (each.quick_axes if quick else each.axes)], duration
         )
         for level in LEVELS
         for each in STUDIES
     }
     profiles = {
-        (name, value, level): task(level, load_profile, load_scene(_TABLE1, [f"{field}={value}", f"level={level}"]), duration)
+        (name, value, level): task(level, load_profile, load_scene(_TABLE1, [*overrides, f"{field}={value}", f"level={level}"]), duration)
         for level in LEVELS
         for name, field, values in PROFILES
         for value in (values if not quick else (values[0], values[-1]))
     }
     radii = LOW_RADII if not quick else (LOW_RADII[0], LOW_RADII[-1])
-    trajectories = {low: task("planar", trajectory, load_scene(_TABLE1, [f"{LOW}={low}mm", "level=planar"]), duration) for low in radii}
+    trajectories = {low: task("planar", trajectory, load_scene(_TABLE1, [*overrides, f"{LOW}={low}mm", "level=planar"]), duration) for low in radii}
     return Planned(sweeps, profiles, trajectories, duration)
 
 
