@@ -25,6 +25,7 @@ _STUDIES = {
     "deng2017": Entry("study:deng2017", "Reproduce the results of Deng 2017, claim by claim."),
     "damage": Entry("study:damage", "Compare the damage of a measured run between levels."),
     "misalignment": Entry("study:misalignment", "Edge pressure, tilt, skew and life against misalignment of the inner ring."),
+    "support": Entry("study:support", "Response over speed with a support of shaft and outer ring, and without."),
     "situations": Entry("study:situations", "Pictures of six situations, from start to fault, in rerun."),
     "slices": Entry("study:slices", "Convergence of level spatial with the number of slices, and their cost."),
     "friction": Entry("study:friction", "Frictional moment and thermal reference speed against makers' models."),

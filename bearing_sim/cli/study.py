@@ -172,6 +172,63 @@ def _print_misalignment(name, rows) -> None:
     click.echo("pressures, tilt and skew: time average of the largest value at each instant; no slip: life by slices in quasi-static equilibrium")
 
 
+@click.command("support")
+@click.argument("scene_name", metavar="[SCENE]", default="deng2017_table1")
+@set_option
+@click.option("--from", "lowest", default=10000.0, show_default=True, type=click.FloatRange(1.0), metavar="RPM", help="Lowest shaft speed.")
+@click.option("--to", "highest", default=52000.0, show_default=True, type=click.FloatRange(1.0), metavar="RPM", help="Highest shaft speed.")
+@click.option("--points", default=29, show_default=True, type=click.IntRange(2, 1000), help="Number of speeds.")
+@click.option("--level", default="planar", show_default=True, type=click.Choice(["planar", "spatial"]), help="Level with vibration.")
+@click.option("--csv", "table", type=click.Path(path_type=Path), metavar="PATH.csv", help="Write the results to a table.")
+@picture_option("Draw the results")
+@json_option
+def support(scene_name, overrides, lowest, highest, points, level, table, picture, as_json):
+    """Run SCENE over speeds with its support, with a rigid one, and at level slip.
+
+    A scene whose support does not yield gets `support.elastic: true`.
+    """
+    import numpy as np
+
+    from bearing_sim.scene.loader import SceneError
+    from bearing_sim.simulation import IntegrationError
+
+    announce_compilation()
+    from bearing_sim.studies.support import relative_damage, respond
+
+    done = iter(range(3 * points + 1))
+    speeds = [float(each) for each in np.linspace(lowest, highest, points) * (math.pi / 30)]
+    with progress_bar("points", 3 * points) as show, as_usage_error(SceneError), as_failed_run(IntegrationError):
+        found = respond(scene_name, overrides, speeds, level, progress=lambda name: show(next(done)))
+    relative = relative_damage(found)
+    rows = [_response_row(one, relative) for one in found]
+    with as_file_error():
+        if table is not None:
+            write_csv(table, rows)
+        if picture is not None:
+            from bearing_sim.studies.support import draw
+
+            draw(picture, f"{scene_name} {' '.join(overrides)}: response over speed, level {level}", found)
+    if as_json:
+        print_json({"scene": scene_name, "level": level, "points": rows})
+    else:
+        columns = ("model", "rpm", "slip, %", "largest load, N", "ring moves, um", "outer ring, um", "damage/slip's", "support, W")
+        texts = [(row["model"], *(format(number, ".4g") for number in list(row.values())[1:])) for row in rows]
+        print_rows(f"{scene_name}: response over speed, level {level}", columns, texts, words=("model",))
+
+
+def _response_row(one, relative) -> dict:
+    return {
+        "model": one.model,
+        "shaft_speed_rpm": one.shaft_speed * 30 / math.pi,
+        "slip_percent": 100 * one.slip,
+        "largest_inner_load_n": one.largest_load,
+        "ring_motion_um": 1e6 * one.ring_swing,
+        "outer_ring_motion_um": 1e6 * one.outer_swing,
+        "damage_over_slip": relative[one.model, one.shaft_speed],
+        "support_power_w": one.support_power,
+    }
+
+
 @click.command("situations")
 @click.option("--out", type=click.Path(path_type=Path), required=True, metavar="FOLDER", help="Folder for NAME.rrd and NAME.png.")
 @click.option("--only", "names", multiple=True, metavar="NAME", help="Run only this situation; can be repeated.")

@@ -204,6 +204,11 @@ class Conditions:
         return self.while_turning(np.where(decides, number, np.nan))
 
 
+def _has_squeeze_film(scene: Scene) -> bool:
+    outer = scene.support.outer_ring
+    return scene.cage_whirls and outer is not None and outer.squeeze_film is not None
+
+
 Limit = float | Callable[[Scene], float]
 
 
@@ -946,6 +951,48 @@ LAWS = (
         "take a tighter fit (mounting.shaft), or lower the speed",
         lambda scene: scene.bearing.dimensions_at == "cold" and mounted(scene.bearing, scene.mounting).shaft.pressure > 0.0,
         lambda at: 1e-6 * seat_pressure(at.params.mounted, at.samples["shaft_speed"]),
+    ),
+    Law(
+        "squeeze_film_eccentricity",
+        "validity.support",
+        "squeeze film of a short bearing",
+        "the eccentricity of the outer ring in its squeeze film over the clearance",
+        "",
+        -math.inf,
+        0.4,
+        "ROSS, SqueezeFilmDamper: usual up to 0.4; above it cavitation, stiffness and inertia of the film, which the law leaves out, decide",
+        "give support.outer_ring a stiffer spring, the squeeze film more clearance, or reduce the unbalance",
+        _has_squeeze_film,
+        lambda at: np.hypot(at.samples["outer_ring_y"], at.samples["outer_ring_z"]) / at.scene.support.outer_ring.squeeze_film.clearance,
+    ),
+    Law(
+        "squeeze_film_length",
+        "validity.support",
+        "squeeze film of a short bearing",
+        "length over diameter of the squeeze film",
+        "",
+        -math.inf,
+        0.5,
+        "assumption: side flow governs a short bearing, G. B. DuBois and F. W. Ocvirk, NACA Report 1157 (1953)",
+        "give support.outer_ring.damping as a number; the damping of a longer film is smaller than computed",
+        _has_squeeze_film,
+        lambda scene: scene.support.outer_ring.squeeze_film.length / (2.0 * scene.support.outer_ring.squeeze_film.radius),
+        of_scene=True,
+    ),
+    Law(
+        "squeeze_film_reynolds",
+        "validity.support",
+        "squeeze film of a short bearing",
+        "the Reynolds number rho omega c^2/eta of the squeeze film at shaft speed",
+        "",
+        -math.inf,
+        10.0,
+        "measured forces are up to twice those of lubrication theory at 10, ASME paper GT1984-79504 (1984); the law itself needs much less than 1",
+        "reduce the clearance, or give support.outer_ring.damping as a number",
+        _has_squeeze_film,
+        lambda at: at.while_turning(
+            at.density * np.abs(at.samples["shaft_speed"]) * at.scene.support.outer_ring.squeeze_film.clearance**2 / at.viscosity
+        ),
     ),
     Law(
         "limiting_speed",

@@ -369,6 +369,7 @@ EVENTS = {
     "validity.oil": ("WARN", "properties of the oil are extrapolated"),
     "validity.pocket": ("WARN", "the film of the pockets is used outside of its range"),
     "validity.speed": ("WARN", "the bearing turns faster than anything that the laws were compared with"),
+    "validity.support": ("WARN", "the squeeze film around the outer ring is used outside of its range"),
     "validity.traction": ("WARN", "the traction law is used outside of its range, such as for another class of oil"),
 }
 """Severity and meaning of each kind of event; `events` compares the kinds with the code."""

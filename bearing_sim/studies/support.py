@@ -1,0 +1,113 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Response over speed: how a bearing vibrates on its support, beside the same bearing in a rigid housing and in quasi-static balance."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from bearing_sim.scene.loader import load_scene
+from bearing_sim.simulation import Simulation
+from bearing_sim.sweep.table import COLOURS, MARKERS, new_figure
+
+STILL, HELD, CARRIED = "slip", "rigid support", "support"
+_SETTLING, _SHOWN, _PER_TURN = 60.0, 20.0, 60  # cage turns before and in the means, and samples in each
+
+
+class Response(NamedTuple):
+    """Results of one model at one speed, over some cage turns after settling."""
+
+    model: str  # `STILL`, `HELD` or `CARRIED`
+    shaft_speed: float  # [rad/s]
+    slip: float  # mean
+    largest_load: float  # between a roller and the inner raceway [N]
+    ring_swing: float  # the largest extent of the inner ring's motion against the outer ring along y or z [m]
+    outer_swing: float  # of the outer ring's in space [m]
+    damage_rate: float  # mean of 1/(modified rating life) [1/h]
+    support_power: float  # mean [W]
+
+
+def respond(
+    name: str,
+    overrides: Sequence[str],
+    shaft_speeds: Sequence[float],
+    level: str = "planar",
+    progress: Callable[[str], None] = print,
+) -> list[Response]:
+    """Run a scene over speeds at level ``slip``, and at a level with vibration in a rigid housing and on its support.
+
+    Parameters
+    ----------
+    name, overrides : of the scene, as `bearing_sim.scene.loader.load_scene` takes them; a support that yields is `support.elastic` if it has none.
+    shaft_speeds : [rad/s], not 0.
+    level : ``planar`` or ``spatial``.
+    progress : called with the name of each point.
+
+    Raises
+    ------
+    SceneError
+        The scene is invalid.
+    IntegrationError
+        A run stopped early.
+    """
+    given = load_scene(name, [*overrides, f"level={level}"]).support
+    carried = () if given.shaft_bends or given.outer_ring_moves else ("support.elastic=true",)
+    shaft, unbalance = f"shaft: {{mass: {given.shaft.mass!r} kg}}", f"unbalance: {{amount: {given.unbalance.amount!r}, angle: {given.unbalance.angle!r}}}"
+    models = {
+        STILL: (f"support={{{shaft}}}", "level=slip"),
+        HELD: (f"support={{{shaft}, {unbalance}}}", f"level={level}"),
+        CARRIED: (*carried, f"level={level}"),
+    }
+    found = []
+    for speed in shaft_speeds:
+        for model, own in models.items():
+            progress(f"{speed * 30 / np.pi:.0f} rpm, {model}")
+            found.append(_run(load_scene(name, [*overrides, *own, f"operating.shaft_speed={speed!r} rad/s"]), model))
+    return found
+
+
+def _run(scene, model):
+    turn = 4.0 * np.pi / (abs(scene.operating.shaft_speed) * (1.0 - scene.bearing.diameter_ratio))
+    run = Simulation(scene)
+    run.advance(_SETTLING * turn)
+    block = run.advance(_SHOWN * turn, samples=round(_SHOWN * _PER_TURN))
+    return Response(
+        model,
+        scene.operating.shaft_speed,
+        float(block["cage_slip"].mean()),
+        float(block["inner_load"].max()),
+        float(max(np.ptp(block["ring_y"]), np.ptp(block["ring_z"]))),
+        float(max(np.ptp(block["outer_ring_y"]), np.ptp(block["outer_ring_z"]))),
+        float((1.0 / block["modified_rating_life"]).mean()),
+        float(block["support_power"].mean()),
+    )
+
+
+def relative_damage(found: Sequence[Response]) -> dict[tuple[str, float], float]:
+    """Return the damage rate of each model and speed over that of level ``slip`` at the speed."""
+    still = {one.shaft_speed: one.damage_rate for one in found if one.model == STILL}
+    return {(one.model, one.shaft_speed): one.damage_rate / still[one.shaft_speed] for one in found}
+
+
+def draw(path: Path, title: str, found: Sequence[Response]) -> None:
+    """Draw the results into a file; the suffix of ``path`` gives the format."""
+    figure, relative = new_figure(13, 8), relative_damage(found)
+    axes = figure.subplots(2, 2).ravel()
+    panels = (
+        ("largest inner load [N]", lambda one: one.largest_load),
+        ("damage rate over that of level slip", lambda one: relative[one.model, one.shaft_speed]),
+        ("motion of the inner ring against the outer [um]", lambda one: 1e6 * one.ring_swing),
+        ("cage slip [%]", lambda one: 100 * one.slip),
+    )
+    for each, (label, value) in zip(axes, panels):
+        for model, colour, marker in zip((STILL, HELD, CARRIED), COLOURS, MARKERS):
+            mine = [one for one in found if one.model == model]
+            speeds = [one.shaft_speed * 30 / np.pi for one in mine]
+            each.plot(speeds, [value(one) for one in mine], marker=marker, ms=4, color=colour, label=model)
+        each.set(xlabel="shaft speed [rpm]", ylabel=label, ylim=(0, None))
+        each.grid(alpha=0.3)
+    handles, labels = axes[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), frameon=False)
+    figure.suptitle(title)
+    figure.savefig(path, dpi=130)
