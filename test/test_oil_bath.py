@@ -82,3 +82,15 @@ def test_moment_of_contact_seals_is_skfs():
     assert scene("bearing.seals={law: skf, count: 1, diameter: 60 mm}").bearing.seal_moment == pytest.approx(0.5e-3 * (0.032 * 3600 + 50))
     with pytest.raises(SceneError, match="bearing.seals.moment: missing"):
         scene("bearing.seals=constant_moment")
+
+
+@pytest.mark.parametrize(
+    ("override", "words"),
+    [
+        ("bearing.outer_raceway.outside_radius=34 mm", "outside_radius: 34 mm is not above the raceway's radius, 34.9605 mm"),
+        ("bearing.inner_raceway.bore_radius=28 mm", "bore_radius: 28 mm is not below the raceway's radius, 27.875 mm"),
+    ],
+)
+def test_a_ring_that_does_not_enclose_its_raceway_is_refused(override, words):
+    with pytest.raises(SceneError, match=words):
+        scene(override)

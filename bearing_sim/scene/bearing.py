@@ -378,7 +378,24 @@ class Bearing:
                 f"outer_raceway.low_radius: {1e3 * self.outer_raceway.low_radius:.6g} mm leaves {1e6 * clearance:.6g} um between inner "
                 f"raceway, roller and low point; expected {-2e4 * self.roller.diameter:.6g} to {5e5 * self.roller.diameter:.6g} um"
             )
-        return errors + cage_errors(self) + play_errors(self)
+        return errors + ring_errors(self) + cage_errors(self) + play_errors(self)
+
+
+def ring_errors(bearing) -> list[str]:
+    """Return error messages for rings whose raceway is not between their bore and their outside."""
+    inner, outer, errors = bearing.inner_raceway, bearing.outer_raceway, []
+    if inner.bore_radius is not None and inner.bore_radius >= inner.radius:
+        errors.append(
+            f"inner_raceway.bore_radius: {1e3 * inner.bore_radius:.6g} mm is not below the raceway's radius, {1e3 * inner.radius:.6g} mm; give that of "
+            "this bearing, or null"
+        )
+    high = outer.low_radius + outer.d_value
+    if outer.outside_radius is not None and outer.outside_radius <= high:
+        errors.append(
+            f"outer_raceway.outside_radius: {1e3 * outer.outside_radius:.6g} mm is not above the raceway's radius, {1e3 * high:.6g} mm; give that of "
+            "this bearing, or null"
+        )
+    return errors
 
 
 def cage_errors(bearing) -> list[str]:

@@ -18,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.levels.level import LEVELS
+from bearing_sim.model.sample import RING_TEMPERATURES
 from bearing_sim.numerics.cores import cores
 from bearing_sim.numerics.time_stepping import STEP_BUDGET
 from bearing_sim.scene.fidelity import level_of
@@ -46,7 +47,12 @@ _TIGHT, _TIGHT_STEP = Integration().with_tolerances(0.1), 1e-5
 _LEAST_SLIP, _RISE_OF_LIFE = -0.05, 1.01
 _RUNNING = 10.0  # rad/s of the shaft, below which slip and losses are not judged
 _NOT_COMPUTED = {"steady": ("roller_spin", "roller_rotation", "pocket_force")}  # NaN at these levels
-_NOT_IN_EVERY_SCENE = ("contamination_factor",)  # NaN without a cleanliness class
+_NOT_IN_EVERY_SCENE = (
+    "contamination_factor",  # NaN without a cleanliness class
+    *(f"{name}_measured" for name in RING_TEMPERATURES),
+    *("shaft_temperature", "inner_ring_temperature", "roller_temperature", "outer_ring_temperature", "housing_temperature"),
+    *("oil_outlet_temperature", "heat_to_oil", "heat_to_ambient"),  # NaN without a law of heat
+)
 _MAY_BE_INFINITE = (*LIVES, "static_safety")  # without load or at rest
 # Losses that cannot be negative at any instant by their laws.  Pocket friction follows spin alone (Deng 2017, eq. 13), and the published
 # torque of the guide land's film omits the power of its eccentric force; both may be negative.
@@ -271,7 +277,7 @@ def _impossible(block: np.ndarray, state: np.ndarray) -> str:
         values = block[name]
         if name in (*_NOT_COMPUTED.get(level_of(block[0]), ()), *_NOT_IN_EVERY_SCENE):
             continue
-        if name == "cage_slip":
+        if name in ("cage_slip", "friction_moment"):  # NaN at rest
             values = values[turning]
         good = ~np.isnan(values) & (values > 0.0) if name in _MAY_BE_INFINITE else np.isfinite(values)
         if not good.all():

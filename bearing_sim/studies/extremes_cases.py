@@ -146,6 +146,7 @@ def overrides_of(level: str, point: Mapping) -> list[str]:
         f"support.shaft.mass={point['supported_mass']!r}",
         f"bearing.outer_raceway.low_radius={inner + _DIAMETER + point['clearance']!r}",
         f"bearing.outer_raceway.d_value={point['d_value']!r}",
+        f"bearing.outer_raceway.outside_radius={inner + _DIAMETER + point['clearance'] + point['d_value'] + 1.74e-3!r}",
         f"bearing.outer_raceway.contour_slope={point['contour_slope']}",
         f"bearing.cage.inner_radius={_CAGE_BORE + outward!r}",
         f"bearing.cage.guide_radius={_GUIDE_RADIUS + outward!r}",
