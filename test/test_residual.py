@@ -174,7 +174,7 @@ def temperatures(seconds, inner, outer, start=0.0, seed=3):
     block["time"], block["shaft_speed"], block["oil_temperature"] = start + 0.1 * np.arange(1, count + 1), SPEED, 393.15
     block["rating_life"] = block["modified_rating_life"] = 1e4
     for name, kelvin in (("inner_ring_temperature", inner), ("outer_ring_temperature", outer)):
-        block[name], block[f"{name}_measured"] = 400.0, 400.0 + kelvin + 0.2 * draw.normal(size=count)
+        block[f"{name}_uncorrected"], block[f"{name}_measured"] = 400.0, 400.0 + kelvin + 0.2 * draw.normal(size=count)
     return block
 
 
@@ -195,11 +195,32 @@ def test_a_ring_that_becomes_warmer_than_predicted_is_found_and_named_and_one_th
     assert told_of(one, temperatures(1800.0, 1.0, 0.0)) == {}, "the network is wrong by a kelvin, always"
     assert one.values["residual temperature of the inner ring, usual mean [K]"] == pytest.approx(1.0, abs=0.05)
     assert one.values["residual temperature of the inner ring, verdict"] == "as predicted"
-    told = told_of(one, temperatures(600.0, 1.0, 1.5, start=1800.0))
+    told = told_of(one, temperatures(600.0, 1.0, 6.0, start=1800.0))
     assert [*told] == ["residual temperature of the outer ring"]
     at, event = told["residual temperature of the outer ring"]
     assert at < 1800.0 + 300.0 and "the outer ring is warmer than predicted" in event.text and " K, usually " in event.text
     assert one.values["residual temperature of the outer ring, verdict"] == "is warmer than predicted"
+
+
+def test_measured_temperatures_correct_the_network_but_not_what_they_are_compared_with():
+    scene = load_scene("deng2017_table1", HEATED)
+    corrected, alone = Simulation(scene), Simulation(scene)
+    for run in (corrected, alone):
+        run.advance(1.0)
+        assert run.sample["inner_ring_temperature_uncorrected"] == run.sample["inner_ring_temperature"], "nothing is measured yet"
+    warmer = corrected.inputs._replace(inner_ring_temperature=float(corrected.sample["inner_ring_temperature"]) + 20.0)
+    for _ in range(20):
+        corrected.advance(0.1, warmer)
+        alone.advance(0.1)
+    moved = float(corrected.sample["inner_ring_temperature"] - alone.sample["inner_ring_temperature"])
+    assert moved > 2.0
+    for ring in ("inner", "outer"):  # only the losses of a warmer bearing differ
+        off = corrected.sample[f"{ring}_ring_temperature_uncorrected"] - alone.sample[f"{ring}_ring_temperature"]
+        assert abs(off) < 0.05 * moved
+    other = Simulation(scene)
+    other.take_over(corrected)
+    after = [float(run.advance(0.1, warmer)["inner_ring_temperature_uncorrected"][0]) for run in (other, corrected)]
+    assert after[0] == pytest.approx(after[1], abs=0.02 * moved), "another level continues both networks"
 
 
 def test_a_ring_that_is_not_measured_or_not_predicted_has_no_residual():

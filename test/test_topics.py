@@ -228,7 +228,15 @@ WIRE = {
         ],
     ),
     "heat_flows": ("to the oil, to ambient", [("heat_to_oil", "W"), ("heat_to_ambient", "W")]),
-    "measured_temperatures": ("inner ring, outer ring", [("inner_ring_temperature_measured", "K"), ("outer_ring_temperature_measured", "K")]),
+    "measured_temperatures": (
+        "measured inner ring, outer ring, uncorrected inner ring, outer ring",
+        [
+            ("inner_ring_temperature_measured", "K"),
+            ("outer_ring_temperature_measured", "K"),
+            ("inner_ring_temperature_uncorrected", "K"),
+            ("outer_ring_temperature_uncorrected", "K"),
+        ],
+    ),
     "roller_places": ("angle, radius, rotation", [("roller_angle", "rad"), ("roller_radius", "m"), ("roller_rotation", "rad")]),
 }
 NUMBERS = {"cage_slip": "", "rating_life": "h", "modified_rating_life": "h", "level": "", "damage": ""}

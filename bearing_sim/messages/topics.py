@@ -198,7 +198,10 @@ ARRAYS = {
         ),
     ),
     "heat_flows": ArrayRows("to the oil, to ambient", ("heat_to_oil", "heat_to_ambient")),
-    "measured_temperatures": ArrayRows("inner ring, outer ring", tuple(f"{name}_measured" for name in RING_TEMPERATURES)),
+    "measured_temperatures": ArrayRows(
+        "measured inner ring, outer ring, uncorrected inner ring, outer ring",
+        tuple(f"{name}_{kind}" for kind in ("measured", "uncorrected") for name in RING_TEMPERATURES),
+    ),
     "roller_places": ArrayRows("angle, radius, rotation", ("roller_angle", "roller_radius", "roller_rotation")),
 }
 """The topics of samples that carry arrays, by name; a second dimension ``roller`` where rows have a number for each roller."""
@@ -289,7 +292,7 @@ RECORDED = {
     topic.name: topic
     for topic in (
         _array("operating_point", "inputs as the model had them: load y, z [N], oil [K]; land eccentricity"),
-        _array("measured_temperatures", "measured temperatures [K] as the model had them: inner ring, outer ring; NaN: not measured", of_heat=True),
+        _array("measured_temperatures", "ring temperatures [K]: measured, as the model had them, and of the network without their correction", of_heat=True),
         _array("roller_places", "(azimuth [rad], distance from the centre [m], rotation [rad]) x roller"),
     )
 }

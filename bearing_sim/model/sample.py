@@ -23,7 +23,11 @@ class Observable(NamedTuple):
 
 
 RING_TEMPERATURES = ("inner_ring_temperature", "outer_ring_temperature")
-"""The inputs that are measurements of what the model predicts; a sample holds them under these names with ``_measured``."""
+"""The inputs that are measurements of what the model predicts.
+
+A sample holds them with ``_measured`` behind the name.  Without it stands the temperature that the model has, which measured ones correct; with
+``_uncorrected`` what a thermal network predicts without that.
+"""
 
 OBSERVABLES = (
     Observable("time", "s", "simulated time since the start of the run"),
@@ -109,6 +113,10 @@ OBSERVABLES = (
     Observable("oil_outlet_temperature", "K", "temperature of the oil in the bearing, with which it leaves; NaN without a thermal network"),
     Observable("heat_to_oil", "W", "heat that the oil takes along as it flows through; NaN without a thermal network"),
     Observable("heat_to_ambient", "W", "heat that housing and shaft give off to the air; NaN without a thermal network"),
+    *(
+        Observable(f"{name}_uncorrected", "K", f"temperature of the {ring} ring by the network without the measured ones; NaN without a network")
+        for name, ring in zip(RING_TEMPERATURES, ("inner", "outer"))
+    ),
     Observable("roller_angle", "rad", "azimuth of the roller centre", True),
     Observable("roller_radius", "m", "distance of the roller centre from the outer-ring centre", True),
     Observable("roller_spin", "rad/s", "roller spin, positive where it rolls on the outer ring", True),

@@ -395,7 +395,9 @@ class ResidualMonitor:
 
 
 class TemperatureResiduals:
-    """Compares the measured temperatures of the rings with those of the thermal network, sample by sample: a sample holds both.
+    """Compares the measured temperatures of the rings with those of the thermal network alone, sample by sample: a sample holds both.
+
+    The network that measured temperatures correct follows them within seconds; what it would be without them tells what has changed.
 
     Parameters
     ----------
@@ -432,7 +434,7 @@ class TemperatureResiduals:
             self._next = now + self._interval * (1 - 1e-9)
             for name, monitor in self._monitors.items():
                 if not math.isnan(measured := float(sample[f"{name}_measured"])):
-                    monitor.take(now, speed, measured, float(sample[name]))
+                    monitor.take(now, speed, measured, float(sample[f"{name}_uncorrected"]))
 
     def events(self, now: float) -> list[Event]:
         """Return the events of changes that hold, stamped ``now`` [s]."""

@@ -156,13 +156,13 @@ class ResidualDetection:
 
 @record
 class TemperatureResidualDetection:
-    """How measured temperatures of rings are compared with those of the thermal network (see `bearing_sim.monitoring.residual`).
+    """How measured temperatures of rings are compared with those that the thermal network has without them.
 
-    The measured temperatures correct the network, so that a wrong heat balance shows as a small difference that lasts.
+    See `bearing_sim.monitoring.residual`.
     """
 
     false_alarm_time: quantity("s", "mean time between false alarms", 60.0, 1e10, "h") = 3.6e6
-    tolerance: quantity("delta_degC", "lasting change of the residual that is not a fault: the error of the network", 1e-6, 100.0, "K") = 0.2
+    tolerance: quantity("delta_degC", "lasting change of the residual that is not a fault: the error of the network", 1e-6, 100.0, "K") = 1.0
     batch: quantity("s", "time over which residuals are averaged before the test", 0.01, 3600.0) = 10.0
     learning: quantity("s", "measured time from which the reference mean and scatter of the residual are learned", 1.0, 1e6) = 600.0
     settling: quantity("s", "time after a change of speed that is ignored", 0.0, 36000.0) = 60.0

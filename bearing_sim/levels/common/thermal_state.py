@@ -20,10 +20,11 @@ from bearing_sim.physics.thermal_network import BOOK, NODE, NODES, NetworkInputs
 from bearing_sim.scene.scene import Scene
 
 _TEMPERATURES = slice(getattr(COLUMN, NODE_OBSERVABLES[0]), getattr(COLUMN, NODE_OBSERVABLES[-1]) + 1)
-THERMAL = slice(COLUMN.shaft_temperature, COLUMN.heat_to_ambient + 1)
+THERMAL = slice(COLUMN.shaft_temperature, COLUMN.outer_ring_temperature_uncorrected + 1)
 """Columns of a flat sample that hold temperatures and flows of heat."""
 _POWERS = slice(getattr(COLUMN, POWERS[0]), getattr(COLUMN, POWERS[-1]) + 1)
 _RINGS = (NODE.inner_ring, NODE.outer_ring)
+_UNCORRECTED = slice(COLUMN.inner_ring_temperature_uncorrected, COLUMN.outer_ring_temperature_uncorrected + 1)
 _LOADED = 0.3  # fraction of the rollers that a typical load rests on
 
 
@@ -39,6 +40,7 @@ class ThermalState:
     Attributes
     ----------
     temperatures : of the nodes [K], shape (NODES,), see `bearing_sim.physics.thermal_network.NODE`.
+    uncorrected : the same without what measured temperatures have corrected; None before the first of them.
     flows : heat to the oil and to ambient over the last step [W], shape (2,).
     books : of energy since the start [J], shape (4,), see `bearing_sim.physics.thermal_network.BOOK`.
     corrected : energy that corrections by measured temperatures have put into the nodes [J].
@@ -48,8 +50,9 @@ class ThermalState:
     def __init__(self, scene: Scene, params: Params, inlet: float):
         self.network = thermal_network(scene, params)
         self._values = np.full(THERMAL.stop - THERMAL.start, math.nan)  # as a sample has them
-        self.temperatures, self.flows = self._values[:NODES], self._values[NODES:]
+        self.temperatures, self.flows = self._values[:NODES], self._values[NODES : -len(_RINGS)]
         self.temperatures[:] = start_temperatures(scene.heat, inlet)
+        self.uncorrected: np.ndarray | None = None
         self.books, self.corrected, self.held, self._angles = np.zeros(len(BOOK)), 0.0, False, (0.0, 0.0)
         self._fits, self._gaps = (0.0, 0.0, 0.0, 0.0), fit_gaps(scene)  # see `bearing_sim.model.thermal_network.seats`
         self._scene, self._work = scene, new_work()
@@ -66,6 +69,7 @@ class ThermalState:
     def take_over(self, other: "ThermalState") -> None:
         """Continue from the temperatures, the books and the losses not yet taken of another state of the same bearing."""
         self.temperatures[:], self.books[:], self.flows[:] = other.temperatures, other.books, other.flows
+        self.uncorrected = None if other.uncorrected is None else other.uncorrected.copy()
         self.corrected, self.held, self._fits = other.corrected, other.held, other._fits
         self._losses[:], self._loads[:] = other._losses, other._loads
         self._elapsed, self._angles = other._elapsed, other._angles
@@ -74,6 +78,9 @@ class ThermalState:
         """Continue from the temperatures of a recorded sample, laid out flat; they stay as they are where it has none."""
         if np.isfinite(row[_TEMPERATURES]).all():
             self._values[:] = row[THERMAL]
+            if np.isfinite(row[_UNCORRECTED]).all() and (row[_UNCORRECTED] != self.temperatures[list(_RINGS)]).any():
+                self.uncorrected = self.temperatures.copy()  # a sample holds those of the rings alone
+                self.uncorrected[list(_RINGS)] = row[_UNCORRECTED]
         self._forget()
 
     def model(self, params: Params, inlet: float, shaft_speed: float) -> tuple[Params, Lubrication]:
@@ -91,6 +98,8 @@ class ThermalState:
 
     def write(self, rows: np.ndarray) -> None:
         """Write temperatures and flows of heat into samples, laid out flat."""
+        nodes = self.temperatures if self.uncorrected is None else self.uncorrected
+        self._values[-2], self._values[-1] = nodes[NODE.inner_ring], nodes[NODE.outer_ring]
         rows[..., THERMAL] = self._values
 
     def take(self, before: np.ndarray, rows: np.ndarray, duration: float, inlet: float, measured: tuple[float, float]) -> bool:
@@ -137,6 +146,8 @@ class ThermalState:
 
     def _advance(self, speeds: tuple[float, float], inlet: float, measured: tuple[float, float]) -> bool:
         elapsed = self._elapsed
+        if self.uncorrected is None and any(map(math.isfinite, measured)):
+            self.uncorrected = self.temperatures.copy()
         inputs = NetworkInputs(*map(float, speeds), inlet, *self._fits)
         arguments = (elapsed, self.temperatures, self._losses / elapsed, self._loads, inputs, self.network, self._work)
         (self._compiled or step)(*arguments)
@@ -145,6 +156,8 @@ class ThermalState:
         books = self._work.books
         self.books += books
         self.flows[0], self.flows[1] = books[BOOK.to_oil] / elapsed, books[BOOK.to_ambient] / elapsed
+        if self.uncorrected is not None:
+            self._compiled(elapsed, self.uncorrected, *arguments[2:])
         self._correct(elapsed, measured)
         return True
 
