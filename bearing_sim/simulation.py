@@ -102,7 +102,7 @@ class Simulation:
         self._thermal: ThermalState | None = None  # of a thermal network
         self._temperatures = np.full(THERMAL.stop - THERMAL.start, math.nan)  # without one: those that are given
         self._tables = ()  # what the level's workspace is made of besides the parameters
-        if self._level.advance_profile is not None and scene.heat.law == "none":  # tables know no temperatures but the oil's
+        if self._level.advance_profile is not None:
             kept = cached_table(scene) if table is None else (table,)
             self._tables = kept[:1] if kept else ()
         self.reset(inputs)
@@ -366,10 +366,17 @@ class Simulation:
             return False
         return str(end[-len(RING_TEMPERATURES) :]) != str(self.inputs[-len(RING_TEMPERATURES) :])  # as text NaN equals NaN
 
+    def _alone(self, inputs: np.ndarray) -> int:
+        """Return up to which of many instants the thermal network runs without a measured temperature and without being held."""
+        if self._thermal.held:
+            return 0
+        measured = np.flatnonzero(np.isfinite(inputs[:, -len(RING_TEMPERATURES) :]).any(axis=1))
+        return int(measured[0]) if len(measured) else len(inputs)
+
     @property
     def takes_profiles(self) -> bool:
         """Whether `advance_profile` goes over many instants at once."""
-        return bool(self._tables)
+        return bool(self._tables) and self.scene.heat_law != "given"
 
     def advance_profile(self, stretches: np.ndarray, inputs: np.ndarray) -> np.ndarray:
         """Advance from instant to instant of a course, as far as the level's table holds it, many times as fast as by `advance`.
@@ -396,26 +403,26 @@ class Simulation:
             raise ValueError("advance_profile takes positive finite stretches and finite inputs")
         block = new_block(len(stretches), self._params.rollers.count)
         rows = flat(block)
-        reached = self._level.advance_profile(
-            self.time,
-            np.ascontiguousarray(stretches, float),
-            np.ascontiguousarray(np.vstack([[*self.inputs], inputs]), float),
-            kinematic_viscosities(self.scene.lubricant.oil, np.ascontiguousarray(inputs[:, 3], float)),
-            self._state,
-            self._model(self.inputs, 1.0),
-            self._work,
-            self._counts,
-            self._newest,
-            rows,
-        )
+        course = np.ascontiguousarray(stretches, float), np.ascontiguousarray(np.vstack([[*self.inputs], inputs]), float)
+        state = self._state, self._model(self.inputs, 1.0), self._work, self._counts, self._newest, rows
+        if self._thermal is None:
+            viscosities = kinematic_viscosities(self.scene.lubricant.oil, np.ascontiguousarray(inputs[:, 3], float))
+            reached = self._level.advance_profile(self.time, *course, viscosities, *state)
+        else:
+            alone = self._alone(inputs)
+            course = course[0][:alone], course[1][: alone + 1]
+            reached = self._level.advance_warm_profile(self.time, *course, *state, self._thermal.course()) if alone else 0
         if reached:
             self.inputs = Inputs(*map(float, inputs[reached - 1]))
             self.time = float(block["time"][reached - 1])
             rows[:, COLUMN.level] = NUMBERS[self.scene.level]
             rows[:reached, _MEASURED_COLUMNS] = inputs[:reached, -len(RING_TEMPERATURES) :]
+            if self._thermal is None:
+                self._write_temperatures(rows[:reached])
             self._newest = rows[reached - 1].copy()
-            self._write_temperatures(rows[:reached])
-            if self.inputs.oil_temperature != self._lubrication.temperature:
+            if self._thermal is not None:
+                self._take_temperatures()
+            elif self.inputs.oil_temperature != self._lubrication.temperature:
                 self._follow_inputs(self.inputs)
         return block[:reached]
 

@@ -31,6 +31,7 @@ class Level(NamedTuple):
     leaves_out : what the level does not model, in words.
     advance_fixed : as ``advance``, without error control, in steps of the maximum step; None at a level without steps.
     advance_profile : compiled, goes over a whole course of inputs at once; None at a level that marches.
+    advance_warm_profile : the same beside a thermal network.
     forget : lets a workspace drop what it remembers of parameters and lubrication; None at a level that remembers nothing.
     """
 
@@ -43,6 +44,7 @@ class Level(NamedTuple):
     leaves_out: str
     advance_fixed: Callable | None = None
     advance_profile: Callable | None = None
+    advance_warm_profile: Callable | None = None
     forget: Callable | None = None
 
 
@@ -56,6 +58,7 @@ LEVELS = {
         steady.advance,
         "all that happens within a cage turn, and what slip leaves out",
         advance_profile=steady.advance_profile,
+        advance_warm_profile=steady.advance_warm_profile,
         forget=steady.forget,
     ),
     "slip": Level(

@@ -13,7 +13,6 @@ import numpy as np
 from bearing_sim.model.oil import oil_at, specific_heat
 from bearing_sim.model.params import Params
 from bearing_sim.model.sample import OBSERVABLES
-from bearing_sim.physics.growth import Growth
 from bearing_sim.physics.heat import plummer_block_area
 from bearing_sim.physics.thermal_network import LINK, NODE, NODES, Bodies, Contacts, Network, Oils, Surfaces
 from bearing_sim.scene.bearing import Bearing
@@ -217,18 +216,3 @@ def fit_gaps(scene: Scene) -> tuple[float, float]:
     size, mounting = boundary_dimensions(scene.bearing), scene.mounting
     limits = shaft_interference(mounting.shaft, 2.0 * size.bore_radius), housing_interference(mounting.housing, 2.0 * size.outside_radius)
     return tuple(0.0 if each is None else max(-0.5 * each.mean, 0.0) for each in limits)
-
-
-def seats(params: Params, growth: Growth, shaft_speed: float, gaps: tuple[float, float]) -> tuple[float, float, float, float]:
-    """Return pressure [Pa] and mean play [m] of the fit on the shaft, then of that in the housing: the last fields of `NetworkInputs`.
-
-    Parameters
-    ----------
-    params : of the bearing.
-    growth : at its present temperatures.
-    shaft_speed : [rad/s].
-    gaps : see `fit_gaps`.
-    """
-    inner = max(growth.pressure + growth.pressure_by_square_speed * shaft_speed * shaft_speed, 0.0) if growth.fitted else 0.0
-    outer = growth.housing / params.mounted.housing.shrunk if params.mounted.housing.shrunk else 0.0
-    return inner, 0.0 if inner else gaps[0], outer, 0.0 if outer else gaps[1]

@@ -121,6 +121,22 @@ def excess_growth(shaft_speed, temperature, growth, mounted):
     return total_growth(shaft_speed, growth) - total_growth(shaft_speed, even)
 
 
+@kernel
+def seats_at(shaft_speed, growth, mounted, gaps):
+    """Return pressure [Pa] and mean play [m] of the fit on the shaft, then of that in the housing.
+
+    Parameters
+    ----------
+    shaft_speed : [rad/s].
+    growth : `Growth` at the present temperatures.
+    mounted : `Mounted`.
+    gaps : mean play of both fits where they are loose [m].
+    """
+    inner = max(growth.pressure + growth.pressure_by_square_speed * shaft_speed * shaft_speed, 0.0) if growth.fitted != 0.0 else 0.0
+    outer = growth.housing / mounted.housing.shrunk if mounted.housing.shrunk != 0.0 else 0.0
+    return inner, 0.0 if inner > 0.0 else gaps[0], outer, 0.0 if outer > 0.0 else gaps[1]
+
+
 class Clearance(NamedTuple):
     """Running clearance and its parts, diametral [m]; positive is play, negative preload.  The parts sum to the running clearance."""
 

@@ -200,6 +200,22 @@ def new_work() -> Work:
     )
 
 
+class HeatCourse(NamedTuple):
+    """A thermal network that advances along a course of inputs; arrays are changed in place.  See `bearing_sim.levels.common.thermal_state`."""
+
+    network: Network
+    work: Work
+    temperatures: np.ndarray  # of the nodes [K], shape (NODES,)
+    losses: np.ndarray  # by cause since the last step [J], shape (powers,)
+    loads: np.ndarray  # of the newest step, inner and outer [N], shape (2, Z)
+    since: np.ndarray  # time since the last step [s], and the angles of shaft and cage then [rad], shape (3,)
+    seats: np.ndarray  # pressure and mean play of the fits on shaft and in housing, shape (4,)
+    gaps: tuple[float, float]  # play of both fits where they are loose [m]
+    flows: np.ndarray  # heat to oil and ambient over the last step [W], shape (2,)
+    books: np.ndarray  # of energy since the start [J], shape (4,)
+    interval: float  # at least from step to step [s]
+
+
 @kernel
 def oil_properties(temperature, oils):
     """Return kinematic viscosity [m^2/s], density [kg/m^3], specific heat [J/(kg K)] and alpha [1/Pa]; beyond the table as at its end."""

@@ -263,11 +263,16 @@ class SteadyTable:
     maximum_load: quantity("N", "largest radial load; None: half the bearing's dynamic load rating", 1.0, _LARGEST_LOAD) | None = None
     minimum_temperature: quantity("K", "lowest oil temperature", 220.0, 600.0, "degC") = 313.15
     maximum_temperature: quantity("K", "highest oil temperature", 220.0, 600.0, "degC") = 453.15
+    # With a law of heat the table has an axis for how far the clearance has closed, as far as these differences between the rings need.
+    minimum_difference: quantity("delta_degC", "least temperature of the inner ring over the outer one's", -300.0, 300.0, "K") = -20.0
+    maximum_difference: quantity("delta_degC", "largest temperature of the inner ring over the outer one's", -300.0, 300.0, "K") = 40.0
 
     @check
     def _spans_something(self) -> list[str]:
         if self.maximum_temperature < self.minimum_temperature:
             return [f"minimum_temperature: {self.minimum_temperature:g} K is above the maximum_temperature, {self.maximum_temperature:g} K"]
+        if self.maximum_difference <= self.minimum_difference:
+            return [f"minimum_difference: {self.minimum_difference:g} K is not below the maximum_difference, {self.maximum_difference:g} K"]
         return []
 
 

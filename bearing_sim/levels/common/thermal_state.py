@@ -13,10 +13,11 @@ import numpy as np
 from bearing_sim.model.params import Lubrication, Params
 from bearing_sim.model.sample import COLUMN, SCALARS
 from bearing_sim.model.temperatures import local_model
-from bearing_sim.model.thermal_network import NODE_OBSERVABLES, POWERS, fit_gaps, seats, start_temperatures, thermal_network
+from bearing_sim.model.thermal_network import NODE_OBSERVABLES, POWERS, fit_gaps, start_temperatures, thermal_network
 from bearing_sim.numerics.compilation import compiled_for
+from bearing_sim.physics.growth import seats_at
 from bearing_sim.physics.thermal_filter import filter_gain, network_matrix
-from bearing_sim.physics.thermal_network import BOOK, NODE, NODES, NetworkInputs, new_work, settle, step, write_conductances
+from bearing_sim.physics.thermal_network import BOOK, NODE, NODES, HeatCourse, NetworkInputs, new_work, settle, step, write_conductances
 from bearing_sim.scene.scene import Scene
 
 _TEMPERATURES = slice(getattr(COLUMN, NODE_OBSERVABLES[0]), getattr(COLUMN, NODE_OBSERVABLES[-1]) + 1)
@@ -53,8 +54,9 @@ class ThermalState:
         self.temperatures, self.flows = self._values[:NODES], self._values[NODES : -len(_RINGS)]
         self.temperatures[:] = start_temperatures(scene.heat, inlet)
         self.uncorrected: np.ndarray | None = None
-        self.books, self.corrected, self.held, self._angles = np.zeros(len(BOOK)), 0.0, False, (0.0, 0.0)
-        self._fits, self._gaps = (0.0, 0.0, 0.0, 0.0), fit_gaps(scene)  # see `bearing_sim.model.thermal_network.seats`
+        self.books, self.corrected, self.held = np.zeros(len(BOOK)), 0.0, False
+        self._seats, self._gaps = np.zeros(4), fit_gaps(scene)  # see `bearing_sim.physics.growth.seats_at`
+        self._since = np.zeros(3)  # time since the last step [s], and the angles of shaft and cage then [rad]
         self._scene, self._work = scene, new_work()
         self._interval = scene.heat.interval * (1.0 - 1e-9)
         self._compiled = None
@@ -64,15 +66,14 @@ class ThermalState:
 
     def _forget(self) -> None:
         self._losses[:] = 0.0  # [J] by cause
-        self._elapsed = 0.0
+        self._since[:] = 0.0
 
     def take_over(self, other: "ThermalState") -> None:
         """Continue from the temperatures, the books and the losses not yet taken of another state of the same bearing."""
         self.temperatures[:], self.books[:], self.flows[:] = other.temperatures, other.books, other.flows
         self.uncorrected = None if other.uncorrected is None else other.uncorrected.copy()
-        self.corrected, self.held, self._fits = other.corrected, other.held, other._fits
-        self._losses[:], self._loads[:] = other._losses, other._loads
-        self._elapsed, self._angles = other._elapsed, other._angles
+        self.corrected, self.held = other.corrected, other.held
+        self._losses[:], self._loads[:], self._since[:], self._seats[:] = other._losses, other._loads, other._since, other._seats
 
     def resume(self, row: np.ndarray) -> None:
         """Continue from the temperatures of a recorded sample, laid out flat; they stay as they are where it has none."""
@@ -93,8 +94,24 @@ class ThermalState:
         shaft_speed : [rad/s].
         """
         warm, lubrication = local_model(self._scene, params, inlet, self.temperatures)
-        self._fits = seats(params, lubrication.growth, shaft_speed, self._gaps)
+        self._seats[:] = seats_at(shaft_speed, lubrication.growth, params.mounted, self._gaps)
         return warm, lubrication
+
+    def course(self) -> HeatCourse:
+        """Return the same state as compiled code advances it along a course of inputs; its arrays are those of this state."""
+        return HeatCourse(
+            self.network,
+            self._work,
+            self.temperatures,
+            self._losses,
+            self._loads,
+            self._since,
+            self._seats,
+            self._gaps,
+            self.flows,
+            self.books,
+            self._interval,
+        )
 
     def write(self, rows: np.ndarray) -> None:
         """Write temperatures and flows of heat into samples, laid out flat."""
@@ -113,17 +130,18 @@ class ThermalState:
         inlet : temperature of the oil that comes in [K].
         measured : temperatures of inner and outer ring [K]; NaN where they are not measured.
         """
-        if self._elapsed == 0.0:
-            self._angles = before[COLUMN.shaft_angle], before[COLUMN.cage_angle]
+        since = self._since
+        if since[0] == 0.0:
+            since[1:] = before[COLUMN.shaft_angle], before[COLUMN.cage_angle]
         self._losses += duration / len(rows) * np.add.reduce(rows[:, _POWERS], axis=0)
-        self._elapsed += duration
-        if self._elapsed < self._interval:
+        since[0] += duration
+        if since[0] < self._interval:
             return False
         last = rows[-1]
         count = self._loads.shape[1]
         for side, column in enumerate((COLUMN.inner_load, COLUMN.outer_load)):
             self._loads[side] = last[SCALARS + column * count : SCALARS + (column + 1) * count]
-        speeds = (last[COLUMN.shaft_angle] - self._angles[0]) / self._elapsed, (last[COLUMN.cage_angle] - self._angles[1]) / self._elapsed
+        speeds = (last[COLUMN.shaft_angle] - since[1]) / since[0], (last[COLUMN.cage_angle] - since[2]) / since[0]
         changed = self._advance(speeds, inlet, measured) if not self.held else False
         self._forget()
         self.write(last)
@@ -139,16 +157,16 @@ class ThermalState:
         """
         losses = np.array([samples[name].mean() for name in POWERS])
         loads = np.ascontiguousarray([samples["inner_load"][-1], samples["outer_load"][-1]])
-        inputs = NetworkInputs(float(samples["shaft_speed"].mean()), float(samples["cage_speed"].mean()), inlet, *self._fits)
+        inputs = NetworkInputs(float(samples["shaft_speed"].mean()), float(samples["cage_speed"].mean()), inlet, *self._seats.tolist())
         nodes = self.temperatures.copy()
         settle(nodes, losses, loads, inputs, self.network, np.zeros(NODES), self._work)
         return nodes
 
     def _advance(self, speeds: tuple[float, float], inlet: float, measured: tuple[float, float]) -> bool:
-        elapsed = self._elapsed
+        elapsed = float(self._since[0])
         if self.uncorrected is None and any(map(math.isfinite, measured)):
             self.uncorrected = self.temperatures.copy()
-        inputs = NetworkInputs(*map(float, speeds), inlet, *self._fits)
+        inputs = NetworkInputs(*map(float, speeds), inlet, *self._seats.tolist())
         arguments = (elapsed, self.temperatures, self._losses / elapsed, self._loads, inputs, self.network, self._work)
         (self._compiled or step)(*arguments)
         if self._compiled is None:

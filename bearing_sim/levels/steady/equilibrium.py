@@ -21,9 +21,9 @@ from bearing_sim.levels.steady.model import new_work, solve_condition
 from bearing_sim.levels.steady.operating_point import ANSWER, new_orbit
 from bearing_sim.model.params import pack
 from bearing_sim.model.temperatures import local_model
-from bearing_sim.model.thermal_network import POWERS, fit_gaps, seats, start_temperatures, thermal_network
+from bearing_sim.model.thermal_network import POWERS, fit_gaps, start_temperatures, thermal_network
 from bearing_sim.physics import thermal_network as physics
-from bearing_sim.physics.growth import clearance_at
+from bearing_sim.physics.growth import clearance_at, seats_at
 from bearing_sim.physics.load_balance import LOAD
 from bearing_sim.physics.thermal_network import NODE, NODES, NetworkInputs
 from bearing_sim.scene.scene import Scene
@@ -88,7 +88,7 @@ class _Balance:
         bearing = self._work.bearing
         balance_loads(0.0, cage, load_y, load_z, params, bearing)
         loads = np.ascontiguousarray([bearing.loads[LOAD.inner], bearing.loads[LOAD.outer]])
-        inputs = NetworkInputs(speed, cage, inlet, *seats(params, lubrication.growth, speed, self._gaps))
+        inputs = NetworkInputs(speed, cage, inlet, *seats_at(speed, lubrication.growth, params.mounted, self._gaps))
         reached = temperatures.copy()
         settled = physics.settle(reached, losses, loads, inputs, self.network, self._free, self._thermal)
         failure = "" if settled else "the network has no temperatures at which all heat leaves"

@@ -27,9 +27,12 @@ from bearing_sim.model.params import Lubrication
 from bearing_sim.model.sample import COLUMN, SCALARS
 from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.time_stepping import COUNT, NOT_EVALUATED, OK, STEP_BUDGET
-from bearing_sim.physics.growth import Temperatures, excess_growth, growth_at, total_growth
+from bearing_sim.physics.growth import Temperatures, excess_growth, growth_at, seats_at, total_growth
 from bearing_sim.physics.lamina_life import EquivalentLoads
 from bearing_sim.physics.load_balance import LOAD
+from bearing_sim.physics.thermal_network import BOOK, NODE, NODES, NetworkInputs, oil_properties, step
+
+_FIRST_LOSS = COLUMN.shaft_power + 1  # the losses by cause stand behind the power of the shaft
 
 
 class Work(NamedTuple):
@@ -272,6 +275,112 @@ def advance_profile(start, stretches, inputs, kinematic_viscosities, y, model, w
         )
         _write_sample(now, y, there, work, interval, before, rows[k])
         settled, before = reached, rows[k]
+    return stretches.shape[0]
+
+
+@kernel
+def _lubrication_at(inlet, temperatures, oils, mounted, lubrication):
+    """Return a lubrication with the growth and the films of a network's temperatures; its tractions and drags, which no table needs, stay."""
+    inner, rollers, outer = temperatures[NODE.inner_ring], temperatures[NODE.rollers], temperatures[NODE.outer_ring]
+    solids = Temperatures(temperatures[NODE.shaft], inner, rollers, outer, temperatures[NODE.housing])
+    inner_film, outer_film = 0.5 * (inner + rollers), 0.5 * (outer + rollers)
+    viscosity = 0.5 * (oil_properties(inner_film, oils)[0] + oil_properties(outer_film, oils)[0])
+    return Lubrication(
+        lubrication.inner,
+        lubrication.outer,
+        lubrication.viscosity,
+        lubrication.mixture_density,
+        inlet,
+        lubrication.rolling_resistance,
+        lubrication.bath,
+        growth_at(mounted, solids),
+        viscosity,
+        0.5 * (inner_film + outer_film),
+    )
+
+
+@kernel
+def _write_heat(heat, row):
+    """Write temperatures and flows of heat into a flat sample."""
+    for node in range(NODES):
+        row[COLUMN.shaft_temperature + node] = heat.temperatures[node]
+    row[COLUMN.heat_to_oil], row[COLUMN.heat_to_ambient] = heat.flows[0], heat.flows[1]
+
+
+@kernel
+def _take_heat(interval, inlet, count, before, row, heat):
+    """Sum the losses of a sample; step the network where an interval is over, and return whether it has."""
+    losses, since = heat.losses, heat.since
+    if since[0] == 0.0:
+        since[1], since[2] = before[COLUMN.shaft_angle], before[COLUMN.cage_angle]
+    for cause in range(losses.shape[0]):
+        losses[cause] += interval * row[_FIRST_LOSS + cause]
+    since[0] += interval
+    elapsed = since[0]
+    if elapsed < heat.interval:
+        return False
+    for j in range(count):
+        heat.loads[0, j] = row[SCALARS + COLUMN.inner_load * count + j]
+        heat.loads[1, j] = row[SCALARS + COLUMN.outer_load * count + j]
+    for cause in range(losses.shape[0]):
+        losses[cause] /= elapsed
+    seats = heat.seats
+    shaft_speed, cage_speed = (row[COLUMN.shaft_angle] - since[1]) / elapsed, (row[COLUMN.cage_angle] - since[2]) / elapsed
+    inputs = NetworkInputs(shaft_speed, cage_speed, inlet, seats[0], seats[1], seats[2], seats[3])
+    step(elapsed, heat.temperatures, losses, heat.loads, inputs, heat.network, heat.work)
+    for page in range(heat.books.shape[0]):
+        heat.books[page] += heat.work.books[page]
+    heat.flows[0], heat.flows[1] = heat.work.books[BOOK.to_oil] / elapsed, heat.work.books[BOOK.to_ambient] / elapsed
+    losses[:] = 0.0
+    since[:] = 0.0
+    _write_heat(heat, row)
+    return True
+
+
+@kernel
+def advance_warm_profile(start, stretches, inputs, y, model, work, counts, previous, rows, heat):
+    """Advance from instant to instant of a course as `advance_profile`, beside a thermal network that the losses heat.
+
+    The table answers at the mean temperature of the films and at the growth of the present temperatures; drag and lands are taken at that
+    temperature, too.
+
+    Parameters
+    ----------
+    start, stretches, inputs, y, model, work, counts, previous, rows : as of `advance_profile`.
+    heat : `bearing_sim.physics.thermal_network.HeatCourse`.
+
+    Returns
+    -------
+    how many instants were reached; state and temperatures are those of the last of them.
+    """
+    mounted, count = model.params.mounted, model.params.rollers.count
+    lubrication = _lubrication_at(inputs[0, 3], heat.temperatures, heat.network.oils, mounted, model.lubrication)
+    growth = excess_growth(inputs[0, 0], lubrication.film_temperature, lubrication.growth, mounted)
+    if not _from_table(inputs[0, 0], inputs[0, 1], inputs[0, 2], lubrication.film_temperature, growth, work):
+        return 0
+    settled, before, now = _settled_speed(inputs[0, 0], model, work), previous, start
+    for k in range(stretches.shape[0]):
+        speed, load_y, load_z, inlet = inputs[k + 1, 0], inputs[k + 1, 1], inputs[k + 1, 2], inputs[k + 1, 3]
+        lubrication = _lubrication_at(inlet, heat.temperatures, heat.network.oils, mounted, lubrication)
+        growth = excess_growth(speed, lubrication.film_temperature, lubrication.growth, mounted)
+        if not _from_table(speed, load_y, load_z, lubrication.film_temperature, growth, work):
+            return k
+        reached = _settled_speed(speed, model, work)
+        interval = stretches[k]
+        now += interval
+        _follow(settled, reached, work.answer[ANSWER.lag], interval, y)
+        counts[COUNT.steps] += 1
+        there = Model(model.params, lubrication, Drive(now, speed, 0.0, load_y, 0.0, load_z, 0.0, 0.0), model.tolerances)
+        _write_sample(now, y, there, work, interval, before, rows[k])
+        _write_heat(heat, rows[k])
+        took = _take_heat(interval, inlet, count, before, rows[k], heat)
+        settled, before = reached, rows[k]
+        if took:
+            lubrication = _lubrication_at(inlet, heat.temperatures, heat.network.oils, mounted, lubrication)
+            heat.seats[0], heat.seats[1], heat.seats[2], heat.seats[3] = seats_at(speed, lubrication.growth, mounted, heat.gaps)
+            growth = excess_growth(speed, lubrication.film_temperature, lubrication.growth, mounted)
+            if _from_table(speed, load_y, load_z, lubrication.film_temperature, growth, work):
+                settled = _settled_speed(speed, model, work)
     return stretches.shape[0]
 
 

@@ -27,10 +27,12 @@ from bearing_sim.levels.common.model import DEFAULT_TOLERANCES, Drive, Model
 from bearing_sim.levels.steady.model import look_up_conditions, new_work, solve_conditions
 from bearing_sim.levels.steady.operating_point import ANSWER
 from bearing_sim.levels.steady.table import AXES, Table, contour_period, mirror_axis, monotone_slopes, new_look_up
-from bearing_sim.model.params import Lubrication, Params, pack
+from bearing_sim.model.params import Lubrication, Params, lubricate, pack
+from bearing_sim.model.running_clearance import mounted
 from bearing_sim.model.temperatures import lubricate_scene
 from bearing_sim.numerics.compilation import sources_hash
 from bearing_sim.numerics.cores import cores
+from bearing_sim.physics.growth import Temperatures, excess_growth, growth_at
 from bearing_sim.physics.rating_life import rating_life_revolutions
 from bearing_sim.scene.ratings import rate
 from bearing_sim.scene.scene import Scene
@@ -311,15 +313,31 @@ def span_of(scene: Scene, temperatures: tuple[float, float] | None = None) -> Sp
     wanted, bearing, limits = scene.table, scene.bearing, scene.accepted_inputs
     speed = wanted.maximum_speed or min(_SPEED_FRACTION * abs(scene.operating.shaft_speed) or limits.maximum_speed, limits.maximum_speed)
     low, high = temperatures or (wanted.minimum_temperature, wanted.maximum_temperature)
+    if scene.heat_law != "none":  # its films are warmer than the oil that comes in
+        low, high = min(low, wanted.minimum_temperature), max(high, wanted.maximum_temperature)
     reverse = limits.reverse_rotation or scene.operating.shaft_speed < 0.0
-    return Span(float(speed), float(wanted.maximum_load or _LOAD_FRACTION * rate(bearing).dynamic), float(low), float(high), bool(reverse))
+    return Span(
+        float(speed), float(wanted.maximum_load or _LOAD_FRACTION * rate(bearing).dynamic), float(low), float(high), bool(reverse), *_growths(scene)
+    )
+
+
+def _growths(scene: Scene) -> tuple[float, float]:
+    """Return the least and the largest growth that a table covers [m]: by the differences of temperature that the scene names."""
+    if scene.heat_law == "none" or scene.bearing.dimensions_at == "running":
+        return 0.0, 0.0
+    parts, ends = mounted(scene.bearing, scene.mounting), []
+    for warmer in (scene.table.minimum_difference, scene.table.maximum_difference):
+        middle = parts.expansion.reference
+        solids = Temperatures(middle + warmer, middle + warmer, middle + 0.5 * warmer, middle, middle)
+        ends.append(float(excess_growth(0.0, middle, growth_at(parts, solids), parts)))
+    return min(ends), max(ends)
 
 
 def table_hash(scene: Scene, span: Span) -> str:
     """Return a hash of what a table's numbers depend on: bearing, oil at the temperatures of the span, tolerance and this program."""
     params = pack(scene)
     digest = hashlib.sha256(sources_hash().encode())
-    oils = [lubricate_scene(scene, params, float(kelvin)) for kelvin in np.linspace(span.minimum_temperature, span.maximum_temperature, _OILS)]
+    oils = [lubricate(scene.lubricant, params, float(kelvin)) for kelvin in np.linspace(span.minimum_temperature, span.maximum_temperature, _OILS)]
     life = params.life._replace(method=0, reliability_factor=1.0)  # which choose among lives, and change no operating point
     bearing = params.rollers, params.raceways, params.cage, params.mounted, params.variants, params.envelope, life
     for number in _numbers((bearing, oils, span, scene.table.tolerance)):
@@ -406,7 +424,7 @@ def obtain_table(
     found = None if rebuild else read_table(path)
     if found is None:
         params = pack(scene)
-        found = build_table(params, lambda kelvin: lubricate_scene(scene, params, kelvin), span, float(scene.table.tolerance), workers, progress)
+        found = build_table(params, lambda kelvin: lubricate(scene.lubricant, params, kelvin), span, float(scene.table.tolerance), workers, progress)
         try:
             write_table(path, *found)
         except OSError:  # a table that cannot be kept is as good for this run
