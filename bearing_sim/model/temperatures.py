@@ -36,6 +36,19 @@ def given_temperatures(heat: GivenHeat, oil: float, measured: Sequence[float] = 
     return Temperatures(first(heat.shaft, inner), inner, first(heat.rollers, 0.5 * (inner + outer)), outer, first(heat.housing, outer))
 
 
+def film_temperatures(samples: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the temperatures of the films on inner and outer raceway in samples [K]: means of ring and rollers, the oil's where these are unknown.
+
+    Parameters
+    ----------
+    samples : shape (n,) or a single one, see `bearing_sim.model.sample`.
+    """
+    oil, rollers = samples["oil_temperature"], samples["roller_temperature"]
+    means = (0.5 * (samples[f"{ring}_ring_temperature"] + rollers) for ring in ("inner", "outer"))
+    inner, outer = (np.where(mean > 0.0, mean, oil) for mean in means)
+    return inner, outer
+
+
 def lubricate_scene(scene: Scene, params: Params, oil: float, measured: Sequence[float] = NOT_MEASURED) -> Lubrication:
     """Return the lubrication of a scene at a temperature of the oil, without a thermal network: parts as warm as given, otherwise as the oil.
 

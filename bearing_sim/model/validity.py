@@ -18,6 +18,7 @@ from bearing_sim.model.oil import OilState, oil_at
 from bearing_sim.model.params import Params, pack
 from bearing_sim.model.running_clearance import largest_hoop_stress, mounted, seat_pressure
 from bearing_sim.model.sample import new_block
+from bearing_sim.model.temperatures import film_temperatures
 from bearing_sim.scene.bearing import Bearing
 from bearing_sim.scene.crown import NoCrown
 from bearing_sim.scene.lubricant import ConstantTraction, CustomOil, EyringTraction, KragelskiiTraction, Oil, Oil4109Traction
@@ -98,11 +99,8 @@ class Conditions:
         """Return values, NaN where the shaft does not turn."""
         return np.where(self.turning, values, np.nan)
 
-    @functools.cached_property
-    def _oils(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        in_the_bearing = self.samples["oil_outlet_temperature"]  # of a thermal network
-        oil = np.where(np.isfinite(in_the_bearing) & (in_the_bearing > 0.0), in_the_bearing, self.samples["oil_temperature"])
-        temperatures = np.clip(oil, *_OIL_TEMPERATURES)
+    def _oils_at(self, temperatures: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        temperatures = np.clip(temperatures, *_OIL_TEMPERATURES)
         if np.ptp(temperatures) > 0.0:
             temperatures = np.round(temperatures / _SAME_OIL) * _SAME_OIL
         kinds, which = np.unique(temperatures, return_inverse=True)
@@ -110,20 +108,34 @@ class Conditions:
         found = ([getattr(state, name) for state in states] for name in ("viscosity", "density", "pressure_viscosity"))
         return tuple(np.array(each)[which.ravel()] for each in found)
 
+    @functools.cached_property
+    def _oils(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        inside = self.samples["oil_outlet_temperature"]
+        return self._oils_at(np.where(inside > 0.0, inside, self.samples["oil_temperature"]))
+
+    @functools.cached_property
+    def _films(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        return self._oils_at(0.5 * sum(film_temperatures(self.samples)))
+
     @property
     def viscosity(self) -> np.ndarray:
-        """eta_0 of the oil [Pa s]."""
+        """eta_0 of the oil in the bearing [Pa s]."""
         return self._oils[0]
 
     @property
     def density(self) -> np.ndarray:
-        """Density of the oil [kg/m^3]."""
+        """Density of the oil in the bearing [kg/m^3]."""
         return self._oils[1]
 
     @property
+    def film_viscosity(self) -> np.ndarray:
+        """eta_0 of the oil at the films' mean temperature [Pa s]."""
+        return self._films[0]
+
+    @property
     def pressure_viscosity(self) -> np.ndarray:
-        """Pressure coefficient of the viscosity, alpha [1/Pa]."""
-        return self._oils[2]
+        """Pressure coefficient of the viscosity at the films' mean temperature, alpha [1/Pa]."""
+        return self._films[2]
 
     @functools.cached_property
     def _heaviest(self) -> tuple[np.ndarray, ...]:
@@ -158,7 +170,7 @@ class Conditions:
     @property
     def film_speed(self) -> np.ndarray:
         """U = eta_0 u/(E' R) of that contact."""
-        return self.viscosity * self.rolling_speed / (self.params.raceways.reduced_modulus * self._heaviest[1])
+        return self.film_viscosity * self.rolling_speed / (self.params.raceways.reduced_modulus * self._heaviest[1])
 
     @property
     def film_load(self) -> np.ndarray:

@@ -188,6 +188,7 @@ class Monitor:
     def _forget(self) -> None:
         self._time, self._rate, self._damage = math.nan, math.nan, 0.0
         self._film = self._film_at = math.nan
+        self._film_of: np.ndarray | None = None  # the sample whose film has not been computed yet
         self._latest: dict[str, float] = {}
 
     def take(self, block: np.ndarray) -> None:
@@ -208,10 +209,10 @@ class Monitor:
             "clearance": float(np.fmin.reduce(block["running_clearance"], initial=math.nan)),
         }
         if not abs(now - self._film_at) < _FILM_EVERY * (1 - 1e-9):
-            self._film = float(self._films.least(block[-1:])[0]) if turning[-1] else math.nan
-            self._film_at = now
+            self._film, self._film_at = math.nan, now
+            self._film_of = block[-1:].copy() if turning[-1] else None
         if not math.isnan(self._films.roughness):
-            latest["lambda"] = self._film / self._films.roughness
+            latest["lambda"] = self._least_film() / self._films.roughness
         for name, value in latest.items():
             self._watches[name].judge(now, value)
         self._temperatures.take(block)
@@ -263,7 +264,13 @@ class Monitor:
         """Diagnostics values that only the monitor computes, with the unit in each key; empty before the first sample."""
         names = {"remaining": "remaining life [h]", "lambda": "film over roughness, lambda", "pocket": "largest pocket force [N]"}
         values = {shown: self._latest[name] for name, shown in names.items() if name in self._latest}
-        return values | ({"film [um]": 1e6 * self._film} if self._latest else {}) | self._temperatures.values(self._time)
+        return values | ({"film [um]": 1e6 * self._least_film()} if self._latest else {}) | self._temperatures.values(self._time)
+
+    def _least_film(self) -> float:
+        """Return the film of the newest sample that is due [m]; computed when somebody asks, because it takes longer than all other values."""
+        if self._film_of is not None:
+            self._film, self._film_of = float(self._films.least(self._film_of)[0]), None
+        return self._film
 
     def _remaining_life(self, now: float, life: float, damage: float) -> float:
         """Return (1 - D)/(dD/dt) [h] with dD/dt the fading mean of 1/L: damage accumulates 1/L, not L, where the life L fluctuates."""

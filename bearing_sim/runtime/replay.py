@@ -236,6 +236,8 @@ class _Run:
         if moment >= self._next_report:
             # A hundredth early, so that reports stay at whole seconds although stamps jitter.
             self._next_report = (math.floor(moment / _REPORT_EVERY + 0.01) + 0.99) * _REPORT_EVERY
+            if not self._recordings:
+                return
             holding = [*self._changes.holding.values(), *self._limits.events(moment)]
             worst_first = sorted(holding, key=lambda event: -event.level)
             values = condition(sample) | further_condition(self._scene, sample) | self._monitor.values | residual.values(moment)
