@@ -376,7 +376,7 @@ class Simulation:
     @property
     def takes_profiles(self) -> bool:
         """Whether `advance_profile` goes over many instants at once."""
-        return bool(self._tables) and self.scene.heat_law != "given"
+        return bool(self._tables) and self.scene.heat.law != "given"
 
     def advance_profile(self, stretches: np.ndarray, inputs: np.ndarray) -> np.ndarray:
         """Advance from instant to instant of a course, as far as the level's table holds it, many times as fast as by `advance`.

@@ -231,6 +231,46 @@ def test_course_by_table_under_a_clock_is_that_of_a_replay_to_the_last_bit(small
     assert len({float(sample["cage_slip"]) for sample in recordings[-1].samples.values()}) > 50, "the slip follows the inputs"
 
 
+@pytest.fixture(scope="module")
+def warm():
+    scene = load_scene(
+        "deng2017_table1",
+        [
+            *SMALL[:-2], "table.minimum_temperature=90 degC", "table.maximum_temperature=130 degC", "bearing.dimensions_at=cold",
+            "bearing.clearance=15 um", "heat.law=network", "table.tolerance=10 %", "table.minimum_difference=-40 K", "table.maximum_difference=5 K",
+        ],
+    )  # fmt: skip
+    params = pack(scene)
+    table = build_table(
+        params, lambda kelvin: lubricate(scene.lubricant, params, kelvin), span_of(scene)._replace(reverse=False), 0.1, 1, most_nodes=2000
+    )
+    return scene, table[0]
+
+
+def test_course_beside_a_thermal_network_is_the_same_as_one_advance_after_the_other(warm):
+    scene, table = warm
+    times = np.linspace(0.1, 6.0, 120)  # intervals of half the network's: it steps at every second instant
+    inputs = np.column_stack([3000 + 100 * times, 500 + 50 * np.sin(times), 100 * np.cos(times), np.full(120, 383.15), *np.full((2, 120), math.nan)])
+    start = Inputs(3000.0, 500.0, 0.0, 383.15)
+    one, other = Simulation(scene, start, table), Simulation(scene, start, table)
+    block = one.advance_profile(np.full(120, 0.05), inputs)
+    singles = np.concatenate([other.advance(0.05, Inputs(*row)) for row in inputs])
+    assert len(block) == 120 and np.ptp(block["roller_temperature"]) > 1.0 and np.ptp(block["running_clearance"]) > 1e-6
+    for name in ("time", "shaft_angle", "running_clearance", "inner_ring_temperature", "roller_temperature", "oil_outlet_temperature", "heat_to_oil"):
+        np.testing.assert_allclose(block[name], singles[name], rtol=1e-6, atol=1e-12, err_msg=name)
+    for name in ("cage_slip", "cage_angle", "damage", "inner_load", "rating_life", "viscosity_ratio"):
+        np.testing.assert_allclose(block[name], singles[name], rtol=2e-4, atol=1e-6, err_msg=name)
+    np.testing.assert_allclose(one.thermal.temperatures, other.thermal.temperatures, rtol=1e-7)
+    np.testing.assert_allclose(one.thermal.books, other.thermal.books, rtol=1e-4)
+
+
+def test_course_with_a_measured_temperature_leaves_the_rest_to_single_steps(warm):
+    scene, table = warm
+    inputs = np.array([[3000.0, 500.0, 0.0, 383.15, math.nan, math.nan]] * 3 + [[3000.0, 500.0, 0.0, 383.15, 390.0, math.nan]])
+    run = Simulation(scene, Inputs(*inputs[0]), table)
+    assert len(run.advance_profile(np.full(4, 0.1), inputs)) == 3 and len(run.advance_profile(np.full(1, 0.1), inputs[3:])) == 0
+
+
 def test_course_ends_where_the_table_does(small):
     scene, table, _ = small
     inputs = np.column_stack([np.linspace(3000, 6000, 30), np.full(30, 500.0), np.zeros(30), np.full(30, 393.15), *np.full((2, 30), math.nan)])

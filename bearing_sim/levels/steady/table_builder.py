@@ -313,7 +313,7 @@ def span_of(scene: Scene, temperatures: tuple[float, float] | None = None) -> Sp
     wanted, bearing, limits = scene.table, scene.bearing, scene.accepted_inputs
     speed = wanted.maximum_speed or min(_SPEED_FRACTION * abs(scene.operating.shaft_speed) or limits.maximum_speed, limits.maximum_speed)
     low, high = temperatures or (wanted.minimum_temperature, wanted.maximum_temperature)
-    if scene.heat_law != "none":  # its films are warmer than the oil that comes in
+    if scene.heat.law != "none":  # its films are warmer than the oil that comes in
         low, high = min(low, wanted.minimum_temperature), max(high, wanted.maximum_temperature)
     reverse = limits.reverse_rotation or scene.operating.shaft_speed < 0.0
     return Span(
@@ -323,7 +323,7 @@ def span_of(scene: Scene, temperatures: tuple[float, float] | None = None) -> Sp
 
 def _growths(scene: Scene) -> tuple[float, float]:
     """Return the least and the largest growth that a table covers [m]: by the differences of temperature that the scene names."""
-    if scene.heat_law == "none" or scene.bearing.dimensions_at == "running":
+    if scene.heat.law == "none" or scene.bearing.dimensions_at == "running":
         return 0.0, 0.0
     parts, ends = mounted(scene.bearing, scene.mounting), []
     for warmer in (scene.table.minimum_difference, scene.table.maximum_difference):
