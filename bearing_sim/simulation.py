@@ -367,8 +367,8 @@ class Simulation:
         return str(end[-len(RING_TEMPERATURES) :]) != str(self.inputs[-len(RING_TEMPERATURES) :])  # as text NaN equals NaN
 
     def _alone(self, inputs: np.ndarray) -> int:
-        """Return up to which of many instants the thermal network runs without a measured temperature and without being held."""
-        if self._thermal.held:
+        """Return up to which of many instants the thermal network runs without a measured temperature, without being held."""
+        if self._thermal.held or self._thermal.uncorrected is not None:
             return 0
         measured = np.flatnonzero(np.isfinite(inputs[:, -len(RING_TEMPERATURES) :]).any(axis=1))
         return int(measured[0]) if len(measured) else len(inputs)

@@ -232,6 +232,18 @@ def test_a_fit_is_the_same_squeeze_as_a_larger_raceway(level):
     np.testing.assert_allclose(grown["inner_load"][50:].mean(), larger["inner_load"][50:].mean(), rtol=0.02)
 
 
+def test_a_cage_that_turns_grows_into_the_lands_around_it_as_a_ring_does():
+    run = pack(load_scene("deng2017_table1", [COLD]))
+    cage_speed = 0.5 * 45000 * math.pi / 30 * (1 - GAMMA)
+    grown = displacement(Layer(29.6e-3, 33.35e-3, *STEEL), 33.35e-3, State(square_speed=cage_speed**2))
+    assert run.cage.guide_clearance == pytest.approx(0.15e-3 - grown, rel=1e-12) and grown > 4e-6
+    assert pack(load_scene("deng2017_table1")).cage.guide_clearance == 0.15e-3
+    inner = ["bearing.cage.guidance=inner_ring", "bearing.cage.guide_radius=29.45 mm", "bearing.cage.outer_radius=33.35 mm"]
+    inner += ["bearing.cage.inner_radius=null"]
+    opened = pack(load_scene("deng2017_table1", [COLD, *inner, "bearing.cage.guide_clearance=0.15 mm"])).cage.guide_clearance
+    assert 0.13e-3 < opened < 0.15e-3  # the ring turns twice as fast as the cage
+
+
 @pytest.mark.parametrize(
     ("overrides", "expected"),
     [

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.model.oil import oil_at
-from bearing_sim.model.running_clearance import mounted, uniform
+from bearing_sim.model.running_clearance import mounted, running_play, uniform
 from bearing_sim.physics.contact import iso_contact_stiffness, line_contact_stiffness
 from bearing_sim.physics.drag import Bath, bath_drag
 from bearing_sim.physics.film import RollingResistance, replenishment_rate, resistance_constants
@@ -255,7 +255,7 @@ def pack(scene: Scene) -> Params:
                 pocket_radius=float(contour[:, 3].mean()) - roller_radius,
             ),
             guide_radius=cage.land_radius if cage.has_lands else bearing.pitch_radius,
-            guide_clearance=cage.play,
+            guide_clearance=running_play(bearing, scene.mounting, scene.operating.shaft_speed),
             guide_width=land_width,
             land_film=cage.land_film,
             land_friction=cage.land_friction,

@@ -11,6 +11,7 @@ from bearing_sim.scene.bearing import Bearing
 from bearing_sim.scene.material import Material
 from bearing_sim.scene.mounting import Mounting, housing_interference, shaft_interference, smoothed
 
+_LEAST_PLAY = 1.5  # times the film at which surfaces touch: what a cage keeps that its growth would jam
 _HOUSING_RATIO = 1.5  # assumption: outside radius of a housing over that of the ring; from 1.3 to 3 the ring shrinks by a third more or less
 
 
@@ -83,6 +84,28 @@ def _housing_fit(bearing: Bearing, mounting: Mounting) -> HousingFit:
     ring, around = housing_layers(bearing, mounting)
     pressure, _, by_ring, by_housing = _seat(ring, around, smoothed(limits.mean, mounting.housing))
     return HousingFit(-displacement(ring, ring.inner_radius, State(outer_pressure=1.0)), pressure, by_ring, by_housing)
+
+
+def running_play(bearing: Bearing, mounting: Mounting, shaft_speed: float) -> float:
+    """Return how far the cage's centre can move in its guidance [m] at a shaft speed [rad/s] and the reference temperature.
+
+    A cage on the outer ring's lands grows into them as a ring that turns, one on the inner ring's lands away from them, while that ring
+    grows after it.  *Assumption*: the cage turns without slip, and its bars between the pockets do not weaken it.
+    """
+    cage = bearing.cage
+    if bearing.dimensions_at == "running" or not cage.has_lands:
+        return cage.play
+    body = _layer(cage.bore, cage.outside, cage.material)
+    square = (0.5 * shaft_speed * (1 - bearing.diameter_ratio)) ** 2
+    if cage.guidance == "outer_ring":
+        play = cage.play - displacement(body, cage.outside, State(square_speed=square))
+    else:
+        fit, turned = _shaft_fit(bearing, mounting), shaft_speed * shaft_speed
+        pressure = max(0.0, fit.pressure + fit.by_square_speed * turned)
+        ring = shaft_layers(bearing, mounting)[1]
+        land = displacement(ring, ring.outer_radius, State(inner_pressure=pressure, square_speed=turned))
+        play = cage.play + displacement(body, cage.bore, State(square_speed=square)) - land
+    return max(play, _LEAST_PLAY * cage.land_film)
 
 
 def lift_off_speed(growth: Growth) -> float:

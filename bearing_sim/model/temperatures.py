@@ -83,7 +83,7 @@ def local_model(scene: Scene, params: Params, inlet: float, nodes: np.ndarray) -
 def warm_cage(scene: Scene, params: Params, solids: Temperatures) -> Params:
     """Return parameters with the clearance of a cage on lands at the temperatures of cage and ring; `running` dimensions stay.
 
-    *Assumption*: the ring expands freely, at its material's rate; fits and rotation are left out.
+    *Assumption*: the ring expands freely, at its material's rate; fits are left out.  Rotation is in the parameters.
 
     Parameters
     ----------
@@ -97,5 +97,5 @@ def warm_cage(scene: Scene, params: Params, solids: Temperatures) -> Params:
     on_outer = bearing.cage.guidance == "outer_ring"
     warmer = (solids.outer_ring if on_outer else solids.inner_ring) - reference
     opened = cage.guide_radius * (ring * warmer - own * (solids.rollers - reference))
-    clearance = bearing.cage.guide_clearance + (opened if on_outer else -opened)
+    clearance = cage.guide_clearance + (opened if on_outer else -opened)
     return params._replace(cage=cage._replace(guide_clearance=max(clearance, _LEAST_LAND * cage.land_film)))

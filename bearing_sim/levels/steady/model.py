@@ -305,6 +305,8 @@ def _write_heat(heat, row):
     for node in range(NODES):
         row[COLUMN.shaft_temperature + node] = heat.temperatures[node]
     row[COLUMN.heat_to_oil], row[COLUMN.heat_to_ambient] = heat.flows[0], heat.flows[1]
+    row[COLUMN.inner_ring_temperature_uncorrected] = heat.temperatures[NODE.inner_ring]  # nothing is measured along a course
+    row[COLUMN.outer_ring_temperature_uncorrected] = heat.temperatures[NODE.outer_ring]
 
 
 @kernel
