@@ -249,12 +249,12 @@ def _right(scene: Scene, axes: _Axes) -> rrb.Vertical:
     if scene.uses_ring_temperatures:
         clearances, powers = rrb.Tabs(clearance_bars, clearance, active_tab=0), rrb.Tabs(bars, plot, active_tab=0)
         courses = rrb.Tabs(_temperatures(axes), load, damage, oil, active_tab=0)
-        return rrb.Vertical(texts, powers, clearances, courses, row_shares=[0.33, 0.22, 0.24, 0.21])
+        return rrb.Vertical(texts, powers, clearances, courses, row_shares=[0.26, 0.3, 0.23, 0.21])
     powers = rrb.Tabs(bars, plot, active_tab=0)
     if scene.bodies_tilt:  # with so many numbers now
         return rrb.Vertical(texts, powers, rrb.Tabs(load, clearance_bars, clearance, damage, oil, active_tab=0), row_shares=[0.53, 0.27, 0.2])
     loads = rrb.Tabs(load, clearance_bars, clearance, active_tab=0)
-    return rrb.Vertical(texts, powers, loads, rrb.Tabs(damage, oil, active_tab=0), row_shares=[0.43, 0.255, 0.1575, 0.1575])
+    return rrb.Vertical(texts, powers, loads, rrb.Tabs(damage, oil, active_tab=0), row_shares=[0.39, 0.295, 0.1575, 0.1575])
 
 
 def _clearance(axes: _Axes) -> rrb.TimeSeriesView:
