@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from bearing_sim.model.params import pack
-from bearing_sim.model.thermal_network import POWERS, boundary_dimensions, fit_gaps, seats, thermal_network
-from bearing_sim.physics.growth import Temperatures, growth_at
+from bearing_sim.model.thermal_network import POWERS, boundary_dimensions, fit_gaps, thermal_network
+from bearing_sim.physics.growth import Temperatures, growth_at, seats_at
 from bearing_sim.physics.thermal_network import NODE, NODES, NetworkInputs, heat_flows, new_work, settle
 from bearing_sim.scene.loader import catalog_names, scene_from_yaml
 
@@ -43,7 +43,7 @@ def carried(name):
     network, size, work = thermal_network(scene, params), boundary_dimensions(scene.bearing), new_work()
     growth = growth_at(params.mounted, Temperatures(*(BEARING,) * 5))
     loads = np.zeros((2, scene.bearing.roller.count))
-    inputs = NetworkInputs(speed, 0.45 * speed, BEARING, *seats(params, growth, speed, fit_gaps(scene)))
+    inputs = NetworkInputs(speed, 0.45 * speed, BEARING, *seats_at(speed, growth, params.mounted, fit_gaps(scene)))
     temperatures = np.full(NODES, BEARING)
     assert settle(temperatures, np.zeros(len(POWERS)), loads, inputs, network, held, work)
     return heat_flows(temperatures, inputs, network, work)[1], reference_flow(2 * size.bore_radius, 2 * size.outside_radius, size.width)

@@ -275,7 +275,9 @@ OUTPUTS = {
         _array("centre_positions", "displacements [m]: inner ring and cage from the outer ring, outer ring and shaft in space, y, z each"),
         _array("axis_tilts", "tilts [rad]: inner ring towards y, z, cage towards y, z", True),
         _array("slice_pressures", "largest Hertzian pressures [Pa]: inner, outer raceway, and of the rollers' end slices alone", True),
-        _array("predicted_temperatures", "temperatures [K] of shaft, rings, rollers, housing and the oil that leaves, given or computed", of_heat=True),
+        _array(
+            "predicted_temperatures", "temperatures [K] of shaft, rings, rollers, housing and the oil that leaves, given or computed", of_heat=True
+        ),
         _array("heat_flows", "heat [W] that the oil takes along, and that housing and shaft give off; NaN without a network", of_heat=True),
         _array("power", "power [W]: what the shaft puts in, then what is lost, by cause; and the frictional moment [N*m]"),
         _array("roller_speeds", "speeds [rad/s], (orbital, spin) x roller"),
@@ -292,7 +294,11 @@ RECORDED = {
     topic.name: topic
     for topic in (
         _array("operating_point", "inputs as the model had them: load y, z [N], oil [K]; land eccentricity"),
-        _array("measured_temperatures", "ring temperatures [K]: measured, as the model had them, and of the network without their correction", of_heat=True),
+        _array(
+            "measured_temperatures",
+            "ring temperatures [K]: measured, as the model had them, and of the network without their correction",
+            of_heat=True,
+        ),
         _array("roller_places", "(azimuth [rad], distance from the centre [m], rotation [rad]) x roller"),
     )
 }

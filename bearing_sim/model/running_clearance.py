@@ -115,9 +115,20 @@ def lift_off_speed(growth: Growth) -> float:
     return math.sqrt(max(0.0, growth.pressure) / -growth.pressure_by_square_speed)
 
 
-def seat_pressure(parts: Mounted, shaft_speed):
-    """Return the pressure between shaft and inner ring at a speed [Pa], at the reference temperature; negative where they have parted."""
-    return parts.shaft.pressure + parts.shaft.by_square_speed * shaft_speed * shaft_speed
+def seat_pressure(parts: Mounted, samples: np.ndarray) -> np.ndarray:
+    """Return the pressure between shaft and inner ring in samples [Pa], shape (n,); negative where they have parted.
+
+    Parameters
+    ----------
+    parts : `mounted` of the bearing.
+    samples : shape (n,), see `bearing_sim.model.sample`; where they hold no temperatures, shaft and ring are as warm as each other.
+    """
+    fit, reference = parts.shaft, parts.expansion.reference
+    pressure = fit.pressure + fit.by_square_speed * samples["shaft_speed"] ** 2
+    for factor, name in ((fit.by_shaft, "shaft_temperature"), (fit.by_ring, "inner_ring_temperature")):
+        temperature = samples[name]
+        pressure = pressure + factor * (np.where(temperature > 0.0, temperature, samples["oil_temperature"]) - reference)
+    return pressure
 
 
 def largest_hoop_stress(bearing: Bearing, mounting: Mounting, shaft_speed):

@@ -208,8 +208,8 @@ def moving_air_coefficient(surface, ambient, diameter, air_speed):
     """Return the heat transfer coefficient of a horizontal cylinder in air that moves across it [W/(m^2 K)].
 
     Forced: Nu = 0.3 + 0.62 Re^(1/2) Pr^(1/3)/[1 + (0.4/Pr)^(2/3)]^(1/4) [1 + (Re/282,000)^(5/8)]^(4/5), Re = v d/nu (S. W. Churchill, M. Bernstein,
-    J. Heat Transfer 99 (1977) 300), Re Pr above 0.2.  *Assumption*: with natural convection as the cube root of the sum of both cubes, as S. W. Churchill
-    (AIChE J. 23 (1977) 10) combines them.
+    J. Heat Transfer 99 (1977) 300), Re Pr above 0.2.  *Assumption*: with natural convection as the cube root of the sum of both cubes, as
+    S. W. Churchill (AIChE J. 23 (1977) 10) combines them.
 
     Parameters
     ----------

@@ -386,8 +386,8 @@ def ring_errors(bearing) -> list[str]:
     inner, outer, errors = bearing.inner_raceway, bearing.outer_raceway, []
     if inner.bore_radius is not None and inner.bore_radius >= inner.radius:
         errors.append(
-            f"inner_raceway.bore_radius: {1e3 * inner.bore_radius:.6g} mm is not below the raceway's radius, {1e3 * inner.radius:.6g} mm; give that of "
-            "this bearing, or null"
+            f"inner_raceway.bore_radius: {1e3 * inner.bore_radius:.6g} mm is not below the raceway's radius, {1e3 * inner.radius:.6g} mm; "
+            "give that of this bearing, or null"
         )
     high = outer.low_radius + outer.d_value
     if outer.outside_radius is not None and outer.outside_radius <= high:

@@ -196,8 +196,12 @@ class Thresholds:
     pocket_force_error: quantity("N", "pocket force that is an error; None: none is", 0.0, 1e6) | None = None
     pocket_force_hold: Hold = field(default_factory=Hold)
     # A preload may be wanted, so that no clearance is wrong for every bearing.
-    clearance_warning: quantity("m", "running clearance below which there is a warning; -1 mm: never", NO_CLEARANCE_LIMIT, 1e-2, "um") = NO_CLEARANCE_LIMIT
-    clearance_error: quantity("m", "running clearance below which there is an error; -1 mm: never", NO_CLEARANCE_LIMIT, 1e-2, "um") = NO_CLEARANCE_LIMIT
+    clearance_warning: quantity("m", "running clearance below which there is a warning; -1 mm: never", NO_CLEARANCE_LIMIT, 1e-2, "um") = (
+        NO_CLEARANCE_LIMIT
+    )
+    clearance_error: quantity("m", "running clearance below which there is an error; -1 mm: never", NO_CLEARANCE_LIMIT, 1e-2, "um") = (
+        NO_CLEARANCE_LIMIT
+    )
     clearance_hold: Hold = field(default_factory=Hold)
     residual: ResidualDetection = field(default_factory=ResidualDetection)
     temperature_residual: TemperatureResidualDetection = field(default_factory=TemperatureResidualDetection)

@@ -48,4 +48,5 @@ def _signed(micrometres: float) -> str:
 def _unsaid(scene: Scene) -> str:
     """Return what a cold bearing's scene leaves open."""
     missing = [name for name in ("shaft", "housing") if (seat := getattr(scene.mounting, name)).fit is None and seat.interference is None]
-    return f"; no fit of the {' and the '.join(missing)} is given" if missing else ""
+    unsaid = f"; no fit of the {' and the '.join(missing)} is given" if missing else ""
+    return unsaid + ("; all temperatures are taken as the oil's" if scene.heat.law == "none" else "")

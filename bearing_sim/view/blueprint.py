@@ -7,10 +7,9 @@ from typing import NamedTuple
 import rerun as rr
 import rerun.blueprint as rrb
 
-from bearing_sim.messages.topics import LIFE_SYMBOLS
+from bearing_sim.messages.topics import LIFE_SYMBOLS, RING_TEMPERATURES
 from bearing_sim.scene.scene import Scene
 from bearing_sim.view import section
-from bearing_sim.messages.topics import RING_TEMPERATURES
 from bearing_sim.view.drawings import BODIES, CLEARANCES, HEAT_ROOT, ORBIT_EDGE, SAMPLES, bar_bounds, causes_of, heat_bounds
 from bearing_sim.view.load_map import map_bounds
 from bearing_sim.view.plots import END, TIMELINE, compared_life, range_path

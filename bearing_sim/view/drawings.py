@@ -592,7 +592,9 @@ class HeatDrawing(_Drawing):
         self._log("bodies", rr.Ellipses2D.from_fields(colors=np.array([colour[name] for name in self._round])))
         self._log("rollers", rr.Points2D.from_fields(colors=colour["rollers"][None]))
         rows = -0.78 * self._edge + 0.24 * self._edge * np.arange(len(BODIES))
-        self._log("keys", rr.Points2D(np.stack((np.full(len(rows), 1.35 * self._edge), rows), axis=1), radii=0.08 * self._edge, colors=[*colour.values()]))
+        self._log(
+            "keys", rr.Points2D(np.stack((np.full(len(rows), 1.35 * self._edge), rows), axis=1), radii=0.08 * self._edge, colors=[*colour.values()])
+        )
         texts = [f"{label} {_celsius(celsius[name])}{self._measured(sample, name)}" for name, (label, _, _) in BODIES.items()]
         self._log("texts", labels(np.stack((np.full(len(rows), 2.25 * self._edge), rows - 0.09 * self._edge), axis=1), texts))
 
@@ -620,7 +622,9 @@ class HeatDrawing(_Drawing):
         self._log("legend/map", rr.LineStrips2D(strips, radii=0.05 * self._edge, colors=colours.heat_palette(steps)))
         ticks = np.linspace(low, high, 3)
         across = np.linspace(places[0], places[-1], len(ticks))
-        self._log("legend/ticks", labels(np.stack((across, np.full(len(ticks), level + 0.06 * self._edge)), axis=1), [_celsius(tick, 0) for tick in ticks]))
+        self._log(
+            "legend/ticks", labels(np.stack((across, np.full(len(ticks), level + 0.06 * self._edge)), axis=1), [_celsius(tick, 0) for tick in ticks])
+        )
 
 
 def heat_bounds(scene: Scene) -> tuple[tuple[float, float], tuple[float, float]]:

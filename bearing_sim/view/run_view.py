@@ -71,7 +71,8 @@ stored for a moment in motion and elastic contacts; the bars are means of the ne
 **Running clearance** of the lowest points, diametral, negative: preload, is the sum of what is on the drawing and what fits, rotation, heat and
 the contour change; the bars are means of the newest samples.
 
-{_HEAT if scene.uses_ring_temperatures else ""}**Thresholds**: slip {100 * limits.slip_warning:g} % warning, {100 * limits.slip_error:g} % error; life below {limits.life_warning:g} h warning.
+{_HEAT if scene.uses_ring_temperatures else ""}**Thresholds**: slip {100 * limits.slip_warning:g} % warning,
+{100 * limits.slip_error:g} % error; life below {limits.life_warning:g} h warning.
 
 **Loads** are those of the sampled instants: at constant speed samples may meet the rollers in the same places again and
 again, and then the largest load changes with the speed while the bearing's does not.

@@ -42,7 +42,7 @@ _FRACTION = 0.5  # of the error allowed in all, for one axis
 _LAG_FLOOR, _LAG_LENIENCE = 2e-3, 10.0  # s, and times as much error: a lag shows only while the inputs change
 _LINES = 24  # drawn for each interval
 _ROUNDS = 7  # an interval is halved so many times at most
-_MOST_NODES = 60_000
+_MOST_NODES, _MOST_WARM_NODES = 60_000, 200_000  # without and with an axis of growth
 _CHECKS = 400
 _CHUNK = 16  # conditions solved in one go by a thread
 _FIRST_SPEEDS, _FIRST_LOADS = (0.0, 0.08, 0.2, 0.4, 0.6, 0.8, 1.0), (0.0, 0.005, 0.03, 0.08, 0.15, 0.25, 0.5, 1.0)
@@ -137,7 +137,7 @@ def build_table(
     tolerance: float,
     workers: int | None = None,
     progress: Callable[[int], None] = lambda solved: None,
-    most_nodes: int = _MOST_NODES,
+    most_nodes: int | None = None,
 ) -> tuple[Table, Quality]:
     """Build a table.
 
@@ -149,7 +149,7 @@ def build_table(
     tolerance : relative error allowed in slip (besides 0.025 points) and in life.
     workers : threads; as many as the machine has cores where absent.
     progress : called now and then with the number of operating points solved for.
-    most_nodes : refinement ends before a grid of more.
+    most_nodes : refinement ends before a grid of more; 60,000, or 200,000 with an axis of growth, where absent.
 
     Returns
     -------
@@ -158,7 +158,7 @@ def build_table(
     began = time.perf_counter()
     with Solver(params, lubrication, workers, progress) as solver:
         grid = _Grid(params, solver, span, tolerance)
-        grid.refine(most_nodes)
+        grid.refine(most_nodes or (_MOST_WARM_NODES if span.maximum_growth > span.minimum_growth else _MOST_NODES))
         table = grid.table()
         checks = grid.drawn(_CHECKS)
         exact, found = solver.solve(checks), look_up(table, checks)

@@ -23,9 +23,7 @@ _LIMITS = Limits(SLIP_BELOW, LIFE_ABOVE, Conditions(speed_tolerance=0.02, load_t
 _QUICK = ((LOW, (34.860e-3, 34.862e-3, 34.864e-3, 34.866e-3)), (D_VALUE, (0.09e-3, 0.1e-3, 0.11e-3)))
 
 
-def answer(
-    journal: Journal, quick: bool, workers: int | None = None, dask: str | None = None, overrides: Sequence[str] = ()
-) -> Designed:
+def answer(journal: Journal, quick: bool, workers: int | None = None, dask: str | None = None, overrides: Sequence[str] = ()) -> Designed:
     """Return the map of raceways at level steady.
 
     Parameters

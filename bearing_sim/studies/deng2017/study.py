@@ -140,7 +140,10 @@ def plan_study(quick: bool = False, overrides: Sequence[str] = ()) -> Planned:
     duration = QUICK_DURATION if quick else DURATION
     sweeps = {
         (each.name, level): plan_sweep(
-            each.scene, [*overrides, *each.overrides, f"level={level}"], [read_axis(text) for text in (each.quick_axes if quick else each.axes)], duration
+            each.scene,
+            [*overrides, *each.overrides, f"level={level}"],
+            [read_axis(text) for text in (each.quick_axes if quick else each.axes)],
+            duration,
         )
         for level in LEVELS
         for each in STUDIES
