@@ -76,6 +76,14 @@ HOT = ("heat.law=given",)
 NETWORK = ("heat.law=network", "level=steady")
 
 # Law: the command and what drives the law out of its range; the command and what keeps it inside.
+
+
+def carried(stiffness, length, clearance):
+    """Overrides for an outer ring on a spring [N/m] in a squeeze film of a length [mm] and a radial clearance [um]."""
+    film = f"{{radius: 40 mm, length: {length} mm, clearance: {clearance} um}}"
+    return "level=planar", f"support.outer_ring={{stiffness: {stiffness}, squeeze_film: {film}}}"
+
+
 CASES = {
     "oil_4109_class": (("run", "motor", *VG_320), ("run", "motor")),
     "oil_4109_pressure": (("run", PAPER, "operating.radial_load=25 kN"), ("run", PAPER)),
@@ -151,6 +159,9 @@ CASES = {
         ("run", PAPER, "bearing.dimensions_at=cold", "mounting.shaft.interference=10 um"),
         ("run", "motor", "mounting.shaft.fit=k5"),
     ),
+    "squeeze_film_eccentricity": (("run", PAPER, *carried(8e6, 12, 150)), ("run", PAPER, *carried(4e7, 12, 150))),
+    "squeeze_film_length": (("run", PAPER, *carried(4e7, 60, 60)), ("run", PAPER, *carried(4e7, 12, 60))),
+    "squeeze_film_reynolds": (("run", PAPER, *carried(4e7, 12, 150)), ("run", PAPER, *carried(4e7, 12, 60))),
     "limiting_speed": (
         ("run", "motor", "bearing.ratings.limiting_speed=2900 rpm"),
         ("run", "motor", "bearing.ratings.limiting_speed=9000 rpm"),

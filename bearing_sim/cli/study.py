@@ -207,7 +207,7 @@ def support(scene_name, overrides, lowest, highest, points, level, table, pictur
         if picture is not None:
             from bearing_sim.studies.support import draw
 
-            draw(picture, f"{scene_name} {' '.join(overrides)}: response over speed, level {level}", found)
+            draw(picture, f"{' '.join([scene_name, *overrides])}: response over speed, level {level}", found)
     if as_json:
         print_json({"scene": scene_name, "level": level, "points": rows})
     else:
