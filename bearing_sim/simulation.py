@@ -14,7 +14,7 @@ from bearing_sim.levels.steady.table import Table
 from bearing_sim.levels.steady.table_builder import cached_table
 from bearing_sim.model.oil import kinematic_viscosities
 from bearing_sim.model.params import pack
-from bearing_sim.model.sample import COLUMN, RING_TEMPERATURES, flat, new_block, sample_dtype
+from bearing_sim.model.sample import COLUMN, RING_TEMPERATURES, flat, joined, new_block, sample_dtype
 from bearing_sim.model.temperatures import given_temperatures, lubricate_scene
 from bearing_sim.model.thermal_network import NODE_OBSERVABLES
 from bearing_sim.numerics.compilation import compiled_for
@@ -23,6 +23,7 @@ from bearing_sim.scene.fidelity import NUMBERS
 from bearing_sim.scene.scene import Integration, Operating, Scene
 
 _MEASURED_COLUMNS = slice(COLUMN.inner_ring_temperature_measured, COLUMN.outer_ring_temperature_measured + 1)
+_LONGEST_CALL = 2.0  # intervals of the thermal network
 _FINEST_WITH_FIXED_STEP = Tolerances(position=2.5e-11, play=5e-11, speed=1e-7, relative=3e-7)
 
 
@@ -294,7 +295,8 @@ class Simulation:
     def advance(self, duration: float, inputs: Inputs | None = None, samples: int = 1) -> np.ndarray:
         """Advance by ``duration`` [s] while the inputs change linearly from their present values to ``inputs``.
 
-        Temperatures take their new values at the start: they change slowly, and every oil property depends on that of the oil.
+        Temperatures take their new values at the start: they change slowly, and every oil property depends on that of the oil.  With a thermal
+        network a long call is cut into parts of at most two of its intervals.
 
         Parameters
         ----------
@@ -317,6 +319,36 @@ class Simulation:
         if not 0.0 < duration < math.inf or samples < 1:
             raise ValueError(f"advance takes a positive finite duration and at least one sample, got {duration!r} s and {samples!r}")
         end = self.inputs if inputs is None else _checked(inputs)
+        if self._thermal is not None and not self._thermal.held and duration > _LONGEST_CALL * self.scene.heat.interval:
+            return self._advance_in_parts(float(duration), end, samples)
+        return self._advance_at_once(duration, end, samples)
+
+    def _advance_in_parts(self, duration: float, end: Inputs, samples: int) -> np.ndarray:
+        """Advance by calls in which temperatures hardly change, so that losses follow them; on an error return to where the first began."""
+        before, thermal = dict(self.__dict__), self._thermal.copy()
+        interval, longest, start = duration / samples, _LONGEST_CALL * self.scene.heat.interval, self.inputs
+        parts = math.ceil(interval / longest * (1.0 - 1e-9))  # of the time between two samples
+        together = max(int(longest / interval * (1.0 + 1e-9)), 1)  # samples of a call
+        blocks, done = [], 0
+        try:
+            while done < samples:
+                size = min(together, samples - done)
+                for part in range(1, parts + 1):
+                    there = (done + size * part / parts) / samples
+                    between = (old + there * (new - old) for old, new in zip(start[: -len(RING_TEMPERATURES)], end))
+                    reached = end if there == 1.0 else Inputs(*between, *end[-len(RING_TEMPERATURES) :])._replace(oil_temperature=end.oil_temperature)
+                    block = self._advance_at_once(size * interval / parts, reached, size if parts == 1 else 1)
+                blocks.append(block)
+                done += size
+        except IntegrationError:
+            self.__dict__.update(before)
+            self._thermal = thermal
+            self._take_temperatures()
+            self._work = self._new_work()
+            raise
+        return joined(blocks)
+
+    def _advance_at_once(self, duration: float, end: Inputs, samples: int) -> np.ndarray:
         if end.oil_temperature != self._lubrication.temperature or self._rings_changed(end):
             self._follow_inputs(end)
         block = new_block(samples, self._params.rollers.count)

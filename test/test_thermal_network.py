@@ -15,7 +15,9 @@ from bearing_sim.physics.growth import Temperatures
 from bearing_sim.physics.thermal_filter import filter_gain, network_matrix
 from bearing_sim.physics.thermal_network import BOOK, LINK, LINKS, NODE, NODES, NetworkInputs, new_work, settle, step
 from bearing_sim.scene.loader import SceneError
-from bearing_sim.simulation import scene_inputs
+from bearing_sim.simulation import IntegrationError, scene_inputs
+from bearing_sim.sweep.point import point_row
+from bearing_sim.sweep.thermal import begin_in_equilibrium
 
 COLD = [
     *("bearing.dimensions_at=cold", "bearing.outer_raceway.low_radius=null", "bearing.clearance=C3"),
@@ -301,6 +303,45 @@ def test_preload_that_heat_closes_further_has_no_equilibrium_and_the_reason_says
     found = thermal_equilibrium(of, scene_inputs(of))
     assert not found.converged
     assert "no thermal equilibrium below the limit of 300 degC" in found.reason and "the clearance is gone" in found.reason
+
+
+def test_a_long_call_is_as_good_as_short_ones():
+    """Inputs change linearly over both, losses follow temperatures in both."""
+    run, other = Simulation(scene(level="steady")), Simulation(scene(level="steady"))
+    end = scene_inputs(run.scene)._replace(shaft_speed=3000.0)
+    start = run.inputs
+    long = run.advance(20.0, end, samples=4)
+    short = [other.advance(0.1, start._replace(shaft_speed=start.shaft_speed + (k + 1) / 200 * (3000.0 - start.shaft_speed))) for k in range(200)]
+    assert long["time"] == pytest.approx([5.0, 10.0, 15.0, 20.0]) and run.time == pytest.approx(20.0)
+    assert long["shaft_speed"][-1] == 3000.0 and run.inputs == end
+    for name in NODE_OBSERVABLES:
+        assert long[name][-1] == pytest.approx(short[-1][name][0], abs=0.1)
+    assert run.sample["damage"] == pytest.approx(other.sample["damage"], rel=1e-3)
+
+
+def test_a_long_call_that_fails_leaves_the_simulation_as_it_was():
+    run = Simulation(scene("integration.step_budget=2000"))
+    run.advance(0.01)
+    before, nodes = run.sample.tobytes(), run.thermal.temperatures.copy()
+    with pytest.raises(IntegrationError):
+        run.advance(30.0)
+    assert run.sample.tobytes() == before and (run.thermal.temperatures == nodes).all() and run.time == 0.01
+
+
+def test_a_run_begins_in_the_equilibrium_of_its_own_level_and_stays_there():
+    of = scene("heat.interval=0.02")
+    steady = thermal_equilibrium(of, scene_inputs(of)).temperatures
+    run = Simulation(of)
+    begin_in_equilibrium(run, 0.05, 0.2)
+    assert run.time == 0.0 and run.thermal.temperatures == pytest.approx(steady, abs=1.5)
+    began = run.thermal.temperatures.copy()
+    run.advance(0.5, samples=50)
+    assert run.thermal.temperatures == pytest.approx(began, abs=0.5)
+
+
+def test_a_point_of_a_sweep_without_equilibrium_fails_and_says_why():
+    row = point_row(scene("heat.limit=130 degC", level="steady"))
+    assert row["status"] == "failed" and "no thermal equilibrium below the limit of 130 degC" in row["reason"]
 
 
 def test_temperatures_can_be_set_and_held_only_with_a_network():

@@ -6,6 +6,7 @@ simulated time the network takes a step, from whose temperatures radii, viscosit
 corrects all nodes by a Kalman filter in its steady state: its gain belongs to the scene's operating point and the length of the step.
 """
 
+import copy
 import math
 
 import numpy as np
@@ -67,6 +68,16 @@ class ThermalState:
     def _forget(self) -> None:
         self._losses[:] = 0.0  # [J] by cause
         self._since[:] = 0.0
+
+    def copy(self) -> "ThermalState":
+        """Return an independent state with the same temperatures, books and losses."""
+        other = copy.copy(self)
+        other._values = self._values.copy()
+        other.temperatures, other.flows = other._values[:NODES], other._values[NODES : -len(_RINGS)]
+        other.books, other._losses, other._loads, other._work = self.books.copy(), self._losses.copy(), self._loads.copy(), new_work()
+        other._seats, other._since = self._seats.copy(), self._since.copy()
+        other.uncorrected = None if self.uncorrected is None else self.uncorrected.copy()
+        return other
 
     def take_over(self, other: "ThermalState") -> None:
         """Continue from the temperatures, the books and the losses not yet taken of another state of the same bearing."""
