@@ -124,6 +124,17 @@ def test_quoted_cells_over_several_lines_keep_line_numbers_right(tmp_path):
     assert table.examples["shaft_speed.empty_cell"][0][0] == 4
 
 
+def test_columns_of_measured_rings_become_their_topics_each_with_its_own_unit_and_empty_cells_are_not_filled(tmp_path):
+    rings = "inner_ring_temperature: {column: i, unit: degC}\nouter_ring_temperature: {column: e, unit: K}\n"
+    table = table_of(tmp_path, "t,n,f,i,e\n0,30,800,80,350\n1,30,800,,351\n2,30,800,82,352\n", MAPPING + rings)
+    assert table.values["inner_ring_temperature"] == pytest.approx([353.15, 355.15]) and table.refused == {"inner_ring_temperature.empty_cell": 1}
+    write_log(table, MAPPING + rings, tmp_path / "data.csv", tmp_path / "log.mcap")
+    log = read_input_log(tmp_path / "log.mcap")
+    found = {channel: [value for (value,) in log.series[channel].values] for channel in ("inner_ring_temperature", "outer_ring_temperature")}
+    assert found == {"inner_ring_temperature": pytest.approx([353.15, 355.15]), "outer_ring_temperature": pytest.approx([350.0, 351.0, 352.0])}
+    assert log.series["inner_ring_temperature"].ros_type == "sensor_msgs/msg/Temperature"
+
+
 def test_semicolons_decimal_commas_and_a_byte_order_mark(tmp_path):
     mapping = MAPPING.replace("name: rig", "name: rig\ndelimiter: ';'\ndecimal: ','")
     (tmp_path / "data.csv").write_bytes("\ufefft;n;f\n0,5;30;1,5\n1,0;30;1.000\n".encode())

@@ -15,6 +15,7 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from bearing_sim.cli.main import main
 from bearing_sim.inputs.log import Anomalies, InputLogError, anomalies, read_input_log, source, source_values
+from bearing_sim.recording.reader import Recording
 from bearing_sim.recording.writer import McapFile
 
 T0 = 1_700_000_000 * SECOND
@@ -131,6 +132,22 @@ def test_an_absent_field_is_told_with_those_there_are(tmp_path):
 def test_a_path_that_cannot_be_read_is_refused(text):
     with pytest.raises(ValueError, match="field"):
         source("shaft_speed", text)
+
+
+def test_ring_temperatures_are_read_from_named_topics_in_the_unit_that_is_given(tmp_path):
+    path = steady_log(tmp_path / "log.mcap", duration=1.0, rate=10)
+    rings = tmp_path / "rings.mcap"
+    with McapFile(rings) as recording:
+        for place in range(11):
+            recording.write("/hot_side", "std_msgs/msg/Float64", T0 + place * SECOND // 10, {"data": 400.0})
+    command = ["replay", path, rings, "--scene", "deng2017_table1", "--set", "heat.law=given", "--json"]
+    command += ["--inner-ring-temperature", "/hot_side.data", "--temperature-unit", "K", "-o", tmp_path / "run.mcap"]
+    done = CliRunner().invoke(main, list(map(str, command)))
+    assert done.exit_code == 0, done.output
+    samples = np.concatenate([item for item in Recording(tmp_path / "run.mcap") if isinstance(item, np.ndarray)])
+    np.testing.assert_array_equal(samples["inner_ring_temperature_measured"], 400.0)
+    np.testing.assert_array_equal(samples["inner_ring_temperature"], 400.0)
+    assert np.isnan(samples["outer_ring_temperature_measured"]).all()
 
 
 def test_a_unit_of_another_dimension_is_refused():

@@ -21,7 +21,7 @@ from rosbags.typesys import Stores, get_typestore
 
 from bearing_sim.messages.cdr import load_message_types
 from bearing_sim.messages.events import Event, Level
-from bearing_sim.messages.topics import INPUTS, OUTPUTS, Origin, recorded
+from bearing_sim.messages.topics import ALWAYS_KNOWN, Origin, outputs, recorded
 from bearing_sim.model.sample import new_block
 from bearing_sim.recording import provenance
 from bearing_sim.recording.writer import METADATA, McapFile, McapSink, message_type
@@ -71,7 +71,7 @@ def test_rosbags_deserialises_every_message(recording, scene):
     with Reader(path) as reader:
         for connection, stamp, raw in reader.messages():
             seen.setdefault(connection.topic, []).append((stamp, store.deserialize_cdr(raw, connection.msgtype)))
-    assert {topic.lstrip("/"): len(got) for topic, got in seen.items()} == {**dict.fromkeys([*INPUTS, *recorded(scene)], 3), "diagnostics": 1}
+    assert {topic.lstrip("/"): len(got) for topic, got in seen.items()} == {**dict.fromkeys([*ALWAYS_KNOWN, *recorded(scene)], 3), "diagnostics": 1}
     assert [message.data for _, message in seen["/cage_slip"]] == list(block["cage_slip"])
     np.testing.assert_array_equal(seen["/roller_loads"][1][1].data, [*block["inner_load"][1], *block["outer_load"][1]])
     joints = seen["/bearing_joints"][2][1]
@@ -86,10 +86,13 @@ def test_rosbags_deserialises_every_message(recording, scene):
 def test_tilts_and_slices_are_recorded_where_the_level_has_them_and_only_there(tmp_path):
     block = numbered_block(2)
     for level in ("slip", "planar", "spatial"):
-        with McapSink(tmp_path / f"{level}.mcap", load_scene("deng2017_table1", [f"level={level}"]), START) as sink:
+        scene = load_scene("deng2017_table1", [f"level={level}", "heat.law=network"])
+        with McapSink(tmp_path / f"{level}.mcap", scene, START) as sink:
             sink.write(block)
         found = {topic: message for topic, _, message in messages(sink.path)}
-        assert set(OUTPUTS) - {topic[1:] for topic in found} == (set() if level == "spatial" else {"axis_tilts", "roller_tilts", "slice_pressures"})
+        tilting = {"axis_tilts", "roller_tilts", "slice_pressures"}
+        assert {topic[1:] for topic in found} == recorded(scene).keys() and (tilting <= outputs(scene).keys()) == (level == "spatial")
+        assert {"predicted_temperatures", "heat_flows"} <= outputs(scene).keys()
     np.testing.assert_array_equal(found["/roller_tilts"].data, [*block["roller_tilt"][1], *block["roller_skew"][1]])
 
 
@@ -115,7 +118,7 @@ def test_rosbag2_metadata_counts_what_is_in_the_file(recording, scene):
         records = {record.name: record.metadata for record in reader.iter_metadata()}
         summary = reader.get_summary()
     bag = yaml.safe_load(records["rosbag2"]["serialized_metadata"])["rosbag2_bagfile_information"]
-    assert bag["version"] == 9 and bag["message_count"] == summary.statistics.message_count == 3 * (len(INPUTS) + len(recorded(scene))) + 1
+    assert bag["version"] == 9 and bag["message_count"] == summary.statistics.message_count == 3 * (len(ALWAYS_KNOWN) + len(recorded(scene))) + 1
     assert bag["duration"]["nanoseconds"] == 200_000_000
     hashes = {entry["topic_metadata"]["name"]: entry["topic_metadata"]["type_description_hash"] for entry in bag["topics_with_message_count"]}
     assert hashes == {channel.topic: channel.metadata["topic_type_hash"] for channel in summary.channels.values()}

@@ -316,7 +316,8 @@ class ResidualMonitor:
 
         The next measurement may be earlier than the last one: a run that starts again counts its time from 0.
         """
-        self._time = -math.inf
+        if not math.isnan(self._time):
+            self._time = -math.inf
         self._disturb(now, self._speed)
 
     @property
@@ -340,7 +341,7 @@ class ResidualMonitor:
 
     def values(self, now: float) -> dict[str, object]:
         """Return diagnostics values and the verdict at ``now`` [s], with the unit in each key; empty before the first measurement."""
-        if math.isnan(self._measured_at):
+        if math.isnan(self._time):
             return {}
         what, unit, factor = self._of.what, self._of.unit, self._of.factor
         return {
