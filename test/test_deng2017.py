@@ -54,10 +54,10 @@ def test_every_claim_is_judged_at_both_levels_and_every_figure_of_the_paper_is_d
 
 
 def test_all_parameters_are_those_of_the_bundled_scenes_but_what_a_figure_varies(tables):
-    varied = {"low_radius", "d_value", "shaft_speed", "radial_load", "installation_angle", "roundness", "mixture_fraction", "supported_mass"}
+    varied = {"low_radius", "d_value", "shaft_speed", "radial_load", "installation_angle", "roundness", "mixture_fraction", "mass"}
     for study in STUDIES:
         assert {text.partition("=")[0].rpartition(".")[2] for text in (*study.axes, *study.overrides)} <= varied
-        assert not study.figures or not {"mixture_fraction", "supported_mass"} & {text.partition("=")[0].rpartition(".")[2] for text in study.axes}
+        assert not study.figures or not {"mixture_fraction", "mass"} & {text.partition("=")[0].rpartition(".")[2] for text in study.axes}
 
 
 def test_the_full_study_has_the_ranges_of_the_paper():

@@ -18,6 +18,7 @@ ASKING = {
     "lubricant.supply": "oil_bath",
     "bearing.seals": "{law: constant_moment, moment: 0.1}",
     "bearing.dimensions_at": "cold",
+    "support.unbalance": "{amount: 1 g*mm}",
 }
 OVERRIDES = {field: f"{field}={value}" for field, value in ASKING.items()} | {f"wants.{name}": f"wants=[{name}]" for name in WANTS}
 
