@@ -83,9 +83,9 @@ def test_a_run_from_its_start_is_repeated_to_round_off_and_to_the_bit_under_cons
     assert worst(differences) <= tolerance and {d.topic for d in differences} > {"/shaft_speed", "/roller_loads", "/roller_places"}
 
 
-@pytest.mark.parametrize("law", ["given", "network"])
-def test_a_run_with_measured_temperatures_that_come_and_go_is_repeated_to_the_bit(tmp_path, law):
-    scene = load_scene("deng2017_table1", [f"heat.law={law}"])
+@pytest.mark.parametrize("heat", ["{law: given}", "{law: network, interval: 50 ms}"])
+def test_a_run_with_measured_temperatures_that_come_and_go_is_repeated_to_the_bit(tmp_path, heat):
+    scene = load_scene("deng2017_table1", [f"heat={heat}"])
 
     def measured(tick):
         return (math.nan, math.nan) if not 20 < tick < 40 else (395.0 + 0.1 * tick, math.nan if tick < 30 else 394.0)

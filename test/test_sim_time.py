@@ -99,10 +99,10 @@ def test_any_pace_of_the_clock_and_any_order_of_topics_give_what_a_replay_gives_
     assert len(got.measurements) == 12 and run.values()["late inputs"] == 0 and run.values()["messages refused"] == 0
 
 
-@pytest.mark.parametrize("law", ["given", "network"])
-def test_measured_temperatures_that_die_and_return_give_what_a_replay_gives_to_the_last_bit(make, tmp_path, law):
+@pytest.mark.parametrize("heat", ["{law: given}", "{law: network, interval: 50 ms}"])
+def test_measured_temperatures_that_die_and_return_give_what_a_replay_gives_to_the_last_bit(make, tmp_path, heat):
     """A sensor counts as dead 0.2 s after its last message: the inner ring's does from 0.6 to 0.9 s."""
-    scene = load_scene("deng2017_table1", [f"heat.law={law}", "input_limits.stale_after=20 ms"])
+    scene = load_scene("deng2017_table1", [f"heat={heat}", "input_limits.stale_after=20 ms"])
     times = [0.02, 0.1, 0.2, 0.3, 0.4, 0.9, 1.0, 1.1]
     measured = [Message(time + 0.0003, "inner_ring_temperature", (395.0 + 20.0 * time,)) for time in times]
     measured += [Message(0.1 * k + 0.0007, "outer_ring_temperature", (394.0,)) for k in range(12)]
