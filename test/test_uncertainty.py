@@ -19,7 +19,10 @@ from bearing_sim.sweep.tasks import Journal
 
 NONE = [
     f"uncertainty.{field}=null"
-    for field in ("lubricant.mixture_fraction", "lubricant.temperature", "lubricant.traction_scale", "bearing.cage.guide_clearance")
+    for field in (
+        *(f"lubricant.{name}" for name in ("mixture_fraction", "temperature", "traction_scale")),
+        *(f"bearing.cage.{name}" for name in ("guide_clearance", "pocket_friction", "land_friction")),
+    )
 ]
 FRACTION = "uncertainty.lubricant.mixture_fraction"
 
@@ -51,7 +54,7 @@ def test_ranges_are_read_in_units_by_path_or_nested_and_written_back():
     [
         ("uncertainty.lubricant.mixture_fractoin=[0.01, 0.05]", "unknown field (did you mean 'lubricant.mixture_fraction'?)"),
         ("uncertainty.temperature=[380, 390]", "did you mean 'lubricant.temperature'?"),
-        ("uncertainty.integration.first_step=[1 us, 2 us]", "expected a quantity of bearing, lubricant, operating or mounting"),
+        ("uncertainty.integration.first_step=[1 us, 2 us]", "expected a quantity of bearing, lubricant, operating, mounting, heat or support"),
         ("uncertainty.lubricant.temperature=[1 mm, 400]", "has the wrong dimension; expected a temperature"),
         ("uncertainty.lubricant.temperature=[120 degC, 900 degC]", "900 degC is outside"),
         ("uncertainty.lubricant.temperature=[120 degC, 110 degC]", "is not below high"),
@@ -84,9 +87,39 @@ def test_an_override_replaces_a_range_or_one_end_of_it_or_removes_it():
 @pytest.mark.parametrize("name", scene_names())
 def test_bundled_scenes_have_ranges_with_sources_around_their_own_values(name):
     scene = load_scene(name)
-    assert {one.field.rpartition(".")[2] for one in scene.uncertainty} == {"mixture_fraction", "temperature", "traction_scale", "guide_clearance"}
+    ranged = {one.field for one in scene.uncertainty}
+    assert {"lubricant.mixture_fraction", "lubricant.temperature", "lubricant.traction_scale", "bearing.cage.guide_clearance"} <= ranged
+    assert {"bearing.cage.pocket_friction", "bearing.cage.land_friction"} <= ranged
+    of_a_cold_bearing = {"bearing.clearance", "mounting.shaft.interference", "heat.oil_flow", "heat.conductances.housing_ambient"}
+    assert of_a_cold_bearing <= ranged if scene.bearing.dimensions_at == "cold" else not of_a_cold_bearing & ranged
     for one in scene.uncertainty:
-        assert one.low < value_at(scene, one.field) < one.high and one.source
+        assert one.low <= value_at(scene, one.field) < one.high and one.source
+
+
+def test_a_bearing_with_a_clearance_keeps_it_or_takes_the_radius_as_an_override_of_its_scene_does():
+    scene = load_scene("deng2017_table1_cold")
+    for values, overrides in (
+        ({"bearing.clearance": 30e-6}, ["bearing.clearance=30 um"]),
+        ({"bearing.roller.diameter": 7.002e-3}, ["bearing.roller.diameter=7.002 mm"]),
+        ({"bearing.outer_raceway.low_radius": 34.89e-3}, ["bearing.outer_raceway.low_radius=34.89 mm"]),
+    ):
+        changed, loaded = with_values(scene, values).bearing, load_scene("deng2017_table1_cold", overrides).bearing
+        assert changed.outer_raceway.low_radius == pytest.approx(loaded.outer_raceway.low_radius, abs=1e-15)
+
+
+def test_another_law_of_heat_takes_the_fields_and_ranges_of_the_law_before_away():
+    scene = load_scene("deng2017_table1_cold", ["heat.law=none"])
+    assert scene.heat.law == "none" and not any(one.field.startswith("heat.") for one in scene.uncertainty)
+
+
+def test_a_radius_takes_the_range_of_the_clearance_away():
+    scene = load_scene("deng2017_table1_cold", ["bearing.outer_raceway.low_radius=34.89 mm"])
+    assert scene.bearing.clearance is None and "bearing.clearance" not in {one.field for one in scene.uncertainty}
+
+
+def test_a_range_of_a_clearance_that_is_a_group_is_refused():
+    with pytest.raises(SceneError, match="'C3' there, a name; give a number"):
+        load_scene("deng2017_table1_cold", ["bearing.clearance=C3"])
 
 
 def test_values_are_changed_by_path_and_checked_again():
@@ -211,7 +244,7 @@ def test_workers_and_a_journal_change_no_digit_and_what_is_in_the_journal_is_not
     conditions = (np.array([[4000.0, 800.0, 0.0, math.nan], [5000.0, 0.0, 2000.0, 400.0]]), np.array([30.0, 10.0]))
     with Journal(tmp_path / "points.journal") as journal:
         found = study(scene, 16, seed=1, course=conditions, journal=journal, workers=2, progress=lambda *counts: reported.append(counts))
-        assert reported[0] == (0, 96) and reported[-1] == (96, 96)
+        assert reported[0] == (0, 128) and reported[-1] == (128, 128)
     fields, steady = [one.field for one in found.ranges], lowest_level(scene)[0]
     for k in (0, 63, 64, 95):
         alone = settled(with_values(steady, dict(zip(fields, found.design.points[k].tolist()))), conditions[0])
@@ -242,18 +275,18 @@ def test_the_command_tells_bands_shares_errors_and_sources(tmp_path):
     found = bands("--samples", 12, "--json", "--csv", tmp_path / "points.csv", "--picture", tmp_path / "bands.png")
     assert found.exit_code == 0, found.output
     report = json.loads(found.stdout)
-    assert (report["samples"], report["evaluations"], report["level"], report["seed"]) == (16, 16 * 6, "steady", 2017)
+    assert (report["samples"], report["evaluations"], report["level"], report["seed"]) == (16, 16 * 8, "steady", 2017)
     slip = report["cage_slip"]
     assert slip["p05"] < slip["p50"] < slip["p95"] and slip["p05_interval"][0] <= slip["p05"] <= slip["p05_interval"][1]
     assert max(slip["shares"], key=lambda field: slip["shares"][field]["total"]) == "lubricant.mixture_fraction"
     assert report["ranges"]["lubricant.temperature"]["source"].startswith("judgement")
     rows = list(csv.reader(open(tmp_path / "points.csv")))
-    assert rows[0][1] == "lubricant.temperature [K]" and len(rows) == 1 + 16 * 6
+    assert rows[0][1] == "lubricant.temperature [K]" and len(rows) == 1 + 16 * 8
     assert (tmp_path / "bands.png").stat().st_size > 20_000
     again = json.loads(bands("--samples", 16, "--json").stdout)
     assert again["cage_slip"] == slip and again["kept_from_before"] == 0, "the seed decides"
     resumed = json.loads(bands("--samples", 16, "--json", "--csv", tmp_path / "points.csv").stdout)
-    assert resumed["cage_slip"] == slip and resumed["kept_from_before"] == 16 * 6
+    assert resumed["cage_slip"] == slip and resumed["kept_from_before"] == 16 * 8
 
 
 def test_the_command_prints_a_table_and_refuses_in_one_line():
@@ -289,4 +322,4 @@ def test_a_run_prints_bands_on_request():
     report = json.loads(found.stdout)
     assert report["level"] == "slip" and report["uncertainty"]["level"] == "steady" and report["uncertainty"]["cage_slip"]["p95"] > 0.05
     shown = CliRunner().invoke(main, arguments)
-    assert "cage slip depends on" in shown.output and "24 runs of level steady" in shown.output
+    assert "cage slip depends on" in shown.output and "32 runs of level steady" in shown.output

@@ -6,6 +6,7 @@ Nothing here refuses a scene.  Each finding has the value, what was expected, an
 
 import math
 
+from bearing_sim.model.running_clearance import clearance_at_speed
 from bearing_sim.model.validity import outside, still_sample
 from bearing_sim.scene.bearing import Bearing
 from bearing_sim.scene.mounting import LARGEST_BORE, clearance_limits
@@ -31,7 +32,7 @@ def plausibility(scene: Scene) -> list[str]:
     return [
         *_rollers(bearing),
         *_clearance(bearing),
-        *_lobes(bearing),
+        *_lobes(scene),
         *_cage_radii(bearing),
         *_cage_mass(bearing),
         *_ring_mass(bearing),
@@ -105,9 +106,10 @@ def _clearance(bearing: Bearing) -> list[str]:
     return []
 
 
-def _lobes(bearing: Bearing) -> list[str]:
-    """Judge the D value by the pitch diameter and by the preload at the low points."""
-    d_value, low = bearing.outer_raceway.d_value, bearing.radial_clearance_at_low_points
+def _lobes(scene: Scene) -> list[str]:
+    """Judge the D value by the pitch diameter and by the running preload at the low points, at the reference temperature."""
+    bearing = scene.bearing
+    d_value, low = bearing.outer_raceway.d_value, 0.5 * clearance_at_speed(bearing, scene.mounting, scene.operating.shaft_speed)
     if not d_value:
         return []
     shown, name = f"{1e6 * d_value:.4g} um", "bearing.outer_raceway.d_value"

@@ -108,6 +108,20 @@ def running_play(bearing: Bearing, mounting: Mounting, shaft_speed: float) -> fl
     return max(play, _LEAST_PLAY * cage.land_film)
 
 
+def clearance_at_speed(bearing: Bearing, mounting: Mounting, shaft_speed: float) -> float:
+    """Return the diametral clearance of the running bearing at the reference temperature [m]; negative: preload.
+
+    Parameters
+    ----------
+    bearing, mounting : of the scene.
+    shaft_speed : [rad/s].
+    """
+    parts, square = mounted(bearing, mounting), shaft_speed * shaft_speed
+    growth = parts.housing.shrunk * max(0.0, parts.housing.pressure) + (parts.shaft.free + parts.roller_free) * square
+    growth += parts.shaft.fitted * max(0.0, parts.shaft.pressure + parts.shaft.by_square_speed * square)
+    return 2.0 * (bearing.radial_clearance_at_low_points - growth)
+
+
 def lift_off_speed(growth: Growth) -> float:
     """Return the shaft speed at which the fit of the shaft is lost [rad/s]: infinite without a fit, 0 where it is loose at rest."""
     if not growth.fitted or growth.pressure_by_square_speed >= 0.0:

@@ -21,7 +21,7 @@ from bearing_sim.scene.contour import UNREAD, drop_other_forms, with_contour_tex
 from bearing_sim.scene.fidelity import choose
 from bearing_sim.scene.quantity import SPEED
 from bearing_sim.scene.scene import Scene
-from bearing_sim.scene.uncertainty import declared_in, drop_ranges_of_lands, override_range, read_ranges, written
+from bearing_sim.scene.uncertainty import declared_in, drop_ranges, override_range, read_ranges, written
 
 _UNION_TAGS = frozenset(
     {"oil_4109", "constant", "kragelskii", "eyring", "fitted", "custom", "double_exponential", "reference", "hyperbolic", "power"}
@@ -284,13 +284,18 @@ def _apply_override(tree: dict, override: str) -> None:
             raise SceneError("--set", [InvalidField(".".join(keys[: depth + 1]), repr(child), f"is a value, not a block; {path} cannot be set")])
         node[key] = dict(child)
         node = node[key]
+    if keys == ["heat", "law"] and node.get("law") != value:  # each law has fields of its own
+        node.clear()
+        drop_ranges(tree, "heat.")
     node[keys[-1]] = value
     if keys[:-1] == ["bearing", "outer_raceway"]:
         drop_other_forms(node, (keys[-1],))
     if keys[0] == "bearing":
         _keep_one_clearance(tree["bearing"], ".".join(keys[1:]))
+        if ".".join(keys[1:]) in _RACEWAY_RADII:
+            drop_ranges(tree, "bearing.clearance")
     if keys == ["bearing", "cage", "guidance"] and value == "roller":
-        drop_ranges_of_lands(tree)
+        drop_ranges(tree, "bearing.cage.guide_")
 
 
 def _keep_one_clearance(bearing: dict, given: str) -> None:

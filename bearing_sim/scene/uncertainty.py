@@ -22,10 +22,12 @@ from typing import Any, Literal
 from pydantic import ValidationError
 from pydantic_core import PydanticCustomError
 
+from bearing_sim.scene.bearing import Bearing
 from bearing_sim.scene.quantity import SPEED, Quantity, check, record
 
-BLOCKS = ("bearing", "lubricant", "operating", "mounting")  # of a scene; their quantities may have ranges
+BLOCKS = ("bearing", "lubricant", "operating", "mounting", "heat", "support")  # of a scene; their quantities may have ranges
 _ENDS, _WORDS = ("low", "high", "mode"), ("distribution", "source")
+_LOW_RADIUS = "outer_raceway.low_radius"
 _CLOSE_ENOUGH = 0.6  # of difflib's ratio
 
 
@@ -124,11 +126,11 @@ def override_range(tree: dict, keys: list[str], value) -> None:
     tree["uncertainty"] = block
 
 
-def drop_ranges_of_lands(tree: dict) -> None:
-    """Remove the ranges of guide lands from a scene's tree, in place, after an override removed the lands from the cage."""
+def drop_ranges(tree: dict, beginning: str) -> None:
+    """Remove the ranges of fields whose path has this beginning from a scene's tree, in place, after an override removed the fields."""
     given = tree.get("uncertainty")
     if isinstance(given, Mapping):
-        tree["uncertainty"] = {path: value for path, value in flattened(given).items() if not path.startswith("bearing.cage.guide_")}
+        tree["uncertainty"] = {path: value for path, value in flattened(given).items() if not path.startswith(beginning)}
 
 
 def read_ranges(given, scene_type: type) -> tuple[list[dict], list[tuple[str, str, str]]]:
@@ -202,8 +204,10 @@ def range_errors(scene) -> list[str]:
         where, declared = f"uncertainty.{one.field}", known.get(one.field)
         if declared is None:
             errors.append(f"{where}: unknown field{nearest(one.field, known)}")
-        elif value_at(scene, one.field) is None:
+        elif (own := value_at(scene, one.field)) is None:
             errors.append(f"{where}: this scene has no {one.field}; leave its range out")
+        elif isinstance(own, str):
+            errors.append(f"{where}: this scene has {own!r} there, a name; give a number instead, which lies in the range")
         elif not declared.minimum <= one.low <= one.high <= declared.maximum:
             bounds = f"{declared.show(declared.minimum)} to {declared.show(declared.maximum)}"
             errors.append(f"{where}: {declared.show(one.low)} to {declared.show(one.high)} goes beyond {bounds}")
@@ -246,6 +250,8 @@ def with_values(scene, values: Mapping[str, float | None]):
     pydantic.ValidationError
         The numbers contradict each other, one is out of bounds, or a record has no such field.
     """
+    if isinstance(scene, Bearing) and scene.clearance is not None:
+        values = _with_one_clearance(scene, values)
     changed: dict[str, dict[str, float | None]] = {}
     for path, value in values.items():
         name, _, rest = path.partition(".")
@@ -253,3 +259,13 @@ def with_values(scene, values: Mapping[str, float | None]):
     return dataclasses.replace(
         scene, **{name: inner[""] if "" in inner else with_values(getattr(scene, name), inner) for name, inner in changed.items()}
     )
+
+
+def _with_one_clearance(bearing: Bearing, values: Mapping[str, float | None]) -> Mapping[str, float | None]:
+    """Return values for a bearing that has a clearance, so that it follows from a radius that is given, and otherwise the radius from it."""
+    if _LOW_RADIUS in values:
+        inner = values.get("inner_raceway.radius", bearing.inner_raceway.radius)
+        return {**values, "clearance": 2.0 * (values[_LOW_RADIUS] - inner - values.get("roller.diameter", bearing.roller.diameter))}
+    if any(path in values for path in ("clearance", "inner_raceway.radius", "roller.diameter")):
+        return {**values, _LOW_RADIUS: None}
+    return values

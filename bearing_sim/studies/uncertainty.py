@@ -17,6 +17,7 @@ from pydantic import ValidationError
 from scipy import stats
 from scipy.stats import qmc
 
+from bearing_sim.levels.steady.equilibrium import thermal_equilibrium
 from bearing_sim.levels.steady.table import empty_table
 from bearing_sim.scene import fidelity
 from bearing_sim.scene.scene import Integration, Scene
@@ -384,7 +385,9 @@ def _varied(scene: Scene, values: dict[str, float]) -> Scene:
 
 
 def settled(scene: Scene, conditions: np.ndarray | None = None) -> np.ndarray:
-    """Return settled cage slip and life [h], shape (2, m); NaN where a run failed.
+    """Return settled cage slip and life [h], shape (2, m); NaN where a run failed, or where there is no thermal equilibrium.
+
+    With a thermal network the bearing has the temperatures of its equilibrium at level steady.
 
     Parameters
     ----------
@@ -401,10 +404,20 @@ def settled(scene: Scene, conditions: np.ndarray | None = None) -> np.ndarray:
                 simulation = Simulation(scene, inputs, empty_table() if scene.level == "steady" else None)
             else:
                 simulation.reset(inputs)
+            if simulation.thermal is not None:
+                _hold_equilibrium(simulation)
             found[:, k] = _settled_at(simulation)
         except IntegrationError:
             continue
     return found
+
+
+def _hold_equilibrium(simulation: Simulation) -> None:
+    """Give a simulation the temperatures of its thermal equilibrium; raise `IntegrationError` where there is none."""
+    found = thermal_equilibrium(simulation.scene, simulation.inputs)
+    if not found.converged:
+        raise IntegrationError(found.reason)
+    simulation.set_temperatures(found.temperatures)
 
 
 def _settled_at(simulation: Simulation) -> tuple[float, float]:
