@@ -27,6 +27,7 @@ _STUDIES = {
     "misalignment": Entry("study:misalignment", "Edge pressure, tilt, skew and life against misalignment of the inner ring."),
     "support": Entry("study:support", "Response over speed with a support of shaft and outer ring, and without."),
     "situations": Entry("study:situations", "Pictures of six situations, from start to fault, in rerun."),
+    "clearance": Entry("study:clearance", "Running clearance over speed and load, thermal runaway, and what is lost at which speed."),
     "slices": Entry("study:slices", "Convergence of level spatial with the number of slices, and their cost."),
     "friction": Entry("study:friction", "Frictional moment and thermal reference speed against makers' models."),
     "extremes": Entry("study:extremes", "Map which scenes finish, are step-limited, are refused or fail."),

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.cli.options import executor_options, json_option, level_type, picture_option, set_option
+from bearing_sim.cli.options import executor_options, json_option, level_type, picture_option, scene_argument, set_option
 from bearing_sim.cli.reporting import (
     FailedRun,
     Points,
@@ -15,6 +15,7 @@ from bearing_sim.cli.reporting import (
     as_failed_run,
     as_file_error,
     as_usage_error,
+    command_line,
     exit_on_sigterm,
     judged,
     print_json,
@@ -22,6 +23,7 @@ from bearing_sim.cli.reporting import (
     print_table,
     progress_bar,
     unknown_report,
+    warn_of_scene,
     write_csv,
 )
 
@@ -466,6 +468,101 @@ def _print_thermal_speeds(speeds) -> None:
     ]
     columns = ("bearing", "model", "M_0 + M_1", "SKF's friction model", "NKE prints", "SKF prints", "model/NKE", "model/SKF")
     print_rows("thermal reference speed, rpm (ISO 15312)", columns, rows, words=("bearing",))
+
+
+@click.command("clearance")
+@scene_argument
+@set_option
+@click.option("--speed", "speeds", metavar="START:STOP:N", help="Shaft speeds [default: 9 from 20 to 120 % of the scene's].")
+@click.option("--load", "loads", metavar="START:STOP:N", help="Radial loads, or one [default: 7 from 0.5 to 3.5 times the scene's].")
+@click.option("--life-above", default="10 h", show_default=True, metavar="LIFE", help="Life below which it counts as lost.")
+@click.option("-o", "--out", type=click.Path(path_type=Path), metavar="PATH.parquet", help="Also write the table, and PATH.csv.")
+@picture_option("Draw the map; lines with one load")
+@json_option
+def clearance(scene_name, overrides, speeds, loads, life_above, out, picture, as_json):
+    """Map the running clearance of SCENE over speed and load, in thermal equilibrium where it has a thermal network.
+
+    Says at which speeds the clearance is gone, the fit of the shaft is lost, the life is too short, and above which heat closes the bearing
+    faster than it leaves, so that there is no equilibrium. Every point is one of level steady.
+
+    bearing-sim study clearance deng2017_table1_cold --speed 15000rpm:52000rpm:9 --load 800N:800N:1 --picture clearance.png
+    """
+    from pydantic_core import ValidationError
+
+    from bearing_sim.scene.loader import SceneError, load_scene
+    from bearing_sim.scene.quantity import to_si
+    from bearing_sim.sweep.grid import FieldError, read_axis
+
+    with as_usage_error(SceneError):
+        scene = load_scene(scene_name, overrides)
+    warn_of_scene(scene)
+    announce_compilation()
+    from bearing_sim.studies.clearance_map import LOAD, SPEED, draw, in_words, map_clearance
+    from bearing_sim.sweep.table import write_table
+
+    operating = scene.operating
+    defaults = (SPEED, speeds or _from_to(operating.shaft_speed, 0.2, 1.2, 9)), (LOAD, loads or _from_to(operating.radial_load, 0.5, 3.5, 7))
+    with as_usage_error(FieldError, ValueError):
+        grid = [sorted(read_axis(f"{field}={text}").values) for field, text in defaults]
+        least = to_si(life_above, "h")
+    files = []
+    with progress_bar("points", math.prod(map(len, grid))) as show, as_usage_error(ValidationError):
+        found = map_clearance(scene, *grid, least, show)
+    with as_file_error():
+        if out is not None:
+            table = found.table._replace(about=found.table.about | {"command": command_line()})
+            files += write_table(out, table)
+        if picture is not None:
+            draw(picture, _title(scene, overrides), found)
+            files.append(picture)
+    words = in_words(found)
+    if as_json:
+        losses = [each._asdict() for each in found.losses]
+        print_json({"scene": scene.name, "heat": scene.heat.law, "found": words, "losses": losses, "points": found.table.rows})
+        return
+    _print_clearances(found.table)
+    for line in words:
+        click.echo(line)
+    if files:
+        click.echo(", ".join(map(str, files)))
+
+
+def _from_to(value: float, low: float, high: float, count: int) -> str:
+    return f"{low * value!r}:{high * value!r}:{count}"
+
+
+def _title(scene, overrides) -> str:
+    warmth = {"none": "all parts as warm as the oil", "given": "at given temperatures", "network": "in thermal equilibrium"}[scene.heat.law]
+    return f"{scene.name} {' '.join(overrides)}: {warmth}"
+
+
+_CLEARANCE_SHOWN = {
+    "operating.shaft_speed": "rpm",
+    "operating.radial_load": "N",
+    "running_clearance": "running clearance, um",
+    "fit_clearance": "fits",
+    "rotation_clearance": "rotation",
+    "heat_clearance": "heat",
+    "shaft_temperature": "shaft, degC",
+    "inner_ring_temperature": "inner ring",
+    "roller_temperature": "rollers",
+    "outer_ring_temperature": "outer ring",
+    "oil_outlet_temperature": "oil out",
+    "seat_pressure": "seat, MPa",
+    "cage_slip": "slip, %",
+    "life": "life, h",
+    "loss": "loss, W",
+    "status": "status",
+}
+
+
+def _print_clearances(table) -> None:
+    rows = [
+        [f"{row[name]:.{5 if name.startswith('operating') else 4}g}" if isinstance(row[name], float) else row[name] for name in _CLEARANCE_SHOWN]
+        for row in table.rows
+    ]
+    title = f"{table.about['scene']}: running clearance, heat.law {table.about['heat']}"
+    print_rows(title, tuple(_CLEARANCE_SHOWN.values()), rows, words=("status",), width=170)
 
 
 _SHOWN = 12  # reasons per table
