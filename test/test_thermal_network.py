@@ -274,6 +274,7 @@ OPERATING_POINTS = {
     "paper": [],
     "slower": ["operating.shaft_speed=15000 rpm"],
     "cold, with fits": [*COLD, "mounting={shaft: {fit: k5}, housing: {fit: H6}}", "operating.shaft_speed=20000 rpm"],
+    "thermal Eyring film": ["lubricant.traction={law: eyring}", "lubricant.rolling_resistance=hydrodynamic", "operating.shaft_speed=20000 rpm"],
     "bath": [*("lubricant.supply=oil_bath", "lubricant.mixture_fraction=0"), "operating.shaft_speed=5000 rpm"],
 }
 

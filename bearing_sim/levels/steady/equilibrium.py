@@ -32,7 +32,8 @@ _ROUNDS = 150
 _AGREED, _NEARLY = 1e-5, 3.0  # K; of temperatures before and after a round; the second where losses jump at the equilibrium
 _FARTHEST = 15.0  # K, of a round
 _SHORTEST, _LONGEST = 0.05, 4.0  # factors on the change of a round
-_ANGLES, _FINE = 33, (1e-8, 1e-8)  # of the operating point: shaft power and losses then agree to 1e-6
+_ANGLES, _FINE = (33, 99, 199), (1e-8, 1e-8)  # of the operating point, refined until shaft power and losses agree
+_BALANCED = 5e-7  # of the shaft power
 _CELSIUS = 273.15
 
 
@@ -67,11 +68,19 @@ class _Balance:
     def __init__(self, scene: Scene, inputs: Sequence[float]):
         self.scene, self.inputs, self.params = scene, inputs, pack(scene)
         self.network = thermal_network(scene, self.params)
-        self._orbit = new_orbit(scene.bearing.roller.count, _ANGLES, _FINE)
-        self._work = new_work(self.params)._replace(orbit=self._orbit)
+        self._finer = list(_ANGLES)
+        self.refine()
         self._thermal = physics.new_work()
         self._gaps = fit_gaps(scene)
         self._free = np.zeros(NODES)
+
+    def refine(self) -> bool:
+        """Solve operating points at more angles of a pitch from here on; return False where there are no more."""
+        if not self._finer:
+            return False
+        orbit = new_orbit(self.scene.bearing.roller.count, self._finer.pop(0), _FINE)
+        self._work = new_work(self.params)._replace(orbit=orbit)
+        return True
 
     def go(self, temperatures: np.ndarray) -> _Round:
         """Solve for the operating point at temperatures and settle the network with its losses."""
@@ -121,7 +130,11 @@ def thermal_equilibrium(scene: Scene, inputs: Sequence[float], start: np.ndarray
             reason = f"{found.failure or 'temperatures are not finite'} {_warmth(now)}"
             break
         if largest < _AGREED:
-            break
+            power = float(found.answer[ANSWER.shaft_power])
+            if abs(power - found.losses.sum()) <= _BALANCED * abs(power) or not balance.refine():
+                break
+            now = found.reached
+            continue
         if now.max() >= limit:
             reason = f"no thermal equilibrium below the limit of {limit - _CELSIUS:.4g} degC{_gone(gone, found.clearance)}"
             break
