@@ -196,7 +196,8 @@ def _beside(scene, limits):
     from bearing_sim.studies.deng2017 import design as deng
 
     asked = scene.bearing.name, scene.bearing.outer_raceway.lobes, limits.slip_below, limits.life_above
-    return deng.BESIDE if asked == (deng.SCENE, deng.LOBES, deng.SLIP_BELOW, deng.LIFE_ABOVE) and not limits.conditions.points else None
+    is_the_papers = asked == (deng.SCENE, deng.LOBES, deng.SLIP_BELOW, deng.LIFE_ABOVE) and scene.bearing.dimensions_at == "running"
+    return deng.BESIDE if is_the_papers and not limits.conditions.points else None
 
 
 def _report_design(scene, designed, beside, files) -> dict:

@@ -533,7 +533,7 @@ def _from_to(value: float, low: float, high: float, count: int) -> str:
 
 def _title(scene, overrides) -> str:
     warmth = {"none": "all parts as warm as the oil", "given": "at given temperatures", "network": "in thermal equilibrium"}[scene.heat.law]
-    return f"{scene.name} {' '.join(overrides)}: {warmth}"
+    return f"{' '.join([scene.name, *overrides])}: {warmth}"
 
 
 _CLEARANCE_SHOWN = {
