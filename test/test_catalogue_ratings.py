@@ -56,6 +56,7 @@ name: catalogue
 bearing:
   name: {name}
   source: Koyo catalogue
+  dimensions_at: running
   outer_raceway: {{low_radius: {inner / 2 + diameter + clearance / 2} mm, d_value: 0 mm, lobes: 3}}
   inner_raceway: {{radius: {inner / 2} mm}}
   roller: {{count: {rollers}, diameter: {diameter} mm, length: {length} mm}}

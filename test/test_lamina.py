@@ -26,6 +26,7 @@ def round_bearing(count, diameter, pitch, length, clearance, *overrides, slices=
         "level=spatial",
         f"bearing.roller={{count: {count}, diameter: {diameter} mm, length: {length} mm, slices: {slices}, crown: {crown}}}",
         f"bearing.inner_raceway.radius={inner} mm",
+        "bearing.inner_raceway.bore_radius=null",
         f"bearing.outer_raceway={{low_radius: {inner + diameter + clearance / 2} mm, d_value: 0 mm}}",
         f"bearing.cage.guide_radius={pitch / 2 + 2} mm",
         f"bearing.cage.inner_radius={pitch / 2 - 1} mm",

@@ -122,7 +122,7 @@ def replay(
                 ("shaft_speed", speed, speed_unit),
                 ("radial_load", load, load_unit),
                 # A channel with a unit must be there: of the rings only one that is named, of the oil one that may be meant.
-                ("oil_temperature", temperature, None if (inner_ring_temperature or outer_ring_temperature) and not temperature else temperature_unit),
+                ("oil_temperature", temperature, temperature_unit if temperature or not (inner_ring_temperature or outer_ring_temperature) else None),
                 ("inner_ring_temperature", inner_ring_temperature, temperature_unit if inner_ring_temperature else None),
                 ("outer_ring_temperature", outer_ring_temperature, temperature_unit if outer_ring_temperature else None),
             )

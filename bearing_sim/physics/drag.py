@@ -147,7 +147,8 @@ def cylinder_torque(relative_speed, radius, clearance, width, density, viscosity
         1,   1.3 (Ta/41)^0.539 (Taylor vortices),   3.0 (Re/2500)^0.856 (turbulence),    Re = rho omega R c/eta, Ta = Re sqrt(c/R),
 
     so that nothing jumps between the regimes; air without oil has none.  41 is the critical Taylor number of a narrow gap whose inner cylinder
-    turns (G. I. Taylor, Phil. Trans. R. Soc. A 223 (1923)); the two factors and their exponents are *assumptions*, common in dynamic models of roller bearings.
+    turns (G. I. Taylor, Phil. Trans. R. Soc. A 223 (1923)); the two factors and their exponents are *assumptions*, common in dynamic
+    models of roller bearings.
 
     Parameters
     ----------
