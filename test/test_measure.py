@@ -49,7 +49,7 @@ def test_a_node_is_measured_over_dds_and_the_figures_hang_together():
     environment = {**os.environ, "ROS_DOMAIN_ID": str(fresh_domain()), "PYTHONPATH": str(ROOT)}
     found = subprocess.run(words, capture_output=True, text=True, timeout=200, check=True, env=environment)
     (case,) = json.loads(found.stdout)
-    assert (case["level"], case["rate_hz"], case["exit_code"]) == ("slip", 50.0, 0) and case["topics_subscribed"] == 14
+    assert (case["level"], case["rate_hz"], case["exit_code"]) == ("slip", 50.0, 0) and case["topics_subscribed"] == 15
     assert 0.0 < case["ending_s"] < 10.0 and case["recorded_mb"] > 0.02, "the node has completed its recording"
     assert case["input_rate_hz"] == pytest.approx(48.5), "detuned, so that no one phase between inputs and outputs decides the latency"
     assert case["period_ms"] > 19.0, "no faster than asked for, however busy the machine"
