@@ -185,6 +185,21 @@ def test_parts_of_the_clearance_sum_to_it_and_agree_with_the_elastic_rings():
     assert clearance.running == pytest.approx(sum(clearance[:5]), rel=1e-12)
 
 
+def test_a_sleeve_is_a_third_ring_under_the_raceway():
+    sleeve = "sleeve: {bore_radius: 22 mm, interference: 30 um, material: steel}"
+    clearance = parts(COLD, f"mounting.shaft={{interference: 40 um, bore_radius: 12 mm, {sleeve}}}", "operating.shaft_speed=20000 rpm", oil=293.15)
+    layers = Layer(12e-3, 22e-3, *STEEL), Layer(22e-3, 25.0135e-3, 210e9, 0.3, 7850.0, 1.15e-5), Layer(25.0135e-3, 27.875e-3, *STEEL)
+
+    def grown(square):
+        pressure = contact_pressures(layers, (30e-6, 40e-6 - 2.6e-6), (square,) * 3, (0.0,) * 3)[1]
+        return displacement(layers[2], 27.875e-3, State(inner_pressure=pressure, square_speed=square))
+
+    square = (20000 * math.pi / 30) ** 2
+    rollers = 2 * spinning_roller_growth(Layer(0.0, 3.5e-3, *STEEL), square * (0.5 * (1 / GAMMA - GAMMA)) ** 2)
+    assert clearance.fits == pytest.approx(-2 * grown(0.0), rel=1e-10)
+    assert clearance.rotation == pytest.approx(-2 * (grown(square) - grown(0.0) + rollers), rel=1e-9)
+
+
 def test_points_below_the_low_radius_take_from_the_clearance():
     assert parts("bearing.outer_raceway.roundness=6um").contour == pytest.approx(-6e-6, rel=1e-3)
 
@@ -252,6 +267,7 @@ def test_a_cage_that_turns_grows_into_the_lands_around_it_as_a_ring_does():
         ([COLD, "bearing.inner_raceway.bore_radius=null"], "bore_radius: missing; an inner ring whose dimensions are cold"),
         ([COLD, "mounting.shaft={interference: 5 um, bore_radius: 26 mm}"], "bore_radius: 25.0135 mm; expected between the shaft's bore"),
         ([COLD, "mounting.housing={interference: 5 um, outside_radius: 30 mm}"], "expected between the raceway"),
+        ([COLD, "mounting.shaft={fit: k5, sleeve: {bore_radius: 26 mm, interference: 1 um}}"], "sleeve.bore_radius: 26 mm; expected between"),
         ([COLD, "mounting.shaft={fit: k5, interference: 5 um}"], "fit and interference exclude each other"),
         ([COLD, "mounting.shaft.fit=H7"], "expected a class of ISO 286 for a shaft"),
         ([COLD, "mounting.housing.fit=k5"], "expected a class of ISO 286 for a housing"),

@@ -155,6 +155,10 @@ CASES = {
         ("run", "motor", "mounting.shaft.interference=500 um"),
         ("run", "motor", "mounting.shaft.interference=30 um"),
     ),
+    "sleeve_seat": (
+        ("run", PAPER, "bearing.dimensions_at=cold", "mounting.shaft={interference: 10 um, sleeve: {bore_radius: 22 mm, interference: 0.1 um}}"),
+        ("run", "motor", "mounting.shaft={fit: k5, sleeve: {bore_radius: 22 mm, interference: 20 um}}"),
+    ),
     "shaft_seat": (
         ("run", PAPER, "bearing.dimensions_at=cold", "mounting.shaft.interference=10 um"),
         ("run", "motor", "mounting.shaft.fit=k5"),

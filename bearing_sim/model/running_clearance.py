@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 from bearing_sim.physics.growth import AS_RUNNING, Expansion, Growth, HousingFit, Mounted, ShaftFit, Temperatures
-from bearing_sim.physics.layers import Layer, State, displacement, hoop_stress, spinning_roller_growth
+from bearing_sim.physics.layers import Layer, State, compliance_matrix, displacement, hoop_stress, misfits, spinning_roller_growth
 from bearing_sim.scene.bearing import Bearing
 from bearing_sim.scene.material import Material
 from bearing_sim.scene.mounting import Mounting, housing_interference, shaft_interference, smoothed
@@ -44,10 +44,13 @@ def _layer(inside: float, outside: float, material: Material) -> Layer:
     return Layer(inside, outside, material.youngs_modulus, material.poisson_ratio, material.density, material.expansion)
 
 
-def shaft_layers(bearing: Bearing, mounting: Mounting) -> tuple[Layer, Layer]:
-    """Return shaft and inner ring, from bore to raceway."""
+def shaft_layers(bearing: Bearing, mounting: Mounting) -> tuple[Layer, ...]:
+    """Return shaft, sleeve if there is one, and inner ring, from bore to raceway."""
     inner, shaft = bearing.inner_raceway, mounting.shaft
-    return _layer(shaft.bore_radius, inner.bore_radius, shaft.material), _layer(inner.bore_radius, inner.radius, bearing.material)
+    ring, sleeve = _layer(inner.bore_radius, inner.radius, bearing.material), shaft.sleeve
+    if sleeve is None:
+        return _layer(shaft.bore_radius, inner.bore_radius, shaft.material), ring
+    return _layer(shaft.bore_radius, sleeve.bore_radius, shaft.material), _layer(sleeve.bore_radius, inner.bore_radius, sleeve.material), ring
 
 
 def housing_layers(bearing: Bearing, mounting: Mounting) -> tuple[Layer, Layer]:
@@ -57,22 +60,45 @@ def housing_layers(bearing: Bearing, mounting: Mounting) -> tuple[Layer, Layer]:
     return _layer(_mean_raceway(outer), outer.outside_radius, bearing.material), _layer(outer.outside_radius, around, housing.material)
 
 
-def _seat(inside: Layer, outside: Layer, interference: float) -> tuple[float, float, float, float]:
-    """Return the pressure between two rings [Pa] and what the square of the speed of both, and the temperature of each, change of it."""
-    radius = inside.outer_radius
-    compliance = displacement(outside, radius, State(inner_pressure=1.0)) - displacement(inside, radius, State(outer_pressure=1.0))
-    turned = displacement(inside, radius, State(square_speed=1.0)) - displacement(outside, radius, State(square_speed=1.0))
-    return interference / 2 / compliance, turned / compliance, inside.expansion * radius / compliance, -outside.expansion * radius / compliance
+def _seats(layers: tuple[Layer, ...], interferences: list[float]) -> np.ndarray:
+    """Return pressures of the seats [Pa]: by interference, then what square speed, warmth of all rings but the outer, and warmth of that change.
+
+    The seats hold: where one lets go, its pressure is negative.  Shape (4, seats).
+    """
+    nothing, count, compliance = [0.0] * len(interferences), len(layers), compliance_matrix(layers)
+    still, turning, inside, outside = [0.0] * count, [1.0] * count, [1.0] * (count - 1) + [0.0], [0.0] * (count - 1) + [1.0]
+    overlaps = (
+        misfits(layers, interferences, still, still),
+        misfits(layers, nothing, turning, still),
+        misfits(layers, nothing, still, inside),
+        misfits(layers, nothing, still, outside),
+    )
+    return np.linalg.solve(compliance, np.transpose(overlaps)).T
+
+
+def _shaft_seats(bearing: Bearing, mounting: Mounting) -> np.ndarray | None:
+    """Return `_seats` of shaft, sleeve and inner ring; None without a fit of the ring."""
+    layers, shaft = shaft_layers(bearing, mounting), mounting.shaft
+    limits = shaft_interference(shaft, 2 * layers[-1].inner_radius)
+    if limits is None:
+        return None
+    own = [] if shaft.sleeve is None else [shaft.sleeve.interference]
+    return _seats(layers, [*own, smoothed(limits.mean, shaft)])
+
+
+def sleeve_pressure(bearing: Bearing, mounting: Mounting, shaft_speed):
+    """Return the pressure between shaft and sleeve at the reference temperature [Pa], below 0 where it would let go; infinite without a sleeve."""
+    seats = None if mounting.shaft.sleeve is None else _shaft_seats(bearing, mounting)
+    return math.inf if seats is None else seats[0, 0] + seats[1, 0] * shaft_speed * shaft_speed
 
 
 def _shaft_fit(bearing: Bearing, mounting: Mounting) -> ShaftFit:
-    core, ring = shaft_layers(bearing, mounting)
+    ring, seats = shaft_layers(bearing, mounting)[-1], _shaft_seats(bearing, mounting)
     raceway = ring.outer_radius
     free = displacement(ring, raceway, State(square_speed=1.0))
-    limits = shaft_interference(mounting.shaft, 2 * ring.inner_radius)
-    if limits is None:
+    if seats is None:
         return ShaftFit(free, 0.0, 0.0, 0.0, 0.0, 0.0)
-    pressure, by_square_speed, by_shaft, by_ring = _seat(core, ring, smoothed(limits.mean, mounting.shaft))
+    pressure, by_square_speed, by_shaft, by_ring = seats[:, -1].tolist()
     return ShaftFit(free, displacement(ring, raceway, State(inner_pressure=1.0)), pressure, by_square_speed, by_shaft, by_ring)
 
 
@@ -82,7 +108,7 @@ def _housing_fit(bearing: Bearing, mounting: Mounting) -> HousingFit:
     if limits is None:
         return HousingFit(0.0, 0.0, 0.0, 0.0)
     ring, around = housing_layers(bearing, mounting)
-    pressure, _, by_ring, by_housing = _seat(ring, around, smoothed(limits.mean, mounting.housing))
+    pressure, _, by_ring, by_housing = _seats((ring, around), [smoothed(limits.mean, mounting.housing)])[:, 0].tolist()
     return HousingFit(-displacement(ring, ring.inner_radius, State(outer_pressure=1.0)), pressure, by_ring, by_housing)
 
 
@@ -102,7 +128,7 @@ def running_play(bearing: Bearing, mounting: Mounting, shaft_speed: float) -> fl
     else:
         fit, turned = _shaft_fit(bearing, mounting), shaft_speed * shaft_speed
         pressure = max(0.0, fit.pressure + fit.by_square_speed * turned)
-        ring = shaft_layers(bearing, mounting)[1]
+        ring = shaft_layers(bearing, mounting)[-1]
         land = displacement(ring, ring.outer_radius, State(inner_pressure=pressure, square_speed=turned))
         play = cage.play + displacement(body, cage.bore, State(square_speed=square)) - land
     return max(play, _LEAST_PLAY * cage.land_film)
@@ -154,6 +180,6 @@ def largest_hoop_stress(bearing: Bearing, mounting: Mounting, shaft_speed):
     mounting : of the scene.
     shaft_speed : [rad/s], a number or an array.
     """
-    ring, fit, square = shaft_layers(bearing, mounting)[1], _shaft_fit(bearing, mounting), shaft_speed * shaft_speed
+    ring, fit, square = shaft_layers(bearing, mounting)[-1], _shaft_fit(bearing, mounting), shaft_speed * shaft_speed
     pressure = np.maximum(0.0, fit.pressure + fit.by_square_speed * square)
     return hoop_stress(ring, ring.inner_radius, State(inner_pressure=pressure, square_speed=square))

@@ -16,7 +16,7 @@ import numpy as np
 
 from bearing_sim.model.oil import OilState, oil_at
 from bearing_sim.model.params import Params, pack
-from bearing_sim.model.running_clearance import largest_hoop_stress, mounted, seat_pressure
+from bearing_sim.model.running_clearance import largest_hoop_stress, mounted, seat_pressure, sleeve_pressure
 from bearing_sim.model.sample import new_block
 from bearing_sim.model.temperatures import film_temperatures
 from bearing_sim.scene.bearing import Bearing
@@ -950,6 +950,19 @@ LAWS = (
         lambda scene: scene.bearing.dimensions_at == "cold",
         lambda at: 1e-6 * largest_hoop_stress(at.scene.bearing, at.scene.mounting, at.samples["shaft_speed"]),
         expected="at most bearing.material.strength",
+    ),
+    Law(
+        "sleeve_seat",
+        "validity.clearance",
+        "growth of rings",
+        "the pressure between shaft and sleeve",
+        "MPa",
+        0.0,
+        math.inf,
+        "rings in contact: a sleeve that lets go no longer holds its ring, whose growth is then computed wrongly",
+        "take a tighter mounting.shaft.sleeve.interference, or lower the speed",
+        lambda scene: scene.bearing.dimensions_at == "cold" and scene.mounting.shaft.sleeve is not None,
+        lambda at: 1e-6 * sleeve_pressure(at.scene.bearing, at.scene.mounting, at.samples["shaft_speed"]) * np.ones(len(at.samples)),
     ),
     Law(
         "shaft_seat",

@@ -68,23 +68,25 @@ def contact_pressures(
     interferences : diametral, of each seat [m]; negative is a gap.
     square_speeds, warmings : of each ring [rad^2/s^2, K].
     """
+    return _complementary(compliance_matrix(layers), misfits(layers, interferences, square_speeds, warmings))
+
+
+def compliance_matrix(layers: Sequence[Layer]) -> np.ndarray:
+    """Return by how much pressures at the seats part neighbouring rings radially [m/Pa], shape (seats, seats)."""
     count = len(layers) - 1
-    free = _misfits(layers, interferences, square_speeds, warmings)
     compliance = np.zeros((count, count))
     for seat in range(count):
-        radius = layers[seat].outer_radius
-        compliance[seat, seat] = displacement(layers[seat + 1], radius, State(inner_pressure=1.0)) - displacement(
-            layers[seat], radius, State(outer_pressure=1.0)
-        )
+        radius, inside, outside = layers[seat].outer_radius, layers[seat], layers[seat + 1]
+        compliance[seat, seat] = displacement(outside, radius, State(inner_pressure=1.0)) - displacement(inside, radius, State(outer_pressure=1.0))
         if seat > 0:
-            compliance[seat, seat - 1] = -displacement(layers[seat], radius, State(inner_pressure=1.0))
+            compliance[seat, seat - 1] = -displacement(inside, radius, State(inner_pressure=1.0))
         if seat + 1 < count:
-            compliance[seat, seat + 1] = displacement(layers[seat + 1], radius, State(outer_pressure=1.0))
-    return _complementary(compliance, free)
+            compliance[seat, seat + 1] = displacement(outside, radius, State(outer_pressure=1.0))
+    return compliance
 
 
-def _misfits(layers, interferences, square_speeds, warmings) -> np.ndarray:
-    """Return by how much neighbouring rings would overlap without pressure, radially [m]."""
+def misfits(layers: Sequence[Layer], interferences: Sequence[float], square_speeds: Sequence[float], warmings: Sequence[float]) -> np.ndarray:
+    """Return by how much neighbouring rings would overlap without pressure, radially [m], shape (seats,); parameters as of `contact_pressures`."""
     overlaps = []
     for seat, interference in enumerate(interferences):
         radius, inside, outside = layers[seat].outer_radius, layers[seat], layers[seat + 1]

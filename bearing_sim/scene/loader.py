@@ -82,7 +82,13 @@ _UniqueKeyLoader.add_implicit_resolver(
     re.compile(r"^(?:[-+]?(?:\.\d+|\d+(?:\.\d*)?)(?:[eE][-+]?\d+)?|[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN))$"),
     list("-+.0123456789"),
 )
-_MATERIALS = (("bearing", "material"), ("bearing", "cage", "material"), ("mounting", "shaft", "material"), ("mounting", "housing", "material"))
+_MATERIALS = (
+    ("bearing", "material"),
+    ("bearing", "cage", "material"),
+    ("mounting", "shaft", "material"),
+    ("mounting", "shaft", "sleeve", "material"),
+    ("mounting", "housing", "material"),
+)
 _RACEWAY_RADII = tuple(f"outer_raceway.{name}" for name in ("low_radius", "low_points", "high_points", "contour", "contour_file"))
 # What older scenes say, and what says it now.
 _RENAMED = {

@@ -210,6 +210,15 @@ def _hole_limit(letter: str, grade: int, row: int, deviation: int) -> int:
 
 
 @record
+class Sleeve:
+    """A sleeve between shaft and inner ring, as warm as the shaft."""
+
+    bore_radius: quantity("m", "radius of its seat on the shaft", 1e-3, 2.0, "mm")
+    interference: quantity("m", "effective diametral interference on the shaft", 0.0, 1e-3, "um")
+    material: Material = field(default_factory=Material)
+
+
+@record
 class Shaft:
     """The shaft below the inner ring.  Without a fit or an interference it leaves the ring as it is."""
 
@@ -217,6 +226,7 @@ class Shaft:
     interference: quantity("m", "diametral interference, before its surfaces are smoothed; negative: a gap", -1e-3, 1e-3, "um") | None = None
     bore_radius: quantity("m", "bore radius of the shaft; 0 is a solid one", 0.0, 2.0, "mm") = 0.0
     material: Material = field(default_factory=Material)
+    sleeve: Sleeve | None = None  # between shaft and ring
     roughness: quantity("m", "mean roughness depth of the seat, R_z", 0.0, 1e-4, "um") = 4e-6
     ring_roughness: quantity("m", "mean roughness depth of the ring's bore, R_z", 0.0, 1e-4, "um") = 2.5e-6
 
@@ -339,6 +349,11 @@ def mounting_errors(bearing, mounting: Mounting) -> list[str]:
         errors.append(
             f"bearing.inner_raceway.bore_radius: {1e3 * inner.bore_radius:.6g} mm; expected between the shaft's bore "
             f"({1e3 * shaft.bore_radius:.6g} mm) and the raceway ({1e3 * inner.radius:.6g} mm)"
+        )
+    if shaft.sleeve is not None and not shaft.bore_radius < shaft.sleeve.bore_radius < inner.bore_radius:
+        errors.append(
+            f"mounting.shaft.sleeve.bore_radius: {1e3 * shaft.sleeve.bore_radius:.6g} mm; expected between the shaft's bore and the ring's "
+            f"({1e3 * inner.bore_radius:.6g} mm)"
         )
     errors += _refused("mounting.shaft.fit", lambda: shaft_interference(shaft, 2 * inner.bore_radius))
     if housing.fit is None and housing.interference is None:
