@@ -65,8 +65,11 @@ def blocks(path):
 
 
 def test_every_observable_comes_back_as_it_was(recording):
-    read = blocks(recording)
+    read, kept = blocks(recording), {name for topic in recorded(SCENE).values() for names in topic.observables.values() for name in names}
     for observable in OBSERVABLES:
+        if observable.name not in (*kept, "time"):
+            assert np.isnan(read[observable.name]).all() and "temperature" in observable.name or "heat_to" in observable.name
+            continue
         np.testing.assert_allclose(read[observable.name], RUN[observable.name], rtol=1e-15, atol=1e-9 if observable.name == "time" else 0.0)
 
 

@@ -49,7 +49,8 @@ def test_installation_angle_turns_the_drawn_contour():
     "d_value, low_radius", [("0.098mm", "34.8625mm"), ("0mm", "34.885mm"), ("0.3mm", "34.8625mm"), ("0mm", "34.875mm"), ("5mm", "34.9mm")]
 )
 def test_factor_draws_the_largest_departure_below_half_a_roller_and_the_title_states_it(d_value, low_radius):
-    scene = load_scene("deng2017_table1", [f"bearing.outer_raceway.d_value={d_value}", f"bearing.outer_raceway.low_radius={low_radius}"])
+    raceway = f"bearing.outer_raceway.d_value={d_value}", f"bearing.outer_raceway.low_radius={low_radius}"
+    scene = load_scene("deng2017_table1", [*raceway, "bearing.outer_raceway.outside_radius=null"])
     factor = section.magnification(scene.bearing)
     assert f"x{factor}" in section_title(scene)
     contour = section.drawn_contour(scene.bearing, factor, np.linspace(0, 2 * math.pi, 721))

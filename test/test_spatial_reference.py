@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from reference_planar import Reference
 from reference_spatial import SpatialReference, State
 from scipy.integrate import solve_ivp
-from test_planar_reference import GROWN
+from test_planar_reference import GROWN, TIGHTER
 
 from bearing_sim import Simulation, load_scene
 from bearing_sim.levels.spatial import jacobian
@@ -140,7 +140,9 @@ VARIANTS = {
         CROWN,
     ),
     "rolling resistance, and a raceway that grows": (
-        lambda: SpatialReference(Reference(rolling_resistance=True, growth=GROWN), moment=(2 * math.cos(math.pi / 6), 1.0), crown=CROWN),
+        lambda: SpatialReference(
+            Reference(rolling_resistance=True, growth=GROWN, guide_clearance=TIGHTER), moment=(2 * math.cos(math.pi / 6), 1.0), crown=CROWN
+        ),
         [*MOMENT, "lubricant.rolling_resistance=hydrodynamic", "bearing.dimensions_at=cold"],
         CROWN,
     ),
