@@ -202,7 +202,7 @@ STIFF = [
 
 
 def full_jacobian(run):
-    """d rate/d state by the solution of (I - s J) x = b for all unit vectors b."""
+    """Return d rate/d state by the solution of (I - s J) x = b for all unit vectors b."""
     state, rate, shift = run._state, np.zeros_like(run._state), 1e-3
     assert planar.rhs_and_jacobian(run.time, state, run._model(run.inputs, 1.0), run._work, rate)
     assert planar.factor(shift, run._work)

@@ -233,7 +233,7 @@ def test_a_warm_cage_closes_the_land_of_a_colder_ring():
 
 
 def test_the_filter_of_one_state_is_the_closed_form():
-    """x' = a x + w, z = x + v: the steady covariance of the prediction solves a quadratic."""
+    """With x' = a x + w, z = x + v the steady covariance of the prediction solves a quadratic."""
     rate, interval, walk, sensor = -0.2, 0.5, 0.3, 0.8
     gain = filter_gain(np.array([[rate]]), interval, np.array([walk]), [0], sensor)
     a, q, r = math.exp(rate * interval), interval * walk**2, sensor**2

@@ -283,7 +283,7 @@ class Bearing:
 
     @property
     def bore_diameter(self) -> float:
-        """d [m]: the inner ring's, or an estimate from the rollers' diameter (assumption)."""
+        """Bore diameter d [m]: the inner ring's, or an estimate from the rollers' diameter (assumption)."""
         bore = self.inner_raceway.bore_radius
         return 2 * bore if bore is not None else max(self.pitch_diameter - self.roller.diameter / (2 * _SECTION), 0.2 * self.inner_raceway.radius)
 

@@ -92,6 +92,8 @@ def scaled_scene(level: str, speed_rpm: float, rollers: int) -> Scene:
         f"operating.radial_load={LOAD * ratio} N",
         f"bearing.roller.count={rollers}",
         f"bearing.inner_raceway.radius={inner.radius + outward}",
+        f"bearing.inner_raceway.bore_radius={inner.bore_radius + outward}",
+        f"bearing.outer_raceway.outside_radius={bearing.outer_raceway.outside_radius + outward}",
         f"bearing.outer_raceway.low_radius={bearing.outer_raceway.low_radius + outward}",
         f"bearing.cage.inner_radius={cage.inner_radius + outward}",
         f"bearing.cage.guide_radius={cage.guide_radius + outward}",
