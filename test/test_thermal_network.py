@@ -9,8 +9,9 @@ import pytest
 from bearing_sim import Inputs, Simulation, load_scene
 from bearing_sim.levels.steady.equilibrium import thermal_equilibrium
 from bearing_sim.model.params import pack
+from bearing_sim.model.sample import NODE_OBSERVABLES
 from bearing_sim.model.temperatures import given_temperatures, lubricate_scene, warm_cage
-from bearing_sim.model.thermal_network import NODE_OBSERVABLES, POWERS, boundary_dimensions, oil_flow, thermal_network
+from bearing_sim.model.thermal_network import POWERS, boundary_dimensions, oil_flow, thermal_network
 from bearing_sim.physics.growth import Temperatures
 from bearing_sim.physics.thermal_filter import filter_gain, network_matrix
 from bearing_sim.physics.thermal_network import BOOK, LINK, LINKS, NODE, NODES, NetworkInputs, new_work, settle, step
@@ -147,6 +148,10 @@ def test_a_network_without_a_sink_is_refused():
     scene(*closed)  # one end of the shaft is enough
     with pytest.raises(SceneError, match="no sink"):
         scene(*only())
+    bath = ["lubricant.supply=oil_bath", *closed[1:], "heat.shaft.back=0 mm"]  # nothing flows through a bath unless a flow is given
+    with pytest.raises(SceneError, match="no sink"):
+        scene(*bath)
+    scene(*bath, "heat.oil_flow=1 l/min")
 
 
 def test_a_bath_has_no_flow_and_a_jet_one_by_the_bore():

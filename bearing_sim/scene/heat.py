@@ -6,10 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from bearing_sim.scene.quantity import check, quantity, record
-
-BODIES = ("shaft", "inner_ring", "rollers", "outer_ring", "housing")
-"""Bodies that have a temperature of their own, from the inside to the outside."""
+from bearing_sim.scene.quantity import quantity, record
 
 
 @record
@@ -116,16 +113,25 @@ class NetworkHeat:
     conductances: Conductances = field(default_factory=Conductances)
     filter: ThermalFilter = field(default_factory=ThermalFilter)
 
-    @check
-    def _heat_leaves(self) -> list[str]:
-        """Refuse a network without a sink."""
-        given = self.conductances
-        no_flow = given.oil_flow == 0.0 if given.oil_flow is not None else self.oil_flow == 0.0
-        no_housing = given.housing_ambient == 0.0 if given.housing_ambient is not None else self.housing.area == 0.0
-        no_shaft = given.shaft_ambient == 0.0 if given.shaft_ambient is not None else self.shaft.front == self.shaft.back == 0.0
-        if no_flow and no_housing and no_shaft:
-            return ["oil_flow: no oil flows through, and housing and shaft give off no heat: the network has no sink; open one of the three"]
+
+def sink_errors(heat, supply: str) -> list[str]:
+    """Return an error message for a thermal network from which no heat leaves.
+
+    Parameters
+    ----------
+    heat : of the scene.
+    supply : law of the lubricant's supply; an oil bath has no flow unless the scene gives one.
+    """
+    if heat.law != "network":
         return []
+    given = heat.conductances
+    flow = (0.0 if supply == "oil_bath" else None) if heat.oil_flow is None else heat.oil_flow
+    no_flow = given.oil_flow == 0.0 if given.oil_flow is not None else flow == 0.0
+    no_housing = given.housing_ambient == 0.0 if given.housing_ambient is not None else heat.housing.area == 0.0
+    no_shaft = given.shaft_ambient == 0.0 if given.shaft_ambient is not None else heat.shaft.front == heat.shaft.back == 0.0
+    if no_flow and no_housing and no_shaft:
+        return ["heat.oil_flow: no oil flows through, and housing and shaft give off no heat: the network has no sink; open one of the three"]
+    return []
 
 
 Heat = Annotated[NoHeat | GivenHeat | NetworkHeat, Field(discriminator="law")]

@@ -13,7 +13,7 @@ from pydantic import Field
 
 from bearing_sim.scene.bearing import Bearing
 from bearing_sim.scene.fidelity import WANTS, refusals
-from bearing_sim.scene.heat import Heat, NoHeat
+from bearing_sim.scene.heat import Heat, NoHeat, sink_errors
 from bearing_sim.scene.lubricant import Lubricant
 from bearing_sim.scene.mounting import Mounting, mounting_errors
 from bearing_sim.scene.quantity import check, quantity, record
@@ -337,6 +337,7 @@ class Scene:
     @check
     def _operation_is_within_bounds(self) -> list[str]:
         errors = step_errors(self) + moment_errors(self) + mounting_errors(self.bearing, self.mounting) + support_errors(self)
+        errors += sink_errors(self.heat, self.lubricant.supply.law)
         return errors + range_errors(self)
 
 
