@@ -17,7 +17,7 @@ import numpy as np
 
 from bearing_sim.levels.common.model import DEFAULT_TOLERANCES, Drive, Model
 from bearing_sim.levels.slip.forces import balance_loads
-from bearing_sim.levels.steady.model import new_work, solve_condition
+from bearing_sim.levels.steady.model import forget, new_work, solve_condition
 from bearing_sim.levels.steady.operating_point import ANSWER, new_orbit
 from bearing_sim.model.params import pack
 from bearing_sim.model.temperatures import local_model
@@ -88,7 +88,7 @@ class _Balance:
         params, lubrication = local_model(self.scene, self.params, inlet, temperatures)
         clearance = clearance_at(speed, lubrication.growth, params).running
         model = Model(params, lubrication, Drive(0.0, speed, 0.0, load_y, 0.0, load_z, 0.0, 0.0), DEFAULT_TOLERANCES)
-        self._work.asked[:] = math.nan
+        forget(self._work)
         if not solve_condition(speed, load_y, load_z, model, self._work):
             return _Round(self._work.solved, np.zeros(len(POWERS)), temperatures, (math.nan, math.nan), clearance, "no operating point was found")
         answer = self._work.solved.copy()

@@ -25,9 +25,9 @@ from bearing_sim.levels.steady.operating_point import ANSWER, CREEP, FAILED, Mar
 from bearing_sim.levels.steady.table import LookUp, Table, covers, empty_table, look_up, new_look_up
 from bearing_sim.model.params import Lubrication
 from bearing_sim.model.sample import COLUMN, SCALARS
-from bearing_sim.numerics.compilation import kernel
+from bearing_sim.numerics.compilation import kernel, template
 from bearing_sim.numerics.time_stepping import COUNT, NOT_EVALUATED, OK, STEP_BUDGET
-from bearing_sim.physics.growth import Temperatures, excess_growth, growth_at, seats_at, total_growth
+from bearing_sim.physics.growth import Temperatures, excess_growth, growth_at, seats_at
 from bearing_sim.physics.lamina_life import EquivalentLoads
 from bearing_sim.physics.load_balance import LOAD
 from bearing_sim.physics.thermal_network import BOOK, NODE, NODES, NetworkInputs, oil_properties, step
@@ -43,7 +43,7 @@ class Work(NamedTuple):
     table: Table
     scratch: LookUp
     answer: np.ndarray  # at the newest inputs, shape (len(ANSWER),)
-    asked: np.ndarray  # what was last solved for: speed, loads, oil temperature, viscosity in the films, growth, shape (6,)
+    asked: np.ndarray  # inputs that were last solved for: speed, loads, temperature, shape (4,); see `forget`
     solved: np.ndarray  # the answer to them, shape (len(ANSWER),)
     march: March  # for operating points without a periodic state
     solutions: np.ndarray  # operating points solved so far, and how many of them by marching, and without an end to it, int64, shape (3,)
@@ -57,7 +57,7 @@ def new_work(params, table: Table | None = None):
         table=table if table is not None else empty_table(),
         scratch=new_look_up(),
         answer=np.full(len(ANSWER), math.nan),
-        asked=np.full(6, math.nan),
+        asked=np.full(4, math.nan),
         solved=np.full(len(ANSWER), math.nan),
         march=new_march(params.rollers.count),
         solutions=np.zeros(3, np.int64),
@@ -87,10 +87,8 @@ def solve_condition(shaft_speed, load_y, load_z, model, work):
     """
     if abs(shaft_speed) < CREEP:
         shaft_speed = -CREEP if shaft_speed < 0.0 else CREEP
-    asked, lubrication = work.asked, model.lubrication
-    growth = total_growth(shaft_speed, lubrication.growth)
-    same_oil = asked[3] == lubrication.temperature and asked[4] == lubrication.kinematic_viscosity
-    if same_oil and asked[0] == shaft_speed and asked[1] == load_y and asked[2] == load_z and asked[5] == growth:
+    asked = work.asked
+    if asked[0] == shaft_speed and asked[1] == load_y and asked[2] == load_z and asked[3] == model.lubrication.temperature:
         return True
     asked[0] = math.nan
     constant = Model(model.params, model.lubrication, Drive(0.0, shaft_speed, 0.0, load_y, 0.0, load_z, 0.0, 0.0), model.tolerances)
@@ -103,8 +101,7 @@ def solve_condition(shaft_speed, load_y, load_z, model, work):
             work.solutions[2] += 1
         elif marched != OK:
             return False
-    asked[0], asked[1], asked[2] = shaft_speed, load_y, load_z
-    asked[3], asked[4], asked[5] = lubrication.temperature, lubrication.kinematic_viscosity, growth
+    asked[0], asked[1], asked[2], asked[3] = shaft_speed, load_y, load_z, model.lubrication.temperature
     return True
 
 
@@ -222,6 +219,31 @@ def advance(t, duration, y, h, maximum_step, budget, model, work, memory, counts
     return OK, h
 
 
+@template
+def _warmed(lubrication, inlet, growth, viscosity, film_temperature):
+    """Return a lubrication at other temperatures as far as samples show it; tractions and drags, which no table needs, stay.
+
+    Parameters
+    ----------
+    lubrication : `bearing_sim.model.params.Lubrication`.
+    inlet, film_temperature : of the oil that comes in, and the mean of the films [K].
+    growth : `bearing_sim.physics.growth.Growth`.
+    viscosity : nu in the films [m^2/s].
+    """
+    return Lubrication(
+        lubrication.inner,
+        lubrication.outer,
+        lubrication.viscosity,
+        lubrication.mixture_density,
+        inlet,
+        lubrication.rolling_resistance,
+        lubrication.bath,
+        growth,
+        viscosity,
+        film_temperature,
+    )
+
+
 @kernel
 def advance_profile(start, stretches, inputs, kinematic_viscosities, y, model, work, counts, previous, rows):
     """Advance from instant to instant of a course of inputs, for as long as the table holds them.
@@ -256,23 +278,9 @@ def advance_profile(start, stretches, inputs, kinematic_viscosities, y, model, w
         now += interval
         _follow(settled, reached, work.answer[ANSWER.lag], interval, y)
         counts[COUNT.steps] += 1
-        there = Model(
-            model.params,
-            Lubrication(
-                lubrication.inner,
-                lubrication.outer,
-                lubrication.viscosity,
-                lubrication.mixture_density,
-                temperature,
-                lubrication.rolling_resistance,
-                lubrication.bath,
-                growth_at(mounted, Temperatures(temperature, temperature, temperature, temperature, temperature)),
-                kinematic_viscosities[k],
-                temperature,
-            ),
-            Drive(now, speed, 0.0, load_y, 0.0, load_z, 0.0, 0.0),
-            model.tolerances,
-        )
+        growth = growth_at(mounted, Temperatures(temperature, temperature, temperature, temperature, temperature))
+        warmed = _warmed(lubrication, temperature, growth, kinematic_viscosities[k], temperature)
+        there = Model(model.params, warmed, Drive(now, speed, 0.0, load_y, 0.0, load_z, 0.0, 0.0), model.tolerances)
         _write_sample(now, y, there, work, interval, before, rows[k])
         settled, before = reached, rows[k]
     return stretches.shape[0]
@@ -280,23 +288,12 @@ def advance_profile(start, stretches, inputs, kinematic_viscosities, y, model, w
 
 @kernel
 def _lubrication_at(inlet, temperatures, oils, mounted, lubrication):
-    """Return a lubrication with the growth and the films of a network's temperatures; its tractions and drags, which no table needs, stay."""
+    """Return a lubrication with the growth and the films of a network's temperatures, see `_warmed`."""
     inner, rollers, outer = temperatures[NODE.inner_ring], temperatures[NODE.rollers], temperatures[NODE.outer_ring]
     solids = Temperatures(temperatures[NODE.shaft], inner, rollers, outer, temperatures[NODE.housing])
     inner_film, outer_film = 0.5 * (inner + rollers), 0.5 * (outer + rollers)
     viscosity = 0.5 * (oil_properties(inner_film, oils)[0] + oil_properties(outer_film, oils)[0])
-    return Lubrication(
-        lubrication.inner,
-        lubrication.outer,
-        lubrication.viscosity,
-        lubrication.mixture_density,
-        inlet,
-        lubrication.rolling_resistance,
-        lubrication.bath,
-        growth_at(mounted, solids),
-        viscosity,
-        0.5 * (inner_film + outer_film),
-    )
+    return _warmed(lubrication, inlet, growth_at(mounted, solids), viscosity, 0.5 * (inner_film + outer_film))
 
 
 @kernel
@@ -397,6 +394,7 @@ def solve_conditions(conditions, model, work, answers):
     work : `Work`, of the calling thread alone.
     answers : result, shape (n, len(ANSWER)).
     """
+    work.asked[0] = math.nan  # the model may be another one
     for k in range(conditions.shape[0]):
         speed, load, angle = conditions[k, 0], conditions[k, 1], conditions[k, 2]
         found = solve_condition(speed, load * math.cos(angle), load * math.sin(angle), model, work)
