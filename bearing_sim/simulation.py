@@ -14,9 +14,8 @@ from bearing_sim.levels.steady.table import Table
 from bearing_sim.levels.steady.table_builder import cached_table
 from bearing_sim.model.oil import kinematic_viscosities
 from bearing_sim.model.params import pack
-from bearing_sim.model.sample import COLUMN, RING_TEMPERATURES, flat, joined, new_block, sample_dtype
+from bearing_sim.model.sample import COLUMN, NODE_OBSERVABLES, RING_TEMPERATURES, flat, joined, new_block, sample_dtype
 from bearing_sim.model.temperatures import given_temperatures, lubricate_scene
-from bearing_sim.model.thermal_network import NODE_OBSERVABLES
 from bearing_sim.numerics.compilation import compiled_for
 from bearing_sim.numerics.time_stepping import COUNT, OK, REASONS, new_counts, new_memory
 from bearing_sim.scene.fidelity import NUMBERS

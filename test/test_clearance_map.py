@@ -6,10 +6,11 @@ import math
 
 import pytest
 from click.testing import CliRunner
+from test_running_clearance import lift_off_speed
 
 from bearing_sim.cli.main import main
-from bearing_sim.model.running_clearance import lift_off_speed, mounted, uniform
-from bearing_sim.model.thermal_network import NODE_OBSERVABLES
+from bearing_sim.model.running_clearance import mounted, uniform
+from bearing_sim.model.sample import NODE_OBSERVABLES
 from bearing_sim.physics.growth import growth_at
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.studies.clearance_map import LOAD, SPEED, at_level_steady, in_words, map_clearance, row_at

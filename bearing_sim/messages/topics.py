@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from bearing_sim.messages.events import Event, Level
-from bearing_sim.model.sample import RING_TEMPERATURES
+from bearing_sim.model.sample import NODE_OBSERVABLES, RING_TEMPERATURES
 
 SHAFT_JOINT, CAGE_JOINT = "shaft", "cage"
 FRAME = "bearing"  # x along the shaft
@@ -188,14 +188,7 @@ ARRAYS = {
     "operating_point": ArrayRows("load y, z, oil temperature, land eccentricity", ("load_y", "load_z", "oil_temperature", "land_eccentricity")),
     "predicted_temperatures": ArrayRows(
         "shaft, inner ring, rollers, outer ring, housing, oil that leaves",
-        (
-            "shaft_temperature",
-            "inner_ring_temperature",
-            "roller_temperature",
-            "outer_ring_temperature",
-            "housing_temperature",
-            "oil_outlet_temperature",
-        ),
+        NODE_OBSERVABLES,
     ),
     "heat_flows": ArrayRows("to the oil, to ambient", ("heat_to_oil", "heat_to_ambient")),
     "measured_temperatures": ArrayRows(

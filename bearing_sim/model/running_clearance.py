@@ -5,7 +5,8 @@ import math
 
 import numpy as np
 
-from bearing_sim.physics.growth import AS_RUNNING, Expansion, Growth, HousingFit, Mounted, ShaftFit, Temperatures
+from bearing_sim.model.sample import part_temperature
+from bearing_sim.physics.growth import AS_RUNNING, Expansion, HousingFit, Mounted, ShaftFit, Temperatures
 from bearing_sim.physics.layers import Layer, State, compliance_matrix, displacement, hoop_stress, misfits, spinning_roller_growth
 from bearing_sim.scene.bearing import Bearing
 from bearing_sim.scene.material import Material
@@ -44,10 +45,14 @@ def _layer(inside: float, outside: float, material: Material) -> Layer:
     return Layer(inside, outside, material.youngs_modulus, material.poisson_ratio, material.density, material.expansion)
 
 
+def _inner_ring(bearing: Bearing) -> Layer:
+    return _layer(bearing.inner_raceway.bore_radius, bearing.inner_raceway.radius, bearing.material)
+
+
 def shaft_layers(bearing: Bearing, mounting: Mounting) -> tuple[Layer, ...]:
     """Return shaft, sleeve if there is one, and inner ring, from bore to raceway."""
     inner, shaft = bearing.inner_raceway, mounting.shaft
-    ring, sleeve = _layer(inner.bore_radius, inner.radius, bearing.material), shaft.sleeve
+    ring, sleeve = _inner_ring(bearing), shaft.sleeve
     if sleeve is None:
         return _layer(shaft.bore_radius, inner.bore_radius, shaft.material), ring
     return _layer(shaft.bore_radius, sleeve.bore_radius, shaft.material), _layer(sleeve.bore_radius, inner.bore_radius, sleeve.material), ring
@@ -93,7 +98,7 @@ def sleeve_pressure(bearing: Bearing, mounting: Mounting, shaft_speed):
 
 
 def _shaft_fit(bearing: Bearing, mounting: Mounting) -> ShaftFit:
-    ring, seats = shaft_layers(bearing, mounting)[-1], _shaft_seats(bearing, mounting)
+    ring, seats = _inner_ring(bearing), _shaft_seats(bearing, mounting)
     raceway = ring.outer_radius
     free = displacement(ring, raceway, State(square_speed=1.0))
     if seats is None:
@@ -128,7 +133,7 @@ def running_play(bearing: Bearing, mounting: Mounting, shaft_speed: float) -> fl
     else:
         fit, turned = _shaft_fit(bearing, mounting), shaft_speed * shaft_speed
         pressure = max(0.0, fit.pressure + fit.by_square_speed * turned)
-        ring = shaft_layers(bearing, mounting)[-1]
+        ring = _inner_ring(bearing)
         land = displacement(ring, ring.outer_radius, State(inner_pressure=pressure, square_speed=turned))
         play = cage.play + displacement(body, cage.bore, State(square_speed=square)) - land
     return max(play, _LEAST_PLAY * cage.land_film)
@@ -148,13 +153,6 @@ def clearance_at_speed(bearing: Bearing, mounting: Mounting, shaft_speed: float)
     return 2.0 * (bearing.radial_clearance_at_low_points - growth)
 
 
-def lift_off_speed(growth: Growth) -> float:
-    """Return the shaft speed at which the fit of the shaft is lost [rad/s]: infinite without a fit, 0 where it is loose at rest."""
-    if not growth.fitted or growth.pressure_by_square_speed >= 0.0:
-        return math.inf
-    return math.sqrt(max(0.0, growth.pressure) / -growth.pressure_by_square_speed)
-
-
 def seat_pressure(parts: Mounted, samples: np.ndarray) -> np.ndarray:
     """Return the pressure between shaft and inner ring in samples [Pa], shape (n,); negative where they have parted.
 
@@ -166,20 +164,19 @@ def seat_pressure(parts: Mounted, samples: np.ndarray) -> np.ndarray:
     fit, reference = parts.shaft, parts.expansion.reference
     pressure = fit.pressure + fit.by_square_speed * samples["shaft_speed"] ** 2
     for factor, name in ((fit.by_shaft, "shaft_temperature"), (fit.by_ring, "inner_ring_temperature")):
-        temperature = samples[name]
-        pressure = pressure + factor * (np.where(temperature > 0.0, temperature, samples["oil_temperature"]) - reference)
+        pressure = pressure + factor * (part_temperature(samples, name) - reference)
     return pressure
 
 
-def largest_hoop_stress(bearing: Bearing, mounting: Mounting, shaft_speed):
+def largest_hoop_stress(bearing: Bearing, parts: Mounted, shaft_speed):
     """Return the tangential stress at the bore of the inner ring [Pa], by rotation and fit at the reference temperature.
 
     Parameters
     ----------
     bearing : with a bore radius.
-    mounting : of the scene.
+    parts : `mounted` of the bearing.
     shaft_speed : [rad/s], a number or an array.
     """
-    ring, fit, square = shaft_layers(bearing, mounting)[-1], _shaft_fit(bearing, mounting), shaft_speed * shaft_speed
-    pressure = np.maximum(0.0, fit.pressure + fit.by_square_speed * square)
+    ring, square = _inner_ring(bearing), shaft_speed * shaft_speed
+    pressure = np.maximum(0.0, parts.shaft.pressure + parts.shaft.by_square_speed * square)
     return hoop_stress(ring, ring.inner_radius, State(inner_pressure=pressure, square_speed=square))

@@ -29,6 +29,15 @@ A sample holds them with ``_measured`` behind the name.  Without it stands the t
 ``_uncorrected`` what a thermal network predicts without that.
 """
 
+NODE_OBSERVABLES = (
+    "shaft_temperature",
+    "inner_ring_temperature",
+    "roller_temperature",
+    "outer_ring_temperature",
+    "housing_temperature",
+    "oil_outlet_temperature",
+)
+"""Observables of the temperatures of a thermal network, in the order of its nodes (`bearing_sim.physics.thermal_network.NODE`)."""
 OBSERVABLES = (
     Observable("time", "s", "simulated time since the start of the run"),
     Observable("shaft_angle", "rad", "shaft rotation since the start"),
@@ -134,6 +143,18 @@ OBSERVABLES = (
 def sample_dtype(rollers: int) -> np.dtype:
     """Return the structured dtype of one sample of a bearing with that many rollers."""
     return np.dtype([(o.name, np.float64, (rollers,)) if o.per_roller else (o.name, np.float64) for o in OBSERVABLES])
+
+
+def part_temperature(samples: np.ndarray, name: str) -> np.ndarray:
+    """Return an observable of the temperature of a part [K], the oil's that comes in where no law of heat computes it.
+
+    Parameters
+    ----------
+    samples : shape (n,) or a single one.
+    name : of the observable.
+    """
+    temperature = samples[name]
+    return np.where(temperature > 0.0, temperature, samples["oil_temperature"])
 
 
 def new_block(samples: int, rollers: int) -> np.ndarray:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from bearing_sim.model.params import Lubrication, Params, lubricate
+from bearing_sim.model.sample import part_temperature
 from bearing_sim.physics.growth import Temperatures
 from bearing_sim.physics.thermal_network import NODE
 from bearing_sim.scene.heat import GivenHeat
@@ -43,9 +44,8 @@ def film_temperatures(samples: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     ----------
     samples : shape (n,) or a single one, see `bearing_sim.model.sample`.
     """
-    oil, rollers = samples["oil_temperature"], samples["roller_temperature"]
-    means = (0.5 * (samples[f"{ring}_ring_temperature"] + rollers) for ring in ("inner", "outer"))
-    inner, outer = (np.where(mean > 0.0, mean, oil) for mean in means)
+    rollers = part_temperature(samples, "roller_temperature")
+    inner, outer = (0.5 * (part_temperature(samples, f"{ring}_ring_temperature") + rollers) for ring in ("inner", "outer"))
     return inner, outer
 
 

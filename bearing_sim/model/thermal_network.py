@@ -21,15 +21,6 @@ from bearing_sim.scene.lubricant import CustomOil, Oil
 from bearing_sim.scene.mounting import housing_interference, shaft_interference
 from bearing_sim.scene.scene import Scene
 
-NODE_OBSERVABLES = (
-    "shaft_temperature",
-    "inner_ring_temperature",
-    "roller_temperature",
-    "outer_ring_temperature",
-    "housing_temperature",
-    "oil_outlet_temperature",
-)
-"""Observables of the nodes' temperatures, in the order of the nodes."""
 POWERS = tuple(each.name for each in OBSERVABLES if each.name.endswith("_power") and each.name != "shaft_power")
 """Losses by cause, in the order of the observables: the rows of the partition."""
 

@@ -17,7 +17,7 @@ import numpy as np
 from bearing_sim.model.oil import OilState, oil_at
 from bearing_sim.model.params import Params, pack
 from bearing_sim.model.running_clearance import largest_hoop_stress, mounted, seat_pressure, sleeve_pressure
-from bearing_sim.model.sample import new_block
+from bearing_sim.model.sample import new_block, part_temperature
 from bearing_sim.model.temperatures import film_temperatures
 from bearing_sim.scene.bearing import Bearing
 from bearing_sim.scene.crown import NoCrown
@@ -110,8 +110,7 @@ class Conditions:
 
     @functools.cached_property
     def _oils(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        inside = self.samples["oil_outlet_temperature"]
-        return self._oils_at(np.where(inside > 0.0, inside, self.samples["oil_temperature"]))
+        return self._oils_at(part_temperature(self.samples, "oil_outlet_temperature"))
 
     @functools.cached_property
     def _films(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -948,7 +947,7 @@ LAWS = (
         "the material's tensile strength, at which the ring bursts",
         "lower the speed, take a lighter fit, or correct bearing.material.strength",
         lambda scene: scene.bearing.dimensions_at == "cold",
-        lambda at: 1e-6 * largest_hoop_stress(at.scene.bearing, at.scene.mounting, at.samples["shaft_speed"]),
+        lambda at: 1e-6 * largest_hoop_stress(at.scene.bearing, at.params.mounted, at.samples["shaft_speed"]),
         expected="at most bearing.material.strength",
     ),
     Law(

@@ -7,6 +7,7 @@ import numpy as np
 
 from bearing_sim.model.oil import OilState, oil_at
 from bearing_sim.model.params import pack
+from bearing_sim.model.temperatures import film_temperatures
 from bearing_sim.model.validity import contact_speeds
 from bearing_sim.physics.film import DOWSON_HIGGINSON, films
 from bearing_sim.scene.scene import Scene
@@ -43,11 +44,11 @@ class ThinnestFilm:
         ----------
         samples : shape (n,), see `bearing_sim.model.sample`.
         """
-        raceways = self._params.raceways
+        raceways, (inner_film, outer_film) = self._params.raceways, map(float, film_temperatures(samples[-1]))
         inner, outer = contact_speeds(samples, self._params)
         films = [
-            self._film(self._oil_at("inner", samples[-1]), raceways.inner_curvature_radius, samples["inner_load"], *inner),
-            self._film(self._oil_at("outer", samples[-1]), raceways.outer_curvature_radius, samples["outer_load"], *outer),
+            self._film(self._oil_at("inner", inner_film), raceways.inner_curvature_radius, samples["inner_load"], *inner),
+            self._film(self._oil_at("outer", outer_film), raceways.outer_curvature_radius, samples["outer_load"], *outer),
         ]
         thinnest = np.minimum(*(film.min(axis=1) for film in films))
         return np.where(np.isinf(thinnest), np.nan, thinnest)
@@ -58,11 +59,8 @@ class ThinnestFilm:
         modulus, length = self._params.raceways.reduced_modulus, self._params.rollers.length
         return np.where(force > _LOADED_FROM, films(DOWSON_HIGGINSON, oil, radius, modulus, length, pressed, rolling, sliding), np.inf)
 
-    def _oil_at(self, ring: str, sample: np.void) -> OilState:
-        """Return the oil in the contacts of a ring: at the mean temperature of ring and rollers where they have one, else at the oil's."""
-        temperature = 0.5 * float(sample[f"{ring}_ring_temperature"] + sample["roller_temperature"])
-        if not temperature > 0.0:
-            temperature = float(sample["oil_temperature"])
+    def _oil_at(self, ring: str, temperature: float) -> OilState:
+        """Return the oil in the contacts of a ring at a temperature [K], computed again where that has changed enough to be seen."""
         before = self._oils.get(ring)
         if before is None or abs(before.temperature - temperature) > _SAME_OIL:
             self._oils[ring] = before = oil_at(self._lubricant.oil, temperature)

@@ -17,11 +17,9 @@ import numpy as np
 from bearing_sim.levels.steady.equilibrium import thermal_equilibrium
 from bearing_sim.levels.steady.table import empty_table
 from bearing_sim.messages.topics import ARRAYS
-from bearing_sim.model.running_clearance import mounted, uniform
-from bearing_sim.model.temperatures import given_temperatures
-from bearing_sim.model.thermal_network import NODE_OBSERVABLES
-from bearing_sim.physics.growth import Temperatures, growth_at
-from bearing_sim.physics.thermal_network import NODE
+from bearing_sim.model.running_clearance import mounted, seat_pressure
+from bearing_sim.model.sample import NODE_OBSERVABLES
+from bearing_sim.model.thermal_network import POWERS
 from bearing_sim.recording.provenance import git_hash, package_version
 from bearing_sim.scene.scene import Integration, Scene
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation
@@ -106,10 +104,10 @@ def row_at(scene: Scene, shaft_speed: float, radial_load: float) -> dict:
     angle, oil = scene.operating.load_angle, scene.lubricant.temperature
     inputs = Inputs(shaft_speed, radial_load * math.cos(angle), radial_load * math.sin(angle), oil)
     row = {column.name: math.nan for column in COLUMNS} | {SPEED: shaft_speed * _RPM, LOAD: radial_load, "status": OK, "reason": ""}
-    nodes, solids = None, given_temperatures(scene.heat, oil) if scene.heat.law == "given" else uniform(oil)
+    nodes = None
     if scene.heat.law == "network":
         found = thermal_equilibrium(scene, inputs)
-        nodes, solids = found.temperatures, Temperatures(*found.temperatures[: NODE.oil].tolist())
+        nodes = found.temperatures
         row |= {"heat_to_oil": found.heat_to_oil, "heat_to_ambient": found.heat_to_ambient}
         if not found.converged:
             status = NO_EQUILIBRIUM if found.temperatures.max() >= scene.heat.limit else FAILED
@@ -118,20 +116,15 @@ def row_at(scene: Scene, shaft_speed: float, radial_load: float) -> dict:
         simulation = Simulation(scene, inputs, empty_table())
         if nodes is not None:
             simulation.set_temperatures(nodes)
-        sample = simulation.advance(_ENDLESS, samples=2)[-1]
+        samples = simulation.advance(_ENDLESS, samples=2)
     except IntegrationError as error:
         return row | {"status": FAILED, "reason": str(error)}
+    sample, parts = samples[-1], mounted(scene.bearing, scene.mounting)
     row |= {name: 1e6 * float(sample[name]) for name in _PARTS}
     row |= {name: float(sample[name]) - _CELSIUS for name in NODE_OBSERVABLES}
-    losses = sum(float(sample[name]) for name in sample.dtype.names if name.endswith("_power") and name != "shaft_power")
+    losses = sum(float(sample[name]) for name in POWERS)
     row |= {"cage_slip": 100.0 * float(sample["cage_slip"]), "life": float(sample["modified_rating_life"]), "loss": losses}
-    return row | {"seat_pressure": _seat_pressure(scene, solids, shaft_speed)}
-
-
-def _seat_pressure(scene: Scene, solids: Temperatures, shaft_speed: float) -> float:
-    """Return the pressure between shaft and inner ring [MPa]; NaN without a fit."""
-    growth = growth_at(mounted(scene.bearing, scene.mounting), solids)
-    return 1e-6 * (growth.pressure + growth.pressure_by_square_speed * shaft_speed**2) if growth.fitted else math.nan
+    return row | {"seat_pressure": 1e-6 * float(seat_pressure(parts, sample)) if parts.shaft.fitted else math.nan}
 
 
 def map_clearance(

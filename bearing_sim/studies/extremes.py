@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.levels.level import LEVELS
-from bearing_sim.model.sample import RING_TEMPERATURES
+from bearing_sim.model.sample import NODE_OBSERVABLES, RING_TEMPERATURES
 from bearing_sim.numerics.cores import cores
 from bearing_sim.numerics.time_stepping import STEP_BUDGET
 from bearing_sim.scene.fidelity import level_of
@@ -50,8 +50,7 @@ _NOT_COMPUTED = {"steady": ("roller_spin", "roller_rotation", "pocket_force")}  
 _NOT_IN_EVERY_SCENE = (
     "contamination_factor",  # NaN without a cleanliness class
     *(f"{name}_{kind}" for name in RING_TEMPERATURES for kind in ("measured", "uncorrected")),
-    *("shaft_temperature", "inner_ring_temperature", "roller_temperature", "outer_ring_temperature", "housing_temperature"),
-    *("oil_outlet_temperature", "heat_to_oil", "heat_to_ambient"),  # NaN without a law of heat
+    *(*NODE_OBSERVABLES, "heat_to_oil", "heat_to_ambient"),  # NaN without a law of heat
 )
 _MAY_BE_INFINITE = (*LIVES, "static_safety")  # without load or at rest
 # Losses that cannot be negative at any instant by their laws.  Pocket friction follows spin alone (Deng 2017, eq. 13), and the published

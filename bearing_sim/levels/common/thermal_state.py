@@ -12,9 +12,9 @@ import math
 import numpy as np
 
 from bearing_sim.model.params import Lubrication, Params
-from bearing_sim.model.sample import COLUMN, SCALARS
+from bearing_sim.model.sample import COLUMN, NODE_OBSERVABLES, SCALARS
 from bearing_sim.model.temperatures import local_model
-from bearing_sim.model.thermal_network import NODE_OBSERVABLES, POWERS, fit_gaps, start_temperatures, thermal_network
+from bearing_sim.model.thermal_network import POWERS, fit_gaps, start_temperatures, thermal_network
 from bearing_sim.numerics.compilation import compiled_for
 from bearing_sim.physics.growth import seats_at
 from bearing_sim.physics.thermal_filter import filter_gain, network_matrix
