@@ -18,8 +18,9 @@ from pydantic_core import PydanticCustomError
 
 from bearing_sim.scene.bearing import drop_other_lands
 from bearing_sim.scene.contour import UNREAD, drop_other_forms, with_contour_text
+from bearing_sim.scene.diameters import ROUND_RACEWAY, diameters, forget_counterpart, gives_round_raceway, override_by_radius, with_radii
 from bearing_sim.scene.fidelity import choose
-from bearing_sim.scene.quantity import SPEED
+from bearing_sim.scene.quantity import SPEED, to_si
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import declared_in, drop_ranges, override_range, read_ranges, written
 
@@ -89,7 +90,7 @@ _MATERIALS = (
     ("mounting", "shaft", "sleeve", "material"),
     ("mounting", "housing", "material"),
 )
-_RACEWAY_RADII = tuple(f"outer_raceway.{name}" for name in ("low_radius", "low_points", "high_points", "contour", "contour_file"))
+_RACEWAY_RADII = tuple(f"outer_raceway.{name}" for name in ("low_radius", "diameter", "low_points", "high_points", "contour", "contour_file"))
 # What older scenes say, and what says it now.
 _RENAMED = {
     "bearing.inner_raceway.supported_mass": "the shaft's mass is support.shaft.mass",
@@ -192,20 +193,37 @@ def scene_from_mapping(tree: Mapping, origin: str = "scene") -> Scene:
     SceneError
         Listing every error with its path, value and the expected value.
     """
-    resolved, errors = _with_presets(tree)
+    halved, wrong_diameters = with_radii(tree, Scene)
+    resolved, errors = _with_presets(halved)
     resolved, unread = with_contour_text(resolved)
     ranges, wrong = read_ranges(resolved.get("uncertainty"), Scene)
     resolved["uncertainty"] = ranges
-    errors += [InvalidField(*error) for error in wrong]
+    errors += [InvalidField(*error) for error in (*wrong_diameters, *wrong)]
+    if gives_round_raceway(tree) and _has_lobes(resolved):
+        errors.append(InvalidField(ROUND_RACEWAY, "", "this raceway has lobes, and no one diameter; give low_diameter or low_radius"))
+    without = {diameters(Scene)[path].radius for path, _, _ in wrong_diameters if path in diameters(Scene)}
     try:
         scene = TypeAdapter(Scene).validate_python(_with_level(resolved), context=_WRITTEN)
     except ValidationError as error:
-        errors += [each for each in invalid_fields(error, Scene, _UNION_TAGS) if not (unread and UNREAD in each.reason)]
+        found = invalid_fields(error, Scene, _UNION_TAGS)
+        errors += [each for each in found if not (unread and UNREAD in each.reason or each.path in without and each.reason == "missing")]
     if unread:
         errors.append(InvalidField("bearing.outer_raceway.contour_file", *unread))
     if errors:
         raise SceneError(origin, errors)
     return scene
+
+
+def _has_lobes(tree: Mapping) -> bool:
+    """Whether the outer raceway of a tree has high points or a D value above zero; False for what cannot be read."""
+    bearing = tree.get("bearing")
+    raceway = bearing.get("outer_raceway") if isinstance(bearing, Mapping) else None
+    if not isinstance(raceway, Mapping):
+        return False
+    try:
+        return bool(raceway.get("high_points")) or to_si(raceway.get("d_value") or 0.0, "m") > 0.0
+    except ValueError:
+        return False
 
 
 def _with_level(tree: Mapping) -> Mapping:
@@ -279,7 +297,8 @@ def _apply_override(tree: dict, override: str) -> None:
     if keys[0] == "uncertainty" and len(keys) > 1:
         override_range(tree, keys, value)
         return
-    node = tree
+    path, value = override_by_radius(".".join(keys), value, Scene)
+    keys, node = path.split("."), tree
     for depth, key in enumerate(keys[:-1]):
         child = node.get(key)
         if isinstance(child, str) and depth == 0 and key == "bearing":
@@ -294,8 +313,9 @@ def _apply_override(tree: dict, override: str) -> None:
         node.clear()
         drop_ranges(tree, "heat.")
     node[keys[-1]] = value
+    forget_counterpart(node, path, Scene)
     if keys[:-1] == ["bearing", "outer_raceway"]:
-        drop_other_forms(node, (keys[-1],))
+        drop_other_forms(node, ("low_radius" if path == ROUND_RACEWAY else keys[-1],))
     if keys[0] == "bearing":
         _keep_one_clearance(tree["bearing"], ".".join(keys[1:]))
         if ".".join(keys[1:]) in _RACEWAY_RADII:

@@ -12,6 +12,7 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from bearing_sim.recording.provenance import git_hash, package_version
+from bearing_sim.scene.diameters import diameters
 from bearing_sim.scene.loader import SceneError, did_you_mean, load_scene, scene_to_yaml
 from bearing_sim.scene.quantity import Quantity, to_si, unit_registry
 from bearing_sim.scene.scene import Scene
@@ -78,6 +79,8 @@ def field_of(path: str) -> Field:
     FieldError
         The field does not exist, or is a block.
     """
+    if path in diameters(Scene):
+        return Field(path, diameters(Scene)[path].quantity, ())
     options: list[Any] = [Scene]
     for depth, name in enumerate(path.split(".")):
         records = [option for option in options if isinstance(option, type) and dataclasses.is_dataclass(option)]
