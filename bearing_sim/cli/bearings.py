@@ -25,16 +25,16 @@ from bearing_sim.cli.reporting import (
 @click.command("scenes")
 @json_option
 def scenes(as_json):
-    """List the bundled scenes, bearings, oils and CSV mappings."""
+    """List the bundled scenes, bearings, oils, greases and CSV mappings."""
     from bearing_sim.scene.loader import catalog_names, load_scene, scene_names
 
     found = {"scenes": {name: load_scene(name).description for name in scene_names()}}
-    found |= {kind: catalog_names(kind) for kind in ("bearings", "oils", "mappings")}
+    found |= {kind: catalog_names(kind) for kind in ("bearings", "oils", "greases", "mappings")}
     if as_json:
         print_json(found)
         return
     print_table("scenes", found["scenes"].items())
-    print_table("catalog", [(kind, ", ".join(found[kind])) for kind in ("bearings", "oils", "mappings")])
+    print_table("catalog", [(kind, ", ".join(found[kind])) for kind in ("bearings", "oils", "greases", "mappings")])
 
 
 @click.command("loads")

@@ -10,14 +10,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.model.oil import oil_at, specific_heat
+from bearing_sim.model.oil import oil_at, specific_heat, thermal_conductivity
 from bearing_sim.model.params import Params
 from bearing_sim.model.sample import OBSERVABLES
 from bearing_sim.physics.heat import plummer_block_area
 from bearing_sim.physics.thermal_network import LINK, NODE, NODES, Bodies, Contacts, Network, Oils, Surfaces
 from bearing_sim.scene.bearing import Bearing
 from bearing_sim.scene.heat import NetworkHeat
-from bearing_sim.scene.lubricant import CustomOil, Oil
+from bearing_sim.scene.lubricant import CustomOil, Lubricant, Oil
 from bearing_sim.scene.mounting import housing_interference, shaft_interference
 from bearing_sim.scene.scene import Scene
 
@@ -46,6 +46,8 @@ _HOUSING_DENSITY = 3500.0  # kg/m^3; mass of such a block over the cube of the b
 _SHAFT_LENGTH = 2.5  # of the bore diameter
 _JET = 5.6e-4  # m^2/s; flow over bore: 4 l/min at 118 mm, of the 1.9 to 10.2 l/min of F. T. Schuller, NASA TP-1413 (1979)
 _BATH = 1.0 / 3.0  # of the space of the bearing that its oil takes
+_FREE_SPACE = 1.0 / 3.0  # of the space between bore, outside and faces that is free of steel
+_CONDUCTIVITY_AT = 333.15  # [K] temperature of the oil's conductivity, which changes by 0.05 % a kelvin
 _MEAN_SQUARE = 0.2  # R_q over R_z of turned and ground surfaces, 0.15 to 0.25
 _HARDNESS = 2.5e9  # Pa; heat-treated shaft steel, 250 HB
 _COLDEST, _HOTTEST, _OIL_STEP = 220.0, 600.0, 2.0  # K; range and spacing of the table of the oil
@@ -65,14 +67,16 @@ def boundary_dimensions(bearing: Bearing) -> Dimensions:
 
 
 def oil_flow(scene: Scene) -> float:
-    """Return the oil that flows through a bearing with a thermal network [m^3/s]: the scene's, or a plausible one of a jet; 0 of a bath."""
-    if scene.heat.oil_flow is not None:
-        return scene.heat.oil_flow
-    return 0.0 if _bath(scene) else _JET * 2.0 * boundary_dimensions(scene.bearing).bore_radius
+    """Return the oil that flows through a bearing with a thermal network [m^3/s]: the scene's, or a plausible one of a jet or of circulating oil."""
+    flow = scene.lubricant.flow if scene.heat.oil_flow is None else scene.heat.oil_flow
+    return _JET * 2.0 * boundary_dimensions(scene.bearing).bore_radius if flow is None else flow
 
 
-def _bath(scene: Scene) -> bool:
-    return scene.lubricant.supply.law == "oil_bath"
+def _oil_fraction(lubricant: Lubricant) -> float:
+    """Return the fraction of the bearing's space that its oil or grease takes."""
+    if lubricant.supply.law == "grease":
+        return _FREE_SPACE * lubricant.supply.fill
+    return _BATH if lubricant.has_bath else lubricant.mixture_fraction
 
 
 def thermal_network(scene: Scene, params: Params) -> Network:
@@ -154,7 +158,7 @@ def _capacities(scene: Scene, params: Params, size: Dimensions, bore: float, bes
     steel = material.density * material.specific_heat
     volume = math.pi * (size.outside_radius**2 - size.bore_radius**2) * size.width
     oil = oil_at(scene.lubricant.oil, scene.lubricant.temperature)
-    fraction = _BATH if _bath(scene) else scene.lubricant.mixture_fraction
+    fraction = _oil_fraction(scene.lubricant)
     poured = heat.oil_volume if heat.oil_volume is not None else fraction * volume
     housing = heat.housing.mass if heat.housing.mass is not None else _HOUSING_DENSITY * (2.0 * size.outside_radius) ** 3
     capacities = np.empty(NODES)
@@ -194,7 +198,7 @@ def _oils(oil: Oil | CustomOil) -> Oils:
                 math.log(state.pressure_viscosity),
             )
         )
-    return Oils(_COLDEST, _OIL_STEP, np.array(rows), oil.thermal_conductivity)
+    return Oils(_COLDEST, _OIL_STEP, np.array(rows), thermal_conductivity(oil, _CONDUCTIVITY_AT))
 
 
 def start_temperatures(heat: NetworkHeat, inlet: float) -> np.ndarray:

@@ -347,7 +347,7 @@ def _with_traction(*laws: type) -> Callable[[Scene], bool]:
 
 
 def _has_bath(scene: Scene) -> bool:
-    return scene.lubricant.supply.law == "oil_bath"
+    return scene.lubricant.has_bath
 
 
 def _has_mixture(scene: Scene) -> bool:

@@ -54,7 +54,7 @@ EFFECTS = (
     Effect("operating.misalignment", ("spatial",), "whose ring tilts", lambda scene: scene.operating.misalignment != 0.0),
     Effect("integration.fixed_step", MARCHING, "which take steps", lambda scene: scene.integration.fixed_step is not None),
     Effect("lubricant.rolling_resistance", LEVELS, "whose contacts resist rolling", lambda scene: scene.lubricant.rolling_resistance.law != "none"),
-    Effect("lubricant.supply", LEVELS, "whose rollers and cage move through oil", lambda scene: scene.lubricant.supply.law == "oil_bath"),
+    Effect("lubricant.supply", LEVELS, "whose rollers and cage move through oil", lambda scene: scene.lubricant.has_bath),
     Effect("bearing.seals", LEVELS, "whose seals rub on the shaft", lambda scene: scene.bearing.seals.law != "none"),
     Effect("bearing.dimensions_at", LEVELS, "whose rings grow", lambda scene: scene.bearing.dimensions_at == "cold"),
     Effect("support.unbalance", WHIRLING, "whose inner ring has inertia", lambda scene: scene.support.unbalance.amount > 0.0),

@@ -101,7 +101,7 @@ class NetworkHeat:
     ambient_temperature: quantity("K", "temperature of the air around housing and shaft", 200.0, 500.0, "degC") = 293.15
     # Air that a running machine stirs; DIN 31652-1 counts 7 + 12 v^(1/2) W/(m^2 K) from 1.2 m/s on.  0 is still air.
     air_speed: quantity("m/s", "speed of the air across the housing", 0.0, 100.0) = 1.2
-    oil_flow: quantity("m^3/s", "oil that flows through the bearing; None: of a bath 0, of a jet 5.6e-4 m^2/s x bore", 0.0, 1.0) | None = None
+    oil_flow: quantity("m^3/s", "oil that flows through the bearing; None: the supply's, or of a jet 5.6e-4 m^2/s x bore", 0.0, 1.0) | None = None
     oil_volume: quantity("m^3", "oil in the bearing; None: by the oil's fraction of its space", 1e-9, 10.0) | None = None
     start: Literal["oil", "ambient", "equilibrium"] = "oil"  # temperatures at time 0: all the oil's, all the air's, or those of equilibrium
     limit: quantity("K", "highest temperature of a thermal equilibrium; beyond it the bearing runs away", 300.0, 590.0, "degC") = 573.15
@@ -114,18 +114,18 @@ class NetworkHeat:
     filter: ThermalFilter = field(default_factory=ThermalFilter)
 
 
-def sink_errors(heat, supply: str) -> list[str]:
+def sink_errors(heat, lubricant) -> list[str]:
     """Return an error message for a thermal network from which no heat leaves.
 
     Parameters
     ----------
     heat : of the scene.
-    supply : law of the lubricant's supply; an oil bath has no flow unless the scene gives one.
+    lubricant : of the scene; oil baths, grease and oil-air have no flow unless the scene gives one.
     """
     if heat.law != "network":
         return []
     given = heat.conductances
-    flow = (0.0 if supply == "oil_bath" else None) if heat.oil_flow is None else heat.oil_flow
+    flow = lubricant.flow if heat.oil_flow is None else heat.oil_flow
     no_flow = given.oil_flow == 0.0 if given.oil_flow is not None else flow == 0.0
     no_housing = given.housing_ambient == 0.0 if given.housing_ambient is not None else heat.housing.area == 0.0
     no_shaft = given.shaft_ambient == 0.0 if given.shaft_ambient is not None else heat.shaft.front == heat.shaft.back == 0.0

@@ -20,13 +20,15 @@ from bearing_sim.scene.bearing import drop_other_lands
 from bearing_sim.scene.contour import UNREAD, drop_other_forms, with_contour_text
 from bearing_sim.scene.diameters import ROUND_RACEWAY, diameters, forget_counterpart, gives_round_raceway, override_by_radius, with_radii
 from bearing_sim.scene.fidelity import choose
+from bearing_sim.scene.lubricant_names import keep_one_lubricant, with_named_lubricants
 from bearing_sim.scene.quantity import SPEED, to_si
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import declared_in, drop_ranges, override_range, read_ranges, written
 
 _UNION_TAGS = frozenset(
     {"oil_4109", "constant", "kragelskii", "eyring", "fitted", "custom", "double_exponential", "reference", "hyperbolic", "power"}
-    | {"none", "iso_log", "straight_arc", "table", "hydrodynamic", "oil_jet", "oil_bath", "constant_moment", "skf", "given", "network"}
+    | {"none", "iso_log", "straight_arc", "table", "hydrodynamic", "constant_moment", "skf", "given", "network"}
+    | {"oil_jet", "circulating", "oil_bath", "oil_air", "grease"}
 )
 
 
@@ -90,6 +92,8 @@ _MATERIALS = (
     ("mounting", "shaft", "sleeve", "material"),
     ("mounting", "housing", "material"),
 )
+# Blocks that a file may give by a name alone, and the field that the name stands for.
+_OPENED = {("bearing",): "preset", ("lubricant", "oil"): "preset", ("lubricant", "grease"): "preset", ("lubricant", "supply"): "law"}
 _RACEWAY_RADII = tuple(f"outer_raceway.{name}" for name in ("low_radius", "diameter", "low_points", "high_points", "contour", "contour_file"))
 # What older scenes say, and what says it now.
 _RENAMED = {
@@ -106,7 +110,7 @@ def scene_names() -> list[str]:
 
 
 def catalog_names(kind: str) -> list[str]:
-    """Return the names of the catalog entries of a kind: ``bearings``, ``oils``, ``materials`` or ``mappings``."""
+    """Return the names of the catalog entries of a kind: ``bearings``, ``oils``, ``greases``, ``materials`` or ``mappings``."""
     return _bundled_names(f"catalog/{kind}")
 
 
@@ -301,8 +305,8 @@ def _apply_override(tree: dict, override: str) -> None:
     keys, node = path.split("."), tree
     for depth, key in enumerate(keys[:-1]):
         child = node.get(key)
-        if isinstance(child, str) and depth == 0 and key == "bearing":
-            child = {"preset": child}
+        if isinstance(child, str) and (opened := _OPENED.get(tuple(keys[: depth + 1]))):
+            child = {opened: child}
         if child is None:
             child = {}
         if not isinstance(child, dict):
@@ -314,6 +318,8 @@ def _apply_override(tree: dict, override: str) -> None:
         drop_ranges(tree, "heat.")
     node[keys[-1]] = value
     forget_counterpart(node, path, Scene)
+    if keys[:-1] == ["lubricant"]:
+        keep_one_lubricant(node, keys[-1], value)
     if keys[:-1] == ["bearing", "outer_raceway"]:
         drop_other_forms(node, ("low_radius" if path == ROUND_RACEWAY else keys[-1],))
     if keys[0] == "bearing":
@@ -337,7 +343,11 @@ def _from_catalog(kind: str, name: str, path: str) -> tuple[dict, list[InvalidFi
     names = catalog_names(kind)
     if name not in names:
         return {}, [InvalidField(path, repr(name), f"not in the catalog{did_you_mean(str(name), names)}; known: {', '.join(names)}")]
-    return yaml.load(_bundled_text(f"catalog/{kind}", name), Loader=_UniqueKeyLoader), []
+    return _catalog_entry(kind, name), []
+
+
+def _catalog_entry(kind: str, name: str) -> dict:
+    return yaml.load(_bundled_text(f"catalog/{kind}", name), Loader=_UniqueKeyLoader)
 
 
 def _with_presets(tree: Mapping) -> tuple[dict, list[InvalidField]]:
@@ -364,20 +374,9 @@ def _with_presets(tree: Mapping) -> tuple[dict, list[InvalidField]]:
     for path in _MATERIALS:
         tree, unknown = _with_material(tree, path)
         errors += unknown
-    lubricant = tree.get("lubricant")
-    if isinstance(lubricant, Mapping) and isinstance(lubricant.get("oil"), str):
-        oil, unknown = _from_catalog("oils", lubricant["oil"], "lubricant.oil")
-        if lubricant["oil"] == "custom":
-            unknown = [
-                InvalidField("lubricant.oil", "'custom'", "expected a block: law: custom, viscosity_40, viscosity_100, density, pressure_viscosity")
-            ]
-        errors += unknown
-        if unknown:
-            oil = _from_catalog("oils", catalog_names("oils")[0], "")[0]  # check the rest with any oil
-        tree["lubricant"] = {**lubricant, "oil": oil}
-    lubricant = tree.get("lubricant")
-    if isinstance(lubricant, Mapping) and isinstance(lubricant.get("oil"), Mapping) and "law" not in lubricant["oil"]:
-        tree["lubricant"] = {**lubricant, "oil": {"law": "fitted", **lubricant["oil"]}}
+    if isinstance(tree.get("lubricant"), Mapping):
+        tree["lubricant"], unknown = with_named_lubricants(tree["lubricant"], catalog_names, _catalog_entry)
+        errors += [InvalidField(*error) for error in unknown]
     return tree, errors
 
 
@@ -423,7 +422,7 @@ def invalid_fields(error: ValidationError, record: type, laws: frozenset[str]) -
 
 
 def _invalid_field(problem: Mapping, record: type, laws: frozenset[str]) -> InvalidField:
-    path = ".".join(str(part) for part in problem["loc"] if part not in laws)
+    path = _written_path(problem["loc"], record, laws)
     kind, reason, value = problem["type"], problem["msg"], problem["input"]
     shown = "" if isinstance(value, Mapping) or dataclasses.is_dataclass(value) or type(value).__name__ == "ArgsKwargs" else repr(value)
     if kind == "missing":
@@ -441,23 +440,40 @@ def _invalid_field(problem: Mapping, record: type, laws: frozenset[str]) -> Inva
     return InvalidField(path, shown, re.sub(r"^(Value error, |Input should be )", lambda m: "" if m[1].startswith("Value") else "expected ", reason))
 
 
+def _written_path(loc: Iterable, record: type, laws: frozenset[str]) -> str:
+    """Return the dotted path that the file has for a place in pydantic's words, which contain the laws that select records of unions."""
+    kind, parts = record, []
+    for part in loc:
+        selects = not dataclasses.is_dataclass(kind) and part in laws  # a field may be called like a law
+        kind = _inner_kind(kind, part, laws)
+        if not selects:
+            parts.append(str(part))
+    return ".".join(parts)
+
+
 def _field_names(loc: Iterable, record: type, laws: frozenset[str]) -> list[str]:
     kind = record
     for part in loc:
-        if isinstance(part, int):  # index into a tuple of records
-            kind = _unwrapped(typing.get_args(kind)[0])
-        elif part in laws:
-            kind = next(option for option in typing.get_args(kind) if option.law == part)
-        elif dataclasses.is_dataclass(kind):
-            kind = _unwrapped(typing.get_type_hints(kind, include_extras=True)[part])
+        kind = _inner_kind(kind, part, laws)
     return [field.name for field in dataclasses.fields(kind)] if dataclasses.is_dataclass(kind) else []
+
+
+def _inner_kind(kind, part: str | int, laws: frozenset[str]):
+    """Return the record type or union of types that a type has at a part of pydantic's path; None where there is none."""
+    if isinstance(part, int):  # index into a tuple of records
+        return _unwrapped(next(iter(typing.get_args(kind)), None))
+    if dataclasses.is_dataclass(kind):
+        return _unwrapped(typing.get_type_hints(kind, include_extras=True).get(part))
+    if part in laws:
+        return next((option for option in typing.get_args(kind) if getattr(option, "law", None) == part), None)
+    return None
 
 
 def _unwrapped(hint):
     """Return the record type, or the union of record types, inside an annotation."""
     if typing.get_origin(hint) is typing.Annotated:
         hint = typing.get_args(hint)[0]
-    if isinstance(hint, types.UnionType):
-        records = [arg for arg in typing.get_args(hint) if dataclasses.is_dataclass(arg)]
+    if isinstance(hint, types.UnionType) or typing.get_origin(hint) is typing.Union:
+        records = [kind for kind in map(_unwrapped, typing.get_args(hint)) if dataclasses.is_dataclass(kind) or isinstance(kind, types.UnionType)]
         return hint if len(records) > 1 else records[0] if records else float
     return hint

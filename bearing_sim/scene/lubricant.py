@@ -8,6 +8,9 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from bearing_sim.scene.quantity import check, named_law, quantity, record
 
+BASE_OILS = Literal["mineral", "pao", "ester", "pag", "aviation"]
+"""Kinds of base oil: mineral, poly-alpha-olefin, ester, polyalkylene glycol, and the esters of aviation turbine oils."""
+
 
 @record
 class DoubleExponentialViscosity:
@@ -57,6 +60,7 @@ class Oil:
     law: Literal["fitted"] = "fitted"
     name: str  # name of the oil
     source: str  # where its data come from
+    base: BASE_OILS = "aviation"  # kind of base oil; it decides which law of traction is taken unless one is given
     viscosity: Annotated[DoubleExponentialViscosity | ReferenceViscosity, Field(discriminator="law")]
     pressure_viscosity: Annotated[HyperbolicPressureViscosity | PowerPressureViscosity, Field(discriminator="law")]
     density_temperatures: tuple[quantity("K", "temperature of a density point", 150.0, 800.0, "degC"), ...]
@@ -78,23 +82,72 @@ class Oil:
 
 @record
 class CustomOil:
-    """An oil by the values of its data sheet: kinematic viscosities at 40 and 100 degC (ASTM D341), density, pressure viscosity."""
+    """An oil by the values of its data sheet; what the sheet does not say follows from the kind of base oil (see `bearing_sim.model.oil`).
+
+    The viscosity at 100 degC is given, or follows from the viscosity index by ASTM D2270; between and beyond both temperatures ASTM D341 holds.
+    """
 
     law: Literal["custom"] = "custom"
     name: str = "custom"  # name of the oil
     source: str = ""  # where its data come from
+    base: BASE_OILS = "mineral"  # kind of base oil
     viscosity_40: quantity("m^2/s", "kinematic viscosity at 40 degC", 2e-7, 0.1, "mm^2/s")
-    viscosity_100: quantity("m^2/s", "kinematic viscosity at 100 degC", 2e-7, 0.1, "mm^2/s")
-    density: quantity("kg/m^3", "density at 15 degC", 100.0, 3000.0)
-    expansion: quantity("1/K", "thermal expansion of the volume", 0.0, 1e-2) = 6.5e-4
-    pressure_viscosity: quantity("1/Pa", "pressure-viscosity coefficient, alpha", 1e-10, 1e-7, "1/GPa")
-    thermal_conductivity: quantity("", "thermal conductivity [W/(m K)]", 0.01, 10.0) = 0.14
+    viscosity_100: quantity("m^2/s", "kinematic viscosity at 100 degC; None: by the index", 2e-7, 0.1, "mm^2/s") | None = None
+    viscosity_index: quantity("", "viscosity index; None: usual of the base oil, if viscosity_100 is not given either", -60.0, 450.0) | None = None
+    density: quantity("kg/m^3", "density at 15 degC; None: by base oil and viscosity", 100.0, 3000.0) | None = None
+    expansion: quantity("1/K", "thermal expansion of the volume; None: by base oil and density", 0.0, 1e-2) | None = None
+    pressure_viscosity: (
+        quantity("1/Pa", "pressure-viscosity coefficient, alpha; None: by base oil and viscosity (Gold et al. 2001)", 1e-10, 1e-7, "1/GPa") | None
+    ) = None
+    thermal_conductivity: quantity("", "thermal conductivity [W/(m K)]; None: by base oil", 0.01, 10.0) | None = None
     specific_heat: quantity("J/(kg*K)", "specific heat; None: by density and temperature (Cragoe 1929)", 100.0, 1e4) | None = None
 
     @check
     def _thins_when_heated(self) -> list[str]:
-        if self.viscosity_100 >= self.viscosity_40:
+        if self.viscosity_100 is not None and self.viscosity_index is not None:
+            return ["viscosity_index: follows from viscosity_40 and viscosity_100; give one of viscosity_100 and viscosity_index"]
+        if self.viscosity_100 is not None and self.viscosity_100 >= self.viscosity_40:
             return ["viscosity_100: expected less than viscosity_40"]
+        return []
+
+
+def _as_text(value: object) -> object:
+    """Return a number as its text, because files write NLGI classes as numbers."""
+    return f"{value:g}" if isinstance(value, (int, float)) and not isinstance(value, bool) else value
+
+
+THICKENERS = Literal[
+    "lithium",
+    "lithium_complex",
+    "calcium",
+    "calcium_sulfonate_complex",
+    "aluminium_complex",
+    "barium_complex",
+    "sodium",
+    "bentonite",
+    "polyurea",
+    "ptfe",
+]
+
+
+@record
+class Grease:
+    """A grease's thickener and consistency; its base oil is `lubricant.oil`, whose viscosity counts in films."""
+
+    name: str = ""  # name of the grease
+    source: str = ""  # where its data come from
+    thickener: THICKENERS = "lithium"
+    nlgi: Annotated[Literal["000", "00", "0", "1", "1.5", "2", "2.5", "3", "4"], BeforeValidator(_as_text)] = "2"  # consistency (ASTM D217)
+    density: quantity("kg/m^3", "density at 20 degC; None: 900 kg/m^3", 500.0, 2500.0) | None = None
+    speed_factor: quantity("", "highest n d_m that the grease is for [rpm mm]; None: by base oil and NLGI class", 1e3, 5e6) | None = None
+    lowest_temperature: quantity("K", "lowest temperature that the grease is for; None: not judged", 150.0, 400.0, "degC") | None = None
+    highest_temperature: quantity("K", "highest temperature that the grease is for; None: not judged", 250.0, 600.0, "degC") | None = None
+
+    @check
+    def _temperatures_span_something(self) -> list[str]:
+        low, high = self.lowest_temperature, self.highest_temperature
+        if low is not None and high is not None and low >= high:
+            return [f"lowest_temperature: {low - 273.15:.6g} degC is not below the highest_temperature, {high - 273.15:.6g} degC"]
         return []
 
 
@@ -140,8 +193,8 @@ class EyringTraction:
     """Thermal Eyring film with limiting shear stress (see `bearing_sim.physics.traction`)."""
 
     law: Literal["eyring"] = "eyring"
-    eyring_stress: quantity("Pa", "Eyring stress, tau_E", 1e5, 1e9, "MPa") = 5e6
-    limiting_ratio: quantity("", "limiting shear stress over mean Hertz pressure, Lambda", 1e-3, 0.5) = 0.075
+    eyring_stress: quantity("Pa", "Eyring stress, tau_E; None: by base oil and temperature", 1e5, 1e9, "MPa") | None = None
+    limiting_ratio: quantity("", "limiting shear stress over mean Hertz pressure, Lambda; None: by base oil and temperature", 1e-3, 0.5) | None = None
 
 
 Traction = Annotated[Oil4109Traction | ConstantTraction | KragelskiiTraction | EyringTraction, Field(discriminator="law")]
@@ -169,11 +222,29 @@ RollingResistance = Annotated[NoRollingResistance | HydrodynamicRollingResistanc
 """A record, or its bare name (``none``, ``hydrodynamic``)."""
 
 
+_FLOW = quantity("m^3/s", "oil that flows through the bearing", 0.0, 1.0, "l/min")
+
+
 @record
 class OilJet:
-    """Oil that is sprayed in and drained: rollers and cage move in a mixture of oil and air."""
+    """Oil that is sprayed in and drained: rollers and cage move in a mixture of oil and air.
+
+    With a flow the fraction of oil in the mixture follows from flow, size and speed (see `bearing_sim.model.supply`), without one it is 0.03.
+    """
 
     law: Literal["oil_jet"] = "oil_jet"
+    flow: _FLOW | None = None  # None: the mixture's fraction does not depend on it
+
+
+@record
+class Circulating:
+    """Oil that is led in beside the rollers and drains off: it stands up to a low level and flows (see `bearing_sim.physics.drag.bath_moment`)."""
+
+    law: Literal["circulating"] = "circulating"
+    flow: _FLOW | None = None  # carries heat away; None: as of a jet
+    level: quantity("m", "oil level above the lowest point of the outer raceway, H; None: the middle of the lowest roller", 0.0, 4.0, "mm") | None = (
+        None
+    )
 
 
 @record
@@ -186,25 +257,81 @@ class OilBath:
     )
 
 
-Supply = Annotated[OilJet | OilBath, Field(discriminator="law"), BeforeValidator(named_law)]
-"""A record, or its bare name (``oil_jet``, ``oil_bath``)."""
-_MIXTURE_FRACTION = {"oil_jet": 0.03, "oil_bath": 0.0}  # an assumption; SKF's drag in a bath is that of rollers and cage together
+@record
+class OilAir:
+    """Small doses of oil in a stream of air, or oil mist: next to no oil to displace."""
+
+    law: Literal["oil_air"] = "oil_air"
+    flow: quantity("m^3/s", "oil that is dosed; it carries heat away; None: none that counts", 0.0, 1e-3, "ml/h") | None = None
+
+
+@record
+class GreaseSupply:
+    """Grease that has been run in: it lies beside the rollers and bleeds oil."""
+
+    law: Literal["grease"] = "grease"
+    fill: quantity("", "volume of grease over the free space of the bearing", 0.01, 1.0, "%") = 0.3
+
+
+Supply = Annotated[OilJet | Circulating | OilBath | OilAir | GreaseSupply, Field(discriminator="law"), BeforeValidator(named_law)]
+"""A record, or its bare name (``oil_jet``, ``circulating``, ``oil_bath``, ``oil_air``, ``grease``)."""
+# Assumptions but for those that are 0: SKF's drag in a bath is that of rollers and cage together, and its model has none for run-in grease.
+_MIXTURE_FRACTION = {"oil_jet": 0.03, "circulating": 0.0, "oil_bath": 0.0, "oil_air": 0.001, "grease": 0.0}
 
 
 @record
 class Lubricant:
-    """The oil and how it is supplied, its fraction in the oil-air mixture inside the bearing, its traction law and its resistance to rolling."""
+    """The oil and how it is supplied, its fraction in the oil-air mixture inside the bearing, its traction law and its resistance to rolling.
+
+    Of a grease `oil` is the base oil.  A field that is None in a file is filled in by what the others say.
+    """
 
     oil: Annotated[Oil | CustomOil, Field(discriminator="law")]
+    grease: Grease | None = None  # thickener and consistency; None: lubrication with oil
     temperature: quantity("K", "oil temperature", 220.0, 600.0, "degC") = 393.15
-    supply: Supply = field(default_factory=OilJet)
-    mixture_fraction: quantity("", "volume fraction of oil in the oil-air mixture; None: 0.03, or 0 in a bath", 0.0, 1.0) | None = None
+    supply: Supply | None = None  # None: an oil jet, or of a grease its supply
+    mixture_fraction: (
+        quantity("", "volume fraction of oil in the oil-air mixture; None: of a jet by its flow or 0.03, of oil-air 0.001, else 0", 0.0, 1.0) | None
+    ) = None
     traction_scale: quantity("", "factor on every traction coefficient", 0.0, 100.0) = 1.0
-    traction: Traction = field(default_factory=Oil4109Traction)
+    traction: Traction | None = None  # None: oil_4109 of aviation oils, eyring of all others
     rolling_resistance: RollingResistance = field(default_factory=HydrodynamicRollingResistance)
 
     @model_validator(mode="after")
-    def _fraction_of_the_supply(self):
+    def _fill_in(self):
+        fill = object.__setattr__
+        if self.supply is None:
+            fill(self, "supply", OilJet() if self.grease is None else GreaseSupply())
+        if self.supply.law == "grease" and self.grease is None:
+            fill(self, "grease", Grease())
         if self.mixture_fraction is None:
-            object.__setattr__(self, "mixture_fraction", _MIXTURE_FRACTION[self.supply.law])
+            fill(self, "mixture_fraction", _MIXTURE_FRACTION[self.supply.law])
+        if self.traction is None:
+            fill(self, "traction", Oil4109Traction() if self.oil.base == "aviation" else EyringTraction())
+        if isinstance(self.traction, EyringTraction):
+            stress, ratio = self.traction.eyring_stress, self.traction.limiting_ratio
+            stress, ratio = 5e6 if stress is None else stress, 0.075 if ratio is None else ratio
+            fill(self, "traction", EyringTraction(eyring_stress=stress, limiting_ratio=ratio))
         return self
+
+    @check
+    def _grease_is_supplied_as_grease(self) -> list[str]:
+        if self.grease is not None and self.supply.law != "grease":
+            return [f"supply: {self.supply.law} is a supply of oil, and lubricant.grease is given; expected grease, or no lubricant.grease"]
+        return []
+
+    @property
+    def fraction_follows_flow(self) -> bool:
+        """Whether the mixture's fraction of oil depends on flow and speed, unless `mixture_fraction` is given."""
+        return self.supply.law == "oil_jet" and self.supply.flow is not None
+
+    @property
+    def flow(self) -> float | None:
+        """Oil that flows through the bearing [m^3/s]: the supply's, 0 where none flows, None where it is not known."""
+        given = getattr(self.supply, "flow", None)
+        return given if given is not None or self.supply.law in ("oil_jet", "circulating") else 0.0
+
+    @property
+    def has_bath(self) -> bool:
+        """Whether oil stands in the bearing up to a level."""
+        return self.supply.law in ("oil_bath", "circulating")

@@ -337,7 +337,7 @@ class Scene:
     @check
     def _operation_is_within_bounds(self) -> list[str]:
         errors = step_errors(self) + moment_errors(self) + mounting_errors(self.bearing, self.mounting) + support_errors(self)
-        errors += sink_errors(self.heat, self.lubricant.supply.law)
+        errors += sink_errors(self.heat, self.lubricant)
         return errors + range_errors(self)
 
 
