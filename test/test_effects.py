@@ -17,6 +17,7 @@ ASKING = {
     "lubricant.rolling_resistance": "hydrodynamic",
     "lubricant.supply": "oil_bath",
     "bearing.seals": "{law: constant_moment, moment: 0.1}",
+    "bearing.flanges": "{outer: both}",
     "bearing.dimensions_at": "cold",
     "support.unbalance": "{amount: 1 g*mm}",
 }

@@ -9,6 +9,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from bearing_sim.scene.contour import form_errors, settled_form
 from bearing_sim.scene.crown import Crown, IsoLogCrown, crown_errors
+from bearing_sim.scene.flanges import Flanges, flange_errors
 from bearing_sim.scene.material import Material
 from bearing_sim.scene.mounting import CLEARANCE_GROUPS, clearance_limits
 from bearing_sim.scene.quantity import QuantityOrName, check, named_law, quantity, record
@@ -280,6 +281,7 @@ class Bearing:
     ratings: Ratings = field(default_factory=Ratings)  # what the maker rates the bearing for
     width: quantity("m", "width of the bearing, B; None: estimated from the rollers' length", 1e-3, 2.0, "mm") | None = None
     seals: Seals = field(default_factory=NoSeals)
+    flanges: Flanges = field(default_factory=Flanges)
 
     @property
     def bore_diameter(self) -> float:
@@ -378,7 +380,7 @@ class Bearing:
                 f"outer_raceway.low_radius: {1e3 * self.outer_raceway.low_radius:.6g} mm leaves {1e6 * clearance:.6g} um between inner "
                 f"raceway, roller and low point; expected {-2e4 * self.roller.diameter:.6g} to {5e5 * self.roller.diameter:.6g} um"
             )
-        return errors + ring_errors(self) + cage_errors(self) + play_errors(self)
+        return errors + ring_errors(self) + cage_errors(self) + play_errors(self) + flange_errors(self)
 
 
 def ring_errors(bearing) -> list[str]:

@@ -13,6 +13,7 @@ from pydantic import Field
 
 from bearing_sim.scene.bearing import Bearing
 from bearing_sim.scene.fidelity import WANTS, refusals
+from bearing_sim.scene.flanges import axial_errors
 from bearing_sim.scene.heat import Heat, NoHeat, sink_errors
 from bearing_sim.scene.lubricant import Lubricant
 from bearing_sim.scene.mounting import Mounting, mounting_errors
@@ -38,6 +39,7 @@ class Operating:
     shaft_speed: quantity("rad/s", "shaft speed, omega_i", -_LARGEST_SPEED, _LARGEST_SPEED, "rpm")
     radial_load: quantity("N", "radial load on the inner ring, F_r", 0.0, _LARGEST_LOAD) = 0.0
     load_angle: quantity("rad", "azimuth of the radial load, from +y", -2 * math.pi, 2 * math.pi, "deg") = 0.0
+    axial_load: quantity("N", "axial load on the inner ring along +x, F_a, which flanges of both rings carry", -_LARGEST_LOAD, _LARGEST_LOAD) = 0.0
     moment: quantity("N*m", "moment on the inner ring, which then tilts freely; None: its tilt is held", 0.0, 1e5) | None = None
     moment_angle: quantity("rad", "azimuth to which the moment leans the ring's +x end, from +y", -2 * math.pi, 2 * math.pi, "deg") = 0.0
     misalignment: quantity("rad", "tilt at which the inner ring is held", 0.0, 0.02, "mrad") = 0.0
@@ -337,7 +339,7 @@ class Scene:
     @check
     def _operation_is_within_bounds(self) -> list[str]:
         errors = step_errors(self) + moment_errors(self) + mounting_errors(self.bearing, self.mounting) + support_errors(self)
-        errors += sink_errors(self.heat, self.lubricant)
+        errors += axial_errors(self) + sink_errors(self.heat, self.lubricant)
         return errors + range_errors(self)
 
 
