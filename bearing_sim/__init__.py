@@ -35,6 +35,8 @@ _EXPORTS = {
     "load_scene": "scene.loader",
     "Simulation": "simulation",
     "Inputs": "simulation",
+    "settle": "studies.operating_point",
+    "run_sweep": "sweep.grid",
     "to_pandas": "model.labelled",
     "to_xarray": "model.labelled",
 }

@@ -2,6 +2,7 @@
 """Simulation: owns time, state and workspace of one bearing; ``advance`` returns a block of samples."""
 
 import math
+from collections.abc import Callable, Hashable
 from typing import NamedTuple
 
 import numpy as np
@@ -23,6 +24,7 @@ from bearing_sim.scene.scene import Integration, Operating, Scene
 
 _MEASURED_COLUMNS = slice(COLUMN.inner_ring_temperature_measured, COLUMN.outer_ring_temperature_measured + 1)
 _LONGEST_CALL = 2.0  # intervals of the thermal network
+_compiled_versions: dict[Hashable, Callable] = {}
 _FINEST_WITH_FIXED_STEP = Tolerances(position=2.5e-11, play=5e-11, speed=1e-7, relative=3e-7)
 
 
@@ -91,9 +93,10 @@ class Simulation:
     scene : what to simulate.
     inputs : conditions at time 0; the scene's operating block where absent.
     table : of operating points, for level ``steady``; the one on disk where absent.  Without one each of them is solved.
+    start : sample in whose positions and speeds to begin, see `reset`.
     """
 
-    def __init__(self, scene: Scene, inputs: Inputs | None = None, table: Table | None = None):
+    def __init__(self, scene: Scene, inputs: Inputs | None = None, table: Table | None = None, start: np.void | None = None):
         self.scene = scene
         self._params, self._tolerances = pack(scene), tolerances_of(scene.integration)
         self._dtype = sample_dtype(self._params.rollers.count)
@@ -105,20 +108,22 @@ class Simulation:
         if self._level.advance_profile is not None:
             kept = cached_table(scene) if table is None else (table,)
             self._tables = kept[:1] if kept else ()
-        self.reset(inputs)
+        self.reset(inputs, start=start)
 
-    def reset(self, inputs: Inputs | None = None, nodes: np.ndarray | None = None) -> None:
-        """Return to time 0, no damage, and the state of ideal rolling at ``inputs``.
+    def reset(self, inputs: Inputs | None = None, nodes: np.ndarray | None = None, start: np.void | None = None) -> None:
+        """Return to time 0, no damage, and the state of ideal rolling at ``inputs``, or that of a sample.
 
         Parameters
         ----------
         inputs : conditions at time 0; the scene's operating block where absent.
         nodes : temperatures of the thermal network's nodes [K]; those of the scene's start where absent, or without a network.
+        start : sample of a bearing with as many rollers, at any level, in whose positions and speeds to begin; speeds change with that of the
+            shaft, so that the cage slips as much as there.
 
         Raises
         ------
         ValueError
-            An input is not finite, except for a measured temperature that is NaN.
+            An input is not finite, except for a measured temperature that is NaN; or the sample has another number of rollers.
         IntegrationError
             The scene starts in thermal equilibrium, and there is none.
         """
@@ -130,7 +135,23 @@ class Simulation:
         if self._thermal is not None:
             self._thermal.temperatures[:] = self._start_temperatures() if nodes is None else nodes
         self._take_temperatures()
-        self._begin(self._level.initial_state(self._params, self._work, *self.inputs[:3]), new_block(1, self._params.rollers.count))
+        before = new_block(1, self._params.rollers.count)
+        if start is None:
+            self._begin(self._level.initial_state(self._params, self._work, *self.inputs[:3]), before)
+        else:
+            self._begin(self._level.state_at(self._params, self._work, self._at_present_speed(start)), before)
+
+    def _at_present_speed(self, sample: np.void) -> np.void:
+        """Return a sample with the speeds that its bearing has with the same slip at the present speed of the shaft."""
+        if sample.dtype != self._dtype:
+            raise ValueError(f"cannot start a bearing of {self._params.rollers.count} rollers from a sample of another bearing")
+        sample, before = sample.copy(), float(sample["shaft_speed"])
+        if before == 0.0:
+            raise ValueError("cannot start from a sample of a shaft at rest, which has no slip; leave start out")
+        for name in ("cage_speed", "orbital_speed", "roller_spin"):
+            sample[name] *= self.inputs.shaft_speed / before
+        sample["cage_angle"] %= 2.0 * math.pi
+        return sample
 
     def take_over(self, other: "Simulation") -> None:
         """Continue from the state of another simulation of the same bearing, at another level or with other settings.
@@ -371,7 +392,7 @@ class Simulation:
         )
         status, step = (self._compiled or advance)(*arguments)
         if self._compiled is None:
-            self._compiled = compiled_for(advance, arguments)
+            self._compiled = _compiled_version(advance, arguments)
         if status != OK:
             self._work = self._new_work()  # a failed search may have left nonsense to start the next one from
             self._memory = new_memory(state.size)
@@ -467,6 +488,23 @@ def tolerances_of(integration: Integration) -> Tolerances:
     absolute = integration.absolute_tolerance
     wanted = Tolerances(*(float(value) for value in (absolute.position, absolute.play, absolute.speed, integration.relative_tolerance)))
     return wanted if integration.fixed_step is None else Tolerances(*map(max, wanted, _FINEST_WITH_FIXED_STEP))
+
+
+def _compiled_version(function: Callable, arguments: tuple) -> Callable:
+    """Return `compiled_for` of a function and arguments, looked up once for arguments of the same structure."""
+    key = function, _structure(arguments)
+    if key not in _compiled_versions:
+        _compiled_versions[key] = compiled_for(function, arguments)
+    return _compiled_versions[key]
+
+
+def _structure(value) -> Hashable:
+    """Return what the type of a value in compiled code follows from; numba's own look at a bearing takes twenty times as long."""
+    if isinstance(value, tuple):
+        return type(value), *map(_structure, value)
+    if isinstance(value, np.ndarray):
+        return value.dtype, value.ndim, value.flags.num
+    return type(value)
 
 
 def start_sample(simulation: Simulation) -> np.ndarray:

@@ -34,9 +34,9 @@ ROOMS = {
     "monitoring": ("numpy scipy", "scene physics model messages inputs"),
     "runtime": ("numpy", "scene numerics model levels simulation messages recording inputs monitoring"),
     "view": ("PIL numpy rerun rerun_cli", "scene messages recording"),
-    "sweep": ("numpy pyarrow matplotlib distributed", "scene numerics model levels simulation recording"),
+    "sweep": ("numpy pandas pyarrow matplotlib distributed xarray", "scene numerics model levels simulation recording"),
     "studies": (
-        "numpy numba scipy matplotlib pydantic sksundae",
+        "numpy numba pandas scipy matplotlib pydantic sksundae",
         "scene numerics physics model levels simulation messages recording monitoring sweep",
     ),
     "cli": ("click numpy pydantic_core rich", "scene numerics model levels simulation messages recording inputs runtime view sweep studies"),

@@ -14,8 +14,11 @@ from bearing_sim.cli.main import main
 from bearing_sim.recording.reader import Recording
 from bearing_sim.sweep.point import point_row
 from bearing_sim.sweep.settling import (
+    DRIFTING,
+    LIMIT_CYCLE,
     LONGEST,
     SHORTEST_TURNS,
+    WANDERING,
     Course,
     Observed,
     Tolerance,
@@ -134,18 +137,18 @@ def test_windows_are_whole_cage_turns_where_they_hold_any():
 
 
 @pytest.mark.parametrize(
-    ("value", "words"),
+    ("value", "verdict", "words"),
     [
-        (approach(0.17, 8.0), "cage slip still rises by 0.79 points per s, now 11.47 %"),  # about 17/8 exp(-8/8), mean of 8 to 10 s
-        (oscillation(0.06, 0.02, 1.25), "cage slip oscillates between 4.0"),
-        (lambda t: 0.06 * t + 1e-3 * np.cumsum(np.random.default_rng(1).standard_normal(len(t))) * 0.3, "cage slip wanders between"),
+        (approach(0.17, 8.0), DRIFTING, "cage slip still rises by 0.79 points per s, now 11.47 %"),  # about 17/8 exp(-8/8), mean of 8 to 10 s
+        (oscillation(0.06, 0.02, 1.25), LIMIT_CYCLE, "cage slip oscillates between 4.0"),
+        (lambda t: 0.06 * t + 1e-3 * np.cumsum(np.random.default_rng(1).standard_normal(len(t))) * 0.3, WANDERING, "cage slip wanders between"),
     ],
 )
-def test_what_an_unsettled_observable_was_doing_is_said(value, words):
+def test_what_an_unsettled_observable_was_doing_is_said(value, verdict, words):
     one = course(value, 10.0)
     (trend,) = trends(one, [ALLOWED])
-    said = describe(one, trend, 0, SLIP)
-    assert said.startswith(words)
+    found, said = describe(one, trend, 0, SLIP)
+    assert found == verdict and said.startswith(words)
     if "oscillates" in words:
         assert "and 8.0" in said or "and 7.9" in said
         assert float(said.split("period of ")[1].removesuffix(" s")) == pytest.approx(1.25, rel=0.05)

@@ -19,7 +19,7 @@ from bearing_sim.cli.main import main
 from bearing_sim.model.sample import OBSERVABLES, new_block
 from bearing_sim.simulation import Counters
 from bearing_sim.sweep import point
-from bearing_sim.sweep.grid import FieldError, axis, read_axis, sweep
+from bearing_sim.sweep.grid import FieldError, axis, read_axis, run_sweep
 from bearing_sim.sweep.point import RESULTS, point_row
 from bearing_sim.sweep.settling import Outcome
 from bearing_sim.sweep.table import NotDrawable, draw, read_table, write_table
@@ -31,7 +31,7 @@ SPEED = "operating.shaft_speed"
 
 def swept(*axes, overrides=(), duration=0.05, scene="deng2017_table1"):
     with Journal() as journal:
-        return sweep(scene, overrides, [read_axis(text) for text in axes], journal, duration, workers=1)
+        return run_sweep(scene, [read_axis(text) for text in axes], overrides, journal=journal, duration=duration, workers=1)
 
 
 @pytest.mark.parametrize(
@@ -165,7 +165,7 @@ def test_a_row_says_means_extremes_and_lives_as_damage_adds_up(monkeypatch):
     window["cage_slip"], window["rating_life"] = [0.1, 0.3], [100.0, 300.0]
     window["inner_load"], window["outer_load"] = [[0.0, 0.0, 0.0, 5.0], [0.0, 2.0, 3.0, 7.0]], [[9.0] * 4, [9.0, 9.0, 9.0, 11.0]]
     pitch, work = window[1:], Counters(*[0] * 6)
-    monkeypatch.setattr(point, "settle", lambda scene, duration: Outcome(True, 0.5, 0.1, "", 0.2, window, pitch, work))
+    monkeypatch.setattr(point, "run_until_settled", lambda scene, duration: Outcome("settled", 0.5, 0.1, "", 0.2, window, pitch, work))
     row = point_row(load_scene("deng2017_table1"))
     assert (row["cage_slip_minimum"], row["cage_slip"], row["cage_slip_maximum"]) == pytest.approx((10.0, 20.0, 30.0))
     assert row["rating_life"] == pytest.approx(150.0), "half of the time at 100 h and half at 300 h uses as much up as 150 h do"

@@ -1,7 +1,6 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Commands that run many points: ``sweep`` and its ``plot``."""
 
-import math
 from collections import Counter
 from contextlib import suppress
 from pathlib import Path
@@ -54,24 +53,34 @@ def sweep(scene_name, axes, overrides, level, duration, out, workers, dask, pict
     """
     from bearing_sim.model.plausibility import plausibility
     from bearing_sim.scene.loader import SceneError, load_scene
-    from bearing_sim.sweep.grid import FieldError, read_axis
+    from bearing_sim.sweep.grid import FieldError, point_count, read_axis
     from bearing_sim.sweep.tasks import ClusterError, Journal, JournalInUse
 
     seconds = seconds_of(duration)
     with as_usage_error(FieldError):
         varied = [read_axis(text) for text in axes]
+        count = point_count(varied)
     _check_sweep(varied, level)
     with suppress(SceneError):  # what varies may be what makes the scene valid
         warn(plausibility(load_scene(scene_name, overrides)))
     announce_compilation()
-    from bearing_sim.sweep.grid import sweep
+    from bearing_sim.sweep.grid import run_sweep
     from bearing_sim.sweep.table import write_table
 
-    overrides = [*overrides, *([f"level={level}"] if level else [])]
-    points = Points("sweep", math.prod(len(axis.values) for axis in varied))
+    points = Points("sweep", count)
     with as_file_error(), exit_on_sigterm(), as_usage_error(SceneError, ClusterError, JournalInUse):
         with Journal(out.with_suffix(".journal")) as journal, points:
-            table = sweep(scene_name, overrides, varied, journal, seconds, workers, dask, points.update)
+            table = run_sweep(
+                scene_name,
+                varied,
+                overrides,
+                level=level,
+                duration=seconds,
+                journal=journal,
+                workers=workers,
+                dask=dask,
+                progress=points.update,
+            )
         files = write_table(out, table._replace(about=table.about | {"command": command_line()}))
         if picture is not None:
             from bearing_sim.sweep.table import NotDrawable, draw
@@ -86,17 +95,12 @@ def sweep(scene_name, axes, overrides, level, duration, out, workers, dask, pict
 
 
 def _check_sweep(axes, level) -> None:
-    from bearing_sim.sweep.grid import MOST_POINTS
-
     paths = [axis.field.path for axis in axes]
     for path in set(paths):
         if paths.count(path) > 1:
             raise UsageError(f"--vary {path}: given {paths.count(path)} times; give all its values in one option")
     if level is not None and "level" in paths:
         raise UsageError("--level and --vary level= contradict each other; give one of them")
-    points = math.prod(len(axis.values) for axis in axes)
-    if points > MOST_POINTS:
-        raise UsageError(f"--vary: {points} points; a sweep has at most {MOST_POINTS}")
 
 
 def _report_sweep(table, points, files, picture) -> dict:

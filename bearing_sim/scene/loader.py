@@ -2,13 +2,11 @@
 """Read scenes: YAML, presets, command-line overrides.  All errors of a file are reported at once."""
 
 import dataclasses
-import difflib
 import functools
 import re
 import types
 import typing
 from collections.abc import Hashable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
 
@@ -19,6 +17,7 @@ from pydantic_core import PydanticCustomError
 from bearing_sim.scene.bearing import drop_other_lands
 from bearing_sim.scene.contour import UNREAD, drop_other_forms, with_contour_text
 from bearing_sim.scene.diameters import ROUND_RACEWAY, diameters, forget_counterpart, gives_round_raceway, override_by_radius, with_radii
+from bearing_sim.scene.errors import InvalidField, SceneError, did_you_mean
 from bearing_sim.scene.fidelity import choose
 from bearing_sim.scene.lubricant_names import keep_one_lubricant, with_named_lubricants
 from bearing_sim.scene.quantity import SPEED, to_si
@@ -30,29 +29,6 @@ _UNION_TAGS = frozenset(
     | {"none", "iso_log", "straight_arc", "table", "hydrodynamic", "constant_moment", "skf", "given", "network"}
     | {"oil_jet", "circulating", "oil_bath", "oil_air", "grease"}
 )
-
-
-@dataclass(frozen=True)
-class InvalidField:
-    """One error in a scene: where it is, the value found (as text) and what was expected."""
-
-    path: str
-    value: str
-    reason: str
-
-    def __str__(self) -> str:
-        found = f" = {self.value}" if self.value else ""
-        return f"{self.path or 'scene'}{found}: {self.reason}"
-
-
-class SceneError(ValueError):
-    """A scene that cannot be used; ``errors`` lists every invalid field."""
-
-    def __init__(self, origin: str, errors: Iterable[InvalidField]):
-        self.origin = origin
-        self.errors = tuple(errors)
-        count = len(self.errors)
-        super().__init__("\n".join([f"{origin}: {count} error{'s' * (count != 1)}"] + [f"  {error}" for error in self.errors]))
 
 
 class _UniqueKeyLoader(yaml.SafeLoader):
@@ -149,12 +125,12 @@ def read_named(name: str | Path, folder: str, kind: str) -> tuple[str, Path | No
         raise SceneError(str(name), [InvalidField(kind, "", f"not readable as UTF-8 text: {error.reason}")]) from None
 
 
-def load_scene(scene: str | Path, overrides: Iterable[str] = ()) -> Scene:
-    """Load a scene by bundled name or file path.
+def load_scene(scene: str | Path | Scene, overrides: Iterable[str] = ()) -> Scene:
+    """Load a scene by bundled name or file path, or change any fields of a loaded one.
 
     Parameters
     ----------
-    scene : the name of a bundled scene (see `scene_names`) or the path of a YAML file.
+    scene : the name of a bundled scene (see `scene_names`), the path of a YAML file, or a scene.
     overrides : texts such as ``"bearing.outer_raceway.low_radius=34.865mm"``, applied in order over the file.
 
     Raises
@@ -162,6 +138,8 @@ def load_scene(scene: str | Path, overrides: Iterable[str] = ()) -> Scene:
     SceneError
         The file is absent, is not YAML, or has errors; all of them are listed.
     """
+    if isinstance(scene, Scene):
+        return scene_from_mapping(_overridden(_as_mapping(scene), overrides), origin=scene.name)
     text, folder = read_named(scene, "scenes", "scene")
     return scene_from_yaml(text, overrides, origin=str(scene), folder=folder)
 
@@ -174,9 +152,7 @@ def scene_from_yaml(text: str, overrides: Iterable[str] = (), origin: str = "sce
     tree = yaml_mapping(text, origin, "bearing, lubricant, operating ...")
     if folder is not None:
         _anchor_files(tree, folder)
-    for override in overrides:
-        _apply_override(tree, override)
-    return scene_from_mapping(tree, origin)
+    return scene_from_mapping(_overridden(tree, overrides), origin)
 
 
 def _anchor_files(tree: dict, folder: Path) -> None:
@@ -249,12 +225,17 @@ def _with_level(tree: Mapping) -> Mapping:
 
 def scene_to_yaml(scene: Scene) -> str:
     """Return the whole scene as YAML in SI, rotational speeds with their unit; `scene_from_yaml` reads it back equal."""
+    return yaml.dump(_as_mapping(scene), Dumper=_LineDumper, sort_keys=False, allow_unicode=True)
+
+
+def _as_mapping(scene: Scene) -> dict:
+    """Return the whole scene as nested mappings in SI, rotational speeds as texts with their unit; `scene_from_mapping` reads it back equal."""
     tree = _plain(dataclasses.asdict(scene))
     for path, declared in declared_in("", Scene):
         *blocks, last = path.split(".")[1:]
         if declared.unit == SPEED and (block := functools.reduce(dict.get, blocks, tree))[last] is not None:
             block[last] = declared.written(block[last])
-    return yaml.dump({**tree, "uncertainty": written(tree["uncertainty"], Scene)}, Dumper=_LineDumper, sort_keys=False, allow_unicode=True)
+    return {**tree, "uncertainty": written(tree["uncertainty"], Scene)}
 
 
 class _LineDumper(yaml.SafeDumper):
@@ -286,6 +267,13 @@ def yaml_mapping(text: str, origin: str, expected: str) -> dict:
         raise SceneError(origin, [InvalidField("", "", f"not readable as YAML: {' '.join(str(error).split())}")]) from None
     if not isinstance(tree, dict):
         raise SceneError(origin, [InvalidField("", repr(tree), f"expected a mapping with {expected}")])
+    return tree
+
+
+def _overridden(tree: dict, overrides: Iterable[str]) -> dict:
+    """Apply overrides (see `load_scene`) in order to a scene's tree, in place, and return it."""
+    for override in overrides:
+        _apply_override(tree, override)
     return tree
 
 
@@ -401,12 +389,6 @@ def _merged(base: dict, over: Mapping) -> dict:
         both_blocks = isinstance(value, Mapping) and isinstance(merged.get(key), dict)
         merged[key] = _merged(merged[key], value) if both_blocks else value
     return merged
-
-
-def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """Return ``" (did you mean ...?)"`` for the nearest known word, or an empty text."""
-    close = difflib.get_close_matches(word, list(known), n=1)
-    return f" (did you mean {close[0]!r}?)" if close else ""
 
 
 def invalid_fields(error: ValidationError, record: type, laws: frozenset[str]) -> list[InvalidField]:

@@ -10,6 +10,7 @@ it can mean one thing only, and refused elsewhere; it is never read as a number 
 """
 
 import math
+import numbers
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -45,7 +46,7 @@ def to_si(value: object, unit: str) -> float:
         The text is not a quantity, its unit is unknown, has the wrong dimension or is of another kind, or there is none and a bare number
         could be misread.
     """
-    if isinstance(value, bool) or not isinstance(value, (int, float, str)):
+    if isinstance(value, bool) or not isinstance(value, (numbers.Real, str)):
         raise ValueError(f"expected {_expected(unit)}, got {value!r}")
     if not isinstance(value, str):
         return float(value)

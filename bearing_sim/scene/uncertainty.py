@@ -242,8 +242,8 @@ def messages(error: ValidationError) -> str:
     return "; ".join(": ".join(filter(None, (".".join(map(str, each["loc"])), each["msg"].removeprefix("Value error, ")))) for each in error.errors())
 
 
-def with_values(scene, values: Mapping[str, float | None]):
-    """Return a scene, or a record of one, with other numbers [SI] at dotted paths; all checks run again.
+def with_values(scene, values: Mapping[str, float | str | None]):
+    """Return a scene, or a record of one, with other numbers [SI], or names for them, at dotted paths; all checks run again.
 
     Raises
     ------
@@ -252,16 +252,16 @@ def with_values(scene, values: Mapping[str, float | None]):
     """
     if isinstance(scene, Bearing) and scene.clearance is not None:
         values = _with_one_clearance(scene, values)
-    changed: dict[str, dict[str, float | None]] = {}
+    changed: dict[str, dict[str, float | str | None]] = {}
     for path, value in values.items():
         name, _, rest = path.partition(".")
-        changed.setdefault(name, {})[rest] = None if value is None else float(value)
+        changed.setdefault(name, {})[rest] = value if value is None or isinstance(value, str) else float(value)
     return dataclasses.replace(
         scene, **{name: inner[""] if "" in inner else with_values(getattr(scene, name), inner) for name, inner in changed.items()}
     )
 
 
-def _with_one_clearance(bearing: Bearing, values: Mapping[str, float | None]) -> Mapping[str, float | None]:
+def _with_one_clearance(bearing: Bearing, values: Mapping[str, float | str | None]) -> Mapping[str, float | str | None]:
     """Return values for a bearing that has a clearance, so that it follows from a radius that is given, and otherwise the radius from it."""
     if _LOW_RADIUS in values:
         inner = values.get("inner_raceway.radius", bearing.inner_raceway.radius)

@@ -259,7 +259,7 @@ def raceway_row(scene: Scene, duration: float, conditions: Conditions) -> dict:
     Parameters
     ----------
     scene : with the raceway.
-    duration : see `bearing_sim.sweep.point.settle`.
+    duration : see `bearing_sim.sweep.point.run_until_settled`.
     conditions : operating points and tolerances.
     """
     points = conditions.points or (OperatingPoint(scene.operating.shaft_speed, scene.operating.radial_load),)
@@ -515,7 +515,7 @@ class _Raceways:
     Parameters
     ----------
     scene : with the D value, of any level.
-    duration : see `bearing_sim.sweep.point.settle`.
+    duration : see `bearing_sim.sweep.point.run_until_settled`.
     limits, kind : limits, and whether they apply at nominal conditions or within the tolerances.
     """
 

@@ -20,6 +20,7 @@ from scipy.stats import qmc
 from bearing_sim.levels.steady.equilibrium import thermal_equilibrium
 from bearing_sim.levels.steady.table import empty_table
 from bearing_sim.scene import fidelity
+from bearing_sim.scene.errors import SceneError
 from bearing_sim.scene.scene import Integration, Scene
 from bearing_sim.scene.uncertainty import Range, messages, quantities, value_at, with_values
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation, scene_inputs
@@ -37,7 +38,7 @@ class Design(NamedTuple):
     Attributes
     ----------
     base : N, a power of two.
-    points : in SI, shape ((d + 2) N, d): A, B, then A with each column in turn taken from B.
+    points : in SI, shape ((d + 2) N, d): A, B, then A with each column in turn taken from B; for bands alone A and B, shape (2 N, d).
     """
 
     base: int
@@ -227,7 +228,7 @@ class Study(NamedTuple):
     answers : by name (`VALUES`), at the points of the design, shape ((d + 2) N,); NaN without an answer.
     own : by name, the value of the scene itself at that level.
     bands : by name.
-    indices : by name; None if a value is not finite at some point.
+    indices : by name; None if a value is not finite at some point, or if none were asked for.
     seconds : of each stretch of the course, shape (m,); one stretch without a course.
     slips : at each point and stretch, shape ((d + 2) N, m).
     """
@@ -261,19 +262,16 @@ def lowest_level(scene: Scene, level: str | None = None) -> tuple[Scene, str]:
     UncertaintyError
         The scene cannot be computed at that level.
     """
-    defaults = replace(scene, integration=Integration())  # integration settings belong to the scene's own level
-    found = fidelity.choose(defaults)
+    found = fidelity.choose(replace(scene, integration=Integration()))  # a fixed step would need a level that takes steps
     chosen, reason = (level, "as requested") if level else (found.level or scene.level, found.reason)
-    if chosen == scene.level:
-        return scene, reason
     try:
-        return replace(defaults, level=chosen, level_reason=""), reason
-    except ValidationError as error:
-        raise UncertaintyError(f"level {chosen}: {messages(error)}") from None
+        return scene.at_level(chosen), reason
+    except SceneError as error:
+        raise UncertaintyError(f"level {chosen}: {'; '.join(each.reason for each in error.errors)}") from None
 
 
 def study(
-    scene: Scene, base: int, seed: int, *,
+    scene: Scene, base: int, seed: int, *, shares: bool = True,
     level: str | None = None, course: tuple[np.ndarray, np.ndarray] | None = None, journal: Journal | None = None,
     workers: int | None = None, dask: str | None = None, progress: Callable[[int, int], None] = lambda done, pending: None,
 ) -> Study:  # fmt: skip
@@ -284,6 +282,7 @@ def study(
     scene : with ranges in its block ``uncertainty``.
     base : N, a power of two; the study computes N (d + 2) points.
     seed : of the design.
+    shares : whether to compute the indices; bands alone take 2 N points.
     level : to use instead of the lowest possible one.
     course : successive conditions, columns as `Inputs`, shape (m, 6), with NaN for the scene's own oil temperature, and the duration
         of each [s], shape (m,); None: the scene's own conditions.  With a course, slip is the mean over time and life that under the
@@ -305,6 +304,8 @@ def study(
     _check(scene, course is not None)
     conditions, seconds = course if course is not None else (None, np.ones(1))
     designed = design([distribution(one, value_at(scene, one.field)) for one in ranges], base, seed)
+    if not shares:
+        designed = designed._replace(points=designed.points[: 2 * base])
     own = settled(_varied(scene, {}), conditions)
     kept = Journal() if journal is None else journal
     found = _at_points(scene, [one.field for one in ranges], designed.points, conditions, len(seconds), kept, workers, dask, progress)
@@ -321,7 +322,7 @@ def study(
         answers,
         {name: float(value[0]) for name, value in zip(VALUES, _over_course(own[None], seconds))},
         {name: band(answers[name][both]) for name in VALUES},
-        {name: indices(answers[name], base, seed) if np.isfinite(answers[name]).all() else None for name in VALUES},
+        {name: indices(answers[name], base, seed) if shares and np.isfinite(answers[name]).all() else None for name in VALUES},
         seconds,
         found[:, 0],
     )

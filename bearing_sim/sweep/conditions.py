@@ -17,12 +17,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 from bearing_sim.scene.quantity import to_si
-from bearing_sim.scene.scene import Scene
+from bearing_sim.scene.scene import OPERATING_POINT, Scene
 from bearing_sim.scene.uncertainty import BLOCKS, messages, value_at, with_values
 from bearing_sim.sweep.grid import Field, FieldError, field_of
 
-SPEED, LOAD, TEMPERATURE = "operating.shaft_speed", "operating.radial_load", "lubricant.temperature"
-_FIELDS = {"shaft_speed": SPEED, "radial_load": LOAD, "oil_temperature": TEMPERATURE}
+SPEED, LOAD, TEMPERATURE = (OPERATING_POINT[name] for name in ("shaft_speed", "radial_load", "oil_temperature"))
 _REQUIRED, _KNOWN = ("shaft_speed", "radial_load", "weight"), ("shaft_speed", "radial_load", "weight", "oil_temperature")
 _HEADING = re.compile(r"\s*(\w+)\s*(?:\[\s*(.*?)\s*\])?\s*")
 _EXPECTED = "expected speed, load, weight and, optionally, oil temperature, such as '45000 rpm, 800 N, 0.7' or '45000 rpm, 800 N, 70%, 120 degC'"
@@ -164,7 +163,7 @@ def _point(where: str, written: Mapping[str, str]) -> OperatingPoint:
     numbers: dict[str, float] = {}
     for name, text in written.items():
         try:
-            numbers[name] = to_si(text, "") if name == "weight" else field_of(_FIELDS[name]).quantity.read(text, written=True)
+            numbers[name] = to_si(text, "") if name == "weight" else field_of(OPERATING_POINT[name]).quantity.read(text, written=True)
         except ValueError as error:  # pydantic's error of a quantity is one, too
             raise PointError(f"{where}: {name}: {error}") from None
     if not (math.isfinite(numbers["weight"]) and numbers["weight"] > 0.0):

@@ -3,10 +3,12 @@
 
 import dataclasses
 import itertools
+import math
 import re
 import types
 import typing
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
 from typing import Annotated, Any, NamedTuple
 
 import numpy as np
@@ -14,8 +16,8 @@ import numpy as np
 from bearing_sim.recording.provenance import git_hash, package_version
 from bearing_sim.scene.diameters import diameters
 from bearing_sim.scene.loader import SceneError, did_you_mean, load_scene, scene_to_yaml
-from bearing_sim.scene.quantity import Quantity, to_si, unit_registry
-from bearing_sim.scene.scene import Scene
+from bearing_sim.scene.quantity import Quantity, QuantityOrName, to_si, unit_registry
+from bearing_sim.scene.scene import OPERATING_POINT, Scene
 from bearing_sim.sweep.point import DURATION, REFUSED, RESULTS, TEXTS, Column, empty_row, point_row
 from bearing_sim.sweep.table import Table
 from bearing_sim.sweep.tasks import Journal, Task, run_tasks, task
@@ -136,15 +138,40 @@ class Axis(NamedTuple):
         return f"{self.field.path}={written}"
 
 
-def axis(field: str, values) -> Axis:
-    """Return an axis of values in SI, without repetitions, in the given order.
+def axis(field: str, values: Iterable[float | str] | str) -> Axis:
+    """Return an axis of values, without repetitions, in the given order.
 
     Parameters
     ----------
-    field : dotted path in the scene.
-    values : numbers in SI, or words.
+    field : dotted path in the scene, or a name of `bearing_sim.scene.scene.OPERATING_POINT`.
+    values : numbers in SI, texts with a unit, or words; or a text as of `read_axis`, such as ``"15000 rpm:45000 rpm:4"``.
+
+    Raises
+    ------
+    FieldError
+        The field is unknown, there are no values, or one has the wrong type; the message says what was expected.
     """
-    return Axis(field_of(field), tuple(dict.fromkeys(values)))
+    field = OPERATING_POINT.get(field, field)
+    if isinstance(values, str):
+        return read_axis(f"{field}={values}")
+    known = field_of(field)
+    given = [value.item() if hasattr(value, "item") else value for value in values]  # a number of NumPy as one of Python
+    if not given:
+        raise FieldError(f"{field}: no values; expected at least one")
+    return Axis(known, tuple(dict.fromkeys(_as_value(known, value) for value in given)))
+
+
+def _as_value(field: Field, value: float | str) -> float | int | str:
+    is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
+    if isinstance(value, str):
+        return _value(f"{field.path}={value}", field, value.strip())
+    if field.quantity is not None and is_number:
+        return float(value)
+    if int in field.kinds and is_number and math.isfinite(value) and value == int(value):
+        return int(value)
+    if bool in field.kinds and isinstance(value, bool):
+        return str(value).lower()
+    raise FieldError(f"{field.path} takes {field.words()}, got {value!r}")
 
 
 def read_axis(text: str) -> Axis:
@@ -189,6 +216,8 @@ def _value(text, field, part) -> float | int | str:
         return part.lower()
     if int in field.kinds and re.fullmatch(r"[-+]?\d+", part):
         return int(part)
+    if isinstance(field.quantity, QuantityOrName) and part.upper() in field.quantity.names:
+        return part.upper()
     if field.quantity is not None:
         try:
             return to_si(part, field.quantity.unit)
@@ -202,39 +231,59 @@ def _value(text, field, part) -> float | int | str:
 MOST_POINTS = 1_000_000
 
 
-def sweep(
-    name: str,
-    overrides: Sequence[str],
-    axes: Sequence[Axis],
-    journal: Journal,
+def point_count(axes: Sequence[Axis]) -> int:
+    """Return the number of combinations of values; raise `FieldError` where there are more than `MOST_POINTS`."""
+    count = math.prod(len(axis.values) for axis in axes)
+    if count > MOST_POINTS:
+        raise FieldError(f"{count} points; a sweep has at most {MOST_POINTS}")
+    return count
+
+
+def run_sweep(
+    scene: Scene | str | Path,
+    axes: Mapping[str, Iterable[float | str] | str] | Sequence[Axis],
+    overrides: Sequence[str] = (),
+    *,
+    level: str | None = None,
     duration: float = DURATION,
+    journal: Journal | str | Path | None = None,
     workers: int | None = None,
     dask: str | None = None,
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> Table:
-    """Run a scene at every combination of values.
+    """Run a scene at every combination of values, on all cores, until each point has settled.
+
+    Workers do not import the script that calls this, so that it needs no ``if __name__ == "__main__"``.
 
     Parameters
     ----------
-    name, overrides : of the scene, as `bearing_sim.scene.loader.load_scene` takes them.
-    axes : the varied fields; the first varies slowest.
-    journal : of finished points, which are not computed again.
-    duration : of a run, see `bearing_sim.sweep.point.settle` [s].
+    scene, overrides : as `bearing_sim.load_scene` takes them.
+    axes : the varied fields with their values, see `axis`, such as ``{"shaft_speed": "15000 rpm:45000 rpm:4", "bearing.clearance": ["C3",
+        "40 um"]}``; the first varies slowest.
+    level : of fidelity; the scene's own where absent.
+    duration : of the shortest run of a point [s], see `bearing_sim.sweep.point.run_until_settled`.
+    journal : of finished points, which are not computed again, or the path of its file; kept in memory where absent.
     workers, dask, progress : see `bearing_sim.sweep.tasks.run_tasks`.
 
     Returns
     -------
-    one row per point: the varied fields, then `bearing_sim.sweep.point.RESULTS` and `TEXTS`.
+    one row per point: the varied fields, then `bearing_sim.sweep.point.RESULTS` and `TEXTS`; see `bearing_sim.sweep.table.Table.to_xarray`.
 
     Raises
     ------
+    FieldError
+        A field or a value cannot be varied, or there are too many points.
     SceneError
         No point has a valid scene; the errors are those of the first point.
-    ClusterError
-        See `bearing_sim.sweep.tasks.run_tasks`.
+    ClusterError, JournalInUse
+        See `bearing_sim.sweep.tasks`.
     """
-    plan = plan_sweep(name, overrides, axes, duration)
-    return plan.table(run_tasks(plan.tasks, journal, workers, dask, progress))
+    varied = [axis(field, values) for field, values in axes.items()] if isinstance(axes, Mapping) else list(axes)
+    plan = plan_sweep(scene, [*overrides, *([f"level={level}"] if level else [])], varied, duration)
+    if isinstance(journal, Journal):
+        return plan.table(run_tasks(plan.tasks, journal, workers, dask, progress))
+    with Journal(None if journal is None else Path(journal)) as kept:
+        return plan.table(run_tasks(plan.tasks, kept, workers, dask, progress))
 
 
 class Plan(NamedTuple):
@@ -242,7 +291,8 @@ class Plan(NamedTuple):
 
     Attributes
     ----------
-    name, overrides, axes, duration : see `sweep`.
+    name : of the scene.
+    overrides, axes, duration : see `run_sweep`.
     combinations : of the values, one of each axis.
     scenes : the scene of each combination, or the error of an invalid one.
     """
@@ -283,19 +333,21 @@ class Plan(NamedTuple):
         }
 
 
-def plan_sweep(name: str, overrides: Sequence[str], axes: Sequence[Axis], duration: float = DURATION) -> Plan:
-    """Return the plan of a sweep; parameters and errors as for `sweep`."""
+def plan_sweep(scene: Scene | str | Path, overrides: Sequence[str], axes: Sequence[Axis], duration: float = DURATION) -> Plan:
+    """Return the plan of a sweep; parameters and errors as for `run_sweep`."""
+    point_count(axes)
     combinations = tuple(itertools.product(*(axis.values for axis in axes)))
-    scenes = tuple(scene_at(name, overrides, axes, combination) for combination in combinations)
-    if not any(isinstance(scene, Scene) for scene in scenes):
+    scenes = tuple(scene_at(scene, overrides, axes, combination) for combination in combinations)
+    if not any(isinstance(each, Scene) for each in scenes):
         raise scenes[0]
+    name = scene.name if isinstance(scene, Scene) else str(scene)
     return Plan(name, tuple(overrides), tuple(axes), float(duration), combinations, scenes)
 
 
-def scene_at(name: str, overrides: Sequence[str], axes: Sequence[Axis], combination: Sequence) -> Scene | SceneError:
-    """Return the scene at one value of each axis, or the error if it is invalid; the other parameters as for `sweep`."""
+def scene_at(scene: Scene | str | Path, overrides: Sequence[str], axes: Sequence[Axis], combination: Sequence) -> Scene | SceneError:
+    """Return the scene at one value of each axis, or the error if it is invalid; the other parameters as for `run_sweep`."""
     try:
-        return load_scene(name, [*overrides, *(axis.override(value) for axis, value in zip(axes, combination))])
+        return load_scene(scene, [*overrides, *(axis.override(value) for axis, value in zip(axes, combination))])
     except SceneError as error:
         return error
 

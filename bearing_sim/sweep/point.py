@@ -18,6 +18,9 @@ DURATION = 0.5  # s of the shortest run, as Deng 2017 simulates
 OK, UNSETTLED, FAILED, REFUSED = "ok", "unsettled", "failed", "refused"
 
 
+_SI_UNITS = {"%": "", "um": "m"}
+
+
 class Column(NamedTuple):
     """One column of results."""
 
@@ -25,6 +28,11 @@ class Column(NamedTuple):
     unit: str
     meaning: str
     factor: float = 1.0  # from SI to the unit
+
+    @property
+    def si_unit(self) -> str:
+        """The unit in which Python has the value: SI, hours for a life."""
+        return self.unit if self.factor == 1.0 else _SI_UNITS[self.unit]
 
 
 LIVES = tuple(each.name for each in OBSERVABLES if each.unit == "h")
@@ -58,8 +66,8 @@ TEXTS = (
 )
 
 
-def settle(scene: Scene, duration: float = DURATION) -> Outcome:
-    """Run a scene under its constant conditions from ideal rolling until slip, temperature and life rest; with a thermal network in equilibrium.
+def run_until_settled(scene: Scene, duration: float = DURATION, longest: float | None = None, start: np.void | None = None) -> Outcome:
+    """Run a scene under its constant conditions until slip, temperature and life rest; with a thermal network in equilibrium.
 
     See `bearing_sim.sweep.settling` for the criterion.
 
@@ -67,15 +75,19 @@ def settle(scene: Scene, duration: float = DURATION) -> Outcome:
     ----------
     scene : of any level; level ``steady`` solves for its operating point without a table.
     duration : of the shortest run [s]; one of a slow bearing takes 15 cage turns.
+    longest : of the longest run [s]; 1000 s or 2000 cage turns where absent, and never less than the shortest run.
+    start : sample to begin from, see `bearing_sim.simulation.Simulation.reset`; ideal rolling where absent.
 
     Raises
     ------
     IntegrationError
         The run stopped early, or there is no thermal equilibrium.
     """
-    run = Simulation(scene, table=empty_table() if scene.level == "steady" else None)
-    begin_in_equilibrium(run, shortest_run(scene, duration), longest_run(scene))
-    return advance_until_settled(run, shortest_run(scene, duration), longest_run(scene))
+    run = Simulation(scene, table=empty_table() if scene.level == "steady" else None, start=start)
+    shortest = shortest_run(scene, duration)
+    longest = longest_run(scene) if longest is None else max(longest, shortest)
+    begin_in_equilibrium(run, shortest, longest, start)
+    return advance_until_settled(run, shortest, longest)
 
 
 def point_row(scene: Scene, duration: float = DURATION) -> dict:
@@ -83,12 +95,20 @@ def point_row(scene: Scene, duration: float = DURATION) -> dict:
 
     Parameters
     ----------
-    scene, duration : see `settle`.
+    scene, duration : see `run_until_settled`.
     """
     try:
-        outcome = settle(scene, duration)
+        outcome = run_until_settled(scene, duration)
     except IntegrationError as error:
         return empty_row(FAILED, str(error))
+    found = results_of(outcome)
+    row = {column.name: column.factor * found[column.name] for column in RESULTS}
+    judged = {"status": OK if outcome.settled else UNSETTLED, "reason": outcome.reason}
+    return row | judged | {"warnings": cell(outside(scene, outcome.window))}
+
+
+def results_of(outcome: Outcome) -> dict[str, float]:
+    """Return the results of a run by the names of `RESULTS`, in SI, lives in hours."""
     window, slip = outcome.window, outcome.window["cage_slip"]
     found = {"cage_slip": outcome.slip, "cage_slip_minimum": slip.min(), "cage_slip_maximum": slip.max(), "simulated": round(outcome.simulated, 9)}
     for ring in ("inner", "outer"):
@@ -96,9 +116,7 @@ def point_row(scene: Scene, duration: float = DURATION) -> dict:
     found["loaded_rollers"] = (window["inner_load"] > 0.0).sum(axis=1).mean()
     found |= {name: mean_life(window[name]) for name in LIVES}
     found |= {name: window[name].mean() for name in (*_CLEARANCES, *_MEANS, *_POWERS)}
-    row = {column.name: column.factor * float(found[column.name]) for column in RESULTS}
-    judged = {"status": OK if outcome.settled else UNSETTLED, "reason": outcome.reason}
-    return row | judged | {"warnings": cell(outside(scene, window))}
+    return {name: float(value) for name, value in found.items()}
 
 
 def mean_life(lives: np.ndarray) -> float:

@@ -32,6 +32,8 @@ _SAMPLES = 1000  # of the shortest run: 200 in the last window
 _KEPT = 1000  # at least, of longer stretches
 _TOGETHER = 25  # samples of a call of the model
 _GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)  # fraction of a pitch between samples that stays farthest from all small ratios
+SETTLED, DRIFTING, LIMIT_CYCLE, WANDERING = "settled", "drifting", "limit cycle", "wandering"
+TOO_SHORT, NO_STEADY_STATE = "too short", "no steady state"
 PITCH_SAMPLES = 48  # instants over a roller pitch at which loads are taken
 
 
@@ -187,8 +189,8 @@ def has_settled(course: Course, tolerances: Sequence[Tolerance]) -> bool:
     return all(trend.rests for part in (before, course) for trend in trends(part, tolerances))
 
 
-def describe(course: Course, trend: Trend, index: int, observed: Observed) -> str:
-    """Return what an observable that does not rest was doing: drifting, oscillating or wandering.
+def describe(course: Course, trend: Trend, index: int, observed: Observed) -> tuple[str, str]:
+    """Return what an observable that does not rest was doing: the verdict `DRIFTING`, `LIMIT_CYCLE` or `WANDERING`, and the same in words.
 
     Parameters
     ----------
@@ -207,12 +209,13 @@ def describe(course: Course, trend: Trend, index: int, observed: Observed) -> st
         before, last = (observed.shown(mean) for mean in course.means(windows)[1:, index].tolist())
         change = (last - before) / (0.5 * (windows[3] - windows[1]))
         now = f"{observed.shown(trend.mean):.4g} {observed.unit}"
-        return f"{observed.label} still {'rises' if change > 0.0 else 'falls'} by {abs(change):.2g} {observed.change_unit} per s, now {now}"
+        way = "rises" if change > 0.0 else "falls"
+        return DRIFTING, f"{observed.label} still {way} by {abs(change):.2g} {observed.change_unit} per s, now {now}"
     period = _period(spread) * (edges[1] - edges[0])
     between = f"between {low:.4g} and {high:.4g} {observed.unit}"
     if math.isfinite(period):
-        return f"{observed.label} oscillates {between} with a period of {period:.3g} s"
-    return f"{observed.label} wanders {between}"
+        return LIMIT_CYCLE, f"{observed.label} oscillates {between} with a period of {period:.3g} s"
+    return WANDERING, f"{observed.label} wanders {between}"
 
 
 def _period(spread: np.ndarray) -> float:
@@ -232,7 +235,8 @@ class Outcome(NamedTuple):
 
     Attributes
     ----------
-    settled : whether everything rests.
+    verdict : `SETTLED` where everything rests, otherwise what kept it from that: `DRIFTING`, `LIMIT_CYCLE`, `WANDERING`, `TOO_SHORT` to tell,
+        or `NO_STEADY_STATE` at level steady.
     simulated : simulated time [s].
     settling_time : since when slip has been as at the end, to 0.1 points or 2 % of it [s]; NaN where it has not settled.
     reason : why it has not settled, and what it was doing; empty if it has.
@@ -242,7 +246,7 @@ class Outcome(NamedTuple):
     counters : work done until the end of the run.
     """
 
-    settled: bool
+    verdict: str
     simulated: float
     settling_time: float
     reason: str
@@ -250,6 +254,11 @@ class Outcome(NamedTuple):
     window: np.ndarray
     pitch: np.ndarray
     counters: Counters
+
+    @property
+    def settled(self) -> bool:
+        """Whether everything rests."""
+        return self.verdict == SETTLED
 
 
 class _Record:
@@ -338,18 +347,20 @@ def _outcome(simulation: Simulation, record: _Record, settled: bool) -> Outcome:
     course, counters = record.course, simulation.counters
     length, turns = simulation.time - course.times[0], (simulation.time - course.times[0]) / cage_turn(simulation.scene)
     found, reason = trends(course, TOLERANCES), ""
-    doing = "; ".join(describe(course, trend, index, each) for index, (trend, each) in enumerate(zip(found, OBSERVED)) if not trend.rests)
+    restless = [describe(course, trend, index, each) for index, (trend, each) in enumerate(zip(found, OBSERVED)) if not trend.rests]
+    verdict, doing = SETTLED, "; ".join(words for _, words in restless)
     if 0.0 < turns < SHORTEST_TURNS * (1.0 - 1e-9):
-        settled, reason = False, f"{turns:.3g} turns of an ideal cage are too short to tell, {SHORTEST_TURNS:g} can be judged"
+        verdict, reason = TOO_SHORT, f"{turns:.3g} turns of an ideal cage are too short to tell, {SHORTEST_TURNS:g} can be judged"
         reason += f"; {doing}" if doing else ""
     elif counters.unsettled_points:
-        settled, reason = False, "no steady state was found at this operating point"
+        verdict, reason = NO_STEADY_STATE, "no steady state was found at this operating point"
     elif not settled:
+        verdict = restless[0][0] if restless else TOO_SHORT
         reason = f"after {length:.4g} s {doing or 'slip and life rest, but did not before'}"
     slip, window = found[0].mean, record.window
-    settling = _settling_time(course, slip) if settled else math.nan
+    settling = _settling_time(course, slip) if verdict == SETTLED else math.nan
     pitch = over_a_pitch(simulation, WINDOW * length)
-    return Outcome(settled, length, settling, reason, slip, window, pitch, counters)
+    return Outcome(verdict, length, settling, reason, slip, window, pitch, counters)
 
 
 def _settling_time(course: Course, slip: float) -> float:

@@ -6,13 +6,21 @@ import json
 import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import BinaryIO, NamedTuple
+from typing import TYPE_CHECKING, BinaryIO, NamedTuple
 
 import numpy as np
 
-from bearing_sim.sweep.point import OK, UNSETTLED, Column
+from bearing_sim.scene.quantity import conversion
+from bearing_sim.scene.scene import Scene
+from bearing_sim.scene.uncertainty import quantities
+from bearing_sim.sweep.point import OK, RESULTS, UNSETTLED, Column
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
 
 _ABOUT = b"bearing_sim"
+_RESULTS = {each.name: each for each in RESULTS}
 
 
 class Table(NamedTuple):
@@ -36,6 +44,63 @@ class Table(NamedTuple):
     def values(self, name: str) -> list:
         """Return the values of a column."""
         return [row[name] for row in self.rows]
+
+    def to_pandas(self) -> "pandas.DataFrame":
+        """Return the table as a frame in SI, lives in hours, a row for each point.
+
+        Varied fields are named by the last part of their path, where that tells them apart.  ``frame.attrs["units"]`` and ``["meanings"]`` hold
+        those of all columns (unit ``"1"`` for a pure number, none for words).
+        """
+        import pandas
+
+        columns = [self._in_si(column) for column in self.columns]
+        frame = pandas.DataFrame({name: values for name, _, _, values in columns})
+        frame.attrs["units"] = {name: unit for name, unit, _, _ in columns}
+        frame.attrs["meanings"] = {name: meaning for name, _, meaning, _ in columns}
+        return frame
+
+    def to_xarray(self) -> "xarray.Dataset":
+        """Return a sweep as a dataset in SI, lives in hours, with a dimension for each varied field, named as by `to_pandas`.
+
+        Every variable carries the attributes ``units`` and ``long_name``, which xarray writes on the axes of its plots.
+
+        Raises
+        ------
+        ValueError
+            The table is not that of a sweep.
+        """
+        import xarray
+
+        if "axes" not in self.about:
+            raise ValueError(f"a table of {self.about.get('kind', 'another study')} has no axes; use to_pandas")
+        columns = {column.name: self._in_si(column) for column in self.columns}
+        varied = [axis["field"] for axis in self.about["axes"]]
+        shape, names = [len(axis["values"]) for axis in self.about["axes"]], [columns[path][0] for path in varied]
+        coordinates, variables = {}, {}
+        for path, (name, unit, meaning, values) in columns.items():
+            array, notes = np.array(values).reshape(shape), {"long_name": meaning} | ({"units": unit} if unit is not None else {})
+            if path in varied:
+                other = tuple(slice(None) if other == path else 0 for other in varied)
+                coordinates[name] = (name, array[other], notes)
+            else:
+                variables[name] = (names, array, notes)
+        return xarray.Dataset(variables, coordinates, {name: str(self.about[name]) for name in ("scene", "level", "version")})
+
+    def _in_si(self, column: Column) -> tuple[str, str | None, str, list]:
+        """Return short name, SI unit (None for words), meaning and values in SI of a column."""
+        values, varied = self.values(column.name), [axis["field"] for axis in self.about.get("axes", ())]
+        last = column.name.rpartition(".")[2]
+        name = last if [path.rpartition(".")[2] for path in varied].count(last) == 1 and column.name in varied else column.name
+        if any(isinstance(value, str) for value in values):
+            return name, None, column.meaning, values
+        if column.name in _RESULTS:
+            known = _RESULTS[column.name]
+            return name, known.si_unit or "1", column.meaning, [value / known.factor for value in values]
+        if column.name not in quantities(Scene):
+            return name, column.unit or "1", column.meaning, values
+        unit = quantities(Scene)[column.name].unit
+        scale, offset = conversion(column.unit or "dimensionless", unit)
+        return name, unit or "1", column.meaning, [scale * value + offset for value in values]
 
 
 def write_table(path: Path, table: Table) -> tuple[Path, Path]:

@@ -14,8 +14,9 @@ import signal
 import sys
 import threading
 import time
+import types
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from functools import cache
 from pathlib import Path
@@ -240,7 +241,7 @@ def _in_processes(tasks, workers) -> Iterator[tuple[Task, dict, bool]]:
                 while waiting or under_way:
                     while waiting and len(under_way) < _AHEAD * workers:
                         task = waiting[-1]
-                        under_way[pool.submit(task.function, *task.arguments)] = task
+                        under_way[_submitted(pool, task)] = task
                         waiting.pop()
                     finished, _ = wait(under_way, return_when=FIRST_COMPLETED)
                     for future in finished:
@@ -259,11 +260,25 @@ def _alone(task) -> Iterator[tuple[Task, dict, bool]]:
     for _ in range(_ATTEMPTS - 1):
         with _pool(1) as pool:
             try:
-                yield task, pool.submit(task.function, *task.arguments).result(), True
+                yield task, _submitted(pool, task).result(), True
                 return
             except BrokenProcessPool:
                 continue
     yield task, {"status": "failed", "reason": f"the worker process died {_ATTEMPTS} times; out of memory?"}, False
+
+
+def _submitted(pool: ProcessPoolExecutor, task: Task) -> Future:
+    """Submit a task; a worker that this starts imports the main module only if the task's function stands there.
+
+    Otherwise it would run a user's script again that has no ``if __name__ == "__main__"``.
+    """
+    main = sys.modules["__main__"]
+    if task.function.__module__ != "__main__":
+        sys.modules["__main__"] = types.ModuleType("__main__")
+    try:
+        return pool.submit(task.function, *task.arguments)
+    finally:
+        sys.modules["__main__"] = main
 
 
 def _pool(workers) -> ProcessPoolExecutor:

@@ -4,14 +4,14 @@
 import numpy as np
 
 from bearing_sim.levels.steady.equilibrium import thermal_equilibrium
-from bearing_sim.simulation import IntegrationError, Simulation
+from bearing_sim.simulation import IntegrationError, Simulation, thermal_nodes
 from bearing_sim.sweep.settling import advance_until_settled
 
 _ROUNDS = 8
 _AGREED = 0.3  # K; temperatures by the losses of two rounds
 
 
-def begin_in_equilibrium(simulation: Simulation, shortest: float, longest: float) -> None:
+def begin_in_equilibrium(simulation: Simulation, shortest: float, longest: float, start: np.void | None = None) -> None:
     """Bring a simulation with a thermal network to its start, with the temperatures in which it will stay; without a network do nothing.
 
     The equilibrium is that of level steady.  At another level its own losses correct it: run until settled with temperatures held, let the
@@ -21,6 +21,7 @@ def begin_in_equilibrium(simulation: Simulation, shortest: float, longest: float
     ----------
     simulation : under constant conditions.
     shortest, longest : simulated time of the shortest and the longest run [s], see `bearing_sim.sweep.settling.advance_until_settled`.
+    start : sample to begin from, see `bearing_sim.simulation.Simulation.reset`; the search begins with its temperatures where it has them.
 
     Raises
     ------
@@ -30,17 +31,18 @@ def begin_in_equilibrium(simulation: Simulation, shortest: float, longest: float
     if simulation.thermal is None:
         return
     inputs = simulation.inputs
-    found = thermal_equilibrium(simulation.scene, inputs)
+    known = None if start is None else thermal_nodes(start)
+    found = thermal_equilibrium(simulation.scene, inputs, known if known is not None and np.isfinite(known).all() else None)
     if not found.converged:
         raise IntegrationError(found.reason)
     nodes = found.temperatures
     if simulation.scene.level != "steady":
-        nodes = _refined(simulation, nodes, shortest, longest)
-    simulation.reset(inputs, nodes)
+        nodes = _refined(simulation, nodes, shortest, longest, start)
+    simulation.reset(inputs, nodes, start)
 
 
-def _refined(simulation: Simulation, nodes: np.ndarray, shortest: float, longest: float) -> np.ndarray:
-    simulation.reset(simulation.inputs, nodes)
+def _refined(simulation: Simulation, nodes: np.ndarray, shortest: float, longest: float, start: np.void | None) -> np.ndarray:
+    simulation.reset(simulation.inputs, nodes, start)
     for _ in range(_ROUNDS):
         simulation.set_temperatures(nodes)
         outcome = advance_until_settled(simulation, shortest, longest)

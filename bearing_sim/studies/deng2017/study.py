@@ -13,7 +13,7 @@ from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import IntegrationError, Simulation
 from bearing_sim.sweep.grid import Plan, plan_sweep, read_axis
-from bearing_sim.sweep.point import DURATION, settle
+from bearing_sim.sweep.point import DURATION, run_until_settled
 from bearing_sim.sweep.tasks import Task, task
 
 LEVELS = ("slip", "planar")
@@ -164,10 +164,10 @@ def load_profile(scene: Scene, duration: float) -> dict:
 
     Parameters
     ----------
-    scene, duration : see `bearing_sim.sweep.point.settle`.
+    scene, duration : see `bearing_sim.sweep.point.run_until_settled`.
     """
     try:
-        window = settle(scene, duration).window
+        window = run_until_settled(scene, duration).window
     except IntegrationError as error:
         return {"status": "failed", "reason": str(error)}
     bins = np.floor(np.mod(window["roller_angle"], 2 * np.pi) / (2 * np.pi) * _BINS).astype(int).ravel() % _BINS

@@ -1,0 +1,215 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""What a bearing settles to at an operating point: one call from Python, made to be called again and again by an optimiser."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from bearing_sim.model.sample import OBSERVABLES, RING_TEMPERATURES
+from bearing_sim.model.validity import Exceedance, outside
+from bearing_sim.scene.errors import did_you_mean
+from bearing_sim.scene.loader import load_scene
+from bearing_sim.scene.quantity import to_si
+from bearing_sim.scene.scene import Scene
+from bearing_sim.sweep.point import DURATION, RESULTS, results_of, run_until_settled
+from bearing_sim.sweep.settling import Outcome
+
+if TYPE_CHECKING:
+    import pandas
+
+    from bearing_sim.studies.uncertainty import Band
+
+SAMPLES, SEED = 64, 2017  # of bands
+_OBSERVED = {each.name: each for each in OBSERVABLES}
+_RESULTS = {each.name: each for each in RESULTS}
+_CELSIUS = 273.15
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Settled:
+    """The settled state of a bearing at an operating point.
+
+    Results are attributes, in SI but for lives, which are in hours: ``cage_slip``, ``rating_life``, ``inner_load_maximum``, ``shaft_power`` and
+    all others of a sweep's table; and every observable of a sample as its mean over the last window, an array for those of single rollers.
+    Lives are averaged by their rates, because damage adds up.  `to_pandas` lists the results with their units and meanings.
+
+    Attributes
+    ----------
+    scene : at the operating point and the level that were computed.
+    verdict : ``settled``; otherwise what the bearing did: ``drifting``, ``limit cycle``, ``wandering``, ``too short`` to tell, or
+        ``no steady state`` at level steady.
+    reason : the same in a sentence; empty where it has settled.
+    settling_time : since when slip has been as at the end [s]; NaN where it has not settled.
+    window : samples of the last fifth of the run, for `bearing_sim.to_xarray` and `bearing_sim.to_pandas`.
+    pitch : samples over the roller pitch of cage rotation that follows it.
+    bands : of ``cage_slip`` and ``modified_rating_life`` over the scene's uncertain fields, 5, 50 and 95 % quantiles with their sampling errors;
+        empty unless asked for.
+    """
+
+    scene: Scene
+    outcome: Outcome
+    bands: "Mapping[str, Band]"
+
+    @property
+    def settled(self) -> bool:
+        """Whether slip, temperature and life rest."""
+        return self.outcome.settled
+
+    @property
+    def verdict(self) -> str:
+        """What the bearing did at the end, see the class."""
+        return self.outcome.verdict
+
+    @property
+    def reason(self) -> str:
+        """Why it has not settled, and what it was doing; empty if it has."""
+        return self.outcome.reason
+
+    @property
+    def settling_time(self) -> float:
+        """Since when slip has been as at the end [s]; NaN where it has not settled."""
+        return self.outcome.settling_time
+
+    @property
+    def window(self) -> np.ndarray:
+        """Samples of the last fifth of the run."""
+        return self.outcome.window
+
+    @property
+    def pitch(self) -> np.ndarray:
+        """Samples over the roller pitch of cage rotation that follows the run."""
+        return self.outcome.pitch
+
+    @property
+    def sample(self) -> np.void:
+        """The last sample, from which another run can begin (`bearing_sim.Simulation.reset`, `resume`)."""
+        return self.outcome.pitch[-1]
+
+    @cached_property
+    def results(self) -> Mapping[str, float]:
+        """The results of a sweep's table by name, in SI, lives in hours."""
+        return MappingProxyType(results_of(self.outcome))
+
+    @cached_property
+    def warnings(self) -> tuple[Exceedance, ...]:
+        """Laws that are used outside of their ranges, each with its worst value."""
+        return tuple(outside(self.scene, self.outcome.window))
+
+    def __getattr__(self, name: str) -> float:
+        if name in _RESULTS:
+            return self.results[name]
+        if name in _OBSERVED:
+            mean = self.outcome.window[name].mean(axis=0)
+            return mean if _OBSERVED[name].per_roller else float(mean)
+        raise AttributeError(f"no result {name!r}{did_you_mean(name, [*_RESULTS, *_OBSERVED])}; to_pandas() lists the results")
+
+    def __dir__(self) -> list[str]:
+        return sorted({*super().__dir__(), *_RESULTS, *_OBSERVED})
+
+    def __getstate__(self) -> dict:
+        # Without what is computed on demand, whose mapping cannot be pickled.
+        return {"scene": self.scene, "outcome": self.outcome, "bands": dict(self.bands)}
+
+    def to_pandas(self) -> "pandas.DataFrame":
+        """Return the results as a table: value, unit, the ends of the band where there is one, and meaning, by the name of the result."""
+        import pandas
+
+        rows = []
+        for name, value in self.results.items():
+            column, band = _RESULTS[name], self.bands.get(name)
+            low, high = (band.low, band.high) if band is not None else (math.nan, math.nan)
+            rows.append((name, value, column.si_unit or "1", low, high, column.meaning))
+        return pandas.DataFrame(rows, columns=["result", "value", "unit", "low", "high", "meaning"]).set_index("result")
+
+    def __repr__(self) -> str:
+        operating, last = self.scene.operating, self.outcome.window[-1]
+        point = f"{operating.shaft_speed * 30.0 / math.pi:.6g} rpm, {operating.radial_load:.6g} N"
+        lines = [f"{self.scene.name} at {point}, oil at {self.scene.lubricant.temperature - _CELSIUS:.4g} degC; level {self.scene.level}"]
+        took = "from the start" if self.settling_time == 0.0 else f"after {self.settling_time:.3g} s"
+        lines.append(f"  settled              {took if self.settled else f'no, {self.verdict}: {self.reason}'}")
+        lines.append(f"  cage slip            {100.0 * self.cage_slip:.3g} %{self._band('cage_slip', 100.0, '%')}")
+        lines.append(
+            f"  rating life          {self.rating_life:.4g} h; modified {self.modified_rating_life:.4g} h{self._band('modified_rating_life')}"
+        )
+        lines.append(f"  largest roller load  inner {self.inner_load_maximum:.4g} N, outer {self.outer_load_maximum:.4g} N")
+        lines.append(f"  running clearance    {1e6 * self.running_clearance:.4g} um")
+        lines.append(f"  power loss           {self.shaft_power:.4g} W")
+        if math.isfinite(last[RING_TEMPERATURES[0]]):
+            inner, outer = (last[name] - _CELSIUS for name in RING_TEMPERATURES)
+            lines.append(f"  ring temperatures    inner {inner:.4g} degC, outer {outer:.4g} degC")
+        lines += [f"  warning              {each.text}" for each in self.warnings]
+        return "\n".join(lines)
+
+    def _band(self, name: str, factor: float = 1.0, unit: str = "h") -> str:
+        band = self.bands.get(name)
+        return "" if band is None else f", 90 % of cases between {factor * band.low:.3g} and {factor * band.high:.3g} {unit}"
+
+
+def settle(
+    scene: Scene | str | Path,
+    level: str | None = None,
+    *,
+    shaft_speed: float | str | None = None,
+    radial_load: float | str | None = None,
+    load_angle: float | str | None = None,
+    oil_temperature: float | str | None = None,
+    start: Settled | None = None,
+    longest: float | str | None = None,
+    bands: bool = False,
+    samples: int = SAMPLES,
+    workers: int = 1,
+) -> Settled:
+    """Return what a bearing settles to under constant conditions.
+
+    From ideal rolling it runs until slip, temperature and life rest (``doc/theory/settling.md``); with a thermal network it begins in thermal
+    equilibrium.  At level ``steady`` a point takes milliseconds, because its periodic state is solved for.
+
+    Parameters
+    ----------
+    scene : a scene, the name of a bundled one, or the path of a YAML file.
+    level : of fidelity; the scene's own where absent.
+    shaft_speed, radial_load, load_angle, oil_temperature : of the operating point, numbers in SI or texts with a unit, such as ``"3000 rpm"``;
+        the scene's own where absent.
+    start : what the bearing settled to at a neighbouring point, at any level: begin there instead of in ideal rolling.  The run is then as short
+        as 15 cage turns, and the search for thermal equilibrium begins with those temperatures.  Where there are several states, the result
+        may be another one than from ideal rolling.
+    longest : simulated time after which a bearing that does not settle is given up [s]; 1000 s, or 2000 cage turns, where absent.
+    bands : whether to compute bands of slip and life over the ranges of the scene's uncertain fields (`bearing_sim.studies.uncertainty`).
+    samples : size of each of the two samples of the bands, rounded up to a power of two.
+    workers : processes that compute the bands.
+
+    Returns
+    -------
+    settled : the state, also where the bearing does not settle: its ``verdict`` says what it does.
+
+    Raises
+    ------
+    SceneError
+        There is no such scene or level, or a value is no such quantity or out of bounds; it lists all errors.
+    IntegrationError
+        The run stopped early, or there is no thermal equilibrium.
+    UncertaintyError
+        With ``bands``: the scene has no uncertain fields, or a range excludes the scene's value.
+    """
+    found = scene if isinstance(scene, Scene) else load_scene(scene)
+    found = found.at(shaft_speed=shaft_speed, radial_load=radial_load, load_angle=load_angle, oil_temperature=oil_temperature)
+    if level is not None:
+        found = found.at_level(level)
+    shortest = DURATION if start is None or found.operating.shaft_speed == 0.0 else 0.0  # where it starts near its end, 15 cage turns will do
+    limit = None if longest is None else to_si(longest, "s")
+    outcome = run_until_settled(found, shortest, limit, None if start is None else start.sample)
+    return Settled(found, outcome, _bands(found, samples, workers) if bands else MappingProxyType({}))
+
+
+def _bands(scene: Scene, samples: int, workers: int) -> "Mapping[str, Band]":
+    """Return the bands of a scene by the names of its results."""
+    from bearing_sim.studies.uncertainty import study  # here, because importing SciPy's statistics takes longer than to settle
+
+    found = study(scene, 1 << max(samples - 1, 1).bit_length(), SEED, shares=False, workers=workers)
+    return MappingProxyType({"cage_slip": found.bands["cage_slip"], "modified_rating_life": found.bands["life_hours"]})
