@@ -6,10 +6,10 @@ import math
 import pytest
 
 from bearing_sim import Simulation, load_scene
-from bearing_sim.scene.loader import catalog_names, scene_from_yaml, scene_to_yaml
+from bearing_sim.scene.loader import scene_from_yaml, scene_to_yaml
 from bearing_sim.scene.ratings import rate
+from bearing_sim.studies.friction import BEARINGS
 
-BEARINGS = [name for name in catalog_names("bearings") if not name.startswith("deng2017")]
 SCENE = """
 name: catalogue
 bearing: {name}

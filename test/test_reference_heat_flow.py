@@ -13,10 +13,11 @@ from bearing_sim.model.params import pack
 from bearing_sim.model.thermal_network import POWERS, boundary_dimensions, fit_gaps, thermal_network
 from bearing_sim.physics.growth import Temperatures, growth_at, seats_at
 from bearing_sim.physics.thermal_network import NODE, NODES, NetworkInputs, heat_flows, new_work, settle
-from bearing_sim.scene.loader import catalog_names, scene_from_yaml
+from bearing_sim.scene.loader import scene_from_yaml
+from bearing_sim.studies.friction import BEARINGS
 
 AMBIENT, BEARING = 293.15, 343.15
-NAMES = [name for name in catalog_names("bearings") if name.startswith("nu")]
+NAMES = BEARINGS
 SCENE = """
 name: reference conditions
 bearing: {name}

@@ -261,6 +261,25 @@ Seals = Annotated[NoSeals | SealMoment | SkfSeals, Field(discriminator="law"), B
 
 
 @record
+class EstimatedField:
+    """A field of the bearing that follows from a rule, and how far it may be off.
+
+    ``low`` and ``high`` bound the middle 90 %: as factors of the value, or as numbers where the field is a count.
+    """
+
+    field: str  # path within the bearing, such as roller.length
+    by: str  # the rule, with its error
+    low: float  # low end of its range
+    high: float  # high end
+
+    @check
+    def _range_is_ordered(self) -> list[str]:
+        if not 0.0 < self.low <= self.high:
+            return [f"low: {self.low:g} is not above 0 and at most high, {self.high:g}"]
+        return []
+
+
+@record
 class Bearing:
     """One cylindrical roller bearing."""
 
@@ -282,6 +301,8 @@ class Bearing:
     width: quantity("m", "width of the bearing, B; None: estimated from the rollers' length", 1e-3, 2.0, "mm") | None = None
     seals: Seals = field(default_factory=NoSeals)
     flanges: Flanges = field(default_factory=Flanges)
+    designation: str = ""  # of the catalogue bearing that these dimensions are of, such as NU 210 ECP/C3
+    estimated: tuple[EstimatedField, ...] = ()  # fields that no source gives, see `bearing_sim.scene.internal_dimensions`
 
     @property
     def bore_diameter(self) -> float:
@@ -380,7 +401,19 @@ class Bearing:
                 f"outer_raceway.low_radius: {1e3 * self.outer_raceway.low_radius:.6g} mm leaves {1e6 * clearance:.6g} um between inner "
                 f"raceway, roller and low point; expected {-2e4 * self.roller.diameter:.6g} to {5e5 * self.roller.diameter:.6g} um"
             )
-        return errors + ring_errors(self) + cage_errors(self) + play_errors(self) + flange_errors(self)
+        return errors + ring_errors(self) + cage_errors(self) + play_errors(self) + flange_errors(self) + estimate_errors(self)
+
+
+def estimate_errors(bearing) -> list[str]:
+    """Return error messages for estimates of fields that the bearing does not have."""
+    errors = []
+    for each in bearing.estimated:
+        value = bearing
+        for name in each.field.split("."):
+            value = getattr(value, name, None)
+        if not isinstance(value, (int, float)):
+            errors.append(f"estimated: this bearing has no number {each.field}; leave its entry out")
+    return errors
 
 
 def ring_errors(bearing) -> list[str]:

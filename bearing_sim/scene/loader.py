@@ -16,9 +16,11 @@ from pydantic_core import PydanticCustomError
 
 from bearing_sim.scene.bearing import drop_other_lands
 from bearing_sim.scene.contour import UNREAD, drop_other_forms, with_contour_text
+from bearing_sim.scene.designation import DesignationError, is_designation
 from bearing_sim.scene.diameters import ROUND_RACEWAY, diameters, forget_counterpart, gives_round_raceway, override_by_radius, with_radii
 from bearing_sim.scene.errors import InvalidField, SceneError, did_you_mean
 from bearing_sim.scene.fidelity import choose
+from bearing_sim.scene.internal_dimensions import bearing_tree
 from bearing_sim.scene.lubricant_names import keep_one_lubricant, with_named_lubricants
 from bearing_sim.scene.quantity import SPEED, to_si
 from bearing_sim.scene.scene import Scene
@@ -310,12 +312,23 @@ def _apply_override(tree: dict, override: str) -> None:
         keep_one_lubricant(node, keys[-1], value)
     if keys[:-1] == ["bearing", "outer_raceway"]:
         drop_other_forms(node, ("low_radius" if path == ROUND_RACEWAY else keys[-1],))
-    if keys[0] == "bearing":
+    if keys[0] == "bearing" and len(keys) > 1:
         _keep_one_clearance(tree["bearing"], ".".join(keys[1:]))
+        _forget_estimate(tree["bearing"], ".".join(keys[1:]))
         if ".".join(keys[1:]) in _RACEWAY_RADII:
             drop_ranges(tree, "bearing.clearance")
     if keys == ["bearing", "cage", "guidance"] and value == "roller":
         drop_ranges(tree, "bearing.cage.guide_")
+
+
+def _forget_estimate(bearing, given: str) -> None:
+    """Remove the mark of an estimated field from a block ``bearing``, in place, after the field or a block around it was given."""
+    if isinstance(bearing, dict) and isinstance(bearing.get("estimated"), list) and given != "estimated":
+        bearing["estimated"] = [
+            each
+            for each in bearing["estimated"]
+            if not (isinstance(each, Mapping) and (each.get("field") == given or str(each.get("field")).startswith(f"{given}.")))
+        ]
 
 
 def _keep_one_clearance(bearing: dict, given: str) -> None:
@@ -338,13 +351,34 @@ def _catalog_entry(kind: str, name: str) -> dict:
     return yaml.load(_bundled_text(f"catalog/{kind}", name), Loader=_UniqueKeyLoader)
 
 
+def _bearing_preset(name) -> tuple[dict, list[InvalidField]]:
+    """Return the block of a bearing by its designation, or by its name in the catalog."""
+    if name in catalog_names("bearings"):
+        return _from_catalog("bearings", name, "bearing.preset")
+    if is_designation(name):
+        try:
+            return bearing_tree(name), []
+        except DesignationError as error:
+            return {}, [InvalidField("bearing.preset", repr(name), str(error))]
+    known = catalog_names("bearings")
+    reason = f"not in the catalog{did_you_mean(str(name), known)}; expected a designation such as NU 210 ECP/C3, or {' or '.join(known)}"
+    return {}, [InvalidField("bearing.preset", repr(name), reason)]
+
+
+def _at(tree, path: str):
+    """Return what a tree has at a dotted path; None if there is nothing."""
+    for name in path.split("."):
+        tree = tree.get(name) if isinstance(tree, Mapping) else None
+    return tree
+
+
 def _with_presets(tree: Mapping) -> tuple[dict, list[InvalidField]]:
     tree, errors = dict(tree), []
     bearing = tree.get("bearing")
-    if isinstance(bearing, str):
+    if isinstance(bearing, (str, int, float)):
         bearing = {"preset": bearing}
     if isinstance(bearing, Mapping) and "preset" in bearing:
-        preset, unknown = _from_catalog("bearings", bearing["preset"], "bearing.preset")
+        preset, unknown = _bearing_preset(bearing["preset"])
         errors += unknown
         raceway = bearing.get("outer_raceway")
         if isinstance(raceway, Mapping) and "outer_raceway" in preset:
@@ -356,7 +390,12 @@ def _with_presets(tree: Mapping) -> tuple[dict, list[InvalidField]]:
         cage = bearing.get("cage")
         if isinstance(cage, Mapping) and "cage" in preset:
             drop_other_lands(preset["cage"], cage)
-        tree["bearing"] = _merged(preset, {key: value for key, value in bearing.items() if key != "preset"})
+        given = {key: value for key, value in bearing.items() if key != "preset"}
+        tree["bearing"] = _merged(preset, given)
+        if "estimated" in preset and "estimated" not in given:
+            tree["bearing"]["estimated"] = [
+                each for each in preset["estimated"] if _at(given, each["field"]) is None and _at(tree["bearing"], each["field"]) is not None
+            ]
         if unknown:  # its missing fields are consequences
             raise SceneError("scene", errors)
     for path in _MATERIALS:

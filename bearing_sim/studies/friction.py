@@ -17,7 +17,7 @@ from bearing_sim.levels.steady.operating_point import ANSWER
 from bearing_sim.levels.steady.table_builder import solve_points
 from bearing_sim.model.params import lubricate, pack
 from bearing_sim.physics.drag import bath_moment
-from bearing_sim.scene.loader import catalog_names, scene_from_mapping
+from bearing_sim.scene.loader import scene_from_mapping
 from bearing_sim.scene.scene import Scene
 
 LOADS = (0.02, 0.05, 0.1, 0.2)  # of C_0
@@ -55,6 +55,8 @@ SERIES = {
     "22": Coefficients(3.0, 0.0004),
     "23": Coefficients(4.0, 0.0004),
 }
+# Of five series, from small to large.
+BEARINGS = ("nu1010", "nu1020", "nu205", "nu210", "nu232", "nu310", "nu2210", "nu2220", "nu2310", "nu2324")
 # R_1 of SKF's rolling moment by series (SKF General Catalogue, table 3c).
 _SKF_ROLLING = {"10": 1.12e-6, "2": 1.09e-6, "3": 1.09e-6, "22": 1.40e-6, "23": 1.48e-6}
 # Thermal speed ratings by ISO 15312 that NKE prints for the same sizes [rpm] (NKE, general catalogue, cylindrical roller bearings, E design).
@@ -134,9 +136,8 @@ def bath_scene(name: str) -> Scene:
 
 
 def bearings() -> list[str]:
-    """Return the catalogue bearings that belong to a series, by series and size."""
-    named = [(list(SERIES).index(series), name) for name in catalog_names("bearings") if (series := series_of(name)) is not None]
-    return [name for _, name in sorted(named, key=lambda pair: (pair[0], int(pair[1].removeprefix("nu"))))]
+    """Return the bearings that are compared, by series and size."""
+    return list(BEARINGS)
 
 
 class Moment(NamedTuple):
