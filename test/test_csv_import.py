@@ -171,7 +171,9 @@ def test_missing_columns_are_all_named_with_a_guess(tmp_path):
         (b"t,n,f\n", "has no rows"),
         (b"t,n,f\n0,,\n1,,\n", "2 x shaft_speed.empty_cell"),
         (b"t,n,f,f\n0,1,1,1\n", "2 columns are called 'f'"),
-        (b"t,n,f\n0,\xff,1\n", "UTF-8"),
+        (b"t,n,f\n0,\xff,1\n", "1 x shaft_speed.not_a_number .line 2: n = 'ÿ'"),
+        (b"PK\x03\x04rest", "workbook"),
+        (b"t,n,f\n0,\0,1\n", "no text"),
         (b't,n,f\n0,"1"x,1\n', "line 2"),
     ],
 )

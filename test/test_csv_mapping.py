@@ -46,7 +46,7 @@ oil_temperature: {column: T}
 """)
     assert "did you mean 'delimiter'" in faults["delimeter"].reason
     assert "parsecs" in faults["time"].reason
-    assert "did you mean 'column'" in faults["shaft_speed.colum"].reason and faults["shaft_speed.column"].reason == "missing"
+    assert "did you mean 'column'" in faults["shaft_speed.colum"].reason
     assert "outside" in faults["radial_load.mass"].reason
     assert "wrong dimension" in faults["radial_load.accelerations.0"].reason
     assert "did you mean 'scale'" in faults["radial_load.accelerations.1.scal"].reason

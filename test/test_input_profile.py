@@ -118,18 +118,39 @@ def test_a_long_silence_is_stale_and_a_gap(tmp_path):
     assert next(event.time for event in course.events if event.kind == "input.gap") == pytest.approx(0.9)
 
 
-def test_slow_but_steady_log_is_no_gap_unless_asked_for(tmp_path):
-    path = write_log(tmp_path / "log.mcap", [(60.0 * t, 1.0) for t in range(5)], [(60.0 * t, 1.0, 0.0) for t in range(5)])
+@pytest.mark.parametrize("spacing", [1.0, 60.0, 600.0, 7200.0])
+def test_slow_but_steady_log_is_neither_stale_nor_too_slow_nor_a_gap_unless_asked_for(tmp_path, spacing):
+    times = [spacing * k for k in range(5)]
+    path = write_log(tmp_path / "log.mcap", [(t, 1.0) for t in times], [(t, 1.0, 0.0) for t in times], [(t, 60.0) for t in times])
     course = course_of(path)
-    assert course.gaps == [] and set(codes(course)) == {"input.stale"}
-    assert all("linear" in event.text and "holding" not in event.text for event in course.events)
-    assert len(course_of(path, longest_gap=30.0).gaps) == 8
+    assert (course.gaps, codes(course)) == ([], []) if spacing < 3600.0 else codes(course)  # three spacings of hours alone prove no rate
+    assert len(course_of(path, longest_gap=spacing / 2).gaps) == 8
 
 
-def test_wrong_message_rate_is_told_once(tmp_path):
-    course = judge(read_input_log(steady_log(tmp_path / "log.mcap", duration=9.0, rate=2)), InputLimits(minimum_rate=5.0), HELD)
-    assert codes(course) == ["input.rate", "input.rate"]
-    assert {event.subject for event in course.events} == {"shaft_speed", "radial_load"}
+def test_silence_of_a_slow_log_is_stale_by_its_own_rate(tmp_path):
+    times = [60.0 * k for k in (*range(10), *range(14, 20))]  # five minutes between the tenth and the eleventh
+    course = course_of(write_log(tmp_path / "log.mcap", [(t, 1.0) for t in times], [(60.0 * k, 1.0, 0.0) for k in range(20)]))
+    assert codes(course) == ["input.stale"] and course.events[0].subject == "shaft_speed"
+    assert "expected one within 180 s" in course.events[0].text and "linear" in course.events[0].text
+
+
+def test_a_measured_ring_temperature_of_a_slow_log_holds_until_its_next_row(tmp_path):
+    times = np.arange(5) * 600 * SECOND
+    messages = {"shaft_speed": np.ones(5), "radial_load": np.ones((5, 2)), "inner_ring_temperature": np.array([340.0, 341.0, 342.0, 343.0, 344.0])}
+    stamps = dict.fromkeys(messages, times)
+    between = np.array([300, 900, 2700, 2400 + 1801]) * SECOND
+    column = Inputs._fields.index("inner_ring_temperature")
+    own, live = ({"inner_ring_temperature": 600.0}, {})
+    found = [inputs_at(between, Messages(stamps, messages), LIMITS, 300.0, spacings)[:, column] for spacings in (own, live)]
+    assert found[0] == pytest.approx([340.0, 341.0, 344.0, math.nan], nan_ok=True), "three of its spacings"
+    assert np.isnan(found[1]).all(), "ten times stale_after in a live run"
+
+
+def test_a_rate_that_falls_below_that_of_the_scene_and_of_the_log_is_told_once(tmp_path):
+    times = [t / 10 for t in range(100)] + [10.0 + 2.0 * t for t in range(10)]
+    path = write_log(tmp_path / "log.mcap", [(t, 1.0) for t in times], [(t / 10, 1.0, 0.0) for t in range(290)])
+    course = judge(read_input_log(path), InputLimits(minimum_rate=5.0, stale_after=5.0), HELD)
+    assert codes(course) == ["input.rate"] and course.events[0].subject == "shaft_speed"
 
 
 def test_cut_log_is_told_at_its_end(tmp_path):

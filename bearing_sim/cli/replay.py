@@ -40,17 +40,26 @@ from bearing_sim.cli.reporting import (
 @click.option("--rrd", type=click.Path(path_type=Path), metavar="RUN.rrd", help="Also write a view for rerun.")
 @click.option("--rate", type=click.FloatRange(min=0, min_open=True), metavar="HZ", help="Outputs per simulated second [default: one per stamp].")
 @click.option(
-    "--speed", "--speed-topic", "speed", metavar="TOPIC", help="Shaft speed: /topic, or /topic.field[0] of any type [default: /shaft_speed]."
+    "--speed",
+    "--speed-topic",
+    "speed",
+    metavar="TOPIC",
+    help="Shaft speed: /topic, or /topic.field[0] of any type, or a constant such as 1500rpm [default: /shaft_speed].",
 )
 @click.option(
-    "--load", "--load-topic", "load", metavar="TOPIC", help="Radial load, likewise; /topic.y,z for both components [default: /radial_load]."
+    "--load",
+    "--load-topic",
+    "load",
+    metavar="TOPIC",
+    help="Radial load, likewise; /topic.y,z for both components, or a constant such as 800N [default: /radial_load].",
 )
 @click.option(
+    "--oil-temperature",
     "--temperature",
     "--temperature-topic",
     "temperature",
     metavar="TOPIC",
-    help="Oil temperature, likewise [default: /oil_temperature, if present].",
+    help="Oil temperature, likewise, or a constant such as 60degC [default: /oil_temperature, if present, or the scene's].",
 )
 @click.option(
     "--inner-ring-temperature", metavar="TOPIC", help="Of the inner ring as measured, likewise [default: /inner_ring_temperature, if present]."
@@ -95,7 +104,7 @@ def replay(
 
     IN.mcap is any rosbag2 recording, MCAP or sqlite3: a file, finished or not, a bag's folder, or several that belong together. It holds
     shaft speed (JointState or Float64) and radial load (WrenchStamped, or Float64 along +y), or such numbers in messages of any other
-    type whose definition is in the recording. ROS is not needed. Inputs are interpolated linearly between stamps; bad messages are
+    type whose definition is in the recording. ROS is not needed. What was not measured may be a constant: --load 800N. Inputs are interpolated linearly between stamps; bad messages are
     refused, reported and counted as in a live run. If inputs are unknown for some of the time, because their messages were refused, the
     result says what that means for life and damage, and the exit code is 3.
     """
@@ -108,33 +117,31 @@ def replay(
         return
     import numpy as np
 
-    from bearing_sim.inputs.log import InputLogError, read_input_log, source
+    from bearing_sim.inputs.log import InputLogError, constant, is_constant, read_input_log, source
     from bearing_sim.inputs.profile import judge
     from bearing_sim.recording.writer import COMMAND, McapSink
     from bearing_sim.runtime.replay import replay
     from bearing_sim.scene.loader import SceneError, load_scene
     from bearing_sim.simulation import Inputs, IntegrationError, Simulation
 
+    given = (
+        ("shaft_speed", speed, speed_unit),
+        ("radial_load", load, load_unit),
+        # A channel with a unit must be there: of the rings only one that is named, of the oil one that may be meant.
+        ("oil_temperature", temperature, temperature_unit if temperature or not (inner_ring_temperature or outer_ring_temperature) else None),
+        ("inner_ring_temperature", inner_ring_temperature, temperature_unit if inner_ring_temperature else None),
+        ("outer_ring_temperature", outer_ring_temperature, temperature_unit if outer_ring_temperature else None),
+    )
     with as_usage_error(ValueError):
-        names = {
-            channel: source(channel, text, unit)
-            for channel, text, unit in (
-                ("shaft_speed", speed, speed_unit),
-                ("radial_load", load, load_unit),
-                # A channel with a unit must be there: of the rings only one that is named, of the oil one that may be meant.
-                ("oil_temperature", temperature, temperature_unit if temperature or not (inner_ring_temperature or outer_ring_temperature) else None),
-                ("inner_ring_temperature", inner_ring_temperature, temperature_unit if inner_ring_temperature else None),
-                ("outer_ring_temperature", outer_ring_temperature, temperature_unit if outer_ring_temperature else None),
-            )
-            if text or unit
-        }
+        constants = {channel: constant(channel, text, unit) for channel, text, unit in given if is_constant(text)}
+        names = {channel: source(channel, text, unit) for channel, text, unit in given if (text or unit) and channel not in constants}
     with as_usage_error(SceneError, InputLogError), as_file_error(), exit_on_sigterm():
         if out is not None and out.exists() and any(log.exists() and out.samefile(log) for log in logs):
             raise UsageError(f"{out} is the input log; choose another file")
         scene = load_scene(scene_name, overrides)
         suggest_level(scene)
         warn_of_scene(scene)
-        recorded = read_input_log(logs, names, joint, stamps)
+        recorded = read_input_log(logs, names, joint, stamps, constants=constants)
         held = Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature)
         course = judge(recorded, scene.accepted_inputs, held, longest_gap, scene.heat.law)
         seconds = course.end * 1e-9

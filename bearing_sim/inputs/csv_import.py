@@ -8,12 +8,13 @@ A bad time costs its row, a bad cell the one message that needs it; both are rep
 smoothed.
 """
 
-import csv
 import datetime
 import hashlib
 import math
+import re
+import zoneinfo
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from decimal import Decimal, InvalidOperation
 from pathlib import Path
@@ -22,11 +23,24 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, TypeAdapter, ValidationError
 
-from bearing_sim.inputs.gate import with_values
+from bearing_sim.inputs.csv_text import (
+    Layout,
+    TableError,
+    cells_in,
+    decimal_mark,
+    encoding_of,
+    find_header,
+    first_lines,
+    is_unit_of,
+    records,
+    spelled,
+    unit_in,
+)
+from bearing_sim.inputs.gate import UNITS, with_values
 from bearing_sim.messages import topics
 from bearing_sim.recording.provenance import git_hash, package_version
 from bearing_sim.recording.writer import McapFile
-from bearing_sim.scene.loader import SceneError, did_you_mean, invalid_fields, read_named, yaml_mapping
+from bearing_sim.scene.loader import InvalidField, SceneError, invalid_fields, read_named, yaml_mapping
 from bearing_sim.scene.quantity import check, conversion, quantity, record, to_si
 from bearing_sim.simulation import Inputs
 
@@ -36,7 +50,7 @@ METADATA = "bearing_sim_import"
 _LINES_KEPT = 5  # of each kind of error; all are counted
 _USUAL_SPACINGS = 3.0  # median spacings above which there is a gap, if the mapping does not set longest_step
 
-_LAWS = frozenset({"sum", "norm", "mass_times_acceleration", "gear_force"})
+_LAWS = frozenset({"sum", "norm", "mass_times_acceleration", "gear_force", "constant"})
 
 
 def _column(si_unit: str, meaning: str) -> type:
@@ -44,46 +58,73 @@ def _column(si_unit: str, meaning: str) -> type:
 
     @record
     class Column:
-        """A column: either ``unit``, or ``scale`` (SI per unit of the cell) and ``offset``."""
+        """A column in a ``unit``, which its heading may give, or with ``scale`` and ``offset``; or a ``constant`` where nothing was measured."""
 
-        column: str
-        unit: str | None = None
-        scale: quantity(si_unit, f"{meaning} for a cell of 1") | None = None
-        offset: quantity(si_unit, f"{meaning} for a cell of 0") | None = None
+        column: str = ""  # heading in the table
+        unit: str | None = None  # of the cells, such as rpm, kN, degC; by default the one in the heading, as in Speed [rpm]
+        scale: quantity(si_unit, f"{meaning} for a cell of 1, instead of a unit") | None = None
+        offset: quantity(si_unit, f"{meaning} for a cell of 0, with a scale") | None = None
+        constant: quantity(si_unit, f"{meaning} throughout, instead of a column") | None = None
 
         @check
         def _converts(self) -> list[str]:
-            if (self.unit is None) == (self.scale is None):
+            if (not self.column) == (self.constant is None):
+                return ["expected either a column, or a constant such as " + _EXAMPLES[si_unit]]
+            if self.constant is not None:
+                return self._errors_of_constant()
+            if self.unit is not None and self.scale is not None:
                 return ["expected either unit, or scale (and offset)"]
-            if self.unit is not None and self.offset is not None:
+            if self.unit is None and self.scale is None and not unit_in(self.column)[1]:
+                return [f"expected either unit, or scale (and offset), since the heading {self.column!r} has no unit"]
+            if self.scale is None and self.offset is not None:
                 return ["offset does not go with unit; give scale and offset instead"]
             if self.scale is not None and not (math.isfinite(self.scale) and math.isfinite(self.offset or 0.0)):
                 return ["expected a finite scale and offset"]
             self.line()  # a wrong unit is an error of the mapping, not of the data
             return []
 
+        def _errors_of_constant(self) -> list[str]:
+            given = [name for name in ("unit", "scale", "offset") if getattr(self, name) is not None]
+            if given:
+                return [f"{' and '.join(given)} do not go with a constant, which has its own unit"]
+            return [] if math.isfinite(self.constant) else ["expected a finite constant"]
+
         def line(self) -> tuple[float, float]:
             """Return (scale, offset) in SI."""
-            return (self.scale, self.offset or 0.0) if self.unit is None else conversion(self.unit, si_unit)
+            if self.scale is not None:
+                return self.scale, self.offset or 0.0
+            return conversion(spelled(self.unit or unit_in(self.column)[1]), si_unit)
+
+        def contradiction(self) -> str:
+            """Return in words that the heading has another unit than the mapping; empty if it has not."""
+            own = spelled(unit_in(self.column)[1])
+            if self.unit is None or not is_unit_of(own, si_unit) or conversion(own, si_unit) == self.line():
+                return ""
+            return f"the heading {self.column!r} says {own}, the mapping {self.unit}; the mapping is followed"
 
     return Column
 
+
+_EXAMPLES = {"rad/s": "1500 rpm", "N": "800 N", "m/s^2": "9.81 m/s^2", "K": "60 degC", "W": "2 kW", "N*m": "50 N*m"}
 
 SpeedColumn = _column("rad/s", "shaft speed")
 ForceColumn = _column("N", "force")
 AccelerationColumn = _column("m/s^2", "acceleration")
 TemperatureColumn = _column("K", "temperature of oil or of a ring")
 PowerColumn = _column("W", "power")
+TorqueColumn = _column("N*m", "torque")
 
 
 @record
 class TimeColumn:
     """The time of each row: numbers in a ``unit`` since ``epoch``, or timestamps in a ``format``."""
 
-    column: str
-    unit: str | None = None
-    format: str | None = None  # "iso", or a format of strptime; a timestamp without a zone is UTC
-    epoch: datetime.datetime | datetime.date | str | None = None
+    column: str  # heading in the table
+    time_of_day: str = ""  # heading of a second column, with the time of day, where the first has the date only
+    unit: str | None = None  # of numbers: s, ms, min, h, day
+    format: str | None = None  # of timestamps: iso, or a format of Python's strptime, such as %d.%m.%Y %H:%M:%S
+    zone: str = "UTC"  # of timestamps that do not name theirs, such as Europe/Berlin or +01:00; of times told twice in autumn the rising one
+    epoch: datetime.datetime | datetime.date | str | None = None  # date and time of the number 0 [1970-01-01]
     longest_step: quantity("s", "spacing of rows above which there is a gap", 0.0) | None = None
 
     @check
@@ -92,6 +133,9 @@ class TimeColumn:
             return ["expected either unit (numbers), or format (timestamps)"]
         if self.format is not None and self.epoch is not None:
             return ["epoch does not go with format: timestamps contain their date"]
+        if self.format is None and (self.time_of_day or self.zone != "UTC"):
+            return ["time_of_day and zone go with format only; give the epoch with its zone, such as 2026-01-01T00:00:00+01:00"]
+        self.zone_info()
         if self.unit is not None:
             self.nanoseconds_per_unit()
             self.epoch_ns()
@@ -99,7 +143,17 @@ class TimeColumn:
 
     def nanoseconds_per_unit(self) -> float:
         """Return the number of nanoseconds in one unit of the cell."""
-        return to_si(f"1 {self.unit}", "s") * 1e9
+        return to_si(f"1 {spelled(self.unit)}", "s") * 1e9
+
+    def zone_info(self) -> datetime.tzinfo:
+        """Return the zone of timestamps that do not name theirs."""
+        if found := re.fullmatch(r"([-+])(\d{1,2}):?(\d{2})?", self.zone):
+            minutes = 60 * int(found[2]) + int(found[3] or 0)
+            return datetime.timezone((-1 if found[1] == "-" else 1) * datetime.timedelta(minutes=minutes))
+        try:
+            return zoneinfo.ZoneInfo(self.zone)
+        except (zoneinfo.ZoneInfoNotFoundError, ValueError, OSError):
+            raise ValueError(f"zone = {self.zone!r}: expected a name such as Europe/Berlin, UTC, or an offset such as +01:00") from None
 
     def epoch_ns(self) -> int:
         """Return the time of a cell of 0 [ns since 1970]."""
@@ -144,27 +198,59 @@ class MassTimesAcceleration:
 
 @record
 class GearForce:
-    """Load along +y: tangential force of a gear on the shaft, F = 2 P/(efficiency omega d) with the row's shaft speed omega."""
+    """Load along +y: a share of the force of a gear on its shaft, by the power or the torque that it transmits.
+
+    The tangential force is F_t = 2 T/d, with T = P/(efficiency omega) and the row's shaft speed omega where the power is measured; the mesh
+    force across the shaft is F_t sqrt(1 + (tan alpha_n/cos beta)^2) with the normal pressure angle alpha_n and the helix angle beta.  The
+    bearing carries ``share`` of it and, at right angles to that, ``dead_weight``.
+    """
 
     law: Literal["gear_force"] = "gear_force"
-    power: PowerColumn
-    efficiency: quantity("", "power out over power through the gear", 0.01, 1.0)
+    power: PowerColumn | None = None
+    torque: TorqueColumn | None = None
+    efficiency: quantity("", "power that is measured over power through the gear; with power only", 0.01, 1.0) | None = None
     pitch_diameter: quantity("m", "pitch diameter of the gear, d", 1e-3, 100.0, "mm")
+    pressure_angle: quantity("rad", "normal pressure angle of the teeth, alpha_n", 0.0, 0.8, "deg") = 0.0
+    helix_angle: quantity("rad", "helix angle of the teeth, beta", -1.2, 1.2, "deg") = 0.0
+    share: quantity("", "part of the mesh force that this bearing carries", 0.0, 10.0) = 1.0
+    dead_weight: quantity("N", "weight on this bearing, across the mesh force", 0.0, 1e7) = 0.0
+
+    @check
+    def _knows_its_torque(self) -> list[str]:
+        if (self.power is None) == (self.torque is None):
+            return ["expected either power, or torque"]
+        if (self.power is None) != (self.efficiency is None):
+            return ["efficiency: missing"] if self.torque is None else ["efficiency goes with power only; the torque is that at the gear"]
+        return []
+
+    def force(self, torque: float) -> float:
+        """Return the load [N] at a torque [N m]."""
+        across = math.hypot(1.0, math.tan(self.pressure_angle) / math.cos(self.helix_angle))
+        return math.hypot(self.share * across * 2 * torque / self.pitch_diameter, self.dead_weight)
+
+
+@record
+class ConstantLoad:
+    """Load along +y: one value throughout, where no load was measured."""
+
+    law: Literal["constant"] = "constant"
+    value: quantity("N", "radial load throughout", 0.0, 1e8)
 
 
 @record
 class Mapping:
     """How the columns of a table become the messages of a log."""
 
-    name: str
-    description: str = ""
-    source: str = ""
-    delimiter: Annotated[str, Field(min_length=1, max_length=1)] = ","
-    decimal: Literal[".", ","] = "."
+    name: str  # name of the mapping
+    description: str = ""  # what the table is, in a sentence
+    source: str = ""  # where it comes from
+    delimiter: Annotated[str, Field(min_length=1, max_length=1)] | None = None  # between cells; by default found in the header
+    decimal: Literal[".", ","] | None = None  # mark of numbers; by default found in the cells, and asked for where they may mean both
+    encoding: str | None = None  # of the file, such as utf-8 or latin-1; by default that of its byte-order mark, UTF-8, or Latin-1
     only: dict[str, str] = Field(default_factory=dict)  # column: text that its cell must have; other rows are left out
     time: TimeColumn
     shaft_speed: SpeedColumn
-    radial_load: Annotated[SumLoad | NormLoad | MassTimesAcceleration | GearForce, Field(discriminator="law")]
+    radial_load: Annotated[SumLoad | NormLoad | MassTimesAcceleration | GearForce | ConstantLoad, Field(discriminator="law")]
     oil_temperature: TemperatureColumn | None = None
     inner_ring_temperature: TemperatureColumn | None = None
     outer_ring_temperature: TemperatureColumn | None = None
@@ -172,32 +258,51 @@ class Mapping:
 
     @check
     def _is_complete(self) -> list[str]:
-        if self.delimiter == self.decimal:
+        if self.delimiter is not None and self.delimiter == self.decimal:
             return ["delimiter: expected a character other than the decimal mark"]
-        return [] if self.load_columns() else [f"radial_load: the law {self.radial_load.law} needs at least one column"]
+        if self.shaft_speed.constant is not None and isinstance(self.radial_load, ConstantLoad):
+            return ["shaft_speed and radial_load are constants, so that nothing is left of the table; `bearing-sim run` takes them"]
+        if self.cage_speed is not None and self.cage_speed.constant is not None:
+            return ["cage_speed: expected a column; a constant is no measurement"]
+        if any(one.constant is not None for one in self.load_columns()):
+            return ["radial_load: expected columns; a load that was not measured has law: constant and a value"]
+        if isinstance(self.radial_load, ConstantLoad) or self.load_columns():
+            return []
+        return [f"radial_load: the law {self.radial_load.law} needs at least one column"]
 
     def load_columns(self) -> tuple:
         """Return the columns that the load is computed from."""
         load = self.radial_load
+        if isinstance(load, ConstantLoad):
+            return ()
         if isinstance(load, MassTimesAcceleration):
             return load.accelerations
-        return (load.power,) if isinstance(load, GearForce) else load.columns
+        return (load.power or load.torque,) if isinstance(load, GearForce) else load.columns
+
+    def columns(self) -> list[tuple[str, object]]:
+        """Return (path in the mapping, record) of every column of numbers."""
+        named = [("shaft_speed", self.shaft_speed), *(("radial_load", one) for one in self.load_columns())]
+        named += [(name, getattr(self, name)) for name in (*topics.TEMPERATURES, "cage_speed")]
+        return [(where, one) for where, one in named if one is not None and one.constant is None]
 
     def column_names(self) -> list[tuple[str, str]]:
         """Return (path in the mapping, name) of every column that is used."""
-        named = [(f"only.{name}", name) for name in self.only]
-        named += [("time.column", self.time.column), ("shaft_speed.column", self.shaft_speed.column)]
-        named += [("radial_load", one.column) for one in self.load_columns()]
-        optional = ((name, getattr(self, name)) for name in (*topics.TEMPERATURES, "cage_speed"))
-        return named + [(f"{name}.column", one.column) for name, one in optional if one]
+        named = [(f"only.{name}", name) for name in self.only] + [("time.column", self.time.column)]
+        named += [("time.time_of_day", self.time.time_of_day)] * bool(self.time.time_of_day)
+        return named + [(where if where == "radial_load" else f"{where}.column", one.column) for where, one in self.columns()]
 
 
-def load_mapping(mapping: str | Path) -> tuple[Mapping, str]:
+def load_mapping(mapping: str | Path, overrides: Iterable[str] = ()) -> tuple[Mapping, str]:
     """Load a mapping by bundled name or file path.
+
+    Parameters
+    ----------
+    mapping : name or path.
+    overrides : texts such as ``"radial_load={law: constant, value: 800 N}"``, applied in order over the file.
 
     Returns
     -------
-    The mapping and its text.
+    The mapping and its text, to which overrides are added as comments.
 
     Raises
     ------
@@ -205,20 +310,37 @@ def load_mapping(mapping: str | Path) -> tuple[Mapping, str]:
         The file is missing, is not YAML, or has errors; all of them are listed.
     """
     text, _ = read_named(mapping, "catalog/mappings", "mapping")
-    return mapping_from_yaml(text, str(mapping)), text
+    overrides = list(overrides)
+    noted = "".join(f"# overridden: {override}\n" for override in overrides)
+    return mapping_from_yaml(text, str(mapping), overrides), f"{text}{noted}" if text.endswith("\n") or not noted else f"{text}\n{noted}"
 
 
-def mapping_from_yaml(text: str, origin: str = "mapping") -> Mapping:
+def mapping_from_yaml(text: str, origin: str = "mapping", overrides: Iterable[str] = ()) -> Mapping:
     """Build a mapping from YAML text (see `load_mapping`)."""
     tree = yaml_mapping(text, origin, "time, shaft_speed, radial_load ...")
+    for override in overrides:
+        _apply_override(tree, override)
     try:
-        return TypeAdapter(Mapping).validate_python(tree)
+        return TypeAdapter(Mapping).validate_python(tree, context={"written": True})
     except ValidationError as error:
         raise SceneError(origin, invalid_fields(error, Mapping, _LAWS)) from None
 
 
-class TableError(ValueError):
-    """A table that cannot be imported."""
+def _apply_override(tree: dict, override: str) -> None:
+    """Set a field of a mapping's tree, ``path=value`` with a YAML value; a block that is replaced by a constant loses its other fields."""
+    path, equals, text = override.partition("=")
+    *blocks, name = (key.strip() for key in path.split("."))
+    if not equals or not name or not all(blocks):
+        raise SceneError("--set", [InvalidField(path, "", "expected FIELD=VALUE, such as radial_load.pitch_diameter=400mm")])
+    for block in blocks:
+        inner = tree.get(block) or {}
+        if not isinstance(inner, dict):
+            raise SceneError("--set", [InvalidField(path, repr(inner), f"{block} is a value, not a block")])
+        tree[block] = tree = dict(inner)
+    try:
+        tree[name] = yaml_mapping(f"value: {text}", "--set", "FIELD=VALUE")["value"]
+    except SceneError:
+        tree[name] = text.strip()
 
 
 class _BadCell(ValueError):
@@ -243,6 +365,8 @@ class Table:
     lines : by channel, the line number of each message.
     gaps : (channel, line number, seconds) of messages that come too long after the one before.
     longest_step : spacing [s] above which there is a gap.
+    spacing : usual spacing of rows, the median [s].
+    notes : what was found in the file and is not in the mapping, and what contradicts it, in words.
     """
 
     rows: int = 0
@@ -254,6 +378,8 @@ class Table:
     lines: dict[str, list[int]] = field(default_factory=dict)
     gaps: list[tuple[str, int, float]] = field(default_factory=list)
     longest_step: float = math.nan
+    spacing: float = math.nan
+    notes: list[str] = field(default_factory=list)
 
     def refuse(self, kind: str, line: int, text: str) -> None:
         """Count an error and keep it as an example if it is among the first of its kind."""
@@ -268,67 +394,81 @@ def read_table(path: str | Path, mapping: Mapping) -> Table:
     Raises
     ------
     TableError
-        The file is missing, not text, or has no header; columns are missing (all of them are named); or no row can be used.
+        The file is missing, not text, or has no header; columns are missing (all of them are named); a number may mean two things; or no row
+        can be used.
     """
-    table = Table()
-    path = Path(path)
-    if not path.is_file():
-        raise TableError(f"{path}: no such file")
-    times: list[int] = []
-    try:
-        with open(path, newline="", encoding="utf-8-sig") as stream:
-            records = csv.reader(stream, delimiter=mapping.delimiter, strict=True)
-            row_reader = _RowReader(mapping, _header(path, records, mapping), table)
-            for line, cells in _rows(records):
-                if row_reader.take(line, cells):
-                    times.append(row_reader.newest)
-    except UnicodeDecodeError as error:
-        raise TableError(f"{path}: not readable as UTF-8 text ({error.reason})") from None
-    except csv.Error as error:
-        raise TableError(f"{path}, line {records.line_num}: {error}") from None
+    table, path, times = Table(), Path(path), []
+    layout = layout_of(path, mapping)
+    row_reader = _RowReader(mapping, layout, table)
+    for line, cells in records(path, layout):
+        if row_reader.take(line, cells):
+            times.append(row_reader.newest)
+    table.notes = [*layout.found, *filter(None, (one.contradiction() for _, one in mapping.columns()))]
+    if layout.comments:
+        table.notes.append(f"{layout.comments} line{'s' * (layout.comments > 1)} before the header or of comments left out")
     missing = [channel for channel in ("shaft_speed", "radial_load") if not table.stamps.get(channel)]
     if missing:
-        why = ", ".join(f"{count} x {kind}" for kind, count in table.refused.items()) or "it has no rows" + " that match `only`" * bool(mapping.only)
+        why = ", ".join(_with_example(table, kind) for kind in table.refused) or "it has no rows" + " that match `only`" * bool(mapping.only)
         raise TableError(f"{path}: nothing usable for {' and '.join(missing)}: {why}")
     _find_gaps(table, mapping, np.diff(times) * 1e-9)
     return table
 
 
-def _header(path: Path, records: Iterator[list[str]], mapping: Mapping) -> dict[str, int]:
-    names = [name.strip() for name in next(records, [])]
-    errors = []
-    for where, name in mapping.column_names():
-        if names.count(name) == 0:
-            errors.append(f"{where}: no column {name!r}{did_you_mean(name, names)}")
-        elif names.count(name) > 1:
-            errors.append(f"{where}: {names.count(name)} columns are called {name!r}")
-    if errors:
-        raise TableError("\n".join([f"{path}: the header has {', '.join(names) or 'nothing'}", *(f"  {error}" for error in errors)]))
-    return {name: column for column, name in enumerate(names)}
+def _with_example(table: Table, kind: str) -> str:
+    """Return how often an error occurred, and the first of its kind."""
+    line, text = table.examples[kind][0]
+    return f"{table.refused[kind]} x {kind} (line {line}: {text})"
 
 
-def _rows(records) -> Iterator[tuple[int, list[str]]]:
-    """Yield (number of the line that the row begins on, cells)."""
-    before = records.line_num
-    for cells in records:
-        yield before + 1, cells
-        before = records.line_num
+def layout_of(path: Path, mapping: Mapping) -> Layout:
+    """Return how a table is laid out, as the mapping says and, where it does not, as the file has it.
+
+    Raises
+    ------
+    TableError
+        See `read_table`.
+    """
+    layout = Layout(encoding_of(path, mapping.encoding))
+    if mapping.encoding is None and not layout.encoding.startswith("utf-8"):
+        layout.found.append(f"encoding: {layout.encoding}, since it is not UTF-8")
+    lines = first_lines(path, layout.encoding)
+    find_header(path, lines, mapping.column_names(), mapping.delimiter, layout)
+    if mapping.decimal is not None:
+        layout.decimal = mapping.decimal
+        return layout
+    numbers = [one.column for _, one in mapping.columns()] + [mapping.time.column] * (mapping.time.format is None)
+    try:
+        layout.decimal = decimal_mark(cells_in(lines, layout, numbers))
+    except TableError as error:
+        raise TableError(f"{path}, {error}") from None
+    if layout.decimal == ",":
+        layout.found.append("decimal mark: comma")
+    return layout
 
 
 class _RowReader:
     """Adds rows to a table as a mapping describes them."""
 
-    def __init__(self, mapping: Mapping, columns: dict[str, int], table: Table):
-        self._table, self._width = table, len(columns)
-        self._comma = mapping.decimal == ","
+    def __init__(self, mapping: Mapping, layout: Layout, table: Table):
+        columns = {name: column for column, name in enumerate(layout.names)}
+        self._table, self._width = table, len(layout.names)
+        self._comma = layout.decimal == ","
         self._only = [(columns[name], text) for name, text in mapping.only.items()]
-        self._time, self._time_column = _time_reader(mapping), columns[mapping.time.column]
-        self._speed = (columns[mapping.shaft_speed.column], mapping.shaft_speed.column, *mapping.shaft_speed.line())
+        self._time = _time_reader(mapping, self._comma)
+        self._time_columns = [columns[name] for name in (mapping.time.column, mapping.time.time_of_day) if name]
         self._load_columns = [(columns[one.column], one.column, *one.line()) for one in mapping.load_columns()]
         self._load = _load_law(mapping)
+        self._speed = self._value_reader(mapping.shaft_speed, columns)
         optional = {channel: getattr(mapping, channel) for channel in topics.TEMPERATURES} | {topics.MEASURED: mapping.cage_speed}
-        self._optional = {channel: (columns[one.column], one.column, *one.line()) for channel, one in optional.items() if one}
+        self._optional = {channel: self._value_reader(one, columns) for channel, one in optional.items() if one}
         self.newest: int | None = None
+
+    def _value_reader(self, one, columns: dict[str, int]) -> Callable[[list[str]], float]:
+        """Return the function that reads a channel's value from the cells of a row."""
+        if one.constant is not None:
+            return lambda cells: one.constant
+        place = (columns[one.column], one.column, *one.line())
+        return lambda cells: self._cell(cells, *place)
 
     def take(self, line: int, cells: list[str]) -> bool:
         """Add one row; return whether its time is good."""
@@ -340,10 +480,10 @@ class _RowReader:
         if time_ns is None:
             return False
         self.newest = time_ns
-        speed = self._number("shaft_speed", line, time_ns, lambda: self._cell(cells, *self._speed))
+        speed = self._number("shaft_speed", line, time_ns, lambda: self._speed(cells))
         self._number("radial_load", line, time_ns, lambda: self._load(speed, [self._cell(cells, *column) for column in self._load_columns]))
-        for channel, column in self._optional.items():
-            self._number(channel, line, time_ns, lambda column=column: self._cell(cells, *column))
+        for channel, read in self._optional.items():
+            self._number(channel, line, time_ns, lambda read=read: read(cells))
         return True
 
     def _time_of(self, line: int, cells: list[str]) -> int | None:
@@ -352,9 +492,9 @@ class _RowReader:
         if len(cells) != self._width:
             refuse("time.cells" if cells else "time.empty_line", line, f"{len(cells)} cells, expected {self._width}")
             return None
-        text = cells[self._time_column].strip()
+        text = " ".join(cells[column].strip() for column in self._time_columns).strip()
         try:
-            time_ns = self._time(text)
+            time_ns = self._time(text, self.newest)
         except (ValueError, InvalidOperation, OverflowError):
             refuse("time.unreadable" if text else "time.empty_cell", line, f"{text!r} is not a time" if text else "the time is empty")
             return None
@@ -392,16 +532,26 @@ class _RowReader:
         return offset + scale * number
 
 
-def _time_reader(mapping: Mapping) -> Callable[[str], int]:
-    """Return a function that converts a time cell to nanoseconds since 1970."""
+def _time_reader(mapping: Mapping, comma: bool) -> Callable[[str, int | None], int]:
+    """Return a function that converts a time cell to nanoseconds since 1970; it also takes the time of the row before, or None.
+
+    In the hour that is told twice when the clocks are set back, a time that would not rise is the later one.
+    """
     time = mapping.time
-    if time.format == "iso":
-        return lambda text: nanoseconds(datetime.datetime.fromisoformat(text))
     if time.format is not None:
-        return lambda text: nanoseconds(datetime.datetime.strptime(text, time.format))
+        zone, is_iso = time.zone_info(), time.format == "iso"
+
+        def of_timestamp(text: str, newest: int | None) -> int:
+            moment = datetime.datetime.fromisoformat(text) if is_iso else datetime.datetime.strptime(text, time.format)
+            if moment.tzinfo is not None:
+                return nanoseconds(moment)
+            told = nanoseconds(moment.replace(tzinfo=zone))
+            return told if newest is None or told > newest else nanoseconds(moment.replace(tzinfo=zone, fold=1))
+
+        return of_timestamp
     # Decimal keeps every digit of a time; a float would lose nanoseconds.
-    factor, epoch, comma = Decimal(repr(time.nanoseconds_per_unit())), time.epoch_ns(), mapping.decimal == ","
-    return lambda text: epoch + round(Decimal(_with_point(text, comma)) * factor)
+    factor, epoch = Decimal(repr(time.nanoseconds_per_unit())), time.epoch_ns()
+    return lambda text, newest: epoch + round(Decimal(_with_point(text, comma)) * factor)
 
 
 def _with_point(text: str, comma: bool) -> str:
@@ -418,19 +568,26 @@ def _load_law(mapping: Mapping) -> Callable[[float, list[float]], float]:
         return lambda speed, values: law.mass * math.hypot(*values)
     if isinstance(law, NormLoad):
         return lambda speed, values: math.hypot(*values)
+    if isinstance(law, ConstantLoad):
+        return lambda speed, values: law.value
     if isinstance(law, GearForce):
         return lambda speed, values: _gear_force(law, speed, values[0])
     return lambda speed, values: math.fsum(values)
 
 
-def _gear_force(law: GearForce, speed: float, power: float) -> float:
+def _gear_force(law: GearForce, speed: float, measured: float) -> float:
+    if law.torque is not None:
+        return law.force(measured)
+    if measured == 0.0:
+        return law.force(0.0)
     if not abs(speed) > 0.0:  # also NaN, where the row's speed could not be read
         raise _BadCell("no_speed", "power without a shaft speed other than zero gives no force")
-    return 2 * power / (law.efficiency * abs(speed) * law.pitch_diameter)
+    return law.force(measured / (law.efficiency * abs(speed)))
 
 
 def _find_gaps(table: Table, mapping: Mapping, row_spacings: np.ndarray) -> None:
-    usual = _USUAL_SPACINGS * float(np.median(row_spacings)) if len(row_spacings) else math.nan
+    table.spacing = float(np.median(row_spacings)) if len(row_spacings) else math.nan
+    usual = _USUAL_SPACINGS * table.spacing
     table.longest_step = mapping.time.longest_step if mapping.time.longest_step is not None else usual
     for channel, stamps in table.stamps.items():
         spacings = np.diff(stamps) * 1e-9

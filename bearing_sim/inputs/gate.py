@@ -10,6 +10,7 @@ from collections import Counter, deque
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import Enum
+from types import MappingProxyType
 from typing import NamedTuple
 
 from bearing_sim.messages.events import Event, Level
@@ -26,6 +27,8 @@ _OPTIONAL = (*TEMPERATURES, MEASURED)
 _RATE_WINDOW = 1.0  # [s] a rate is the number of messages over at least this long
 _RATE_TOLERANCE = 0.1  # relative, because timers jitter
 _SLOW_CHANNEL = dict.fromkeys(TEMPERATURES, 10.0)  # oil and rings warm up in minutes: their messages may be rarer by this factor
+_SPACINGS_OF_RATE = 10.0  # of a log: over at least this many a rate is counted, so that one missing row is no change of rate
+_SPACINGS_OF_SILENCE = 3.0  # of a log: a message may be late by this factor of its channel's usual spacing
 _RISING_TO_FOLLOW = 3  # refused messages in a row with rising stamps after which the sender's clock counts as set
 
 _REMEMBERED = 16  # values of a channel in which a conflict of publishers is looked for
@@ -147,6 +150,8 @@ class InputGate:
     held : the inputs before the first message.
     substitute : what the model uses while good messages are missing, for the texts of events; by default the held value.
     heat_law : the scene's; what stands in for a ring's temperature that is not measured depends on it.
+    spacings : by channel, the usual spacing of the messages of a log [s]: its silence and its rate are judged by its own rate where this is
+        outside of what the limits expect.  Empty for a live run.
 
     Attributes
     ----------
@@ -160,7 +165,10 @@ class InputGate:
         For how long inputs were unknown.
     """
 
-    def __init__(self, limits: InputLimits, held: Inputs, substitute: str = "", heat_law: str = "none"):
+    def __init__(
+        self, limits: InputLimits, held: Inputs, substitute: str = "", heat_law: str = "none", spacings: Mapping[str, float] = MappingProxyType({})
+    ):
+        self._spacings = spacings
         self.limits, self.held, self._substitute, self._stands_in = limits, held, substitute, _STANDS_IN[heat_law]
         self.measured = math.nan
         self.refused: Counter[str] = Counter()
@@ -199,7 +207,7 @@ class InputGate:
             elapsed = received - state.window_start
             if elapsed >= 0.0:
                 state.window_count += 1
-                if elapsed >= _RATE_WINDOW:
+                if elapsed >= max(_RATE_WINDOW, _SPACINGS_OF_RATE * self._spacings.get(channel, 0.0)):
                     state.rate = state.window_count / elapsed
                     state.window_start, state.window_count = received, 0
             else:  # the first message (NaN), or the receiver's clock was set back
@@ -297,7 +305,7 @@ class InputGate:
 
     def _patience(self, channel: str) -> float:
         """Return the age from which on a channel is stale [s]."""
-        return self.limits.stale_after * _SLOW_CHANNEL.get(channel, 1.0)
+        return patience(self.limits, channel, self._spacings.get(channel, 0.0))
 
     def _is_stale(self, channel: str, now: float) -> bool:
         return now - self._channels[channel].arrival > self._patience(channel)
@@ -314,10 +322,29 @@ class InputGate:
     def _rate_event(self, channel: str, state: _Channel, now: float) -> Event | None:
         slowest = self.limits.minimum_rate / _SLOW_CHANNEL.get(channel, 1.0)
         fastest = self.limits.maximum_rate
+        if spacing := self._spacings.get(channel):
+            slowest = min(slowest, 1.0 / (_SPACINGS_OF_SILENCE * spacing))
+            fastest = max(fastest, _SPACINGS_OF_SILENCE / spacing)
         if slowest * (1 - _RATE_TOLERANCE) <= state.rate <= fastest * (1 + _RATE_TOLERANCE) or math.isnan(state.rate):
             return None
         reason = f"messages arrive at {state.rate:.3g} Hz, expected {slowest:.3g} to {fastest:.3g} Hz"
         return Event(now, Level.WARN, "input.rate", channel, reason, "values are used as they arrive")
+
+
+def patience(limits: InputLimits, channel: str, spacing: float = 0.0) -> float:
+    """Return the age from which on a channel is stale [s].
+
+    It is ``limits.stale_after``, ten times as long for a temperature.  A log with fewer than two messages in that time was made at another
+    rate, and three times its usual spacing counts instead, so that a table with a row every ten minutes is not stale from row to row.
+
+    Parameters
+    ----------
+    limits : of the scene.
+    channel : one of `CHANNELS`.
+    spacing : usual spacing of the channel's messages in a log [s]; 0 for a live run.
+    """
+    expected = limits.stale_after * _SLOW_CHANNEL.get(channel, 1.0)
+    return expected if 2.0 * spacing <= expected else _SPACINGS_OF_SILENCE * spacing
 
 
 def with_values(held: Inputs, channel: str, values: tuple[float, ...]) -> Inputs:

@@ -11,6 +11,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -20,9 +21,10 @@ from bearing_sim.messages import topics
 from bearing_sim.recording.bag import RecordingError
 from bearing_sim.recording.bag_reader import BagReader, BagTopic
 from bearing_sim.scene.loader import did_you_mean
-from bearing_sim.scene.quantity import conversion
+from bearing_sim.scene.quantity import conversion, to_si
 
 _CHANNELS = (*topics.INPUTS, topics.MEASURED)
+_WITH_UNIT = {"rad/s": "{}rpm", "N": "{}N or {}kN", "K": "{}degC"}
 _STEP = re.compile(r"\.?([A-Za-z_]\w*)|\[(-?\d+)\]")
 
 
@@ -44,7 +46,7 @@ class Series:
 
     Attributes
     ----------
-    topic, ros_type : where they were found.
+    topic, ros_type : where they were found; topic ``""`` for a value that nobody measured (``constants`` of `read_input_log`).
     stamped_by : ``"header"`` or ``"log time"``: the clock of ``stamps``.
     stamps, log_times : [ns since the epoch], one for each message read.
     values : values of each message in SI (see `bearing_sim.messages.topics.input_values`).
@@ -118,6 +120,37 @@ def source(channel: str, text: str | None = None, unit: str | None = None) -> So
     return Source(topic if topic.startswith("/") else f"/{topic}", fields, scale, offset)
 
 
+def is_constant(text: str | None) -> bool:
+    """Return whether a text is a number with a unit, not the name of a topic, which never begins with a digit."""
+    return bool(text) and re.match(r"\s*[-+]?\.?\d", text) is not None
+
+
+def constant(channel: str, text: str, unit: str | None = None) -> float:
+    """Return the value [SI] of a channel that a text such as ``800N`` or ``1500 rpm`` gives.
+
+    Parameters
+    ----------
+    channel : one of `bearing_sim.inputs.gate.CHANNELS`.
+    text : a number with a unit.
+    unit : of a number without one.
+
+    Raises
+    ------
+    ValueError
+        The text is no such quantity, or it is no finite number; it names the channel and what was expected.
+    """
+    bare = re.fullmatch(r"\s*[-+]?[\d.]+([eE][-+]?\d+)?\s*", text) is not None
+    if bare and not unit:
+        raise ValueError(f"{channel} = {text.strip()}: a number without a unit; write for example {_WITH_UNIT[UNITS[channel]].replace('{}', text.strip())}")
+    try:
+        value = to_si(f"{text} {unit}" if bare else text, UNITS[channel])
+    except ValueError as error:
+        raise ValueError(f"{channel} = {text}: {error}") from None
+    if channel == "radial_load" and value < 0.0:
+        raise ValueError(f"{channel} = {text}: expected zero or more; the load acts along +y")
+    return value
+
+
 def source_values(channel: str, where: Source, ros_type: str, message, joint: str) -> tuple[float, ...]:
     """Return the values of a message in SI, as `bearing_sim.messages.topics.input_values` does for the standard types.
 
@@ -162,6 +195,7 @@ def read_input_log(
     stamps: str = "header",
     cage_joint: str = topics.CAGE_JOINT,
     required: Iterable[str] = REQUIRED,
+    constants: Mapping[str, float] = MappingProxyType({}),
 ) -> InputLog:
     """Read the inputs of a recording, or of several that belong together.
 
@@ -172,14 +206,20 @@ def read_input_log(
     joint, cage_joint : names of the joints of shaft and cage in JointState messages.
     stamps : ``"header"`` takes header stamps if the type has them and they are set, otherwise log times; ``"log"`` takes log times only.
     required : channels that must be present.
+    constants : by channel, a value in SI that stands for a channel that was not measured, at each stamp of the shaft speed or, where that is
+        the constant, of the load; messages of the channel in the recording are not read.
 
     Raises
     ------
     InputLogError
-        No such recording, or topics are missing; the message lists the topics in the recording.
+        No such recording, or topics are missing; the message lists the topics in the recording.  Or both speed and load are constants.
     """
+    measured = [channel for channel in REQUIRED if channel not in constants]
+    if not measured:
+        raise InputLogError("both speed and load are constants, so that nothing is left of the log; `bearing-sim run` takes them")
     paths = [Path(path)] if isinstance(path, (str, Path)) else [Path(each) for each in path]
-    wanted = _Wanted(_sources(names), dict.fromkeys(_CHANNELS, joint) | {topics.MEASURED: cage_joint}, stamps, {}, {})
+    sources = {channel: where for channel, where in _sources(names).items() if channel not in constants}
+    wanted = _Wanted(sources, dict.fromkeys(_CHANNELS, joint) | {topics.MEASURED: cage_joint}, stamps, {}, {})
     unfinished = []
     for each in paths:
         try:
@@ -188,9 +228,11 @@ def read_input_log(
         except RecordingError as error:
             raise InputLogError(str(error)) from None
     together = paths[0] if len(paths) == 1 else Path(" + ".join(map(str, paths)))
-    _check_found(together, wanted, tuple(required), names or {})
+    _check_found(together, wanted, tuple(each for each in required if each not in constants), names or {})
     for series in wanted.found.values():
         _sort_by_log_time(series)
+    for channel, value in constants.items():
+        wanted.found[channel] = _constant_series(wanted.found[measured[0]], value)
     return InputLog(together, wanted.found, "; ".join(unfinished))
 
 
@@ -281,6 +323,11 @@ def _check_found(path: Path, wanted: _Wanted, required: tuple[str, ...], named: 
         raise InputLogError(f"{path}: no usable message on {', '.join(empty)}{' (' + first[0] + ')' if first else ''}")
 
 
+def _constant_series(timed: Series, value: float) -> Series:
+    """Return a series with one value at the stamps of another series."""
+    return Series("", "constant", timed.stamped_by, list(timed.stamps), list(timed.log_times), [(value,)] * len(timed.stamps))
+
+
 def _sort_by_log_time(series: Series) -> None:
     """Sort messages into the order in which they were recorded: chunks may overlap."""
     order = sorted(range(len(series.stamps)), key=series.log_times.__getitem__)
@@ -293,6 +340,9 @@ def _sort_by_log_time(series: Series) -> None:
 def summary_lines(log: InputLog) -> Iterable[str]:
     """Yield one line of text for each channel: topic, type, clock, number of messages, and their anomalies."""
     for channel, series in log.series.items():
+        if not series.topic:
+            yield f"{channel}: {series.values[0][0]:.6g} {UNITS[channel]} throughout, not measured"
+            continue
         odd = [f"{len(series.errors)} not readable"] if series.errors else []
         odd += [f"{count} {name.replace('_', ' ')}" for name, count in anomalies(series)._asdict().items() if count]
         yield ", ".join([f"{channel}: {series.topic} ({series.ros_type}), {len(series.stamps)} messages by {series.stamped_by}", *odd])
@@ -315,14 +365,20 @@ class Anomalies(NamedTuple):
     gaps: int
 
 
+def usual_spacing(stamps: Sequence[int]) -> float:
+    """Return the median spacing of rising stamps [ns]; 0 for fewer than two different ones."""
+    risen = np.diff(np.maximum.accumulate(np.array(stamps, np.int64))) if len(stamps) else np.zeros(0)
+    risen = risen[risen > 0]
+    return float(np.median(risen)) if len(risen) else 0.0
+
+
 def anomalies(series: Series) -> Anomalies:
     """Count the anomalies in the times of a channel's messages; the usual spacing is the median."""
     stamps, logged = np.array(series.stamps, np.int64), np.array(series.log_times, np.int64)
     if len(stamps) < 2:
         return Anomalies(0, 0, 0, 0)
     latest = np.maximum.accumulate(stamps)
-    steps, risen = np.diff(stamps), np.diff(latest)
-    usual = float(np.median(risen[risen > 0])) if (risen > 0).any() else 0.0
+    steps, risen, usual = np.diff(stamps), np.diff(latest), usual_spacing(series.stamps)
     return Anomalies(
         int((stamps[1:] < latest[:-1]).sum()),
         int((steps == 0).sum()),

@@ -11,12 +11,13 @@ from collections import Counter, deque
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from heapq import merge
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.inputs.gate import REQUIRED, InputGate, unknown_inputs, unused_event
-from bearing_sim.inputs.log import InputLog, InputLogError, ReadError, Series
+from bearing_sim.inputs.gate import REQUIRED, InputGate, patience, unknown_inputs, unused_event
+from bearing_sim.inputs.log import InputLog, InputLogError, ReadError, Series, usual_spacing
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.messages.topics import INPUTS, MEASURED, RING_TEMPERATURES, TEMPERATURES
 from bearing_sim.scene.scene import InputLimits
@@ -31,7 +32,6 @@ _GAP_IN_SPACINGS = 10
 _SPACINGS_KNOWN = 100  # of a channel, from which the median is taken
 _FEW_SPACINGS = 3
 _LONGEST_UNKNOWN = 3600.0  # [s] longest spacing that is no gap while there are only a few spacings to compare it with
-_SILENT = 10.0  # times the age at which an input is stale: oil and rings warm up in minutes, their messages are rare
 
 _SEGMENT = 1_000_000_000  # [ns] longest segment of an online profile, so that requests are obeyed and the newest messages are used
 _PRUNED = 10_000  # messages before the segment that are kept before they are dropped
@@ -89,7 +89,9 @@ class Segment(NamedTuple):
             yield Arrival(float(self.arrived[k] * 1e-9), Inputs(*self.arrived_inputs[k].tolist()), channels)
 
 
-def inputs_at(instants: np.ndarray, messages: Messages, limits: InputLimits, temperature: float) -> np.ndarray:
+def inputs_at(
+    instants: np.ndarray, messages: Messages, limits: InputLimits, temperature: float, spacings: Mapping[str, float] = MappingProxyType({})
+) -> np.ndarray:
     """Return the inputs at instants [ns], shape (n, 6): speed and load linear between their messages, temperatures held.
 
     Temperatures are held, not interpolated, because a run under way cannot know the next one.  Before the first message a temperature is that
@@ -102,6 +104,7 @@ def inputs_at(instants: np.ndarray, messages: Messages, limits: InputLimits, tem
     messages : those of speed and load must enclose the instants.
     limits : see `patience_ns`.
     temperature : of the oil, of the scene [K].
+    spacings : by channel, the usual spacing of a log's messages [s]; empty while a run is under way.
     """
     stamps, values = messages
     columns = np.empty((len(instants), len(Inputs._fields)))
@@ -115,14 +118,17 @@ def inputs_at(instants: np.ndarray, messages: Messages, limits: InputLimits, tem
             newest = np.searchsorted(known, instants, "right") - 1
             is_known = (newest >= 0) | (known[0] <= patience_ns(limits))
             if channel in RING_TEMPERATURES:
-                is_known &= instants - known[np.maximum(newest, 0)] <= patience_ns(limits)
+                is_known &= instants - known[np.maximum(newest, 0)] <= patience_ns(limits, spacings.get(channel, 0.0))
             columns[is_known, column] = np.asarray(values[channel])[np.maximum(newest, 0)][is_known]
     return columns
 
 
-def patience_ns(limits: InputLimits) -> int:
-    """Return the time [ns] for which a temperature counts: after the start for a first one, and after its stamp for that of a ring."""
-    return round(_SILENT * limits.stale_after * 1e9)
+def patience_ns(limits: InputLimits, spacing: float = 0.0) -> int:
+    """Return the time [ns] for which a temperature counts: after the start for a first one, and after its stamp for that of a ring.
+
+    See `bearing_sim.inputs.gate.patience`.
+    """
+    return round(patience(limits, OIL, spacing) * 1e9)
 
 
 def is_gap(spacings: Sequence[int], limits: InputLimits, longest_gap: float | None = None) -> bool:
@@ -158,7 +164,14 @@ def gaps_of(stamps: np.ndarray, limits: InputLimits, longest_gap: float | None =
 
 
 def segment(
-    messages: Messages, gaps: Sequence[tuple[int, int]], after: int, until: int, rate: float | None, limits: InputLimits, temperature: float
+    messages: Messages,
+    gaps: Sequence[tuple[int, int]],
+    after: int,
+    until: int,
+    rate: float | None,
+    limits: InputLimits,
+    temperature: float,
+    spacings: Mapping[str, float] = MappingProxyType({}),
 ) -> Segment:
     """Return the segment of a profile from ``after``, exclusive, to ``until``, inclusive.
 
@@ -168,7 +181,7 @@ def segment(
     gaps : (from, to) [ns].
     after, until : [ns]; ``after`` is -1 for a segment at the start of the profile.
     rate : outputs per simulated second [Hz], counted from the start of the profile; None for one at each stamp of speed or load.
-    limits, temperature : see `inputs_at`.
+    limits, temperature, spacings : see `inputs_at`.
     """
     stamps = {channel: _within(messages.stamps[channel], after, until) for channel in INPUTS if channel in messages.stamps}
     stops = np.unique(np.concatenate([stamps[channel] for channel in REQUIRED]))
@@ -180,11 +193,11 @@ def segment(
     arrived = np.unique(np.concatenate(list(stamps.values())))
     return Segment(
         instants,
-        inputs_at(instants, messages, limits, temperature),
+        inputs_at(instants, messages, limits, temperature, spacings),
         np.isin(instants, wanted),
         in_gap,
         arrived,
-        inputs_at(arrived, messages, limits, temperature),
+        inputs_at(arrived, messages, limits, temperature, spacings),
         {channel: np.isin(arrived, own) for channel, own in stamps.items()},
     )
 
@@ -230,6 +243,7 @@ class InputProfile:
     log_seconds : for how long the log has messages of both speed and load, whether good or refused for their values.
     unknown_seconds : for how long of that inputs are unknown, because their messages were refused.
     verdict : what that means for lives and damage (see `bearing_sim.inputs.gate.Coverage`).
+    spacings : by channel, the usual spacing of the log's messages [s].
     """
 
     start_ns: int
@@ -244,6 +258,7 @@ class InputProfile:
     log_seconds: float
     unknown_seconds: float
     verdict: str
+    spacings: Mapping[str, float]
 
     @property
     def unknown_event(self) -> Event:
@@ -258,11 +273,12 @@ class InputProfile:
 
     def at(self, instants: np.ndarray, oil_temperature: float) -> np.ndarray:
         """Return the inputs at instants [ns since time 0] (`inputs_at`); ``oil_temperature`` [K] where none is known."""
-        return inputs_at(instants, Messages(self.stamps, self.values), self.limits, oil_temperature)
+        return inputs_at(instants, Messages(self.stamps, self.values), self.limits, oil_temperature, self.spacings)
 
     def segment(self, rate: float | None, oil_temperature: float) -> Segment:
         """Return the whole profile as one segment (see `segment`), with ``rate`` outputs per second [Hz]."""
-        return segment(Messages(self.stamps, self.values), self.gaps, -1, self.end, rate, self.limits, oil_temperature)
+        messages = Messages(self.stamps, self.values)
+        return segment(messages, self.gaps, -1, self.end, rate, self.limits, oil_temperature, self.spacings)
 
     @property
     def measured(self) -> list[tuple[float, float]]:
@@ -274,6 +290,9 @@ class InputProfile:
 
 def judge(log: InputLog, limits: InputLimits, held: Inputs, longest_gap: float | None = None, heat_law: str = "none") -> InputProfile:
     """Pass every message of a log through the gate, each channel in the order of recording.
+
+    Silence and rate of a channel are judged by the log's own rate, which nobody chose for this scene: a table with a row every ten minutes
+    is as good as one with ten a second.
 
     Parameters
     ----------
@@ -289,7 +308,8 @@ def judge(log: InputLog, limits: InputLimits, held: Inputs, longest_gap: float |
     InputLogError
         There is no time for which good messages of both shaft speed and radial load are known.
     """
-    gate = InputGate(limits, held, _SUBSTITUTE, heat_law)
+    spacings = {channel: usual_spacing(series.stamps) * 1e-9 for channel, series in log.series.items()}
+    gate = InputGate(limits, held, _SUBSTITUTE, heat_law, spacings)
     epoch = log.series["shaft_speed"].stamps[0]
     unused = [channel for channel in RING_TEMPERATURES if channel in log.series and heat_law == "none"]
     used = {channel: series for channel, series in log.series.items() if channel not in unused}
@@ -337,7 +357,8 @@ def judge(log: InputLog, limits: InputLimits, held: Inputs, longest_gap: float |
     arrays = {channel: np.array(given, float) for channel, given in values.items()}
     begun, ended = max(seen[channel][0] for channel in REQUIRED), min(seen[channel][1] for channel in REQUIRED)
     unknown = gate.coverage.unknown_until(ended, begun)
-    return InputProfile(start, rising, arrays, end - start, gaps, kept, gate.refused, messages, limits, ended - begun, unknown, gate.coverage.verdict)
+    covered = ended - begun, unknown, gate.coverage.verdict
+    return InputProfile(start, rising, arrays, end - start, gaps, kept, gate.refused, messages, limits, *covered, spacings)
 
 
 def gap_event(time: float, channel: str, gap: tuple[int, int]) -> Event:
