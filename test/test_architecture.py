@@ -30,7 +30,7 @@ ROOMS = {
     "simulation": ("numpy", "scene numerics model levels"),
     "messages": ("numpy rosbags", "model"),
     "recording": ("lz4 mcap mcap_ros2 numpy pyarrow rosbags yaml zstandard", "scene model messages"),
-    "inputs": ("numpy pydantic", "scene simulation messages recording"),
+    "inputs": ("numpy pydantic yaml", "scene simulation messages recording"),
     "monitoring": ("numpy scipy", "scene physics model messages inputs"),
     "runtime": ("numpy", "scene numerics model levels simulation messages recording inputs monitoring"),
     "view": ("PIL numpy rerun rerun_cli", "scene messages recording"),

@@ -14,7 +14,7 @@ from rosbags.rosbag2 import Writer as BagWriter
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from bearing_sim.cli.main import main
-from bearing_sim.inputs.log import Anomalies, InputLogError, anomalies, read_input_log, source, source_values
+from bearing_sim.inputs.log import Anomalies, InputLogError, anomalies, constant, read_input_log, source, source_values, summary_lines
 from bearing_sim.recording.reader import Recording
 from bearing_sim.recording.writer import McapFile
 
@@ -209,3 +209,40 @@ def test_replay_takes_what_others_recorded_and_sums_up_what_is_odd(tmp_path):
     told = replayed(odd_log(tmp_path / "odd.mcap"))
     assert told["inputs_anomalies"]["shaft_speed"] == {"out_of_order": 1, "repeated": 2, "in_bursts": 4, "gaps": 1}
     assert told["inputs_refused_by_reason"]["input.time_backwards"] >= 1 and told["inputs_refused_by_reason"]["input.time_repeated"] >= 2
+
+
+def test_a_constant_stands_at_every_stamp_for_what_was_not_measured_or_is_not_to_be_read(tmp_path):
+    path = steady_log(tmp_path / "log.mcap", duration=1.0, rate=10)
+    log = read_input_log(path, constants={"radial_load": constant("radial_load", "2 kN"), "oil_temperature": constant("oil_temperature", "60 degC")})
+    assert log.series["radial_load"].values == [(2000.0,)] * len(log.series["shaft_speed"].stamps)
+    assert log.series["radial_load"].stamps == log.series["shaft_speed"].stamps == log.series["oil_temperature"].stamps
+    assert log.series["oil_temperature"].values[0] == (333.15,)
+    assert "radial_load: 2000 N throughout, not measured" in list(summary_lines(log))
+    with pytest.raises(InputLogError, match="nothing is left of the log"):
+        read_input_log(path, constants={"radial_load": 1.0, "shaft_speed": 1.0})
+
+
+@pytest.mark.parametrize(
+    "channel, text, words",
+    [
+        ("radial_load", "800", "radial_load = 800: a number without a unit; write for example 800N or 800kN"),
+        ("shaft_speed", "1500", "write for example 1500rpm"),
+        ("radial_load", "800rpm", "wrong dimension"),
+        ("radial_load", "800kn", "did you mean 'kN'"),
+        ("radial_load", "-1N", "zero or more"),
+        ("oil_temperature", "60 K/s", "wrong dimension"),
+    ],
+)
+def test_a_constant_that_cannot_be_meant_is_refused(channel, text, words):
+    with pytest.raises(ValueError, match=words):
+        constant(channel, text)
+
+
+def test_replay_takes_constants_for_the_topics_that_a_log_lacks(tmp_path):
+    path = steady_log(tmp_path / "log.mcap", duration=0.2, rate=10)
+    options = ("--scene", "deng2017_table1", "--load", "800N", "--oil-temperature", "100degC", "-o", tmp_path / "run.mcap", "--json")
+    done = CliRunner().invoke(main, ["replay", *map(str, (path, *options))])
+    assert done.exit_code == 0, done.output
+    (block,) = [item for item in Recording(tmp_path / "run.mcap") if isinstance(item, np.ndarray)]
+    assert set(block["load_y"]) == {800.0} and set(block["oil_temperature"]) == {373.15}
+    assert json.loads(done.stdout)["events"] == {}

@@ -7,29 +7,74 @@ from pathlib import Path
 import click
 
 from bearing_sim.cli.options import json_option
-from bearing_sim.cli.reporting import UsageError, announce_replacement, as_file_error, as_usage_error, print_json, print_table, progress_bar
+from bearing_sim.cli.reporting import (
+    FailedRun,
+    UsageError,
+    announce_replacement,
+    as_file_error,
+    as_usage_error,
+    print_json,
+    print_table,
+    progress_bar,
+)
 
 
 @click.command("import-csv")
 @click.argument("data", type=click.Path(path_type=Path), metavar="DATA.csv")
-@click.argument("mapping_name", metavar="MAPPING")
-@click.option("-o", "--out", required=True, type=click.Path(path_type=Path), metavar="OUT.mcap", help="Log of shaft speed and radial load.")
+@click.argument("mapping_name", metavar="[MAPPING]", required=False)
+@click.option(
+    "-o", "--out", type=click.Path(path_type=Path), metavar="OUT.mcap", help="Log of shaft speed and radial load; with --guess the mapping, OUT.yaml."
+)
+@click.option("--guess", "guesses", is_flag=True, help="Instead of importing, guess a mapping from the headings, and say why and what is not clear.")
+@click.option("--load", metavar="FORCE", help="Radial load throughout, such as 800N, where none was measured.")
+@click.option("--speed", metavar="SPEED", help="Shaft speed throughout, such as 1500rpm, likewise.")
+@click.option("--oil-temperature", metavar="TEMPERATURE", help="Oil temperature throughout, such as 60degC, likewise.")
+@click.option("--delimiter", metavar="CHARACTER", help="Between cells, or tab; instead of the mapping's, or the one that is found.")
+@click.option("--decimal", type=click.Choice([".", ","]), help="Decimal mark of numbers, likewise.")
+@click.option("--only", multiple=True, metavar="HEADING=TEXT", help="Only rows with this text in a column, such as Turbine=T01; can be repeated.")
+@click.option("--set", "overrides", multiple=True, metavar="FIELD=VALUE", help="Override a field of the mapping; can be repeated.")
+@click.option("--column", "columns", multiple=True, metavar="FIELD=HEADING", help="With --guess: the column of time, shaft_speed, radial_load ...")
+@click.option("--unit", "units", multiple=True, metavar="FIELD=UNIT", help="With --guess: the unit of a column, such as shaft_speed=rpm, time=ms.")
+@click.option("--time-format", metavar="FORMAT", help="With --guess: how times are written, such as '%d/%m/%Y %H:%M:%S', or iso.")
 @json_option
-def import_csv(data, mapping_name, out, as_json):
+def import_csv(
+    data, mapping_name, out, guesses, load, speed, oil_temperature, delimiter, decimal, only, overrides, columns, units, time_format, as_json
+):
     """Convert DATA.csv to an MCAP log for `bearing-sim replay`.
 
     MAPPING is a YAML file, or the name of a bundled one, that says which columns hold time, speed and load, in which units.
+    Comment lines, delimiter, decimal mark and encoding are found in the file where MAPPING does not give them, and printed.
     Gaps, repeated or decreasing times, empty cells and cells that are not numbers are counted and reported by line number; the rows or
-    messages concerned are left out, and nothing is filled in.
+    messages concerned are left out, and nothing is filled in. With --guess a mapping is proposed, printed, and written to -o; nothing is
+    imported, and what may mean two things is asked for (exit code 1).
     """
     from bearing_sim.inputs.csv_import import TableError, load_mapping, read_table, write_log
     from bearing_sim.scene.loader import SceneError
 
+    given = {"shaft_speed": speed, "radial_load": load, "oil_temperature": oil_temperature}
+    if delimiter is not None and delimiter != "tab" and len(delimiter) != 1:
+        raise UsageError(f"--delimiter {delimiter!r}: expected one character, such as ';', or tab")
+    if guesses:
+        if mapping_name or overrides:
+            raise UsageError("--guess makes a mapping; give none, and no --set")
+        chosen = _pairs("--column", columns, _FIELDS), _pairs("--unit", units, _FIELDS)
+        _guess(data, out, as_json, *chosen, _constants(given), delimiter, decimal, time_format, _pairs("--only", only))
+        return
+    if columns or units or time_format:
+        raise UsageError("--column, --unit and --time-format go with --guess; a mapping is changed with --set, such as --set shaft_speed.unit=rpm")
+    if not mapping_name:
+        raise UsageError(f"no MAPPING: it says which columns are what; propose one with: bearing-sim import-csv --guess {data} -o mapping.yaml")
+    if out is None:
+        raise UsageError("no output file; give -o OUT.mcap")
     with as_usage_error(SceneError, TableError), as_file_error():
         if out.exists() and data.exists() and out.samefile(data):
             raise UsageError(f"{out} is the input table; choose another file")
         announce_replacement(out)
-        mapping, text = load_mapping(mapping_name)
+        overrides = [*overrides, *(f"{name}={_flow(tree)}" for name, tree in _constants(given).items())]
+        if only:
+            overrides.append(f"only={_flow(_pairs('--only', only))}")
+        overrides += [f"{name}={_flow(text)}" for name, text in (("delimiter", delimiter), ("decimal", decimal)) if text is not None]
+        mapping, text = load_mapping(mapping_name, overrides)
         table = read_table(data, mapping)
         with progress_bar(f"importing {data.name}", sum(map(len, table.stamps.values()))) as progress:
             write_log(table, text, data, out, progress)
@@ -37,6 +82,73 @@ def import_csv(data, mapping_name, out, as_json):
         print_json(_report(table, mapping, out))
     else:
         _print(table, mapping, data, out)
+
+
+def _constants(given) -> dict[str, dict]:
+    """Return what stands in a mapping for inputs that are constant, by field, from the texts of options; None for an option not given."""
+    from bearing_sim.inputs.log import constant
+
+    with as_usage_error(ValueError):
+        for name, text in given.items():
+            if text is not None:
+                constant(name, text)
+    trees = {name: {"law": "constant", "value": text} if name == "radial_load" else {"constant": text} for name, text in given.items()}
+    return {name: trees[name] for name, text in given.items() if text is not None}
+
+
+def _flow(value) -> str:
+    """Return a value as YAML on one line."""
+    import json
+
+    return json.dumps(value, ensure_ascii=False)  # JSON is YAML
+
+
+_FIELDS = ("time", "shaft_speed", "radial_load", "oil_temperature", "inner_ring_temperature", "outer_ring_temperature", "cage_speed")
+
+
+def _pairs(option, texts, known=()) -> dict[str, str]:
+    """Return the pairs of an option that is repeated, ``NAME=VALUE``; ``known`` names, if they are not free."""
+    from bearing_sim.scene.loader import did_you_mean
+
+    found = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        if not name or not equals or not value:
+            raise UsageError(f"{option} {text}: expected {'FIELD' if known else 'HEADING'}=VALUE")
+        if known and name not in known:
+            raise UsageError(f"{option} {text}: no field {name!r}{did_you_mean(name, known)}; expected one of {', '.join(known)}")
+        found[name] = value
+    return found
+
+
+def _guess(data, out, as_json, *decided) -> None:
+    """Print a proposal for a mapping, and write it if there is a file for it; raise `FailedRun` if something has to be decided.
+
+    Parameters
+    ----------
+    data, out : the table, and the file of the mapping or None.
+    as_json : whether to print JSON.
+    decided : the further arguments of `bearing_sim.inputs.csv_guess.guess`.
+    """
+    from bearing_sim.inputs.csv_guess import guess
+    from bearing_sim.inputs.csv_text import TableError
+
+    if out is not None and out.suffix.lower() not in (".yaml", ".yml"):
+        raise UsageError(f"-o {out}: a mapping is a YAML file; expected a name that ends in .yaml")
+    with as_usage_error(TableError), as_file_error():
+        found = guess(data, *decided)
+        if out is not None:
+            announce_replacement(out)
+            out.write_text(found.text, encoding="utf-8")
+    if as_json:
+        print_json({"mapping": found.tree, "reasons": found.reasons, "questions": found.questions, "not_used": found.left, "out": out and str(out)})
+    else:
+        click.echo(found.text, nl=False)
+    if found.questions:
+        asked = "\n".join(f"  {name}: {question}" for name, question in found.questions.items())
+        raise FailedRun(f"the mapping is not complete; decide:\n{asked}")
+    if out is not None and not as_json:
+        click.echo(f"{out}: check it, then: bearing-sim import-csv {data} {out} -o {data.with_suffix('.mcap').name}", err=True)
 
 
 def _span(table) -> tuple[int, int]:
@@ -58,6 +170,8 @@ def _report(table, mapping, out) -> dict:
         "gap_lines": [line for _, line, _ in table.gaps[:5]],
         "longest_gap_seconds": max((seconds for _, _, seconds in table.gaps), default=0.0),
         "gap_above_seconds": table.longest_step,
+        "spacing_seconds": table.spacing,
+        "found_in_file": table.notes,
         "start_ns": start,
         "duration_seconds": (end - start) * 1e-9,
     }
@@ -66,6 +180,7 @@ def _report(table, mapping, out) -> dict:
 def _print(table, mapping, data, out) -> None:
     start, end = _span(table)
     rows = [("rows", f"{table.rows}" + (f", and {table.left_out} that do not concern this mapping" if mapping.only else ""))]
+    rows += [("found in the file", note) for note in table.notes]
     rows += [(f"{channel} messages", str(len(stamps))) for channel, stamps in table.stamps.items()]
     for kind, examples in table.examples.items():
         count = table.refused[kind]
@@ -76,7 +191,7 @@ def _print(table, mapping, data, out) -> None:
     gaps = [f"{channel}, line {line}: {seconds:.6g} s" for channel, line, seconds in table.gaps[:5]]
     more = [f"and {len(table.gaps) - 5} more"] if len(table.gaps) > 5 else []
     rows.append((f"gaps above {table.longest_step:.6g} s", f"{len(table.gaps)}" + (": " + "; ".join(gaps + more) if gaps else "")))
-    rows += [("duration", f"{(end - start) * 1e-9:.6g} s"), ("log", str(out))]
+    rows += [("duration", f"{(end - start) * 1e-9:.6g} s, a row every {table.spacing:.4g} s"), ("log", str(out))]
     print_table(f"{data.name} by {mapping.name}", rows)
 
 

@@ -104,9 +104,10 @@ def replay(
 
     IN.mcap is any rosbag2 recording, MCAP or sqlite3: a file, finished or not, a bag's folder, or several that belong together. It holds
     shaft speed (JointState or Float64) and radial load (WrenchStamped, or Float64 along +y), or such numbers in messages of any other
-    type whose definition is in the recording. ROS is not needed. What was not measured may be a constant: --load 800N. Inputs are interpolated linearly between stamps; bad messages are
-    refused, reported and counted as in a live run. If inputs are unknown for some of the time, because their messages were refused, the
-    result says what that means for life and damage, and the exit code is 3.
+    type whose definition is in the recording. ROS is not needed. What was not measured may be a constant, as with --load 800N. Inputs
+    are interpolated linearly between stamps; bad messages are refused, reported and counted as in a live run, but silence and rate are
+    judged by the log's own rate. If inputs are unknown for some of the time, because their messages were refused, the result says what
+    that means for life and damage, and the exit code is 3.
     """
     if from_recording == bool(scene_name):
         raise UsageError("give either --scene, or --from-recording for a recording made by bearing-sim")

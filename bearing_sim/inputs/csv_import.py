@@ -36,7 +36,7 @@ from bearing_sim.inputs.csv_text import (
     spelled,
     unit_in,
 )
-from bearing_sim.inputs.gate import UNITS, with_values
+from bearing_sim.inputs.gate import with_values
 from bearing_sim.messages import topics
 from bearing_sim.recording.provenance import git_hash, package_version
 from bearing_sim.recording.writer import McapFile
@@ -244,7 +244,7 @@ class Mapping:
     name: str  # name of the mapping
     description: str = ""  # what the table is, in a sentence
     source: str = ""  # where it comes from
-    delimiter: Annotated[str, Field(min_length=1, max_length=1)] | None = None  # between cells; by default found in the header
+    delimiter: str | None = None  # between cells: one character, or tab; by default found in the header
     decimal: Literal[".", ","] | None = None  # mark of numbers; by default found in the cells, and asked for where they may mean both
     encoding: str | None = None  # of the file, such as utf-8 or latin-1; by default that of its byte-order mark, UTF-8, or Latin-1
     only: dict[str, str] = Field(default_factory=dict)  # column: text that its cell must have; other rows are left out
@@ -258,6 +258,8 @@ class Mapping:
 
     @check
     def _is_complete(self) -> list[str]:
+        if self.delimiter is not None and self.delimiter != "tab" and len(self.delimiter) != 1:
+            return [f"delimiter = {self.delimiter!r}: expected one character, such as ';', or tab"]
         if self.delimiter is not None and self.delimiter == self.decimal:
             return ["delimiter: expected a character other than the decimal mark"]
         if self.shaft_speed.constant is not None and isinstance(self.radial_load, ConstantLoad):
@@ -432,7 +434,8 @@ def layout_of(path: Path, mapping: Mapping) -> Layout:
     if mapping.encoding is None and not layout.encoding.startswith("utf-8"):
         layout.found.append(f"encoding: {layout.encoding}, since it is not UTF-8")
     lines = first_lines(path, layout.encoding)
-    find_header(path, lines, mapping.column_names(), mapping.delimiter, layout)
+    delimiter = "\t" if mapping.delimiter == "tab" else mapping.delimiter
+    find_header(path, lines, mapping.column_names(), delimiter, layout)
     if mapping.decimal is not None:
         layout.decimal = mapping.decimal
         return layout
@@ -454,7 +457,7 @@ class _RowReader:
         self._table, self._width = table, len(layout.names)
         self._comma = layout.decimal == ","
         self._only = [(columns[name], text) for name, text in mapping.only.items()]
-        self._time = _time_reader(mapping, self._comma)
+        self._time = time_reader(mapping.time, self._comma)
         self._time_columns = [columns[name] for name in (mapping.time.column, mapping.time.time_of_day) if name]
         self._load_columns = [(columns[one.column], one.column, *one.line()) for one in mapping.load_columns()]
         self._load = _load_law(mapping)
@@ -532,12 +535,16 @@ class _RowReader:
         return offset + scale * number
 
 
-def _time_reader(mapping: Mapping, comma: bool) -> Callable[[str, int | None], int]:
+def time_reader(time: TimeColumn, comma: bool) -> Callable[[str, int | None], int]:
     """Return a function that converts a time cell to nanoseconds since 1970; it also takes the time of the row before, or None.
 
     In the hour that is told twice when the clocks are set back, a time that would not rise is the later one.
+
+    Parameters
+    ----------
+    time : how times are written.
+    comma : whether the decimal mark of numbers is a comma.
     """
-    time = mapping.time
     if time.format is not None:
         zone, is_iso = time.zone_info(), time.format == "iso"
 

@@ -235,17 +235,12 @@ def decimal_mark(cells: Iterable[tuple[int, str, str]]) -> str:
                 comma = comma or place
         elif "." in text:
             point = point or (line, name, text)
-    comma_like = comma or thousands
+    comma_like, ask = comma or thousands, "say which is the decimal mark: decimal: ',' or '.' in the mapping, or --decimal"
     if comma_like and point:
-        raise TableError(
-            f"line {comma_like[0]}: {comma_like[1]} = {comma_like[2]!r} has a comma, line {point[0]}: {point[1]} = {point[2]!r} a point; say which is "
-            "the decimal mark: decimal: ',' or '.' in the mapping, or --decimal"
-        )
+        cells = f"{comma_like[1]} = {comma_like[2]!r} has a comma, {point[1]} = {point[2]!r} in line {point[0]} a point"
+        raise TableError(f"line {comma_like[0]}: {cells}; {ask}")
     if thousands and not comma:
-        raise TableError(
-            f"line {thousands[0]}: {thousands[1]} = {thousands[2]!r} may be a decimal comma or a separator of thousands; say which is the decimal mark: "
-            "decimal: ',' or '.' in the mapping, or --decimal"
-        )
+        raise TableError(f"line {thousands[0]}: {thousands[1]} = {thousands[2]!r} has a decimal comma or a separator of thousands; {ask}")
     return "," if comma else "."
 
 
@@ -341,5 +336,3 @@ def is_unit_of(unit: str, si_unit: str) -> bool:
         return all(map(math.isfinite, conversion(unit, si_unit)))
     except ValueError:
         return False
-
-

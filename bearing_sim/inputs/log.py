@@ -141,7 +141,9 @@ def constant(channel: str, text: str, unit: str | None = None) -> float:
     """
     bare = re.fullmatch(r"\s*[-+]?[\d.]+([eE][-+]?\d+)?\s*", text) is not None
     if bare and not unit:
-        raise ValueError(f"{channel} = {text.strip()}: a number without a unit; write for example {_WITH_UNIT[UNITS[channel]].replace('{}', text.strip())}")
+        raise ValueError(
+            f"{channel} = {text.strip()}: a number without a unit; write for example {_WITH_UNIT[UNITS[channel]].replace('{}', text.strip())}"
+        )
     try:
         value = to_si(f"{text} {unit}" if bare else text, UNITS[channel])
     except ValueError as error:

@@ -1,0 +1,478 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Guess the mapping of a measured table from its headings and cells, with the reason of each guess and what was not understood.
+
+A guess is a proposal for somebody to read, never an import: it writes a mapping file.  What may mean two things is not decided here but
+asked for, with the option that decides.
+"""
+
+import datetime
+import re
+from collections.abc import Mapping as AnyMapping
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import NamedTuple
+
+import yaml
+from pydantic import TypeAdapter
+
+from bearing_sim.inputs.csv_import import TimeColumn, time_reader
+from bearing_sim.inputs.csv_text import (
+    DELIMITERS,
+    NAMES,
+    Layout,
+    TableError,
+    cells_in,
+    cells_of,
+    decimal_mark,
+    encoding_of,
+    find_header,
+    first_lines,
+    is_comment,
+    is_unit_of,
+    records,
+    spelled,
+    uncommented,
+    unit_in,
+)
+from bearing_sim.scene.loader import did_you_mean
+
+
+class Role(NamedTuple):
+    """What a column may be: the field of a mapping, its SI unit, the words in a heading that say so, and those that say otherwise."""
+
+    field: str
+    si_unit: str
+    words: str
+    not_words: str = ""
+
+
+_TEMPERATURE = r"temp|^t_|theta|°c|degc"
+ROLES = (
+    Role("cage_speed", "rad/s", r"(cage|k[aä]fig).*(speed|rpm|n$|drehzahl|omega)|^n_?(cage|k[aä]fig|k)\b|(speed|rpm|drehzahl).*(cage|k[aä]fig)"),
+    Role(
+        "shaft_speed",
+        "rad/s",
+        r"speed|rpm|drehzahl|\bn\b|^n_|omega|rotation|revolution|umdrehung|vitesse|velocidad",
+        r"wind|cage|k[aä]fig|air|luft|vehicle|fahr",
+    ),
+    Role("power", "W", r"power|leistung|puissance|\bp_?(el|mech)?\b|kw\b", r"factor|faktor|reactive|blind"),
+    Role("torque", "N*m", r"torque|drehmoment|moment|\bm_?d\b|couple"),
+    Role("radial_load", "N", r"load|force|last|kraft|^f_?[rxyz]?\b|fradial|radial|charge|carga", r"axial|workload|auslast"),
+    Role("inner_ring_temperature", "K", rf"(inner|innen|\bi\.?r|\bir\b).*({_TEMPERATURE})|({_TEMPERATURE}).*(inner|innen|_ir\b|\bir\b|_i\b)"),
+    Role(
+        "outer_ring_temperature",
+        "K",
+        rf"(outer|aussen|außen|\bor\b).*({_TEMPERATURE})|({_TEMPERATURE}).*(outer|aussen|außen|_or\b|\bor\b|_e\b|_ar\b)",
+    ),
+    Role(
+        "oil_temperature",
+        "K",
+        rf"(oil|öl|oel|lub|sump|huile).*({_TEMPERATURE})?|({_TEMPERATURE}).*(oil|öl|oel|lub|sump|huile)",
+        r"pressure|druck|level",
+    ),
+)
+_TIME_WORDS = re.compile(r"time|zeit|date|datum|stamp|uhr|utc|heure|fecha|hora|^t$|^t[ _\[(/]|^ts$", re.IGNORECASE)
+_CLOCK_WORDS = re.compile(r"^(time|zeit|uhrzeit|clock|hora|heure)", re.IGNORECASE)
+_SUFFIX = re.compile(r"(.+?)[ _.]+(?:in[ _]+)?([A-Za-z°%µ/0-9^-]+)$")
+_CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])")
+_DATES = (
+    (r"\d{4}-\d\d?-\d\d?", "%Y-%m-%d", ""),
+    (r"\d{4}/\d\d?/\d\d?", "%Y/%m/%d", ""),
+    (r"\d{4}\.\d\d?\.\d\d?", "%Y.%m.%d", ""),
+    (r"\d\d?\.\d\d?\.\d{4}", "%d.%m.%Y", ""),
+    (r"\d\d?\.\d\d?\.\d\d", "%d.%m.%y", ""),
+    (r"\d\d?/\d\d?/\d{4}", "%d/%m/%Y", "%m/%d/%Y"),
+    (r"\d\d?-\d\d?-\d{4}", "%d-%m-%Y", "%m-%d-%Y"),
+)
+"""Dates as patterns, their format, and the other format that they may have as well."""
+
+_CLOCKS = (
+    (r"\d\d?:\d\d", "%H:%M"),
+    (r"\d\d?:\d\d:\d\d", "%H:%M:%S"),
+    (r"\d\d?:\d\d:\d\d\.\d{1,6}", "%H:%M:%S.%f"),
+    (r"\d\d?:\d\d:\d\d,\d{1,6}", "%H:%M:%S,%f"),
+    (r"\d\d?:\d\d:\d\d [AaPp][Mm]", "%I:%M:%S %p"),
+    (r"\d\d?:\d\d [AaPp][Mm]", "%I:%M %p"),
+)
+_EPOCHS = ((1e8, 4e9, "s"), (1e11, 4e12, "ms"), (1e14, 4e15, "us"), (1e17, 4e18, "ns"))
+"""Numbers that count from 1970, 1973 to 2096, by unit."""
+
+_SPREADSHEET_DAYS = (30_000.0, 60_000.0)  # of dates from 1982 to 2064, counted from 1899-12-30
+_CELLS_LOOKED_AT = 500
+_MOST_LABELS = 50  # different texts in a column that tells machines apart
+
+
+@dataclass
+class Guess:
+    """A proposal for a mapping.
+
+    Attributes
+    ----------
+    tree : the mapping; fields that were not understood are missing.
+    reasons : by field, why.
+    questions : what has to be decided, with the option that decides; by field.
+    left : headings of columns that are not used.
+    layout : how the text is laid out.
+    """
+
+    tree: dict
+    reasons: dict[str, str] = field(default_factory=dict)
+    questions: dict[str, str] = field(default_factory=dict)
+    left: list[str] = field(default_factory=list)
+    layout: Layout = field(default_factory=lambda: Layout("utf-8"))
+
+    @property
+    def text(self) -> str:
+        """The mapping as YAML, with the reason of each guess beside it, and the questions as comments."""
+        lines = [f"# Guessed by `bearing-sim import-csv --guess` from the headings of {self.tree['source']}. Check every line."]
+        for name, value in self.tree.items():
+            reason = f"  # {self.reasons[name]}" if name in self.reasons else ""
+            dumped = yaml.safe_dump(value, default_flow_style=True, sort_keys=False, allow_unicode=True, width=1000)
+            lines.append(f"{name}: {dumped.strip().removesuffix('...').strip()}{reason}")
+        lines += [f"# {name}: TO DECIDE: {question}" for name, question in self.questions.items()]
+        if self.left:
+            lines.append(f"# columns that are not used: {', '.join(self.left)}")
+        return "\n".join(lines) + "\n"
+
+
+def guess(
+    path: Path,
+    columns: AnyMapping[str, str] | None = None,
+    units: AnyMapping[str, str] | None = None,
+    constants: AnyMapping[str, dict] | None = None,
+    delimiter: str | None = None,
+    decimal: str | None = None,
+    time_format: str | None = None,
+    only: AnyMapping[str, str] | None = None,
+) -> Guess:
+    """Return a proposal for the mapping of a table.
+
+    Parameters
+    ----------
+    path : of the table.
+    columns : by field, the heading of its column, where somebody has decided.
+    units : by field, the unit of its column, likewise; of the time ``s``, ``ms`` and so on.
+    constants : by field, what stands in the mapping instead of a column.
+    delimiter, decimal : likewise.
+    time_format : ``iso`` or a format of strptime, likewise.
+    only : by heading, the text that its cells must have; other rows are left out.
+
+    Raises
+    ------
+    TableError
+        The file is no table, or a heading that was given is not in it.
+    """
+    columns, units, constants = dict(columns or {}), dict(units or {}), dict(constants or {})
+    encoding = encoding_of(path)
+    lines = first_lines(path, encoding)
+    layout = _layout(path, lines, encoding, delimiter)
+    asked = [(f"--column {name}={heading}", heading) for name, heading in columns.items()]
+    for option, heading in (*asked, *((f"--only {heading}", heading) for heading in only or {})):
+        if heading not in layout.names:
+            raise TableError(f"{path}, line {layout.header_line}: {option}: no such heading{did_you_mean(heading, layout.names)}")
+    found = Guess({"name": re.sub(r"\W+", "_", path.stem).strip("_") or "table", "source": path.name}, layout=layout)
+    layout.decimal = decimal or _decimal(lines, layout, found)
+    if layout.delimiter != ",":
+        found.tree["delimiter"] = "tab" if layout.delimiter == "\t" else layout.delimiter
+        found.reasons["delimiter"] = f"{NAMES.get(layout.delimiter, layout.delimiter)}, by the header"
+    if layout.decimal == ",":
+        found.tree["decimal"], found.reasons["decimal"] = ",", "given" if decimal else "cells have decimal commas"
+    if not encoding.startswith("utf-8"):
+        found.tree["encoding"], found.reasons["encoding"] = encoding, "the file is not UTF-8"
+    if only:
+        found.tree["only"], found.reasons["only"] = dict(only), "given"
+    used = _guess_time(found, lines, columns.pop("time", None), units.pop("time", None), time_format)
+    named: dict[str, list[str]] = {}
+    for heading in layout.names:
+        if heading and heading not in used and (role := _role_of(heading, layout, columns)) is not None:
+            named.setdefault(role.field, []).append(heading)
+    _guess_channels(found, named, columns, units, constants, lines)
+    if "time" in found.tree and not only:
+        _ask_for_rows(found, path, lines)
+    taken = used | {column for column in _headings_in(found.tree)}
+    found.left = [heading for heading in layout.names if heading and heading not in taken]
+    return found
+
+
+def _headings_in(tree) -> list[str]:
+    """Return the headings that a mapping's tree uses."""
+    if isinstance(tree, dict):
+        own = [tree[name] for name in ("column", "time_of_day") if name in tree]
+        return own + [each for value in tree.values() for each in _headings_in(value)]
+    return [each for value in tree for each in _headings_in(value)] if isinstance(tree, list) else []
+
+
+def _layout(path: Path, lines: Sequence[str], encoding: str, delimiter: str | None) -> Layout:
+    """Return a layout with the header: the first line with as many cells as most lines, and without numbers."""
+    layout, best = Layout(encoding), (0, ",")
+    for candidate in DELIMITERS if delimiter is None else ("\t" if delimiter == "tab" else delimiter,):
+        widths = [len(cells_of(line, candidate)) for line in lines[:_CELLS_LOOKED_AT] if line.strip() and not is_comment(line)]
+        usual = max(set(widths), key=lambda width: (widths.count(width), width), default=1)
+        likeness = widths.count(usual) if usual > 1 else 0
+        if (likeness, usual) > (best[0], 1) and likeness > best[0]:
+            best = (likeness, candidate)
+    if not best[0]:
+        raise TableError(f"{path}: no table: no line has two cells, separated by {', '.join(NAMES.values())}")
+    for number, line in enumerate(lines, 1):
+        cells = cells_of(uncommented(line) if is_comment(line) else line, best[1])
+        words = [cell for cell in cells if cell and not re.match(r"[-+]?[.,]?\d", cell)]
+        if len(words) >= 2 and len(words) >= sum(map(bool, cells)) - 1 and _is_followed_by_data(lines[number:], best[1], len(cells)):
+            find_header(path, [*[""] * (number - 1), *lines[number - 1 :]], [("column", words[0])], best[1], layout)
+            return layout
+    raise TableError(f"{path}: no header: no line of headings stands above the numbers; add one, such as time;speed [rpm];load [kN]")
+
+
+def _is_followed_by_data(lines: Sequence[str], delimiter: str, width: int) -> bool:
+    """Return whether one of the next two lines that are no comments has numbers and about as many cells."""
+    following = [cells_of(line, delimiter) for line in lines[:50] if line.strip() and not is_comment(line)][:2]
+    return any(abs(len(cells) - width) <= 1 and any(re.match(r"[-+]?[.,]?\d", cell) for cell in cells) for cells in following)
+
+
+def _decimal(lines: Sequence[str], layout: Layout, found: Guess) -> str:
+    try:
+        return decimal_mark(cells_in(lines, layout, [name for name in dict.fromkeys(layout.names) if name]))
+    except TableError as error:
+        found.questions["decimal"] = str(error)
+        return "."
+
+
+def _values(lines: Sequence[str], layout: Layout, heading: str) -> list[str]:
+    """Return the first cells of a column that are not empty, without a second line of the header."""
+    cells = [text.strip() for _, _, text in cells_in(lines, layout, [heading])]
+    cells = cells[1:] if layout.units else cells
+    return [cell for cell in cells if cell][:_CELLS_LOOKED_AT]
+
+
+def _number(text: str, decimal: str) -> float:
+    try:
+        return float(text.replace(",", ".") if decimal == "," else text)
+    except ValueError:
+        return float("nan")
+
+
+def _guess_time(found: Guess, lines: Sequence[str], given: str | None, unit: str | None, format_: str | None) -> set[str]:
+    """Enter the time into a guess; return the headings of its columns."""
+    layout = found.layout
+    likely = [given] if given else [name for name in layout.names if name and _TIME_WORDS.search(name) and _is_time(lines, layout, name)]
+    if not likely:
+        likely = [name for name in layout.names[:1] if name and _is_time(lines, layout, name)]
+    if not likely:
+        found.questions["time"] = "no column looks like a time; name it: --column time=HEADING"
+        return set()
+    pair = _date_and_clock(lines, layout, likely)
+    heading = pair[0] if pair else likely[0]
+    others = [name for name in likely if name not in (pair or (heading,))]
+    values = _values(lines, layout, heading)
+    if pair:
+        values = [f"{date} {clock}" for date, clock in zip(values, _values(lines, layout, pair[1]))]
+    tree = {"column": heading} | ({"time_of_day": pair[1]} if pair else {})
+    reason = f"of {', '.join(likely)} the first" if others else "by its heading" if _TIME_WORDS.search(heading) else "the first column rises"
+    how, why, question = _time_of(values, layout, heading, unit, format_)
+    if question:
+        found.questions["time"] = question
+        return set(likely)
+    found.tree["time"] = tree | how
+    found.reasons["time"] = "; ".join(filter(None, (reason, why, _zone_note(values, how))))
+    return set(likely)
+
+
+def _zone_note(values: Sequence[str], how: AnyMapping) -> str:
+    if "format" not in how or re.search(r"(Z|[+-]\d\d:?\d\d)$", values[0]):
+        return ""
+    return "no zone is told, so UTC is assumed; zone: Europe/Berlin says otherwise"
+
+
+def _is_time(lines: Sequence[str], layout: Layout, heading: str) -> bool:
+    values, unit = _values(lines, layout, heading), spelled(_heading_unit(heading, layout)[1])
+    if not values or (_is_a_unit(unit) and not is_unit_of(unit, "s")):
+        return False
+    numbers = [_number(value, layout.decimal) for value in values]
+    if all(number == number for number in numbers):
+        rises = all(later >= earlier for earlier, later in zip(numbers, numbers[1:])) and numbers[-1] > numbers[0]
+        return rises or _TIME_WORDS.search(heading) is not None
+    return _is_iso(values[0]) or re.search(r"\d", values[0]) is not None and re.search(r"[:./-]", values[0]) is not None
+
+
+def _date_and_clock(lines: Sequence[str], layout: Layout, likely: Sequence[str]) -> tuple[str, str] | None:
+    """Return the headings of a date and of a time of day, if the table has them in two columns."""
+    dates = [name for name in likely if any(re.fullmatch(pattern, (_values(lines, layout, name) or [""])[0]) for pattern, _, _ in _DATES)]
+    clocks = [name for name in likely if any(re.fullmatch(pattern, (_values(lines, layout, name) or [""])[0]) for pattern, _ in _CLOCKS)]
+    return (dates[0], clocks[0]) if dates and clocks else None
+
+
+def _time_of(values: Sequence[str], layout: Layout, heading: str, unit: str | None, format_: str | None) -> tuple[dict, str, str]:
+    """Return the fields of the time, why, and a question if it may mean several things."""
+    if format_ is not None:
+        return {"format": format_}, "its format was given", ""
+    if not values:
+        return {}, "", f"the column {heading!r} is empty; name another: --column time=HEADING"
+    numbers = [_number(value, layout.decimal) for value in values]
+    if all(number == number for number in numbers):
+        return _time_of_numbers(numbers, layout, heading, unit)
+    if all(_is_iso(value) for value in values):
+        return {"format": "iso"}, f"ISO 8601, as in {values[0]}", ""
+    for date, format_, other in _DATES:
+        for clock, clock_format in (*_CLOCKS, ("", "")):
+            pattern = re.compile(f"({date})([ T]+)({clock})" if clock else f"({date})()()")
+            match = pattern.fullmatch(values[0])
+            if match is None:
+                continue
+            formats = [f"{each}{'T' if 'T' in match[2] else ' ' * bool(match[2])}{clock_format}" for each in (format_, other) if each]
+            if other:
+                formats, question = _day_or_month(values, *formats)
+                if question:
+                    return {}, "", question
+            return {"format": formats[0]}, f"as in {values[0]}", ""
+    return {}, "", f"the times in {heading!r} are not understood, such as {values[0]!r}; say how they are written: --time-format '%d.%m.%Y %H:%M:%S'"
+
+
+def _is_iso(text: str) -> bool:
+    try:
+        datetime.datetime.fromisoformat(text)
+    except ValueError:
+        return False
+    return re.match(r"\d{4}-?\d\d-?\d\d", text) is not None
+
+
+def _day_or_month(values: Sequence[str], day_first: str, month_first: str) -> tuple[list[str], str]:
+    """Return the format of dates such as 03/04/2026, or a question if all of them may be read both ways."""
+    firsts, seconds = zip(*(map(int, re.split(r"[/-]", value)[:2]) for value in values))
+    if max(firsts) > 12:
+        return [day_first], ""
+    if max(seconds) > 12:
+        return [month_first], ""
+    return [], f"{values[0]!r} has the day or the month first; say which: --time-format '{day_first}' or --time-format '{month_first}'"
+
+
+def _time_of_numbers(numbers: Sequence[float], layout: Layout, heading: str, unit: str | None) -> tuple[dict, str, str]:
+    headed = spelled(_heading_unit(heading, layout)[1])
+    unit = unit or (headed if is_unit_of(headed, "s") else None)
+    since_1970 = next((each for low, high, each in _EPOCHS if all(low < abs(number) < high for number in numbers)), None)
+    if unit is None and since_1970 is not None:
+        return {"unit": since_1970}, f"numbers of this size count {since_1970} from 1970 ({_date(numbers[0], since_1970)})", ""
+    if unit is None and all(_SPREADSHEET_DAYS[0] < number < _SPREADSHEET_DAYS[1] for number in numbers):
+        question = f"numbers such as {numbers[0]:g} may be the days of a spreadsheet, or seconds; say which: --unit time=day or --unit time=s"
+        return {}, "", question
+    if unit is None:
+        return {}, "", f"{heading!r} has numbers without a unit, such as {numbers[0]:g}; say which: --unit time=s, ms, min or h"
+    if unit == "day" and _SPREADSHEET_DAYS[0] < numbers[0] < _SPREADSHEET_DAYS[1]:
+        return {"unit": "day", "epoch": "1899-12-30"}, "days of a spreadsheet", ""
+    why = f"{unit}, {'by its heading' if headed == unit else 'as given'}"
+    return {"unit": unit}, why if since_1970 else f"{why}; the date of 0 is not known, so 1970-01-01 stands for it (epoch)", ""
+
+
+def _date(number: float, unit: str) -> str:
+    seconds = number * {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}[unit]
+    return f"{datetime.datetime.fromtimestamp(seconds, datetime.UTC):%Y-%m-%d %H:%M}"
+
+
+def _ask_for_rows(found: Guess, path: Path, lines: Sequence[str]) -> None:
+    """Ask which rows are meant where the times go back, because the table holds several machines one below the other or in turn."""
+    layout = found.layout
+    place, before, line_of_return = layout.names.index(found.tree["time"]["column"]), None, 0
+    read = time_reader(TypeAdapter(TimeColumn).validate_python(found.tree["time"]), layout.decimal == ",")
+    clock = layout.names.index(found.tree["time"]["time_of_day"]) if "time_of_day" in found.tree["time"] else None
+    labels: dict[int, set[str]] = {k: set() for k, name in enumerate(layout.names) if name and k not in (place, clock)}
+    for number, cells in records(path, replace(layout)):
+        if len(cells) != len(layout.names):
+            continue
+        for k in list(labels):
+            labels[k].add(cells[k].strip())
+            if len(labels[k]) > _MOST_LABELS or re.fullmatch(r"[-+]?[.,]?\d.*|", cells[k].strip()):
+                del labels[k]
+        try:
+            now = read(" ".join([cells[place], *([cells[clock]] if clock is not None else [])]).strip(), None)
+        except (ValueError, ArithmeticError):
+            continue
+        line_of_return = line_of_return or (number if before is not None and now < before else 0)
+        before = now
+    choices = [(layout.names[k], sorted(texts)) for k, texts in labels.items() if len(texts) > 1]
+    if line_of_return and choices:
+        options = " or ".join(f"--only {name}={text}" for name, texts in choices for text in texts[:3])
+        found.questions["only"] = f"times go back in line {line_of_return}; if the table holds several machines, choose one: {options}"
+
+
+def _heading_unit(heading: str, layout: Layout) -> tuple[str, str]:
+    """Return the name and the unit in a heading, or in the second line of the header, or behind an underscore."""
+    name, unit = unit_in(heading)
+    place = layout.names.index(heading)
+    if not unit and place < len(layout.units):
+        unit = layout.units[place].strip("[]() ")
+    if not unit and (found := _SUFFIX.fullmatch(heading)):
+        name, unit = found[1], found[2]
+    return name, unit
+
+
+def _role_of(heading: str, layout: Layout, columns: AnyMapping[str, str]) -> Role | None:
+    """Return what a heading says that its column is; None if it says nothing that is needed."""
+    if heading in columns.values():
+        return None
+    name, unit = _heading_unit(heading, layout)
+    words = _CAMEL.sub(" ", f"{name} {unit}").replace("_", " ")
+    texts = (words.lower(), heading.lower())
+    unit = spelled(unit)
+    for role in ROLES:
+        says = any(re.search(role.words, text) for text in texts)
+        denies = bool(role.not_words) and any(re.search(role.not_words, text) for text in texts)
+        if says and not denies and (is_unit_of(unit, role.si_unit) or not _is_a_unit(unit)):
+            return role
+    return None
+
+
+def _is_a_unit(unit: str) -> bool:
+    """Return whether a text is a unit of anything that a table may hold."""
+    return unit == "%" or any(is_unit_of(unit, si) for si in ("rad/s", "N", "K", "W", "N*m", "s", "m", "m/s", "m/s^2", "Pa", "rad", "A", "V", "Hz"))
+
+
+def _guess_channels(found: Guess, named: AnyMapping[str, list[str]], columns, units, constants, lines) -> None:
+    """Enter speed, load and temperatures into a guess."""
+    for name in ("shaft_speed", "radial_load", "oil_temperature", "inner_ring_temperature", "outer_ring_temperature", "cage_speed"):
+        if name in constants:
+            found.tree[name], found.reasons[name] = constants[name], "given"
+            continue
+        column, reason = _column_of(found, name, named.get(name, []), columns, units)
+        if column is not None:
+            found.tree[name] = {"law": "sum", "columns": [column]} if name == "radial_load" else column
+            found.reasons[name] = reason
+    if "shaft_speed" not in found.tree and "shaft_speed" not in found.questions:
+        found.questions["shaft_speed"] = "no heading names a speed; name its column: --column shaft_speed=HEADING, or give --speed 1500rpm"
+    if "radial_load" not in found.tree and "radial_load" not in found.questions:
+        found.questions["radial_load"] = _load_question(named)
+
+
+def _load_question(named: AnyMapping[str, list[str]]) -> str:
+    text = "no heading names a force; name its column: --column radial_load=HEADING, or give --load 800N"
+    for name, what in (("power", "efficiency: 0.95, "), ("torque", "")):
+        if named.get(name):
+            place = f"{name}: {{column: {named[name][0]}, unit: ...}}"
+            return f"{text}; from {named[name][0]!r} of a gear: {{law: gear_force, {place}, {what}pitch_diameter: 400 mm}}"
+    return text
+
+
+def _column_of(found: Guess, name: str, headings: list[str], columns, units) -> tuple[dict | None, str]:
+    """Return the column of a field and why; None if there is none, or a question has been entered."""
+    role = next(each for each in ROLES if each.field == name)
+    given = columns.get(name)
+    if given is None and len(headings) > 1:
+        choice = " or ".join(f"--column {name}={heading!r}" for heading in headings)
+        found.questions[name] = f"{len(headings)} headings fit; choose: {choice}"
+        return None, ""
+    if given is None and not headings:
+        return None, ""
+    heading = given or headings[0]
+    headed = spelled(_heading_unit(heading, found.layout)[1])
+    unit = units.get(name) or (headed if is_unit_of(headed, role.si_unit) else None)
+    if unit is None and re.search(r"rpm", heading, re.IGNORECASE):
+        unit = "rpm"
+    if unit is None:
+        found.questions[name] = f"the heading {heading!r} has no unit; say which: --unit {name}={_UNIT_EXAMPLES[role.si_unit]}"
+        return None, ""
+    if not is_unit_of(unit, role.si_unit):
+        found.questions[name] = f"--unit {name}={unit}: no unit of this quantity; expected for example {_UNIT_EXAMPLES[role.si_unit]}"
+        return None, ""
+    reason = ("as given" if given else "by its heading") + f", in {unit} " + ("as given" if name in units else "as it says")
+    return {"column": heading, "unit": unit}, reason
+
+
+_UNIT_EXAMPLES = {"rad/s": "rpm", "N": "kN", "K": "degC"}
