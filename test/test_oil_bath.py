@@ -45,9 +45,9 @@ def test_drag_on_the_rollers_takes_the_power_of_the_moment_and_its_slope_is_a_de
     lubrication, ratio = lubricate(of.lubricant, params, 393.15), params.raceways.diameter_ratio
     shaft_speed = 2 * abs(cage_speed) / (1 - ratio)
     moment = sum(bath_moment(3.5e-3, shaft_speed, lubrication.kinematic_viscosity, *params.envelope[:3]))
-    force, slope = roller_drag(cage_speed, params, lubrication)
+    force, slope = roller_drag(cage_speed, shaft_speed, params, lubrication)
     assert force * 18 * params.raceways.pitch_radius * cage_speed == pytest.approx(moment * shaft_speed, rel=1e-3)
-    near = [roller_drag(cage_speed + side, params, lubrication)[0] for side in (-1e-3, 1e-3)]
+    near = [roller_drag(cage_speed + side, shaft_speed, params, lubrication)[0] for side in (-1e-3, 1e-3)]
     assert slope == pytest.approx((near[1] - near[0]) / 2e-3, rel=1e-6)
 
 

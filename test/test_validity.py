@@ -66,11 +66,13 @@ VG_320 = (
     "lubricant.oil={law: custom, viscosity_40: 320 mm^2/s, viscosity_100: 24 mm^2/s, density: 890 kg/m^3, pressure_viscosity: 22 1/GPa}",
     "lubricant.temperature=60 degC",
 )
+AVIATION_FIT = "lubricant.traction=oil_4109"
 SOLVENT = "lubricant.oil={law: custom, viscosity_40: 0.5 mm^2/s, viscosity_100: 0.3 mm^2/s, density: 800 kg/m^3, pressure_viscosity: 5 1/GPa}"
 WATERY = "lubricant.oil={law: custom, viscosity_40: 1 mm^2/s, viscosity_100: 0.6 mm^2/s, density: 1000 kg/m^3, pressure_viscosity: 1 1/GPa}"
 ROUGH = "bearing.roughness={roller: 0.1 um, raceway: 0.2 um}"
 EYRING = "lubricant.traction={law: eyring}"
 BATH = "lubricant.supply=oil_bath"
+GREASE = "lubricant={grease: lithium NLGI 2, temperature: 70 degC}"
 PAPER = "deng2017_table1"
 HOT = ("heat.law=given",)
 NETWORK = ("heat.law=network", "level=steady")
@@ -85,7 +87,8 @@ def carried(stiffness, length, clearance):
 
 
 CASES = {
-    "oil_4109_class": (("run", "motor", *VG_320), ("run", "motor")),
+    "oil_4109_class": (("run", "motor", *VG_320, AVIATION_FIT), ("run", "motor")),
+    "oil_4109_base": (("loads", "motor", "lubricant.oil=ISO VG 32", AVIATION_FIT), ("loads", "motor", "lubricant.oil=DEF STAN 91-101")),
     "oil_4109_pressure": (("run", PAPER, "operating.radial_load=25 kN"), ("run", PAPER)),
     "oil_4109_speed": (("run", PAPER, "operating.shaft_speed=52000 rpm"), ("run", PAPER)),
     "oil_4109_temperature": (("run", PAPER, "lubricant.temperature=170 degC"), ("run", PAPER, "lubricant.temperature=140 degC")),
@@ -111,6 +114,13 @@ CASES = {
     ),
     "mixture_fraction": (("run", "motor"), ("run", PAPER)),
     "mixture_of_jet": (("run", "motor", *VG_320, "lubricant.mixture_fraction=0.03"), ("run", PAPER)),
+    "jet_flow": (
+        ("loads", "motor", "lubricant={oil: mil_l_7808, supply: {law: oil_jet, flow: 1 l/min}}"),
+        ("loads", "motor", "lubricant={oil: mil_l_7808, supply: {law: oil_jet, flow: 1 l/min}}", "operating.shaft_speed=9000 rpm"),
+    ),
+    "grease_speed": (("loads", "motor", GREASE, "lubricant.grease.speed_factor=200000"), ("loads", "motor", GREASE)),
+    "grease_temperature": (("loads", "motor", GREASE, "lubricant.temperature=-30 degC"), ("loads", "motor", GREASE)),
+    "starved_film": (("run", "motor", GREASE, "lubricant.temperature=20 degC"), ("run", "motor", GREASE)),
     "churning_reynolds": (
         ("run", "motor", *VG_320, "lubricant.temperature=0 degC", "operating.shaft_speed=300 rpm", "lubricant.mixture_fraction=0.01"),
         ("run", "motor"),
@@ -146,6 +156,11 @@ CASES = {
         ("run", PAPER, *NETWORK, "operating.shaft_speed=60000 rpm", "bearing.inner_raceway.bore_radius=27 mm"),
         ("run", PAPER, *NETWORK),
     ),
+    "class_pressure_viscosity": (
+        ("loads", "motor", "lubricant.oil=ISO VG 460", "lubricant.temperature=0 degC"),
+        ("loads", "motor", "lubricant.oil=ISO VG 460"),
+    ),
+    "viscosity_index": (("loads", "motor", "lubricant.oil=ISO VG 5"), ("loads", "motor", "lubricant.oil=ISO VG 10")),
     "oil_viscosity": (
         ("loads", "motor", SOLVENT, "lubricant.temperature=210 degC"),
         ("loads", "motor", *VG_320),
@@ -237,10 +252,10 @@ def test_a_gear_oil_with_the_aviation_fit_and_a_jets_mixture_is_told_by_every_co
     """3 % of oil and oil_4109 on ISO VG 320, which once went without a word."""
     told = {"oil_4109_class", "mixture_of_jet"}
     for command in ("run", "loads"):
-        result = invoke(scenes, command, "motor", *VG_320, "lubricant.mixture_fraction=0.03")
+        result = invoke(scenes, command, "motor", *VG_320, AVIATION_FIT, "lubricant.mixture_fraction=0.03")
         assert told <= {each["name"] for each in json.loads(result.stdout)["warnings"]}
         assert all(f"warning: {name}: " in result.stderr for name in told)
-    row = point_row(load_scene(scenes["motor"], [*VG_320, "lubricant.mixture_fraction=0.03"]), 0.05)
+    row = point_row(load_scene(scenes["motor"], [*VG_320, AVIATION_FIT, "lubricant.mixture_fraction=0.03"]), 0.05)
     assert "oil_4109_class 24 mm^2/s" in row["warnings"] and "mixture_of_jet" in row["warnings"]
 
 
@@ -279,7 +294,7 @@ class ListSink:
 @pytest.mark.parametrize(
     "overrides, load, expected",
     [
-        ((*VG_320, "lubricant.mixture_fraction=0.03"), 5e3, {"oil_4109_class", "mixture_of_jet"}),
+        ((*VG_320, AVIATION_FIT, "lubricant.mixture_fraction=0.03"), 5e3, {"oil_4109_class", "mixture_of_jet"}),
         ((), 700e3, {"hertz_pressure", "life_load", "static_load", "mixture_fraction"}),
     ],
 )

@@ -35,6 +35,10 @@ class BaseOil(NamedTuple):
     pressure_exponent: float
     density_of: Callable[[float], float]  # density at 15 degC [kg/m^3] by the kinematic viscosity at 40 degC [mm^2/s]
     conductivity: float | None  # [W/(m K)]; None: by density and temperature
+    eyring_stress: float  # at 40 degC [Pa]
+    limiting_ratio: float  # limiting shear stress over mean Hertz pressure at 40 degC
+    limiting_cooling: float  # its fall by temperature, of its value at 40 degC [1/K]
+    pressure_index: float | None  # Roelands' Z at the pressure of contacts; None: by alpha
 
 
 def _petroleum_density(viscosity_40: float) -> float:
@@ -53,15 +57,16 @@ def _olefin_density(viscosity_40: float) -> float:
 
 
 _LEAST_GRAVITY_VISCOSITY, _VISCOSITY_GRAVITY = 7.0, 0.81
-# s and t: P. W. Gold et al., J. Synth. Lubr. 18 (2001) 51.  Viscosity indices, densities of esters and glycols and the conductivities that are
-# not None: assumptions, usual values of data sheets.
+# s and t: P. W. Gold et al., J. Synth. Lubr. 18 (2001) 51, as secondary literature quotes them.  Viscosity indices, densities of esters and
+# glycols and the conductivities that are not None: assumptions, usual values of data sheets.  Shear strength: see `shear_strength`.
 BASE_OILS = {
-    "mineral": BaseOil(95.0, 9.904, 0.139, _petroleum_density, None),
-    "pao": BaseOil(140.0, 7.382, 0.1335, _olefin_density, 0.15),
-    "ester": BaseOil(140.0, 6.605, 0.136, lambda viscosity: 960.0, 0.15),
-    "pag": BaseOil(200.0, 5.489, 0.1485, lambda viscosity: 1040.0, 0.155),
-    "aviation": BaseOil(135.0, 6.605, 0.136, lambda viscosity: 990.0, 0.15),
+    "mineral": BaseOil(95.0, 9.904, 0.139, _petroleum_density, None, 5e6, 0.07, 0.0025, 0.65),
+    "pao": BaseOil(140.0, 7.382, 0.1335, _olefin_density, 0.15, 5e6, 0.055, 0.0025, 0.5),
+    "ester": BaseOil(140.0, 6.605, 0.136, lambda viscosity: 960.0, 0.15, 5e6, 0.05, 0.0025, 0.48),
+    "pag": BaseOil(200.0, 5.489, 0.1485, lambda viscosity: 1040.0, 0.155, 4.5e6, 0.04, 0.0025, 0.41),
+    "aviation": BaseOil(135.0, 6.605, 0.136, lambda viscosity: 990.0, 0.15, 5e6, 0.075, 0.0, None),
 }
+_STRENGTH_AT, _STRENGTH_FROM, _STRENGTH_TO = 313.15, 253.15, 383.15  # [K]
 _EXPANSION = 0.6278  # [kg/(m^3 K)] K_1 of lubricating oils in ASTM D1250 (table 53D): expansion at 15 degC = K_1/rho_15
 
 
@@ -84,6 +89,31 @@ def oil_at(oil: Oil | CustomOil, temperature: float) -> OilState:
         alpha = math.exp(law.exponent * math.log(viscosity) - law.constant) / viscosity
     thinning = math.log(colder / warmer) / 0.2
     return OilState(float(temperature), viscosity, density, alpha, thermal_conductivity(oil, temperature), thinning)
+
+
+def shear_strength(base: str, temperature: float) -> tuple[float, float]:
+    """Return Eyring stress [Pa] and limiting shear stress over mean pressure of a kind of base oil at a temperature [K].
+
+    The Eyring stress goes with the absolute temperature, tau_E = k T/v with an activation volume v (H. Eyring, J. Chem. Phys. 4 (1936) 283);
+    the limiting stress falls linearly with temperature, as measured from -20 to 110 degC (V. Wikstrom, E. Hoglund, J. Tribol. 116 (1994) 612),
+    held beyond.  *Assumptions*: the numbers, by the order in which measured traction falls from mineral oils through PAO and esters to glycols; see
+    the theory of traction.  Oils of kind ``aviation`` have the constants 5 MPa and 0.075.
+    """
+    kind = BASE_OILS[base]
+    if base == "aviation":
+        return kind.eyring_stress, kind.limiting_ratio
+    warmer = min(max(temperature, _STRENGTH_FROM), _STRENGTH_TO) - _STRENGTH_AT
+    return kind.eyring_stress * temperature / _STRENGTH_AT, kind.limiting_ratio * (1.0 - kind.limiting_cooling * warmer)
+
+
+def pressure_index(oil: Oil | CustomOil) -> float | None:
+    """Return Roelands' index Z of an oil at the pressure of contacts by its kind of base oil; None of an oil that gives its own alpha.
+
+    alpha = s nu^t is the rise of viscosity up to 0.2 GPa; extrapolated to a contact's pressure it leaves too little traction.  From alpha at
+    30, 60 and 100 degC in G. W. Stachowiak, A. W. Batchelor, Engineering Tribology, table 2.3, follows Z of 0.59 to 0.84 of nine mineral oils
+    and 0.41 to 0.43 of a copolymer of ethylene and propylene oxide.  *Assumptions*: 0.65 of refined paraffinic oils, 0.50 of PAO, 0.48 of esters.
+    """
+    return BASE_OILS[oil.base].pressure_index if isinstance(oil, CustomOil) and oil.pressure_viscosity is None else None
 
 
 def class_pressure_viscosity(base: str, kinematic_viscosity: float) -> float:

@@ -7,21 +7,21 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.model.oil import oil_at
+from bearing_sim.model.oil import oil_at, pressure_index, shear_strength
 from bearing_sim.model.running_clearance import mounted, running_play, uniform
 from bearing_sim.physics.contact import iso_contact_stiffness, line_contact_stiffness
-from bearing_sim.physics.drag import Bath, bath_drag
+from bearing_sim.physics.drag import LARGEST_FRACTION, Bath, bath_drag, swept_fraction
 from bearing_sim.physics.film import RollingResistance, replenishment_rate, resistance_constants
 from bearing_sim.physics.growth import Growth, Mounted, Temperatures, growth_at
 from bearing_sim.physics.lamina_life import Laminae, new_laminae
 from bearing_sim.physics.raceway import tabulated
-from bearing_sim.physics.rating_life import CLEANLINESS, METHODS, reliability_factor, ring_ratings
+from bearing_sim.physics.rating_life import METHODS, cleanliness, reliability_factor, ring_ratings
 from bearing_sim.physics.squeeze_film import SqueezeFilm, new_squeeze_film
 from bearing_sim.physics.traction import TractionConstants, constant_constants, kragelskii_constants, oil_4109_constants, thermal_eyring_constants
 from bearing_sim.scene.bearing import Roller
 from bearing_sim.scene.contour import outer_contour
 from bearing_sim.scene.crown import crown_drops, slice_middles
-from bearing_sim.scene.lubricant import ConstantTraction, EyringTraction, HydrodynamicRollingResistance, KragelskiiTraction, OilBath
+from bearing_sim.scene.lubricant import ConstantTraction, EyringTraction, HydrodynamicRollingResistance, KragelskiiTraction
 from bearing_sim.scene.ratings import rate
 from bearing_sim.scene.scene import Bearing, Lubricant, Scene
 from bearing_sim.scene.support import settled_support
@@ -195,7 +195,8 @@ class Lubrication(NamedTuple):
     inner: TractionConstants  # of roller and inner raceway
     outer: TractionConstants  # of roller and outer raceway
     viscosity: float  # eta_0 of the oil [Pa s]
-    mixture_density: float  # of the oil-air mixture [kg/m^3]
+    mixture_density: float  # of the oil-air mixture at most [kg/m^3], see `bearing_sim.physics.drag.mixture_density`
+    mixture_flow: float  # that density times the shaft's speed [kg rad/(m^3 s)], infinite where the speed does not matter
     temperature: float  # of the oil [K]
     rolling_resistance: RollingResistance
     bath: Bath  # drag of an oil bath on the rollers, zero without one
@@ -328,7 +329,7 @@ def _mount(body) -> tuple[float, float, float, float, float]:
 def _life(scene: Scene) -> Life:
     bearing, choice = scene.bearing, scene.life
     roller, rated = bearing.roller, rate(bearing)
-    slope, loss = CLEANLINESS.get(choice.a_iso, (0.0, 0.0))
+    slope, loss = cleanliness(choice.a_iso, bearing.pitch_diameter)
     inner_rating, outer_rating = ring_ratings(rated.dynamic, roller.count, bearing.diameter_ratio)
     return Life(
         method=METHODS[choice.method],
@@ -371,11 +372,13 @@ def lubricate(lubricant: Lubricant, params: Params, temperature: float, temperat
     radii = raceways.inner_curvature_radius, raceways.outer_curvature_radius
     films = [oil if temperatures is None else oil_at(lubricant.oil, 0.5 * (ring + solids.rollers)) for ring in (solids.inner_ring, solids.outer_ring)]
     inner, outer = (_traction_constants(lubricant, film, radius, raceways.reduced_modulus, length) for film, radius in zip(films, radii))
+    by_flow = lubricant.mixture_fraction is None
     return Lubrication(
         inner=inner,
         outer=outer,
         viscosity=oil.viscosity,
-        mixture_density=lubricant.mixture_fraction * oil.density,
+        mixture_density=oil.density * (LARGEST_FRACTION if by_flow else lubricant.mixture_fraction),
+        mixture_flow=oil.density * swept_fraction(lubricant.flow, 2.0 * raceways.pitch_radius) if by_flow else math.inf,
         temperature=oil.temperature,
         rolling_resistance=_rolling_resistance(lubricant, params, films),
         bath=_bath(lubricant, params, oil),
@@ -385,7 +388,22 @@ def lubricate(lubricant: Lubricant, params: Params, temperature: float, temperat
     )
 
 
-_SPARSE = 3e-8  # K_rs of oil jets and low baths, see `bearing_sim.physics.film.replenishment_rate`
+def mixture_fraction(lubricant: Lubricant, pitch_diameter: float, shaft_speed):
+    """Return the fraction of oil in the oil-air mixture: the scene's, that of its kind of supply, or by the flow of a jet.
+
+    Parameters
+    ----------
+    lubricant : of the scene.
+    pitch_diameter : of the bearing [m].
+    shaft_speed : [rad/s], a number or an array.
+    """
+    if lubricant.mixture_fraction is not None:
+        return lubricant.mixture_fraction
+    return np.minimum(LARGEST_FRACTION, swept_fraction(lubricant.flow, pitch_diameter) / np.maximum(np.abs(shaft_speed), 1e-9))
+
+
+_SPARSE, _SPARSER = 3e-8, 6e-8  # K_rs of oil jets and low baths, of grease and oil-air, see `bearing_sim.physics.film.replenishment_rate`
+_JET_DRAG = 2.0  # drag of circulating oil over that of a bath, see `bearing_sim.physics.drag.bath_moment`
 
 
 def _rolling_resistance(lubricant, params, films) -> RollingResistance:
@@ -394,7 +412,7 @@ def _rolling_resistance(lubricant, params, films) -> RollingResistance:
     on = isinstance(law, HydrodynamicRollingResistance)
     constant = law.replenishment if on else 0.0
     if constant is None:
-        constant = 0.0 if isinstance(lubricant.supply, OilBath) and _bath_level(lubricant, params) > params.rollers.radius else _SPARSE
+        constant = replenishment(lubricant, params)
     boundary = envelope.bore_diameter, envelope.outside_diameter
     constants = []
     for film, radius in zip(films, (raceways.inner_curvature_radius, raceways.outer_curvature_radius)):
@@ -404,6 +422,13 @@ def _rolling_resistance(lubricant, params, films) -> RollingResistance:
     return RollingResistance(int(on), *constants)
 
 
+def replenishment(lubricant: Lubricant, params: Params) -> float:
+    """Return K_rs of the lubricant's supply where the scene gives none; see `bearing_sim.physics.film.replenishment_rate`."""
+    if lubricant.supply.law in ("oil_air", "grease"):
+        return _SPARSER
+    return 0.0 if lubricant.has_bath and _bath_level(lubricant, params) > params.rollers.radius else _SPARSE
+
+
 def _bath_level(lubricant, params) -> float:
     """Return the level of the oil bath above the lowest point of the outer raceway [m]."""
     return params.rollers.radius if lubricant.supply.level is None else lubricant.supply.level
@@ -411,11 +436,12 @@ def _bath_level(lubricant, params) -> float:
 
 def _bath(lubricant, params, oil) -> Bath:
     """Return the drag of the oil bath, if there is one."""
-    if not isinstance(lubricant.supply, OilBath):
+    if not lubricant.has_bath:
         return Bath(0.0, 0.0)
     envelope = params.envelope
     boundary = envelope.bore_diameter, envelope.outside_diameter, envelope.width
-    return bath_drag(_bath_level(lubricant, params), oil.viscosity / oil.density, params.rollers, params.raceways, *boundary)
+    factor = _JET_DRAG if lubricant.supply.law == "circulating" else 1.0
+    return bath_drag(_bath_level(lubricant, params), oil.viscosity / oil.density, params.rollers, params.raceways, *boundary, factor)
 
 
 def _traction_constants(lubricant, oil, curvature_radius, reduced_modulus, length) -> TractionConstants:
@@ -426,5 +452,8 @@ def _traction_constants(lubricant, oil, curvature_radius, reduced_modulus, lengt
     if isinstance(law, KragelskiiTraction):
         return kragelskii_constants(scale, law.mu_0, law.mu_max, law.v_max, law.mu_inf, law.rise_speed)
     if isinstance(law, EyringTraction):
-        return thermal_eyring_constants(scale, oil, curvature_radius, reduced_modulus, length, law.eyring_stress, law.limiting_ratio)
+        stress, ratio = shear_strength(lubricant.oil.base, oil.temperature)
+        stress, ratio = stress if law.eyring_stress is None else law.eyring_stress, ratio if law.limiting_ratio is None else law.limiting_ratio
+        index = pressure_index(lubricant.oil) if law.pressure_index is None else law.pressure_index
+        return thermal_eyring_constants(scale, oil, curvature_radius, reduced_modulus, length, stress, ratio, index)
     return oil_4109_constants(scale, oil, curvature_radius, reduced_modulus)

@@ -11,13 +11,13 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.model.oil import oil_at, specific_heat, thermal_conductivity
-from bearing_sim.model.params import Params
+from bearing_sim.model.params import Params, mixture_fraction
 from bearing_sim.model.sample import OBSERVABLES
 from bearing_sim.physics.heat import plummer_block_area
 from bearing_sim.physics.thermal_network import LINK, NODE, NODES, Bodies, Contacts, Network, Oils, Surfaces
 from bearing_sim.scene.bearing import Bearing
 from bearing_sim.scene.heat import NetworkHeat
-from bearing_sim.scene.lubricant import CustomOil, Lubricant, Oil
+from bearing_sim.scene.lubricant import CustomOil, Oil
 from bearing_sim.scene.mounting import housing_interference, shaft_interference
 from bearing_sim.scene.scene import Scene
 
@@ -72,11 +72,14 @@ def oil_flow(scene: Scene) -> float:
     return _JET * 2.0 * boundary_dimensions(scene.bearing).bore_radius if flow is None else flow
 
 
-def _oil_fraction(lubricant: Lubricant) -> float:
+def _oil_fraction(scene: Scene) -> float:
     """Return the fraction of the bearing's space that its oil or grease takes."""
+    lubricant, bearing = scene.lubricant, scene.bearing
     if lubricant.supply.law == "grease":
         return _FREE_SPACE * lubricant.supply.fill
-    return _BATH if lubricant.has_bath else lubricant.mixture_fraction
+    if lubricant.has_bath:
+        return _BATH
+    return float(mixture_fraction(lubricant, bearing.pitch_diameter, scene.operating.shaft_speed))
 
 
 def thermal_network(scene: Scene, params: Params) -> Network:
@@ -158,7 +161,7 @@ def _capacities(scene: Scene, params: Params, size: Dimensions, bore: float, bes
     steel = material.density * material.specific_heat
     volume = math.pi * (size.outside_radius**2 - size.bore_radius**2) * size.width
     oil = oil_at(scene.lubricant.oil, scene.lubricant.temperature)
-    fraction = _oil_fraction(scene.lubricant)
+    fraction = _oil_fraction(scene)
     poured = heat.oil_volume if heat.oil_volume is not None else fraction * volume
     housing = heat.housing.mass if heat.housing.mass is not None else _HOUSING_DENSITY * (2.0 * size.outside_radius) ** 3
     capacities = np.empty(NODES)

@@ -14,11 +14,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.model.oil import OilState, oil_at
-from bearing_sim.model.params import Params, pack
+from bearing_sim.model.oil import OilState, oil_at, viscosity_100
+from bearing_sim.model.params import Params, mixture_fraction, pack, replenishment
 from bearing_sim.model.running_clearance import largest_hoop_stress, mounted, seat_pressure, sleeve_pressure
 from bearing_sim.model.sample import new_block, part_temperature
 from bearing_sim.model.temperatures import film_temperatures
+from bearing_sim.physics.film import replenishment_rate
 from bearing_sim.scene.bearing import Bearing
 from bearing_sim.scene.crown import NoCrown
 from bearing_sim.scene.lubricant import ConstantTraction, CustomOil, EyringTraction, KragelskiiTraction, Oil, Oil4109Traction
@@ -31,6 +32,7 @@ _SAME_OIL = 0.5  # [K] samples whose oil differs by less share its properties; v
 _OIL_TEMPERATURES = (220.0, 600.0)  # [K] bounds of `lubricant.temperature`, within which the fits of oils give numbers
 _VISCOSITY_CLASS_AT = 100.0 + ZERO_CELSIUS  # [K] temperature at which turbine oils are classed
 _LOCAL = ("inner_ring_temperature", "roller_temperature", "outer_ring_temperature", "oil_outlet_temperature")
+_GREASE_VISCOSITY_AT = 40.0 + ZERO_CELSIUS  # [K] temperature at which base oils are classed
 _AIR_VISCOSITY = 1.8e-5  # [m^2/s] of air at 50 degC
 _EXTRAPOLATED = 60.0  # [K] beyond the two viscosities of a custom oil
 _SEPARATOR = "; "  # of exceedances in a cell of a table
@@ -132,6 +134,21 @@ class Conditions:
         return self._films[0]
 
     @property
+    def film_density(self) -> np.ndarray:
+        """Density of the oil at the films' mean temperature [kg/m^3]."""
+        return self._films[1]
+
+    @property
+    def replenishment(self) -> np.ndarray:
+        """SKF's factor exp(-k u) by which contacts that little oil flows back to resist rolling less; see `replenishment_rate`."""
+        lubricant, raceways, envelope = self.scene.lubricant, self.params.raceways, self.params.envelope
+        given = getattr(lubricant.rolling_resistance, "replenishment", None)
+        constant = replenishment(lubricant, self.params) if given is None else given
+        boundary = envelope.bore_diameter, envelope.outside_diameter
+        rate = replenishment_rate(constant, self.film_viscosity / self.film_density, 2.0 * raceways.pitch_radius, raceways.diameter_ratio, *boundary)
+        return np.exp(-rate * self.rolling_speed)
+
+    @property
     def pressure_viscosity(self) -> np.ndarray:
         """Pressure coefficient of the viscosity at the films' mean temperature, alpha [1/Pa]."""
         return self._films[2]
@@ -191,17 +208,22 @@ class Conditions:
         """The radial load on the inner ring [N]."""
         return np.hypot(self.samples["load_y"], self.samples["load_z"])
 
+    @functools.cached_property
+    def mixture_fraction(self) -> np.ndarray | float:
+        """Fraction of oil in the oil-air mixture."""
+        return mixture_fraction(self.scene.lubricant, self.scene.bearing.pitch_diameter, self.samples["shaft_speed"])
+
     @property
     def churning_reynolds(self) -> np.ndarray:
         """Re = rho v D_w/eta of a roller in the oil-air mixture."""
         speed = np.abs(self.samples["cage_speed"]) * self.params.raceways.pitch_radius
-        density = self.scene.lubricant.mixture_fraction * self.density
+        density = self.mixture_fraction * self.density
         return self.while_turning(density * speed * 2.0 * self.params.rollers.radius / self.viscosity)
 
     @property
     def end_face_reynolds(self) -> np.ndarray:
         """Re = rho omega R^2/eta of the cage's end faces."""
-        density = self.scene.lubricant.mixture_fraction * self.density
+        density = self.mixture_fraction * self.density
         return self.while_turning(density * np.abs(self.samples["cage_speed"]) * self.params.cage.outer_radius**2 / self.viscosity)
 
     @property
@@ -351,7 +373,47 @@ def _has_bath(scene: Scene) -> bool:
 
 
 def _has_mixture(scene: Scene) -> bool:
-    return not _has_bath(scene) or scene.lubricant.mixture_fraction > 0.0
+    lubricant = scene.lubricant
+    return lubricant.supply.law == "oil_jet" or lubricant.mixture_fraction > 0.0
+
+
+def _has_given_mixture(scene: Scene) -> bool:
+    return _has_mixture(scene) and scene.lubricant.mixture_fraction is not None
+
+
+def _has_mixture_by_flow(scene: Scene) -> bool:
+    return scene.lubricant.mixture_fraction is None
+
+
+def _has_grease(scene: Scene) -> bool:
+    return scene.lubricant.grease is not None
+
+
+def _grease_speed_factor(scene: Scene) -> float:
+    """Return the largest n d_m of the scene's grease [rpm mm]: its own, or a usual one of its base oil and consistency."""
+    grease, oil = scene.lubricant.grease, scene.lubricant.oil
+    if grease.speed_factor is not None:
+        return grease.speed_factor
+    by_oil = 500e3 if oil.base != "mineral" else 350e3
+    return by_oil if oil_at(oil, _GREASE_VISCOSITY_AT).viscosity < 0.25 else 0.5 * by_oil
+
+
+def _with_replenishment(scene: Scene) -> bool:
+    return scene.lubricant.rolling_resistance.law != "none" or scene.lubricant.supply.law in ("grease", "oil_air")
+
+
+def _by_kind_of_oil(scene: Scene) -> bool:
+    oil = scene.lubricant.oil
+    return isinstance(oil, CustomOil) and oil.pressure_viscosity is None
+
+
+def _by_viscosity_index(scene: Scene) -> bool:
+    oil = scene.lubricant.oil
+    return isinstance(oil, CustomOil) and oil.viscosity_100 is None
+
+
+def _with_eyring_field(name: str) -> Callable[[Scene], bool]:
+    return lambda scene: isinstance(scene.lubricant.traction, EyringTraction) and getattr(scene.lubricant.traction, name) is not None
 
 
 def _has_film(scene: Scene) -> bool:
@@ -419,6 +481,22 @@ LAWS = (
         _with_traction(Oil4109Traction),
         _class_viscosity,
         of_scene=True,
+    ),
+    Law(
+        "oil_4109_base",
+        "validity.traction",
+        "traction law oil_4109",
+        "the oil is not an aviation turbine oil",
+        "",
+        -math.inf,
+        0.5,
+        "fitted to one aviation oil (Wang Yanshuang; Deng 2017, ref. 17)",
+        "leave lubricant.traction out, which takes the law eyring with the strength of this kind of base oil, or give coefficients measured for "
+        "this oil",
+        _with_traction(Oil4109Traction),
+        lambda scene: float(scene.lubricant.oil.base != "aviation"),
+        of_scene=True,
+        expected="an oil whose base is aviation",
     ),
     Law(
         "oil_4109_pressure",
@@ -497,7 +575,7 @@ LAWS = (
         10.0,
         "assumption: values in use for ester and mineral oils, see the theory of traction",
         "take the stress from a measured traction curve",
-        _with_traction(EyringTraction),
+        _with_eyring_field("eyring_stress"),
         lambda scene: 1e-6 * scene.lubricant.traction.eyring_stress,
         of_scene=True,
     ),
@@ -511,7 +589,7 @@ LAWS = (
         0.12,
         "assumption: values in use for ester and mineral oils, see the theory of traction",
         "take the ratio from the maximum of a measured traction curve",
-        _with_traction(EyringTraction),
+        _with_eyring_field("limiting_ratio"),
         lambda scene: scene.lubricant.traction.limiting_ratio,
         of_scene=True,
     ),
@@ -616,8 +694,9 @@ LAWS = (
         0.015,
         0.05,
         "published for jet-lubricated high-speed bearings, see the theory of drag",
-        "for an oil bath, circulating oil or grease calibrate the fraction with bearing-sim calibrate, or give its range to bearing-sim uncertainty",
-        _has_mixture,
+        "say how the oil is supplied with lubricant.supply (circulating, oil_bath, oil_air, grease), or calibrate the fraction with bearing-sim "
+        "calibrate, or give its range to bearing-sim uncertainty",
+        _has_given_mixture,
         lambda scene: scene.lubricant.mixture_fraction,
         of_scene=True,
     ),
@@ -631,11 +710,66 @@ LAWS = (
         math.inf,
         "assumption: published fractions are of jets, which makers advise from about 400,000; slower bearings run in a bath, in circulating oil or "
         "in grease",
-        "choose lubricant.mixture_fraction for this kind of lubrication: calibrate it with bearing-sim calibrate, or give its range to bearing-sim "
-        "uncertainty",
-        lambda scene: 0.015 <= scene.lubricant.mixture_fraction <= 0.05,
+        "say how the oil is supplied with lubricant.supply (circulating, oil_bath, oil_air, grease), or calibrate the fraction with bearing-sim "
+        "calibrate, or give its range to bearing-sim uncertainty",
+        lambda scene: _has_given_mixture(scene) and 0.015 <= scene.lubricant.mixture_fraction <= 0.05,
         _nominal_speed_factor,
         of_scene=True,
+    ),
+    Law(
+        "jet_flow",
+        "validity.drag",
+        "fraction of oil in the mixture by the flow of the jet",
+        "n d_m",
+        "rpm mm",
+        5e5,
+        6e6,
+        "R. J. Parker, NASA TP-2275 (1984): 1 to 3 million; widened by a factor of 2 (assumption)",
+        "take lubricant.supply circulating, or give lubricant.mixture_fraction",
+        _has_mixture_by_flow,
+        lambda at: at.while_turning(speed_factor(at.scene.bearing, at.samples["shaft_speed"])),
+    ),
+    Law(
+        "grease_speed",
+        "validity.drag",
+        "grease that has been run in",
+        "n d_m",
+        "rpm mm",
+        -math.inf,
+        _grease_speed_factor,
+        "lubricant.grease.speed_factor; without one 350,000 of mineral and 500,000 of synthetic base oils, half of it above 250 mPa s at 40 degC "
+        "(assumption: usual of makers' data sheets)",
+        "lower the speed, take a grease of a thinner or synthetic base oil, or lubricate with oil",
+        _has_grease,
+        lambda at: at.while_turning(speed_factor(at.scene.bearing, at.samples["shaft_speed"])),
+        expected="at most lubricant.grease.speed_factor, or 350,000 of mineral and 500,000 rpm mm of synthetic base oils",
+    ),
+    Law(
+        "grease_temperature",
+        "validity.oil",
+        "grease that has been run in",
+        "the temperature of the grease",
+        "degC",
+        lambda scene: -math.inf if scene.lubricant.grease.lowest_temperature is None else scene.lubricant.grease.lowest_temperature,
+        lambda scene: math.inf if scene.lubricant.grease.highest_temperature is None else scene.lubricant.grease.highest_temperature,
+        "lubricant.grease.lowest_temperature and highest_temperature",
+        "take a grease for this temperature; below its lowest one a grease does not bleed and its drag is not modelled",
+        _has_grease,
+        lambda at: at.samples["oil_temperature"],
+        expected="temperatures that the grease is for",
+    ),
+    Law(
+        "starved_film",
+        "validity.film",
+        "films of contacts that little oil flows back to",
+        "SKF's replenishment factor",
+        "",
+        0.5,
+        math.inf,
+        "assumption: the films are computed for full inlets; half of the resistance to rolling is gone where the factor is 0.5, and much of the film",
+        "read film, kappa and a_ISO as upper bounds; take a thinner base oil or a lower speed, or supply more oil",
+        _with_replenishment,
+        lambda at: at.while_turning(at.replenishment),
     ),
     Law(
         "churning_reynolds",
@@ -922,6 +1056,33 @@ LAWS = (
         "correct lubricant.oil or lubricant.temperature",
         lambda scene: isinstance(scene.lubricant.oil, CustomOil),
         lambda at: 1e6 * at.viscosity / at.density,
+    ),
+    Law(
+        "class_pressure_viscosity",
+        "validity.oil",
+        "pressure-viscosity coefficient by kind of base oil",
+        "kinematic viscosity in the films",
+        "mm^2/s",
+        1.0,
+        3000.0,
+        "assumption: P. W. Gold et al. (2001) measured industrial oils between about 20 and 120 degC; the original has not been read",
+        "give lubricant.oil.pressure_viscosity",
+        _by_kind_of_oil,
+        lambda at: 1e6 * at.film_viscosity / at.film_density,
+    ),
+    Law(
+        "viscosity_index",
+        "validity.oil",
+        "viscosity at 100 degC by the viscosity index",
+        "kinematic viscosity at 100 degC",
+        "mm^2/s",
+        2.0,
+        math.inf,
+        "ASTM D2270: defined from 2 mm^2/s on; below it its first row is continued (assumption)",
+        "give lubricant.oil.viscosity_100",
+        _by_viscosity_index,
+        lambda scene: 1e6 * viscosity_100(scene.lubricant.oil),
+        of_scene=True,
     ),
     Law(
         "speed_factor",

@@ -18,7 +18,7 @@ ISO16281, ISO281, DENG2017 = 0, 1, 2  # methods, see `Lives`
 METHODS = {"iso16281": ISO16281, "iso281": ISO281, "deng2017": DENG2017}
 
 # Cleanliness class -> (slope, loss) of e_C = min(slope kappa^0.68 D_pw^0.55, 1) (1 - loss/D_pw^(1/3)), D_pw in mm (ISO 281:2007,
-# annex A): circulating oil filtered in line (A.4), oil bath or oil filtered off the line (A.5), by the end of the ISO 4406 code.
+# annex A): circulating oil filtered in line (A.4), oil bath or oil filtered off the line (A.5), by the end of the ISO 4406 code; grease (A.6).
 CLEANLINESS = {
     "filtered_13_10": (0.0864, 0.5663),
     "filtered_15_12": (0.0432, 0.9987),
@@ -29,7 +29,25 @@ CLEANLINESS = {
     "bath_17_14": (0.0133, 1.667),
     "bath_19_16": (0.00864, 2.5164),
     "bath_21_18": (0.00411, 3.8974),
+    "grease_high_cleanliness": (0.0864, 0.6796),
+    "grease_normal_cleanliness": (0.0432, 1.141),
+    "grease_slight_contamination": (0.0177, 1.887),
+    "grease_severe_contamination": (0.0115, 2.662),
+    "grease_very_severe_contamination": (0.00617, 4.06),
 }
+_SLIGHT, _LARGE_LOSS = "grease_slight_contamination", 1.677  # its loss from a pitch diameter of 500 mm on (ISO 281:2007, figure A.12)
+
+
+def cleanliness(name, pitch_diameter):
+    """Return slope and loss of a class of `CLEANLINESS`; zeros for none.
+
+    Parameters
+    ----------
+    name : of the class.
+    pitch_diameter : D_pw [m].
+    """
+    slope, loss = CLEANLINESS.get(name, (0.0, 0.0))
+    return slope, _LARGE_LOSS if name == _SLIGHT and pitch_diameter >= 0.5 else loss
 
 
 def ring_ratings(rating, rollers, gamma):

@@ -17,7 +17,7 @@ nine powers.  With mu_x = d mu/dx and e_b, e_c, e_d the exponents of one variabl
 **Thermal Eyring film** (``eyring``).  Film thickness h by Dowson and Toyoda, thinned by its heated inlet (`bearing_sim.physics.film`);
 viscosity eta in the contact by C. J. A. Roelands (thesis, Delft 1966) at the mean Hertz pressure p,
 
-    ln eta = ln eta_0 + (ln eta_0 + 9.67) [(1 + 5.1e-9 p)^Z - 1],   Z = alpha/[5.1e-9 (ln eta_0 + 9.67)];
+    ln eta = ln eta_0 + (ln eta_0 + 9.67) [(1 + 5.1e-9 p)^Z - 1],   Z = alpha/[5.1e-9 (ln eta_0 + 9.67)] or the oil's own;
 
 shear stress tau = tau_E asinh(eta du_f/(h tau_E)) (H. Eyring's fluid, as K. L. Johnson and J. L. Tevaarwerk, Proc. R. Soc. A 356 (1977) use
 it), with eta thinned by the oil's own heat, by tau du h/(12 k) in the mean over the film; mu = Lambda tanh(tau/(Lambda p)), an *assumption*
@@ -133,9 +133,9 @@ def kragelskii_constants(scale, mu_0, mu_max, v_max, mu_inf, rise_speed):
     return TractionConstants(scale, _log(d), 0.0, 0.0, _log(b), 0.0, 1.0, _log(c), 0.0, 1.0, KRAGELSKII if mu_0 > 0 else FITTED, special)
 
 
-def thermal_eyring_constants(scale, oil, curvature_radius, reduced_modulus, length, eyring_stress, limiting_ratio):
+def thermal_eyring_constants(scale, oil, curvature_radius, reduced_modulus, length, eyring_stress, limiting_ratio, pressure_index=None):
     """Return the constants of the Eyring film; parameters as of `bearing_sim.physics.traction.eyring_constants`."""
-    special = eyring_constants(oil, curvature_radius, reduced_modulus, length, eyring_stress, limiting_ratio)
+    special = eyring_constants(oil, curvature_radius, reduced_modulus, length, eyring_stress, limiting_ratio, pressure_index)
     return TractionConstants(scale, *(0.0,) * 9, EYRING, special)
 
 
@@ -240,7 +240,7 @@ class EyringRow(NamedTuple):
 ROW = EyringRow()
 
 
-def eyring_constants(oil, curvature_radius, reduced_modulus, length, eyring_stress, limiting_ratio):
+def eyring_constants(oil, curvature_radius, reduced_modulus, length, eyring_stress, limiting_ratio, pressure_index=None):
     """Return the special constants of one contact, shape (SPECIAL,).
 
     Parameters
@@ -251,12 +251,13 @@ def eyring_constants(oil, curvature_radius, reduced_modulus, length, eyring_stre
     length : L [m].
     eyring_stress : tau_E [Pa].
     limiting_ratio : Lambda, limiting shear stress over pressure.
+    pressure_index : Roelands' Z; None: by the oil's alpha, the slope at no pressure, which falls short at the pressure of a contact.
     """
     special, log_viscosity = np.zeros(SPECIAL), math.log(oil.viscosity)
     special[ROW.film], special[ROW.inlet] = film_constants(DOWSON_TOYODA, oil, curvature_radius, reduced_modulus, length)
     special[ROW.pressure] = 0.5 * math.log(math.pi * reduced_modulus / (32 * curvature_radius * length))
     span = max(log_viscosity + _ROELANDS_LOG, _LEAST_SPAN)
-    special[ROW.exponent] = oil.pressure_viscosity / (_ROELANDS_PRESSURE * span)
+    special[ROW.exponent] = oil.pressure_viscosity / (_ROELANDS_PRESSURE * span) if pressure_index is None else pressure_index
     special[ROW.span] = span
     special[ROW.fluidity] = log_viscosity - math.log(eyring_stress)
     special[ROW.heating] = oil.temperature_viscosity * eyring_stress / (12 * oil.conductivity)

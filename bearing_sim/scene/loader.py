@@ -71,7 +71,13 @@ _MATERIALS = (
     ("mounting", "housing", "material"),
 )
 # Blocks that a file may give by a name alone, and the field that the name stands for.
-_OPENED = {("bearing",): "preset", ("lubricant", "oil"): "preset", ("lubricant", "grease"): "preset", ("lubricant", "supply"): "law"}
+_OPENED = {
+    ("bearing",): "preset",
+    ("lubricant", "oil"): "preset",
+    ("lubricant", "grease"): "preset",
+    ("lubricant", "supply"): "law",
+    ("lubricant", "traction"): "law",
+}
 _RACEWAY_RADII = tuple(f"outer_raceway.{name}" for name in ("low_radius", "diameter", "low_points", "high_points", "contour", "contour_file"))
 # What older scenes say, and what says it now.
 _RENAMED = {

@@ -195,9 +195,11 @@ class EyringTraction:
     law: Literal["eyring"] = "eyring"
     eyring_stress: quantity("Pa", "Eyring stress, tau_E; None: by base oil and temperature", 1e5, 1e9, "MPa") | None = None
     limiting_ratio: quantity("", "limiting shear stress over mean Hertz pressure, Lambda; None: by base oil and temperature", 1e-3, 0.5) | None = None
+    pressure_index: quantity("", "Roelands' pressure index, Z; None: by the oil's own alpha, or by base oil", 0.05, 2.0) | None = None
 
 
-Traction = Annotated[Oil4109Traction | ConstantTraction | KragelskiiTraction | EyringTraction, Field(discriminator="law")]
+Traction = Annotated[Oil4109Traction | ConstantTraction | KragelskiiTraction | EyringTraction, Field(discriminator="law"), BeforeValidator(named_law)]
+"""A record, or its bare name (``oil_4109``, ``constant``, ``kragelskii``, ``eyring``)."""
 
 
 @record
@@ -229,7 +231,8 @@ _FLOW = quantity("m^3/s", "oil that flows through the bearing", 0.0, 1.0, "l/min
 class OilJet:
     """Oil that is sprayed in and drained: rollers and cage move in a mixture of oil and air.
 
-    With a flow the fraction of oil in the mixture follows from flow, size and speed (see `bearing_sim.model.supply`), without one it is 0.03.
+    With a flow the fraction of oil in the mixture follows from flow, size and speed (see `bearing_sim.physics.drag.swept_fraction`); without one
+    it is 0.03.
     """
 
     law: Literal["oil_jet"] = "oil_jet"
@@ -275,8 +278,8 @@ class GreaseSupply:
 
 Supply = Annotated[OilJet | Circulating | OilBath | OilAir | GreaseSupply, Field(discriminator="law"), BeforeValidator(named_law)]
 """A record, or its bare name (``oil_jet``, ``circulating``, ``oil_bath``, ``oil_air``, ``grease``)."""
-# Assumptions but for those that are 0: SKF's drag in a bath is that of rollers and cage together, and its model has none for run-in grease.
-_MIXTURE_FRACTION = {"oil_jet": 0.03, "circulating": 0.0, "oil_bath": 0.0, "oil_air": 0.001, "grease": 0.0}
+# 0.03 is an assumption.  SKF's drag in a bath is that of rollers and cage together, and its model has none for oil-air and for run-in grease.
+_MIXTURE_FRACTION = {"oil_jet": 0.03, "circulating": 0.0, "oil_bath": 0.0, "oil_air": 0.0, "grease": 0.0}
 
 
 @record
@@ -290,9 +293,9 @@ class Lubricant:
     grease: Grease | None = None  # thickener and consistency; None: lubrication with oil
     temperature: quantity("K", "oil temperature", 220.0, 600.0, "degC") = 393.15
     supply: Supply | None = None  # None: an oil jet, or of a grease its supply
-    mixture_fraction: (
-        quantity("", "volume fraction of oil in the oil-air mixture; None: of a jet by its flow or 0.03, of oil-air 0.001, else 0", 0.0, 1.0) | None
-    ) = None
+    mixture_fraction: quantity("", "volume fraction of oil in the oil-air mixture; None: of a jet by its flow or 0.03, else 0", 0.0, 1.0) | None = (
+        None
+    )
     traction_scale: quantity("", "factor on every traction coefficient", 0.0, 100.0) = 1.0
     traction: Traction | None = None  # None: oil_4109 of aviation oils, eyring of all others
     rolling_resistance: RollingResistance = field(default_factory=HydrodynamicRollingResistance)
@@ -304,14 +307,10 @@ class Lubricant:
             fill(self, "supply", OilJet() if self.grease is None else GreaseSupply())
         if self.supply.law == "grease" and self.grease is None:
             fill(self, "grease", Grease())
-        if self.mixture_fraction is None:
+        if self.mixture_fraction is None and not self.fraction_follows_flow:
             fill(self, "mixture_fraction", _MIXTURE_FRACTION[self.supply.law])
         if self.traction is None:
             fill(self, "traction", Oil4109Traction() if self.oil.base == "aviation" else EyringTraction())
-        if isinstance(self.traction, EyringTraction):
-            stress, ratio = self.traction.eyring_stress, self.traction.limiting_ratio
-            stress, ratio = 5e6 if stress is None else stress, 0.075 if ratio is None else ratio
-            fill(self, "traction", EyringTraction(eyring_stress=stress, limiting_ratio=ratio))
         return self
 
     @check

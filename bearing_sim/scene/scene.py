@@ -6,11 +6,13 @@ One record per block of the YAML file.  Each quantity is declared once, with uni
 """
 
 import math
+import re
+import typing
 from collections.abc import Mapping
 from dataclasses import field, replace
 from typing import Annotated, Literal
 
-from pydantic import Field, ValidationError
+from pydantic import BeforeValidator, Field, ValidationError
 from pydantic_core import PydanticCustomError
 
 from bearing_sim.scene.bearing import Bearing
@@ -231,7 +233,21 @@ CLEANLINESS = Literal[
     "bath_17_14",
     "bath_19_16",
     "bath_21_18",
+    "grease_high_cleanliness",
+    "grease_normal_cleanliness",
+    "grease_slight_contamination",
+    "grease_severe_contamination",
+    "grease_very_severe_contamination",
 ]
+
+
+def _cleanliness_class(value: object) -> object:
+    """Return the class of a name in words, such as ``high cleanliness`` of a grease; anything else as it is."""
+    if not isinstance(value, str):
+        return value
+    name = "_".join(re.findall(r"[a-z0-9]+", value.casefold()))
+    known = typing.get_args(CLEANLINESS)
+    return next((each for each in (name, f"grease_{name}") if each in known), value)
 
 
 @record
@@ -243,11 +259,12 @@ class LifeRating:
     two to three times a catalogue's life, for their figures only).
 
     a_iso names the oil's cleanliness by the end of its ISO 4406 code: `filtered`, circulating through an in-line filter,
-    or `bath`, without a filter or with an off-line filter; `none` sets a_ISO = 1.
+    or `bath`, without a filter or with an off-line filter; or that of a grease in the words of ISO 281, such as `high cleanliness`;
+    `none` sets a_ISO = 1.
     """
 
     reliability: quantity("", "probability of reaching the life", 0.9, 0.9995, "%") = 0.9
-    a_iso: CLEANLINESS = "none"  # cleanliness class of the oil for a_ISO; none: a_ISO = 1
+    a_iso: Annotated[CLEANLINESS, BeforeValidator(_cleanliness_class)] = "none"  # cleanliness class of the lubricant for a_ISO; none: a_ISO = 1
     method: Literal["iso16281", "iso281", "deng2017"] = "iso16281"  # which rating life is shown, monitored and counted as damage
     laminae: Annotated[int, Field(ge=2, le=400)] = 40  # per roller for L10r; ISO/TS 16281 requires 30 or more
 
@@ -413,8 +430,18 @@ class Scene:
     @check
     def _operation_is_within_bounds(self) -> list[str]:
         errors = step_errors(self) + moment_errors(self) + mounting_errors(self.bearing, self.mounting) + support_errors(self)
-        errors += axial_errors(self) + sink_errors(self.heat, self.lubricant)
+        errors += axial_errors(self) + sink_errors(self.heat, self.lubricant) + cleanliness_errors(self)
         return errors + range_errors(self)
+
+
+def cleanliness_errors(scene) -> list[str]:
+    """Return an error message for a cleanliness class of oil that is asked for a grease, or the other way round."""
+    name, greased = scene.life.a_iso, scene.lubricant.grease is not None
+    if name == "none" or name.startswith("grease_") == greased:
+        return []
+    kinds = [each for each in typing.get_args(CLEANLINESS) if each != "none" and each.startswith("grease_") == greased]
+    classed, used = ("oil", "grease") if greased else ("grease", "oil")
+    return [f"life.a_iso: {name} is a class of {classed}, and the bearing runs in {used}; expected one of {', '.join(kinds)}, or none"]
 
 
 def moment_errors(scene) -> list[str]:

@@ -41,6 +41,13 @@ of all rollers; those of the end slices say how hard edges press, without the ri
 """
 
 
+def _supply_text(scene: Scene) -> str:
+    """Return how the oil is supplied, and its fraction in the oil-air mixture or its flow, in words."""
+    supply, fraction = scene.lubricant.supply, scene.lubricant.mixture_fraction
+    amount = f"{6e4 * supply.flow:.3g} l/min" if fraction is None else f"{100 * fraction:g} % in the air"
+    return f"supply {supply.law}, {amount}"
+
+
 def about(scene: Scene, factor: int) -> str:
     """Return the description of a run as Markdown."""
     bearing, oil, limits = scene.bearing, scene.lubricant, scene.thresholds
@@ -54,7 +61,7 @@ outer raceway with {raceway.lobes} lobes, R_low {1e3 * raceway.low_radius:.4f} m
 low point at {math.degrees(raceway.installation_angle):g} deg,
 play at the low points {1e6 * bearing.radial_clearance_at_low_points:.1f} um (negative: preload).
 
-**Oil** {oil.oil.name}, {oil.temperature - ZERO_CELSIUS:g} °C at the start, {100 * oil.mixture_fraction:g} % in the air,
+**Oil** {oil.oil.name}, {oil.temperature - ZERO_CELSIUS:g} °C at the start, {_supply_text(scene)},
 traction law {oil.traction.law}.
 
 **Level** {scene.level}.

@@ -154,7 +154,7 @@ def place_outwards(row, block, cage, guidance, rows):
 
 
 @kernel
-def linear_churning(cage_speed, model):
+def linear_churning(cage_speed, shaft_speed, model):
     """Return the drag of mixture and bath on a roller, linearised about the cage's speed.
 
     Rollers orbit about as fast as the cage, so F(v) = F(v_c) + F'(v_c) (v - v_c), v_c = r_m omega_c, costs one evaluation for all of them.
@@ -164,7 +164,7 @@ def linear_churning(cage_speed, model):
     F(v_c) [N], F'(v_c) [N s/m], and the derivative of F'(v_c) by cage speed [N s^2/(m rad)], taking F for the local power of v
     """
     pitch_radius = model.params.raceways.pitch_radius
-    force, d_cage_speed = roller_drag(cage_speed, model.params, model.lubrication)
+    force, d_cage_speed = roller_drag(cage_speed, shaft_speed, model.params, model.lubrication)
     d_speed, speed = d_cage_speed / pitch_radius, pitch_radius * cage_speed
     bend = d_speed * (d_speed / force - 1.0 / speed) * pitch_radius if force != 0.0 else 0.0
     return force, d_speed, bend

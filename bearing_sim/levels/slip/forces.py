@@ -114,7 +114,7 @@ def equations(t, y, model, work, rate, with_jacobian):
     if not balance_loads(y[THETA], cage_speed, load_y, load_z, params, work):
         return False
     torque, d_torque = _cage_torque(cage_speed, shaft_speed, model)
-    churning, d_churning = roller_drag(cage_speed, params, model.lubrication)
+    churning, d_churning = roller_drag(cage_speed, shaft_speed, params, model.lubrication)
     _leaning_force(cage_speed, params, work)
     _tractions(cage_speed, shaft_speed, y, model, work)
     contacts, jacobian, border = work.contacts, work.jacobian.rows, work.jacobian.border

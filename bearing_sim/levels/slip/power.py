@@ -30,7 +30,7 @@ def slip_powers(cage_speed, cage_acceleration, spins, shaft_speed, model, work):
     guide_speed = cage.guidance.turning * shaft_speed
     land = land_torque(cage_speed, guide_speed, cage.assumed_eccentricity, lubrication.viscosity, cage)[0]
     bore, windage = windage_powers(cage_speed, shaft_speed, params, lubrication)
-    drag, seals = roller_drag(cage_speed, params, lubrication)[0], seal_power(shaft_speed, params)
+    drag, seals = roller_drag(cage_speed, shaft_speed, params, lubrication)[0], seal_power(shaft_speed, params)
     blocks = contacts.shape[0] // 2
     churning, pocket = 0.0, 0.0
     for j in range(count):

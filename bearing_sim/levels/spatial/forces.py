@@ -344,7 +344,8 @@ def equations(t, y, model, work, rate, with_jacobian):
     See the docstring of the module.
     """
     params, rows, contacts = model.params, work.rollers, work.contacts
-    shaft_speed, churning = shaft_speed_at(t, model.drive), linear_churning(y[OMEGA], model)
+    shaft_speed = shaft_speed_at(t, model.drive)
+    churning = linear_churning(y[OMEGA], shaft_speed, model)
     inner_radius, resistance = params.raceways.inner_radius + inner_growth(shaft_speed, model), model.lubrication.rolling_resistance.on
     spread_state(y, params.rollers.count, rows)
     border_accelerations(t, y, model, work, rate, with_jacobian)

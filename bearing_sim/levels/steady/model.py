@@ -235,6 +235,7 @@ def _warmed(lubrication, inlet, growth, viscosity, film_temperature):
         lubrication.outer,
         lubrication.viscosity,
         lubrication.mixture_density,
+        lubrication.mixture_flow,
         inlet,
         lubrication.rolling_resistance,
         lubrication.bath,
