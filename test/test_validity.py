@@ -73,6 +73,7 @@ ROUGH = "bearing.roughness={roller: 0.1 um, raceway: 0.2 um}"
 EYRING = "lubricant.traction={law: eyring}"
 BATH = "lubricant.supply=oil_bath"
 GREASE = "lubricant={grease: lithium NLGI 2, temperature: 70 degC}"
+FULL = "bearing.cage={guidance: full_complement}"
 PAPER = "deng2017_table1"
 HOT = ("heat.law=given",)
 NETWORK = ("heat.law=network", "level=steady")
@@ -89,6 +90,8 @@ def carried(stiffness, length, clearance):
 CASES = {
     "oil_4109_class": (("run", "motor", *VG_320, AVIATION_FIT), ("run", "motor")),
     "oil_4109_base": (("loads", "motor", "lubricant.oil=ISO VG 32", AVIATION_FIT), ("loads", "motor", "lubricant.oil=DEF STAN 91-101")),
+    "estimated_rollers": (("run", "motor", "bearing.estimated=[{field: roller.count, by: a guess, low: 15, high: 17}]"), ("run", "motor")),
+    "full_complement_play": (("run", "motor", FULL), ("run", "motor", FULL, "bearing.roller.count=20")),
     "oil_4109_pressure": (("run", PAPER, "operating.radial_load=25 kN"), ("run", PAPER)),
     "oil_4109_speed": (("run", PAPER, "operating.shaft_speed=52000 rpm"), ("run", PAPER)),
     "oil_4109_temperature": (("run", PAPER, "lubricant.temperature=170 degC"), ("run", PAPER, "lubricant.temperature=140 degC")),

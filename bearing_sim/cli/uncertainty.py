@@ -48,6 +48,7 @@ def uncertainty(scene_name, overrides, samples, seed, level, log, stretches, wor
     """Compute quantiles (5, 50 and 95 %) of slip and life of SCENE, with uncertain fields drawn from the ranges in its block `uncertainty`.
 
     With N samples and d ranges the bearing is computed N (d + 2) times; Sobol' indices show which fields the spread comes from.
+    Fields of a catalogue bearing that are estimated take the ranges of their estimates, unless the scene has another one for them.
     To change a range: --set "uncertainty.lubricant.temperature=[90 degC, 130 degC]"; to remove one: --set uncertainty.FIELD=null.
     """
     from bearing_sim.scene.loader import SceneError, load_scene
@@ -85,13 +86,14 @@ def bands_of(scene, samples, seed=SEED, level=None, course=None, journal=None, w
     course : `bearing_sim.studies.uncertainty.Stretches`, or None.
     """
     announce_compilation()
+    from bearing_sim.scene.uncertainty import ranges_of
     from bearing_sim.studies.uncertainty import UncertaintyError, study
     from bearing_sim.sweep.tasks import ClusterError
 
     base = 1 << (samples - 1).bit_length()
     began, given = time.perf_counter(), (course.conditions, course.seconds) if course is not None else None
     with (
-        Points(f"uncertainty of {scene.name}", base * (len(scene.uncertainty) + 2)) as points,
+        Points(f"uncertainty of {scene.name}", base * (len(ranges_of(scene)) + 2)) as points,
         as_usage_error(UncertaintyError, ClusterError, ValueError),
     ):
         found = study(scene, base, seed, level=level, course=given, journal=journal, workers=workers, dask=dask, progress=points.update)
@@ -203,11 +205,11 @@ def _percent(share: float) -> str:
 def print_bands(name, report) -> None:
     """Print a report as a table."""
     from bearing_sim.scene.scene import Scene
-    from bearing_sim.scene.uncertainty import quantities
+    from bearing_sim.scene.uncertainty import quantities, shown
 
     known = quantities(Scene)
     ranges = [
-        f"{field}: {known[field].show(one['low'])} to {known[field].show(one['high'])}, {one['distribution']}"
+        f"{field}: {shown(known, field, one['low'])} to {shown(known, field, one['high'])}, {one['distribution']}"
         + (f" ({one['source']})" if one["source"] else "")
         for field, one in report["ranges"].items()
     ]
@@ -233,7 +235,7 @@ def _rows(found) -> list[dict]:
     from bearing_sim.scene.uncertainty import quantities
 
     known = quantities(Scene)
-    columns = [f"{one.field} [{known[one.field].unit or '1'}]" for one in found.ranges]
+    columns = [f"{one.field} [{known[one.field].unit if one.field in known and known[one.field].unit else '1'}]" for one in found.ranges]
     answers = zip(found.answers["cage_slip"].tolist(), found.answers["life_hours"].tolist())
     return [
         dict(zip(columns, point)) | {"cage_slip [1]": slip, "life [h]": life} for point, (slip, life) in zip(found.design.points.tolist(), answers)

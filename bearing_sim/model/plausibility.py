@@ -56,11 +56,12 @@ def minimum_load(scene: Scene) -> tuple[float, str]:
 
 def _rollers(bearing: Bearing) -> list[str]:
     fill = bearing.roller.count * bearing.roller.diameter / (math.pi * bearing.pitch_diameter)
-    if _LEAST_FILL <= fill <= _LARGEST_FILL:
+    largest = 1.0 if bearing.cage.is_absent else _LARGEST_FILL
+    if _LEAST_FILL <= fill <= largest:
         return []
     return [
         f"bearing.roller: {bearing.roller.count} rollers of {1e3 * bearing.roller.diameter:.6g} mm fill {100 * fill:.3g} % of the pitch circle of "
-        f"{1e3 * bearing.pitch_diameter:.6g} mm; expected {100 * _LEAST_FILL:g} to {100 * _LARGEST_FILL:g} %; check count and diameter"
+        f"{1e3 * bearing.pitch_diameter:.6g} mm; expected {100 * _LEAST_FILL:g} to {100 * largest:g} %; check count and diameter"
     ]
 
 
@@ -144,6 +145,8 @@ def _cage_radii(bearing: Bearing) -> list[str]:
 def _cage_mass(bearing: Bearing) -> list[str]:
     """Judge the mass by that of a ring with pockets, from polyamide to brass."""
     cage, roller = bearing.cage, bearing.roller
+    if cage.is_absent:
+        return []
     body = math.pi * (cage.outside**2 - cage.bore**2) * cage.width
     pocket = (roller.diameter + 2 * cage.pocket_clearance) * min(roller.length, cage.width) * min(cage.outside - cage.bore, roller.diameter)
     volume = max(body - roller.count * pocket, 0.1 * body)

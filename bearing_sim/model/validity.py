@@ -1193,10 +1193,43 @@ LAWS = (
         lambda at: np.abs(at.samples["shaft_speed"]) * (30.0 / math.pi),
         expected="at most bearing.ratings.limiting_speed, where it is given",
     ),
+    Law(
+        "estimated_rollers",
+        "validity.bearing",
+        "all laws",
+        "the number or the diameter of the rollers is an estimate",
+        "",
+        -math.inf,
+        0.0,
+        "bearing.estimated says by which rules, and with which error",
+        "measure or ask the maker and give bearing.roller; bearing-sim uncertainty takes the ranges of the estimates",
+        lambda scene: bool(scene.bearing.estimated),
+        lambda scene: float(any(each.field in ("roller.count", "roller.diameter") for each in scene.bearing.estimated)),
+        of_scene=True,
+        expected="printed by a maker, or deduced from what is printed",
+    ),
+    Law(
+        "full_complement_play",
+        "validity.bearing",
+        "orbit of a full complement at one speed",
+        "the play between all rollers together, over the diameter of one",
+        "",
+        -math.inf,
+        1.5,
+        "assumption: rollers touch, for which makers leave no room for another one or two",
+        "give more rollers, or the cage that the bearing has",
+        lambda scene: scene.bearing.cage.is_absent,
+        lambda scene: math.pi / math.asin(scene.bearing.diameter_ratio) - scene.bearing.roller.count,
+        of_scene=True,
+    ),
 )  # fmt: skip
 """All limits that are watched, by subject."""
 
 UNWATCHED = (
+    (
+        "friction between the rollers of a full complement",
+        "assumption: each brakes its spin by the force that it needs from its neighbours, as in a pocket; forces that pass through are left out",
+    ),
     ("contact damping of Hunt and Crossley", "no published range; settled slip and life do not depend on it"),
     ("heating of the film's inlet", "W. R. D. Wilson and S. Sheu (1983) give no range that we could read; the factor 0.1 is an assumption"),
     ("pocket friction and boundary friction of the lands", "coefficients, not laws with a range: 0.02 to 0.1 and 0.05 to 0.15 in use"),

@@ -2,10 +2,12 @@
 """The bearing of a scene: raceways, rollers, cage, material, and the checks that its parts fit together."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import field, replace
 from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
+from pydantic_core import ArgsKwargs
 
 from bearing_sim.scene.contour import form_errors, settled_form
 from bearing_sim.scene.crown import Crown, IsoLogCrown, crown_errors
@@ -28,7 +30,11 @@ _NEEDS = {
     "outer_ring": ("inner_radius", "guide_clearance", "guide_land_width"),
     "inner_ring": ("outer_radius", "guide_clearance", "guide_land_width"),
     "roller": ("inner_radius", "outer_radius"),
+    "full_complement": (),
 }
+# A body that takes no part in the motion, in place of the cage of a full complement.
+_NO_BODY = {"mass": 1e-6, "width": 1e-4}  # kg, m
+_NO_THICKNESS = 0.005  # of it, over D_w, on both sides of the pitch circle
 
 
 @record
@@ -139,10 +145,11 @@ class Cage:
     ``outer_ring``: lands of radius R_g on the outer ring around the cage, whose outer surface is at R_g - c.
     ``inner_ring``: lands of radius R_g on the inner ring within the cage, whose bore is at R_g + c.
     ``roller``: no lands; pockets that also hold the rollers radially carry the cage.
+    ``full_complement``: no cage; neighbouring rollers touch, so that all orbit at one speed, and ``pocket_friction`` is that between them.
     For a cage on lands, give the radius of its running surface or that of the lands, or both if they agree.
     """
 
-    guidance: Literal["outer_ring", "inner_ring", "roller"] = "outer_ring"  # what guides the cage
+    guidance: Literal["outer_ring", "inner_ring", "roller", "full_complement"] = "outer_ring"  # what guides the cage
     mass: quantity("kg", "cage mass", 1e-6, 1e3, "g")
     polar_inertia: quantity("kg*m^2", "cage inertia about the shaft axis", 1e-12, 1e3) | None = None
     transverse_inertia: quantity("kg*m^2", "cage inertia about a diameter; None: half of the polar one", 1e-12, 1e3) | None = None
@@ -168,10 +175,23 @@ class Cage:
     pocket_film_force: quantity("N", "force of the pocket's oil film when the clearance is used up", 0.0, 1e4) = 67.0
     pocket_film_damping: quantity("", "damping of the pocket's oil film [N s/m]", 0.0, 1e4) = 5.0
 
+    @model_validator(mode="before")
+    @classmethod
+    def _full_complement_has_no_body(cls, given):
+        fields = given.kwargs if isinstance(given, ArgsKwargs) else given
+        if not isinstance(fields, Mapping) or fields.get("guidance") != "full_complement":
+            return given
+        return {**_NO_BODY, **fields}
+
     @property
     def has_lands(self) -> bool:
         """Whether lands guide the cage."""
-        return self.guidance != "roller"
+        return self.guidance in ("outer_ring", "inner_ring")
+
+    @property
+    def is_absent(self) -> bool:
+        """Whether the bearing has a full complement of rollers, without a cage."""
+        return self.guidance == "full_complement"
 
     @property
     def land_radius(self) -> float:
@@ -220,9 +240,14 @@ class Cage:
         return errors
 
     def _errors_without_lands(self) -> list[str]:
-        errors = [f"{name}: a cage with guidance roller has no lands; leave it out (null)" for name in LAND_FIELDS if getattr(self, name) is not None]
+        guidance = self.guidance
+        errors = [
+            f"{name}: a cage with guidance {guidance} has no lands; leave it out (null)" for name in LAND_FIELDS if getattr(self, name) is not None
+        ]
         if self.assumed_eccentricity:
-            errors.append("assumed_eccentricity: a cage with guidance roller has no lands to be eccentric in; leave it out")
+            errors.append(f"assumed_eccentricity: a cage with guidance {guidance} has no lands to be eccentric in; leave it out")
+        if self.is_absent:
+            errors += [f"{name}: a full complement has no cage; leave it out" for name, none in _NO_BODY.items() if getattr(self, name) != none]
         return errors
 
 
@@ -339,6 +364,14 @@ class Bearing:
             object.__setattr__(self, "outer_raceway", replace(self.outer_raceway, low_radius=self._low_radius_by_clearance()))
         return self
 
+    @model_validator(mode="after")
+    def _absent_cage_is_on_the_pitch_circle(self):
+        half = _NO_THICKNESS * self.roller.diameter
+        if self.cage.is_absent:
+            radii = {"inner_radius": self.pitch_radius - half, "outer_radius": self.pitch_radius + half}
+            object.__setattr__(self, "cage", replace(self.cage, **radii))
+        return self
+
     def _low_radius_by_clearance(self) -> float:
         clearance = self.clearance
         if isinstance(clearance, str):
@@ -453,6 +486,8 @@ def cage_errors(bearing) -> list[str]:
             f"{outside_name}: the cage's outer surface, at {1e3 * cage.outside:.6g} mm, cuts into the outer raceway ({1e3 * low:.6g} mm at its low "
             "points); make it smaller"
         )
+    if cage.is_absent:
+        return errors
     errors += _land_errors(bearing) if cage.has_lands else _pocket_errors(bearing)
     if not errors and cage.guidance != "outer_ring" and cage.play >= min(cage.bore - inner, low - cage.outside):
         name, room = "guide_clearance" if cage.has_lands else "pocket_radial_clearance", min(cage.bore - inner, low - cage.outside)
@@ -503,7 +538,7 @@ def play_errors(bearing) -> list[str]:
             f"outer_raceway.low_radius, {1e3 * bearing.outer_raceway.low_radius:.6g} mm"
         )
     bar = 2 * math.pi * bearing.pitch_radius / roller.count - roller.diameter - 2 * cage.pocket_clearance
-    if bar <= 0.0:
+    if bar <= 0.0 and not cage.is_absent:
         bound = cage.pocket_clearance + bar / 2
         use = f"expected less than {1e3 * bound:.6g} mm" if bound > 0.0 else "use fewer or thinner rollers"
         errors.append(
@@ -526,5 +561,8 @@ def drop_other_lands(preset: dict, given: dict) -> None:
     guidance = given.get("guidance", preset.get("guidance", "outer_ring"))
     if guidance == preset.get("guidance", "outer_ring"):
         return
-    for name in LAND_FIELDS if guidance == "roller" else ("guide_radius",):
+    dropped = LAND_FIELDS if guidance in ("roller", "full_complement") else ("guide_radius",)
+    if guidance == "full_complement":
+        dropped += ("mass", "width", "inner_radius", "outer_radius", "pocket_clearance")
+    for name in dropped:
         preset.pop(name, None)

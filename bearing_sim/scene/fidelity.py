@@ -56,6 +56,12 @@ EFFECTS = (
     Effect("lubricant.rolling_resistance", LEVELS, "whose contacts resist rolling", lambda scene: scene.lubricant.rolling_resistance.law != "none"),
     Effect("lubricant.supply", LEVELS, "whose rollers and cage move through oil", lambda scene: scene.lubricant.has_bath),
     Effect("bearing.seals", LEVELS, "whose seals rub on the shaft", lambda scene: scene.bearing.seals.law != "none"),
+    Effect(
+        "bearing.cage.guidance",
+        ("steady", "slip"),
+        "whose rollers orbit at one speed, as touching ones do",
+        lambda scene: "full_complement" if scene.bearing.cage.is_absent else False,
+    ),
     Effect("bearing.flanges", LEVELS, "whose rollers rub on flanges", lambda scene: scene.bearing.flanges.present),
     Effect("bearing.dimensions_at", LEVELS, "whose rings grow", lambda scene: scene.bearing.dimensions_at == "cold"),
     Effect("support.unbalance", WHIRLING, "whose inner ring has inertia", lambda scene: scene.support.unbalance.amount > 0.0),

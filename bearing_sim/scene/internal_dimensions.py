@@ -270,6 +270,7 @@ CAGE_RULES = {
 _WIDTH = 0.9  # of the cage over that of the bearing
 _POCKET_CLEARANCE = 0.02  # over D_w, on each side of a roller
 _GUIDE_CLEARANCE = 0.0035  # radial, over the radius of the lands
+_ROLLER_FRICTION = 0.1  # coefficient between neighbouring rollers of a full complement; assumption: mixed friction of steel on steel, 0.05 to 0.15
 _HALF_THICKNESS = 0.2  # of a cage on lands, beyond the pitch circle on the side away from them, over D_w
 OUTER_FLANGES = {"N": 0, "NF": 1, "NU": 2, "NJ": 2, "NUP": 2, "NCF": 1}
 INNER_FLANGES = {"N": 2, "NF": 2, "NU": 0, "NJ": 1, "NUP": 2, "NCF": 2}
@@ -359,7 +360,7 @@ def bearing_tree(designation: Designation | str) -> dict[str, Any]:
         designation = parse_designation(designation)
     section, boundary = section_of(designation), designation.boundary
     if designation.is_full_complement:
-        cage, estimates, made = _full_complement_tree(section, boundary.width)
+        cage, estimates, made = _full_complement_tree()
     else:
         cage, estimates, name = _cage_tree(designation, section)
         guide = "rollers" if cage["guidance"] == "roller" else cage["guidance"].replace("_", " ")
@@ -422,8 +423,11 @@ def _source(section: Section, boundary, made: str, designation: Designation) -> 
     parts = [dimensions, printed]
     if section.count_source != "estimated":
         parts.append(f"number of rollers: {section.count_source}")
-    return "; ".join([*parts, made]) + ". Estimates: " + ", ".join(each["field"] for each in section.estimated) + ", cage."
+    estimates = [each["field"] for each in section.estimated] + ["cage"] * (not designation.is_full_complement)
+    return "; ".join([*parts, made]) + f". Estimates: {', '.join(estimates)}."
 
 
-def _full_complement_tree(section: Section, width: float) -> tuple[dict, list[dict], str]:
-    raise DesignationError("full-complement bearings are not modelled yet; take a type with a cage")
+def _full_complement_tree() -> tuple[dict, list[dict], str]:
+    """Return the block of a cage that is not there, its estimated fields, and what it is."""
+    friction = _estimate("cage.pocket_friction", "between neighbouring rollers, whose surfaces slide against each other; assumption", 0.5, 1.5)
+    return {"guidance": "full_complement", "pocket_friction": _ROLLER_FRICTION}, [friction], "full complement of rollers, no cage"

@@ -28,6 +28,7 @@ from bearing_sim.scene.quantity import SPEED, Quantity, check, record
 BLOCKS = ("bearing", "lubricant", "operating", "mounting", "heat", "support")  # of a scene; their quantities may have ranges
 _ENDS, _WORDS = ("low", "high", "mode"), ("distribution", "source")
 _LOW_RADIUS = "outer_raceway.low_radius"
+_MIDDLE = 0.9  # of the values of an estimated field lie within its range
 _CLOSE_ENOUGH = 0.6  # of difflib's ratio
 
 
@@ -215,6 +216,32 @@ def range_errors(scene) -> list[str]:
             errors.append(f"{where}: given twice")
         seen.add(one.field)
     return errors
+
+
+def ranges_of(scene) -> tuple[Range, ...]:
+    """Return the ranges that a scene declares, and those of the bearing's estimated fields that it declares none for."""
+    declared = {one.field for one in scene.uncertainty}
+    return scene.uncertainty + tuple(one for one in estimated_ranges(scene) if one.field not in declared)
+
+
+def estimated_ranges(scene) -> Iterator[Range]:
+    """Yield the ranges of the estimated fields of a scene's bearing: uniform, with the given range as their middle 90 %; counts in whole numbers."""
+    known = quantities(type(scene))
+    for each in scene.bearing.estimated:
+        path = f"bearing.{each.field}"
+        own, declared = value_at(scene, path), known.get(path)
+        if declared is None:  # a count
+            low, high = each.low - 0.499, each.high + 0.499
+        else:
+            margin = own * (each.high - each.low) * (1.0 / _MIDDLE - 1.0) / 2.0
+            low, high = max(own * each.low - margin, declared.minimum), min(own * each.high + margin, declared.maximum)
+        if low < high:
+            yield Range(field=path, low=low, high=high, source=each.by)
+
+
+def shown(known: Mapping[str, Quantity], path: str, value: float) -> str:
+    """Return a value of a field as text: with its unit for a quantity, as a whole number for a count."""
+    return known[path].show(value) if path in known else f"{value:.0f}"
 
 
 def written(ranges: Iterable[Mapping], scene_type: type) -> dict[str, dict]:

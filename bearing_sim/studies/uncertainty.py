@@ -22,7 +22,7 @@ from bearing_sim.levels.steady.table import empty_table
 from bearing_sim.scene import fidelity
 from bearing_sim.scene.errors import SceneError
 from bearing_sim.scene.scene import Integration, Scene
-from bearing_sim.scene.uncertainty import Range, messages, quantities, value_at, with_values
+from bearing_sim.scene.uncertainty import Range, messages, quantities, ranges_of, shown, value_at, with_values
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation, scene_inputs
 from bearing_sim.sweep.table import new_figure
 from bearing_sim.sweep.tasks import Journal, run_tasks, task
@@ -210,6 +210,7 @@ VALUES = ("cage_slip", "life_hours")
 _DURATION, _SAMPLES, _SETTLED = 0.5, 500, 0.2  # s and samples of a run (Deng 2017, 3.3), and the fraction at its end that is averaged
 _ENDLESS = 1e4  # s; longer than any lag of a cage; at level steady simulated time costs nothing
 _BATCH = 64  # points of level steady per task, which take milliseconds each; at higher levels each point is a task
+_LEAST_FRACTION = 0.01  # of the way to a draw of estimated numbers; below it the scene's own are taken
 _ABSENT = 0.05  # largest fraction of points without an answer
 
 
@@ -279,7 +280,7 @@ def study(
 
     Parameters
     ----------
-    scene : with ranges in its block ``uncertainty``.
+    scene : with ranges in its block ``uncertainty``, or with a bearing that has estimated fields.
     base : N, a power of two; the study computes N (d + 2) points.
     seed : of the design.
     shares : whether to compute the indices; bands alone take 2 N points.
@@ -300,7 +301,7 @@ def study(
         See `bearing_sim.sweep.tasks.run_tasks`.
     """
     scene, reason = lowest_level(scene, level)
-    ranges = scene.uncertainty
+    ranges = ranges_of(scene)
     _check(scene, course is not None)
     conditions, seconds = course if course is not None else (None, np.ones(1))
     designed = design([distribution(one, value_at(scene, one.field)) for one in ranges], base, seed)
@@ -357,7 +358,7 @@ def settled_batch(
 
 
 def _check(scene: Scene, on_course: bool) -> None:
-    if not scene.uncertainty:
+    if not ranges_of(scene):
         raise UncertaintyError(
             "the scene has no uncertain fields; give ranges in its block `uncertainty`, such as "
             '--set "uncertainty.lubricant.mixture_fraction=[0.015, 0.05]"'
@@ -378,11 +379,37 @@ def _check(scene: Scene, on_course: bool) -> None:
 
 
 def _varied(scene: Scene, values: dict[str, float]) -> Scene:
-    try:
-        return with_values(scene, values)
-    except ValidationError as error:
-        numbers = ", ".join(f"{path} = {quantities(type(scene))[path].show(value)}" for path, value in values.items())
-        raise UncertaintyError(f"numbers within the ranges contradict each other ({numbers}): {messages(error)}; narrow the ranges") from None
+    """Return a scene with other numbers; estimated ones whose parts do not fit together are drawn towards the scene's own until they do.
+
+    The rollers' length follows a draw of their number and diameter so that the static rating stays, from which it was estimated.
+    """
+    declared = {one.field for one in scene.uncertainty}
+    own = {path: value_at(scene, path) for path in values if path not in declared}
+    fraction = 1.0
+    while True:
+        tried = {path: value if path in declared else own[path] + fraction * (value - own[path]) for path, value in values.items()}
+        try:
+            return with_values(scene, _with_kept_rating(scene, tried, own))
+        except ValidationError as error:
+            fraction = 0.5 * fraction if fraction > _LEAST_FRACTION else 0.0
+            if not own or tried == {**values, **own}:
+                known = quantities(type(scene))
+                numbers = ", ".join(f"{path} = {shown(known, path, value)}" for path, value in values.items())
+                raise UncertaintyError(f"numbers within the ranges contradict each other ({numbers}): {messages(error)}; narrow the ranges") from None
+
+
+def _with_kept_rating(scene: Scene, values: dict[str, float], estimated: dict[str, float]) -> dict[str, float]:
+    """Return values with a whole number of rollers, and with lengths for which Z L D_w (1 - gamma) stays where these are all estimated."""
+    roller, pitch = scene.bearing.roller, scene.bearing.pitch_diameter
+    count, diameter, length = (f"bearing.roller.{name}" for name in ("count", "diameter", "length"))
+    values = {path: round(value) if path == count else value for path, value in values.items()}
+    if length not in estimated or not {count, diameter} & estimated.keys():
+        return values
+    inner = pitch - roller.diameter
+    width = values.get(diameter, roller.diameter)
+    before = roller.count * roller.diameter * (1.0 - roller.diameter / pitch)
+    after = values.get(count, roller.count) * width * (1.0 - width / (inner + width))
+    return {**values, length: values[length] * before / after}
 
 
 def settled(scene: Scene, conditions: np.ndarray | None = None) -> np.ndarray:
