@@ -35,6 +35,7 @@ def scenes(as_json):
         return
     print_table("scenes", found["scenes"].items())
     print_table("catalog", [(kind, ", ".join(found[kind])) for kind in ("bearings", "oils", "greases", "mappings")])
+    click.echo("any designation, such as NU 210 ECP/C3, is a bearing, too (bearing-sim catalog), and ISO VG 2 to 3200 are oils")
 
 
 @click.command("loads")

@@ -30,6 +30,8 @@ _STUDIES = {
     "clearance": Entry("study:clearance", "Running clearance over speed and load, thermal runaway, and what is lost at which speed."),
     "slices": Entry("study:slices", "Convergence of level spatial with the number of slices, and their cost."),
     "friction": Entry("study:friction", "Frictional moment and thermal reference speed against makers' models."),
+    "scenes": Entry("study:scenes", "Whether random scenes of catalogue bearings settle, level by level."),
+    "findings": Entry("study:findings", "Published findings about slip, and whether the model finds the same."),
     "extremes": Entry("study:extremes", "Map which scenes finish, are step-limited, are refused or fail."),
 }
 _COMMANDS = {
@@ -37,6 +39,8 @@ _COMMANDS = {
     "replay": Entry("replay:replay", "Run the model on a recorded log of shaft speed and radial load."),
     "import-csv": Entry("logs:import_csv", "Convert a measured table to an MCAP log."),
     "loads": Entry("bearings:loads", "Show a scene's load distribution over rollers and slices, and the lives."),
+    "catalog": Entry("catalog:catalog", "List the bearings of the catalogue, or show one by its designation."),
+    "new": Entry("catalog:new", "Write the scene of a bearing by designation in an oil, commented."),
     "machine": Entry("bearings:machine", "Compute the raceway that pre-deformation machining produces."),
     "table": Entry("table:table", "Build or inspect the table of operating points of level steady."),
     "uncertainty": Entry("uncertainty:uncertainty", "Compute ranges of slip and life from uncertain fields, and each field's share."),

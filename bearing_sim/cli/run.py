@@ -2,6 +2,7 @@
 """``bearing-sim run``: a scene under its constant conditions."""
 
 import math
+import shlex
 import time
 from contextlib import ExitStack
 from pathlib import Path
@@ -191,6 +192,7 @@ def _report(simulation, outcome, wall, start_up) -> dict:
     return {
         "scene": simulation.scene.name,
         "level": simulation.scene.level,
+        "estimated": [each.field for each in simulation.scene.bearing.estimated],
         "settled": outcome.settled,
         "settling_seconds": outcome.settling_time,
         "unsettled_reason": outcome.reason,
@@ -252,6 +254,7 @@ def _print(report, scene, bands) -> None:
             *_pressures(report, scene),
             ("largest roller load", f"inner {report['inner_load_maximum']:.4g} N, outer {report['outer_load_maximum']:.4g} N"),
             ("simulated", f"{report['sim_seconds']:.4g} s in {report['wall_seconds']:.3g} s, {report['real_time_factor']:.3g} times real time"),
+            *_estimates(scene),
             ("steps", f"{report['steps']}, {rejected}"),
             ("work", f"{report['right_hand_sides']} right-hand sides, {report['jacobians']} Jacobians, {report['factorisations']} factorisations"),
             *(band_rows(bands) if bands else []),
@@ -262,6 +265,15 @@ def _print(report, scene, bands) -> None:
             ),
         ],
     )
+
+
+def _estimates(scene) -> list[tuple[str, str]]:
+    """Return a row of the dimensions that no source gives; none where all are given."""
+    bearing = scene.bearing
+    if not bearing.estimated:
+        return []
+    rules = f"; their rules: bearing-sim catalog {shlex.quote(bearing.designation)}" if bearing.designation else ""
+    return [("estimated", f"{', '.join(each.field for each in bearing.estimated)}{rules}")]
 
 
 def _slip(report) -> str:

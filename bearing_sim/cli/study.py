@@ -22,6 +22,7 @@ from bearing_sim.cli.reporting import (
     print_rows,
     print_table,
     progress_bar,
+    seconds_of,
     unknown_report,
     warn_of_scene,
     write_csv,
@@ -468,6 +469,55 @@ def _print_thermal_speeds(speeds) -> None:
     ]
     columns = ("bearing", "model", "M_0 + M_1", "SKF's friction model", "NKE prints", "SKF prints", "model/NKE", "model/SKF")
     print_rows("thermal reference speed, rpm (ISO 15312)", columns, rows, words=("bearing",))
+
+
+@click.command("scenes")
+@click.option("--count", default=500, show_default=True, type=click.IntRange(1, 1_000_000), help="Random scenes.")
+@click.option("--level", type=level_type, default="slip", show_default=True, help="Level of fidelity.")
+@click.option("--seed", default=0, show_default=True, type=click.IntRange(0), help="Seed of the scenes.")
+@click.option("--at-most", default="100 s", show_default=True, metavar="S", help="Longest simulated time of a scene.")
+@click.option("--journal", type=click.Path(path_type=Path), metavar="PATH", help="File from which an interrupted study resumes.")
+@click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="Number of processes [default: all cores].")
+@json_option
+def scenes(count, level, seed, at_most, journal, workers, as_json):
+    """Run random scenes of catalogue bearings until they settle: designation, oil, 0.1 to 1.2 of the limiting speed, 0 to 0.5 C.
+
+    Lists those that do not settle, with what they do.
+    """
+    from bearing_sim.studies.catalogue_scenes import run_scenes
+
+    announce_compilation()
+    with Points(f"{count} scenes at level {level}", count) as points:
+        report = run_scenes(count, level, seed, seconds_of(at_most, "--at-most"), journal, workers, points.update)
+    if as_json:
+        print_json(
+            {"level": level, "settled": report.settled, "counts": report.counts, "others": [[one._asdict(), *why] for one, *why in report.others]}
+        )
+        return
+    print_table(f"{count} random scenes at level {level}", [(status, str(number)) for status, number in sorted(report.counts.items())])
+    if report.others:
+        columns = ("designation", "oil", "supply", "degC", "rpm", "N", "status", "what it does")
+        print_rows("scenes that did not settle", columns, [[*map(str, one), status, why] for one, status, why in report.others], words=columns)
+
+
+@click.command("findings")
+@click.option("--level", type=click.Choice(["slip", "planar"]), default="slip", show_default=True, help="Level of fidelity.")
+@json_option
+def findings(level, as_json):
+    """Say which published findings about slip the model reproduces: an NU 215 on a rig, and an NU 232 in a wind gearbox.
+
+    They have a direction, no digits that a model could be held to.
+    """
+    announce_compilation()
+    from bearing_sim.studies.published_findings import findings as found
+
+    results = found(level)
+    if as_json:
+        print_json({"level": level, "findings": [one._asdict() for one in results]})
+        return
+    rows = [(one.claim, one.source, one.figures, "yes" if one.holds else "no") for one in results]
+    columns = ("finding", "source", "the model's cage slip", "holds")
+    print_rows(f"published findings at level {level}", columns, rows, words=columns)
 
 
 @click.command("clearance")

@@ -14,7 +14,7 @@ import yaml
 from pydantic import TypeAdapter, ValidationError
 from pydantic_core import PydanticCustomError
 
-from bearing_sim.scene.bearing import drop_other_lands
+from bearing_sim.scene.bearing import Bearing, drop_other_lands
 from bearing_sim.scene.contour import UNREAD, drop_other_forms, with_contour_text
 from bearing_sim.scene.designation import DesignationError, is_designation
 from bearing_sim.scene.diameters import ROUND_RACEWAY, diameters, forget_counterpart, gives_round_raceway, override_by_radius, with_radii
@@ -85,6 +85,7 @@ _RENAMED = {
     "lubricant.pumping": "give lubricant.rolling_resistance: hydrodynamic, or none",
     "bearing.ring_growth": "bearing.dimensions_at: cold computes rotation, mounting the fits, heat the temperatures",
 }
+_STAND_IN = "NU 210"  # for a bearing whose name is unknown, so that the rest of its scene can be checked
 _WRITTEN = {"written": True}  # context of a validation: the values come from a file or an option, see `Quantity.read`
 
 
@@ -194,12 +195,31 @@ def scene_from_mapping(tree: Mapping, origin: str = "scene") -> Scene:
         scene = TypeAdapter(Scene).validate_python(_with_level(resolved), context=_WRITTEN)
     except ValidationError as error:
         found = invalid_fields(error, Scene, _UNION_TAGS)
+        if any(each.path == "bearing.preset" for each in errors):  # what depends on the bearing that stands in is no error of the file
+            found = [each for each in found if each.path.partition(".")[0] not in ("", "bearing", "mounting")]
         errors += [each for each in found if not (unread and UNREAD in each.reason or each.path in without and each.reason == "missing")]
     if unread:
         errors.append(InvalidField("bearing.outer_raceway.contour_file", *unread))
     if errors:
         raise SceneError(origin, errors)
     return scene
+
+
+def load_bearing(name: str) -> Bearing:
+    """Return a bearing by its designation, or by its name in the catalogue.
+
+    Raises
+    ------
+    SceneError
+        There is no such bearing, or the table's entry has errors; all of them are listed.
+    """
+    tree, errors = _with_presets({"bearing": name})
+    if not errors:
+        try:
+            return TypeAdapter(Bearing).validate_python(tree["bearing"], context=_WRITTEN)
+        except ValidationError as error:
+            errors = invalid_fields(error, Bearing, _UNION_TAGS)
+    raise SceneError(name, errors)
 
 
 def _has_lobes(tree: Mapping) -> bool:
@@ -312,6 +332,8 @@ def _apply_override(tree: dict, override: str) -> None:
     if keys == ["heat", "law"] and node.get("law") != value:  # each law has fields of its own
         node.clear()
         drop_ranges(tree, "heat.")
+    if keys == ["bearing", "cage", "guidance"]:
+        drop_other_lands(node, {"guidance": value})
     node[keys[-1]] = value
     forget_counterpart(node, path, Scene)
     if keys[:-1] == ["lubricant"]:
@@ -402,8 +424,8 @@ def _with_presets(tree: Mapping) -> tuple[dict, list[InvalidField]]:
             tree["bearing"]["estimated"] = [
                 each for each in preset["estimated"] if _at(given, each["field"]) is None and _at(tree["bearing"], each["field"]) is not None
             ]
-        if unknown:  # its missing fields are consequences
-            raise SceneError("scene", errors)
+        if unknown:
+            tree["bearing"] = bearing_tree(_STAND_IN)
     for path in _MATERIALS:
         tree, unknown = _with_material(tree, path)
         errors += unknown

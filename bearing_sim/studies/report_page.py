@@ -473,16 +473,17 @@ def _scene_table(scene: Scene) -> str:
     """Return a table of what a scene says of bearing, lubricant and operation."""
     bearing = scene.bearing
     named = {
-        "bearing": bearing.name,
+        "bearing": bearing.designation or bearing.name,
         "rollers": bearing.roller.count,
         "lobes of the outer raceway": bearing.outer_raceway.lobes,
         "cage guided by": bearing.cage.guidance.replace("_", " "),
         "life": studied.life_name(scene),
+        "estimated, because no source prints them": ", ".join(each.field for each in bearing.estimated),
     }
     columns = Column("quantity", "", "dotted path in the scene"), Column("value", "", "with its unit"), Column("meaning", "", "what it is")
-    rows = []
+    rows, estimated = [], {f"bearing.{each.field}": f"; estimated: {each.by}" for each in bearing.estimated}
     for path, declared in quantities(Scene).items():
         value = value_at(scene, path)
         if isinstance(value, float):
-            rows.append({"quantity": path, "value": declared.show(value), "meaning": declared.meaning})
+            rows.append({"quantity": path, "value": declared.show(value), "meaning": declared.meaning + estimated.get(path, "")})
     return pairs({name: value for name, value in named.items() if value}) + rows_table(columns, rows, f"{len(rows)} quantities of the scene")

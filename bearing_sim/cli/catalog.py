@@ -1,0 +1,196 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""``bearing-sim catalog`` and ``new``: bearings by designation, and scenes from them."""
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+
+import click
+
+from bearing_sim.cli.options import json_option, level_type, picture_option
+from bearing_sim.cli.reporting import UsageError, as_file_error, as_usage_error, command_line, print_json, print_rows, print_table
+
+_COLUMNS = ("designation", "d", "D", "B", "C [kN]", "C_0 [kN]", "C_u [kN]", "limiting speed [rpm]", "ratings by")
+_WORDS = ("designation", "ratings by")
+
+_LARGEST = 5.0  # m, larger than any bearing; a bare 50 is 50 m
+
+
+def _range_option(name: str, meaning: str):
+    text = f"{meaning}: a length such as 50mm, or a range such as 50mm:80mm."
+    return click.option(name, metavar="LENGTH", callback=_read_range, help=text)
+
+
+def _read_range(context, option, text):
+    """Return the ends of a length or of a range of lengths [m]; None if the option is not given."""
+    if text is None:
+        return None
+    expected = "expected a length such as 50mm, or a range such as 50mm:80mm"
+    ends = [_quantity(f"--{option.name}", part, "m") for part in text.split(":")]
+    if len(ends) > 2 or ends[0] > ends[-1]:
+        raise UsageError(f"--{option.name} {text}: {expected}")
+    if ends[-1] > _LARGEST:
+        raise UsageError(f"--{option.name} {text}: these are {ends[-1]:g} m; {expected}")
+    return ends[0], ends[-1]
+
+
+def _quantity(option: str, text: str, unit: str) -> float:
+    from bearing_sim.scene.quantity import to_si
+
+    try:
+        return to_si(text, unit)
+    except ValueError as error:
+        raise UsageError(f"{option} {text}: {error}") from None
+
+
+def _above_option(name: str, unit: str, meaning: str, example: str):
+    def read(context, option, text):
+        return None if text is None else _quantity(name, text, unit)
+
+    return click.option(name, metavar="QUANTITY", callback=read, help=f"{meaning} of at least this, such as {example}.")
+
+
+@click.command("catalog")
+@click.argument("designation", required=False)
+@click.option("--type", "types", multiple=True, metavar="TYPE", help="Type, such as NU; can be repeated.")
+@click.option("--series", "series", multiple=True, metavar="SERIES", help="Dimension series, such as 2 or 23; can be repeated.")
+@_range_option("--bore", "Bore diameter d")
+@_range_option("--outside", "Outside diameter D")
+@_range_option("--width", "Width B")
+@_above_option("--dynamic-rating-above", "N", "Basic dynamic load rating C", "70kN")
+@_above_option("--static-rating-above", "N", "Basic static load rating C_0", "70kN")
+@_above_option("--limiting-speed-above", "rad/s", "Limiting speed", "6000rpm")
+@picture_option("Draw the bearing")
+@json_option
+def catalog(designation, types, series, bore, outside, width, dynamic_rating_above, static_rating_above, limiting_speed_above, picture, as_json):
+    """List the cylindrical roller bearings of the catalogue, or show the one of DESIGNATION, such as "NU 210 ECP/C3".
+
+    Options choose from the list.  Wherever a scene names a bearing, a designation may stand.
+    """
+    bounds = {"bore": bore, "outside": outside, "width": width}
+    least = {"dynamic_rating": dynamic_rating_above, "static_rating": static_rating_above, "limiting_speed": limiting_speed_above}
+    chosen = any((types, series, *bounds.values())) or any(value is not None for value in least.values())
+    if designation is None:
+        if picture is not None:
+            raise UsageError("--picture draws one bearing; give its designation, such as: bearing-sim catalog 'NU 210' --picture nu210.png")
+        _list(types, series, bounds, least, as_json)
+        return
+    if chosen:
+        raise UsageError("options that choose from the list do not go with a designation; give one or the other")
+    _show(designation, picture, as_json)
+
+
+def _list(types, series, bounds, least, as_json) -> None:
+    from bearing_sim.scene.designation import SERIES, TYPES
+
+    _check_words("--type", types, TYPES)
+    _check_words("--series", series, SERIES)
+    kinds = {each.upper() for each in types}
+    found = [row for row in _rows(kinds, series, bounds) if all(low is None or (row[name] or 0.0) >= low for name, low in least.items())]
+    if as_json:
+        print_json({"bearings": found})
+        return
+    if not found:
+        click.echo("no bearing of the catalogue is like that; see bearing-sim catalog --help", err=True)
+        return
+    print_rows(f"{len(found)} bearings, lengths in mm", _COLUMNS, [_cells(row) for row in found], _WORDS, whole=_WORDS)
+
+
+def _check_words(option: str, given, known) -> None:
+    for each in given:
+        if each.upper() not in known:
+            raise UsageError(f"{option} {each}: expected one of {', '.join(known)}")
+
+
+def _rows(kinds, series, bounds) -> Iterator[dict]:
+    """Yield what the list shows of each bearing [SI] within the bounds; ratings that no maker prints follow from the dimensions."""
+    from bearing_sim.scene.designation import designations
+    from bearing_sim.scene.loader import load_bearing
+    from bearing_sim.scene.ratings import rate
+
+    for each in designations():
+        named, boundary = each.designation, each.boundary
+        if kinds and named.type not in kinds or series and named.series not in series:
+            continue
+        if not all(_lies_within(getattr(boundary, name), ends) for name, ends in bounds.items()):
+            continue
+        printed = each.ratings.dynamic is not None
+        rated = each.ratings if printed else rate(load_bearing(named.text))
+        yield {
+            "designation": named.text,
+            "bore": boundary.bore,
+            "outside": boundary.outside,
+            "width": boundary.width,
+            "dynamic_rating": rated.dynamic,
+            "static_rating": rated.static,
+            "fatigue_limit": rated.fatigue_limit,
+            "limiting_speed": each.ratings.limiting_speed,
+            "ratings_by": each.maker if printed else "ISO 281, estimated",
+        }
+
+
+def _lies_within(length: float, ends) -> bool:
+    return ends is None or ends[0] - 1e-9 <= length <= ends[1] + 1e-9
+
+
+def _cells(row) -> tuple[str, ...]:
+    lengths = (f"{1e3 * row[name]:.5g}" for name in ("bore", "outside", "width"))
+    forces = ("" if row[name] is None else f"{1e-3 * row[name]:.4g}" for name in ("dynamic_rating", "static_rating", "fatigue_limit"))
+    speed = "" if row["limiting_speed"] is None else f"{row['limiting_speed'] * 30 / math.pi:.0f}"
+    return row["designation"], *lengths, *forces, speed, row["ratings_by"]
+
+
+def _show(designation: str, picture, as_json) -> None:
+    from bearing_sim.scene.loader import SceneError, load_bearing
+    from bearing_sim.studies.bearing_facts import facts, rows
+
+    with as_usage_error(SceneError):
+        bearing = load_bearing(designation)
+    if picture is not None:
+        from bearing_sim.studies.bearing_drawing import draw
+
+        with as_file_error():
+            draw(picture, bearing)
+    if as_json:
+        print_json({**facts(bearing), "picture": picture and str(picture)})
+        return
+    print_table(bearing.designation or bearing.name, rows(bearing))
+    if picture is None:
+        click.echo("--picture bearing.png draws it; bearing-sim new writes a scene with it")
+
+
+@click.command("new")
+@click.argument("bearing", metavar="DESIGNATION")
+@click.option("--oil", metavar="OIL", help="Oil by name, such as 'ISO VG 68' or 'ISO VG 220 PAO'.")
+@click.option("--grease", metavar="GREASE", help="Grease by name, instead of an oil.")
+@click.option("--supply", metavar="SUPPLY", help="How the lubricant gets in [default: oil_bath, or oil_jet where n d_m is 400,000 mm/min or more].")
+@click.option("--speed", required=True, metavar="QUANTITY", help="Shaft speed, such as 3000rpm.")
+@click.option("--load", required=True, metavar="QUANTITY", help="Radial load, such as 5kN.")
+@click.option("--temperature", metavar="QUANTITY", help="Temperature of bearing and oil, such as 70degC [default: computed from the losses].")
+@click.option("--level", type=level_type, default="slip", show_default=True, help="Level of fidelity.")
+@click.option("--force", is_flag=True, help="Replace an existing file.")
+@click.option("-o", "--out", type=click.Path(path_type=Path), metavar="SCENE.yaml", help="File to write [default: standard output].")
+def new(bearing, oil, grease, supply, speed, load, temperature, level, force, out):
+    """Write the scene of a bearing by DESIGNATION in an oil or a grease, with a comment for every choice that was made for you.
+
+    Then: bearing-sim run SCENE.yaml.
+    """
+    from bearing_sim.scene.loader import SceneError
+    from bearing_sim.scene.new_scene import Wish, default_name, new_scene
+
+    if (oil is None) == (grease is None):
+        raise UsageError("give --oil or --grease, such as --oil 'ISO VG 68'")
+    if out is not None and out.exists() and not force:
+        raise UsageError(f"{out} exists; give another name, or --force to replace it")
+    lubricant = {"grease": grease} if oil is None else {"oil": oil}
+    if supply is not None:
+        lubricant["supply"] = {"law": supply}
+    with as_usage_error(SceneError):
+        text, scene = new_scene(Wish(bearing, lubricant, speed, load, temperature, level), default_name(out), command_line())
+    if out is None:
+        click.echo(text, nl=False)
+        return
+    with as_file_error():
+        out.write_text(text, encoding="utf-8")
+    estimated = f"; {len(scene.bearing.estimated)} of its dimensions are estimated, see the comments" if scene.bearing.estimated else ""
+    click.echo(f"{out} written{estimated}\nnext: bearing-sim run {out}")
