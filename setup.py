@@ -25,7 +25,9 @@ setup(
     name=package_name,
     version="0.1.0",
     packages=find_packages(exclude=["test"]),
-    package_data={package_name: ["scene/catalog/*/*.yaml", "scene/catalog/designations/*.csv", "scene/scenes/*.yaml"]},
+    package_data={
+        package_name: ["py.typed", "__init__.pyi", "scene/catalog/*/*.yaml", "scene/catalog/designations/*.csv", "scene/scenes/*.yaml"],
+    },
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{package_name}"]),
         (f"share/{package_name}", ["package.xml"]),

@@ -1,7 +1,8 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Cage slip and rating life of high-speed cylindrical roller bearings, live or offline.
 
-Start here: `load_scene` reads what to simulate, `Simulation` advances it, `to_pandas` and `to_xarray` turn its samples into tables.
+Start here: `load_scene` reads what to simulate, `settle` finds where it comes to rest, `run_sweep` does so at many points, `Simulation` advances it
+in time, `to_pandas` and `to_xarray` turn its samples into tables.
 
 ===============  =====================================================================================================
 room             purpose
@@ -31,11 +32,13 @@ from importlib import import_module
 
 _EXPORTS = {
     "Scene": "scene.scene",
-    "SceneError": "scene.loader",
+    "SceneError": "scene.errors",
     "load_scene": "scene.loader",
     "Simulation": "simulation",
     "Inputs": "simulation",
+    "IntegrationError": "simulation",
     "settle": "studies.operating_point",
+    "Settled": "studies.operating_point",
     "run_sweep": "sweep.grid",
     "to_pandas": "model.labelled",
     "to_xarray": "model.labelled",

@@ -3,6 +3,7 @@
 
 import math
 from collections.abc import Callable, Hashable
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -20,16 +21,23 @@ from bearing_sim.model.temperatures import given_temperatures, lubricate_scene
 from bearing_sim.numerics.compilation import compiled_for
 from bearing_sim.numerics.time_stepping import COUNT, OK, REASONS, new_counts, new_memory
 from bearing_sim.scene.fidelity import NUMBERS
-from bearing_sim.scene.scene import Integration, Operating, Scene
+from bearing_sim.scene.quantity import Quantity
+from bearing_sim.scene.scene import OPERATING_POINT, Integration, Operating, Scene
+from bearing_sim.scene.uncertainty import quantities
 
 _MEASURED_COLUMNS = slice(COLUMN.inner_ring_temperature_measured, COLUMN.outer_ring_temperature_measured + 1)
 _LONGEST_CALL = 2.0  # intervals of the thermal network
+_FOUND_AGAIN = ("_dtype", "_level", "_compiled")  # attributes of a simulation that are code, or the same for all of their kind
+_OWNS_ITS_DATA = 0x4  # flag of an array, which its type does not depend on
 _compiled_versions: dict[Hashable, Callable] = {}
 _FINEST_WITH_FIXED_STEP = Tolerances(position=2.5e-11, play=5e-11, speed=1e-7, relative=3e-7)
 
 
 class Inputs(NamedTuple):
-    """What drives the bearing from outside, and last the temperatures that are measured on it; in SI, NaN where they are not measured."""
+    """What drives the bearing from outside, and last the temperatures that are measured on it; in SI, NaN where they are not measured.
+
+    `of` and `at` read texts with units.  `Simulation` checks that inputs are finite and within the bounds of a scene.
+    """
 
     shaft_speed: float
     load_y: float
@@ -38,7 +46,84 @@ class Inputs(NamedTuple):
     inner_ring_temperature: float = math.nan
     outer_ring_temperature: float = math.nan
 
+    @classmethod
+    def of(
+        cls,
+        *,
+        shaft_speed: float | str,
+        oil_temperature: float | str,
+        radial_load: float | str = 0.0,
+        load_angle: float | str = 0.0,
+        inner_ring_temperature: float | str | None = None,
+        outer_ring_temperature: float | str | None = None,
+    ) -> "Inputs":
+        """Return inputs from numbers in SI or texts with a unit, such as ``"3000 rpm"``, ``"5 kN"`` and ``"80 degC"``.
 
+        Parameters
+        ----------
+        load_angle : azimuth of the radial load, from +y.
+        inner_ring_temperature, outer_ring_temperature : measured; None where they are not.
+
+        Raises
+        ------
+        ValueError
+            A value is no such quantity, or out of the bounds that it has in a scene; the message has all of them.
+        """
+        return cls(0.0, 0.0, 0.0, math.nan).at(
+            shaft_speed=shaft_speed,
+            radial_load=radial_load,
+            load_angle=load_angle,
+            oil_temperature=oil_temperature,
+            inner_ring_temperature=inner_ring_temperature,
+            outer_ring_temperature=outer_ring_temperature,
+        )
+
+    def at(
+        self,
+        *,
+        shaft_speed: float | str | None = None,
+        radial_load: float | str | None = None,
+        load_angle: float | str | None = None,
+        oil_temperature: float | str | None = None,
+        inner_ring_temperature: float | str | None = None,
+        outer_ring_temperature: float | str | None = None,
+    ) -> "Inputs":
+        """Return the same inputs but for those that are given; values and errors as of `of`."""
+        given = {
+            "shaft_speed": shaft_speed,
+            "radial_load": radial_load,
+            "load_angle": load_angle,
+            "oil_temperature": oil_temperature,
+            "inner_ring_temperature": inner_ring_temperature,
+            "outer_ring_temperature": outer_ring_temperature,
+        }
+        values, errors = {}, []
+        for name, value in given.items():
+            try:
+                values |= {} if value is None else {name: _DECLARED[name].read(value)}
+            except ValueError as error:  # pydantic's error of a quantity is one, too
+                errors.append(f"{name} = {value!r}: {error}")
+        if errors:
+            raise ValueError("; ".join(errors))
+        if "radial_load" in values or "load_angle" in values:
+            load = values.pop("radial_load", math.hypot(self.load_y, self.load_z))
+            angle = values.pop("load_angle", math.atan2(self.load_z, self.load_y))
+            values |= {"load_y": load * math.cos(angle), "load_z": load * math.sin(angle)}
+        return self._replace(**values)
+
+
+# Declarations of the inputs as `Inputs.at` names them.
+_DECLARED = {name: quantities(Scene)[path] for name, path in OPERATING_POINT.items()} | dict.fromkeys(
+    RING_TEMPERATURES, Quantity("K", "measured temperature of a ring", 150.0, 800.0, "degC")
+)
+# The bounds of `Inputs`, by field.
+_DECLARED_FIELDS = (
+    _DECLARED["shaft_speed"],
+    *[replace(_DECLARED["radial_load"], minimum=-_DECLARED["radial_load"].maximum)] * 2,
+    _DECLARED["oil_temperature"],
+    *(_DECLARED[name] for name in RING_TEMPERATURES),
+)
+_LOWEST, _HIGHEST = tuple(each.minimum for each in _DECLARED_FIELDS), tuple(each.maximum for each in _DECLARED_FIELDS)
 _INPUT_OBSERVABLES = tuple(f"{name}_measured" if name in RING_TEMPERATURES else name for name in Inputs._fields)
 
 
@@ -88,6 +173,8 @@ def inputs_of(sample: np.void) -> Inputs:
 class Simulation:
     """One bearing in time.
 
+    It can be copied (`copy.deepcopy`), pickled and sent to another process, and continues there to the last digit as it would have here.
+
     Parameters
     ----------
     scene : what to simulate.
@@ -109,6 +196,22 @@ class Simulation:
             kept = cached_table(scene) if table is None else (table,)
             self._tables = kept[:1] if kept else ()
         self.reset(inputs, start=start)
+
+    def __getstate__(self) -> dict:
+        kept, thermal = {name: value for name, value in self.__dict__.items() if name not in _FOUND_AGAIN}, self._thermal
+        return kept if thermal is None else kept | {"_thermal": (thermal.course(), thermal.uncorrected, thermal.corrected, thermal.held)}
+
+    def __setstate__(self, kept: dict) -> None:
+        self.__dict__.update(kept)
+        self._dtype, self._level, self._compiled = sample_dtype(self._params.rollers.count), LEVELS[self.scene.level], None
+        if self._thermal is None:
+            return
+        course, uncorrected, corrected, held = self._thermal
+        self._thermal = self._new_thermal()
+        for own, theirs in zip(self._thermal.course(), course):  # the arrays of a course are those of its state
+            if isinstance(own, np.ndarray):
+                own[:] = theirs
+        self._thermal.uncorrected, self._thermal.corrected, self._thermal.held = uncorrected, corrected, held
 
     def reset(self, inputs: Inputs | None = None, nodes: np.ndarray | None = None, start: np.void | None = None) -> None:
         """Return to time 0, no damage, and the state of ideal rolling at ``inputs``, or that of a sample.
@@ -503,7 +606,7 @@ def _structure(value) -> Hashable:
     if isinstance(value, tuple):
         return type(value), *map(_structure, value)
     if isinstance(value, np.ndarray):
-        return value.dtype, value.ndim, value.flags.num
+        return value.dtype, value.ndim, value.flags.num & ~_OWNS_ITS_DATA
     return type(value)
 
 
@@ -513,8 +616,16 @@ def start_sample(simulation: Simulation) -> np.ndarray:
 
 
 def _checked(inputs: Inputs) -> Inputs:
-    inputs = Inputs(*(float(value) for value in inputs))
-    for name, value in inputs._asdict().items():
-        if not (math.isfinite(value) or name in RING_TEMPERATURES and math.isnan(value)):
-            raise ValueError(f"{name} = {value}: expected a finite number")
+    """Return inputs as plain numbers; raise `ValueError` where one is no finite number within its bounds, or NaN where it is not measured."""
+    try:
+        inputs = Inputs(*map(float, inputs))
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{inputs}: {error}; inputs are numbers in SI, Inputs.of reads texts with units") from None
+    for index, (value, lowest, highest) in enumerate(zip(inputs, _LOWEST, _HIGHEST)):
+        if not lowest <= value <= highest and not (value != value and Inputs._fields[index] in RING_TEMPERATURES):
+            name, declared = Inputs._fields[index], _DECLARED_FIELDS[index]
+            if not math.isfinite(value):
+                raise ValueError(f"{name} = {value}: expected a finite number")
+            bounds = f"{declared.show(declared.minimum)} to {declared.show(declared.maximum)}"
+            raise ValueError(f"{name} = {value} {declared.unit}: expected {bounds}; inputs are numbers in SI, Inputs.of reads texts with units")
     return inputs

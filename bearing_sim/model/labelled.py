@@ -5,13 +5,18 @@ Both libraries are optional (``pip install 'bearing_sim[tables]'``) and are impo
 """
 
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from bearing_sim.model.sample import OBSERVABLES
 
+if TYPE_CHECKING:
+    import pandas
+    import xarray
 
-def to_xarray(block: np.ndarray):
+
+def to_xarray(block: np.ndarray) -> "xarray.Dataset":
     """Return a block of samples as an `xarray.Dataset`.
 
     The dimensions are ``time`` [s] and, for observables of single rollers, ``roller`` (0 to Z - 1).  Every variable carries the attributes
@@ -31,7 +36,7 @@ def to_xarray(block: np.ndarray):
     return xarray.Dataset(variables, coords=coordinates)
 
 
-def to_pandas(block: np.ndarray, columns: Iterable[str] | None = None):
+def to_pandas(block: np.ndarray, columns: Iterable[str] | None = None) -> "pandas.DataFrame":
     """Return a block of samples as a `pandas.DataFrame`, indexed by the simulated time [s].
 
     An observable of single rollers becomes one column for each roller, with the roller's number after its name (``inner_load_07``),

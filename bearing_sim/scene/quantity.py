@@ -9,18 +9,20 @@ Units of equal dimension may be of different kinds, such as 1/min and rad/s, or 
 it can mean one thing only, and refused elsewhere; it is never read as a number of the wanted unit.
 """
 
+import dataclasses
 import math
 import numbers
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar, dataclass_transform
 
 import pydantic.dataclasses
 from pydantic import ConfigDict, model_validator
 from pydantic_core import PydanticCustomError, core_schema
 
+Record = TypeVar("Record")
 _NUMBER_THEN_UNIT = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|[-+]?(?:nan|inf(?:inity)?))\s*(.*?)\s*$", re.IGNORECASE)
 
 
@@ -254,8 +256,10 @@ def quantity(unit: str, meaning: str, minimum: float = -math.inf, maximum: float
     return Annotated[float, Quantity(unit, meaning, minimum, maximum, shown_in)]
 
 
-record = pydantic.dataclasses.dataclass(frozen=True, kw_only=True, config=ConfigDict(extra="forbid", str_strip_whitespace=True))
-"""Decorator of every record of a scene: frozen, keyword-only, and it refuses unknown fields."""
+@dataclass_transform(frozen_default=True, kw_only_default=True, field_specifiers=(dataclasses.field,))
+def record(cls: type[Record]) -> type[Record]:
+    """Decorate a record of a scene: frozen, keyword-only, and it refuses unknown fields."""
+    return pydantic.dataclasses.dataclass(frozen=True, kw_only=True, config=ConfigDict(extra="forbid", str_strip_whitespace=True))(cls)
 
 
 def named_law(value: object) -> object:

@@ -133,7 +133,8 @@ class Settled:
         lines = [f"{self.scene.name} at {point}, oil at {self.scene.lubricant.temperature - _CELSIUS:.4g} degC; level {self.scene.level}"]
         took = "from the start" if self.settling_time == 0.0 else f"after {self.settling_time:.3g} s"
         lines.append(f"  settled              {took if self.settled else f'no, {self.verdict}: {self.reason}'}")
-        lines.append(f"  cage slip            {100.0 * self.cage_slip:.3g} %{self._band('cage_slip', 100.0, '%')}")
+        slip = "none, the shaft is at rest" if math.isnan(self.cage_slip) else f"{100.0 * self.cage_slip:.3g} %"
+        lines.append(f"  cage slip            {slip}{self._band('cage_slip', 100.0, '%')}")
         lines.append(
             f"  rating life          {self.rating_life:.4g} h; modified {self.modified_rating_life:.4g} h{self._band('modified_rating_life')}"
         )
