@@ -36,7 +36,9 @@ def test_one_bearing_is_shown_with_what_is_estimated_and_drawn(tmp_path):
         assert text in shown
     assert picture.read_text().count("</svg>") == 1
     facts = json.loads(called("catalog", "NU 210", "--json").stdout)
-    assert facts["rollers"] == 16 and facts["clearance_um"] == pytest.approx([30, 60]) and "cage.mass" in [each["field"] for each in facts["estimated"]]
+    assert (
+        facts["rollers"] == 16 and facts["clearance_um"] == pytest.approx([30, 60]) and "cage.mass" in [each["field"] for each in facts["estimated"]]
+    )
 
 
 @pytest.mark.parametrize(
