@@ -8,6 +8,7 @@ from bearing_sim.simulation import IntegrationError, Simulation, thermal_nodes
 from bearing_sim.sweep.settling import advance_until_settled
 
 _ROUNDS = 8
+_EQUAL, _BALANCED = 1e-3, 1e-4  # K, and of the shaft power; slip then errs by less than 0.01 points, temperatures by 0.02 K
 _AGREED = 0.3  # K; temperatures by the losses of two rounds
 
 
@@ -32,7 +33,8 @@ def begin_in_equilibrium(simulation: Simulation, shortest: float, longest: float
         return
     inputs = simulation.inputs
     known = None if start is None else thermal_nodes(start)
-    found = thermal_equilibrium(simulation.scene, inputs, known if known is not None and np.isfinite(known).all() else None)
+    nearby = known if known is not None and np.isfinite(known).all() else None
+    found = thermal_equilibrium(simulation.scene, inputs, nearby, _EQUAL, _BALANCED)
     if not found.converged:
         raise IntegrationError(found.reason)
     nodes = found.temperatures

@@ -104,7 +104,9 @@ class _Balance:
         return _Round(answer, losses, reached, physics.heat_flows(reached, inputs, self.network, self._thermal), clearance, failure)
 
 
-def thermal_equilibrium(scene: Scene, inputs: Sequence[float], start: np.ndarray | None = None) -> Equilibrium:
+def thermal_equilibrium(
+    scene: Scene, inputs: Sequence[float], start: np.ndarray | None = None, agreed: float = _AGREED, balanced: float = _BALANCED
+) -> Equilibrium:
     """Find the thermal equilibrium of a scene whose `heat.law` is network.
 
     Parameters
@@ -112,6 +114,9 @@ def thermal_equilibrium(scene: Scene, inputs: Sequence[float], start: np.ndarray
     scene : of any level; operating points are those of level steady.
     inputs : shaft speed [rad/s], load y, load z [N] and the temperature of the oil that comes in [K]; `bearing_sim.simulation.Inputs` will do.
     start : temperatures of the nodes to begin with [K]; those of the scene's start where absent.
+    agreed : largest difference of temperatures before and after the last round [K].
+    balanced : largest difference of the shaft power and the losses at the end, as a fraction of it; a small one needs operating points at many
+        angles of a pitch, which costs more than the search.
 
     Returns
     -------
@@ -129,9 +134,9 @@ def thermal_equilibrium(scene: Scene, inputs: Sequence[float], start: np.ndarray
         if found.failure or not math.isfinite(largest):
             reason = f"{found.failure or 'temperatures are not finite'} {_warmth(now)}"
             break
-        if largest < _AGREED:
+        if largest < agreed:
             power = float(found.answer[ANSWER.shaft_power])
-            if abs(power - found.losses.sum()) <= _BALANCED * abs(power) or not balance.refine():
+            if abs(power - found.losses.sum()) <= balanced * abs(power) or not balance.refine():
                 break
             now = found.reached
             continue
