@@ -32,6 +32,7 @@ _STUDIES = {
     "friction": Entry("study:friction", "Frictional moment and thermal reference speed against makers' models."),
     "scenes": Entry("study:scenes", "Whether random scenes of catalogue bearings settle, level by level."),
     "findings": Entry("study:findings", "Published findings about slip, and whether the model finds the same."),
+    "catalog": Entry("study:catalog_rules", "Rules for the inside of catalogue bearings, and their errors."),
     "extremes": Entry("study:extremes", "Map which scenes finish, are step-limited, are refused or fail."),
 }
 _COMMANDS = {

@@ -520,6 +520,48 @@ def findings(level, as_json):
     print_rows(f"published findings at level {level}", columns, rows, words=columns)
 
 
+@click.command("catalog")
+@json_option
+def catalog_rules(as_json):
+    """Fit the rules for the inside of catalogue bearings again, and state their errors on bearings held back from the fit.
+
+    The first table has every fourth section held back, and each section left out in turn; the second has ISO 281's C_r with known rollers
+    over the rating that a maker prints.
+    """
+    from bearing_sim.studies.catalog_rules import report
+
+    found = report()
+    if as_json:
+        print_json(found)
+        return
+    for design, words in (("high_capacity", "high-capacity design (E, EC)"), ("standard", "standard design")):
+        one = found[design]
+        rules, flange = one["rules"], one["diameter_by_flange"]
+        line = f"s = {1e3 * rules['gap']:.3f} mm + {rules['gap_ratio']:.4f} D_w, from {rules['sections']} sections of two widths"
+        heights = f"{rules['outer_flange']:.3f} (outer), {rules['inner_flange']:.3f} (inner) of D_w"
+        rows = [("gap between rollers", line), ("height of flanges", heights), ("length of rollers", f"{rules['length_ratio']:.3f} B, without a C_0")]
+        rows.append(("D_w by outer flange", f"exact for {100 * flange['exact']:.0f} % of {flange['number']}; {_errors(flange)}"))
+        for name, said in (("held_back", "every fourth held back"), ("left_out", "each left out in turn")):
+            errors = one[name]
+            count = errors["count"]
+            text = f"Z exact for {100 * count['exact']:.0f} %, at most {count['largest']:.0f} off\nD_w {_errors(errors['diameter'])}\n"
+            text += f"effective length {_errors(errors['length'])}\nC_r against the maker's {_errors(errors['dynamic_rating'])}"
+            rows.append((f"{said}, {errors['bearings']} bearings", text))
+        print_table(words, rows)
+    rows = [
+        (maker, f"{one['median']:.3f} in the median, {one['least']:.3f} to {one['largest']:.3f}, of {one['number']} bearings")
+        for maker, one in found["computed_over_printed"].items()
+    ]
+    print_table("C_r by ISO 281 over the maker's C, with known numbers of rollers", rows)
+
+
+def _errors(one) -> str:
+    if not one["number"]:
+        return "not printed"
+    one = {name: 0.0 if value < 1e-9 else value for name, value in one.items()}  # round-off
+    return f"off by {100 * one['median']:.2g} % in the median, {100 * one['p95']:.2g} % at 95 %, {100 * one['largest']:.2g} % at most"
+
+
 @click.command("clearance")
 @scene_argument
 @set_option

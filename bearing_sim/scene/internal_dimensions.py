@@ -36,8 +36,8 @@ class DesignRules(NamedTuple):
     length_ratio: float
 
 
-HIGH_CAPACITY = DesignRules(0.81e-3, 0.152, 0.148, 0.184, 1, 0.60)
-STANDARD = DesignRules(1.58e-3, 0.248, 0.225, 0.200, 2, 0.52)
+HIGH_CAPACITY = DesignRules(0.811e-3, 0.1516, 0.150, 0.194, 1, 0.624)
+STANDARD = DesignRules(2.418e-3, 0.2049, 0.222, 0.200, 1, 0.551)
 FULL_COMPLEMENT_LENGTH = 0.72  # effective length of the rollers over the width of a full-complement bearing
 _DIAMETER_RATIO = {"10": 0.235, "4": 0.24}  # D_w over D - d, where not even the flanges are printed
 _OTHER_DIAMETER_RATIO = 0.27
@@ -149,8 +149,7 @@ def _caged_section(designation: Designation, row: MakersRow | None, bore: int) -
         diameter = (outer - inner) / 2.0
     else:
         diameter = None if row is None else diameter_by_flange(rules, row)
-        by = "flange of the outer ring, to the next preferred diameter; right within 1 mm for 95 % of those printed"
-        low, high = 0.95, 1.05
+        by, low, high = "flange of the outer ring, to the next preferred diameter; within 8 % for 95 % of those printed", 0.92, 1.08
         if diameter is None:
             ratio = _DIAMETER_RATIO.get(designation.series, _OTHER_DIAMETER_RATIO)
             diameter = preferred_diameter(ratio * (boundary.outside - boundary.bore))
@@ -171,7 +170,7 @@ def _caged_section(designation: Designation, row: MakersRow | None, bore: int) -
         estimated.append(
             _estimate(
                 "roller.count",
-                f"{1e3 * rules.gap:.2f} mm + {rules.gap_ratio:.3f} D_w between neighbours; within {rules.count_error} for 95 % of those known",
+                f"{1e3 * rules.gap:.2f} mm + {rules.gap_ratio:.3f} D_w between neighbours; within {rules.count_error} on bearings held back",
                 count - rules.count_error,
                 count + rules.count_error,
             )
