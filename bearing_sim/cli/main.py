@@ -47,7 +47,7 @@ _COMMANDS = {
     "uncertainty": Entry("uncertainty:uncertainty", "Compute ranges of slip and life from uncertain fields, and each field's share."),
     "calibrate": Entry("calibrate:calibrate", "Fit fields of a scene to the measured cage speed in a recording."),
     "sweep": Entry("sweep:sweep", "Run a scene at all combinations of field values, into a table."),
-    "plot": Entry("sweep:plot", "Draw the table of a sweep."),
+    "plot": Entry("plot:plot", "Draw recorded runs over time or load, or the table of a sweep."),
     "design": Entry("design:design", "Map which outer raceways keep slip and life within limits, and verify them."),
     "report": Entry("report:report", "Make one HTML page of a study, a sweep, a design or a recorded run."),
     "trade": Entry("bench:trade", "Measure speed against accuracy on a scene, and recommend a setting."),

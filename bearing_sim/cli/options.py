@@ -9,7 +9,7 @@ import click
 from bearing_sim.cli.reporting import UsageError
 from bearing_sim.scene.fidelity import LEVELS
 
-_PICTURES = (".png", ".svg", ".pdf")
+PICTURES = (".png", ".svg", ".pdf")
 
 level_type = click.Choice(LEVELS)
 scene_argument = click.argument("scene_name", metavar="SCENE")
@@ -31,15 +31,19 @@ def table_option(default: str, beside: str) -> Callable:
     return click.option("-o", "--out", type=kind, default=Path(default), show_default=True, metavar="PATH.parquet", help=text)
 
 
-def picture_option(drawn: str) -> Callable:
-    """Return the option ``--picture``, which takes a path with a known suffix; ``drawn`` says what it draws, as in "Draw the map"."""
+def picture_option(drawn: str, *names: str) -> Callable:
+    """Return the option for the path of a picture with a known suffix, ``--picture`` after other names for it.
+
+    Parameters
+    ----------
+    drawn : what it draws, as in "Draw the map".
+    names : other names, such as ``-o``.
+    """
 
     def checked(context, parameter, path):
-        if path is not None and path.suffix.lower() not in _PICTURES:
-            raise UsageError(f"--{parameter.name} {path}: expected a name that ends in {', '.join(_PICTURES)}")
+        if path is not None and path.suffix.lower() not in PICTURES:
+            raise UsageError(f"{max(parameter.opts[:2], key=len)} {path}: expected a name that ends in {', '.join(PICTURES)}")
         return path
 
-    kind = click.Path(path_type=Path)
-    return click.option(
-        "--picture", type=kind, callback=checked, metavar="PATH.png", help=f"{drawn} ({', '.join(_PICTURES[:-1])} or {_PICTURES[-1]})."
-    )
+    kind, text = click.Path(path_type=Path), f"{drawn} ({', '.join(PICTURES[:-1])} or {PICTURES[-1]})."
+    return click.option(*names, "--picture", "picture", type=kind, callback=checked, metavar="PATH.png", help=text)

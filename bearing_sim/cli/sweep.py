@@ -1,9 +1,8 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Commands that run many points: ``sweep`` and its ``plot``."""
+"""``bearing-sim sweep``: a scene at every combination of values."""
 
 from collections import Counter
 from contextlib import suppress
-from pathlib import Path
 
 import click
 
@@ -138,17 +137,3 @@ def _print_sweep(table, report) -> None:
     warn(report["warnings"])
     counts = f"{report['computed']} points computed, {report['kept_from_before']} kept from before"
     click.echo(f"{counts}; {', '.join(filter(None, (report['parquet'], report['csv'], report['picture'])))}")
-
-
-@click.command("plot")
-@click.argument("path", metavar="TABLE.parquet", type=click.Path(path_type=Path))
-@picture_option("Draw the results")
-@click.option("--quantity", "quantities", multiple=True, metavar="COLUMN", help="Draw this column; can be repeated [default: slip, life, loads].")
-def plot(path, picture, quantities):
-    """Draw a sweep: lines for one varied field, maps for two; into TABLE.png unless --picture is given."""
-    from bearing_sim.sweep.table import QUANTITIES, NotDrawable, draw, read_table
-
-    picture = picture or path.with_suffix(".png")
-    with as_file_error(), as_usage_error(NotDrawable, ValueError):
-        draw(picture, read_table(path), quantities or QUANTITIES)
-    click.echo(str(picture))

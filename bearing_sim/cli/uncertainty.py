@@ -57,7 +57,7 @@ def uncertainty(scene_name, overrides, samples, seed, level, log, stretches, wor
     with as_usage_error(SceneError):
         scene = load_scene(scene_name, overrides)
     warn_of_scene(scene)
-    scene, course, unknown = _course(log, scene, stretches) if log is not None else (scene, None, {})
+    scene, course, unknown = stretches_of(log, scene, stretches) if log is not None else (scene, None, {})
     with as_file_error(), exit_on_sigterm(), as_usage_error(JournalInUse):
         with Journal(table and table.with_suffix(".journal")) as journal:
             found, report = bands_of(scene, samples, seed, level, course, journal, workers, dask)
@@ -100,7 +100,7 @@ def bands_of(scene, samples, seed=SEED, level=None, course=None, journal=None, w
     return found, {**_report(found, seed, time.perf_counter() - began, course), "kept_from_before": points.kept}
 
 
-def _course(log, scene, count):
+def stretches_of(log, scene, count):
     """Return the scene, without ranges of fields that the log gives, the log's inputs in intervals, and for how long they are unknown."""
     import dataclasses
     import math

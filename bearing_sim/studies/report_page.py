@@ -4,10 +4,8 @@
 A page has the scene and its bearing, tables, pictures, warnings, where the result comes from, and the command that made it.
 """
 
-import csv
 import io
 import math
-import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from html import escape
@@ -17,7 +15,6 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.messages.events import Event, Level
-from bearing_sim.messages.topics import ZERO_CELSIUS
 from bearing_sim.model.plausibility import plausibility
 from bearing_sim.model.sample import OBSERVABLES, joined
 from bearing_sim.model.validity import counted
@@ -31,16 +28,15 @@ from bearing_sim.studies import design as studied
 from bearing_sim.studies.deng2017.page import study_page
 from bearing_sim.studies.deng2017.run import STUDY_FILE
 from bearing_sim.studies.page import NoResults, command, document, folded, pairs, paragraph, picture, rows_table, warnings
+from bearing_sim.studies.run_plot import DEFAULT_PANELS, course_of, draw_over_time
 from bearing_sim.sweep.point import OK, Column, mean_life
-from bearing_sim.sweep.table import COLOURS, NotDrawable, Table, draw, new_figure, read_table
+from bearing_sim.sweep.table import COLOURS, NotDrawable, Table, draw, new_figure, read_any_table
 
 _RECORDINGS, _TABLES = (".mcap", ACTIVE), (".parquet", ".csv")
 _MOST_ROWS = 1000  # of a table on a page; the files have all
 _MOST_POINTS = 4000  # of a line in a picture
 _LAST = 0.2  # of a recording, over which its final results are averaged
-_WINDOWS = 400  # of a recording, of each of which a picture shows the largest roller load
 _SECTORS = 72  # of the circle, for the load distribution
-_HEADED = re.compile(r"(.*?)(?: \[(.*)\])?")
 
 
 class _Part(NamedTuple):
@@ -127,29 +123,12 @@ def _part(path: Path) -> _Part:
         raise NoResults(f"{path}: expected a table ({', '.join(_TABLES)}), a recording (.mcap), or a folder")
     kept = path.with_suffix(".parquet")
     try:
-        table = read_table(kept) if kept.is_file() else _csv_table(path)
+        table = read_any_table(path)
         if table.about.get("kind") == "design":
             return _design_part(kept, studied.read_design(kept))
     except (ValueError, FileNotFoundError) as error:
         raise NoResults(f"{path}: {error}") from None
     return _table_part(path, table)
-
-
-def _csv_table(path: Path) -> Table:
-    """Return a table from CSV alone: columns have their units in brackets, and nothing is known of its origin."""
-    with open(path, newline="", encoding="utf-8-sig") as file:
-        lines = list(csv.reader(file))
-    if len(lines) < 2 or len({len(line) for line in lines}) > 1:
-        raise ValueError("expected a heading and lines with as many values")
-    columns = [Column(found[1], found[2] or "", "") for found in map(_HEADED.fullmatch, lines[0])]
-    return Table(tuple(columns), [{column.name: _number(text) for column, text in zip(columns, line)} for line in lines[1:]], {})
-
-
-def _number(text: str) -> float | str:
-    try:
-        return float(text)
-    except ValueError:
-        return text
 
 
 def _drawn(into) -> bytes:
@@ -291,6 +270,7 @@ def _recording_part(recording: Recording) -> _Part:
     for item in recording:
         (events if isinstance(item, Event) else blocks).append(item)
     block = joined([_thinned(each, recording.samples) for each in blocks])
+    course = course_of(blocks, scene, recording.path.name, recording.samples, (*DEFAULT_PANELS, "roller_load"))
     told = [f"the recording ends early: {recording.unfinished}"] if recording.unfinished else []
     grouped = _grouped([event for event in events if event.level > Level.OK])
     told += [f"{text} ({'at' if count == 1 else f'{count} times, first at'} {first:.6g} s)" for text, first, count in grouped]
@@ -323,7 +303,7 @@ def _recording_part(recording: Recording) -> _Part:
         _opening(about, told),
         {
             "Summary": pairs(summary),
-            "Pictures": picture(_drawn(lambda stream: _draw_course(stream, block)), "Conditions and results over time")
+            "Pictures": picture(_drawn(lambda stream: draw_over_time(stream, [course], form="png")), "Conditions and results over time")
             + picture(
                 _drawn(lambda stream: _draw_loads(stream, settled)),
                 "Load distribution",
@@ -374,37 +354,6 @@ def _observables(block: np.ndarray, settled: np.ndarray) -> str:
             numbers = (float(mean) if len(end) else math.nan, float(finite.min()), float(finite.max()))
             rows.append(dict(zip((column.name for column in columns), (one.name, one.unit, *numbers, one.meaning))))
     return rows_table(columns, rows, f"{len(rows)} observables")
-
-
-def _draw_course(stream, block: np.ndarray) -> None:
-    every = max(1, len(block) // _MOST_POINTS)
-    kept = block[::every]
-    windows = np.arange(0, len(block), max(every, len(block) // _WINDOWS))  # of the largest roller load, which swings as rollers pass
-    life = np.where(np.isfinite(kept["modified_rating_life"]), kept["modified_rating_life"], np.nan)
-    loads = {
-        f"{ring} raceway": (block["time"][windows], np.maximum.reduceat(block[f"{ring}_load"].max(axis=1), windows)) for ring in ("inner", "outer")
-    }
-    shown = (
-        ("shaft speed [rpm]", {"": (kept["time"], kept["shaft_speed"] * 30 / math.pi)}),
-        ("radial load [N]", {"": (kept["time"], np.hypot(kept["load_y"], kept["load_z"]))}),
-        ("oil [degC]", {"": (kept["time"], kept["oil_temperature"] - ZERO_CELSIUS)}),
-        ("cage slip [%]", {"": (kept["time"], 100 * kept["cage_slip"])}),
-        ("life [h]", {"": (kept["time"], life)}),
-        ("largest roller load [N]", loads),
-    )
-    figure = new_figure(10, 11)
-    for axes, (label, lines) in zip(figure.subplots(len(shown), 1, sharex=True), shown):
-        for (name, line), colour in zip(lines.items(), COLOURS):
-            axes.plot(*line, lw=1.0, color=colour, label=name)
-        axes.set_ylabel(label, fontsize=9)
-        axes.grid(alpha=0.3)
-        if len(lines) > 1:
-            axes.legend(frameon=False, fontsize=8)
-    shortest, longest = np.nanmin(life, initial=math.inf), np.nanmax(life, initial=0.0)
-    if longest > 20 * shortest > 0.0:  # near rest it grows beyond any scale
-        figure.axes[4].set(yscale="log", ylim=(shortest / 2, min(2 * longest, 1e4 * shortest)))
-    figure.axes[-1].set_xlabel("simulated time [s]")
-    figure.savefig(stream, dpi=110, format="png")
 
 
 def _draw_loads(stream, settled: np.ndarray) -> None:

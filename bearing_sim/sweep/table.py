@@ -4,6 +4,7 @@
 import csv
 import json
 import os
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, NamedTuple
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     import xarray
 
 _ABOUT = b"bearing_sim"
+_HEADED = re.compile(r"(.*?)(?: \[(.*)\])?")
 _RESULTS = {each.name: each for each in RESULTS}
 
 
@@ -184,6 +186,32 @@ def read_table(path: Path) -> Table:
     return Table(tuple(columns), found.to_pylist(), json.loads(about))
 
 
+def read_any_table(path: Path) -> Table:
+    """Return a table from its Parquet file, from the one beside its CSV file, or from CSV alone, when nothing is known of its origin.
+
+    Raises
+    ------
+    OSError, ValueError
+        See `read_table`; or CSV is not a heading and lines with as many values.
+    """
+    kept = path.with_suffix(".parquet")
+    if kept.is_file() or path.suffix.lower() == ".parquet":
+        return read_table(kept)
+    with open(path, newline="", encoding="utf-8-sig") as file:
+        lines = list(csv.reader(file))
+    if len(lines) < 2 or len({len(line) for line in lines}) > 1:
+        raise ValueError(f"{path}: expected a heading and lines with as many values")
+    columns = [Column(found[1], found[2] or "", "") for found in map(_HEADED.fullmatch, lines[0])]
+    return Table(tuple(columns), [{column.name: _number(text) for column, text in zip(columns, line)} for line in lines[1:]], {})
+
+
+def _number(text: str) -> float | str:
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")  # Okabe and Ito: safe for colour-blind readers
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 QUANTITIES = ("cage_slip", "rating_life", "inner_load_maximum", "outer_load_maximum")
@@ -282,7 +310,10 @@ def _draw_lines(axes, table, varied, quantity) -> None:
         drifting = [row for row in rows if row["status"] == UNSETTLED]
         axes.plot([row[over.name] for row in drifting], [row[quantity.name] for row in drifting], "x", color="black", ms=8)
     axes.set(xlabel=label(over), ylabel=label(quantity))
-    axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
+    if quantity.unit == "h" and any(value > 0 for value in table.values(quantity.name)):
+        axes.set_yscale("log")
+    else:
+        axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
     axes.ticklabel_format(axis="x", useOffset=False) if not isinstance(table.rows[0][over.name], str) else None
     axes.grid(alpha=0.3)
 

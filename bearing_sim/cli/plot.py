@@ -1,0 +1,151 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""``bearing-sim plot``: pictures of recorded runs and of the tables of sweeps, without a viewer."""
+
+import math
+from pathlib import Path
+
+import click
+
+from bearing_sim.cli.options import picture_option
+from bearing_sim.cli.reporting import UsageError, announce_replacement, as_file_error, as_usage_error, progress_bar
+
+_TABLES = (".parquet", ".csv")
+
+
+@click.command("plot")
+@click.argument("paths", metavar="RESULT...", nargs=-1, required=True, type=click.Path(path_type=Path))
+@picture_option("The picture", "-o", "--out")
+@click.option("--over", type=click.Choice(["time", "load"]), help="Draw over this [default: time for recordings, what was varied for sweeps].")
+@click.option("--panel", "panels", multiple=True, metavar="NAME", help="Draw this panel of a recording over time; can be repeated [default: six].")
+@click.option(
+    "--band", type=click.IntRange(8, 4096), metavar="N", help="Compute the range of the slip of a recording from N samples of the uncertain fields."
+)
+@click.option(
+    "--quantity", "quantities", multiple=True, metavar="COLUMN", help="Draw this column of a sweep; can be repeated [default: slip, life, loads]."
+)
+def plot(paths, picture, over, panels, band, quantities):
+    """Draw recorded runs or a sweep into a picture; beside RESULT, with the suffix .png, unless -o is given.
+
+    A recording of `run`, `replay` or the node (.mcap, or a bag's folder) is drawn over time: speed, load, slip, life, temperatures and
+    running clearance; further panels are damage and power. Several recordings are compared, each from its own start. With --band the slip
+    has its 5 to 95 % range, by the ranges in the scene's block `uncertainty`, as `uncertainty --log` computes it; no range is made up.
+    --over load shows slip and life over the radial load with the minimum load of the maker's formula.
+
+    The table of a sweep (.parquet, or the .csv beside it) has lines for one varied field, maps for two; --over load wants the load varied.
+    """
+    tables = [path for path in paths if path.suffix.lower() in _TABLES and not path.is_dir()]
+    picture = picture or paths[0].with_suffix(".png")
+    if tables and len(paths) > 1:
+        raise UsageError(f"{tables[0]}: a table is drawn alone; only recordings are compared")
+    with as_file_error():
+        if any(path.exists() and picture.exists() and picture.samefile(path) for path in paths):
+            raise UsageError(f"{picture} is what is to be drawn; choose another file")
+        announce_replacement(picture)
+        if tables:
+            if panels or band:
+                raise UsageError("--panel and --band are for recordings; a table has --quantity")
+            if over == "time":
+                raise UsageError("--over time is for recordings; a sweep is drawn over what was varied, or --over load")
+            _plot_table(tables[0], picture, over, quantities)
+        else:
+            if quantities:
+                raise UsageError("--quantity is for tables of sweeps; a recording has --panel")
+            if over == "load" and (panels or band):
+                raise UsageError("--panel and --band go with a picture over time")
+            _plot_recordings(paths, picture, over, panels, band)
+    click.echo(str(picture))
+
+
+def _plot_recordings(paths, picture, over, panels, band) -> None:
+    from bearing_sim.recording.bag import RecordingError
+    from bearing_sim.recording.reader import Recording
+    from bearing_sim.scene.loader import did_you_mean
+    from bearing_sim.studies.run_plot import DEFAULT_PANELS, PANELS, SlipBand, draw_over_load, draw_over_time, read_course
+
+    for panel in panels:
+        if panel not in PANELS:
+            raise UsageError(f"--panel {panel}: no such panel{did_you_mean(panel, PANELS)}; there are {', '.join(PANELS)}")
+    courses = []
+    for path in paths:
+        with as_usage_error(RecordingError):
+            recording = Recording(path)
+            with progress_bar(f"reading {path.name}", max(recording.last_time, 1e-9)) as progress:
+                course = read_course(recording, path.name, panels or DEFAULT_PANELS, progress)
+        if recording.unfinished:
+            click.echo(f"{path}: {recording.unfinished}", err=True)
+        if band:
+            course.band = SlipBand(*_band_of(path, course, band))
+        courses.append(course)
+    scene, names = courses[0].scene, ", ".join(course.name for course in courses)
+    title = f"{scene.name} at level {scene.level}: {names}" if len(courses) == 1 else f"{scene.name}: {names}"
+    (draw_over_load if over == "load" else draw_over_time)(picture, courses, title)
+
+
+def _band_of(path, course, samples):
+    """Return times, low and high ends of the slip's range under the inputs of a recording."""
+    import numpy as np
+
+    from bearing_sim.cli.uncertainty import bands_of, stretches_of
+
+    scene, stretches, _ = stretches_of(path, course.scene, 48)
+    if not scene.uncertainty:
+        raise UsageError(f"{path}: its scene has no block uncertainty, so there is no range; give one, or leave out --band")
+    found, _ = bands_of(scene, samples, course=stretches)
+    bands = found.slip_bands()
+    return stretches.middles + course.first, np.array([each.low for each in bands]), np.array([each.high for each in bands])
+
+
+def _plot_table(path, picture, over, quantities) -> None:
+    from bearing_sim.sweep.table import QUANTITIES, NotDrawable, draw, read_any_table
+
+    with as_usage_error(NotDrawable, ValueError):
+        table = read_any_table(path)
+        if over == "load":
+            if quantities:
+                raise UsageError("--quantity does not go with --over load, which draws slip and life")
+            _plot_over_load(path, picture, table)
+        elif "axes" not in table.about:
+            raise UsageError(f"{path}: there is no .parquet beside it, so what was varied is not known; give --over load, or the .parquet")
+        else:
+            draw(picture, table, quantities or QUANTITIES)
+
+
+_LOAD, _SPEED = "operating.radial_load", "operating.shaft_speed"
+
+
+def _plot_over_load(path, picture, table) -> None:
+    """Draw slip and life of a table over its column of loads."""
+    from bearing_sim.scene.loader import SceneError, scene_from_yaml
+    from bearing_sim.studies.run_plot import draw_table_over_load
+    from bearing_sim.sweep.table import label
+
+    columns = {column.name: column for column in table.columns}
+    missing = [name for name in (_LOAD, "cage_slip", "rating_life") if name not in columns]
+    if missing:
+        raise UsageError(f"{path}: no column {missing[0]}; vary the load with --vary {_LOAD}=0.5kN:20kN:9")
+    scene, text = None, table.about.get("scene_of_first_point", "")
+    try:
+        scene = scene_from_yaml(text) if text else None
+    except SceneError as error:
+        click.echo(f"{path}: its scene is of another version, so there is no minimum load: {str(error).splitlines()[0]}", err=True)
+    if not text:
+        click.echo(f"{path}: a CSV table has no scene, so there is no minimum load; draw the .parquet", err=True)
+    operating = scene.operating.shaft_speed * 30 / math.pi if scene is not None else math.nan
+    results = {"cage_slip", "rating_life"}
+    varied = [axis["field"] for axis in table.about.get("axes", ()) if axis["field"] != _LOAD and len(axis["values"]) > 1]
+    if not table.about:
+        varied = [name for name in columns if "." in name and name != _LOAD and name not in results]
+    points = [
+        {
+            "load": float(row[_LOAD]) * (1e3 if columns[_LOAD].unit == "kN" else 1.0),
+            "slip": float(row["cage_slip"]),
+            "life": float(row["rating_life"]),
+            "speed": float(row.get(_SPEED, operating)),
+            "family": ", ".join(f"{label(columns[name])} {row[name]:.6g}" if isinstance(row[name], float) else str(row[name]) for name in varied),
+        }
+        for row in table.rows
+        if all(isinstance(row[name], (int, float)) for name in (_LOAD, "cage_slip", "rating_life"))
+    ]
+    about = table.about
+    where = f"{about['scene']} {' '.join(about.get('overrides', ()))} at level {about['level']}" if "scene" in about else path.name
+    draw_table_over_load(picture, points, scene, where)

@@ -1,0 +1,448 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Pictures of runs: what drives the bearing and what results over time, or slip and life over the load with the line of the minimum load.
+
+Long runs are thinned out so that the least and the largest value of every stretch remain.  Values that are not finite leave gaps in lines.
+"""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import BinaryIO, NamedTuple
+
+import numpy as np
+
+from bearing_sim.messages.topics import ZERO_CELSIUS
+from bearing_sim.model.plausibility import minimum_load
+from bearing_sim.recording.reader import Recording
+from bearing_sim.scene.scene import Scene
+from bearing_sim.sweep.table import COLOURS, MARKERS, NotDrawable, new_figure
+
+_RPM = 30.0 / math.pi
+_MOST_POINTS = 4000  # of a line; each stretch of a longer one keeps its least and its largest value
+_FEW_POINTS = 3  # of a line that is drawn with marks, too
+_BREAK = 10.0  # usual spacings of samples above which a line is interrupted
+_MOST_DECADES = 8  # of a life: near rest it grows beyond any scale
+_LEGEND_WIDTH, _HANDLE_WIDTH = 150, 8  # of a legend below a picture and of the mark before a name, in characters
+_LONGEST_TITLE = 110
+_DATED = 3600.0  # [s] runs from this long on have the date of their start beside the axis
+_CELLS = (240, 160)  # of a picture of slip over load, of each of which one sample is drawn
+_DPI = 130
+_TIMES = ((180.0, 1.0, "s"), (180.0 * 60.0, 60.0, "min"), (72.0 * 3600.0, 3600.0, "h"), (math.inf, 86400.0, "d"))
+
+
+class Line(NamedTuple):
+    """A line of a panel: its name where the panel has several, and its values from a block of samples in the unit of the panel."""
+
+    name: str
+    values: Callable[[np.ndarray], np.ndarray]
+
+
+class Panel(NamedTuple):
+    """A panel of a picture: label with unit, lines, and whether its axis is logarithmic."""
+
+    label: str
+    lines: tuple[Line, ...]
+    is_logarithmic: bool = False
+
+
+def _observable(name: str, scale: float = 1.0, offset: float = 0.0) -> Callable[[np.ndarray], np.ndarray]:
+    return lambda block: scale * block[name] + offset
+
+
+def _temperature(shown: str, name: str) -> Line:
+    return Line(shown, _observable(name, 1.0, -ZERO_CELSIUS))
+
+
+def _load(block: np.ndarray) -> np.ndarray:
+    return np.hypot(block["load_y"], block["load_z"]) / 1e3
+
+
+PANELS = {
+    "speed": Panel("shaft speed [rpm]", (Line("", _observable("shaft_speed", _RPM)),)),
+    "load": Panel("radial load [kN]", (Line("", _load),)),
+    "slip": Panel("cage slip [%]", (Line("", _observable("cage_slip", 100.0)),)),
+    "life": Panel("rating life [h]", (Line("", _observable("modified_rating_life")),), is_logarithmic=True),
+    "temperature": Panel(
+        "temperature [°C]",
+        (
+            _temperature("oil", "oil_temperature"),
+            _temperature("inner ring", "inner_ring_temperature"),
+            _temperature("outer ring", "outer_ring_temperature"),
+            _temperature("rollers", "roller_temperature"),
+            _temperature("housing", "housing_temperature"),
+            _temperature("inner ring, measured", "inner_ring_temperature_measured"),
+            _temperature("outer ring, measured", "outer_ring_temperature_measured"),
+        ),
+    ),
+    "clearance": Panel("running clearance [µm]", (Line("", _observable("running_clearance", 1e6)),)),
+    "damage": Panel("life used [%]", (Line("", _observable("damage", 100.0)),)),
+    "roller_load": Panel(
+        "largest roller load [N]",
+        (Line("inner raceway", lambda block: block["inner_load"].max(axis=1)), Line("outer raceway", lambda block: block["outer_load"].max(axis=1))),
+    ),
+    "power": Panel("power loss [W]", (Line("", _observable("shaft_power")),)),
+}
+"""Panels by name, in the order in which they are drawn."""
+
+DEFAULT_PANELS = ("speed", "load", "slip", "life", "temperature", "clearance")
+
+
+class SlipBand(NamedTuple):
+    """Range of the slip where fields of the scene are uncertain: times [s], shape (m,), and the ends [1], 5 and 95 %, shape (m,) each."""
+
+    times: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+
+
+@dataclass
+class Course:
+    """What a picture shows of one run.
+
+    Attributes
+    ----------
+    name : of the run.
+    scene : what was simulated.
+    panels : names of the panels.
+    lines : by panel and number of the line, the times [s] and the values, thinned out.
+    loaded : speed [rpm], load [kN], slip [%] and life [h] of each sample that shows in a picture over the load, shape (n, 4).
+    samples : number of samples of the run.
+    first, last : simulated times of its ends [s].
+    band : range of the slip, if somebody computed one.
+    start_ns : wall time of sample time 0 [ns since the epoch]; 0 if it is not known.
+    """
+
+    name: str
+    scene: Scene
+    panels: Sequence[str]
+    lines: dict[tuple[str, int], tuple[np.ndarray, np.ndarray]] = field(default_factory=dict)
+    loaded: np.ndarray = field(default_factory=lambda: np.zeros((0, 4)))
+    samples: int = 0
+    first: float = math.nan
+    last: float = math.nan
+    band: SlipBand | None = None
+    start_ns: int = 0
+
+
+def read_course(
+    recording: Recording, name: str, panels: Sequence[str] = DEFAULT_PANELS, progress: Callable[[float], None] = lambda time: None
+) -> Course:
+    """Return what a picture shows of a recording, which is read block by block and may be longer than memory.
+
+    Parameters
+    ----------
+    recording : of a run.
+    name : by which a comparison names it.
+    panels : names of `PANELS`.
+    progress : called repeatedly with the time reached [s].
+    """
+    blocks = (item for item in recording if isinstance(item, np.ndarray))
+    course = course_of(blocks, recording.scene, name, recording.samples, panels, progress)
+    course.start_ns = recording.start_ns
+    return course
+
+
+def course_of(
+    blocks, scene: Scene, name: str, samples: int, panels: Sequence[str] = DEFAULT_PANELS, progress: Callable[[float], None] = lambda time: None
+) -> Course:
+    """Return what a picture shows of blocks of samples (see `read_course`); ``samples`` is their number in all, which decides the thinning."""
+    course = Course(name, scene, panels)
+    window = max(1, 2 * samples // _MOST_POINTS)
+    parts: dict[tuple[str, int], list[tuple[np.ndarray, np.ndarray]]] = {}
+    loaded, before, usual = [], math.nan, 0.0
+    for block in blocks:
+        times = block["time"]
+        if not len(times):
+            continue
+        spacings = np.diff(times, prepend=before if math.isfinite(before) else times[0])
+        usual = usual or float(np.median(spacings[spacings > 0])) if (spacings > 0).any() else usual
+        breaks = np.flatnonzero(spacings > max(_BREAK * usual, _BREAK * np.quantile(spacings, 0.9))) if len(times) > 2 else np.zeros(0, int)
+        for panel in panels:
+            for k, line in enumerate(PANELS[panel].lines):
+                parts.setdefault((panel, k), []).append(thinned(times, line.values(block), window, breaks))
+        loaded.append(
+            _one_per_cell(np.stack([block["shaft_speed"] * _RPM, _load(block), 100 * block["cage_slip"], block["modified_rating_life"]], -1))
+        )
+        course.samples += len(times)
+        course.first, course.last = (float(times[0]) if math.isnan(course.first) else course.first), float(times[-1])
+        before = course.last
+        progress(course.last)
+    course.lines = {key: tuple(np.concatenate(each) for each in zip(*pieces)) for key, pieces in parts.items()}
+    course.loaded = np.concatenate(loaded) if loaded else course.loaded
+    return course
+
+
+def thinned(times: np.ndarray, values: np.ndarray, window: int, breaks: Sequence[int] = ()) -> tuple[np.ndarray, np.ndarray]:
+    """Return a line with the least and the largest value of each window of samples, in order of time.
+
+    Parameters
+    ----------
+    times, values : of the samples, shape (n,).
+    window : number of samples of which two remain; all remain where it is 2 or less.
+    breaks : samples before which the line is interrupted, by a value that is NaN.
+
+    Returns
+    -------
+    Times and values of the line; values that are not finite become NaN.
+    """
+    values = np.where(np.isfinite(values), values, np.nan)
+    if window > 2 and len(values):
+        starts = np.arange(0, len(values), window)
+        ends = np.append(starts[1:], len(values))
+        kept = []
+        for begin, end in zip(starts.tolist(), ends.tolist()):
+            piece = values[begin:end]
+            if np.isnan(piece).all():
+                kept.append(begin)
+                continue
+            kept += sorted({begin + int(np.nanargmin(piece)), begin + int(np.nanargmax(piece))})
+        index = np.array(kept)
+    else:
+        index = np.arange(len(values))
+    places = np.searchsorted(index, np.asarray(breaks, int))
+    between = times[np.maximum(np.asarray(breaks, int) - 1, 0)]
+    return np.insert(times[index], places, between), np.insert(values[index], places, np.nan)
+
+
+def _one_per_cell(rows: np.ndarray) -> np.ndarray:
+    """Return those of many samples that differ in a picture: the first in each cell of load and slip, and the extremes of each column."""
+    if len(rows) <= 200:
+        return rows
+    load, slip = rows[:, 1], np.where(np.isfinite(rows[:, 2]), rows[:, 2], 0.0)
+    cells = [np.floor(count * (each - each.min()) / (np.ptp(each) or 1.0)) for each, count in zip((load, slip), _CELLS)]
+    _, first = np.unique(np.stack(cells), axis=1, return_index=True)
+    finite = np.where(np.isfinite(rows), rows, np.nan)
+    extremes = [k for column in finite.T if not np.isnan(column).all() for k in (np.nanargmin(column), np.nanargmax(column))]
+    return rows[np.unique([*first, *extremes])]
+
+
+def draw_over_time(path: Path | BinaryIO, courses: Sequence[Course], title: str = "", form: str | None = None) -> "object":
+    """Draw runs over time into a file, one panel below the other, and return the figure.
+
+    A life has a logarithmic axis; what exceeds the shortest by more than eight decades is cut off.
+
+    Parameters
+    ----------
+    path : its suffix gives the format, or a stream.
+    courses : at least one; several are compared, each from its own start.
+    title : of the picture.
+    form : format of a stream.
+    """
+    panels = [PANELS[name] for name in courses[0].panels]
+    figure = new_figure(10, 0.9 + 1.75 * len(panels))
+    axes = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
+    span = max(course.last - course.first for course in courses)
+    divisor, unit = next((divisor, unit) for longest, divisor, unit in _TIMES if span <= longest)
+    starts = [course.first for course in courses] if len(courses) > 1 else [0.0]
+    for each, name, panel in zip(axes, courses[0].panels, panels):
+        _draw_panel(each, name, panel, courses, starts, divisor)
+    axes[-1].set_xlabel(_time_label(courses, span, unit))
+    if span == 0.0:
+        middle = (courses[0].first - starts[0]) / divisor
+        axes[-1].set_xlim(middle - 1.0, middle + 1.0)
+    else:
+        begin, end = (min(course.first - start for course, start in zip(courses, starts)), max(c.last - s for c, s in zip(courses, starts)))
+        axes[-1].set_xlim(begin / divisor, end / divisor)
+    axes[-1].ticklabel_format(axis="x", useOffset=False)
+    _name_courses(figure, courses)
+    _entitle(figure, title)
+    figure.align_ylabels(axes)
+    figure.savefig(path, dpi=_DPI, format=form)
+    return figure
+
+
+def _time_label(courses: Sequence[Course], span: float, unit: str) -> str:
+    """Return the label of a time axis; of a long run with the date of its start."""
+    if len(courses) > 1:
+        return f"simulated time from the start of each run [{unit}]"
+    if span < _DATED or not courses[0].start_ns:
+        return f"simulated time [{unit}]"
+    return f"time since {datetime.fromtimestamp(courses[0].start_ns * 1e-9, UTC):%Y-%m-%d %H:%M} UTC [{unit}]"
+
+
+def _draw_panel(axes, name: str, panel: Panel, courses: Sequence[Course], starts: Sequence[float], divisor: float) -> None:
+    shown = [k for k in range(len(panel.lines)) if any(np.isfinite(course.lines[name, k][1]).any() for course in courses)]
+    every = []
+    for number, course in enumerate(courses):
+        for k in shown:
+            times, values = course.lines[name, k]
+            several = len(courses) > 1
+            look = {"color": COLOURS[(number if several else k) % len(COLOURS)], "ls": ("-", "--", "-.", ":")[k % 4] if several else "-"}
+            label = panel.lines[k].name if number == 0 else None
+            if np.isfinite(values).sum() <= _FEW_POINTS:
+                look |= {"marker": "o", "ms": 4}
+            axes.plot((times - starts[number]) / divisor, values, lw=1.1, label=label, **look)
+            every.append(values[np.isfinite(values)])
+        if name == "slip" and course.band is not None:
+            band, colour = course.band, COLOURS[number % len(COLOURS)]
+            axes.fill_between((band.times - starts[number]) / divisor, 100 * band.low, 100 * band.high, color=colour, alpha=0.22, lw=0, step="mid")
+            every += [100 * band.low[np.isfinite(band.low)], 100 * band.high[np.isfinite(band.high)]]
+    only = panel.lines[shown[0]].name if len(shown) == 1 else ""
+    axes.set_ylabel(f"{only} {panel.label}".strip(), fontsize=9)
+    axes.grid(alpha=0.3)
+    axes.tick_params(labelsize=8)
+    values = np.concatenate(every) if every else np.zeros(0)
+    _set_limits(axes, values, panel.is_logarithmic)
+    if len(shown) > 1:
+        axes.legend(frameon=False, fontsize=8, loc="center left", bbox_to_anchor=(1.0, 0.5))
+    if not len(values[values > 0]) and panel.is_logarithmic or not len(values):
+        axes.text(0.5, 0.5, "no values that are finite", ha="center", va="center", transform=axes.transAxes, fontsize=9, color="0.4")
+
+
+def _set_limits(axes, values: np.ndarray, is_logarithmic: bool, direction: str = "y") -> None:
+    """Set the limits and ticks of an axis so that its labels are short and apart, also where values hardly differ."""
+    from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
+
+    axis, limit = getattr(axes, f"{direction}axis"), getattr(axes, f"set_{direction}lim")
+    positive = values[values > 0]
+    if is_logarithmic and len(positive):
+        getattr(axes, f"set_{direction}scale")("log")
+        low = math.floor(math.log10(positive.min()) + 1e-9)
+        high = min(math.ceil(math.log10(positive.max()) - 1e-9), low + _MOST_DECADES)
+        limit(10.0**low, 10.0 ** max(high, low + 1))
+        axis.set_major_locator(LogLocator(numticks=5))
+        axis.set_minor_formatter(NullFormatter())
+        return
+    if not len(values):
+        limit(0.0, 1.0)
+        axis.set_ticks([])
+        return
+    low, high = float(values.min()), float(values.max())
+    middle, half = 0.5 * (low + high), 0.5 * (high - low)
+    half = max(1.06 * half, 2e-3 * abs(middle), 1e-9)
+    limit(middle - half, middle + half)
+    axis.set_major_locator(MaxNLocator(5 if direction == "y" else 7, steps=[1, 2, 2.5, 5, 10]))
+    is_plain = 1e-3 <= max(abs(low), abs(high)) < 1e7 or low == high == 0.0
+    axes.ticklabel_format(axis=direction, useOffset=False, style="plain" if is_plain else "sci")
+
+
+def _name_courses(figure, courses: Sequence[Course]) -> None:
+    """Add one legend of runs and bands below the picture, if there is anything to name."""
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    handles = []
+    if len(courses) > 1:
+        handles += [Line2D([], [], color=COLOURS[k % len(COLOURS)], label=_shortened(course.name, 40)) for k, course in enumerate(courses)]
+    if any(course.band is not None for course in courses):
+        handles.append(Patch(color=COLOURS[0], alpha=0.22, label="slip, 5 to 95 % by the scene's uncertainty"))
+    if handles:
+        _add_legend(figure, handles)
+
+
+def _add_legend(figure, handles: Sequence) -> None:
+    """Add a legend below a picture, in as many columns as its longest name allows."""
+    longest = max(len(handle.get_label()) for handle in handles) + _HANDLE_WIDTH
+    columns = int(np.clip(_LEGEND_WIDTH // longest, 1, len(handles)))
+    figure.legend(handles=handles, loc="outside lower center", ncols=columns, frameon=False, fontsize=8)
+
+
+def _entitle(figure, title: str) -> None:
+    if title:
+        figure.suptitle(_shortened(title, _LONGEST_TITLE), fontsize=10)
+
+
+def _shortened(text: str, most: int) -> str:
+    return text if len(text) <= most else f"{text[: most - 2]} …"
+
+
+def minimum_loads(scene: Scene, speeds: np.ndarray) -> np.ndarray:
+    """Return the minimum load of makers [N] at shaft speeds [rpm] (see `bearing_sim.model.plausibility.minimum_load`)."""
+    return np.array([minimum_load(scene, speed / _RPM)[0] for speed in np.asarray(speeds, float).tolist()])
+
+
+def draw_over_load(path: Path | BinaryIO, courses: Sequence[Course], title: str = "", form: str | None = None) -> "object":
+    """Draw slip and life of the samples of runs over the radial load, with the minimum load, and return the figure.
+
+    The minimum load rises with the speed; between its values at the speeds of a run that turns it is a strip.
+
+    Parameters
+    ----------
+    path, courses, title, form : see `draw_over_time`.
+    """
+    figure = new_figure(10, 4.6)
+    slip, life = figure.subplots(1, 2)
+    for k, course in enumerate(courses):
+        rows = course.loaded
+        look = {"color": COLOURS[k % len(COLOURS)], "marker": MARKERS[k % len(MARKERS)], "ms": 3, "ls": "", "alpha": 0.6, "mew": 0}
+        slip.plot(rows[:, 1], np.where(np.isfinite(rows[:, 2]), rows[:, 2], np.nan), **look)
+        life.plot(rows[:, 1], np.where(np.isfinite(rows[:, 3]), rows[:, 3], np.nan), **look)
+    rows = np.concatenate([course.loaded for course in courses])
+    handles = _draw_minimum_loads((slip, life), [(course.scene, course.loaded[:, 0], course.name) for course in courses])
+    _finish_over_load(figure, (slip, life), rows[:, 1], rows[:, 2], rows[:, 3], handles, courses)
+    _entitle(figure, title)
+    figure.savefig(path, dpi=_DPI, format=form)
+    return figure
+
+
+def _finish_over_load(figure, axes, loads, slips, lives, handles, courses=()) -> None:
+    slip, life = axes
+    for each, values, label, is_logarithmic in ((slip, slips, "cage slip [%]", False), (life, lives, "rating life [h]", True)):
+        each.set(xlabel="radial load [kN]", ylabel=label)
+        each.grid(alpha=0.3)
+        reached = [float(mark.get_xdata()[0]) for mark in each.lines if len(mark.get_xdata()) == 2 and mark.get_xdata()[0] == mark.get_xdata()[1]]
+        _set_limits(each, np.append(loads[np.isfinite(loads)], reached), False, "x")
+        _set_limits(each, values[np.isfinite(values)], is_logarithmic)
+    if len(courses) > 1:
+        from matplotlib.lines import Line2D
+
+        looks = [{"color": COLOURS[k % len(COLOURS)], "marker": MARKERS[k % len(MARKERS)], "ls": ""} for k in range(len(courses))]
+        handles = [*(Line2D([], [], label=_shortened(course.name, 40), **look) for course, look in zip(courses, looks)), *handles]
+    if handles:
+        _add_legend(figure, handles)
+
+
+def _draw_minimum_loads(axes, runs: Sequence[tuple[Scene, np.ndarray, str]]) -> list:
+    """Draw the minimum load of each run, as a line or, where it depends on a speed that changes, as a strip; return the legend's entries."""
+    handles = []
+    for k, (scene, speeds, name) in enumerate(runs):
+        turning = np.abs(speeds[np.isfinite(speeds)])
+        turning = turning[turning >= 0.01 * turning.max(initial=0.0)]
+        if not len(turning):
+            continue
+        least, most = (minimum_loads(scene, np.array([turning.min(), turning.max()])) / 1e3).tolist()
+        rule = minimum_load(scene)[1].partition(";")[0].replace("^2", "²")
+        at = f"{least:.3g} kN" if most < 1.02 * least else f"{least:.3g} to {most:.3g} kN at {turning.min():.0f} to {turning.max():.0f} rpm"
+        label = f"minimum load{f' of {_shortened(name, 40)}' * (len(runs) > 1)}: {at} ({rule})"
+        for each in axes:
+            line = each.axvline(most, color=COLOURS[-1] if len(runs) == 1 else COLOURS[k % len(COLOURS)], ls="--", lw=1.2, label=label)
+            if most >= 1.02 * least:
+                each.axvspan(least, most, color=line.get_color(), alpha=0.10, lw=0)
+        handles.append(line)
+    return handles
+
+
+def draw_table_over_load(path: Path, points: Sequence[Mapping], scene: Scene | None, title: str, form: str | None = None) -> "object":
+    """Draw slip and life of the points of a table over the radial load, a line for each speed, with the minimum load; return the figure.
+
+    Parameters
+    ----------
+    path, title, form : see `draw_over_time`.
+    points : each with ``load`` [N], ``slip`` [%], ``life`` [h], ``speed`` [rpm] and ``family``, what else was varied, in words.
+    scene : whose minimum load is drawn; None if it is not known.
+    """
+    if not points:
+        raise NotDrawable("no point of the table has a load and a slip")
+    figure = new_figure(10, 4.8)
+    slip, life = figure.subplots(1, 2)
+    families = list(dict.fromkeys(point["family"] for point in points))
+    for k, family in enumerate(families):
+        own = sorted((point for point in points if point["family"] == family), key=lambda point: point["load"])
+        look = {"color": COLOURS[k % len(COLOURS)], "marker": MARKERS[k % len(MARKERS)], "ms": 4, "lw": 1.2}
+        loads = [point["load"] / 1e3 for point in own]
+        for each, name in ((slip, "slip"), (life, "life")):
+            each.plot(loads, [point[name] if math.isfinite(point[name]) else math.nan for point in own], **look)
+    columns = {name: np.array([float(point[name]) for point in points]) for name in ("load", "slip", "life", "speed")}
+    speeds = sorted({float(speed) for speed in columns["speed"] if math.isfinite(speed)})
+    handles = _draw_minimum_loads((slip, life), [(scene, np.array(speeds), "")]) if scene is not None and speeds else []
+    if len(families) > 1:
+        from matplotlib.lines import Line2D
+
+        looks = [{"color": COLOURS[k % len(COLOURS)], "marker": MARKERS[k % len(MARKERS)]} for k in range(len(families))]
+        handles = [*(Line2D([], [], label=_shortened(family, 60), **look) for family, look in zip(families, looks)), *handles]
+    _finish_over_load(figure, (slip, life), columns["load"] / 1e3, columns["slip"], columns["life"], handles)
+    _entitle(figure, title)
+    figure.savefig(path, dpi=_DPI, format=form)
+    return figure
