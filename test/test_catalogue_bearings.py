@@ -23,7 +23,7 @@ def scene(name, oil="iso_vg_32"):
 
 
 def test_the_catalogue_has_ten_bearings_of_five_series_from_small_to_large():
-    assert {name.removeprefix("nu")[:-2] for name in BEARINGS} == {"10", "2", "3", "22", "23"} and len(BEARINGS) == 10
+    assert {name.removeprefix("NU ")[:-2] for name in BEARINGS} == {"10", "2", "3", "22", "23"} and len(BEARINGS) == 10
     bores = [scene(name).bearing.bore_diameter for name in BEARINGS]
     assert min(bores) <= 25e-3 and max(bores) >= 160e-3
 

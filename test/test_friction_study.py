@@ -65,7 +65,7 @@ def test_moment_rises_with_speed_and_load_and_its_parts_are_the_whole(table):
 def test_factors_of_the_simple_model_give_the_thermal_speeds_that_nke_prints(name):
     # solved for f_0 from the printed speed; its own C_0 differs from SKF's by up to 6 %, which f_1 passes on
     dimensions, series, speed = dimensions_of(bath_scene(name)), series_of(name), NKE_SPEEDS[name]
-    static = {"nu1010": 53e3, "nu205": 28e3, "nu210": 71e3, "nu232": 683e3, "nu310": 115e3, "nu2210": 91e3, "nu2310": 189e3, "nu2324": 1033e3}
+    static = {"NU 1010": 53e3, "NU 205": 28e3, "NU 210": 71e3, "NU 232": 683e3, "NU 310": 115e3, "NU 2210": 91e3, "NU 2310": 189e3, "NU 2324": 1033e3}
     by_load = SERIES[series].f_1 * 0.05 * static[name] * dimensions.mean
     viscous = 1e3 * heat_flow(dimensions) / (speed * RPM) - by_load
     f_0 = viscous / ((12 * speed) ** (2 / 3) * dimensions.mean**3 * 1e-7)

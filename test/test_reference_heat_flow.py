@@ -67,7 +67,7 @@ def test_heat_carried_away_is_that_of_iso_15312_within_two_but_for_wide_bearings
     assert len(ratios) == 10
     assert 1 / 1.3 <= np.median(list(ratios.values())) <= 1.3
     beyond = {name for name, ratio in ratios.items() if not 0.5 < ratio < 2.0}
-    assert beyond <= {"nu2310", "nu2324"} and min(ratios.values()) > 1 / 2.3
+    assert beyond <= {"NU 2310", "NU 2324"} and min(ratios.values()) > 1 / 2.3
 
 
 if __name__ == "__main__":

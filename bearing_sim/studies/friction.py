@@ -56,11 +56,11 @@ SERIES = {
     "23": Coefficients(4.0, 0.0004),
 }
 # Of five series, from small to large.
-BEARINGS = ("nu1010", "nu1020", "nu205", "nu210", "nu232", "nu310", "nu2210", "nu2220", "nu2310", "nu2324")
+BEARINGS = ("NU 1010", "NU 1020", "NU 205", "NU 210", "NU 232", "NU 310", "NU 2210", "NU 2220", "NU 2310", "NU 2324")
 # R_1 of SKF's rolling moment by series (SKF General Catalogue, table 3c).
 _SKF_ROLLING = {"10": 1.12e-6, "2": 1.09e-6, "3": 1.09e-6, "22": 1.40e-6, "23": 1.48e-6}
 # Thermal speed ratings by ISO 15312 that NKE prints for the same sizes [rpm] (NKE, general catalogue, cylindrical roller bearings, E design).
-NKE_SPEEDS = {"nu1010": 7100, "nu205": 11800, "nu210": 6700, "nu232": 2200, "nu310": 6100, "nu2210": 5300, "nu2310": 5000, "nu2324": 2000}
+NKE_SPEEDS = {"NU 1010": 7100, "NU 205": 11800, "NU 210": 6700, "NU 232": 2200, "NU 310": 6100, "NU 2210": 5300, "NU 2310": 5000, "NU 2324": 2000}
 
 
 class Dimensions(NamedTuple):
