@@ -119,6 +119,7 @@ def _as_text(value: object) -> object:
 THICKENERS = Literal[
     "lithium",
     "lithium_complex",
+    "lithium_calcium",
     "calcium",
     "calcium_sulfonate_complex",
     "aluminium_complex",
