@@ -26,15 +26,8 @@ SLOWEST = 500.0  # rpm
 TEMPERATURE = 343.15  # K, ISO 15312
 REFERENCE_LOAD = 0.05  # of C_0, ISO 15312
 _RPM = math.pi / 30.0
-# An oil like ISO VG 32 with exactly the 12 mm^2/s at 70 degC of ISO 15312; the other numbers as of the catalogue's iso_vg_32.
-_OIL = {
-    "law": "custom",
-    "viscosity_40": 35.0e-6,
-    "viscosity_100": 5.72e-6,
-    "density": 870.0,
-    "pressure_viscosity": 1.6e-8,
-    "name": "ISO 15312 reference oil",
-}
+# A mineral oil like ISO VG 32 with exactly the 12 mm^2/s at 70 degC of ISO 15312; its other properties follow from its kind of base oil.
+_OIL = {"law": "custom", "viscosity_40": 35.0e-6, "viscosity_100": 5.72e-6, "name": "ISO 15312 reference oil"}
 FAR = 2.0  # a ratio beyond this factor is explained
 
 
