@@ -15,7 +15,6 @@ from bearing_sim.studies.friction import (
     SERIES,
     Dimensions,
     bath_scene,
-    bearings,
     compare,
     dimensions_of,
     heat_flow,

@@ -137,7 +137,7 @@ class Grease:
 
     name: str = ""  # name of the grease
     source: str = ""  # where its data come from
-    thickener: THICKENERS = "lithium"
+    thickener: THICKENERS = "lithium"  # what thickens the base oil
     nlgi: Annotated[Literal["000", "00", "0", "1", "1.5", "2", "2.5", "3", "4"], BeforeValidator(_as_text)] = "2"  # consistency (ASTM D217)
     density: quantity("kg/m^3", "density at 20 degC; None: 900 kg/m^3", 500.0, 2500.0) | None = None
     speed_factor: quantity("", "highest n d_m that the grease is for [rpm mm]; None: by base oil and NLGI class", 1e3, 5e6) | None = None
