@@ -2,7 +2,8 @@
 """Random scenes of bearings by designation: does each level settle, and what do the others do?
 
 A scene is drawn evenly from the tables of designations (those of `_LARGEST_BORE` at most), clearances, oils and supplies; its speed from a tenth of
-the limiting speed to a fifth above it, its load from nothing to half of C, its oil as warm as `_TEMPERATURES`.
+the limiting speed to a fifth above it, its load from nothing to half of C, its oil as warm as `_TEMPERATURES`.  Levels that have no full complement
+of rollers draw bearings with cages alone.
 """
 
 import math
@@ -60,9 +61,13 @@ class Report(NamedTuple):
         return self.counts.get(OK, 0) / max(sum(self.counts.values()), 1)
 
 
-def draw_scenes(count: int, seed: int) -> list[Drawn]:
-    """Return random scenes; the same for the same seed and tables."""
-    generator, known = random.Random(seed), [each for each in designations() if each.boundary.bore <= _LARGEST_BORE]
+def draw_scenes(count: int, level: str, seed: int) -> list[Drawn]:
+    """Return random scenes of a level; the same for the same seed and tables."""
+    has_full_complement = level in ("steady", "slip")
+    known = [
+        each for each in designations() if each.boundary.bore <= _LARGEST_BORE and (has_full_complement or not each.designation.is_full_complement)
+    ]
+    generator = random.Random(seed)
     return [_draw(generator, generator.choice(known)) for _ in range(count)]
 
 
@@ -136,7 +141,7 @@ def run_scenes(
     workers : number of processes; None: one per core.
     progress : called with the number of finished scenes and of all.
     """
-    scenes = draw_scenes(count, seed)
+    scenes = draw_scenes(count, level, seed)
     with Journal(journal) as kept:
         results = run_tasks([task(level, run_scene, drawn, level, at_most) for drawn in scenes], kept, workers, progress=progress)
     others = [(drawn, result["status"], result["reason"]) for drawn, result in zip(scenes, results) if result["status"] != OK]
