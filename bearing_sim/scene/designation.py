@@ -161,6 +161,10 @@ def _millimetres(diameter: float) -> int:
     return round(1e3 * diameter)
 
 
+def _metres(cell: str) -> float | None:
+    return float(cell) / 1e3 if cell else None
+
+
 def _scaled(cell: str, scale: float) -> float | None:
     return float(cell) * scale if cell else None
 
@@ -170,8 +174,8 @@ def boundaries() -> Mapping[tuple[str, int], Boundary]:
     """Return boundary dimensions by series and bore [mm]."""
     found = {}
     for row in _table("boundary"):
-        bore, outside, width = (1e-3 * float(row[name]) for name in ("bore", "outside", "width"))
-        found[row["series"], int(row["bore"])] = Boundary(bore, outside, width, _scaled(row["corner"], 1e-3), row["sources"])
+        bore, outside, width, corner = (_metres(row[name]) for name in ("bore", "outside", "width", "corner"))
+        found[row["series"], int(row["bore"])] = Boundary(bore, outside, width, corner, row["sources"])
     return types.MappingProxyType(found)
 
 
@@ -189,7 +193,7 @@ def makers_rows() -> Mapping[tuple[str, int, bool], tuple[MakersRow, ...]]:
             reference_speed=_scaled(row["reference_speed"], rpm),
             limiting_speed=_scaled(row["limiting_speed"], rpm),
         )
-        diameters = [_scaled(row[name], 1e-3) for name in ("raceway_inner", "raceway_outer", "flange_inner", "flange_outer")]
+        diameters = [_metres(row[name]) for name in ("raceway_inner", "raceway_outer", "flange_inner", "flange_outer")]
         key = row["series"], int(row["bore"]), row["complement"] == "full"
         found.setdefault(key, []).append(MakersRow(row["maker"], row["design"], ratings, *diameters))
     return types.MappingProxyType({key: tuple(rows) for key, rows in found.items()})
@@ -201,12 +205,12 @@ def roller_counts() -> tuple[RollerCount, ...]:
     return tuple(
         RollerCount(
             (row["narrow"], row["wide"]),
-            1e-3 * float(row["bore"]),
-            1e-3 * float(row["raceway_inner"]),
-            1e-3 * float(row["raceway_outer"]),
+            _metres(row["bore"]),
+            _metres(row["raceway_inner"]),
+            _metres(row["raceway_outer"]),
             row["design"] == "E",
             int(row["count"]),
-            (1e-3 * float(row["narrow_length"]), 1e-3 * float(row["wide_length"])),
+            (_metres(row["narrow_length"]), _metres(row["wide_length"])),
             row["published"],
         )
         for row in _table("rollers")
@@ -241,7 +245,7 @@ def parse_designation(text: str) -> Designation:
     read = _read_suffixes(kind, found[2], found[3])
     size = f"/{bore}" if bore >= 500 else _CODES.get(bore, f"{bore // 5:02d}")
     return Designation(
-        _normalised(kind, series, size, read), kind, series, size, 1e-3 * bore, read.high_capacity, read.cage, read.clearance, tuple(read.unmodelled)
+        _normalised(kind, series, size, read), kind, series, size, bore / 1e3, read.high_capacity, read.cage, read.clearance, tuple(read.unmodelled)
     )
 
 

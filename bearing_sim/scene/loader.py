@@ -340,7 +340,9 @@ def _apply_override(tree: dict, override: str) -> None:
         keep_one_lubricant(node, keys[-1], value)
     if keys[:-1] == ["bearing", "outer_raceway"]:
         drop_other_forms(node, ("low_radius" if path == ROUND_RACEWAY else keys[-1],))
-    if keys[0] == "bearing" and len(keys) > 1:
+    if keys == ["bearing"]:  # another bearing, for which no range was meant
+        drop_ranges(tree, "bearing.")
+    elif keys[0] == "bearing":
         _keep_one_clearance(tree["bearing"], ".".join(keys[1:]))
         _forget_estimate(tree["bearing"], ".".join(keys[1:]))
         if ".".join(keys[1:]) in _RACEWAY_RADII:

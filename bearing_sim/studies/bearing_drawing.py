@@ -108,4 +108,4 @@ def _draw_side(axes, bearing: Bearing) -> None:
     axes.set_ylim(-1.05 * outside, 1.05 * outside)
     axes.set_aspect("equal")
     axes.set_axis_off()
-    axes.set_title(f"cage guided by the {GUIDES[cage.guidance]}", fontsize=10)
+    axes.set_title(f"cage: {GUIDES[cage.guidance]}", fontsize=10)

@@ -8,7 +8,12 @@ from bearing_sim.scene.mounting import clearance_limits
 from bearing_sim.scene.ratings import rate
 from bearing_sim.scene.uncertainty import value_at
 
-GUIDES = {"outer_ring": "outer ring", "inner_ring": "inner ring", "roller": "rollers"}
+GUIDES = {
+    "outer_ring": "guided by the outer ring",
+    "inner_ring": "guided by the inner ring",
+    "roller": "guided by the rollers",
+    "full_complement": "none: a full complement of rollers",
+}
 """What guides a cage, in words."""
 _LENGTHS = {
     "bore_diameter": "bore_diameter",
@@ -73,7 +78,7 @@ def rows(bearing: Bearing) -> list[tuple[str, str]]:
             f"{marked(str(known['rollers']), 'roller.count')} of {marked(mm('roller_diameter_mm'), 'roller.diameter')}, effective length "
             f"{marked(mm('roller_effective_length_mm'), 'roller.length')}",
         ),
-        ("cage", f"guided by the {GUIDES[known['cage_guidance']]}, {cage_mass}"),
+        ("cage", GUIDES[known["cage_guidance"]] + ("" if bearing.cage.is_absent else f", {cage_mass}")),
         ("load ratings", f"{ratings}; {rating}; C by ISO 281 {1e-3 * known['computed_dynamic_rating']:.4g} kN"),
         ("source", bearing.source.strip()),
     ]

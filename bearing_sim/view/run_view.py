@@ -21,7 +21,12 @@ from bearing_sim.view.plots import TIMELINE, RunSeries
 _WHIRL = """The cage's displacement and its {play} have a factor of their own, which the title says; cage orbit: the position of
 its centre in the {play}{seen} and its path in the last turns, dots where samples are too far apart for a line.
 """
-_GUIDES = {"outer_ring": "green: guide land on the outer ring. ", "inner_ring": "green: guide land on the inner ring. ", "roller": ""}
+_GUIDES = {
+    "outer_ring": "green: guide land on the outer ring. ",
+    "inner_ring": "green: guide land on the inner ring. ",
+    "roller": "",
+    "full_complement": "",
+}
 
 
 def _whirl(scene: Scene) -> str:
