@@ -266,7 +266,8 @@ def test_each_supply_has_its_drag_its_replenishment_and_its_flow():
     assert oil_flow(scene("lubricant.supply={law: circulating, flow: 3 l/min}", "heat.law=network")) == pytest.approx(5e-5)
 
 
-def test_a_bath_of_cold_oil_drags_no_more_than_where_its_model_ends():
+def test_beyond_the_oils_of_its_model_a_bath_drags_like_a_cylinder_in_a_thick_flow():
     nu_210 = {"bore_diameter": 0.05, "outside_diameter": 0.09, "width": 0.02}
-    at_end, beyond = (bath_moment(5.5e-3, 314.0, viscosity, **nu_210) for viscosity in (500e-6, 5000e-6))
-    assert beyond == at_end and bath_moment(5.5e-3, 314.0, 400e-6, **nu_210)[1] < at_end[1]
+    displacing, rubbing = zip(*(bath_moment(5.5e-3, 314.0, viscosity, **nu_210) for viscosity in (250e-6, 500e-6, 5000e-6)))
+    assert displacing[0] == displacing[2] and rubbing[1] == pytest.approx(rubbing[0] * 2**1.379)
+    assert rubbing[2] == pytest.approx(rubbing[1] * 10**0.37)

@@ -28,7 +28,7 @@ _DRAG_LOSS = (
     1.321e-3, 1.434e-3,
 )  # fmt: skip
 _SHAPE, _ROLLER_SHAPE = 5.1, 0.65  # K_Z and K_L of cylindrical roller bearings with a cage
-_THICKEST = 500.0  # mm^2/s; up to there SKF's moment is valid
+_THICKEST, _THICK_EXPONENT = 500.0, 0.37  # mm^2/s; up to there SKF's moment is valid, and how the oil's own friction grows beyond
 _SLOWED = -1.379  # exponent of the Reynolds number in the moment of the oil's own friction
 _STILL = 1.0  # rad/s of the cage, below which that moment, a root of the speed, is linear
 
@@ -72,9 +72,9 @@ def bath_moment(level, speed, kinematic_viscosity, bore_diameter, outside_diamet
     K_roll = K_L K_Z (d + D)/(D - d) 1e-12, C_w = 2.789e-10 l_D^3 - 2.786e-4 l_D^2 + 0.0195 l_D + 0.6439, l_D = 5 K_L B/d_m, f_t = sin(t/2) up
     to t = pi and 1 beyond, t = 2 arccos((0.6 d_m - H)/(0.6 d_m)), H at most 1.2 d_m, R_s = 0.36 d_m^2 (t - sin t) f_A, f_A = 0.05 K_Z (D + d)/(D - d)
     (SKF, The SKF model for calculating the frictional moment).  It is for a large bath, a horizontal shaft, constant speed and oils up to
-    500 mm^2/s, and counts rollers and cage together.  *Assumption*: a thicker oil drags like one of 500 mm^2/s, because it no longer flows
-    back into the rollers' way.  Of oil that is sprayed in SKF counts twice the moment of a bath up to the middle of the
-    lowest roller.
+    500 mm^2/s, and counts rollers and cage together.  Of oil that is sprayed in SKF counts twice the moment of a bath up to the middle of the
+    lowest roller.  *Assumption*: above 500 mm^2/s the oil's own friction grows with nu^0.37, as the drag of a cylinder in a flow does between
+    Re = 100 and 1 (the table above), and not with nu^1.379.
 
     Parameters
     ----------
@@ -95,9 +95,11 @@ def bath_moment(level, speed, kinematic_viscosity, bore_diameter, outside_diamet
     if wetted <= 0.0:
         return 1e-3 * displacing, 0.0
     chord = math.sin(0.5 * wetted) if wetted <= math.pi else 1.0
-    reynolds = turns * mean**2 * chord / min(1e6 * kinematic_viscosity, _THICKEST)
+    viscosity = 1e6 * kinematic_viscosity
+    reynolds = turns * mean**2 * chord / min(viscosity, _THICKEST)
+    thicker = max(viscosity / _THICKEST, 1.0) ** _THICK_EXPONENT
     surface = 0.36 * mean**2 * (wetted - math.sin(wetted)) * 0.05 * _SHAPE * slenderness
-    return 1e-3 * displacing, 1e-3 * 1.093e-7 * turns**2 * mean**3 * reynolds**_SLOWED * surface
+    return 1e-3 * displacing, 1e-3 * 1.093e-7 * turns**2 * mean**3 * reynolds**_SLOWED * surface * thicker
 
 
 def bath_drag(level, kinematic_viscosity, rollers, raceways, bore_diameter, outside_diameter, width, factor=1.0):
