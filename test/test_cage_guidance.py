@@ -60,7 +60,7 @@ def test_oil_drags_at_the_faces_that_run_on_no_lands():
     [
         (["bearing.cage.guidance=inner_ring"], "outer_radius: missing; a cage with guidance inner_ring needs it"),
         (["bearing.cage.guidance=roller"], "outer_radius: missing; a cage with guidance roller needs it"),
-        (["bearing.cage.guidance=rollers"], "'outer_ring', 'inner_ring' or 'roller'"),
+        (["bearing.cage.guidance=rollers"], "'outer_ring', 'inner_ring', 'roller' or 'full_complement'"),
         (["bearing.cage.guide_radius=null"], "needs the radius of its lands, or outer_radius"),
         (["bearing.cage.guide_clearance=null"], "guide_clearance: missing"),
         ([OUTSIDE, "bearing.cage.guide_radius=33.6 mm"], "leave it at 33.45 mm; give one of outer_radius and guide_radius"),

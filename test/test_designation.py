@@ -272,3 +272,9 @@ def test_a_designation_of_another_kind_of_bearing_is_refused_by_the_parser():
     for text in ("6205", "", "NU", "22210 E", None):
         with pytest.raises(DesignationError, match="no designation"):
             parse_designation(text)
+
+
+def test_level_auto_takes_the_lowest_level_for_a_full_complement_and_refuses_what_no_such_level_has():
+    assert scene("NCF 3010", "auto").level == "steady"
+    with pytest.raises(SceneError, match="operating.moment: needs level spatial"):
+        scene_from_yaml(SCENE.format(bearing="NCF 3010", level="auto"), ["operating.moment=1 N*m"])

@@ -17,6 +17,7 @@ ASKING = {
     "lubricant.rolling_resistance": "hydrodynamic",
     "lubricant.supply": "oil_bath",
     "bearing.seals": "{law: constant_moment, moment: 0.1}",
+    "bearing.cage.guidance": "full_complement",
     "bearing.flanges": "{outer: both}",
     "bearing.dimensions_at": "cold",
     "support.unbalance": "{amount: 1 g*mm}",
@@ -40,7 +41,7 @@ def test_a_level_takes_an_effect_that_it_has_and_refuses_any_other_by_name(effec
     if level in effect.levels:
         assert asked_for(scene(level, override)) == [effect]
     else:
-        with pytest.raises(SceneError, match=f"{effect.field}: .*needs level .*spatial, .*; level {level} would ignore it"):
+        with pytest.raises(SceneError, match=f"{effect.field}: .*needs level .*, .*; level {level} would ignore it"):
             scene(level, override)
 
 

@@ -244,7 +244,8 @@ def _with_level(tree: Mapping) -> Mapping:
     """
     if tree.get("level") != "auto":
         return tree
-    found = choose(TypeAdapter(Scene).validate_python({**tree, "level": "spatial"}, context=_WRITTEN))  # the level with all effects
+    highest = "slip" if _at(tree, "bearing.cage.guidance") == "full_complement" else "spatial"  # the level with all other effects
+    found = choose(TypeAdapter(Scene).validate_python({**tree, "level": highest}, context=_WRITTEN))
     if found.level is None:
         detail = {"type": PydanticCustomError("no_level", "{reason}", {"reason": found.reason}), "loc": ("level",), "input": "auto"}
         raise ValidationError.from_exception_data("Scene", [detail])
@@ -347,7 +348,7 @@ def _apply_override(tree: dict, override: str) -> None:
         _forget_estimate(tree["bearing"], ".".join(keys[1:]))
         if ".".join(keys[1:]) in _RACEWAY_RADII:
             drop_ranges(tree, "bearing.clearance")
-    if keys == ["bearing", "cage", "guidance"] and value == "roller":
+    if keys == ["bearing", "cage", "guidance"] and value in ("roller", "full_complement"):
         drop_ranges(tree, "bearing.cage.guide_")
 
 
