@@ -66,6 +66,8 @@ setup(
             "distributed>=2024.8",
             "flake8>=7",
             "hypothesis>=6",
+            "ipykernel>=6",
+            "nbclient>=0.10",
             "pymcap-cli>=0.34",
             "pydocstyle>=6.3",
             "pytest>=8,<9.2",  # with 9.2 pytest-xdist 3.8 no longer keeps the tests of a group together

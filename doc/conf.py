@@ -19,7 +19,7 @@ author = "bearing_sim maintainers"
 copyright = "2026, bearing_sim maintainers"
 release = version = next(line.split('"')[1] for line in (ROOT / "setup.py").read_text().splitlines() if line.strip().startswith("version="))
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.mathjax", "generated_reference"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.mathjax", "generated_reference", "notebook_pages"]
 exclude_patterns = ["_build", "modules.rst", "bearing_sim*.rst"]  # the latter two are made by rosdoc2; reference/ has them
 
 myst_enable_extensions = ["dollarmath", "amsmath", "colon_fence", "deflist", "fieldlist"]

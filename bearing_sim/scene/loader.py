@@ -1,6 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Read scenes: YAML, presets, command-line overrides.  All errors of a file are reported at once."""
 
+import copy
 import dataclasses
 import functools
 import re
@@ -134,12 +135,12 @@ def read_named(name: str | Path, folder: str, kind: str) -> tuple[str, Path | No
         raise SceneError(str(name), [InvalidField(kind, "", f"not readable as UTF-8 text: {error.reason}")]) from None
 
 
-def load_scene(scene: str | Path | Scene, overrides: Iterable[str] = ()) -> Scene:
-    """Load a scene by bundled name or file path, or change any fields of a loaded one.
+def load_scene(scene: str | Path | Mapping | Scene, overrides: Iterable[str] = ()) -> Scene:
+    """Load a scene by bundled name or file path, or from nested mappings, or change any fields of a loaded one.
 
     Parameters
     ----------
-    scene : the name of a bundled scene (see `scene_names`), the path of a YAML file, or a scene.
+    scene : the name of a bundled scene (see `scene_names`), the path of a YAML file, what such a file holds, or a scene.
     overrides : texts such as ``"bearing.outer_raceway.low_radius=34.865mm"``, applied in order over the file.
 
     Raises
@@ -149,6 +150,8 @@ def load_scene(scene: str | Path | Scene, overrides: Iterable[str] = ()) -> Scen
     """
     if isinstance(scene, Scene):
         return scene_from_mapping(_overridden(_as_mapping(scene), overrides), origin=scene.name)
+    if isinstance(scene, Mapping):
+        return scene_from_mapping(_overridden(copy.deepcopy(dict(scene)), overrides), origin=str(scene.get("name", "scene")))
     text, folder = read_named(scene, "scenes", "scene")
     return scene_from_yaml(text, overrides, origin=str(scene), folder=folder)
 

@@ -144,7 +144,7 @@ class Settled:
         if math.isfinite(last[RING_TEMPERATURES[0]]):
             inner, outer = (last[name] - _CELSIUS for name in RING_TEMPERATURES)
             lines.append(f"  ring temperatures    inner {inner:.4g} degC, outer {outer:.4g} degC")
-        lines += [f"  warning              {each.text}" for each in self.warnings]
+        lines += [f"  beyond its range     {each.law.law} ({each.short}), see warnings" for each in self.warnings]
         return "\n".join(lines)
 
     def _band(self, name: str, factor: float = 1.0, unit: str = "h") -> str:
@@ -153,7 +153,7 @@ class Settled:
 
 
 def settle(
-    scene: Scene | str | Path,
+    scene: Scene | Mapping | str | Path,
     level: str | None = None,
     *,
     shaft_speed: float | str | None = None,
@@ -173,7 +173,7 @@ def settle(
 
     Parameters
     ----------
-    scene : a scene, the name of a bundled one, or the path of a YAML file.
+    scene : a scene, the name of a bundled one, the path of a YAML file, or what such a file holds.
     level : of fidelity; the scene's own where absent.
     shaft_speed, radial_load, load_angle, oil_temperature : of the operating point, numbers in SI or texts with a unit, such as ``"3000 rpm"``;
         the scene's own where absent.

@@ -240,7 +240,7 @@ def point_count(axes: Sequence[Axis]) -> int:
 
 
 def run_sweep(
-    scene: Scene | str | Path,
+    scene: Scene | Mapping | str | Path,
     axes: Mapping[str, Iterable[float | str] | str] | Sequence[Axis],
     overrides: Sequence[str] = (),
     *,
@@ -333,18 +333,18 @@ class Plan(NamedTuple):
         }
 
 
-def plan_sweep(scene: Scene | str | Path, overrides: Sequence[str], axes: Sequence[Axis], duration: float = DURATION) -> Plan:
+def plan_sweep(scene: Scene | Mapping | str | Path, overrides: Sequence[str], axes: Sequence[Axis], duration: float = DURATION) -> Plan:
     """Return the plan of a sweep; parameters and errors as for `run_sweep`."""
     point_count(axes)
     combinations = tuple(itertools.product(*(axis.values for axis in axes)))
     scenes = tuple(scene_at(scene, overrides, axes, combination) for combination in combinations)
     if not any(isinstance(each, Scene) for each in scenes):
         raise scenes[0]
-    name = scene.name if isinstance(scene, Scene) else str(scene)
+    name = scene.name if isinstance(scene, Scene) else str(scene.get("name", "scene") if isinstance(scene, Mapping) else scene)
     return Plan(name, tuple(overrides), tuple(axes), float(duration), combinations, scenes)
 
 
-def scene_at(scene: Scene | str | Path, overrides: Sequence[str], axes: Sequence[Axis], combination: Sequence) -> Scene | SceneError:
+def scene_at(scene: Scene | Mapping | str | Path, overrides: Sequence[str], axes: Sequence[Axis], combination: Sequence) -> Scene | SceneError:
     """Return the scene at one value of each axis, or the error if it is invalid; the other parameters as for `run_sweep`."""
     try:
         return load_scene(scene, [*overrides, *(axis.override(value) for axis, value in zip(axes, combination))])
