@@ -2,6 +2,7 @@
 """The tutorials, the page on the Python API and the README do what they say: their blocks are executed, in order, in an empty folder.
 
 Blocks marked ``bash`` and ``python`` are executed, those marked ``text`` are not.  The Python blocks of a page share one namespace, as in a notebook.
+Notebooks are executed by a kernel of Jupyter.
 ``tutorials/live_monitoring.md`` needs a ROS graph: `test_first_ten_minutes` executes its commands.
 """
 
@@ -18,6 +19,7 @@ DOC = ROOT / "doc"
 LIVE = "doc/tutorials/live_monitoring.md"
 SOURCES = [ROOT / "README.md", DOC / "python_api.md", *DOC.glob("tutorials/*.md"), *DOC.glob("how-to/*.md")]
 PAGES = sorted(path.relative_to(ROOT).as_posix() for path in SOURCES)
+NOTEBOOKS = sorted(path.relative_to(ROOT).as_posix() for path in DOC.glob("tutorials/*.ipynb"))
 PROGRAMS = {"bearing-sim": "bearing_sim.cli", "bearing_node": "bearing_sim.ros.node", "bearing_player": "bearing_sim.ros.player"}
 
 # Executes a page: argv holds the language and the text of each block in turn; a failing block ends the run with its text.
@@ -63,7 +65,27 @@ def test_the_blocks_of_a_page_run_in_an_empty_folder(page, tmp_path):
     run(ROOT / page, tmp_path)
 
 
+@pytest.mark.timeout(600)
+@pytest.mark.parametrize("notebook", NOTEBOOKS)
+def test_the_cells_of_a_notebook_run_in_a_new_kernel_and_are_kept_without_outputs(notebook, tmp_path, monkeypatch):
+    nbclient = pytest.importorskip("nbclient", reason="pip install 'bearing_sim[test]'")
+    nbformat = pytest.importorskip("nbformat", reason="pip install 'bearing_sim[test]'")
+    for package in ("ipykernel", "pandas", "xarray"):
+        pytest.importorskip(package, reason="pip install 'bearing_sim[test]'")
+    monkeypatch.setenv("PYTHONPATH", str(ROOT))
+    book = nbformat.read(ROOT / notebook, as_version=4)
+    nbformat.validate(book)
+    cells = [cell for cell in book.cells if cell.cell_type == "code"]
+    assert all(cell.outputs == [] and cell.execution_count is None for cell in cells), "outputs depend on the machine: clear them before you commit"
+    nbclient.NotebookClient(book, timeout=300, resources={"metadata": {"path": str(tmp_path)}}).execute()
+    assert all(cell.execution_count for cell in cells)
+    assert any("image/png" in output.get("data", {}) for cell in cells for output in cell.outputs), "a notebook shows a picture"
+
+
 def test_every_tutorial_is_executed():
+    assert len(NOTEBOOKS) >= 3
+    listed = re.findall(r"^[a-z_]+$", (DOC / "tutorials/index.md").read_text(), flags=re.MULTILINE)
+    assert sorted(listed) == sorted({path.stem for path in DOC.glob("tutorials/*.*")} - {"index"})
     tutorials = {page for page in PAGES if page.startswith("doc/tutorials/")} - {"doc/tutorials/index.md"}
     assert {page for page in tutorials if not blocks(ROOT / page)} == {LIVE}
     assert {language for language, _ in blocks(ROOT / "README.md")} == {"bash", "python"}

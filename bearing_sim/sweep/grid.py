@@ -275,8 +275,10 @@ def run_sweep(
         A field or a value cannot be varied, or there are too many points.
     SceneError
         No point has a valid scene; the errors are those of the first point.
-    ClusterError, JournalInUse
-        See `bearing_sim.sweep.tasks`.
+    ClusterError
+        See `bearing_sim.sweep.tasks.run_tasks`.
+    JournalInUse
+        Another process is writing the journal.
     """
     varied = [axis(field, values) for field, values in axes.items()] if isinstance(axes, Mapping) else list(axes)
     plan = plan_sweep(scene, [*overrides, *([f"level={level}"] if level else [])], varied, duration)

@@ -1,0 +1,314 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""The Python interface: settled states, sweeps, operating points and inputs with units, copies of simulations, and types."""
+
+import ast
+import copy
+import inspect
+import math
+import os
+import pickle
+import subprocess
+import sys
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+import bearing_sim
+from bearing_sim import Inputs, SceneError, Settled, Simulation, load_scene, run_sweep, settle
+from bearing_sim.scene.scene import OPERATING_POINT
+from bearing_sim.simulation import scene_inputs
+from bearing_sim.studies.uncertainty import UncertaintyError, study
+from bearing_sim.sweep.grid import FieldError, axis, read_axis
+from bearing_sim.sweep.point import point_row
+
+ROOT = Path(__file__).resolve().parents[1]
+MOTOR = {
+    "name": "motor",
+    "bearing": "NU 210/C3",
+    "lubricant": {"oil": "ISO VG 68", "temperature": "70 degC", "supply": "oil_bath"},
+    "operating": {"shaft_speed": "3000 rpm", "radial_load": "5 kN"},
+}
+PAPER, PAPER_STEADY = "deng2017_table1", ["level=steady"]
+ROUND = ["bearing.outer_raceway.d_value=0 um", "bearing.outer_raceway.low_radius=34.88 mm"]
+
+
+@pytest.fixture(scope="module")
+def motor():
+    return load_scene(MOTOR)
+
+
+@pytest.fixture(scope="module")
+def paper():
+    return load_scene(PAPER, PAPER_STEADY)
+
+
+# Scenes at other operating points.
+
+
+def test_a_scene_at_another_operating_point_is_that_of_the_overrides(paper):
+    changed = paper.at(shaft_speed="30000 rpm", radial_load="0.5 kN", load_angle="90 deg", oil_temperature="100 degC")
+    overrides = [f"{OPERATING_POINT['shaft_speed']}=30000 rpm", "operating.radial_load=500", "operating.load_angle=90 deg"]
+    assert changed == load_scene(PAPER, [*PAPER_STEADY, *overrides, "lubricant.temperature=100 degC"])
+    assert paper.at(radial_load=np.float64(500.0)).at(radial_load=np.int64(800)) == paper.at(), "numbers of NumPy are numbers in SI"
+
+
+@pytest.mark.parametrize(
+    ("path", "value"), [("bearing.clearance", "C4"), ("bearing.clearance", 4e-5), ("bearing.inner_raceway.bore_diameter", "49.9 mm")]
+)
+def test_a_quantity_at_another_value_is_that_of_an_override(motor, path, value):
+    assert motor.at({path: value}) == load_scene(motor, [f"{path}={value}"]) != motor
+
+
+def test_a_loaded_scene_and_what_a_file_holds_are_scenes_to_load(motor):
+    assert load_scene(motor) == motor == load_scene(copy.deepcopy(MOTOR))
+    assert load_scene(MOTOR, ["level=steady"]).level == "steady" and "level" not in MOTOR, "the mapping stays as it was"
+
+
+@pytest.mark.parametrize(
+    ("fields", "point", "words"),
+    [
+        ({}, {"shaft_speed": "3000", "radial_load": "5 kg"}, ["2 errors", "'3000' has no unit; write 3000 rpm", "'5 kg' has the wrong dimension"]),
+        ({}, {"oil_temperature": 80}, ["-193.15 degC is outside"]),
+        ({}, {"shaft_speed": math.nan}, ["nan rpm is outside"]),
+        ({"bearing.cleerance": "40 um"}, {}, ["bearing.cleerance: no quantity of a scene (did you mean 'bearing.clearance'?)"]),
+        ({"level": "slip"}, {}, ["level: no quantity of a scene", "load_scene(scene, ['level=...'])"]),
+        ({"bearing.roller.diameter": "20 mm"}, {}, ["rollers of 20 mm do not fit"]),
+    ],
+)
+def test_what_no_scene_can_be_is_refused_with_all_its_faults(motor, fields, point, words):
+    with pytest.raises(SceneError) as caught:
+        motor.at(fields, **point)
+    assert [each for each in words if each not in str(caught.value)] == []
+
+
+def test_an_unknown_level_and_one_that_would_ignore_the_scene_are_refused(motor):
+    with pytest.raises(SceneError, match=r"level = 'stedy': expected one of steady, slip, planar, spatial \(did you mean 'steady'\?\)"):
+        settle(motor, "stedy")
+    tilted = load_scene(PAPER, ["level=spatial", "operating.misalignment=1 mrad"])
+    with pytest.raises(SceneError, match="needs level spatial, whose ring tilts; level slip would ignore it"):
+        settle(tilted, "slip")
+
+
+# Settled states.
+
+
+def test_a_settled_state_has_the_results_of_a_sweeps_point_and_the_means_of_its_window(paper):
+    result, row = settle(paper), point_row(paper)
+    assert result.settled and result.verdict == "settled" and result.reason == ""
+    assert 100.0 * result.cage_slip == pytest.approx(row["cage_slip"], rel=1e-12)
+    assert result.rating_life == row["rating_life"] and 1e6 * result.running_clearance == pytest.approx(row["running_clearance"], rel=1e-12)
+    assert result.cage_speed == result.window["cage_speed"].mean() and result.inner_load.shape == (18,)
+    table = result.to_pandas()
+    assert dict(table["unit"][["cage_slip", "running_clearance", "rating_life", "shaft_power"]]) == dict(
+        cage_slip="1", running_clearance="m", rating_life="h", shaft_power="W"
+    )
+    assert table.loc["inner_load_maximum", "value"] == result.inner_load_maximum
+    shown = repr(result)
+    assert "45000 rpm, 800 N, oil at 120 degC; level steady" in shown and f"{100.0 * result.cage_slip:.3g} %" in shown
+    again = pickle.loads(pickle.dumps(result))
+    assert again.rating_life == result.rating_life and "cage_slip" in dir(again)
+
+
+def test_a_result_that_does_not_exist_is_named_with_the_nearest(paper):
+    with pytest.raises(AttributeError, match=r"no result 'cage_slp' \(did you mean 'cage_slip'\?\)"):
+        print(settle(paper).cage_slp)
+
+
+def test_the_load_of_two_per_cent_slip_is_a_root_and_integrated_motion_agrees(motor):
+    load = brentq(lambda newton: settle(motor, "steady", radial_load=newton).cage_slip - 0.02, 50.0, 5000.0, xtol=0.1)
+    at_root = settle(motor, "steady", radial_load=load)
+    assert at_root.cage_slip == pytest.approx(0.02, abs=1e-5)
+    assert settle(motor, "slip", radial_load=load).cage_slip == pytest.approx(0.02, abs=5e-4), "from ideal rolling, to the tolerance of settling"
+    assert settle(motor, "steady", radial_load=1.1 * load).cage_slip < 0.02 < settle(motor, "steady", radial_load=0.9 * load).cage_slip
+
+
+@pytest.mark.parametrize("level", ["slip", "planar"])
+def test_a_run_that_starts_near_its_end_ends_where_one_from_ideal_rolling_does(level):
+    scene = load_scene(PAPER, ["level=steady", "operating.shaft_speed=30000 rpm"])
+    neighbour = settle(scene, radial_load="900 N", shaft_speed="33000 rpm")
+    near, far = settle(scene, level, start=neighbour), settle(scene, level)
+    assert near.settled and near.cage_slip == pytest.approx(far.cage_slip, abs=1e-3)
+    assert near.simulated < 0.2 and far.simulated > 0.49, "some 15 cage turns instead of half a second"
+
+
+def test_temperatures_that_start_near_equilibrium_end_in_it(motor):
+    heated = load_scene(motor, ["heat.law=network", "level=steady"])
+    neighbour = settle(heated, radial_load="1.2 kN")
+    near, far = settle(heated, radial_load="1 kN", start=neighbour), settle(heated, radial_load="1 kN")
+    assert near.inner_ring_temperature == pytest.approx(far.inner_ring_temperature, abs=0.02)
+    assert abs(near.inner_ring_temperature - neighbour.inner_ring_temperature) > 0.1 and "ring temperatures" in repr(near)
+
+
+def test_a_start_that_fits_no_bearing_is_refused(motor, paper):
+    with pytest.raises(ValueError, match="cannot start a bearing of 16 rollers from a sample of another bearing"):
+        settle(motor, "steady", start=settle(paper))
+    with pytest.raises(ValueError, match="a shaft at rest, which has no slip"):
+        settle(paper, start=settle(paper, shaft_speed=0.0))
+
+
+def test_a_bearing_that_does_not_settle_says_what_it_does():
+    result = settle(load_scene(PAPER, ROUND), radial_load=5.0, longest="0.5 s")
+    assert not result.settled and result.verdict == "drifting" and math.isnan(result.settling_time)
+    assert "cage slip still rises" in result.reason and "no, drifting: after 0.5 s" in repr(result)
+
+
+def test_a_shaft_at_rest_has_no_slip(paper):
+    assert math.isnan(settle(paper, shaft_speed=0.0).cage_slip) and "none, the shaft is at rest" in repr(settle(paper, shaft_speed=0.0))
+
+
+def test_bands_are_those_of_the_uncertainty_study_without_its_shares(paper):
+    result, whole = settle(paper, bands=True, samples=7), study(paper, 8, 2017, workers=1)
+    assert result.bands["cage_slip"] == whole.bands["cage_slip"] and result.bands["modified_rating_life"] == whole.bands["life_hours"]
+    assert result.bands["cage_slip"].low < result.cage_slip < result.bands["cage_slip"].high
+    assert result.to_pandas().loc["cage_slip", "low"] == result.bands["cage_slip"].low and "90 % of cases between" in repr(result)
+    assert settle(paper).bands == {}
+    with pytest.raises(UncertaintyError, match="the scene has no uncertain fields"):
+        settle(load_scene(paper, [f"uncertainty.{each.field}=null" for each in paper.uncertainty]), bands=True)
+
+
+# Sweeps.
+
+
+def test_a_sweep_from_python_is_that_of_the_command_line_with_names_and_si_units(paper):
+    given = run_sweep(paper, {"shaft_speed": ["15000 rpm", "45000 rpm"], "radial_load": [400.0, np.float64(800.0)]}, workers=1)
+    texts = [read_axis("operating.shaft_speed=15000rpm:45000rpm:2"), read_axis("operating.radial_load=400N:800N:2")]
+    assert given.rows == run_sweep(PAPER, texts, PAPER_STEADY, workers=1).rows
+    data, frame = given.to_xarray(), given.to_pandas()
+    assert dict(data.sizes) == {"shaft_speed": 2, "radial_load": 2}
+    assert data["shaft_speed"].values == pytest.approx(np.array([15_000, 45_000]) * math.pi / 30) and data["shaft_speed"].attrs["units"] == "rad/s"
+    one = float(data["cage_slip"].sel(radial_load=800.0).isel(shaft_speed=1))
+    assert one == pytest.approx(settle(paper).cage_slip, rel=1e-12) and data["cage_slip"].attrs["units"] == "1"
+    assert data["running_clearance"].attrs["units"] == "m" and float(data["running_clearance"].max()) < 1e-3
+    assert frame.attrs["units"]["shaft_speed"] == "rad/s" and frame.attrs["units"]["status"] is None
+    assert list(frame["cage_slip"]) == list(data["cage_slip"].values.ravel()) and (data["status"] == "ok").all()
+
+
+def test_a_script_without_a_guard_sweeps_in_processes(tmp_path):
+    script = tmp_path / "script.py"
+    script.write_text(
+        "from bearing_sim import run_sweep\n"
+        "print('once')\n"
+        f"table = run_sweep('{PAPER}', {{'radial_load': '100 N:800 N:6'}}, level='steady', workers=2)\n"
+        "print(sum(row['status'] == 'ok' for row in table.rows))\n"
+    )
+    found = subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=300, env={**os.environ, "PYTHONPATH": str(ROOT)})
+    assert found.stdout.split() == ["once", "6"], found.stderr
+
+
+@pytest.mark.parametrize(
+    ("axes", "words"),
+    [
+        ({"speed": [1.0]}, "speed: unknown field"),
+        ({"radial_load": []}, "operating.radial_load: no values"),
+        ({"radial_load": ["5 kg"]}, "operating.radial_load: '5 kg' has the wrong dimension"),
+        ({"radial_load": [True]}, "operating.radial_load takes a quantity in N, got True"),
+        ({"bearing.roller.count": [16.5]}, "bearing.roller.count takes a whole number, got 16.5"),
+        ({"radial_load": np.arange(1001.0), "shaft_speed": np.arange(1001.0)}, "1002001 points; a sweep has at most 1000000"),
+    ],
+)
+def test_an_axis_that_cannot_be_varied_is_refused(motor, axes, words):
+    with pytest.raises(FieldError, match=words):
+        run_sweep(motor, axes)
+
+
+def test_an_axis_reads_numbers_texts_and_names():
+    assert axis("bearing.clearance", ["C3", "40 um", 5e-5]).values == ("C3", pytest.approx(4e-5), 5e-5)
+    assert axis("bearing.roller.count", np.array([14, 15])).values == (14, 15)
+    assert axis("shaft_speed", "15000 rpm:45000 rpm:3") == read_axis("operating.shaft_speed=15000 rpm:45000 rpm:3")
+
+
+# Inputs.
+
+
+def test_inputs_are_read_with_units_and_changed_by_name(motor):
+    inputs = Inputs.of(shaft_speed="3000 rpm", radial_load="5 kN", load_angle="90 deg", oil_temperature="70 degC")
+    assert inputs[:4] == pytest.approx((100.0 * math.pi, 0.0, 5000.0, 343.15)) and math.isnan(inputs.inner_ring_temperature)
+    assert inputs.at(radial_load=100)[1:3] == pytest.approx((0.0, 100.0)), "the load keeps its direction"
+    assert inputs.at(load_angle=0.0)[1:3] == pytest.approx((5000.0, 0.0)), "and its amount"
+    assert inputs.at(load_angle=0.0)[:4] == pytest.approx(scene_inputs(motor)[:4])
+    assert inputs.at(inner_ring_temperature="80 degC").inner_ring_temperature == 353.15
+    with pytest.raises(ValueError, match=r"shaft_speed = '3000': '3000' has no unit.*; oil_temperature = 70: -203\.15 degC is outside"):
+        Inputs.of(shaft_speed="3000", oil_temperature=70)
+
+
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        ({"shaft_speed": "3000 rpm"}, "could not convert string to float: '3000 rpm'; inputs are numbers in SI, Inputs.of reads texts with units"),
+        ({"oil_temperature": 80.0}, r"oil_temperature = 80.0 K: expected -53.15 degC to 326.85 degC; inputs are numbers in SI"),
+        ({"shaft_speed": 45_000.0}, "shaft_speed = 45000.0 rad/s: expected -114592 rpm to 114592 rpm"),
+        ({"load_z": math.inf}, "load_z = inf: expected a finite number"),
+        ({"inner_ring_temperature": 70.0}, "inner_ring_temperature = 70.0 K: expected -123.15 degC to 526.85 degC"),
+    ],
+)
+def test_inputs_that_no_bearing_has_are_refused_at_the_door(paper, changed, words):
+    simulation = Simulation(paper)
+    with pytest.raises(ValueError, match=words):
+        simulation.advance(0.1, simulation.inputs._replace(**changed))
+    assert simulation.time == 0.0
+
+
+# Copies.
+
+
+def advanced(simulation):
+    """Return the samples of a simulation over a change of load, as bytes."""
+    return simulation.advance(0.02, simulation.inputs.at(radial_load="900 N"), samples=4).tobytes()
+
+
+@pytest.mark.parametrize("level", ["steady", "slip", "planar", "spatial"])
+def test_a_copy_of_a_simulation_continues_to_the_last_digit(level):
+    simulation = Simulation(load_scene(PAPER, [f"level={level}"]))
+    simulation.advance(0.01, samples=3)
+    copies = [pickle.loads(pickle.dumps(simulation)), copy.deepcopy(simulation)]
+    before = simulation.counters
+    assert [advanced(each) for each in copies] == [advanced(simulation)] * 2
+    assert all(each.counters == simulation.counters != before for each in copies)
+
+
+@pytest.mark.parametrize("measured", [None, "80 degC"])
+def test_a_copy_continues_with_its_thermal_network(motor, measured):
+    simulation = Simulation(load_scene(motor, ["heat.law=network", "level=steady"]))
+    simulation.advance(7.3, simulation.inputs.at(inner_ring_temperature=measured))
+    copies = [pickle.loads(pickle.dumps(simulation)), copy.deepcopy(simulation)]
+    whole = simulation.advance(11.7, samples=5).tobytes()
+    assert [each.advance(11.7, samples=5).tobytes() for each in copies] == [whole] * 2
+
+
+def test_a_simulation_goes_to_another_process_and_comes_back(paper):
+    simulation = Simulation(paper)
+    simulation.advance(0.01)
+    with ProcessPoolExecutor(1, mp_context=get_context("forkserver")) as pool:
+        there = pool.submit(advanced, simulation).result(timeout=300)
+    assert there == advanced(simulation)
+
+
+# Types.
+
+
+def test_type_checkers_see_the_names_that_the_package_exports():
+    stub = ast.parse((ROOT / "bearing_sim/__init__.pyi").read_text())
+    imported = {alias.asname: node.module for node in stub.body for alias in node.names}
+    assert imported == {name: f"bearing_sim.{module}" for name, module in bearing_sim._EXPORTS.items()}
+    packed = (ROOT / "setup.py").read_text()
+    assert (ROOT / "bearing_sim/py.typed").is_file() and '"py.typed"' in packed and '"__init__.pyi"' in packed
+
+
+def test_every_parameter_of_the_interface_has_a_type():
+    public = [getattr(bearing_sim, name) for name in bearing_sim.__all__ if name not in ("SceneError", "IntegrationError", "Scene")]
+    written = [getattr(kind, name) for kind in (Simulation, Settled, Inputs) for name in vars(kind) if not name.startswith("_")]
+    methods = [each for each in written if inspect.isroutine(each) and hasattr(each, "__code__")] + [Inputs.of]
+    untyped = []
+    for each in (*[function for function in public if inspect.isfunction(function)], *methods, bearing_sim.Scene.at, bearing_sim.Scene.at_level):
+        signature = inspect.signature(each)
+        untyped += [
+            f"{each.__qualname__}({name})"
+            for name, one in signature.parameters.items()
+            if one.annotation is one.empty and name not in ("self", "cls")
+        ]
+        untyped += [f"{each.__qualname__} ->"] * (signature.return_annotation is signature.empty)
+    assert untyped == []
