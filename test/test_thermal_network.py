@@ -1,7 +1,9 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The thermal network: its books close, single nodes follow closed forms, runs continue it and repeat."""
 
+import itertools
 import math
+import types
 
 import numpy as np
 import pytest
@@ -17,6 +19,7 @@ from bearing_sim.physics.thermal_filter import filter_gain, network_matrix
 from bearing_sim.physics.thermal_network import BOOK, LINK, LINKS, NODE, NODES, NetworkInputs, new_work, settle, step
 from bearing_sim.scene.loader import SceneError
 from bearing_sim.simulation import IntegrationError, scene_inputs
+from bearing_sim.sweep import thermal
 from bearing_sim.sweep.point import point_row
 from bearing_sim.sweep.thermal import begin_in_equilibrium
 
@@ -369,3 +372,20 @@ def test_the_lubrication_of_a_scene_without_heat_is_that_of_its_oil():
     of = load_scene("deng2017_table1")
     params = pack(of)
     assert lubricate_scene(of, params, 380.0).temperature == 380.0
+
+
+@pytest.mark.parametrize(("scatter", "agrees"), [(0.2, True), (1.2, True), (6.0, False)])
+def test_losses_that_scatter_from_run_to_run_are_averaged_until_temperatures_agree(monkeypatch, scatter, agrees):
+    at_rest = itertools.cycle([330.0 + scatter, 330.0 - scatter])
+    resting = types.SimpleNamespace(rest=lambda window, inlet: np.full(6, next(at_rest)))
+    limit = types.SimpleNamespace(level="planar", heat=types.SimpleNamespace(limit=500.0))
+    run = types.SimpleNamespace(inputs=types.SimpleNamespace(oil_temperature=320.0), thermal=resting, scene=limit, started=[])
+    run.reset, run.set_temperatures = lambda *state: run.started.append(state[1]), lambda nodes: None
+    monkeypatch.setattr(thermal, "thermal_equilibrium", lambda *given: types.SimpleNamespace(converged=True, temperatures=np.full(6, 325.0)))
+    monkeypatch.setattr(thermal, "advance_until_settled", lambda *given: types.SimpleNamespace(window=None))
+    if not agrees:
+        with pytest.raises(IntegrationError, match="no thermal equilibrium at level planar: temperatures still change by"):
+            begin_in_equilibrium(run, 0.05, 0.2)
+        return
+    begin_in_equilibrium(run, 0.05, 0.2)
+    assert run.started[-1] == pytest.approx(np.full(6, 330.0), abs=0.35)

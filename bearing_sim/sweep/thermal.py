@@ -7,7 +7,7 @@ from bearing_sim.levels.steady.equilibrium import thermal_equilibrium
 from bearing_sim.simulation import IntegrationError, Simulation, thermal_nodes
 from bearing_sim.sweep.settling import advance_until_settled
 
-_ROUNDS = 8
+_ROUNDS, _AVERAGED_FROM = 8, 3
 _EQUAL, _BALANCED = 1e-3, 1e-4  # K, and of the shaft power; slip then errs by less than 0.01 points, temperatures by 0.02 K
 _AGREED = 0.3  # K; temperatures by the losses of two rounds
 
@@ -16,7 +16,8 @@ def begin_in_equilibrium(simulation: Simulation, shortest: float, longest: float
     """Bring a simulation with a thermal network to its start, with the temperatures in which it will stay; without a network do nothing.
 
     The equilibrium is that of level steady.  At another level its own losses correct it: run until settled with temperatures held, let the
-    network rest with the losses of the run's end, and again, until temperatures agree to 0.3 K.
+    network rest with the losses of the run's end, and again, until temperatures agree to 0.3 K.  Losses of rattling cages scatter from run to run:
+    from the fourth round on temperatures are the mean of the rounds since the third.
 
     Parameters
     ----------
@@ -45,10 +46,11 @@ def begin_in_equilibrium(simulation: Simulation, shortest: float, longest: float
 
 def _refined(simulation: Simulation, nodes: np.ndarray, shortest: float, longest: float, start: np.void | None) -> np.ndarray:
     simulation.reset(simulation.inputs, nodes, start)
-    for _ in range(_ROUNDS):
+    for done in range(_ROUNDS):
         simulation.set_temperatures(nodes)
         outcome = advance_until_settled(simulation, shortest, longest)
-        before, nodes = nodes, simulation.thermal.rest(outcome.window, simulation.inputs.oil_temperature)
+        before, at_rest = nodes, simulation.thermal.rest(outcome.window, simulation.inputs.oil_temperature)
+        nodes = before + (at_rest - before) / max(done - _AVERAGED_FROM + 2, 1)
         change = float(np.abs(nodes - before).max())
         if change < _AGREED:
             return nodes
