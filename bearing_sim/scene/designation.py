@@ -129,6 +129,7 @@ class RollerCount:
     high_capacity : whether it is the high-capacity design.
     count : Z.
     lengths : effective lengths of the rollers in both widths [m].
+    unique : whether the ratings alone give Z; else they leave two, between which the distance of neighbours decides.
     published : where the number of rollers is also published; "" if nowhere.
     """
 
@@ -139,6 +140,7 @@ class RollerCount:
     high_capacity: bool
     count: int
     lengths: tuple[float, float]
+    unique: bool
     published: str
 
 
@@ -211,6 +213,7 @@ def roller_counts() -> tuple[RollerCount, ...]:
             row["design"] == "E",
             int(row["count"]),
             (_metres(row["narrow_length"]), _metres(row["wide_length"])),
+            row["basis"] == "unique",
             row["published"],
         )
         for row in _table("rollers")

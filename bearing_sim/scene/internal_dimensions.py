@@ -164,7 +164,8 @@ def _caged_section(designation: Designation, row: MakersRow | None, bore: int) -
     known = known_count(designation.series, boundary.bore, inner, outer)
     if known is not None:
         count = known.count
-        source = known.published or "deduced from the static ratings of two widths with the same raceways"
+        deduced = "deduced from the static ratings of two widths with the same raceways"
+        source = known.published or deduced + ("" if known.unique else ", and the distance between neighbours")
     else:
         count, source = count_by_gap(rules, diameter, pitch), "estimated"
         estimated.append(

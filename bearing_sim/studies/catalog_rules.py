@@ -118,8 +118,8 @@ def diameter_errors(high_capacity: bool) -> list[float]:
 
 
 def sections_of(high_capacity: bool) -> tuple[RollerCount, ...]:
-    """Return the sections of known rollers of one design."""
-    return tuple(each for each in roller_counts() if each.high_capacity == high_capacity)
+    """Return the sections of one design whose rollers are known without the rules."""
+    return tuple(each for each in roller_counts() if each.unique and each.high_capacity == high_capacity)
 
 
 def held_back(high_capacity: bool) -> list[Estimate]:

@@ -99,6 +99,8 @@ def field_of(path: str) -> Field:
     if not quantities and not kinds:
         if any(dataclasses.is_dataclass(option) and "law" in typing.get_type_hints(option) for option in options):
             return Field(path, None, (str,))  # a law, by name
+        if path == "bearing":
+            return Field(path, None, (str,))  # by designation
         raise FieldError(f"{path}: is a block or a list; expected a single value")
     return Field(path, quantities[0] if quantities else None, tuple(kind for kind in kinds if kind is not float))
 
