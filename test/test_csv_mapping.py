@@ -78,7 +78,7 @@ def test_a_mapping_that_cannot_be_meant_is_refused(old, new, words):
 
 
 def test_bundled_mappings_load_and_name_their_assumptions():
-    assert catalog_names("mappings") == ["citation_flight", "wind_turbine_scada"]
+    assert catalog_names("mappings") == ["citation_flight", "wind_turbine_high_speed_shaft", "wind_turbine_scada"]
     for name in catalog_names("mappings"):
         mapping, text = load_mapping(name)
         assert mapping.name == name and mapping.source and "ASSUMPTION" in text

@@ -88,11 +88,11 @@ RUNS = {
 }
 
 
-@pytest.mark.parametrize("name", [name for name in RUNS if name not in ("minutes", "hours")])
+@pytest.mark.parametrize("name", ["reverse", "constant", "at rest", "one sample", "tiny and huge", "days"])
 def test_no_label_lies_on_another_over_time_and_over_load_whatever_the_run(tmp_path, name):
     shown = course(RUNS[name])
     assert_readable(draw_over_time(tmp_path / "time.png", [shown], f"{name}: " + 20 * "a long title "))
-    if name not in ("constant", "two samples", "days"):
+    if name in ("reverse", "one sample", "tiny and huge"):
         assert_readable(draw_over_load(tmp_path / "load.png", [shown], name))
 
 

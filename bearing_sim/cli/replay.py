@@ -180,7 +180,7 @@ def replay(
 
 
 def _choice(scene, course) -> dict:
-    """Return the model to replay with: at level steady its table, for a single oil temperature unless the log has its own."""
+    """Return the model to replay with: at level steady its table, for a single oil temperature unless the log has several."""
     if scene.level != "steady":
         return {}
     from functools import partial
@@ -188,14 +188,18 @@ def _choice(scene, course) -> dict:
     from bearing_sim.cli.table import build_with_progress
     from bearing_sim.simulation import Simulation
 
-    kelvin = scene.lubricant.temperature
-    return {"model": partial(Simulation, table=build_with_progress(scene, None if "oil_temperature" in course.stamps else (kelvin, kelvin))[0])}
+    measured = course.values.get("oil_temperature", ())
+    kelvin = {float(each) for each in measured} if len(measured) else {scene.lubricant.temperature}
+    only = kelvin.pop() if len(kelvin) == 1 else None
+    return {"model": partial(Simulation, table=build_with_progress(scene, None if only is None else (only, only))[0])}
 
 
 def _report(result, course, recorded, scene, out) -> dict:
     from bearing_sim.inputs.log import anomalies
+    from bearing_sim.model.plausibility import minimum_load
 
     slip = result.slip_statistics()
+    below, turning = result.seconds_below(lambda speeds: minimum_load(scene, speeds)[0])
     return {
         "scene": scene.name,
         "level": scene.level,
@@ -210,6 +214,8 @@ def _report(result, course, recorded, scene, out) -> dict:
         "life_hours": result.life_hours,
         "least_rating_life_hours": result.least_rating_life,
         "damage": result.damage,
+        "turning_seconds": turning,
+        "seconds_below_minimum_load": below,
         "log_seconds": result.log_seconds,
         "unknown_seconds": course.unknown_seconds,
         "life_and_damage_are": "at most, at least" if course.verdict else "as given",
@@ -238,6 +244,7 @@ def _report(result, course, recorded, scene, out) -> dict:
 
 def _print(result, course, recorded, scene, out) -> None:
     from bearing_sim.inputs.log import summary_lines
+    from bearing_sim.model.plausibility import minimum_load
 
     slip = {name: f"{100 * value:.2f} %" for name, value in result.slip_statistics().items()}
     spread = f"mean {slip['mean']}, median {slip['median']}, 95 % below {slip['p95']}, 99 % below {slip['p99']}, largest {slip['maximum']}"
@@ -256,6 +263,7 @@ def _print(result, course, recorded, scene, out) -> None:
             f"least rating life at an instant {hours(result.least_rating_life)}",
         ),
         ("life used", f"{'at least ' * bool(course.verdict)}{100 * result.damage:.4g} %"),
+        ("below the minimum load", _below(*result.seconds_below(lambda speeds: minimum_load(scene, speeds)[0]), minimum_load(scene)[1])),
         ("inputs unknown", course.unknown_event.text if course.unknown_seconds else "0 s"),
         ("refused inputs", f"{refused} (of {course.messages})"),
         ("gaps", f"{len(course.gaps)}, {result.gap_seconds:.4g} s not simulated"),
@@ -266,6 +274,14 @@ def _print(result, course, recorded, scene, out) -> None:
         ("recording", str(out or "none")),
     ]
     print_table(f"replay of {recorded.path.name} on {scene.name}", rows)
+
+
+def _below(below: float, turning: float, rule: str) -> str:
+    """Return in words for how long [s] the load was below the makers' minimum while the shaft turned."""
+    if not turning:
+        return "the shaft does not turn"
+    unit, factor = ("h", 3600.0) if turning > 7200.0 else ("s", 1.0)
+    return f"{below / factor:.4g} {unit} of {turning / factor:.4g} {unit} that the shaft turns, {100 * below / turning:.3g} % ({rule})"
 
 
 def reproduce(path: Path, out: Path | None, as_json: bool) -> None:

@@ -176,7 +176,7 @@ class SumLoad:
     """Load along +y: the sum of the columns."""
 
     law: Literal["sum"] = "sum"
-    columns: tuple[ForceColumn, ...]
+    columns: tuple[ForceColumn, ...]  # of forces
 
 
 @record
@@ -184,7 +184,7 @@ class NormLoad:
     """Load along +y: the Euclidean norm of the columns."""
 
     law: Literal["norm"] = "norm"
-    columns: tuple[ForceColumn, ...]
+    columns: tuple[ForceColumn, ...]  # of forces
 
 
 @record
@@ -193,7 +193,7 @@ class MassTimesAcceleration:
 
     law: Literal["mass_times_acceleration"] = "mass_times_acceleration"
     mass: quantity("kg", "mass that the bearing supports", 1e-6, 1e6)
-    accelerations: tuple[AccelerationColumn, ...]
+    accelerations: tuple[AccelerationColumn, ...]  # columns
 
 
 @record
@@ -206,8 +206,8 @@ class GearForce:
     """
 
     law: Literal["gear_force"] = "gear_force"
-    power: PowerColumn | None = None
-    torque: TorqueColumn | None = None
+    power: PowerColumn | None = None  # column of the power that the gear transmits
+    torque: TorqueColumn | None = None  # or column of the torque at the gear
     efficiency: quantity("", "power that is measured over power through the gear; with power only", 0.01, 1.0) | None = None
     pitch_diameter: quantity("m", "pitch diameter of the gear, d", 1e-3, 100.0, "mm")
     pressure_angle: quantity("rad", "normal pressure angle of the teeth, alpha_n", 0.0, 0.8, "deg") = 0.0
@@ -247,14 +247,15 @@ class Mapping:
     delimiter: str | None = None  # between cells: one character, or tab; by default found in the header
     decimal: Literal[".", ","] | None = None  # mark of numbers; by default found in the cells, and asked for where they may mean both
     encoding: str | None = None  # of the file, such as utf-8 or latin-1; by default that of its byte-order mark, UTF-8, or Latin-1
-    only: dict[str, str] = Field(default_factory=dict)  # column: text that its cell must have; other rows are left out
-    time: TimeColumn
-    shaft_speed: SpeedColumn
+    only: dict[str, str] = field(default_factory=dict)  # column: text that its cell must have; other rows are left out
+    time: TimeColumn  # of each row
+    shaft_speed: SpeedColumn  # column, or constant
+    # columns and the law by which they give the load along +y, or a constant
     radial_load: Annotated[SumLoad | NormLoad | MassTimesAcceleration | GearForce | ConstantLoad, Field(discriminator="law")]
-    oil_temperature: TemperatureColumn | None = None
-    inner_ring_temperature: TemperatureColumn | None = None
-    outer_ring_temperature: TemperatureColumn | None = None
-    cage_speed: SpeedColumn | None = None  # measured; compared with the model, not an input of it
+    oil_temperature: TemperatureColumn | None = None  # column, or constant
+    inner_ring_temperature: TemperatureColumn | None = None  # as measured
+    outer_ring_temperature: TemperatureColumn | None = None  # as measured
+    cage_speed: SpeedColumn | None = None  # as measured; compared with the model, not an input of it
 
     @check
     def _is_complete(self) -> list[str]:

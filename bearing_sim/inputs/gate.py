@@ -204,6 +204,8 @@ class InputGate:
         received = stamp if arrival is None else arrival
         if math.isfinite(received):
             state.seen = True
+            if self._spacings.get(channel) and received - state.arrival > self._patience(channel):
+                state.window_start = math.nan  # a log that was silent: that says nothing about its rate
             elapsed = received - state.window_start
             if elapsed >= 0.0:
                 state.window_count += 1

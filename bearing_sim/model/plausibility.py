@@ -6,6 +6,8 @@ Nothing here refuses a scene.  Each finding has the value, what was expected, an
 
 import math
 
+import numpy as np
+
 from bearing_sim.model.running_clearance import clearance_at_speed
 from bearing_sim.model.validity import outside, still_sample
 from bearing_sim.scene.bearing import Bearing
@@ -42,7 +44,7 @@ def plausibility(scene: Scene) -> list[str]:
     ]
 
 
-def minimum_load(scene: Scene, speed: float | None = None) -> tuple[float, str]:
+def minimum_load(scene: Scene, speed: np.ndarray | float | None = None) -> tuple[np.ndarray | float, str]:
     """Return the load below which makers expect slip [N], and where it comes from.
 
     P_min = k_r (6 + 4 n/n_r)(d_m/100 mm)^2 (SKF, LYC) where ``bearing.ratings`` has k_r and n_r, otherwise 0.02 C_r.
@@ -50,11 +52,11 @@ def minimum_load(scene: Scene, speed: float | None = None) -> tuple[float, str]:
     Parameters
     ----------
     scene : with the bearing.
-    speed : of the shaft [rad/s]; None for the operating speed of the scene.
+    speed : of the shaft [rad/s], one or several; None for the operating speed of the scene.
     """
     limits, bearing = scene.bearing.ratings, scene.bearing
     if limits.minimum_load_factor is not None and limits.reference_speed is not None:
-        ratio = abs(scene.operating.shaft_speed if speed is None else speed) / limits.reference_speed
+        ratio = np.abs(scene.operating.shaft_speed if speed is None else speed) / limits.reference_speed
         return limits.minimum_load_factor * (6.0 + 4.0 * ratio) * (bearing.pitch_diameter / 0.1) ** 2, "k_r (6 + 4 n/n_r)(d_m/100 mm)^2"
     return _MINIMUM_OF_RATING * rate(bearing).dynamic, "0.02 C_r; give minimum_load_factor and reference_speed in bearing.ratings"
 

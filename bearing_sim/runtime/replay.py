@@ -40,7 +40,7 @@ class Replay:
     samples : outputs written.
     steps, rejected_steps, non_finite_steps : the integrator's work.
     failed_ticks, gap_seconds : stretches that could not be integrated, and time in gaps of the log; neither is simulated.
-    slip : cage slip at each output; ``speed`` [rad/s], ``life`` [h] likewise; ``weight`` the time that each represents [s].
+    slip : cage slip at each output; ``speed`` [rad/s], ``load`` [N] and ``life`` [h] likewise; ``weight`` the time that each represents [s].
     damage : fraction of life used.
     events : number of events by kind.
     given_up : why the run ended before the log did, or ``""``.
@@ -60,6 +60,7 @@ class Replay:
     damage: float = 0.0
     slip: list[float] = field(default_factory=list)
     speed: list[float] = field(default_factory=list)
+    load: list[float] = field(default_factory=list)
     life: list[float] = field(default_factory=list)
     weight: list[float] = field(default_factory=list)
     events: Counter = field(default_factory=Counter)
@@ -89,6 +90,19 @@ class Replay:
         median, p95, p99 = np.percentile(slip, [50, 95, 99], weights=weight, method="inverted_cdf")
         statistics = {"mean": np.average(slip, weights=weight), "median": median, "p95": p95, "p99": p99, "maximum": slip.max()}
         return {name: float(value) for name, value in statistics.items()}
+
+    def seconds_below(self, minimum_load: Callable[[np.ndarray], np.ndarray]) -> tuple[float, float]:
+        """Return for how long the load was below a minimum while the shaft turned, and for how long it turned [s].
+
+        Parameters
+        ----------
+        minimum_load : of the shaft's speeds [rad/s], shape (n,), the minimum load [N], shape (n,).
+        """
+        speed, load, weight = np.array(self.speed), np.array(self.load), np.array(self.weight)
+        turning = np.abs(speed) >= _TURNING * np.abs(speed).max(initial=0.0)
+        turning &= speed != 0.0
+        below = turning & (load < minimum_load(speed))
+        return float(weight[below].sum()), float(weight[turning].sum())
 
     @property
     def least_rating_life(self) -> float:
@@ -187,6 +201,7 @@ class _Run:
         result.weight += output.weights.tolist()
         for kept, name in ((result.slip, "cage_slip"), (result.speed, "shaft_speed"), (result.life, "rating_life")):
             kept += block[name].tolist()
+        result.load += np.hypot(block["load_y"], block["load_z"]).tolist()
         result.damage = float(block["damage"][-1])
         for recording in self._recordings:
             recording.write(block)

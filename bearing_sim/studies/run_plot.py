@@ -20,6 +20,7 @@ from bearing_sim.scene.scene import Scene
 from bearing_sim.sweep.table import COLOURS, MARKERS, NotDrawable, new_figure
 
 _RPM = 30.0 / math.pi
+_LIFE = "modified_rating_life"
 _MOST_POINTS = 4000  # of a line; each stretch of a longer one keeps its least and its largest value
 _FEW_POINTS = 3  # of a line that is drawn with marks, too
 _BREAK = 10.0  # usual spacings of samples above which a line is interrupted
@@ -63,7 +64,7 @@ PANELS = {
     "speed": Panel("shaft speed [rpm]", (Line("", _observable("shaft_speed", _RPM)),)),
     "load": Panel("radial load [kN]", (Line("", _load),)),
     "slip": Panel("cage slip [%]", (Line("", _observable("cage_slip", 100.0)),)),
-    "life": Panel("rating life [h]", (Line("", _observable("modified_rating_life")),), is_logarithmic=True),
+    "life": Panel("rating life [h]", (Line("", _observable(_LIFE)),), is_logarithmic=True),
     "temperature": Panel(
         "temperature [°C]",
         (
@@ -350,7 +351,7 @@ def _shortened(text: str, most: int) -> str:
 
 def minimum_loads(scene: Scene, speeds: np.ndarray) -> np.ndarray:
     """Return the minimum load of makers [N] at shaft speeds [rpm] (see `bearing_sim.model.plausibility.minimum_load`)."""
-    return np.array([minimum_load(scene, speed / _RPM)[0] for speed in np.asarray(speeds, float).tolist()])
+    return np.broadcast_to(minimum_load(scene, np.asarray(speeds, float) / _RPM)[0], np.shape(speeds))
 
 
 def draw_over_load(path: Path | BinaryIO, courses: Sequence[Course], title: str = "", form: str | None = None) -> "object":
@@ -396,7 +397,7 @@ def _finish_over_load(figure, axes, loads, slips, lives, handles, courses=()) ->
 
 def _draw_minimum_loads(axes, runs: Sequence[tuple[Scene, np.ndarray, str]]) -> list:
     """Draw the minimum load of each run, as a line or, where it depends on a speed that changes, as a strip; return the legend's entries."""
-    handles = []
+    found: dict[tuple[str, str], tuple[float, float, int, list[str]]] = {}
     for k, (scene, speeds, name) in enumerate(runs):
         turning = np.abs(speeds[np.isfinite(speeds)])
         turning = turning[turning >= 0.01 * turning.max(initial=0.0)]
@@ -405,11 +406,15 @@ def _draw_minimum_loads(axes, runs: Sequence[tuple[Scene, np.ndarray, str]]) -> 
         least, most = (minimum_loads(scene, np.array([turning.min(), turning.max()])) / 1e3).tolist()
         rule = minimum_load(scene)[1].partition(";")[0].replace("^2", "²")
         at = f"{least:.3g} kN" if most < 1.02 * least else f"{least:.3g} to {most:.3g} kN at {turning.min():.0f} to {turning.max():.0f} rpm"
-        label = f"minimum load{f' of {_shortened(name, 40)}' * (len(runs) > 1)}: {at} ({rule})"
+        found.setdefault((at, rule), (least, most, k, []))[-1].append(name)
+    handles = []
+    for (at, rule), (least, most, k, names) in found.items():
+        of = f" of {', '.join(_shortened(name, 40) for name in names)}" if len(found) > 1 else ""
+        colour = COLOURS[-1] if len(found) == 1 else COLOURS[k % len(COLOURS)]
         for each in axes:
-            line = each.axvline(most, color=COLOURS[-1] if len(runs) == 1 else COLOURS[k % len(COLOURS)], ls="--", lw=1.2, label=label)
+            line = each.axvline(most, color=colour, ls="--", lw=1.2, label=f"minimum load{of}: {at} ({rule})")
             if most >= 1.02 * least:
-                each.axvspan(least, most, color=line.get_color(), alpha=0.10, lw=0)
+                each.axvspan(least, most, color=colour, alpha=0.10, lw=0)
         handles.append(line)
     return handles
 

@@ -57,7 +57,7 @@ def prose(docstring: str | None) -> str:
 def _comments(record: type) -> dict[str, str]:
     """Return the comment beside each field of a record, or the one directly above it, by field name."""
     source = inspect.getsource(sys.modules[record.__module__])
-    node = next(item for item in ast.parse(source).body if isinstance(item, ast.ClassDef) and item.name == record.__name__)
+    node = next(item for item in ast.walk(ast.parse(source)) if isinstance(item, ast.ClassDef) and item.name == record.__name__)
     found = {token.start[0]: token for token in tokenize.generate_tokens(io.StringIO(source).readline) if token.type == tokenize.COMMENT}
     comments = {}
     for item in node.body:
@@ -153,6 +153,24 @@ def scene_fields() -> str:
     from bearing_sim.scene.scene import Scene
 
     return "\n\n".join(_record_sections(Scene, ""))
+
+
+def mapping_fields() -> str:
+    """Return every field of a mapping of a table: unit, default, range and meaning, block by block."""
+    from bearing_sim.inputs.csv_import import Mapping, SpeedColumn
+
+    parts, kept, has_column = list(_record_sections(Mapping, "")), [], False
+    while parts:
+        part = parts.pop(0)
+        if part.startswith("#") and parts[0] == prose(SpeedColumn.__doc__):  # all columns have the same fields, each in its own unit
+            described, parts = parts[:2], parts[2:]
+            place = re.search(r"`([^`]+)`", part)[1]
+            kept = [text.replace(f"block, see `{place}` below", "see *Every column* below") for text in kept]
+            kept += [] if has_column else ["## Every column", *described]
+            has_column = True
+        else:
+            kept.append(part)
+    return "\n\n".join(kept)
 
 
 def bundled() -> str:
@@ -508,7 +526,7 @@ def external_links() -> str:
 PARTS: dict[str, Callable[[], str]] = {
     function.__name__: function
     for function in (
-        *(scene_fields, bundled, input_topics, output_topics, array_rows, observables, recorded_topics),
+        *(scene_fields, mapping_fields, bundled, input_topics, output_topics, array_rows, observables, recorded_topics),
         *(parameters, services, events, validity, unwatched_laws, command_line, modules, rooms, claims, external_links),
     )
 }
