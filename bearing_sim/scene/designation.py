@@ -11,7 +11,7 @@ import math
 import re
 import types
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache
 from importlib import resources
 
@@ -312,11 +312,11 @@ class _Suffixes:
     cage: str = ""
     clearance: str = "CN"
     group_is_given: bool = False
-    unmodelled: list[str] = None
+    unmodelled: list[str] = field(default_factory=list)
 
 
 def _read_suffixes(kind: str, digits: str, text: str) -> _Suffixes:
-    read = _Suffixes(unmodelled=[])
+    read = _Suffixes()
     what = f"{kind} {digits}"
     for token in re.split(r"[\s/.,+_-]+", text.strip().upper()):
         if not token:
@@ -350,7 +350,7 @@ def _read_suffix(read: _Suffixes, kind: str, what: str, token: str) -> None:
         design, cage = found
         if cage and read.cage:
             raise DesignationError(f"{what}: two cages, {read.cage} and {cage}; give one")
-        read.design = read.design + token if not read.design or not cage else f"{read.design}{token}"
+        read.design += token
         read.high_capacity, read.cage = read.high_capacity or design, cage or read.cage
     else:
         _refuse(what, token)
