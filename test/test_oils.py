@@ -17,6 +17,7 @@ from bearing_sim.physics.traction import eyring_constants, eyring_traction
 from bearing_sim.scene.loader import catalog_names, scene_from_yaml, scene_to_yaml
 from bearing_sim.scene.lubricant import CustomOil
 from bearing_sim.scene.quantity import unit_registry
+from bearing_sim.scene.uncertainty import ranges_of
 from bearing_sim.scene.viscosity_index import ISO_VISCOSITY_CLASSES, reference_viscosities, viscosity_at_100, viscosity_index
 
 ZERO = 273.15
@@ -271,3 +272,16 @@ def test_beyond_the_oils_of_its_model_a_bath_drags_like_a_cylinder_in_a_thick_fl
     displacing, rubbing = zip(*(bath_moment(5.5e-3, 314.0, viscosity, **nu_210) for viscosity in (250e-6, 500e-6, 5000e-6)))
     assert displacing[0] == displacing[2] and rubbing[1] == pytest.approx(rubbing[0] * 2**1.379)
     assert rubbing[2] == pytest.approx(rubbing[1] * 10**0.37)
+
+
+def test_what_a_name_alone_says_about_an_oil_enters_the_uncertainty():
+    found = {one.field: one for one in ranges_of(scene()) if one.field.startswith("lubricant.")}
+    assert found.keys() == {"lubricant.traction_scale", "lubricant.oil.viscosity_40"}
+    assert (found["lubricant.oil.viscosity_40"].low, found["lubricant.oil.viscosity_40"].high) == pytest.approx((61.2e-6, 74.8e-6))
+    scale = found["lubricant.traction_scale"]
+    assert scale.low * scale.high == pytest.approx(1.0) and scale.distribution == "log_uniform" and "assumption" in scale.source
+    own = ranges_of(scene("uncertainty.lubricant.traction_scale=[0.9, 1.1]"))
+    assert [one.high for one in own if one.field == "lubricant.traction_scale"] == [1.1], "a scene's own range counts"
+    aviation = ranges_of(scene("lubricant.oil=MIL-PRF-23699"))
+    measured = ranges_of(scene("lubricant.oil={viscosity_40: 70 mm^2/s, viscosity_100: 9 mm^2/s}", "lubricant.traction={law: constant, b: 0.5}"))
+    assert not any(one.field.startswith("lubricant.") for one in (*aviation, *measured))

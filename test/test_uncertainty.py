@@ -84,8 +84,8 @@ def test_an_override_replaces_a_range_or_one_end_of_it_or_removes_it():
     assert "bearing.cage.guide_clearance" not in ranges("bearing.cage.guidance=roller", "bearing.cage.outer_radius=33 mm"), "it has no lands"
 
 
-@pytest.mark.parametrize("name", scene_names())
-def test_bundled_scenes_have_ranges_with_sources_around_their_own_values(name):
+@pytest.mark.parametrize("name", [name for name in scene_names() if name.startswith("deng2017")])
+def test_the_papers_scenes_have_ranges_with_sources_around_their_own_values(name):
     scene = load_scene(name)
     ranged = {one.field for one in scene.uncertainty}
     assert {"lubricant.mixture_fraction", "lubricant.temperature", "lubricant.traction_scale", "bearing.cage.guide_clearance"} <= ranged

@@ -48,7 +48,8 @@ def uncertainty(scene_name, overrides, samples, seed, level, log, stretches, wor
     """Compute quantiles (5, 50 and 95 %) of slip and life of SCENE, with uncertain fields drawn from the ranges in its block `uncertainty`.
 
     With N samples and d ranges the bearing is computed N (d + 2) times; Sobol' indices show which fields the spread comes from.
-    Fields of a catalogue bearing that are estimated take the ranges of their estimates, unless the scene has another one for them.
+    Fields of a catalogue bearing that are estimated take the ranges of their estimates, and what only an oil's name says takes that of its kind,
+    unless the scene has another one for them.
     To change a range: --set "uncertainty.lubricant.temperature=[90 degC, 130 degC]"; to remove one: --set uncertainty.FIELD=null.
     """
     from bearing_sim.scene.loader import SceneError, load_scene

@@ -12,6 +12,7 @@ A range gives the possible values; runs use the scene's own value.
 
 import dataclasses
 import difflib
+import itertools
 import math
 import types
 import typing
@@ -28,6 +29,7 @@ from bearing_sim.scene.quantity import SPEED, Quantity, check, record
 BLOCKS = ("bearing", "lubricant", "operating", "mounting", "heat", "support")  # of a scene; their quantities may have ranges
 _ENDS, _WORDS = ("low", "high", "mode"), ("distribution", "source")
 _LOW_RADIUS = "outer_raceway.low_radius"
+_TRACTION_FACTOR = 1.5  # assumption
 _MIDDLE = 0.9  # of the values of an estimated field lie within its range
 _CLOSE_ENOUGH = 0.6  # of difflib's ratio
 
@@ -219,9 +221,10 @@ def range_errors(scene) -> list[str]:
 
 
 def ranges_of(scene) -> tuple[Range, ...]:
-    """Return the ranges that a scene declares, and those of the bearing's estimated fields that it declares none for."""
+    """Return the ranges that a scene declares, and those of what it leaves to estimates that it declares none for: of the bearing and of the oil."""
     declared = {one.field for one in scene.uncertainty}
-    return scene.uncertainty + tuple(one for one in estimated_ranges(scene) if one.field not in declared)
+    assumed = itertools.chain(estimated_ranges(scene), lubricant_ranges(scene))
+    return scene.uncertainty + tuple(one for one in assumed if one.field not in declared)
 
 
 def estimated_ranges(scene) -> Iterator[Range]:
@@ -237,6 +240,19 @@ def estimated_ranges(scene) -> Iterator[Range]:
             low, high = max(own * each.low - margin, declared.minimum), min(own * each.high + margin, declared.maximum)
         if low < high:
             yield Range(field=path, low=low, high=high, source=each.by)
+
+
+def lubricant_ranges(scene) -> Iterator[Range]:
+    """Yield the ranges of what the kind of base oil or the viscosity class alone says about a scene's lubricant."""
+    lubricant = scene.lubricant
+    law, oil, scale = lubricant.traction, lubricant.oil, lubricant.traction_scale
+    if law.law == "eyring" and law.eyring_stress is law.limiting_ratio is law.pressure_index is None and oil.base != "aviation" and scale > 0.0:
+        source = "traction by the kind of base oil is good to a factor of 1.5 (assumption)"
+        low, high = scale / _TRACTION_FACTOR, min(scale * _TRACTION_FACTOR, 100.0)
+        yield Range(field="lubricant.traction_scale", low=low, high=high, distribution="log_uniform", source=source)
+    if oil.law == "custom" and oil.viscosity_100 is None and oil.name.startswith("ISO VG"):
+        source = "a viscosity class reaches 10 % to either side (ISO 3448)"
+        yield Range(field="lubricant.oil.viscosity_40", low=0.9 * oil.viscosity_40, high=1.1 * oil.viscosity_40, source=source)
 
 
 def shown(known: Mapping[str, Quantity], path: str, value: float) -> str:
