@@ -140,7 +140,7 @@ class Conditions:
 
     @property
     def replenishment(self) -> np.ndarray:
-        """SKF's factor exp(-k u) by which contacts that little oil flows back to resist rolling less; see `replenishment_rate`."""
+        """The factor exp(-k u) of SKF by which contacts that little oil flows back to resist rolling less; see `replenishment_rate`."""
         lubricant, raceways, envelope = self.scene.lubricant, self.params.raceways, self.params.envelope
         given = getattr(lubricant.rolling_resistance, "replenishment", None)
         constant = replenishment(lubricant, self.params) if given is None else given
