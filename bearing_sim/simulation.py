@@ -197,6 +197,10 @@ class Simulation:
             self._tables = kept[:1] if kept else ()
         self.reset(inputs, start=start)
 
+    def __repr__(self) -> str:
+        slip = 100.0 * float(self.sample["cage_slip"])
+        return f"Simulation of {self.scene.name} at level {self.scene.level}, {self.time:.6g} s, cage slip {slip:.3g} %"
+
     def __getstate__(self) -> dict:
         kept, thermal = {name: value for name, value in self.__dict__.items() if name not in _FOUND_AGAIN}, self._thermal
         return kept if thermal is None else kept | {"_thermal": (thermal.course(), thermal.uncorrected, thermal.corrected, thermal.held)}

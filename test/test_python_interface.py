@@ -177,6 +177,7 @@ def test_a_sweep_from_python_is_that_of_the_command_line_with_names_and_si_units
     given = run_sweep(paper, {"shaft_speed": ["15000 rpm", "45000 rpm"], "radial_load": [400.0, np.float64(800.0)]}, workers=1)
     texts = [read_axis("operating.shaft_speed=15000rpm:45000rpm:2"), read_axis("operating.radial_load=400N:800N:2")]
     assert given.rows == run_sweep(PAPER, texts, PAPER_STEADY, workers=1).rows
+    assert "sweep of deng2017_table1: 4 points (4 ok)\n  over operating.shaft_speed [rpm] x 2\n" in repr(given)
     data, frame = given.to_xarray(), given.to_pandas()
     assert dict(data.sizes) == {"shaft_speed": 2, "radial_load": 2}
     assert data["shaft_speed"].values == pytest.approx(np.array([15_000, 45_000]) * math.pi / 30) and data["shaft_speed"].attrs["units"] == "rad/s"
@@ -265,6 +266,7 @@ def test_a_copy_of_a_simulation_continues_to_the_last_digit(level):
     simulation = Simulation(load_scene(PAPER, [f"level={level}"]))
     simulation.advance(0.01, samples=3)
     copies = [pickle.loads(pickle.dumps(simulation)), copy.deepcopy(simulation)]
+    assert f"at level {level}, 0.01 s, cage slip " in repr(copies[0]) == repr(simulation)
     before = simulation.counters
     assert [advanced(each) for each in copies] == [advanced(simulation)] * 2
     assert all(each.counters == simulation.counters != before for each in copies)

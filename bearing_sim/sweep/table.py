@@ -1,6 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Tables of results, one row per point, as Parquet and CSV with units and meanings of the columns; and pictures of sweeps."""
 
+import collections
 import csv
 import json
 import os
@@ -38,6 +39,13 @@ class Table(NamedTuple):
     columns: tuple[Column, ...]
     rows: list[dict]
     about: dict
+
+    def __repr__(self) -> str:
+        axes = [f"{axis['field']}{f' [{unit}]' if (unit := axis.get('unit')) else ''} x {len(axis['values'])}" for axis in self.about.get("axes", ())]
+        counts = collections.Counter(row["status"] for row in self.rows if "status" in row)
+        found = ", ".join(f"{count} {status}" for status, count in counts.items())
+        title = f"{self.about.get('kind', 'table')} of {self.about.get('scene', 'a scene')}: {len(self.rows)} points{f' ({found})' if found else ''}"
+        return "\n".join([title, *(f"  over {each}" for each in axes), f"  {len(self.columns)} columns, see to_pandas()"])
 
     def column(self, name: str) -> Column:
         """Return a column by name."""
