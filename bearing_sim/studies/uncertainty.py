@@ -17,7 +17,6 @@ from pydantic import ValidationError
 from scipy import stats
 from scipy.stats import qmc
 
-from bearing_sim.levels.steady.equilibrium import thermal_equilibrium
 from bearing_sim.levels.steady.table import empty_table
 from bearing_sim.scene import fidelity
 from bearing_sim.scene.errors import SceneError
@@ -26,6 +25,7 @@ from bearing_sim.scene.uncertainty import Range, messages, quantities, ranges_of
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation, scene_inputs
 from bearing_sim.sweep.table import new_figure
 from bearing_sim.sweep.tasks import Journal, run_tasks, task
+from bearing_sim.sweep.thermal import equilibrium_temperatures
 
 PROBABILITIES = (0.05, 0.50, 0.95)  # below the low end, the middle and the high end of a band
 CONFIDENCE = 0.95  # of intervals for the sampling error
@@ -433,19 +433,11 @@ def settled(scene: Scene, conditions: np.ndarray | None = None) -> np.ndarray:
             else:
                 simulation.reset(inputs)
             if simulation.thermal is not None:
-                _hold_equilibrium(simulation)
+                simulation.set_temperatures(equilibrium_temperatures(scene, inputs))
             found[:, k] = _settled_at(simulation)
         except IntegrationError:
             continue
     return found
-
-
-def _hold_equilibrium(simulation: Simulation) -> None:
-    """Give a simulation the temperatures of its thermal equilibrium; raise `IntegrationError` where there is none."""
-    found = thermal_equilibrium(simulation.scene, simulation.inputs)
-    if not found.converged:
-        raise IntegrationError(found.reason)
-    simulation.set_temperatures(found.temperatures)
 
 
 def _settled_at(simulation: Simulation) -> tuple[float, float]:

@@ -4,12 +4,35 @@
 import numpy as np
 
 from bearing_sim.levels.steady.equilibrium import thermal_equilibrium
-from bearing_sim.simulation import IntegrationError, Simulation, thermal_nodes
+from bearing_sim.scene.scene import Scene
+from bearing_sim.simulation import Inputs, IntegrationError, Simulation, thermal_nodes
 from bearing_sim.sweep.settling import advance_until_settled
 
 _ROUNDS, _AVERAGED_FROM = 8, 3
 _EQUAL, _BALANCED = 1e-2, 1e-4  # K, and of the shaft power; slip then errs by less than 0.01 points, temperatures by 0.02 K
 _AGREED = 0.3  # K; temperatures by the losses of two rounds
+
+
+def equilibrium_temperatures(scene: Scene, inputs: Inputs, start: np.void | None = None) -> np.ndarray:
+    """Return the temperatures of the network's nodes in the equilibrium of level steady [K], as exact as a run resolves.
+
+    Parameters
+    ----------
+    scene : whose `heat.law` is network.
+    inputs : constant conditions.
+    start : sample whose temperatures the search begins with where it has them.
+
+    Raises
+    ------
+    IntegrationError
+        There is no equilibrium: it says why.
+    """
+    known = None if start is None else thermal_nodes(start)
+    nearby = known if known is not None and np.isfinite(known).all() else None
+    found = thermal_equilibrium(scene, inputs, nearby, _EQUAL, _BALANCED)
+    if not found.converged:
+        raise IntegrationError(found.reason)
+    return found.temperatures
 
 
 def begin_in_equilibrium(simulation: Simulation, shortest: float, longest: float, start: np.void | None = None) -> None:
@@ -33,12 +56,7 @@ def begin_in_equilibrium(simulation: Simulation, shortest: float, longest: float
     if simulation.thermal is None:
         return
     inputs = simulation.inputs
-    known = None if start is None else thermal_nodes(start)
-    nearby = known if known is not None and np.isfinite(known).all() else None
-    found = thermal_equilibrium(simulation.scene, inputs, nearby, _EQUAL, _BALANCED)
-    if not found.converged:
-        raise IntegrationError(found.reason)
-    nodes = found.temperatures
+    nodes = equilibrium_temperatures(simulation.scene, inputs, start)
     if simulation.scene.level != "steady":
         nodes = _refined(simulation, nodes, shortest, longest, start)
     simulation.reset(inputs, nodes, start)
