@@ -13,6 +13,7 @@ from pathlib import Path
 os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"  # before anything of ROS is loaded
 
 import rclpy  # noqa: E402
+from preloaded import PreloadingServer  # noqa: E402
 from rclpy.executors import SingleThreadedExecutor  # noqa: E402
 from rclpy.qos import qos_profile_sensor_data  # noqa: E402
 
@@ -24,6 +25,8 @@ GOOD = Inputs(shaft_speed=1000.0, load_y=800.0, load_z=0.0, oil_temperature=393.
 PATIENCE = 30.0  # [s] how long to wait for what should come at once: the machine may be busy
 _COMPILING = 100.0  # [s] how long the node may take to its start when its code has to be compiled
 _REPOSITORY = Path(__file__).resolve().parent.parent
+_NODE = "bearing_sim.ros.node"
+_PRELOADED = [_NODE, "bearing_sim.ros.player"]
 
 
 _DOMAINS = list(range(1, 101))  # higher ones collide with ports that the system hands out
@@ -51,21 +54,35 @@ def _inhabited(domain: int) -> bool:
 
 
 class NodeProcess:
-    """``python -m MODULE ARGUMENTS`` under a watchdog that kills it, with everything it prints kept in a file."""
+    """``python -m MODULE ARGUMENTS`` under a watchdog that kills it, with everything it prints kept in a file.
 
-    def __init__(self, folder: Path, domain: int, *arguments: str, module: str = "bearing_sim.ros.node", limit: int = 150, **environment: str):
+    A node or a player is forked from a process that has imported what it needs; other modules, and whatever gets an environment of its own
+    or is ``from_scratch``, start an interpreter.
+    """
+
+    _server = None
+
+    def __init__(
+        self, folder: Path, domain: int, *arguments: str, module: str = _NODE, limit: int = 150, from_scratch: bool = False, **environment: str
+    ):
         self.log = folder / f"{module.rpartition('.')[2]}_{time.monotonic_ns()}.log"
+        from_scratch = from_scratch or bool(environment) or module not in _PRELOADED
         environment = {**os.environ, "ROS_DOMAIN_ID": str(domain), "ROS_LOG_DIR": str(folder / "ros_log"), **environment}
         environment["PYTHONPATH"] = os.pathsep.join(filter(None, [str(_REPOSITORY), environment.get("PYTHONPATH")]))
-        command = ["timeout", "-s", "KILL", str(limit), sys.executable, "-m", module, *arguments]
         with open(self.log, "wb") as log:
-            self.process = subprocess.Popen(command, env=environment, stdout=log, stderr=subprocess.STDOUT, cwd=folder)
+            if from_scratch:
+                command = ["timeout", "-s", "KILL", str(limit), sys.executable, "-m", module, *arguments]
+                self.process = subprocess.Popen(command, env=environment, stdout=log, stderr=subprocess.STDOUT, cwd=folder)
+            else:
+                if NodeProcess._server is None:
+                    NodeProcess._server = PreloadingServer(_PRELOADED, [_REPOSITORY])
+                self.process = NodeProcess._server.start(module, *arguments, output=log, folder=folder, environment=environment, limit=limit)
 
     def end(self, number: int = signal.SIGTERM) -> int:
         """Send a signal and return the exit code."""
         if self.process.poll() is None:
             if number == signal.SIGKILL:
-                os.killpg(self.process.pid, number)  # `timeout` leads a process group of its own, the node is in it
+                os.killpg(self.process.pid, number)  # the watchdog leads a process group of its own, the node is in it
             else:
                 self.process.send_signal(number)
         return self.wait()

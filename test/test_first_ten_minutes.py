@@ -51,7 +51,7 @@ class User:
         """Run one command; a command that this does not know fails."""
         match words:
             case ["bearing_node"]:
-                self.node = NodeProcess(self.folder, self.domain, limit=220)
+                self.node = NodeProcess(self.folder, self.domain, limit=220, from_scratch=True)
             case ["bearing-sim", *rest]:
                 subprocess.run([sys.executable, "-m", "bearing_sim.cli", *rest, *(["--no-open"] if rest[0] == "view" else [])],
                                cwd=self.folder, env=self._environment(), check=True, timeout=120)  # fmt: skip

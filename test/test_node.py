@@ -35,10 +35,10 @@ def launch(tmp_path):
     """Return a function that starts a node and a client of it; both are gone at the end."""
     started = []
 
-    def start(*parameters, namespace="", scalar=False, arguments=(), **environment):
+    def start(*parameters, namespace="", scalar=False, arguments=(), **options):
         domain = fresh_domain()
         pairs = [word for parameter in parameters for word in ("-p", parameter)]
-        process = NodeProcess(tmp_path, domain, "--ros-args", *pairs, *arguments, **environment)
+        process = NodeProcess(tmp_path, domain, "--ros-args", *pairs, *arguments, **options)
         client = Client(domain, namespace, scalar)
         started.append((process, client))
         return process, client
@@ -60,7 +60,7 @@ def ended_well(process, number):
 
 def test_speed_and_load_from_another_process_come_back_as_slip_and_life_and_as_a_recording_that_readers_accept(launch, tmp_path):
     recording, view = tmp_path / "out" / "run.mcap", tmp_path / "out" / "run.rrd"
-    process, client = launch(f"record:={recording}", f"rrd:={view}", "publish_rate:=50")
+    process, client = launch(f"record:={recording}", f"rrd:={view}", "publish_rate:=50", from_scratch=True)
     client.wait_until_matched(process)
     client.drive_until(lambda: client.received["cage_slip"], "the first slip arrives", process, shaft_speed=FAST)
     seen = {name: len(messages) for name, messages in client.received.items()}

@@ -199,7 +199,7 @@ def test_a_transition_that_fails_again_is_told_at_the_next_review_though_no_regu
         rclpy.shutdown()
 
 
-def test_a_hundred_reconfigures_in_mid_run_leak_no_thread_no_file_no_memory_and_every_recording_is_complete(managed, tmp_path):
+def test_forty_reconfigures_in_mid_run_leak_no_thread_no_file_no_memory_and_every_recording_is_complete(managed, tmp_path):
     node = managed(f"record:={tmp_path / 'run.mcap'}")
     client, process = node.client, node.process
 
@@ -215,14 +215,14 @@ def test_a_hundred_reconfigures_in_mid_run_leak_no_thread_no_file_no_memory_and_
     for _ in range(10):
         reconfigure()
     before = _belongings(process)
-    for _ in range(90):
+    for _ in range(30):
         reconfigure()
     after = _belongings(process)
     assert after["threads"] <= before["threads"] and after["files"] <= before["files"] + 2, (before, after)
-    assert after["memory"] - before["memory"] < 20e6, (before, after)
+    assert after["memory"] - before["memory"] < 7e6, (before, after)
     assert "Traceback" not in process.text
     recordings = sorted(tmp_path.glob("run*"))
-    assert len(recordings) == 100 and all(path.suffix == ".mcap" for path in recordings), "none is unfinished"
+    assert len(recordings) == 40 and all(path.suffix == ".mcap" for path in recordings), "none is unfinished"
     assert Recording(recordings[0]).samples > 0
 
 
