@@ -56,8 +56,7 @@ def _inhabited(domain: int) -> bool:
 class NodeProcess:
     """``python -m MODULE ARGUMENTS`` under a watchdog that kills it, with everything it prints kept in a file.
 
-    A node or a player is forked from a process that has imported what it needs; other modules, and whatever gets an environment of its own
-    or is ``from_scratch``, start an interpreter.
+    It is forked from a process that has imported what nodes need, unless it gets an environment of its own or is ``from_scratch``.
     """
 
     _server = None
@@ -66,7 +65,7 @@ class NodeProcess:
         self, folder: Path, domain: int, *arguments: str, module: str = _NODE, limit: int = 150, from_scratch: bool = False, **environment: str
     ):
         self.log = folder / f"{module.rpartition('.')[2]}_{time.monotonic_ns()}.log"
-        from_scratch = from_scratch or bool(environment) or module not in _PRELOADED
+        from_scratch = from_scratch or bool(environment)
         environment = {**os.environ, "ROS_DOMAIN_ID": str(domain), "ROS_LOG_DIR": str(folder / "ros_log"), **environment}
         environment["PYTHONPATH"] = os.pathsep.join(filter(None, [str(_REPOSITORY), environment.get("PYTHONPATH")]))
         with open(self.log, "wb") as log:

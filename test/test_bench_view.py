@@ -11,7 +11,7 @@ from bearing_sim.view.screenshot import HOW_TO_GET_VULKAN, ViewerFailed
 
 def test_every_situation_is_measured_and_the_solver_goes_on_in_all_of_them():
     try:
-        report = run_view_bench(1.0, 1.0)
+        report = run_view_bench(0.5, 0.5)
     except ViewerFailed as fault:
         if HOW_TO_GET_VULKAN not in str(fault):
             raise
@@ -53,10 +53,10 @@ def test_what_recording_costs_is_measured_with_a_viewer_and_every_tick_is_counte
 
 def test_a_long_run_is_written_and_opened_whole():
     try:
-        found = run_hour(5.0)
+        found = run_hour(2.0)
     except ViewerFailed as fault:
         if HOW_TO_GET_VULKAN not in str(fault):
             raise
         pytest.skip(f"needs a Vulkan driver: {fault}")
-    assert found["samples"] == 5000 and found["bytes"] > 1e5 and found["viewer_bytes"] > 1e7 and found["problems"] == []
-    assert found["first_second"] == pytest.approx(1e-3) and found["last_second"] >= 5.0
+    assert found["samples"] == 2000 and found["bytes"] > 1e5 and found["viewer_bytes"] > 1e7 and found["problems"] == []
+    assert found["first_second"] == pytest.approx(1e-3) and found["last_second"] >= 2.0

@@ -181,13 +181,13 @@ def test_two_publishers_of_one_input_are_told_and_worse_where_they_disagree(node
     client.drive_until(gone, "one is left", process)
 
 
-def test_a_publisher_that_is_gone_for_ten_seconds_and_back_is_told_and_the_model_takes_it_up_again(node):
+def test_a_publisher_that_is_gone_for_three_seconds_and_back_is_told_and_the_model_takes_it_up_again(node):
     process, client = node
     client.drive(0.3)
     report = len(client.received["diagnostics"])
     old = client.publishers["shaft_speed"]
     client.node.destroy_publisher(old)
-    end = time.monotonic() + 10.0
+    end = time.monotonic() + 3.0
     while time.monotonic() < end:
         client.send("radial_load")
         client.spin(0.05)

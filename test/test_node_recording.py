@@ -51,7 +51,7 @@ def recorders_of(process):
             grandparent = int((parent / "stat").read_text().rpartition(")")[2].split()[1])
         except (OSError, IndexError, ValueError):
             continue
-        if b"bearing_sim.recording.recorder_server" in command and grandparent == process.process.pid:  # the node is the child of `timeout`
+        if b"bearing_sim.recording.recorder_server" in command and grandparent == process.process.pid:  # the node is the child of its watchdog
             found.append(int(place.name))
     return found
 
