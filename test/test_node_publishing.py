@@ -191,9 +191,7 @@ def test_health_is_told_and_new_listeners_are_served_though_the_timer_stands_sti
     process, client = launch("publish_rate:=50", module="without_timer")
     client.wait_until_matched(process)
     reports = client.received["diagnostics"]
-    client.drive_until(
-        lambda: len(client.received["bearing_joints"]) > 30 and "running" in client.values().get("phase", ""), "outputs come", process
-    )
+    client.drive_until(lambda: len(client.received["bearing_joints"]) > 30 and "running" in client.values().get("phase", ""), "outputs come", process)
     seen, late = len(reports), []
     client.listen("std_msgs/msg/Float64MultiArray", "power", late.append)
     client.drive_until(lambda: len(reports) > seen + 1 and late, "diagnostics keep coming", process)
