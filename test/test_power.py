@@ -17,8 +17,21 @@ from bearing_sim.numerics.simd import by_roller
 from bearing_sim.physics.contact import CONTACT
 from bearing_sim.physics.load_balance import LOAD as LOAD_ROW
 
-LOSSES = ("inner_sliding", "outer_sliding", "inner_rolling", "outer_rolling", "churning", "windage", "land", "pocket", "damping", "seal", "support")
-ABSENT = ("inner_rolling", "outer_rolling", "seal", "support")  # in the stock scene
+LOSSES = (
+    "inner_sliding",
+    "outer_sliding",
+    "inner_rolling",
+    "outer_rolling",
+    "churning",
+    "windage",
+    "land",
+    "pocket",
+    "damping",
+    "seal",
+    "flange",
+    "support",
+)
+ABSENT = ("inner_rolling", "outer_rolling", "seal", "flange", "support")  # in the stock scene
 LOAD = np.array([700.0, -300.0])
 SHAFT_SPEED = 4500.0
 
@@ -169,7 +182,7 @@ def test_every_force_of_level_slip_stands_in_the_books(seed, options):
     leaning = state[1] * (lever - 2 * mass * state[1] ** 2 * slope * radius).sum()
     assert powers.shaft + leaning - sum(powers[1:]) == pytest.approx(stored, abs=1e-9 * sum(map(abs, powers)))
     resisted, sealed = "lubricant.rolling_resistance=hydrodynamic" in options, "bearing.seals=skf" in options
-    absent = {"damping", "support", *(() if resisted else ("inner_rolling", "outer_rolling")), *(() if sealed else ("seal",))}
+    absent = {"damping", "flange", "support", *(() if resisted else ("inner_rolling", "outer_rolling")), *(() if sealed else ("seal",))}
     assert all((lost == 0.0) if name in absent else (lost > 0.0) for name, lost in powers._asdict().items() if name != "shaft")
 
 

@@ -191,7 +191,8 @@ WIRE = {
         [("inner_pressure", "Pa"), ("outer_pressure", "Pa"), ("inner_edge_pressure", "Pa"), ("outer_edge_pressure", "Pa")],
     ),
     "power": (
-        "shaft, inner sliding, outer sliding, churning, windage, land, pocket, damping, inner rolling, outer rolling, seal, support, friction moment",
+        "shaft, inner sliding, outer sliding, churning, windage, land, pocket, damping, inner rolling, outer rolling, seal, support, "
+        "friction moment, flange",
         [
             ("shaft_power", "W"),
             ("inner_sliding_power", "W"),
@@ -206,6 +207,7 @@ WIRE = {
             ("seal_power", "W"),
             ("support_power", "W"),
             ("friction_moment", "N*m"),
+            ("flange_power", "W"),
         ],
     ),
     "roller_speeds": ("speed: orbital, spin", [("orbital_speed", "rad/s"), ("roller_spin", "rad/s")]),
@@ -213,8 +215,16 @@ WIRE = {
     "roller_tilts": ("inclination: outwards, along the orbit", [("roller_tilt", "rad"), ("roller_skew", "rad")]),
     "roller_loads": ("ring", [("inner_load", "N"), ("outer_load", "N")]),
     "operating_point": (
-        "load y, z, oil temperature, land eccentricity",
-        [("load_y", "N"), ("load_z", "N"), ("oil_temperature", "K"), ("land_eccentricity", "")],
+        "load y, z, oil temperature, land eccentricity, inner and outer flange force, flange load",
+        [
+            ("load_y", "N"),
+            ("load_z", "N"),
+            ("oil_temperature", "K"),
+            ("land_eccentricity", ""),
+            ("inner_flange_force", "N"),
+            ("outer_flange_force", "N"),
+            ("flange_load", "N"),
+        ],
     ),
     "predicted_temperatures": (
         "shaft, inner ring, rollers, outer ring, housing, oil that leaves",

@@ -87,10 +87,20 @@ def carried(stiffness, length, clearance):
     return "level=planar", f"support.outer_ring={{stiffness: {stiffness}, squeeze_film: {film}}}"
 
 
+NJ = "bearing.flanges={inner: one, outer: both}"
 CASES = {
     "oil_4109_class": (("run", "motor", *VG_320, AVIATION_FIT), ("run", "motor")),
     "oil_4109_base": (("loads", "motor", "lubricant.oil=ISO VG 32", AVIATION_FIT), ("loads", "motor", "lubricant.oil=DEF STAN 91-101")),
     "estimated_rollers": (("run", "motor", "bearing.estimated=[{field: roller.count, by: a guess, low: 15, high: 17}]"), ("run", "motor")),
+    "flange_axial_ratio": (("run", "motor", NJ, "operating.axial_load=2.6 kN"), ("run", "motor", NJ, "operating.axial_load=2.4 kN")),
+    "flange_axial_load": (
+        ("run", "motor", NJ, "operating.axial_load=6 kN", "operating.radial_load=20 kN"),
+        ("run", "motor", NJ, "operating.axial_load=4 kN", "operating.radial_load=20 kN"),
+    ),
+    "flange_gap": (
+        ("run", PAPER, "bearing.flanges={inner: both, end_clearance: 200 um}"),
+        ("run", PAPER, "bearing.flanges={inner: both, end_clearance: 30 um}"),
+    ),
     "full_complement_play": (("run", "motor", FULL), ("run", "motor", FULL, "bearing.roller.count=20")),
     "oil_4109_pressure": (("run", PAPER, "operating.radial_load=25 kN"), ("run", PAPER)),
     "oil_4109_speed": (("run", PAPER, "operating.shaft_speed=52000 rpm"), ("run", PAPER)),

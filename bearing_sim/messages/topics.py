@@ -164,7 +164,8 @@ ARRAYS = {
         "inner, outer, inner end slices, outer end slices", ("inner_pressure", "outer_pressure", "inner_edge_pressure", "outer_edge_pressure")
     ),
     "power": ArrayRows(
-        "shaft, inner sliding, outer sliding, churning, windage, land, pocket, damping, inner rolling, outer rolling, seal, support, friction moment",
+        "shaft, inner sliding, outer sliding, churning, windage, land, pocket, damping, inner rolling, outer rolling, seal, support, "
+        "friction moment, flange",
         (
             "shaft_power",
             "inner_sliding_power",
@@ -179,13 +180,17 @@ ARRAYS = {
             "seal_power",
             "support_power",
             "friction_moment",
+            "flange_power",
         ),
     ),
     "roller_speeds": ArrayRows("speed: orbital, spin", ("orbital_speed", "roller_spin")),
     "pocket_forces": ArrayRows("force on", ("pocket_force",)),
     "roller_tilts": ArrayRows("inclination: outwards, along the orbit", ("roller_tilt", "roller_skew")),
     "roller_loads": ArrayRows("ring", ("inner_load", "outer_load")),
-    "operating_point": ArrayRows("load y, z, oil temperature, land eccentricity", ("load_y", "load_z", "oil_temperature", "land_eccentricity")),
+    "operating_point": ArrayRows(
+        "load y, z, oil temperature, land eccentricity, inner and outer flange force, flange load",
+        ("load_y", "load_z", "oil_temperature", "land_eccentricity", "inner_flange_force", "outer_flange_force", "flange_load"),
+    ),
     "predicted_temperatures": ArrayRows(
         "shaft, inner ring, rollers, outer ring, housing, oil that leaves",
         NODE_OBSERVABLES,
@@ -286,7 +291,7 @@ OUTPUTS = {
 RECORDED = {
     topic.name: topic
     for topic in (
-        _array("operating_point", "inputs as the model had them: load y, z [N], oil [K]; land eccentricity"),
+        _array("operating_point", "inputs as the model had them: load y, z [N], oil [K]; land eccentricity; forces of flanges [N]"),
         _array(
             "measured_temperatures",
             "ring temperatures [K]: measured, as the model had them, and of the network without their correction",

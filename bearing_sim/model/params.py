@@ -12,6 +12,7 @@ from bearing_sim.model.running_clearance import mounted, running_play, uniform
 from bearing_sim.physics.contact import iso_contact_stiffness, line_contact_stiffness
 from bearing_sim.physics.drag import LARGEST_FRACTION, Bath, bath_drag, swept_fraction
 from bearing_sim.physics.film import RollingResistance, replenishment_rate, resistance_constants
+from bearing_sim.physics.flange import NO_FACE, Flanges, corner_stiffness, film_constant, flange_face
 from bearing_sim.physics.growth import Growth, Mounted, Temperatures, growth_at
 from bearing_sim.physics.lamina_life import Laminae, new_laminae
 from bearing_sim.physics.raceway import tabulated
@@ -21,6 +22,7 @@ from bearing_sim.physics.traction import TractionConstants, constant_constants, 
 from bearing_sim.scene.bearing import Roller
 from bearing_sim.scene.contour import outer_contour
 from bearing_sim.scene.crown import crown_drops, slice_middles
+from bearing_sim.scene.flanges import flange_geometry
 from bearing_sim.scene.lubricant import ConstantTraction, EyringTraction, HydrodynamicRollingResistance, KragelskiiTraction
 from bearing_sim.scene.ratings import rate
 from bearing_sim.scene.scene import Bearing, Lubricant, Scene
@@ -187,6 +189,7 @@ class Params(NamedTuple):
     support: np.ndarray  # what carries the bearing, numbers `SUPPORT`
     variants: Variants
     envelope: Envelope
+    flanges: Flanges
 
 
 class Lubrication(NamedTuple):
@@ -278,6 +281,42 @@ def pack(scene: Scene) -> Params:
             gyroscopic=float(scene.dynamics.gyroscopic),
         ),
         envelope=Envelope(bearing.bore_diameter, bearing.outside_diameter, bearing.boundary_width, bearing.seal_moment),
+        flanges=_flanges(scene),
+    )
+
+
+def _flanges(scene: Scene) -> Flanges:
+    bearing = scene.bearing
+    given, roller, size = bearing.flanges, bearing.roller, flange_geometry(bearing)
+    rim = 0.5 * roller.diameter - size.corner_radius
+    load = abs(scene.operating.axial_load)
+    half, layback = 0.5 * size.end_clearance, math.tan(given.opening_angle)
+    contact = rim if given.end_radius is None else given.end_radius * math.sin(given.opening_angle)
+    raceways = (
+        (given.inner, bearing.inner_raceway.radius, size.inner_radius, bearing.pitch_radius),
+        (given.outer, bearing.outer_raceway.low_radius, size.outer_radius, bearing.outer_raceway.low_radius - 0.5 * roller.diameter),
+    )
+    faces = []
+    for sides, raceway, edge, centre in raceways:
+        # an axial load presses a roller on one flange of each ring, and leaves all the clearance to the other one
+        gaps = (given.film, size.end_clearance) if load > 0.0 else (half, half)
+        faces.append(flange_face(sides, gaps if sides == "both" else gaps[:1], raceway, edge, centre, rim, layback, contact))
+    inner, outer = faces if given.present else (NO_FACE, NO_FACE)
+    return Flanges(
+        on=given.present,
+        guide="both" in (given.inner, given.outer),
+        inner=inner,
+        outer=outer,
+        pitch_radius=bearing.pitch_radius,
+        load=load,
+        guiding=given.guiding_load,
+        couple=math.copysign(1.0, scene.operating.axial_load),
+        clearance=half,
+        stiffness=corner_stiffness(rim, size.corner_radius, layback, bearing.material.youngs_modulus, bearing.material.poisson_ratio),
+        damping=bearing.contact.damping,
+        boundary_friction=given.boundary_friction,
+        film_friction=given.film_friction,
+        film_constant=film_constant(0.5 * (bearing.bore_diameter + bearing.outside_diameter)),
     )
 
 

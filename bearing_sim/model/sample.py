@@ -95,12 +95,23 @@ OBSERVABLES = (
     Observable("outer_ring_z", "m", "displacement of the outer ring along z, likewise"),
     Observable("shaft_y", "m", "displacement of the shaft's mass in space along y; 0 at a level without vibration"),
     Observable("shaft_z", "m", "displacement of the shaft's mass in space along z, likewise"),
+    Observable(
+        "inner_flange_force",
+        "N",
+        "force of the inner ring's flanges on a roller along the orbit, mean over rollers; positive drives them; 0 at level steady",
+    ),
+    Observable("outer_flange_force", "N", "force of the outer ring's flanges on a roller along the orbit, mean over the rollers; likewise"),
+    Observable(
+        "flange_load",
+        "N",
+        "largest axial force between a roller's end and a flange: by axial load and guidance, and of corners that stop its skew; 0 at level steady",
+    ),
     Observable("land_eccentricity", "", "cage eccentricity in what guides it, over its clearance, e/c; 0 at a level without whirl"),
     Observable(
         "shaft_power",
         "W",
         "power that the shaft puts in: through tractions and rolling resistance on the inner ring, the mixture in the cage's bore, guide lands on "
-        "the inner ring, and seals",
+        "the inner ring, its flanges, and seals",
     ),
     Observable("inner_sliding_power", "W", "power lost by sliding between rollers and inner raceway"),
     Observable("outer_sliding_power", "W", "power lost by sliding between rollers and outer raceway"),
@@ -112,6 +123,7 @@ OBSERVABLES = (
     Observable("pocket_power", "W", "power lost in the pockets: friction, and damping of their film"),
     Observable("damping_power", "W", "power lost by Hunt and Crossley's damping of all normal contacts; 0 at a level without vibration"),
     Observable("seal_power", "W", "power lost by seals on the shaft"),
+    Observable("flange_power", "W", "power lost between the rollers' ends and flanges: oil film and friction; 0 without flanges"),
     Observable("support_power", "W", "power lost by the dampers of shaft and outer ring; 0 without a support and at a level without vibration"),
     Observable("friction_moment", "N*m", "frictional moment of the bearing, shaft power / shaft speed; NaN at rest"),
     Observable("shaft_temperature", "K", "temperature of the shaft; NaN where no law of heat computes or gives it"),

@@ -179,7 +179,9 @@ def _capacities(scene: Scene, params: Params, size: Dimensions, bore: float, bes
 def partition(bearing: Bearing) -> np.ndarray:
     """Return the fraction of each loss that becomes heat in each node, shape (len(POWERS), NODES); each row adds up to 1."""
     ring = NODE.inner_ring if bearing.cage.guidance == "inner_ring" else NODE.outer_ring
-    places = {**_PARTITION, "land_power": {ring: 0.5, NODE.rollers: 0.5}}
+    flanged = [node for node, sides in ((NODE.inner_ring, bearing.flanges.inner), (NODE.outer_ring, bearing.flanges.outer)) if sides != "none"]
+    rubbed = {NODE.rollers: 0.5, **{node: 0.5 / len(flanged) for node in flanged}} if flanged else {NODE.rollers: 1.0}
+    places = {**_PARTITION, "land_power": {ring: 0.5, NODE.rollers: 0.5}, "flange_power": rubbed}
     fractions = np.zeros((len(POWERS), NODES))
     for row, name in enumerate(POWERS):
         for node, fraction in places[name].items():

@@ -22,6 +22,7 @@ from bearing_sim.model.temperatures import film_temperatures
 from bearing_sim.physics.film import replenishment_rate
 from bearing_sim.scene.bearing import Bearing
 from bearing_sim.scene.crown import NoCrown
+from bearing_sim.scene.flanges import flange_geometry
 from bearing_sim.scene.lubricant import ConstantTraction, CustomOil, EyringTraction, KragelskiiTraction, Oil, Oil4109Traction
 from bearing_sim.scene.ratings import rate
 from bearing_sim.scene.scene import Scene
@@ -235,6 +236,18 @@ class Conditions:
         with_vortices = samples["land_power"] * np.maximum(1.3 * (number / 41.0) ** 0.539, 1.0)
         decides = with_vortices > _SMALL_FRACTION * (with_vortices + samples["churning_power"] + samples["windage_power"])
         return self.while_turning(np.where(decides, number, np.nan))
+
+
+def _flange_speed(at: "Conditions") -> np.ndarray:
+    """Return how fast the end of a rolling roller slides over the edge of a flange [m/s]; that of the inner ring is the faster."""
+    bearing = at.scene.bearing
+    size, ratio = flange_geometry(bearing), bearing.diameter_ratio
+    spin = 0.5 * (1.0 - ratio) / ratio
+    heights = (
+        (size.inner_radius - bearing.inner_raceway.radius) * (spin + 1.0) if bearing.flanges.inner != "none" else 0.0,
+        (bearing.outer_raceway.low_radius - size.outer_radius) * spin if bearing.flanges.outer != "none" else 0.0,
+    )
+    return max(heights) * np.abs(at.samples["shaft_speed"])
 
 
 def _has_squeeze_film(scene: Scene) -> bool:
@@ -1180,6 +1193,49 @@ LAWS = (
         ),
     ),
     Law(
+        "flange_axial_ratio",
+        "validity.axial_load",
+        "axial load on flanges, shared evenly by rollers that stay straight",
+        "the axial over the radial load, F_a/F_r",
+        "",
+        -math.inf,
+        0.5,
+        "SKF, Dynamic axial load carrying capacity: at most 0.5 of the radial load; with more the rollers tilt",
+        "lower operating.axial_load, or use a bearing with a contact angle",
+        lambda scene: scene.operating.axial_load != 0.0,
+        lambda at: at.while_turning(
+            abs(at.scene.operating.axial_load) / np.maximum(np.hypot(at.samples["load_y"], at.samples["load_z"]), 1e-9)
+        ),
+    ),
+    Law(
+        "flange_axial_load",
+        "validity.axial_load",
+        "friction of roller ends on flanges",
+        "the axial load F_a",
+        "N",
+        -math.inf,
+        lambda scene: 2.3 * (1e3 * scene.bearing.outside_diameter) ** 1.7,
+        "SKF, Dynamic axial load carrying capacity: F_ap max = 0.0023 D^1.7 kN, D in mm, of flanges that carry it all the time",
+        "lower operating.axial_load, or use a larger bearing",
+        lambda scene: scene.operating.axial_load != 0.0,
+        lambda scene: abs(scene.operating.axial_load),
+        of_scene=True,
+        expected="at most 0.0023 D^1.7 kN, D the outside diameter in mm",
+    ),
+    Law(
+        "flange_gap",
+        "validity.flange",
+        "laminar shear between roller ends and flanges",
+        "the Reynolds number of the end gap, speed of the roller's end over the flange times the gap over nu",
+        "",
+        -math.inf,
+        1440.0,
+        "plane Couette flow stays laminar up to 360 by half the speed and half the gap, N. Tillmark and P. H. Alfredsson, J. Fluid Mech. 235 (1992)",
+        "reduce bearing.flanges.end_clearance to what the bearing has",
+        lambda scene: scene.bearing.flanges.present,
+        lambda at: at.while_turning(_flange_speed(at) * flange_geometry(at.scene.bearing).end_clearance * at.density / at.viscosity),
+    ),
+    Law(
         "limiting_speed",
         "validity.speed",
         "all laws",
@@ -1230,6 +1286,8 @@ UNWATCHED = (
         "friction between the rollers of a full complement",
         "assumption: each brakes its spin by the force that it needs from its neighbours, as in a pocket; forces that pass through are left out",
     ),
+    ("friction of roller ends on flanges", "coefficients, 0.02 on a film and 0.12 to 0.15 without; SKF weighs them for whole bearings"),
+    ("guidance of a skewed roller by flanges", "assumption of a roller in the middle of its end clearance, which is itself known to a factor of two"),
     ("contact damping of Hunt and Crossley", "no published range; settled slip and life do not depend on it"),
     ("heating of the film's inlet", "W. R. D. Wilson and S. Sheu (1983) give no range that we could read; the factor 0.1 is an assumption"),
     ("pocket friction and boundary friction of the lands", "coefficients, not laws with a range: 0.02 to 0.1 and 0.05 to 0.15 in use"),

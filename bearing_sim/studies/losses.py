@@ -11,6 +11,7 @@ CAUSES = {
     "sliding": ("inner_sliding_power", "outer_sliding_power"),
     "drag": ("churning_power",),
     "cage": ("windage_power", "land_power", "pocket_power"),
+    "flanges": ("flange_power",),
     "damping": ("damping_power",),
     "seals": ("seal_power",),
     "supports": ("support_power",),

@@ -7,7 +7,7 @@ At each instant, with exactly the forces of the level's equations of motion,
 
 A loss is force times sliding speed, or force times rate of approach.  The shaft puts power in through the tractions on the inner
 ring, through the resistance to rolling there, through the mixture in the cage's bore, through guide lands where they are the inner ring's, through
-seals, and through an unbalance; what the ring and the shaft do to the mixture elsewhere is outside the model.
+its flanges, through seals, and through an unbalance; what the ring and the shaft do to the mixture elsewhere is outside the model.
 """
 
 import math
@@ -34,6 +34,7 @@ class Powers(NamedTuple):
     pocket: float
     damping: float
     seal: float
+    flange: float
     support: float
 
 
@@ -51,6 +52,7 @@ def write_powers(powers, row):
     row[COLUMN.pocket_power] = powers.pocket
     row[COLUMN.damping_power] = powers.damping
     row[COLUMN.seal_power] = powers.seal
+    row[COLUMN.flange_power] = powers.flange
     row[COLUMN.support_power] = powers.support
     write_friction_moment(row)
 

@@ -7,11 +7,12 @@ and the frame (r, t) of the roller,
 
     m_r (r'' - r phi'^2)       = (Q_i n + T_i' p)_r - Q_e - f (sin psi + mu cos psi),
     m_r (r phi'' + 2 r' phi')  = (Q_i n + T_i' p)_t + T_e' + Q_e R_e'/r - F_d - f (cos psi - mu sin psi),
-    J_r w'                     = R_w (T_i - T_e - F_Ri - F_Re - mu |f|),
+    J_r w'                     = R_w (T_i - T_e - F_Ri - F_Re - mu |f|) + M_f,
 
-F_d the drag of mixture and bath, F_R the resistance to rolling, of which the roller's centre receives T_i' = T_i + (1 - 2 gamma) F_Ri and T_e' =
-T_e - (1 + 2 gamma) F_Re.  The term Q_e R_e'/r is the lean of the outer normal (``contour_slope``).  Whatever a roller receives from ring and
-cage acts back on them, so that momentum is conserved.
+F_d the drag of mixture and bath, F_R the resistance to rolling, of which the roller's centre receives T_i' = T_i + (1 - 2 gamma) F_Ri and
+T_e' = T_e - (1 + 2 gamma) F_Re.  Where rings have flanges, these add forces to T_i' and T_e' and the torque M_f
+(`bearing_sim.levels.common.flanges`).  The term Q_e R_e'/r is the lean of the outer normal (``contour_slope``).  Whatever a roller
+receives from ring and cage acts back on them, so that momentum is conserved.
 
 **Pockets that guide the cage.** Pockets with walls along the orbit alone do not hold a cage: rollers shift along the orbit with the pockets
 of a cage that turns off its centre, nothing pulls it back, and its own centrifugal force carries it away.  A cage guided by its rollers
@@ -26,10 +27,12 @@ orbit: what the other walls do, turned by a right angle.
 
 import math
 
+from bearing_sim.levels.common.flanges import FLANGE, rub_on_flanges, total_load
 from bearing_sim.levels.common.model import inner_growth, load_at, shaft_speed_at
 from bearing_sim.levels.common.rollers import add, linear_churning, place_in_pockets, place_outwards, place_rollers
 from bearing_sim.levels.common.support import follow_frame, frame_of, momentum_rate, support_accelerations, support_jacobian
 from bearing_sim.levels.planar.jacobian import (
+    flange_jacobian,
     guide_jacobian,
     land_contact_jacobian,
     react_on_ring,
@@ -54,6 +57,7 @@ from bearing_sim.numerics.simd import load, magnitude, store, total, where_posit
 from bearing_sim.physics.contact import CONTACT, damped_line_contact, log_penetration
 from bearing_sim.physics.drag import mixture_torque
 from bearing_sim.physics.film import resist_rolling
+from bearing_sim.physics.flange import axial_share, flange_friction
 from bearing_sim.physics.land import Land, land_contact, land_film, land_friction
 from bearing_sim.physics.pocket import pocket_friction_lanes, wall_force
 from bearing_sim.physics.traction import traction
@@ -244,12 +248,16 @@ def equations(t, y, model, work, rate, with_jacobian):
     if pockets_guide:
         guide_forces(y, params, rows)
         guide_accelerations(params, rows, rate)
+    if params.flanges.on:
+        flange_accelerations(shaft_speed, model, rows, contacts, rate)
     if with_jacobian:
         roller_jacobian(y, inner_radius, churning, params, rows, contacts, work.jacobian)
         if model.lubrication.rolling_resistance.on:
             resistance_jacobian(y, inner_radius, params, rows, contacts, work.jacobian)
         if pockets_guide:
             guide_jacobian(y, params, rows, work.jacobian)
+        if params.flanges.on:
+            flange_jacobian(y, params, rows, work.jacobian)
     if work.support.shape[0] > 0:
         _carry(t, y, model, work, rate, with_jacobian)
     collect_rates(y, params.rollers.count, rows, rate)
@@ -313,3 +321,25 @@ def guide_accelerations(params, rows, rate):
         rate[BORDER + CAGE_Z] += total(present * force * (p_s - friction * p_c)) / cage.mass
         torque = force * (load(rows, block, ROLLER.pocket_offset) + friction * lever) + braking * roller_radius
         rate[OMEGA] -= total(present * torque) / cage.inertia
+
+
+@kernel
+def flange_accelerations(shaft_speed, model, rows, contacts, rate):
+    """Write what flanges do to the ends of all rollers, and add it to the accelerations of rollers and ring."""
+    params = model.params
+    friction = flange_friction(shaft_speed, model.lubrication.kinematic_viscosity, params.flanges)
+    carried = total_load(ROLLER, CONTACT.load, rows, contacts)
+    per_mass, per_inertia = 1.0 / params.rollers.mass, 1.0 / params.rollers.inertia
+    for block in range(rows.shape[0]):
+        pressed = friction * axial_share(load(contacts, block, CONTACT.load), carried, params.rollers.count, params.flanges)
+        rub_on_flanges(ROLLER, block, shaft_speed, pressed, params.flanges, model.lubrication.viscosity, rows)
+        n_r, n_t = load(rows, block, ROLLER.normal_r), load(rows, block, ROLLER.normal_t)
+        inner, outer = load(rows, block, ROLLER.inner_flange + FLANGE.force), load(rows, block, ROLLER.outer_flange + FLANGE.force)
+        moment = load(rows, block, ROLLER.inner_flange + FLANGE.moment) + load(rows, block, ROLLER.outer_flange + FLANGE.moment)
+        radial, along = -(inner * n_t), inner * n_r
+        add(rows, block, ROLLER.radial_acceleration, per_mass * radial)
+        add(rows, block, ROLLER.orbital_acceleration, per_mass * (along + outer) / load(rows, block, ROLLER.radius))
+        add(rows, block, ROLLER.spin_acceleration, per_inertia * moment)
+        present, cosine, sine = load(rows, block, ROLLER.present), load(rows, block, ROLLER.cosine), load(rows, block, ROLLER.sine)
+        rate[BORDER + RING_Y] -= total(present * (radial * cosine - along * sine)) / params.ring.mass
+        rate[BORDER + RING_Z] -= total(present * (radial * sine + along * cosine)) / params.ring.mass

@@ -32,6 +32,7 @@ s (d/dv + s d/dq).  What is left is a block arrow, a 3x3 block for each roller a
 the border's Schur complement.  Cost O(Z).
 """
 
+from bearing_sim.levels.common.flanges import FLANGE
 from bearing_sim.levels.common.rollers import add
 from bearing_sim.levels.common.support import REACTION, frame_of, react_by_border, react_by_rollers, turn_frame
 from bearing_sim.levels.planar.state import (
@@ -378,6 +379,42 @@ def resistance_jacobian(y, inner_radius, params, rows, contacts, jacobian):
     """Add what resistance to rolling does to the derivatives of `roller_jacobian`, which have been written; parameters as there."""
     _inner_resistance(y, inner_radius, params, rows, contacts, jacobian)
     _outer_resistance(params, rows, contacts, jacobian)
+
+
+@kernel
+def flange_jacobian(y, params, rows, jacobian):
+    """Add what flanges do to roller ends to the derivatives of `roller_jacobian`, which have been written; parameters as there.
+
+    How the rollers share an axial load is taken as constant.
+    """
+    per_mass, per_inertia = 1.0 / params.rollers.mass, 1.0 / params.rollers.inertia
+    for block in range(rows.shape[0]):
+        n_r, n_t, inverse = load(rows, block, ROLLER.normal_r), load(rows, block, ROLLER.normal_t), load(rows, block, ROLLER.inverse_distance)
+        v_n, first = load(rows, block, ROLLER.speed_normal), ROLLER.inner_flange
+        force = load(rows, block, first + FLANGE.force)
+        uu, us, ss = load(rows, block, first + FLANGE.uu), load(rows, block, first + FLANGE.us), load(rows, block, first + FLANGE.ss)
+        turn_r, turn_t = -n_t * inverse, n_r * inverse
+        radial, along = -(force * n_t), force * n_r
+        # u = v_p - omega_i r_m changes with the direction of p, by -v_n for a turn, and with the speed along it
+        slides = -(v_n * turn_r), -(v_n * turn_t), -n_t, n_r
+        f_ar, f_at, f_vr, f_vt = -(uu * slides[0]), -(uu * slides[1]), -(uu * slides[2]), -(uu * slides[3])
+        columns_r = -(f_ar * n_t) - turn_r * along, -(f_at * n_t) - turn_t * along, -(f_vr * n_t), -(f_vt * n_t)
+        columns_t = f_ar * n_r + turn_r * radial, f_at * n_r + turn_t * radial, f_vr * n_r, f_vt * n_r
+        columns_spin = -(us * slides[0]), -(us * slides[1]), -(us * slides[2]), -(us * slides[3])
+        none = spread(0.0)
+        d_spin = us * n_t, -(us * n_r), -ss
+        _inner_rows(
+            add, block, y, params, rows, (radial, along), columns_r, columns_t, columns_spin, (none, none, none), d_spin, per_inertia, jacobian
+        )
+        first, radius, orbital_speed = ROLLER.outer_flange, load(rows, block, ROLLER.radius), load(rows, block, ROLLER.orbital_speed)
+        uu, us, ss = load(rows, block, first + FLANGE.uu), load(rows, block, first + FLANGE.us), load(rows, block, first + FLANGE.ss)
+        per_lever = -per_mass / radius
+        add(jacobian, block, _ORBITAL + R, per_lever * uu * orbital_speed)
+        add(jacobian, block, _ORBITAL + PHI_SPEED, per_lever * uu * radius)
+        add(jacobian, block, _ORBITAL + SPIN, per_lever * us)
+        add(jacobian, block, _SPINNING + R, -(per_inertia * us * orbital_speed))
+        add(jacobian, block, _SPINNING + PHI_SPEED, -(per_inertia * us * radius))
+        add(jacobian, block, _SPINNING + SPIN, -(per_inertia * ss))
 
 
 @kernel

@@ -7,6 +7,7 @@ implicit steps: `bearing_sim.levels.planar.jacobian`.
 
 import math
 
+from bearing_sim.levels.common.flanges import observe_flanges
 from bearing_sim.levels.common.model import FIFTH_PITCH, orbital_speed_tolerance, pitch_step, shaft_speed_at
 from bearing_sim.levels.common.observation import average_moments, observe_course, oil_at_speed
 from bearing_sim.levels.common.power import write_powers
@@ -113,4 +114,6 @@ def observe(t, y, model, work, interval, previous, row, rate):
     observe_support(y, y[RING_Y], y[RING_Z], model.params.support, row)
     row[COLUMN.land_eccentricity] = land_eccentricity(y[RING_Y], y[RING_Z], y[CAGE_Y], y[CAGE_Z], model.params.cage)
     write_powers(planar_powers(t, y, shaft_speed_at(t, model.drive), model, work), row)
+    if model.params.flanges.on:
+        observe_flanges(ROLLER, CONTACT.load, count, model.params.flanges, rows, work.contacts, row)
     observe_rollers(ROLLER, CONTACT.load, count, interval, rows, work.contacts, previous, row)

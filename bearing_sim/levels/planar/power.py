@@ -12,6 +12,7 @@ shaft, which pays for what they take and for what they give the cage.
 
 import math
 
+from bearing_sim.levels.common.flanges import flange_powers
 from bearing_sim.levels.common.model import inner_growth
 from bearing_sim.levels.common.power import Powers, rolling_power, seal_power, shaft_traction_power, sliding_power, windage_powers
 from bearing_sim.levels.common.support import support_powers
@@ -140,9 +141,12 @@ def planar_powers(t, y, shaft_speed, model, work):
     driven_unbalance, support = 0.0, 0.0
     if work.support.shape[0] > 0:
         driven_unbalance, support = support_powers(t, y, BORDER, model)
+    driven_flanges, rubbing = 0.0, 0.0
+    if params.flanges.on:
+        driven_flanges, rubbing = flange_powers(ROLLER, shaft_speed, params.flanges, work.rollers)
     inner_radius = params.raceways.inner_radius + inner_growth(shaft_speed, model)
     return Powers(
-        shaft_traction_power(contacts, count, shaft_speed, inner_radius) + bore + driven + driven_unbalance + seals,
+        shaft_traction_power(contacts, count, shaft_speed, inner_radius) + bore + driven + driven_unbalance + seals + driven_flanges,
         sliding_power(contacts, 0, count),
         sliding_power(contacts, blocks, count),
         rolling_power(contacts, 0, count),
@@ -153,5 +157,6 @@ def planar_powers(t, y, shaft_speed, model, work):
         pocket,
         _raceway_damping(params, work) + walls + touching,
         seals,
+        rubbing,
         support,
     )

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.levels.common.flanges import PLANE_ROWS
 from bearing_sim.levels.common.support import new_support
 from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.simd import LANES, collect_runs, fill_lanes, new_blocks, new_rows, spread_runs
@@ -93,9 +94,12 @@ class RollerRow(NamedTuple):
     guide_force: int = 37  # of the pocket on the roller, outwards from the cage [N]
     guide_stiffness: int = 38  # derivatives of the force against the offset, by it and by its rate [N/m, N s/m]
     guide_damping: int = 39
+    inner_flange: int = 40  # from here on flanges: of the inner ring, rows `bearing_sim.levels.common.flanges.FLANGE` without skew
+    outer_flange: int = 45  # of the outer ring, likewise
 
 
 ROLLER = RollerRow()
+ROLLER_ROWS = ROLLER.outer_flange + PLANE_ROWS
 
 
 class Work(NamedTuple):
@@ -114,7 +118,7 @@ class Work(NamedTuple):
 def new_work(params):
     """Return the level's workspace for a bearing."""
     count = params.rollers.count
-    rollers = new_rows(len(ROLLER), count)
+    rollers = new_rows(ROLLER_ROWS, count)
     lanes = np.arange(rollers.shape[0] * LANES).reshape(-1, LANES)
     rollers[:, ROLLER.present] = lanes < count
     pitch = 2 * math.pi * np.minimum(lanes, count - 1) / count

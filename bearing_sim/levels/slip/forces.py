@@ -4,11 +4,12 @@
 With F_j the sum of all forces along the orbit on roller j but its pocket's, r_j its distance from the outer ring's centre, M_c the torque on
 the cage body and S = J_c + sum m_r r_j^2,
 
-    omega_c' = [M_c + sum r_j F_j - B]/S,    J_r w_j' = R_w (T_i - T_e - F_Ri - F_Re) - R_w mu |P_j|,    P_j = F_j - m_r r_j (M_c + sum r_j F_j)/S,
+    omega_c' = [M_c + sum r_j F_j - B]/S,    P_j = F_j - m_r r_j (M_c + sum r_j F_j)/S,
+    J_r w_j' = R_w (T_i - T_e - F_Ri - F_Re) + M_f - R_w mu |P_j|,
 
 P_j what the pocket takes from the roller, mu its coefficient of friction (Deng 2017, eq. 13), B = R_w sum mu |P_j| the reaction of pocket
-friction on the cage (0 with ``pocket_reaction: false``), F_R the resistance to rolling.  Deng 2017,
-eq. 14 to 16, are the equations of the free roller, ring and cage from which these follow.
+friction on the cage (0 with ``pocket_reaction: false``), F_R the resistance to rolling, M_f the torque of the flanges (0 without).  Deng
+2017, eq. 14 to 16, are the equations of the free roller, ring and cage from which these follow.
 """
 
 import math
@@ -21,6 +22,7 @@ from bearing_sim.numerics.simd import LANES
 from bearing_sim.physics.contact import CONTACT, line_penetration
 from bearing_sim.physics.drag import mixture_torque, roller_drag
 from bearing_sim.physics.film import resist_rolling
+from bearing_sim.physics.flange import axial_share, flange_friction, rub, shear
 from bearing_sim.physics.lamina_life import add_load_moments, equivalent_loads
 from bearing_sim.physics.land import land_torque
 from bearing_sim.physics.load_balance import LOAD, balance_ring
@@ -139,6 +141,10 @@ def equations(t, y, model, work, rate, with_jacobian):
     if resistance:
         resisted, d_resisted = _push_rollers(inner_radius, params, work, with_jacobian)
         torque, d_torque = torque + resisted, d_torque + d_resisted
+    flanges = params.flanges.on
+    if flanges:
+        rubbed, d_rubbed = _rub_on_flanges(y, shaft_speed, model, work, with_jacobian)
+        torque, d_torque = torque + rubbed, d_torque + d_rubbed
     cage_acceleration = torque / inertia
     rate[THETA] = cage_speed
     reaction = 0.0
@@ -153,6 +159,8 @@ def equations(t, y, model, work, rate, with_jacobian):
         if resistance:
             turning -= contacts[block, CONTACT.resistance, lane] + contacts[blocks + block, CONTACT.resistance, lane]
         rate[SPIN + j] = roller_radius * (turning - brake) / rollers.inertia
+        if flanges:
+            rate[SPIN + j] += (work.flanges[1, j] + work.flanges[3, j]) / rollers.inertia
         if with_jacobian:
             smooth = math.sqrt(spin * spin + FRICTION_SPIN * FRICTION_SPIN)
             d_brake = cage.pocket_friction * pocket * FRICTION_SPIN * FRICTION_SPIN / (smooth * smooth * smooth)
@@ -206,3 +214,51 @@ def _push_rollers(inner_radius, params, work, with_jacobian):
             jacobian[ARROW.column, j] -= per_inertia * (inner_d_cage + outer_d_cage)
             jacobian[ARROW.diagonal, j] -= per_inertia * rollers.radius * (inner + outer)
     return torque, d_torque
+
+
+@kernel
+def _rub_on_flanges(y, shaft_speed, model, work, with_jacobian):
+    """Add to forces and Jacobian of the rollers what flanges do to their ends; return the torque on the cage [N m] and its derivative by cage speed.
+
+    Parameters
+    ----------
+    y : state.
+    shaft_speed : [rad/s].
+    model, work : of the level; takes forces and torques in ``work.flanges``.
+    with_jacobian : whether to add to the Jacobian.
+    """
+    params, lubrication, jacobian = model.params, model.lubrication, work.jacobian.rows
+    flanges, cage_speed, torque, d_torque = params.flanges, y[OMEGA], 0.0, 0.0
+    friction, count, carried = flange_friction(shaft_speed, lubrication.kinematic_viscosity, flanges), params.rollers.count, 0.0
+    for j in range(count):
+        carried += work.loads[LOAD.inner, j]
+    for ring in range(2):
+        face, ring_speed = (flanges.inner, shaft_speed) if ring == 0 else (flanges.outer, 0.0)
+        area, first, second = lubrication.viscosity * face.area, lubrication.viscosity * face.first, lubrication.viscosity * face.second
+        coefficient = friction if face.area > 0.0 else 0.0
+        for j in range(count):
+            radius = work.loads[LOAD.radius, j]
+            pressed = coefficient * axial_share(work.loads[LOAD.inner, j], carried, count, flanges)
+            u, s = radius * cage_speed - ring_speed * flanges.pitch_radius, y[SPIN + j] + ring_speed
+            sheared, turned, uu, us, ss = shear(area, first, second, u, s)
+            rubbed, braked, rub_uu, rub_us, rub_ss, _, _ = rub(math.sqrt, pressed, face.offset, 0.0, u, s)
+            force, moment = sheared + rubbed, turned + braked
+            work.flanges[2 * ring, j], work.flanges[2 * ring + 1, j] = force, moment
+            work.tangential[j] += force
+            torque += radius * force
+            d_torque -= radius * radius * (uu + rub_uu)
+            if with_jacobian:
+                jacobian[ARROW.row, j] -= radius * (us + rub_us)
+                jacobian[ARROW.column, j] -= radius * (us + rub_us) / params.rollers.inertia
+                jacobian[ARROW.diagonal, j] -= (ss + rub_ss) / params.rollers.inertia
+    return torque, d_torque
+
+
+@kernel
+def largest_axial_share(params, loads):
+    """Return the largest axial force of a roller on a flange [N]; ``loads`` as in `bearing_sim.levels.slip.state.Work`."""
+    carried, highest = 0.0, 0.0
+    for j in range(params.rollers.count):
+        carried += loads[LOAD.inner, j]
+        highest = max(highest, loads[LOAD.inner, j])
+    return axial_share(highest, carried, params.rollers.count, params.flanges)

@@ -15,7 +15,7 @@ import numpy as np
 from bearing_sim.levels.common.model import HALF_PITCH, inner_growth, load_at, orbital_speed_tolerance, pitch_step, shaft_speed_at
 from bearing_sim.levels.common.observation import observe_course, oil_at_speed
 from bearing_sim.levels.common.power import write_powers
-from bearing_sim.levels.slip.forces import equations, pitch_loads
+from bearing_sim.levels.slip.forces import equations, largest_axial_share, pitch_loads
 from bearing_sim.levels.slip.power import slip_powers
 from bearing_sim.levels.slip.state import OMEGA, SPIN, THETA
 from bearing_sim.model.sample import COLUMN, SCALARS
@@ -90,6 +90,12 @@ def observe(t, y, model, work, interval, previous, row, rate):
     observe_course(t, y[THETA], cage_speed, equivalent, oil, model, interval, previous, row)
     rhs(t, y, model, work, rate)
     write_powers(slip_powers(cage_speed, rate[OMEGA], y[SPIN:], shaft_speed_at(t, model.drive), model, work), row)
+    if params.flanges.on:
+        row[COLUMN.inner_flange_force], row[COLUMN.outer_flange_force] = 0.0, 0.0
+        for j in range(count):
+            row[COLUMN.inner_flange_force] += work.flanges[0, j] / count
+            row[COLUMN.outer_flange_force] += work.flanges[2, j] / count
+        row[COLUMN.flange_load] = largest_axial_share(params, loads)
     row[COLUMN.ring_y] = work.ring[0]
     row[COLUMN.ring_z] = work.ring[1]
     for j in range(count):

@@ -32,14 +32,20 @@ def slip_powers(cage_speed, cage_acceleration, spins, shaft_speed, model, work):
     bore, windage = windage_powers(cage_speed, shaft_speed, params, lubrication)
     drag, seals = roller_drag(cage_speed, shaft_speed, params, lubrication)[0], seal_power(shaft_speed, params)
     blocks = contacts.shape[0] // 2
-    churning, pocket = 0.0, 0.0
+    churning, pocket, driven, rubbing = 0.0, 0.0, 0.0, 0.0
+    if params.flanges.on:
+        driven, rubbing = _flange_powers(cage_speed, spins, shaft_speed, params, work)
     for j in range(count):
         radius = loads[LOAD.radius, j]
         churning += drag * radius * cage_speed
         force = abs(rollers.mass * radius * cage_acceleration - work.tangential[j])
         pocket += force * pocket_friction(spins[j], cage.pocket_friction) * rollers.radius * (spins[j] + params.variants.pocket_reaction * cage_speed)
     return Powers(
-        shaft_traction_power(contacts, count, shaft_speed, params.raceways.inner_radius + work.growth[0]) + bore + land * guide_speed + seals,
+        shaft_traction_power(contacts, count, shaft_speed, params.raceways.inner_radius + work.growth[0])
+        + bore
+        + land * guide_speed
+        + seals
+        + driven,
         sliding_power(contacts, 0, count),
         sliding_power(contacts, blocks, count),
         rolling_power(contacts, 0, count),
@@ -50,5 +56,19 @@ def slip_powers(cage_speed, cage_acceleration, spins, shaft_speed, model, work):
         pocket,
         0.0,
         seals,
+        rubbing,
         0.0,
     )
+
+
+@kernel
+def _flange_powers(cage_speed, spins, shaft_speed, params, work):
+    """Return what the shaft puts in through its flanges and what is lost on those of both rings [W]; parameters as of `slip_powers`."""
+    driven, lost, pitch_radius = 0.0, 0.0, params.flanges.pitch_radius
+    for j in range(params.rollers.count):
+        inner, inner_torque, outer, outer_torque = work.flanges[0, j], work.flanges[1, j], work.flanges[2, j], work.flanges[3, j]
+        orbital = work.loads[LOAD.radius, j] * cage_speed
+        shaft = (inner * pitch_radius - inner_torque) * shaft_speed
+        driven += shaft
+        lost += shaft - (inner + outer) * orbital - (inner_torque + outer_torque) * spins[j]
+    return driven, lost

@@ -9,6 +9,9 @@ the bearing's axis.
 **Centre and spin** move as at level ``planar`` (`bearing_sim.levels.planar.forces`).  **The axis** of a roller, inclined by A = (tilt, skew) outwards
 and along the orbit, follows I A'' = M + J w (A_t', -A_r') in a frame that does not turn, M the sums of forces times x.
 
+**Flanges** act on straight rollers as at level ``planar``; flanges on both sides stop a roller that skews, and an axial load tilts it by its
+lever between both rings' flanges (`press_axially`).
+
 **Guide lands.** Each of the two lands carries half of what both together would carry at its position; the cage's tilt separates them, against
 that of the ring if the lands are the inner ring's.  The law of a land is that of level ``planar``.
 
@@ -23,6 +26,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.levels.common.flanges import FLANGE, rub_on_flanges, stop_skew_on_face, total_load
 from bearing_sim.levels.common.model import inner_growth, shaft_speed_at
 from bearing_sim.levels.common.rollers import add, linear_churning, place_in_pockets, place_outwards, place_rollers
 from bearing_sim.levels.common.support import follow_frame, frame_of, momentum_rate, support_accelerations, support_jacobian
@@ -52,6 +56,7 @@ from bearing_sim.numerics.compilation import kernel, template
 from bearing_sim.numerics.simd import larger, load, magnitude, spread, store, total, where_positive
 from bearing_sim.physics.contact import EXPONENT, damped_slice
 from bearing_sim.physics.film import resist_rolling
+from bearing_sim.physics.flange import axial_share, flange_friction
 from bearing_sim.physics.pocket import pocket_friction_lanes
 from bearing_sim.physics.traction import traction
 
@@ -359,6 +364,8 @@ def equations(t, y, model, work, rate, with_jacobian):
     if resistance:
         resist_rolling(work.pieces, model.lubrication.rolling_resistance)
         sum_resistance(contacts, work.pieces, params.slices)
+    if params.flanges.load > 0.0:
+        press_axially(params, rows, contacts)
     for block in range(rows.shape[0]):
         _lie_in_pockets(block, y, cage_cosine, cage_sine, rows)
         pocket_forces(block, params, rows)
@@ -368,8 +375,10 @@ def equations(t, y, model, work, rate, with_jacobian):
         for block in range(rows.shape[0]):
             guide_forces(block, y, params, rows)
             guide_accelerations(block, params, rows, rate)
+    if params.flanges.on:
+        flange_accelerations(shaft_speed, model, rows, contacts, rate)
     if with_jacobian:
-        roller_jacobian(y, inner_radius, churning, resistance, params, rows, contacts, work.chain, work.jacobian)
+        roller_jacobian(y, inner_radius, churning, resistance, params, model.lubrication.viscosity, rows, contacts, work.chain, work.jacobian)
     if work.support.shape[0] > 0:
         _carry(t, y, model, work, rate, with_jacobian)
     collect_rates(y, params.rollers.count, rows, rate)
@@ -456,3 +465,75 @@ def guide_accelerations(block, params, rows, rate):
     torque = force * (load(rows, block, ROLLER.pocket_offset) + friction * lever) + braking
     torque += moment * (load(rows, block, ROLLER.pocket_skew) + friction * load(rows, block, ROLLER.pocket_lean))
     rate[OMEGA] -= total(present * torque) / cage.inertia
+
+
+@kernel
+def press_axially(params, rows, contacts):
+    """Add the couple of an axial load to the moments that tilt the rollers; those of the raceways have been written.
+
+    The inner ring's flange presses an end at one side, the outer ring's the other end at the other side of the roller's axis.  *Assumptions*: the
+    axial load's lever about the bearing's axis does not tilt the ring, and a force that guides rollers (``guiding_load``) has no couple.
+    """
+    blocks, flanges = rows.shape[0], params.flanges
+    carried = total_load(ROLLER, SLICED.load, rows, contacts)
+    for block in range(blocks):
+        share = axial_share(load(contacts, block, SLICED.load), carried, params.rollers.count, flanges)
+        force = flanges.couple * (share - flanges.guiding * load(contacts, block, SLICED.load))
+        add(contacts, block, SLICED.tilting, -(force * flanges.inner.offset))
+        add(contacts, blocks + block, SLICED.tilting, -(force * flanges.outer.offset))
+
+
+@kernel
+def _write_flanges(block, shaft_speed, friction, pressed, model, rows):
+    """Write what flanges do to the ends of a block of rollers; the rollers have been placed."""
+    viscosity, flanges = model.lubrication.viscosity, model.params.flanges
+    rub_on_flanges(ROLLER, block, shaft_speed, pressed, flanges, viscosity, rows)
+    spin, v_p = load(rows, block, ROLLER.spin), load(rows, block, ROLLER.speed_tangent)
+    turning = v_p * load(rows, block, ROLLER.inverse_distance)
+    skew, rate = (
+        load(rows, block, ROLLER.lean_tangent),
+        load(rows, block, ROLLER.lean_speed_tangent) - turning * load(rows, block, ROLLER.lean_normal),
+    )
+    u, s = v_p - shaft_speed * flanges.pitch_radius, spin + shaft_speed
+    stop_skew_on_face(block, ROLLER.inner_flange, flanges.inner, flanges, friction, viscosity, skew, rate, u, s, rows)
+    skew, rate = load(rows, block, ROLLER.skew), load(rows, block, ROLLER.skew_speed)
+    u = load(rows, block, ROLLER.radius) * load(rows, block, ROLLER.orbital_speed)
+    stop_skew_on_face(block, ROLLER.outer_flange, flanges.outer, flanges, friction, viscosity, skew, rate, u, spin, rows)
+
+
+@kernel
+def flange_accelerations(shaft_speed, model, rows, contacts, rate):
+    """Write what flanges do to the ends of all rollers, and add it to the accelerations of rollers and ring.
+
+    A moment on the skew has a lever along the orbit where the roller is tilted as well, as the slices' forces have: the direction of the skew
+    turns with the roller's position.
+    """
+    params, tilts = model.params, model.params.tilts
+    friction = flange_friction(shaft_speed, model.lubrication.kinematic_viscosity, params.flanges)
+    carried = total_load(ROLLER, SLICED.load, rows, contacts)
+    free, per_mass, per_tilt = tilts.ring_free / tilts.ring_inertia, 1.0 / params.rollers.mass, 1.0 / tilts.roller_inertia
+    for block in range(rows.shape[0]):
+        pressed = friction * axial_share(load(contacts, block, SLICED.load), carried, params.rollers.count, params.flanges)
+        _write_flanges(block, shaft_speed, friction, pressed, model, rows)
+        n_r, n_t, inverse = load(rows, block, ROLLER.normal_r), load(rows, block, ROLLER.normal_t), load(rows, block, ROLLER.inverse_distance)
+        tilt, skew, per_radius = load(rows, block, ROLLER.tilt), load(rows, block, ROLLER.skew), 1.0 / load(rows, block, ROLLER.radius)
+        inner_skewing, outer_skewing = (
+            load(rows, block, ROLLER.inner_flange + FLANGE.skewing),
+            load(rows, block, ROLLER.outer_flange + FLANGE.skewing),
+        )
+        across = load(rows, block, ROLLER.inner_flange + FLANGE.force) - inner_skewing * load(rows, block, ROLLER.lean_normal) * inverse
+        outer = load(rows, block, ROLLER.outer_flange + FLANGE.force) - outer_skewing * tilt * per_radius
+        moment = load(rows, block, ROLLER.inner_flange + FLANGE.moment) + load(rows, block, ROLLER.outer_flange + FLANGE.moment)
+        radial, along, tilting, skewing = -(across * n_t), across * n_r, -(inner_skewing * n_t), inner_skewing * n_r
+        turned = per_mass * (along + outer) * per_radius
+        add(rows, block, ROLLER.radial_acceleration, per_mass * radial)
+        add(rows, block, ROLLER.orbital_acceleration, turned)
+        # a roller's axis is described in the frame that turns with the orbit
+        add(rows, block, ROLLER.tilt_acceleration, per_tilt * tilting + turned * skew)
+        add(rows, block, ROLLER.skew_acceleration, per_tilt * (skewing + outer_skewing) - turned * tilt)
+        add(rows, block, ROLLER.spin_acceleration, moment * (1.0 / params.rollers.inertia))
+        present, cosine, sine = load(rows, block, ROLLER.present), load(rows, block, ROLLER.cosine), load(rows, block, ROLLER.sine)
+        rate[BORDER + RING_Y] -= total(present * (radial * cosine - along * sine)) / params.ring.mass
+        rate[BORDER + RING_Z] -= total(present * (radial * sine + along * cosine)) / params.ring.mass
+        rate[BORDER + RING_TILT_Y] -= total(present * (tilting * cosine - skewing * sine)) * free
+        rate[BORDER + RING_TILT_Z] -= total(present * (tilting * sine + skewing * cosine)) * free

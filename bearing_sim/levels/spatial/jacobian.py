@@ -22,6 +22,7 @@ rates.  Their changes by the 18 variables of roller and cage are written once, i
 **Linear algebra.** As at level ``planar`` the system is reduced to speeds: a 5x5 block for each roller and one 9x9 border.  Cost O(Z).
 """
 
+from bearing_sim.levels.common.flanges import FLANGE
 from bearing_sim.levels.common.rollers import add
 from bearing_sim.levels.common.support import FOLLOWING, REACTION, frame_of, react_by_border, react_by_rollers, turn_frame
 from bearing_sim.levels.planar import state as planar
@@ -116,7 +117,57 @@ def _chain_row(block, row, first, along, rows, contacts, chain):
 
 
 @kernel
-def _inner_chain(block, resistance, params, rows, contacts, chain):
+def _flange_row(block, row, by_u, by_skew, by_rate, rows, chain):
+    """Add the change of a force or moment of the inner ring's flanges by what they see, as `_chain_row`.
+
+    They see u = v_p - omega_i r_m, the skew b_p against the ring, and its rate b_p' - h v_p b_n.
+
+    Parameters
+    ----------
+    row : of ``chain``, where the result is added.
+    by_u, by_skew, by_rate : derivatives by these three (lanes).
+    """
+    inverse = load(rows, block, ROLLER.inverse_distance)
+    v_n, v_p = load(rows, block, ROLLER.speed_normal) * inverse, load(rows, block, ROLLER.speed_tangent) * inverse
+    b_n, b_p = load(rows, block, ROLLER.lean_normal) * inverse, load(rows, block, ROLLER.lean_tangent) * inverse
+    turned_n = load(rows, block, ROLLER.lean_speed_normal) * inverse
+    add(chain, 0, row, by_rate * v_p * b_n)
+    add(chain, 0, row + 1, by_rate * (v_n * b_n - v_p * b_p - turned_n) - by_u * v_n - by_skew * b_n)
+    add(chain, 0, row + 2, -(by_rate * v_p))
+    add(chain, 0, row + 3, by_skew)
+    add(chain, 0, row + 5, by_u - by_rate * b_n)
+    add(chain, 0, row + 7, by_rate)
+
+
+@template
+def _skewing_slopes(block, first, face, viscosity, rows):
+    """Return the derivatives of a flange's moment on the skew by skew and its rate; parameters as of `rub_on_face`."""
+    lever = load(rows, block, first + FLANGE.lever)
+    by_skew, by_rate = load(rows, block, first + FLANGE.load_by_skew), load(rows, block, first + FLANGE.load_by_rate)
+    return -(lever * by_skew), -(lever * by_rate) - viscosity * face.squeeze
+
+
+@kernel
+def _flange_chain(block, params, viscosity, rows, chain):
+    """Add the inner ring's flanges to the rows of `_inner_chain` along the normal and across, before they turn into the roller's frame."""
+    first, inverse = ROLLER.inner_flange, load(rows, block, ROLLER.inverse_distance)
+    uu, us = load(rows, block, first + FLANGE.uu), load(rows, block, first + FLANGE.us)
+    by_skew, by_rate = load(rows, block, first + FLANGE.load_by_skew), load(rows, block, first + FLANGE.load_by_rate)
+    force, moment = load(rows, block, first + FLANGE.force_by_load), load(rows, block, first + FLANGE.moment_by_load) * (1.0 / params.rollers.radius)
+    d_skew, d_rate = _skewing_slopes(block, first, params.flanges.inner, viscosity, rows)
+    b_n, b_p = load(rows, block, ROLLER.lean_normal) * inverse, load(rows, block, ROLLER.lean_tangent) * inverse
+    skewing = load(rows, block, first + FLANGE.skewing) * inverse
+    _flange_row(block, _SEEN, -uu, force * by_skew - d_skew * b_n, force * by_rate - d_rate * b_n, rows, chain)
+    # the skew's direction turns with the roller's position, which gives its moment a lever
+    add(chain, 0, _SEEN, skewing * b_n)
+    add(chain, 0, _SEEN + 1, -(skewing * b_p))
+    add(chain, 0, _SEEN + 2, -skewing)
+    _flange_row(block, 3 * _SEEN, spread(0.0), d_skew, d_rate, rows, chain)
+    _flange_row(block, 4 * _SEEN, -(us * (1.0 / params.rollers.radius)), moment * by_skew, moment * by_rate, rows, chain)
+
+
+@kernel
+def _inner_chain(block, resistance, params, viscosity, rows, contacts, chain):
     """Write the changes of the inner contact's force (2), moment (2) and spin torque in the roller's frame by what it sees, 5 x 8."""
     n_r, n_t, inverse = load(rows, block, ROLLER.normal_r), load(rows, block, ROLLER.normal_t), load(rows, block, ROLLER.inverse_distance)
     b_n, b_p = load(rows, block, ROLLER.lean_normal), load(rows, block, ROLLER.lean_tangent) * inverse
@@ -140,6 +191,11 @@ def _inner_chain(block, resistance, params, rows, contacts, chain):
             add(chain, 0, _SEEN + k, push * resisted)
             add(chain, 0, 3 * _SEEN + k, push * turned)
             add(chain, 0, 4 * _SEEN + k, -resisted)
+    if params.flanges.on:
+        _flange_chain(block, params, viscosity, rows, chain)
+        skewing = load(rows, block, ROLLER.inner_flange + FLANGE.skewing)
+        t += load(rows, block, ROLLER.inner_flange + FLANGE.force) - skewing * b_n * inverse
+        m += skewing
     add(chain, 0, _SEEN, -(s * b_p * inverse))
     add(chain, 0, _SEEN + 1, -(s * b_n * inverse * inverse))
     add(chain, 0, _SEEN + 3, s * inverse)
@@ -161,9 +217,9 @@ def _inner_chain(block, resistance, params, rows, contacts, chain):
 
 
 @kernel
-def _inner_jacobian(block, y, inner_radius, resistance, params, rows, contacts, chain, jacobian):
+def _inner_jacobian(block, y, inner_radius, resistance, params, viscosity, rows, contacts, chain, jacobian):
     """Write a roller's rows as far as the inner contact makes them."""
-    _inner_chain(block, resistance, params, rows, contacts, chain)
+    _inner_chain(block, resistance, params, viscosity, rows, contacts, chain)
     c, s = load(rows, block, ROLLER.cosine), load(rows, block, ROLLER.sine)
     radius, orbital_speed = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.orbital_speed)
     tilt, skew = load(rows, block, ROLLER.tilt), load(rows, block, ROLLER.skew)
@@ -215,6 +271,12 @@ def _inner_jacobian(block, y, inner_radius, resistance, params, rows, contacts, 
             add(jacobian, block, _TILTING + column, -(push * turned * n_t))
             add(jacobian, block, _SKEWING + column, push * turned * n_r)
             add(jacobian, block, _SPINNING + column, -resisted)
+    if params.flanges.on:
+        first = ROLLER.inner_flange
+        us, ss = load(rows, block, first + FLANGE.us), load(rows, block, first + FLANGE.ss)
+        add(jacobian, block, _RADIAL + SPIN, us * n_t)
+        add(jacobian, block, _ALONG + SPIN, -(us * n_r))
+        add(jacobian, block, _SPINNING + SPIN, -(ss * (1.0 / params.rollers.radius)))
 
 
 @kernel
@@ -229,6 +291,10 @@ def _ring_jacobian(block, resistance, params, rows, contacts, jacobian):
         push = 1.0 - 2.0 * params.raceways.diameter_ratio
         across += push * load(contacts, block, SLICED.resistance)
         skewing += push * load(contacts, block, SLICED.resistance_moment)
+    if params.flanges.on:
+        moment = load(rows, block, ROLLER.inner_flange + FLANGE.skewing)
+        across += load(rows, block, ROLLER.inner_flange + FLANGE.force) - moment * load(rows, block, ROLLER.lean_normal) * inverse
+        skewing += moment
     present = load(rows, block, ROLLER.present)
     for pair in range(2):
         first = 2 * pair * LOCAL
@@ -320,6 +386,32 @@ def _outer_resistance(block, params, rows, contacts, jacobian):
 
 
 @kernel
+def _outer_flanges(block, params, viscosity, rows, jacobian):
+    """Add the outer ring's flanges to a roller's rows."""
+    first, per_spin = ROLLER.outer_flange, 1.0 / params.rollers.radius
+    radius, orbital_speed, tilt = load(rows, block, ROLLER.radius), load(rows, block, ROLLER.orbital_speed), load(rows, block, ROLLER.tilt)
+    uu, us, ss = load(rows, block, first + FLANGE.uu), load(rows, block, first + FLANGE.us), load(rows, block, first + FLANGE.ss)
+    by_skew, by_rate = load(rows, block, first + FLANGE.load_by_skew), load(rows, block, first + FLANGE.load_by_rate)
+    force, moment = load(rows, block, first + FLANGE.force_by_load), load(rows, block, first + FLANGE.moment_by_load) * per_spin
+    d_skew, d_rate = _skewing_slopes(block, first, params.flanges.outer, viscosity, rows)
+    inverse, skewing = 1.0 / radius, load(rows, block, first + FLANGE.skewing)
+    lever = tilt * inverse
+    add(jacobian, block, _ALONG + R, skewing * lever * inverse - uu * orbital_speed)
+    add(jacobian, block, _ALONG + TILT, -(skewing * inverse))
+    add(jacobian, block, _ALONG + SKEW, force * by_skew - d_skew * lever)
+    add(jacobian, block, _ALONG + PHI_SPEED, -(uu * radius))
+    add(jacobian, block, _ALONG + SKEW_SPEED, force * by_rate - d_rate * lever)
+    add(jacobian, block, _ALONG + SPIN, -us)
+    add(jacobian, block, _SKEWING + SKEW, d_skew)
+    add(jacobian, block, _SKEWING + SKEW_SPEED, d_rate)
+    add(jacobian, block, _SPINNING + R, -(us * orbital_speed * per_spin))
+    add(jacobian, block, _SPINNING + SKEW, moment * by_skew)
+    add(jacobian, block, _SPINNING + PHI_SPEED, -(us * radius * per_spin))
+    add(jacobian, block, _SPINNING + SKEW_SPEED, moment * by_rate)
+    add(jacobian, block, _SPINNING + SPIN, -(ss * per_spin))
+
+
+@kernel
 def _accelerations(block, params, rows, jacobian):
     """Make accelerations of a roller's rows of forces, and add what the motion of its frame and its spin add to them."""
     tilts = params.tilts
@@ -357,7 +449,7 @@ def _accelerations(block, params, rows, jacobian):
 
 
 @kernel
-def roller_jacobian(y, inner_radius, churning, resistance, params, rows, contacts, chain, jacobian):
+def roller_jacobian(y, inner_radius, churning, resistance, params, viscosity, rows, contacts, chain, jacobian):
     """Write all derivatives through the rollers; their forces have been written.
 
     Parameters
@@ -367,13 +459,14 @@ def roller_jacobian(y, inner_radius, churning, resistance, params, rows, contact
     churning : drag of the mixture on a roller, its slope by the roller's speed and the slope's by cage speed.
     resistance : whether the contacts resist rolling.
     params : of the bearing.
+    viscosity : of the oil [Pa s].
     rows : of the rollers, see `bearing_sim.levels.spatial.state.ROLLER`.
     contacts : see `bearing_sim.levels.spatial.state.SLICED`.
     chain : scratch, see `bearing_sim.levels.spatial.state.Work`.
     jacobian : takes the derivatives.
     """
     for block in range(rows.shape[0]):
-        _inner_jacobian(block, y, inner_radius, resistance, params, rows, contacts, chain, jacobian)
+        _inner_jacobian(block, y, inner_radius, resistance, params, viscosity, rows, contacts, chain, jacobian)
         _ring_jacobian(block, resistance, params, rows, contacts, jacobian)
         _pocket_jacobian(block, y, params, rows, chain, jacobian)
         if not params.cage.guidance.lands:
@@ -381,6 +474,8 @@ def roller_jacobian(y, inner_radius, churning, resistance, params, rows, contact
         _outer_jacobian(block, y, churning, params, rows, contacts, jacobian)
         if resistance:
             _outer_resistance(block, params, rows, contacts, jacobian)
+        if params.flanges.on:
+            _outer_flanges(block, params, viscosity, rows, jacobian)
         _accelerations(block, params, rows, jacobian)
 
 

@@ -10,6 +10,7 @@ import math
 
 import numpy as np
 
+from bearing_sim.levels.common.flanges import largest_corner, observe_flanges
 from bearing_sim.levels.common.model import FIFTH_PITCH, orbital_speed_tolerance, pitch_step, shaft_speed_at
 from bearing_sim.levels.common.observation import average_moments, observe_course, oil_at_speed
 from bearing_sim.levels.common.power import write_powers
@@ -206,6 +207,9 @@ def observe(t, y, model, work, interval, previous, row, rate):
     row[COLUMN.inner_pressure], row[COLUMN.outer_pressure], row[COLUMN.inner_edge_pressure], row[COLUMN.outer_edge_pressure] = pressures
     row[COLUMN.land_eccentricity] = land_eccentricity(y[RING_Y], y[RING_Z], y[CAGE_Y], y[CAGE_Z], model.params.cage)
     write_powers(spatial_powers(t, y, shaft_speed_at(t, model.drive), model, work), row)
+    if model.params.flanges.on:
+        observe_flanges(ROLLER, SLICED.load, count, model.params.flanges, rows, work.contacts, row)
+        row[COLUMN.flange_load] += largest_corner(ROLLER, rows)
     observe_rollers(ROLLER, SLICED.load, count, interval, rows, work.contacts, previous, row)
     for j in range(count):
         first, block, lane = SCALARS + j, j // LANES, j % LANES

@@ -5,6 +5,7 @@ Speeds of slices are straight lines along the axis, so that most sums are a forc
 What a moment on the inner ring puts in stands beside the radial load's power: neither is among the losses.
 """
 
+from bearing_sim.levels.common.flanges import FLANGE, flange_powers
 from bearing_sim.levels.common.model import inner_growth
 from bearing_sim.levels.common.power import Powers, seal_power, windage_powers
 from bearing_sim.levels.common.support import support_powers
@@ -110,6 +111,20 @@ def _land_powers(y, shaft_speed, model, lands):
 
 
 @kernel
+def _skew_powers(viscosity, flanges, rows):
+    """Return what the oil between ends and flanges loses to skewing, and the damping of corners that stop it [W]."""
+    squeezed, damped = spread(0.0), spread(0.0)
+    for block in range(rows.shape[0]):
+        present = load(rows, block, ROLLER.present)
+        for ring in range(2):
+            first, squeeze = (ROLLER.inner_flange, flanges.inner.squeeze) if ring == 0 else (ROLLER.outer_flange, flanges.outer.squeeze)
+            rate = load(rows, block, first + FLANGE.skew_rate)
+            squeezed += present * (viscosity * squeeze * rate * rate)
+            damped += present * (load(rows, block, first + FLANGE.damped) * load(rows, block, first + FLANGE.lever) * rate)
+    return total(squeezed), total(damped)
+
+
+@kernel
 def spatial_powers(t, y, shaft_speed, model, work):
     """Return `bearing_sim.levels.common.power.Powers` of a state.
 
@@ -139,9 +154,14 @@ def spatial_powers(t, y, shaft_speed, model, work):
     driven_unbalance, support = 0.0, 0.0
     if work.support.shape[0] > 0:
         driven_unbalance, support = support_powers(t, y, BORDER, model)
+    driven_flanges, rubbing, cornered = 0.0, 0.0, 0.0
+    if params.flanges.on:
+        driven_flanges, rubbing = flange_powers(ROLLER, shaft_speed, params.flanges, rows)
+        squeezed, cornered = _skew_powers(model.lubrication.viscosity, params.flanges, rows)
+        rubbing += squeezed
     inner_radius = params.raceways.inner_radius + inner_growth(shaft_speed, model)
     return Powers(
-        driving * inner_radius * shaft_speed + bore + driven + driven_unbalance + seals,
+        driving * inner_radius * shaft_speed + bore + driven + driven_unbalance + seals + driven_flanges,
         inner,
         outer,
         inner_rolling,
@@ -150,7 +170,8 @@ def spatial_powers(t, y, shaft_speed, model, work):
         windage,
         land,
         pocket,
-        inner_damped + outer_damped + walls + touching,
+        inner_damped + outer_damped + walls + touching + cornered,
         seals,
+        rubbing,
         support,
     )

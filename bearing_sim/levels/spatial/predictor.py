@@ -8,6 +8,7 @@ own normal contacts: a few Newton iterations of all rollers at once.
 from bearing_sim.levels.common.model import inner_growth
 from bearing_sim.levels.common.rollers import follow_contour
 from bearing_sim.levels.common.support import extrapolate_support
+from bearing_sim.levels.spatial.forces import press_axially
 from bearing_sim.levels.spatial.slices import normal_slices
 from bearing_sim.levels.spatial.state import (
     BLOCK,
@@ -144,6 +145,9 @@ def predict(known, shift, slope, model, work, guess):
             _place(block, guess, shift, inner_radius, params, rows, contacts)
             normal_slices(block, contacts, params.slices, params.raceways.stiffness, params.ring.contact_damping)
             normal_slices(blocks + block, contacts, params.slices, params.raceways.stiffness, params.ring.contact_damping)
+        if params.flanges.load > 0.0:
+            press_axially(params, rows, contacts)
+        for block in range(blocks):
             largest = larger(largest, _balance(block, shift, params, rows, contacts))
         if highest(largest) < _SETTLED * model.tolerances.position:
             break

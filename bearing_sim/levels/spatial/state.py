@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.levels.common.flanges import ROWS as FLANGE_ROWS
 from bearing_sim.levels.common.support import new_support
 from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.simd import LANES, collect_runs, fill_lanes, new_blocks, new_rows, spread_runs
@@ -43,7 +44,8 @@ RING_Y, RING_Z, RING_TILT_Y, RING_TILT_Z, CAGE_Y, CAGE_Z, CAGE_TILT_Y, CAGE_TILT
 OMEGA = BORDER + THETA
 ROLLERS = 2 * BORDER  # where the rollers' states begin: a run of Z for each of the nine
 R, PHI, TILT, SKEW, R_SPEED, PHI_SPEED, TILT_SPEED, SKEW_SPEED, SPIN = range(BLOCK)
-ROLLER_ROWS = 66
+_PLAIN_ROWS = 66  # of a roller without flanges
+ROLLER_ROWS = _PLAIN_ROWS + 2 * FLANGE_ROWS
 
 
 class Factored(NamedTuple):
@@ -163,6 +165,8 @@ class RollerRow(NamedTuple):
     guide_moment: int = 59  # sum of force times position along the axis [N m]
     guide_stiffness: int = 60  # as ``pocket_stiffness``
     guide_damping: int = 63
+    inner_flange: int = _PLAIN_ROWS  # from here on flanges: of the inner ring, rows `bearing_sim.levels.common.flanges.FLANGE`
+    outer_flange: int = _PLAIN_ROWS + FLANGE_ROWS  # of the outer ring, likewise
 
 
 ROLLER = RollerRow()

@@ -142,7 +142,7 @@ def _write_sample(t, y, model, work, interval, previous, row):
         answer[ANSWER.reference_modification_factor],
     )
     observe_course(t, cage_angle, cage_speed, equivalent, oil_at_speed(shaft_speed_at(t, model.drive), model), model, interval, previous, row)
-    for column in range(ANSWER.seal_power - ANSWER.shaft_power + 1):
+    for column in range(ANSWER.flange_power - ANSWER.shaft_power + 1):
         row[COLUMN.shaft_power + column] = answer[ANSWER.shaft_power + column]
     write_friction_moment(row)
     load_y, load_z = load_at(t, model.drive)

@@ -251,6 +251,7 @@ class AnswerColumn(NamedTuple):
     pocket_power: int = 15
     damping_power: int = 16
     seal_power: int = 17
+    flange_power: int = 18
 
 
 ANSWER = AnswerColumn()
@@ -349,7 +350,7 @@ def _lag(slip, ideal, sense, model, work, orbit):
 def _write_powers(speed, sense, model, work, orbit, answer):
     """Write powers, means over a pitch."""
     angles, rate = orbit.accelerations.shape[0], orbit.rate
-    for column in range(ANSWER.shaft_power, ANSWER.seal_power + 1):
+    for column in range(ANSWER.shaft_power, ANSWER.flange_power + 1):
         answer[column] = 0.0
     for k in range(angles):
         set_state(k, speed, sense, model.params, orbit)
@@ -366,6 +367,7 @@ def _write_powers(speed, sense, model, work, orbit, answer):
         answer[ANSWER.pocket_power] += powers.pocket / angles
         answer[ANSWER.damping_power] += powers.damping / angles
         answer[ANSWER.seal_power] += powers.seal / angles
+        answer[ANSWER.flange_power] += powers.flange / angles
 
 
 @kernel
