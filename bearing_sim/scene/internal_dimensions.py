@@ -7,11 +7,13 @@ that are held back from the fit.  Every field that follows from a rule is listed
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from bearing_sim.scene.designation import Designation, DesignationError, MakersRow, makers_rows, parse_designation, roller_counts
+from bearing_sim.scene.flanges import HEIGHT
+from bearing_sim.scene.quantity import to_si
 
 STEEL_DENSITY = 7850.0
 CAGE_DENSITIES = {"polyamide": 1320.0, "steel": 7850.0, "brass": 8400.0}  # kg/m^3, of the materials of the catalogue with these names
@@ -258,6 +260,7 @@ class CageRule(NamedTuple):
     filled: float
 
 
+# Kinds of cages by their suffixes, see `bearing_sim.scene.designation.CAGES`.
 CAGE_RULES = {
     "P": CageRule("polyamide", "roller", 0.45, 1.0),
     "J": CageRule("steel", "roller", 0.35, 0.4),
@@ -306,20 +309,44 @@ def _cage_of_design(design: str) -> str:
     return name or "J"
 
 
-def _cage_tree(designation: Designation, section: Section) -> tuple[dict, list[dict], str]:
-    """Return the block of the cage, its estimated fields, and the name of the cage."""
-    name = cage_of(designation)
-    rule, kind, width = CAGE_RULES[name], designation.type, _WIDTH * designation.boundary.width
-    guidance = rule.guidance
-    if guidance == "flanges":
-        guidance = "outer_ring" if OUTER_FLANGES[kind] else "inner_ring"
-    roller, middle = section.roller_diameter, (section.inner_raceway + section.roller_diameter) / 2.0
+class CageSpace(NamedTuple):
+    """Where a cage has to fit: dimensions of a bearing [m], and the number of its rollers.
+
+    Attributes
+    ----------
+    inner_raceway : diameter F.
+    roller_diameter, roller_length, count : D_w, effective length, Z.
+    width : B.
+    inner_flange, outer_flange : diameters d_1 and D_1 of the flanges, whose faces are the lands of a cage that a ring guides.
+    """
+
+    inner_raceway: float
+    roller_diameter: float
+    roller_length: float
+    count: int
+    width: float
+    inner_flange: float
+    outer_flange: float
+
+
+def cage_tree(name: str, space: CageSpace, guiding_ring: str = "outer_ring") -> tuple[dict[str, Any], list[dict]]:
+    """Return the block of a cage of a kind, and its estimated fields.
+
+    Parameters
+    ----------
+    name : one of `CAGE_RULES`.
+    space : where it has to fit.
+    guiding_ring : guidance of a cage that either ring may guide, ``outer_ring`` or ``inner_ring``.
+    """
+    rule, width, roller = CAGE_RULES[name], _WIDTH * space.width, space.roller_diameter
+    guidance = guiding_ring if rule.guidance == "flanges" else rule.guidance
+    middle = (space.inner_raceway + roller) / 2.0
     tree: dict[str, Any] = {"guidance": guidance, "material": rule.material, "width": round(width, 6)}
     if guidance == "roller":
         inner, outer = middle - rule.thickness * roller / 2.0, middle + rule.thickness * roller / 2.0
         tree |= {"inner_radius": round(inner, 5), "outer_radius": round(outer, 5)}
     else:
-        radius = (section.outer_flange if guidance == "outer_ring" else section.inner_flange) / 2.0
+        radius = (space.outer_flange if guidance == "outer_ring" else space.inner_flange) / 2.0
         clearance = round(_GUIDE_CLEARANCE * radius, 6)
         if guidance == "outer_ring":
             inner, outer = middle - _HALF_THICKNESS * roller, radius - clearance
@@ -327,13 +354,61 @@ def _cage_tree(designation: Designation, section: Section) -> tuple[dict, list[d
         else:
             inner, outer = radius + clearance, middle + _HALF_THICKNESS * roller
             tree["outer_radius"] = round(outer, 5)
-        land = max(0.02 * width, 0.5 * (width - 1.04 * section.roller_length))
+        land = max(0.02 * width, 0.5 * (width - 1.04 * space.roller_length))
         tree |= {"guide_radius": round(radius, 6), "guide_clearance": clearance, "guide_land_width": round(land, 5)}
     thickness = outer - inner
-    solid = math.pi * (outer**2 - inner**2) * width - section.count * thickness * roller * section.roller_length
+    solid = math.pi * (outer**2 - inner**2) * width - space.count * thickness * roller * space.roller_length
     tree["mass"] = float(f"{rule.filled * CAGE_DENSITIES[rule.material] * solid:.4g}")
     tree["pocket_clearance"] = round(_POCKET_CLEARANCE * roller, 7)
-    return tree, list(_cage_estimates(tree, rule)), name
+    return tree, list(_cage_estimates(tree, rule))
+
+
+def with_cage_of_kind(bearing: Mapping) -> tuple[dict, str]:
+    """Return a block ``bearing`` whose cage, given by its kind, is a block with estimates, and why it cannot be; as it is if no kind is given.
+
+    Parameters
+    ----------
+    bearing : as a file has it, with radii; its ``cage`` is a kind, such as ``P``, or a block with a ``preset`` and what differs.
+    """
+    given = bearing.get("cage")
+    kind = given.get("preset") if isinstance(given, Mapping) else given
+    if given is None:
+        return {name: value for name, value in bearing.items() if name != "cage"}, ""
+    if isinstance(given, Mapping) and "preset" not in given:
+        return dict(bearing), ""
+    if not isinstance(kind, str) or kind.strip().upper() not in CAGE_RULES:
+        return dict(bearing), f"{kind!r} is no kind of cage; expected one of {', '.join(CAGE_RULES)}, or a block"
+    try:
+        space = _space_of(bearing)
+    except ValueError as error:
+        return dict(bearing), f"a cage of kind {kind} is estimated from rollers and raceway, but {error}"
+    cage, estimates = cage_tree(kind.strip().upper(), space)
+    own = {name: value for name, value in given.items() if name != "preset"} if isinstance(given, Mapping) else {}
+    marks = [each for each in estimates if each["field"].removeprefix("cage.") not in own]
+    return {**bearing, "cage": {**cage, **own}, "estimated": [*(bearing.get("estimated") or ()), *marks]}, ""
+
+
+def _space_of(bearing: Mapping) -> CageSpace:
+    """Return where a cage has to fit in a bearing that a file gives; raise ValueError where a dimension is missing or is none."""
+
+    def length(path: str, otherwise: float | None = None) -> float:
+        node: Any = bearing
+        for name in path.split("."):
+            node = node.get(name) if isinstance(node, Mapping) else None
+        if node is None and otherwise is not None:
+            return otherwise
+        if node is None:
+            raise ValueError(f"{path} is missing")
+        try:
+            return to_si(node, "" if path == "roller.count" else "m")
+        except ValueError as error:
+            raise ValueError(f"{path}: {error}") from None
+
+    count, roller, width = int(length("roller.count")), length("roller.diameter"), length("roller.length")
+    inner = length("inner_raceway.radius")
+    inner_flange = length("flanges.inner_radius", inner + HEIGHT * roller)
+    outer_flange = length("flanges.outer_radius", inner + roller - HEIGHT * roller)
+    return CageSpace(2 * inner, roller, width, count, length("width", width / STANDARD.length_ratio), 2 * inner_flange, 2 * outer_flange)
 
 
 def _cage_estimates(tree: dict, rule: CageRule) -> Iterator[dict]:
@@ -362,7 +437,17 @@ def bearing_tree(designation: Designation | str) -> dict[str, Any]:
     if designation.is_full_complement:
         cage, estimates, made = _full_complement_tree()
     else:
-        cage, estimates, name = _cage_tree(designation, section)
+        name = cage_of(designation)
+        space = CageSpace(
+            section.inner_raceway,
+            section.roller_diameter,
+            section.roller_length,
+            section.count,
+            boundary.width,
+            section.inner_flange,
+            section.outer_flange,
+        )
+        cage, estimates = cage_tree(name, space, "outer_ring" if OUTER_FLANGES[designation.type] else "inner_ring")
         guide = "rollers" if cage["guidance"] == "roller" else cage["guidance"].replace("_", " ")
         made = f"cage {name}, {cage['material']}, guided by the {guide}"
     estimated = [*section.estimated, _estimate("inner_raceway.ring_mass", "solid ring with its flanges; within 8 %", 0.92, 1.08), *estimates]

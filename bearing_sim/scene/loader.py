@@ -21,7 +21,7 @@ from bearing_sim.scene.designation import DesignationError, is_designation
 from bearing_sim.scene.diameters import ROUND_RACEWAY, diameters, forget_counterpart, gives_round_raceway, override_by_radius, with_radii
 from bearing_sim.scene.errors import InvalidField, SceneError, did_you_mean
 from bearing_sim.scene.fidelity import choose
-from bearing_sim.scene.internal_dimensions import bearing_tree
+from bearing_sim.scene.internal_dimensions import CAGE_RULES, bearing_tree, with_cage_of_kind
 from bearing_sim.scene.lubricant_names import keep_one_lubricant, with_named_lubricants
 from bearing_sim.scene.quantity import SPEED, to_si
 from bearing_sim.scene.scene import Scene
@@ -74,6 +74,7 @@ _MATERIALS = (
 # Blocks that a file may give by a name alone, and the field that the name stands for.
 _OPENED = {
     ("bearing",): "preset",
+    ("bearing", "cage"): "preset",
     ("lubricant", "oil"): "preset",
     ("lubricant", "grease"): "preset",
     ("lubricant", "supply"): "law",
@@ -85,6 +86,9 @@ _RENAMED = {
     "bearing.inner_raceway.supported_mass": "the shaft's mass is support.shaft.mass",
     "lubricant.pumping": "give lubricant.rolling_resistance: hydrodynamic, or none",
     "bearing.ring_growth": "bearing.dimensions_at: cold computes rotation, mounting the fits, heat the temperatures",
+}
+_MISSING = {
+    "bearing.cage": f"missing; give its block, or the kind of cage, from which it is estimated: {', '.join(CAGE_RULES)}",
 }
 _STAND_IN = "NU 210"  # for a bearing whose name is unknown, so that the rest of its scene can be checked
 _WRITTEN = {"written": True}  # context of a validation: the values come from a file or an option, see `Quantity.read`
@@ -200,6 +204,8 @@ def scene_from_mapping(tree: Mapping, origin: str = "scene") -> Scene:
         found = invalid_fields(error, Scene, _UNION_TAGS)
         if any(each.path == "bearing.preset" for each in errors):  # what depends on the bearing that stands in is no error of the file
             found = [each for each in found if each.path.partition(".")[0] not in ("", "bearing", "mounting")]
+        if any(each.path == "bearing.cage" for each in errors):
+            found = [each for each in found if each.path != "bearing.cage"]
         errors += [each for each in found if not (unread and UNREAD in each.reason or each.path in without and each.reason == "missing")]
     if unread:
         errors.append(InvalidField("bearing.outer_raceway.contour_file", *unread))
@@ -432,6 +438,9 @@ def _with_presets(tree: Mapping) -> tuple[dict, list[InvalidField]]:
             ]
         if unknown:
             tree["bearing"] = bearing_tree(_STAND_IN)
+    if isinstance(tree.get("bearing"), Mapping):
+        tree["bearing"], reason = with_cage_of_kind(tree["bearing"])
+        errors += [InvalidField("bearing.cage", "", reason)] if reason else []
     for path in _MATERIALS:
         tree, unknown = _with_material(tree, path)
         errors += unknown
@@ -481,7 +490,7 @@ def _invalid_field(problem: Mapping, record: type, laws: frozenset[str]) -> Inva
     kind, reason, value = problem["type"], problem["msg"], problem["input"]
     shown = "" if isinstance(value, Mapping) or dataclasses.is_dataclass(value) or type(value).__name__ == "ArgsKwargs" else repr(value)
     if kind == "missing":
-        return InvalidField(path, "", "missing")
+        return InvalidField(path, "", _MISSING.get(path, "missing"))
     if kind == "union_tag_not_found":
         return InvalidField(f"{path}.law", "", "missing")
     if kind == "union_tag_invalid":
