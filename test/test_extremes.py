@@ -118,8 +118,8 @@ def test_what_no_bearing_can_do_is_a_failure(monkeypatch, column, value, reporte
 def test_a_life_that_rises_with_load_is_a_failure(monkeypatch):
     reset = Simulation.reset
 
-    def spoiled(self, inputs=None):
-        reset(self, inputs)
+    def spoiled(self, *arguments, **named):
+        reset(self, *arguments, **named)
         self.sample["rating_life"] = math.hypot(self.inputs.load_y, self.inputs.load_z)
 
     monkeypatch.setattr(Simulation, "reset", spoiled)
