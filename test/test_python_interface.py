@@ -156,6 +156,14 @@ def test_a_bearing_that_does_not_settle_says_what_it_does():
     assert "cage slip still rises" in result.reason and "no, drifting: after 0.5 s" in repr(result)
 
 
+@pytest.mark.parametrize("longest", [math.nan, math.inf, 0.0, "-1 s"])
+def test_a_longest_run_that_would_never_end_is_refused(paper, longest):
+    with pytest.raises(ValueError, match="longest = .*: expected a positive time such as '0.5 s'"):
+        settle(paper, longest=longest)
+    with pytest.raises(ValueError, match="duration = .*: expected a positive time"):
+        run_sweep(paper, {"radial_load": [1.0]}, duration=longest)
+
+
 def test_a_shaft_at_rest_has_no_slip(paper):
     assert math.isnan(settle(paper, shaft_speed=0.0).cage_slip) and "none, the shaft is at rest" in repr(settle(paper, shaft_speed=0.0))
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,9 +15,8 @@ from bearing_sim.model.sample import OBSERVABLES, RING_TEMPERATURES
 from bearing_sim.model.validity import Exceedance, outside
 from bearing_sim.scene.errors import did_you_mean
 from bearing_sim.scene.loader import load_scene
-from bearing_sim.scene.quantity import to_si
 from bearing_sim.scene.scene import Scene
-from bearing_sim.sweep.point import DURATION, RESULTS, results_of, run_until_settled
+from bearing_sim.sweep.point import DURATION, RESULTS, positive_seconds, results_of, run_until_settled
 from bearing_sim.sweep.settling import Outcome
 
 if TYPE_CHECKING:
@@ -101,7 +100,7 @@ class Settled:
         """Laws that are used outside of their ranges, each with its worst value."""
         return tuple(outside(self.scene, self.outcome.window))
 
-    def __getattr__(self, name: str) -> float:
+    def __getattr__(self, name: str) -> Any:
         if name in _RESULTS:
             return self.results[name]
         if name in _OBSERVED:
@@ -203,8 +202,9 @@ def settle(
     if level is not None:
         found = found.at_level(level)
     shortest = DURATION if start is None or found.operating.shaft_speed == 0.0 else 0.0  # where it starts near its end, 15 cage turns will do
-    limit = None if longest is None else to_si(longest, "s")
-    outcome = run_until_settled(found, shortest, limit, None if start is None else start.sample)
+    outcome = run_until_settled(
+        found, shortest, None if longest is None else positive_seconds("longest", longest), None if start is None else start.sample
+    )
     return Settled(found, outcome, _bands(found, samples, workers) if bands else MappingProxyType({}))
 
 

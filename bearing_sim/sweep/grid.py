@@ -18,7 +18,7 @@ from bearing_sim.scene.diameters import diameters
 from bearing_sim.scene.loader import SceneError, did_you_mean, load_scene, scene_to_yaml
 from bearing_sim.scene.quantity import Quantity, QuantityOrName, to_si, unit_registry
 from bearing_sim.scene.scene import OPERATING_POINT, Scene
-from bearing_sim.sweep.point import DURATION, REFUSED, RESULTS, TEXTS, Column, empty_row, point_row
+from bearing_sim.sweep.point import DURATION, REFUSED, RESULTS, TEXTS, Column, empty_row, point_row, positive_seconds
 from bearing_sim.sweep.table import Table
 from bearing_sim.sweep.tasks import Journal, Task, run_tasks, task
 
@@ -247,7 +247,7 @@ def run_sweep(
     overrides: Sequence[str] = (),
     *,
     level: str | None = None,
-    duration: float = DURATION,
+    duration: float | str = DURATION,
     journal: Journal | str | Path | None = None,
     workers: int | None = None,
     dask: str | None = None,
@@ -283,7 +283,7 @@ def run_sweep(
         Another process is writing the journal.
     """
     varied = [axis(field, values) for field, values in axes.items()] if isinstance(axes, Mapping) else list(axes)
-    plan = plan_sweep(scene, [*overrides, *([f"level={level}"] if level else [])], varied, duration)
+    plan = plan_sweep(scene, [*overrides, *([f"level={level}"] if level else [])], varied, positive_seconds("duration", duration))
     if isinstance(journal, Journal):
         return plan.table(run_tasks(plan.tasks, journal, workers, dask, progress))
     with Journal(None if journal is None else Path(journal)) as kept:

@@ -9,6 +9,7 @@ import numpy as np
 from bearing_sim.levels.steady.table import empty_table
 from bearing_sim.model.sample import OBSERVABLES
 from bearing_sim.model.validity import cell, outside
+from bearing_sim.scene.quantity import to_si
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import IntegrationError, Simulation
 from bearing_sim.sweep.settling import Outcome, advance_until_settled, longest_run, shortest_run
@@ -64,6 +65,14 @@ TEXTS = (
     Column("reason", "", "why the status is not ok"),
     Column("warnings", "", "laws used outside of their ranges, each with its worst value"),
 )
+
+
+def positive_seconds(name: str, value: float | str) -> float:
+    """Return a time as a number of seconds; raise `ValueError` with its name where it is no positive finite time."""
+    seconds = to_si(value, "s")
+    if not 0.0 < seconds < math.inf:
+        raise ValueError(f"{name} = {value!r}: expected a positive time such as '0.5 s'")
+    return seconds
 
 
 def run_until_settled(scene: Scene, duration: float = DURATION, longest: float | None = None, start: np.void | None = None) -> Outcome:
