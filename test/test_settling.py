@@ -46,8 +46,8 @@ bearing:
   outer_raceway: {low_radius: 135.55 mm, d_value: 0 mm}
   cage: {guidance: outer_ring, mass: 4 kg, width: 46 mm, inner_radius: 106 mm, guide_radius: 128 mm, guide_clearance: 0.6 mm,
     guide_land_width: 8 mm, pocket_clearance: 0.3 mm}
-lubricant: {oil: {law: custom, viscosity_40: 320 mm^2/s, viscosity_100: 24 mm^2/s, density: 890 kg/m^3, expansion: 6.5e-4, pressure_viscosity: 22 1/GPa,
-    thermal_conductivity: 0.14},
+lubricant: {oil: {law: custom, viscosity_40: 320 mm^2/s, viscosity_100: 24 mm^2/s, density: 890 kg/m^3, expansion: 6.5e-4,
+    pressure_viscosity: 22 1/GPa, thermal_conductivity: 0.14},
   temperature: 60 degC, mixture_fraction: 0.2, rolling_resistance: none, traction: {law: oil_4109}}
 operating: {shaft_speed: 1650 rpm, radial_load: 500 N}
 """
