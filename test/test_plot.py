@@ -132,7 +132,7 @@ def test_a_long_run_keeps_its_extremes_and_where_it_was_not_simulated():
     times[600_000:] += 1000.0
     values = np.random.default_rng(1).normal(size=len(times))
     values[123_456], values[777_777], values[300_000:310_000] = 50.0, -60.0, np.nan
-    kept_times, kept = thinned(times, values, 500, [600_000])
+    kept_times, kept, _ = thinned(times, values, 500, [600_000])
     assert len(kept) < 5000 and np.all(np.diff(kept_times) >= 0)
     assert (np.nanmax(kept), np.nanmin(kept)) == (50.0, -60.0)
     assert kept_times[np.nanargmax(kept)] == pytest.approx(12345.6) and kept_times[np.nanargmin(kept)] == pytest.approx(77777.7 + 1000)
@@ -148,6 +148,15 @@ def test_blocks_give_the_same_lines_as_one_and_gaps_of_a_log_interrupt_them():
     assert np.isnan(values).sum() == 1 and times[np.isnan(values)] == 299.0 and len(times) == 601
     np.testing.assert_allclose(values[np.isfinite(values)], whole["shaft_speed"] * 30 / math.pi, rtol=1e-14)
     assert (cut.first, cut.last, cut.samples) == (0.0, 9299.0, 600)
+
+
+def test_slip_near_rest_has_no_meaning_and_does_not_spoil_the_axis(tmp_path):
+    speeds = np.where(LINEAR < 0.9, 4000.0, 4000.0 * 10 ** (-60 * (LINEAR - 0.9)))
+    block = run_of(LINEAR, shaft_speed=speeds, cage_slip=np.where(LINEAR < 0.9, 0.1 * LINEAR, -1e3 / speeds))
+    shown = course(block)
+    assert 9.0 <= np.nanmax(np.abs(shown.lines["slip", 0][1])) < 1e4 and np.isnan(shown.lines["slip", 0][1][-1])
+    assert draw_over_time(tmp_path / "a.png", [shown]).axes[2].get_ylim()[0] > -1e4
+    assert np.isfinite(shown.lines["speed", 0][1]).all() and np.nanmax(np.abs(shown.loaded[:, 2])) < 1e4
 
 
 def test_a_band_is_drawn_only_where_there_is_one(tmp_path):
@@ -167,7 +176,7 @@ def test_the_minimum_load_is_the_makers_at_the_speed_of_the_run(tmp_path):
     scene = dataclasses.replace(SCENE, bearing=dataclasses.replace(SCENE.bearing, ratings=ratings))
     by_hand = 150.0 * (6 + 4 * np.array([3000.0, 1000.0, 3000.0]) / 5000) * (scene.bearing.pitch_diameter / 0.1) ** 2
     assert minimum_loads(scene, np.array([3000.0, 1000.0, -3000.0])) == pytest.approx(by_hand)
-    turning = run_of(LINEAR, shaft_speed=np.linspace(1000, 3000, 300) * math.pi / 30)
+    turning = run_of(LINEAR, shaft_speed=np.array([0.0, *np.linspace(1000, 3000, 299)]) * math.pi / 30)
     figure = draw_over_load(tmp_path / "a.png", [course(turning, scene=scene)])
     marks = [line for line in figure.axes[0].lines if line.get_linestyle() == "--"]
     assert marks[0].get_xdata()[0] == pytest.approx(by_hand[0] / 1e3)
@@ -226,6 +235,15 @@ def test_the_command_compares_recordings_over_time_and_load_and_takes_panels(rec
 def test_options_that_do_not_fit_are_refused_in_words(recording, tmp_path, options, words):
     refused = plotted(recording, *options)
     assert refused.exit_code == 2 and words in refused.stderr
+
+
+def test_a_band_is_computed_from_the_ranges_of_the_scene_where_it_is_asked_for(recording, tmp_path, monkeypatch):
+    drawn = []
+    monkeypatch.setattr(run_plot, "draw_over_time", lambda path, courses, title: drawn.extend(courses))
+    assert plotted(recording, "--band", "8", "-o", tmp_path / "a.png").exit_code == 0
+    band = drawn[0].band
+    assert len(band.times) == len(drawn[0].conditions) > 1 and np.all(band.low < band.high) and np.all((0 < band.low) & (band.high < 0.3))
+    assert np.ptp(band.low) == 0.0, "the inputs are constant"
 
 
 def test_what_cannot_be_drawn_is_refused_in_words(recording, tmp_path):

@@ -7,9 +7,10 @@ from pathlib import Path
 import click
 
 from bearing_sim.cli.options import picture_option
-from bearing_sim.cli.reporting import UsageError, announce_replacement, as_file_error, as_usage_error, progress_bar
+from bearing_sim.cli.reporting import Points, UsageError, announce_replacement, as_file_error, as_usage_error, progress_bar
 
 _TABLES = (".parquet", ".csv")
+_TURNING = 0.01  # of the largest speed; below it there is no slip to speak of
 
 
 @click.command("plot")
@@ -74,25 +75,38 @@ def _plot_recordings(paths, picture, over, panels, band) -> None:
         if recording.unfinished:
             click.echo(f"{path}: {recording.unfinished}", err=True)
         if band:
-            course.band = SlipBand(*_band_of(path, course, band))
+            course.band = SlipBand(*_band_of(course, band))
         courses.append(course)
     scene, names = courses[0].scene, ", ".join(course.name for course in courses)
     title = f"{scene.name} at level {scene.level}: {names}" if len(courses) == 1 else f"{scene.name}: {names}"
     (draw_over_load if over == "load" else draw_over_time)(picture, courses, title)
 
 
-def _band_of(path, course, samples):
-    """Return times, low and high ends of the slip's range under the inputs of a recording."""
+def _band_of(course, samples):
+    """Return instants, low and high ends of the settled slip's range under the inputs of a run, where the shaft turns."""
     import numpy as np
 
-    from bearing_sim.cli.uncertainty import bands_of, stretches_of
+    from bearing_sim.cli.uncertainty import SEED
+    from bearing_sim.scene.uncertainty import without_range
+    from bearing_sim.studies.uncertainty import UncertaintyError, study
 
-    scene, stretches, _ = stretches_of(path, course.scene, 48)
-    if not scene.uncertainty:
-        raise UsageError(f"{path}: its scene has no block uncertainty, so there is no range; give one, or leave out --band")
-    found, _ = bands_of(scene, samples, course=stretches)
-    bands = found.slip_bands()
-    return stretches.middles + course.first, np.array([each.low for each in bands]), np.array([each.high for each in bands])
+    times, conditions, scene = course.conditions[:, 0], course.conditions[:, 1:], course.scene
+    turning = np.abs(conditions[:, 0]) >= _TURNING * max(np.abs(conditions[:, 0]).max(initial=0.0), 1e-9)
+    if not turning.any():
+        raise UsageError(f"{course.name}: the shaft does not turn, so there is no slip and no range of it; leave out --band")
+    times, conditions = times[turning], conditions[turning]
+    if np.all(conditions[:, 3] == scene.lubricant.temperature):
+        conditions[:, 3] = math.nan  # the scene's own, which may be uncertain
+    else:
+        scene = without_range(scene, "lubricant.temperature")
+    _, first, which = np.unique(np.nan_to_num(conditions, nan=-1.0), axis=0, return_index=True, return_inverse=True)
+    different = conditions[first]
+    base = 1 << (samples - 1).bit_length()
+    with Points(f"range of the slip of {course.name}", 2 * base) as points, as_usage_error(UncertaintyError):
+        given = different, np.ones(len(different))
+        bands = study(scene, base, SEED, shares=False, course=given, progress=points.update).slip_bands()
+    low, high = (np.array([getattr(each, end) for each in bands])[which.ravel()] for end in ("low", "high"))
+    return times, low, high
 
 
 def _plot_table(path, picture, over, quantities) -> None:

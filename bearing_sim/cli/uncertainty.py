@@ -58,7 +58,7 @@ def uncertainty(scene_name, overrides, samples, seed, level, log, stretches, wor
     with as_usage_error(SceneError):
         scene = load_scene(scene_name, overrides)
     warn_of_scene(scene)
-    scene, course, unknown = stretches_of(log, scene, stretches) if log is not None else (scene, None, {})
+    scene, course, unknown = _course(log, scene, stretches) if log is not None else (scene, None, {})
     with as_file_error(), exit_on_sigterm(), as_usage_error(JournalInUse):
         with Journal(table and table.with_suffix(".journal")) as journal:
             found, report = bands_of(scene, samples, seed, level, course, journal, workers, dask)
@@ -101,12 +101,12 @@ def bands_of(scene, samples, seed=SEED, level=None, course=None, journal=None, w
     return found, {**_report(found, seed, time.perf_counter() - began, course), "kept_from_before": points.kept}
 
 
-def stretches_of(log, scene, count):
+def _course(log, scene, count):
     """Return the scene, without ranges of fields that the log gives, the log's inputs in intervals, and for how long they are unknown."""
-    import dataclasses
     import math
 
     from bearing_sim.inputs.log import InputLogError, read_input_log
+    from bearing_sim.scene.uncertainty import without_range
     from bearing_sim.studies.uncertainty import stretches
 
     with as_usage_error(InputLogError), as_file_error():
@@ -114,7 +114,7 @@ def stretches_of(log, scene, count):
     kelvin = math.nan  # the scene's own, which may be uncertain
     if "oil_temperature" in course.stamps and any(one.field == "lubricant.temperature" for one in scene.uncertainty):
         click.echo("the log gives the oil temperature: its range in the scene is not used", err=True)
-        scene = dataclasses.replace(scene, uncertainty=tuple(one for one in scene.uncertainty if one.field != "lubricant.temperature"))
+        scene = without_range(scene, "lubricant.temperature")
     run = course.segment(None, kelvin)
     return scene, stretches(run.instants * 1e-9, run.inputs, run.in_gap, count), unknown_report(course)
 

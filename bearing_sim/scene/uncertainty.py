@@ -220,6 +220,11 @@ def range_errors(scene) -> list[str]:
     return errors
 
 
+def without_range(scene, field: str):
+    """Return a scene without the range of a field, such as one that a log gives."""
+    return dataclasses.replace(scene, uncertainty=tuple(one for one in scene.uncertainty if one.field != field))
+
+
 def ranges_of(scene) -> tuple[Range, ...]:
     """Return the ranges that a scene declares, and those of what it leaves to estimates that it declares none for: of the bearing and of the oil."""
     declared = {one.field for one in scene.uncertainty}

@@ -15,20 +15,25 @@ import numpy as np
 
 from bearing_sim.messages.topics import ZERO_CELSIUS
 from bearing_sim.model.plausibility import minimum_load
+from bearing_sim.model.sample import RING_TEMPERATURES
 from bearing_sim.recording.reader import Recording
 from bearing_sim.scene.scene import Scene
-from bearing_sim.sweep.table import COLOURS, MARKERS, NotDrawable, new_figure
+from bearing_sim.simulation import Inputs
+from bearing_sim.sweep.table import COLOURS, MARKERS, NotDrawable, new_figure, set_limits
 
 _RPM = 30.0 / math.pi
 _LIFE = "modified_rating_life"
 _MOST_POINTS = 4000  # of a line; each stretch of a longer one keeps its least and its largest value
 _FEW_POINTS = 3  # of a line that is drawn with marks, too
 _BREAK = 10.0  # usual spacings of samples above which a line is interrupted
-_MOST_DECADES = 8  # of a life: near rest it grows beyond any scale
 _LEGEND_WIDTH, _HANDLE_WIDTH = 150, 8  # of a legend below a picture and of the mark before a name, in characters
 _LONGEST_TITLE = 110
 _DATED = 3600.0  # [s] runs from this long on have the date of their start beside the axis
 _CELLS = (240, 160)  # of a picture of slip over load, of each of which one sample is drawn
+_MOST_SLIP = 200.0  # [%] beyond which these cells do not tell slips apart
+_TURNING = 0.01  # of the largest speed of a run; below it the slip is left out
+_INSTANTS = 200  # of a run, at which the range of the slip may be computed
+_CONDITIONS = tuple(f"{name}_measured" if name in RING_TEMPERATURES else name for name in Inputs._fields)
 _DPI = 130
 _TIMES = ((180.0, 1.0, "s"), (180.0 * 60.0, 60.0, "min"), (72.0 * 3600.0, 3600.0, "h"), (math.inf, 86400.0, "d"))
 
@@ -91,7 +96,7 @@ DEFAULT_PANELS = ("speed", "load", "slip", "life", "temperature", "clearance")
 
 
 class SlipBand(NamedTuple):
-    """Range of the slip where fields of the scene are uncertain: times [s], shape (m,), and the ends [1], 5 and 95 %, shape (m,) each."""
+    """Range of the settled slip where fields of the scene are uncertain: instants [s], shape (m,), and the ends [1], 5 and 95 %, shape (m,)."""
 
     times: np.ndarray
     low: np.ndarray
@@ -109,6 +114,7 @@ class Course:
     panels : names of the panels.
     lines : by panel and number of the line, the times [s] and the values, thinned out.
     loaded : speed [rpm], load [kN], slip [%] and life [h] of each sample that shows in a picture over the load, shape (n, 4).
+    conditions : time [s] and inputs (`bearing_sim.simulation.Inputs`) at some instants, evenly spaced in samples, shape (m, 7).
     samples : number of samples of the run.
     first, last : simulated times of its ends [s].
     band : range of the slip, if somebody computed one.
@@ -120,6 +126,7 @@ class Course:
     panels: Sequence[str]
     lines: dict[tuple[str, int], tuple[np.ndarray, np.ndarray]] = field(default_factory=dict)
     loaded: np.ndarray = field(default_factory=lambda: np.zeros((0, 4)))
+    conditions: np.ndarray = field(default_factory=lambda: np.zeros((0, 1 + len(Inputs._fields))))
     samples: int = 0
     first: float = math.nan
     last: float = math.nan
@@ -150,9 +157,9 @@ def course_of(
 ) -> Course:
     """Return what a picture shows of blocks of samples (see `read_course`); ``samples`` is their number in all, which decides the thinning."""
     course = Course(name, scene, panels)
-    window = max(1, 2 * samples // _MOST_POINTS)
-    parts: dict[tuple[str, int], list[tuple[np.ndarray, np.ndarray]]] = {}
-    loaded, before, usual = [], math.nan, 0.0
+    window, every = max(1, 2 * samples // _MOST_POINTS), max(1, samples // _INSTANTS)
+    parts: dict[tuple[str, int], list[np.ndarray]] = {}
+    loaded, instants, before, usual = [], [], math.nan, 0.0
     for block in blocks:
         times = block["time"]
         if not len(times):
@@ -162,20 +169,32 @@ def course_of(
         breaks = np.flatnonzero(spacings > max(_BREAK * usual, _BREAK * np.quantile(spacings, 0.9))) if len(times) > 2 else np.zeros(0, int)
         for panel in panels:
             for k, line in enumerate(PANELS[panel].lines):
-                parts.setdefault((panel, k), []).append(thinned(times, line.values(block), window, breaks))
-        loaded.append(
-            _one_per_cell(np.stack([block["shaft_speed"] * _RPM, _load(block), 100 * block["cage_slip"], block["modified_rating_life"]], -1))
-        )
+                parts.setdefault((panel, k), []).append(thinned(times, line.values(block), window, breaks, block["shaft_speed"]))
+        results = block[1:] if not course.samples and samples > 1 else block  # a recording begins with the state of rolling without slip
+        loaded.append(_one_per_cell(np.stack([results["shaft_speed"] * _RPM, _load(results), 100 * results["cage_slip"], results[_LIFE]], -1)))
+        chosen = block[-course.samples % every :: every]
+        instants.append(np.stack([chosen["time"], *(chosen[name] for name in _CONDITIONS)], -1))
         course.samples += len(times)
         course.first, course.last = (float(times[0]) if math.isnan(course.first) else course.first), float(times[-1])
         before = course.last
         progress(course.last)
-    course.lines = {key: tuple(np.concatenate(each) for each in zip(*pieces)) for key, pieces in parts.items()}
-    course.loaded = np.concatenate(loaded) if loaded else course.loaded
+    course.loaded, course.conditions = np.concatenate([course.loaded, *loaded]), np.concatenate([course.conditions, *instants])
+    _leave_out_slip_at_rest(course, {key: np.concatenate(pieces, axis=1) for key, pieces in parts.items()})
     return course
 
 
-def thinned(times: np.ndarray, values: np.ndarray, window: int, breaks: Sequence[int] = ()) -> tuple[np.ndarray, np.ndarray]:
+def _leave_out_slip_at_rest(course: Course, lines: Mapping[tuple[str, int], np.ndarray]) -> None:
+    """Enter lines, each with times, values and speeds, into a course, without the slip where the shaft hardly turns: it may have any size there."""
+    fastest = max((float(np.nanmax(np.abs(speeds), initial=0.0)) for _, _, speeds in lines.values()), default=0.0)
+    for key, (times, values, speeds) in lines.items():
+        course.lines[key] = times, np.where(np.abs(speeds) < _TURNING * fastest, np.nan, values) if key[0] == "slip" else values
+    at_rest = np.abs(course.loaded[:, 0]) < _TURNING * np.abs(course.loaded[:, 0]).max(initial=0.0)
+    course.loaded[at_rest, 2] = np.nan
+
+
+def thinned(
+    times: np.ndarray, values: np.ndarray, window: int, breaks: Sequence[int] = (), speeds: np.ndarray | None = None
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return a line with the least and the largest value of each window of samples, in order of time.
 
     Parameters
@@ -183,12 +202,14 @@ def thinned(times: np.ndarray, values: np.ndarray, window: int, breaks: Sequence
     times, values : of the samples, shape (n,).
     window : number of samples of which two remain; all remain where it is 2 or less.
     breaks : samples before which the line is interrupted, by a value that is NaN.
+    speeds : of the shaft, shape (n,).
 
     Returns
     -------
-    Times and values of the line; values that are not finite become NaN.
+    Times and values of the line, and the speeds there; values that are not finite become NaN.
     """
     values = np.where(np.isfinite(values), values, np.nan)
+    speeds = np.full(len(times), np.nan) if speeds is None else speeds
     if window > 2 and len(values):
         starts = np.arange(0, len(values), window)
         ends = np.append(starts[1:], len(values))
@@ -202,16 +223,16 @@ def thinned(times: np.ndarray, values: np.ndarray, window: int, breaks: Sequence
         index = np.array(kept)
     else:
         index = np.arange(len(values))
-    places = np.searchsorted(index, np.asarray(breaks, int))
-    between = times[np.maximum(np.asarray(breaks, int) - 1, 0)]
-    return np.insert(times[index], places, between), np.insert(values[index], places, np.nan)
+    breaks = np.asarray(breaks, int)
+    places, between = np.searchsorted(index, breaks), times[np.maximum(breaks - 1, 0)]
+    return np.insert(times[index], places, between), np.insert(values[index], places, np.nan), np.insert(speeds[index], places, np.nan)
 
 
 def _one_per_cell(rows: np.ndarray) -> np.ndarray:
     """Return those of many samples that differ in a picture: the first in each cell of load and slip, and the extremes of each column."""
     if len(rows) <= 200:
         return rows
-    load, slip = rows[:, 1], np.where(np.isfinite(rows[:, 2]), rows[:, 2], 0.0)
+    load, slip = rows[:, 1], np.clip(np.where(np.isfinite(rows[:, 2]), rows[:, 2], 0.0), -_MOST_SLIP, _MOST_SLIP)
     cells = [np.floor(count * (each - each.min()) / (np.ptp(each) or 1.0)) for each, count in zip((load, slip), _CELLS)]
     _, first = np.unique(np.stack(cells), axis=1, return_index=True)
     finite = np.where(np.isfinite(rows), rows, np.nan)
@@ -278,45 +299,19 @@ def _draw_panel(axes, name: str, panel: Panel, courses: Sequence[Course], starts
             every.append(values[np.isfinite(values)])
         if name == "slip" and course.band is not None:
             band, colour = course.band, COLOURS[number % len(COLOURS)]
-            axes.fill_between((band.times - starts[number]) / divisor, 100 * band.low, 100 * band.high, color=colour, alpha=0.22, lw=0, step="mid")
+            width = max(1.0, 550.0 / max(len(band.times), 1))  # [pt] so that bars at every instant make a band
+            axes.vlines((band.times - starts[number]) / divisor, 100 * band.low, 100 * band.high, color=colour, alpha=0.22, lw=width)
             every += [100 * band.low[np.isfinite(band.low)], 100 * band.high[np.isfinite(band.high)]]
     only = panel.lines[shown[0]].name if len(shown) == 1 else ""
     axes.set_ylabel(f"{only} {panel.label}".strip(), fontsize=9)
     axes.grid(alpha=0.3)
     axes.tick_params(labelsize=8)
     values = np.concatenate(every) if every else np.zeros(0)
-    _set_limits(axes, values, panel.is_logarithmic)
+    set_limits(axes, values, panel.is_logarithmic)
     if len(shown) > 1:
         axes.legend(frameon=False, fontsize=8, loc="center left", bbox_to_anchor=(1.0, 0.5))
     if not len(values[values > 0]) and panel.is_logarithmic or not len(values):
         axes.text(0.5, 0.5, "no values that are finite", ha="center", va="center", transform=axes.transAxes, fontsize=9, color="0.4")
-
-
-def _set_limits(axes, values: np.ndarray, is_logarithmic: bool, direction: str = "y") -> None:
-    """Set the limits and ticks of an axis so that its labels are short and apart, also where values hardly differ."""
-    from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
-
-    axis, limit = getattr(axes, f"{direction}axis"), getattr(axes, f"set_{direction}lim")
-    positive = values[values > 0]
-    if is_logarithmic and len(positive):
-        getattr(axes, f"set_{direction}scale")("log")
-        low = math.floor(math.log10(positive.min()) + 1e-9)
-        high = min(math.ceil(math.log10(positive.max()) - 1e-9), low + _MOST_DECADES)
-        limit(10.0**low, 10.0 ** max(high, low + 1))
-        axis.set_major_locator(LogLocator(numticks=5))
-        axis.set_minor_formatter(NullFormatter())
-        return
-    if not len(values):
-        limit(0.0, 1.0)
-        axis.set_ticks([])
-        return
-    low, high = float(values.min()), float(values.max())
-    middle, half = 0.5 * (low + high), 0.5 * (high - low)
-    half = max(1.06 * half, 2e-3 * abs(middle), 1e-9)
-    limit(middle - half, middle + half)
-    axis.set_major_locator(MaxNLocator(5 if direction == "y" else 7, steps=[1, 2, 2.5, 5, 10]))
-    is_plain = 1e-3 <= max(abs(low), abs(high)) < 1e7 or low == high == 0.0
-    axes.ticklabel_format(axis=direction, useOffset=False, style="plain" if is_plain else "sci")
 
 
 def _name_courses(figure, courses: Sequence[Course]) -> None:
@@ -328,7 +323,7 @@ def _name_courses(figure, courses: Sequence[Course]) -> None:
     if len(courses) > 1:
         handles += [Line2D([], [], color=COLOURS[k % len(COLOURS)], label=_shortened(course.name, 40)) for k, course in enumerate(courses)]
     if any(course.band is not None for course in courses):
-        handles.append(Patch(color=COLOURS[0], alpha=0.22, label="slip, 5 to 95 % by the scene's uncertainty"))
+        handles.append(Patch(color=COLOURS[0], alpha=0.22, label="settled slip, 5 to 95 % by the scene's uncertainty"))
     if handles:
         _add_legend(figure, handles)
 
@@ -384,8 +379,8 @@ def _finish_over_load(figure, axes, loads, slips, lives, handles, courses=()) ->
         each.set(xlabel="radial load [kN]", ylabel=label)
         each.grid(alpha=0.3)
         reached = [float(mark.get_xdata()[0]) for mark in each.lines if len(mark.get_xdata()) == 2 and mark.get_xdata()[0] == mark.get_xdata()[1]]
-        _set_limits(each, np.append(loads[np.isfinite(loads)], reached), False, "x")
-        _set_limits(each, values[np.isfinite(values)], is_logarithmic)
+        set_limits(each, np.append(loads[np.isfinite(loads)], reached), False, "x")
+        set_limits(each, values[np.isfinite(values)], is_logarithmic)
     if len(courses) > 1:
         from matplotlib.lines import Line2D
 

@@ -4,6 +4,7 @@
 import collections
 import csv
 import json
+import math
 import os
 import re
 from collections.abc import Mapping, Sequence
@@ -223,6 +224,7 @@ def _number(text: str) -> float | str:
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")  # Okabe and Ito: safe for colour-blind readers
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 QUANTITIES = ("cage_slip", "rating_life", "inner_load_maximum", "outer_load_maximum")
+_MOST_DECADES = 8  # of a life: near rest it grows beyond any scale
 _FEWEST_OF_A_MAP = 4  # values of each variable; with fewer, draw lines
 _LABELS = {
     "cage_slip": "cage slip",
@@ -253,6 +255,41 @@ def new_figure(width: float, height: float):
     figure = Figure(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(figure)
     return figure
+
+
+def set_limits(axes, values: np.ndarray, is_logarithmic: bool, direction: str = "y") -> None:
+    """Set the limits and ticks of an axis so that its labels are short and apart, also where values hardly differ.
+
+    Parameters
+    ----------
+    axes : of matplotlib.
+    values : that are shown, all finite.
+    is_logarithmic : whether the axis is, if any value is positive: whole decades, at most eight above the least.
+    direction : ``x`` or ``y``.
+    """
+    from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
+
+    axis, limit = getattr(axes, f"{direction}axis"), getattr(axes, f"set_{direction}lim")
+    positive = values[values > 0]
+    if is_logarithmic and len(positive):
+        getattr(axes, f"set_{direction}scale")("log")
+        low = math.floor(math.log10(positive.min()) + 1e-9)
+        high = min(math.ceil(math.log10(positive.max()) - 1e-9), low + _MOST_DECADES)
+        limit(10.0**low, 10.0 ** max(high, low + 1))
+        axis.set_major_locator(LogLocator(numticks=5))
+        axis.set_minor_formatter(NullFormatter())
+        return
+    if not len(values):
+        limit(0.0, 1.0)
+        axis.set_ticks([])
+        return
+    low, high = float(values.min()), float(values.max())
+    middle, half = 0.5 * (low + high), 0.5 * (high - low)
+    half = max(1.06 * half, 2e-3 * abs(middle), 1e-9)
+    limit(middle - half, middle + half)
+    axis.set_major_locator(MaxNLocator(5 if direction == "y" else 7, steps=[1, 2, 2.5, 5, 10]))
+    is_plain = 1e-3 <= max(abs(low), abs(high)) < 1e7 or low == high == 0.0
+    axes.ticklabel_format(axis=direction, useOffset=False, style="plain" if is_plain else "sci")
 
 
 def draw(path: Path | BinaryIO, table: Table, quantities: Sequence[str] = QUANTITIES) -> None:
@@ -318,8 +355,9 @@ def _draw_lines(axes, table, varied, quantity) -> None:
         drifting = [row for row in rows if row["status"] == UNSETTLED]
         axes.plot([row[over.name] for row in drifting], [row[quantity.name] for row in drifting], "x", color="black", ms=8)
     axes.set(xlabel=label(over), ylabel=label(quantity))
-    if quantity.unit == "h" and any(value > 0 for value in table.values(quantity.name)):
-        axes.set_yscale("log")
+    shown = np.array(table.values(quantity.name), float)
+    if quantity.unit == "h" and (shown > 0).any():
+        set_limits(axes, shown[np.isfinite(shown)], is_logarithmic=True)
     else:
         axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
     axes.ticklabel_format(axis="x", useOffset=False) if not isinstance(table.rows[0][over.name], str) else None
