@@ -91,6 +91,8 @@ def test_a_column_without_a_unit_in_the_mapping_has_the_one_in_its_heading_and_a
         ("t n f\n0 1 2\n", "one column only .*comma, semicolon, tab"),
         ("", "the header has nothing"),
         ("t;n;f\n", "no rows"),
+        ("t,n,f\n3,1,1\n2,1,1\n1,1,1\n", "line 3: 1 rows rise in time, 2 go back; sort them by time, or choose one machine"),
+        ('t,n,f\n0,1,"1\n1,1,1\n', "line 2: a quotation mark is opened and not closed"),
         ("t,n,f\n0,abc,1\n", "1 x shaft_speed.not_a_number .line 2: n = 'abc' is not a number"),
         ("t,n,f\n0,'1,2\n", "time.cells|not_a_number"),
         (b"t,n,f\n\0\0\0", "no text"),

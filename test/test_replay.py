@@ -376,3 +376,32 @@ def test_a_minute_of_the_measured_flight_replays_whole(tmp_path):
         *_, joints = (decoded for *_, decoded in reader.iter_decoded_messages(topics=["/bearing_joints"]))
     assert joints.velocity[0] == pytest.approx(last["N2_lh_pct"] / 100 * 32760 * math.pi / 30)
     assert 0.0 < joints.velocity[1] < joints.velocity[0] / 2
+
+
+@pytest.mark.parametrize(
+    "speed, celsius, expected",
+    [
+        (3000.0, (), (None, 120.0, 120.0)),
+        (3000.0, (80.0, 80.0), (None, 80.0, 80.0)),
+        (3000.0, (61.0, 68.0), (None, 56.85, 71.85)),  # 330 and 345 K
+        (6000.0, (), (6120.0, 120.0, 120.0)),
+    ],
+)
+def test_the_table_of_a_replay_spans_the_speeds_and_the_oil_temperatures_of_the_log(tmp_path, monkeypatch, speed, celsius, expected):
+    """The operating speed of 4712 rad/s alone gives a table up to 5655 rad/s."""
+    from bearing_sim.cli import replay as command
+
+    asked = []
+    monkeypatch.setattr("bearing_sim.cli.table.build_with_progress", lambda scene, ends: [asked.append((scene, ends))])
+    scene = load_scene("deng2017_table1", ["level=steady"])
+    path = write_log(tmp_path / "log.mcap", [(0.0, speed), (1.0, 100.0)], [(0.0, 1.0, 0.0), (1.0, 1.0, 0.0)], list(zip((0.0, 1.0), celsius)))
+    command._choice(scene, judge(read_input_log(path), scene.accepted_inputs, HELD))
+    ((built, ends),) = asked
+    assert (built.table.maximum_speed, *(end - 273.15 for end in ends)) == pytest.approx(expected)
+
+
+def test_the_time_below_a_minimum_load_counts_while_the_shaft_turns_and_grows_with_the_speed():
+    result = Replay(10.0)
+    result.speed, result.load, result.weight = [0.0, 0.5, 100.0, -100.0, 50.0], [0.0, 0.0, 900.0, 1100.0, 600.0], [1.0, 2.0, 4.0, 8.0, 16.0]
+    assert result.seconds_below(lambda speeds: 10.0 * np.abs(speeds)) == (4.0, 28.0), "at rest and below a hundredth of the speed nothing counts"
+    assert Replay(1.0).seconds_below(lambda speeds: speeds) == (0.0, 0.0)

@@ -1,6 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """``bearing-sim replay``: run the model on a recorded log, or compute a recorded run again."""
 
+import math
 import time
 from contextlib import ExitStack, suppress
 from pathlib import Path
@@ -27,6 +28,9 @@ from bearing_sim.cli.reporting import (
     warn_of_scene,
     warnings_report,
 )
+
+_HEADROOM = 1.02  # of a table of operating points above the speeds of a log
+_ROUNDED = 5.0  # [K] to which the oil temperatures of a table are
 
 
 @click.command("replay")
@@ -180,18 +184,26 @@ def replay(
 
 
 def _choice(scene, course) -> dict:
-    """Return the model to replay with: at level steady its table, for a single oil temperature unless the log has several."""
+    """Return the model to replay with: at level steady its table, for the log's speeds and oil temperatures."""
     if scene.level != "steady":
         return {}
+    from dataclasses import replace
     from functools import partial
 
+    import numpy as np
+
     from bearing_sim.cli.table import build_with_progress
+    from bearing_sim.levels.steady.table_builder import span_of
     from bearing_sim.simulation import Simulation
 
-    measured = course.values.get("oil_temperature", ())
-    kelvin = {float(each) for each in measured} if len(measured) else {scene.lubricant.temperature}
-    only = kelvin.pop() if len(kelvin) == 1 else None
-    return {"model": partial(Simulation, table=build_with_progress(scene, None if only is None else (only, only))[0])}
+    fastest = float(np.abs(course.values["shaft_speed"]).max())
+    if scene.table.maximum_speed is None and fastest > span_of(scene).maximum_speed:
+        scene = replace(scene, table=replace(scene.table, maximum_speed=_HEADROOM * fastest))  # else each operating point is solved by itself
+    kelvin = np.append(course.values.get("oil_temperature", ()), [] if "oil_temperature" in course.stamps else scene.lubricant.temperature)
+    ends = float(kelvin.min()), float(kelvin.max())
+    if ends[0] < ends[1]:  # rounded, so that logs of one machine share a table
+        ends = _ROUNDED * math.floor(ends[0] / _ROUNDED), _ROUNDED * math.ceil(ends[1] / _ROUNDED)
+    return {"model": partial(Simulation, table=build_with_progress(scene, ends)[0])}
 
 
 def _report(result, course, recorded, scene, out) -> dict:

@@ -454,6 +454,11 @@ def _column_of(found: Guess, name: str, headings: list[str], columns, units) -> 
     """Return the column of a field and why; None if there is none, or a question has been entered."""
     role = next(each for each in ROLES if each.field == name)
     given = columns.get(name)
+    if len(set(headings)) < len(headings) and given is None or given is not None and found.layout.names.count(given) > 1:
+        found.questions[name] = (
+            f"{found.layout.names.count(given or headings[0])} columns are called {given or headings[0]!r}; rename one in the header"
+        )
+        return None, ""
     if given is None and len(headings) > 1:
         choice = " or ".join(f"--column {name}={heading!r}" for heading in headings)
         found.questions[name] = f"{len(headings)} headings fit; choose: {choice}"

@@ -413,6 +413,9 @@ def read_table(path: str | Path, mapping: Mapping) -> Table:
     if missing:
         why = ", ".join(_with_example(table, kind) for kind in table.refused) or "it has no rows" + " that match `only`" * bool(mapping.only)
         raise TableError(f"{path}: nothing usable for {' and '.join(missing)}: {why}")
+    if table.refused["time.backwards"] >= len(times) > 0:
+        why = f"{len(times)} rows rise in time, {table.refused['time.backwards']} go back; sort them by time, or choose one machine (only, --only)"
+        raise TableError(f"{path}, line {table.examples['time.backwards'][0][0]}: {why}")
     _find_gaps(table, mapping, np.diff(times) * 1e-9)
     return table
 

@@ -24,9 +24,9 @@ _COMMENTS = ("#", "//")
 _FIRST_LINES = 2000  # of a file, in which header, delimiter and decimal mark are looked for
 _MARKS = ((codecs.BOM_UTF8, "utf-8-sig"), (codecs.BOM_UTF16_LE, "utf-16"), (codecs.BOM_UTF16_BE, "utf-16"))
 _BINARY = {b"PK\x03\x04": "a workbook of a spreadsheet or another archive; save the sheet as CSV", b"PAR1": "Parquet; write it as CSV"}
-_NUMBER = re.compile(r"[-+]?(?:\d[\d.,]*|[.,]\d+)(?:[eE][-+]?\d+)?")
+_NUMBER = re.compile(r"[-+]?(?:\d+(?:[.,]\d*)?|[.,]\d+|\d{1,3}(?:[.,]\d{3})+(?:[.,]\d*)?)(?:[eE][-+]?\d+)?")  # no date, such as 1.2.2026
 _LIKE_THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2}(?:,\d{3})+")
-_UNIT_LIKE = re.compile(r"(?=.*[^\W\d_]|.*[%°-])[^\d:]*\d?[^\d:]*")
+_UNIT_LIKE = re.compile(r"(?=.*[^\W\d_]|.*[%°-])(?:\D*|[^\d:]*\d[^\d:]*)")
 _HEADED = (re.compile(r"(.*?)\s*[\[(]\s*([^\])]*?)\s*[\])]\s*"), re.compile(r"(.+?)\s*/\s*([^/\s]+(?:/[^/\s]+)?)"))
 _SPELLED = {
     **dict.fromkeys(("°C", "℃", "C", "deg C", "Grad C", "Celsius", "deg_C", "degc", "DegC", "grdC"), "degC"),
@@ -268,6 +268,8 @@ def records(path: Path, layout: Layout) -> Iterator[tuple[int, list[str]]]:
             except StopIteration:
                 return
             except csv.Error as error:
+                if "unexpected end" in str(error):
+                    raise TableError(f"{path}, line {lines.began}: a quotation mark is opened and not closed") from None
                 raise TableError(f"{path}, line {lines.number}: {error}") from None
             except UnicodeDecodeError as error:
                 raise TableError(f"{path}: not readable as {layout.encoding} text ({error.reason}); say which encoding it has") from None
