@@ -275,6 +275,16 @@ def test_sizes_of_flanges_that_are_not_there_change_nothing():
     assert plainly.tobytes() == described.tobytes() and (plainly["flange_power"] == 0.0).all()
 
 
+def test_flanges_on_both_sides_bound_the_skew_by_the_end_clearance():
+    """On a ring that is held inclined by 3 mrad rollers skew by more than a close end clearance leaves them between two flanges."""
+    inclined, skews = ["operating.misalignment=3 mrad", "bearing.roller.slices=6"], []
+    for options in ([], ["bearing.flanges={outer: both, end_clearance: 20 um}"]):
+        run = simulation("spatial", *inclined, *options)
+        skews.append(np.abs(run.advance(0.03, samples=300)["roller_skew"]).max())
+    bound = run._params.flanges.clearance / run._params.flanges.outer.corner
+    assert skews[1] < 1.2 * bound < 1.6 * bound < skews[0]
+
+
 ROUND = ["bearing.outer_raceway.d_value=0 mm", "bearing.outer_raceway.low_radius=34.885 mm"]
 UNLOADED = [
     *ROUND,

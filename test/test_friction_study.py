@@ -53,7 +53,7 @@ def test_moment_of_ten_bearings_is_that_of_the_simple_model_in_the_median_and_ou
 
 def test_moment_rises_with_speed_and_load_and_its_parts_are_the_whole(table):
     for one in table:
-        parts = one.rolling + one.sliding + one.drag + one.pocket + one.seal
+        parts = one.rolling + one.sliding + one.drag + one.pocket + one.seal + one.flange
         assert one.model == pytest.approx(parts, rel=0.02)
     for name in dict.fromkeys(one.bearing for one in table):
         moments = np.array([one.model for one in table if one.bearing == name]).reshape(4, 4)

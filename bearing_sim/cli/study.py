@@ -448,12 +448,15 @@ def _print_moments(found) -> None:
         (
             one.bearing,
             f"{one.load:.2f}",
-            *(f"{value:.4g}" for value in (one.speed, one.model, one.rolling, one.sliding, one.drag, one.pocket, one.viscous, one.by_load, one.skf)),
+            *(
+                f"{value:.4g}"
+                for value in (one.speed, one.model, one.rolling, one.sliding, one.drag, one.pocket, one.flange, one.viscous, one.by_load, one.skf)
+            ),
             f"{one.ratio:.2f}",
         )
         for one in found
     ]
-    columns = ("bearing", "P/C_0", "rpm", "model, N mm", "rolling", "sliding", "drag", "pockets", "M_0", "M_1", "SKF", "ratio")
+    columns = ("bearing", "P/C_0", "rpm", "model, N mm", "rolling", "sliding", "drag", "pockets", "flanges", "M_0", "M_1", "SKF", "ratio")
     print_rows("frictional moment, and its ratio to M_0 + M_1", columns, rows, words=("bearing",))
     far = [(one.bearing, f"{one.load:.2f}", f"{one.speed:.4g}", f"{one.ratio:.2f}", one.reason) for one in found if one.reason]
     print_rows("ratios beyond a factor of 2", ("bearing", "P/C_0", "rpm", "ratio", "why"), far, words=("bearing", "why"))

@@ -27,8 +27,8 @@ sin(layback) (T. A. Harris, M. N. Kotzalas, Essential Concepts of Bearing Techno
 **Skew.** Between two flanges a roller that skews by q touches with a corner of each end where flange and rim meet, e off the axis of symmetry,
 once |q| e exceeds half the end clearance: N = K delta^(3/2) (1 + a delta') of Hertz's point contact at each of the two.  The oil that both
 ends displace damps the skewing before: a strip of length 2 e and width B over the gap g, with ambient pressure at both edges,
-resists with eta B^3 (2 e)^3/(12 g^3) q'.  *Assumption*: K is that of a sphere of radius sqrt(r_c (R_w - r_c)/layback) on a plane, the geometric
-mean of the rim's principal radii.
+resists with eta B^3 (2 e)^3/(12 h^3) q', h in the middle of the strip.  *Assumption*: K is that of a sphere of radius
+sqrt(r_c (R_w - r_c)/layback) on a plane, the geometric mean of the rim's principal radii.
 """
 
 import functools
@@ -130,8 +130,9 @@ def flange_face(sides: str, gaps, raceway: float, edge: float, centre: float, ri
     area, first, second = (sum(each) for each in zip(*(end_integrals(raceway, edge, centre, rim, gap, layback) for gap in gaps)))
     sign = -1.0 if edge > raceway else 1.0
     outwards, along = rim_corner(edge, centre, rim)
-    strip = 2.0 / 3.0 * abs(centre + sign * rim - edge)  # mean width of the segment
-    squeeze = sum(strip**3 * (2.0 * along) ** 3 / (12.0 * gap**3) for gap in gaps)
+    reach = abs(centre + sign * rim - edge)
+    strip, opened = 2.0 / 3.0 * reach, layback * (abs(edge - raceway) - 0.5 * reach)  # mean width of the segment, and h - g in its middle
+    squeeze = sum(strip**3 * (2.0 * along) ** 3 / (12.0 * (gap + opened) ** 3) for gap in gaps)
     guides = sides == "both"
     return Face(area, first, second, sign * contact, outwards, along if guides else 0.0, squeeze if guides else 0.0)
 

@@ -146,6 +146,7 @@ class Moment(NamedTuple):
     drag: float  # of rollers and cage
     pocket: float
     seal: float
+    flange: float  # of roller ends
     viscous: float  # M_0 of the simple model
     by_load: float  # M_1 of it
     skf: float
@@ -216,6 +217,7 @@ def moments(scene: Scene, series: str, conditions: Sequence[tuple[float, float]]
                 parts["churning_power"] + parts["windage_power"] + parts["land_power"],
                 parts["pocket_power"],
                 parts["seal_power"],
+                parts["flange_power"],
                 viscous,
                 by_load,
                 skf_moment(series, dimensions, speed, load, viscosity, level),

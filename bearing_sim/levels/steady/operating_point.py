@@ -55,6 +55,7 @@ _CAREFUL_ITERATIONS = 150
 _ROUGH, _FINE = 1e-3, 1e-5  # of the spin of rolling
 _SLIP_TOLERANCE = 1e-5
 _LARGEST_LEAD = 0.1  # negative slip; a cage that seems to be driven beyond has spins that were not resolved
+_FLANGED_LEAD = 0.3  # the same where flanges of the inner ring drive the rollers: by their height over the roller's radius at most
 _HALVINGS = 40
 _LAG_CHANGE = 1e-2  # of the slip
 _SAMPLES = 24  # in a window
@@ -289,11 +290,12 @@ def _mean_drive(speed, sense, model, work, orbit, tolerance):
 def _bracket(ideal, sense, model, work, orbit):
     """Go from ideal rolling to where the mean torque changes its sign; return (slip before, drive there, slip after, drive there)."""
     before, drive_before = 0.0, _mean_drive(ideal, sense, model, work, orbit, _ROUGH)
+    farthest = _FLANGED_LEAD if model.params.flanges.inner.area > 0.0 else _LARGEST_LEAD
     away = 1.0 if drive_before < 0.0 else -1.0  # most cages lag, those of slow bearings lead by next to nothing
     for i in range(1, _SLIPS.shape[0]):
         slip = away * _SLIPS[i]
         drive = _mean_drive(ideal * (1.0 - slip), sense, model, work, orbit, _ROUGH)
-        if not math.isfinite(drive + drive_before) or slip < -_LARGEST_LEAD:
+        if not math.isfinite(drive + drive_before) or slip < -farthest:
             return math.nan, math.nan, math.nan, math.nan
         if drive * away >= 0.0:
             return before, drive_before, slip, drive
