@@ -12,6 +12,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import preloaded
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -23,6 +24,9 @@ NOTEBOOKS = sorted(path.relative_to(ROOT).as_posix() for path in DOC.glob("tutor
 WIND = "doc/tutorials/wind_turbine.md"
 SCADA = ROOT.parent / "shared" / "data" / "wind_scada_HMR_july2023.csv"  # not redistributable
 PROGRAMS = {"bearing-sim": "bearing_sim.cli", "bearing_node": "bearing_sim.ros.node", "bearing_player": "bearing_sim.ros.player"}
+
+# Imported ahead by the process that the programs are forked from: what most of them need.
+PRELOADED = ["bearing_sim.cli.run", "bearing_sim.runtime.replay", "bearing_sim.sweep.point", "bearing_sim.studies.page", "matplotlib.figure"]
 
 # Executes a page: argv holds the language and the text of each block in turn; a failing block ends the run with its text.
 _DRIVER = """
@@ -43,12 +47,19 @@ def blocks(path):
     return [(language, text) for language, text in found if language in ("bash", "python")]
 
 
-def run(path, folder):
-    """Execute the blocks of a page in a folder and return what they print."""
+@pytest.fixture(scope="module")
+def server():
+    """Return a server that has imported what the programs of the pages need."""
+    return preloaded.PreloadingServer(PRELOADED, [ROOT])
+
+
+def run(path, folder, server):
+    """Execute the blocks of a page in a folder and return what they print; programs run on the server."""
     programs = folder / ".programs"
     programs.mkdir()
     for name, module in PROGRAMS.items():
-        (programs / name).write_text(f'#!/bin/sh\nexec "{sys.executable}" -m {module} "$@"\n')
+        client = f'"{sys.executable}" -I -S "{preloaded.__file__}" --run "{server.address}"'
+        (programs / name).write_text(f'#!/bin/sh\nexec {client} {module} "$@"\n')
         (programs / name).chmod(0o755)
     environment = {**os.environ, "PATH": f"{programs}:{os.environ['PATH']}", "PYTHONPATH": str(ROOT), "MPLBACKEND": "Agg", "WIND_SCADA": str(SCADA)}
     words = [word for block in blocks(path) for word in block]
@@ -61,12 +72,12 @@ def run(path, folder):
 
 @pytest.mark.timeout(1000)
 @pytest.mark.parametrize("page", [page for page in PAGES if blocks(ROOT / page)])
-def test_the_blocks_of_a_page_run_in_an_empty_folder(page, tmp_path):
+def test_the_blocks_of_a_page_run_in_an_empty_folder(page, tmp_path, server):
     pytest.importorskip("pandas", reason="pip install 'bearing_sim[tables]'")
     pytest.importorskip("xarray", reason="pip install 'bearing_sim[tables]'")
     if page == WIND and not SCADA.is_file():
         pytest.skip(f"the measured data {SCADA.name} are not redistributable and not here; expected in ../shared/data beside the repository")
-    printed = run(ROOT / page, tmp_path)
+    printed = run(ROOT / page, tmp_path, server)
     if page == WIND:
         assert_printed(ROOT / page, printed)
 
@@ -112,9 +123,9 @@ def test_every_tutorial_is_executed():
     assert {language for language, _ in blocks(ROOT / "README.md")} == {"bash", "python"}
 
 
-def test_a_failing_block_fails_the_page(tmp_path):
+def test_a_failing_block_fails_the_page(tmp_path, server):
     page = tmp_path / "page.md"
     page.write_text("```python\nx = 1\n```\n\n```bash\ntest -e nothing_here\n```\n")
     (tmp_path / "folder").mkdir()
     with pytest.raises(AssertionError, match="nothing_here"):
-        run(page, tmp_path / "folder")
+        run(page, tmp_path / "folder", server)

@@ -25,10 +25,23 @@ def folder(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def command_output(folder):
-    """Return the output of the command, with pictures where there is a driver; it fails where a view or the viewer complains."""
-    result = CliRunner().invoke(study.situations, ["--out", str(folder), "--json"])
+    """Return the output of the command, with pictures where there is a driver; it fails where a view or the viewer complains.
+
+    Pictures that nobody wants to look at are small, and those of the lively levels are made of half the samples.
+    """
+    with pytest.MonkeyPatch.context() as patch:
+        size = []
+        if "BEARING_SIM_PICTURES" not in os.environ:
+            size = ["--size", "1000", "640"]
+            coarse = [each if each.fault else each._replace(rate=0.5 * each.rate) for each in SITUATIONS]
+            patch.setattr("bearing_sim.studies.situations.SITUATIONS", tuple(coarse))
+        return _output_of(["--out", str(folder), *size, "--json"])
+
+
+def _output_of(words):
+    result = CliRunner().invoke(study.situations, words)
     if HOW_TO_GET_VULKAN in result.output:
-        result = CliRunner().invoke(study.situations, ["--out", str(folder), "--no-pictures", "--json"])
+        result = CliRunner().invoke(study.situations, [*words, "--no-pictures"])
     assert result.exit_code == 0, result.output
     return result.stdout
 
