@@ -118,7 +118,11 @@ def _plot_table(path, picture, over, quantities) -> None:
             if quantities:
                 raise UsageError("--quantity does not go with --over load, which draws slip and life")
             _plot_over_load(path, picture, table)
-        elif "axes" not in table.about:
+        elif table.about and "axes" not in table.about:
+            raise UsageError(
+                f"{path}: the table of another study ({table.about.get('kind', 'unknown')}), not of a sweep; `bearing-sim report` shows it"
+            )
+        elif not table.about:
             raise UsageError(f"{path}: there is no .parquet beside it, so what was varied is not known; give --over load, or the .parquet")
         else:
             draw(picture, table, quantities or QUANTITIES)

@@ -334,12 +334,15 @@ EVENTS = {
     "input.not_finite": ("ERROR", "message refused: a value is not finite"),
     "input.not_stamped": ("ERROR", "message refused: it has no stamp, and no clock can stand in"),
     "input.publishers": ("WARN, ERROR", "several publishers of one input; ERROR if their values disagree"),
-    "input.rate": ("WARN", "messages arrive below `input_limits.minimum_rate` or above `maximum_rate`"),
+    "input.rate": (
+        "WARN",
+        "messages arrive below `input_limits.minimum_rate` or above `maximum_rate`; those of a log, at a third or three times its own rate",
+    ),
     "input.returned": ("OK", "the temperature of a ring is measured again; the measured one is used"),
     "input.stale": (
         "WARN",
-        "no message for longer than `input_limits.stale_after`, of temperatures than ten times that; the last value is used, for the temperature "
-        "of a ring that of the model",
+        "no message for longer than `input_limits.stale_after`, of temperatures than ten times that, in a slower log than three of its spacings; the "
+        "last value is used, for the temperature of a ring that of the model",
     ),
     "input.stamp_not_finite": ("ERROR", "message refused: its stamp is not finite"),
     "input.time_backwards": ("ERROR", "message refused: its stamp lies before the last one"),
