@@ -380,3 +380,17 @@ def test_estimated_sizes_follow_the_roller():
 def test_flanges_that_do_not_fit_are_refused(flanges, message):
     with pytest.raises(SceneError, match=message):
         load_scene("deng2017_table1", [f"bearing.flanges={flanges}"])
+
+
+def test_a_bearing_by_designation_has_the_flanges_of_its_type_and_gives_them_up_where_the_file_says_so():
+    tree = {"name": "x", "lubricant": {"oil": "ISO VG 68"}, "operating": {"shaft_speed": "3000 rpm", "radial_load": "5 kN"}}
+    sides = {}
+    for kind in ("N", "NU", "NJ", "NUP"):
+        bearing = load_scene({**tree, "bearing": f"{kind} 210"}).bearing
+        sides[kind] = bearing.flanges.inner, bearing.flanges.outer
+        assert "flanges.end_clearance" in {each.field for each in bearing.estimated}
+    assert sides == {"N": ("both", "none"), "NU": ("none", "both"), "NJ": ("one", "both"), "NUP": ("both", "both")}
+    without = load_scene({**tree, "bearing": {"preset": "NUP 210", "flanges": {"inner": "none", "outer": "none"}}}).bearing
+    assert not without.flanges.present and "flanges.end_clearance" not in {each.field for each in without.estimated}
+    known = load_scene({**tree, "bearing": {"preset": "NUP 210", "flanges": {"end_clearance": "60 um"}}}).bearing
+    assert known.flanges.end_clearance == pytest.approx(60e-6) and "flanges.end_clearance" not in {each.field for each in known.estimated}

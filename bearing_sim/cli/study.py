@@ -389,9 +389,10 @@ def friction(scene_name, overrides, series, table, as_json):
 
     announce_compilation()
     if scene_name is None:
-        if overrides or series:
-            raise UsageError("--set and --series are for a SCENE; give one")
-        _friction_of_catalogue(table, as_json)
+        if series:
+            raise UsageError("--series is for a SCENE; give one")
+        with as_usage_error(SceneError):
+            _friction_of_catalogue(overrides, table, as_json)
         return
     with as_usage_error(SceneError):
         scene = load_scene(scene_name, overrides)
@@ -414,10 +415,10 @@ def friction(scene_name, overrides, series, table, as_json):
     print_table(title, [(name, f"{watts:.4g} W") for name, watts in rows])
 
 
-def _friction_of_catalogue(table, as_json) -> None:
+def _friction_of_catalogue(overrides, table, as_json) -> None:
     from bearing_sim.studies.friction import moment_table, thermal_speeds
 
-    found, speeds = moment_table(), thermal_speeds()
+    found, speeds = moment_table(overrides=overrides), thermal_speeds(overrides=overrides)
     rows = [{**one._asdict(), "simple": one.simple, "ratio": one.ratio, "reason": one.reason} for one in found]
     if table is not None:
         with as_file_error():

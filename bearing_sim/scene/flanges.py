@@ -11,6 +11,7 @@ corner radius of ``CORNER`` times the roller's diameter (*assumptions*; `uncerta
 """
 
 import math
+from collections.abc import Mapping
 from typing import Literal, NamedTuple
 
 from bearing_sim.scene.quantity import quantity, record
@@ -67,6 +68,11 @@ class FlangeGeometry(NamedTuple):
     corner_radius: float
 
 
+def estimated_clearance(roller_length: float) -> float:
+    """Return the end clearance of a roller [m] where none is known, by ``CLEARANCE``."""
+    return CLEARANCE[0] + CLEARANCE[1] * roller_length
+
+
 def flange_geometry(bearing) -> FlangeGeometry:
     """Return the dimensions of a bearing's flanges and roller ends, with estimates for what the scene leaves out."""
     flanges, roller = bearing.flanges, bearing.roller
@@ -74,7 +80,7 @@ def flange_geometry(bearing) -> FlangeGeometry:
     return FlangeGeometry(
         bearing.inner_raceway.radius + HEIGHT * roller.diameter if inner is None else inner,
         bearing.outer_raceway.low_radius - HEIGHT * roller.diameter if outer is None else outer,
-        CLEARANCE[0] + CLEARANCE[1] * roller.length if flanges.end_clearance is None else flanges.end_clearance,
+        estimated_clearance(roller.length) if flanges.end_clearance is None else flanges.end_clearance,
         CORNER * roller.diameter if flanges.corner_radius is None else flanges.corner_radius,
     )
 
@@ -85,7 +91,7 @@ def flange_errors(bearing) -> list[str]:
     if not flanges.present:
         of_flanges = "inner_radius", "outer_radius", "end_clearance", "corner_radius", "end_radius"
         given = [name for name in of_flanges if getattr(flanges, name) is not None]
-        return [f"flanges.{name}: neither ring has flanges; say which has them (inner, outer: one or both), or leave it out" for name in given]
+        return [f"flanges.{name}: neither ring has flanges; say which has them (inner, outer: one or both), or leave it out (null)" for name in given]
     size, roller = flange_geometry(bearing), bearing.roller
     if size.corner_radius >= 0.5 * roller.diameter:
         errors.append(
@@ -99,7 +105,7 @@ def flange_errors(bearing) -> list[str]:
     for ring, height, where, raceway, sign in sides:
         radius, present = getattr(size, f"{ring}_radius"), getattr(flanges, ring) != "none"
         if getattr(flanges, f"{ring}_radius") is not None and not present:
-            errors.append(f"flanges.{ring}_radius: the {ring} ring has no flanges; set {ring}: one or both, or leave it out")
+            errors.append(f"flanges.{ring}_radius: the {ring} ring has no flanges; set {ring}: one or both, or leave it out (null)")
         elif present and not size.corner_radius < height < 0.5 * roller.diameter - _CLOSE:
             low, high = sorted((1e3 * (raceway + sign * size.corner_radius), 1e3 * (raceway + sign * 0.5 * roller.diameter)))
             errors.append(
@@ -116,6 +122,23 @@ def flange_errors(bearing) -> list[str]:
                     f"{1e3 * high / slope:.6g} mm"
                 )
     return errors
+
+
+def drop_absent_flanges(preset: dict, given: Mapping) -> None:
+    """Remove from a preset's flanges the sizes of those that the file takes away, in place.
+
+    Parameters
+    ----------
+    preset : block ``flanges`` of the preset; modified.
+    given : block ``flanges`` of the file.
+    """
+    sides = {ring: given.get(ring, preset.get(ring, "none")) for ring in ("inner", "outer")}
+    for ring in sides:
+        if sides[ring] == "none":
+            preset.pop(f"{ring}_radius", None)
+    if set(sides.values()) == {"none"}:
+        for name in ("end_clearance", "corner_radius", "end_radius"):
+            preset.pop(name, None)
 
 
 def axial_errors(scene) -> list[str]:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from bearing_sim.scene.designation import Designation, DesignationError, MakersRow, makers_rows, parse_designation, roller_counts
-from bearing_sim.scene.flanges import HEIGHT
+from bearing_sim.scene.flanges import HEIGHT, estimated_clearance
 from bearing_sim.scene.quantity import to_si
 
 STEEL_DENSITY = 7850.0
@@ -450,7 +450,12 @@ def bearing_tree(designation: Designation | str) -> dict[str, Any]:
         cage, estimates = cage_tree(name, space, "outer_ring" if OUTER_FLANGES[designation.type] else "inner_ring")
         guide = "rollers" if cage["guidance"] == "roller" else cage["guidance"].replace("_", " ")
         made = f"cage {name}, {cage['material']}, guided by the {guide}"
-    estimated = [*section.estimated, _estimate("inner_raceway.ring_mass", "solid ring with its flanges; within 8 %", 0.92, 1.08), *estimates]
+    estimated = [
+        *section.estimated,
+        _estimate("inner_raceway.ring_mass", "solid ring with its flanges; within 8 %", 0.92, 1.08),
+        _estimate("flanges.end_clearance", "15 um and 0.003 of the rollers' length; assumption", 0.5, 2.0),
+        *estimates,
+    ]
     tree: dict[str, Any] = {
         "name": designation.text,
         "designation": designation.text,
@@ -485,6 +490,7 @@ def _flanges_tree(designation: Designation, section: Section) -> dict[str, Any]:
         tree["inner_radius"] = round(section.inner_flange / 2.0, 6)
     if outer:
         tree["outer_radius"] = round(section.outer_flange / 2.0, 6)
+    tree["end_clearance"] = round(estimated_clearance(section.roller_length), 7)
     return tree
 
 

@@ -21,6 +21,7 @@ from bearing_sim.scene.designation import DesignationError, is_designation
 from bearing_sim.scene.diameters import ROUND_RACEWAY, diameters, forget_counterpart, gives_round_raceway, override_by_radius, with_radii
 from bearing_sim.scene.errors import InvalidField, SceneError, did_you_mean
 from bearing_sim.scene.fidelity import choose
+from bearing_sim.scene.flanges import drop_absent_flanges
 from bearing_sim.scene.internal_dimensions import CAGE_RULES, bearing_tree, with_cage_of_kind
 from bearing_sim.scene.lubricant_names import keep_one_lubricant, with_named_lubricants
 from bearing_sim.scene.quantity import SPEED, to_si
@@ -430,6 +431,9 @@ def _with_presets(tree: Mapping) -> tuple[dict, list[InvalidField]]:
         cage = bearing.get("cage")
         if isinstance(cage, Mapping) and "cage" in preset:
             drop_other_lands(preset["cage"], cage)
+        flanges = bearing.get("flanges")
+        if isinstance(flanges, Mapping) and "flanges" in preset:
+            drop_absent_flanges(preset["flanges"], flanges)
         given = {key: value for key, value in bearing.items() if key != "preset"}
         tree["bearing"] = _merged(preset, given)
         if "estimated" in preset and "estimated" not in given:

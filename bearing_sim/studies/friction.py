@@ -17,7 +17,7 @@ from bearing_sim.levels.steady.operating_point import ANSWER
 from bearing_sim.levels.steady.table_builder import solve_points
 from bearing_sim.model.params import lubricate, pack
 from bearing_sim.physics.drag import bath_moment
-from bearing_sim.scene.loader import scene_from_mapping
+from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.scene import Scene
 
 LOADS = (0.02, 0.05, 0.1, 0.2)  # of C_0
@@ -121,11 +121,11 @@ def skf_moment(series: str, dimensions: Dimensions, speed: float, load: float, v
     return rolling + sliding + 1e3 * drag
 
 
-def bath_scene(name: str) -> Scene:
-    """Return a catalogue bearing under the reference conditions of ISO 15312 but for speed and load."""
+def bath_scene(name: str, overrides: Sequence[str] = ()) -> Scene:
+    """Return a catalogue bearing under the reference conditions of ISO 15312 but for speed and load; ``overrides`` as of `load_scene`."""
     lubricant = {"oil": _OIL, "temperature": TEMPERATURE, "supply": "oil_bath", "traction": {"law": "eyring"}}
     operating = {"shaft_speed": f"{SLOWEST} rpm", "radial_load": "1 kN"}
-    return scene_from_mapping({"name": name, "level": "steady", "bearing": name, "lubricant": lubricant, "operating": operating}, name)
+    return load_scene({"name": name, "level": "steady", "bearing": name, "lubricant": lubricant, "operating": operating}, overrides)
 
 
 def bearings() -> list[str]:
@@ -227,17 +227,18 @@ def moments(scene: Scene, series: str, conditions: Sequence[tuple[float, float]]
     return found
 
 
-def moment_table(progress: Callable[[str], None] = lambda name: None) -> list[Moment]:
+def moment_table(progress: Callable[[str], None] = lambda name: None, overrides: Sequence[str] = ()) -> list[Moment]:
     """Return the moments of all catalogue bearings from 0.02 to 0.2 C_0 and from 500 rpm to the reference speed.
 
     Parameters
     ----------
     progress : called with the name of each bearing.
+    overrides : of every scene, see `load_scene`.
     """
     found = []
     for name in bearings():
         progress(name)
-        scene = bath_scene(name)
+        scene = bath_scene(name, overrides)
         reference, static = scene.bearing.ratings.reference_speed / _RPM, scene.bearing.ratings.static
         speeds = [SLOWEST, *(fraction * reference for fraction in SPEEDS)]
         found += moments(scene, series_of(name), [(speed, load * static) for speed in speeds for load in LOADS])
@@ -264,14 +265,14 @@ class ThermalSpeed(NamedTuple):
     nke: float  # as NKE prints, NaN where it prints none
 
 
-def thermal_speeds(progress: Callable[[str], None] = lambda name: None) -> list[ThermalSpeed]:
+def thermal_speeds(progress: Callable[[str], None] = lambda name: None, overrides: Sequence[str] = ()) -> list[ThermalSpeed]:
     """Return the thermal reference speeds of all catalogue bearings; parameters as of `moment_table`."""
     from scipy.optimize import brentq
 
     found = []
     for name in bearings():
         progress(name)
-        scene, series = bath_scene(name), series_of(name)
+        scene, series = bath_scene(name, overrides), series_of(name)
         dimensions, printed = dimensions_of(scene), scene.bearing.ratings.reference_speed / _RPM
         load = REFERENCE_LOAD * scene.bearing.ratings.static
         level = 500.0 * scene.bearing.roller.diameter
