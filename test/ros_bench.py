@@ -26,7 +26,7 @@ PATIENCE = 30.0  # [s] how long to wait for what should come at once: the machin
 _COMPILING = 100.0  # [s] how long the node may take to its start when its code has to be compiled
 _REPOSITORY = Path(__file__).resolve().parent.parent
 _NODE = "bearing_sim.ros.node"
-_PRELOADED = [_NODE, "bearing_sim.ros.player"]
+_PRELOADED = [_NODE, "bearing_sim.ros.player", "loaded_model"]
 
 
 _DOMAINS = list(range(1, 101))  # higher ones collide with ports that the system hands out
@@ -56,7 +56,7 @@ def _inhabited(domain: int) -> bool:
 class NodeProcess:
     """``python -m MODULE ARGUMENTS`` under a watchdog that kills it, with everything it prints kept in a file.
 
-    It is forked from a process that has imported what nodes need, unless it gets an environment of its own or is ``from_scratch``.
+    It is forked from a process that has imported what nodes need and loaded their compiled code, unless it gets an environment of its own or is ``from_scratch``.
     """
 
     _server = None
@@ -74,7 +74,7 @@ class NodeProcess:
                 self.process = subprocess.Popen(command, env=environment, stdout=log, stderr=subprocess.STDOUT, cwd=folder)
             else:
                 if NodeProcess._server is None:
-                    NodeProcess._server = PreloadingServer(_PRELOADED, [_REPOSITORY])
+                    NodeProcess._server = PreloadingServer(_PRELOADED, [_REPOSITORY, _REPOSITORY / "test"])
                 self.process = NodeProcess._server.start(module, *arguments, output=log, folder=folder, environment=environment, limit=limit)
 
     def end(self, number: int = signal.SIGTERM) -> int:

@@ -209,7 +209,7 @@ def test_course_over_2_ms_is_that_of_an_explicit_method_of_order_8_and_comes_nea
 @pytest.mark.parametrize("guidance", ["outer_ring", "inner_ring", "roller"])
 @pytest.mark.parametrize("start", ["as it comes", "cage thrown against what guides it, rollers against their pockets"])
 def test_energy_and_momentum_are_kept(start, guidance):
-    reference, duration = Reference(guidance=guidance), 2e-4
+    reference, duration = Reference(guidance=guidance), 1e-4
     guided = [f"bearing.cage.guidance={guidance}", "bearing.cage.outer_radius=33.35 mm"]
     run = simulation(*tolerance_overrides(1e-3), *guided)
     run.advance(5e-3)

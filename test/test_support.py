@@ -139,7 +139,7 @@ def test_books_of_energy_close_with_the_support(level, variant):
         assert free == (by_unbalance == 0.0)
 
 
-def test_course_over_a_millisecond_is_that_of_bodies_in_coordinates_that_do_not_move():
+def test_course_over_half_a_millisecond_is_that_of_bodies_in_coordinates_that_do_not_move():
     reference, run = carried("planar", "shaft and outer ring")
     speed = reference.planar.shaft_speed
 
@@ -150,11 +150,11 @@ def test_course_over_a_millisecond_is_that_of_bodies_in_coordinates_that_do_not_
     size = run._state.size
     absolute = np.full(size, 1e-12)
     with np.errstate(all="ignore"):
-        expected = solve_ivp(rate, (0.0, 1e-3), run._state.copy(), "DOP853", rtol=1e-9, atol=absolute, first_step=1e-8).y[:, -1]
+        expected = solve_ivp(rate, (0.0, 5e-4), run._state.copy(), "DOP853", rtol=1e-9, atol=absolute, first_step=1e-8).y[:, -1]
     fine = simulation("planar", *VARIANTS["shaft and outer ring"][1], *tolerance_overrides(1e-3))
-    fine.advance(1e-3)
+    fine.advance(5e-4)
     error = np.abs(fine._state - expected)
-    assert error[-8:-4].max() < 1e-9 and error[-4:].max() < 3e-5 and error[0:2].max() < 1e-9
+    assert error[-8:-4].max() < 5e-10 and error[-4:].max() < 2e-5 and error[0:2].max() < 1e-9
     moved = np.abs(expected - run._state)
     assert moved[-8:-4].min() > 3e-8  # all of them move
 
