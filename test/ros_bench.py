@@ -56,7 +56,8 @@ def _inhabited(domain: int) -> bool:
 class NodeProcess:
     """``python -m MODULE ARGUMENTS`` under a watchdog that kills it, with everything it prints kept in a file.
 
-    It is forked from a process that has imported what nodes need and loaded their compiled code, unless it gets an environment of its own or is ``from_scratch``.
+    It is forked from a process that has imported what nodes need and loaded their compiled code, unless it gets an environment of its
+    own or is ``from_scratch``.
     """
 
     _server = None
