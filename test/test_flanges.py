@@ -22,11 +22,13 @@ from bearing_sim.levels.spatial.state import SLICED as SLICED_ROW
 from bearing_sim.levels.steady.operating_point import ANSWER
 from bearing_sim.levels.steady.table_builder import solve_points
 from bearing_sim.model.params import pack
+from bearing_sim.model.sample import new_block
 from bearing_sim.numerics.linear_algebra import ARROW
 from bearing_sim.numerics.simd import by_roller as lanes_by_roller
 from bearing_sim.physics.flange import end_integrals, flange_friction, rim_corner, rub, shear
 from bearing_sim.physics.load_balance import LOAD
 from bearing_sim.scene.flanges import flange_geometry
+from bearing_sim.studies.losses import repeats
 
 NUP = ["bearing.flanges={inner: both, outer: both, end_clearance: 20 um}"]
 NU, N = ["bearing.flanges={outer: both}"], ["bearing.flanges={inner: both}"]
@@ -394,3 +396,11 @@ def test_a_bearing_by_designation_has_the_flanges_of_its_type_and_gives_them_up_
     assert not without.flanges.present and "flanges.end_clearance" not in {each.field for each in without.estimated}
     known = load_scene({**tree, "bearing": {"preset": "NUP 210", "flanges": {"end_clearance": "60 um"}}}).bearing
     assert known.flanges.end_clearance == pytest.approx(60e-6) and "flanges.end_clearance" not in {each.field for each in known.estimated}
+
+
+def test_friction_of_a_bearing_whose_rollers_slip_and_catch_up_is_a_mean_over_more_than_a_pitch():
+    pitch = new_block(2, 18)
+    pitch["shaft_power"], pitch["flange_power"] = 100.0, 99.0
+    assert repeats(pitch)
+    pitch["flange_power"] = 110.0
+    assert not repeats(pitch)

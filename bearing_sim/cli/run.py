@@ -178,9 +178,17 @@ def _advance(simulation, plan, sinks, progress):
     return advance_until_settled(simulation, plan.shortest, plan.longest, advance)
 
 
+def _losses(level, window, pitch) -> dict:
+    """Return the report of losses: over a pitch, with which motion repeats at the lower levels, unless rollers slip and catch up there."""
+    from bearing_sim.studies.losses import loss_report, repeats
+
+    if level not in ("steady", "slip"):
+        return loss_report(window)
+    return loss_report(pitch) if repeats(pitch) else loss_report(window, by_losses=True)
+
+
 def _report(simulation, outcome, wall, start_up) -> dict:
     from bearing_sim.studies.clearance import clearance_report
-    from bearing_sim.studies.losses import loss_report
     from bearing_sim.studies.rating import life_report
 
     window, pitch, last = outcome.window, outcome.pitch, outcome.window[-1]
@@ -204,7 +212,7 @@ def _report(simulation, outcome, wall, start_up) -> dict:
         **life_report(simulation.scene, window),
         "damage": float(last["damage"]),
         "cage_speed_rpm": float(window["cage_speed"].mean()) * 30 / math.pi,
-        **loss_report(pitch if simulation.scene.level in ("steady", "slip") else window),  # loads repeat with the pitch unless rollers vibrate
+        **_losses(simulation.scene.level, window, pitch),
         "inner_load_maximum": float(pitch["inner_load"].max()),
         "outer_load_maximum": float(pitch["outer_load"].max()),
         "inner_pressure_maximum_mpa": pressure("inner_pressure"),
