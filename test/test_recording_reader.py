@@ -6,9 +6,11 @@ import pytest
 from recordings import steady_log, truncated
 from synthetic_run import synthetic_block
 
+from bearing_sim.messages.cdr import typestore
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.recording.bag import RecordingError
-from bearing_sim.recording.reader import ROWS_PER_BLOCK, Recording
+from bearing_sim.recording.mcap_format import Message
+from bearing_sim.recording.reader import ROWS_PER_BLOCK, Recording, _Samples
 from bearing_sim.recording.writer import McapSink
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.simulation import Inputs
@@ -129,3 +131,26 @@ def test_other_files_are_refused(tmp_path, content):
         Recording(tmp_path / "run.mcap")
     with pytest.raises(RecordingError, match="no such file"):
         Recording(tmp_path / "absent.mcap")
+
+
+def _array_message(label, numbers):
+    store = typestore()
+    dimension = store.types["std_msgs/msg/MultiArrayDimension"](label=label, size=len(numbers), stride=len(numbers))
+    layout = store.types["std_msgs/msg/MultiArrayLayout"](dim=[dimension], data_offset=0)
+    array = store.types["std_msgs/msg/Float64MultiArray"](layout=layout, data=np.array(numbers, float))
+    return bytes(store.serialize_cdr(array, "std_msgs/msg/Float64MultiArray"))
+
+
+def test_arrays_of_earlier_versions_lack_their_last_rows_and_others_are_refused():
+    def read(label, numbers):
+        samples = _Samples(load_scene("deng2017_table1"), 0)
+        for topic, data in (("/operating_point", _array_message(label, numbers)), ("/roller_loads", _array_message("ring", np.ones(36)))):
+            assert not list(samples.blocks_with(topic, Message(1, 0, 10, 10, data)))
+        return samples.take()[0]
+
+    found = read("load y, z, oil temperature, land eccentricity", [1.0, 2.0, 300.0, 0.5])
+    assert [found[name] for name in ("load_y", "load_z", "oil_temperature", "land_eccentricity")] == [1.0, 2.0, 300.0, 0.5]
+    assert np.isnan(found["flange_load"]) and np.isnan(found["inner_flange_force"])
+    for label, numbers in (("temperature, load", [1.0, 2.0, 300.0, 0.5]), ("load y", np.ones(8))):
+        with pytest.raises(RecordingError, match="/operating_point has"):
+            read(label, numbers)

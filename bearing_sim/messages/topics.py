@@ -123,6 +123,8 @@ def _bearing_joints(stamp_ns: int, sample) -> dict:
 class ArrayRows(NamedTuple):
     """The rows of a std_msgs/Float64MultiArray: observables one after the other, each one number or one for each roller.
 
+    New rows, and their words in the label, are appended, so that recordings of earlier versions can be read.
+
     Attributes
     ----------
     label : of the array's first dimension; names its rows in order.

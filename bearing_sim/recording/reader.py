@@ -44,6 +44,7 @@ _TYPES = {topic: kind.ros_type for topic, kind in _SAMPLE_TOPICS.items()} | {
 _TYPES[f"/{DIAGNOSTICS[0]}"] = DIAGNOSTICS[1]
 _RECEIVED = {f"/{name}" for name in (*INPUTS, *MEASUREMENTS)}
 _LAST_OF_SAMPLE = "/roller_loads"
+_LABEL = 12  # first byte of the first label in a serialised Float64MultiArray
 _OF_TILTING_LEVELS = tuple(field for name, topic in OUTPUTS.items() if topic.of_tilting_levels for field in ARRAYS[name].fields)
 
 
@@ -284,13 +285,24 @@ class _Samples:
             own = sample_columns(_SAMPLE_TOPICS[topic], self._scene.bearing.roller.count)
             for field in layout.numbers:
                 belong = own.get(field.path, np.full(field.count, -1))  # no sample has torques of joints
-                if field.count != len(belong):
+                if field.count != len(belong) and not self._is_of_earlier_version(topic, row[begin:].tobytes(), field.count):
                     raise RecordingError(f"a message on {topic} has {field.count} numbers; expected {len(belong)} by the scene")
-                columns.append(belong)
+                columns.append(belong[: field.count])
             layouts.append((begin, layout))
         belong = np.concatenate(columns)
         known = np.flatnonzero(belong >= 0)
         return belong[known], known, NumberColumns(row, layouts)
+
+    def _is_of_earlier_version(self, topic: str, data: bytes, count: int) -> bool:
+        """Whether an array has the first rows of today's and no others: versions append rows, and what a recording lacks is not known (NaN)."""
+        name = topic.removeprefix("/")
+        if name not in ARRAYS:
+            return False
+        dtype = self._block.dtype
+        widths = np.cumsum([dtype[field].itemsize // dtype["time"].itemsize for field in ARRAYS[name].fields])
+        dimensions, length = np.frombuffer(data, "<u4", 2, _LABEL - 8)  # a sequence of dimensions begins with the text of the first one's label
+        label = data[_LABEL : _LABEL + int(length) - 1].decode(errors="replace")
+        return bool(dimensions) and count in widths and ARRAYS[name].label.startswith(label)
 
     def _begin(self, log_ns: np.ndarray) -> np.ndarray:
         """Begin samples, of which only the time is known, and return their numbers."""
