@@ -104,15 +104,15 @@ def events(client, code):
 
 
 def test_a_log_played_at_any_rate_with_a_pause_and_again_is_what_its_replay_is(bench, log, tmp_path):
-    """First at rate 0.2 with a pause, then, after the clock's jump back, at rate 10: topics to 1e-9, recordings to the byte."""
+    """First at rate 0.25 with a pause, then, after the clock's jump back, at rate 10: topics to 1e-9, recordings to the byte."""
     start, client, player = bench
     path, offline = log
     node = start(f"record:={tmp_path / 'run.mcap'}")
     client.spin_until(lambda: events(client, "clock.absent"), "the node says that there is no clock", node, 100.0)
     expected, joints_of = joints(offline), client.received["bearing_joints"]
 
-    # Six seconds long, so that the request for a pause comes in time on a busy machine too.
-    slow = player(path, "--clock", 10, "--rate", 0.2, "--wait-until-used", 60)
+    # Five seconds long, so that the request for a pause comes in time on a busy machine too.
+    slow = player(path, "--clock", 10, "--rate", 0.25, "--wait-until-used", 60)
     client.spin_until(lambda: len(joints_of) > 20, "the first outputs come", node, 60.0)
     _pause(client, slow, True)
     client.spin_until(lambda: events(client, "clock.stands_still"), "the pause is told", node)
@@ -120,9 +120,9 @@ def test_a_log_played_at_any_rate_with_a_pause_and_again_is_what_its_replay_is(b
     client.spin_until(
         lambda: len(client.received["diagnostics"]) > told and client.values()[CAUGHT_UP] == "True", "the node has caught up", node, 60.0
     )
-    client.spin(1.0)  # what is on its way
+    client.spin(0.5)  # what is on its way
     held = len(joints_of)
-    client.spin(1.0)
+    client.spin(0.5)
     assert len(joints_of) == held < len(expected) and slow.process.poll() is None and not events(client, "input.stale")
     _pause(client, slow, False)
     played(client, node, slow)
