@@ -1195,7 +1195,7 @@ LAWS = (
     Law(
         "flange_axial_ratio",
         "validity.axial_load",
-        "axial load on flanges, shared evenly by rollers that stay straight",
+        "axial load on flanges, shared by the rollers as the radial load is",
         "the axial over the radial load, F_a/F_r",
         "",
         -math.inf,
