@@ -133,6 +133,7 @@ def _take_over(request: dict, files: list[int]) -> list[str]:
     os.environ.update(request["environment"])
     os.chdir(request["folder"])
     sys.path[0] = request["folder"]  # as `python -m` has it
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # a server that began in the background of a shell ignores it
     return request["words"]
 
 
