@@ -7,12 +7,12 @@ import pytest
 
 import bearing_sim
 
-_FOLDER = Path(bearing_sim.__file__).resolve().parents[2] / "shared" / "data"
+FOLDER = Path(bearing_sim.__file__).resolve().parents[2] / "shared" / "data"
 
 
 def measured_file(name: str) -> Path:
     """Return the path of a measured file; a test without it is skipped and says so."""
-    path = _FOLDER / name
+    path = FOLDER / name
     if not path.exists():
         pytest.skip(f"the measured data {name} are not redistributable and not here; expected in ../shared/data beside the repository")
     return path

@@ -2,17 +2,15 @@
 """Claims about guessed mappings: a guess is what was meant and says why; what may mean two things is asked for with the option that decides."""
 
 import json
-from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
+from measured_data import measured_file
 
-import bearing_sim
 from bearing_sim.cli.main import main
 from bearing_sim.inputs.csv_guess import guess
 from bearing_sim.inputs.csv_import import TableError, mapping_from_yaml, read_table
 
-SHARED = Path(bearing_sim.__file__).resolve().parents[2] / "shared" / "data"
 GERMAN = (
     "# Prüfstand 7\n# Ausfuhr\nZeit;Drehzahl [U/min];Last (kN);T_Öl/°C;\n01.02.2026 00:00:00;1500;1,5;60,2;\n01.02.2026 00:00:01;1501;1,6;60,3;\n"
 )
@@ -155,9 +153,7 @@ def test_the_command_prints_and_writes_the_guess_and_fails_where_something_is_to
 
 
 def test_of_two_turbines_in_one_table_one_has_to_be_chosen():
-    path = SHARED / "wind_scada_HMR_july2023.csv"
-    if not path.is_file():
-        pytest.skip(f"the measured data {path.name} are not redistributable and not here; expected in ../shared/data beside the repository")
+    path = measured_file("wind_scada_HMR_july2023.csv")
     found = guess(path)
     assert found.tree["shaft_speed"] == {"column": "GenRpmMean", "unit": "rpm"} and found.tree["time"]["format"] == "iso"
     assert "--only TurbineName=HMR_T01" in found.questions["only"] and "gear_force" in found.questions["radial_load"]

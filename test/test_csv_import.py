@@ -4,13 +4,12 @@
 import csv
 import json
 import math
-from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
 from mcap.reader import make_reader
+from measured_data import measured_file
 
-import bearing_sim
 from bearing_sim.cli.main import main
 from bearing_sim.inputs.csv_import import METADATA, TableError, load_mapping, mapping_from_yaml, read_table, write_log
 from bearing_sim.inputs.log import read_input_log
@@ -22,7 +21,6 @@ shaft_speed: {column: n, unit: rpm}
 radial_load: {law: sum, columns: [{column: f, unit: N}]}
 """
 EPOCH = 1_577_836_800_000_000_000
-SHARED = Path(bearing_sim.__file__).resolve().parents[2] / "shared" / "data"
 
 
 def table_of(tmp_path, text, mapping=MAPPING):
@@ -224,9 +222,7 @@ def test_command_leaves_nothing_behind_on_bad_input(tmp_path):
 
 
 def measured(name):
-    path = SHARED / name
-    if not path.is_file():
-        pytest.skip(f"the measured data {name} are not redistributable and not here; expected in ../shared/data beside the repository")
+    path = measured_file(name)
     with open(path, newline="") as stream:
         return path, list(csv.DictReader(stream))
 

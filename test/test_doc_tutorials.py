@@ -14,6 +14,7 @@ from pathlib import Path
 
 import preloaded
 import pytest
+from measured_data import FOLDER, measured_file
 
 ROOT = Path(__file__).resolve().parents[1]
 DOC = ROOT / "doc"
@@ -22,7 +23,7 @@ SOURCES = [ROOT / "README.md", DOC / "python_api.md", *DOC.glob("tutorials/*.md"
 PAGES = sorted(path.relative_to(ROOT).as_posix() for path in SOURCES)
 NOTEBOOKS = sorted(path.relative_to(ROOT).as_posix() for path in DOC.glob("tutorials/*.ipynb"))
 WIND = "doc/tutorials/wind_turbine.md"
-SCADA = ROOT.parent / "shared" / "data" / "wind_scada_HMR_july2023.csv"  # not redistributable
+SCADA = "wind_scada_HMR_july2023.csv"
 PROGRAMS = {"bearing-sim": "bearing_sim.cli", "bearing_node": "bearing_sim.ros.node", "bearing_player": "bearing_sim.ros.player"}
 
 # Imported ahead by the process that the programs are forked from: what most of them need.
@@ -61,7 +62,13 @@ def run(path, folder, server):
         client = f'"{sys.executable}" -I -S "{preloaded.__file__}" --run "{server.address}"'
         (programs / name).write_text(f'#!/bin/sh\nexec {client} {module} "$@"\n')
         (programs / name).chmod(0o755)
-    environment = {**os.environ, "PATH": f"{programs}:{os.environ['PATH']}", "PYTHONPATH": str(ROOT), "MPLBACKEND": "Agg", "WIND_SCADA": str(SCADA)}
+    environment = {
+        **os.environ,
+        "PATH": f"{programs}:{os.environ['PATH']}",
+        "PYTHONPATH": str(ROOT),
+        "MPLBACKEND": "Agg",
+        "WIND_SCADA": str(FOLDER / SCADA),
+    }
     words = [word for block in blocks(path) for word in block]
     done = subprocess.run(
         [sys.executable, "-c", _DRIVER, *words], cwd=folder, env=environment, capture_output=True, text=True, timeout=900, check=False
@@ -75,8 +82,8 @@ def run(path, folder, server):
 def test_the_blocks_of_a_page_run_in_an_empty_folder(page, tmp_path, server):
     pytest.importorskip("pandas", reason="pip install 'bearing_sim[tables]'")
     pytest.importorskip("xarray", reason="pip install 'bearing_sim[tables]'")
-    if page == WIND and not SCADA.is_file():
-        pytest.skip(f"the measured data {SCADA.name} are not redistributable and not here; expected in ../shared/data beside the repository")
+    if page == WIND:
+        measured_file(SCADA)
     printed = run(ROOT / page, tmp_path, server)
     if page == WIND:
         assert_printed(ROOT / page, printed)

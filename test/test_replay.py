@@ -9,7 +9,6 @@ import sys
 import time
 from collections import defaultdict
 from itertools import islice
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,9 +16,9 @@ from click.testing import CliRunner
 from fake_simulation import FakeSimulation
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
+from measured_data import measured_file
 from recordings import steady_log, write_log
 
-import bearing_sim
 from bearing_sim.cli.main import main
 from bearing_sim.inputs.log import read_input_log
 from bearing_sim.inputs.profile import judge
@@ -357,9 +356,7 @@ def test_given_up_run_exits_1_with_a_finished_file(tmp_path, monkeypatch):
 @pytest.mark.timeout(300)
 def test_a_minute_of_the_measured_flight_replays_whole(tmp_path):
     """Through import and replay; speed and load at the end against the table's own numbers."""
-    source = Path(bearing_sim.__file__).resolve().parents[2] / "shared" / "data" / "citation_flight_20190312_n1_n2_acc.csv"
-    if not source.is_file():
-        pytest.skip("the measured flight is not redistributable and not here; expected in ../shared/data beside the repository")
+    source = measured_file("citation_flight_20190312_n1_n2_acc.csv")
     with open(source) as stream:
         lines = list(islice(stream, 601))
     (tmp_path / "minute.csv").write_text("".join(lines))
