@@ -90,8 +90,7 @@ def test_a_bag_of_a_killed_run_is_read_up_to_its_unfinished_part(tmp_path):
     sink = McapSink(tmp_path / "run", SCENE, START, limits=Limits(part_duration=1.0))
     write(sink)
     sink.flush()
-    wait_for(lambda: (tmp_path / "run" / "metadata.yaml").exists())
-    assert (tmp_path / "run" / "run_3.mcap.active").exists()
+    wait_for(lambda: all((tmp_path / "run" / name).exists() for name in ("metadata.yaml", "run_3.mcap.active")))
     recording = Recording(tmp_path / "run")
     assert recording.samples == len(RUN) and "run_3.mcap.active ends early" in recording.unfinished
     sink.close()

@@ -120,12 +120,23 @@ def command_line() -> str:
     return shlex.join(["bearing-sim", *click.get_current_context().meta.get(ARGUMENTS, ())])
 
 
-def announce_compilation() -> None:
-    """Announce on stderr that compiling will take a while, if this version of the model has not been compiled yet."""
+def announce_compilation(scene=None) -> None:
+    """Announce on stderr that compiling will take a while, if this version of the model has not been compiled yet.
+
+    Parameters
+    ----------
+    scene : that is going to begin in thermal equilibrium if it has a thermal network: its level and the search are then compiled side by side.
+    """
     from bearing_sim.numerics.compilation import CACHE_FOLDER
 
-    if not any(CACHE_FOLDER.rglob("*.nbi")):
-        click.echo("compiling the model, once per version: about 20 s ...", err=True)
+    if any(CACHE_FOLDER.rglob("*.nbi")):
+        return
+    click.echo("compiling the model, once per version: about half a minute ...", err=True)
+    if scene is not None and scene.heat.law == "network":
+        from bearing_sim.runtime.precompilation import Build, compile_all
+
+        for _ in compile_all([Build(scene.level), Build("slip", equilibrium=True)]):
+            pass
 
 
 def announce_replacement(out: Path) -> None:

@@ -97,7 +97,7 @@ def run(scene_name, overrides, duration, at_most, level, rate, out, rrd, uncerta
         until = "" if seconds else f" until it has settled, at most {plan.longest:.4g} s"
         progress = stack.enter_context(progress_bar(f"running {scene.name}{until}", plan.longest))
         started = time.perf_counter()
-        announce_compilation()
+        announce_compilation(scene)
         simulation = Simulation(scene)
         simulation.advance(1e-6)  # compile or load machine code, so that it is not timed with the run
         simulation.reset()

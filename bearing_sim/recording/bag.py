@@ -141,6 +141,7 @@ def to_yaml(tree) -> str:
     return yaml.dump(tree, Dumper=_PlainDumper, sort_keys=False)
 
 
+_RENAMED_MEANWHILE = 5  # times that a folder is listed again while a recorder completes its parts
 QOS_TEXT = to_yaml(QOS)
 """The same as YAML, for the metadata of a channel."""
 
@@ -162,6 +163,19 @@ def mcap_files(path: str | Path) -> list[Path]:
         return [path]
     if not path.is_dir():
         raise RecordingError(f"{path}: no such file or folder; expected an MCAP file or the folder of a bag")
+    files = _files_in(path)
+    for _ in range(_RENAMED_MEANWHILE):
+        if all(file.exists() for file in files if file.name.endswith(ACTIVE)):
+            break
+        files = _files_in(path)  # a recorder completed one, which then has another name
+    unusable = [file.name for file in files if not file.is_file() or ".mcap" not in file.name or file.suffix == ".zstd"]
+    if unusable or not files:
+        raise RecordingError(f"{path}: expected uncompressed .mcap files, {'cannot use ' + ', '.join(unusable) if unusable else 'found none'}")
+    return files
+
+
+def _files_in(path: Path) -> list[Path]:
+    """Return the files of a bag's folder in order, those that its metadata lists first."""
     index = path / "metadata.yaml"
     files = sorted([*path.glob("*.mcap"), *path.glob(f"*.mcap{ACTIVE}")], key=_by_number)
     if index.is_file():
@@ -172,9 +186,6 @@ def mcap_files(path: str | Path) -> list[Path]:
             raise RecordingError(f"{index}: not the metadata of a bag") from None
         # A killed recorder leaves files that are unfinished or not listed yet; they come last.
         files = named + [file for file in files if file.name.endswith(ACTIVE) or file.stem.startswith(f"{path.name}_") and file not in named]
-    unusable = [file.name for file in files if not file.is_file() or ".mcap" not in file.name or file.suffix == ".zstd"]
-    if unusable or not files:
-        raise RecordingError(f"{path}: expected uncompressed .mcap files, {'cannot use ' + ', '.join(unusable) if unusable else 'found none'}")
     return files
 
 

@@ -17,13 +17,14 @@ _SECONDS = 1e-4  # a run this short calls everything that has to be compiled
 
 
 class Build(NamedTuple):
-    """Something to compile: a level, with error control or in steps of a fixed size."""
+    """Something to compile: a level, with error control or in steps of a fixed size, or the search for thermal equilibrium in its place."""
 
     level: str
     fixed_step: bool = False
+    equilibrium: bool = False
 
     def __str__(self) -> str:
-        return self.level + (" in fixed steps" if self.fixed_step else "")
+        return "thermal equilibrium" if self.equilibrium else self.level + (" in fixed steps" if self.fixed_step else "")
 
     @property
     def overrides(self) -> list[str]:
@@ -70,8 +71,14 @@ def compile_all(wanted: Sequence[Build], workers: int | None = None) -> Iterator
 
 def _compile(build: Build) -> None:
     from bearing_sim.scene.loader import load_scene
-    from bearing_sim.simulation import Simulation
+    from bearing_sim.simulation import Simulation, scene_inputs
 
+    if build.equilibrium:
+        from bearing_sim.levels.steady.equilibrium import thermal_equilibrium
+
+        scene = load_scene("deng2017_table1_cold", build.overrides)
+        thermal_equilibrium(scene, scene_inputs(scene))
+        return
     simulation = Simulation(load_scene("deng2017_table1", build.overrides))
     simulation.advance(_SECONDS, simulation.inputs, 1)
 
