@@ -42,7 +42,7 @@ ROOMS = {
     "cli": ("click numpy pydantic_core rich", "scene numerics model levels simulation messages recording inputs runtime view sweep studies"),
     "ros": (
         "click launch launch_ros numpy rcl_interfaces rclpy rich rosgraph_msgs std_srvs",
-        "scene numerics simulation messages recording inputs monitoring runtime view",
+        "scene simulation messages recording inputs monitoring runtime view",
     ),
 }
 MOST_FLOORS = 10  # including launch_scripts, which import ros

@@ -1,10 +1,16 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Compiling beside the node: one thread for all jobs, none when there is nothing to do."""
 
+import os
+import subprocess
+import sys
 import threading
 import time
 
-from bearing_sim.ros.warm_up import WarmUp
+from bearing_sim.ros.warm_up import WarmUp, levels_to_compile
+from bearing_sim.runtime.live import governor_of
+from bearing_sim.scene.loader import load_scene
+from bearing_sim.simulation import Simulation
 
 
 def ended(warm_up):
@@ -34,3 +40,20 @@ def test_jobs_asked_for_while_one_runs_wait_and_can_be_forgotten():
     assert ended(warm_up) and done == []
     warm_up.request(lambda: done.append("later"))
     assert ended(warm_up) and done == ["later"]
+
+
+def test_levels_that_an_earlier_process_has_compiled_are_not_compiled_again():
+    scene = load_scene("deng2017_table1", ["level=planar"])
+    governor_of(Simulation(scene))
+    assert levels_to_compile(scene) == []
+
+
+def test_levels_are_compiled_where_the_cache_is_empty(tmp_path):
+    program = (
+        "from bearing_sim.ros.warm_up import levels_to_compile; from bearing_sim.scene.loader import load_scene; "
+        "print(levels_to_compile(load_scene('deng2017_table1', ['level=planar'])))"
+    )
+    environment = os.environ | {"XDG_CACHE_HOME": str(tmp_path)}
+    assert (
+        subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True, check=True).stdout == "['slip', 'steady']\n"
+    )

@@ -54,6 +54,14 @@ def template(function):
     return _compiled(function, inline="always")
 
 
+def is_cached(function: Callable) -> bool:
+    """Return whether some version of a compiled function is in the cache of this machine; False where numba is switched off."""
+    if not hasattr(function, "stats"):
+        return False
+    name = f"{function.__module__.rpartition('.')[2]}.{function.__name__}"
+    return any(Path(function.stats.cache_path).glob(f"{name}-*.nbi"))
+
+
 def compiled_for(function: Callable, arguments: Sequence) -> Callable:
     """Return the compiled version of a function for arguments of such types; the function itself where there is none.
 

@@ -8,8 +8,8 @@ import threading
 from collections import deque
 from collections.abc import Callable
 
-from bearing_sim.numerics.compilation import CACHE_FOLDER
 from bearing_sim.recording.priority import with_low_priority
+from bearing_sim.runtime.precompilation import is_compiled
 from bearing_sim.scene.fidelity import lower_levels
 from bearing_sim.scene.loader import scene_to_yaml
 from bearing_sim.scene.scene import Scene
@@ -78,7 +78,7 @@ class WarmUp:
 
 def levels_to_compile(scene: Scene) -> list[str]:
     """Return the levels of lower fidelity than a scene's own whose code is not in this version's cache."""
-    return [level for level in lower_levels(scene) if not any(CACHE_FOLDER.rglob(f"{level}.advance-*.nbi"))]
+    return [level for level in lower_levels(scene) if not is_compiled(level)]
 
 
 def start_compiling(scene: Scene) -> subprocess.Popen:

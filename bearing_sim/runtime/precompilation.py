@@ -32,6 +32,14 @@ class Build(NamedTuple):
         return [f"level={self.level}", *(["integration.fixed_step=10 us"] if self.fixed_step else [])]
 
 
+def is_compiled(level: str) -> bool:
+    """Return whether the cache of this version of the model holds the code of a level."""
+    from bearing_sim.levels.level import LEVELS
+    from bearing_sim.numerics.compilation import is_cached
+
+    return is_cached(LEVELS[level].advance)
+
+
 def builds(levels: Sequence[str], fixed_step: bool = False) -> list[Build]:
     """Return what to compile for some levels, the slowest to compile first so that no core is idle at the end.
 
