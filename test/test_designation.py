@@ -310,6 +310,23 @@ def test_what_is_given_of_a_cage_by_kind_is_no_estimate():
     assert given == later and given.cage.mass == 0.3 and "cage.mass" not in {each.field for each in given.estimated}
 
 
+@pytest.mark.parametrize("bearing", ["NU 210 MA", "{preset: NU 210, cage: MA}", "{preset: NU 210, cage: {preset: MA}}"])
+def test_another_kind_of_cage_has_nothing_of_the_one_that_the_bearing_comes_with(bearing):
+    one, other = (scene_from_yaml(SCENE.format(bearing=each, level="slip")).bearing for each in ("NU 210 MA", bearing))
+    assert other.cage == one.cage and {each.field for each in other.estimated} == {each.field for each in one.estimated}
+
+
+def test_a_cage_of_one_piece_is_guided_by_the_ring_that_has_flanges():
+    guided = {kind: scene_from_yaml(SCENE.format(bearing=f"{{preset: {kind} 210, cage: ML}}", level="slip")).bearing.cage for kind in ("NU", "N")}
+    assert {kind: cage.guidance for kind, cage in guided.items()} == {"NU": "outer_ring", "N": "inner_ring"}
+
+
+def test_a_scene_at_another_length_of_rollers_has_no_estimate_of_it():
+    made = scene_from_yaml(SCENE.format(bearing="NU 210", level="slip"))
+    given = made.at({"bearing.roller.length": "11 mm"}).bearing.estimated
+    assert {each.field for each in made.bearing.estimated} - {each.field for each in given} == {"roller.length"}
+
+
 @pytest.mark.parametrize(
     ("cage", "words"),
     [

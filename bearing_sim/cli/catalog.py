@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from bearing_sim.cli.options import json_option, level_type, picture_option
-from bearing_sim.cli.reporting import UsageError, as_file_error, as_usage_error, command_line, print_json, print_rows, print_table
+from bearing_sim.cli.reporting import UsageError, as_file_error, as_usage_error, command_line, print_json, print_rows, print_table, quantity_of
 
 _COLUMNS = ("designation", "d", "D", "B", "C [kN]", "C_0 [kN]", "C_u [kN]", "limiting speed [rpm]", "ratings by")
 _WORDS = ("designation", "ratings by")
@@ -26,7 +26,7 @@ def _read_range(context, option, text):
     if text is None:
         return None
     expected = "expected a length such as 50mm, or a range such as 50mm:80mm"
-    ends = [_quantity(f"--{option.name}", part, "m") for part in text.split(":")]
+    ends = [quantity_of(f"--{option.name}", part, "m") for part in text.split(":")]
     if len(ends) > 2 or ends[0] > ends[-1]:
         raise UsageError(f"--{option.name} {text}: {expected}")
     if ends[-1] > _LARGEST:
@@ -34,18 +34,9 @@ def _read_range(context, option, text):
     return ends[0], ends[-1]
 
 
-def _quantity(option: str, text: str, unit: str) -> float:
-    from bearing_sim.scene.quantity import to_si
-
-    try:
-        return to_si(text, unit)
-    except ValueError as error:
-        raise UsageError(f"{option} {text}: {error}") from None
-
-
 def _above_option(name: str, unit: str, meaning: str, example: str):
     def read(context, option, text):
-        return None if text is None else _quantity(name, text, unit)
+        return None if text is None else quantity_of(name, text, unit)
 
     return click.option(name, metavar="QUANTITY", callback=read, help=f"{meaning} of at least this, such as {example}.")
 

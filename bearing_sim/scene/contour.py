@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from bearing_sim.scene.quantity import to_si
+from bearing_sim.scene.tree import at
 
 FORM_FIELDS = ("low_radius", "d_value", "lobes", "roundness", "low_points", "high_points", "contour", "contour_file")
 UNREAD = "contour_file: its contents are missing; load_scene reads them"
@@ -335,8 +336,7 @@ def with_contour_text(tree: Mapping) -> tuple[dict, tuple[str, str] | None]:
 
     Only the name of the file is kept, not its path, so that recordings do not reveal the paths of the machine.
     """
-    tree, bearing = dict(tree), tree.get("bearing")
-    raceway = bearing.get("outer_raceway") if isinstance(bearing, Mapping) else None
+    tree, raceway = dict(tree), at(tree, "bearing.outer_raceway")
     raceway = dict(raceway) if isinstance(raceway, Mapping) else {}
     path = raceway.get("contour_file")
     if not isinstance(path, str) or raceway.get("contour") is not None:

@@ -15,6 +15,7 @@ from typing import NamedTuple
 from pydantic_core import PydanticCustomError
 
 from bearing_sim.scene.quantity import Quantity
+from bearing_sim.scene.tree import at
 from bearing_sim.scene.uncertainty import flattened, quantities
 
 ROUND_RACEWAY = "bearing.outer_raceway.diameter"
@@ -81,8 +82,7 @@ def with_radii(tree: Mapping, scene_type: type) -> tuple[dict, list[tuple[str, s
 
 def gives_round_raceway(tree: Mapping) -> bool:
     """Whether a tree gives the outer raceway by one diameter, which a raceway with lobes has not."""
-    raceway = _block_at(tree, ROUND_RACEWAY)
-    return raceway is not None and raceway.get("diameter") is not None
+    return at(tree, ROUND_RACEWAY) is not None
 
 
 def override_by_radius(path: str, value, scene_type: type) -> tuple[str, object]:
@@ -104,18 +104,12 @@ def forget_counterpart(block: dict, path: str, scene_type: type) -> None:
                 block.pop(other.rpartition(".")[2], None)
 
 
-def _block_at(tree: Mapping, path: str) -> Mapping | None:
-    node = tree
-    for name in path.split(".")[:-1]:
-        node = node.get(name) if isinstance(node, Mapping) else None
-    return node if isinstance(node, Mapping) else None
-
-
 def _diameters_in(tree: Mapping, scene_type: type) -> Iterator[tuple[str, Mapping]]:
     """Yield path and block of every diameter in a tree."""
     for path in diameters(scene_type):
-        block = _block_at(tree, path)
-        if block is not None and path.rpartition(".")[2] in block:
+        place, _, name = path.rpartition(".")
+        block = at(tree, place)
+        if isinstance(block, Mapping) and name in block:
             yield path, block
 
 

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 from bearing_sim.scene.designation import Designation, DesignationError, MakersRow, makers_rows, parse_designation, roller_counts
 from bearing_sim.scene.flanges import HEIGHT, estimated_clearance
 from bearing_sim.scene.quantity import to_si
+from bearing_sim.scene.tree import at
 
 STEEL_DENSITY = 7850.0
 CAGE_DENSITIES = {"polyamide": 1320.0, "steel": 7850.0, "brass": 8400.0}  # kg/m^3, of the materials of the catalogue with these names
@@ -41,6 +42,10 @@ class DesignRules(NamedTuple):
 HIGH_CAPACITY = DesignRules(0.811e-3, 0.1516, 0.150, 0.194, 1, 0.624)
 STANDARD = DesignRules(2.418e-3, 0.2049, 0.222, 0.200, 1, 0.551)
 FULL_COMPLEMENT_LENGTH = 0.72  # effective length of the rollers over the width of a full-complement bearing
+_LONGEST = 0.88  # effective length of the rollers at most, over the width; assumption: flanges and chamfers take the rest
+# Full-complement bearings of which a flange is not printed (assumptions): D_w over D - d, how far the inner flange's edge lies below the outer
+# raceway over D_w, for the estimate of that edge and for that of D_w by it, and the height of a flange over D_w.
+_FULL_DIAMETER_RATIO, _FULL_INNER_FLANGE, _FULL_DEPTH, _FULL_FLANGE = 0.22, 0.8, 0.77, 0.2
 _DIAMETER_RATIO = {"10": 0.235, "4": 0.24}  # D_w over D - d, where not even the flanges are printed
 _OTHER_DIAMETER_RATIO = 0.27
 # Diameters of cylindrical rollers of the bearings whose raceways are both printed [mm].
@@ -207,7 +212,7 @@ def _length(static, count, diameter, pitch, otherwise, estimated, width) -> floa
     by = "static rating by ISO 76, C_0r = 44 (1 - gamma) Z L D_w; 5 % for the maker's own rounding and chamfers, more where Z is estimated"
     spread = 0.05 if not any(each["field"] in ("roller.count", "roller.diameter") for each in estimated) else 0.1
     estimated.append(_estimate("roller.length", by, 1.0 - spread, 1.0 + spread))
-    return round(min(length_by_static_rating(static, count, diameter, pitch), 0.88 * width), 5)
+    return round(min(length_by_static_rating(static, count, diameter, pitch), _LONGEST * width), 5)
 
 
 def _full_section(designation: Designation, row: MakersRow | None, rows: tuple[MakersRow, ...]) -> Section:
@@ -218,9 +223,9 @@ def _full_section(designation: Designation, row: MakersRow | None, rows: tuple[M
     if outer is None:
         raise DesignationError(f"{designation.text}: no catalogue of the tables prints its raceway; give the dimensions in the scene")
     if low is None:
-        low = outer - 2.0 * 0.8 * 0.22 * (designation.boundary.outside - designation.boundary.bore)
+        low = outer - 2.0 * _FULL_INNER_FLANGE * _FULL_DIAMETER_RATIO * (designation.boundary.outside - designation.boundary.bore)
     height = (outer - high) / 2.0 if high is not None else None
-    diameter = (outer - low) / 2.0 + height if height is not None else (outer - low) / (2.0 * 0.77)
+    diameter = (outer - low) / 2.0 + height if height is not None else (outer - low) / (2.0 * _FULL_DEPTH)
     diameter = 0.5e-3 * round(diameter / 0.5e-3)
     estimated = [
         _estimate(
@@ -234,8 +239,8 @@ def _full_section(designation: Designation, row: MakersRow | None, rows: tuple[M
     static = None if row is None else row.ratings.static
     width = designation.boundary.width
     length = _length(static, count, diameter, pitch, FULL_COMPLEMENT_LENGTH * width, estimated, width)
-    inner_flange = low if inner < low < outer else inner + 0.4 * diameter
-    outer_flange = high if high is not None else outer - 0.4 * diameter
+    inner_flange = low if inner < low < outer else inner + 2.0 * _FULL_FLANGE * diameter
+    outer_flange = high if high is not None else outer - 2.0 * _FULL_FLANGE * diameter
     return Section(inner, outer, diameter, length, count, inner_flange, outer_flange, row, "estimated", tuple(estimated))
 
 
@@ -382,7 +387,8 @@ def with_cage_of_kind(bearing: Mapping) -> tuple[dict, str]:
         space = _space_of(bearing)
     except ValueError as error:
         return dict(bearing), f"a cage of kind {kind} is estimated from rollers and raceway, but {error}"
-    cage, estimates = cage_tree(kind.strip().upper(), space)
+    on_inner_ring = at(bearing, "flanges.inner") not in (None, "none") and at(bearing, "flanges.outer") in (None, "none")
+    cage, estimates = cage_tree(kind.strip().upper(), space, "inner_ring" if on_inner_ring else "outer_ring")
     own = {name: value for name, value in given.items() if name != "preset"} if isinstance(given, Mapping) else {}
     marks = [each for each in estimates if each["field"].removeprefix("cage.") not in own]
     return {**bearing, "cage": {**cage, **own}, "estimated": [*(bearing.get("estimated") or ()), *marks]}, ""
@@ -392,15 +398,13 @@ def _space_of(bearing: Mapping) -> CageSpace:
     """Return where a cage has to fit in a bearing that a file gives; raise ValueError where a dimension is missing or is none."""
 
     def length(path: str, otherwise: float | None = None) -> float:
-        node: Any = bearing
-        for name in path.split("."):
-            node = node.get(name) if isinstance(node, Mapping) else None
-        if node is None and otherwise is not None:
+        given = at(bearing, path)
+        if given is None and otherwise is not None:
             return otherwise
-        if node is None:
+        if given is None:
             raise ValueError(f"{path} is missing")
         try:
-            return to_si(node, "" if path == "roller.count" else "m")
+            return to_si(given, "" if path == "roller.count" else "m")
         except ValueError as error:
             raise ValueError(f"{path}: {error}") from None
 

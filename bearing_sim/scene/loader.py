@@ -26,6 +26,7 @@ from bearing_sim.scene.internal_dimensions import CAGE_RULES, bearing_tree, with
 from bearing_sim.scene.lubricant_names import keep_one_lubricant, with_named_lubricants
 from bearing_sim.scene.quantity import SPEED, to_si
 from bearing_sim.scene.scene import Scene
+from bearing_sim.scene.tree import at
 from bearing_sim.scene.uncertainty import declared_in, drop_ranges, override_range, read_ranges, written
 
 _UNION_TAGS = frozenset(
@@ -175,9 +176,7 @@ def scene_from_yaml(text: str, overrides: Iterable[str] = (), origin: str = "sce
 def _anchor_files(tree: dict, folder: Path) -> None:
     """Resolve the paths of the files of contour and crown relative to the folder of the scene file, in place."""
     for *blocks, name in (("bearing", "outer_raceway", "contour_file"), ("bearing", "roller", "crown", "file")):
-        node = tree
-        for block in blocks:
-            node = node.get(block) if isinstance(node, dict) else None
+        node = at(tree, ".".join(blocks))
         if isinstance(node, dict) and isinstance(node.get(name), str) and node.get("contour") is None:  # with its text, the file is but a name
             node[name] = str(folder / node[name])
 
@@ -234,8 +233,7 @@ def load_bearing(name: str) -> Bearing:
 
 def _has_lobes(tree: Mapping) -> bool:
     """Whether the outer raceway of a tree has high points or a D value above zero; False for what cannot be read."""
-    bearing = tree.get("bearing")
-    raceway = bearing.get("outer_raceway") if isinstance(bearing, Mapping) else None
+    raceway = at(tree, "bearing.outer_raceway")
     if not isinstance(raceway, Mapping):
         return False
     try:
@@ -254,7 +252,7 @@ def _with_level(tree: Mapping) -> Mapping:
     """
     if tree.get("level") != "auto":
         return tree
-    highest = "slip" if _at(tree, "bearing.cage.guidance") == "full_complement" else "spatial"  # the level with all other effects
+    highest = "slip" if at(tree, "bearing.cage.guidance") == "full_complement" else "spatial"  # the level with all other effects
     found = choose(TypeAdapter(Scene).validate_python({**tree, "level": highest}, context=_WRITTEN))
     if found.level is None:
         detail = {"type": PydanticCustomError("no_level", "{reason}", {"reason": found.reason}), "loc": ("level",), "input": "auto"}
@@ -406,13 +404,6 @@ def _bearing_preset(name) -> tuple[dict, list[InvalidField]]:
     return {}, [InvalidField("bearing.preset", repr(name), reason)]
 
 
-def _at(tree, path: str):
-    """Return what a tree has at a dotted path; None if there is nothing."""
-    for name in path.split("."):
-        tree = tree.get(name) if isinstance(tree, Mapping) else None
-    return tree
-
-
 def _with_presets(tree: Mapping) -> tuple[dict, list[InvalidField]]:
     tree, errors = dict(tree), []
     bearing = tree.get("bearing")
@@ -429,7 +420,9 @@ def _with_presets(tree: Mapping) -> tuple[dict, list[InvalidField]]:
         if "clearance" in bearing and "outer_raceway" in preset:
             preset["outer_raceway"].pop("low_radius", None)
         cage = bearing.get("cage")
-        if isinstance(cage, Mapping) and "cage" in preset:
+        if isinstance(cage, Mapping) and "preset" in cage:  # another kind of cage has nothing of this one
+            preset.pop("cage", None)
+        elif isinstance(cage, Mapping) and "cage" in preset:
             drop_other_lands(preset["cage"], cage)
         flanges = bearing.get("flanges")
         if isinstance(flanges, Mapping) and "flanges" in preset:
@@ -438,7 +431,7 @@ def _with_presets(tree: Mapping) -> tuple[dict, list[InvalidField]]:
         tree["bearing"] = _merged(preset, given)
         if "estimated" in preset and "estimated" not in given:
             tree["bearing"]["estimated"] = [
-                each for each in preset["estimated"] if _at(given, each["field"]) is None and _at(tree["bearing"], each["field"]) is not None
+                each for each in preset["estimated"] if at(given, each["field"]) is None and at(tree["bearing"], each["field"]) is not None
             ]
         if unknown:
             tree["bearing"] = bearing_tree(_STAND_IN)

@@ -8,7 +8,7 @@ One record per block of the YAML file.  Each quantity is declared once, with uni
 import math
 import re
 import typing
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from dataclasses import field, replace
 from typing import Annotated, Literal
 
@@ -373,7 +373,7 @@ class Scene:
                 errors.append(InvalidField(asked, repr(value), error.message()))
         if not errors:
             try:
-                return with_values(self, values)
+                return _without_estimates(with_values(self, values), values)
             except ValidationError as error:
                 errors.append(InvalidField(", ".join(given), "", messages(error)))
         raise SceneError(self.name, errors)
@@ -432,6 +432,13 @@ class Scene:
         errors = step_errors(self) + moment_errors(self) + mounting_errors(self.bearing, self.mounting) + support_errors(self)
         errors += axial_errors(self) + sink_errors(self.heat, self.lubricant) + cleanliness_errors(self)
         return errors + range_errors(self)
+
+
+def _without_estimates(scene: Scene, paths: Container[str]) -> Scene:
+    """Return a scene in whose bearing none of the fields at these paths counts as estimated, because somebody has given them."""
+    bearing = scene.bearing
+    kept = tuple(each for each in bearing.estimated if f"bearing.{each.field}" not in paths)
+    return scene if len(kept) == len(bearing.estimated) else replace(scene, bearing=replace(bearing, estimated=kept))
 
 
 def cleanliness_errors(scene) -> list[str]:
