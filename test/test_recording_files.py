@@ -14,7 +14,8 @@ from rosbags.typesys import Stores, get_typestore
 from synthetic_run import synthetic_block
 
 from bearing_sim.messages.events import Event, Level
-from bearing_sim.recording.bag import Limits
+from bearing_sim.recording import bag
+from bearing_sim.recording.bag import Limits, mcap_files
 from bearing_sim.recording.reader import Recording
 from bearing_sim.recording.recovery import contents, recover
 from bearing_sim.recording.writer import METADATA, McapSink
@@ -95,6 +96,19 @@ def test_a_bag_of_a_killed_run_is_read_up_to_its_unfinished_part(tmp_path):
     assert recording.samples == len(RUN) and "run_3.mcap.active ends early" in recording.unfinished
     sink.close()
     assert Recording(tmp_path / "run").unfinished == ""
+
+
+def test_a_bag_is_listed_although_its_recorder_completes_a_part_meanwhile(tmp_path, monkeypatch):
+    with McapSink(tmp_path / "run", SCENE, START, limits=Limits(part_duration=1.0)) as sink:
+        write(sink)
+    whole, listings = mcap_files(tmp_path / "run"), []
+
+    def listed(path):
+        listings.append(path)
+        return [*whole[:-1], whole[-1].with_name(f"{whole[-1].name}.active")] if len(listings) == 1 else whole
+
+    monkeypatch.setattr(bag, "_files_in", listed)
+    assert mcap_files(tmp_path / "run") == whole and len(listings) == 2
 
 
 def test_a_finished_recording_is_not_replaced(tmp_path):

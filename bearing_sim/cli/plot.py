@@ -10,7 +10,6 @@ from bearing_sim.cli.options import picture_option
 from bearing_sim.cli.reporting import Points, UsageError, announce_replacement, as_file_error, as_usage_error, progress_bar
 
 _TABLES = (".parquet", ".csv")
-_TURNING = 0.01  # of the largest speed; below it there is no slip to speak of
 
 
 @click.command("plot")
@@ -87,11 +86,12 @@ def _band_of(course, samples):
     import numpy as np
 
     from bearing_sim.cli.uncertainty import SEED
+    from bearing_sim.model.turning import turns
     from bearing_sim.scene.uncertainty import without_range
-    from bearing_sim.studies.uncertainty import UncertaintyError, study
+    from bearing_sim.studies.uncertainty import UncertaintyError, rounded_up, study
 
     times, conditions, scene = course.conditions[:, 0], course.conditions[:, 1:], course.scene
-    turning = np.abs(conditions[:, 0]) >= _TURNING * max(np.abs(conditions[:, 0]).max(initial=0.0), 1e-9)
+    turning = turns(conditions[:, 0])
     if not turning.any():
         raise UsageError(f"{course.name}: the shaft does not turn, so there is no slip and no range of it; leave out --band")
     times, conditions = times[turning], conditions[turning]
@@ -101,7 +101,7 @@ def _band_of(course, samples):
         scene = without_range(scene, "lubricant.temperature")
     _, first, which = np.unique(np.nan_to_num(conditions, nan=-1.0), axis=0, return_index=True, return_inverse=True)
     different = conditions[first]
-    base = 1 << (samples - 1).bit_length()
+    base = rounded_up(samples)
     with Points(f"range of the slip of {course.name}", 2 * base) as points, as_usage_error(UncertaintyError):
         given = different, np.ones(len(different))
         bands = study(scene, base, SEED, shares=False, course=given, progress=points.update).slip_bands()

@@ -98,14 +98,19 @@ def unknown_report(profile) -> dict:
     return {"log_seconds": profile.log_seconds, "unknown_seconds": profile.unknown_seconds, "verdict": profile.verdict}
 
 
-def seconds_of(duration: str, option: str = "--duration") -> float:
-    """Return the time of an option in seconds; raise `UsageError` if it is not a time of at most 1e6 s."""
+def quantity_of(option: str, text: str, unit: str) -> float:
+    """Return the quantity of an option in SI; raise `UsageError` if it is none of that unit's dimension and kind."""
     from bearing_sim.scene.quantity import to_si
 
     try:
-        seconds = to_si(duration, "s")
+        return to_si(text, unit)
     except ValueError as error:
         raise UsageError(f"{option}: {error}") from None
+
+
+def seconds_of(duration: str, option: str = "--duration") -> float:
+    """Return the time of an option in seconds; raise `UsageError` if it is not a time of at most 1e6 s."""
+    seconds = quantity_of(option, duration, "s")
     if not 0.0 < seconds <= 1e6:
         raise UsageError(f"{option} {duration}: expected more than 0 and at most 1e6 s")
     return seconds
@@ -132,7 +137,7 @@ def announce_compilation(scene=None) -> None:
     if any(CACHE_FOLDER.rglob("*.nbi")):
         return
     click.echo("compiling the model, once per version: about half a minute ...", err=True)
-    if scene is not None and scene.heat.law == "network":
+    if scene is not None and scene.heat.law == "network" and scene.level != "steady":  # whose code is nearly the search's
         from bearing_sim.runtime.precompilation import Build, compile_all
 
         for _ in compile_all([Build(scene.level), Build("slip", equilibrium=True)]):

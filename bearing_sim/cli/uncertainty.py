@@ -88,10 +88,10 @@ def bands_of(scene, samples, seed=SEED, level=None, course=None, journal=None, w
     """
     announce_compilation()
     from bearing_sim.scene.uncertainty import ranges_of
-    from bearing_sim.studies.uncertainty import UncertaintyError, study
+    from bearing_sim.studies.uncertainty import UncertaintyError, rounded_up, study
     from bearing_sim.sweep.tasks import ClusterError
 
-    base = 1 << (samples - 1).bit_length()
+    base = rounded_up(samples)
     began, given = time.perf_counter(), (course.conditions, course.seconds) if course is not None else None
     with (
         Points(f"uncertainty of {scene.name}", base * (len(ranges_of(scene)) + 2)) as points,

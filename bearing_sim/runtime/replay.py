@@ -13,6 +13,7 @@ from bearing_sim.inputs.profile import InputProfile
 from bearing_sim.messages.events import Event
 from bearing_sim.messages.topics import condition, further_condition
 from bearing_sim.model.sample import joined
+from bearing_sim.model.turning import turns
 from bearing_sim.model.validity import Exceedance, in_order
 from bearing_sim.monitoring.health import Changes
 from bearing_sim.monitoring.limits import LimitsMonitor
@@ -26,7 +27,6 @@ _REPORT_EVERY = 1.0  # [s] of simulated time between diagnostics
 _PROGRESS_EVERY = 50  # items
 _JUDGED = 400  # outputs judged at once if none of them can raise or clear an alarm
 _WATCHED_BLOCK = 100  # samples: views take one long block far faster than single samples
-_TURNING = 0.01  # of the largest speed of the run: slip has no meaning while the shaft hardly turns
 
 
 @dataclass
@@ -82,8 +82,8 @@ class Replay:
 
         It turns above a hundredth of the largest speed of the run; NaN if it never does.
         """
-        slip, speed, weight = np.array(self.slip), np.abs(self.speed), np.array(self.weight)
-        turning = np.isfinite(slip) & (speed > 0) & (speed >= _TURNING * speed.max(initial=0.0))
+        slip, weight = np.array(self.slip), np.array(self.weight)
+        turning = np.isfinite(slip) & turns(np.array(self.speed))
         if not turning.any():
             return dict.fromkeys(("mean", "median", "p95", "p99", "maximum"), math.nan)
         slip, weight = slip[turning], weight[turning]
@@ -99,8 +99,7 @@ class Replay:
         minimum_load : of the shaft's speeds [rad/s], shape (n,), the minimum load [N], shape (n,).
         """
         speed, load, weight = np.array(self.speed), np.array(self.load), np.array(self.weight)
-        turning = np.abs(speed) >= _TURNING * np.abs(speed).max(initial=0.0)
-        turning &= speed != 0.0
+        turning = turns(speed)
         below = turning & (load < minimum_load(speed))
         return float(weight[below].sum()), float(weight[turning].sum())
 

@@ -15,11 +15,6 @@ GUIDES = {
     "full_complement": "none: a full complement of rollers",
 }
 """What guides a cage, in words."""
-_LENGTHS = {
-    "bore_diameter": "bore_diameter",
-    "outside_diameter": "outside_diameter",
-    "width": "boundary_width",
-}
 
 
 def facts(bearing: Bearing) -> dict:
@@ -29,7 +24,9 @@ def facts(bearing: Bearing) -> dict:
     return {
         "designation": bearing.designation,
         "source": bearing.source,
-        **{f"{name}_mm": 1e3 * getattr(bearing, attribute) for name, attribute in _LENGTHS.items()},
+        "bore_diameter_mm": 1e3 * bearing.bore_diameter,
+        "outside_diameter_mm": 1e3 * bearing.outside_diameter,
+        "width_mm": 1e3 * bearing.boundary_width,
         "inner_raceway_diameter_mm": 2e3 * bearing.inner_raceway.radius,
         "outer_raceway_diameter_mm": 2e3 * bearing.outer_raceway.low_radius,
         "rollers": bearing.roller.count,

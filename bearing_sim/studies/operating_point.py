@@ -210,7 +210,7 @@ def settle(
 
 def _bands(scene: Scene, samples: int, workers: int) -> "Mapping[str, Band]":
     """Return the bands of a scene by the names of its results."""
-    from bearing_sim.studies.uncertainty import study  # here, because importing SciPy's statistics takes longer than to settle
+    from bearing_sim.studies.uncertainty import rounded_up, study  # here, because importing SciPy's statistics takes longer than to settle
 
-    found = study(scene, 1 << max(samples - 1, 1).bit_length(), SEED, shares=False, workers=workers)
+    found = study(scene, rounded_up(samples), SEED, shares=False, workers=workers)
     return MappingProxyType({"cage_slip": found.bands["cage_slip"], "modified_rating_life": found.bands["life_hours"]})

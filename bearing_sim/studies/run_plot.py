@@ -16,6 +16,7 @@ import numpy as np
 from bearing_sim.messages.topics import ZERO_CELSIUS
 from bearing_sim.model.plausibility import minimum_load
 from bearing_sim.model.sample import RING_TEMPERATURES
+from bearing_sim.model.turning import turns
 from bearing_sim.recording.reader import Recording
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Inputs
@@ -31,7 +32,6 @@ _LONGEST_TITLE = 110
 _DATED = 3600.0  # [s] runs from this long on have the date of their start beside the axis
 _CELLS = (240, 160)  # of a picture of slip over load, of each of which one sample is drawn
 _MOST_SLIP = 200.0  # [%] beyond which these cells do not tell slips apart
-_TURNING = 0.01  # of the largest speed of a run; below it the slip is left out
 _INSTANTS = 200  # of a run, at which the range of the slip may be computed
 _CONDITIONS = tuple(f"{name}_measured" if name in RING_TEMPERATURES else name for name in Inputs._fields)
 _DPI = 130
@@ -187,9 +187,8 @@ def _leave_out_slip_at_rest(course: Course, lines: Mapping[tuple[str, int], np.n
     """Enter lines, each with times, values and speeds, into a course, without the slip where the shaft hardly turns: it may have any size there."""
     fastest = max((float(np.nanmax(np.abs(speeds), initial=0.0)) for _, _, speeds in lines.values()), default=0.0)
     for key, (times, values, speeds) in lines.items():
-        course.lines[key] = times, np.where(np.abs(speeds) < _TURNING * fastest, np.nan, values) if key[0] == "slip" else values
-    at_rest = np.abs(course.loaded[:, 0]) < _TURNING * np.abs(course.loaded[:, 0]).max(initial=0.0)
-    course.loaded[at_rest, 2] = np.nan
+        course.lines[key] = times, np.where(turns(speeds, fastest), values, np.nan) if key[0] == "slip" else values
+    course.loaded[~turns(course.loaded[:, 0]), 2] = np.nan
 
 
 def thinned(

@@ -271,6 +271,11 @@ def lowest_level(scene: Scene, level: str | None = None) -> tuple[Scene, str]:
         raise UncertaintyError(f"level {chosen}: {'; '.join(each.reason for each in error.errors)}") from None
 
 
+def rounded_up(samples: int) -> int:
+    """Return the size of a sample of a study, a power of two, for a number of samples that somebody asks for."""
+    return 1 << max(samples - 1, 1).bit_length()
+
+
 def study(
     scene: Scene, base: int, seed: int, *, shares: bool = True,
     level: str | None = None, course: tuple[np.ndarray, np.ndarray] | None = None, journal: Journal | None = None,
