@@ -60,6 +60,13 @@ DECLARATIONS = (
         "scene fields to change, each FIELD=VALUE, such as bearing.outer_raceway.low_radius=34.865mm",
         per_bearing=True,
     ),
+    Declaration(
+        "serial",
+        "",
+        "serial number of the bearing, which identifies it in /diagnostics; empty: none",
+        per_bearing=True,
+        running=True,
+    ),
     Declaration("joint", "shaft", "name of the shaft's joint in shaft_speed messages", per_bearing=True),
     Declaration("cage_joint", "cage", "name of the cage's joint in cage_speed_measured messages", per_bearing=True),
     Declaration(
@@ -98,12 +105,14 @@ class BearingSettings:
     Attributes
     ----------
     name : its name in the fleet; empty for a single bearing.
+    serial : serial number of the bearing; empty for none.
     conditions : scene parameters that were set explicitly, by name, in SI; 0 for "none" where the scene allows none.
     """
 
     name: str
     scene: str
     overrides: tuple[str, ...]
+    serial: str
     joint: str
     cage_joint: str
     frame_id: str
