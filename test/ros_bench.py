@@ -18,6 +18,7 @@ from rclpy.executors import SingleThreadedExecutor  # noqa: E402
 from rclpy.qos import qos_profile_sensor_data  # noqa: E402
 
 from bearing_sim.messages import topics  # noqa: E402
+from bearing_sim.messages.diagnostics import events_of  # noqa: E402
 from bearing_sim.ros.messages import message, message_class  # noqa: E402
 from bearing_sim.simulation import Inputs  # noqa: E402
 
@@ -186,11 +187,13 @@ class Client:
     def is_calm(self, report=-1):
         """Whether the given report of diagnostics tells of nothing but limits of validity, which hold as long as the condition does."""
         told = self.received["diagnostics"][report].status[1:]
-        return not any(status.level[0] for status in told if ": validity." not in status.name)
+        return not any(status.level[0] for status in told if not status.name.endswith(": validity"))
 
     def statuses(self, since: int = 0) -> list[tuple[int, str, str]]:
-        """Return (level, name, message) of every status in the diagnostics from the message number ``since`` on."""
-        return [(s.level[0], s.name, s.message) for report in self.received["diagnostics"][since:] for s in report.status]
+        """Return (level, ``component: kind``, text) of every event in the diagnostics from the message number ``since`` on."""
+        statuses = (status for report in self.received["diagnostics"][since:] for status in report.status)
+        told = ((status.name.partition(": ")[0], event) for status in statuses for event in events_of(0.0, status))
+        return [(event.level, f"{component}: {event.kind}", event.text) for component, event in told]
 
     def values(self) -> dict[str, str]:
         """Return the numbers of the newest diagnostics."""

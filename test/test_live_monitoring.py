@@ -56,7 +56,7 @@ def test_a_cage_that_slips_more_than_predicted_is_told_in_the_verdict_and_as_new
     bench.live.sinks.attach("record", recorder)
     bench.measure(2.0, slip=0.015)
     assert bench.verdict == "as predicted"
-    assert bench.live.condition(bench.now_ns).values["residual slip, usual mean [points]"] == pytest.approx(0.5, abs=0.1)
+    assert bench.live.condition(bench.now_ns).values["residual slip, usual mean [fraction]"] == pytest.approx(0.005, abs=0.001)
     assert not [event for event in bench.news if event.kind == "residual.shift"]
     bench.measure(1.5, slip=0.03)
     assert bench.verdict == "slips more than predicted"

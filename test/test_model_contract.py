@@ -179,7 +179,7 @@ def test_two_publishers_whose_values_jump_to_and_fro_are_an_error_and_of_the_sam
         one.speed = next(speeds)
         one.step()
     (event,) = [event for event in one.condition().events if event.kind == "input.publishers"]
-    assert event.level is Level.ERROR and "between 100 and 150 rad/s" in event.reason
+    assert event.level is Level.ERROR and "between 100 rad/s and 150 rad/s" in event.reason
     one.model.note_publishers("shaft_speed", 1)
     assert "input.publishers" not in one.kinds()
 

@@ -169,7 +169,7 @@ def _send_other_joint(client):
     "send, code, reason, level",
     [
         (_send_nan, "input.not_finite", "shaft_speed: nan rad/s is not finite", 2),
-        (_send_infinite_load, "input.not_finite", "radial_load: 800, inf N is not finite", 2),
+        (_send_infinite_load, "input.not_finite", "radial_load: (800, inf) N is not finite", 2),
         (_send_negative, "input.negative", "-4000 rad/s is negative", 2),
         (_send_absurd_speed, "input.too_large", "1e+07 rad/s is above", 2),
         (_send_absurd_load, "input.too_large", "1e+09 N is above", 2),
@@ -186,7 +186,7 @@ def test_a_bad_message_is_refused_with_its_reason_in_diagnostics_and_the_last_go
     told = lambda: [s for s in client.statuses(report) if code in s[1] and reason in s[2]]  # noqa: E731
     client.drive_until(told, f"{code} is reported", process)
     assert told()[0][0] == level and "holding" in told()[0][2]
-    reports = [told for told in client.received["diagnostics"][report:] if any(code in status.name for status in told.status)]
+    reports = [told for told in client.received["diagnostics"][report:] if code in str(told.status)]
     assert reports[0].status[0].level[0] == level, "the whole has the level of its worst part"
     speeds = {round(message.velocity[0], 3) for message in client.received["bearing_joints"][joint:]}
     assert speeds == {round(GOOD.shaft_speed, 3)}, "the model never saw the bad value"
@@ -216,7 +216,7 @@ def test_a_wrong_message_rate_is_told_with_the_rate(gated, rate):
 
 def test_bad_input_leaves_no_lasting_harm_but_the_word_that_a_refused_overload_counts_nowhere(gated):
     process, client = gated
-    names = lambda: [status.name for status in client.received["diagnostics"][-1].status if "input." in status.name]  # noqa: E731
+    names = lambda: [name for _, name, _ in client.statuses(-1) if "input." in name]  # noqa: E731
     client.drive_until(lambda: names() == ["bearing_node: input.unknown"], "no other trouble with inputs is left", process)
     assert process.process.poll() is None and "Traceback" not in process.text
 

@@ -173,11 +173,11 @@ def test_two_publishers_of_one_input_are_told_and_worse_where_they_disagree(node
 
     client.drive_until(contradicted, "they disagree", process)
     assert told(2)[0][2] == (
-        "shaft_speed: 2 publishers, expected one, and they disagree: values jump between 1000 and 1500 rad/s; the newest value is used, "
+        "shaft_speed: 2 publishers, expected one, and they disagree: values jump between 1000 rad/s and 1500 rad/s; the newest value is used, "
         "which is wrong for one of them"
     )
     rival.close()
-    gone = lambda: not [s for s in client.received["diagnostics"][-1].status if "input.publishers" in s.name]  # noqa: E731
+    gone = lambda: not [name for _, name, _ in client.statuses(-1) if "input.publishers" in name]  # noqa: E731
     client.drive_until(gone, "one is left", process)
 
 

@@ -42,7 +42,7 @@ def test_24_hours_of_noise_give_no_false_alarm_at_one_in_1000_hours(correlation)
     one, lot = monitor(), np.random.default_rng(24)
     told, end = feed(one, 24 * 3600.0, 0.01, 0.0, lot, correlation)
     assert math.isnan(told) and one.verdict(end) == "as predicted"
-    assert one.values(end)["residual slip, usual mean [points]"] == pytest.approx(1.0, abs=0.02)
+    assert one.values(end)["residual slip, usual mean [fraction]"] == pytest.approx(0.01, abs=0.0002)
     told, _ = feed(one, 60.0, 0.02, end, lot, correlation)
     assert told < 60.0, "and a point of slip is found after that day"
 
@@ -119,7 +119,7 @@ def test_rest_start_up_and_changes_of_speed_are_not_judged():
         now += 2.0
         told, now = feed(one, 30.0, 0.0, now, lot)
         assert math.isnan(told)
-    assert one.values(now)["residual slip, usual mean [points]"] == pytest.approx(0.0, abs=0.05)
+    assert one.values(now)["residual slip, usual mean [fraction]"] == pytest.approx(0.0, abs=0.0005)
     assert one.verdict(now) == "as predicted"
 
 

@@ -8,7 +8,7 @@ from rerun_files import last_value, views_in, written
 from scipy.spatial.transform import Rotation
 from synthetic_run import synthetic_block
 
-from bearing_sim.messages import topics
+from bearing_sim.messages.diagnostics import further_condition
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.view import section
 from bearing_sim.view.blueprint import blueprint
@@ -109,13 +109,13 @@ def test_a_recording_that_knows_no_tilts_is_drawn_upright(tmp_path):
 
 def test_diagnostics_tell_further_lives_and_edges_where_the_scene_has_them():
     sample = tilted_block()[-1]
-    found = topics.further_condition(PLANAR, sample)
+    found = further_condition(PLANAR, sample)
     assert found["life method"] == "deng2017" and set(found) == {"life method", "L10 [h]", "L_nm [h]", "L10r [h]", "L_nmr [h]"}
-    found = topics.further_condition(CHOOSING, sample)
+    found = further_condition(CHOOSING, sample)
     assert found["life method"] == "iso16281" and found["L10 [h]"] == sample["l10"]
     assert found["modified rating life [h]"] == sample["modified_rating_life"]
-    assert found["largest edge pressure [MPa]"] == 1700.0 and found["largest roller skew [mrad]"] == pytest.approx(3.0)
-    assert "modified rating life [h]" not in topics.further_condition(SPATIAL, sample)
+    assert found["largest edge pressure [Pa]"] == 1.7e9 and found["largest roller skew [rad]"] == pytest.approx(0.003)
+    assert "modified rating life [h]" not in further_condition(SPATIAL, sample)
 
 
 def test_views_of_both_scenes_can_be_laid_out():

@@ -10,6 +10,7 @@ from rosbags.typesys import Stores, get_typestore
 
 from bearing_sim.inputs.gate import InputGate
 from bearing_sim.messages import topics
+from bearing_sim.messages.diagnostics import condition, report
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.messages.sample_messages import SampleMessages, message_templates
 from bearing_sim.model.sample import OBSERVABLES, new_block
@@ -106,11 +107,12 @@ def test_every_array_says_how_its_numbers_lie(name):
 
 
 def test_diagnostics_level_is_a_byte_and_the_worst_of_the_events():
-    events = [Event(1.0, Level.WARN, "slip.high", "", "slip is 6 %"), Event(1.0, Level.ERROR, "input.stale", "", "no speed for 2 s")]
-    message = topics.diagnostics(STAMP, events, topics.condition(one_sample()), hardware_id="b1")
-    assert [status["level"] for status in message["status"]] == [b"\x02", b"\x01", b"\x02"]
-    assert message["status"][0]["message"] == "no speed for 2 s"
-    assert topics.diagnostics(STAMP)["status"][0]["level"] == b"\x00"
+    events = [Event(1.0, Level.WARN, "bearing.slip", "", "slip is 6 %"), Event(1.0, Level.ERROR, "input.stale", "", "no speed for 2 s")]
+    message = report(STAMP, events, condition(one_sample()), hardware_id="b1")
+    level = {status["name"]: status["level"] for status in message["status"]}
+    assert level["bearing_sim: condition"] == level["bearing_sim: inputs"] == b"\x02" and level["bearing_sim: slip"] == b"\x01"
+    assert message["status"][0]["message"] == "no speed for 2 s (and 1 more)"
+    assert {status["level"] for status in report(STAMP)["status"]} == {b"\x00"}
 
 
 def test_diagnostics_state_a_sample_in_the_units_that_their_keys_name():
@@ -127,15 +129,15 @@ def test_diagnostics_state_a_sample_in_the_units_that_their_keys_name():
         "damage": 0.005,
     }.items():
         sample[name] = value
-    assert topics.condition(sample) == pytest.approx(
+    assert condition(sample) == pytest.approx(
         {
-            "shaft speed [rpm]": 15_000.0,
+            "shaft speed [rad/s]": 500.0 * math.pi,
             "radial load [N]": 500.0,
             "oil temperature [degC]": 120.0,
-            "running clearance [um]": -3.5,
-            "cage slip [%]": 6.25,
+            "running clearance [m]": -3.5e-6,
+            "cage slip [fraction]": 0.0625,
             "rating life [h]": 389.0,
-            "damage [% of life]": 0.5,
+            "damage [fraction of life]": 0.005,
         }
     )
 
@@ -143,8 +145,8 @@ def test_diagnostics_state_a_sample_in_the_units_that_their_keys_name():
 def test_diagnostics_numbers_are_strings_with_the_unit_in_the_key():
     sample = one_sample()
     sample["shaft_speed"] = 1500 * math.pi
-    values = {pair["key"]: pair["value"] for pair in topics.diagnostics(STAMP, (), topics.condition(sample))["status"][0]["values"]}
-    assert float(values["shaft speed [rpm]"]) == pytest.approx(45_000)
+    values = {pair["key"]: pair["value"] for pair in report(STAMP, (), condition(sample))["status"][0]["values"]}
+    assert float(values["shaft speed [rad/s]"]) == pytest.approx(1500 * math.pi) and values.pop("events") == "0"
     assert all("[" in key and isinstance(value, str) and value for key, value in values.items())
 
 

@@ -7,14 +7,14 @@ judged exactly as it would have been live.
 
 import math
 from collections import Counter, deque
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from types import MappingProxyType
 from typing import NamedTuple
 
 from bearing_sim.messages.events import Event, Level
-from bearing_sim.messages.topics import MEASURED, RING_TEMPERATURES, TEMPERATURES
+from bearing_sim.messages.topics import MEASURED, RING_TEMPERATURES, TEMPERATURES, ZERO_CELSIUS
 from bearing_sim.scene.scene import InputLimits
 from bearing_sim.simulation import Inputs
 
@@ -22,6 +22,8 @@ CHANNELS = ("shaft_speed", "radial_load", *TEMPERATURES, MEASURED)  # the last i
 REQUIRED = ("shaft_speed", "radial_load")
 UNITS = {"shaft_speed": "rad/s", "radial_load": "N", **dict.fromkeys(TEMPERATURES, "K"), MEASURED: "rad/s"}
 """SI unit of the values of each channel."""
+TOPIC_UNITS = UNITS | dict.fromkeys(TEMPERATURES, "degC")
+"""Unit of the values of each channel's topic; events name values in it."""
 
 _OPTIONAL = (*TEMPERATURES, MEASURED)
 _RATE_WINDOW = 1.0  # [s] a rate is the number of messages over at least this long
@@ -152,6 +154,7 @@ class InputGate:
     heat_law : the scene's; what stands in for a ring's temperature that is not measured depends on it.
     spacings : by channel, the usual spacing of the messages of a log [s]: its silence and its rate are judged by its own rate where this is
         outside of what the limits expect.  Empty for a live run.
+    waits_for : the channels without whose first good message nothing is computed, for the texts of events.
 
     Attributes
     ----------
@@ -166,9 +169,15 @@ class InputGate:
     """
 
     def __init__(
-        self, limits: InputLimits, held: Inputs, substitute: str = "", heat_law: str = "none", spacings: Mapping[str, float] = MappingProxyType({})
+        self,
+        limits: InputLimits,
+        held: Inputs,
+        substitute: str = "",
+        heat_law: str = "none",
+        spacings: Mapping[str, float] = MappingProxyType({}),
+        waits_for: Sequence[str] = ("shaft_speed",),
     ):
-        self._spacings = spacings
+        self._spacings, self._waits_for = spacings, waits_for
         self.limits, self.held, self._substitute, self._stands_in = limits, held, substitute, _STANDS_IN[heat_law]
         self.measured = math.nan
         self.refused: Counter[str] = Counter()
@@ -176,6 +185,7 @@ class InputGate:
         self.coverage = Coverage()
         self._channels = {name: _Channel(*_good_from_to(name, limits), is_force=name == "radial_load") for name in CHANNELS}
         self._reported: set[tuple[str, str]] = set()
+        self._began = math.nan  # when the first message of any channel was received
         self._expired: set[str] = set()
         self._returned: list[Event] = []
 
@@ -204,6 +214,8 @@ class InputGate:
         received = stamp if arrival is None else arrival
         if math.isfinite(received):
             state.seen = True
+            if math.isnan(self._began):
+                self._began = received
             if self._spacings.get(channel) and received - state.arrival > self._patience(channel):
                 state.window_start = math.nan  # a log that was silent: that says nothing about its rate
             elapsed = received - state.window_start
@@ -278,7 +290,8 @@ class InputGate:
         """Return what is wrong at ``now`` [s since the start] with the flow of messages, for as long as it is wrong.
 
         Kinds ``input.stale`` (no good message for ``limits.stale_after``) and ``input.rate`` (outside ``minimum_rate`` to
-        ``maximum_rate``, with a tolerance of a tenth).  An optional channel is judged only after its first message.
+        ``maximum_rate``, with a tolerance of a tenth).  Nothing is judged before the first message of any channel, because a machine may be
+        switched on later than its monitor, and an optional channel only after its own first message.
         """
         events = []
         for channel, state in self._channels.items():
@@ -298,11 +311,22 @@ class InputGate:
         """Return the last measured message rate of a channel [Hz]; NaN until a window of messages is full."""
         return self._channels[channel].rate
 
+    def state(self, channel: str) -> str:
+        """Return the value of a channel that is used now, and how often it comes, in words."""
+        if not self._channels[channel].seen:
+            return f"no message so far, {self._used_instead(channel)}"
+        if not self.accepted[channel] or channel in self._expired:
+            return self._used_instead(channel)
+        rate = self.rate(channel)
+        return self._shown(channel) if math.isnan(rate) else f"{self._shown(channel)}, {rate:.3g} messages a second"
+
     def _stale_event(self, channel: str, state: _Channel, now: float) -> Event | None:
-        patience, age = self._patience(channel), now - max(state.arrival, 0.0)
-        if age <= patience or (channel in _OPTIONAL and not state.seen):
+        if math.isnan(self._began) or (channel in _OPTIONAL and not state.seen):
             return None
-        since = f"no good message for {age:.3g} s" if state.arrival > -math.inf else f"no good message since the start {age:.3g} s ago"
+        patience, age = self._patience(channel), now - max(state.arrival, self._began)
+        if age <= patience:
+            return None
+        since = f"no good message for {age:.3g} s" if state.arrival > -math.inf else f"no good message yet, {age:.3g} s after the first input"
         return Event(now, Level.WARN, "input.stale", channel, f"{since}, expected one within {patience:.3g} s", self._used_instead(channel))
 
     def _patience(self, channel: str) -> float:
@@ -317,9 +341,15 @@ class InputGate:
             return self._stands_in
         if self._substitute:
             return self._substitute
+        if self.accepted[channel]:
+            return f"holding {self._shown(channel)}"
+        if channel in self._waits_for:
+            return "nothing is computed before the first good one"
+        return "nothing is compared" if channel == MEASURED else f"the scene's value is used, {self._shown(channel)}"
+
+    def _shown(self, channel: str) -> str:
         latest = self.latest(channel)
-        shown = f"({latest[0]:.6g}, {latest[1]:.6g})" if isinstance(latest, tuple) else f"{latest:.6g}"
-        return f"holding {shown} {UNITS[channel]}"
+        return shown(channel, latest if isinstance(latest, tuple) else (latest,))
 
     def _rate_event(self, channel: str, state: _Channel, now: float) -> Event | None:
         slowest = self.limits.minimum_rate / _SLOW_CHANNEL.get(channel, 1.0)
@@ -372,20 +402,28 @@ def _good_from_to(channel: str, limits: InputLimits) -> tuple[float, float]:
     return -largest_speed if limits.reverse_rotation else 0.0, largest_speed
 
 
+def shown(channel: str, values: Iterable[float]) -> str:
+    """Return values of a channel [SI] in the unit of its topic, for people."""
+    offset = ZERO_CELSIUS if channel in TEMPERATURES else 0.0
+    numbers = [f"{value - offset + 0.0:.6g}" for value in values]  # adding 0 makes 0 of -0
+    return f"{numbers[0] if len(numbers) == 1 else '(' + ', '.join(numbers) + ')'} {TOPIC_UNITS[channel]}"
+
+
 def _value_error(channel: str, values: tuple[float, ...], state: _Channel) -> tuple[str, str]:
     """Return kind and reason of what is wrong with values that are not good."""
     if len(values) != 1 and (len(values) != 2 or channel != "radial_load"):
         return "input.malformed", f"{len(values)} values, expected {'1 or 2' if channel == 'radial_load' else '1'}"
-    unit, shown = UNITS[channel], ", ".join(f"{value:.6g}" for value in values)
+    unit, given = TOPIC_UNITS[channel], shown(channel, values)
     magnitude = math.hypot(*values)
     if not math.isfinite(magnitude) and not all(map(math.isfinite, values)):
-        return "input.not_finite", f"{shown} {unit} is not finite"
+        return "input.not_finite", f"{given} is not finite"
     if channel in TEMPERATURES:
         kind = "input.too_small" if values[0] < state.least else "input.too_large"
-        return kind, f"{shown} K is outside {state.least:.6g} to {state.largest:.6g} K ({_BOUNDS[kind, channel]})"
+        least, largest = shown(channel, (state.least,)), shown(channel, (state.largest,))
+        return kind, f"{given} is outside {least} to {largest} ({_BOUNDS[kind, channel]})"
     if len(values) == 1 and state.least == 0.0 > values[0]:
         hint = "" if state.is_force else " (input_limits.reverse_rotation is off)"
-        return "input.negative", f"{shown} {unit} is negative, expected zero or more{hint}"
+        return "input.negative", f"{given} is negative, expected zero or more{hint}"
     bound = _BOUNDS.get(("input.too_large", channel), "input_limits.maximum_speed")  # that of the shaft holds for a measured cage, too
     return "input.too_large", f"{magnitude:.6g} {unit} is above the largest accepted, {state.largest:.6g} {unit} ({bound})"
 
@@ -443,7 +481,7 @@ class PublisherConflict:
         reason, extremes = f"{self.publishers} publishers, expected one", self.disagreement
         if extremes is None:
             return Event(now, Level.WARN, "input.publishers", self._channel, reason, "the newest value of any of them is used")
-        reason = f"{reason}, and they disagree: values jump between {extremes[0]:.6g} and {extremes[1]:.6g} {UNITS[self._channel]}"
+        reason = f"{reason}, and they disagree: values jump between {' and '.join(shown(self._channel, (extreme,)) for extreme in extremes)}"
         return Event(now, Level.ERROR, "input.publishers", self._channel, reason, "the newest value is used, which is wrong for one of them")
 
 

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.inputs.gate import REQUIRED, UNITS
+from bearing_sim.inputs.gate import REQUIRED, UNITS, shown
 from bearing_sim.messages import topics
 from bearing_sim.recording.bag import RecordingError
 from bearing_sim.recording.bag_reader import BagReader, BagTopic
@@ -343,7 +343,7 @@ def summary_lines(log: InputLog) -> Iterable[str]:
     """Yield one line of text for each channel: topic, type, clock, number of messages, and their anomalies."""
     for channel, series in log.series.items():
         if not series.topic:
-            yield f"{channel}: {series.values[0][0]:.6g} {UNITS[channel]} throughout, not measured"
+            yield f"{channel}: {shown(channel, series.values[0][:1])} throughout, not measured"
             continue
         odd = [f"{len(series.errors)} not readable"] if series.errors else []
         odd += [f"{count} {name.replace('_', ' ')}" for name, count in anomalies(series)._asdict().items() if count]

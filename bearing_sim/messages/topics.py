@@ -10,13 +10,12 @@ Names are relative; a recording writes them with a leading slash.
 """
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from bearing_sim.messages.events import Event, Level
 from bearing_sim.model.sample import NODE_OBSERVABLES, RING_TEMPERATURES
 
 SHAFT_JOINT, CAGE_JOINT = "shaft", "cage"
@@ -327,85 +326,7 @@ def _of_scene(table: Mapping[str, Topic], scene) -> dict[str, Topic]:
 
 
 DIAGNOSTICS = ("diagnostics", "diagnostic_msgs/msg/DiagnosticArray")
-"""Name and type of the topic of `diagnostics`."""
-
-
-def diagnostics(
-    stamp_ns: int, events: Iterable[Event] = (), values: Mapping[str, object] | None = None, component: str = "bearing_sim", hardware_id: str = ""
-) -> dict:
-    """Return diagnostic_msgs/DiagnosticArray: one status for the whole, then one for each event.
-
-    Parameters
-    ----------
-    stamp_ns : time of the message [ns since the epoch].
-    events : what to report now; the worst of them gives the first status its level and message.
-    values : key to value, the unit written in the key (see `condition`); shown with the first status.
-    component : first half of each status' name, the node's name by convention.
-    hardware_id : the bearing's name.
-    """
-    events = list(events)
-    worst = max(events, key=lambda event: event.level, default=Event(0.0, Level.OK, "ok", "", "OK"))
-    whole = _status(f"{component}: condition", hardware_id, worst.level, worst.text, values or {})
-    parts = [_status(f"{component}: {event.kind}", hardware_id, event.level, event.text, _event_values(event)) for event in events]
-    return {"header": header(stamp_ns), "status": [whole, *parts]}
-
-
-def _event_values(event: Event) -> dict[str, object]:
-    """Return the fields of an event that a status has no field for."""
-    fields = {"time [s]": event.time, "subject": event.subject, "reason": event.reason, "action": event.action}
-    return {key: value for key, value in fields.items() if value != ""} | ({"count": event.count} if event.count > 1 else {})
-
-
-def event_of(time: float, status) -> Event:
-    """Return the event of a diagnostic_msgs/DiagnosticStatus that `diagnostics`, or another program, has made.
-
-    Parameters
-    ----------
-    time : of the event [s].
-    status : deserialised message; of another program's status, the message becomes the reason.
-    """
-    kind = status.name.partition(": ")[2] or status.name
-    values = {pair.key: pair.value for pair in status.values}
-    if "reason" not in values:
-        return Event(time, Level(int(status.level)), kind, "", status.message)
-    count = int(values.get("count", 1))
-    return Event(time, Level(int(status.level)), kind, values.get("subject", ""), values["reason"], values.get("action", ""), count)
-
-
-def _status(name: str, hardware_id: str, level: Level, text: str, values: Mapping[str, object]) -> dict:
-    pairs = [{"key": key, "value": f"{value:.9g}" if isinstance(value, float) else str(value)} for key, value in values.items()]
-    return {"level": bytes([level]), "name": name, "message": text, "hardware_id": hardware_id, "values": pairs}
-
-
-def condition(sample) -> dict[str, float]:
-    """Return the numbers of one sample for diagnostics, with the unit in each key."""
-    return {
-        "shaft speed [rpm]": float(sample["shaft_speed"]) * 30 / math.pi,
-        "radial load [N]": math.hypot(sample["load_y"], sample["load_z"]),
-        "oil temperature [degC]": float(sample["oil_temperature"]) - ZERO_CELSIUS,
-        "running clearance [um]": 1e6 * float(sample["running_clearance"]),
-        "cage slip [%]": 100 * float(sample["cage_slip"]),
-        "rating life [h]": float(sample["rating_life"]),
-        "damage [% of life]": 100 * float(sample["damage"]),
-    }
-
-
-def further_condition(scene, sample) -> dict[str, object]:
-    """Return the numbers that depend on the scene, in addition to `condition`: which life, the standards' lives, pressures and tilts by slices."""
-    numbers = {"life method": scene.life.method}
-    if not scene.life.is_basic:
-        numbers["modified rating life [h]"] = float(sample["modified_rating_life"])
-    numbers |= {f"{symbol} [h]": float(sample[name]) for name, symbol in LIFE_SYMBOLS.items()}
-    if scene.uses_ring_temperatures:
-        shown = (*ARRAYS["predicted_temperatures"].fields, *(f"{name}_measured" for name in RING_TEMPERATURES))
-        celsius = {name: float(sample[name]) - ZERO_CELSIUS for name in shown}
-        numbers |= {f"{name.replace('_', ' ')} [degC]": value for name, value in celsius.items() if not math.isnan(value)}
-    if scene.bodies_tilt:
-        for name, fields in (("largest", ("inner_pressure", "outer_pressure")), ("largest edge", ("inner_edge_pressure", "outer_edge_pressure"))):
-            numbers[f"{name} pressure [MPa]"] = 1e-6 * max(float(sample[field]) for field in fields)
-        numbers["largest roller tilt [mrad]"] = 1e3 * float(np.abs(sample["roller_tilt"]).max())
-        numbers["largest roller skew [mrad]"] = 1e3 * float(np.abs(sample["roller_skew"]).max())
-    return numbers
+"""Name and type of the topic of `bearing_sim.messages.diagnostics`."""
 
 
 def input_types(channel: str) -> tuple[str, ...]:

@@ -5,12 +5,13 @@ It reads the newest sample, the input gate and the solver, and knows no ROS.
 """
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from enum import Enum
+from types import MappingProxyType
 from typing import NamedTuple, Protocol
 
 from bearing_sim.inputs.gate import CHANNELS, InputGate
-from bearing_sim.messages import topics
+from bearing_sim.messages.diagnostics import JUDGED, condition
 from bearing_sim.messages.events import Event, Level
 
 _LINGER = 2.0  # [s] how long a momentary event is shown, so that a report at 1 Hz cannot miss it
@@ -41,7 +42,9 @@ class Condition(NamedTuple):
     """The health at one instant."""
 
     events: list[Event]  # that hold now, the worst first
-    values: dict[str, object]  # for diagnostics, the unit in each key
+    values: Mapping[str, object]  # for diagnostics, the unit in each key
+    remarks: Mapping[str, str] = MappingProxyType({})  # what is said of subjects without events, by name
+    otherwise: str = "OK"  # what is said of the other subjects without events
 
     @property
     def level(self) -> Level:
@@ -146,10 +149,28 @@ def level_of(events: Sequence[Event]) -> Level:
     return events[0].level if events else Level.OK
 
 
+def not_running(event: Event) -> Condition:
+    """Return the condition of a bearing whose model does not run, for the reason that ``event`` states."""
+    return Condition([event], {}, otherwise="not judged: the model does not run")
+
+
+def remarks(gate: InputGate, solver: SolverState, level: str) -> dict[str, str]:
+    """Return what is said of subjects without events while the model runs, by name.
+
+    Parameters
+    ----------
+    gate : provides the inputs.
+    solver : whether there are samples to judge.
+    level : the level of fidelity that is computed.
+    """
+    said = {channel: gate.state(channel) for channel in CHANNELS} | {"run": solver.phase.value, "governor": f"level {level}"}
+    return said if solver.newest is not None else dict.fromkeys(JUDGED, "not judged: there is no sample yet") | said
+
+
 def numbers(gate: InputGate, solver: SolverState) -> dict[str, object]:
     """Return the numbers that every diagnostics report has, with the unit in each key."""
     pace, newest = solver.pace, solver.newest
-    found = topics.condition(newest) if newest is not None else {}
+    found = condition(newest) if newest is not None else {}
     found |= {
         "phase": solver.phase.value,
         "run time [s]": float(newest["time"]) if newest is not None else 0.0,

@@ -264,7 +264,7 @@ class Monitor:
         """Diagnostics values that only the monitor computes, with the unit in each key; empty before the first sample."""
         names = {"remaining": "remaining life [h]", "lambda": "film over roughness, lambda", "pocket": "largest pocket force [N]"}
         values = {shown: self._latest[name] for name, shown in names.items() if name in self._latest}
-        return values | ({"film [um]": 1e6 * self._least_film()} if self._latest else {}) | self._temperatures.values(self._time)
+        return values | ({"film [m]": self._least_film()} if self._latest else {}) | self._temperatures.values(self._time)
 
     def _least_film(self) -> float:
         """Return the film of the newest sample that is due [m]; computed when somebody asks, because it takes longer than all other values."""

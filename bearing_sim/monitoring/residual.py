@@ -45,7 +45,8 @@ class Comparand(NamedTuple):
     ----------
     what : the residual; the subject of its event and the first words of its diagnostics.
     whose : the part that is measured.
-    unit, factor : unit shown, and the factor from SI to that unit.
+    unit, factor : unit shown in texts, and the factor from SI to that unit.
+    si_unit : unit of the numbers in diagnostics, as the topics have them.
     verdicts : by the side to which the residual has changed: 0 for none, 1 up, -1 down.
     unjudged : the verdict where nothing can be said.
     """
@@ -54,6 +55,7 @@ class Comparand(NamedTuple):
     whose: str
     unit: str
     factor: float
+    si_unit: str
     verdicts: dict[int, str]
     unjudged: str
 
@@ -63,6 +65,7 @@ SLIP = Comparand(
     "the cage",
     "points",
     100.0,
+    "fraction",
     {0: "as predicted", 1: "slips more than predicted", -1: "slips less than predicted"},
     "not judged: at rest, at a changing speed, or predicted by another level",
 )
@@ -72,7 +75,7 @@ def temperature_of(ring: str) -> Comparand:
     """Return the words for the temperature of a ring, inner or outer."""
     verdicts = {0: "as predicted", 1: "is warmer than predicted", -1: "is colder than predicted"}
     return Comparand(
-        f"residual temperature of the {ring} ring", f"the {ring} ring", "K", 1.0, verdicts, "not judged: not measured, or at a changing speed"
+        f"residual temperature of the {ring} ring", f"the {ring} ring", "K", 1.0, "K", verdicts, "not judged: not measured, or at a changing speed"
     )
 
 
@@ -343,12 +346,12 @@ class ResidualMonitor:
         """Return diagnostics values and the verdict at ``now`` [s], with the unit in each key; empty before the first measurement."""
         if math.isnan(self._time):
             return {}
-        what, unit, factor = self._of.what, self._of.unit, self._of.factor
+        what, unit = self._of.what, self._of.si_unit
         return {
-            f"{what} [{unit}]": factor * self.residual,
-            f"{what}, mean [{unit}]": factor * self.mean,
-            f"{what}, deviation [{unit}]": factor * self.deviation,
-            f"{what}, usual mean [{unit}]": factor * self._whitener.mean if self._whitener.count else math.nan,
+            f"{what} [{unit}]": self.residual,
+            f"{what}, mean [{unit}]": self.mean,
+            f"{what}, deviation [{unit}]": self.deviation,
+            f"{what}, usual mean [{unit}]": self._whitener.mean if self._whitener.count else math.nan,
             f"{what}, CUSUM of its threshold [%]": 100 * self._cusum.height / self._cusum.threshold,
             f"{what}, verdict": self.verdict(now),
         }

@@ -12,6 +12,7 @@ import yaml
 from mcap.records import Metadata
 
 from bearing_sim.messages.cdr import CdrError, CdrLayout, NumberColumns, typestore
+from bearing_sim.messages.diagnostics import events_of
 from bearing_sim.messages.events import Event, Level, Measurement
 from bearing_sim.messages.sample_messages import sample_columns
 from bearing_sim.messages.topics import (
@@ -24,7 +25,6 @@ from bearing_sim.messages.topics import (
     OUTPUTS,
     RECORDED,
     RESIDUAL,
-    event_of,
     input_values,
 )
 from bearing_sim.model.sample import flat, new_block
@@ -336,9 +336,8 @@ def _measured_number(name: str, message) -> float:
 
 
 def _events(message, time: float, reported: dict[tuple[tuple[str, str], Level], float]) -> Iterator[Event]:
-    """Yield the events of a diagnostics message that were not reported a moment ago; the first status summarises the others."""
-    for status in message.status[1:]:
-        event = event_of(time, status)
+    """Yield the events of a diagnostics message that were not reported a moment ago."""
+    for event in (event for status in message.status for event in events_of(time, status)):
         key, level = event.key, event.level
         for other in set(Level) - {level}:  # a change of level is news, and so is the way back
             reported.pop((key, other), None)

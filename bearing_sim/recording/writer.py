@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.messages import topics
+from bearing_sim.messages import diagnostics, topics
 from bearing_sim.messages.cdr import message_type
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.recording.append_file import AppendFile
@@ -454,13 +454,17 @@ class McapSink(AbstractContextManager):
 
     def write_event(self, event: Event) -> None:
         """Write one event as diagnostics."""
-        self.write_diagnostics(event.time, [event])
+        time_ns = self._time_ns(event.time)
+        self._write_diagnostics(time_ns, diagnostics.news(time_ns, event, hardware_id=self._bearing))
 
     def write_diagnostics(self, time: float, events: Iterable[Event] = (), values: Mapping[str, object] | None = None) -> None:
-        """Write a diagnostics message (see `bearing_sim.messages.topics.diagnostics`)."""
-        name, ros_type = topics.DIAGNOSTICS
+        """Write a report of all subjects (see `bearing_sim.messages.diagnostics.report`)."""
         time_ns = self._time_ns(time)
-        self._files.current.write(f"/{name}", ros_type, time_ns, topics.diagnostics(time_ns, events, values, hardware_id=self._bearing))
+        self._write_diagnostics(time_ns, diagnostics.report(time_ns, events, values or {}, hardware_id=self._bearing))
+
+    def _write_diagnostics(self, time_ns: int, message: dict) -> None:
+        name, ros_type = topics.DIAGNOSTICS
+        self._files.current.write(f"/{name}", ros_type, time_ns, message)
 
     def news(self) -> list[tuple[Level, str, str]]:
         """Return (level, kind, text) of what happened to the files since the last call: deleted and restored, not completed."""

@@ -163,7 +163,7 @@ def summary(path: Path) -> str:
     for item in recording:
         if not isinstance(item, Event):
             blocks.append(item)
-        elif item.level > Level.OK and item.kind != "condition":
+        elif item.level > Level.OK:
             warnings[item.kind] += 1
 
     def column(name: str) -> np.ndarray:

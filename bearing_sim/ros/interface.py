@@ -21,7 +21,7 @@ from bearing_sim.messages import topics
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.messages.sample_messages import SampleMessages, message_templates
 from bearing_sim.messages.topics import Topic
-from bearing_sim.monitoring.health import Condition, Phase
+from bearing_sim.monitoring.health import Condition, Phase, not_running
 from bearing_sim.ros.messages import InputReader, Refused, message, message_class
 from bearing_sim.ros.parameters import OIL_TEMPERATURE, BearingSettings, NodeSettings, follows_clock, scene_values_in
 from bearing_sim.ros.recordings import fresh_path, limits_of, open_lossless_recording, open_recording, open_view, prepare
@@ -144,6 +144,11 @@ class Outputs:
         for part, send in self._subscribed:
             send(bytes(part))
 
+    @property
+    def topic_names(self) -> list[str]:
+        """The full names of the topics, after namespace and remapping."""
+        return [publisher.topic_name for publisher in (*self._publishers, self._residual)]
+
     def publish_residual(self, stamp_ns: int, residual: float) -> None:
         """Publish the measured minus the predicted cage slip."""
         topic = self._residual_topic
@@ -202,9 +207,8 @@ class BearingInterface:
         self._next_report_ns = 0
         self._now_ns = node.now_ns
         self._subscriptions: dict[str, Subscription] = {}
-        component = node.get_fully_qualified_name().lstrip("/")
-        self.component = f"{component}/{settings.name}" if settings.name else component
-        self.hardware_id = f"{settings.name}/{self.scene.bearing.name}" if settings.name else self.scene.bearing.name
+        self.component = node.component_of(settings.name)
+        self.hardware_id = settings.serial or "/".join(filter(None, (settings.name, self.scene.bearing.name)))
         self._outputs = Outputs(node, self.scene, self._topic_name, _SIM_TIME_OUTPUT_QOS if follows_clock(node) else STATE_QOS)
         self._publish_soon = DeferredCall(node, self._publish)
         self._services = [
@@ -279,7 +283,8 @@ class BearingInterface:
         for channel, topic in topics.inputs(self.scene).items():
             self._subscribe(channel, _SCALAR if shared.input_type == "scalar" and _SCALAR in topics.input_types(channel) else topic.ros_type)
         self._subscribe(topics.MEASURED, topics.MEASUREMENTS[topics.MEASURED].ros_type)
-        self._log("ready: listening to shaft_speed and radial_load")
+        self._log(f"publishing {', '.join(self._outputs.topic_names)}")
+        self._log(f"ready: listening to {', '.join(subscription.topic_name for subscription in self._subscriptions.values())}")
         if self._compiling is not None:
             self._log("compiling levels of lower fidelity for the governor in the background, once for this version")
 
@@ -326,7 +331,7 @@ class BearingInterface:
         if self.live is None:
             event = Event(0.0, Level.ERROR, "run.failed", "", self.error) if self.error else state
             if self._report_is_due(event.level):
-                self._report(now_ns, Condition([event], {}))
+                self._report(now_ns, not_running(event))
             return
         self._join_governor(warm_up)
         if follows_clock(self._node) and self.live.solver.phase is Phase.WAITING:

@@ -25,12 +25,13 @@ from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.lifecycle import LifecycleNode, TransitionCallbackReturn
 from rclpy.task import Future
 
-from bearing_sim.messages import topics
+from bearing_sim.messages import diagnostics, topics
+from bearing_sim.messages.cdr import message_type
 from bearing_sim.messages.events import Event, Level
-from bearing_sim.monitoring.health import Condition
+from bearing_sim.monitoring.health import Condition, not_running
 from bearing_sim.recording.recorder import Recorder
 from bearing_sim.ros.interface import STATE_QOS, BearingInterface
-from bearing_sim.ros.messages import message, message_class
+from bearing_sim.ros.messages import message_class
 from bearing_sim.ros.parameters import NodeSettings, ParameterServer, SettingsError, follows_clock
 from bearing_sim.ros.process import CannotRun, run_node
 from bearing_sim.ros.warm_up import WarmUp
@@ -47,7 +48,7 @@ def _reported(transition: Callable) -> Callable:
 
     @wraps(transition)
     def guarded(node, state) -> TransitionCallbackReturn:
-        name = transition.__name__.removeprefix("on_")
+        name, before = transition.__name__.removeprefix("on_"), node._state
         try:
             result, node.error = transition(node, state), ""
         except (SettingsError, SceneError, OSError, CannotRun) as error:
@@ -57,6 +58,8 @@ def _reported(transition: Callable) -> Callable:
         if node.error:
             node.get_logger().error(node.error)
             node.report_soon()
+        else:
+            node.get_logger().info(f"lifecycle: {name}: {before} -> {node._state}")
         return result
 
     return guarded
@@ -217,8 +220,13 @@ class BearingNode(LifecycleNode):
     def publish_diagnostics(self, now_ns: int, condition: Condition, component: str, hardware_id: str) -> None:
         """Publish a condition on /diagnostics, with the state of the node."""
         values = {"state": self._state, **condition.values}
-        fields = topics.diagnostics(now_ns, condition.events, values, component, hardware_id)
-        self._diagnostics.publish(message(topics.DIAGNOSTICS[1], fields))
+        fields = diagnostics.report(now_ns, condition.events, values, component, hardware_id, condition.remarks, condition.otherwise)
+        self._diagnostics.publish(message_type(topics.DIAGNOSTICS[1]).serialize(fields))
+
+    def component_of(self, bearing: str) -> str:
+        """Return the first half of the names of a bearing's statuses: the node's name, and the bearing's if it has one."""
+        node = self.get_fully_qualified_name().lstrip("/")
+        return f"{node}/{bearing}" if bearing else node
 
     def review_if_late(self) -> None:
         """Review now if the timer has stalled: an rclpy built against an old glibc waits on the system clock, which may be set back."""
@@ -269,7 +277,9 @@ class BearingNode(LifecycleNode):
         steady_ns = time.monotonic_ns()  # /clock may stand still
         if not self.bearings and steady_ns >= self._next_report_ns:
             self._next_report_ns = steady_ns + 1_000_000_000
-            self.publish_diagnostics(now_ns, Condition([self._state_event(None)], {}), self.get_fully_qualified_name().lstrip("/"), "")
+            for name in dict.fromkeys(self.parameters.bearings() or [""]):
+                serial = str(self.parameters.value("serial", name))
+                self.publish_diagnostics(now_ns, not_running(self._state_event(None)), self.component_of(name), serial)
 
     def _start_late(self) -> None:
         """Start bearings that have warmed up; end a node that manages itself if a recording or all its bearings fail."""
@@ -294,7 +304,7 @@ class BearingNode(LifecycleNode):
         if self.error:
             return Event(0.0, Level.ERROR, "run.failed", "", self.error)
         if bearing is not None and not bearing.is_warm:
-            return Event(0.0, Level.WARN, "run.warming_up", "", _WARMING)
+            return Event(0.0, Level.OK, "run.warming_up", "", _WARMING)
         text = {
             "unconfigured": "unconfigured: waiting to be configured",
             "inactive": "inactive: ready to be activated",

@@ -253,7 +253,7 @@ class ParameterServer:
         given = {parameter.name: parameter.value for parameter in node.get_parameters_by_prefix("").values()}
         self._chosen = set(given)
         self._declare(_TABLE.values(), "", given)
-        for name in self._names():
+        for name in self.bearings():
             self._declare_bearing(name, given)
         for name in given:
             if name not in self._known and not name.startswith(_OF_EVERY_NODE):
@@ -275,7 +275,7 @@ class ParameterServer:
         SettingsError
             Listing every parameter that cannot be used.
         """
-        names = self._names()
+        names = self.bearings()
         errors = [error for name, error in self._errors.items() if name in self._known] + _name_errors(names)
         if errors:
             raise SettingsError(errors)
@@ -299,7 +299,8 @@ class ParameterServer:
         shared = {name: value for name, value in changes.items() if name in _TABLE and (not bearing or f"{own}{name}" not in self._chosen)}
         return shared | {name.removeprefix(own): value for name, value in changes.items() if bearing and name.startswith(own)}
 
-    def _names(self) -> list[str]:
+    def bearings(self) -> list[str]:
+        """Return the names of the bearings; empty for one bearing without a name."""
         return [name for name in self._node.get_parameter("bearings").value if name.strip()]
 
     def _bearing_settings(self, name: str, position: int) -> BearingSettings:

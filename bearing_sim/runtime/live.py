@@ -15,10 +15,11 @@ import numpy as np
 
 from bearing_sim.inputs.gate import UNITS, Coverage, InputGate, PublisherConflict, unknown_inputs, unused_event, with_values
 from bearing_sim.messages import topics
+from bearing_sim.messages.diagnostics import further_condition
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.model.plausibility import plausibility
 from bearing_sim.model.sample import RING_TEMPERATURES, joined
-from bearing_sim.monitoring.health import Condition, Health, Phase, level_of, numbers
+from bearing_sim.monitoring.health import Condition, Health, Phase, level_of, numbers, remarks
 from bearing_sim.monitoring.limits import LimitsMonitor
 from bearing_sim.monitoring.monitor import Monitor
 from bearing_sim.monitoring.residual import ResidualMonitor
@@ -208,10 +209,11 @@ class Model:
     def condition(self, now_ns: int) -> Condition:
         """Return the health now, with the numbers behind it."""
         now, newest = self.run_time(now_ns), self.solver.newest
-        further = topics.further_condition(self.scene, newest) if newest is not None else {}
+        further = further_condition(self.scene, newest) if newest is not None else {}
         values = numbers(self.gate, self.solver) | {"level": self._running_level} | further
         values["inputs unknown [s]"] = self.gate.coverage.unknown_until(now)
-        return Condition(self._events(now), values | self.monitor.values | self.residual.values(now) | self.sinks.values | self._values())
+        values |= self.monitor.values | self.residual.values(now) | self.sinks.values | self._values()
+        return Condition(self._events(now), values, remarks(self.gate, self.solver, self._running_level) | self.sinks.remarks)
 
     def record_diagnostics(self, condition: Condition, now_ns: int) -> None:
         """Write a diagnostics report to the recorders."""

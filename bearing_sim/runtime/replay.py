@@ -10,8 +10,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from bearing_sim.inputs.profile import InputProfile
+from bearing_sim.messages.diagnostics import condition, further_condition
 from bearing_sim.messages.events import Event
-from bearing_sim.messages.topics import condition, further_condition
 from bearing_sim.model.sample import joined
 from bearing_sim.model.turning import turns
 from bearing_sim.model.validity import Exceedance, in_order

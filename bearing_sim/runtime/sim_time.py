@@ -293,7 +293,7 @@ class SimTimeModel(Model):
         return [event._replace(action="the model waits where it is") if event.subject in REQUIRED else event for event in events]
 
     def _new_gate(self, scene: Scene) -> InputGate:
-        return InputGate(scene.accepted_inputs, self._first_inputs, heat_law=scene.heat.law)
+        return InputGate(scene.accepted_inputs, self._first_inputs, heat_law=scene.heat.law, waits_for=REQUIRED)
 
     def _new_profile(self, scene: Scene) -> OnlineInputProfile:
         return OnlineInputProfile(self._rate, scene.accepted_inputs, self._oil_temperature, tuple(topics.inputs(scene)))

@@ -6,6 +6,7 @@ from typing import Protocol
 
 import numpy as np
 
+from bearing_sim.messages.diagnostics import sink_subject
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.messages.topics import Origin
 from bearing_sim.simulation import Inputs
@@ -64,13 +65,14 @@ class SinkRegistry:
             self.recorders[name] = sink
 
     def detach(self, name: str) -> Sink | None:
-        """Close a sink and return it; None if there is no sink with this name.
+        """Close a sink and return it; None if there is no sink with this name.  That one has failed is reported no longer.
 
         Raises
         ------
         OSError
             It could not be completed; it is removed all the same.
         """
+        self._failed.pop(name, None)
         sink = self.by_name.pop(name, None)
         self.recorders.pop(name, None)
         if sink is not None:
@@ -110,11 +112,11 @@ class SinkRegistry:
 
     def fail(self, name: str, now: float, error: Exception) -> None:
         """Close a sink that has failed at ``now`` [s], for example because the disk is full, and report it."""
-        self._failed[name] = Event(now, Level.ERROR, "sink.failed", name, f"failed: {error}", "it is closed and gets nothing more")
         try:
             self.detach(name)
         except (OSError, ValueError):
-            pass  # the same error again, which is reported already
+            pass  # the same error again
+        self._failed[name] = Event(now, Level.ERROR, "sink.failed", name, f"failed: {error}", "it is closed and gets nothing more")
 
     def events(self, now: float) -> Iterator[Event]:
         """Yield what is wrong with sinks at ``now`` [s], for as long as it is wrong."""
@@ -132,6 +134,12 @@ class SinkRegistry:
     def values(self) -> dict[str, int]:
         """Blocks that sinks have dropped, by a key that names the sink."""
         return {f"{name}: blocks dropped": sink.dropped for name, sink in self.by_name.items() if hasattr(sink, "dropped")}
+
+    @property
+    def remarks(self) -> dict[str, str]:
+        """What is said in diagnostics of recording and view while there is no event of them, by subject."""
+        said = {"recording": "no recording", "view": "no view"}
+        return said | {sink_subject(name): str(getattr(sink, "path", "open")) for name, sink in self.by_name.items()}
 
     def close(self, now: float) -> None:
         """Complete all sinks, recordings first, because a view may take its time."""

@@ -371,7 +371,7 @@ EVENTS = {
     "run.reset": ("OK", "state and damage have returned to the start of the scene"),
     "run.start": ("OK", "the run starts"),
     "run.waiting": ("OK", "waiting for the first inputs"),
-    "run.warming_up": ("WARN", "the model is being compiled; inputs that arrive now are not used"),
+    "run.warming_up": ("OK", "the model is being compiled; inputs that arrive now are not used"),
     "run.unconfigured": ("OK", "the node waits to be configured"),
     "run.inactive": ("OK", "the node waits to be activated"),
     "run.finalized": ("OK", "the node is shut down"),
