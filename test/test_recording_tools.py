@@ -16,6 +16,7 @@ import pytest
 from click.testing import CliRunner
 from mcap.reader import make_reader
 from recordings import spoiled, steady_log, truncated
+from rosbags.typesys import Stores, get_typestore
 from synthetic_run import synthetic_block
 
 from bearing_sim.cli.main import main
@@ -27,7 +28,7 @@ from bearing_sim.recording.mcap_format import Message
 from bearing_sim.recording.mcap_reader import McapReader
 from bearing_sim.recording.reader import Recording
 from bearing_sim.recording.recovery import contents, recover
-from bearing_sim.recording.writer import McapFile, McapSink
+from bearing_sim.recording.writer import METADATA, McapFile, McapSink
 from bearing_sim.scene.loader import load_scene, scene_from_yaml
 from bearing_sim.simulation import Inputs
 
@@ -188,13 +189,14 @@ def test_compare_finds_the_topic_the_number_the_size_and_the_moment(recording, t
     record(tmp_path / "other.mcap", other)
     told = json.loads(invoke("compare", recording, tmp_path / "other.mcap", "--json", code=1))
     differing = [topic for topic in told["topics"] if topic["differing"]]
-    assert [topic["topic"] for topic in differing] == ["/roller_loads"]
-    [loads] = differing
+    assert [topic["topic"] for topic in differing] == ["/roller_loads", "/rollers"]
+    loads, cloud = differing
+    assert cloud["largest"] == pytest.approx(0.125, abs=1e-4) and cloud["largest_in"] == "inner_load[7]" and cloud["differing"] == 1
     assert loads["largest"] == pytest.approx(0.125) and loads["largest_in"] == "inner_load[7]" and loads["differing"] == 1
     assert loads["largest_at_ns"] == START + 2_510_000_000
     assert loads["largest_relative"] == pytest.approx(0.125 / np.abs(other["inner_load"]).max(), rel=1e-6)
     assert "DIFFERS" in invoke("compare", recording, tmp_path / "other.mcap", code=1)
-    assert "agree" in invoke("compare", recording, tmp_path / "other.mcap", "--tolerance", "roller_loads=0.1")
+    assert "agree" in invoke("compare", recording, tmp_path / "other.mcap", "--tolerance", "roller_loads=0.1", "--tolerance", "rollers=0.1")
 
 
 def test_compare_does_not_overlook_missing_messages_nor_not_a_number(recording, tmp_path):
@@ -205,7 +207,33 @@ def test_compare_does_not_overlook_missing_messages_nor_not_a_number(recording, 
     other["cage_slip"][100] = np.nan
     record(tmp_path / "nan.mcap", other)
     told = json.loads(invoke("compare", recording, tmp_path / "nan.mcap", "--json", "--tolerance", "1e9", code=1))
-    assert [topic["topic"] for topic in told["topics"] if not topic["agrees"]] == ["/cage_slip"]
+    assert [topic["topic"] for topic in told["topics"] if not topic["agrees"]] == ["/bearing_state", "/cage_slip"]
+
+
+def test_a_recording_of_an_earlier_version_agrees_although_it_lacks_what_repeats_and_has_torques_that_are_not_known(recording, tmp_path):
+    old = as_of_earlier_version(recording, tmp_path / "old.mcap")
+    for pair in ((recording, old), (old, recording)):
+        told = json.loads(invoke("compare", *pair, "--json"))
+        assert told["agree"] and told["not_compared"] == ["/bearing_state", "/characteristic_frequencies", "/diagnostics", "/rollers"]
+        assert "/bearing_joints" in [topic["topic"] for topic in told["topics"]]
+    assert blocks(old).tobytes() == blocks(recording).tobytes()
+
+
+def as_of_earlier_version(source, path):
+    """Copy a recording without what this version adds: topics, frames, and arrays of joint states that are empty."""
+    store = get_typestore(Stores.ROS2_JAZZY)
+    with open(source, "rb") as stream, McapFile(path, {METADATA: Recording(source).metadata}) as copy:
+        for schema, channel, message in make_reader(stream).iter_messages():
+            data = message.data
+            if schema.name == "sensor_msgs/msg/JointState":
+                joints = store.deserialize_cdr(data, schema.name)
+                unknown = np.full(len(joints.name), np.nan)
+                joints.header.frame_id, joints.effort = "", unknown
+                joints.position = joints.position if len(joints.position) else unknown
+                data = bytes(store.serialize_cdr(joints, schema.name))
+            if channel.topic not in ("/bearing_state", "/characteristic_frequencies", "/rollers"):
+                copy.write_cdr(channel.topic, schema.name, message.log_time, data)
+    return path
 
 
 def test_compare_refuses_what_it_cannot_use(recording, tmp_path):

@@ -56,7 +56,8 @@ def test_every_output_topic_is_filled_to_what_rclpy_serialises_and_reads_but_for
         expected = message(topic.ros_type, fields)
         assert read(topic, found) == repr(expected), topic.name
         serialised = serialize_message(expected)
-        assert len(found) == len(serialised)
+        behind = 8 if topic.ros_type == "sensor_msgs/msg/JointState" else 0  # rclpy aligns the numbers of empty arrays, which have none
+        assert 0 <= len(serialised) - len(found) <= behind, topic.name
         for place in (k for k in range(len(found)) if found[k] != serialised[k]):
             changed = found[:place] + bytes([255 - found[place]]) + found[place + 1 :]
             assert read(topic, changed) == repr(expected), f"{topic.name}: byte {place} is not padding"

@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Claims about the message table: every array filled, names and units where readers look for them."""
+"""Claims about the message table: arrays filled or empty as the messages' definitions ask, names and units where readers look for them."""
 
 import math
 from types import SimpleNamespace
@@ -12,8 +12,11 @@ from bearing_sim.inputs.gate import InputGate
 from bearing_sim.messages import topics
 from bearing_sim.messages.diagnostics import condition, report
 from bearing_sim.messages.events import Event, Level
+from bearing_sim.messages.point_cloud import ROLLER_FIELDS
 from bearing_sim.messages.sample_messages import SampleMessages, message_templates
+from bearing_sim.model.characteristic_frequencies import characteristic_frequencies
 from bearing_sim.model.sample import OBSERVABLES, new_block
+from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.scene import InputLimits
 from bearing_sim.simulation import Inputs
 
@@ -45,9 +48,30 @@ def as_object(message):
 
 
 @pytest.mark.parametrize("topic", [*topics.INPUTS.values(), *topics.OUTPUTS.values()], ids=lambda topic: topic.name)
-def test_every_array_of_every_message_is_filled(topic):
-    source = Inputs(1.0, 2.0, 3.0, 390.0) if topic.name in topics.INPUTS else one_sample()
-    assert all(len(array) > 0 for array in arrays(topic.message(STAMP, source)))
+def test_arrays_are_filled_but_for_those_of_joint_states_that_have_no_meaning(topic):
+    """JointState: all arrays have the same size, or are empty where there is no such quantity."""
+    message = topic.message(STAMP, Inputs(1.0, 2.0, 3.0, 390.0) if topic.name in topics.INPUTS else one_sample())
+    if topic.ros_type != "sensor_msgs/msg/JointState":
+        assert all(len(array) > 0 for array in arrays(message))
+        return
+    assert {len(message[part]) for part in ("position", "velocity", "effort")} == {0, len(message["name"])}
+    filled = {"shaft_speed": ["velocity"], "bearing_joints": ["position", "velocity"]}.get(topic.name, ["position"])
+    assert [part for part in ("position", "velocity", "effort") if len(message[part])] == filled
+    numbers = np.concatenate([message[part] for part in filled])
+    assert np.isfinite(numbers[: -len(topics.STATE_LIMITS)] if topic.name == "bearing_state" else numbers).all(), "limits are those of a scene"
+
+
+def test_all_messages_with_a_header_name_the_frame_of_the_bearing():
+    headers = {
+        topic.name: topic.message(STAMP, one_sample())["header"]
+        for topic in topics.OUTPUTS.values()
+        if "header" in topic.message(STAMP, one_sample())
+    }
+    assert {"bearing_joints", "bearing_state", "characteristic_frequencies", "rollers"} <= headers.keys()
+    assert {head["frame_id"] for head in headers.values()} == {"bearing"}
+    cloud = topics.OUTPUTS["rollers"]
+    (template,) = message_templates([cloud], 5, "gearbox/rear")
+    assert get_typestore(Stores.ROS2_JAZZY).deserialize_cdr(template.data, cloud.ros_type).header.frame_id == "gearbox/rear"
 
 
 def test_stamp_keeps_every_nanosecond():
@@ -252,6 +276,20 @@ WIRE = {
     "roller_places": ("angle, radius, rotation", [("roller_angle", "rad"), ("roller_radius", "m"), ("roller_rotation", "rad")]),
 }
 NUMBERS = {"cage_slip": "", "rating_life": "h", "modified_rating_life": "h", "level": "", "damage": ""}
+NAMED = {
+    "bearing_state": (
+        "cage_slip",
+        "rating_life [h]",
+        "modified_rating_life [h]",
+        "level",
+        "damage",
+        "running_clearance [m]",
+        "friction_moment [N*m]",
+        "slip_warning",
+        "slip_error",
+    ),
+    "characteristic_frequencies": ("cage [Hz]", "ball_pass_outer [Hz]", "ball_pass_inner [Hz]", "roller_spin [Hz]"),
+}
 JOINT_ROWS = {
     "shaft": ("shaft_angle", "shaft_speed"),
     "cage": ("cage_angle", "cage_speed"),
@@ -269,7 +307,7 @@ def on_the_wire(rollers=4):
 
 
 def test_no_topic_of_samples_is_missing_from_what_is_written_out_here():
-    assert {*WIRE, *NUMBERS, "bearing_joints"} == {*topics.OUTPUTS, *topics.RECORDED}
+    assert {*WIRE, *NUMBERS, *NAMED, "bearing_joints", "rollers"} == {*topics.OUTPUTS, *topics.RECORDED}
 
 
 @pytest.mark.parametrize("name", WIRE)
@@ -292,4 +330,126 @@ def test_plain_numbers_and_joints_carry_the_observable_that_they_name():
     joints = messages["bearing_joints"]
     found = {name: (angle, speed) for name, angle, speed in zip(joints.name, joints.position, joints.velocity)}
     assert found == {name: (sample[angle], sample[speed]) for name, (angle, speed) in JOINT_ROWS.items()}
-    assert np.isnan(joints.effort).all() and (joints.header.stamp.sec, joints.header.stamp.nanosec) == (1_700_000_000, 250_000_001)
+    assert not len(joints.effort) and (joints.header.stamp.sec, joints.header.stamp.nanosec) == (1_700_000_000, 250_000_001)
+
+
+def test_named_numbers_are_those_of_the_sample_and_the_limits_those_of_the_scene():
+    sample = one_sample(18)
+    scene = load_scene("deng2017_table1", ["thresholds.slip_warning=3%", "thresholds.slip_error=7%"])
+    topic = topics.outputs(scene)["bearing_state"]
+    messages = SampleMessages(message_templates([topic], 18))
+    messages.fill(STAMP, sample)
+    state = get_typestore(Stores.ROS2_JAZZY).deserialize_cdr(bytes(messages.parts[0]), topic.ros_type)
+    assert tuple(state.name) == NAMED["bearing_state"] and not len(state.velocity)
+    found = {name.partition(" [")[0]: value for name, value in zip(state.name, state.position)}
+    assert (found.pop("slip_warning"), found.pop("slip_error")) == (0.03, 0.07)
+    assert found == {name: sample[name] for name in found}
+    units = {observable.name: observable.unit for observable in OBSERVABLES}
+    assert all(name == (f"{plain} [{units[plain]}]" if units[plain] else plain) for name, plain in zip(state.name, found))
+
+
+def points_of(cloud):
+    """Return the points of a sensor_msgs/PointCloud2 by the names of its fields, as its definition says and without any code of ours."""
+    types = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
+    order = ">" if cloud.is_bigendian else "<"
+    names, offsets, formats = zip(*((field.name, field.offset, (order + types[field.datatype], (field.count,))) for field in cloud.fields))
+    kind = np.dtype({"names": names, "offsets": offsets, "formats": formats, "itemsize": cloud.point_step})
+    rows = np.asarray(cloud.data).reshape(cloud.height, cloud.row_step)[:, : cloud.width * cloud.point_step]
+    return np.ascontiguousarray(rows).view(kind).ravel()
+
+
+CLOUD = {  # by name: observable, or None where the test computes it
+    "x": None,
+    "y": None,
+    "z": None,
+    "inner_load": "inner_load",
+    "outer_load": "outer_load",
+    "pocket_force": "pocket_force",
+    "orbital_speed": "orbital_speed",
+    "spin": "roller_spin",
+    "orbital_slip": None,
+    "tilt": "roller_tilt",
+    "skew": "roller_skew",
+}
+
+
+@pytest.mark.parametrize("level, lacks", [("steady", ("tilt", "skew")), ("planar", ("tilt", "skew")), ("spatial", ())])
+def test_an_independent_reader_finds_every_roller_in_the_cloud_by_the_names_of_its_fields(level, lacks):
+    sample = one_sample(18)
+    sample["roller_angle"], sample["roller_radius"] = np.radians(20.0) * np.arange(18), 0.031
+    sample["ideal_cage_speed"], sample["orbital_speed"] = 2000.0, np.linspace(1800.0, 2100.0, 18)
+    topic = topics.outputs(load_scene("deng2017_table1", [f"level={level}"]))["rollers"]
+    messages = SampleMessages(message_templates([topic], 18, "rear"))
+    messages.fill(STAMP, sample)
+    cloud = get_typestore(Stores.ROS2_JAZZY).deserialize_cdr(bytes(messages.parts[0]), topic.ros_type)
+    assert (cloud.height, cloud.width, cloud.row_step, len(cloud.data)) == (1, 18, 18 * cloud.point_step, 18 * cloud.point_step)
+    assert (cloud.header.frame_id, cloud.header.stamp.sec, cloud.header.stamp.nanosec) == ("rear", 1_700_000_000, 250_000_001)
+    assert [field.name for field in cloud.fields] == [name for name in CLOUD if name not in lacks]
+    assert {(field.datatype, field.count) for field in cloud.fields} == {(7, 1)} and cloud.is_dense and not cloud.is_bigendian
+    points = points_of(cloud)
+    for name, observable in CLOUD.items():
+        if observable is not None and name not in lacks:
+            np.testing.assert_array_equal(points[name].ravel(), sample[observable].astype(np.float32), err_msg=name)
+    np.testing.assert_allclose(np.hypot(points["y"], points["z"]).ravel(), 0.031, rtol=1e-6)
+    np.testing.assert_allclose(np.arctan2(points["z"], points["y"]).ravel() % (2 * np.pi), sample["roller_angle"], atol=1e-6)
+    np.testing.assert_allclose(points["orbital_slip"].ravel(), np.linspace(0.1, -0.05, 18), atol=1e-7)
+    assert not points["x"].any()
+
+
+def test_a_cloud_with_a_number_that_is_not_known_says_that_it_is_not_dense():
+    sample = one_sample()
+    sample["ideal_cage_speed"] = 0.0  # at rest slip has no meaning
+    cloud = topics.OUTPUTS["rollers"]
+    messages = SampleMessages(message_templates([cloud], 5))
+    messages.fill(STAMP, sample)
+    found = get_typestore(Stores.ROS2_JAZZY).deserialize_cdr(bytes(messages.parts[0]), cloud.ros_type)
+    points = points_of(found)
+    assert not found.is_dense and np.isnan(points["orbital_slip"]).all() and all(np.isfinite(points[name]).all() for name in "xyz")
+    sample["ideal_cage_speed"] = 100.0
+    messages.fill(STAMP, sample)
+    assert get_typestore(Stores.ROS2_JAZZY).deserialize_cdr(bytes(messages.parts[0]), cloud.ros_type).is_dense
+
+
+def test_numbers_of_a_topic_that_nobody_wants_are_not_computed():
+    sample = one_sample()
+    chosen = [topics.OUTPUTS[name] for name in ("cage_slip", "characteristic_frequencies", "rollers")]
+    messages = SampleMessages(message_templates(chosen, 5))
+    before = bytes(messages.parts[2])
+    messages.compute([True, True, False])
+    messages.fill(0, sample)
+    assert bytes(messages.parts[2]) == before and bytes(messages.parts[1]) != bytes(SampleMessages(message_templates(chosen, 5)).parts[1])
+
+
+def test_documents_name_the_unit_of_every_field_of_the_cloud():
+    units = {"x": "m", "y": "m", "z": "m", "orbital_slip": "", "tilt": "rad", "skew": "rad", "spin": "rad/s", "orbital_speed": "rad/s"}
+    assert {field.name: field.unit for field in ROLLER_FIELDS} == {**dict.fromkeys(CLOUD, "N"), **units}
+    assert all(f"{field.name} [{field.unit}]" in topics.OUTPUTS["rollers"].meaning for field in ROLLER_FIELDS if field.unit)
+
+
+@pytest.mark.parametrize("rollers, diameter, pitch, shaft_turns", [(18, 7.5, 62.0, 750.0), (16, 18.0, 102.5, 25.0), (30, 34.0, 410.0, 0.2)])
+@pytest.mark.parametrize("direction", [1.0, -1.0])
+def test_without_slip_characteristic_frequencies_are_those_of_the_handbooks(rollers, diameter, pitch, shaft_turns, direction):
+    """Contact angle 0: n/2 (1 - D/d_m), Z times it, Z n/2 (1 + D/d_m), and n d_m/(2 D) (1 - (D/d_m)^2)."""
+    ratio, block = diameter / pitch, new_block(3, rollers)
+    block["shaft_speed"] = direction * 2.0 * math.pi * shaft_turns
+    block["cage_speed"] = 0.5 * block["shaft_speed"] * (1.0 - ratio)
+    block["orbital_speed"] = block["cage_speed"][:, None]
+    block["roller_spin"] = block["orbital_speed"] / ratio  # rolls on the outer ring: spin times D/2 = orbital speed times d_m/2
+    handbook = [
+        0.5 * shaft_turns * (1.0 - ratio),
+        0.5 * rollers * shaft_turns * (1.0 - ratio),
+        0.5 * rollers * shaft_turns * (1.0 + ratio),
+        0.5 * shaft_turns / ratio * (1.0 - ratio**2),
+    ]
+    np.testing.assert_allclose(characteristic_frequencies(block), [handbook] * 3, rtol=1e-12)
+
+
+def test_slip_lowers_the_frequencies_of_cage_and_outer_ring_and_raises_that_of_the_inner_ring():
+    block = new_block(2, 18)
+    block["shaft_speed"], block["cage_speed"] = 1000.0, [440.0, 396.0]  # the second with 10 % slip
+    block["orbital_speed"], block["roller_spin"] = block["cage_speed"][:, None], 3600.0
+    block["inner_load"][:, :3], block["roller_spin"][1, :3] = 100.0, [3500.0, 3400.0, 3300.0]
+    (cage, outer, inner, spin), slipping = characteristic_frequencies(block)
+    np.testing.assert_allclose(slipping[:2], [0.9 * cage, 0.9 * outer], rtol=1e-14)
+    assert inner + outer == pytest.approx(18 * 1000.0 / (2 * math.pi)) == slipping[1] + slipping[2] and slipping[2] > inner
+    assert (spin, slipping[3]) == pytest.approx((4040.0 / (2 * math.pi), 3796.0 / (2 * math.pi))), "of the rollers that are loaded"

@@ -28,6 +28,9 @@ _NUMBERS = {"bool": "?", "byte": "u1", "char": "u1", "float32": "f4", "float64":
     f"{sign}int{8 * size}": f"{sign or 'i'}{size}" for size in (1, 2, 4, 8) for sign in ("", "u")
 }
 """NumPy type of each kind of number of message definitions."""
+POINT_CLOUD = "sensor_msgs/msg/PointCloud2"
+_POINT_TYPES = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
+"""NumPy types by the numbers of sensor_msgs/PointField."""
 _NOT_PAYLOAD = {"header", "layout"}  # fields whose numbers describe the message
 
 
@@ -152,6 +155,54 @@ class CdrLayout:
     def _align(self, size: int) -> int:
         self._at += -(self._at - ENCAPSULATION) % size
         return self._at
+
+
+class PointCloudLayout(CdrLayout):
+    """The layout of a serialised point cloud, whose numbers are those of its points by the names of their fields.
+
+    Fields of a point whose type is unknown, or that lie outside of the point, are left out, and so is ``is_dense``, which follows from the numbers.
+    """
+
+    def __init__(self, data: bytes):
+        super().__init__(POINT_CLOUD, data)
+        described = {field.path: field for field in self.fields if not field.is_count}
+        whole = described.pop("data")
+        order = ">" if self._number(described["is_bigendian"]) else "<"
+        step, rows, row_step, width = (self._number(described[name]) for name in ("point_step", "height", "row_step", "width"))
+        rows, width = (min(count, whole.count // step) if step else 0 for count in (rows, width))
+        points = []
+        for name in [field for path, field in described.items() if path.startswith("fields[") and path.endswith(".name")]:
+            offset, kind, count = (self._number(described[name.path.replace(".name", f".{part}")]) for part in ("offset", "datatype", "count"))
+            dtype = np.dtype(order + _POINT_TYPES.get(kind, "u1"))
+            if kind not in _POINT_TYPES or offset + count * dtype.itemsize > step:
+                continue
+            text = data[name.begin + 4 : name.end - 1].decode(errors="replace")
+            begins = (whole.begin + row * row_step + point * step + offset for row in range(rows) for point in range(width))
+            points += [Field(text, dtype, begin, count, begin + count * dtype.itemsize) for begin in begins]
+        self._points = [field for field in points if field.end <= whole.end]
+        # The description is compared byte by byte, like counts.
+        description = [field._replace(is_count=field.dtype is not None) for field in self.fields if field.path not in ("data", "is_dense")]
+        self.fields = description + self._points
+
+    def _number(self, field: Field) -> int:
+        return int(np.frombuffer(self._data, field.dtype, 1, field.begin)[0])
+
+    @property
+    def numbers(self) -> list[Field]:
+        """The numbers of the points, field by field."""
+        return self._points
+
+    def values(self, data: bytes) -> dict[str, np.ndarray]:
+        """Return the numbers of a cloud with this layout as float64, by the name of their field, in the order of the points."""
+        found: dict[str, list[np.ndarray]] = {}
+        for field in self._points:
+            found.setdefault(field.path, []).append(np.frombuffer(data, field.dtype, field.count, field.begin).astype(float))
+        return {name: np.concatenate(parts) for name, parts in found.items()}
+
+
+def layout_of(ros_type: str, data: bytes) -> CdrLayout:
+    """Return the layout of a serialised message, of a point cloud that of its points; raises as `CdrLayout`."""
+    return PointCloudLayout(data) if ros_type == POINT_CLOUD else CdrLayout(ros_type, data)
 
 
 class NumberColumns:

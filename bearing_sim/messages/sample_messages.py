@@ -3,17 +3,18 @@
 
 The messages of one output topic differ only in their stamps and numbers.  Each topic is therefore serialised once as a template; where its
 numbers and stamp stand follows from the definition of its type (`bearing_sim.messages.cdr`).  A recording then fills the templates
-of many samples at once, the node those of all topics of one sample.
+of many samples at once, the node those of all topics of one sample.  Numbers that are not in a sample, but follow from it, are computed for all
+samples of a block together, and in the node only for topics that somebody listens to.
 """
 
 import struct
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from bearing_sim.messages.cdr import ENCAPSULATION, STAMP_FIELDS, CdrLayout, message_type
-from bearing_sim.messages.topics import Topic
+from bearing_sim.messages.topics import FRAME, Topic
 from bearing_sim.model.sample import new_block, sample_dtype
 
 _STAMP = struct.Struct("<iI")  # builtin_interfaces/Time
@@ -28,21 +29,32 @@ class NumberRun(NamedTuple):
     target: int  # [byte] in the message
 
 
+class ComputedRun(NamedTuple):
+    """Numbers that stand side by side in a message and are computed from samples."""
+
+    numbers: Callable[[np.ndarray], np.ndarray]  # see `bearing_sim.messages.topics.Computed`
+    dtype: np.dtype
+    count: int
+    target: int  # [byte] in the message
+
+
 class MessageTemplate(NamedTuple):
     """The message of one topic, and the places that change from sample to sample."""
 
     data: bytes
     runs: tuple[NumberRun, ...]
     stamp: int | None  # [byte] of the header's stamp; None without a header
+    computed: ComputedRun | None = None
 
 
-def message_templates(topics: Sequence[Topic], rollers: int) -> tuple[MessageTemplate, ...]:
+def message_templates(topics: Sequence[Topic], rollers: int, frame: str = FRAME) -> tuple[MessageTemplate, ...]:
     """Return the templates of some output topics.
 
     Parameters
     ----------
-    topics : output topics with observables.
+    topics : output topics with observables, or with numbers that are computed from samples.
     rollers : number of rollers of the samples.
+    frame : the bearing's, for headers.
 
     Raises
     ------
@@ -50,7 +62,13 @@ def message_templates(topics: Sequence[Topic], rollers: int) -> tuple[MessageTem
         A topic does not carry numbers of the sample, or not as float64.
     """
     sample = new_block(1, rollers)[0]
-    return tuple(_template(topic, message_type(topic.ros_type).serialize(topic.message(0, sample)), rollers) for topic in topics)
+    templates = []
+    for topic in topics:
+        message = topic.message(0, sample)
+        if "header" in message:
+            message["header"]["frame_id"] = frame
+        templates.append(_template(topic, message_type(topic.ros_type).serialize(message), rollers))
+    return tuple(templates)
 
 
 def sample_columns(topic: Topic, rollers: int) -> dict[str, np.ndarray]:
@@ -68,16 +86,21 @@ def _template(topic: Topic, data: bytes, rollers: int) -> MessageTemplate:
     runs = []
     for path, columns in sample_columns(topic, rollers).items():
         field = layout.by_path[path]
-        if field.dtype != np.float64 or field.count != len(columns):
+        if field.dtype != np.float64 or field.count < len(columns):
             raise ValueError(f"topic {topic.name}: {path} has {field.count} numbers of {field.dtype}, expected {len(columns)} of float64")
         starts = [0, *np.flatnonzero(np.diff(columns) != 1) + 1]
         runs += [
             NumberRun(int(columns[start]), int(end - start), field.begin + _WORD * int(start))
             for start, end in zip(starts, [*starts[1:], len(columns)])
         ]
-    if not runs:
-        raise ValueError(f"topic {topic.name}: its messages hold no number of a sample; expected Topic.observables to name some")
-    return MessageTemplate(data, tuple(runs), layout.by_path[STAMP_FIELDS[0]].begin if STAMP_FIELDS[0] in layout.by_path else None)
+    if not runs and topic.computed is None:
+        raise ValueError(f"topic {topic.name}: its messages hold no number of a sample; expected Topic.observables to name some, or Topic.computed")
+    stamp = layout.by_path[STAMP_FIELDS[0]].begin if STAMP_FIELDS[0] in layout.by_path else None
+    computed = None
+    if topic.computed is not None:
+        numbers = topic.computed.numbers(new_block(1, rollers))
+        computed = ComputedRun(topic.computed.numbers, numbers.dtype, numbers.shape[1], layout.by_path[topic.computed.field].begin)
+    return MessageTemplate(data, tuple(runs), stamp, computed)
 
 
 class SampleMessages:
@@ -94,13 +117,14 @@ class SampleMessages:
     """
 
     def __init__(self, templates: Sequence[MessageTemplate]):
-        buffer, slices, self._stamps, pairs = bytearray(), [], [], []
+        buffer, slices, self._stamps, pairs, computed = bytearray(), [], [], [], []
         for template in templates:
             buffer += bytes(-(len(buffer) + ENCAPSULATION) % _WORD)  # so that the numbers of all messages are words of the buffer
             begin = len(buffer)
             buffer += template.data
             slices.append(slice(begin, len(buffer)))
             self._stamps += [] if template.stamp is None else [begin + template.stamp]
+            computed.append(None if template.computed is None else template.computed._replace(target=begin + template.computed.target))
             pairs += [(begin + run.target + _WORD * k, run.source + k) for run in template.runs for k in range(run.count)]
         buffer += bytes(-len(buffer) % _WORD)
         targets, sources = np.array(pairs, np.intp).reshape(-1, 2).T
@@ -108,9 +132,19 @@ class SampleMessages:
         whole = memoryview(buffer).toreadonly()
         self.parts = tuple(whole[part] for part in slices)
         self._words = np.frombuffer(buffer, np.float64)
+        self._computed = [run and (run.numbers, np.frombuffer(buffer, run.dtype, run.count, run.target)) for run in computed]
+        self._wanted = [run for run in self._computed if run]
+
+    def compute(self, wanted: Sequence[bool]) -> None:
+        """Say which messages `fill` fills with numbers that must be computed, in the order of the templates; at first all."""
+        self._wanted = [run for run, is_wanted in zip(self._computed, wanted, strict=True) if run and is_wanted]
 
     def fill(self, stamp_ns: int, sample: np.void) -> None:
         """Fill the messages with the numbers of a sample and a stamp [ns since the epoch]."""
+        if self._wanted:
+            block = np.frombuffer(sample, sample.dtype)
+            for numbers, target in self._wanted:
+                target[:] = numbers(block)[0]
         self._words[self._targets] = np.frombuffer(sample, np.float64)[self._sources]
         for at in self._stamps:
             _STAMP.pack_into(self._buffer, at, *divmod(stamp_ns, 1_000_000_000))

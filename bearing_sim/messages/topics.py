@@ -3,8 +3,10 @@
 
 One table serves recordings and the node; it needs no ROS.  A message is a nested dict of field to value: a dict for a
 message, a list for a sequence of messages or strings, a float64 array for a sequence of numbers, float, int, str, and bytes of
-length one for a ``byte``.  No array is empty: `serialize_message` pads messages with empty arrays, and strict readers reject
-the padding.
+length one for a ``byte``.
+
+An array of a JointState that has no meaning is empty, as the definition of that message asks.  rclpy's ``serialize_message`` pads messages
+with empty arrays, which strict readers reject: recordings and outputs are serialised by `bearing_sim.messages.cdr`, as the wire has them.
 
 Names are relative; a recording writes them with a leading slash.
 """
@@ -16,13 +18,28 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bearing_sim.model.sample import NODE_OBSERVABLES, RING_TEMPERATURES
+from bearing_sim.messages.point_cloud import ROLLER_FIELDS, RollerField, point_cloud, roller_fields, roller_points
+from bearing_sim.model.characteristic_frequencies import FREQUENCIES, characteristic_frequencies
+from bearing_sim.model.sample import NODE_OBSERVABLES, OBSERVABLES, RING_TEMPERATURES
 
 SHAFT_JOINT, CAGE_JOINT = "shaft", "cage"
-FRAME = "bearing"  # x along the shaft
+FRAME = "bearing"  # unless the bearing has another frame; x along the shaft
 ZERO_CELSIUS = 273.15  # [K]
 TEMPERATURES = ("oil_temperature", *RING_TEMPERATURES)
 """The input channels that carry a temperature."""
+
+
+class Computed(NamedTuple):
+    """Numbers of messages that are computed from samples.
+
+    Attributes
+    ----------
+    field : of the message, where the first of them stands.
+    numbers : ``numbers(samples) -> array`` of shape (n, numbers), of the type that the message has, for samples of shape (n,).
+    """
+
+    field: str
+    numbers: Callable[[np.ndarray], np.ndarray]
 
 
 class Topic(NamedTuple):
@@ -39,6 +56,9 @@ class Topic(NamedTuple):
         exactly as in the sample.
     of_tilting_levels : whether levels without tilts and slices omit it.
     of_heat : whether scenes without a law of heat omit it.
+    computed : of an output topic, numbers that are not observables themselves.
+    of_scene : returns the topic of a scene, where its messages depend on the scene.
+    repeats : whether its numbers follow from those of the other topics, so that reading a recording back does not need it.
     """
 
     name: str
@@ -48,6 +68,9 @@ class Topic(NamedTuple):
     observables: Mapping[str, tuple[str, ...]] = MappingProxyType({})
     of_tilting_levels: bool = False
     of_heat: bool = False
+    computed: Computed | None = None
+    of_scene: Callable[[Any], "Topic"] | None = None
+    repeats: bool = False
 
 
 def stamp(stamp_ns: int) -> dict:
@@ -68,19 +91,19 @@ def header(stamp_ns: int, frame_id: str = "") -> dict:
     return {"stamp": stamp(stamp_ns), "frame_id": frame_id}
 
 
-def _joints(stamp_ns: int, names: list[str], position: list, velocity: list) -> dict:
-    # No array may stay empty; a torque of NaN is unknown.
+def _joints(stamp_ns: int, names: list[str], position: Iterable[float] = (), velocity: Iterable[float] = ()) -> dict:
+    """Return sensor_msgs/JointState; an array that has no meaning is empty, as that of the torques always is."""
     return {
-        "header": header(stamp_ns),
+        "header": header(stamp_ns, FRAME),
         "name": names,
-        "position": np.array(position, float),
-        "velocity": np.array(velocity, float),
-        "effort": np.full(len(names), math.nan),
+        "position": np.array(list(position), float),
+        "velocity": np.array(list(velocity), float),
+        "effort": np.zeros(0),
     }
 
 
 def _shaft_speed(stamp_ns: int, inputs) -> dict:
-    return _joints(stamp_ns, [SHAFT_JOINT], [math.nan], [inputs.shaft_speed])  # the angle is unknown
+    return _joints(stamp_ns, [SHAFT_JOINT], velocity=[inputs.shaft_speed])  # the angle is unknown
 
 
 def _radial_load(stamp_ns: int, inputs) -> dict:
@@ -98,7 +121,7 @@ def _temperature(name: str, meaning: str, of_heat: bool = False) -> Topic:
 
 
 def _cage_speed(stamp_ns: int, speed: float) -> dict:
-    return _joints(stamp_ns, [CAGE_JOINT], [math.nan], [speed])
+    return _joints(stamp_ns, [CAGE_JOINT], velocity=[speed])
 
 
 def _number(name: str, meaning: str) -> Topic:
@@ -117,6 +140,64 @@ JOINTS = {
 def _bearing_joints(stamp_ns: int, sample) -> dict:
     angles, speeds = zip(*JOINTS.values())
     return _joints(stamp_ns, list(JOINTS), [sample[name] for name in angles], [sample[name] for name in speeds])
+
+
+_UNITS = {observable.name: observable.unit for observable in OBSERVABLES}
+STATE_NUMBERS = ("cage_slip", "rating_life", "modified_rating_life", "level", "damage", "running_clearance", "friction_moment")
+"""The observables of topic ``bearing_state``, in order."""
+STATE_LIMITS = ("slip_warning", "slip_error")
+"""The thresholds that follow them, as the scene has them."""
+
+
+def name_with_unit(name: str, unit: str) -> str:
+    """Return the name of a number with its unit behind it, which a number without a dimension has not."""
+    return f"{name} [{unit}]" if unit else name
+
+
+STATE_NAMES = tuple(name_with_unit(name, _UNITS[name]) for name in STATE_NUMBERS) + STATE_LIMITS
+"""The names in messages of topic ``bearing_state``, in order."""
+FREQUENCY_NAMES = tuple(name_with_unit(frequency.name, "Hz") for frequency in FREQUENCIES)
+"""The names in messages of topic ``characteristic_frequencies``, in order."""
+
+
+def _bearing_state(limits: tuple[float, ...]) -> Topic:
+    """Return the topic of stamped and named numbers, with `STATE_LIMITS` at the end."""
+
+    def message(stamp_ns: int, sample) -> dict:
+        return _joints(stamp_ns, list(STATE_NAMES), [*(sample[name] for name in STATE_NUMBERS), *limits])
+
+    return Topic(
+        "bearing_state",
+        "sensor_msgs/msg/JointState",
+        "numbers of the bearing with a stamp, by name and unit, in position: " + ", ".join(STATE_NAMES),
+        message,
+        {"position": STATE_NUMBERS},
+        of_scene=lambda scene: _bearing_state(tuple(getattr(scene.thresholds, name) for name in STATE_LIMITS)),
+        repeats=True,
+    )
+
+
+def _characteristic_frequencies(stamp_ns: int, sample) -> dict:
+    return _joints(stamp_ns, list(FREQUENCY_NAMES), characteristic_frequencies(_as_block(sample))[0])
+
+
+def _rollers(fields: tuple[RollerField, ...]) -> Topic:
+    """Return the topic of the cloud of rollers with these fields."""
+    units = ", ".join(name_with_unit(field.name, field.unit) for field in ROLLER_FIELDS)
+    return Topic(
+        "rollers",
+        "sensor_msgs/msg/PointCloud2",
+        f"one point for each roller, in the bearing's frame: {units}; tilt and skew at level spatial",
+        lambda stamp_ns, sample: point_cloud(header(stamp_ns, FRAME), fields, _as_block(sample)),
+        computed=Computed("data", lambda samples: roller_points(fields, samples)),
+        of_scene=lambda scene: _rollers(roller_fields(scene.bodies_tilt)),
+        repeats=True,
+    )
+
+
+def _as_block(sample) -> np.ndarray:
+    """Return a sample as a block of one."""
+    return np.frombuffer(sample, sample.dtype)
 
 
 class ArrayRows(NamedTuple):
@@ -263,10 +344,20 @@ OUTPUTS = {
         Topic(
             "bearing_joints",
             "sensor_msgs/msg/JointState",
-            "shaft, cage, cage_ideal: angle [rad], speed [rad/s]; no torque",
+            "shaft, cage, cage_ideal: angle [rad], speed [rad/s]; effort is empty",
             _bearing_joints,
             {"position": tuple(angle for angle, _ in JOINTS.values()), "velocity": tuple(speed for _, speed in JOINTS.values())},
         ),
+        _bearing_state((math.nan,) * len(STATE_LIMITS)),
+        Topic(
+            "characteristic_frequencies",
+            "sensor_msgs/msg/JointState",
+            f"frequencies with the predicted slip [Hz], by name in position: {', '.join(FREQUENCY_NAMES)}",
+            _characteristic_frequencies,
+            computed=Computed("position", characteristic_frequencies),
+            repeats=True,
+        ),
+        _rollers(ROLLER_FIELDS),
         _array("equivalent_loads", "dynamic equivalent roller loads [N]: of whole rollers (inner, outer ring), by laminae (inner, outer)"),
         _array("rating_lives", "rating lives [h] by ISO 281 (L10, L_nm) and by ISO/TS 16281 (L10r, L_nmr)"),
         _array("life_factors", "equivalent and reference load P, P_ref [N], kappa, e_C, a_ISO at P and of the laminae, static safety S_0"),
@@ -322,7 +413,7 @@ def inputs(scene) -> dict[str, Topic]:
 def _of_scene(table: Mapping[str, Topic], scene) -> dict[str, Topic]:
     absent = [topic.name for topic in table.values() if topic.of_tilting_levels and not scene.bodies_tilt]
     absent += [topic.name for topic in table.values() if topic.of_heat and not scene.uses_ring_temperatures]
-    return {name: topic for name, topic in table.items() if name not in absent}
+    return {name: topic if topic.of_scene is None else topic.of_scene(scene) for name, topic in table.items() if name not in absent}
 
 
 DIAGNOSTICS = ("diagnostics", "diagnostic_msgs/msg/DiagnosticArray")

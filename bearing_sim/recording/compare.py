@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.messages.cdr import CdrError, CdrLayout, NumberColumns, is_known
-from bearing_sim.messages.topics import ARRAYS
+from bearing_sim.messages.cdr import CdrError, CdrLayout, NumberColumns, is_known, layout_of
+from bearing_sim.messages.topics import ARRAYS, OUTPUTS
 from bearing_sim.recording.bag import mcap_files
 from bearing_sim.recording.mcap_format import Message
 from bearing_sim.recording.mcap_reader import McapReader, Rows
@@ -83,7 +83,8 @@ def compare(
     Returns
     -------
     differences : of every topic of either recording, sorted by name.
-    skipped : topics with text, which are not compared.
+    skipped : topics that are not compared: those with text, and those that repeat the numbers of others and that one recording, of an earlier
+        version, does not have.
 
     Raises
     ------
@@ -103,7 +104,16 @@ def compare(
             own = (tolerances or {}).get(topic, (tolerances or {}).get(topic.lstrip("/"), tolerance))
             found[topic] = _Pairing(TopicDifference(topic, ros_type, own, first_ns=first_ns))
         found[topic].take(side, column)
-    return [found[topic].finished() for topic in sorted(found)], sorted(skipped)
+    differences = [found[topic].finished() for topic in sorted(found)]
+    skipped |= {difference.topic for difference in differences if _is_newer(difference)}
+    return [difference for difference in differences if difference.topic not in skipped], sorted(skipped)
+
+
+def _is_newer(difference: TopicDifference) -> bool:
+    """Whether one recording lacks a topic altogether that only repeats the numbers of others."""
+    topic = OUTPUTS.get(difference.topic[1:])
+    is_alone = not difference.matched and not (difference.only_first and difference.only_second)
+    return topic is not None and topic.repeats and is_alone
 
 
 class _Column(NamedTuple):
@@ -174,7 +184,7 @@ class _Pairing:
         self._difference = difference
         self._waiting: tuple[deque[_Column], deque[_Column]] = (deque(), deque())
         self._strays: tuple[dict[int, list[bytes]], dict[int, list[bytes]]] = (defaultdict(list), defaultdict(list))
-        self._parts: list[int] | None = None  # how many numbers each field has
+        self._parts: dict[str, int] | None = None  # how many numbers each field has
         self._columns: dict[int, NumberColumns | None] = {}  # by length of the message
 
     def take(self, side: int, column: _Column) -> None:
@@ -240,7 +250,7 @@ class _Pairing:
             self._compare(first.log_ns, mine, others)
             return
         for log_ns, *both in zip(first.log_ns, first.data, second.data):  # each has a layout of its own
-            a, b = (np.concatenate([*self._by_field(data.tobytes()).values(), np.zeros(0)]) for data in both)
+            a, b = self._alike(*(self._by_field(data.tobytes()) for data in both))
             if len(a) == len(b) == len(result.largest):
                 result.matched += 1
                 self._compare(np.array([log_ns]), a[None], b[None])
@@ -250,7 +260,7 @@ class _Pairing:
     def _begin(self, message: bytes) -> None:
         result = self._difference
         fields = {name: part for name, part in self._by_field(message).items() if len(part)}
-        self._parts = [len(part) for part in fields.values()]
+        self._parts = {name: len(part) for name, part in fields.items()}
         result.numbers = [f"{name}[{k}]" if len(part) > 1 else name for name, part in fields.items() for k in range(len(part))]
         size = len(result.numbers)
         result.largest, result.magnitude, result.where_ns = np.zeros(size), np.zeros(size), np.zeros(size, np.int64)
@@ -258,7 +268,7 @@ class _Pairing:
     def _layout(self, message: bytes) -> CdrLayout | None:
         """Return the layout of a message; None if its type is unknown or it is damaged."""
         try:
-            return CdrLayout(self._difference.ros_type, message) if is_known(self._difference.ros_type) else None
+            return layout_of(self._difference.ros_type, message) if is_known(self._difference.ros_type) else None
         except CdrError:
             return None
 
@@ -270,6 +280,20 @@ class _Pairing:
         if rows is not None and list(numbers) == ["data"] and len(numbers["data"]) % len(rows.fields) == 0:
             return dict(zip(rows.fields, numbers["data"].reshape(len(rows.fields), -1)))
         return numbers
+
+    def _alike(self, first: dict[str, np.ndarray], second: dict[str, np.ndarray]) -> list[np.ndarray]:
+        """Return the numbers of two messages; an array that one of them lacks, and that is NaN throughout in the other, is no difference."""
+        found, empty = [], np.zeros(0)
+        for message, other in ((first, second), (second, first)):
+            parts = []
+            for name in dict.fromkeys([*self._parts, *message]):
+                part = message.get(name, empty)
+                if name in self._parts and not len(part) and np.isnan(other.get(name, empty)).all():
+                    part = np.full(self._parts[name], math.nan)
+                if name in self._parts or not np.isnan(part).all():
+                    parts.append(part)
+            found.append(np.concatenate([*parts, empty]))
+        return found
 
     def _numbers(self, data: np.ndarray) -> np.ndarray | None:
         """Return the numbers of messages, shape (n, numbers); None if they are not laid out alike, or have another count than the first message."""
@@ -286,8 +310,9 @@ class _Pairing:
             return
         result = self._difference
         finite = np.maximum(np.where(np.isfinite(a), abs(a), 0.0), np.where(np.isfinite(b), abs(b), 0.0)).max(axis=0)
-        starts = np.cumsum([0, *self._parts[:-1]])
-        np.maximum(result.magnitude, np.repeat(np.maximum.reduceat(finite, starts), self._parts), out=result.magnitude)
+        counts = list(self._parts.values())
+        starts = np.cumsum([0, *counts[:-1]])
+        np.maximum(result.magnitude, np.repeat(np.maximum.reduceat(finite, starts), counts), out=result.magnitude)
         with np.errstate(invalid="ignore"):
             gap = np.where((a == b) | (np.isnan(a) & np.isnan(b)), 0.0, np.abs(a - b))
         gap = np.where(np.isnan(gap), math.inf, gap)

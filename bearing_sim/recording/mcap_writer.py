@@ -31,7 +31,7 @@ from mcap.records import (
 )
 
 from bearing_sim.messages.sample_messages import message_templates
-from bearing_sim.messages.topics import Topic
+from bearing_sim.messages.topics import FRAME, Topic
 from bearing_sim.model.sample import flat
 from bearing_sim.recording.mcap_format import INDEX, MAGIC, MESSAGE, PROFILE, RECORD, Message, packed, packed_message
 
@@ -55,6 +55,7 @@ class SampleRows:
     ----------
     topics : output topics (see `bearing_sim.messages.sample_messages.message_templates`).
     rollers : number of rollers of the samples.
+    frame : the bearing's, for headers.
 
     Attributes
     ----------
@@ -67,21 +68,23 @@ class SampleRows:
         A topic does not carry numbers of the sample.
     """
 
-    def __init__(self, topics: Sequence[Topic], rollers: int):
+    def __init__(self, topics: Sequence[Topic], rollers: int, frame: str = FRAME):
         self.topics, self.rollers = tuple(topics), rollers
-        row, starts, runs, stamps = b"", [], [], []
-        for template in message_templates(self.topics, rollers):
+        row, starts, runs, stamps, computed = b"", [], [], [], []
+        for template in message_templates(self.topics, rollers, frame):
             begin = len(row) + RECORD.size + MESSAGE.size
             starts.append(len(row))
             runs += [run._replace(target=begin + run.target) for run in template.runs]
             stamps += [] if template.stamp is None else [begin + template.stamp]
+            computed += [] if template.computed is None else [template.computed._replace(target=begin + template.computed.target)]
             row += packed_message(Message(0, 0, 0, 0, template.data))
         self.size, self.starts = len(row), np.array(starts, np.uint64)
-        self._runs, self._stamps = runs, len(stamps)
+        self._runs, self._stamps, self._computed = runs, len(stamps), computed
         self._template = np.frombuffer(row, np.uint8).copy()
         fields = [(f"{part}{k}", start + RECORD.size + at, form) for k, start in enumerate(starts) for part, at, form in _HEAD_FIELDS]
         fields += [(f"stamp{k}", at, "(2,)<u4") for k, at in enumerate(stamps)]
         fields += [(f"run{k}", run.target, f"({run.count},)<f8") for k, run in enumerate(runs)]
+        fields += [(f"computed{k}", run.target, (run.dtype, (run.count,))) for k, run in enumerate(computed)]
         names, offsets, formats = zip(*fields)
         self._dtype = np.dtype({"names": names, "formats": formats, "offsets": offsets, "itemsize": self.size})
 
@@ -113,6 +116,8 @@ class SampleRows:
         numbers = flat(np.ascontiguousarray(block))
         for k, run in enumerate(self._runs):
             fields[f"run{k}"] = numbers[:, run.source : run.source + run.count]
+        for k, run in enumerate(self._computed):
+            fields[f"computed{k}"] = run.numbers(block)
         return rows
 
 

@@ -232,6 +232,8 @@ class _Samples:
 
     def blocks_with(self, topic: str, message: Message) -> Iterator[np.ndarray]:
         """Enter one message; yield the block that it finds full."""
+        if _SAMPLE_TOPICS[topic].repeats:
+            return
         columns, numbers = self._numbers_of((topic,), (0,), np.frombuffer(message.data, np.uint8)[None])
         if message.log_time != self._log_ns:
             if self._count == ROWS_PER_BLOCK:
@@ -278,6 +280,8 @@ class _Samples:
         """Return columns of a sample laid out flat, which numbers of a row belong there, and what reads the numbers."""
         layouts, columns = [], []
         for topic, begin in zip(topics, begins):
+            if _SAMPLE_TOPICS[topic].repeats:
+                continue
             try:
                 layout = CdrLayout(_TYPES[topic], row[begin:].tobytes())
             except CdrError as error:

@@ -87,6 +87,7 @@ class Recorder(AbstractContextManager):
         limits: Limits = UNLIMITED,
         advance: tuple[float, int] | None = None,
         wait: bool = True,
+        frame: str = topics.FRAME,
     ) -> "LiveRecording":
         """Begin a recording; the other parameters are those of `bearing_sim.recording.writer.McapSink`.
 
@@ -99,7 +100,7 @@ class Recorder(AbstractContextManager):
         OSError
             The file cannot be made, or no process can be started.
         """
-        options = {"limits": limits, "advance": advance}
+        options = {"limits": limits, "advance": advance, "frame": frame}
         recording = LiveRecording(self._living_client(), Path(path), scene, int(start_ns), options)
         if wait:
             recording.wait_until_open()

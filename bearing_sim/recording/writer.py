@@ -372,6 +372,7 @@ class McapSink(AbstractContextManager):
     seed : of the random numbers in the run, if there are any; goes into the metadata.
     advance : duration [s] and number of samples of each of the run's calls of the model, if they are always the same; goes into the metadata,
         so that the run can be reproduced by the same calls.
+    frame : the bearing's, in the headers of what is recorded of samples.
 
     Raises
     ------
@@ -390,11 +391,12 @@ class McapSink(AbstractContextManager):
         limits: Limits = UNLIMITED,
         seed: int | None = None,
         advance: tuple[float, int] | None = None,
+        frame: str = topics.FRAME,
     ):
-        self.start_ns = int(start_ns)
+        self.start_ns, self._frame = int(start_ns), frame
         self._bearing = scene.bearing.name
         self._topics = tuple(topics.recorded(scene).values())
-        self._rows = SampleRows(self._topics, scene.bearing.roller.count)
+        self._rows = SampleRows(self._topics, scene.bearing.roller.count, frame)
         origin = {"package_version": package_version(), "git_hash": git_hash()}
         packages = {f"version_{name}": version for name, version in versions().items()}
         record = {"scene": scene_to_yaml(scene), "level": scene.level, "start_ns": str(self.start_ns), **origin, **packages}
@@ -415,7 +417,7 @@ class McapSink(AbstractContextManager):
         """Write a block of samples (see `bearing_sim.model.sample`); raises as `McapFile.write`, as all that follows."""
         rollers = block["roller_angle"].shape[1]
         if rollers != self._rows.rollers:
-            self._rows = SampleRows(self._topics, rollers)
+            self._rows = SampleRows(self._topics, rollers, self._frame)
         times_ns = np.uint64(self.start_ns) + np.rint(block["time"] * 1e9).astype(np.int64).astype(np.uint64)
         self._files.current.write_rows(self._rows, block, times_ns)
 

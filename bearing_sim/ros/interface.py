@@ -114,10 +114,11 @@ class Outputs:
     scene : of the bearing; its level determines the topics.
     name_of : ``name_of(topic)`` returns the name under which a topic is published.
     qos : offered QoS.
+    frame : the bearing's.
     """
 
-    def __init__(self, node: Node, scene: Scene, name_of: Callable[[str], str], qos: QoSProfile):
-        self._node, self._name_of, self._qos = node, name_of, qos
+    def __init__(self, node: Node, scene: Scene, name_of: Callable[[str], str], qos: QoSProfile, frame: str):
+        self._node, self._name_of, self._qos, self._frame = node, name_of, qos, frame
         self._topics, self._rollers = tuple(topics.outputs(scene).values()), scene.bearing.roller.count
         self._publishers = [self._publisher(topic) for topic in self._topics]
         self._borrowed = ExitStack()
@@ -129,11 +130,19 @@ class Outputs:
 
     def prepare(self) -> None:
         """Lay out the messages.  To be called once before anything is published, on any thread: it takes a moment."""
-        self._messages = SampleMessages(message_templates(self._topics, self._rollers))
+        self._messages = SampleMessages(message_templates(self._topics, self._rollers, self._frame))
+
+    def adjust(self, scene: Scene) -> None:
+        """Take over the thresholds of a scene, which messages may show."""
+        self._topics = tuple(topics.outputs(scene).values())
+        if self._messages is not None:
+            self.prepare()
+            self.update_subscribed()
 
     def update_subscribed(self) -> None:
         """Note which topics have subscribers; asking at every message would cost a quarter of publishing it."""
-        counts = (publisher.get_subscription_count() for publisher in self._publishers)
+        counts = [publisher.get_subscription_count() for publisher in self._publishers]
+        self._messages.compute([count > 0 for count in counts])
         self._subscribed = [(part, send) for part, send, count in zip(self._messages.parts, self._sends, counts) if count]
 
     def publish(self, stamp_ns: int, sample) -> None:
@@ -209,7 +218,7 @@ class BearingInterface:
         self._subscriptions: dict[str, Subscription] = {}
         self.component = node.component_of(settings.name)
         self.hardware_id = settings.serial or "/".join(filter(None, (settings.name, self.scene.bearing.name)))
-        self._outputs = Outputs(node, self.scene, self._topic_name, _SIM_TIME_OUTPUT_QOS if follows_clock(node) else STATE_QOS)
+        self._outputs = Outputs(node, self.scene, self._topic_name, _SIM_TIME_OUTPUT_QOS if follows_clock(node) else STATE_QOS, settings.frame)
         self._publish_soon = DeferredCall(node, self._publish)
         self._services = [
             node.create_service(kind, self._service_name(name), self._served(act))
@@ -376,8 +385,10 @@ class BearingInterface:
     def apply(self, changes: dict[str, object]) -> None:
         """Apply changes of this bearing's parameters."""
         before, self.scene = self.scene, with_values(self.scene, scene_values_in(changes))
-        if self.live is not None and self.scene.thresholds != before.thresholds:
-            self.live.adjust(self.scene.thresholds)
+        if self.scene.thresholds != before.thresholds:
+            self._outputs.adjust(self.scene)
+            if self.live is not None:
+                self.live.adjust(self.scene.thresholds)
         if self.live is not None and OIL_TEMPERATURE in changes:
             self.live.set_oil_temperature(changes[OIL_TEMPERATURE], self._now_ns())
 
@@ -479,9 +490,9 @@ class BearingInterface:
         def opened(start_ns: int):
             limits = limits_of(self._shared)
             if follows_clock(self._node):
-                sink = open_lossless_recording(path, self.scene, start_ns, limits)
+                sink = open_lossless_recording(path, self.scene, start_ns, limits, self.settings.frame)
             else:
-                sink = open_recording(path, self.scene, start_ns, limits, self.live.schedule, self._node.recorder)
+                sink = open_recording(path, self.scene, start_ns, limits, self.live.schedule, self._node.recorder, self.settings.frame)
             self._log(f"recording {sink.path}" + (f" ({path} exists and is kept)" if sink.path != path else ""))
             return sink
 

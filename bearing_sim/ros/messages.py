@@ -23,6 +23,7 @@ from bearing_sim.messages.cdr import STAMP_FIELDS, CdrLayout
 
 _MOST_LAYOUTS = 16  # learned per channel: where a sender changes from message to message, learning costs more than objects do
 _WORD = 8  # [byte] of a number
+_ARRAY_CODES = {"u": "B"}  # of arrays of numbers, by the kind of their NumPy type; unlisted: float64
 _CDR_LE = b"\x00\x01"  # little-endian CDR version 1, which nearly all senders use
 
 
@@ -59,7 +60,7 @@ def fill(target, fields: dict) -> None:
         if isinstance(value, dict):
             fill(getattr(target, name), value)
         elif isinstance(value, np.ndarray):
-            setattr(target, name, array.array("d", value.tolist()))
+            setattr(target, name, array.array(_ARRAY_CODES.get(value.dtype.kind, "d"), value.tolist()))
         elif isinstance(value, list) and value and isinstance(value[0], dict):
             item_type = kinds[name].removeprefix("sequence<").partition(">")[0]
             setattr(target, name, [message(item_type, item) for item in value])

@@ -17,6 +17,7 @@ from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescri
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
+from bearing_sim.messages.topics import FRAME
 from bearing_sim.scene.loader import did_you_mean
 from bearing_sim.scene.lubricant import Lubricant
 from bearing_sim.scene.quantity import Quantity
@@ -72,7 +73,8 @@ DECLARATIONS = (
     Declaration(
         "frame_id",
         "bearing",
-        "frame in which radial_load messages must be given; messages without a frame are accepted; empty: accept any frame",
+        "the bearing's frame, x along the shaft: of the output topics, and of radial_load messages, which may also have none; empty: a load in "
+        "any frame is accepted as it is, and outputs name the frame bearing",
         per_bearing=True,
     ),
     Declaration(
@@ -120,6 +122,11 @@ class BearingSettings:
     rrd: str
     rerun_port: int
     conditions: Mapping[str, float]
+
+    @property
+    def frame(self) -> str:
+        """The bearing's frame, in the headers of its outputs."""
+        return self.frame_id or FRAME
 
     @property
     def scene_overrides(self) -> list[str]:

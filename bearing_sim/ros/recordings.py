@@ -6,6 +6,7 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from bearing_sim.messages.topics import FRAME
 from bearing_sim.recording.bag import Limits
 from bearing_sim.recording.recorder import Recorder, RestartingRecorder
 from bearing_sim.runtime.pacing import TickSchedule
@@ -34,7 +35,7 @@ def prepare(view: bool, recorder: Recorder | None) -> None:
     load_message_types()
 
 
-def open_recording(path: Path, scene: Scene, start_ns: int, limits: Limits, schedule: TickSchedule, recorder: Recorder):
+def open_recording(path: Path, scene: Scene, start_ns: int, limits: Limits, schedule: TickSchedule, recorder: Recorder, frame: str = FRAME):
     """Return a recording in real time, under a fresh name if ``path`` exists.
 
     If the recording process is killed, the recording continues in another fresh file (see `bearing_sim.recording.recorder.RestartingRecorder`).
@@ -46,6 +47,7 @@ def open_recording(path: Path, scene: Scene, start_ns: int, limits: Limits, sche
     limits : of the size and duration of files.
     schedule : of the live model.
     recorder : the process that records.
+    frame : the bearing's.
 
     Raises
     ------
@@ -53,14 +55,14 @@ def open_recording(path: Path, scene: Scene, start_ns: int, limits: Limits, sche
         The file cannot be created.
     """
     advance = (schedule.tick, schedule.samples) if schedule.every == 1 else None
-    return RestartingRecorder(lambda wait: recorder.open(fresh_path(path), scene, start_ns, limits, advance, wait=wait))
+    return RestartingRecorder(lambda wait: recorder.open(fresh_path(path), scene, start_ns, limits, advance, wait=wait, frame=frame))
 
 
-def open_lossless_recording(path: Path, scene: Scene, start_ns: int, limits: Limits):
+def open_lossless_recording(path: Path, scene: Scene, start_ns: int, limits: Limits, frame: str = FRAME):
     """Return a recording written in this process, which the model waits for, as a run by sim time needs; otherwise as `open_recording`."""
     from bearing_sim.recording.writer import McapSink
 
-    return McapSink(fresh_path(path), scene, start_ns, limits=limits)
+    return McapSink(fresh_path(path), scene, start_ns, limits=limits, frame=frame)
 
 
 def limits_of(settings: "NodeSettings") -> Limits:

@@ -225,6 +225,30 @@ def array_rows() -> str:
     return table(["topic", "shape", "rows, in order"], rows)
 
 
+def cloud_fields() -> str:
+    """Return the fields of a point of topic ``rollers``."""
+    from bearing_sim.messages.point_cloud import ROLLER_FIELDS
+
+    rows = [[code(field.name), field.unit or "1", field.meaning, "spatial" if field.of_tilting_levels else "all"] for field in ROLLER_FIELDS]
+    return table(["field", "unit", "meaning", "levels"], rows)
+
+
+def named_numbers() -> str:
+    """Return the names in topics that carry named numbers."""
+    from bearing_sim.messages import topics
+    from bearing_sim.model.characteristic_frequencies import FREQUENCIES
+    from bearing_sim.model.sample import OBSERVABLES
+
+    meanings = {observable.name: observable.meaning for observable in OBSERVABLES}
+    meanings |= {"slip_warning": "threshold of the scene for warnings", "slip_error": "threshold of the scene for errors"}
+    rows = [[code("bearing_state"), code(name), meanings[name.partition(" [")[0]]] for name in topics.STATE_NAMES]
+    rows += [
+        [code("characteristic_frequencies"), code(name), f"{frequency.meaning} ({frequency.symbol})"]
+        for name, frequency in zip(topics.FREQUENCY_NAMES, FREQUENCIES, strict=True)
+    ]
+    return table(["topic", "name", "meaning"], rows)
+
+
 def observables() -> str:
     """Return the fields of a sample: name, unit, shape and meaning."""
     from bearing_sim.model.sample import OBSERVABLES
@@ -531,7 +555,7 @@ def external_links() -> str:
 PARTS: dict[str, Callable[[], str]] = {
     function.__name__: function
     for function in (
-        *(scene_fields, mapping_fields, bundled, input_topics, output_topics, array_rows, observables, recorded_topics),
+        *(scene_fields, mapping_fields, bundled, input_topics, output_topics, cloud_fields, named_numbers, array_rows, observables, recorded_topics),
         *(parameters, services, events, validity, unwatched_laws, command_line, modules, rooms, claims, external_links),
     )
 }
