@@ -14,10 +14,11 @@ import pytest
 
 pytest.importorskip("rclpy", reason="the node needs ROS 2 (pip install 'bearing_sim[ros]', or a ROS installation)")
 
-from node_overhead import _wait_until_running, cost_of  # noqa: E402
+from node_overhead import _wait_until_running  # noqa: E402
 from ros_bench import fresh_domain  # noqa: E402
 
-from bearing_sim.runtime.solver import name_this_thread  # noqa: E402
+from bearing_sim.ros.measure import cost_of  # noqa: E402
+from bearing_sim.runtime.solver_threads import name_this_thread  # noqa: E402
 
 pytestmark = pytest.mark.timeout(240)
 ROOT = Path(__file__).resolve().parents[1]

@@ -281,6 +281,7 @@ class BearingInterface:
                 governor=self._governor if shared.governor else None,
                 due=self._publish_soon,
                 receiver=self._now_ns,
+                threads=self._node.solver_threads,
             )
             temperature = self.scene.lubricant.temperature
             if self._simulation.inputs.oil_temperature != temperature:  # set while inactive, or given by the topic in the last run

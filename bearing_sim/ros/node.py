@@ -35,6 +35,7 @@ from bearing_sim.ros.messages import message_class
 from bearing_sim.ros.parameters import NodeSettings, ParameterServer, SettingsError, follows_clock
 from bearing_sim.ros.process import CannotRun, run_node
 from bearing_sim.ros.warm_up import WarmUp
+from bearing_sim.runtime.solver_threads import SolverThreads
 from bearing_sim.scene.loader import SceneError
 
 SUCCESS, FAILURE, ERROR = TransitionCallbackReturn.SUCCESS, TransitionCallbackReturn.FAILURE, TransitionCallbackReturn.ERROR
@@ -101,6 +102,7 @@ class BearingNode(LifecycleNode):
         self._state, self._next_report_ns, self._reviewed = "unconfigured", 0, time.monotonic()
         self._warm_up = WarmUp()
         self.recorder = Recorder()  # one process for the recordings of all bearings
+        self.solver_threads = SolverThreads()
         self.parameters = ParameterServer(self)
         self._shared: NodeSettings | None = None
         name, ros_type = topics.DIAGNOSTICS

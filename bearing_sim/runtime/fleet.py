@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""How many bearings one core can run: live models side by side, each on its own thread, as in a node.
+"""How many bearings one core can run: live models side by side on one solver thread, as in a node.
 
 The overhead of ROS is not included (``python test/benchmarks/node_overhead.py`` measures that).
 """
@@ -9,6 +9,7 @@ import time
 from typing import NamedTuple
 
 from bearing_sim.runtime.live import LiveModel, warmed_up
+from bearing_sim.runtime.solver_threads import SolverThreads
 from bearing_sim.scene.scene import Scene
 
 _SAMPLE_RATE = 100.0  # Hz, the node's default
@@ -46,7 +47,8 @@ def run_fleet(scene: Scene, bearings: int, seconds: float) -> FleetRun:
     bearings : how many.
     seconds : duration, after a second that is not counted [s].
     """
-    models = [LiveModel(scene, warmed_up(scene), time.time_ns(), _SAMPLE_RATE, _MAXIMUM_LAG) for _ in range(bearings)]
+    threads = SolverThreads(most=1)
+    models = [LiveModel(scene, warmed_up(scene), time.time_ns(), _SAMPLE_RATE, _MAXIMUM_LAG, threads=threads) for _ in range(bearings)]
     try:
         _drive(models, _SETTLING)
         lost = [model.solver.pace.lost for model in models]

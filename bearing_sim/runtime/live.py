@@ -27,6 +27,7 @@ from bearing_sim.runtime.governor import Governor
 from bearing_sim.runtime.pacing import LONGEST_TICK, Decimator, Pacer, WallClock, tick_schedule
 from bearing_sim.runtime.sink_registry import Sink, SinkRegistry
 from bearing_sim.runtime.solver import Solver, WallTimeSolver
+from bearing_sim.runtime.solver_threads import SolverThreads
 from bearing_sim.scene.fidelity import lower_levels
 from bearing_sim.scene.scene import Scene, Thresholds
 from bearing_sim.simulation import Simulation
@@ -290,6 +291,7 @@ class LiveModel(Model):
     publish_rate : outputs to be published in each second [Hz].
     due : called on the solver's thread when an output is to be published; must return at once.
     receiver : reads the receiver's clock [ns since the epoch] (see `bearing_sim.runtime.pacing.WallClock`).
+    threads : shared with the solvers of other bearings; a thread of its own where absent.
 
     Attributes
     ----------
@@ -309,11 +311,12 @@ class LiveModel(Model):
         publish_rate: float = 50.0,
         due: Callable[[], None] | None = None,
         receiver: Callable[[], int] | None = None,
+        threads: SolverThreads | None = None,
     ):
         self._governor = governor
         self._sample_rate, self.schedule = sample_rate, tick_schedule(sample_rate, publish_rate)
         pacer, capacity = Pacer(1.0, maximum_lag), round(_SLACK / tick_schedule(sample_rate, math.inf).tick)
-        solver = WallTimeSolver(simulation, pacer, self.schedule, capacity, clock, governor, self._advanced)
+        solver = WallTimeSolver(simulation, pacer, self.schedule, capacity, clock, governor, self._advanced, threads)
         held = simulation.inputs._replace(**dict.fromkeys(RING_TEMPERATURES, math.nan))  # measured in this run or not at all
         super().__init__(scene, InputGate(scene.accepted_inputs, held, heat_law=scene.heat.law), solver, start_ns)
         self._sample_decimator, self._publish_decimator, self._due = Decimator(sample_rate), Decimator(publish_rate), due

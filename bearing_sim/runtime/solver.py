@@ -1,18 +1,16 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""The solver thread: advances a simulation and does nothing else.
+"""Solvers: each advances a simulation, step by step, on a thread that does nothing else.
 
-`Solver` is the thread with what every run needs: pause, reset, stop, the queue of results and the report of a crash.  What is due, and when,
+`Solver` has what every run needs: pause, reset, stop, the queue of results and the report of a crash.  What is due, and when,
 is the difference between a run in wall time (`WallTimeSolver`, ticks paced against a monotonic clock) and a run in simulated time
 (`SimTimeSolver`, segments of an input profile as far as the messages and /clock allow).
 """
 
 import sys
-import threading
 import time
 import traceback
 from collections import deque
 from collections.abc import Callable, Collection
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -23,10 +21,8 @@ from bearing_sim.monitoring.health import Phase
 from bearing_sim.runtime.advance_segment import Begun, Output, ProfileRun
 from bearing_sim.runtime.governor import Governor
 from bearing_sim.runtime.pacing import Pace, Pacer, TickSchedule
+from bearing_sim.runtime.solver_threads import SolverThreads, Step
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation, start_sample
-
-THREAD_NAME = "bearing-solver"
-"""Name of the solver thread in top -H and /proc; Linux keeps 15 letters."""
 
 _SWITCH_INTERVAL = 0.0005  # [s] the interpreter's 5 ms until a busy thread releases its lock are too long at the end of a tick
 
@@ -41,7 +37,7 @@ Item = np.ndarray | Start | Begun | Arrival | Output | Event
 
 
 class Solver:
-    """A simulation on a thread of its own; base of `WallTimeSolver` and `SimTimeSolver`.
+    """A simulation that is advanced on a solver thread; base of `WallTimeSolver` and `SimTimeSolver`.
 
     The thread takes one step after the other: `_due` says which is next and when.
 
@@ -50,6 +46,7 @@ class Solver:
     simulation : the model; used by the solver thread only, from `start` on.
     pacer : keeps account of the pace.
     clock : wall clock [s], monotonic.
+    threads : shared with other solvers; a thread of its own where absent.
 
     Attributes
     ----------
@@ -57,25 +54,26 @@ class Solver:
         The newest sample; None before the first.
     """
 
-    def __init__(self, simulation: Simulation, pacer: Pacer, clock: Callable[[], float]):
+    def __init__(self, simulation: Simulation, pacer: Pacer, clock: Callable[[], float], threads: SolverThreads | None = None):
         self._simulation, self._pacer, self._clock = simulation, pacer, clock
-        self._changed = threading.Condition()  # guards the requests and wakes the thread
+        self._threads = SolverThreads() if threads is None else threads
+        self._changed = self._threads.changed  # guards the requests
         self._queue: deque[Item] = deque()
         self.newest: np.void | None = None
-        self._stopping = self._paused = self._holding = self._reset_wanted = self._crashed = False
+        self._started = self._stopping = self._paused = self._holding = self._reset_wanted = self._crashed = False
         self._resets = 0
-        self._thread = threading.Thread(target=self._work, name=THREAD_NAME, daemon=True)
 
     def start(self) -> None:
-        """Start the thread."""
+        """Begin to take steps."""
         sys.setswitchinterval(min(sys.getswitchinterval(), _SWITCH_INTERVAL))
-        self._thread.start()
+        self._started = True
+        self._threads.add(self)
 
     def pause(self, paused: bool = True) -> None:
         """Hold simulated time, or continue."""
         with self._changed:
             self._paused = paused
-            self._changed.notify_all()
+            self._threads.wake(self)
 
     def reset(self, timeout: float = 2.0) -> bool:
         """Return state and damage to the start, in ideal rolling at the present inputs.
@@ -85,21 +83,19 @@ class Solver:
         Whether it was done within ``timeout`` [s]; if not, it will be done after the running tick.
         """
         with self._changed:
-            if not self._thread.is_alive() or self._crashed:
+            if not self._threads.is_running(self) or self._crashed:
                 return False
             wanted = self._resets + 1
             self._reset_wanted = True
-            self._changed.notify_all()
+            self._threads.wake(self)
             return self._changed.wait_for(lambda: self._resets >= wanted, timeout)
 
     def stop(self, timeout: float = 2.0) -> bool:
-        """End the thread after the running tick.  Returns whether it ended within ``timeout`` [s]."""
+        """End after the running tick.  Returns whether it ended within ``timeout`` [s]."""
         with self._changed:
             self._stopping = True
-            self._changed.notify_all()
-        if self._thread.is_alive():
-            self._thread.join(timeout)
-        return not self._thread.is_alive()
+            self._threads.wake(self)
+            return self._changed.wait_for(lambda: not self._threads.is_running(self), timeout)
 
     def take(self) -> list[Item]:
         """Return the results since the last call, oldest first."""
@@ -112,7 +108,7 @@ class Solver:
             return Phase.CRASHED
         if self._stopping:
             return Phase.STOPPED
-        if self._thread.ident is None:
+        if not self._started:
             return Phase.READY
         if self._paused and self._holding:
             return Phase.PAUSED
@@ -153,11 +149,15 @@ class Solver:
         """Return the run time of an event that happens now [s]."""
         raise NotImplementedError
 
-    def _work(self) -> None:
-        name_this_thread(THREAD_NAME)
+    @property
+    def is_ended(self) -> bool:
+        """Whether it takes no further steps."""
+        return self._stopping or self._crashed
+
+    def take_step(self, step: Step) -> None:
+        """Run a step on a solver thread; if it raises, report that and take no further steps."""
         try:
-            while (step := self._next_step()) is not None:
-                step()
+            step()
         except Exception:  # a programming error: report it where people look, and hold the last sample
             reason = f"the solver thread ended by a programming error: {traceback.format_exc(limit=-3).strip()}"
             self._queue.append(Event(self._now(), Level.ERROR, "solver.crashed", "", reason, "outputs are held"))
@@ -165,25 +165,17 @@ class Solver:
                 self._crashed = True
                 self._changed.notify_all()
 
-    def _next_step(self) -> Callable[[], None] | None:
-        """Wait for the next step, obeying requests; None to end."""
-        with self._changed:
-            while not self._stopping:
-                if self._reset_wanted:
-                    return self._reset
-                if self._paused:
-                    self._holding = True
-                    self._changed.wait()
-                    continue
-                if self._holding:
-                    self._holding = False
-                    self._resumed()
-                step, delay = self._due()
-                if step is not None and (not delay or not self._changed.wait(delay)):
-                    return step
-                if step is None:
-                    self._changed.wait(delay)
-        return None
+    def next_step(self) -> tuple[Step | None, float | None]:
+        """Return the next step and how long to wait for it [s], obeying requests; no step and None to wait for a change."""
+        if self._reset_wanted:
+            return self._reset, None
+        if self._paused:
+            self._holding = True
+            return None, None
+        if self._holding:
+            self._holding = False
+            self._resumed()
+        return self._due()
 
     def _reset(self) -> None:
         if self._is_running:
@@ -200,7 +192,7 @@ class Solver:
         with self._changed:
             self._reset_wanted = False
             self._resets += 1
-            self._changed.notify_all()
+            self._threads.wake(self)
 
 
 class WallTimeSolver(Solver):
@@ -222,6 +214,7 @@ class WallTimeSolver(Solver):
     governor : changes the simulation for one of another level when the solver is too slow or fast enough; its wanted level is that of
         ``simulation``.
     advanced : called on the solver thread after every tick with the run time reached [s]; must return at once.
+    threads : see `Solver`.
     """
 
     def __init__(
@@ -233,8 +226,9 @@ class WallTimeSolver(Solver):
         clock: Callable[[], float] = time.monotonic,
         governor: Governor | None = None,
         advanced: Callable[[float], None] | None = None,
+        threads: SolverThreads | None = None,
     ):
-        super().__init__(simulation, pacer, clock)
+        super().__init__(simulation, pacer, clock, threads)
         self._governor, self._advanced = governor, advanced
         self._schedule = self._wanted = schedule
         self._ticks = 0  # since the last sample that sinks keep
@@ -256,7 +250,7 @@ class WallTimeSolver(Solver):
         first, self._latest = self._latest is None, inputs  # one assignment, so readers see old or new inputs
         if first:  # later inputs need not wake the thread: it reads them when its tick is due
             with self._changed:
-                self._changed.notify_all()
+                self._threads.wake(self)
 
     def tick_by(self, schedule: TickSchedule) -> None:
         """Use another schedule from the next sample that sinks keep on."""
@@ -422,7 +416,7 @@ class SimTimeSolver(Solver):
         """Add a good message to the profile (see `bearing_sim.inputs.profile.OnlineInputProfile.add`)."""
         with self._changed:
             gap = self._profile.add(channel, stamp, value)
-            self._changed.notify_all()
+            self._threads.wake(self)
         return gap
 
     def set_oil_temperature(self, stamp: int, temperature: float) -> None:
@@ -434,7 +428,7 @@ class SimTimeSolver(Solver):
         """Take a reading of the clock (see `bearing_sim.inputs.profile.OnlineInputProfile.known_until`)."""
         with self._changed:
             self._sim_clock, self._settled, self._expected = clock, settled, expected
-            self._changed.notify_all()
+            self._threads.wake(self)
 
     def follow(self, profile: OnlineInputProfile) -> None:
         """Leave the present profile and follow another one: state and damage return to the start."""
@@ -444,13 +438,13 @@ class SimTimeSolver(Solver):
             self._has_started = False
             if self._reset_wanted:
                 self._reset_done()
-            self._changed.notify_all()
+            self._threads.wake(self)
 
     def take(self) -> list[Item]:
         """Return the results since the last call, oldest first, and make room for more."""
         with self._changed:
             taken = super().take()
-            self._changed.notify_all()
+            self._threads.wake(self)
         return taken
 
     @property
@@ -564,11 +558,3 @@ class SimTimeSolver(Solver):
 
     def _now(self) -> float:
         return max(self._run.reached, 0) * 1e-9
-
-
-def name_this_thread(name: str) -> None:
-    """Name the running thread for the system's tools: Python before 3.14 keeps thread names to itself."""
-    try:
-        Path(f"/proc/self/task/{threading.get_native_id()}/comm").write_text(name[:15])
-    except OSError:  # not Linux
-        pass

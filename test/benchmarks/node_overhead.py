@@ -25,37 +25,13 @@ from typing import IO, NamedTuple
 import click
 
 from bearing_sim.cli.reporting import print_rows
-from bearing_sim.runtime.solver import THREAD_NAME
+from bearing_sim.ros.measure import DOMAINS, START_LIMIT, Cost, cost_of, end, log_tail, taken
 
-_DOMAINS = range(60, 100)  # above the usual choices of users, below where ports collide with ephemeral ports
-_START_LIMIT = 600.0  # [s] for the first start, which compiles
 _SETTLING = 10.0  # [s] after which memory should not grow
-_LINES_SHOWN = 10  # of the node's log, if it does not start
 _STEP = 1e-6  # relative difference between successive speeds
 _DISTINCT = 1000  # number of different speeds; an output is never that late
 ALL = "all"
 DETUNING = 0.97  # input rate over output rate
-
-
-class Cost(NamedTuple):
-    """The resources that a process has used so far."""
-
-    by_thread: dict[str, float]  # thread's name -> [s] of a core
-    memory: float  # resident [bytes]
-
-
-def cost_of(pid: int) -> Cost:
-    """Return the resources used by a process, by thread name (Linux)."""
-    ticks, spent = os.sysconf("SC_CLK_TCK"), {}
-    for task in Path(f"/proc/{pid}/task").iterdir():
-        try:
-            fields = (task / "stat").read_text()
-        except OSError:  # it has ended in the meantime
-            continue
-        name, numbers = fields[fields.index("(") + 1 : fields.rindex(")")], fields[fields.rindex(")") + 2 :].split()
-        spent[name] = spent.get(name, 0.0) + (int(numbers[11]) + int(numbers[12])) / ticks
-    pages = int(Path(f"/proc/{pid}/statm").read_text().split()[1])
-    return Cost(spent, float(pages * os.sysconf("SC_PAGE_SIZE")))
 
 
 class Received(NamedTuple):
@@ -125,12 +101,12 @@ class Driver:
 
     def take(self) -> None:
         """Take all messages that have arrived."""
-        for taken in _taken(self._joints):
-            self.received.append(Received(time.monotonic(), taken.velocity[0], taken.position[0]))
-        for report in _taken(self._reports):
+        for joints, _ in taken(self._joints, serialised=False):
+            self.received.append(Received(time.monotonic(), joints.velocity[0], joints.position[0]))
+        for report, _ in taken(self._reports, serialised=False):
             self.values = {pair.key: pair.value for pair in report.status[0].values}
         for subscription in self._others:
-            for _ in _taken(subscription):
+            for _ in taken(subscription):
                 pass
 
     def drive(self, seconds: float, rate: float) -> None:
@@ -152,12 +128,6 @@ class Driver:
             if output.arrival >= since and sent:
                 found.append(output.arrival - sent[-1])
         return found
-
-
-def _taken(subscription):
-    with subscription.handle:
-        while (taken := subscription.handle.take_message(subscription.msg_type, False)) is not None:
-            yield taken[0]
 
 
 def measure(level: str, speed_rpm: float, duration: float, rate: float, listen: str = ALL, record: bool = False) -> dict:
@@ -201,27 +171,15 @@ def measure(level: str, speed_rpm: float, duration: float, rate: float, listen: 
             settled = cost_of(node.pid)
             driver.drive(duration - (time.monotonic() - began), DETUNING * rate)
             if node.poll() is not None:
-                raise RuntimeError(f"the node ended during the measurement; {_log_tail(log)}")
+                raise RuntimeError(f"the node ended during the measurement; {log_tail(log)}")
             ended, last = time.monotonic(), cost_of(node.pid)
         finally:
             driver.close()
-            ending = _end(node)
+            ending = end(node)
         recorded = recording.stat().st_size if recording.exists() else 0
     found = _figures(driver, began, ended, rate) | _costs(first, settled, last, ended - began)
     asked = {"level": level, "speed_rpm": speed_rpm, "rate_hz": rate, "input_rate_hz": DETUNING * rate, "topics_subscribed": len(names) + 1}
     return {**asked, "exit_code": node.returncode, "ending_s": ending, "recorded_mb": recorded / 1e6, **found}
-
-
-def _end(node: subprocess.Popen) -> float:
-    """End a node with SIGTERM and return how long that took [s]."""
-    began = time.monotonic()
-    node.terminate()
-    try:
-        node.wait(10.0)
-    except subprocess.TimeoutExpired:
-        node.kill()
-        node.wait()
-    return time.monotonic() - began
 
 
 def _subscribed_topics(listen: str, known: list[str]) -> list[str]:
@@ -232,20 +190,14 @@ def _subscribed_topics(listen: str, known: list[str]) -> list[str]:
 
 
 def _wait_until_running(driver: Driver, node: subprocess.Popen, log: IO[bytes]) -> None:
-    end = time.monotonic() + _START_LIMIT
+    end = time.monotonic() + START_LIMIT
     while not (driver.is_matched and driver.received):
         if node.poll() is not None or time.monotonic() > end:
-            raise RuntimeError(f"the node did not start; {_log_tail(log)}")
+            raise RuntimeError(f"the node did not start; {log_tail(log)}")
         if driver.is_matched:
             driver.send()
         driver.take()
         time.sleep(0.02)
-
-
-def _log_tail(log: IO[bytes]) -> str:
-    log.seek(0)
-    lines = log.read().decode(errors="replace").strip().splitlines()[-_LINES_SHOWN:]
-    return "\n".join(["its log:", *(lines or ["empty"])])
 
 
 def _figures(driver: Driver, began: float, ended: float, rate: float) -> dict:
@@ -269,7 +221,7 @@ def _figures(driver: Driver, began: float, ended: float, rate: float) -> dict:
 
 def _costs(first: Cost, settled: Cost, last: Cost, seconds: float) -> dict:
     spent = {name: last.by_thread[name] - first.by_thread.get(name, 0.0) for name in last.by_thread}
-    solver = sum(cost for name, cost in spent.items() if name.startswith(THREAD_NAME[:15]))
+    solver = last.solver - first.solver
     return {
         "memory_at_10_s_mb": settled.memory / 1e6,
         "memory_at_end_mb": last.memory / 1e6,
@@ -321,7 +273,7 @@ def _print_table(cases: list[dict]) -> None:
 def command(levels, speed_rpm, duration, rate, listen, record, as_json):
     """Measure period, latency, real-time factor, memory and CPU time of a bearing_node from another process."""
     os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
-    os.environ.setdefault("ROS_DOMAIN_ID", str(random.SystemRandom().choice(_DOMAINS)))
+    os.environ.setdefault("ROS_DOMAIN_ID", str(random.SystemRandom().choice(DOMAINS)))
     import rclpy
 
     rclpy.init(args=[])
