@@ -12,7 +12,7 @@ Names are relative; a recording writes them with a leading slash.
 """
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
