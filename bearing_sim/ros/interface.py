@@ -126,7 +126,7 @@ class Outputs:
         self._messages: SampleMessages | None = None
         self._residual_topic = topics.MEASUREMENTS["cage_slip_residual"]
         self._residual = self._publisher(self._residual_topic)
-        self._subscribed: list[tuple[memoryview, Callable[[bytes], None]]] = []
+        self._subscribed: tuple[SampleMessages | None, list[tuple[memoryview, Callable[[bytes], None]]]] = (None, [])
 
     def prepare(self) -> None:
         """Lay out the messages.  To be called once before anything is published, on any thread: it takes a moment."""
@@ -143,14 +143,16 @@ class Outputs:
         """Note which topics have subscribers; asking at every message would cost a quarter of publishing it."""
         counts = [publisher.get_subscription_count() for publisher in self._publishers]
         self._messages.compute([count > 0 for count in counts])
-        self._subscribed = [(part, send) for part, send, count in zip(self._messages.parts, self._sends, counts) if count]
+        heard = [(part, send) for part, send, count in zip(self._messages.parts, self._sends, counts) if count]
+        self._subscribed = self._messages, heard  # one assignment, because `publish` runs on another thread
 
     def publish(self, stamp_ns: int, sample) -> None:
-        """Publish a sample on the topics that had subscribers at the last `update_subscribed`."""
-        if not self._subscribed:
+        """Publish a sample on the topics that had subscribers at the last `update_subscribed`; from one thread only."""
+        messages, heard = self._subscribed
+        if not heard:
             return
-        self._messages.fill(stamp_ns, sample)
-        for part, send in self._subscribed:
+        messages.fill(stamp_ns, sample)
+        for part, send in heard:
             send(bytes(part))
 
     @property
@@ -189,7 +191,7 @@ def _raw_publish(publisher: Publisher, borrowed: ExitStack) -> Callable[[bytes],
 class BearingInterface:
     """One bearing of a node, from the node's configure to its cleanup.
 
-    All methods belong to the node's thread, except `warm_up`.
+    All methods belong to the node's thread, except `warm_up`.  Outputs in wall time are published on a solver thread.
 
     Parameters
     ----------
@@ -219,7 +221,7 @@ class BearingInterface:
         self.component = node.component_of(settings.name)
         self.hardware_id = settings.serial or "/".join(filter(None, (settings.name, self.scene.bearing.name)))
         self._outputs = Outputs(node, self.scene, self._topic_name, _SIM_TIME_OUTPUT_QOS if follows_clock(node) else STATE_QOS, settings.frame)
-        self._publish_soon = DeferredCall(node, self._publish)
+        self._publish_residuals_soon = DeferredCall(node, self._publish_residuals)
         self._services = [
             node.create_service(kind, self._service_name(name), self._served(act))
             for kind, name, act in (
@@ -279,7 +281,7 @@ class BearingInterface:
                 maximum_lag=shared.maximum_lag,
                 publish_rate=shared.publish_rate,
                 governor=self._governor if shared.governor else None,
-                due=self._publish_soon,
+                due=self._publish_newest,
                 receiver=self._now_ns,
                 threads=self._node.solver_threads,
             )
@@ -350,7 +352,7 @@ class BearingInterface:
             self._log_event(event)
         self._outputs.update_subscribed()
         if follows_clock(self._node):  # otherwise outputs are published as soon as they are due
-            self._publish()
+            self._publish_all()
         if self._report_is_due(self.live.level):
             self._report(now_ns, self.live.condition(now_ns))
 
@@ -426,15 +428,27 @@ class BearingInterface:
         else:
             self._logger.info(line)
 
-    def _publish(self) -> None:
-        """Publish new outputs: the newest one, or with sim time each one at its stamp."""
-        if self.live is None:  # the run has ended since this was requested
+    def _publish_newest(self) -> None:
+        """Publish the newest output, on a solver thread: to hand it to the node's thread would cost more than to publish it."""
+        live = self.live
+        if live is None:  # the run has ended in the meantime
             return
+        for stamp_ns, sample in live.published():
+            self._outputs.publish(stamp_ns, sample)
+        if live.has_residuals:
+            self._publish_residuals_soon()
+
+    def _publish_all(self) -> None:
+        """With sim time: publish every output at its stamp."""
         for stamp_ns, sample in self.live.published():
             self._outputs.publish(stamp_ns, sample)
+        self._publish_residuals()
+
+    def _publish_residuals(self) -> None:
+        if self.live is None:  # the run has ended since this was requested
+            return
         for stamp_ns, residual in self.live.residuals():
             self._outputs.publish_residual(stamp_ns, residual)
-        self._node.review_if_late()
 
     def _subscribe(self, channel: str, ros_type: str) -> None:
         joint = self.settings.cage_joint if channel == topics.MEASURED else self.settings.joint
@@ -486,6 +500,7 @@ class BearingInterface:
             live.refuse(channel, error.kind, str(error), now_ns)
             return
         live.offer(channel, values, stamp_ns, now_ns, frame_id)
+        self._node.review_if_late()
 
     def _start_recording(self, path: Path) -> None:
         def opened(start_ns: int):

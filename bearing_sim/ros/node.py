@@ -15,6 +15,7 @@ holds them), recordings get fresh names.  Unless ``autostart`` is false, the nod
 import dataclasses
 import sys
 import time
+from collections import deque
 from collections.abc import Callable
 from functools import wraps
 
@@ -40,6 +41,8 @@ from bearing_sim.scene.loader import SceneError
 
 SUCCESS, FAILURE, ERROR = TransitionCallbackReturn.SUCCESS, TransitionCallbackReturn.FAILURE, TransitionCallbackReturn.ERROR
 _REVIEW_PERIOD = {False: 0.2, True: 0.05}  # [s] delay until a change of health, and with sim time an output, is published
+_REVIEWED_AT_ONCE = 10  # bearings; a node with more of them reviews each less often, because a review takes a millisecond
+_LONGEST_REVIEW = 3  # times as long as with few bearings
 _LATE = 5  # review periods without a review
 _WARMING = "warming up: compiling the model; messages received now are not used"
 
@@ -91,7 +94,7 @@ class BearingNode(LifecycleNode):
 
     Attributes
     ----------
-    review_period : time from one review to the next [s].
+    review_period : time from one review of a bearing to the next [s].
     """
 
     def __init__(self, ended: Future):
@@ -99,6 +102,7 @@ class BearingNode(LifecycleNode):
         self._ended = ended
         self.error = ""  # why the last transition failed
         self.bearings: list[BearingInterface] = []
+        self._to_review: deque[BearingInterface] = deque()
         self._state, self._next_report_ns, self._reviewed = "unconfigured", 0, time.monotonic()
         self._warm_up = WarmUp()
         self.recorder = Recorder()  # one process for the recordings of all bearings
@@ -109,6 +113,7 @@ class BearingNode(LifecycleNode):
         quiet = PublisherEventCallbacks(use_default_callbacks=False)
         self._diagnostics = self.create_publisher(message_class(ros_type), f"/{name}", STATE_QOS, event_callbacks=quiet)
         self.review_period = _REVIEW_PERIOD[follows_clock(self)]
+        self._ticks = 0  # of the timer of reviews
         _create_steady_timer(self, self.review_period, self._review)
         self._clock_watch = self._watch_clock()
         self.manages_itself = bool(self.parameters.value("autostart"))
@@ -131,6 +136,7 @@ class BearingNode(LifecycleNode):
         self._warm_up.cancel()
         stopped = [bearing.destroy() for bearing in self.bearings]
         self.bearings = []
+        self._to_review.clear()
         self.recorder.close(timeout=2.0)
         return all(stopped) and not self._warm_up.is_working
 
@@ -256,6 +262,7 @@ class BearingNode(LifecycleNode):
         for bearing in self.bearings:
             bearing.destroy()
         self.bearings = []
+        self._to_review.clear()
 
     def _watch_clock(self) -> JumpHandle:
         """Pass every reading of /clock to the bearings, as long as the returned handle is kept."""
@@ -274,14 +281,27 @@ class BearingNode(LifecycleNode):
         if self._state == "active":
             self._start_late()
         now_ns = self.now_ns()
-        for bearing in self.bearings:
-            bearing.review(now_ns, self._state_event(bearing), self._warm_up)
+        period = _REVIEW_PERIOD[follows_clock(self)]
+        every = 1 if follows_clock(self) else min(1 + len(self.bearings) // (_REVIEWED_AT_ONCE + 1), _LONGEST_REVIEW)
+        self._ticks, self.review_period = (self._ticks + 1) % every, every * period
+        if self._ticks == 0 and not self._to_review:
+            self._to_review.extend(self.bearings)
+            self._review_next()
         steady_ns = time.monotonic_ns()  # /clock may stand still
         if not self.bearings and steady_ns >= self._next_report_ns:
             self._next_report_ns = steady_ns + 1_000_000_000
             for name in dict.fromkeys(self.parameters.bearings() or [""]):
                 serial = str(self.parameters.value("serial", name))
                 self.publish_diagnostics(now_ns, not_running(self._state_event(None)), self.component_of(name), serial)
+
+    def _review_next(self) -> None:
+        """Review one bearing, and leave the next one to a task, so that messages that have come in the meantime are taken in between."""
+        if not self._to_review:  # the node has been cleaned up in the meantime
+            return
+        bearing = self._to_review.popleft()
+        bearing.review(self.now_ns(), self._state_event(bearing), self._warm_up)
+        if self._to_review:
+            self.executor.create_task(self._review_next)
 
     def _start_late(self) -> None:
         """Start bearings that have warmed up; end a node that manages itself if a recording or all its bearings fail."""

@@ -180,6 +180,11 @@ class Model:
         """Close a sink and return it; None if there is none with this name (see `bearing_sim.runtime.sink_registry.SinkRegistry.detach`)."""
         return self.sinks.detach(name)
 
+    @property
+    def has_residuals(self) -> bool:
+        """Whether there are residual slips to be published."""
+        return bool(self._residuals)
+
     def residuals(self) -> list[tuple[int, float]]:
         """Return the residual slips since the last call that are to be published, each with its stamp [ns since the epoch]."""
         residuals, self._residuals = self._residuals, []
