@@ -36,6 +36,7 @@ _AHEAD = 4.0  # [s] of wall time, at the rate, between the clock and the newest 
 _START_NS = 1_800_000_000_000_000_000
 _PERIOD = 900.0  # [s] of simulated time between looks
 _STUCK = 60.0  # [s] of wall time without an output
+_START_LIMIT = 600.0  # [s] for the first start, which compiles
 _MIB = 2.0**20
 
 
@@ -113,9 +114,31 @@ def drift(looks: list[Look]) -> dict[str, float]:
     return {name: float(np.polyfit(days, [getattr(each, name) for each in kept], 1)[0]) for name in Look._fields[1:]}
 
 
-def run(hours: float, rate: float, feed_of: Callable[[], Feed], parameters: dict[str, str], patience: float = 120.0) -> tuple[list[Look], float, int]:
+def watched(feed: Feed, pid: int, hours: float, rate: float, folder: Path, log: Callable[[], str]) -> tuple[list[Look], float]:
+    """Feed a node for some simulated hours; return what it held, and the rate that was reached."""
+    looks, began, progress, progressed = [], time.monotonic(), -math.inf, time.monotonic()
+    while feed.time < hours * 3600.0:
+        ahead = feed.time - (time.monotonic() - began) * rate
+        if ahead > 0.0:
+            time.sleep(ahead / rate)
+        if feed.heard > progress:
+            progress, progressed = feed.heard, time.monotonic()
+        if feed.time - max(feed.heard, 0.0) > _AHEAD * rate:  # the node is behind: let it come
+            if time.monotonic() - progressed > _STUCK:
+                raise click.ClickException(f"no output for {_STUCK:.0f} s at {feed.time:.0f} s:\n{log()[-3000:]}")
+            time.sleep(0.002)
+            feed.hear()
+            continue
+        feed.advance()
+        if feed.time >= len(looks) * _PERIOD:
+            looks.append(look(pid, feed.time / 3600.0, folder))
+    return looks, feed.time / (time.monotonic() - began)
+
+
+def run(hours: float, rate: float, feed_of: Callable[[], Feed], parameters: dict[str, str]) -> tuple[list[Look], float, int]:
     """Run a node under sim time and return what it held, the rate that was reached, and the number of outputs."""
-    os.environ["ROS_DOMAIN_ID"] = str(fresh_domain())
+    domain = fresh_domain()
+    os.environ["ROS_DOMAIN_ID"] = str(domain)
     with tempfile.TemporaryDirectory() as folder:
         state = Path(folder) / "state"
         state.mkdir()
@@ -123,40 +146,25 @@ def run(hours: float, rate: float, feed_of: Callable[[], Feed], parameters: dict
         if "state_file" in parameters:
             parameters["state_file"] = str(state / parameters["state_file"])
         words = [word for name, value in parameters.items() for word in ("-p", f"{name}:={value}")]
-        process = NodeProcess(Path(folder), int(os.environ["ROS_DOMAIN_ID"]), "--ros-args", *words, limit=6 * 3600, from_scratch=True)
-        rclpy.init()
-        feed = feed_of()
-        end = time.monotonic() + patience
-        while not feed.is_matched:
-            if process.process.poll() is not None or time.monotonic() > end:
-                raise click.ClickException(f"the node does not listen:\n{process.text}")
-            time.sleep(0.05)
-        (pid,) = map(int, Path(f"/proc/{process.process.pid}/task/{process.process.pid}/children").read_text().split())
-        looks, began, heard_at = [], time.monotonic(), (time.monotonic(), -math.inf)
-        while feed.time < hours * 3600.0:
-            ahead = feed.time - (time.monotonic() - began) * rate
-            if ahead > 0.0:
-                time.sleep(ahead / rate)
-            while feed.time - max(feed.heard, 0.0) > _AHEAD * rate:  # the node is behind: let it come
-                time.sleep(0.002)
-                feed.hear()
-                if time.monotonic() - heard_at[0] > _STUCK:
-                    raise click.ClickException(f"no output for {_STUCK:.0f} s at {feed.time:.0f} s:\n{process.text[-3000:]}")
-                if feed.heard > heard_at[1]:
-                    heard_at = (time.monotonic(), feed.heard)
-            if feed.heard > heard_at[1]:
-                heard_at = (time.monotonic(), feed.heard)
-            feed.advance()
-            if feed.time >= len(looks) * _PERIOD:
-                looks.append(look(pid, feed.time / 3600.0, state))
-        reached = feed.time / (time.monotonic() - began)
-        outputs, text = feed.outputs, process.text
-        code = process.end(signal.SIGTERM)
-        rclpy.shutdown()
-        print(text[-1500:], file=sys.stderr)
+        process = NodeProcess(Path(folder), domain, "--ros-args", *words, limit=6 * 3600, from_scratch=True)
+        try:
+            rclpy.init()
+            feed = feed_of()
+            end = time.monotonic() + _START_LIMIT
+            while not feed.is_matched:
+                if process.process.poll() is not None or time.monotonic() > end:
+                    raise click.ClickException(f"the node does not listen:\n{process.text}")
+                time.sleep(0.05)
+            watchdog = process.process.pid
+            (pid,) = map(int, Path(f"/proc/{watchdog}/task/{watchdog}/children").read_text().split())
+            looks, reached = watched(feed, pid, hours, rate, state, lambda: process.text)
+        finally:
+            code = process.end(signal.SIGTERM)
+            rclpy.try_shutdown()
+        print(process.text, file=sys.stderr)
         if code:
             raise click.ClickException(f"the node ended with code {code}")
-        return looks, reached, outputs
+        return looks, reached, feed.outputs
 
 
 @click.command()
