@@ -18,7 +18,7 @@ from rclpy.executors import SingleThreadedExecutor  # noqa: E402
 from rclpy.qos import qos_profile_sensor_data  # noqa: E402
 
 from bearing_sim.messages import topics  # noqa: E402
-from bearing_sim.messages.diagnostics import events_of  # noqa: E402
+from bearing_sim.messages.diagnostics import SUBJECTS, WHOLE, events_of  # noqa: E402
 from bearing_sim.ros.messages import message, message_class  # noqa: E402
 from bearing_sim.simulation import Inputs  # noqa: E402
 
@@ -118,7 +118,7 @@ class Client:
         for name, topic in topics.OUTPUTS.items():
             self.listen(topic.ros_type, name, self.received[name].append)
         name, kind = topics.DIAGNOSTICS
-        self.listen(kind, f"/{name}", self.received[name].append)
+        self.listen(kind, f"/{name}", self._hear_diagnostics)
 
     def close(self):
         self.executor.shutdown()
@@ -184,6 +184,12 @@ class Client:
             assert process.process.poll() is None, f"the node ended early: {what}\n{process.text}"
             self.drive(0.1, rate, **values)
 
+    def _hear_diagnostics(self, report) -> None:
+        """Keep a report of diagnostics; each, in whatever state of the node, must have every subject once."""
+        subjects = [status.name.rpartition(": ")[2] for status in report.status]
+        assert subjects == [WHOLE, *(subject.name for subject in SUBJECTS)], subjects
+        self.received["diagnostics"].append(report)
+
     def is_calm(self, report=-1):
         """Whether the given report of diagnostics tells of nothing but limits of validity, which hold as long as the condition does."""
         told = self.received["diagnostics"][report].status[1:]
@@ -200,13 +206,13 @@ class Client:
         return {pair.key: pair.value for pair in self.received["diagnostics"][-1].status[0].values}
 
     def call(self, kind, service: str, request, process: NodeProcess):
-        """Call a service and return its response.
+        """Call a service of bearing_node, or one by its full name, and return its response.
 
         Clients are kept: a server that has not discovered a new client's reader yet loses the response.
         """
         is_new = service not in self._callers
         if is_new:
-            self._callers[service] = self.node.create_client(kind, f"bearing_node/{service}")
+            self._callers[service] = self.node.create_client(kind, service if service.startswith("/") else f"bearing_node/{service}")
         caller = self._callers[service]
         if is_new or not caller.service_is_ready():
             self.spin_until(caller.service_is_ready, f"the service {service} is there", process)

@@ -446,6 +446,16 @@ def events() -> str:
     return table(["kind", "severity", "meaning", "raised in"], rows)
 
 
+def subjects() -> str:
+    """Return the subjects of diagnostics, and the beginnings of the kinds of their events."""
+    from bearing_sim.messages.diagnostics import SUBJECTS
+    from bearing_sim.messages.topics import INPUTS, MEASURED
+
+    others = {name: "`input.` of this topic" for name in (*INPUTS, MEASURED)} | {"view": "`recording.`, `sink.` of the view"}
+    rows = ([code(each.name), each.meaning, ", ".join(map(code, each.kinds)) or others[each.name]] for each in SUBJECTS)
+    return table(["subject", "about", "kinds of events begin with"], rows)
+
+
 def validity() -> str:
     """Return the limits of all laws: range, source, what happens outside, and the test that drives each out of its range."""
     from bearing_sim.model.validity import LAWS
@@ -556,7 +566,7 @@ PARTS: dict[str, Callable[[], str]] = {
     function.__name__: function
     for function in (
         *(scene_fields, mapping_fields, bundled, input_topics, output_topics, cloud_fields, named_numbers, array_rows, observables, recorded_topics),
-        *(parameters, services, events, validity, unwatched_laws, command_line, modules, rooms, claims, external_links),
+        *(parameters, services, subjects, events, validity, unwatched_laws, command_line, modules, rooms, claims, external_links),
     )
 }
 _REQUEST = re.compile(r"^% generated: (\w+)$", re.MULTILINE)
