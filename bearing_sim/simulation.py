@@ -158,6 +158,22 @@ def thermal_nodes(sample: np.void) -> np.ndarray:
     return np.array([float(sample[name]) for name in NODE_OBSERVABLES])
 
 
+def begin_at_temperatures(simulation: "Simulation", inputs: Inputs, nodes: np.ndarray, rings: np.ndarray) -> None:
+    """Return a simulation with a thermal network to the start at inputs, as warm as another run has left the bearing.
+
+    Parameters
+    ----------
+    nodes : temperatures of the network's nodes [K], shape (NODES,).
+    rings : of inner and outer ring without what measured temperatures have corrected [K], shape (2,).
+    """
+    simulation.reset(inputs, nodes)
+    uncorrected = nodes.copy()
+    uncorrected[[NODE_OBSERVABLES.index(name) for name in RING_TEMPERATURES]] = rings
+    if (uncorrected != nodes).any():
+        simulation.thermal.uncorrected = uncorrected
+        simulation.set_temperatures(nodes, held=False)
+
+
 def scene_inputs(scene: Scene) -> Inputs:
     """Return the operating conditions of a scene as inputs."""
     operating: Operating = scene.operating

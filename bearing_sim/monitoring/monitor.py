@@ -185,6 +185,11 @@ class Monitor:
         self._temperatures.interrupt()
         self._forget()
 
+    @property
+    def temperatures(self) -> TemperatureResiduals:
+        """The comparison of measured and predicted temperatures."""
+        return self._temperatures
+
     def _forget(self) -> None:
         self._time, self._rate, self._damage = math.nan, math.nan, 0.0
         self._film = self._film_at = math.nan

@@ -10,6 +10,7 @@ two sensors was read first; temperatures follow a change late.
 
 import math
 from bisect import bisect_left, bisect_right, insort
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -114,6 +115,10 @@ def threshold_for(length: float, reference: float = _REFERENCE) -> float:
     return brentq(lambda threshold: math.log(run_length(threshold, reference) / length), 0.0, high, xtol=1e-13)
 
 
+_OF_BATCHES = ("count", "mean", "_squares", "_products", "_surprises", "_pairs", "_surprised")
+_OF_CHANGES = ("up", "down", "side", "rising_for", "falling_for")
+
+
 class Whitener:
     """Turns batch means of unknown mean, scatter and correlation into numbers that are standard normal and independent without a change.
 
@@ -142,6 +147,17 @@ class Whitener:
     def interrupt(self) -> None:
         """Treat the next batch as no neighbour of the last one."""
         self._before = math.nan
+
+    @property
+    def learned(self) -> dict[str, float]:
+        """What is known about batches, as `restore` takes it."""
+        return {name.lstrip("_"): getattr(self, name) for name in _OF_BATCHES}
+
+    def restore(self, learned: Mapping[str, float]) -> None:
+        """Continue from what was known about batches; the next one is no neighbour of the last."""
+        for name in _OF_BATCHES:
+            setattr(self, name, type(getattr(self, name))(learned[name.lstrip("_")]))
+        self.interrupt()
 
     @property
     def correlation(self) -> float:
@@ -219,6 +235,16 @@ class Cusum:
         self.side = self.rising_for = self.falling_for = 0
 
     @property
+    def learned(self) -> dict[str, float]:
+        """The sums and what they have led to, as `restore` takes them."""
+        return {name: getattr(self, name) for name in _OF_CHANGES}
+
+    def restore(self, learned: Mapping[str, float]) -> None:
+        """Continue from sums and what they have led to."""
+        for name in _OF_CHANGES:
+            setattr(self, name, type(getattr(self, name))(learned[name]))
+
+    @property
     def height(self) -> float:
         """The larger sum."""
         return max(self.up, self.down)
@@ -282,6 +308,37 @@ class ResidualMonitor:
         self._speed = 0.0  # at which the shaft has settled
         self._batch_start, self._batch_count, self._batch_total = math.nan, 0, 0.0
         self._whitener, self._cusum = Whitener(self._detection.tolerance), Cusum(self._threshold())
+
+    @property
+    def learned(self) -> dict[str, object]:
+        """What was learned about the usual residual, as numbers and nested mappings that JSON has; empty before the first measurement."""
+        if math.isnan(self.mean):
+            return {}
+        newest = None if math.isnan(self._newest_mean) else self._newest_mean
+        fading = {"mean": self.mean, "variance": self._variance, "residual": self.residual, "newest_batch": newest}
+        settings = {"batch": self._detection.batch, "tolerance": self._detection.tolerance}
+        return {**settings, **fading, "batches": self._whitener.learned, "changes": self._cusum.learned}
+
+    def restore(self, learned: Mapping[str, object]) -> None:
+        """Continue from what was learned in an earlier run; nothing if it was learned with another length of batches or tolerance.
+
+        Parameters
+        ----------
+        learned : see `learned`.
+
+        Raises
+        ------
+        KeyError, TypeError, ValueError
+            It is something else.
+        """
+        self.restart()
+        if not learned or (learned["batch"], learned["tolerance"]) != (self._detection.batch, self._detection.tolerance):
+            return
+        self._whitener.restore(learned["batches"])
+        self._cusum.restore(learned["changes"])
+        self.residual, self.mean, self._variance = float(learned["residual"]), float(learned["mean"]), float(learned["variance"])
+        self.deviation = math.sqrt(self._variance)
+        self._newest_mean = math.nan if learned["newest_batch"] is None else float(learned["newest_batch"])
 
     def _threshold(self) -> float:
         return threshold_for(self._detection.false_alarm_time / self._detection.batch)
@@ -426,6 +483,16 @@ class TemperatureResiduals:
         self._next = -math.inf
         for monitor in self._monitors.values():
             monitor.interrupt(-math.inf)
+
+    @property
+    def learned(self) -> dict[str, dict]:
+        """What was learned about each ring that has been measured (see `ResidualMonitor.learned`)."""
+        return {name: learned for name, monitor in self._monitors.items() if (learned := monitor.learned)}
+
+    def restore(self, learned: Mapping[str, Mapping]) -> None:
+        """Continue from what was learned in an earlier run (see `ResidualMonitor.restore`)."""
+        for name, monitor in self._monitors.items():
+            monitor.restore(learned.get(name, {}))
 
     def take(self, block: np.ndarray) -> None:
         """Take samples in order, shape (n,) (see `bearing_sim.model.sample`)."""

@@ -88,6 +88,7 @@ class Recorder(AbstractContextManager):
         advance: tuple[float, int] | None = None,
         wait: bool = True,
         frame: str = topics.FRAME,
+        metadata: Mapping[str, Mapping[str, str]] | None = None,
     ) -> "LiveRecording":
         """Begin a recording; the other parameters are those of `bearing_sim.recording.writer.McapSink`.
 
@@ -100,7 +101,7 @@ class Recorder(AbstractContextManager):
         OSError
             The file cannot be made, or no process can be started.
         """
-        options = {"limits": limits, "advance": advance, "frame": frame}
+        options = {"limits": limits, "advance": advance, "frame": frame, "metadata": metadata}
         recording = LiveRecording(self._living_client(), Path(path), scene, int(start_ns), options)
         if wait:
             recording.wait_until_open()

@@ -2,6 +2,7 @@
 """The ROS interface of one bearing: its topics, services, diagnostics and recordings, in front of its live model."""
 
 import dataclasses
+import json
 import subprocess
 import time
 from collections.abc import Callable
@@ -17,6 +18,8 @@ from rclpy.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.subscription import Subscription
 from std_srvs.srv import SetBool, Trigger
 
+from bearing_sim.bearing_state.keeper import RECORD, StateKeeper
+from bearing_sim.bearing_state.state_file import checked_serial, default_path
 from bearing_sim.messages import topics
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.messages.sample_messages import SampleMessages, message_templates
@@ -203,12 +206,16 @@ class BearingInterface:
     ------
     SceneError
         The scene cannot be used.
+    OSError
+        The bearing's state cannot be used.
     """
 
     def __init__(self, node: LifecycleNode, settings: BearingSettings, shared: NodeSettings):
         self._node, self._logger, self.settings, self._shared = node, node.get_logger(), settings, shared
         self.scene: Scene = load_scene(settings.scene, settings.scene_overrides)
+        self._keeper = self._open_state(settings.serial)
         self.live: LiveModel | SimTimeModel | None = None
+        self._wanted_serial = settings.serial  # in use from ~/replace_bearing on
         self.error = ""  # why the model cannot run; reported until the next configure
         self._simulation: Simulation | None = None
         self._governor: Governor | None = None
@@ -226,6 +233,8 @@ class BearingInterface:
             node.create_service(kind, self._service_name(name), self._served(act))
             for kind, name, act in (
                 (Trigger, "reset", self._reset),
+                (Trigger, "get_bearing_state", self._get_bearing_state),
+                (Trigger, "replace_bearing", self._replace_bearing),
                 (Trigger, "start_recording", self._begin_recording),
                 (Trigger, "stop_recording", self._stop_recording),
                 (SetBool, "pause", self._pause),
@@ -269,7 +278,9 @@ class BearingInterface:
         settings, shared = self.settings, self._shared
         if follows_clock(self._node):
             self._now_ns = self._node.now_ns
-            self.live = SimTimeModel(self.scene, self._simulation, shared.sample_rate, shared.publish_rate, shared.clock_jump_back)
+            self.live = SimTimeModel(
+                self.scene, self._simulation, shared.sample_rate, shared.publish_rate, shared.clock_jump_back, keeper=self._keeper
+            )
             self.live.tick(self._now_ns())
         else:
             self._now_ns = time.time_ns  # the node's clock without its overhead
@@ -284,6 +295,7 @@ class BearingInterface:
                 due=self._publish_newest,
                 receiver=self._now_ns,
                 threads=self._node.solver_threads,
+                keeper=self._keeper,
             )
             temperature = self.scene.lubricant.temperature
             if self._simulation.inputs.oil_temperature != temperature:  # set while inactive, or given by the topic in the last run
@@ -317,6 +329,8 @@ class BearingInterface:
         self._subscriptions = {}
         live, self.live = self.live, None
         stopped = live.close() if live is not None else True
+        if live is not None:
+            self._keeper = live.keeper
         if not stopped:
             self._simulation = self._governor = None
         return stopped
@@ -324,6 +338,9 @@ class BearingInterface:
     def destroy(self) -> bool:
         """End the run and destroy topics and services.  Returns whether the solver's thread ended."""
         stopped = self.close()
+        if self._keeper is not None:
+            self._keeper.close()
+            self._keeper = None
         if self._compiling is not None:
             self._compiling.kill()
             self._compiling.wait()
@@ -392,8 +409,20 @@ class BearingInterface:
             self._outputs.adjust(self.scene)
             if self.live is not None:
                 self.live.adjust(self.scene.thresholds)
+        if "serial" in changes:
+            self._wanted_serial = changes["serial"]
         if self.live is not None and OIL_TEMPERATURE in changes:
             self.live.set_oil_temperature(changes[OIL_TEMPERATURE], self._now_ns())
+
+    def _open_state(self, serial: str) -> StateKeeper | None:
+        """Return the keeper of the state of a bearing, None if nothing is to be remembered; raise OSError if it cannot be used."""
+        serial, path = checked_serial(serial), self.settings.state_file.strip()
+        is_simulated = follows_clock(self._node)
+        if not path and (is_simulated or not serial):
+            return None
+        keeper = StateKeeper(path or default_path(serial), self.scene, serial, once=is_simulated)
+        self._log(f"state of the bearing: {keeper.path}")
+        return keeper
 
     def publish_at(self, rate: float) -> None:
         """Set the publish rate [Hz]; with sim time per simulated second."""
@@ -503,12 +532,15 @@ class BearingInterface:
         self._node.review_if_late()
 
     def _start_recording(self, path: Path) -> None:
+        def records() -> dict[str, dict[str, str]]:
+            return {RECORD: self.live.keeper.record} if self.live.keeper is not None else {}
+
         def opened(start_ns: int):
             limits = limits_of(self._shared)
             if follows_clock(self._node):
-                sink = open_lossless_recording(path, self.scene, start_ns, limits, self.settings.frame)
+                sink = open_lossless_recording(path, self.scene, start_ns, limits, self.settings.frame, records)
             else:
-                sink = open_recording(path, self.scene, start_ns, limits, self.live.schedule, self._node.recorder, self.settings.frame)
+                sink = open_recording(path, self.scene, start_ns, limits, self.live.schedule, self._node.recorder, self.settings.frame, records)
             self._log(f"recording {sink.path}" + (f" ({path} exists and is kept)" if sink.path != path else ""))
             return sink
 
@@ -542,8 +574,50 @@ class BearingInterface:
 
     def _reset(self, _) -> tuple[bool, str]:
         if self.live.reset():
-            return True, "state and damage are reset"
+            return True, "state and damage are reset" if self.live.keeper is None else "the model is reset; the totals of the bearing continue"
         return False, "not done within two seconds; the reset follows after the running tick"
+
+    def _get_bearing_state(self, _) -> tuple[bool, str]:
+        """the state of the bearing in JSON: totals, calibration, temperatures; as `bearing-sim state show --json`"""
+        keeper = self.live.keeper
+        if keeper is None:
+            return False, "nothing is remembered: set serial or state_file, and configure the node"
+        return True, json.dumps(keeper.summary())
+
+    def _replace_bearing(self, _) -> tuple[bool, str]:
+        """ends the state of the bearing, which is kept, and begins that of the one whose serial number was set before"""
+        before, serial = self.live.keeper, checked_serial(self._wanted_serial)
+        number = before.state.serial if before is not None else ""
+        if not serial or serial == number:
+            return False, f"set serial to the number of the new bearing first; it is {serial or 'empty'!r}, and the bearing in service is {number!r}"
+        path = self.settings.state_file.strip()
+        if follows_clock(self._node) and not path:
+            return False, "nothing is remembered with use_sim_time unless state_file is given"
+        recording = self.live.has("record")
+        if recording:  # a recording belongs to one bearing
+            self.live.detach("record")
+        kept = []
+
+        def change() -> StateKeeper:
+            other = None if path else self._open_state(serial)
+            try:
+                if before is not None:
+                    kept.append(before.retire(into_archive=bool(path)))
+            except OSError:
+                if other is not None:
+                    other.close()
+                raise
+            return other or self._open_state(serial)
+
+        try:
+            self.live.replace_bearing(change)
+            self.settings = dataclasses.replace(self.settings, serial=serial)
+        finally:
+            if recording:
+                self._start_recording(Path(self.settings.record or f"recordings/run_{self.settings.name or serial}.mcap"))
+        life = 100.0 * self.live.keeper.used
+        ended = f"; the state of {number!r} is kept in {kept[0]}" if kept else ""
+        return True, f"serial number {serial}: {life:.6g} % of life used, in {self.live.keeper.path}{ended}"
 
     def _pause(self, request) -> tuple[bool, str]:
         self.live.pause(request.data)

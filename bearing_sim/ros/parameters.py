@@ -64,9 +64,16 @@ DECLARATIONS = (
     Declaration(
         "serial",
         "",
-        "serial number of the bearing, which identifies it in /diagnostics; empty: none",
+        "serial number of the bearing: its state (life used, hours, starts, what was learned) is kept in a file over restarts, with use_sim_time "
+        "only if state_file is given; empty: none. A new number takes effect at ~/replace_bearing, or at the next configure",
         per_bearing=True,
         running=True,
+    ),
+    Declaration(
+        "state_file",
+        "",
+        "file of the bearing's state; empty: one for its serial number in the user's folder for state, ~/.local/state/bearing_sim on Linux",
+        per_bearing=True,
     ),
     Declaration("joint", "shaft", "name of the shaft's joint in shaft_speed messages", per_bearing=True),
     Declaration("cage_joint", "cage", "name of the cage's joint in cage_speed_measured messages", per_bearing=True),
@@ -108,6 +115,7 @@ class BearingSettings:
     ----------
     name : its name in the fleet; empty for a single bearing.
     serial : serial number of the bearing; empty for none.
+    state_file : file of its state; empty for that of its serial number, if it has one.
     conditions : scene parameters that were set explicitly, by name, in SI; 0 for "none" where the scene allows none.
     """
 
@@ -115,6 +123,7 @@ class BearingSettings:
     scene: str
     overrides: tuple[str, ...]
     serial: str
+    state_file: str
     joint: str
     cage_joint: str
     frame_id: str
@@ -312,7 +321,7 @@ class ParameterServer:
 
     def _bearing_settings(self, name: str, position: int) -> BearingSettings:
         values = {row.name: self.value(row.name, name) for row in DECLARATIONS if row.per_bearing}
-        for key in ("record", "rrd"):  # several bearings cannot share one file
+        for key in ("record", "rrd", "state_file"):  # several bearings cannot share one file
             if name and values[key] and f"{name}.{key}" not in self._chosen:
                 path = Path(values[key])
                 values[key] = str(path.with_stem(f"{path.stem}_{name}"))

@@ -3,6 +3,7 @@
 
 import importlib
 import math
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -35,7 +36,16 @@ def prepare(view: bool, recorder: Recorder | None) -> None:
     load_message_types()
 
 
-def open_recording(path: Path, scene: Scene, start_ns: int, limits: Limits, schedule: TickSchedule, recorder: Recorder, frame: str = FRAME):
+def open_recording(
+    path: Path,
+    scene: Scene,
+    start_ns: int,
+    limits: Limits,
+    schedule: TickSchedule,
+    recorder: Recorder,
+    frame: str = FRAME,
+    records: Callable[[], Mapping[str, Mapping[str, str]]] = dict,
+):
     """Return a recording in real time, under a fresh name if ``path`` exists.
 
     If the recording process is killed, the recording continues in another fresh file (see `bearing_sim.recording.recorder.RestartingRecorder`).
@@ -48,6 +58,7 @@ def open_recording(path: Path, scene: Scene, start_ns: int, limits: Limits, sche
     schedule : of the live model.
     recorder : the process that records.
     frame : the bearing's.
+    records : returns further metadata records of a recording that begins now, by name.
 
     Raises
     ------
@@ -55,14 +66,20 @@ def open_recording(path: Path, scene: Scene, start_ns: int, limits: Limits, sche
         The file cannot be created.
     """
     advance = (schedule.tick, schedule.samples) if schedule.every == 1 else None
-    return RestartingRecorder(lambda wait: recorder.open(fresh_path(path), scene, start_ns, limits, advance, wait=wait, frame=frame))
+
+    def begin(wait: bool):
+        return recorder.open(fresh_path(path), scene, start_ns, limits, advance, wait=wait, frame=frame, metadata=records())
+
+    return RestartingRecorder(begin)
 
 
-def open_lossless_recording(path: Path, scene: Scene, start_ns: int, limits: Limits, frame: str = FRAME):
+def open_lossless_recording(
+    path: Path, scene: Scene, start_ns: int, limits: Limits, frame: str = FRAME, records: Callable[[], Mapping[str, Mapping[str, str]]] = dict
+):
     """Return a recording written in this process, which the model waits for, as a run by sim time needs; otherwise as `open_recording`."""
     from bearing_sim.recording.writer import McapSink
 
-    return McapSink(fresh_path(path), scene, start_ns, limits=limits, frame=frame)
+    return McapSink(fresh_path(path), scene, start_ns, records(), limits=limits, frame=frame)
 
 
 def limits_of(settings: "NodeSettings") -> Limits:

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.bearing_state.keeper import StateKeeper
 from bearing_sim.inputs.gate import UNITS, Coverage, InputGate, PublisherConflict, unknown_inputs, unused_event, with_values
 from bearing_sim.messages import topics
 from bearing_sim.messages.diagnostics import further_condition
@@ -30,8 +31,10 @@ from bearing_sim.runtime.solver import Solver, WallTimeSolver
 from bearing_sim.runtime.solver_threads import SolverThreads
 from bearing_sim.scene.fidelity import lower_levels
 from bearing_sim.scene.scene import Scene, Thresholds
-from bearing_sim.simulation import Simulation
+from bearing_sim.simulation import Inputs, Simulation, begin_at_temperatures
 
+_REPLACED_WITHIN = 10.0  # [s] for the reset of a model that is held
+_CLOCKS = 3  # times 0 by clocks before the present one under which a recording may have its stamps
 _SLACK = 4.0  # [s] how long blocks wait to be collected before the oldest are dropped
 
 
@@ -70,6 +73,24 @@ def governor_of(simulation: Simulation) -> Governor | None:
     return Governor([simulation, *lower]) if lower else None
 
 
+def warm_start(keeper: StateKeeper, now_ns: Callable[[], int]) -> Callable[[Simulation, Inputs], None]:
+    """Return the function that begins a run as warm as its bearing's state remembers it, see `bearing_sim.runtime.solver.Solver`.
+
+    Parameters
+    ----------
+    now_ns : clock [ns since the epoch]; temperatures of long ago are not used.
+    """
+
+    def begin(simulation: Simulation, inputs: Inputs) -> None:
+        thermal = keeper.thermal(now_ns())
+        if thermal is None or simulation.thermal is None:
+            simulation.reset(inputs)
+        else:
+            begin_at_temperatures(simulation, inputs, np.array(thermal.nodes), np.array(thermal.rings))
+
+    return begin
+
+
 class Model:
     """One bearing under way; base of `LiveModel` and `bearing_sim.runtime.sim_time.SimTimeModel`.
 
@@ -81,6 +102,7 @@ class Model:
     gate : judges the messages.
     solver : the thread that advances the simulation.
     start_ns : run time 0 [ns since the epoch].
+    keeper : of the bearing's state; None where nothing is remembered.
 
     Attributes
     ----------
@@ -88,7 +110,9 @@ class Model:
         The worst level that held when `collect` last reviewed the health.
     """
 
-    def __init__(self, scene: Scene, gate: InputGate, solver: Solver, start_ns: int):
+    def __init__(self, scene: Scene, gate: InputGate, solver: Solver, start_ns: int, keeper: StateKeeper | None = None):
+        self.keeper = keeper
+        self._counted: np.void | None = None  # the newest sample that is in the bearing's state
         self.scene, self.gate, self.solver, self.start_ns = scene, gate, solver, start_ns
         self.health, self.monitor, self.limits = Health(), Monitor(scene), LimitsMonitor(scene)
         self.residual = ResidualMonitor(scene.thresholds.residual, scene.thresholds.slip_from_speed)
@@ -100,6 +124,7 @@ class Model:
         for finding in plausibility(scene):
             field, _, reason = finding.partition(": ")
             self.health.note(Event(0.0, Level.WARN, "scene.implausible", field, reason))
+        self._recall()
 
     def run_time(self, now_ns: int) -> float:
         """Return the run time [s] of an instant of the clock."""
@@ -154,6 +179,65 @@ class Model:
         self.monitor.adjust(thresholds)
         self.limits.adjust(self.scene)
         self.residual.adjust(thresholds.residual, thresholds.slip_from_speed)
+        if self.keeper is not None:
+            self.keeper.adjust(self.scene)
+
+    def replace_bearing(self, change: Callable[[], StateKeeper]) -> None:
+        """Continue with another bearing of the same scene, in ideal rolling at the present inputs.
+
+        Parameters
+        ----------
+        change : ends the state of the present bearing, which by then contains all its samples, and returns the keeper of the other one's.
+
+        Raises
+        ------
+        OSError
+            As ``change``, or the model did not stop within two seconds; nothing is changed.
+        """
+        was_paused = self.solver.is_paused
+        try:
+            if not self.solver.hold():
+                raise OSError("the model is busy and did not stop within two seconds; call the service again")
+            self._take(self.solver.take(), 0.0 if self._counted is None else float(self._counted["time"]))
+            self.keeper = change()
+            self._counted = None
+            self.solver.continue_from(self.keeper.used)
+            self.solver.reset(_REPLACED_WITHIN)
+            self._recall()
+        finally:
+            self.solver.pause(was_paused)
+
+    def _recall(self) -> None:
+        """Let the monitors continue from what the bearing's state remembers."""
+        if self.keeper is None:
+            return
+        self.keeper.restart()
+        learned = self.keeper.state.learned
+        try:
+            self.residual.restore(learned.get("cage_slip", {}))
+            self.monitor.temperatures.restore(learned.get("temperatures", {}))
+        except (KeyError, TypeError, ValueError):  # of another version of the monitors
+            self.residual.restart()
+            self.monitor.temperatures.restore({})
+
+    def _keep_state(self) -> None:
+        """Write the bearing's state from time to time."""
+        keeper, newest = self.keeper, self._counted
+        keeper.release(self._published_until)
+        if keeper.is_due and newest is not None:
+            self._note_condition()
+            keeper.hold(float(newest["time"]))
+
+    def _note_condition(self) -> None:
+        """Put temperatures and what the monitors have learned into the bearing's state."""
+        if self._counted is not None:
+            self.keeper.note_thermal(self._counted, self.stamp(float(self._counted["time"])))
+        self.keeper.state.learned = {"cage_slip": self.residual.learned, "temperatures": self.monitor.temperatures.learned}
+
+    @property
+    def _published_until(self) -> float:
+        """Time of the newest sample that is surely published [s]."""
+        return math.inf
 
     def open(self, name: str, open_sink: Callable[[int], Sink], reopen: bool = False) -> None:
         """Add a sink that gets samples and events from now on.
@@ -205,6 +289,10 @@ class Model:
         self._take(self.solver.take(), now)
         for event in self.sinks.news(now):
             self._note(event)
+        if self.keeper is not None:
+            self._keep_state()
+            for event in self.keeper.news(now):
+                self._note(event)
         events = self._events(now)
         self.level = level_of(events)
         news = self.health.news(events)
@@ -219,6 +307,7 @@ class Model:
         values = numbers(self.gate, self.solver) | {"level": self._running_level} | further
         values["inputs unknown [s]"] = self.gate.coverage.unknown_until(now)
         values |= self.monitor.values | self.residual.values(now) | self.sinks.values | self._values()
+        values |= self.keeper.values if self.keeper is not None else {}
         return Condition(self._events(now), values, remarks(self.gate, self.solver, self._running_level) | self.sinks.remarks)
 
     def record_diagnostics(self, condition: Condition, now_ns: int) -> None:
@@ -234,6 +323,9 @@ class Model:
         """
         stopped = self.solver.stop(timeout)
         self._take(self.solver.take(), 0.0)
+        if self.keeper is not None:
+            self._note_condition()
+            self.keeper.save()
         self.sinks.close(0.0)
         return stopped
 
@@ -262,7 +354,8 @@ class Model:
         conflicts = [event for conflict in self._conflicts.values() if (event := conflict.event(now)) is not None]
         conflicts += [unused_event(now, channel) for channel in sorted(self._unused)]
         judged = (*self.monitor.events(now), *self.limits.events(now), *self.residual.events(now))
-        events = [*self.sinks.events(now), *judged, *self._further_events(now), *conflicts]
+        kept = self.keeper.events(now) if self.keeper is not None else []
+        events = [*self.sinks.events(now), *kept, *judged, *self._further_events(now), *conflicts]
         coverage = self.gate.coverage
         if coverage.is_overloaded:
             events.append(unknown_inputs(now, coverage.unknown_until(now), now, coverage.verdict))
@@ -279,6 +372,8 @@ class Model:
             self.monitor.restart()
             self.limits.restart()
             self.residual.interrupt(event.time)
+            if self.keeper is not None:
+                self.keeper.restart()
 
 
 class LiveModel(Model):
@@ -297,6 +392,7 @@ class LiveModel(Model):
     due : called on the solver's thread when an output is to be published; must return at once.
     receiver : reads the receiver's clock [ns since the epoch] (see `bearing_sim.runtime.pacing.WallClock`).
     threads : shared with the solvers of other bearings; a thread of its own where absent.
+    keeper : of the bearing's state, which all time of the run counts for; None where nothing is remembered.
 
     Attributes
     ----------
@@ -317,13 +413,17 @@ class LiveModel(Model):
         due: Callable[[], None] | None = None,
         receiver: Callable[[], int] | None = None,
         threads: SolverThreads | None = None,
+        keeper: StateKeeper | None = None,
     ):
         self._governor = governor
         self._sample_rate, self.schedule = sample_rate, tick_schedule(sample_rate, publish_rate)
         pacer, capacity = Pacer(1.0, maximum_lag), round(_SLACK / tick_schedule(sample_rate, math.inf).tick)
-        solver = WallTimeSolver(simulation, pacer, self.schedule, capacity, clock, governor, self._advanced, threads)
+        begin, used = (None, None) if keeper is None else (warm_start(keeper, lambda: self.stamp(clock() - began)), keeper.used)
+        began = clock()
+        solver = WallTimeSolver(simulation, pacer, self.schedule, capacity, clock, governor, self._advanced, threads, begin, used)
         held = simulation.inputs._replace(**dict.fromkeys(RING_TEMPERATURES, math.nan))  # measured in this run or not at all
-        super().__init__(scene, InputGate(scene.accepted_inputs, held, heat_law=scene.heat.law), solver, start_ns)
+        super().__init__(scene, InputGate(scene.accepted_inputs, held, heat_law=scene.heat.law), solver, start_ns, keeper)
+        self._starts_ns = [start_ns]  # by the clock now, and before it was set
         self._sample_decimator, self._publish_decimator, self._due = Decimator(sample_rate), Decimator(publish_rate), due
         self._wall_clock = WallClock(start_ns, clock, receiver)
         self._published_time = -math.inf
@@ -333,6 +433,7 @@ class LiveModel(Model):
         """Take a reading of the receiver's clock; if the clock was set, its stamps count from another start so that run time continues."""
         if jump := self._wall_clock.jump(now_ns):
             self.start_ns += round(jump * 1e9)
+            self._starts_ns = [self.start_ns, *self._starts_ns[-_CLOCKS:]]
             action = "the run and its recording continue by the clock from before"
             self._note(Event(self.run_time(now_ns), Level.WARN, "clock.jumped", "", f"the clock was set by {jump:+.6g} s", action))
 
@@ -403,9 +504,16 @@ class LiveModel(Model):
         self.monitor.take_all(blocks[judged:])
         if blocks[judged:]:
             self.limits.take(blocks[-1])
+        if blocks and self.keeper is not None:
+            self.keeper.count_live(joined(blocks), tuple(self._starts_ns), self.schedule.tick / self.schedule.samples)
+            self._counted = blocks[-1][-1]
         kept = [block for block in blocks if self._sample_decimator.is_due(float(block["time"][-1]))]  # the first is the state at the start
         if kept and self.sinks.by_name:  # all at once: many samples together hold the interpreter's lock far shorter
             self.sinks.write(now, kept[0] if len(kept) == 1 else joined(kept))
+
+    @property
+    def _published_until(self) -> float:
+        return self._published_time
 
     def _further_events(self, now: float) -> list[Event]:
         flow = self.gate.check(now)

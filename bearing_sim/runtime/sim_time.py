@@ -16,13 +16,14 @@ from enum import Enum
 
 import numpy as np
 
+from bearing_sim.bearing_state.keeper import StateKeeper
 from bearing_sim.inputs.gate import REQUIRED, ClockJumpFilter, InputGate, Message, Verdict
 from bearing_sim.inputs.profile import Arrival, OnlineInputProfile, gap_event
 from bearing_sim.messages import topics
 from bearing_sim.messages.events import Event, Level, Measurement
 from bearing_sim.monitoring.residual import Comparison
 from bearing_sim.runtime.advance_segment import Begun, Output
-from bearing_sim.runtime.live import Model, Published
+from bearing_sim.runtime.live import Model, Published, warm_start
 from bearing_sim.runtime.sink_registry import Sink
 from bearing_sim.runtime.solver import SimTimeSolver, Start
 from bearing_sim.scene.scene import Scene
@@ -114,6 +115,7 @@ class SimTimeModel(Model):
     publish_rate : how many of them are published for each simulated second [Hz].
     jump_back : ``"reset"`` or ``"error"``.
     wall : wall clock [s], monotonic; outputs do not depend on it.
+    keeper : of the bearing's state, which times that it does not contain yet count for; None where nothing is remembered.
 
     Attributes
     ----------
@@ -129,6 +131,7 @@ class SimTimeModel(Model):
         publish_rate: float = 50.0,
         jump_back: str = "reset",
         wall: Callable[[], float] = time.monotonic,
+        keeper: StateKeeper | None = None,
     ):
         self._rate, self._publish_rate = sample_rate, publish_rate
         self._jump_back, self._wall, self._wall_start = jump_back, wall, wall()
@@ -144,7 +147,9 @@ class SimTimeModel(Model):
         self._late = self._gaps = 0
         self._openers: dict[str, Callable[[int], Sink]] = {}
         self._published: list[Published] = []
-        super().__init__(scene, self._new_gate(scene), SimTimeSolver(simulation, self._new_profile(scene), clock=wall), 0)
+        begin = warm_start(keeper, lambda: self.solver.start_ns or 0) if keeper is not None else None
+        solver = SimTimeSolver(simulation, self._new_profile(scene), clock=wall, begin=begin)
+        super().__init__(scene, self._new_gate(scene), solver, 0, keeper)
         self._comparison = Comparison(self.residual)
         self.solver.start()
 
@@ -362,9 +367,11 @@ class SimTimeModel(Model):
             if isinstance(item, Start):
                 self._start(item.start_ns)
             elif isinstance(item, Begun):
+                if self.keeper is not None:
+                    self.keeper.count(item.block, self.start_ns, np.zeros(len(item.block)))
                 self.sinks.write_start(item.time, item.block)
             elif isinstance(item, Output):
-                self._take_output(item.block)
+                self._take_output(item.block, item.weights)
             elif isinstance(item, Arrival):
                 self.sinks.write_inputs(*item)
             else:
@@ -374,6 +381,8 @@ class SimTimeModel(Model):
     def _start(self, start_ns: int) -> None:
         """Start a profile at run time 0."""
         self.start_ns, self._started = start_ns, True
+        if self.keeper is not None:
+            self.keeper.restart()
         self.monitor.restart()
         self.limits.restart()
         self.residual.interrupt(-math.inf)
@@ -388,8 +397,11 @@ class SimTimeModel(Model):
             except (OSError, ValueError) as error:
                 self.sinks.fail(name, 0.0, error)
 
-    def _take_output(self, block: np.ndarray) -> None:
-        """Judge, record and publish outputs."""
+    def _take_output(self, block: np.ndarray, weights: np.ndarray) -> None:
+        """Count, judge, record and publish outputs; each stands for some time [s]."""
+        if self.keeper is not None:
+            self.keeper.count(block, self.start_ns, weights)
+            self._counted = block[-1]
         self.monitor.take(block)
         self.limits.take(block)
         self.sinks.write(float(block["time"][-1]), block)

@@ -34,6 +34,7 @@ class Start(NamedTuple):
 
 
 Item = np.ndarray | Start | Begun | Arrival | Output | Event
+Begin = Callable[[Simulation, Inputs], None]
 
 
 class Solver:
@@ -47,6 +48,7 @@ class Solver:
     pacer : keeps account of the pace.
     clock : wall clock [s], monotonic.
     threads : shared with other solvers; a thread of its own where absent.
+    begin : ``begin(simulation, inputs)`` resets the simulation to the start of the run, as warm as its bearing is.
 
     Attributes
     ----------
@@ -54,8 +56,16 @@ class Solver:
         The newest sample; None before the first.
     """
 
-    def __init__(self, simulation: Simulation, pacer: Pacer, clock: Callable[[], float], threads: SolverThreads | None = None):
+    def __init__(
+        self,
+        simulation: Simulation,
+        pacer: Pacer,
+        clock: Callable[[], float],
+        threads: SolverThreads | None = None,
+        begin: Begin | None = None,
+    ):
         self._simulation, self._pacer, self._clock = simulation, pacer, clock
+        self._begin_at = begin or (lambda simulation, inputs: simulation.reset(inputs))
         self._threads = SolverThreads() if threads is None else threads
         self._changed = self._threads.changed  # guards the requests
         self._queue: deque[Item] = deque()
@@ -74,6 +84,24 @@ class Solver:
         with self._changed:
             self._paused = paused
             self._threads.wake(self)
+
+    @property
+    def is_paused(self) -> bool:
+        """Whether simulated time is to be held."""
+        return self._paused
+
+    def hold(self, timeout: float = 2.0) -> bool:
+        """Pause, and wait until the running tick is over; return whether it was within ``timeout`` [s], or there is nothing to hold any more."""
+        with self._changed:
+            self._paused = True
+            self._threads.wake(self)
+            end = time.monotonic() + timeout
+            while self._threads.is_running(self) and not self._holding and time.monotonic() < end:
+                self._changed.wait(0.01)
+            return self._holding or not self._threads.is_running(self)
+
+    def continue_from(self, life_used: float) -> None:
+        """Let the damage of samples continue from this life at the next reset, if it is this thread that adds it."""
 
     def reset(self, timeout: float = 2.0) -> bool:
         """Return state and damage to the start, in ideal rolling at the present inputs.
@@ -134,6 +162,10 @@ class Solver:
         """Whether the simulation has begun."""
         raise NotImplementedError
 
+    @property
+    def _reset_reason(self) -> str:
+        return "state and damage returned to the start, in ideal rolling at the present inputs"
+
     def _due(self) -> tuple[Callable[[], None] | None, float | None]:
         """Return the next step, and how long to wait for it [s]; no step and None to wait for a change."""
         raise NotImplementedError
@@ -184,8 +216,7 @@ class Solver:
             except IntegrationError as error:
                 self._queue.append(Event(self._now(), Level.ERROR, "solver.failed", "", f"the model could not be reset: {error}"))
             else:
-                reason = "state and damage returned to the start, in ideal rolling at the present inputs"
-                self._queue.append(Event(self._now(), Level.OK, "run.reset", "", reason))
+                self._queue.append(Event(self._now(), Level.OK, "run.reset", "", self._reset_reason))
         self._reset_done()
 
     def _reset_done(self) -> None:
@@ -215,6 +246,9 @@ class WallTimeSolver(Solver):
         ``simulation``.
     advanced : called on the solver thread after every tick with the run time reached [s]; must return at once.
     threads : see `Solver`.
+    begin : see `Solver`.
+    life_used : fraction of its life that the bearing has used before the run, which the damage of samples continues from, over resets too;
+        None where every run begins at 0.
     """
 
     def __init__(
@@ -227,9 +261,12 @@ class WallTimeSolver(Solver):
         governor: Governor | None = None,
         advanced: Callable[[float], None] | None = None,
         threads: SolverThreads | None = None,
+        begin: Begin | None = None,
+        life_used: float | None = None,
     ):
-        super().__init__(simulation, pacer, clock, threads)
+        super().__init__(simulation, pacer, clock, threads, begin)
         self._governor, self._advanced = governor, advanced
+        self._life_used, self._life_at_reset = life_used, None
         self._schedule = self._wanted = schedule
         self._ticks = 0  # since the last sample that sinks keep
         self._queue = deque(maxlen=capacity)
@@ -251,6 +288,10 @@ class WallTimeSolver(Solver):
         if first:  # later inputs need not wake the thread: it reads them when its tick is due
             with self._changed:
                 self._threads.wake(self)
+
+    def continue_from(self, life_used: float) -> None:
+        """Let the damage of samples continue from this life at the next reset, or the start: it is another bearing's, or was not kept before."""
+        self._life_at_reset = life_used
 
     def tick_by(self, schedule: TickSchedule) -> None:
         """Use another schedule from the next sample that sinks keep on."""
@@ -295,8 +336,10 @@ class WallTimeSolver(Solver):
 
     def _begin(self) -> None:
         """Start the model at the latest inputs."""
+        if self._life_at_reset is not None:
+            self._life_used, self._life_at_reset = self._life_at_reset, None
         try:
-            self._to_start(self._latest)
+            self._to_start(self._latest, self._begin_at)
         except IntegrationError as error:
             self._fail(error)
             return
@@ -308,6 +351,8 @@ class WallTimeSolver(Solver):
         """Return the sample at the start as a block; a recording begins with it so that the run can be reproduced."""
         block = start_sample(self._simulation)
         block["time"] += self._shift
+        if self._life_used:
+            block["damage"] += self._life_used
         return block
 
     def _tick(self) -> None:
@@ -324,6 +369,8 @@ class WallTimeSolver(Solver):
         self._pacer.worked(ended, tick, ended - began)
         self._ticks += 1
         block["time"] += self._shift  # in place: the block is not used by the simulation again
+        if self._life_used:
+            block["damage"] += self._life_used
         now = float(block["time"][-1])
         if self._failed:
             self._put(Event(now, Level.OK, "solver.recovered", "", f"time advances again after {self._failed} failed ticks"))
@@ -347,11 +394,11 @@ class WallTimeSolver(Solver):
                 self._put(Event(self._now(), Level.OK, "governor.change", "", reason))
         self._governor = governor
 
-    def _to_start(self, inputs: Inputs) -> None:
+    def _to_start(self, inputs: Inputs, begin: Begin) -> None:
         """Return the model to ideal rolling at inputs, at the wanted level."""
         if self._governor is not None:
             self._simulation = self._governor.restart()
-        self._simulation.reset(inputs)
+        begin(self._simulation, inputs)
 
     def _fail(self, error: IntegrationError) -> None:
         """Report the first failure in a row, hold the state, and try again after the duration of a tick."""
@@ -362,10 +409,20 @@ class WallTimeSolver(Solver):
             self._put(Event(self._now(), Level.ERROR, "solver.failed", "", f"time could not be advanced ({error})", action))
 
     def _restart(self) -> None:
-        self._to_start(self._latest)
+        self._to_start(self._latest, lambda simulation, inputs: simulation.reset(inputs))
+        if self._life_at_reset is not None:
+            self._life_used, self._life_at_reset = self._life_at_reset, None
+        elif self._life_used is not None and self.newest is not None:
+            self._life_used = float(self.newest["damage"])
         self._anchor()
         self._failed = 0
         self.newest = self._start_block()[0]
+
+    @property
+    def _reset_reason(self) -> str:
+        if self._life_used is None:
+            return super()._reset_reason
+        return "the model returned to ideal rolling at the present inputs; the totals of the bearing continue"
 
     def _resumed(self) -> None:
         if self._begun:
@@ -401,10 +458,18 @@ class SimTimeSolver(Solver):
     profile : the first profile.
     capacity : length of the queue; the solver waits while it is full.
     clock : wall clock [s], monotonic; used only to report the pace.
+    begin : see `Solver`.
     """
 
-    def __init__(self, simulation: Simulation, profile: OnlineInputProfile, capacity: int = 4096, clock: Callable[[], float] = time.monotonic):
-        super().__init__(simulation, Pacer(1.0), clock)
+    def __init__(
+        self,
+        simulation: Simulation,
+        profile: OnlineInputProfile,
+        capacity: int = 4096,
+        clock: Callable[[], float] = time.monotonic,
+        begin: Begin | None = None,
+    ):
+        super().__init__(simulation, Pacer(1.0), clock, begin=begin)
         self._capacity = capacity
         self._profile, self._run = profile, ProfileRun(self._begin)
         self._sim_clock = self._settled = -1  # readings of /clock [ns since the epoch]
@@ -471,6 +536,11 @@ class SimTimeSolver(Solver):
         return 0.0 if began is None or self._paused else self._clock() - began
 
     @property
+    def start_ns(self) -> int | None:
+        """Where the profile starts [ns since the epoch]; None before its first instant."""
+        return self._profile.start
+
+    @property
     def is_idle(self) -> bool:
         """Whether everything that is known has been computed and collected."""
         with self._changed:
@@ -535,8 +605,10 @@ class SimTimeSolver(Solver):
         """Queue an item when there is room, obeying requests; return False if its profile was left or the run has ended."""
         with self._changed:
             while not (self._stopping or self._profile is not profile):
-                if self._reset_wanted:
+                if self._reset_wanted:  # the item is from before it
+                    self._queue.append(item)
                     self._reset()
+                    return True
                 if not self._paused and len(self._queue) < self._capacity:
                     self._holding = False
                     self._queue.append(item)
@@ -546,7 +618,7 @@ class SimTimeSolver(Solver):
             return False
 
     def _begin(self, inputs: Inputs) -> Simulation:
-        self._simulation.reset(inputs)
+        self._begin_at(self._simulation, inputs)
         return self._simulation
 
     def _resumed(self) -> None:

@@ -1,0 +1,248 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""What is remembered of one bearing: whose it is, its totals, the times that they contain, and what the monitor has learned about it."""
+
+import copy
+import dataclasses
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+
+import numpy as np
+
+from bearing_sim.bearing_state.covered import Covered
+from bearing_sim.bearing_state.totals import Criteria, Totals, totals_of
+from bearing_sim.recording.provenance import package_version
+from bearing_sim.scene.scene import OPERATING_POINT, Scene
+from bearing_sim.scene.uncertainty import value_at
+
+VERSION = 1
+"""Of the contents of a state file; `migrated` brings older ones to it."""
+
+_DAY = 86_400_000_000_000  # [ns]
+_SAME_STRETCH = 1_000_000  # [ns] between samples that follow each other: stamps are rounded
+_CALIBRATED = "lubricant.mixture_fraction"  # what `bearing-sim calibrate` fits unless told otherwise
+_OF_BEARING = (
+    "bearing.name",
+    "bearing.roller.count",
+    "bearing.roller.diameter",
+    "bearing.roller.length",
+    "bearing.inner_raceway.radius",
+    "bearing.outer_raceway.low_radius",
+    "bearing.outer_raceway.lobes",
+)
+_OF_SCENE = ("name", "life.method", "life.reliability")
+_SAME = 1e-9  # relative difference of two numbers that are one
+
+
+class Damaged(ValueError):
+    """Contents that are no state; the message says why."""
+
+
+@dataclass
+class Thermal:
+    """Temperatures of a thermal network.
+
+    Attributes
+    ----------
+    time_ns : when [ns since the epoch].
+    nodes : of its nodes [K], in the order of `bearing_sim.model.sample.NODE_OBSERVABLES`.
+    rings : of inner and outer ring without what measured temperatures have corrected [K].
+    """
+
+    time_ns: int
+    nodes: list[float]
+    rings: list[float]
+
+
+@dataclass
+class BearingState:
+    """The state of a bearing in service.
+
+    Attributes
+    ----------
+    serial : its number; ``""`` where none is given.
+    identity : scene fields by which another bearing or another scene is recognised, with their values.
+    totals : since the bearing is in service.
+    covered : the wall time whose running they contain.
+    until_ns : the newest instant that was counted [ns since the epoch]; 0 before the first.
+    days : totals by UTC day (``2026-11-23``) that are not in the history of days yet; today is always here.
+    folds : how often days were moved to the history, so that none gets there twice.
+    is_turning : whether the shaft turned at the end.
+    calibration : the scene's values of fields that a calibration fits.
+    thermal : of the thermal network; None without one.
+    learned : statistics of residuals by what is compared (see `bearing_sim.monitoring.residual.ResidualMonitor.learned`).
+    writes : how often it was written.
+    created_ns, written_ns : when it was begun, and written last [ns since the epoch].
+    retired_ns : when the bearing was taken out (``~/replace_bearing``); None while it is in service.
+    """
+
+    serial: str
+    identity: dict[str, object]
+    totals: Totals = field(default_factory=Totals)
+    covered: Covered = field(default_factory=Covered)
+    until_ns: int = 0
+    days: dict[str, Totals] = field(default_factory=dict)
+    folds: int = 0
+    is_turning: bool = False
+    calibration: dict[str, float] = field(default_factory=dict)
+    thermal: Thermal | None = None
+    learned: dict[str, dict] = field(default_factory=dict)
+    writes: int = 0
+    created_ns: int = 0
+    written_ns: int = 0
+    retired_ns: int | None = None
+
+    def take(self, block: np.ndarray, times_ns: np.ndarray, seconds: np.ndarray, by: Criteria, counted: np.ndarray | None = None) -> None:
+        """Count samples.
+
+        Parameters
+        ----------
+        block : samples in order, shape (n,); their damage is the bearing's (see `bearing_sim.bearing_state.counting.LifeCounter`).
+        times_ns : of the samples [ns since the epoch], shape (n,), int64.
+        seconds : simulated time that each stands for, which ends at it [s], shape (n,).
+        by : what they are classed by.
+        counted : fraction of that time that counts, shape (n,); all of it where absent.
+        """
+        if not len(block):
+            return
+        used = np.maximum(np.diff(block["damage"], prepend=self.totals.damage), 0.0)
+        self._cover(times_ns, seconds)
+        if counted is not None:
+            seconds = seconds * counted
+        damage = max(float(block["damage"][-1]), self.totals.damage)
+        numbers = times_ns // _DAY
+        cuts = [0, *(np.flatnonzero(np.diff(numbers)) + 1).tolist(), len(block)]
+        for begin, end in zip(cuts, cuts[1:]):
+            part = slice(begin, end)
+            totals, self.is_turning = totals_of(block[part], times_ns[part], seconds[part], used[part], by, self.is_turning)
+            self.totals.add(totals)
+            if totals.monitored_seconds or totals.damage:
+                self.days.setdefault(day_of(int(times_ns[begin])), Totals()).add(totals)
+        self.totals.damage = damage  # the last digit of a sum depends on how it is divided
+        self.until_ns = max(self.until_ns, int(times_ns[-1]))
+
+    def _cover(self, times_ns: np.ndarray, seconds: np.ndarray) -> None:
+        counts = seconds > 0.0
+        times, begins = times_ns[counts], (times_ns - np.rint(1e9 * seconds).astype(np.int64))[counts]
+        if not len(times):
+            return
+        cuts = [0, *(np.flatnonzero(begins[1:] - times[:-1] > _SAME_STRETCH) + 1).tolist(), len(times)]
+        for first, after in zip(cuts, cuts[1:]):
+            self.covered.add(int(begins[first]), int(times[after - 1]))
+
+    def copy(self) -> "BearingState":
+        """Return an independent state with the same contents."""
+        days = {day: copy.copy(totals) for day, totals in self.days.items()}  # totals never change their lists
+        return dataclasses.replace(self, totals=copy.copy(self.totals), covered=self.covered.copy(), days=days)
+
+    def differences(self, scene: Scene, serial: str) -> list[str]:
+        """Return what makes a bearing in a scene, with a serial number or ``""``, another one than this; empty for the same one."""
+        found = [f"serial number {serial!r} instead of {self.serial!r}"] if serial and self.serial and serial != self.serial else []
+        given, fitted = identity_of(scene), calibration_of(scene)
+        for name, value in self.identity.items():
+            if name in given and name not in fitted and not _is_same(given[name], value):
+                found.append(f"{'scene ' if name == 'name' else ''}{name} {given[name]!r} instead of {value!r}")
+        return found
+
+    def adopt(self, scene: Scene, serial: str = "") -> None:
+        """Take a scene, and a serial number where one is given, as this bearing's own."""
+        self.identity, self.serial = identity_of(scene), serial or self.serial
+
+    def as_mapping(self) -> dict[str, object]:
+        """Return the contents of a state file."""
+        fields = {each.name: getattr(self, each.name) for each in dataclasses.fields(self)}
+        return fields | {
+            "totals": self.totals.as_mapping(),
+            "covered": self.covered.stretches,
+            "days": {day: totals.as_mapping() for day, totals in self.days.items()},
+            "thermal": None if self.thermal is None else dataclasses.asdict(self.thermal),
+            "package_version": package_version(),
+        }
+
+    @classmethod
+    def from_mapping(cls, mapping: Mapping[str, object]) -> "BearingState":
+        """Return the state of the contents of a file of this `VERSION`.
+
+        Raises
+        ------
+        Damaged
+            They are not a state's.
+        """
+        try:
+            fields = {each.name: mapping[each.name] for each in dataclasses.fields(cls) if each.name in mapping}
+            for name in ("until_ns", "folds", "writes", "created_ns", "written_ns"):
+                fields[name] = int(fields.get(name, 0))
+            fields["totals"] = Totals.from_mapping(mapping["totals"])
+            fields["covered"] = Covered(mapping.get("covered", ()))
+            fields["days"] = {day: Totals.from_mapping(each) for day, each in mapping.get("days", {}).items()}
+            fields["thermal"] = Thermal(**mapping["thermal"]) if mapping.get("thermal") else None
+            return cls(**{**fields, "serial": str(mapping["serial"]), "identity": dict(mapping["identity"])})
+        except (KeyError, TypeError, ValueError, AttributeError) as error:
+            raise Damaged(f"it is not a bearing's state: {type(error).__name__}: {error}") from None
+
+
+def new_state(scene: Scene, serial: str, now_ns: int) -> BearingState:
+    """Return the state of a bearing that nothing is known about yet."""
+    return BearingState(serial, identity_of(scene), calibration=calibration_of(scene), created_ns=now_ns)
+
+
+def identity_of(scene: Scene) -> dict[str, object]:
+    """Return the fields by which a bearing and its scene are recognised, with their values."""
+    return {name: value_at(scene, name) for name in (*_OF_BEARING, *_OF_SCENE)}
+
+
+def calibration_of(scene: Scene) -> dict[str, float]:
+    """Return the values of the fields that a calibration fits: those that the scene calls uncertain, and the mixture fraction."""
+    names = dict.fromkeys([_CALIBRATED, *(each.field for each in scene.uncertainty)])
+    values = {name: value_at(scene, name) for name in names if name not in OPERATING_POINT.values()}
+    return {name: float(value) for name, value in values.items() if isinstance(value, (int, float))}
+
+
+def day_of(time_ns: int) -> str:
+    """Return the UTC day of an instant [ns since the epoch], such as ``2026-11-23``."""
+    return f"{datetime.fromtimestamp(time_ns // 1_000_000_000, UTC):%Y-%m-%d}"
+
+
+def time_text(time_ns: int) -> str:
+    """Return an instant [ns since the epoch] as people write it, in UTC, to the second."""
+    return f"{datetime.fromtimestamp(time_ns // 1_000_000_000, UTC):%Y-%m-%d %H:%M:%S} UTC"
+
+
+def migrated(version: int, contents: Mapping[str, object]) -> Mapping[str, object]:
+    """Return the contents of a state file of an older version as those of `VERSION`.
+
+    Raises
+    ------
+    Damaged
+        The version is unknown, or the contents are not what that version has.
+    """
+    while version < VERSION:
+        if version not in _MIGRATIONS:
+            raise Damaged(f"its version {version} is unknown")
+        version, contents = version + 1, _MIGRATIONS[version](contents)
+    return contents
+
+
+def _from_books(contents: Mapping[str, object]) -> dict[str, object]:
+    """Migrate from version 0, which people write by hand for a bearing whose life so far is in the books of the plant."""
+    known = {"serial", "damage", "running_hours", "revolutions", "starts"}
+    if unknown := sorted(contents.keys() - known):
+        raise Damaged(f"version 0 has no {', '.join(unknown)}; expected some of {', '.join(sorted(known))}")
+    hours = contents.get("running_hours", 0.0)
+    if isinstance(hours, bool) or not isinstance(hours, (int, float)) or not math.isfinite(hours):
+        raise Damaged(f"running_hours = {hours!r}: expected a number of hours")
+    seconds = 3600.0 * hours
+    totals = {name: contents[name] for name in ("damage", "revolutions", "starts") if name in contents}
+    unclassed = {"slip_seconds": [0.0, 0.0, 0.0, seconds], "lubrication_seconds": [0.0] * 5 + [seconds]}
+    totals |= {"running_seconds": seconds, "monitored_seconds": seconds, **unclassed}
+    return {"serial": contents.get("serial", ""), "identity": {}, "totals": totals}
+
+
+_MIGRATIONS = {0: _from_books}
+
+
+def _is_same(one: object, other: object) -> bool:
+    if isinstance(one, (int, float)) and isinstance(other, (int, float)) and not isinstance(one, bool):
+        return math.isclose(one, other, rel_tol=_SAME)
+    return one == other
