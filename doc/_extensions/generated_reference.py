@@ -404,6 +404,15 @@ EVENTS = {
     "solver.crashed": ("ERROR", "the solver thread ended by a programming error; restart the node"),
     "solver.failed": ("ERROR", "time could not be advanced; the last good state is held"),
     "solver.recovered": ("OK", "time advances again"),
+    "state.begun": ("OK", "nothing was known about the bearing: its state begins"),
+    "state.continued": ("OK", "the bearing's state continues from the last run"),
+    "state.history": ("OK, WARN", "the history of days is CSV because there is no pyarrow, or cannot be written"),
+    "state.late": ("WARN", "a slow disk: a kill would lose more than ten seconds of the bearing's state"),
+    "state.not_written": ("ERROR", "the bearing's state cannot be written; the model continues, and writing is tried again"),
+    "state.recalibrated": ("OK", "the scene was calibrated since the last run; what was learned about residuals is forgotten"),
+    "state.restored": ("WARN", "the state file is damaged, missing or older than the one before; the newest good state is used"),
+    "state.returned": ("WARN", "a bearing that was taken out is in service again"),
+    "state.unlocked": ("WARN", "the file system has no locks, which would keep other nodes from using the same state"),
     "validity.axial_load": ("WARN", "the axial load on flanges is outside of what the model of roller ends is for"),
     "validity.bearing": ("WARN", "what decides about the bearing is estimated, or lies outside of what its description is for"),
     "validity.clearance": ("WARN", "the inner ring is stressed beyond its strength, or has lost its fit on the shaft"),
@@ -423,7 +432,7 @@ EVENTS = {
 """Severity and meaning of each kind of event; `events` compares the kinds with the code."""
 _STATES = {"run.unconfigured", "run.inactive", "run.finalized"}  # kinds that the node makes of the names of its states
 _KIND = re.compile(rf"({'|'.join(sorted({kind.partition('.')[0] for kind in EVENTS}))})\.(?!mcap|rrd)[a-z_]+")
-_ROOMS_WITH_EVENTS = ("inputs", "model", "monitoring", "recording", "ros", "runtime", "view")
+_ROOMS_WITH_EVENTS = ("bearing_state", "inputs", "model", "monitoring", "recording", "ros", "runtime", "view")
 
 
 def events() -> str:
