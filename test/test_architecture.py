@@ -30,10 +30,10 @@ ROOMS = {
     "simulation": ("numpy", "scene numerics model levels"),
     "messages": ("numpy rosbags", "model"),
     "recording": ("lz4 mcap mcap_ros2 numpy pyarrow rosbags yaml zstandard", "scene model messages"),
-    "bearing_state": ("numpy platformdirs pyarrow", "scene model messages recording"),
+    "stored_state": ("numpy platformdirs pyarrow", "scene model messages recording"),
     "inputs": ("numpy pydantic yaml", "scene simulation messages recording"),
     "monitoring": ("numpy scipy", "scene physics model messages inputs"),
-    "runtime": ("numpy", "scene numerics model levels simulation messages recording bearing_state inputs monitoring"),
+    "runtime": ("numpy", "scene numerics model levels simulation messages recording stored_state inputs monitoring"),
     "view": ("PIL numpy rerun rerun_cli", "scene messages recording"),
     "sweep": ("numpy pandas pyarrow matplotlib distributed xarray", "scene numerics model levels simulation recording"),
     "studies": (
@@ -43,7 +43,7 @@ ROOMS = {
     "cli": ("click numpy pydantic_core rich", "scene numerics model levels simulation messages recording inputs runtime view sweep studies"),
     "ros": (
         "click launch launch_ros numpy rcl_interfaces rclpy rich rosgraph_msgs std_srvs",
-        "scene simulation messages recording bearing_state inputs monitoring runtime view",
+        "scene simulation messages recording stored_state inputs monitoring runtime view",
     ),
 }
 MOST_FLOORS = 10  # including launch_scripts, which import ros

@@ -18,8 +18,6 @@ from rclpy.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.subscription import Subscription
 from std_srvs.srv import SetBool, Trigger
 
-from bearing_sim.bearing_state.keeper import RECORD, StateKeeper
-from bearing_sim.bearing_state.state_file import checked_serial, default_path
 from bearing_sim.messages import topics
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.messages.sample_messages import SampleMessages, message_templates
@@ -37,6 +35,8 @@ from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import messages, with_values
 from bearing_sim.simulation import IntegrationError, Simulation
+from bearing_sim.stored_state.keeper import RECORD, StateKeeper
+from bearing_sim.stored_state.state_file import checked_serial, default_path
 
 _DIAGNOSTICS_PERIOD = 1.0  # [s] (REP 107)
 _SCALAR = "std_msgs/msg/Float64"
@@ -233,7 +233,7 @@ class BearingInterface:
             node.create_service(kind, self._service_name(name), self._served(act))
             for kind, name, act in (
                 (Trigger, "reset", self._reset),
-                (Trigger, "get_bearing_state", self._get_bearing_state),
+                (Trigger, "get_stored_state", self._get_stored_state),
                 (Trigger, "replace_bearing", self._replace_bearing),
                 (Trigger, "start_recording", self._begin_recording),
                 (Trigger, "stop_recording", self._stop_recording),
@@ -561,6 +561,7 @@ class BearingInterface:
         return serve
 
     def _begin_recording(self, _) -> tuple[bool, str]:
+        """Begin a recording; the answer names the file."""
         if self.live.has("record"):
             return False, "a recording is already running; stop it first"
         name = f"run_{self.settings.name}" if self.settings.name else "run"
@@ -569,23 +570,25 @@ class BearingInterface:
         return True, str(path.resolve())
 
     def _stop_recording(self, _) -> tuple[bool, str]:
+        """Complete the recording; the answer names the file."""
         sink = self.live.detach("record")
         return sink is not None, f"{sink.path} is complete" if sink is not None else "there is no recording to stop"
 
     def _reset(self, _) -> tuple[bool, str]:
+        """Return the model to the start of the scene; without a stored state, damage as well."""
         if self.live.reset():
             return True, "state and damage are reset" if self.live.keeper is None else "the model is reset; the totals of the bearing continue"
         return False, "not done within two seconds; the reset follows after the running tick"
 
-    def _get_bearing_state(self, _) -> tuple[bool, str]:
-        """the state of the bearing in JSON: totals, calibration, temperatures; as `bearing-sim state show --json`"""
+    def _get_stored_state(self, _) -> tuple[bool, str]:
+        """Answer with the stored state of the bearing as JSON: totals, calibration, temperatures."""
         keeper = self.live.keeper
         if keeper is None:
             return False, "nothing is remembered: set serial or state_file, and configure the node"
         return True, json.dumps(keeper.summary())
 
     def _replace_bearing(self, _) -> tuple[bool, str]:
-        """ends the state of the bearing, which is kept, and begins that of the one whose serial number was set before"""
+        """End the stored state of the bearing, which is kept, and begin that of the bearing whose serial number was set before."""
         before, serial = self.live.keeper, checked_serial(self._wanted_serial)
         number = before.state.serial if before is not None else ""
         if not serial or serial == number:
@@ -620,5 +623,6 @@ class BearingInterface:
         return True, f"serial number {serial}: {life:.6g} % of life used, in {self.live.keeper.path}{ended}"
 
     def _pause(self, request) -> tuple[bool, str]:
+        """Hold simulated time, or continue."""
         self.live.pause(request.data)
         return True, "paused" if request.data else "running"

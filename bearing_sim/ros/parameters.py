@@ -211,7 +211,8 @@ def checked(declaration: Declaration, name: str, value: object) -> object:
             raise ValueError(f"{name} = {value!r}: expected a list of strings, such as ['level=slip']")
         return list(value or [""])
     if not isinstance(value, kind) or isinstance(value, bool) != (kind is bool):
-        raise ValueError(f"{name} = {value!r}: expected {_KINDS[kind]}; {declaration.meaning}")
+        quoted = f""", such as -p {name}:="'{value}'\"""" if kind is str else ""
+        raise ValueError(f"{name} = {value!r}: expected {_KINDS[kind]}{quoted}; {declaration.meaning}")
     if declaration.choices and value not in declaration.choices:
         raise ValueError(f"{name} = {value!r}: expected {' or '.join(declaration.choices)}{did_you_mean(value, declaration.choices)}")
     if kind is not str and not declaration.low <= value <= declaration.high:

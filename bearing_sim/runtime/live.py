@@ -13,7 +13,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.bearing_state.keeper import StateKeeper
 from bearing_sim.inputs.gate import UNITS, Coverage, InputGate, PublisherConflict, unknown_inputs, unused_event, with_values
 from bearing_sim.messages import topics
 from bearing_sim.messages.diagnostics import further_condition
@@ -32,6 +31,7 @@ from bearing_sim.runtime.solver_threads import SolverThreads
 from bearing_sim.scene.fidelity import lower_levels
 from bearing_sim.scene.scene import Scene, Thresholds
 from bearing_sim.simulation import Inputs, Simulation, begin_at_temperatures
+from bearing_sim.stored_state.keeper import StateKeeper
 
 _REPLACED_WITHIN = 10.0  # [s] for the reset of a model that is held
 _CLOCKS = 3  # times 0 by clocks before the present one under which a recording may have its stamps

@@ -16,7 +16,6 @@ from enum import Enum
 
 import numpy as np
 
-from bearing_sim.bearing_state.keeper import StateKeeper
 from bearing_sim.inputs.gate import REQUIRED, ClockJumpFilter, InputGate, Message, Verdict
 from bearing_sim.inputs.profile import Arrival, OnlineInputProfile, gap_event
 from bearing_sim.messages import topics
@@ -28,6 +27,7 @@ from bearing_sim.runtime.sink_registry import Sink
 from bearing_sim.runtime.solver import SimTimeSolver, Start
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Simulation
+from bearing_sim.stored_state.keeper import StateKeeper
 
 CAUGHT_UP = "all known is computed and passed on"
 """Diagnostics key: whether the model has come as far as clock and messages allow, and all its results are collected."""

@@ -10,11 +10,11 @@ from datetime import UTC, datetime
 
 import numpy as np
 
-from bearing_sim.bearing_state.covered import Covered
-from bearing_sim.bearing_state.totals import Criteria, Totals, totals_of
 from bearing_sim.recording.provenance import package_version
 from bearing_sim.scene.scene import OPERATING_POINT, Scene
 from bearing_sim.scene.uncertainty import value_at
+from bearing_sim.stored_state.covered import Covered
+from bearing_sim.stored_state.totals import Criteria, Totals, totals_of
 
 VERSION = 1
 """Of the contents of a state file; `migrated` brings older ones to it."""
@@ -56,7 +56,7 @@ class Thermal:
 
 
 @dataclass
-class BearingState:
+class StoredState:
     """The state of a bearing in service.
 
     Attributes
@@ -98,7 +98,7 @@ class BearingState:
 
         Parameters
         ----------
-        block : samples in order, shape (n,); their damage is the bearing's (see `bearing_sim.bearing_state.counting.LifeCounter`).
+        block : samples in order, shape (n,); their damage is the bearing's (see `bearing_sim.stored_state.counting.LifeCounter`).
         times_ns : of the samples [ns since the epoch], shape (n,), int64.
         seconds : simulated time that each stands for, which ends at it [s], shape (n,).
         by : what they are classed by.
@@ -131,7 +131,7 @@ class BearingState:
         for first, after in zip(cuts, cuts[1:]):
             self.covered.add(int(begins[first]), int(times[after - 1]))
 
-    def copy(self) -> "BearingState":
+    def copy(self) -> "StoredState":
         """Return an independent state with the same contents."""
         days = {day: copy.copy(totals) for day, totals in self.days.items()}  # totals never change their lists
         return dataclasses.replace(self, totals=copy.copy(self.totals), covered=self.covered.copy(), days=days)
@@ -161,7 +161,7 @@ class BearingState:
         }
 
     @classmethod
-    def from_mapping(cls, mapping: Mapping[str, object]) -> "BearingState":
+    def from_mapping(cls, mapping: Mapping[str, object]) -> "StoredState":
         """Return the state of the contents of a file of this `VERSION`.
 
         Raises
@@ -182,9 +182,9 @@ class BearingState:
             raise Damaged(f"it is not a bearing's state: {type(error).__name__}: {error}") from None
 
 
-def new_state(scene: Scene, serial: str, now_ns: int) -> BearingState:
+def new_state(scene: Scene, serial: str, now_ns: int) -> StoredState:
     """Return the state of a bearing that nothing is known about yet."""
-    return BearingState(serial, identity_of(scene), calibration=calibration_of(scene), created_ns=now_ns)
+    return StoredState(serial, identity_of(scene), calibration=calibration_of(scene), created_ns=now_ns)
 
 
 def identity_of(scene: Scene) -> dict[str, object]:

@@ -12,14 +12,14 @@ from pathlib import Path
 
 import numpy as np
 
-from bearing_sim.bearing_state.counting import LifeCounter
-from bearing_sim.bearing_state.history import history_paths, move_days
-from bearing_sim.bearing_state.state import BearingState, Thermal, calibration_of, day_of, new_state, time_text
-from bearing_sim.bearing_state.state_file import News, StateError, StateFile, serialised
-from bearing_sim.bearing_state.totals import criteria
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.model.sample import NODE_OBSERVABLES, RING_TEMPERATURES
 from bearing_sim.scene.scene import Scene
+from bearing_sim.stored_state.counting import LifeCounter
+from bearing_sim.stored_state.history import history_paths, move_days
+from bearing_sim.stored_state.state import StoredState, Thermal, calibration_of, day_of, new_state, time_text
+from bearing_sim.stored_state.state_file import News, StateError, StateFile, serialised
+from bearing_sim.stored_state.totals import criteria
 
 RECORD = "bearing_sim_state"
 """Name of a recording's metadata record with the state that it began with: state, as in a state file, and counts."""
@@ -50,7 +50,7 @@ class StateKeeper:
 
     Attributes
     ----------
-    state : BearingState
+    state : StoredState
         As counted so far.
     path : of its file.
 
@@ -84,9 +84,9 @@ class StateKeeper:
         self._counter = LifeCounter(self.state.totals.damage)
         self._last_time: float | None = None
         self._changed = threading.Condition()
-        self._waiting: BearingState | None = None  # to be written
+        self._waiting: StoredState | None = None  # to be written
         self._has_changed = state is None
-        self._held: tuple[float, float, BearingState] | None = None  # until it is published
+        self._held: tuple[float, float, StoredState] | None = None  # until it is published
         self._error, self._history_error, self._writing_since = "", "", None
         self._moved: tuple[dict, int] | None = None
         self._stopping, self._thread = False, None
@@ -289,13 +289,13 @@ class StateKeeper:
             self._file.close()
         return written
 
-    def _snapshot(self) -> BearingState:
+    def _snapshot(self) -> StoredState:
         self._has_changed = False
         self.state.writes += 1
         self.state.written_ns = self._now_ns()
         return self.state.copy()
 
-    def _hand_over(self, snapshot: BearingState) -> None:
+    def _hand_over(self, snapshot: StoredState) -> None:
         with self._changed:
             self._waiting = snapshot
             if self._thread is None:
@@ -341,7 +341,7 @@ class StateKeeper:
             if not self._error and not self._stopping:
                 self._move_days(snapshot)
 
-    def _move_days(self, written: BearingState) -> None:
+    def _move_days(self, written: StoredState) -> None:
         """Move the days that are over to the history."""
         today = day_of(written.until_ns)
         over = {day: totals for day, totals in written.days.items() if day != today}

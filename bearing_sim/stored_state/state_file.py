@@ -18,8 +18,8 @@ from urllib.parse import quote
 
 import platformdirs
 
-from bearing_sim.bearing_state.state import VERSION, BearingState, Damaged, migrated, time_text
 from bearing_sim.messages.events import Level
+from bearing_sim.stored_state.state import VERSION, Damaged, StoredState, migrated, time_text
 
 FORMAT = "bearing_sim state"
 _LONGEST_SERIAL = 100
@@ -63,7 +63,7 @@ def previous_path(path: Path) -> Path:
     return path.with_name(f"{path.name}.previous")
 
 
-def read_state(path: Path) -> tuple[BearingState, list[News]]:
+def read_state(path: Path) -> tuple[StoredState, list[News]]:
     """Return the newest good state of a file, and what had to be done about it.
 
     Raises
@@ -71,7 +71,7 @@ def read_state(path: Path) -> tuple[BearingState, list[News]]:
     StateError
         There is no file, or neither it nor the one before is good.
     """
-    found: dict[Path, BearingState] = {}
+    found: dict[Path, StoredState] = {}
     faults: dict[Path, str] = {}
     for each in (path, previous_path(path)):
         try:
@@ -145,7 +145,7 @@ class StateFile:
             self.has_lock = False
         self._note_owner(_writes_in_lock(self.path))
 
-    def read(self) -> tuple[BearingState | None, list[News]]:
+    def read(self) -> tuple[StoredState | None, list[News]]:
         """Return the state, None where there is no file yet, and what had to be done about it.  A damaged file is kept as ``<name>.damaged``.
 
         Raises
@@ -165,7 +165,7 @@ class StateFile:
                     os.replace(self.path, self.path.with_name(f"{self.path.name}.damaged"))
         return state, news
 
-    def write(self, state: BearingState) -> None:
+    def write(self, state: StoredState) -> None:
         """Write a state so that it, or the one before, survives whatever happens.
 
         Raises
@@ -214,14 +214,14 @@ class StateFile:
             os.ftruncate(self._lock, len(data) + 1)
 
 
-def serialised(state: BearingState) -> bytes:
+def serialised(state: StoredState) -> bytes:
     """Return the contents of a state file."""
     contents = state.as_mapping()
     whole = {"format": FORMAT, "version": VERSION, "checksum": _checksum(contents), "state": contents}
     return json.dumps(whole, allow_nan=False).encode() + b"\n"
 
 
-def parsed(data: bytes) -> BearingState:
+def parsed(data: bytes) -> StoredState:
     """Return the state in the contents of a file, of whatever version.
 
     Raises
@@ -244,10 +244,10 @@ def parsed(data: bytes) -> BearingState:
         raise Damaged("it has no state")
     if version > 0 and whole.get("checksum") != _checksum(contents):  # version 0 is written by hand
         raise Damaged("its checksum does not fit its contents")
-    return BearingState.from_mapping(migrated(version, contents))
+    return StoredState.from_mapping(migrated(version, contents))
 
 
-def _parsed(path: Path) -> BearingState:
+def _parsed(path: Path) -> StoredState:
     if path.stat().st_size > _MOST_BYTES:
         raise Damaged(f"it has {path.stat().st_size} bytes, more than any state")
     try:
@@ -260,7 +260,7 @@ def _checksum(contents: dict) -> str:
     return hashlib.sha256(json.dumps(contents, sort_keys=True).encode()).hexdigest()
 
 
-def _shown(state: BearingState) -> str:
+def _shown(state: StoredState) -> str:
     when = time_text(state.written_ns) if state.written_ns else "an unknown time"
     return f"{when} (write {state.writes}, {100.0 * state.totals.damage:.6g} % of life used)"
 
