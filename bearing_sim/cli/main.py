@@ -38,6 +38,7 @@ _STUDIES = {
 _COMMANDS = {
     "run": Entry("run:run", "Run a scene under constant conditions."),
     "replay": Entry("replay:replay", "Run the model on a recorded log of shaft speed and radial load."),
+    "replay-fleet": Entry("fleet:replay_fleet", "Run the model on many logs at once, one bearing each, into a table."),
     "import-csv": Entry("logs:import_csv", "Convert a measured table to an MCAP log."),
     "loads": Entry("bearings:loads", "Show a scene's load distribution over rollers and slices, and the lives."),
     "catalog": Entry("catalog:catalog", "List the bearings of the catalogue, or show one by its designation."),

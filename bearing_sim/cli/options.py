@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.cli.reporting import UsageError
+from bearing_sim.cli.reporting import UsageError, as_usage_error
 from bearing_sim.scene.fidelity import LEVELS
 
 PICTURES = (".png", ".svg", ".pdf")
@@ -16,6 +16,78 @@ scene_argument = click.argument("scene_name", metavar="SCENE")
 set_option = click.option("--set", "overrides", multiple=True, metavar="FIELD=VALUE", help="Override a field of the scene; can be repeated.")
 json_option = click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 quick_option = click.option("--quick", is_flag=True, help="Measure almost nothing, to check that everything works.")
+
+
+_LOG_OPTIONS = (
+    click.option(
+        "--speed",
+        "--speed-topic",
+        "speed",
+        metavar="TOPIC",
+        help="Shaft speed: /topic, or /topic.field[0] of any type, or a constant such as 1500rpm [default: /shaft_speed].",
+    ),
+    click.option(
+        "--load",
+        "--load-topic",
+        "load",
+        metavar="TOPIC",
+        help="Radial load, likewise; /topic.y,z for both components, or a constant such as 800N [default: /radial_load].",
+    ),
+    click.option(
+        "--oil-temperature",
+        "--temperature",
+        "--temperature-topic",
+        "temperature",
+        metavar="TOPIC",
+        help="Oil temperature, likewise, or a constant such as 60degC [default: /oil_temperature, if present, or the scene's].",
+    ),
+    click.option(
+        "--inner-ring-temperature", metavar="TOPIC", help="Of the inner ring as measured, likewise [default: /inner_ring_temperature, if present]."
+    ),
+    click.option(
+        "--outer-ring-temperature", metavar="TOPIC", help="Of the outer ring as measured, likewise [default: /outer_ring_temperature, if present]."
+    ),
+    click.option("--speed-unit", metavar="UNIT", help="Unit of the shaft speed in the log, such as rpm [default: rad/s]."),
+    click.option("--load-unit", metavar="UNIT", help="Unit of the load in the log, such as kN [default: N]."),
+    click.option("--temperature-unit", metavar="UNIT", help="Unit of the temperatures in the log [default: degC]."),
+    click.option("--joint", default="shaft", show_default=True, metavar="NAME", help="Name of the shaft's joint in JointState messages."),
+    click.option("--stamps", type=click.Choice(["header", "log"]), default="header", show_default=True, help="Use header stamps or log times."),
+    click.option(
+        "--longest-gap",
+        type=click.FloatRange(min=0, min_open=True),
+        metavar="S",
+        help="Do not simulate longer gaps between messages [default: ten times the usual spacing, at least the scene's input_limits.stale_after].",
+    ),
+)
+
+
+def log_options(command: Callable) -> Callable:
+    """Add the options that say where a log holds what: topics, units, constants, stamps and gaps (see `channel_sources`)."""
+    for option in reversed(_LOG_OPTIONS):
+        command = option(command)
+    return command
+
+
+def channel_sources(
+    speed, load, temperature, inner_ring_temperature, outer_ring_temperature, speed_unit, load_unit, temperature_unit
+) -> tuple[dict, dict[str, float]]:
+    """Return the sources of channels in a recording, and the values [SI] of those that are constant, from the texts of `log_options`.
+
+    Both are by channel; a channel that no option concerns is in neither.
+    """
+    from bearing_sim.inputs.log import constant, is_constant, source
+
+    given = (
+        ("shaft_speed", speed, speed_unit),
+        ("radial_load", load, load_unit),
+        # A channel with a unit must be there: of the rings only one that is named, of the oil one that may be meant.
+        ("oil_temperature", temperature, temperature_unit if temperature or not (inner_ring_temperature or outer_ring_temperature) else None),
+        ("inner_ring_temperature", inner_ring_temperature, temperature_unit if inner_ring_temperature else None),
+        ("outer_ring_temperature", outer_ring_temperature, temperature_unit if outer_ring_temperature else None),
+    )
+    with as_usage_error(ValueError):
+        constants = {channel: constant(channel, text, unit) for channel, text, unit in given if is_constant(text)}
+        return {channel: source(channel, text, unit) for channel, text, unit in given if (text or unit) and channel not in constants}, constants
 
 
 def executor_options(command: Callable) -> Callable:

@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 
 from bearing_sim.cli.lives import hours
-from bearing_sim.cli.options import json_option, set_option
+from bearing_sim.cli.options import channel_sources, json_option, log_options, set_option
 from bearing_sim.cli.reporting import (
     FailedRun,
     UnknownInputs,
@@ -43,45 +43,7 @@ _ROUNDED = 5.0  # [K] to which the oil temperatures of a table are
 @click.option("-o", "--out", type=click.Path(path_type=Path), metavar="OUT.mcap", help="Record inputs and outputs [default: no recording].")
 @click.option("--rrd", type=click.Path(path_type=Path), metavar="RUN.rrd", help="Also write a view for rerun.")
 @click.option("--rate", type=click.FloatRange(min=0, min_open=True), metavar="HZ", help="Outputs per simulated second [default: one per stamp].")
-@click.option(
-    "--speed",
-    "--speed-topic",
-    "speed",
-    metavar="TOPIC",
-    help="Shaft speed: /topic, or /topic.field[0] of any type, or a constant such as 1500rpm [default: /shaft_speed].",
-)
-@click.option(
-    "--load",
-    "--load-topic",
-    "load",
-    metavar="TOPIC",
-    help="Radial load, likewise; /topic.y,z for both components, or a constant such as 800N [default: /radial_load].",
-)
-@click.option(
-    "--oil-temperature",
-    "--temperature",
-    "--temperature-topic",
-    "temperature",
-    metavar="TOPIC",
-    help="Oil temperature, likewise, or a constant such as 60degC [default: /oil_temperature, if present, or the scene's].",
-)
-@click.option(
-    "--inner-ring-temperature", metavar="TOPIC", help="Of the inner ring as measured, likewise [default: /inner_ring_temperature, if present]."
-)
-@click.option(
-    "--outer-ring-temperature", metavar="TOPIC", help="Of the outer ring as measured, likewise [default: /outer_ring_temperature, if present]."
-)
-@click.option("--speed-unit", metavar="UNIT", help="Unit of the shaft speed in the log, such as rpm [default: rad/s].")
-@click.option("--load-unit", metavar="UNIT", help="Unit of the load in the log, such as kN [default: N].")
-@click.option("--temperature-unit", metavar="UNIT", help="Unit of the temperatures in the log [default: degC].")
-@click.option("--joint", default="shaft", show_default=True, metavar="NAME", help="Name of the shaft's joint in JointState messages.")
-@click.option("--stamps", type=click.Choice(["header", "log"]), default="header", show_default=True, help="Use header stamps or log times.")
-@click.option(
-    "--longest-gap",
-    type=click.FloatRange(min=0, min_open=True),
-    metavar="S",
-    help="Do not simulate longer gaps between messages [default: ten times the usual spacing, at least the scene's input_limits.stale_after].",
-)
+@log_options
 @json_option
 def replay(
     logs,
@@ -91,18 +53,11 @@ def replay(
     out,
     rrd,
     rate,
-    speed,
-    load,
-    temperature,
-    inner_ring_temperature,
-    outer_ring_temperature,
-    speed_unit,
-    load_unit,
-    temperature_unit,
     joint,
     stamps,
     longest_gap,
     as_json,
+    **channels,
 ):
     """Run the model on IN.mcap and write inputs and outputs to OUT.mcap.
 
@@ -116,30 +71,20 @@ def replay(
     if from_recording == bool(scene_name):
         raise UsageError("give either --scene, or --from-recording for a recording made by bearing-sim")
     if from_recording:
-        if len(logs) > 1 or overrides or rate or rrd or speed or load or temperature or inner_ring_temperature or outer_ring_temperature:
+        if len(logs) > 1 or overrides or rate or rrd or any(channels.values()):
             raise UsageError("--from-recording takes exactly one recording and reproduces it as it was; it can be combined with -o and --json only")
         reproduce(logs[0], out, as_json)
         return
     import numpy as np
 
-    from bearing_sim.inputs.log import InputLogError, constant, is_constant, read_input_log, source
+    from bearing_sim.inputs.log import InputLogError, read_input_log
     from bearing_sim.inputs.profile import judge
     from bearing_sim.recording.writer import COMMAND, McapSink
     from bearing_sim.runtime.replay import replay
     from bearing_sim.scene.loader import SceneError, load_scene
     from bearing_sim.simulation import Inputs, IntegrationError, Simulation
 
-    given = (
-        ("shaft_speed", speed, speed_unit),
-        ("radial_load", load, load_unit),
-        # A channel with a unit must be there: of the rings only one that is named, of the oil one that may be meant.
-        ("oil_temperature", temperature, temperature_unit if temperature or not (inner_ring_temperature or outer_ring_temperature) else None),
-        ("inner_ring_temperature", inner_ring_temperature, temperature_unit if inner_ring_temperature else None),
-        ("outer_ring_temperature", outer_ring_temperature, temperature_unit if outer_ring_temperature else None),
-    )
-    with as_usage_error(ValueError):
-        constants = {channel: constant(channel, text, unit) for channel, text, unit in given if is_constant(text)}
-        names = {channel: source(channel, text, unit) for channel, text, unit in given if (text or unit) and channel not in constants}
+    names, constants = channel_sources(**channels)
     with as_usage_error(SceneError, InputLogError), as_file_error(), exit_on_sigterm():
         if out is not None and out.exists() and any(log.exists() and out.samefile(log) for log in logs):
             raise UsageError(f"{out} is the input log; choose another file")

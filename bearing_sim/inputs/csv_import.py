@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Import measured tables (CSV) as input logs.
+"""Import measured tables (CSV or Parquet) as input logs.
 
 A mapping, a YAML file, says which columns are time, shaft speed, radial load, oil temperature and cage speed, and in which units.
 Nothing in it is evaluated: each input is one of a few fixed laws of columns.
@@ -9,7 +9,6 @@ smoothed.
 """
 
 import datetime
-import hashlib
 import math
 import re
 import zoneinfo
@@ -37,6 +36,8 @@ from bearing_sim.inputs.csv_text import (
     unit_in,
 )
 from bearing_sim.inputs.gate import with_values
+from bearing_sim.inputs.log import InputLog, Series
+from bearing_sim.inputs.parquet_table import checksum, is_parquet, parquet_layout, parquet_records
 from bearing_sim.messages import topics
 from bearing_sim.recording.provenance import git_hash, package_version
 from bearing_sim.recording.writer import McapFile
@@ -394,6 +395,11 @@ class Table:
 def read_table(path: str | Path, mapping: Mapping) -> Table:
     """Read a table as a mapping describes it.
 
+    Parameters
+    ----------
+    path : a CSV file, a Parquet file, or the folder of a Parquet data set.
+    mapping : which of its columns are what.
+
     Raises
     ------
     TableError
@@ -401,9 +407,9 @@ def read_table(path: str | Path, mapping: Mapping) -> Table:
         can be used.
     """
     table, path, times = Table(), Path(path), []
-    layout = layout_of(path, mapping)
+    layout, rows = _rows_of(path, mapping)
     row_reader = _RowReader(mapping, layout, table)
-    for line, cells in records(path, layout):
+    for line, cells in rows:
         if row_reader.take(line, cells):
             times.append(row_reader.newest)
     table.notes = [*layout.found, *filter(None, (one.contradiction() for _, one in mapping.columns()))]
@@ -418,6 +424,25 @@ def read_table(path: str | Path, mapping: Mapping) -> Table:
         raise TableError(f"{path}, line {table.examples['time.backwards'][0][0]}: {why}")
     _find_gaps(table, mapping, np.diff(times) * 1e-9)
     return table
+
+
+def _rows_of(path: Path, mapping: Mapping) -> tuple[Layout, Iterable[tuple[int, list[str]]]]:
+    """Return how a table is laid out and its rows, (number, cells)."""
+    if not is_parquet(path):
+        layout = layout_of(path, mapping)
+        return layout, records(path, layout)
+    layout = parquet_layout(path, mapping.column_names(), mapping.decimal)
+    takes_timestamps = mapping.time.format == "iso" and not mapping.time.time_of_day
+    return layout, parquet_records(path, layout, mapping.only, mapping.time.column, takes_timestamps)
+
+
+def input_log(table: Table, path: Path) -> InputLog:
+    """Return a table as an input log, as if it had been written by `write_log` and read again."""
+    series = {}
+    for channel, stamps in table.stamps.items():
+        values = [(value,) for value in table.values[channel]]
+        series[channel] = Series(path.name, "column of a table", "header", stamps, stamps, values)
+    return InputLog(path, series, "")
 
 
 def _with_example(table: Table, kind: str) -> str:
@@ -619,8 +644,8 @@ def write_log(table: Table, mapping_text: str, source: str | Path, out: str | Pa
     progress : called now and then with the number of messages written.
     """
     origin = {"package_version": package_version(), "git_hash": git_hash()}
-    checksum = hashlib.sha256(Path(source).read_bytes()).hexdigest()
-    metadata = {"mapping": mapping_text, "file": Path(source).name, "sha256": checksum, **origin}
+    files = sorted(Path(source).rglob("*.parquet")) if Path(source).is_dir() else [Path(source)]
+    metadata = {"mapping": mapping_text, "file": Path(source).name, "sha256": checksum(files), **origin}
     messages = sorted((stamp, channel, k) for channel, stamps in table.stamps.items() for k, stamp in enumerate(stamps))
     with McapFile(out, {METADATA: metadata}, {"generator": "bearing_sim", **origin}, replace=True) as recording:
         for done, (stamp, channel, k) in enumerate(messages):

@@ -23,7 +23,10 @@ NAMES = {",": "comma", ";": "semicolon", "\t": "tab", "|": "vertical bar"}
 _COMMENTS = ("#", "//")
 _FIRST_LINES = 2000  # of a file, in which header, delimiter and decimal mark are looked for
 _MARKS = ((codecs.BOM_UTF8, "utf-8-sig"), (codecs.BOM_UTF16_LE, "utf-16"), (codecs.BOM_UTF16_BE, "utf-16"))
-_BINARY = {b"PK\x03\x04": "a workbook of a spreadsheet or another archive; save the sheet as CSV", b"PAR1": "Parquet; write it as CSV"}
+_BINARY = {
+    b"PK\x03\x04": "a workbook of a spreadsheet or another archive; save the sheet as CSV",
+    b"PAR1": "Parquet; write its mapping by hand, since there is no text to guess it from",
+}
 _NUMBER = re.compile(r"[-+]?(?:\d+(?:[.,]\d*)?|[.,]\d+|\d{1,3}(?:[.,]\d{3})+(?:[.,]\d*)?)(?:[eE][-+]?\d+)?")  # no date, such as 1.2.2026
 _LIKE_THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2}(?:,\d{3})+")
 _UNIT_LIKE = re.compile(r"(?=.*[^\W\d_]|.*[%°-])(?:\D*|[^\d:]*\d[^\d:]*)")

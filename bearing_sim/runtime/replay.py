@@ -91,6 +91,16 @@ class Replay:
         statistics = {"mean": np.average(slip, weights=weight), "median": median, "p95": p95, "p99": p99, "maximum": slip.max()}
         return {name: float(value) for name, value in statistics.items()}
 
+    @property
+    def revolutions(self) -> float:
+        """Turns of the shaft in either sense."""
+        return float(np.abs(np.array(self.speed)) @ np.array(self.weight)) / (2.0 * math.pi)
+
+    def seconds_above(self, slip: float) -> float:
+        """Return for how long the shaft turned with more slip than that [s]."""
+        slips, weight = np.array(self.slip), np.array(self.weight)
+        return float(weight[turns(np.array(self.speed)) & (slips > slip)].sum())
+
     def seconds_below(self, minimum_load: Callable[[np.ndarray], np.ndarray]) -> tuple[float, float]:
         """Return for how long the load was below a minimum while the shaft turned, and for how long it turned [s].
 

@@ -55,12 +55,17 @@ class Task(NamedTuple):
 
 
 @cache
-def program_hash() -> str:
-    """Return a hash of the sources that results depend on, including the compiler's version."""
+def program_hash(*more: str) -> str:
+    """Return a hash of the sources that results depend on, including the compiler's version.
+
+    Parameters
+    ----------
+    more : patterns of further sources, below the package, such as ``inputs/*.py``.
+    """
     from bearing_sim.numerics.compilation import sources_hash
 
     digest = hashlib.sha256(sources_hash().encode())
-    for pattern in _SOURCES:
+    for pattern in (*_SOURCES, *more):
         for path in sorted(_PACKAGE.glob(pattern)):
             digest.update(path.name.encode() + path.read_bytes())
     return digest.hexdigest()
@@ -175,6 +180,10 @@ _ATTEMPTS = 2  # at a task after its worker died
 _DASK_TIMEOUT = 20  # s to reach the scheduler
 
 
+UNAVAILABLE = "unavailable"
+"""Status of a result that may be another one the next time, such as that of a file that could not be opened."""
+
+
 class ClusterError(RuntimeError):
     """A Dask cluster that cannot be used; the message says what to do."""
 
@@ -189,7 +198,7 @@ def run_tasks(
     """Return the results of tasks in their order, from the journal where available; equal tasks are computed once.
 
     A task whose worker dies is repeated alone.  If that worker dies, too, the result is ``{"status": "failed", "reason": ...}``,
-    which is not stored in the journal.
+    which is not stored in the journal.  Nor is a result whose ``status`` is `UNAVAILABLE`.
 
     Parameters
     ----------
@@ -208,7 +217,7 @@ def run_tasks(
     lost: dict[str, dict] = {}
     progress(0, len(pending))
     for done, (task, result, keep) in enumerate(_computed(list(pending.values()), workers or cores(), dask), 1):
-        if keep:
+        if keep and result.get("status") != UNAVAILABLE:
             journal.add(task.key, result)
         else:
             lost[task.key] = result

@@ -1,0 +1,161 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""``bearing-sim replay-fleet``: run the model on many logs, one bearing each, into one table."""
+
+from collections import Counter
+from pathlib import Path
+
+import click
+
+from bearing_sim.cli.options import channel_sources, executor_options, json_option, log_options, set_option, table_option
+from bearing_sim.cli.reporting import (
+    FailedRun,
+    Points,
+    UnknownInputs,
+    UsageError,
+    announce_compilation,
+    as_file_error,
+    as_usage_error,
+    command_line,
+    exit_on_sigterm,
+    print_json,
+    print_rows,
+    warn,
+)
+
+_SHOWN = ("bearing", "running_hours", "revolutions", "slip_mean", "slip_p95", "slip_maximum", "above_slip_warning", "damage", "life", "status")
+_MOST_SHOWN = 40
+
+
+@click.command("replay-fleet")
+@click.argument("paths", nargs=-1, type=click.Path(path_type=Path), metavar="[LOGS]...")
+@click.option("--scene", "scene_name", metavar="SCENE", help="Bundled scene or YAML file of every bearing that --bearings does not give another.")
+@set_option
+@click.option("--bearings", "bearings_path", type=click.Path(path_type=Path), metavar="TABLE.csv", help="Which log is of which bearing, see above.")
+@click.option("--mapping", "mapping_name", metavar="MAPPING", help="Which columns of tables are what, as for import-csv.")
+@click.option("--by", metavar="COLUMN", help="Tables hold several machines, which differ in this column.")
+@log_options
+@table_option("fleet.parquet", "Results; also written: PATH.csv and")
+@executor_options
+@json_option
+def replay_fleet(paths, scene_name, overrides, bearings_path, mapping_name, by, joint, stamps, longest_gap, out, workers, dask, as_json, **channels):
+    """Run the model on many LOGS at once, one bearing each, and write one table: hours, revolutions, slip, life used, warnings.
+
+    LOGS are recordings (MCAP, SQLite, bags) and measured tables (CSV, Parquet), or folders that are searched for them. Tables need a
+    --mapping. One table or Parquet data set of many machines is divided by a column with --by.
+
+    --bearings is a table (CSV or Parquet) with the column log, by name or path, and, where bearings differ, serial, scene, mapping, fields of the
+    scene such as lubricant.temperature, and fields of the mapping such as mapping.radial_load.pitch_diameter. Without LOGS, its logs are paths
+    relative to it.
+
+    A log that cannot be used is a row that says why; the others are computed. An interrupted run resumes with the same command; what was
+    computed by an earlier one into the same table is not computed again. The exit code is 1 if some logs have no result, and 3 if
+    inputs of some were unknown for some of the time.
+
+    bearing-sim replay-fleet scada/ --mapping scada.yaml --scene high_speed_shaft.yaml -o fleet.parquet
+    """
+    from bearing_sim.fleet.bearings import bearings_of, read_bearings
+    from bearing_sim.fleet.logs import NoLogs, find_logs
+    from bearing_sim.fleet.replay import replay_fleet
+    from bearing_sim.inputs.csv_text import TableError
+    from bearing_sim.scene.loader import SceneError
+    from bearing_sim.sweep.table import write_table
+    from bearing_sim.sweep.tasks import ClusterError, Journal, JournalInUse
+
+    if not paths and bearings_path is None:
+        raise UsageError("no logs; give files or folders, or --bearings TABLE.csv")
+    if scene_name is None and bearings_path is None:
+        raise UsageError("no bearing; give --scene, or --bearings TABLE.csv with a column scene")
+    reading = _reading(mapping_name, *channel_sources(**channels), joint, stamps)
+    with as_usage_error(TableError, NoLogs), as_file_error():
+        rows = read_bearings(bearings_path) if bearings_path is not None else []
+        if not paths:
+            rows = [row | {"log": str(bearings_path.parent / row["log"])} for row in rows]
+            paths = list(dict.fromkeys(path for row in rows if (path := Path(row["log"])).exists()))
+        results = (out.with_suffix(".parquet"), out.with_suffix(".csv"), out.with_suffix(".journal"))
+        known = (*results, *([bearings_path] if bearings_path is not None else []))
+        logs = find_logs([path.absolute() for path in paths], by, known) if paths else []
+        rows = [row | {"log": str(Path(row["log"]).absolute()) if Path(row["log"]).exists() else row["log"]} for row in rows]
+        bearings = bearings_of(logs, rows, scene_name, overrides, reading, str(bearings_path or ""))
+    _require_a_scene(bearings)
+    announce_compilation()
+    reading_bar, replay_bar = Points("reading", len(bearings)), Points("replay", len(bearings))
+    bars = {"reading": reading_bar, "replay": replay_bar}
+    with as_file_error(), exit_on_sigterm(), as_usage_error(SceneError, ClusterError, JournalInUse):
+        with Journal(out.with_suffix(".journal")) as journal, reading_bar, replay_bar:
+            table = replay_fleet(bearings, longest_gap, journal, workers, dask, lambda act, done, total: bars[act].update(done, total), _build_table)
+        files = write_table(out, table._replace(about=table.about | {"command": command_line()}))
+    report = _report(table, replay_bar, files)
+    if as_json:
+        print_json(report | {"bearings": table.rows})
+    else:
+        _print(table, report)
+    without = [row for row in table.rows if row["status"] not in ("ok", "unknown inputs")]
+    if without:
+        raise FailedRun(f"{len(without)} of {len(table.rows)} bearings have no complete result; {files[1]} says why (columns status, reason)")
+    if report["unknown_inputs_bearings"]:
+        raise UnknownInputs(f"the inputs of {report['unknown_inputs_bearings']} bearings were unknown for some of the time; see {files[1]}")
+
+
+def _reading(mapping_name, sources, constants, joint, stamps):
+    """Return how logs are read, from the options; raise `UsageError` if the mapping is invalid."""
+    from bearing_sim.fleet.logs import Reading, mapping_of
+    from bearing_sim.scene.loader import SceneError, read_named
+
+    overrides = tuple(f"{name}={_constant_field(name, value)}" for name, value in constants.items())
+    of_recordings = {"sources": tuple(sources.items()), "joint": joint, "stamps": stamps, "constants": tuple(constants.items())}
+    with as_usage_error(SceneError):
+        text = read_named(mapping_name, "catalog/mappings", "mapping")[0] if mapping_name else ""
+        reading = Reading(text, overrides, mapping_name or "", **of_recordings)
+        if mapping_name:
+            mapping_of(reading)
+    return reading
+
+
+def _constant_field(channel: str, value: float) -> str:
+    """Return what stands in a mapping for a channel that is constant [SI], as YAML."""
+    if channel == "radial_load":
+        return f"{{law: constant, value: {value!r} N}}"
+    return f"{{constant: {value!r} {'rad/s' if channel == 'shaft_speed' else 'K'}}}"
+
+
+def _require_a_scene(bearings) -> None:
+    """Raise `UsageError` if no bearing at all has a valid scene and mapping: then it is no matter of single logs."""
+    if all(isinstance(bearing.scene, ValueError) for bearing in bearings):
+        raise UsageError(str(bearings[0].scene))
+
+
+def _build_table(scene, temperatures) -> None:
+    from bearing_sim.cli.table import build_with_progress
+
+    build_with_progress(scene, temperatures)
+
+
+def _report(table, points, files) -> dict:
+    from bearing_sim.fleet.replay import STATUSES
+    from bearing_sim.model.validity import counted
+
+    statuses = Counter(table.values("status"))
+    return {
+        "computed": points.computed,
+        "kept_from_before": points.kept,
+        **{f"{status.replace(' ', '_')}_bearings": statuses[status] for status in STATUSES},
+        "running_hours": sum(hours for hours in table.values("running_hours") if hours == hours),
+        "parquet": str(files[0]),
+        "csv": str(files[1]),
+        "warnings": counted(row["warnings"] for row in table.rows),
+    }
+
+
+def _print(table, report) -> None:
+    columns = [table.column(name) for name in _SHOWN]
+    names = [f"{column.name.replace('_', ' ')}{f', {column.unit}' if column.unit else ''}" for column in columns]
+    worst_first = sorted(table.rows, key=lambda row: (row["status"] == "ok", -row["damage"] if row["damage"] == row["damage"] else 0.0))
+    rows = [[f"{row[name]:.4g}" if isinstance(row[name], float) else str(row[name]) for name in _SHOWN] for row in worst_first[:_MOST_SHOWN]]
+    print_rows(f"{len(table.rows)} bearings, most life used first", names, rows, words=("bearing", "status"))
+    if len(table.rows) > _MOST_SHOWN:
+        click.echo(f"... and {len(table.rows) - _MOST_SHOWN} more bearings; all are in the files")
+    reasons = Counter(f"{row['status']}: {row['reason']}" for row in table.rows if row["reason"])
+    for reason, count in reasons.most_common(5):
+        click.echo(f"{count} x {reason}")
+    warn(report["warnings"])
+    click.echo(f"{report['computed']} replays computed, {report['kept_from_before']} kept from before; {report['parquet']}, {report['csv']}")

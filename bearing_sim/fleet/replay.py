@@ -1,0 +1,351 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Replay of many logs, one bearing each, on all cores or on a Dask cluster: a table with one row for each bearing.
+
+A log that cannot be read or computed is a row that says why.  Results are kept in a journal by what they depend on: the contents of the log, how it
+is read, the scene and this program.  Nothing that is in it is computed again.
+"""
+
+import fcntl
+import math
+import os
+from collections.abc import Callable, Sequence
+from contextlib import contextmanager
+from dataclasses import replace as with_fields
+from functools import partial
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from bearing_sim.fleet.logs import Log, Reading, read_log
+from bearing_sim.inputs.csv_text import TableError
+from bearing_sim.inputs.log import InputLogError
+from bearing_sim.inputs.profile import judge
+from bearing_sim.levels.steady.table import Table as OperatingPoints
+from bearing_sim.levels.steady.table_builder import Span, obtain_table, span_of, table_path
+from bearing_sim.model.plausibility import minimum_load
+from bearing_sim.model.validity import cell
+from bearing_sim.recording.provenance import git_hash, package_version
+from bearing_sim.runtime.replay import Replay, replay
+from bearing_sim.scene.errors import SceneError
+from bearing_sim.scene.scene import Scene
+from bearing_sim.simulation import Inputs, Simulation
+from bearing_sim.sweep.point import FAILED, OK, REFUSED, Column
+from bearing_sim.sweep.table import Table
+from bearing_sim.sweep.tasks import UNAVAILABLE, Journal, Task, program_hash, run_tasks, task
+
+UNKNOWN = "unknown inputs"
+"""Status of a bearing whose inputs were unknown for some of the time, because they were refused; life is then "at most"."""
+
+STATUSES = (OK, UNKNOWN, FAILED, REFUSED, UNAVAILABLE)
+
+_SOURCES = ("fleet/*.py", "inputs/*.py", "messages/*.py", "monitoring/*.py", "recording/*.py", "runtime/*.py", "sweep/tasks.py")
+_HEADROOM = 1.02  # of a table of operating points above the speeds of the logs
+_ROUNDED = 5.0  # [K] to which the oil temperatures of a table are
+_TABLES_KEPT = 4  # by a worker
+
+NAMES = (
+    Column("bearing", "", "serial number where it is given, otherwise the name of the log"),
+    Column("log", "", "file or folder, and the cells that choose its rows"),
+    Column("scene", "", "what the bearing is"),
+    Column("level", "", "level of fidelity"),
+)
+TEXTS = (
+    Column("status", "", f"{OK}; {UNKNOWN}: for some of the time; {FAILED}: the run stopped early; {REFUSED}, {UNAVAILABLE}: no result"),
+    Column("reason", "", "why the status is not ok"),
+)
+RESULTS = (
+    Column("log_hours", "h", "for how long the log has messages of both speed and load"),
+    Column("simulated_hours", "h", "for how long the bearing was simulated: without gaps"),
+    Column("running_hours", "h", "for how long the shaft turned"),
+    Column("gap_hours", "h", "for how long the log is silent"),
+    Column("unknown_hours", "h", "for how long inputs are unknown, because their messages were refused"),
+    Column("revolutions", "", "turns of the shaft"),
+    Column("largest_speed", "rpm", "largest shaft speed"),
+    Column("largest_load", "N", "largest radial load"),
+    Column("slip_mean", "%", "cage slip while the shaft turns, mean over time"),
+    Column("slip_median", "%", "likewise, median"),
+    Column("slip_p95", "%", "likewise, 95th percentile"),
+    Column("slip_p99", "%", "likewise, 99th percentile"),
+    Column("slip_maximum", "%", "likewise, largest"),
+    Column("above_slip_warning", "%", "share of the running time with more slip than thresholds.slip_warning of the scene"),
+    Column("above_slip_error", "%", "share of the running time with more slip than thresholds.slip_error of the scene"),
+    Column("below_minimum_load", "%", "share of the running time below the makers' minimum load"),
+    Column("damage", "%", "life used: fraction of the rating life"),
+    Column("life", "h", "life if this log were repeated"),
+    Column("least_rating_life", "h", "shortest rating life at an instant"),
+    Column("inputs_refused", "", "messages refused"),
+    Column("failed_intervals", "", "intervals that could not be integrated"),
+    Column("samples", "", "operating points computed"),
+)
+NOTES = (
+    Column("life_and_damage", "", "as given; or at most, at least, since inputs were refused that were too large"),
+    Column("life_method", "", "life.method of the scene"),
+    Column("events", "", "number of events by kind"),
+    Column("warnings", "", "laws used outside of their ranges, each with its worst value"),
+)
+COLUMNS = (*NAMES, *TEXTS, *RESULTS, *NOTES)
+
+
+class Bearing(NamedTuple):
+    """One bearing of a fleet.
+
+    Attributes
+    ----------
+    name : serial number, or the name of its log.
+    log, reading : what it has been through, and how that is read.
+    scene : what it is; or why it is not known.
+    """
+
+    name: str
+    log: Log
+    reading: Reading
+    scene: Scene | SceneError
+
+
+def replay_fleet(
+    bearings: Sequence[Bearing],
+    longest_gap: float | None = None,
+    journal: Journal | None = None,
+    workers: int | None = None,
+    dask: str | None = None,
+    progress: Callable[[str, int, int], None] = lambda act, done, total: None,
+    prepare: Callable[[Scene, tuple[float, float]], object] | None = None,
+) -> Table:
+    """Replay the log of each bearing; return the table of them, in their order.
+
+    At level ``steady`` all bearings that are equal share one table of operating points, as wide as all of their logs need.
+
+    Parameters
+    ----------
+    bearings : to replay.
+    longest_gap : see `bearing_sim.inputs.profile.judge`.
+    journal : with finished results; new ones are added.
+    workers, dask : see `bearing_sim.sweep.tasks.run_tasks`; workers of a cluster open the logs under the same paths.
+    progress : called with what is under way (``reading``, ``replay``), the number of finished tasks and of all that are to be computed.
+    prepare : called with a scene and its oil temperatures [K] before its table is needed, where workers are of this machine.
+
+    Raises
+    ------
+    ClusterError
+        See `bearing_sim.sweep.tasks.run_tasks`.
+    """
+    journal = Journal() if journal is None else journal
+    rows: list[dict] = [_refused_row(bearing) for bearing in bearings]
+    checksums = _checksums(bearings, rows)
+    ready = [k for k, row in enumerate(rows) if not row]
+    scenes = {k: bearings[k].scene for k in ready}
+    temperatures: dict[int, tuple[float, float] | None] = dict.fromkeys(ready)
+
+    def run(act, tasks):
+        return run_tasks(tasks, journal, workers, dask, lambda done, total: progress(act, done, total))
+
+    steady = [k for k in ready if scenes[k].level == "steady"]
+    surveys = dict(zip(steady, run("reading", [_task("survey", survey, bearings[k], checksums[k]) for k in steady]) if steady else ()))
+    for k, found in surveys.items():
+        if "status" in found:
+            rows[k] = found
+    for group in _alike([k for k in steady if not rows[k]], scenes):
+        scene, ends = _spanning([scenes[k] for k in group], [surveys[k] for k in group])
+        for k in group:
+            scenes[k], temperatures[k] = with_fields(scenes[k], table=scene.table), ends
+        if prepare is not None and dask is None:
+            prepare(scene, ends)
+    ready = [k for k in ready if not rows[k]]
+    wanted = {k: bearings[k]._replace(scene=scenes[k]) for k in ready}
+    tasks = [_task(scenes[k].level, replay_bearing, wanted[k], checksums[k], longest_gap, temperatures[k]) for k in ready]
+    for k, found in zip(ready, run("replay", tasks)):
+        rows[k] = found
+    return Table(COLUMNS, [_complete(bearing, row) for bearing, row in zip(bearings, rows)], _about(bearings))
+
+
+def _refused_row(bearing: Bearing) -> dict:
+    if isinstance(bearing.scene, Scene):
+        return {}
+    return {"status": REFUSED, "reason": "; ".join(map(str, bearing.scene.errors))}
+
+
+def _checksums(bearings: Sequence[Bearing], rows: list[dict]) -> list[str]:
+    """Return the checksum of each log; enter into the rows which logs cannot be read."""
+    known: dict[Log, str] = {}
+    for bearing, row in zip(bearings, rows):
+        if row:
+            continue
+        try:
+            if bearing.log not in known:
+                known[bearing.log] = bearing.log.contents()
+        except (OSError, TableError) as error:
+            row |= {"status": UNAVAILABLE, "reason": str(error)}
+    return [known.get(bearing.log, "") for bearing in bearings]
+
+
+def _task(kind: str, function: Callable[..., dict], bearing: Bearing, checksum: str, *more) -> Task:
+    """Return a task whose key depends on the contents of a log, not on its path or on names."""
+    scene = with_fields(bearing.scene, name="", description="")
+    keyed = task(kind, function, program_hash(*_SOURCES), checksum, bearing.log.only, bearing.reading._replace(mapping_name=""), scene, *more)
+    return keyed._replace(arguments=(bearing, *more))
+
+
+def _alike(places: Sequence[int], scenes: dict[int, Scene]) -> list[list[int]]:
+    """Return groups of places whose scenes have the same tables of operating points, if these span the same."""
+    groups: dict[Path, list[int]] = {}
+    paths: dict[str, Path] = {}
+    for k in places:
+        text = repr(scenes[k])
+        if text not in paths:
+            span = Span(1.0, 1.0, 300.0, 310.0, span_of(scenes[k]).reverse, *span_of(scenes[k])[5:])
+            paths[text] = table_path(scenes[k], span)
+        groups.setdefault(paths[text], []).append(k)
+    return list(groups.values())
+
+
+def _spanning(scenes: Sequence[Scene], surveys: Sequence[dict]) -> tuple[Scene, tuple[float, float]]:
+    """Return a scene whose table spans all the speeds and loads that the scenes ask for, and the lowest and highest oil temperature [K]."""
+    spans, fastest = [span_of(scene) for scene in scenes], max(found["fastest"] for found in surveys)
+    speed = max(span.maximum_speed for span in spans)
+    if fastest > speed:
+        speed = float(f"{_HEADROOM * fastest:.2g}")
+        speed = speed if speed >= fastest else 1.1 * speed
+    low, high = min(found["coldest"] for found in surveys), max(found["warmest"] for found in surveys)
+    if low < high:
+        low, high = _ROUNDED * math.floor(low / _ROUNDED), _ROUNDED * math.ceil(high / _ROUNDED)
+    table = with_fields(scenes[0].table, maximum_speed=speed, maximum_load=max(span.maximum_load for span in spans))
+    return with_fields(scenes[0], table=table), (low, high)
+
+
+def survey(bearing: Bearing) -> dict:
+    """Return what a table of operating points has to span for a log, among the inputs that the scene accepts.
+
+    Returns
+    -------
+    ``fastest`` [rad/s], ``coldest`` and ``warmest`` [K]; or ``status`` and ``reason`` if the log cannot be read.
+    """
+    return _caught(_survey, bearing)
+
+
+def _survey(bearing: Bearing) -> dict:
+    series, limits, usual = read_log(bearing.log, bearing.reading).series, bearing.scene.accepted_inputs, bearing.scene.lubricant.temperature
+    speeds = np.abs(np.array(series["shaft_speed"].values, float)).ravel()
+    speeds = speeds[speeds <= limits.maximum_speed]
+    oil = np.array(series["oil_temperature"].values, float).ravel() if "oil_temperature" in series else np.full(1, usual)
+    oil = oil[(oil >= limits.minimum_temperature) & (oil <= limits.maximum_temperature)]
+    ends = (float(oil.min()), float(oil.max())) if len(oil) else (usual, usual)
+    return {"fastest": float(speeds.max(initial=0.0)), "coldest": ends[0], "warmest": ends[1]}
+
+
+def replay_bearing(bearing: Bearing, longest_gap: float | None, temperatures: tuple[float, float] | None) -> dict:
+    """Return the results of one bearing by the names of `TEXTS`, `RESULTS` and `NOTES`; those of a log that cannot be read have only the first.
+
+    Parameters
+    ----------
+    bearing : with its log.
+    longest_gap : see `replay_fleet`.
+    temperatures : lowest and highest oil temperature of the table of operating points [K]; None without a table.
+    """
+    return _caught(_replay_bearing, bearing, longest_gap, temperatures)
+
+
+def _caught(function: Callable[..., dict], *arguments) -> dict:
+    """Return what a function returns, or status and reason of what it raises: one log never ends the run of all."""
+    try:
+        return function(*arguments)
+    except (InputLogError, TableError, SceneError) as error:
+        return {"status": REFUSED, "reason": " ".join(str(error).split())}
+    except OSError as error:
+        return {"status": UNAVAILABLE, "reason": str(error)}
+    except Exception as error:  # an error of the program: it is tried again the next time
+        return {"status": UNAVAILABLE, "reason": f"{type(error).__name__}: {error}"}
+
+
+def _replay_bearing(bearing: Bearing, longest_gap: float | None, temperatures: tuple[float, float] | None) -> dict:
+    scene, log = bearing.scene, read_log(bearing.log, bearing.reading)
+    held = Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature)
+    profile = judge(log, scene.accepted_inputs, held, longest_gap, scene.heat.law)
+    model = Simulation if temperatures is None else partial(Simulation, table=_operating_points(scene, temperatures))
+    result = replay(scene, profile, model=model)
+    status, reason = (FAILED, result.given_up) if result.given_up else (OK, "")
+    if profile.unknown_seconds and not reason:
+        status, reason = UNKNOWN, profile.unknown_event.text
+    return (
+        {"status": status, "reason": reason}
+        | _results(scene, result)
+        | {
+            "unknown_hours": profile.unknown_seconds / 3600.0,
+            "inputs_refused": profile.refused.total(),
+            "life_and_damage": "at most, at least" if profile.verdict else "as given",
+            "life_method": scene.life.method,
+            "events": ", ".join(f"{count} x {kind}" for kind, count in sorted(result.events.items())),
+            "warnings": cell(result.warnings),
+        }
+    )
+
+
+def _results(scene: Scene, result: Replay) -> dict:
+    slip = result.slip_statistics()
+    below, turning = result.seconds_below(lambda speeds: minimum_load(scene, speeds)[0])
+
+    def share(seconds):
+        return 100.0 * seconds / turning if turning else math.nan
+
+    return {
+        "log_hours": result.log_seconds / 3600.0,
+        "simulated_hours": result.sim_seconds / 3600.0,
+        "running_hours": turning / 3600.0,
+        "gap_hours": result.gap_seconds / 3600.0,
+        "revolutions": result.revolutions,
+        "largest_speed": float(np.abs(result.speed).max(initial=0.0)) * 30.0 / math.pi,
+        "largest_load": float(max(result.load, default=0.0)),
+        **{f"slip_{name}": 100.0 * value for name, value in slip.items()},
+        "above_slip_warning": share(result.seconds_above(scene.thresholds.slip_warning)),
+        "above_slip_error": share(result.seconds_above(scene.thresholds.slip_error)),
+        "below_minimum_load": share(below),
+        "damage": 100.0 * result.damage,
+        "life": result.life_hours,
+        "least_rating_life": result.least_rating_life,
+        "failed_intervals": result.failed_ticks,
+        "samples": result.samples,
+    }
+
+
+_tables: dict[tuple[str, tuple[float, float]], OperatingPoints] = {}
+
+
+def _operating_points(scene: Scene, temperatures: tuple[float, float]) -> OperatingPoints:
+    """Return a scene's table of operating points: this worker's, the one on disk, or newly built by one worker of this machine."""
+    key = repr(scene), temperatures
+    if key not in _tables:
+        while len(_tables) >= _TABLES_KEPT:
+            del _tables[next(iter(_tables))]
+        with _alone(table_path(scene, span_of(scene, temperatures))):
+            _tables[key] = obtain_table(scene, temperatures)[0]
+    return _tables[key]
+
+
+@contextmanager
+def _alone(path: Path):
+    """Hold a lock on a path against other processes of this machine, where its folder can be written."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        descriptor = os.open(path.with_suffix(".lock"), os.O_CREAT | os.O_RDWR, 0o600)
+    except OSError:  # then each worker builds its own table
+        yield
+        return
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(descriptor)
+
+
+def _complete(bearing: Bearing, row: dict) -> dict:
+    """Return a row with all columns."""
+    scene, only = bearing.scene, "".join(f", {column} = {text}" for column, text in bearing.log.only)
+    known = isinstance(scene, Scene)
+    names = {"bearing": bearing.name, "log": f"{bearing.log.path}{only}", "scene": scene.name if known else scene.origin}
+    empty = {column.name: math.nan for column in RESULTS} | dict.fromkeys((column.name for column in NOTES), "")
+    return names | {"level": scene.level if known else ""} | empty | row
+
+
+def _about(bearings: Sequence[Bearing]) -> dict:
+    scenes = sorted({bearing.scene.name for bearing in bearings if isinstance(bearing.scene, Scene)})
+    return {"kind": "fleet", "scene": ", ".join(scenes) or "no scene", "version": package_version(), "commit": git_hash()}
