@@ -88,6 +88,8 @@ def replay(
     with as_usage_error(SceneError, InputLogError), as_file_error(), exit_on_sigterm():
         if out is not None and out.exists() and any(log.exists() and out.samefile(log) for log in logs):
             raise UsageError(f"{out} is the input log; choose another file")
+        for log in logs:
+            _require_one_log(log, scene_name)
         scene = load_scene(scene_name, overrides)
         suggest_level(scene)
         warn_of_scene(scene)
@@ -126,6 +128,19 @@ def replay(
         raise FailedRun(result.given_up)
     if course.unknown_seconds:
         raise UnknownInputs(course.unknown_event.text)
+
+
+def _require_one_log(log: Path, scene_name: str) -> None:
+    """Raise `UsageError` if a path is a table, or a folder of many logs; the message names the command for it."""
+    from bearing_sim.fleet.logs import NoLogs, find_logs, is_text
+
+    if log.is_file() and is_text(log):
+        raise UsageError(f"{log} is a table; convert it with: bearing-sim import-csv {log} MAPPING -o {log.with_suffix('.mcap')}")
+    if not log.is_dir() or (log / "metadata.yaml").is_file() or any(log.glob("*.mcap*")) or any(log.glob("*.db3")):
+        return
+    with suppress(NoLogs):
+        count = len(find_logs([log]))
+        raise UsageError(f"{log} is no bag but holds {count} logs; one bearing each: bearing-sim replay-fleet {log} --scene {scene_name}")
 
 
 def _choice(scene, course) -> dict:

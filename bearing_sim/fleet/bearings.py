@@ -114,7 +114,7 @@ def read_bearings(path: Path) -> list[dict[str, str]]:
     for name in names:
         if name not in _HEADINGS and not name.startswith(_OF_MAPPING) and name.partition(".")[0] not in blocks:
             expected = f"expected {', '.join(_HEADINGS)}, a field of the scene such as lubricant.temperature, or mapping.FIELD"
-            raise TableError(f"{path}: unknown column {name!r}{did_you_mean(name, known)}; {expected}")
+            raise TableError(f"{path}: unknown column {name!r}{did_you_mean(name.partition('.')[0], known)}; {expected}")
     empty = [number for number, row in enumerate(rows, 2) if not row["log"]]
     if empty:
         raise TableError(f"{path}, line {empty[0]}: no log")

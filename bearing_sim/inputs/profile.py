@@ -155,7 +155,10 @@ def is_gap(spacings: Sequence[int], limits: InputLimits, longest_gap: float | No
 def gaps_of(stamps: np.ndarray, limits: InputLimits, longest_gap: float | None = None) -> list[tuple[int, int]]:
     """Return the gaps (from, to) [ns] between a channel's stamps (see `is_gap`)."""
     spacings = np.diff(stamps)
-    long = np.flatnonzero(spacings > 1e9 * (limits.stale_after if longest_gap is None else longest_gap))
+    long = spacings > 1e9 * (limits.stale_after if longest_gap is None else longest_gap)
+    if longest_gap is None and len(spacings) > _FEW_SPACINGS:  # no median lies below the least of all: few are left to be compared with theirs
+        long[_FEW_SPACINGS:] &= spacings[_FEW_SPACINGS:] > _GAP_IN_SPACINGS * spacings.min()
+    long = np.flatnonzero(long)
     return [
         (int(stamps[k]), int(stamps[k + 1]))
         for k in long.tolist()

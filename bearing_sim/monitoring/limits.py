@@ -36,9 +36,8 @@ class _Range:
     def judge(self, now: float, value: float) -> list[Event]:
         """Take the value at an instant [s] and return the event if the warning begins or ends."""
         raised, before = [alarm.judge(now, value) for alarm in self._alarms], self.holding
-        beyond = worst(self.law, self.low, self.high, np.array([value]))
-        if beyond:
-            self.holding = beyond[0]
+        if value < self.low or value > self.high:
+            self.holding = Exceedance(self.law, value, self.low, self.high)
         elif not any(raised):
             self.holding = None
         if (before is None) == (self.holding is None):
