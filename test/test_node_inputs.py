@@ -86,7 +86,9 @@ def test_a_message_about_something_else_is_refused_and_told_word_for_word(node, 
     client.publishers[channel].publish(made)
     told = lambda: [s for s in client.statuses(report) if s[1] == f"bearing_node: {code}"]  # noqa: E731
     client.drive_until(told, f"{code} is reported", process)
-    assert told()[0][0] == 2 and re.sub(r" \(\d+ times\)$", "", told()[0][2]) == text
+    found = re.sub(r" \(\d+ times\)$", "", told()[0][2])
+    found = re.sub(r"(would be wrong): .*;", r"\1;", found)  # why there is no transform depends on what is installed
+    assert told()[0][0] == 2 and found == text
     assert {round(message.velocity[0], 3) for message in client.received["bearing_joints"][joint:]} == {round(GOOD.shaft_speed, 3)}
 
 

@@ -91,6 +91,16 @@ def header(stamp_ns: int, frame_id: str = "") -> dict:
     return {"stamp": stamp(stamp_ns), "frame_id": frame_id}
 
 
+def transforms(stamp_ns: int, poses: Iterable[tuple[str, str, Iterable[float], Iterable[float]]]) -> dict:
+    """Return tf2_msgs/TFMessage of (parent, child, position x, y, z [m], orientation quaternion x, y, z, w)."""
+
+    def stamped(parent: str, child: str, position: Iterable[float], orientation: Iterable[float]) -> dict:
+        pose = {"translation": dict(zip("xyz", position)), "rotation": dict(zip("xyzw", orientation))}
+        return {"header": header(stamp_ns, parent), "child_frame_id": child, "transform": pose}
+
+    return {"transforms": [stamped(*pose) for pose in poses]}
+
+
 def _joints(stamp_ns: int, names: list[str], position: Iterable[float] = (), velocity: Iterable[float] = ()) -> dict:
     """Return sensor_msgs/JointState; an array that has no meaning is empty, as that of the torques always is."""
     return {

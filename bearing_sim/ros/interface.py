@@ -481,7 +481,7 @@ class BearingInterface:
 
     def _subscribe(self, channel: str, ros_type: str) -> None:
         joint = self.settings.cage_joint if channel == topics.MEASURED else self.settings.joint
-        receive = partial(self._receive, channel, InputReader(channel, ros_type, joint, self.settings.frame_id))
+        receive = partial(self._receive, channel, InputReader(channel, ros_type, joint, self.settings.frame_id, self._node.transforms))
         kind, name = message_class(ros_type), self._topic_name(channel)
         if follows_clock(self._node):
             replace = partial(self._subscriptions.__setitem__, channel)

@@ -18,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from rclpy.serialization import deserialize_message
 
+from bearing_sim.inputs.static_transforms import StaticTransforms
 from bearing_sim.messages import topics
 from bearing_sim.messages.cdr import STAMP_FIELDS, CdrLayout
 
@@ -87,11 +88,13 @@ class InputReader:
     ----------
     channel, ros_type : see `bearing_sim.messages.topics.input_values`.
     joint : name of the joint in a JointState.
-    frame_id : the frame in which a load must be given; empty: any frame.
+    frame_id : the bearing's frame, in which the model wants a load; empty: a load in any frame is accepted as it is.
+    transforms : turn loads that are given in another frame.
     """
 
-    def __init__(self, channel: str, ros_type: str, joint: str, frame_id: str):
+    def __init__(self, channel: str, ros_type: str, joint: str, frame_id: str, transforms: StaticTransforms | None = None):
         self._channel, self._ros_type, self._joint, self._frame_id = channel, ros_type, joint, frame_id
+        self._transforms = StaticTransforms() if transforms is None else transforms
         self._class = message_class(ros_type)
         self._layouts: dict[int, _Layout] = {}  # by the length of the message
         self._learned = 0
@@ -102,7 +105,7 @@ class InputReader:
         Raises
         ------
         Refused
-            The message is not of the type, lacks the joint's velocity, or names another frame.
+            The message is not of the type, lacks the joint's velocity, or names another frame from which no transform is known.
         """
         layout = self._layouts.get(len(cdr))
         if layout is not None:
@@ -110,7 +113,8 @@ class InputReader:
             if layout.constants(pieces) == layout.expected:
                 stamp = layout.stamp
                 stamp_ns = None if stamp is None else pieces[stamp] * 1_000_000_000 + pieces[stamp + 1] or None
-                return layout.values(pieces), stamp_ns, layout.frame_id
+                values = layout.values(pieces)
+                return (self._turned(values, layout.frame_id), stamp_ns, self._frame_id) if layout.is_turned else (values, stamp_ns, layout.frame_id)
         try:
             message = deserialize_message(cdr, self._class)
         except Exception as error:  # its type depends on the middleware
@@ -123,30 +127,48 @@ class InputReader:
 
     def _read_object(self, message) -> Contents:
         frame_id = topics.frame_of(message)
-        if self._channel == "radial_load" and self._frame_id and frame_id not in ("", self._frame_id):  # other inputs have no direction
-            reason = f"frame {frame_id!r}, expected {self._frame_id!r} (parameter frame_id); the direction of the force would be wrong"
-            raise Refused("input.frame", reason)
+        if self._must_be_turned(frame_id):
+            force = message.wrench.force
+            return self._turned((force.x, force.y, force.z), frame_id), topics.header_stamp_ns(message), self._frame_id
         try:
             values = topics.input_values(self._channel, self._ros_type, message, self._joint)
         except ValueError as error:
             raise Refused("input.malformed", str(error)) from error
         return values, topics.header_stamp_ns(message), frame_id
 
+    def _must_be_turned(self, frame_id: str) -> bool:
+        """Whether a message is a load in another frame than the bearing's; other inputs have no direction."""
+        return self._channel == "radial_load" and bool(self._frame_id) and frame_id not in ("", self._frame_id)
+
+    def _turned(self, force: tuple[float, ...], frame_id: str) -> tuple[float, float]:
+        """Return the components y and z [N] in the bearing's frame of a force (x, y, z) in another one."""
+        try:
+            rotation = self._transforms.rotation(frame_id, self._frame_id)
+        except LookupError as error:
+            reason = (
+                f"frame {frame_id!r}, expected {self._frame_id!r} (parameter frame_id); the direction of the force would be wrong: {error.args[0]}"
+            )
+            raise Refused("input.frame", reason) from error
+        _, y, z = rotation @ force
+        return float(y), float(z)
+
     def _learn(self, cdr: bytes, message, contents: Contents) -> None:
         """Learn the positions of stamp and numbers in such messages, if the numbers there are those of the object."""
         if cdr[: len(_CDR_LE)] != _CDR_LE:
             return
-        fields = CdrLayout(self._ros_type, cdr)
+        fields, frame_id = CdrLayout(self._ros_type, cdr), topics.frame_of(message)
+        is_turned = self._must_be_turned(frame_id)
         if self._ros_type.endswith("JointState"):
             numbers = (fields.by_path["velocity"].begin + _WORD * list(message.name).index(self._joint),)
         elif self._ros_type.endswith("WrenchStamped"):
-            numbers = (fields.by_path["wrench.force.y"].begin, fields.by_path["wrench.force.z"].begin)
+            numbers = tuple(fields.by_path[f"wrench.force.{axis}"].begin for axis in ("xyz" if is_turned else "yz"))
         elif "data" in fields.by_path:
             numbers = (fields.by_path["data"].begin,)
         else:  # a temperature is sent in degC and must be converted
             return
-        layout = _layout(cdr, fields, numbers, contents[2])
-        if layout.values(layout.split.unpack(cdr)) == contents[0]:
+        layout = _layout(cdr, fields, numbers, frame_id, is_turned)
+        values = layout.values(layout.split.unpack(cdr))
+        if (self._turned(values, frame_id) if is_turned else values) == contents[0]:
             self._layouts[len(cdr)] = layout
 
 
@@ -159,6 +181,8 @@ class _Layout(NamedTuple):
     constants, values : select the constant parts, and the numbers, from these pieces.
     expected : the constant parts.
     stamp : index of the seconds among the pieces; None if there is no stamp.
+    frame_id : that the message names.
+    is_turned : whether the numbers are a force in another frame than the bearing's.
     """
 
     split: struct.Struct
@@ -167,9 +191,10 @@ class _Layout(NamedTuple):
     expected: object
     stamp: int | None
     frame_id: str
+    is_turned: bool
 
 
-def _layout(cdr: bytes, fields: CdrLayout, numbers: tuple[int, ...], frame_id: str) -> _Layout:
+def _layout(cdr: bytes, fields: CdrLayout, numbers: tuple[int, ...], frame_id: str, is_turned: bool) -> _Layout:
     """Return the layout of messages like this one, with the numbers that begin at the given bytes."""
     pieces = [(0, len(_CDR_LE), "constant")] + [(begin, begin + _WORD, "value") for begin in numbers]
     pieces += [
@@ -188,4 +213,4 @@ def _layout(cdr: bytes, fields: CdrLayout, numbers: tuple[int, ...], frame_id: s
     take_values = itemgetter(*values) if len(values) > 1 else itemgetter(slice(values[0], values[0] + 1))
     take_constants = itemgetter(*constants)
     stamp = kinds.index("seconds") if "seconds" in kinds else None
-    return _Layout(split, take_constants, take_values, take_constants(split.unpack(cdr)), stamp, frame_id)
+    return _Layout(split, take_constants, take_values, take_constants(split.unpack(cdr)), stamp, frame_id, is_turned)

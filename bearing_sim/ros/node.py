@@ -26,6 +26,7 @@ from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.lifecycle import LifecycleNode, TransitionCallbackReturn
 from rclpy.task import Future
 
+from bearing_sim.inputs.static_transforms import StaticTransforms
 from bearing_sim.messages import diagnostics, topics
 from bearing_sim.messages.cdr import message_type
 from bearing_sim.messages.events import Event, Level
@@ -35,6 +36,7 @@ from bearing_sim.ros.interface import STATE_QOS, BearingInterface
 from bearing_sim.ros.messages import message_class
 from bearing_sim.ros.parameters import NodeSettings, ParameterServer, SettingsError, follows_clock
 from bearing_sim.ros.process import CannotRun, run_node
+from bearing_sim.ros.transforms import TransformInterface
 from bearing_sim.ros.warm_up import WarmUp
 from bearing_sim.runtime.solver_threads import SolverThreads
 from bearing_sim.scene.loader import SceneError
@@ -109,6 +111,7 @@ class BearingNode(LifecycleNode):
         self.solver_threads = SolverThreads()
         self.parameters = ParameterServer(self)
         self._shared: NodeSettings | None = None
+        self._frames: TransformInterface | None = None
         name, ros_type = topics.DIAGNOSTICS
         quiet = PublisherEventCallbacks(use_default_callbacks=False)
         self._diagnostics = self.create_publisher(message_class(ros_type), f"/{name}", STATE_QOS, event_callbacks=quiet)
@@ -145,6 +148,7 @@ class BearingNode(LifecycleNode):
         """Check parameters, load scenes, create topics and services, and start compiling."""
         self._shared, bearings = self.parameters.settings()
         try:
+            self._frames = TransformInterface(self, bearings)
             for settings in bearings:
                 self.bearings.append(BearingInterface(self, settings, self._shared))
                 self.parameters.show_scene(settings.name, self.bearings[-1].scene)
@@ -236,6 +240,11 @@ class BearingNode(LifecycleNode):
         node = self.get_fully_qualified_name().lstrip("/")
         return f"{node}/{bearing}" if bearing else node
 
+    @property
+    def transforms(self) -> StaticTransforms:
+        """The static transforms that the node knows while it is configured."""
+        return self._frames.transforms
+
     def review_if_late(self) -> None:
         """Review now if the timer has stalled: an rclpy built against an old glibc waits on the system clock, which may be set back."""
         if time.monotonic() - self._reviewed > _LATE * self.review_period:
@@ -263,6 +272,9 @@ class BearingNode(LifecycleNode):
             bearing.destroy()
         self.bearings = []
         self._to_review.clear()
+        frames, self._frames = self._frames, None
+        if frames is not None:
+            frames.destroy()
 
     def _watch_clock(self) -> JumpHandle:
         """Pass every reading of /clock to the bearings, as long as the returned handle is kept."""

@@ -17,6 +17,7 @@ from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescri
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
+from bearing_sim.inputs.static_transforms import Transform, quaternion
 from bearing_sim.messages.topics import FRAME
 from bearing_sim.scene.loader import did_you_mean
 from bearing_sim.scene.lubricant import Lubricant
@@ -85,6 +86,19 @@ DECLARATIONS = (
         per_bearing=True,
     ),
     Declaration(
+        "parent_frame",
+        "",
+        "frame of which the bearing's frame is a child: their transform is published on /tf_static (needs tf2_msgs); empty: none",
+        per_bearing=True,
+    ),
+    Declaration("frame_position", [0.0, 0.0, 0.0], "origin of the bearing's frame in its parent_frame, x, y, z [m]", per_bearing=True),
+    Declaration(
+        "frame_orientation",
+        [0.0, 0.0, 0.0],
+        "orientation of the bearing's frame in its parent_frame: roll, pitch, yaw [rad], or a quaternion x, y, z, w",
+        per_bearing=True,
+    ),
+    Declaration(
         "input_type", "stamped", "stamped: JointState and WrenchStamped; scalar: Float64 [rad/s] and [N] along +y", choices=("stamped", "scalar")
     ),
     Declaration("publish_rate", 50.0, "rate of the output topics [Hz]", 0.1, 200.0, running=True),
@@ -127,6 +141,9 @@ class BearingSettings:
     joint: str
     cage_joint: str
     frame_id: str
+    parent_frame: str
+    frame_position: tuple[float, ...]
+    frame_orientation: tuple[float, ...]
     record: str
     rrd: str
     rerun_port: int
@@ -136,6 +153,11 @@ class BearingSettings:
     def frame(self) -> str:
         """The bearing's frame, in the headers of its outputs."""
         return self.frame_id or FRAME
+
+    @property
+    def transform(self) -> Transform | None:
+        """The transform from the bearing's frame to its parent frame; None where it has none."""
+        return Transform(self.parent_frame, self.frame, self.frame_position, quaternion(self.frame_orientation)) if self.parent_frame else None
 
     @property
     def scene_overrides(self) -> list[str]:
@@ -206,6 +228,8 @@ def checked(declaration: Declaration, name: str, value: object) -> object:
     kind = type(declaration.default)
     if kind is float and isinstance(value, int) and not isinstance(value, bool):
         value = float(value)  # `-p publish_rate:=50` is meant as a float
+    if kind is list and declaration.default != [""]:
+        return _pose_numbers(declaration, name, value)
     if kind is list:
         if isinstance(value, str) or not all(isinstance(item, str) for item in value or []):
             raise ValueError(f"{name} = {value!r}: expected a list of strings, such as ['level=slip']")
@@ -218,6 +242,21 @@ def checked(declaration: Declaration, name: str, value: object) -> object:
     if kind is not str and not declaration.low <= value <= declaration.high:
         raise ValueError(f"{name} = {value:g}: outside {declaration.low:g} to {declaration.high:g}; {declaration.meaning}")
     return value
+
+
+def _pose_numbers(declaration: Declaration, name: str, value: object) -> list[float]:
+    """Return the numbers of a position or an orientation; raises as `checked`."""
+    try:
+        numbers = [float(number) for number in value]
+        if declaration.name == "frame_orientation":
+            quaternion(numbers)
+        elif len(numbers) != len(declaration.default) or not all(map(math.isfinite, numbers)):
+            raise ValueError(f"{numbers}: expected {len(declaration.default)} finite numbers")
+    except TypeError:
+        raise ValueError(f"{name} = {value!r}: expected numbers, such as {declaration.default}; {declaration.meaning}") from None
+    except ValueError as error:
+        raise ValueError(f"{name} = {error}; {declaration.meaning}") from None
+    return numbers
 
 
 _KINDS = {float: "a number", int: "an integer", str: "a string", bool: "true or false"}
@@ -329,7 +368,8 @@ class ParameterServer:
         if name and values["rerun_port"] and f"{name}.rerun_port" not in self._chosen:
             values["rerun_port"] += position
         chosen = [row.name for row in SCENE_DECLARATIONS if {row.name, f"{name}.{row.name}"} & self._chosen]
-        values["overrides"] = tuple(values["overrides"])
+        for key in ("overrides", "frame_position", "frame_orientation"):
+            values[key] = tuple(values[key])
         return BearingSettings(name=name, conditions={key: self.value(key, name) for key in chosen}, **values)
 
     def _declare_bearing(self, name: str, given: dict) -> None:
@@ -357,13 +397,17 @@ class ParameterServer:
         self._is_own_change = False
 
     def _converted(self, parameters: list[Parameter]) -> list[Parameter]:
-        """Convert integers to floats where a float is expected: ``ros2 param set ... publish_rate 20``."""
-        return [
-            Parameter(parameter.name, value=float(parameter.value))
-            if parameter.type_ is Parameter.Type.INTEGER and isinstance(getattr(self._known.get(parameter.name), "default", None), float)
-            else parameter
-            for parameter in parameters
-        ]
+        """Convert integers to floats where floats are expected: ``ros2 param set ... publish_rate 20``, ``... frame_position "[0, 0, 1]"``."""
+
+        def converted(parameter: Parameter) -> Parameter:
+            default = getattr(self._known.get(parameter.name), "default", None)
+            if parameter.type_ is Parameter.Type.INTEGER and isinstance(default, float):
+                return Parameter(parameter.name, value=float(parameter.value))
+            if parameter.type_ is Parameter.Type.INTEGER_ARRAY and isinstance(default, list) and isinstance(default[0], float):
+                return Parameter(parameter.name, value=[float(number) for number in parameter.value])
+            return parameter
+
+        return [converted(parameter) for parameter in parameters]
 
     def _validate(self, parameters: list[Parameter]) -> SetParametersResult:
         if self._is_own_change:
