@@ -69,7 +69,8 @@ def wrench(frame, **force):
 def test_a_bearing_in_a_machine_publishes_where_it_is_and_takes_loads_from_other_frames(stand_in, tmp_path):
     """The bearing is rolled by a quarter in its gearbox, so that a load down the gearbox's z is one along its own -y."""
     domain, path = fresh_domain(), tmp_path / "run.mcap"
-    words = ["governor:=false", "frame_id:=rear", "parent_frame:=gearbox", "frame_position:=[0.5, 0.0, 0.0]", f"frame_orientation:=[{np.pi / 2}, 0.0, 0.0]"]
+    pose = ["frame_position:=[0.5, 0.0, 0.0]", f"frame_orientation:=[{np.pi / 2}, 0.0, 0.0]"]
+    words = ["governor:=false", "frame_id:=rear", "parent_frame:=gearbox", *pose]
     pairs = [word for parameter in (*words, f"record:={path}") for word in ("-p", parameter)]
     paths = os.pathsep.join(filter(None, (str(stand_in), os.environ.get("PYTHONPATH"))))
     process = NodeProcess(tmp_path, domain, "--ros-args", *pairs, limit=230, PYTHONPATH=paths)
