@@ -44,7 +44,7 @@ ROOMS = {
     "cli": ("click numpy pydantic_core rich", "scene numerics model levels simulation messages recording inputs runtime view sweep fleet studies"),
     "ros": (
         "click launch launch_ros numpy rcl_interfaces rclpy rich rosgraph_msgs std_srvs",
-        "scene simulation messages recording stored_state inputs monitoring runtime view",
+        "scene numerics simulation messages recording stored_state inputs monitoring runtime view",
     ),
 }
 MOST_FLOORS = 10  # including launch_scripts, which import ros

@@ -16,7 +16,7 @@ import dataclasses
 import sys
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import wraps
 
 from rclpy.clock import Clock, ClockType, JumpHandle, JumpThreshold
@@ -24,6 +24,7 @@ from rclpy.duration import Duration
 from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.lifecycle import LifecycleNode, TransitionCallbackReturn
+from rclpy.parameter import Parameter
 from rclpy.task import Future
 
 from bearing_sim.inputs.static_transforms import StaticTransforms
@@ -31,21 +32,26 @@ from bearing_sim.messages import diagnostics, topics
 from bearing_sim.messages.cdr import message_type
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.monitoring.health import Condition, not_running
+from bearing_sim.numerics.cores import cores
 from bearing_sim.recording.recorder import Recorder
 from bearing_sim.ros.interface import STATE_QOS, BearingInterface
 from bearing_sim.ros.messages import message_class
-from bearing_sim.ros.parameters import NodeSettings, ParameterServer, SettingsError, follows_clock
+from bearing_sim.ros.parameters import BearingSettings, NodeSettings, ParameterServer, SettingsError, follows_clock, scene_values_in
 from bearing_sim.ros.process import CannotRun, run_node
 from bearing_sim.ros.transforms import TransformInterface
 from bearing_sim.ros.warm_up import WarmUp
+from bearing_sim.ros.workers import NodeLink, Order, Worker, Workers, passed_arguments, process_count, shares, worker_connection
 from bearing_sim.runtime.solver_threads import SolverThreads
-from bearing_sim.scene.loader import SceneError
+from bearing_sim.scene.loader import SceneError, load_scene
+from bearing_sim.scene.scene import Scene
+from bearing_sim.scene.uncertainty import with_values
 
 SUCCESS, FAILURE, ERROR = TransitionCallbackReturn.SUCCESS, TransitionCallbackReturn.FAILURE, TransitionCallbackReturn.ERROR
 _REVIEW_PERIOD = {False: 0.2, True: 0.05}  # [s] delay until a change of health, and with sim time an output, is published
 _REVIEWED_AT_ONCE = 10  # bearings; a node with more of them reviews each less often, because a review takes a millisecond
 _LONGEST_REVIEW = 3  # times as long as with few bearings
 _LATE = 5  # review periods without a review
+_NODE = {"node_name": "bearing_node"}
 _WARMING = "warming up: compiling the model; messages received now are not used"
 
 
@@ -87,24 +93,40 @@ def _refuse_impossible_transitions(node: LifecycleNode) -> None:
     service.callback = answered
 
 
+def _worker_options(order: Order) -> dict[str, object]:
+    """Return the options of the ROS node of a worker process, which has no services of its own."""
+    return {
+        "node_name": order.name,
+        "namespace": order.namespace,
+        "parameter_overrides": [Parameter(name, value=value) for name, value in order.parameters.items()],
+        "start_parameter_services": False,
+        "enable_communication_interface": False,
+    }
+
+
 class BearingNode(LifecycleNode):
     """The lifecycle and the parameters of a node that hosts one or more bearings.
 
     Parameters
     ----------
     ended : receives a `CannotRun` when the node ends itself.
+    order : of a worker process (see `bearing_sim.ros.workers`); None for the node itself.
+    arguments : the command line, for worker processes.
 
     Attributes
     ----------
     review_period : time from one review of a bearing to the next [s].
     """
 
-    def __init__(self, ended: Future):
-        super().__init__("bearing_node", automatically_declare_parameters_from_overrides=True)
-        self._ended = ended
+    def __init__(self, ended: Future, order: Order | None = None, arguments: Sequence[str] = ()):
+        super().__init__(**_NODE if order is None else _worker_options(order), automatically_declare_parameters_from_overrides=True)
+        self._ended, self._order, self._arguments = ended, order, arguments
+        self._component = self.get_fully_qualified_name().lstrip("/") if order is None else order.component
         self.error = ""  # why the last transition failed
         self.bearings: list[BearingInterface] = []
         self._to_review: deque[BearingInterface] = deque()
+        self.workers = Workers()
+        self._scenes: dict[str, Scene] = {}  # of the bearings of workers
         self._state, self._next_report_ns, self._reviewed = "unconfigured", 0, time.monotonic()
         self._warm_up = WarmUp()
         self.recorder = Recorder()  # one process for the recordings of all bearings
@@ -120,7 +142,8 @@ class BearingNode(LifecycleNode):
         _create_steady_timer(self, self.review_period, self._review)
         self._clock_watch = self._watch_clock()
         self.manages_itself = bool(self.parameters.value("autostart"))
-        _refuse_impossible_transitions(self)
+        if order is None:
+            _refuse_impossible_transitions(self)
 
     def start(self) -> None:
         """Configure and activate, as requested by ``autostart``.
@@ -137,6 +160,7 @@ class BearingNode(LifecycleNode):
     def close(self) -> bool:
         """Stop the models and complete recordings.  Returns whether all threads ended."""
         self._warm_up.cancel()
+        self.workers.end()
         stopped = [bearing.destroy() for bearing in self.bearings]
         self.bearings = []
         self._to_review.clear()
@@ -147,6 +171,10 @@ class BearingNode(LifecycleNode):
     def on_configure(self, state) -> TransitionCallbackReturn:
         """Check parameters, load scenes, create topics and services, and start compiling."""
         self._shared, bearings = self.parameters.settings()
+        processes = process_count(int(self.parameters.value("processes")), len(bearings), cores())
+        if processes > 1:
+            self._start_workers(bearings, processes)
+            bearings = []
         try:
             self._frames = TransformInterface(self, bearings)
             for settings in bearings:
@@ -165,6 +193,7 @@ class BearingNode(LifecycleNode):
         """Start the bearings that have warmed up; the others follow as soon as they have."""
         if errors := [bearing.error for bearing in self.bearings if bearing.error]:
             raise CannotRun(f"{errors[0]}; clean up and configure again")
+        self.workers.activate(True)
         try:
             self._open_warm_bearings()
         except Exception:
@@ -207,7 +236,8 @@ class BearingNode(LifecycleNode):
 
     def reason_to_refuse(self, changes: dict[str, object]) -> str:
         """Return why parameter changes are refused; empty if they can be applied."""
-        reasons = (bearing.reason_to_refuse(self.parameters.changes_of(bearing.settings.name, changes)) for bearing in self.bearings)
+        reasons = [bearing.reason_to_refuse(self.parameters.changes_of(bearing.settings.name, changes)) for bearing in self.bearings]
+        reasons += [worker.reason_to_refuse(self.parameters.of_share(changes, worker.bearings)) for worker in self.workers]
         return next(filter(None, reasons), "")
 
     def apply(self, changes: dict[str, object]) -> None:
@@ -215,6 +245,11 @@ class BearingNode(LifecycleNode):
         for bearing in self.bearings:
             bearing.apply(self.parameters.changes_of(bearing.settings.name, changes))
             self.parameters.show_scene(bearing.settings.name, bearing.scene)
+        for worker in self.workers:
+            worker.adjust(self.parameters.of_share(changes, worker.bearings))
+        for name, scene in self._scenes.items():
+            self._scenes[name] = with_values(scene, scene_values_in(self.parameters.changes_of(name, changes)))
+            self.parameters.show_scene(name, self._scenes[name])
         if "publish_rate" in changes and self._shared is not None:
             self._shared = dataclasses.replace(self._shared, publish_rate=changes["publish_rate"])
             for bearing in self.bearings:
@@ -228,17 +263,20 @@ class BearingNode(LifecycleNode):
         self._next_report_ns = 0
         for bearing in self.bearings:
             bearing.report_soon()
+        for worker in self.workers:
+            worker.show_error(self.error)
 
     def publish_diagnostics(self, now_ns: int, condition: Condition, component: str, hardware_id: str) -> None:
         """Publish a condition on /diagnostics, with the state of the node."""
         values = {"state": self._state, **condition.values}
+        if self._order is not None and self._order.restarts:
+            values["state: restarts of the process"] = self._order.restarts
         fields = diagnostics.report(now_ns, condition.events, values, component, hardware_id, condition.remarks, condition.otherwise)
         self._diagnostics.publish(message_type(topics.DIAGNOSTICS[1]).serialize(fields))
 
     def component_of(self, bearing: str) -> str:
         """Return the first half of the names of a bearing's statuses: the node's name, and the bearing's if it has one."""
-        node = self.get_fully_qualified_name().lstrip("/")
-        return f"{node}/{bearing}" if bearing else node
+        return f"{self._component}/{bearing}" if bearing else self._component
 
     @property
     def transforms(self) -> StaticTransforms:
@@ -261,6 +299,7 @@ class BearingNode(LifecycleNode):
                 bearing.open()
 
     def _close(self) -> None:
+        self.workers.activate(False)
         for bearing in self.bearings:
             if not bearing.close():
                 self._warm_up.request(bearing.warm_up)  # its model is still in use by the thread that did not end
@@ -268,6 +307,8 @@ class BearingNode(LifecycleNode):
     def _release(self) -> None:
         self._close()
         self._warm_up.cancel()
+        self.workers.end()
+        self._scenes.clear()
         for bearing in self.bearings:
             bearing.destroy()
         self.bearings = []
@@ -299,12 +340,62 @@ class BearingNode(LifecycleNode):
         if self._ticks == 0 and not self._to_review:
             self._to_review.extend(self.bearings)
             self._review_next()
+        if self.workers:
+            self._review_workers()
         steady_ns = time.monotonic_ns()  # /clock may stand still
         if not self.bearings and steady_ns >= self._next_report_ns:
             self._next_report_ns = steady_ns + 1_000_000_000
-            for name in dict.fromkeys(self.parameters.bearings() or [""]):
-                serial = str(self.parameters.value("serial", name))
-                self.publish_diagnostics(now_ns, not_running(self._state_event(None)), self.component_of(name), serial)
+            self._report_alone(now_ns)
+
+    def _report_alone(self, now_ns: int) -> None:
+        """Report the state of bearings for which nobody else does: of an unconfigured node, or of workers that are not there yet."""
+        events = {name: self._state_event(None) for name in dict.fromkeys(self.parameters.bearings() or [""]) if not self.workers}
+        for worker in self.workers:
+            if not worker.is_configured:
+                warming = Event(0.0, Level.OK, "run.warming_up", "", _WARMING)
+                event = Event(0.0, Level.ERROR, "run.failed", "", worker.loss) if worker.loss else warming
+                events |= dict.fromkeys(worker.bearings, event)
+        for name, event in events.items():
+            serial = str(self.parameters.value("serial", name))
+            self.publish_diagnostics(now_ns, not_running(event), self.component_of(name), serial)
+
+    def _start_workers(self, bearings: Sequence[BearingSettings], processes: int) -> None:
+        """Start worker processes for bearings whose scenes can be used."""
+        self._scenes = {settings.name: load_scene(settings.scene, settings.scene_overrides) for settings in bearings}
+        for name, scene in self._scenes.items():
+            self.parameters.show_scene(name, scene)
+        node, workers = self.get_name(), []
+        for number, share in enumerate(shares(list(self._scenes), processes), 1):
+            own = self.parameters.for_worker([settings for settings in bearings if settings.name in share])
+            order = Order(f"_{node}_{number}", self.get_namespace(), self._component, passed_arguments(self._arguments, node), own, 0)
+            workers.append(Worker(share, order))
+            self.get_logger().info(f"process {workers[-1].pid} for {workers[-1].named}")
+        self.workers = Workers(workers)
+
+    def _review_workers(self) -> None:
+        """Take what worker processes say, and start those again that have ended."""
+        for worker in self.workers:
+            loss = worker.loss
+            failure = worker.review()
+            if worker.loss and worker.loss != loss:
+                self.get_logger().error(worker.loss)
+                self._next_report_ns = 0
+            if failure is not None:
+                self._take_failure(CannotRun(failure.text, failure.exit_code))
+                return
+        if self.manages_itself and all(worker.errors for worker in self.workers):
+            self._end(CannotRun("\n".join(error for worker in self.workers for error in worker.errors), exit_code=1))
+
+    def _take_failure(self, failure: CannotRun) -> None:
+        """End a node that manages itself; deactivate one that somebody else manages."""
+        if self.manages_itself:
+            self._end(failure)
+            return
+        self.get_logger().error(str(failure))
+        if self._state == "active":
+            self.trigger_deactivate()
+            self.error = f"activate failed: {failure}"
+            self.report_soon()
 
     def _review_next(self) -> None:
         """Review one bearing, and leave the next one to a task, so that messages that have come in the meantime are taken in between."""
@@ -320,14 +411,9 @@ class BearingNode(LifecycleNode):
         try:
             self._open_warm_bearings()
         except OSError as error:
-            if self.manages_itself:
-                self._end(CannotRun(str(error)))
-                return
-            self.get_logger().error(str(error))
-            self.trigger_deactivate()
-            self.error = f"activate failed: {error}"
+            self._take_failure(CannotRun(str(error)))
             return
-        if self.manages_itself and all(bearing.error for bearing in self.bearings):
+        if self.bearings and self.manages_itself and all(bearing.error for bearing in self.bearings):
             self._end(CannotRun("\n".join(bearing.error for bearing in self.bearings), exit_code=1))
 
     def _end(self, error: CannotRun) -> None:
@@ -352,8 +438,68 @@ def _create_steady_timer(node: LifecycleNode, period: float, callback: Callable[
     return node.create_timer(period, callback, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
 
-def _make_node(ended: Future) -> BearingNode:
-    node = BearingNode(ended)
+class WorkerNode(BearingNode):
+    """A node in a worker process (see `bearing_sim.ros.workers`), which does what the node asks for.
+
+    Parameters
+    ----------
+    ended : see `BearingNode`; completed when the node ends.
+    link : to the node.
+    """
+
+    def __init__(self, ended: Future, link: NodeLink):
+        self._link, self._is_listening = link, False
+        super().__init__(ended, link.order)
+        self.manages_itself = True  # what makes it impossible to run is passed to the node
+
+    def start(self) -> None:
+        """Configure; the node says when to activate."""
+        if self.trigger_configure() != SUCCESS:
+            self._fail()
+            raise CannotRun(self.error)
+        self._link.send("configured")
+
+    def _review(self) -> None:
+        if not self._is_listening:  # there is an executor now
+            self._is_listening = True
+            self._link.listen(lambda message: self.executor.create_task(self._obey, *message), self._end_soon)
+        super()._review()
+
+    def _obey(self, kind: str, *rest) -> None:
+        if kind == "activate" and not self.is_running and self.trigger_activate() != SUCCESS:
+            self._fail()
+        elif kind == "deactivate" and self.is_running:
+            self.trigger_deactivate()
+        elif kind == "set":
+            self.set_parameters([Parameter(name, value=value) for name, value in rest[0].items()])
+        elif kind == "check":
+            self._link.send("answer", rest[0], self.reason_to_refuse(rest[1]))
+        elif kind == "error":
+            self.error = rest[0]
+            super().report_soon()
+        elif kind == "end":
+            self._end_now()
+
+    def _fail(self) -> None:
+        self._link.send("failed", self.error.partition("failed: ")[2] or self.error, 2)
+
+    def _end(self, error: CannotRun) -> None:
+        """Tell the node; models that cannot be computed are no reason to end, because other workers may have others."""
+        if error.exit_code == 1:
+            self._link.send("errors", str(error).splitlines())
+            return
+        self._link.send("failed", str(error), error.exit_code)
+        super()._end(error)
+
+    def _end_soon(self) -> None:
+        self.executor.create_task(self._end_now)
+
+    def _end_now(self) -> None:
+        if not self._ended.done():
+            self._ended.set_result(None)
+
+
+def _started(node: BearingNode) -> BearingNode:
     try:
         if node.manages_itself:
             node.start()
@@ -371,7 +517,11 @@ def main(args: list[str] | None = None) -> int:
     -------
     0 after a signal.  A node that manages itself: 2 if parameters, scene or recording paths cannot be used, 1 if the scene cannot be computed.
     """
-    return run_node("bearing_node", _make_node, args)
+    arguments = sys.argv[1:] if args is None else args
+    if (connection := worker_connection(arguments)) is not None:
+        link = NodeLink(connection)
+        return run_node("bearing_node", lambda ended: _started(WorkerNode(ended, link)), ["--ros-args", *link.order.arguments])
+    return run_node("bearing_node", lambda ended: _started(BearingNode(ended, arguments=arguments)), args)
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ import dataclasses
 import json
 import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
@@ -55,6 +55,13 @@ class Declaration(NamedTuple):
 DECLARATIONS = (
     Declaration("autostart", True, "true: the node configures and activates itself; false: it waits for lifecycle requests"),
     Declaration("bearings", [""], "names of several bearings, each with NAME.scene and its topics below NAME/; empty for one bearing without a name"),
+    Declaration(
+        "processes",
+        0,
+        "processes that share the bearings; 0: one for every ten bearings, at most one per core",
+        0,
+        256,
+    ),
     Declaration("scene", "deng2017_table1", "name of a bundled scene, or path of a scene file", per_bearing=True),
     Declaration(
         "overrides",
@@ -354,6 +361,19 @@ class ParameterServer:
         own = f"{bearing}." if bearing else ""
         shared = {name: value for name, value in changes.items() if name in _TABLE and (not bearing or f"{own}{name}" not in self._chosen)}
         return shared | {name.removeprefix(own): value for name, value in changes.items() if bearing and name.startswith(own)}
+
+    def of_share(self, changes: Mapping[str, object], names: Collection[str]) -> dict[str, object]:
+        """Return the changes that concern some of the bearings."""
+        others = tuple(f"{name}." for name in self.bearings() if name not in names)
+        return {name: value for name, value in changes.items() if not name.startswith(others)}
+
+    def for_worker(self, bearings: Sequence[BearingSettings]) -> dict[str, object]:
+        """Return the parameters of a process that hosts only some of the bearings, with the ports that they have in this node."""
+        names = [settings.name for settings in bearings]
+        known = {name: self._node.get_parameter(name).value for name in sorted(self._chosen) if name in self._known}
+        ports = {f"{settings.name}.rerun_port": settings.rerun_port for settings in bearings}  # they depend on the place among all bearings
+        common = {"bearings": names, "autostart": False, "processes": 1, "use_sim_time": follows_clock(self._node)}
+        return self.of_share(known, names) | ports | common
 
     def bearings(self) -> list[str]:
         """Return the names of the bearings; empty for one bearing without a name."""
