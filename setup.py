@@ -33,6 +33,7 @@ setup(
         (f"share/{package_name}", ["package.xml"]),
         (f"share/{package_name}/launch", glob("launch_scripts/*.launch.py")),
         (f"share/{package_name}/config", glob("launch_scripts/*.yaml")),
+        (f"share/{package_name}/layouts", glob("launch_scripts/layouts/*")),
     ],
     python_requires=">=3.11",
     install_requires=[

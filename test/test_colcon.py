@@ -61,6 +61,7 @@ def test_colcon_installs_what_ros_looks_for(built):
     assert (prefix / "share/bearing_sim/package.xml").is_file()
     launch_files = {path.name for path in (ROOT / "launch_scripts").glob("*.launch.py")}
     assert {path.name for path in (prefix / "share/bearing_sim/launch").iterdir()} == launch_files
+    assert {path.name for path in (prefix / "share/bearing_sim/layouts").iterdir()} == {"bearing.rviz", "foxglove.json", "plotjuggler.xml"}
     assert {path.name for path in (prefix / "lib/bearing_sim").iterdir()} == {"bearing-sim", "bearing_node", "bearing_player"}
     hooks = built.installed('python -c "import bearing_sim; print(bearing_sim.__file__)"; echo $AMENT_PREFIX_PATH')
     module, path = hooks.stdout.split()
