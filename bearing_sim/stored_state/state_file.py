@@ -217,7 +217,7 @@ class StateFile:
 def serialised(state: StoredState) -> bytes:
     """Return the contents of a state file."""
     contents = state.as_mapping()
-    whole = {"format": FORMAT, "version": VERSION, "checksum": _checksum(contents), "state": contents}
+    whole = {"format": FORMAT, "version": VERSION, "checksum": _checksum(VERSION, contents), "state": contents}
     return json.dumps(whole, allow_nan=False).encode() + b"\n"
 
 
@@ -238,12 +238,12 @@ def parsed(data: bytes) -> StoredState:
     if not isinstance(whole, dict) or whole.get("format") != FORMAT or not isinstance(whole.get("version"), int):
         raise Damaged(f"it is no state file: expected format {FORMAT!r} and a version")
     version, contents = whole["version"], whole.get("state")
-    if version > VERSION:
-        raise StateError(f"the state is of version {version}, written by a newer bearing_sim; this one knows versions up to {VERSION}: update it")
     if not isinstance(contents, dict):
         raise Damaged("it has no state")
-    if version > 0 and whole.get("checksum") != _checksum(contents):  # version 0 is written by hand
+    if version > 0 and whole.get("checksum") != _checksum(version, contents):  # version 0 is written by hand
         raise Damaged("its checksum does not fit its contents")
+    if version > VERSION:
+        raise StateError(f"the state is of version {version}, written by a newer bearing_sim; this one knows versions up to {VERSION}: update it")
     return StoredState.from_mapping(migrated(version, contents))
 
 
@@ -256,8 +256,8 @@ def _parsed(path: Path) -> StoredState:
         raise StateError(f"{path}: {error}") from None
 
 
-def _checksum(contents: dict) -> str:
-    return hashlib.sha256(json.dumps(contents, sort_keys=True).encode()).hexdigest()
+def _checksum(version: int, contents: dict) -> str:
+    return hashlib.sha256(json.dumps([version, contents], sort_keys=True).encode()).hexdigest()
 
 
 def _shown(state: StoredState) -> str:
