@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as some
 
-from bearing_sim.runtime.pacing import Decimator
+from bearing_sim.runtime.pacing import Decimator, OutputCount
 
 
 def due(decimator, times):
@@ -59,3 +59,61 @@ def test_a_skip_of_less_than_a_period_keeps_the_multiples_and_a_longer_one_count
     assert due(Decimator(100.0), [0.0, 0.015, 0.02, 0.03]) == [0.0, 0.015, 0.02, 0.03]
     assert due(Decimator(100.0), [0.0, 0.019, 0.02, 0.03]) == [0.0, 0.019, 0.02, 0.03]
     assert due(Decimator(100.0), [0.0, 0.025, 0.03, 0.034, 0.035, 0.04, 0.045]) == [0.0, 0.025, 0.035, 0.045]
+
+
+@given(gaps=some.lists(some.integers(1, 40), min_size=1, max_size=50))
+def test_outputs_picked_and_left_out_are_together_as_many_as_periods_have_gone_by(gaps):
+    decimator, period = Decimator(50.0), 0.02
+    ticks = np.cumsum([0, *gaps])  # of half a period, as in a node; some are skipped
+    due(decimator, (0.5 * period * ticks).tolist())
+    # An output may come half a period late, and the multiples then count from there; each such skip may hide one half.
+    assert 0 <= 1 + ticks[-1] // 2 - (decimator.picked + decimator.left_out) <= len(gaps)
+    assert decimator.left_out <= sum(gap // 2 for gap in gaps)
+
+
+def test_without_skips_nothing_is_left_out_and_a_skip_leaves_out_what_was_due_in_it():
+    decimator = Decimator(50.0)
+    due(decimator, (np.arange(1000) * 0.01).tolist())
+    assert (decimator.picked, decimator.left_out) == (500, 0)
+    due(decimator, (10.0 + np.arange(30, 100) * 0.01).tolist())  # 0.3 s are skipped
+    assert decimator.left_out == 15
+
+
+def test_what_was_due_during_a_pause_is_not_left_out():
+    decimator = Decimator(50.0)
+    due(decimator, (np.arange(100) * 0.01).tolist())
+    decimator.interrupt()
+    assert due(decimator, [100.0, 100.01, 100.02]) == [100.0, 100.02] and decimator.left_out == 0
+
+
+class Told:
+    """The warning over a course of seconds, each with the fraction of its 50 outputs that was left out; reviewed five times a second."""
+
+    def __init__(self):
+        self.count, self.second, self.published, self.left_out = OutputCount(), 0, 0, 0
+
+    def after(self, *fractions):
+        for fraction in fractions:
+            self.left_out += round(50 * fraction)
+            self.published += 50 - round(50 * fraction)
+            self.second += 1
+            for part in range(5):
+                self.count.take(self.second + 0.2 * part, self.published, self.left_out)
+        return self.count.is_raised
+
+
+def test_one_stall_of_a_busy_machine_raises_no_warning_however_long_and_one_each_five_seconds_neither():
+    assert not Told().after(0, 0, 0, 0, 0, 1.0, 1.0, 1.0, 0, 0, 0, 0)
+    told = Told()
+    assert not any(told.after(0.4, 0, 0, 0, 0) for _ in range(20))
+
+
+def test_a_lasting_loss_is_warned_of_once_and_the_warning_holds_until_five_seconds_were_complete():
+    told = Told()
+    assert not told.after(0, 0, 0.2, 0.2, 0.2, 0.2), "four seconds"
+    assert told.after(0.2) and (told.count.recent, told.count.recently_due) == (50, 250)
+    assert told.after(0, 0.1, 0, 0, 0, 0) and not told.after(0), "what flickers holds"
+
+
+def test_a_loss_of_a_fiftieth_is_no_reason_to_warn():
+    assert not Told().after(*[0.02] * 30)

@@ -28,6 +28,7 @@ import click
 
 from bearing_sim.messages import topics
 from bearing_sim.messages.cdr import STAMP_FIELDS, CdrLayout
+from bearing_sim.messages.diagnostics import WHOLE
 from bearing_sim.runtime.solver_threads import THREAD_NAME
 from bearing_sim.scene.loader import SceneError, load_scene
 from bearing_sim.scene.scene import Scene
@@ -417,8 +418,10 @@ def _reported(reports: list) -> dict:
             if status.level != b"\0":
                 said[f"{('OK', 'WARN', 'ERROR', 'STALE')[status.level[0]]} {status.name.rpartition(': ')[2]}"] += 1
 
+    wholes = [found for name, found in values.items() if name.endswith(f": {WHOLE}")]
+
     def total(key: str) -> float:
-        return sum(float(found[key]) for found in values.values() if key in found)
+        return sum(float(found[key]) for found in wholes if key in found)
 
     return {
         "outputs_left_out": total("outputs_left_out"),

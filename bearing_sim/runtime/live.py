@@ -24,7 +24,7 @@ from bearing_sim.monitoring.limits import LimitsMonitor
 from bearing_sim.monitoring.monitor import Monitor
 from bearing_sim.monitoring.residual import ResidualMonitor
 from bearing_sim.runtime.governor import Governor
-from bearing_sim.runtime.pacing import LONGEST_TICK, Decimator, Pacer, WallClock, tick_schedule
+from bearing_sim.runtime.pacing import LONGEST_TICK, Decimator, OutputCount, Pacer, WallClock, tick_schedule
 from bearing_sim.runtime.sink_registry import Sink, SinkRegistry
 from bearing_sim.runtime.solver import Solver, WallTimeSolver
 from bearing_sim.runtime.solver_threads import SolverThreads
@@ -427,6 +427,7 @@ class LiveModel(Model):
         self._sample_decimator, self._publish_decimator, self._due = Decimator(sample_rate), Decimator(publish_rate), due
         self._wall_clock = WallClock(start_ns, clock, receiver)
         self._published_time = -math.inf
+        self._anchors, self._output_count = 0, OutputCount()
         self.solver.start()
 
     def tick(self, now_ns: int) -> None:
@@ -468,6 +469,7 @@ class LiveModel(Model):
         """Pass results of the solver on and review the health (see `Model.collect`)."""
         if self.gate.expire(self.run_time(now_ns)) and self.gate.accepted["shaft_speed"]:
             self.solver.post(self.gate.held)
+        self._output_count.take(self.run_time(now_ns), self._publish_decimator.picked, self._publish_decimator.left_out)
         return super().collect(now_ns)
 
     def publish_at(self, rate: float) -> None:
@@ -515,8 +517,14 @@ class LiveModel(Model):
     def _published_until(self) -> float:
         return self._published_time
 
+    def _values(self) -> dict[str, object]:
+        return {"outputs_left_out": self._publish_decimator.left_out, "outputs_left_out in the last five seconds": self._output_count.recent}
+
     def _further_events(self, now: float) -> list[Event]:
         flow = self.gate.check(now)
+        if self._output_count.is_raised:
+            reason = f"{self._output_count.recent} of {self._output_count.recently_due} outputs were left out in the last five seconds"
+            flow = [*flow, Event(now, Level.WARN, "pace.outputs", "", reason, "use more processes or cores, a lower level or a lower publish_rate")]
         if self._running_level == self.scene.level:
             return flow
         reason = f"computing at level {self._running_level} instead of {self.scene.level}, for which this machine is too slow"
@@ -524,6 +532,9 @@ class LiveModel(Model):
 
     def _advanced(self, now: float) -> None:
         """Report that an output is due; on the solver's thread."""
+        if self._anchors != self.solver.anchors:  # what was due during a pause is not missing
+            self._anchors = self.solver.anchors
+            self._publish_decimator.interrupt()
         if self._publish_decimator.is_due(now) and self._due is not None:
             self._due()
 

@@ -5,12 +5,16 @@ Arithmetic only: the caller brings clock readings along and does the sleeping.
 """
 
 import math
+from collections import deque
 from collections.abc import Callable
 from typing import NamedTuple
 
 SHORTEST_LIMIT, LONGEST_TICK = 0.005, 0.010  # [s] outputs up to 200 Hz are possible; inputs act at most the longest tick late
 _WHOLE = 1e-6  # distance from a whole number of ticks that still counts as whole
 _EARLY = 1e-6  # [s] by which a sample may come early, because run time is rounded
+
+_SECONDS = 5  # for which outputs must be left out, or none, until that is told
+_MANY, _FEW = 0.02, 0.01  # fractions of the outputs of a second, to raise and to clear the warning
 
 _JUMP = 1.0  # [s] between two readings: the clock was set, not disciplined
 _LATE = 0.1  # [s] by which a reading may be old
@@ -140,10 +144,16 @@ class Decimator:
     Parameters
     ----------
     rate : samples to pick per second of run time [Hz]; may be changed at any time, from any thread.
+
+    Attributes
+    ----------
+    picked, left_out : int
+        Samples picked, and multiples of the period at which there was none, since the start.
     """
 
     def __init__(self, rate: float):
         self.rate = rate
+        self.picked = self.left_out = 0
         self._last = -math.inf  # multiple that was due last [s]
 
     def is_due(self, time: float) -> bool:
@@ -152,8 +162,54 @@ class Decimator:
         late = time - self._last - period
         if late < -_EARLY:
             return False
+        if period <= late < math.inf:
+            self.left_out += int((late + _EARLY) / period)
+        self.picked += 1
         self._last = self._last + period if late < period else time
         return True
+
+    def interrupt(self) -> None:
+        """Take the next sample as the first one: what would have been due until then was not to be picked."""
+        self._last = -math.inf
+
+
+class OutputCount:
+    """Tells whether outputs are left out for long, from how many were published and left out so far.
+
+    A machine that is busy for a moment leaves out some outputs and catches up; nobody can do anything about it.  The warning is therefore raised
+    only after every one of five seconds has lacked more than a fiftieth of its outputs, and cleared after five that lacked less than a hundredth.
+
+    Attributes
+    ----------
+    is_raised : bool
+        Whether the warning holds.
+    """
+
+    def __init__(self):
+        self._began, self._before = math.nan, (0, 0)
+        self._seconds: deque[tuple[int, int]] = deque(maxlen=_SECONDS)  # left out and due in each of the last
+        self.is_raised = False
+
+    def take(self, now: float, published: int, left_out: int) -> None:
+        """Take the numbers since the start at an instant [s]; to be called several times a second."""
+        if not now - self._began < 1.0:
+            if not math.isnan(self._began):
+                left = left_out - self._before[1]
+                self._seconds.append((left, left + published - self._before[0]))
+            self._began, self._before = now, (published, left_out)
+        lacking = [left / due if due else 0.0 for left, due in self._seconds]
+        if len(lacking) == _SECONDS:
+            self.is_raised = max(lacking) >= _FEW if self.is_raised else min(lacking) > _MANY
+
+    @property
+    def recent(self) -> int:
+        """Outputs left out in the last five seconds."""
+        return sum(left for left, _ in self._seconds)
+
+    @property
+    def recently_due(self) -> int:
+        """Outputs that were due in the last five seconds."""
+        return sum(due for _, due in self._seconds)
 
 
 class WallClock:

@@ -249,6 +249,11 @@ class WallTimeSolver(Solver):
     begin : see `Solver`.
     life_used : fraction of its life that the bearing has used before the run, which the damage of samples continues from, over resets too;
         None where every run begins at 0.
+
+    Attributes
+    ----------
+    anchors : int
+        How often simulated time was tied to wall time again: at the start, after a pause, after a reset.
     """
 
     def __init__(
@@ -275,6 +280,7 @@ class WallTimeSolver(Solver):
         self._latest: Inputs | None = None
         self._begun = False
         self._failed, self._retry_at = 0, 0.0
+        self.anchors = 0
         self._origin = self._shift = 0.0  # run time = simulated time + shift
 
     def start(self) -> None:
@@ -437,6 +443,7 @@ class WallTimeSolver(Solver):
     def _anchor(self) -> None:
         wall, time_ = self._clock(), self._simulation.time
         self._pacer.anchor(wall, time_)
+        self.anchors += 1
         # Run time may skip but not go back, even if the model is ahead by the rounding of a clock.
         floor = float(self.newest["time"]) - time_ if self.newest is not None else -np.inf
         self._shift = max(self._run_time(wall) - time_, floor)
