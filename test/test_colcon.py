@@ -62,20 +62,22 @@ def test_colcon_installs_what_ros_looks_for(built):
     launch_files = {path.name for path in (ROOT / "launch_scripts").glob("*.launch.py")}
     assert {path.name for path in (prefix / "share/bearing_sim/launch").iterdir()} == launch_files
     assert {path.name for path in (prefix / "share/bearing_sim/layouts").iterdir()} == {"bearing.rviz", "foxglove.json", "plotjuggler.xml"}
-    assert {path.name for path in (prefix / "lib/bearing_sim").iterdir()} == {"bearing-sim", "bearing_node", "bearing_player"}
+    for folder in ("bin", "lib/bearing_sim"):  # on the PATH, and where ros2 run and launch look
+        assert {path.name for path in (prefix / folder).iterdir()} == {"bearing-sim", "bearing_node", "bearing_player"}
     hooks = built.installed('python -c "import bearing_sim; print(bearing_sim.__file__)"; echo $AMENT_PREFIX_PATH')
     module, path = hooks.stdout.split()
     assert Path(module).is_relative_to(built.folder) and path.split(os.pathsep)[0] == str(prefix)
 
 
 def test_the_installed_programs_run_and_find_the_bundled_scenes(built):
-    scenes = built.installed("install/bearing_sim/lib/bearing_sim/bearing-sim scenes")
+    scenes = built.installed("bearing-sim scenes && which bearing-sim")
     assert scenes.returncode == 0 and "deng2017_table1" in scenes.stdout, scenes.stderr
+    assert Path(scenes.stdout.split()[-1]).is_relative_to(built.folder)
     pytest.importorskip("rclpy", reason="bearing_node and bearing_player need ROS 2")
     programs = "timeout -s KILL 60 install/bearing_sim/lib/bearing_sim"
     node = built.installed(f"{programs}/bearing_node --ros-args -r __ns:=/m1 -p scene:=deng2017_tabel1")
     assert node.returncode == 2 and "deng2017_table1" in node.stderr and "Traceback" not in node.stderr, node.stderr
-    player = built.installed(f"{programs}/bearing_player --help")
+    player = built.installed("timeout -s KILL 60 bearing_player --help")
     assert player.returncode == 0 and "--wait-limit" in player.stdout
 
 

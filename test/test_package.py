@@ -4,6 +4,7 @@
 import ast
 import configparser
 import fnmatch
+import os
 import re
 from pathlib import Path
 
@@ -12,6 +13,8 @@ import yaml
 
 catkin_package = pytest.importorskip("catkin_pkg.package", reason="catkin_pkg reads package.xml and the changelog; it comes with colcon")
 from catkin_pkg.changelog import get_changelog_from_path  # noqa: E402
+
+from bearing_sim.extras import EXTRAS, what_is_missing  # noqa: E402
 
 ROOT = Path(__file__).resolve().parent.parent
 TOP_LEVEL = {
@@ -22,9 +25,14 @@ TOP_LEVEL = {
 KEYS = {
     "PyYAML": "python3-yaml",
     "pillow": "python3-pil",
+    "lz4": "mcap-ros2-support",
     "mcap": "mcap-ros2-support",
     "mcap-ros2-support": "mcap-ros2-support",
     "rosbags": "python3-rosbags-pip",
+    "zstandard": "mcap-ros2-support",
+}
+DISTRIBUTIONS = {"PIL": "pillow", "rerun": "rerun-sdk", "rclpy": "ros-jazzy-rclpy"} | {
+    name: f"ros-jazzy-{name.replace('_', '-')}" for name in ("std_msgs", "std_srvs", "sensor_msgs", "geometry_msgs", "diagnostic_msgs")
 }
 STANDARD_ROS = {"rclpy", "rcl_interfaces", "launch", "launch_ros"}
 
@@ -46,6 +54,15 @@ def _setup(keyword):
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "setup"
     ]
     return {argument.arg: argument.value for argument in call.keywords}[keyword]
+
+
+def _assigned(name):
+    """Return what setup.py assigns to a name before it calls setup()."""
+    tree = ast.parse((ROOT / "setup.py").read_text())
+    before = [node for node in tree.body if isinstance(node, (ast.Assign, ast.ImportFrom)) and "setuptools" not in ast.dump(node)]
+    found = {}
+    exec(compile(ast.Module(before, []), "setup.py", "exec"), found)
+    return found[name]
 
 
 def test_package_xml_is_of_format_3_and_known_as_a_ros_package(package):
@@ -100,11 +117,39 @@ def test_every_python_requirement_has_its_key_or_is_told_to_have_none(package):
         assert (KEYS.get(name, f"python3-{name}") in keys) != (name in without), f"{name}: declare its rosdep key, or say that it has none"
 
 
-def test_scripts_go_where_ros_looks_for_them_and_are_set_with_underscores():
+def test_every_package_of_an_extra_is_named_where_one_is_missing():
+    optional = _assigned("optional")
+    assert set(optional) == set(EXTRAS)
+    for extra, requirements in optional.items():
+        found = {re.match(r"[\w-]+", requirement)[0] for requirement in requirements}
+        imported = {DISTRIBUTIONS.get(name, name) for name in EXTRAS[extra]}
+        assert found <= imported, f"{extra}: {found - imported}"
+
+
+def test_what_no_extra_has_is_an_error_of_the_program():
+    assert what_is_missing(ModuleNotFoundError("", name="rerun.blueprint")) == "rerun is not installed: pip install 'bearing_sim[view]'"
+    assert "ROS 2" in what_is_missing(ModuleNotFoundError("", name="rclpy"))
+    with pytest.raises(ModuleNotFoundError):
+        what_is_missing(ModuleNotFoundError("", name="bearing_sim.misspelt"))
+
+
+def test_programs_are_on_the_path_and_where_ros_looks_for_them():
     config = configparser.ConfigParser()
     config.read(ROOT / "setup.cfg")
-    assert dict(config["develop"]) == {"script_dir": "$base/lib/bearing_sim"}
-    assert dict(config["install"]) == {"install_scripts": "$base/lib/bearing_sim"}
+    assert dict(config["develop"]) == {"script_dir": "$base/bin"}
+    assert dict(config["install"]) == {"install_scripts": "$base/bin"}
+    points = {point.partition(" = ")[0] for point in ast.literal_eval(_setup("entry_points"))["console_scripts"]}
+    found = list((ROOT / "launch_scripts" / "libexec").iterdir())
+    assert {path.name for path in found} == points and all(os.access(path, os.X_OK) for path in found)
+
+
+def test_nothing_optional_is_imported_at_the_top_of_what_the_node_imports():
+    rooms = ("scene", "model", "levels", "messages", "inputs", "monitoring", "runtime", "ros")
+    optional = {package for extra, packages in EXTRAS.items() if extra != "ros" for package in packages}
+    for path in (path for room in rooms for path in ROOT.glob(f"bearing_sim/{room}/**/*.py")):
+        for node in ast.parse(path.read_text()).body:
+            names = [node.module or ""] if isinstance(node, ast.ImportFrom) else [n.name for n in node.names] if isinstance(node, ast.Import) else []
+            assert not optional & {name.partition(".")[0] for name in names}, path
 
 
 def test_nothing_unusual_lies_at_the_top():

@@ -100,7 +100,7 @@ def test_the_recorder_gives_way_but_has_a_share_of_its_own_whatever_runs_in_the_
 
 
 def test_compiling_cheaper_levels_gives_way_but_does_not_wait_for_idle_time_which_a_solver_that_is_too_slow_leaves_none_of():
-    process = start_compiling(SCENE)
+    process = start_compiling(SCENE, lower=True)
     try:
         wait_for(lambda: set(policies(process.pid).values()) == {BATCH})
         assert os.getpriority(os.PRIO_PROCESS, process.pid) == min(19, os.getpriority(os.PRIO_PROCESS, 0) + 10)

@@ -42,6 +42,27 @@ def test_jobs_asked_for_while_one_runs_wait_and_can_be_forgotten():
     assert ended(warm_up) and done == ["later"]
 
 
+def test_a_process_compiles_what_the_cache_lacks_and_ends_with_the_node(monkeypatch):
+    started = []
+
+    def start(scene):
+        started.append(subprocess.Popen([sys.executable, "-c", "import time; time.sleep(60)"]))
+        return started[-1]
+
+    monkeypatch.setattr("bearing_sim.ros.warm_up.start_compiling", start)
+    monkeypatch.setattr("bearing_sim.ros.warm_up.is_compiled_for", lambda scene: scene == "compiled")
+    warm_up = WarmUp()
+    warm_up.compile("compiled")
+    assert not started
+    warm_up.request(lambda: warm_up.compile("new"))
+    while not started:
+        time.sleep(0.01)
+    warm_up.close()
+    assert ended(warm_up) and started[0].poll() is not None, "the process is ended, and the thread does not wait for it"
+    warm_up.compile("new")
+    assert len(started) == 1, "none is started once the node has ended"
+
+
 def test_levels_that_an_earlier_process_has_compiled_are_not_compiled_again():
     scene = load_scene("deng2017_table1", ["level=planar"])
     governor_of(Simulation(scene))

@@ -7,7 +7,8 @@ from typing import NamedTuple
 
 import click
 
-from bearing_sim.cli.reporting import ARGUMENTS
+from bearing_sim.cli.reporting import ARGUMENTS, UsageError
+from bearing_sim.extras import what_is_missing
 
 
 class Entry(NamedTuple):
@@ -84,6 +85,13 @@ class LazyGroup(click.Group):
         context = super().make_context(info_name, [*args], parent, **extra)
         context.meta.setdefault(ARGUMENTS, list(args))
         return context
+
+    def invoke(self, context):
+        """Run a command; one that needs a package that is not installed is refused with the extra that installs it."""
+        try:
+            return super().invoke(context)
+        except ModuleNotFoundError as error:
+            raise UsageError(what_is_missing(error)) from error
 
     def list_commands(self, context):
         """Return the names in order."""

@@ -3,6 +3,7 @@
 
 import csv
 import errno
+import importlib.util
 import json
 import math
 import shlex
@@ -220,6 +221,9 @@ def write_csv(path: Path, rows: Sequence[Mapping]) -> None:
 
 def print_table(title: str, rows: Iterable[tuple[str, str]]) -> None:
     """Print a table of names and values."""
+    if not importlib.util.find_spec("rich"):
+        _print_plain(title, ("", ""), rows, words=("",))
+        return
     from rich.table import Table
 
     table = Table("", "", title=title, show_header=False, title_justify="left")
@@ -242,6 +246,9 @@ def print_rows(
     width : of the table if there is no terminal.
     whole : columns whose texts are never wrapped.
     """
+    if not importlib.util.find_spec("rich"):
+        _print_plain(title, columns, rows, words)
+        return
     from rich.table import Table
 
     table = Table(title=title, title_justify="left")
@@ -250,6 +257,16 @@ def print_rows(
     for row in rows:
         table.add_row(*row)
     _show(table, width)
+
+
+def _print_plain(title: str, columns: Sequence[str], rows: Iterable[Sequence[str]], words: Container[str]) -> None:
+    """Print a table in columns of blanks, where rich is not installed."""
+    lines = [line for line in (tuple(columns), *map(tuple, rows)) if any(line)]
+    widths = [max(map(len, column)) for column in zip(*lines)]
+    click.echo(title)
+    for line in lines:
+        cells = (text.ljust(width) if name in words else text.rjust(width) for name, text, width in zip(columns, line, widths))
+        click.echo("  ".join(cells).rstrip())
 
 
 def _show(table, width: int = 150) -> None:
@@ -262,7 +279,7 @@ def _show(table, width: int = 150) -> None:
 @contextmanager
 def progress_bar(text: str, total: float) -> Iterator[Callable[[float], None]]:
     """Show a progress bar on stderr, on a terminal only; yields the function that takes how much of ``total`` is done."""
-    if not sys.stderr.isatty():
+    if not (sys.stderr.isatty() and importlib.util.find_spec("rich")):
         yield lambda done: None
         return
     from rich.console import Console

@@ -18,6 +18,7 @@ from rclpy.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.subscription import Subscription
 from std_srvs.srv import SetBool, Trigger
 
+from bearing_sim.extras import what_is_missing
 from bearing_sim.messages import topics
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.messages.sample_messages import SampleMessages, message_templates
@@ -258,7 +259,7 @@ class BearingInterface:
             simulation = warmed_up(self.scene)
             governs = self._shared.governor and not follows_clock(self._node)  # with sim time no time is skipped
             if governs and levels_to_compile(self.scene):
-                self._compiling = start_compiling(self.scene)
+                self._compiling = start_compiling(self.scene, lower=True)
             elif governs:
                 self._governor = governor_of(simulation)
             self._simulation = simulation
@@ -303,7 +304,7 @@ class BearingInterface:
         if settings.record:
             self._start_recording(Path(settings.record))
         if settings.rrd or settings.rerun_port:
-            self.live.open("view", lambda start_ns: open_view(self.scene, start_ns, settings.rrd, settings.rerun_port))
+            self._open_view()
         for channel, topic in topics.inputs(self.scene).items():
             self._subscribe(channel, _SCALAR if shared.input_type == "scalar" and _SCALAR in topics.input_types(channel) else topic.ros_type)
         self._subscribe(topics.MEASURED, topics.MEASUREMENTS[topics.MEASURED].ros_type)
@@ -545,6 +546,14 @@ class BearingInterface:
             return sink
 
         self.live.open("record", opened, reopen=True)
+
+    def _open_view(self) -> None:
+        """Open the view; the node does without where its packages are not installed."""
+        settings = self.settings
+        try:
+            self.live.open("view", lambda start_ns: open_view(self.scene, start_ns, settings.rrd, settings.rerun_port))
+        except ModuleNotFoundError as error:
+            self.live.sinks.lack("view", what_is_missing(error))
 
     def _served(self, act: Callable[[object], tuple[bool, str]]) -> Callable:
         """Return the callback of a service, which answers with what ``act`` makes of the request, or that there is no run to serve."""

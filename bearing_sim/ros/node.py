@@ -17,7 +17,7 @@ import sys
 import time
 from collections import deque
 from collections.abc import Callable, Sequence
-from functools import wraps
+from functools import partial, wraps
 
 from rclpy.clock import Clock, ClockType, JumpHandle, JumpThreshold
 from rclpy.duration import Duration
@@ -159,7 +159,7 @@ class BearingNode(LifecycleNode):
 
     def close(self) -> bool:
         """Stop the models and complete recordings.  Returns whether all threads ended."""
-        self._warm_up.cancel()
+        self._warm_up.close()
         self.workers.end()
         stopped = [bearing.destroy() for bearing in self.bearings]
         self.bearings = []
@@ -184,6 +184,7 @@ class BearingNode(LifecycleNode):
             self._release()
             raise
         for bearing in self.bearings:
+            self._warm_up.request(partial(self._warm_up.compile, bearing.scene))
             self._warm_up.request(bearing.warm_up)
         self._state = "inactive"
         return super().on_configure(state)

@@ -4,6 +4,7 @@
 Run it with ``bearing_player LOG.mcap`` or ``python -m bearing_sim.ros.player LOG.mcap``; remappings follow ``--ros-args``.
 """
 
+import importlib.util
 import sys
 import time
 from collections import Counter
@@ -250,7 +251,7 @@ def _fields(due: ScheduledMessage, stamp_ns: int) -> dict:
 @contextmanager
 def progress_of(title: str, total: float) -> Iterator[Callable[[float], None]]:
     """Show progress on stderr, a bar on a terminal, otherwise a line every 10 %; yields the function that takes how much of ``total`` is done."""
-    if sys.stderr.isatty():
+    if sys.stderr.isatty() and importlib.util.find_spec("rich"):
         from rich.console import Console
         from rich.progress import Progress
 

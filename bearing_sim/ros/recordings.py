@@ -4,6 +4,7 @@
 import importlib
 import math
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -26,7 +27,8 @@ def prepare(view: bool, recorder: Recorder | None) -> None:
     recorder : the process that will record; None if this process records.
     """
     if view:
-        importlib.import_module("bearing_sim.view.sink")
+        with suppress(ModuleNotFoundError):  # reported when the view is opened
+            importlib.import_module("bearing_sim.view.sink")
     if recorder is not None:
         recorder.start()
         return
@@ -108,6 +110,8 @@ def open_view(scene: Scene, start_ns: int, path: str, port: int):
     ------
     OSError
         The file cannot be created, or the port cannot be used.
+    ModuleNotFoundError
+        rerun is not installed.
     """
     from bearing_sim.view.sink import RerunSink
 

@@ -1,5 +1,9 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Compile models while the node keeps answering: one thread for all bearings, and a process for levels of lower fidelity."""
+"""Compile models while the node keeps answering: one thread for all bearings, and processes for what no earlier process has compiled.
+
+A compiler does not release its memory: a node that compiles level ``slip`` by itself keeps some 250 MB for as long as it runs.  So a process
+of its own compiles, and the node loads the code from the cache.
+"""
 
 import gc
 import subprocess
@@ -9,17 +13,21 @@ from collections import deque
 from collections.abc import Callable
 
 from bearing_sim.recording.priority import with_low_priority
-from bearing_sim.runtime.precompilation import is_compiled
+from bearing_sim.runtime.precompilation import is_compiled, is_compiled_for
 from bearing_sim.scene.fidelity import lower_levels
 from bearing_sim.scene.loader import scene_to_yaml
 from bearing_sim.scene.scene import Scene
 
 _PROGRAM = """
 import sys
-from bearing_sim.runtime.live import governor_of
+from bearing_sim.runtime.live import governor_of, warmed_up
 from bearing_sim.scene.loader import scene_from_yaml
 from bearing_sim.simulation import Simulation
-governor_of(Simulation(scene_from_yaml(sys.stdin.read())))
+scene = scene_from_yaml(sys.stdin.read())
+if sys.argv[1] == "lower levels":
+    governor_of(Simulation(scene))
+else:
+    warmed_up(scene)
 """
 _NICENESS = 10  # below the running model, but not idle priority: the levels are needed most when the solver takes all the time there is
 
@@ -27,15 +35,16 @@ _NICENESS = 10  # below the running model, but not idle priority: the levels are
 class WarmUp:
     """Runs jobs one after the other on one thread, which ends when no job is left.
 
-    Compiling machine code cannot be interrupted: a running job is finished even if its result is no longer wanted.  A node that is
-    configured repeatedly in the meantime waits for that one thread instead of starting more.
+    A running job is finished even if its result is no longer wanted.  A node that is configured repeatedly in the meantime waits for
+    that one thread instead of starting more.
     """
 
     def __init__(self):
         self._lock = threading.Lock()
         self._jobs: deque[Callable[[], None]] = deque()
         self._thread: threading.Thread | None = None
-        self._is_frozen = False
+        self._is_frozen = self._is_closed = False
+        self._compiler: subprocess.Popen | None = None
 
     def request(self, job: Callable[[], None]) -> None:
         """Run a job, which must not raise, after all jobs requested before."""
@@ -49,6 +58,28 @@ class WarmUp:
         """Drop the jobs that have not started."""
         with self._lock:
             self._jobs.clear()
+
+    def close(self) -> None:
+        """Drop the jobs that have not started, and end the process that compiles; no other one is started."""
+        self.cancel()
+        with self._lock:
+            self._is_closed = True
+            if self._compiler is not None:
+                self._compiler.kill()
+
+    def compile(self, scene: Scene) -> None:
+        """Compile what a run of a scene starts with, in a process of its own, unless the cache has it; a job.
+
+        If that process fails, the node compiles by itself, and reports what goes wrong.
+        """
+        if is_compiled_for(scene):
+            return
+        with self._lock:
+            if self._is_closed:
+                return
+            self._compiler = start_compiling(scene)
+        self._compiler.wait()
+        self._compiler = None
 
     @property
     def is_working(self) -> bool:
@@ -81,10 +112,11 @@ def levels_to_compile(scene: Scene) -> list[str]:
     return [level for level in lower_levels(scene) if not is_compiled(level)]
 
 
-def start_compiling(scene: Scene) -> subprocess.Popen:
-    """Start a process that compiles all levels of lower fidelity than a scene's own, so that the running model is not disturbed."""
+def start_compiling(scene: Scene, lower: bool = False) -> subprocess.Popen:
+    """Start a process that compiles a scene's own level, or those of lower fidelity, at low priority so that the running model is not disturbed."""
+    command = [sys.executable, "-c", _PROGRAM, "lower levels" if lower else "own level"]
     process = subprocess.Popen(
-        with_low_priority([sys.executable, "-c", _PROGRAM], _NICENESS),
+        with_low_priority(command, _NICENESS) if lower else command,
         stdin=subprocess.PIPE,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,

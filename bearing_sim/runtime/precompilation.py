@@ -9,9 +9,12 @@ import multiprocessing
 import shutil
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from bearing_sim.numerics.cores import cores
+
+if TYPE_CHECKING:
+    from bearing_sim.scene.scene import Scene
 
 _SECONDS = 1e-4  # a run this short calls everything that has to be compiled
 
@@ -38,6 +41,20 @@ def is_compiled(level: str) -> bool:
     from bearing_sim.numerics.compilation import is_cached
 
     return is_cached(LEVELS[level].advance)
+
+
+def is_compiled_for(scene: "Scene") -> bool:
+    """Return whether the cache of this version of the model holds the code with which a run of a scene starts."""
+    from bearing_sim.levels.level import LEVELS
+    from bearing_sim.levels.steady.model import solve_condition
+    from bearing_sim.numerics.compilation import is_cached
+
+    level = LEVELS[scene.level]
+    advance = level.advance if scene.integration.fixed_step is None else level.advance_fixed
+    if not hasattr(advance, "stats"):  # numba is switched off
+        return True
+    searches = scene.heat.law == "network" and scene.heat.start == "equilibrium"
+    return is_cached(advance) and (not searches or is_cached(solve_condition))
 
 
 def builds(levels: Sequence[str], fixed_step: bool = False) -> list[Build]:

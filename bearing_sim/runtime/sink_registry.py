@@ -118,6 +118,10 @@ class SinkRegistry:
             pass  # the same error again
         self._failed[name] = Event(now, Level.ERROR, "sink.failed", name, f"failed: {error}", "it is closed and gets nothing more")
 
+    def lack(self, name: str, reason: str) -> None:
+        """Report a sink that cannot be made because something is not installed."""
+        self._failed[name] = Event(0.0, Level.WARN, "sink.failed", name, f"does not start: {reason}", "the model runs without it")
+
     def events(self, now: float) -> Iterator[Event]:
         """Yield what is wrong with sinks at ``now`` [s], for as long as it is wrong."""
         yield from self._failed.values()

@@ -93,7 +93,7 @@ again, and then the largest load changes with the speed while the bearing's does
 
 APPLICATION = "bearing_sim"
 ROWS_PER_COLUMN = 1000
-_SERVER_MEMORY = "256MB"
+_SERVER_MEMORY = "16MB"  # of history for viewers that connect later: more than a minute at 18 rollers, twice what a live view shows
 _RATE = 20.0  # [Hz] pictures for those who watch
 _MOST_WANTED = 300  # pictures of events in a file
 
