@@ -42,7 +42,10 @@ ROOMS = {
         "numpy numba pandas scipy matplotlib pydantic sksundae",
         "scene numerics physics model levels simulation messages recording monitoring sweep",
     ),
-    "cli": ("click numpy pydantic_core rich", "extras scene numerics model levels simulation messages recording inputs runtime view sweep fleet studies"),
+    "cli": (
+        "click numpy pydantic_core rich",
+        "extras scene numerics model levels simulation messages recording inputs runtime view sweep fleet studies",
+    ),
     "ros": (
         "click launch launch_ros numpy rcl_interfaces rclpy rich rosgraph_msgs std_srvs",
         "extras scene numerics simulation messages recording stored_state inputs monitoring runtime view",
