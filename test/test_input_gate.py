@@ -152,6 +152,19 @@ def test_a_message_rate_outside_the_limits_is_named(gate, rate, wrong):
         assert f"{rate:.3g} Hz" in events[0].text
 
 
+def test_an_input_that_was_silent_and_comes_again_is_well_at_once_and_one_that_comes_rarely_is_not(gate):
+    last = feed(gate, 20.0, 3.0)
+    feed(gate, 20.0, 3.0, channel="radial_load", values=(800.0,))
+    assert [event.kind for event in gate.check(last + 30.0)] == ["input.stale"] * 2
+    for channel, values in (("shaft_speed", (100.0,)), ("radial_load", (800.0,))):
+        end = feed(gate, 20.0, 2.0, start=last + 30.0, channel=channel, values=values)
+    assert gate.check(end) == [] and gate.rate("shaft_speed") == pytest.approx(20.0, rel=0.05)
+    rare = InputGate(LIMITS, START)
+    for k in range(6):
+        rare.offer("shaft_speed", 5.0 * k, (100.0,))
+        assert not k or rare.check(5.0 * k)[0].kind == "input.rate", "no sooner well than missing again"
+
+
 def test_onsets_report_a_lasting_trouble_once_and_again_after_it_was_gone(gate):
     gate.offer("shaft_speed", 0.0, (math.nan,))
     assert len(gate.onsets(2.0)) == 2

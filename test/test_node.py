@@ -295,6 +295,7 @@ def test_wrong_parameters_and_scenes_end_with_one_clear_message_and_code_2(tmp_p
         (["scene:=deng2017_tabel1"], ["no such file or bundled scene", "deng2017_table1"]),
         (["overrides:=['lubricant.temprature=300']"], ["lubricant.temprature", "did you mean 'temperature'"]),
         ([f"record:={blocked}/run.mcap"], ["a_file"]),
+        (["thresholds.slip_warning:='20 %'"], ["slip_warning: 20 % is above slip_error, 10 %"]),
     ]
     processes = []
     for parameters, _ in cases:

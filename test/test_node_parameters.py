@@ -108,6 +108,9 @@ def test_thresholds_are_changed_by_their_place_and_faults_are_told():
     for path, number, reason in (
         ("slip_warning", 2.0, "slip_warning: 200 % is outside"),
         ("residual.learning", 2.0, "expected 30 or more"),
+        ("slip_error", 0.04, "slip_warning: 5 % is above slip_error, 4 %"),
+        ("life_error", 400.0, "life_warning: 300 h is below life_error, 400 h"),
+        ("lambda_error", 2.0, "lambda_warning: 1 is below lambda_error, 2"),
         ("slip_waning", 0.1, "slip_waning: "),
     ):
         with pytest.raises(ValueError) as raised:
@@ -126,7 +129,7 @@ def test_each_parameter_is_described_with_range_and_with_when_a_change_counts(ru
         if isinstance(row.default, float):
             (bounds,) = told.floating_point_range
             assert (bounds.from_value, bounds.to_value) == (row.low, row.high)
-    assert {row.name for row in DECLARATIONS if row.running} == {"publish_rate", "governor"}
+    assert {row.name for row in DECLARATIONS if row.running} == {"serial", "publish_rate", "governor"}
 
 
 @pytest.mark.parametrize(
@@ -138,6 +141,9 @@ def test_each_parameter_is_described_with_range_and_with_when_a_change_counts(ru
         ("publish_rate", "fast", "[Tt]ype"),
         ("thresholds.slip_warning", 1.5, "out of range"),
         ("thresholds.slip_warning", float("nan"), "out of range"),
+        ("thresholds.slip_warning", 0.2, "slip_warning: 20 % is above slip_error, 10 %.*change the other one first"),
+        ("thresholds.slip_warning", "20 %", "slip_warning: 20 % is above slip_error, 10 %"),
+        ("thresholds.slip_from_speed", "20 kN", "[Tt]ype"),
         ("thresholds.residual.learning", 2.0, "2 s are 2 batches of 1 s; expected 30 or more"),
         ("lubricant.temperature", 120.0, "out of range.*220"),
         ("no_such_parameter", 1.0, "."),
@@ -179,7 +185,25 @@ def test_the_oil_temperature_changes_in_mid_run_until_the_topic_has_given_it(run
         return client.values().get("oil temperature [degC]") == "110"
 
     client.drive_until(told, "the topic counts", running.process)
-    assert "the topic oil_temperature has given the temperature" in running.set("lubricant.temperature", 373.15)
+    assert "the topic oil_temperature has given the temperature" in running.set("lubricant.temperature", 363.15)
+
+
+def test_a_text_with_a_unit_is_read_as_it_and_the_reason_of_one_that_cannot_be_is_in_the_log(running):
+    assert running.set("thresholds.slip_from_speed", "300 rpm") == ""
+    assert running.value("thresholds.slip_from_speed") == pytest.approx(31.4159, rel=1e-5)
+    assert "thresholds.slip_from_speed = '20 kN'" in running.process.text and "expected a speed such as '45000 rpm'" in running.process.text
+
+
+def test_values_that_are_what_they_were_are_no_news(running):
+    """Tools that restore a file of parameters set them all, also those that cannot change while the node runs."""
+    client = running.client
+    client.drive_until(lambda: client.values()["phase"] == "running", "the node runs", running.process)
+    before, report = running.process.text, len(client.received["diagnostics"])
+    for name in ("scene", "joint", "publish_rate", "sample_rate", "governor", "lubricant.temperature", "thresholds.slip_warning"):
+        assert running.set(name, running.value(name)) == "", name
+    client.drive(0.5)
+    assert running.process.text == before
+    assert {name for _, name, _ in client.statuses(report) if not name.startswith("bearing_node: validity.")} == set()
 
 
 def test_the_publish_rate_and_the_governor_change_in_mid_run(running):

@@ -64,9 +64,11 @@ class _Channel:
     least: float  # values from here ...
     largest: float  # ... to here are good
     is_force: bool
+    patience: float  # age from which on it is stale [s]
     stamp: float = -math.inf
     arrival: float = -math.inf
     seen: bool = False
+    received: float = -math.inf  # the newest message, good or not
     window_start: float = math.nan
     window_count: int = 0
     rate: float = math.nan
@@ -183,7 +185,9 @@ class InputGate:
         self.refused: Counter[str] = Counter()
         self.accepted: Counter[str] = Counter()
         self.coverage = Coverage()
-        self._channels = {name: _Channel(*_good_from_to(name, limits), is_force=name == "radial_load") for name in CHANNELS}
+        self._channels = {
+            name: _Channel(*_good_from_to(name, limits), name == "radial_load", patience(limits, name, spacings.get(name, 0.0))) for name in CHANNELS
+        }
         self._reported: set[tuple[str, str]] = set()
         self._began = math.nan  # when the first message of any channel was received
         self._expired: set[str] = set()
@@ -216,8 +220,9 @@ class InputGate:
             state.seen = True
             if math.isnan(self._began):
                 self._began = received
-            if self._spacings.get(channel) and received - state.arrival > self._patience(channel):
-                state.window_start = math.nan  # a log that was silent: that says nothing about its rate
+            if received - state.received > state.patience and self._flowed(channel, state):
+                state.window_start = math.nan  # the silence says nothing about the rate
+            state.received = max(state.received, received)
             elapsed = received - state.window_start
             if elapsed >= 0.0:
                 state.window_count += 1
@@ -323,18 +328,15 @@ class InputGate:
     def _stale_event(self, channel: str, state: _Channel, now: float) -> Event | None:
         if math.isnan(self._began) or (channel in _OPTIONAL and not state.seen):
             return None
-        patience, age = self._patience(channel), now - max(state.arrival, self._began)
-        if age <= patience:
+        age = now - max(state.arrival, self._began)
+        if age <= state.patience:
             return None
         since = f"no good message for {age:.3g} s" if state.arrival > -math.inf else f"no good message yet, {age:.3g} s after the first input"
-        return Event(now, Level.WARN, "input.stale", channel, f"{since}, expected one within {patience:.3g} s", self._used_instead(channel))
-
-    def _patience(self, channel: str) -> float:
-        """Return the age from which on a channel is stale [s]."""
-        return patience(self.limits, channel, self._spacings.get(channel, 0.0))
+        return Event(now, Level.WARN, "input.stale", channel, f"{since}, expected one within {state.patience:.3g} s", self._used_instead(channel))
 
     def _is_stale(self, channel: str, now: float) -> bool:
-        return now - self._channels[channel].arrival > self._patience(channel)
+        state = self._channels[channel]
+        return now - state.arrival > state.patience
 
     def _used_instead(self, channel: str) -> str:
         if channel in RING_TEMPERATURES and math.isnan(getattr(self.held, channel)):
@@ -351,14 +353,27 @@ class InputGate:
         latest = self.latest(channel)
         return shown(channel, latest if isinstance(latest, tuple) else (latest,))
 
-    def _rate_event(self, channel: str, state: _Channel, now: float) -> Event | None:
+    def _flowed(self, channel: str, state: _Channel) -> bool:
+        """Whether messages of a channel came as they should before it fell silent; rare ones are no silence each."""
+        return bool(self._spacings.get(channel)) or state.window_count > 1 or self._is_rate_good(channel, state.rate)
+
+    def _rates(self, channel: str) -> tuple[float, float]:
+        """Return the lowest and the highest rate of a channel that is expected [Hz]."""
         slowest = self.limits.minimum_rate / _SLOW_CHANNEL.get(channel, 1.0)
         fastest = self.limits.maximum_rate
         if spacing := self._spacings.get(channel):
             slowest = min(slowest, 1.0 / (_SPACINGS_OF_SILENCE * spacing))
             fastest = max(fastest, _SPACINGS_OF_SILENCE / spacing)
-        if slowest * (1 - _RATE_TOLERANCE) <= state.rate <= fastest * (1 + _RATE_TOLERANCE) or math.isnan(state.rate):
+        return slowest, fastest
+
+    def _is_rate_good(self, channel: str, rate: float) -> bool:
+        slowest, fastest = self._rates(channel)
+        return slowest * (1 - _RATE_TOLERANCE) <= rate <= fastest * (1 + _RATE_TOLERANCE)
+
+    def _rate_event(self, channel: str, state: _Channel, now: float) -> Event | None:
+        if math.isnan(state.rate) or self._is_rate_good(channel, state.rate):
             return None
+        slowest, fastest = self._rates(channel)
         reason = f"messages arrive at {state.rate:.3g} Hz, expected {slowest:.3g} to {fastest:.3g} Hz"
         return Event(now, Level.WARN, "input.rate", channel, reason, "values are used as they arrive")
 

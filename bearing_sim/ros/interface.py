@@ -395,7 +395,8 @@ class BearingInterface:
 
     def reason_to_refuse(self, changes: dict[str, object]) -> str:
         """Return why changes of this bearing's parameters are refused; empty if they can be applied."""
-        if OIL_TEMPERATURE in changes and self.live is not None and self.live.gate.accepted["oil_temperature"]:
+        has_message = self.live is not None and self.live.gate.accepted["oil_temperature"]
+        if has_message and changes.get(OIL_TEMPERATURE, self.scene.lubricant.temperature) != self.scene.lubricant.temperature:
             return f"{OIL_TEMPERATURE}: the topic oil_temperature has given the temperature in this run and takes precedence"
         try:
             with_values(self.scene, scene_values_in(changes))
@@ -412,8 +413,8 @@ class BearingInterface:
                 self.live.adjust(self.scene.thresholds)
         if "serial" in changes:
             self._wanted_serial = changes["serial"]
-        if self.live is not None and OIL_TEMPERATURE in changes:
-            self.live.set_oil_temperature(changes[OIL_TEMPERATURE], self._now_ns())
+        if self.live is not None and self.scene.lubricant.temperature != before.lubricant.temperature:
+            self.live.set_oil_temperature(self.scene.lubricant.temperature, self._now_ns())
 
     def _open_state(self, serial: str) -> StateKeeper | None:
         """Return the keeper of the state of a bearing, None if nothing is to be remembered; raise OSError if it cannot be used."""

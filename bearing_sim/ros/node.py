@@ -251,11 +251,12 @@ class BearingNode(LifecycleNode):
         for name, scene in self._scenes.items():
             self._scenes[name] = with_values(scene, scene_values_in(self.parameters.changes_of(name, changes)))
             self.parameters.show_scene(name, self._scenes[name])
-        if "publish_rate" in changes and self._shared is not None:
+        if self._shared is not None and changes.get("publish_rate", self._shared.publish_rate) != self._shared.publish_rate:
             self._shared = dataclasses.replace(self._shared, publish_rate=changes["publish_rate"])
             for bearing in self.bearings:
                 bearing.publish_at(changes["publish_rate"])
-        if "governor" in changes:
+        if self._shared is not None and changes.get("governor", self._shared.governor) != self._shared.governor:
+            self._shared = dataclasses.replace(self._shared, governor=changes["governor"])
             for bearing in self.bearings:
                 bearing.govern(changes["governor"], self._warm_up)
 

@@ -21,7 +21,7 @@ from bearing_sim.inputs.static_transforms import Transform, quaternion
 from bearing_sim.messages.topics import FRAME
 from bearing_sim.scene.loader import did_you_mean
 from bearing_sim.scene.lubricant import Lubricant
-from bearing_sim.scene.quantity import Quantity
+from bearing_sim.scene.quantity import Quantity, expected
 from bearing_sim.scene.scene import Scene, Thresholds
 from bearing_sim.scene.uncertainty import declared_in, value_at
 
@@ -40,6 +40,7 @@ class Declaration(NamedTuple):
     ----------
     per_bearing : whether each bearing of a fleet may have its own value, as ``NAME.parameter``.
     running : whether a change takes effect while the node runs; otherwise it takes effect at the next configure.
+    quantity : of a scene's number: a text with a unit is read as it, such as ``"200 rpm"``.
     """
 
     name: str
@@ -50,6 +51,7 @@ class Declaration(NamedTuple):
     choices: tuple[str, ...] = ()
     per_bearing: bool = False
     running: bool = False
+    quantity: Quantity | None = None
 
 
 DECLARATIONS = (
@@ -188,15 +190,21 @@ class NodeSettings:
 
 
 def _declaration(name: str, quantity: Quantity, default: float | None) -> Declaration:
-    shown, unit = quantity.shown_in or quantity.unit, quantity.unit or ("fraction" if quantity.shown_in else "")
-    meaning = f"{quantity.meaning} [{unit}]" if unit else quantity.meaning
-    if shown not in ("", quantity.unit):
-        meaning += f", {quantity.show(quantity.minimum)} to {quantity.show(quantity.maximum)}"
+    what, *further = quantity.meaning.split("; ")
+    unit = _UNIT_NAMES.get(quantity.unit, quantity.unit) or ("fraction" if quantity.shown_in else "")
+    if unit:
+        what += f" [{unit}]"
+    if default and quantity.shown_in not in ("", unit):
+        what += f" ({default:g} is {quantity.show(default)})"
     if default is None:
-        meaning = meaning.replace("None: ", "0: ")
+        further = [text.replace("None: ", "0: ") for text in further]
     if name == OIL_TEMPERATURE:
-        meaning += "; a message on the topic oil_temperature takes precedence"
-    return Declaration(name, 0.0 if default is None else default, meaning, quantity.minimum, quantity.maximum, per_bearing=True, running=True)
+        further.append("a message on the topic oil_temperature takes precedence")
+    meaning, default = "; ".join([what.replace(": None", ": 0"), *further]), default or 0.0
+    return Declaration(name, default, meaning, quantity.minimum, quantity.maximum, per_bearing=True, running=True, quantity=quantity)
+
+
+_UNIT_NAMES = {"delta_degC": "K"}
 
 
 OIL_TEMPERATURE = "lubricant.temperature"
@@ -233,6 +241,11 @@ def checked(declaration: Declaration, name: str, value: object) -> object:
         The value has another type or is out of range; the message is written for the user.
     """
     kind = type(declaration.default)
+    if isinstance(value, str) and declaration.quantity is not None:
+        try:
+            value = declaration.quantity.read(value)
+        except ValueError as error:
+            raise ValueError(f"{name} = {value!r}: {error}") from None
     if kind is float and isinstance(value, int) and not isinstance(value, bool):
         value = float(value)  # `-p publish_rate:=50` is meant as a float
     if kind is list and declaration.default != [""]:
@@ -278,6 +291,8 @@ def descriptor(declaration: Declaration) -> ParameterDescriptor:
     filled = ParameterDescriptor(description=f"{declaration.meaning}; {_CHANGES[declaration.running]}")
     if declaration.choices:
         filled.additional_constraints = f"one of {', '.join(declaration.choices)}"
+    if declaration.quantity is not None:
+        filled.additional_constraints = f"a number, or a text with a unit: {expected(declaration.quantity.unit)}"
     if isinstance(declaration.default, float):
         filled.floating_point_range = [FloatingPointRange(from_value=declaration.low, to_value=declaration.high)]
     if isinstance(declaration.default, int) and not isinstance(declaration.default, bool):
@@ -313,6 +328,7 @@ class ParameterServer:
         self._node, self._is_own_change = node, False
         self._errors: dict[str, str] = {}
         self._known: dict[str, Declaration] = {}
+        self._unchanged: set[str] = set()  # of the parameters that are being set
         given = {parameter.name: parameter.value for parameter in node.get_parameters_by_prefix("").values()}
         self._chosen = set(given)
         self._declare(_TABLE.values(), "", given)
@@ -417,22 +433,31 @@ class ParameterServer:
         self._is_own_change = False
 
     def _converted(self, parameters: list[Parameter]) -> list[Parameter]:
-        """Convert integers to floats where floats are expected: ``ros2 param set ... publish_rate 20``, ``... frame_position "[0, 0, 1]"``."""
+        """Convert integers and texts with a unit where floats are expected.
 
-        def converted(parameter: Parameter) -> Parameter:
-            default = getattr(self._known.get(parameter.name), "default", None)
-            if parameter.type_ is Parameter.Type.INTEGER and isinstance(default, float):
-                return Parameter(parameter.name, value=float(parameter.value))
-            if parameter.type_ is Parameter.Type.INTEGER_ARRAY and isinstance(default, list) and isinstance(default[0], float):
-                return Parameter(parameter.name, value=[float(number) for number in parameter.value])
+        Such as ``ros2 param set ... publish_rate 20``, ``... frame_position "[0, 0, 1]"``, ``... thresholds.slip_from_speed "200 rpm"``.
+        """
+        return list(map(self._as_float, parameters))
+
+    def _as_float(self, parameter: Parameter) -> Parameter:
+        row = self._known.get(parameter.name)
+        if row is None:
             return parameter
-
-        return [converted(parameter) for parameter in parameters]
+        if parameter.type_ is Parameter.Type.INTEGER and isinstance(row.default, float):
+            return Parameter(parameter.name, value=float(parameter.value))
+        if parameter.type_ is Parameter.Type.INTEGER_ARRAY and isinstance(row.default, list) and isinstance(row.default[0], float):
+            return Parameter(parameter.name, value=[float(number) for number in parameter.value])
+        if parameter.type_ is Parameter.Type.STRING and row.quantity is not None:
+            try:
+                return Parameter(parameter.name, value=checked(row, parameter.name, parameter.value))
+            except ValueError as error:
+                self._node.get_logger().warning(str(error))  # rclpy answers no more than that the type is wrong
+        return parameter
 
     def _validate(self, parameters: list[Parameter]) -> SetParametersResult:
         if self._is_own_change:
             return SetParametersResult(successful=True)
-        changes = {}
+        changes, self._unchanged = {}, {each.name for each in parameters if self._node.get_parameter_or(each.name).value == each.value}
         for parameter in parameters:
             row, name = self._known.get(parameter.name), parameter.name
             if name == "use_sim_time" and self._node.is_running and parameter.value != self._node.get_parameter(name).value:
@@ -462,7 +487,7 @@ class ParameterServer:
         self._chosen.update(known)
         for name in known:
             self._errors.pop(name, None)
-        if waiting := [name for name in known if not self._known[name].running]:
+        if waiting := [name for name in known if not self._known[name].running and name not in self._unchanged]:
             self._node.get_logger().info(f"{', '.join(waiting)}: takes effect at the next configure")
         changes = {name: value for name, value in known.items() if self._known[name].running}
         if changes:
@@ -486,6 +511,7 @@ _FILE_HEAD = """# Copyright 2026 the bearing_sim maintainers. SPDX-License-Ident
 # Generated by python -m bearing_sim.ros.parameters. * marks parameters that can be changed while the node runs; others require reconfiguring.
 # Several bearings in one node: set bearings: [front, rear] and add front: {scene: a.yaml, joint: front_shaft} and so on below it.
 # The oil temperature and the thresholds given here replace those of the scene file: leave out what the scene file defines.
+# They may be texts with a unit, such as '120 degC' or '200 rpm'.
 """
 
 

@@ -49,12 +49,12 @@ def to_si(value: object, unit: str) -> float:
         could be misread.
     """
     if isinstance(value, bool) or not isinstance(value, (numbers.Real, str)):
-        raise ValueError(f"expected {_expected(unit)}, got {value!r}")
+        raise ValueError(f"expected {expected(unit)}, got {value!r}")
     if not isinstance(value, str):
         return float(value)
     match = _NUMBER_THEN_UNIT.match(value)
     if match is None:
-        raise ValueError(f"expected {_expected(unit)}, got {value!r}")
+        raise ValueError(f"expected {expected(unit)}, got {value!r}")
     number, written_unit = float(match[1]), match[2]
     if not written_unit:
         if unit == SPEED and number:
@@ -69,13 +69,13 @@ def to_si(value: object, unit: str) -> float:
         written = registry.Unit(written_unit)
         converted = registry.Quantity(number, written).to(registry.Unit(unit or "dimensionless"))
     except pint.UndefinedUnitError:
-        raise ValueError(f"unknown unit {written_unit!r} in {value!r}{_other_case(written_unit)}; expected {_expected(unit)}") from None
+        raise ValueError(f"unknown unit {written_unit!r} in {value!r}{_other_case(written_unit)}; expected {expected(unit)}") from None
     except pint.DimensionalityError:
-        raise ValueError(f"{value!r} has the wrong dimension{_other_case(written_unit)}; expected {_expected(unit)}") from None
+        raise ValueError(f"{value!r} has the wrong dimension{_other_case(written_unit)}; expected {expected(unit)}") from None
     except Exception:  # pint's parser passes on any error of Python's tokenizer
-        raise ValueError(f"cannot read the unit {written_unit!r} in {value!r}; expected {_expected(unit)}") from None
+        raise ValueError(f"cannot read the unit {written_unit!r} in {value!r}; expected {expected(unit)}") from None
     if reason := _other_kind(written, unit):
-        raise ValueError(f"{value!r} is {reason}; expected {_expected(unit)}")
+        raise ValueError(f"{value!r} is {reason}; expected {expected(unit)}")
     return float(converted.magnitude)
 
 
@@ -169,7 +169,8 @@ _EXAMPLES = {
 }
 
 
-def _expected(unit: str) -> str:
+def expected(unit: str) -> str:
+    """Return what may stand for a quantity in this unit, with an example."""
     return _EXAMPLES.get(unit, f"a quantity in {unit}")
 
 

@@ -188,6 +188,12 @@ class TemperatureResidualDetection:
         return _detection_errors(self)
 
 
+def _out_of_order(name: str, warning: float, relation: str, error: float, unit: str) -> str:
+    """Return why the warning of a quantity could never come before its error; numbers in the unit."""
+    shown = f"{name}_warning: {warning:g}{unit} is {relation} {name}_error, {error:g}{unit}"
+    return f"{shown}, so that no warning could come before the error; change the other one first, or both at once"
+
+
 @record
 class Thresholds:
     """When the condition is a warning or an error."""
@@ -220,6 +226,25 @@ class Thresholds:
     clearance_hold: Hold = field(default_factory=Hold)
     residual: ResidualDetection = field(default_factory=ResidualDetection)
     temperature_residual: TemperatureResidualDetection = field(default_factory=TemperatureResidualDetection)
+
+    @check
+    def _warnings_come_before_errors(self) -> list[str]:
+        errors = []
+        for name, is_off, factor, unit in (("slip", None, 100.0, " %"), ("pocket_force", None, 1.0, " N")):
+            warning, error = getattr(self, f"{name}_warning"), getattr(self, f"{name}_error")
+            if is_off not in (warning, error) and warning > error:
+                errors.append(_out_of_order(name, factor * warning, "above", factor * error, unit))
+        falling = (
+            ("life", 0.0, 1.0, " h"),
+            ("remaining_life", 0.0, 1.0, " h"),
+            ("lambda", 0.0, 1.0, ""),
+            ("clearance", NO_CLEARANCE_LIMIT, 1e6, " um"),
+        )
+        for name, is_off, factor, unit in falling:
+            warning, error = getattr(self, f"{name}_warning"), getattr(self, f"{name}_error")
+            if is_off not in (warning, error) and warning < error:
+                errors.append(_out_of_order(name, factor * warning, "below", factor * error, unit))
+        return errors
 
 
 CLEANLINESS = Literal[
