@@ -16,7 +16,7 @@ from bearing_sim.messages.events import Level
 from bearing_sim.recording.bag import RecordingError
 from bearing_sim.recording.writer import McapFile, McapSink
 from bearing_sim.scene.loader import load_scene
-from bearing_sim.view.bag import BagSeries, read_bag_series, write_bag_view
+from bearing_sim.view.bag import BagSeries, Line, read_bag_series, write_bag_view
 from bearing_sim.view.screenshot import HOW_TO_GET_VULKAN
 from bearing_sim.view.worker import RerunFile
 
@@ -40,9 +40,9 @@ def bag(tmp_path):
             recording.write("/valve", FLOAT, now, {"data": 0.1 * k})
             recording.write(
                 "/where",
-                "geometry_msgs/msg/PointStamped",
+                "std_msgs/msg/String",
                 now,
-                {"header": {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": ""}, "point": {"x": 0.0, "y": 0.0, "z": 0.0}},
+                {"data": "here"},
             )
     return path
 
@@ -50,7 +50,7 @@ def bag(tmp_path):
 def test_speed_load_and_plain_numbers_are_shown_and_the_rest_is_named(bag, tmp_path):
     result = run(bag, "-o", tmp_path / "run.rrd", "--no-open", "--load-topic", "/cell")
     assert result.exit_code == 0, result.output
-    assert "/where: nothing to plot in geometry_msgs/msg/PointStamped" in result.output and "need a model" in result.output
+    assert "/where: nothing to plot in std_msgs/msg/String" in result.output and "need a model" in result.output
     times, speeds = column(tmp_path / "run.rrd", "/speed/shaft")
     np.testing.assert_allclose(times, 0.1 * np.arange(50), atol=1e-6)
     np.testing.assert_allclose(speeds, (100.0 + np.arange(50)) * 60 / (2 * math.pi), rtol=1e-6)
@@ -74,6 +74,41 @@ def test_the_folder_of_a_bag_in_sqlite_is_shown_too(bag, tmp_path):
     result = run(folder, "-o", tmp_path / "run.rrd", "--no-open", "--speed-topic", "rpm")
     assert result.exit_code == 0, result.output
     np.testing.assert_allclose(column(tmp_path / "run.rrd", "/speed/shaft")[1], (50.0 + np.arange(10)) * 30 / math.pi, rtol=1e-6)
+
+
+def encoder_bag(folder, plugin):
+    """Write a bag of 20 messages of a type that only the bag defines, with ``int32[] data`` and a nested number."""
+    from rosbags.rosbag2 import Writer
+    from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+    store, kind = get_typestore(Stores.ROS2_JAZZY), "servo_msgs/msg/Encoder"
+    store.register(get_types_from_msg("int32[] data\ngeometry_msgs/Point place\nuint8[] picture\n", kind))
+    with Writer(folder, version=9, storage_plugin=plugin) as writer:
+        connection = writer.add_connection("/servo/encoder", kind, typestore=store)
+        for k in range(20):
+            place = store.types["geometry_msgs/msg/Point"](0.5, -1.0 * k, 0.0)
+            message = store.types[kind](np.array([100 + k, 7], np.int32), place, np.arange(3, dtype=np.uint8))
+            writer.write(connection, START + k * SECOND, store.serialize_cdr(message, kind))
+    return folder
+
+
+@pytest.mark.parametrize("plugin", ["MCAP", "SQLITE3"])
+def test_numbers_in_any_type_are_shown_by_their_fields_also_of_a_folder_called_bag(tmp_path, plugin):
+    from rosbags.rosbag2 import StoragePlugin
+
+    folder = encoder_bag(tmp_path / "servo.bag", StoragePlugin[plugin])
+    series = read_bag_series(folder).series
+    assert {line for _, line, _ in series} == {f"/servo/encoder {field}" for field in ("data[0]", "data[1]", "place.x", "place.y", "place.z")}
+    np.testing.assert_array_equal(series["", "/servo/encoder data[0]", "-"][1], 100.0 + np.arange(20))
+    np.testing.assert_array_equal(series["", "/servo/encoder place.y", "-"][1], -np.arange(20.0))
+    options = ["--speed", "/servo/encoder.data[0]", "--speed-unit", "rpm", "--load", "2 kN", "--no-open", "-o", tmp_path / "run.rrd"]
+    result = run(folder, *options)
+    assert result.exit_code == 0, result.output
+    np.testing.assert_allclose(column(tmp_path / "run.rrd", "/speed/shaft")[1], 100.0 + np.arange(20), rtol=1e-6)
+    np.testing.assert_array_equal(column(tmp_path / "run.rrd", "/load/radial")[1], 2000.0)
+    for speed, words in (("/servo/encoder.data", "did you mean 'data[0]'"), ("/servo/encoder", "its numbers are data[0], data[1], place.x")):
+        result = run(folder, "--speed", speed, "--no-open", "-o", tmp_path / "run.rrd")
+        assert result.exit_code == 2 and words in result.output, result.output
 
 
 def test_messages_out_of_order_are_put_in_order(tmp_path):
@@ -120,7 +155,7 @@ def test_what_cannot_be_shown_at_all_is_told_with_exit_code_2(tmp_path):
         assert result.exit_code == 2 and reason in result.output and "Traceback" not in result.output
     write_log(tmp_path / "log.mcap", [(0.0, 1.0), (1.0, 1.0)], [(0.0, 1.0, 0.0), (1.0, 1.0, 0.0)])
     with pytest.raises(RecordingError, match="no topic /torque for the load; it has /radial_load, /shaft_speed"):
-        read_bag_series(tmp_path / "log.mcap", {"load": "/torque"})
+        read_bag_series(tmp_path / "log.mcap", {"load": Line("/torque")})
 
 
 def test_a_measured_cage_in_a_recording_of_ours_shows_its_residual(tmp_path):

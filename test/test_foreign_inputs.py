@@ -120,12 +120,37 @@ def test_an_absent_field_is_told_with_those_there_are(tmp_path):
         ("speed", "no field 'speed'.*it has header, velocity, torque, cells"),
         ("velocity[7]", "has 2 numbers"),
         ("cells", "is not a number"),
+        ("velocity", r"is not a number but .* \(did you mean 'velocity\[0\]'\?\)"),
+        ("velocty[0]", r"did you mean 'velocity\[0\]'"),
         ("torque.y", r"no field 'y' in the message \(torque.y\); it has none"),
     ):
         with pytest.raises(InputLogError, match=words):
             read_input_log(path, {"shaft_speed": f"/servo/state.{field}", "radial_load": "/servo/state.torque"})
-    with pytest.raises(InputLogError, match="needs sensor_msgs/msg/JointState or std_msgs/msg/Float64, or name a field of it"):
+    wanted = r"needs sensor_msgs/msg/JointState or std_msgs/msg/Float64, or name a field of it, such as /servo/state.velocity\[0\]"
+    with pytest.raises(InputLogError, match=wanted):
         read_input_log(path, {"shaft_speed": "/servo/state", "radial_load": "/servo/state.torque"})
+
+
+def test_a_log_without_the_usual_topics_says_how_the_numbers_in_it_are_named(tmp_path):
+    with pytest.raises(InputLogError, match=r"no /shaft_speed; no /radial_load; .* named by its field, such as /servo/state.velocity\[0\]"):
+        read_input_log(servo_mcap(tmp_path / "log.mcap"))
+
+
+@pytest.mark.parametrize("make", [servo_mcap, servo_sqlite], ids=["mcap", "sqlite3"])
+def test_info_counts_what_a_recording_of_others_holds_and_names_the_files_that_are_missing(tmp_path, make):
+    path = make(tmp_path / ("log.mcap" if make is servo_mcap else "recorded.bag"))
+    done = CliRunner().invoke(main, ["info", str(path), "--json"])
+    told = json.loads(done.stdout)
+    assert done.exit_code == 0 and told["sound"] and told["files"][0]["topics"] == {"/servo/state": {"type": SERVO, "messages": 21}}
+    assert told["files"][0]["seconds"] == pytest.approx(2.0)
+    if make is servo_sqlite:
+        [file] = path.glob("*.db3")
+        file.rename(path / "other.db3")
+        for command in ("info", "view", "replay"):
+            done = CliRunner().invoke(main, [command, str(path), *(["--scene", "deng2017_table1"] if command == "replay" else [])])
+            assert done.exit_code == 2 and "names recorded.bag.db3, which is not there; there is other.db3" in done.output, done.output
+        (path / "other.db3").unlink()
+        assert "the folder has lost its recording" in CliRunner().invoke(main, ["info", str(path)]).output
 
 
 @pytest.mark.parametrize("text", ["/a.b[", "/a.b c", "/a.y,z", "/a..[x]"])

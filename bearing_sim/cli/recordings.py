@@ -21,15 +21,16 @@ _OWN = "bearing_sim"
 def info(recording, prints_scene, as_json):
     """Show what RUN.mcap holds: topics, counts, time span, scene, versions, and whether the file is complete.
 
-    RUN.mcap is any MCAP file, finished or not, or a bag's folder. The whole file is read and its checksums are verified. Exit code 1 if a
-    file is incomplete or damaged.
+    RUN.mcap is any MCAP file, finished or not, or a bag's folder; or a bag in SQLite or of ROS 1, which has no checksums. The whole file is read
+    and its checksums are verified. Exit code 1 if a file is incomplete or damaged.
     """
     from bearing_sim.recording.bag import RecordingError, mcap_files
-    from bearing_sim.recording.recovery import contents
+    from bearing_sim.recording.recovery import contents, foreign_contents
 
     with as_usage_error(RecordingError), as_file_error():
-        files = []
-        for file in mcap_files(recording):
+        foreign = foreign_contents(recording)
+        files = [] if foreign is None else [foreign]
+        for file in mcap_files(recording) if foreign is None else ():
             with progress_bar(f"reading {file.name}", 1.0) as progress:
                 files.append(contents(file, progress))
     own = files[0].metadata.get(_OWN, {})
@@ -82,7 +83,8 @@ def _file_report(file) -> dict:
 def _print_info(recording, files, own) -> None:
     rows = []
     for file in files:
-        health = "complete, all checksums correct" if file.is_sound else f"INCOMPLETE: {_trouble(file)}"
+        checked = "all checksums correct" if file.has_checksums else "all messages can be read; the format has no checksums"
+        health = f"complete, {checked}" if file.is_sound else f"INCOMPLETE: {_trouble(file)}"
         rows.append((file.path.name, f"{file.size / 1e6:.4g} MB, {health}"))
     started = [file.first_ns for file in files if file.messages]
     if started:
@@ -114,6 +116,8 @@ def _print_info(recording, files, own) -> None:
 def _trouble(file) -> str:
     troubles = [file.ends] if file.ends else []
     troubles += [f"{file.damaged} damaged chunks or records"] if file.damaged else []
+    if not file.has_checksums:
+        return "; ".join(troubles)
     return "; ".join(troubles) + f" (bearing-sim recover {file.path} -o GOOD.mcap)"
 
 

@@ -14,12 +14,27 @@ from bearing_sim.cli.reporting import FailedRun, UsageError, as_usage_error, pro
 @click.option("--screenshot", type=click.Path(path_type=Path), metavar="PICTURE.png", help="Write a picture of the view instead of opening it.")
 @click.option("--at", "seconds", type=float, metavar="SECONDS", help="Simulated time of the picture [default: the end].")
 @click.option("--size", default="1600x1000", show_default=True, metavar="WxH", help="Size of the picture [px].")
-@click.option("--speed-topic", metavar="TOPIC", help="In a bag from another source: topic of the shaft speed [default: /shaft_speed].")
-@click.option("--load-topic", metavar="TOPIC", help="Likewise for the radial load [default: /radial_load].")
-@click.option("--cage-topic", metavar="TOPIC", help="Likewise for a measured cage speed [default: /cage_speed_measured].")
-@click.option("--temperature-topic", metavar="TOPIC", help="Likewise for the oil temperature [default: /oil_temperature].")
+@click.option(
+    "--speed",
+    "--speed-topic",
+    "speed",
+    metavar="TOPIC",
+    help="In a bag from another source: shaft speed, /topic or /topic.field[0] or a constant such as 1500rpm [default: /shaft_speed].",
+)
+@click.option("--load", "--load-topic", "load", metavar="TOPIC", help="Likewise for the radial load, or 800N [default: /radial_load].")
+@click.option("--cage", "--cage-topic", "cage", metavar="TOPIC", help="Likewise for a measured cage speed [default: /cage_speed_measured].")
+@click.option(
+    "--oil-temperature",
+    "--temperature",
+    "--temperature-topic",
+    "temperature",
+    metavar="TOPIC",
+    help="Likewise for the oil temperature [default: /oil_temperature].",
+)
+@click.option("--speed-unit", metavar="UNIT", help="Unit of the speeds that are fields, such as rpm [default: rad/s].")
+@click.option("--load-unit", metavar="UNIT", help="Unit of a load that is a field, such as kN [default: N].")
 @click.option("--open/--no-open", "opens", default=None, help="Open rerun [default: if there is a display].")
-def view(recording, out, screenshot, seconds, size, speed_topic, load_topic, cage_topic, temperature_topic, opens):
+def view(recording, out, screenshot, seconds, size, speed, load, cage, temperature, speed_unit, load_unit, opens):
     """Show RUN.mcap in rerun: a recording of bearing-sim or the node, or any rosbag2 recording.
 
     Writes RUN.rrd and opens it, or prints the command that does. A picture needs no display, only a Vulkan driver; a software driver
@@ -31,9 +46,10 @@ def view(recording, out, screenshot, seconds, size, speed_topic, load_topic, cag
     picture_size = _size(size)
     unfinished = recording.suffix == ".active"
     out = out or (recording.with_suffix("") if unfinished else recording).with_suffix(".rrd")
-    topics = {"speed": speed_topic, "load": load_topic, "cage_speed": cage_topic, "temperature": temperature_topic}
+    given = {"speed": (speed, speed_unit), "load": (load, load_unit), "cage_speed": (cage, speed_unit), "temperature": (temperature, None)}
+    lines = _lines({role: texts for role, texts in given.items() if texts[0]})
     with as_usage_error(RecordingError, PermissionError):
-        span = _write(recording, out, seconds, {role: topic for role, topic in topics.items() if topic})
+        span = _write(recording, out, seconds, *lines)
     if screenshot is not None:
         _take_picture(out, screenshot, span[1] if seconds is None else seconds, picture_size)
         click.echo(f"{screenshot}")
@@ -41,19 +57,33 @@ def view(recording, out, screenshot, seconds, size, speed_topic, load_topic, cag
     _open(out, opens)
 
 
-def _write(recording: Path, out: Path, seconds: float | None, topics: dict[str, str]) -> tuple[float, float]:
+_CHANNELS = {"speed": "shaft_speed", "load": "radial_load", "cage_speed": "cage_speed_measured", "temperature": "oil_temperature"}
+
+
+def _lines(given: dict[str, tuple[str, str | None]]) -> tuple[dict, dict[str, float]]:
+    """Return by role where its quantity is recorded, and the values [SI] of those that are constant, from texts of options with their units."""
+    from bearing_sim.inputs.log import constant, is_constant, source
+    from bearing_sim.view.bag import Line
+
+    with as_usage_error(ValueError):
+        constants = {role: constant(_CHANNELS[role], text, unit) for role, (text, unit) in given.items() if is_constant(text)}
+        lines = {role: Line(*source(_CHANNELS[role], text, unit)) for role, (text, unit) in given.items() if role not in constants}
+    return lines, constants
+
+
+def _write(recording: Path, out: Path, seconds: float | None, lines: dict, constants: dict[str, float]) -> tuple[float, float]:
     """Write the file for rerun; return the first and last time in it [s]."""
     from bearing_sim.recording.bag import RecordingError
     from bearing_sim.recording.reader import Recording
 
-    if topics:
-        return _write_bag(recording, out, seconds, topics, "topics are given")
+    if lines or constants:
+        return _write_bag(recording, out, seconds, lines, constants, "topics are given")
     try:
         source = Recording(recording)
     except RecordingError as error:
         if not recording.exists():
             raise
-        return _write_bag(recording, out, seconds, topics, str(error))
+        return _write_bag(recording, out, seconds, {}, {}, str(error))
     _require_within(seconds, source.first_time, source.last_time)
     _convert(source, out)
     if source.unfinished:
@@ -61,10 +91,10 @@ def _write(recording: Path, out: Path, seconds: float | None, topics: dict[str, 
     return source.first_time, source.last_time
 
 
-def _write_bag(recording: Path, out: Path, seconds: float | None, topics: dict[str, str], why: str) -> tuple[float, float]:
+def _write_bag(recording: Path, out: Path, seconds: float | None, lines: dict, constants: dict[str, float], why: str) -> tuple[float, float]:
     from bearing_sim.view.bag import read_bag_series, write_bag_view
 
-    found = read_bag_series(recording, topics)
+    found = read_bag_series(recording, lines, constants)
     _require_within(seconds, 0.0, found.duration)
     click.echo(f"shown as a bag from another source ({why}); not shown:", err=True)
     for line in found.left_out:

@@ -9,7 +9,9 @@ Reading takes what is there.  Judging (`bearing_sim.inputs.profile.judge`) passe
 
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
+from itertools import islice
 from pathlib import Path
 from types import MappingProxyType
 from typing import NamedTuple
@@ -20,6 +22,7 @@ from bearing_sim.inputs.gate import REQUIRED, UNITS, shown
 from bearing_sim.messages import topics
 from bearing_sim.recording.bag import RecordingError
 from bearing_sim.recording.bag_reader import BagReader, BagTopic
+from bearing_sim.recording.message_fields import numbers, suggestion
 from bearing_sim.scene.loader import did_you_mean
 from bearing_sim.scene.quantity import conversion, to_si
 
@@ -179,7 +182,8 @@ def _number(message, path: str) -> float:
             found = found[int(index)] if index else getattr(found, name)
         except AttributeError:
             there = [field for field in getattr(found, "__slots__", None) or getattr(found, "__dict__", ()) if not field.startswith("_")]
-            raise ValueError(f"no field {name!r} in the message ({path}); it has {', '.join(there) or 'none'}") from None
+            hint = suggestion(message, path)
+            raise ValueError(f"no field {name!r} in the message ({path}); it has {', '.join(there) or 'none'}{hint}") from None
         except IndexError:
             raise ValueError(f"the message has {len(found)} numbers at {path}, none with index {index}") from None
         except TypeError:
@@ -187,7 +191,7 @@ def _number(message, path: str) -> float:
     try:
         return float(found)
     except (TypeError, ValueError):
-        raise ValueError(f"{path} is not a number but {type(found).__name__}") from None
+        raise ValueError(f"{path} is not a number but {type(found).__name__}{suggestion(message, path)}") from None
 
 
 def read_input_log(
@@ -221,7 +225,7 @@ def read_input_log(
         raise InputLogError("both speed and load are constants, so that nothing is left of the log; `bearing-sim run` takes them")
     paths = [Path(path)] if isinstance(path, (str, Path)) else [Path(each) for each in path]
     sources = {channel: where for channel, where in _sources(names).items() if channel not in constants}
-    wanted = _Wanted(sources, dict.fromkeys(_CHANNELS, joint) | {topics.MEASURED: cage_joint}, stamps, {}, {})
+    wanted = _Wanted(sources, dict.fromkeys(_CHANNELS, joint) | {topics.MEASURED: cage_joint}, stamps, {}, {}, {})
     unfinished = []
     for each in paths:
         try:
@@ -239,21 +243,33 @@ def read_input_log(
 
 
 class _Wanted(NamedTuple):
-    """What to look for, and what was found."""
+    """What to look for, and what was found; of topics that no channel has, the first message, from which fields are suggested."""
 
     sources: dict[str, Source]  # by channel
     joints: dict[str, str]  # by channel
     stamps: str
     found: dict[str, Series]
     present: dict[str, str]  # type by topic
+    others: dict[str, object]  # decoded, by topic
 
-    def reader(self, topic: str, ros_type: str, decode: Callable[[bytes], object]) -> Callable[[int, bytes], None] | None:
-        """Return a function that adds a topic's messages (log time, data) to the series of their channels; None if no channel needs them."""
+    def reader(self, topic: str, ros_type: str, decode: Callable[[bytes], object]) -> Callable[[int, bytes], None]:
+        """Return a function that adds a topic's messages (log time, data) to the series of their channels."""
         self.present[topic] = ros_type or "?"
         readers = [_message_reader(channel, where, ros_type, decode, self) for channel, where in self.sources.items() if where.topic == topic]
         if len(readers) < 2:
-            return readers[0] if readers else None
+            return readers[0] if readers else self._keeper(topic, decode)
         return lambda log_time, data: [read(log_time, data) for read in readers]
+
+    def _keeper(self, topic: str, decode: Callable[[bytes], object]) -> Callable[[int, bytes], None]:
+        """Return a function that keeps the first message of a topic."""
+
+        def keep(log_time: int, data: bytes) -> None:
+            if topic not in self.others:
+                self.others[topic] = None
+                with suppress(Exception):  # decoders raise exceptions of any kind; then nothing is suggested
+                    self.others[topic] = decode(data)
+
+        return keep
 
 
 def _sources(names: Mapping[str, str | Source | None] | None) -> dict[str, Source]:
@@ -266,22 +282,19 @@ def _sources(names: Mapping[str, str | Source | None] | None) -> dict[str, Sourc
 
 def _read(bag: BagReader, wanted: _Wanted) -> str:
     """Add a recording's messages; return why it ended early, or ``""``."""
-    readers: dict[BagTopic, Callable[[int, bytes], None] | None] = {}
+    readers: dict[BagTopic, Callable[[int, bytes], None]] = {}
     for found in bag:
         if isinstance(found, BagTopic):
             readers[found] = wanted.reader(*found)
-        elif (reader := readers[found[0]]) is not None:
-            reader(*found[1:])
+        else:
+            readers[found[0]](*found[1:])
     return bag.unfinished
 
 
 def _message_reader(channel: str, where: Source, ros_type: str, decode: Callable, wanted: _Wanted) -> Callable[[int, bytes], None]:
     """Return a function that adds a topic's messages to a channel's series."""
     if not where.fields and ros_type not in topics.input_types(channel):
-        expected = " or ".join(topics.input_types(channel))
-        raise InputLogError(
-            f"{where.topic} is of type {ros_type or 'unknown'}; {channel} needs {expected}, or name a field of it ({where.topic}.some.field)"
-        )
+        return _refusal(channel, where, ros_type, decode)
     series = wanted.found.setdefault(channel, Series(where.topic, ros_type))
     if series.ros_type != ros_type:
         raise InputLogError(f"{where.topic} carries both {series.ros_type} and {ros_type}; expected one type")
@@ -312,13 +325,29 @@ def _message_reader(channel: str, where: Source, ros_type: str, decode: Callable
     return read
 
 
+def _refusal(channel: str, where: Source, ros_type: str, decode: Callable) -> Callable[[int, bytes], None]:
+    """Return a function that refuses a topic whose type does not fit a channel, and names a field of its first message that may."""
+
+    def refuse(log_time: int, data: bytes) -> None:
+        example = "some.field"
+        with suppress(Exception):  # decoders raise exceptions of any kind on damaged data
+            example = next((path for path, _ in numbers(decode(data))), example)
+        expected = " or ".join(topics.input_types(channel))
+        named = f"name a field of it, such as {where.topic}.{example}"
+        raise InputLogError(f"{where.topic} is of type {ros_type or 'unknown'}; {channel} needs {expected}, or {named}")
+
+    return refuse
+
+
 def _check_found(path: Path, wanted: _Wanted, required: tuple[str, ...], named: Mapping[str, str | Source | None]) -> None:
     found, present = wanted.found, wanted.present
     listing = ", ".join(f"{topic} ({kind})" for topic, kind in sorted(present.items())) or "no topics"
     absent = [where.topic for channel, where in wanted.sources.items() if channel not in found and (channel in required or named.get(channel))]
     if absent:
-        hints = "; ".join(f"no {topic}{did_you_mean(topic, present)}" for topic in absent)
-        raise InputLogError(f"{path}: {hints}; the file has {listing}")
+        hints = "; ".join(f"no message on {topic}" if topic in present else f"no {topic}{did_you_mean(topic, present)}" for topic in absent)
+        fields = [f"{topic}.{field}" for topic, message in sorted(wanted.others.items()) for field, _ in islice(numbers(message), 1)]
+        named = f"; a number in a message is named by its field, such as {' or '.join(fields[:2])}" if fields else ""
+        raise InputLogError(f"{path}: {hints}; the file has {listing}{named}")
     empty = [series.topic for channel, series in found.items() if channel in required and not series.stamps]
     if empty:
         first = [error.reason for series in found.values() for error in series.errors[:1]]

@@ -168,22 +168,45 @@ def mcap_files(path: str | Path) -> list[Path]:
         if all(file.exists() for file in files if file.name.endswith(ACTIVE)):
             break
         files = _files_in(path)  # a recorder completed one, which then has another name
-    unusable = [file.name for file in files if not file.is_file() or ".mcap" not in file.name or file.suffix == ".zstd"]
+    require_listed(path, files)
+    if sqlite := [file.name for file in files or path.glob("*.db3") if file.suffix == ".db3"]:
+        raise RecordingError(f"{path}: an SQLite bag ({', '.join(sqlite)}); expected MCAP. `view`, `info` and `replay` read it as it is")
+    unusable = [file.name for file in files if ".mcap" not in file.name or file.suffix == ".zstd"]
     if unusable or not files:
         raise RecordingError(f"{path}: expected uncompressed .mcap files, {'cannot use ' + ', '.join(unusable) if unusable else 'found none'}")
     return files
 
 
+def require_listed(path: Path, files: Sequence[Path]) -> None:
+    """Raise `RecordingError` if files of a bag's folder are missing; the message says which are there instead."""
+    missing = [file.name for file in files if not file.is_file()]
+    if not missing:
+        return
+    others = sorted(file for file in path.iterdir() if file.is_file() and file.name != "metadata.yaml" and file not in files)
+    there = [file for file in files if file.is_file()] + others
+    listed = f"metadata.yaml names {', '.join(missing)}, which {'is' if len(missing) == 1 else 'are'} not there"
+    if not there:
+        raise RecordingError(f"{path}: {listed}, and there is no other file; the folder has lost its recording")
+    found = f"there {'is' if len(there) == 1 else 'are'} {', '.join(file.name for file in there)}"
+    raise RecordingError(f"{path}: {listed}; {found}. Restore the name, or give the file itself: {there[0]}")
+
+
+def listed_files(path: Path) -> list[Path] | None:
+    """Return the files that the metadata of a bag's folder lists; None if it has none."""
+    index = path / "metadata.yaml"
+    if not index.is_file():
+        return None
+    try:
+        listed = yaml.safe_load(index.read_text())["rosbag2_bagfile_information"]["relative_file_paths"]
+        return [path / str(name) for name in listed]
+    except (yaml.YAMLError, KeyError, TypeError, UnicodeDecodeError):
+        raise RecordingError(f"{index}: not the metadata of a bag") from None
+
+
 def _files_in(path: Path) -> list[Path]:
     """Return the files of a bag's folder in order, those that its metadata lists first."""
-    index = path / "metadata.yaml"
-    files = sorted([*path.glob("*.mcap"), *path.glob(f"*.mcap{ACTIVE}")], key=_by_number)
-    if index.is_file():
-        try:
-            listed = yaml.safe_load(index.read_text())["rosbag2_bagfile_information"]["relative_file_paths"]
-            named = [path / str(name) for name in listed]
-        except (yaml.YAMLError, KeyError, TypeError, UnicodeDecodeError):
-            raise RecordingError(f"{index}: not the metadata of a bag") from None
+    files, named = sorted([*path.glob("*.mcap"), *path.glob(f"*.mcap{ACTIVE}")], key=_by_number), listed_files(path)
+    if named is not None:
         # A killed recorder leaves files that are unfinished or not listed yet; they come last.
         files = named + [file for file in files if file.name.endswith(ACTIVE) or file.stem.startswith(f"{path.name}_") and file not in named]
     return files

@@ -3,15 +3,17 @@
 
 import sqlite3
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import lru_cache, partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
 from mcap.records import Channel, Schema
 from mcap_ros2.decoder import DecoderFactory
 
 from bearing_sim.messages.cdr import typestore
-from bearing_sim.recording.bag import RecordingError, mcap_files
+from bearing_sim.recording.bag import RecordingError, listed_files, mcap_files, require_listed
 from bearing_sim.recording.mcap_format import Message
 from bearing_sim.recording.mcap_reader import McapReader
 
@@ -42,6 +44,7 @@ class BagReader:
 
     Attributes
     ----------
+    is_foreign : whether it is no MCAP, so that the rosbags library reads it.
     unfinished : after reading: why a file ended early, or ``""``.
 
     Raises
@@ -52,7 +55,8 @@ class BagReader:
 
     def __init__(self, path: str | Path):
         self._path, self.unfinished = Path(path), ""
-        self._files = [] if self._is_foreign() else mcap_files(self._path)
+        self.is_foreign = self._is_foreign()
+        self._files = [] if self.is_foreign else mcap_files(self._path)
 
     def __iter__(self) -> Iterator[BagTopic | tuple[BagTopic, int, bytes]]:
         self.unfinished = ""
@@ -62,13 +66,21 @@ class BagReader:
             yield from self._mcap(file)
 
     def _is_foreign(self) -> bool:
-        return self._path.suffix in (".db3", ".bag") if self._path.is_file() else any(self._path.glob("*.db3"))
+        if self._path.is_file():
+            return self._path.suffix in (".db3", ".bag")
+        if not self._path.is_dir():
+            return False
+        listed = listed_files(self._path) or []
+        if not any(".db3" in file.name for file in listed) and not any(self._path.glob("*.db3")):
+            return False
+        require_listed(self._path, listed)
+        return True
 
     def _by_rosbags(self) -> Iterator[BagTopic | tuple[BagTopic, int, bytes]]:
         from rosbags.highlevel import AnyReader, AnyReaderError
 
         try:
-            with AnyReader([self._path], default_typestore=typestore()) as bag:
+            with _named_as_folder(self._path) as path, AnyReader([path], default_typestore=typestore()) as bag:
                 found = {each.id: BagTopic(each.topic, each.msgtype, partial(_deserialized, bag, each.msgtype)) for each in bag.connections}
                 yield from found.values()
                 for connection, log_ns, data in bag.messages() if found else ():
@@ -94,6 +106,18 @@ class BagReader:
         if not reader.is_finished:
             text = f"{file.name}: ends early ({reader.ends}); the messages before that are used"
             self.unfinished = "; ".join(filter(None, (self.unfinished, text)))
+
+
+@contextmanager
+def _named_as_folder(path: Path) -> Iterator[Path]:
+    """Yield a path of a recording that the library takes for what it is: by its name, a folder that ends in ``.bag`` would be a ROS 1 file."""
+    if path.suffix != ".bag" or not path.is_dir():
+        yield path
+        return
+    with TemporaryDirectory() as folder:
+        link = Path(folder) / "recording"
+        link.symlink_to(path.absolute(), target_is_directory=True)
+        yield link
 
 
 def _deserialized(bag, ros_type: str, data: bytes) -> object:

@@ -12,6 +12,7 @@ from typing import BinaryIO
 from mcap.records import Attachment, Channel, Header, Metadata, Schema
 
 from bearing_sim.recording.bag import ACTIVE, Part, RecordingError, TopicCount, bag_metadata
+from bearing_sim.recording.bag_reader import BagReader, BagTopic
 from bearing_sim.recording.mcap_format import PROFILE, Message
 from bearing_sim.recording.mcap_reader import McapReader
 from bearing_sim.recording.mcap_writer import McapWriter
@@ -21,7 +22,7 @@ _BAG = "rosbag2"
 
 @dataclass
 class Contents:
-    """What an MCAP file contains.
+    """What an MCAP file contains, or a bag in another format.
 
     Attributes
     ----------
@@ -35,6 +36,7 @@ class Contents:
     damaged : chunks and records that could not be read.
     is_finished : whether the file has its proper end.
     ends : why not, or ``""``.
+    has_checksums : whether the format has some, which were verified.
     """
 
     path: Path
@@ -52,6 +54,7 @@ class Contents:
     damaged: int = 0
     is_finished: bool = False
     ends: str = ""
+    has_checksums: bool = True
 
     @property
     def is_sound(self) -> bool:
@@ -80,6 +83,38 @@ def contents(path: str | Path, progress: Callable[[float], None] = lambda done: 
         It cannot be read.
     """
     return _walk(Path(path), progress, lambda record: None)
+
+
+def foreign_contents(path: str | Path) -> Contents | None:
+    """Return what a bag in SQLite or of ROS 1 contains, a file or a folder; None if it is MCAP.
+
+    Raises
+    ------
+    RecordingError
+        There is no such recording, files of it are missing, or nothing of it can be read.
+    """
+    bag, path = BagReader(path), Path(path)
+    if not bag.is_foreign:
+        return None
+    files = [path] if path.is_file() else [file for file in path.iterdir() if file.is_file()]
+    found = Contents(path, sum(file.stat().st_size for file in files), has_checksums=False, library="another program (SQLite or ROS 1)")
+    first, last = math.inf, -math.inf
+    try:
+        for item in bag:
+            if isinstance(item, BagTopic):
+                found.types[item.name] = item.ros_type
+                continue
+            topic, log_ns, _ = item
+            found.messages[topic.name] += 1
+            first, last = min(first, log_ns), max(last, log_ns)
+        found.is_finished = True
+    except RecordingError as error:
+        if not found.types:
+            raise
+        found.ends = str(error)
+    if found.messages:
+        found.first_ns, found.last_ns = int(first), int(last)
+    return found
 
 
 def recover(source: str | Path, target: str | Path, progress: Callable[[float], None] = lambda done: None) -> Contents:

@@ -7,7 +7,9 @@ types have a stamp.
 
 import math
 from collections.abc import Iterator, Mapping
+from itertools import islice
 from pathlib import Path
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -18,6 +20,8 @@ from bearing_sim.messages import topics
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.recording.bag import RecordingError
 from bearing_sim.recording.bag_reader import BagReader, BagTopic
+from bearing_sim.recording.message_fields import numbers, suggestion
+from bearing_sim.scene.errors import did_you_mean
 from bearing_sim.view import colours
 from bearing_sim.view.blueprint import log_view, page
 from bearing_sim.view.plots import LINES, Lines, Overview, bucket_for, describe_range, log_event, plottable, range_path, send_columns, send_thinned
@@ -28,10 +32,17 @@ _NUMBERS = {
 }
 _ARRAYS = {f"std_msgs/msg/{kind}MultiArray" for kind in ("Float64", "Float32", "Int16", "Int32", "Int64")}
 _WRENCHES = {"geometry_msgs/msg/Wrench", "geometry_msgs/msg/WrenchStamped"}
-_SHOWN = {"sensor_msgs/msg/JointState", "sensor_msgs/msg/Temperature", "diagnostic_msgs/msg/DiagnosticArray", "rcl_interfaces/msg/Log"}
-_SHOWN |= _NUMBERS | _ARRAYS | _WRENCHES
+_LOGS = {"diagnostic_msgs/msg/DiagnosticArray", "rcl_interfaces/msg/Log"}
+_PICTURES = {f"sensor_msgs/msg/{kind}" for kind in ("Image", "CompressedImage", "CameraInfo", "PointCloud", "PointCloud2", "LaserScan")}
+_PICTURES |= {"nav_msgs/msg/OccupancyGrid", "visualization_msgs/msg/Marker", "visualization_msgs/msg/MarkerArray", "tf2_msgs/msg/TFMessage"}
 _USUAL = {"speed": "/shaft_speed", "load": "/radial_load", "cage_speed": f"/{topics.MEASURED}", "temperature": "/oil_temperature"}
 _RPM = 30 / math.pi
+_PLOTTED = {  # by role: factor, the value in SI that is zero, and unit of what is drawn
+    "speed": (_RPM, 0.0, "rpm"),
+    "cage_speed": (_RPM, 0.0, "rpm"),
+    "load": (1.0, 0.0, "N"),
+    "temperature": (1.0, topics.ZERO_CELSIUS, "°C"),
+}
 _MOST_LINES = 64  # of one array
 
 
@@ -54,22 +65,40 @@ class BagSeries(NamedTuple):
     duration: float
 
 
-def read_bag_series(path: str | Path, named: Mapping[str, str] | None = None) -> BagSeries:
+class Line(NamedTuple):
+    """Where a recording holds a quantity that has a role.
+
+    Attributes
+    ----------
+    topic : with its slash.
+    fields : path of the number, or of both components of a load; none for a type that is known.
+    scale, offset : value in SI = ``scale`` times the number + ``offset``.
+    """
+
+    topic: str
+    fields: tuple[str, ...] = ()
+    scale: float = 1.0
+    offset: float = 0.0
+
+
+def read_bag_series(path: str | Path, named: Mapping[str, Line] | None = None, constants: Mapping[str, float] = MappingProxyType({})) -> BagSeries:
     """Read what can be shown of a recording.
 
     Parameters
     ----------
     path : a file, or the folder of a bag.
-    named : topic by role (speed, load, cage_speed, temperature), where it differs from the usual name.
+    named : by role (speed, load, cage_speed, temperature), where it is, if not at the topic of the usual name.
+    constants : by role, values in SI that nobody recorded, shown all the time.
 
     Raises
     ------
     RecordingError
-        The file cannot be opened as a recording, lacks a named topic, or holds nothing that can be shown.
+        The file cannot be opened as a recording, lacks a named topic or field, or holds nothing that can be shown.
     """
-    path = Path(path)
-    roles = {(named or {}).get(role) or usual: role for role, usual in _USUAL.items()}
-    roles = {topic if topic.startswith("/") else f"/{topic}": role for topic, role in roles.items()}
+    path, named = Path(path), named or {}
+    by_field = [role for role, line in named.items() if line.fields]
+    roles = {named[role].topic if role in named else usual: role for role, usual in _USUAL.items() if role not in (*by_field, *constants)}
+    missing: dict[str, str] = {}
     rows: dict[tuple[str, str, str], list[tuple[int, float]]] = {}
     events, unread, present, times = [], {}, set(), []
     bag = BagReader(path)
@@ -79,34 +108,62 @@ def read_bag_series(path: str | Path, named: Mapping[str, str] | None = None) ->
             continue
         (topic, ros_type, decode), log_ns, data = found
         times.append(log_ns)
-        if ros_type not in _SHOWN:
+        if ros_type in _PICTURES:
             unread[topic] = f"{topic}: nothing to plot in {ros_type}"
             continue
         try:
             message = decode(data)
             events += _events_in(ros_type, message, log_ns)
-            for *line, value in _numbers_in(ros_type, topic, roles.get(topic, ""), message):
-                rows.setdefault(tuple(line), []).append((log_ns, float(value)))
+            found_here = [*_numbers_in(ros_type, topic, roles.get(topic, ""), message)]
+            for role, line in named.items():
+                if line.topic == topic and line.fields:
+                    found_here += _role_of_fields(role, line, message, missing)
+                elif line.topic == topic and all(key[0] != role for key in found_here):
+                    missing[role] = f"no {role.replace('_', ' ')} in {topic}, a {ros_type}; name a field of it{suggestion(message)}"
+            if not found_here and ros_type not in _LOGS:
+                unread[topic] = f"{topic}: nothing to plot in {ros_type}"
+            for *key, value in found_here:
+                rows.setdefault(tuple(key), []).append((log_ns, float(value)))
         except Exception as error:  # decoders raise many kinds of exceptions
             unread[topic] = f"{topic}: {ros_type} cannot be read ({type(error).__name__}: {error})"
-    _require_named(path, present, named or {})
+    _require_named(path, present, named, missing, {role for role, _, _ in rows})
     if bag.unfinished:
         unread[""] = bag.unfinished
     if not rows:
         raise RecordingError(f"{path}: nothing in it can be shown: {'; '.join(unread.values()) or 'it has no messages'}")
     absent = [f"no {role.replace('_', ' ')} ({topic})" for topic, role in roles.items() if not any(key[0] == role for key in rows)]
     start_ns, duration = min(times), max(max(times) - min(times), 1) * 1e-9
+    for role, value in constants.items():
+        factor, zero, unit = _PLOTTED[role]
+        rows[role, f"{role.replace('_', ' ')} throughout, not measured", unit] = [(at, factor * (value - zero)) for at in (min(times), max(times))]
     origin = sorted((event._replace(time=(event.time - start_ns) * 1e-9) for event in events), key=lambda event: event.time)
-    missing = ["slip, loads, life, powers and pictures of the bearing: they need a model (`bearing-sim replay`)"]
+    model = ["slip, loads, life, powers and pictures of the bearing: they need a model (`bearing-sim replay`)"]
     return BagSeries(
-        {key: _sorted(values, start_ns) for key, values in rows.items()}, origin, [*unread.values(), *absent, *missing], start_ns, duration
+        {key: _sorted(values, start_ns) for key, values in rows.items()}, origin, [*unread.values(), *absent, *model], start_ns, duration
     )
 
 
-def _require_named(path: Path, present: set[str], named: Mapping[str, str]) -> None:
-    for role, topic in named.items():
-        if topic and (topic if topic.startswith("/") else f"/{topic}") not in present:
-            raise RecordingError(f"{path}: no topic {topic} for the {role.replace('_', ' ')}; it has {', '.join(sorted(present)) or 'none'}")
+def _role_of_fields(role: str, line: Line, message, missing: dict[str, str]) -> Iterator[tuple[str, str, str, float]]:
+    """Yield what `_numbers_in` does of the fields that have a role; enter into ``missing`` why there is none."""
+    there = dict(numbers(message))
+    absent = [field for field in line.fields if field not in there]
+    if absent:
+        missing[role] = f"no number {absent[0]!r} in {line.topic}{suggestion(message, absent[0])}"
+        return
+    value = math.hypot(*(line.scale * there[field] + line.offset for field in line.fields)) if role == "load" else None
+    if value is None:
+        value = line.scale * there[line.fields[0]] + line.offset
+    factor, zero, unit = _PLOTTED[role]
+    yield role, f"{line.topic}.{','.join(line.fields)}", unit, factor * (value - zero)
+
+
+def _require_named(path: Path, present: set[str], named: Mapping[str, Line], missing: Mapping[str, str], found: set[str]) -> None:
+    for role, line in named.items():
+        if line.topic not in present:
+            there = f"{did_you_mean(line.topic, present)}; it has {', '.join(sorted(present)) or 'none'}"
+            raise RecordingError(f"{path}: no topic {line.topic} for the {role.replace('_', ' ')}{there}")
+        if role in missing and role not in found:
+            raise RecordingError(f"{path}: {missing[role]}")
 
 
 def _sorted(rows: list[tuple[int, float]], start_ns: int) -> tuple[np.ndarray, np.ndarray]:
@@ -127,11 +184,14 @@ def _numbers_in(ros_type: str, topic: str, role: str, message) -> Iterator[tuple
     elif ros_type == "sensor_msgs/msg/Temperature":
         yield role, topic, "°C", message.temperature
     elif ros_type in _NUMBERS:
-        factor, unit = {"speed": (_RPM, "rpm"), "cage_speed": (_RPM, "rpm"), "load": (1.0, "N"), "temperature": (1.0, "°C")}.get(role, (1.0, "-"))
+        factor, _, unit = _PLOTTED.get(role, (1.0, 0.0, "-"))
         yield role, topic, unit, factor * float(message.data)
     elif ros_type in _ARRAYS:
         for index, value in enumerate(message.data[:_MOST_LINES]):
             yield role, f"{topic} {index}", "-", value
+    elif ros_type not in _LOGS:
+        for path, value in islice(numbers(message), _MOST_LINES):
+            yield "", f"{topic} {path}", "-", value
 
 
 def _events_in(ros_type: str, message, time: int) -> Iterator[Event]:
