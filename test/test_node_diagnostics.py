@@ -69,7 +69,8 @@ class Fleet:
     def __init__(self, folder):
         domain = fresh_domain()
         overrides = "overrides:=['input_limits.stale_after=0.5s']"
-        parameters = ("autostart:=false", "governor:=false", "bearings:=[front, rear]", overrides, "front.serial:=A-17", "publish_rate:=10.0")
+        state = (f"front.state_file:={folder / 'state.json'}", "front.serial:=A-17")
+        parameters = ("autostart:=false", "governor:=false", "bearings:=[front, rear]", overrides, *state, "publish_rate:=10.0")
         self.process = NodeProcess(folder, domain, "--ros-args", *(word for pair in parameters for word in ("-p", pair)), limit=280)
         self.client = Watcher(domain, "front")
         types = {name: topics.INPUTS[name].ros_type for name in ("shaft_speed", "radial_load")}

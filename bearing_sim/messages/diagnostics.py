@@ -76,7 +76,12 @@ SUBJECTS = (
     Subject("scene", "whether the scene is plausible", ("scene.",)),
     Subject("recording", "recordings", ("recording.", "sink."), ("record: ",)),
     Subject("view", "the live view", (), ("view: ",)),
-    Subject("state", "what is kept from run to run", ("state.",)),
+    Subject(
+        "state",
+        "the stored state of the bearing in service",
+        ("state.",),
+        ("serial number", "running [h]", "revolutions", "starts", "state written [s ago]"),
+    ),
 )
 """The subjects of a bearing, in the order of a report.  Names are stable: configurations of other programs refer to them."""
 

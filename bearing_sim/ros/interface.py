@@ -227,7 +227,6 @@ class BearingInterface:
         self._now_ns = node.now_ns
         self._subscriptions: dict[str, Subscription] = {}
         self.component = node.component_of(settings.name)
-        self.hardware_id = settings.serial or "/".join(filter(None, (settings.name, self.scene.bearing.name)))
         self._outputs = Outputs(node, self.scene, self._topic_name, _SIM_TIME_OUTPUT_QOS if follows_clock(node) else STATE_QOS, settings.frame)
         self._publish_residuals_soon = DeferredCall(node, self._publish_residuals)
         self._services = [
@@ -244,6 +243,11 @@ class BearingInterface:
         self._log(f"scene {self.scene.name!r}, bearing {self.scene.bearing.name!r}, level {self.scene.level!r}: warming up")
         if cheaper := hint(self.scene):
             self._log(cheaper)
+
+    @property
+    def hardware_id(self) -> str:
+        """The serial number of the bearing in service; the bearing's name if there is none."""
+        return self.settings.serial or "/".join(filter(None, (self.settings.name, self.scene.bearing.name)))
 
     @property
     def is_warm(self) -> bool:

@@ -308,7 +308,9 @@ class Model:
         values["inputs unknown [s]"] = self.gate.coverage.unknown_until(now)
         values |= self.monitor.values | self.residual.values(now) | self.sinks.values | self._values()
         values |= self.keeper.values if self.keeper is not None else {}
-        return Condition(self._events(now), values, remarks(self.gate, self.solver, self._running_level) | self.sinks.remarks)
+        said = remarks(self.gate, self.solver, self._running_level) | self.sinks.remarks
+        said["state"] = "nothing is remembered" if self.keeper is None else str(self.keeper.path)
+        return Condition(self._events(now), values, said)
 
     def record_diagnostics(self, condition: Condition, now_ns: int) -> None:
         """Write a diagnostics report to the recorders."""
