@@ -12,11 +12,14 @@ from rerun_files import column
 from synthetic_run import synthetic_block
 
 from bearing_sim.cli import view
+from bearing_sim.messages.cdr import message_type, typestore
 from bearing_sim.messages.events import Level
+from bearing_sim.messages.topics import outputs
 from bearing_sim.recording.bag import RecordingError
 from bearing_sim.recording.writer import McapFile, McapSink
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.view.bag import BagSeries, Line, read_bag_series, write_bag_view
+from bearing_sim.view.clouds import CloudCourse
 from bearing_sim.view.screenshot import HOW_TO_GET_VULKAN
 from bearing_sim.view.worker import RerunFile
 
@@ -203,3 +206,58 @@ def test_a_picture_of_a_bag_needs_no_bearing(bag, tmp_path):
         pytest.skip(f"needs a Vulkan driver: {HOW_TO_GET_VULKAN}")
     assert result.exit_code == 0, result.output
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.fixture
+def of_the_node(tmp_path):
+    """A bag of some topics of a node, as ros2 bag records it: without our metadata.  Loads rise from roller to roller."""
+    block = synthetic_block(SCENE, 0.02 * np.arange(30))
+    block["inner_load"] = 100.0 * np.arange(18)
+    block["roller_angle"] = np.radians(20.0) * np.arange(18)
+    table = outputs(SCENE)
+    with McapFile(tmp_path / "node.mcap") as bag:
+        for sample in block:
+            now = START + round(float(sample["time"]) * SECOND)
+            for name in ("rollers", "bearing_state", "characteristic_frequencies"):
+                bag.write(f"/{name}", table[name].ros_type, now, table[name].message(now, sample))
+    return tmp_path / "node.mcap", block
+
+
+def test_a_cloud_of_rollers_is_drawn_in_space_with_a_colour_for_its_load_and_named_numbers_have_their_unit(of_the_node, tmp_path):
+    path, block = of_the_node
+    found = read_bag_series(path)
+    assert found.clouds["/rollers"].coloured_by == "inner_load" and len(found.clouds["/rollers"].clouds) == 30
+    units = {line: unit for _, line, unit in found.series}
+    assert (
+        units["/bearing_state rating_life"] == "h" and units["/bearing_state cage_slip"] == "-" and units["/characteristic_frequencies cage"] == "Hz"
+    )
+    np.testing.assert_allclose(found.series["", "/bearing_state damage", "-"][1], block["damage"])
+    result = run(path, "-o", tmp_path / "run.rrd", "--no-open")
+    assert result.exit_code == 0 and "/rollers: nothing" not in result.output, result.output
+    chunks = [chunk.to_record_batch() for chunk in RrdReader(str(tmp_path / "run.rrd")).stream() if chunk.entity_path == "/bag/rollers"]
+    drawn = next(chunk for chunk in chunks if "Points3D:positions" in chunk.schema.names)
+    positions = np.array(drawn.column("Points3D:positions")[4].as_py())
+    expected = block["roller_radius"][4, :, None] * np.stack(
+        (np.zeros(18), np.cos(block["roller_angle"][4]), np.sin(block["roller_angle"][4])), axis=1
+    )
+    np.testing.assert_allclose(positions, expected, atol=1e-7)
+    coloured = drawn.column("Points3D:colors")[4].as_py()
+    assert len(coloured) == 18 and len(set(coloured)) == 18
+
+
+def test_many_clouds_are_thinned_out_evenly_and_one_that_is_none_is_named(of_the_node, tmp_path):
+    course, table = CloudCourse(), outputs(SCENE)
+    store = typestore()
+    cloud = store.deserialize_cdr(
+        message_type(table["rollers"].ros_type).serialize(table["rollers"].message(0, of_the_node[1][0])), table["rollers"].ros_type
+    )
+    for k in range(5000):
+        course.take(cloud, k)
+    kept = np.array([one.log_ns for one in course.clouds])
+    assert len(kept) < 2000 and set(np.diff(kept)) == {4}
+    cloud.fields = cloud.fields[3:]
+    with pytest.raises(ValueError, match="without the fields x, y and z; it has inner_load"):
+        CloudCourse().take(cloud, 0)
+    cloud.data = cloud.data[:40]
+    with pytest.raises(ValueError, match="with 40 bytes of data"):
+        CloudCourse().take(cloud, 0)

@@ -20,6 +20,7 @@ from rosbags.interfaces import Nodetype
 from rosbags.typesys import Stores, get_typestore
 
 from bearing_sim.messages import topics
+from bearing_sim.messages.point_cloud import NUMPY_TYPES
 
 ENCAPSULATION = 4  # [byte] before the fields: two that name the representation, two of options
 STAMP_FIELDS = ("header.stamp.sec", "header.stamp.nanosec")
@@ -29,8 +30,6 @@ _NUMBERS = {"bool": "?", "byte": "u1", "char": "u1", "float32": "f4", "float64":
 }
 """NumPy type of each kind of number of message definitions."""
 POINT_CLOUD = "sensor_msgs/msg/PointCloud2"
-_POINT_TYPES = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
-"""NumPy types by the numbers of sensor_msgs/PointField."""
 _NOT_PAYLOAD = {"header", "layout"}  # fields whose numbers describe the message
 
 
@@ -173,8 +172,8 @@ class PointCloudLayout(CdrLayout):
         points = []
         for name in [field for path, field in described.items() if path.startswith("fields[") and path.endswith(".name")]:
             offset, kind, count = (self._number(described[name.path.replace(".name", f".{part}")]) for part in ("offset", "datatype", "count"))
-            dtype = np.dtype(order + _POINT_TYPES.get(kind, "u1"))
-            if kind not in _POINT_TYPES or offset + count * dtype.itemsize > step:
+            dtype = np.dtype(order + NUMPY_TYPES.get(kind, "u1"))
+            if kind not in NUMPY_TYPES or offset + count * dtype.itemsize > step:
                 continue
             text = data[name.begin + 4 : name.end - 1].decode(errors="replace")
             begins = (whole.begin + row * row_step + point * step + offset for row in range(rows) for point in range(width))

@@ -10,7 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-_FLOAT32 = 7  # sensor_msgs/PointField
+NUMPY_TYPES = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
+"""NumPy types by the numbers of sensor_msgs/PointField."""
+_FLOAT32 = 7  # of sensor_msgs/PointField
 
 
 class RollerField(NamedTuple):
@@ -102,3 +104,26 @@ def point_cloud(header: dict, fields: tuple[RollerField, ...], samples: np.ndarr
         "data": found[:-1],
         "is_dense": bool(found[-1]),
     }
+
+
+def points_of(message) -> np.ndarray:
+    """Return the points of any sensor_msgs/PointCloud2, deserialised, as records with the names of its fields, shape (points,).
+
+    Raises
+    ------
+    ValueError
+        The data are shorter than the cloud says, or a field lies outside of the points.
+    """
+    order = ">" if message.is_bigendian else "<"
+    known = [field for field in message.fields if field.datatype in NUMPY_TYPES and field.name]
+    layout = {
+        "names": [field.name for field in known],
+        "offsets": [field.offset for field in known],
+        "formats": [(order + NUMPY_TYPES[field.datatype], (field.count,) if field.count != 1 else ()) for field in known],
+        "itemsize": message.point_step,
+    }
+    data = np.frombuffer(bytes(message.data), np.uint8)  # decoders have arrays, lists or bytes
+    if len(data) < message.height * message.row_step or message.row_step < message.width * message.point_step:
+        raise ValueError(f"a point cloud of {message.height} x {message.width} points of {message.point_step} bytes with {len(data)} bytes of data")
+    rows = data[: message.height * message.row_step].reshape(message.height, -1)[:, : message.width * message.point_step]
+    return np.ascontiguousarray(rows).view(np.dtype(layout)).reshape(-1)

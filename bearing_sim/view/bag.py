@@ -17,6 +17,7 @@ import rerun as rr
 import rerun.blueprint as rrb
 
 from bearing_sim.messages import topics
+from bearing_sim.messages.cdr import POINT_CLOUD
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.recording.bag import RecordingError
 from bearing_sim.recording.bag_reader import BagReader, BagTopic
@@ -24,6 +25,7 @@ from bearing_sim.recording.message_fields import numbers, suggestion
 from bearing_sim.scene.errors import did_you_mean
 from bearing_sim.view import colours
 from bearing_sim.view.blueprint import log_view, page
+from bearing_sim.view.clouds import CloudCourse, cloud_view, write_clouds
 from bearing_sim.view.plots import LINES, Lines, Overview, bucket_for, describe_range, log_event, plottable, range_path, send_columns, send_thinned
 from bearing_sim.view.run_view import APPLICATION
 
@@ -33,7 +35,7 @@ _NUMBERS = {
 _ARRAYS = {f"std_msgs/msg/{kind}MultiArray" for kind in ("Float64", "Float32", "Int16", "Int32", "Int64")}
 _WRENCHES = {"geometry_msgs/msg/Wrench", "geometry_msgs/msg/WrenchStamped"}
 _LOGS = {"diagnostic_msgs/msg/DiagnosticArray", "rcl_interfaces/msg/Log"}
-_PICTURES = {f"sensor_msgs/msg/{kind}" for kind in ("Image", "CompressedImage", "CameraInfo", "PointCloud", "PointCloud2", "LaserScan")}
+_PICTURES = {f"sensor_msgs/msg/{kind}" for kind in ("Image", "CompressedImage", "CameraInfo", "PointCloud", "LaserScan")}
 _PICTURES |= {"nav_msgs/msg/OccupancyGrid", "visualization_msgs/msg/Marker", "visualization_msgs/msg/MarkerArray", "tf2_msgs/msg/TFMessage"}
 _USUAL = {"speed": "/shaft_speed", "load": "/radial_load", "cage_speed": f"/{topics.MEASURED}", "temperature": "/oil_temperature"}
 _RPM = 30 / math.pi
@@ -56,6 +58,7 @@ class BagSeries(NamedTuple):
     left_out : lines of text that name the topics that are not shown, with the reason.
     start_ns : time 0 [ns since the epoch].
     duration : of the recording [s].
+    clouds : point clouds by topic.
     """
 
     series: dict[tuple[str, str, str], tuple[np.ndarray, np.ndarray]]
@@ -63,6 +66,7 @@ class BagSeries(NamedTuple):
     left_out: list[str]
     start_ns: int
     duration: float
+    clouds: Mapping[str, CloudCourse] = MappingProxyType({})
 
 
 class Line(NamedTuple):
@@ -100,7 +104,7 @@ def read_bag_series(path: str | Path, named: Mapping[str, Line] | None = None, c
     roles = {named[role].topic if role in named else usual: role for role, usual in _USUAL.items() if role not in (*by_field, *constants)}
     missing: dict[str, str] = {}
     rows: dict[tuple[str, str, str], list[tuple[int, float]]] = {}
-    events, unread, present, times = [], {}, set(), []
+    events, unread, present, times, clouds = [], {}, set(), [], {}
     bag = BagReader(path)
     for found in bag:
         if isinstance(found, BagTopic):
@@ -114,13 +118,15 @@ def read_bag_series(path: str | Path, named: Mapping[str, Line] | None = None, c
         try:
             message = decode(data)
             events += _events_in(ros_type, message, log_ns)
+            if ros_type == POINT_CLOUD:
+                clouds.setdefault(topic, CloudCourse()).take(message, log_ns)
             found_here = [*_numbers_in(ros_type, topic, roles.get(topic, ""), message)]
             for role, line in named.items():
                 if line.topic == topic and line.fields:
                     found_here += _role_of_fields(role, line, message, missing)
                 elif line.topic == topic and all(key[0] != role for key in found_here):
                     missing[role] = f"no {role.replace('_', ' ')} in {topic}, a {ros_type}; name a field of it{suggestion(message)}"
-            if not found_here and ros_type not in _LOGS:
+            if not found_here and ros_type not in _LOGS and ros_type != POINT_CLOUD:
                 unread[topic] = f"{topic}: nothing to plot in {ros_type}"
             for *key, value in found_here:
                 rows.setdefault(tuple(key), []).append((log_ns, float(value)))
@@ -129,7 +135,8 @@ def read_bag_series(path: str | Path, named: Mapping[str, Line] | None = None, c
     _require_named(path, present, named, missing, {role for role, _, _ in rows})
     if bag.unfinished:
         unread[""] = bag.unfinished
-    if not rows:
+    clouds = {topic: course for topic, course in clouds.items() if course.clouds}
+    if not rows and not clouds:
         raise RecordingError(f"{path}: nothing in it can be shown: {'; '.join(unread.values()) or 'it has no messages'}")
     absent = [f"no {role.replace('_', ' ')} ({topic})" for topic, role in roles.items() if not any(key[0] == role for key in rows)]
     start_ns, duration = min(times), max(max(times) - min(times), 1) * 1e-9
@@ -138,9 +145,8 @@ def read_bag_series(path: str | Path, named: Mapping[str, Line] | None = None, c
         rows[role, f"{role.replace('_', ' ')} throughout, not measured", unit] = [(at, factor * (value - zero)) for at in (min(times), max(times))]
     origin = sorted((event._replace(time=(event.time - start_ns) * 1e-9) for event in events), key=lambda event: event.time)
     model = ["slip, loads, life, powers and pictures of the bearing: they need a model (`bearing-sim replay`)"]
-    return BagSeries(
-        {key: _sorted(values, start_ns) for key, values in rows.items()}, origin, [*unread.values(), *absent, *model], start_ns, duration
-    )
+    series = {key: _sorted(values, start_ns) for key, values in rows.items()}
+    return BagSeries(series, origin, [*unread.values(), *absent, *model], start_ns, duration, clouds)
 
 
 def _role_of_fields(role: str, line: Line, message, missing: dict[str, str]) -> Iterator[tuple[str, str, str, float]]:
@@ -178,6 +184,10 @@ def _numbers_in(ros_type: str, topic: str, role: str, message) -> Iterator[tuple
         for name, velocity in zip(message.name, message.velocity):
             own = role or {topics.SHAFT_JOINT: "speed", topics.CAGE_JOINT: "cage_speed"}.get(name, "")
             yield own, f"{topic} {name}", "rpm", _RPM * velocity
+        if not len(message.velocity):  # then positions are what the message is about, with or without a unit behind the name
+            for text, position in zip(message.name, message.position):
+                name, _, unit = text.removesuffix("]").partition(" [")
+                yield "", f"{topic} {name}", unit or "-", position
     elif ros_type in _WRENCHES:
         force = getattr(message, "wrench", message).force
         yield role, f"{topic} radial force", "N", math.hypot(force.y, force.z)
@@ -189,7 +199,7 @@ def _numbers_in(ros_type: str, topic: str, role: str, message) -> Iterator[tuple
     elif ros_type in _ARRAYS:
         for index, value in enumerate(message.data[:_MOST_LINES]):
             yield role, f"{topic} {index}", "-", value
-    elif ros_type not in _LOGS:
+    elif ros_type not in _LOGS and ros_type != POINT_CLOUD:
         for path, value in islice(numbers(message), _MOST_LINES):
             yield "", f"{topic} {path}", "-", value
 
@@ -233,9 +243,13 @@ def write_bag_view(path: str | Path, name: str, found: BagSeries) -> None:
         paths.append(entity)
     for event in found.events:
         log_event(recording, event)
+    scenes = []
+    for topic, course in found.clouds.items():
+        write_clouds(recording, _entity(topic), course, found.start_ns)
+        scenes.append(cloud_view(topic, _entity(topic), course))
     text = "\n".join([f"## {name}", "", "Not written by bearing_sim. Not shown:", "", *(f"- {line}" for line in found.left_out)])
     recording.log("/about", rr.TextDocument(text, media_type=rr.MediaType.MARKDOWN), static=True)
-    recording.send_blueprint(_blueprint(plots))
+    recording.send_blueprint(_blueprint(plots, scenes))
     recording.flush(timeout_sec=30.0)
     recording.disconnect()
 
@@ -259,7 +273,7 @@ def _write_line(recording: rr.RecordingStream, entity: str, style, times: np.nda
         send_thinned(recording, thinned)
 
 
-def _blueprint(plots: dict[str, list[str]]) -> rrb.Blueprint:
+def _blueprint(plots: dict[str, list[str]], scenes: list[rrb.Spatial3DView]) -> rrb.Blueprint:
     axis = rrb.TimeAxis(link=rrb.components.LinkAxis.LinkToGlobal)
     known = [title for _, title in _ROLES.values() if title in plots]
     titles = list(dict.fromkeys([*known, *plots]))
@@ -267,7 +281,7 @@ def _blueprint(plots: dict[str, list[str]]) -> rrb.Blueprint:
     shown, hidden = views[:_MOST_PLOTS], views[_MOST_PLOTS:]
     columns = 1 if len(shown) <= 4 else 2
     rows = math.ceil(len(shown) / columns)
-    grid = rrb.Horizontal(*(rrb.Vertical(*shown[k * rows : (k + 1) * rows]) for k in range(columns)))
+    grid = rrb.Horizontal(*(rrb.Vertical(*shown[k * rows : (k + 1) * rows]) for k in range(columns) if shown))
     about = rrb.TextDocumentView(origin="/about", name="What is not shown")
-    beside = rrb.Vertical(about, *([rrb.Tabs(*hidden)] if hidden else []), log_view())
+    beside = rrb.Vertical(*([rrb.Tabs(*scenes)] if scenes else []), about, *([rrb.Tabs(*hidden)] if hidden else []), log_view())
     return page(rrb.Horizontal(grid, beside, column_shares=[0.68, 0.32]))
