@@ -169,7 +169,7 @@ def begin_at_temperatures(simulation: "Simulation", inputs: Inputs, nodes: np.nd
     simulation.reset(inputs, nodes)
     uncorrected = nodes.copy()
     uncorrected[[NODE_OBSERVABLES.index(name) for name in RING_TEMPERATURES]] = rings
-    if (uncorrected != nodes).any():
+    if np.isfinite(rings).all() and (uncorrected != nodes).any():
         simulation.thermal.uncorrected = uncorrected
         simulation.set_temperatures(nodes, held=False)
 

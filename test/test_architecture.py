@@ -44,7 +44,7 @@ ROOMS = {
     ),
     "cli": (
         "click numpy pydantic_core rich",
-        "extras scene numerics model levels simulation messages recording inputs runtime view sweep fleet studies",
+        "extras scene numerics model levels simulation messages recording stored_state inputs runtime view sweep fleet studies",
     ),
     "ros": (
         "click launch launch_ros numpy rcl_interfaces rclpy rich rosgraph_msgs std_srvs",

@@ -36,6 +36,12 @@ _STUDIES = {
     "catalog": Entry("study:catalog_rules", "Rules for the inside of catalogue bearings, and their errors."),
     "extremes": Entry("study:extremes", "Map which scenes finish, are step-limited, are refused or fail."),
 }
+_STATES = {
+    "show": Entry("state:show", "Show the stored state of a bearing: life used, hours, starts, regimes."),
+    "export": Entry("state:export", "Write a stored state as JSON, or its totals by day as a table."),
+    "merge": Entry("state:merge", "Fill gaps of a stored state by recordings, each instant once."),
+    "adopt": Entry("state:adopt", "Let a stored state belong to a corrected scene."),
+}
 _COMMANDS = {
     "run": Entry("run:run", "Run a scene under constant conditions."),
     "replay": Entry("replay:replay", "Run the model on a recorded log of shaft speed and radial load."),
@@ -61,6 +67,7 @@ _COMMANDS = {
     "recover": Entry("recordings:recover", "Recover the recording of a killed writer."),
     "to-csv": Entry("recordings:to_csv", "Export a recording as a CSV table."),
     "to-parquet": Entry("recordings:to_parquet", "Export a recording as a Parquet table."),
+    "state": Entry("main:state", "Show, export and fill the stored states of bearings in service."),
     "view": Entry("view:view", "Show a recording in rerun."),
     "mission": Entry("logs:mission", "Write the bundled synthetic mission as an MCAP log."),
     "scenes": Entry("bearings:scenes", "List the bundled scenes, bearings and oils."),
@@ -124,3 +131,8 @@ def bench():
 @click.group("study", cls=LazyGroup, entries=_STUDIES, heading="Studies")
 def study():
     """Run a study of the model itself."""
+
+
+@click.group("state", cls=LazyGroup, entries=_STATES, heading="Commands")
+def state():
+    """What is remembered of bearings in service: life used, hours, starts, what was learned (parameter serial of the node)."""

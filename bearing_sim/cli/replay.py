@@ -43,6 +43,13 @@ _ROUNDED = 5.0  # [K] to which the oil temperatures of a table are
 @click.option("-o", "--out", type=click.Path(path_type=Path), metavar="OUT.mcap", help="Record inputs and outputs [default: no recording].")
 @click.option("--rrd", type=click.Path(path_type=Path), metavar="RUN.rrd", help="Also write a view for rerun.")
 @click.option("--rate", type=click.FloatRange(min=0, min_open=True), metavar="HZ", help="Outputs per simulated second [default: one per stamp].")
+@click.option(
+    "--state-file",
+    type=click.Path(path_type=Path),
+    metavar="STATE.json",
+    help="Count the log for the bearing whose state is stored there, but no instant twice; without it no state is touched.",
+)
+@click.option("--serial", default="", metavar="NUMBER", help="Serial number of that bearing; a state of another one is refused.")
 @log_options
 @json_option
 def replay(
@@ -53,6 +60,8 @@ def replay(
     out,
     rrd,
     rate,
+    state_file,
+    serial,
     joint,
     stamps,
     longest_gap,
@@ -70,8 +79,10 @@ def replay(
     """
     if from_recording == bool(scene_name):
         raise UsageError("give either --scene, or --from-recording for a recording made by bearing-sim")
+    if serial and state_file is None:
+        raise UsageError("--serial names the bearing of a state: give --state-file as well")
     if from_recording:
-        if len(logs) > 1 or overrides or rate or rrd or any(channels.values()):
+        if len(logs) > 1 or overrides or rate or rrd or state_file or any(channels.values()):
             raise UsageError("--from-recording takes exactly one recording and reproduces it as it was; it can be combined with -o and --json only")
         reproduce(logs[0], out, as_json)
         return
@@ -83,6 +94,8 @@ def replay(
     from bearing_sim.runtime.replay import replay
     from bearing_sim.scene.loader import SceneError, load_scene
     from bearing_sim.simulation import Inputs, IntegrationError, Simulation
+    from bearing_sim.stored_state.keeper import RECORD, StateKeeper
+    from bearing_sim.stored_state.state_file import checked_serial
 
     names, constants = channel_sources(**channels)
     with as_usage_error(SceneError, InputLogError), as_file_error(), exit_on_sigterm():
@@ -99,9 +112,13 @@ def replay(
         seconds = course.end * 1e-9
         with ExitStack() as stack:
             recording, names_of = None, [log.name for log in logs]
+            keeper = None if state_file is None else StateKeeper(state_file, scene, checked_serial(serial), once=True)
+            if keeper is not None:
+                stack.callback(keeper.close)
             if out is not None:
                 announce_replacement(out)
                 metadata = {"bearing_sim_replay": {"log": " ".join(names_of)}, COMMAND: {"command": command_line()}}
+                metadata |= {RECORD: keeper.record} if keeper is not None else {}
                 recording = stack.enter_context(McapSink(out, scene, course.start_ns, metadata, replace=True))
             watchers = []
             if rrd is not None:
@@ -118,11 +135,16 @@ def replay(
                     warm.advance_profile(np.array([1e-6]), np.array([warm.inputs]))
             start_up = time.perf_counter() - started
             progress = stack.enter_context(progress_bar(f"replaying {', '.join(names_of)}", seconds))
-            result = replay(scene, course, recording, watchers, rate, progress, **choice)
+            result = replay(scene, course, recording, watchers, rate, progress, keeper=keeper, **choice)
+    for event in keeper.news(0.0) + keeper.events(0.0) if keeper is not None else []:
+        click.echo(f"{event.level.name.lower().replace('ok', 'note')}: {event.text}", err=True)
     if as_json:
-        print_json({**_report(result, course, recorded, scene, out), **warnings_report(scene, result.warnings), "start_up_seconds": start_up})
+        stored = {} if keeper is None else {"state": keeper.summary()}
+        print_json(
+            {**_report(result, course, recorded, scene, out), **stored, **warnings_report(scene, result.warnings), "start_up_seconds": start_up}
+        )
     else:
-        _print(result, course, recorded, scene, out)
+        _print(result, course, recorded, scene, out, keeper)
     warn_of_limits(scene, result.warnings)
     if result.given_up:
         raise FailedRun(result.given_up)
@@ -214,7 +236,7 @@ def _report(result, course, recorded, scene, out) -> dict:
     }
 
 
-def _print(result, course, recorded, scene, out) -> None:
+def _print(result, course, recorded, scene, out, keeper) -> None:
     from bearing_sim.inputs.log import summary_lines
     from bearing_sim.model.plausibility import minimum_load
 
@@ -245,6 +267,10 @@ def _print(result, course, recorded, scene, out) -> None:
         ("events", ", ".join(f"{count} x {code}" for code, count in sorted(result.events.items())) or "none"),
         ("recording", str(out or "none")),
     ]
+    if keeper is not None:
+        rows.append(
+            ("stored state", f"{100.0 * keeper.used:.6g} % of life used, {keeper.state.totals.running_seconds / 3600.0:.6g} h: {keeper.path}")
+        )
     print_table(f"replay of {recorded.path.name} on {scene.name}", rows)
 
 
@@ -270,6 +296,7 @@ def reproduce(path: Path, out: Path | None, as_json: bool) -> None:
     from bearing_sim.recording.reader import Recording
     from bearing_sim.recording.writer import McapSink
     from bearing_sim.runtime import reproduction
+    from bearing_sim.stored_state.keeper import RECORD
 
     with as_usage_error(RecordingError, ValueError), as_file_error(), exit_on_sigterm(), ExitStack() as stack:
         recording = Recording(path)
@@ -279,6 +306,7 @@ def reproduce(path: Path, out: Path | None, as_json: bool) -> None:
                 raise UsageError(f"{out} is the input recording; choose another file")
             announce_replacement(out)
             origin = {"bearing_sim_replay": {"log": path.name, "from_recording": "true"}}
+            origin |= {name: record for name, record in recording.records.items() if name == RECORD}
             sink = stack.enter_context(McapSink(out, recording.scene, recording.start_ns, origin, replace=True))
         announce_compilation()
         progress = stack.enter_context(progress_bar(f"reproducing {path.name}", recording.duration))

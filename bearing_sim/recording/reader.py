@@ -69,6 +69,7 @@ class Recording:
     ----------
     files : the files of the recording, in order.
     metadata : what its writer said about the run (see `bearing_sim.recording.writer.METADATA`).
+    records : all its metadata records by name, of the first file that has them.
     command : that made the recording; empty if it was not made on the command line.
     scene : what was simulated.
     start_ns : wall time of sample time 0 [ns since the epoch].
@@ -89,6 +90,7 @@ class Recording:
         parts = [self._index_of(file) for file in self.files]
         metadata = next((part.metadata[METADATA] for part in reversed(parts) if METADATA in part.metadata), None)
         self.metadata: dict[str, str] = metadata or {}
+        self.records: dict[str, dict[str, str]] = {name: record for part in reversed(parts) for name, record in part.metadata.items()}
         self.command = next((part.metadata[COMMAND].get("command", "") for part in parts if COMMAND in part.metadata), "")
         listing = ", ".join(sorted(set().union(*(part.present for part in parts)))) or "no topics"
         if metadata is None:

@@ -25,12 +25,13 @@ from bearing_sim.monitoring.monitor import Monitor
 from bearing_sim.monitoring.residual import ResidualMonitor
 from bearing_sim.runtime.governor import Governor
 from bearing_sim.runtime.pacing import LONGEST_TICK, Decimator, OutputCount, Pacer, WallClock, tick_schedule
+from bearing_sim.runtime.remembering import note, recall, warm_start
 from bearing_sim.runtime.sink_registry import Sink, SinkRegistry
 from bearing_sim.runtime.solver import Solver, WallTimeSolver
 from bearing_sim.runtime.solver_threads import SolverThreads
 from bearing_sim.scene.fidelity import lower_levels
 from bearing_sim.scene.scene import Scene, Thresholds
-from bearing_sim.simulation import Inputs, Simulation, begin_at_temperatures
+from bearing_sim.simulation import Simulation
 from bearing_sim.stored_state.keeper import StateKeeper
 
 _REPLACED_WITHIN = 10.0  # [s] for the reset of a model that is held
@@ -71,24 +72,6 @@ def governor_of(simulation: Simulation) -> Governor | None:
     scene = dataclasses.replace(simulation.scene, integration=dataclasses.replace(simulation.scene.integration, fixed_step=None))
     lower = [warmed_up(dataclasses.replace(scene, level=level)) for level in lower_levels(scene)]
     return Governor([simulation, *lower]) if lower else None
-
-
-def warm_start(keeper: StateKeeper, now_ns: Callable[[], int]) -> Callable[[Simulation, Inputs], None]:
-    """Return the function that begins a run as warm as its bearing's state remembers it, see `bearing_sim.runtime.solver.Solver`.
-
-    Parameters
-    ----------
-    now_ns : clock [ns since the epoch]; temperatures of long ago are not used.
-    """
-
-    def begin(simulation: Simulation, inputs: Inputs) -> None:
-        thermal = keeper.thermal(now_ns())
-        if thermal is None or simulation.thermal is None:
-            simulation.reset(inputs)
-        else:
-            begin_at_temperatures(simulation, inputs, np.array(thermal.nodes), np.array(thermal.rings))
-
-    return begin
 
 
 class Model:
@@ -212,13 +195,7 @@ class Model:
         if self.keeper is None:
             return
         self.keeper.restart()
-        learned = self.keeper.state.learned
-        try:
-            self.residual.restore(learned.get("cage_slip", {}))
-            self.monitor.temperatures.restore(learned.get("temperatures", {}))
-        except (KeyError, TypeError, ValueError):  # of another version of the monitors
-            self.residual.restart()
-            self.monitor.temperatures.restore({})
+        recall(self.keeper, self.residual, self.monitor)
 
     def _keep_state(self) -> None:
         """Write the bearing's state from time to time."""
@@ -231,8 +208,7 @@ class Model:
     def _note_condition(self) -> None:
         """Put temperatures and what the monitors have learned into the bearing's state."""
         if self._counted is not None:
-            self.keeper.note_thermal(self._counted, self.stamp(float(self._counted["time"])))
-        self.keeper.state.learned = {"cage_slip": self.residual.learned, "temperatures": self.monitor.temperatures.learned}
+            note(self.keeper, self.residual, self.monitor, self._counted, self.stamp(float(self._counted["time"])))
 
     @property
     def _published_until(self) -> float:

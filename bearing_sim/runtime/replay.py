@@ -6,6 +6,7 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
@@ -20,8 +21,10 @@ from bearing_sim.monitoring.limits import LimitsMonitor
 from bearing_sim.monitoring.monitor import Monitor
 from bearing_sim.monitoring.residual import Comparison, ResidualMonitor
 from bearing_sim.runtime.advance_segment import Begun, Output, ProfileRun
+from bearing_sim.runtime.remembering import note, recall, warm_start
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Inputs, Simulation
+from bearing_sim.stored_state.keeper import StateKeeper
 
 _REPORT_EVERY = 1.0  # [s] of simulated time between diagnostics
 _PROGRESS_EVERY = 50  # items
@@ -127,6 +130,7 @@ def replay(
     rate: float | None = None,
     progress: Callable[[float], None] = lambda seconds: None,
     model: Callable[[Scene, Inputs], Simulation] = Simulation,
+    keeper: StateKeeper | None = None,
 ) -> Replay:
     """Run the model over an input profile and write inputs, outputs and events.
 
@@ -139,19 +143,30 @@ def replay(
     rate : outputs per simulated second [Hz]; by default one at each stamp of speed or load.
     progress : called repeatedly with the time reached [s].
     model : makes the simulation.
+    keeper : of the state of the bearing whose log it is; times that the state contains are not counted again.  None counts nothing.
 
     Returns
     -------
     The result.  A stretch that cannot be integrated is skipped, reported by an event and counted, and the next one is tried from the last
     good state; after ten in a row the run is given up.
     """
-    return _Run(scene, profile, recording, tuple(watchers), rate, progress).run(model)
+    return _Run(scene, profile, recording, tuple(watchers), rate, progress, keeper).run(model)
 
 
 class _Run:
     """One replay under way."""
 
-    def __init__(self, scene: Scene, profile: InputProfile, recording, watchers: tuple, rate: float | None, progress: Callable):
+    def __init__(
+        self,
+        scene: Scene,
+        profile: InputProfile,
+        recording,
+        watchers: tuple,
+        rate: float | None,
+        progress: Callable,
+        keeper: StateKeeper | None,
+    ):
+        self._keeper = keeper
         self._scene, self._profile, self._watchers, self._progress, self._rate = scene, profile, watchers, progress, rate
         self._recordings = (recording,) if recording is not None else ()
         self._result = Replay(profile.log_seconds)
@@ -164,11 +179,14 @@ class _Run:
         self._comparison = Comparison(ResidualMonitor(scene.thresholds.residual, scene.thresholds.slip_from_speed))
         for time_, speed in profile.measured:
             self._comparison.measure(time_, speed)
+        if keeper is not None:
+            keeper.restart()
+            recall(keeper, self._comparison.residual, self._monitor)
 
     def run(self, model: Callable[[Scene, Inputs], Simulation]) -> Replay:
         began, began_cpu = time.perf_counter(), time.process_time()
         result, outputs_only = self._result, not self._recordings and not self._watchers
-        run = ProfileRun(lambda inputs: model(self._scene, inputs), outputs_only)
+        run = ProfileRun(partial(self._begin, model), outputs_only)
         segment = self._profile.segment(self._rate, self._scene.lubricant.temperature)
         for k, item in enumerate(run.advance_segment(segment)):
             if isinstance(item, Output):
@@ -180,6 +198,8 @@ class _Run:
                 if isinstance(item, Event):
                     self._write_event(item)
                 elif isinstance(item, Begun):
+                    if self._keeper is not None:
+                        self._keeper.count(item.block, self._profile.start_ns, np.zeros(len(item.block)))
                     for recording in self._recordings:
                         recording.write_start(item.block)
                 else:
@@ -202,6 +222,22 @@ class _Run:
         result.wall_seconds, result.cpu_seconds = time.perf_counter() - began, time.process_time() - began_cpu
         return result
 
+    def _begin(self, model: Callable[[Scene, Inputs], Simulation], inputs: Inputs) -> Simulation:
+        simulation = model(self._scene, inputs)
+        if self._keeper is not None:
+            warm_start(self._keeper, lambda: self._profile.start_ns)(simulation, inputs)
+        return simulation
+
+    def _count(self, output: Output) -> None:
+        """Count outputs for the bearing's state, and have it written from time to time."""
+        keeper, start_ns = self._keeper, self._profile.start_ns
+        keeper.count(output.block, start_ns, output.weights)
+        if keeper.is_due:
+            newest = output.block[-1]
+            note(keeper, self._comparison.residual, self._monitor, newest, start_ns + round(1e9 * float(newest["time"])))
+            keeper.hold(0.0)
+            keeper.release(math.inf)
+
     def _take(self, output: Output) -> None:
         """Write outputs and judge them."""
         block, result = output.block, self._result
@@ -211,7 +247,9 @@ class _Run:
         for kept, name in ((result.slip, "cage_slip"), (result.speed, "shaft_speed"), (result.life, "rating_life")):
             kept += block[name].tolist()
         result.load += np.hypot(block["load_y"], block["load_z"]).tolist()
-        result.damage = float(block["damage"][-1])
+        result.damage = float(block["damage"][-1])  # of this run alone
+        if self._keeper is not None:
+            self._count(output)
         for recording in self._recordings:
             recording.write(block)
         if self._watchers:

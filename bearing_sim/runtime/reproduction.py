@@ -22,9 +22,13 @@ from bearing_sim.messages.events import Event, Level
 from bearing_sim.model.sample import RING_TEMPERATURES, new_block
 from bearing_sim.recording.reader import Received, Recording
 from bearing_sim.scene.fidelity import NUMBERS
-from bearing_sim.simulation import Inputs, IntegrationError, Simulation, inputs_of, start_sample, thermal_nodes
+from bearing_sim.simulation import Inputs, IntegrationError, Simulation, begin_at_temperatures, inputs_of, start_sample, thermal_nodes
+from bearing_sim.stored_state.counting import LifeCounter
+from bearing_sim.stored_state.keeper import RECORD
+from bearing_sim.stored_state.state_file import parsed
 
 _SKIPPED = 0.25  # fraction of a spacing by which angle and stamps may disagree before time counts as skipped
+_ROUND_OFF = 1e-6  # of an angle, relative
 _LEVELS = {number: name for name, number in NUMBERS.items()}
 
 
@@ -95,6 +99,8 @@ class _Run:
         self._together = int(recording.metadata.get("advance_samples") or 1)  # samples that it returned
         self._next_together = self._together
         self._simulation: Simulation | None = None
+        self._start_ns, self._counter = recording.start_ns, _counter(recording)
+        self._is_counted = False  # whether the simulation's damage is that of the run, to which the life used before is to be added
         self._last: np.void | None = None
         self._waiting = new_block(0, recording.scene.bearing.roller.count)
 
@@ -102,7 +108,7 @@ class _Run:
         """Return samples computed again; samples of a call that is not complete yet wait."""
         rows, done, computed = np.concatenate((self._waiting, recorded)), 0, []
         while done < len(rows):
-            begins = self._simulation is None or rows["damage"][done] < self._last["damage"]
+            begins = self._simulation is None or self._is_reset(rows[done])
             size = 1 if begins else self._next_together
             if done + size > len(rows):
                 break
@@ -143,7 +149,7 @@ class _Run:
             return self._give_up(group[-1], error, group)
         self.result.sim_seconds += self._duration
         self._last = group[-1].copy()
-        return block
+        return self._counted(block, group, self._duration / len(group))
 
     def _give_up(self, sample: np.void, error: IntegrationError, recorded: np.ndarray) -> np.ndarray:
         """Report what could not be computed, return what was recorded there, and continue from it."""
@@ -152,6 +158,7 @@ class _Run:
             Event(float(sample["time"]), Level.ERROR, "reproduction.failed", "", str(error), "the run continues from the recorded sample")
         )
         self._simulation.resume(sample)
+        self._is_counted = False
         self._last = sample.copy()
         return recorded.copy()
 
@@ -164,7 +171,8 @@ class _Run:
     def _one(self, sample: np.void) -> np.ndarray:
         """Return the sample at a recorded one's instant and inputs, as a block."""
         inputs = _inputs(sample)
-        if self._simulation is None or sample["damage"] < self._last["damage"]:  # only a reset decreases the damage
+        first, begins = self._simulation is None, self._simulation is None or self._is_reset(sample)
+        if begins:
             lead = self._begin(sample, inputs)
         else:
             lead = self._lead(self._last, sample)
@@ -172,20 +180,47 @@ class _Run:
         self._follow_level(sample)
         self._last = sample.copy()
         if lead <= 0.0:
-            return start_sample(self._simulation)
-        try:
-            block = self._simulation.advance(lead, inputs)
-        except IntegrationError as error:
-            return self._give_up(sample, error, np.array([sample]))
-        self.result.sim_seconds += lead
+            block = start_sample(self._simulation)
+        else:
+            try:
+                block = self._simulation.advance(lead, inputs)
+            except IntegrationError as error:
+                return self._give_up(sample, error, np.array([sample]))
+            self.result.sim_seconds += lead
+        if begins and not first and self._counter is not None:  # totals continue over a reset
+            self._counter.restart(float(sample["damage"]) - float(block["damage"][-1]))
+        return self._counted(block, np.array([sample]), max(lead, 0.0))
+
+    def _counted(self, block: np.ndarray, recorded: np.ndarray, seconds: float) -> np.ndarray:
+        """Return samples with the life used by the bearing, as the recorded run had it; each stands for so many seconds."""
+        if self._counter is not None and self._is_counted:
+            times_ns = self._start_ns + np.rint(recorded["time"] * 1e9).astype(np.int64)
+            self._counter.take(block, times_ns, np.full(len(block), seconds))
         return block
+
+    def _is_reset(self, sample: np.void) -> bool:
+        """Return whether the run was reset since the last sample.
+
+        A reset decreases the damage.  Where it continues, because the recorded run had a stored state, the angle of the shaft tells: it changes
+        by no more than the speeds allow.
+        """
+        last = self._last
+        if sample["damage"] < last["damage"]:
+            return True
+        if self._counter is None:
+            return False
+        elapsed, speeds = float(sample["time"]) - float(last["time"]), (float(last["shaft_speed"]), float(sample["shaft_speed"]), 0.0)
+        change, slack = float(sample["shaft_angle"]) - float(last["shaft_angle"]), _ROUND_OFF * (1.0 + abs(float(last["shaft_angle"])))
+        return not min(speeds) * elapsed - slack <= change <= max(speeds) * elapsed + slack
 
     def _begin(self, sample: np.void, inputs: Inputs) -> float:
         """Start at the run's own start if that is at most two intervals or so before the sample; return the time to the sample [s]."""
         self.finish()
         self._simulation = Simulation(self._scene, inputs)
         if self._simulation.thermal is not None:  # a run may start from temperatures that its scene does not name
-            self._simulation.reset(inputs, thermal_nodes(sample))
+            nodes, rings = thermal_nodes(sample), np.array([float(sample[f"{name}_uncorrected"]) for name in RING_TEMPERATURES])
+            begin_at_temperatures(self._simulation, inputs, nodes, rings)
+        self._is_counted = True
         angle, speed = float(sample["shaft_angle"]), inputs.shaft_speed
         if angle == 0.0:
             self.result.starts.append("ideal rolling")
@@ -195,6 +230,7 @@ class _Run:
             self.result.starts.append("ideal rolling")
             return since
         self._simulation.resume(sample)
+        self._is_counted = False
         self.result.starts.append("sample")
         return 0.0
 
@@ -216,6 +252,18 @@ class _Run:
         other = Simulation(dataclasses.replace(self._scene, level=level, integration=own), self._simulation.inputs)
         other.take_over(self._simulation)
         self._simulation = other
+
+
+def _counter(recording: Recording) -> LifeCounter | None:
+    """Return what adds the life used before a recorded run, and leaves out times that were not counted again; None without a stored state."""
+    record = recording.records.get(RECORD)
+    if record is None:
+        return None
+    try:
+        state = parsed(record["state"].encode())
+    except (KeyError, ValueError, OSError) as error:
+        raise ValueError(f"the stored state in the recording cannot be used: {error}; replay its inputs with --scene instead") from None
+    return LifeCounter(state.totals.damage, state.covered if record.get("counts") == "once" else None)
 
 
 def _inputs(sample: np.void) -> Inputs:

@@ -22,7 +22,8 @@ from bearing_sim.messages import topics
 from bearing_sim.messages.events import Event, Level, Measurement
 from bearing_sim.monitoring.residual import Comparison
 from bearing_sim.runtime.advance_segment import Begun, Output
-from bearing_sim.runtime.live import Model, Published, warm_start
+from bearing_sim.runtime.live import Model, Published
+from bearing_sim.runtime.remembering import warm_start
 from bearing_sim.runtime.sink_registry import Sink
 from bearing_sim.runtime.solver import SimTimeSolver, Start
 from bearing_sim.scene.scene import Scene

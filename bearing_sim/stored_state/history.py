@@ -6,14 +6,16 @@ Every move has a number, which the history keeps: a move that was interrupted by
 """
 
 import csv
+import importlib.util
 import json
 import os
 import subprocess
 import sys
 from collections.abc import Mapping
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, TextIO
 
+from bearing_sim.stored_state.state import StoredState
 from bearing_sim.stored_state.totals import KAPPA_BOUNDS, LOAD_BOUNDS, SLIP_BOUNDS, Totals
 
 MOST_DAYS = 20_000
@@ -95,6 +97,13 @@ def read_history(path: Path) -> tuple[list[dict[str, object]], Move]:
     return (_with(rows, later), move) if move.number > last.number else (rows, last)
 
 
+def all_days(path: Path, state: StoredState) -> list[dict[str, object]]:
+    """Return the rows of all days of a state, those of its history and those that are not there yet; errors as of `read_history`."""
+    rows, last = read_history(path)
+    own = [{"day": day, **row_of(totals)} for day, totals in state.days.items()]
+    return _with(rows, _not_moved(own, state.folds + 1, last)[0])
+
+
 def _read_parquet(parquet: Path) -> tuple[list[dict[str, object]], Move]:
     from pyarrow import parquet as files
 
@@ -149,10 +158,7 @@ def move_days(path: Path, days: Mapping[str, Totals], number: int) -> bool:
 def write_history(path: Path, new: list[dict[str, object]], number: int) -> bool:
     """Add rows to the history of a state file, in this process; arguments, result and errors as of `move_days`."""
     parquet, table = history_paths(path)
-    try:
-        import pyarrow
-        from pyarrow import parquet as files
-    except ImportError:
+    if importlib.util.find_spec("pyarrow") is None:
         rows, last = _read_csv(table)
         new, move = _not_moved(new, number, last)
         _write_csv(table, _with(rows, new), move)
@@ -161,13 +167,35 @@ def write_history(path: Path, new: list[dict[str, object]], number: int) -> bool
     new, move = _not_moved(new, number, last)
     rows = _with(rows, new)
     draft = parquet.with_name(f"{parquet.name}.new")
-    columns = {name: [row.get(name) for row in rows] for name in rows[0]} if rows else {"day": []}
-    kinds = {"day": pyarrow.string(), "starts": pyarrow.int64()}
-    schema = pyarrow.schema([(name, kinds.get(name, pyarrow.float64())) for name in columns], {_LAST_MOVE: json.dumps(move).encode()})
-    files.write_table(pyarrow.table(columns, schema=schema), draft)
+    _write_parquet(draft, rows, {_LAST_MOVE: json.dumps(move).encode()})
     _replace(draft, parquet)
     table.unlink(missing_ok=True)
     return True
+
+
+def export_days(out: Path, rows: list[dict[str, object]]) -> None:
+    """Write rows as ``OUT.csv`` or ``OUT.parquet``; ImportError where that needs pyarrow and there is none."""
+    if out.suffix.lower() == ".parquet":
+        _write_parquet(out, rows, {})
+        return
+    with open(out, "w", newline="") as text:
+        _write_rows(text, rows)
+
+
+def _write_parquet(path: Path, rows: list[dict[str, object]], metadata: dict[bytes, bytes]) -> None:
+    import pyarrow
+    from pyarrow import parquet
+
+    columns = {name: [row.get(name) for row in rows] for name in rows[0]} if rows else {"day": []}
+    kinds = {"day": pyarrow.string(), "starts": pyarrow.int64()}
+    schema = pyarrow.schema([(name, kinds.get(name, pyarrow.float64())) for name in columns], metadata)
+    parquet.write_table(pyarrow.table(columns, schema=schema), path)
+
+
+def _write_rows(text: TextIO, rows: list[dict[str, object]]) -> None:
+    writer = csv.DictWriter(text, list(rows[0]) if rows else ["day"])
+    writer.writeheader()
+    writer.writerows(rows)
 
 
 def _not_moved(new: list[dict[str, object]], number: int, last: Move) -> tuple[list[dict[str, object]], Move]:
@@ -189,9 +217,7 @@ def _write_csv(table: Path, rows: list[dict[str, object]], move: Move) -> None:
     draft = table.with_name(f"{table.name}.new")
     with open(draft, "w", newline="") as text:
         text.write(f"# totals of a bearing by UTC day; last move: {json.dumps(move)}\n")
-        writer = csv.DictWriter(text, list(rows[0]) if rows else ["day"])
-        writer.writeheader()
-        writer.writerows(rows)
+        _write_rows(text, rows)
     _replace(draft, table)
 
 

@@ -45,6 +45,7 @@ class StateKeeper:
     scene : of the bearing.
     serial : its number; ``""`` where none is given.
     once : whether times that the state contains are not counted again, as for logs; a bearing that runs now counts whatever the clock says.
+    fills : whether only gaps in the past are filled: calibration, and what was learned, stay as they are.
     clock : wall clock [s], monotonic.
     now_ns : wall clock [ns since the epoch].
 
@@ -66,6 +67,7 @@ class StateKeeper:
         scene: Scene,
         serial: str,
         once: bool = False,
+        fills: bool = False,
         clock: Callable[[], float] = time.monotonic,
         now_ns: Callable[[], int] = time.time_ns,
     ):
@@ -79,7 +81,8 @@ class StateKeeper:
             self._file.close()
             raise
         self._news: list[News] = news
-        self._begin(scene, serial, is_new=state is None)
+        if not fills:
+            self._begin(scene, serial, is_new=state is None)
         self._by = criteria(scene)
         self._counter = LifeCounter(self.state.totals.damage)
         self._last_time: float | None = None
@@ -281,6 +284,11 @@ class StateKeeper:
         path = self._file.archive(self.state.serial, self.state.retired_ns) if into_archive else self.path
         self._file.close()
         return path
+
+    def abandon(self) -> None:
+        """Let others use the file, which stays as it was written last."""
+        self._stop()
+        self._file.close()
 
     def close(self) -> bool:
         """Write the state and let others use its file; return whether it was written."""

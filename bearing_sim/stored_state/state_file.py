@@ -14,7 +14,7 @@ from contextlib import suppress
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import NamedTuple
-from urllib.parse import quote
+from urllib.parse import quote, unquote
 
 import platformdirs
 
@@ -56,6 +56,12 @@ def default_path(serial: str) -> Path:
     """Return the state file of a serial number, in the user's folder for state (``~/.local/state/bearing_sim`` on Linux)."""
     name = quote(serial, safe=" ")
     return Path(platformdirs.user_state_dir("bearing_sim")) / f"{'%2E' + name[1:] if name.startswith('.') else name}.json"
+
+
+def known_serials() -> list[str]:
+    """Return the serial numbers that have a state in the user's folder for state."""
+    folder = default_path("any").parent
+    return sorted(unquote(path.stem) for path in folder.glob("*.json")) if folder.is_dir() else []
 
 
 def previous_path(path: Path) -> Path:

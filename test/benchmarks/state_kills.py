@@ -12,6 +12,7 @@ After each kill a loss of power is played on copies of the files: cut short, ove
 older state must be found, and said.  Exit code 1 otherwise.
 """
 
+import os
 import random
 import shutil
 import sys
@@ -22,6 +23,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
+os.environ["FASTDDS_BUILTIN_TRANSPORTS"] = "UDPv4"  # a process that is killed within shared memory leaves it locked for the others
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import click  # noqa: E402

@@ -1,0 +1,196 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""``bearing-sim state``: the stored states of bearings in service: show, export, fill by recordings, and adopt after a correction of the scene."""
+
+from pathlib import Path
+
+import click
+
+from bearing_sim.cli.options import json_option
+from bearing_sim.cli.reporting import UsageError, as_file_error, as_usage_error, print_json, print_table
+
+_TABLES = (".csv", ".parquet")
+
+
+def _state_argument(function):
+    return click.argument("name", metavar="STATE")(function)
+
+
+def _path_of(name: str) -> Path:
+    """Return the state file that a path or a serial number names; raise `UsageError` if there is none."""
+    from bearing_sim.stored_state.state_file import StateError, checked_serial, default_path, known_serials, previous_path
+
+    path = Path(name).expanduser()
+    if path.exists() or previous_path(path).exists():
+        return path
+    with as_usage_error(StateError):
+        own = default_path(checked_serial(name))
+    if own.exists() or previous_path(own).exists():
+        return own
+    known = ", ".join(known_serials()) or "none"
+    raise UsageError(f"{name}: neither a state file nor a serial number with a state in {own.parent}; there are {known}")
+
+
+def _read(path: Path):
+    """Return the state in a file; what had to be done about it is told on stderr."""
+    from bearing_sim.stored_state.state_file import read_state
+
+    with as_file_error():
+        state, news = read_state(path)
+    for each in news:
+        click.echo(f"warning: {each.text}", err=True)
+    return state
+
+
+def _days(path: Path, state) -> list[dict]:
+    """Return the totals of all days, those in the history and those that are not there yet."""
+    from bearing_sim.stored_state.history import all_days
+
+    try:
+        with as_file_error():
+            return all_days(path, state)
+    except ImportError:
+        raise UsageError(f"the history of days of {path} is Parquet: install pyarrow to read it") from None
+
+
+@click.command("show")
+@_state_argument
+@json_option
+def show(name, as_json):
+    """Show the stored state of a bearing: life used, hours, starts, hours by regime, extremes, and what else is remembered.
+
+    STATE is a state file, or a serial number whose state is in the user's folder for state. A node may use it meanwhile.
+    """
+    path = _path_of(name)
+    state = _read(path)
+    if as_json:
+        print_json({**state.as_mapping(), "file": str(path)})
+        return
+    print_table(f"stored state of {state.serial or 'a bearing without a serial number'}", _rows(path, state))
+
+
+def _rows(path: Path, state) -> list[tuple[str, str]]:
+    from bearing_sim.stored_state.state import time_text
+
+    totals = state.totals
+    rows = [
+        ("file", f"{path}, write {state.writes}" + (f" of {time_text(state.written_ns)}" if state.written_ns else "")),
+        ("bearing", f"{state.identity.get('bearing.name', 'not known yet')} in the scene {state.identity.get('name', 'not known yet')}"),
+        ("life used", f"{100.0 * totals.damage:.6g} %; by the basic rating life {100.0 * totals.basic_damage:.6g} %"),
+        ("running", f"{totals.running_seconds / 3600.0:.6g} h of {totals.monitored_seconds / 3600.0:.6g} h monitored"),
+        ("revolutions", f"{totals.revolutions:.6g}"),
+        ("starts", str(totals.starts)),
+        *_regimes(totals),
+    ]
+    if totals.largest_slip is not None:
+        rows.append(("largest slip", f"{100.0 * totals.largest_slip.value:.4g} % on {time_text(totals.largest_slip.time_ns)}"))
+    if totals.lowest_clearance is not None:
+        rows.append(("lowest clearance", f"{1e6 * totals.lowest_clearance.value:.4g} um on {time_text(totals.lowest_clearance.time_ns)}"))
+    stretches = state.covered.stretches
+    if stretches:
+        rows.append(("counted", f"{time_text(stretches[0][0])} to {time_text(stretches[-1][1])}, with {len(stretches) - 1} gaps"))
+    rows.append(("calibration", ", ".join(f"{name} {value:g}" for name, value in state.calibration.items()) or "none"))
+    learned = [name.replace("_", " ") for name, each in state.learned.items() if each]
+    rows.append(("learned residuals", ", ".join(learned) or "none"))
+    if state.thermal is not None:
+        rows.append(("temperatures", f"of {time_text(state.thermal.time_ns)}: " + ", ".join(f"{kelvin:.1f} K" for kelvin in state.thermal.nodes)))
+    if state.retired_ns is not None:
+        rows.append(("taken out", time_text(state.retired_ns)))
+    return rows
+
+
+def _regimes(totals) -> list[tuple[str, str]]:
+    from bearing_sim.stored_state.totals import KAPPA_BOUNDS, LOAD_BOUNDS, SLIP_BOUNDS
+
+    def hours(seconds, bounds, factor=1.0, unit=""):
+        edges = [f"{factor * bound:g}{unit}" for bound in bounds]
+        names = [f"below {edges[0]}", *(f"{low} to {high}" for low, high in zip(edges, edges[1:])), f"from {edges[-1]}", "unknown"]
+        return ", ".join(f"{name} {each / 3600.0:.4g} h" for name, each in zip(names, seconds) if each) or "none"
+
+    return [
+        ("running at slip", hours(totals.slip_seconds, SLIP_BOUNDS, 100.0, " %")),
+        ("at kappa", hours(totals.lubrication_seconds, KAPPA_BOUNDS)),
+        ("at P/C", hours(totals.load_seconds, LOAD_BOUNDS)),
+    ]
+
+
+@click.command("export")
+@_state_argument
+@click.option(
+    "-o", "--out", type=click.Path(path_type=Path), required=True, metavar="OUT", help="JSON of the whole state, or the days as CSV or Parquet."
+)
+def export(name, out):
+    """Write a stored state to OUT.json, or its totals by UTC day to OUT.csv or OUT.parquet."""
+    path = _path_of(name)
+    state, suffix = _read(path), out.suffix.lower()
+    if suffix not in (".json", *_TABLES):
+        raise UsageError(f"--out {out}: expected a name that ends in .json, .csv or .parquet")
+    if out.exists() and out.samefile(path):
+        raise UsageError(f"{out} is the state file itself; choose another file")
+    days = _days(path, state)
+    with as_file_error():
+        if suffix == ".json":
+            import json
+
+            out.write_text(json.dumps({**state.as_mapping(), "history": days}, indent=1) + "\n")
+        else:
+            from bearing_sim.stored_state.history import export_days
+
+            with as_usage_error(ImportError):
+                export_days(out, days)
+    click.echo(f"{out}: {len(days)} day{'s' * (len(days) != 1)}")
+
+
+@click.command("merge")
+@_state_argument
+@click.argument("recordings", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="RUN.mcap...")
+@json_option
+def merge(name, recordings, as_json):
+    """Fill gaps of a stored state by recordings of bearing-sim: each instant counts once, however often it is merged.
+
+    The node must not use the state meanwhile. Logs of other programs are counted by `bearing-sim replay --state-file`.
+    """
+    from bearing_sim.recording.bag import RecordingError
+    from bearing_sim.recording.reader import Recording
+    from bearing_sim.stored_state.merging import merge as fill
+
+    path, filled = _path_of(name), {}
+    for each in recordings:
+        with as_usage_error(RecordingError), as_file_error():
+            filled[str(each)] = fill(path, Recording(each))
+    state = _read(path)
+    if as_json:
+        print_json({"state": str(path), "damage": state.totals.damage, "merged": {run: each._asdict() for run, each in filled.items()}})
+        return
+    rows = [
+        (run, f"{each.recorded:.6g} s recorded, {each.added:.6g} s of them were missing: {100.0 * each.damage:.6g} % of life")
+        for run, each in filled.items()
+    ]
+    print_table(f"merged into {path}", [*rows, ("life used", f"{100.0 * state.totals.damage:.6g} %")])
+
+
+@click.command("adopt")
+@_state_argument
+@click.option("--scene", "scene_name", required=True, metavar="SCENE", help="Bundled scene or YAML file that the state is to belong to.")
+@click.option("--set", "overrides", multiple=True, metavar="FIELD=VALUE", help="Override a field of the scene; can be repeated.")
+@click.option("--serial", default="", metavar="NUMBER", help="Serial number that the bearing is to have [default: its own].")
+def adopt(name, scene_name, overrides, serial):
+    """Let a stored state belong to another scene, after a correction of the scene, or get another serial number.
+
+    The totals stay: what was counted by the earlier scene is not computed again.
+    """
+    from bearing_sim.scene.loader import SceneError, load_scene
+    from bearing_sim.stored_state.state_file import StateError, StateFile, checked_serial
+
+    path = _path_of(name)
+    with as_usage_error(SceneError, StateError), as_file_error():
+        scene, serial = load_scene(scene_name, overrides), checked_serial(serial)
+        file = StateFile(path)
+        try:
+            state, _ = file.read()
+            changes = state.differences(scene, serial)
+            state.adopt(scene, serial)
+            state.writes += 1
+            file.write(state)
+        finally:
+            file.close()
+    click.echo(f"{path}: {', '.join(changes) or 'nothing has changed'}")

@@ -1,0 +1,46 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""What a run takes from the stored state of its bearing, and leaves there: temperatures, and what the monitors have learned."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from bearing_sim.monitoring.monitor import Monitor
+from bearing_sim.monitoring.residual import ResidualMonitor
+from bearing_sim.simulation import Inputs, Simulation, begin_at_temperatures
+from bearing_sim.stored_state.keeper import StateKeeper
+
+
+def warm_start(keeper: StateKeeper, now_ns: Callable[[], int]) -> Callable[[Simulation, Inputs], None]:
+    """Return the function that begins a run as warm as the bearing is remembered, see `bearing_sim.runtime.solver.Solver`.
+
+    Parameters
+    ----------
+    now_ns : clock [ns since the epoch]; temperatures of long ago are not used.
+    """
+
+    def begin(simulation: Simulation, inputs: Inputs) -> None:
+        thermal = keeper.thermal(now_ns())
+        if thermal is None or simulation.thermal is None:
+            simulation.reset(inputs)
+        else:
+            begin_at_temperatures(simulation, inputs, np.array(thermal.nodes), np.array(thermal.rings))
+
+    return begin
+
+
+def recall(keeper: StateKeeper, residual: ResidualMonitor, monitor: Monitor) -> None:
+    """Let monitors continue from what they had learned about the bearing; from nothing if another version of them had learned it."""
+    learned = keeper.state.learned
+    try:
+        residual.restore(learned.get("cage_slip", {}))
+        monitor.temperatures.restore(learned.get("temperatures", {}))
+    except (KeyError, TypeError, ValueError):
+        residual.restart()
+        monitor.temperatures.restore({})
+
+
+def note(keeper: StateKeeper, residual: ResidualMonitor, monitor: Monitor, sample: np.void, time_ns: int) -> None:
+    """Put the temperatures of a sample, taken at an instant [ns since the epoch], and what monitors have learned into the state."""
+    keeper.note_thermal(sample, time_ns)
+    keeper.state.learned = {"cage_slip": residual.learned, "temperatures": monitor.temperatures.learned}
