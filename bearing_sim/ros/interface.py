@@ -26,6 +26,7 @@ from bearing_sim.messages.topics import Topic
 from bearing_sim.monitoring.health import Condition, Phase, not_running
 from bearing_sim.ros.messages import InputReader, Refused, message, message_class
 from bearing_sim.ros.parameters import OIL_TEMPERATURE, BearingSettings, NodeSettings, follows_clock, scene_values_in
+from bearing_sim.ros.polling import PolledSubscriptions
 from bearing_sim.ros.recordings import fresh_path, limits_of, open_lossless_recording, open_recording, open_view, prepare
 from bearing_sim.ros.warm_up import WarmUp, levels_to_compile, start_compiling
 from bearing_sim.runtime.governor import Governor
@@ -330,7 +331,7 @@ class BearingInterface:
         whether the solver's thread ended; otherwise the model must be warmed up again.
         """
         for subscription in self._subscriptions.values():
-            self._node.destroy_subscription(subscription)
+            self._listener.destroy_subscription(subscription)
         self._subscriptions = {}
         live, self.live = self.live, None
         stopped = live.close() if live is not None else True
@@ -494,7 +495,12 @@ class BearingInterface:
             self._subscriptions[channel] = subscribe_to_all(self._node, kind, name, receive, replace, self._report_loss)
             return
         quiet = SubscriptionEventCallbacks(use_default_callbacks=False)  # any publisher matches: nothing to watch
-        self._subscriptions[channel] = self._node.create_subscription(kind, name, receive, _INPUT_QOS, event_callbacks=quiet, raw=True)
+        self._subscriptions[channel] = self._listener.create_subscription(kind, name, receive, _INPUT_QOS, event_callbacks=quiet, raw=True)
+
+    @property
+    def _listener(self) -> Node | PolledSubscriptions:
+        """The owner of the subscriptions."""
+        return self._node.polled if self._node.polled is not None else self._node
 
     def _report_loss(self, text: str) -> None:
         if self.live is not None:

@@ -37,6 +37,7 @@ from bearing_sim.recording.recorder import Recorder
 from bearing_sim.ros.interface import STATE_QOS, BearingInterface
 from bearing_sim.ros.messages import message_class
 from bearing_sim.ros.parameters import BearingSettings, NodeSettings, ParameterServer, SettingsError, follows_clock, scene_values_in
+from bearing_sim.ros.polling import POLLED_FROM, PolledSubscriptions
 from bearing_sim.ros.process import CannotRun, run_node
 from bearing_sim.ros.transforms import TransformInterface
 from bearing_sim.ros.warm_up import WarmUp
@@ -126,6 +127,7 @@ class BearingNode(LifecycleNode):
         self.bearings: list[BearingInterface] = []
         self._to_review: deque[BearingInterface] = deque()
         self.workers = Workers()
+        self.polled: PolledSubscriptions | None = None
         self._scenes: dict[str, Scene] = {}  # of the bearings of workers
         self._state, self._next_report_ns, self._reviewed = "unconfigured", 0, time.monotonic()
         self._warm_up = WarmUp()
@@ -453,6 +455,15 @@ class WorkerNode(BearingNode):
         self._link, self._is_listening = link, False
         super().__init__(ended, link.order)
         self.manages_itself = True  # what makes it impossible to run is passed to the node
+        if len(link.order.parameters["bearings"]) > POLLED_FROM and not follows_clock(self):  # with sim time no message may be lost
+            self.polled = PolledSubscriptions(self)
+
+    def close(self) -> bool:
+        """Stop the models and complete recordings.  Returns whether all threads ended."""
+        stopped = super().close()
+        if self.polled is not None:
+            self.polled.destroy()
+        return stopped
 
     def start(self) -> None:
         """Configure; the node says when to activate."""
