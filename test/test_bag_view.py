@@ -13,7 +13,8 @@ from synthetic_run import synthetic_block
 
 from bearing_sim.cli import view
 from bearing_sim.messages.cdr import message_type, typestore
-from bearing_sim.messages.events import Level
+from bearing_sim.messages.diagnostics import report
+from bearing_sim.messages.events import Event, Level
 from bearing_sim.messages.topics import outputs
 from bearing_sim.recording.bag import RecordingError
 from bearing_sim.recording.writer import McapFile, McapSink
@@ -149,6 +150,16 @@ def test_diagnostics_of_others_reach_the_log(tmp_path):
         )
         recording.write("/valve", FLOAT, START + SECOND, {"data": 1.0})
     assert [(event.level, event.kind) for event in read_bag_series(path).events] == [(Level.WARN, "pump 1"), (Level.ERROR, "pump 2")]
+
+
+def test_of_our_own_diagnostics_in_a_bag_each_event_is_shown_by_its_kind_and_the_summary_is_not_shown_again(tmp_path):
+    stale, shift = Event(1.0, Level.WARN, "input.stale", "shaft_speed", "late"), Event(1.0, Level.ERROR, "bearing.slip", "cage slip", "high")
+    with McapFile(tmp_path / "run.mcap") as recording:
+        recording.write("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray", START, report(START, [stale, shift], {}, "bearing_node"))
+        recording.write("/valve", FLOAT, START + SECOND, {"data": 1.0})
+    found = read_bag_series(tmp_path / "run.mcap").events
+    assert {(event.level, event.kind, event.text) for event in found} == {(event.level, event.kind, event.text) for event in (stale, shift)}
+    assert len(found) == 2
 
 
 def test_what_cannot_be_shown_at_all_is_told_with_exit_code_2(tmp_path):

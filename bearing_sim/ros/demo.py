@@ -22,6 +22,7 @@ import click
 import numpy as np
 
 from bearing_sim.messages import topics
+from bearing_sim.messages.diagnostics import WHOLE
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.recording.bag_reader import BagReader, BagTopic
 from bearing_sim.recording.reader import Recording
@@ -194,7 +195,7 @@ def _diagnostics(path: Path) -> list[dict[str, str]]:
     for found in BagReader(path):
         if not isinstance(found, BagTopic) and found[0].name == f"/{topics.DIAGNOSTICS[0]}":
             whole = found[0].decode(found[2]).status[0]
-            if whole.values:
+            if whole.name.endswith(f": {WHOLE}") and whole.values:  # not the report of an event alone
                 reports.append({pair.key: pair.value for pair in whole.values})
     return reports
 

@@ -18,6 +18,7 @@ import rerun.blueprint as rrb
 
 from bearing_sim.messages import topics
 from bearing_sim.messages.cdr import POINT_CLOUD
+from bearing_sim.messages.diagnostics import WHOLE, events_of
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.recording.bag import RecordingError
 from bearing_sim.recording.bag_reader import BagReader, BagTopic
@@ -208,7 +209,11 @@ def _events_in(ros_type: str, message, time: int) -> Iterator[Event]:
     """Yield the events of a message: diagnostics that are warnings or errors, and log messages."""
     if ros_type == "diagnostic_msgs/msg/DiagnosticArray":
         for status in message.status:
-            if 0 < int(status.level) <= 2:
+            keys = {pair.key for pair in status.values}
+            is_whole = status.name.endswith(f": {WHOLE}") and "events" in keys  # it repeats the statuses of the subjects
+            if "kind" in keys:
+                yield from (event for event in events_of(time, status) if event.level)
+            elif 0 < int(status.level) <= 2 and not is_whole:
                 yield Event(time, Level(int(status.level)), status.name, "", status.message)
     elif ros_type == "rcl_interfaces/msg/Log":
         level = Level.ERROR if message.level >= 40 else Level.WARN if message.level >= 30 else Level.OK
