@@ -249,7 +249,8 @@ def test_a_parquet_table_has_a_row_a_sample_and_units_in_its_schema(recording, t
     np.testing.assert_array_equal(table["inner_load_07"].to_numpy(), RUN["inner_load"][:, 7])
     np.testing.assert_array_equal(table["cage_slip"].to_numpy(), RUN["cage_slip"])
     per_roller = sum(observable.per_roller for observable in OBSERVABLES)
-    assert table.num_columns == len(OBSERVABLES) - per_roller + 18 * per_roller + 1
+    assert table.num_columns == len(OBSERVABLES) - per_roller + 18 * per_roller + 1 + 4, "and a stamp and four characteristic frequencies"
+    np.testing.assert_allclose(table["ball_pass_outer_frequency"], 18 * np.abs(RUN["cage_speed"]) / (2 * np.pi), rtol=1e-12)
     field = table.schema.field("shaft_speed")
     assert field.metadata[b"unit"] == b"rad/s" and field.metadata[b"meaning"] == b"shaft speed"
     assert scene_from_yaml(table.schema.metadata[b"scene"].decode()) == SCENE

@@ -280,8 +280,8 @@ def export(kind: str, recording: Path, out: Path, columns, no_rollers, every, fi
 def to_csv(recording, out, columns, no_rollers, every, first, last, as_json):
     """Export the samples of RUN.mcap, a recording of bearing-sim or the node, as a CSV table.
 
-    One row per sample, one column per observable, or per roller for observables of rollers (inner_load_07). Units are in the header,
-    numbers are in SI.
+    One row per sample, one column per observable and characteristic frequency, or per roller for observables of rollers (inner_load_07).
+    Units are in the header, numbers are in SI.
     """
     export("csv", recording, out, columns, no_rollers, every, first, last, as_json)
 
@@ -292,7 +292,7 @@ def to_csv(recording, out, columns, no_rollers, every, first, last, as_json):
 def to_parquet(recording, out, columns, no_rollers, every, first, last, as_json):
     """Export the samples of RUN.mcap, a recording of bearing-sim or the node, as a Parquet table.
 
-    One row per sample, one column per observable, or per roller for observables of rollers (inner_load_07). Units and meanings are in the
-    metadata of the columns, the scene in that of the file; numbers are in SI.
+    One row per sample, one column per observable and characteristic frequency, or per roller for observables of rollers (inner_load_07).
+    Units and meanings are in the metadata of the columns, the scene in that of the file; numbers are in SI.
     """
     export("parquet", recording, out, columns, no_rollers, every, first, last, as_json)

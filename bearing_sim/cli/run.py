@@ -188,6 +188,7 @@ def _losses(level, window, pitch) -> dict:
 
 
 def _report(simulation, outcome, wall, start_up) -> dict:
+    from bearing_sim.model.characteristic_frequencies import mean_frequencies
     from bearing_sim.studies.clearance import clearance_report
     from bearing_sim.studies.rating import life_report
 
@@ -212,6 +213,7 @@ def _report(simulation, outcome, wall, start_up) -> dict:
         **life_report(simulation.scene, window),
         "damage": float(last["damage"]),
         "cage_speed_rpm": float(window["cage_speed"].mean()) * 30 / math.pi,
+        "characteristic_frequencies_hz": mean_frequencies(window),
         **_losses(simulation.scene.level, window, pitch),
         "inner_load_maximum": float(pitch["inner_load"].max()),
         "outer_load_maximum": float(pitch["outer_load"].max()),
@@ -245,6 +247,7 @@ def _thermal_rows(report) -> list[tuple[str, str]]:
 
 def _print(report, scene, bands) -> None:
     from bearing_sim.cli.uncertainty import band_rows
+    from bearing_sim.model.characteristic_frequencies import frequencies_text
     from bearing_sim.studies.clearance import clearance_row
     from bearing_sim.studies.losses import loss_text
 
@@ -255,6 +258,7 @@ def _print(report, scene, bands) -> None:
             ("cage slip", _slip(report)),
             ("settled", _settled(report)),
             ("cage speed", f"{report['cage_speed_rpm']:.6g} rpm"),
+            ("characteristic frequencies", frequencies_text(report["characteristic_frequencies_hz"])),
             clearance_row(scene, report),
             *_thermal_rows(report),
             *life_rows(scene, report),

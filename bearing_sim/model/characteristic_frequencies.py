@@ -14,6 +14,7 @@ Without slip w_c = w_i (1 - gamma)/2 and w R_w = r_m w_c (eq. `eq-speeds` of the
 Rolling Bearing Analysis, 5th ed., vol. 1, chapter 10, for contact angle 0.
 """
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -25,6 +26,11 @@ class Frequency(NamedTuple):
     name: str
     symbol: str
     meaning: str
+
+    @property
+    def column(self) -> str:
+        """The name of its column in tables."""
+        return f"{self.name}_frequency"
 
 
 FREQUENCIES = (
@@ -52,3 +58,13 @@ def characteristic_frequencies(samples: np.ndarray) -> np.ndarray:
     spin = np.add.reduce(turns, axis=1, where=loaded) / np.add.reduce(loaded, axis=1)
     found = np.stack((cage, rollers * cage, rollers * (samples["shaft_speed"] - cage), spin), axis=1)
     return np.abs(found) / (2.0 * np.pi)
+
+
+def mean_frequencies(samples: np.ndarray) -> dict[str, float]:
+    """Return the means of the characteristic frequencies over samples [Hz], by name."""
+    return dict(zip((frequency.name for frequency in FREQUENCIES), map(float, characteristic_frequencies(samples).mean(axis=0))))
+
+
+def frequencies_text(frequencies: Mapping[str, float]) -> str:
+    """Return characteristic frequencies [Hz] for people, by their abbreviations."""
+    return ", ".join(f"{each.symbol} {frequencies[each.name]:.5g}" for each in FREQUENCIES) + " Hz, with this slip"

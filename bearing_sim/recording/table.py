@@ -15,9 +15,13 @@ import pyarrow as pa
 import pyarrow.csv
 import pyarrow.parquet
 
-from bearing_sim.model.sample import OBSERVABLES
+from bearing_sim.model.characteristic_frequencies import FREQUENCIES, characteristic_frequencies
+from bearing_sim.model.sample import OBSERVABLES, Observable
 from bearing_sim.recording.reader import Recording
 from bearing_sim.scene.loader import did_you_mean
+
+_FREQUENCIES = tuple(Observable(frequency.column, "Hz", f"{frequency.meaning} ({frequency.symbol})") for frequency in FREQUENCIES)
+_COLUMNS = (*OBSERVABLES, *_FREQUENCIES)
 
 
 class Excerpt(NamedTuple):
@@ -25,7 +29,7 @@ class Excerpt(NamedTuple):
 
     Attributes
     ----------
-    columns : names of observables; empty for all.
+    columns : names of observables and of characteristic frequencies; empty for all.
     rollers : whether to include observables of single rollers.
     every : keep one sample in this many.
     first, last : simulated times between which samples are kept [s].
@@ -91,12 +95,12 @@ def _write(recording: Recording, excerpt: Excerpt, schema: pa.Schema, write: Cal
 
 
 def _observables(excerpt: Excerpt) -> list:
-    known = {observable.name for observable in OBSERVABLES}
+    known = {observable.name for observable in _COLUMNS}
     for name in excerpt.columns:
         if name not in known:
             raise TableError(f"no observable {name!r}{did_you_mean(name, known)}; there are {', '.join(sorted(known))}")
     wanted = {"time", *(excerpt.columns or known)}
-    return [observable for observable in OBSERVABLES if observable.name in wanted and (excerpt.rollers or not observable.per_roller)]
+    return [observable for observable in _COLUMNS if observable.name in wanted and (excerpt.rollers or not observable.per_roller)]
 
 
 def _schema(recording: Recording, excerpt: Excerpt, units_in_names: bool) -> pa.Schema:
@@ -118,8 +122,9 @@ def _schema(recording: Recording, excerpt: Excerpt, units_in_names: bool) -> pa.
 
 
 def _arrays(recording: Recording, block: np.ndarray, excerpt: Excerpt) -> Iterator[pa.Array]:
+    frequencies = dict(zip((frequency.name for frequency in _FREQUENCIES), characteristic_frequencies(block).T))
     for observable in _observables(excerpt):
-        numbers = block[observable.name]
+        numbers = frequencies[observable.name] if observable.name in frequencies else block[observable.name]
         for column in numbers.T if observable.per_roller else (numbers,):
             yield pa.array(np.ascontiguousarray(column))
         if observable.name == "time":

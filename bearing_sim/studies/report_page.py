@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.messages.events import Event, Level
+from bearing_sim.model.characteristic_frequencies import frequencies_text, mean_frequencies
 from bearing_sim.model.plausibility import plausibility
 from bearing_sim.model.sample import OBSERVABLES, joined
 from bearing_sim.model.validity import counted
@@ -292,6 +293,7 @@ def _recording_part(recording: Recording) -> _Part:
         "level": scene.level,
         "cage slip while turning": f"mean {100 * turning.mean():.2f} %, largest {100 * turning.max():.2f} %" if len(turning) else "none: at rest",
         "cage slip at the end": f"{100 * np.nanmean(settled['cage_slip']):.2f} %" if np.isfinite(settled["cage_slip"]).any() else "none: at rest",
+        "characteristic frequencies at the end": frequencies_text(mean_frequencies(settled)),
         "life used": f"{100 * used:.4g} %",
         f"life under these conditions ({studied.life_name(scene)})": f"{recording.duration / 3600 / used:.4g} h" if used > 0.0 else "not used",
         "events": ", ".join(f"{count} x {kind}" for kind, count in Counter(event.kind for event in events).most_common()) or "none",

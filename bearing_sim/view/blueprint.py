@@ -8,6 +8,7 @@ import rerun as rr
 import rerun.blueprint as rrb
 
 from bearing_sim.messages.topics import LIFE_SYMBOLS, RING_TEMPERATURES
+from bearing_sim.model.characteristic_frequencies import FREQUENCIES
 from bearing_sim.scene.scene import Scene
 from bearing_sim.view import section
 from bearing_sim.view.drawings import BODIES, CLEARANCES, HEAT_ROOT, ORBIT_EDGE, SAMPLES, bar_bounds, causes_of, heat_bounds
@@ -84,15 +85,15 @@ class _Axes:
         self._extent = extent
         self.time = _time_axis(live, extent)
 
-    def plot(self, title: str, contents: list[str], from_zero: bool = True) -> rrb.TimeSeriesView:
-        """Return a plot of some series; ``from_zero`` keeps zero on the axis.  The title is the legend: it hides no line."""
+    def plot(self, title: str, contents: list[str], from_zero: bool = True, legend: bool = False) -> rrb.TimeSeriesView:
+        """Return a plot of some series; ``from_zero`` keeps zero on the axis.  The title is the legend, which hides no line, unless ``legend``."""
         return rrb.TimeSeriesView(
             origin="/",
             contents=[END, *map(range_path, contents), *contents],
             name=title,
             axis_x=self.time,
             axis_y=self._value_axis(contents, from_zero),
-            plot_legend=rrb.PlotLegend(visible=False),
+            plot_legend=rrb.PlotLegend(visible=legend),
         )
 
     def _value_axis(self, contents: list[str], from_zero: bool) -> rrb.ScalarAxis | None:
@@ -194,11 +195,12 @@ def _slips(scene: Scene, axes: _Axes, measured: bool) -> rrb.Tabs:
 
 
 def _rollers(axes: _Axes) -> rrb.Tabs:
-    """Return the plots with a line for each roller's slip and spin, coloured around the bearing."""
+    """Return the plots with a line for each roller's slip and spin, coloured around the bearing, and that of characteristic frequencies."""
     return rrb.Tabs(
         axes.plot("Slip of each roller on inner ring [m/s]", ["/rollers/inner_sliding"]),
         axes.plot("Outer [m/s]", ["/rollers/outer_sliding"]),
         axes.plot("Spin [rpm]", ["/rollers/spin"]),
+        axes.plot("Frequencies [Hz]", [f"/frequency/{each.name}" for each in FREQUENCIES], legend=True),
         active_tab=0,
     )
 

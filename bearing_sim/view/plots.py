@@ -14,6 +14,7 @@ import rerun as rr
 
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.messages.topics import LIFE_SYMBOLS, RING_TEMPERATURES, ZERO_CELSIUS
+from bearing_sim.model.characteristic_frequencies import FREQUENCIES, characteristic_frequencies
 from bearing_sim.scene.fidelity import LEVELS, level_of
 from bearing_sim.scene.scene import NO_CLEARANCE_LIMIT, Scene
 from bearing_sim.view import colours, section
@@ -60,6 +61,8 @@ LINES = {
     "/clearance/warning": ("warning", colours.YELLOW, 1.0),
     "/clearance/error": ("error", colours.VERMILION, 1.0),
 }
+_FREQUENCY_COLOURS = (colours.ORANGE, colours.WHITE, colours.BLUE, colours.PURPLE)
+LINES |= {f"/frequency/{each.name}": (each.symbol, colour, 2.0) for each, colour in zip(FREQUENCIES, _FREQUENCY_COLOURS, strict=True)}
 LINES |= {f"/power/{cause}": (name, colour, 2.0) for cause, (name, colour) in CAUSES.items()}
 LINES |= {f"/clearance/{part}": (name, colour, 2.0) for part, (name, colour) in CLEARANCES.items()}
 LINES |= {f"/temperature/{body}": (name, colour, 2.0) for body, (name, _, colour) in BODIES.items()}
@@ -127,6 +130,7 @@ def series(block: np.ndarray) -> dict[str, np.ndarray]:
         "/loads/each/pocket": block["pocket_force"],
         "/cage/eccentricity": block["land_eccentricity"],
         **{f"/clearance/{part}": 1e6 * block[f"{part}_clearance"] for part in CLEARANCES},
+        **{f"/frequency/{each.name}": column for each, column in zip(FREQUENCIES, characteristic_frequencies(block).T)},
     }
 
 
