@@ -8,7 +8,7 @@ from pathlib import Path
 from launch import LaunchDescription
 from launch.actions import OpaqueFunction
 
-from bearing_sim.ros.launching import Argument, bearing_node, declared, now, value
+from bearing_sim.ros.launching import USE_SIM_TIME, Argument, bearing_node, declared, fails_after_last, now, number, value
 
 FLEET = (
     Argument(
@@ -27,11 +27,11 @@ SET_FOR_EACH = ("bearings", "scene", "record", "rrd", "rerun_port")
 
 def generate_launch_description():
     """Return the launch description."""
-    return LaunchDescription([*declared(*FLEET, leave_out=SET_FOR_EACH), OpaqueFunction(function=_start)])
+    return LaunchDescription([*declared(*FLEET, USE_SIM_TIME, leave_out=SET_FOR_EACH), OpaqueFunction(function=_start)])
 
 
 def _start(context):
-    folder, port, start = value(context, "record_folder"), int(value(context, "first_rerun_port")), now()
+    folder, port, start = value(context, "record_folder"), number(context, "first_rerun_port", int), now()
     own = {
         name: {
             "scene": scene,
@@ -42,10 +42,12 @@ def _start(context):
         for index, (name, scene) in enumerate(_bearings(value(context, "bearings")).items())
     }
     if value(context, "one_process") == "true":
-        return [bearing_node(context, fleet=own, scene=next(iter(own.values()))["scene"], record="", rrd="", rerun_port="0")]
+        return [bearing_node(context, name="bearing_node", fleet=own, scene=next(iter(own.values()))["scene"], record="", rrd="", rerun_port="0")]
+    on_exit = fails_after_last(len(own))
     return [
         bearing_node(
             context,
+            on_exit=on_exit,
             # The nodes need different names: /diagnostics is shared and identifies bearings by the name of the node.
             name=f"bearing_{name}",
             namespace="/".join(part for part in (value(context, "namespace").rstrip("/"), name) if part),
@@ -62,7 +64,7 @@ def _bearings(text):
     for word in shlex.split(text):
         name, _, scene = word.partition("=")
         if not re.fullmatch(r"[a-z][a-z0-9_]*", name) or not scene:
-            raise RuntimeError(f"bearings: {word!r} is not NAME=SCENE; a NAME has lower-case letters, digits and underscores")
+            raise RuntimeError(f"bearings: {word!r} is not NAME=SCENE, such as front=a.yaml; a NAME has lower-case letters, digits and underscores")
         if name in scenes:
             raise RuntimeError(f"bearings: {name!r} is given twice; every bearing needs its own name")
         scenes[name] = scene

@@ -1,38 +1,37 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Start bearing_node, and optionally a rerun viewer: ``ros2 launch bearing_sim live.launch.py view:=true``."""
 
-import shutil
-import sys
-from pathlib import Path
+import socket
 
 from launch import LaunchDescription
 from launch.actions import ExecuteProcess, OpaqueFunction, RegisterEventHandler
 from launch.event_handlers import OnProcessIO
 
 from bearing_sim.recording.priority import in_idle_time
-from bearing_sim.ros.launching import READY, Argument, bearing_node, declared, value
+from bearing_sim.ros.launching import NAME, READY, USE_SIM_TIME, Argument, bearing_node, declared, number, value
+from bearing_sim.ros.recordings import viewer_command
 
-VIEW = Argument("view", "false", "whether to open a rerun viewer, on port 9876 if rerun_port is 0", ("true", "false"))
+VIEW = Argument("view", "false", "whether to open a rerun viewer, at a free port if rerun_port is 0", ("true", "false"))
 
 
 def generate_launch_description():
     """Return the launch description."""
-    return LaunchDescription([*declared(VIEW), OpaqueFunction(function=_start)])
+    return LaunchDescription([*declared(VIEW, NAME, USE_SIM_TIME), OpaqueFunction(function=_start)])
 
 
 def _start(context):
     if value(context, "view") != "true":
         return [bearing_node(context)]
-    port = value(context, "rerun_port")
-    port = "9876" if port == "0" else port
-    node = bearing_node(context, rerun_port=port)
-    return [_viewer_when_ready(node, port), node]
+    command = viewer_command(port := number(context, "rerun_port", int) or _free_port())
+    if command is None:
+        raise RuntimeError("view:=true needs the rerun viewer: pip install 'bearing_sim[view]'")
+    node = bearing_node(context, rerun_port=str(port))
+    return [_viewer_when_ready(node, command), node]
 
 
-def _viewer_when_ready(node, port):
+def _viewer_when_ready(node, command):
     """Return the handler that opens the viewer once the node is ready to serve it."""
-    viewer = ExecuteProcess(cmd=in_idle_time([_rerun(), f"rerun+http://127.0.0.1:{port}/proxy"]), output="log")
-    waiting = [viewer]
+    waiting = [ExecuteProcess(cmd=in_idle_time(command), output="log")]
 
     def open_viewer(event):
         return waiting.pop() if READY in event.text and waiting else None
@@ -40,9 +39,7 @@ def _viewer_when_ready(node, port):
     return RegisterEventHandler(OnProcessIO(target_action=node, on_stdout=open_viewer, on_stderr=open_viewer))
 
 
-def _rerun():
-    beside = Path(sys.executable).with_name("rerun")
-    found = str(beside) if beside.is_file() else shutil.which("rerun")
-    if found is None:
-        raise RuntimeError("view:=true needs the rerun viewer: pip install rerun-sdk==0.41.0")
-    return found
+def _free_port():
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]

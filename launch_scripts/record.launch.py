@@ -4,12 +4,12 @@
 from launch import LaunchDescription
 from launch.actions import LogInfo, OpaqueFunction
 
-from bearing_sim.ros.launching import bearing_node, declared, now, value
+from bearing_sim.ros.launching import NAME, USE_SIM_TIME, bearing_node, declared, now, value
 
 
 def generate_launch_description():
     """Return the launch description."""
-    return LaunchDescription([*declared(record=f"recordings/{now()}.mcap"), OpaqueFunction(function=_start)])
+    return LaunchDescription([*declared(NAME, USE_SIM_TIME, record=f"recordings/{now()}.mcap"), OpaqueFunction(function=_start)])
 
 
 def _start(context):

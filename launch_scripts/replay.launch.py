@@ -2,10 +2,10 @@
 """Play the inputs of a recording to bearing_node, and end when either has ended: ``ros2 launch bearing_sim replay.launch.py log:=mission.mcap``."""
 
 from launch import LaunchDescription
-from launch.actions import OpaqueFunction, Shutdown
+from launch.actions import OpaqueFunction
 from launch_ros.actions import Node
 
-from bearing_sim.ros.launching import Argument, bearing_node, declared, value
+from bearing_sim.ros.launching import NAME, Argument, bearing_node, declared, ends_with_node, number, value
 
 PLAYER = (
     Argument("log", "mission.mcap", "MCAP recording with the inputs to play; bearing-sim mission -o mission.mcap writes one"),
@@ -24,15 +24,16 @@ PLAYER = (
 
 def generate_launch_description():
     """Return the launch description."""
-    return LaunchDescription([*declared(*PLAYER), OpaqueFunction(function=_start)])
+    return LaunchDescription([*declared(*PLAYER, NAME), OpaqueFunction(function=_start)])
 
 
 def _start(context):
-    follows_clock = float(value(context, "clock")) > 0.0
-    words = ["--rate", value(context, "rate"), "--wait-limit", value(context, "wait_limit"), "--input-type", value(context, "input_type")]
+    follows_clock = number(context, "clock") > 0.0
+    words = [word for name in ("rate", "wait_limit") for word in (f"--{name.replace('_', '-')}", str(number(context, name)))]
+    words += ["--input-type", value(context, "input_type")]
     words += ["--joint", value(context, "joint"), "--cage-joint", value(context, "cage_joint")]
     if follows_clock:
-        words += ["--clock", value(context, "clock"), "--wait-until-used", value(context, "use_limit")]
+        words += ["--clock", str(number(context, "clock")), "--wait-until-used", str(number(context, "use_limit"))]
     words += [f"--{name.replace('_', '-')}" for name in ("start_paused", "loop") if value(context, name) == "true"]
     player = Node(
         package="bearing_sim",
@@ -41,6 +42,6 @@ def _start(context):
         namespace=value(context, "namespace"),
         arguments=[*words, value(context, "log")],
         output="screen",
-        on_exit=Shutdown(reason="the player has ended"),
+        on_exit=ends_with_node("the player has ended"),
     )
-    return [bearing_node(context, on_exit=Shutdown(reason="the node has ended"), sim_time=follows_clock), player]
+    return [bearing_node(context, on_exit=ends_with_node("the node has ended"), sim_time=follows_clock), player]

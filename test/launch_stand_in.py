@@ -18,7 +18,7 @@ class LaunchContext:
     """Values of the arguments, and the environment that processes get."""
 
     def __init__(self, **given: str):
-        self.launch_configurations, self.environment = dict(given), {}
+        self.launch_configurations, self.environment, self.is_shutdown = dict(given), {}, False
 
 
 class LaunchDescription:
@@ -68,7 +68,7 @@ class SetEnvironmentVariable:
         self.name, self.value = name, value
 
     def execute(self, context):
-        context.environment[self.name] = self.value.perform(context)
+        context.environment[self.name] = self.value
 
 
 class OpaqueFunction:
@@ -121,17 +121,20 @@ class ParameterValue:
     """A parameter's value with its type."""
 
     def __init__(self, value, *, value_type):
-        assert any(value_type is kind for kind in PARAMETER_TYPES), f"{value_type} is no type of a parameter"
+        assert value_type in PARAMETER_TYPES, f"{value_type} is no type of a parameter"
         self.value, self.value_type = value, value_type
 
 
 class Node:
     """Starts a ROS node."""
 
-    def __init__(self, *, package, executable, name=None, namespace=None, parameters=(), arguments=(), output="log", on_exit=None):
-        assert all(isinstance(word, str) for word in (package, executable, name, namespace, *arguments))
+    def __init__(self, *, package, executable, name=None, namespace=None, parameters=(), remappings=(), ros_arguments=(), arguments=(),
+                 output="log", on_exit=None):  # fmt: skip
+        assert all(isinstance(word, str) for word in (package, executable, name, namespace, *ros_arguments, *arguments))
+        assert all(isinstance(name, str) for pair in remappings for name in pair) and (on_exit is None or callable(on_exit))
         self.package, self.executable, self.name, self.namespace = package, executable, name, namespace
-        self.parameters, self.arguments, self.output, self.on_exit = list(parameters), list(arguments), output, on_exit
+        self.parameters, self.remappings, self.ros_arguments = list(parameters), list(remappings), list(ros_arguments)
+        self.arguments, self.output, self.on_exit = list(arguments), output, on_exit
 
 
 MODULES = {

@@ -15,8 +15,9 @@ import yaml
 pytest.importorskip("rclpy", reason="the launch files take their arguments from the node's parameters, which need rclpy of ROS 2")
 
 from bearing_sim.recording.priority import in_idle_time  # noqa: E402
-from bearing_sim.ros.parameters import DECLARATIONS  # noqa: E402
+from bearing_sim.ros.parameters import DECLARATIONS, SCENE_DECLARATIONS  # noqa: E402
 from bearing_sim.ros.player import command as player_command  # noqa: E402
+from bearing_sim.ros.recordings import viewer_command  # noqa: E402
 from bearing_sim.scene.loader import load_scene  # noqa: E402
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -37,12 +38,15 @@ def launched(monkeypatch):
     """Return a function that launches a file with arguments; it returns the declarations, the actions and the context."""
     stand_in.install(monkeypatch)
 
-    def launch(name, **arguments):
+    def launch(name, /, **arguments):
         context, declarations, actions = stand_in.LaunchContext(**arguments), [], []
         for entity in load(ROOT / "launch_scripts" / f"{name}.launch.py").entities:
             if isinstance(entity, stand_in.DeclareLaunchArgument):
                 declarations.append(entity)
             actions += entity.execute(context) or []
+        for action in [action for action in actions if isinstance(action, stand_in.SetEnvironmentVariable)]:
+            action.execute(context)
+            actions.remove(action)
         return SimpleNamespace(declarations=declarations, actions=actions, context=context)
 
     return launch
@@ -56,6 +60,8 @@ def handed_over(node, context):
     """Return the parameters as the node gets them: as launch writes them into a YAML file."""
     values = {}
     for name, parameter in node.parameters[0].items():
+        if name == "use_sim_time":
+            continue
         text = parameter.value.perform(context)
         kind = parameter.value_type
         values[name] = text if kind is str else kind(text) if kind in (int, float) else yaml.safe_load(text)
@@ -96,12 +102,84 @@ def test_defaults_are_the_nodes_own_but_for_what_the_file_is_for(launched, path)
 
 
 @EVERY_FILE
-def test_processes_keep_to_this_machine_unless_told_otherwise(launched, path):
+def test_processes_keep_to_this_machine_unless_the_user_has_set_something_else(launched, path, monkeypatch):
     name = path.name.partition(".")[0]
+    monkeypatch.delenv("ROS_AUTOMATIC_DISCOVERY_RANGE")
     assert launched(name).context.environment == {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
     assert launched(name, discovery_range="SUBNET").context.environment == {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}
     with pytest.raises(AssertionError, match="not one of"):
         launched(name, discovery_range="EVERYWHERE")
+    for variable, setting in (("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET"), ("ROS_LOCALHOST_ONLY", "1")):
+        with monkeypatch.context() as users:
+            users.setenv(variable, setting)
+            assert launched(name).context.environment == {}, "the user's setting holds"
+
+
+@EVERY_FILE
+def test_what_the_node_can_be_told_can_be_told_to_launch(launched, path):
+    run = launched(path.name.partition(".")[0])
+    names = {argument.name for argument in run.declarations}
+    own = {"scene", "record", "rrd", "rerun_port", "name"} if path.name.startswith("fleet") else {"use_sim_time"} if "replay" in path.name else set()
+    wanted = {row.name for row in (*DECLARATIONS, *SCENE_DECLARATIONS)} | {"name", "namespace", "remaps", "log_level", "use_sim_time"}
+    assert wanted - own <= names
+
+
+def test_name_level_of_the_log_remappings_and_fields_of_the_scene_reach_the_node(launched):
+    given = {"thresholds.slip_warning": "0.05", "lubricant.temperature": "90 degC", "use_sim_time": "true"}
+    (node,) = nodes(run := launched("live", name="monitor", log_level="debug", remaps="shaft_speed:=/motor/joints 'a:=b'", **given))
+    assert node.name == "monitor" and node.ros_arguments == ["--log-level", "debug"] and node.parameters[0]["use_sim_time"] is True
+    assert node.remappings == [("shaft_speed", "/motor/joints"), ("a", "b")]
+    values = handed_over(node, run.context)
+    assert values["thresholds.slip_warning"] == 0.05 and values["lubricant.temperature"] == pytest.approx(363.15)
+
+
+@pytest.mark.parametrize(
+    ("file", "given", "said"),
+    [
+        ("live", {"publish_rate": "abc"}, "publish_rate = 'abc': expected a number; rate of the output topics"),
+        ("live", {"publish_rate": "900"}, "publish_rate = 900: outside 0.1 to 200"),
+        ("live", {"bearings": "front"}, r"bearings = 'front': expected a list of strings, such as \[front, rear\]"),
+        ("live", {"governor": "perhaps"}, "governor = 'perhaps': expected true or false"),
+        ("live", {"sample_rate": "x", "maximum_lag": "y"}, "sample_rate = 'x'.*maximum_lag = 'y'"),
+        ("live", {"thresholds.slip_warning": "much"}, "thresholds.slip_warning = 'much'"),
+        ("live", {"remaps": "shaft_speed"}, "remaps:=shaft_speed: expected FROM:=TO"),
+        ("live", {"parameters_file": "missing.yaml"}, "parameters_file:=missing.yaml: no such file"),
+        ("live", {"view": "true", "rerun_port": "abc"}, "rerun_port:=abc: expected a whole number"),
+        ("replay", {"rate": "fast"}, "rate:=fast: expected a number"),
+        ("fleet", {"first_rerun_port": "abc"}, "first_rerun_port:=abc: expected a whole number"),
+    ],
+)
+def test_an_argument_that_cannot_be_used_is_named_with_the_form_expected(launched, file, given, said):
+    with pytest.raises(RuntimeError, match=said):
+        launched(file, **given)
+
+
+def test_a_misspelt_argument_is_pointed_out(launched):
+    (warning,) = [action for action in launched("live", publsh_rate="5").actions if isinstance(action, stand_in.LogInfo)]
+    assert "publsh_rate" in warning.msg and "publish_rate" in warning.msg
+
+
+def ended(code, name="bearing_node-1"):
+    return SimpleNamespace(returncode=code, process_name=name)
+
+
+def test_a_node_that_ends_with_an_error_ends_the_launch_with_one(launched):
+    for file in ("live", "record", "replay"):
+        run = launched(file)
+        (node,) = nodes(run)
+        with pytest.raises(RuntimeError, match="bearing_node-1 has ended with exit code 2"):
+            node.on_exit(ended(2), run.context)
+        run.context.is_shutdown = True
+        assert node.on_exit(ended(-15), run.context) is None, "the launch itself ends it"
+
+
+def test_a_node_of_a_fleet_that_fails_does_not_stop_the_others_but_the_launch_ends_with_an_error(launched):
+    run = launched("fleet")
+    front, rear = nodes(run)
+    assert front.on_exit(ended(2, "front"), run.context) is None
+    run.context.is_shutdown = True
+    with pytest.raises(RuntimeError, match=r"1 of 2 nodes .* front \(exit code 2\)"):
+        rear.on_exit(ended(0, "rear"), run.context)
 
 
 @EVERY_FILE
@@ -132,25 +210,27 @@ def test_arguments_reach_the_node_in_their_own_types(launched, path):
 
 
 @EVERY_FILE
-def test_a_file_of_parameters_comes_after_the_arguments_and_so_counts_more(launched, path):
-    name = path.name.partition(".")[0]
+def test_a_file_of_parameters_comes_after_the_arguments_and_so_counts_more(launched, path, tmp_path):
+    name, mine = path.name.partition(".")[0], tmp_path / "mine.yaml"
+    mine.write_text("")
     assert not [one for one in nodes(launched(name))[0].parameters if isinstance(one, str)]
-    assert nodes(launched(name, parameters_file="mine.yaml"))[0].parameters[-1] == "mine.yaml"
+    assert nodes(launched(name, parameters_file=str(mine)))[0].parameters[-1] == str(mine)
 
 
 def test_a_live_launch_opens_a_viewer_once_when_the_node_is_ready(launched):
     assert [type(action) for action in launched("live", rerun_port="9900").actions] == [stand_in.Node], "no viewer unless wanted"
     run = launched("live", view="true")
-    assert handed_over(nodes(run)[0], run.context)["rerun_port"] == 9876
+    assert handed_over(nodes(run)[0], run.context)["rerun_port"] > 1024, "a free port"
     run = launched("live", view="true", rerun_port="9900")
     assert handed_over(nodes(run)[0], run.context)["rerun_port"] == 9900
     (handler,) = [action.event_handler for action in run.actions if isinstance(action, stand_in.RegisterEventHandler)]
     assert handler.target_action is nodes(run)[0]
     assert handler.on_stderr(SimpleNamespace(text=b"warming up")) is None
     viewer = handler.on_stderr(SimpleNamespace(text=b"[INFO] [bearing_node]: ready: listening to shaft_speed"))
-    *before, program, address = viewer.cmd
-    assert Path(program).name == "rerun" and address == "rerun+http://127.0.0.1:9900/proxy"
-    assert [*before, program, address] == in_idle_time([program, address]), "drawing shall not hold up the solver"
+    command = viewer_command(9900)
+    assert Path(command[0]).name == "rerun" and command[-1] == "rerun+http://127.0.0.1:9900/proxy"
+    assert command[1:5] == ["--bind", "127.0.0.1", "--port", "auto"], "it listens to this machine only, and collides with no other viewer"
+    assert viewer.cmd == in_idle_time(command), "drawing shall not hold up the solver"
     assert handler.on_stderr(SimpleNamespace(text=b"ready: listening")) is None, "one viewer only"
 
 
@@ -176,7 +256,9 @@ def test_a_recording_launch_records_to_a_fresh_file_and_says_where(launched):
 def test_a_replay_plays_the_log_to_the_node_and_ends_when_either_has_ended(launched):
     run = launched("replay", log="flights/a 1.mcap", rate="2", input_type="scalar", joint="rotor", namespace="/m1")
     (node,), (player,) = nodes(run), nodes(run, "bearing_player")
-    assert isinstance(node.on_exit, stand_in.Shutdown) and isinstance(player.on_exit, stand_in.Shutdown)
+    for process in (node, player):
+        (end,) = process.on_exit(ended(0), run.context)
+        assert isinstance(end, stand_in.Shutdown) and end.reason.endswith("has ended")
     assert node.namespace == player.namespace == "/m1"
     taken = player_command.make_context("bearing_player", list(player.arguments)).params
     assert str(taken["log"]) == "flights/a 1.mcap" and taken["rate"] == 2.0 and taken["wait_limit"] == 600.0
@@ -189,10 +271,10 @@ def test_a_replay_goes_by_the_clock_of_its_player_unless_none_is_wanted(launched
     (node,), (player,) = nodes(run), nodes(run, "bearing_player")
     taken = player_command.make_context("bearing_player", list(player.arguments)).params
     assert taken["clock_rate"] == 100.0 and taken["use_limit"] == 3600.0 and taken["loop"] and taken["start_paused"]
-    assert {"use_sim_time": True} in node.parameters and taken["cage_joint"] == "m1_cage"
+    assert node.parameters[0]["use_sim_time"] is True and taken["cage_joint"] == "m1_cage"
     run = launched("replay", log="a.mcap", clock="0")
     taken = player_command.make_context("bearing_player", list(nodes(run, "bearing_player")[0].arguments)).params
-    assert taken["clock_rate"] is None and {"use_sim_time": True} not in nodes(run)[0].parameters and not taken["loop"]
+    assert taken["clock_rate"] is None and "use_sim_time" not in nodes(run)[0].parameters[0] and not taken["loop"]
 
 
 def test_a_fleet_gives_every_bearing_its_scene_namespace_name_recording_and_port(launched):

@@ -3,6 +3,7 @@
 
 import dataclasses
 import json
+import shlex
 import subprocess
 import time
 from collections.abc import Callable
@@ -27,7 +28,7 @@ from bearing_sim.monitoring.health import Condition, Phase, not_running
 from bearing_sim.ros.messages import InputReader, Refused, message, message_class
 from bearing_sim.ros.parameters import OIL_TEMPERATURE, BearingSettings, NodeSettings, follows_clock, scene_values_in
 from bearing_sim.ros.polling import PolledSubscriptions
-from bearing_sim.ros.recordings import fresh_path, limits_of, open_lossless_recording, open_recording, open_view, prepare
+from bearing_sim.ros.recordings import fresh_path, limits_of, open_lossless_recording, open_recording, open_view, prepare, viewer_command
 from bearing_sim.ros.warm_up import WarmUp, levels_to_compile, start_compiling
 from bearing_sim.runtime.governor import Governor
 from bearing_sim.runtime.live import LiveModel, governor_of, warmed_up
@@ -565,6 +566,9 @@ class BearingInterface:
             self.live.open("view", lambda start_ns: open_view(self.scene, start_ns, settings.rrd, settings.rerun_port))
         except ModuleNotFoundError as error:
             self.live.sinks.lack("view", what_is_missing(error))
+            return
+        if settings.rerun_port and (command := viewer_command(settings.rerun_port)):
+            self._log(f"to see it, run {shlex.join(command)}")
 
     def _served(self, act: Callable[[object], tuple[bool, str]]) -> Callable:
         """Return the callback of a service, which answers with what ``act`` makes of the request, or that there is no run to serve."""

@@ -252,7 +252,8 @@ def checked(declaration: Declaration, name: str, value: object) -> object:
         return _pose_numbers(declaration, name, value)
     if kind is list:
         if isinstance(value, str) or not all(isinstance(item, str) for item in value or []):
-            raise ValueError(f"{name} = {value!r}: expected a list of strings, such as ['level=slip']")
+            example = "[front, rear]" if declaration.name == "bearings" else "['level=slip']"
+            raise ValueError(f"{name} = {value!r}: expected a list of strings, such as {example}; {declaration.meaning}")
         return list(value or [""])
     if not isinstance(value, kind) or isinstance(value, bool) != (kind is bool):
         quoted = f""", such as -p {name}:="'{value}'\"""" if kind is str else ""
