@@ -62,8 +62,11 @@ def test_the_check_forgets_nothing_and_sees_a_silent_name_as_stale_and_so_as_an_
 
 
 def test_a_report_has_every_subject_once_whatever_holds_and_each_has_a_value():
+    values = {"cage slip [fraction]": 0.06, "level": "slip", "phase": "running", "state": "active"}
     for events in ([], [Event(1.0, Level.WARN, kind, "shaft_speed", "reason") for kind in KINDS]):
-        statuses = report(0, events, {"cage slip [fraction]": 0.06}, "bearing_node", "A-17")["status"]
+        statuses = report(0, events, values, "bearing_node", "A-17")["status"]
+        shown = {pair["key"]: pair["value"] for status in statuses[1:] for pair in status["values"]}
+        assert {key: shown[key] for key in values} == {**values, "cage slip [fraction]": "0.06"}, "no event hides a number"
         assert [status["name"] for status in statuses] == NAMES
         assert all(status["values"] and status["hardware_id"] == "A-17" for status in statuses)
         assert all(len({pair["key"] for pair in status["values"]}) == len(status["values"]) for status in statuses)

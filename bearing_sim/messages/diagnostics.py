@@ -174,7 +174,7 @@ def _event_values(events: Sequence[Event]) -> dict[str, object]:
     values: dict[str, object] = {}
     for number, event in enumerate(sorted(events, key=lambda event: -event.level), 1):
         prefix = f"{number}: " if number > 1 else ""
-        fields = {"kind": event.kind, "level": event.level.name, "subject": event.subject, "time [s]": event.time}
+        fields = {"kind": event.kind, "severity": event.level.name, "subject": event.subject, "time [s]": event.time}
         fields |= {"reason": event.reason, "action": event.action, "count": event.count if event.count > 1 else ""}
         values |= {f"{prefix}{key}": value for key, value in fields.items() if value != ""}
     return values
@@ -198,8 +198,7 @@ def events_of(time: float, status) -> list[Event]:
     events, prefix = [], ""
     while f"{prefix}kind" in values:
         get = lambda key: values.get(f"{prefix}{key}", "")  # noqa: E731
-        level = Level[get("level")]
-        events.append(Event(time, level, get("kind"), get("subject"), get("reason"), get("action"), int(get("count") or 1)))
+        events.append(Event(time, Level[get("severity")], get("kind"), get("subject"), get("reason"), get("action"), int(get("count") or 1)))
         prefix = f"{len(events) + 1}: "
     return events
 
