@@ -5,6 +5,8 @@ import importlib
 import os
 import signal
 import sys
+from collections.abc import Callable
+from types import FrameType
 
 from bearing_sim.extras import what_is_missing
 
@@ -12,8 +14,8 @@ _INTERRUPTED = 128 + signal.SIGINT
 
 
 def bearing_sim() -> int:
-    """Run the command line."""
-    return _run("bearing_sim.cli.main", _INTERRUPTED)
+    """Run the command line, whose commands import what they need when they are called."""
+    return _run("bearing_sim.cli.main", _INTERRUPTED, _interrupt)
 
 
 def bearing_node() -> int:
@@ -26,10 +28,26 @@ def bearing_player() -> int:
     return _run("bearing_sim.ros.player", _INTERRUPTED)
 
 
-def _run(module: str, interrupted: int) -> int:
-    """Import a module and call its ``main``; exit with ``interrupted`` at a SIGINT during the import."""
+def _interrupt(number: int, frame: FrameType | None) -> None:
+    """Raise KeyboardInterrupt, but end the program where an import is interrupted: Python may print and drop what is raised there."""
+    while frame is not None:
+        if frame.f_code.co_filename.startswith("<frozen importlib"):
+            os._exit(_INTERRUPTED)
+        frame = frame.f_back
+    raise KeyboardInterrupt
+
+
+def _run(module: str, interrupted: int, handler: Callable | None = None) -> int:
+    """Import a module and call its ``main``; exit with ``interrupted`` at a SIGINT during the import.
+
+    Parameters
+    ----------
+    handler : of SIGINT while ``main`` runs; None: as Python has it.
+    """
     before = signal.getsignal(signal.SIGINT)
-    if before is not signal.SIG_IGN:  # as in the background of a shell without job control
+    if before is signal.SIG_IGN:  # as in the background of a shell without job control
+        handler = None
+    else:
         signal.signal(signal.SIGINT, lambda *_: os._exit(interrupted))
     try:
         main = importlib.import_module(module).main
@@ -37,5 +55,5 @@ def _run(module: str, interrupted: int) -> int:
         print(f"{os.path.basename(sys.argv[0])}: {what_is_missing(error)}", file=sys.stderr)
         return 2
     finally:
-        signal.signal(signal.SIGINT, before)
+        signal.signal(signal.SIGINT, handler or before)
     return main()

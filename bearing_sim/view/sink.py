@@ -61,8 +61,8 @@ class RerunSink(View):
         super().__init__()
         self._dropped_there = 0
         paths = os.pathsep.join(entry for entry in sys.path if entry)
-        command = [sys.executable, "-m", "bearing_sim.view.worker"]
-        # Ctrl-C in a terminal reaches neither a session nor a group of its own.
+        # Ctrl-C in a terminal reaches neither a session nor a group of its own; a SIGINT sent to all processes is ignored from the start.
+        command = ["sh", "-c", "trap '' INT; exec \"$@\"", "sh", sys.executable, "-m", "bearing_sim.view.worker"]
         apart = {"process_group": 0} if path is None else {"start_new_session": True}
         self._process = subprocess.Popen(
             in_idle_time(command) if path is None else with_low_priority(command, _NICENESS),
