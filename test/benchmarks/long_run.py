@@ -132,6 +132,7 @@ def watched(feed: Feed, pid: int, hours: float, rate: float, folder: Path, log: 
         feed.advance()
         if feed.time >= len(looks) * _PERIOD:
             looks.append(look(pid, feed.time / 3600.0, folder))
+            print(looks[-1], file=sys.stderr, flush=True)
     return looks, feed.time / (time.monotonic() - began)
 
 
