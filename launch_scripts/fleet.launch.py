@@ -21,8 +21,9 @@ FLEET = (
     ),
     Argument("record_folder", "", "folder for a recording of each bearing, named after it and the start time; empty: none"),
     Argument("first_rerun_port", "0", "port on 127.0.0.1 for viewers of the first bearing; the others use the ports after it; 0: none"),
+    Argument("first_rerun_web_port", "0", "port on 127.0.0.1 for browsers, likewise"),
 )
-SET_FOR_EACH = ("bearings", "scene", "record", "rrd", "rerun_port")
+SET_FOR_EACH = ("bearings", "scene", "record", "rrd", "rerun_port", "rerun_web_port")
 
 
 def generate_launch_description():
@@ -31,18 +32,20 @@ def generate_launch_description():
 
 
 def _start(context):
-    folder, port, start = value(context, "record_folder"), number(context, "first_rerun_port", int), now()
+    folder, start = value(context, "record_folder"), now()
+    ports = {key: number(context, f"first_{key}", int) for key in ("rerun_port", "rerun_web_port")}
     own = {
         name: {
             "scene": scene,
             "record": str(Path(folder) / f"{name}_{start}.mcap") if folder else "",
             "rrd": "",
-            "rerun_port": str(port + index if port else 0),
+            **{key: str(first + index if first else 0) for key, first in ports.items()},
         }
         for index, (name, scene) in enumerate(_bearings(value(context, "bearings")).items())
     }
     if value(context, "one_process") == "true":
-        return [bearing_node(context, name="bearing_node", fleet=own, scene=next(iter(own.values()))["scene"], record="", rrd="", rerun_port="0")]
+        of_each = {"scene": next(iter(own.values()))["scene"], "record": "", "rrd": "", "rerun_port": "0", "rerun_web_port": "0"}
+        return [bearing_node(context, name="bearing_node", fleet=own, **of_each)]
     on_exit = fails_after_last(len(own))
     return [
         bearing_node(

@@ -119,7 +119,8 @@ def test_processes_keep_to_this_machine_unless_the_user_has_set_something_else(l
 def test_what_the_node_can_be_told_can_be_told_to_launch(launched, path):
     run = launched(path.name.partition(".")[0])
     names = {argument.name for argument in run.declarations}
-    own = {"scene", "record", "rrd", "rerun_port", "name"} if path.name.startswith("fleet") else {"use_sim_time"} if "replay" in path.name else set()
+    own = {"use_sim_time"} if "replay" in path.name else set()
+    own |= {"scene", "record", "rrd", "rerun_port", "rerun_web_port", "name"} if path.name.startswith("fleet") else set()
     wanted = {row.name for row in (*DECLARATIONS, *SCENE_DECLARATIONS)} | {"name", "namespace", "remaps", "log_level", "use_sim_time"}
     assert wanted - own <= names
 
@@ -294,7 +295,9 @@ def test_a_fleet_in_one_process_is_one_node_that_gets_each_bearings_own_paramete
     assert (node.namespace, node.name) == ("/ship", "bearing_node")
     values = handed_over(node, run.context)
     assert values["bearings"] == ["front", "rear"] and values["publish_rate"] == 20.0
-    assert set(values) == set(PARAMETERS) | {f"{name}.{key}" for name in ("front", "rear") for key in ("scene", "record", "rrd", "rerun_port")}
+    assert set(values) == set(PARAMETERS) | {
+        f"{name}.{key}" for name in ("front", "rear") for key in ("scene", "record", "rrd", "rerun_port", "rerun_web_port")
+    }
     assert (values["front.scene"], values["rear.scene"], values["rear.rerun_port"]) == ("deng2017_table1", "my scenes/b.yaml", 9901)
     assert values["front.record"] != values["rear.record"] and values["record"] == ""
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.cli.reporting import FailedRun, UsageError, as_usage_error, progress_bar
+from bearing_sim.cli.reporting import FailedRun, UsageError, as_usage_error, exit_on_sigterm, progress_bar
 
 
 @click.command("view")
@@ -33,16 +33,25 @@ from bearing_sim.cli.reporting import FailedRun, UsageError, as_usage_error, pro
 )
 @click.option("--speed-unit", metavar="UNIT", help="Unit of the speeds that are fields, such as rpm [default: rad/s].")
 @click.option("--load-unit", metavar="UNIT", help="Unit of a load that is a field, such as kN [default: N].")
+@click.option("--web", "is_web", is_flag=True, help="Show it in a browser: serve rerun's web viewer on 127.0.0.1 until Ctrl-C.")
+@click.option(
+    "--web-port", type=click.IntRange(0, 65535), metavar="PORT", help="Port on 127.0.0.1 for --web; 0 for any that is free [default: 9090]."
+)
 @click.option("--open/--no-open", "opens", default=None, help="Open rerun [default: if there is a display].")
-def view(recording, out, screenshot, seconds, size, speed, load, cage, temperature, speed_unit, load_unit, opens):
+def view(recording, out, screenshot, seconds, size, speed, load, cage, temperature, speed_unit, load_unit, is_web, web_port, opens):
     """Show RUN.mcap in rerun: a recording of bearing-sim or the node, or any rosbag2 recording.
 
     Writes RUN.rrd and opens it, or prints the command that does. A picture needs no display, only a Vulkan driver; a software driver
     is sufficient. Of bags from other sources (MCAP or SQLite, file or folder), speeds, load, temperature and plain numbers are shown over
-    time; topics that cannot be shown are listed.
+    time; topics that cannot be shown are listed. --web needs neither a display nor the internet, and nobody can connect from another
+    machine, except by a tunnel (ssh -L 9090:127.0.0.1:9090).
     """
     from bearing_sim.recording.bag import RecordingError
 
+    if web_port is not None and not is_web:
+        raise UsageError("--web-port goes with --web")
+    if is_web and screenshot is not None:
+        raise UsageError("--web and --screenshot contradict each other; give one of them")
     picture_size = _size(size)
     unfinished = recording.suffix == ".active"
     out = out or (recording.with_suffix("") if unfinished else recording).with_suffix(".rrd")
@@ -53,6 +62,9 @@ def view(recording, out, screenshot, seconds, size, speed, load, cage, temperatu
     if screenshot is not None:
         _take_picture(out, screenshot, span[1] if seconds is None else seconds, picture_size)
         click.echo(f"{screenshot}")
+        return
+    if is_web:
+        _serve(out, 9090 if web_port is None else web_port, opens)
         return
     _open(out, opens)
 
@@ -147,16 +159,41 @@ def _take_picture(rrd: Path, picture: Path, seconds: float, size: tuple[int, int
         raise FailedRun(f"{picture} was written, but the viewer reports: {'; '.join(problems)}")
 
 
-def _open(rrd: Path, opens: bool | None) -> None:
+def _serve(rrd: Path, port: int, opens: bool | None) -> None:
+    """Serve the web viewer with a recording until Ctrl-C."""
+    import time
+    import webbrowser
+
+    from bearing_sim.view.web import NoWebViewer, WebViewer
+
+    try:
+        with exit_on_sigterm(), WebViewer(port, recording=rrd) as viewer:
+            click.echo(f"{rrd} is shown at {viewer.url} for browsers on this machine; end with Ctrl-C")
+            if opens or (opens is None and _has_display()):
+                webbrowser.open(viewer.url)
+            while True:
+                time.sleep(3600.0)
+    except NoWebViewer as error:
+        raise FailedRun(str(error)) from None
+    except KeyboardInterrupt:
+        pass
+
+
+def _has_display() -> bool:
     import os
+    import sys
+
+    return sys.platform in ("darwin", "win32") or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+
+
+def _open(rrd: Path, opens: bool | None) -> None:
     import shlex
     import shutil
     import subprocess
     import sys
 
-    has_display = sys.platform in ("darwin", "win32") or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
     rerun = "rerun" if shutil.which("rerun") else str(Path(sys.executable).with_name("rerun"))
-    if opens is False or (opens is None and not has_display):
+    if opens is False or (opens is None and not _has_display()):
         click.echo(f"open it with: {shlex.join([rerun, str(rrd)])}")
         return
     command = [sys.executable, "-m", "rerun", str(rrd)]

@@ -260,7 +260,7 @@ class BearingInterface:
         """Compile or load the model, which takes seconds to minutes; runs on the thread of `WarmUp`."""
         settings = self.settings
         try:
-            prepare(bool(settings.rrd or settings.rerun_port), None if follows_clock(self._node) else self._node.recorder)
+            prepare(settings.has_view, None if follows_clock(self._node) else self._node.recorder)
             self._outputs.prepare()
             simulation = warmed_up(self.scene)
             governs = self._shared.governor and not follows_clock(self._node)  # with sim time no time is skipped
@@ -309,7 +309,7 @@ class BearingInterface:
                 self.live.set_oil_temperature(temperature, self._now_ns())
         if settings.record:
             self._start_recording(Path(settings.record))
-        if settings.rrd or settings.rerun_port:
+        if settings.has_view:
             self._open_view()
         for channel, topic in topics.inputs(self.scene).items():
             self._subscribe(channel, _SCALAR if shared.input_type == "scalar" and _SCALAR in topics.input_types(channel) else topic.ros_type)
@@ -563,7 +563,9 @@ class BearingInterface:
         """Open the view; the node does without where its packages are not installed."""
         settings = self.settings
         try:
-            self.live.open("view", lambda start_ns: open_view(self.scene, start_ns, settings.rrd, settings.rerun_port))
+            if settings.rerun_web_port:
+                self._log(f"the view is at http://127.0.0.1:{settings.rerun_web_port} for browsers on this machine")
+            self.live.open("view", lambda start_ns: open_view(self.scene, start_ns, settings.rrd, settings.rerun_port, settings.rerun_web_port))
         except ModuleNotFoundError as error:
             self.live.sinks.lack("view", what_is_missing(error))
             return

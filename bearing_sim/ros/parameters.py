@@ -126,8 +126,11 @@ DECLARATIONS = (
     Declaration("record_keep_free", 100.0, "free disk space below which recording stops [MB]", 0.0, 1e7),
     Declaration("rrd", "", "rerun recording (.rrd) to write from the start; empty: none", per_bearing=True),
     Declaration("rerun_port", 0, "port on 127.0.0.1 to which a rerun viewer can connect; 0: none", 0, 65535, per_bearing=True),
+    Declaration("rerun_web_port", 0, "port on 127.0.0.1 at which a browser shows the same view; 0: none", 0, 65535, per_bearing=True),
 )
 """The node's own parameters; those of the scene are `SCENE_DECLARATIONS`."""
+
+_PORTS = ("rerun_port", "rerun_web_port")
 
 
 @dataclass(frozen=True)
@@ -156,7 +159,13 @@ class BearingSettings:
     record: str
     rrd: str
     rerun_port: int
+    rerun_web_port: int
     conditions: Mapping[str, float]
+
+    @property
+    def has_view(self) -> bool:
+        """Whether the bearing is shown in rerun from the start."""
+        return bool(self.rrd or self.rerun_port or self.rerun_web_port)
 
     @property
     def frame(self) -> str:
@@ -388,7 +397,8 @@ class ParameterServer:
         """Return the parameters of a process that hosts only some of the bearings, with the ports that they have in this node."""
         names = [settings.name for settings in bearings]
         known = {name: self._node.get_parameter(name).value for name in sorted(self._chosen) if name in self._known}
-        ports = {f"{settings.name}.rerun_port": settings.rerun_port for settings in bearings}  # they depend on the place among all bearings
+        # Ports depend on the place among all bearings.
+        ports = {f"{settings.name}.{key}": getattr(settings, key) for settings in bearings for key in _PORTS}
         common = {"bearings": names, "autostart": False, "processes": 1, "use_sim_time": follows_clock(self._node)}
         return self.of_share(known, names) | ports | common
 
@@ -402,8 +412,9 @@ class ParameterServer:
             if name and values[key] and f"{name}.{key}" not in self._chosen:
                 path = Path(values[key])
                 values[key] = str(path.with_stem(f"{path.stem}_{name}"))
-        if name and values["rerun_port"] and f"{name}.rerun_port" not in self._chosen:
-            values["rerun_port"] += position
+        for key in _PORTS:
+            if name and values[key] and f"{name}.{key}" not in self._chosen:
+                values[key] += position
         chosen = [row.name for row in SCENE_DECLARATIONS if {row.name, f"{name}.{row.name}"} & self._chosen]
         for key in ("overrides", "frame_position", "frame_orientation"):
             values[key] = tuple(values[key])

@@ -105,8 +105,8 @@ def _is_taken(path: Path) -> bool:
     return path.exists() or path.with_name(path.name + ".active").exists()
 
 
-def open_view(scene: Scene, start_ns: int, path: str, port: int):
-    """Return a rerun sink (see `bearing_sim.view.sink.RerunSink`) that writes a file, serves viewers, or both.
+def open_view(scene: Scene, start_ns: int, path: str, port: int, web_port: int = 0):
+    """Return a rerun sink (see `bearing_sim.view.sink.RerunSink`) that writes a file, serves viewers or browsers, or all of these.
 
     Raises
     ------
@@ -119,7 +119,7 @@ def open_view(scene: Scene, start_ns: int, path: str, port: int):
 
     if path:
         Path(path).parent.mkdir(parents=True, exist_ok=True)
-    return RerunSink(scene, path=path or None, serve_port=port or None, start_ns=start_ns)
+    return RerunSink(scene, path=path or None, serve_port=port or None, start_ns=start_ns, web_port=web_port or None)
 
 
 def viewer_command(port: int) -> list[str] | None:

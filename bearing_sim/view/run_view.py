@@ -107,12 +107,14 @@ class ViewOptions(NamedTuple):
     duration : simulated time that will come [s], where known.
     load_scale : load [N] at the upper end of the colour map, where known; grows by itself when exceeded.
     real_time : True for a run in real time; pictures must not take processor time from it.
+    web_port : port on 127.0.0.1 at which browsers are served, besides viewers, or None.
     """
 
     start_ns: int | None = None
     duration: float | None = None
     load_scale: float | None = None
     real_time: bool = False
+    web_port: int | None = None
 
 
 NOTHING_KNOWN = ViewOptions()
@@ -182,7 +184,7 @@ class RunView:
     """
 
     def __init__(self, scene: Scene, path: str | Path | None = None, serve_port: int | None = None, options: ViewOptions = NOTHING_KNOWN):
-        start_ns, duration, load_scale, real_time = options
+        start_ns, duration, load_scale, real_time, _ = options
         live = serve_port is not None
         self._recording = rr.RecordingStream(APPLICATION)
         self._recording.set_log_time_enabled(False)  # one timeline: the simulated time

@@ -26,6 +26,7 @@ import numpy as np
 from bearing_sim.recording.priority import in_idle_time, with_low_priority
 from bearing_sim.scene.scene import Scene
 from bearing_sim.view.run_view import ViewOptions
+from bearing_sim.view.web import free_port
 from bearing_sim.view.worker import Dropped, View
 
 _HAND_ON_EVERY = 0.03  # [s]; the solver is interrupted no more often than this
@@ -42,24 +43,36 @@ class RerunSink(View):
     path : .rrd file to write, or None.
     serve_port : port on 127.0.0.1 at which viewers may connect, or None.
     start_ns : wall time of sample time 0 [ns since the epoch], or None.
+    web_port : port on 127.0.0.1 at which a browser finds rerun's web viewer, or None; without ``serve_port`` any port serves its stream.
 
     Raises
     ------
     ValueError
-        Neither ``path`` nor ``serve_port``.
+        Neither ``path`` nor ``serve_port`` nor ``web_port``.
     OSError
-        The file cannot be written, or the port is taken.
+        The file cannot be written, or a port is taken.
     """
 
-    def __init__(self, scene: Scene, path: str | Path | None = None, serve_port: int | None = None, start_ns: int | None = None):
-        if path is None and serve_port is None:
-            raise ValueError("a rerun sink needs a path, a serve_port, or both")
+    def __init__(
+        self,
+        scene: Scene,
+        path: str | Path | None = None,
+        serve_port: int | None = None,
+        start_ns: int | None = None,
+        web_port: int | None = None,
+    ):
+        if path is None and serve_port is None and web_port is None:
+            raise ValueError("a rerun sink needs a path, a serve_port, or a web_port")
+        if web_port is not None:
+            _require_free(web_port)
+            serve_port = free_port() if serve_port is None else serve_port
         if path is not None:
             Path(path).open("wb").close()  # the recorder itself would only log that it cannot write
         if serve_port is not None:
             _require_free(serve_port)
         super().__init__()
         self._dropped_there = 0
+        self.no_browsers: str | None = None
         paths = os.pathsep.join(entry for entry in sys.path if entry)
         # Ctrl-C in a terminal reaches neither a session nor a group of its own; a SIGINT sent to all processes is ignored from the start.
         command = ["sh", "-c", "trap '' INT; exec \"$@\"", "sh", sys.executable, "-m", "bearing_sim.view.worker"]
@@ -71,7 +84,7 @@ class RerunSink(View):
             env=dict(os.environ, PYTHONPATH=paths),
             **apart,
         )
-        options = ViewOptions(start_ns, real_time=True)
+        options = ViewOptions(start_ns, real_time=True, web_port=web_port)
         first = pickle.dumps((scene, None if path is None else str(Path(path).absolute()), serve_port, options))
         self._feeder = threading.Thread(target=self._feed, args=(first,), name="rerun-feeder", daemon=True)
         self._listener = threading.Thread(target=self._listen, name="rerun-listener", daemon=True)
@@ -147,6 +160,9 @@ class RerunSink(View):
             if report["ready"]:
                 self._ready.set()
             self._dropped_there = report["dropped"]
+            if report["no_browsers"] is not None and self.no_browsers is None:
+                self.no_browsers = report["no_browsers"]
+                _log.error("the view is not served to browsers: %s", self.no_browsers)
             if report["failure"] is not None and self.failure is None:
                 self.failure = report["failure"]
                 _log.error("rerun stopped; the run continues without a view: %s", self.failure)

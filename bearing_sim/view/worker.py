@@ -30,6 +30,7 @@ from bearing_sim.messages.events import Event, Measurement
 from bearing_sim.messages.topics import Origin
 from bearing_sim.scene.scene import Scene
 from bearing_sim.view.run_view import NOTHING_KNOWN, RunView, ViewOptions
+from bearing_sim.view.web import WebViewer
 
 QUEUED_ROWS = 20_000  # about 20 MB with 18 rollers
 _FLUSH_EVERY = 0.25  # [s] of wall time between columns of a live view
@@ -262,7 +263,8 @@ def main() -> None:
     views = {True: ViewThread(scene, path, None, options)} if path is not None else {}
     if port is not None:
         views[False] = ViewThread(scene, None, port, options)
-    threading.Thread(target=_report_on, args=(list(views.values()),), daemon=True).start()
+    browsers = Browsers(options.web_port, port) if options.web_port is not None else None
+    threading.Thread(target=_report_on, args=(list(views.values()), browsers), daemon=True).start()
     for item in _items(items):
         for view in views.values():
             if isinstance(item, Dropped):
@@ -270,7 +272,7 @@ def main() -> None:
             else:
                 view.put(item)
     finished = [view.close(_FINISH_WITHIN[is_file]) for is_file, view in views.items()]
-    _report(_state(views.values()))
+    _report(_state(views.values(), browsers))
     os._exit(0 if all(finished) else 1)  # rerun's own shutdown may wait for a viewer that stopped reading
 
 
@@ -283,15 +285,41 @@ def _items(stream):
             return
 
 
-def _state(views) -> dict:
-    error = next((view.failure for view in views if view.failure), None)
-    return {"ready": all(view.ready for view in views), "dropped": sum(view.dropped for view in views), "failure": error}
+class Browsers:
+    """The web viewer of a stream, served from a thread that may first have to unpack it.
+
+    Attributes
+    ----------
+    failure : why it is not served, or None; the view itself does without.
+    served : whether browsers may come, or never will.
+    """
+
+    def __init__(self, port: int, stream: int):
+        self.failure: str | None = None
+        self.served = False
+        threading.Thread(target=self._serve, args=(port, stream), name="browsers", daemon=True).start()
+
+    def _serve(self, port: int, stream: int) -> None:
+        try:
+            self._viewer = WebViewer(port, stream)
+        except Exception as error:  # whatever it is, the view is more important
+            self.failure = f"{error}"
+        self.served = True
 
 
-def _report_on(views) -> None:
+def _state(views, browsers: Browsers | None) -> dict:
+    return {
+        "ready": all(view.ready for view in views) and (browsers is None or browsers.served),
+        "dropped": sum(view.dropped for view in views),
+        "failure": next((view.failure for view in views if view.failure), None),
+        "no_browsers": None if browsers is None else browsers.failure,
+    }
+
+
+def _report_on(views, browsers: Browsers | None) -> None:
     reported = None
     while True:
-        state = _state(views)
+        state = _state(views, browsers)
         if state != reported:
             reported = state
             _report(state)
