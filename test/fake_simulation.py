@@ -15,6 +15,7 @@ class FakeSimulation:
     """Slip is a hundredth, damage grows with shaft rotation; nothing is compiled."""
 
     rollers = 6
+    thermal = None
 
     def __init__(self, inputs: Inputs = START):
         self.seconds_per_tick = 0.0

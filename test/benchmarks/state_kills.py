@@ -23,7 +23,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
-os.environ["FASTDDS_BUILTIN_TRANSPORTS"] = "UDPv4"  # a process that is killed within shared memory leaves it locked for the others
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import click  # noqa: E402
@@ -49,6 +48,7 @@ _RATE = 50.0  # [Hz] of inputs
 _INPUTS = Inputs(shaft_speed=1000.0, load_y=800.0, load_z=0.0, oil_temperature=393.15)
 _SETTINGS = {"scene": "deng2017_table1", "overrides": "['level=steady']", "governor": "false", "input_type": "scalar", "maximum_lag": "10.0"}
 _LIFETIME = 3600  # [s] after which a node that is left over ends
+_TRANSPORTS = {"FASTDDS_BUILTIN_TRANSPORTS": "UDPv4"}  # a process that is killed within shared memory leaves it locked for the others
 _READY = "ready: listening"  # in the node's log
 FAULTS = ("cut short", "overwritten", "missing", "older")
 """What a loss of power does to a file."""
@@ -105,8 +105,9 @@ class Driver:
     """Sends inputs to the nodes of all chains and hears the life that they publish."""
 
     def __init__(self, domain: int, chains: list[Chain]):
-        rclpy.init(domain_id=domain)
-        self._node = rclpy.create_node("state_kills", enable_rosout=False)
+        self._context = rclpy.Context()
+        rclpy.init(context=self._context, domain_id=domain)
+        self._node = rclpy.create_node("state_kills", context=self._context, enable_rosout=False)
         self._chains = chains
         self._publishers = [
             [(self._node.create_publisher(Float64, f"/n{chain.number}/{name}", qos_profile_sensor_data), value) for name, value in _VALUES]
@@ -134,7 +135,7 @@ class Driver:
     def close(self) -> None:
         """Leave the domain."""
         self._node.destroy_node()
-        rclpy.shutdown()
+        rclpy.shutdown(context=self._context)
 
 
 _VALUES = (("shaft_speed", _INPUTS.shaft_speed), ("radial_load", _INPUTS.load_y))
@@ -153,6 +154,8 @@ def kill_nodes(folder: Path, kills: int, at_once: int, seed: int, progress=lambd
     longest : life of a node after its first output [s].
     """
     chance, domain = random.Random(seed), fresh_domain()
+    before = {name: os.environ.get(name) for name in _TRANSPORTS}
+    os.environ.update(_TRANSPORTS)
     chains = [Chain(number, folder / f"bearing_{number}.json") for number in range(at_once)]
     driver, done, started = Driver(domain, chains), 0, 0
     try:
@@ -172,6 +175,8 @@ def kill_nodes(folder: Path, kills: int, at_once: int, seed: int, progress=lambd
             if chain.process is not None:
                 chain.process.end(9)
         driver.close()
+        for name, value in before.items():
+            os.environ.pop(name) if value is None else os.environ.update({name: value})
     return [kill for chain in chains for kill in chain.kills]
 
 
