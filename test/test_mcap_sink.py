@@ -83,6 +83,30 @@ def test_rosbags_deserialises_every_message(recording, scene):
     assert seen["/diagnostics"][0][1].status[0].level == 1
 
 
+@pytest.mark.parametrize("rate, together", [(1000.0, 37), (100.0, 10), (60.0, 1), (20.0, 4)])
+def test_what_repeats_others_is_recorded_fifty_times_a_second_at_most_in_order_and_with_the_sample_it_belongs_to(rate, together, tmp_path, scene):
+    count = int(rate)
+    block = numbered_block(count)
+    block["time"] = np.arange(count) / rate
+    with McapSink(tmp_path / "run.mcap", scene, START) as sink:
+        for first in range(0, count, together):
+            sink.write(block[first : first + together])
+    with Reader(sink.path) as reader:
+        found = [(connection.topic, stamp, raw) for connection, stamp, raw in reader.messages()]
+    with open(sink.path, "rb") as stream:
+        written = [message.log_time for _, _, message in make_reader(stream).iter_messages(log_time_order=False)]
+    assert written == sorted(written) and {topic: sum(one == topic for one, *_ in found) for topic in ("/damage", "/rollers")} == {
+        "/damage": count,
+        "/rollers": min(count, 50),
+    }
+    times = np.array([stamp - START for topic, stamp, _ in found if topic == "/rollers"]) * 1e-9
+    assert times[0] == 0.0 and np.diff(times).min() > 0.02 - 1.0 / rate
+    store = get_typestore(Stores.ROS2_JAZZY)
+    states = {stamp: store.deserialize_cdr(raw, "sensor_msgs/msg/JointState") for topic, stamp, raw in found if topic == "/bearing_state"}
+    damage = {stamp: store.deserialize_cdr(raw, "std_msgs/msg/Float64").data for topic, stamp, raw in found if topic == "/damage"}
+    assert all(state.position[list(state.name).index("damage")] == damage[stamp] for stamp, state in states.items())
+
+
 def test_tilts_and_slices_are_recorded_where_the_level_has_them_and_only_there(tmp_path):
     block = numbered_block(2)
     for level in ("slip", "planar", "spatial"):

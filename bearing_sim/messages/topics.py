@@ -28,6 +28,9 @@ ZERO_CELSIUS = 273.15  # [K]
 TEMPERATURES = ("oil_temperature", *RING_TEMPERATURES)
 """The input channels that carry a temperature."""
 
+REPEATING_RATE = 50.0
+"""Messages a second, in simulated time, that a recording has at most of a topic that only repeats others: the rate at which the node publishes."""
+
 
 class Computed(NamedTuple):
     """Numbers of messages that are computed from samples.
@@ -58,7 +61,8 @@ class Topic(NamedTuple):
     of_heat : whether scenes without a law of heat omit it.
     computed : of an output topic, numbers that are not observables themselves.
     of_scene : returns the topic of a scene, where its messages depend on the scene.
-    repeats : whether its numbers follow from those of the other topics, so that reading a recording back does not need it.
+    repeats : whether its numbers follow from those of the other topics: a recording has it for `REPEATING_RATE` samples a second at most, and
+        reading the recording back does not need it.
     """
 
     name: str

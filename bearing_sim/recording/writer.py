@@ -7,7 +7,7 @@
 import math
 import os
 import threading
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import NamedTuple
@@ -150,7 +150,9 @@ class McapFile(AbstractContextManager):
             self._span = widened(self._span, time_ns, time_ns)
             self._writer.add_message(Message(channel.id, self._counts[topic], time_ns, time_ns if publish_ns is None else publish_ns, data))
 
-    def write_rows(self, layout: SampleRows, block: np.ndarray, times_ns: np.ndarray) -> None:
+    def write_rows(
+        self, layout: SampleRows, block: np.ndarray, times_ns: np.ndarray, repeating: SampleRows | None = None, chosen: Sequence[int] = ()
+    ) -> None:
         """Write the messages of all topics of a layout for a block of samples.  Raises as `write`.
 
         Parameters
@@ -158,17 +160,33 @@ class McapFile(AbstractContextManager):
         layout : of the topics, which are written in no other way.
         block : samples, shape (n,).
         times_ns : log, publish and header time of each [ns since the epoch], uint64.
+        repeating : of further topics, which only some of the samples have, before their other topics.
+        chosen : the indices of these samples, in order.
         """
         if not len(block):
             return
         with self._lock:
             self._require_open()
-            names = [f"/{topic.name}" for topic in layout.topics]
-            ids = [(self._channels.get(name) or self._register(name, topic.ros_type)).id for name, topic in zip(names, layout.topics)]
-            self._writer.add_rows(layout, layout.filled(block, times_ns, ids, self._counts[names[0]] + 1), times_ns, ids)
-            for name in names:
-                self._counts[name] += len(block)
+            rows, ids = self._filled(layout, block, times_ns)
+            repeating_rows, repeating_ids, start = None, [], 0
+            if len(chosen):
+                repeating_rows, repeating_ids = self._filled(repeating, block[chosen], times_ns[chosen])
+            for k, index in enumerate(chosen):
+                if index > start:
+                    self._writer.add_rows(layout, rows[start:index], times_ns[start:index], ids)
+                self._writer.add_rows(repeating, repeating_rows[k : k + 1], times_ns[index : index + 1], repeating_ids)
+                start = index
+            self._writer.add_rows(layout, rows[start:], times_ns[start:], ids)
             self._span = widened(self._span, int(times_ns.min()), int(times_ns.max()))
+
+    def _filled(self, layout: SampleRows, block: np.ndarray, times_ns: np.ndarray) -> tuple[np.ndarray, list[int]]:
+        """Return the records of a block and the ids of their channels, and count them."""
+        names = [f"/{topic.name}" for topic in layout.topics]
+        ids = [(self._channels.get(name) or self._register(name, topic.ros_type)).id for name, topic in zip(names, layout.topics)]
+        rows = layout.filled(block, times_ns, ids, self._counts[names[0]] + 1)
+        for name in names:
+            self._counts[name] += len(block)
+        return rows, ids
 
     def __exit__(self, *_) -> None:
         self.close()
@@ -395,8 +413,11 @@ class McapSink(AbstractContextManager):
     ):
         self.start_ns, self._frame = int(start_ns), frame
         self._bearing = scene.bearing.name
-        self._topics = tuple(topics.recorded(scene).values())
-        self._rows = SampleRows(self._topics, scene.bearing.roller.count, frame)
+        recorded = topics.recorded(scene).values()
+        self._topics = tuple(topic for topic in recorded if not topic.repeats)
+        self._repeating_topics = tuple(topic for topic in recorded if topic.repeats)
+        self._lay_out(scene.bearing.roller.count)
+        self._last_period = -1  # of `REPEATING_RATE`, in which a sample was written with its repeating topics
         origin = {"package_version": package_version(), "git_hash": git_hash()}
         packages = {f"version_{name}": version for name, version in versions().items()}
         record = {"scene": scene_to_yaml(scene), "level": scene.level, "start_ns": str(self.start_ns), **origin, **packages}
@@ -417,9 +438,22 @@ class McapSink(AbstractContextManager):
         """Write a block of samples (see `bearing_sim.model.sample`); raises as `McapFile.write`, as all that follows."""
         rollers = block["roller_angle"].shape[1]
         if rollers != self._rows.rollers:
-            self._rows = SampleRows(self._topics, rollers, self._frame)
+            self._lay_out(rollers)
         times_ns = np.uint64(self.start_ns) + np.rint(block["time"] * 1e9).astype(np.int64).astype(np.uint64)
-        self._files.current.write_rows(self._rows, block, times_ns)
+        chosen = self._with_repeating(block["time"]) if self._repeating_rows is not None else ()
+        self._files.current.write_rows(self._rows, block, times_ns, self._repeating_rows, chosen)
+
+    def _lay_out(self, rollers: int) -> None:
+        self._rows = SampleRows(self._topics, rollers, self._frame)
+        self._repeating_rows = SampleRows(self._repeating_topics, rollers, self._frame) if self._repeating_topics else None
+
+    def _with_repeating(self, times: np.ndarray) -> np.ndarray:
+        """Return the indices of the samples that are written with their repeating topics: the first one of each period of `REPEATING_RATE`."""
+        periods = np.floor(times * topics.REPEATING_RATE + 1e-6).astype(np.int64)  # times are multiples of a period but for rounding
+        found = np.flatnonzero(np.diff(periods, prepend=self._last_period))
+        if len(periods):
+            self._last_period = int(periods[-1])
+        return found
 
     write_start = write
     """Write the state from which the run starts, a block of one sample, so that the run can be reproduced; it is not an output of the run."""
