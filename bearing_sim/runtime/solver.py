@@ -337,6 +337,8 @@ class WallTimeSolver(Solver):
         end, resyncs = self._simulation.time + self._schedule.tick, self._pacer.resyncs
         delay = self._pacer.delay(wall, end)
         if self._pacer.resyncs != resyncs:
+            wall = self._tick_instant(wall)
+            self._pacer.anchor(wall, end)
             self._shift = self._run_time(wall) - end
         return self._tick, delay
 
@@ -441,12 +443,20 @@ class WallTimeSolver(Solver):
         return (wall - self._origin) * self._pacer.rate
 
     def _anchor(self) -> None:
-        wall, time_ = self._clock(), self._simulation.time
+        wall, time_ = self._tick_instant(self._clock()), self._simulation.time
         self._pacer.anchor(wall, time_)
         self.anchors += 1
         # Run time may skip but not go back, even if the model is ahead by the rounding of a clock.
         floor = float(self.newest["time"]) - time_ if self.newest is not None else -np.inf
         self._shift = max(self._run_time(wall) - time_, floor)
+
+    def _tick_instant(self, wall: float) -> float:
+        """Return the last instant at which solvers that share threads tick; of a solver with a thread of its own that is now.
+
+        Ticks of many bearings that run one after the other find the code of their level in the processor's caches, and the thread wakes once
+        for all of them.
+        """
+        return wall - wall % self._schedule.tick if self._threads.are_shared else wall
 
     def _put(self, item: Item) -> None:
         self._dropped += len(self._queue) == self._queue.maxlen  # the deque drops its oldest entry

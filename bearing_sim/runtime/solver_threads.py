@@ -77,6 +77,11 @@ class SolverThreads:
         self._threads = 0
         self._is_watched = False  # whether a thread waits for the next instant at which something is due
 
+    @property
+    def are_shared(self) -> bool:
+        """Whether they take the steps of more than one."""
+        return len(self._costs) > 1
+
     def add(self, stepped: Stepped) -> None:
         """Take steps of this one from now on."""
         with self.changed:
