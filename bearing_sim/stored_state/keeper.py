@@ -24,10 +24,10 @@ from bearing_sim.stored_state.totals import criteria
 RECORD = "bearing_sim_state"
 """Name of a recording's metadata record with the state that it began with: state, as in a state file, and counts."""
 
-WRITE_EVERY = 4.0
-"""[s of wall time] from one write to the next: with the wait until samples are published and the write itself, a kill loses less than 10 s."""
+WRITE_EVERY = 2.0
+"""[s of wall time] from one write to the next: 10 s are promised, and a busy machine or a slow disk may take most of them."""
 
-_LATE = 10.0  # [s] without a write after which it is reported that a kill would lose more than was promised
+_LATE = 10.0  # [s] that are not written after which it is reported that a kill would lose more than was promised
 _UNPUBLISHED = 1.0  # [s] that a state waits for its samples to be published, at most
 _WARM_FOR = 600.0  # [s] *assumption*: a bearing that was seen warm ten minutes ago still is
 _CLOSE_WITHIN = 5.0  # [s] for the last write
@@ -87,10 +87,11 @@ class StateKeeper:
         self._counter = LifeCounter(self.state.totals.damage)
         self._last_time: float | None = None
         self._changed = threading.Condition()
-        self._waiting: StoredState | None = None  # to be written
+        self._waiting: tuple[StoredState, float] | None = None  # to be written, and when it was like that
+        self._unsaved_since: float | None = None
         self._has_changed = state is None
         self._held: tuple[float, float, StoredState] | None = None  # until it is published
-        self._error, self._history_error, self._writing_since = "", "", None
+        self._error, self._history_error, self._is_writing = "", "", False
         self._moved: tuple[dict, int] | None = None
         self._stopping, self._thread = False, None
         self._written_at = self._due_from = clock()
@@ -166,7 +167,7 @@ class StateKeeper:
         seconds : simulated time that each stands for [s], shape (n,); 0 at the start of a run.
         """
         times_ns = _times_ns(block, start_ns)
-        self._has_changed = True
+        self._note_change()
         counted = self._counter.take(block, times_ns, seconds)
         self.state.take(block, times_ns, seconds, self._by, counted)
 
@@ -179,7 +180,7 @@ class StateKeeper:
         starts_ns : time 0 of the samples by the clock [ns since the epoch], and by the clock before it was set, which recordings go by.
         interval : between two samples if no time was skipped [s].
         """
-        self._has_changed = True
+        self._note_change()
         steps = np.diff(block["time"], prepend=block["time"][0] if self._last_time is None else self._last_time)
         self._last_time = float(block["time"][-1])
         seconds = np.where(steps > 1.5 * interval, interval, np.maximum(steps, 0.0))
@@ -188,6 +189,11 @@ class StateKeeper:
         for other in starts_ns[1:]:
             for begin, end in zip((times_ns - np.rint(1e9 * seconds).astype(np.int64)).tolist(), times_ns.tolist()):
                 self.state.covered.add(begin - starts_ns[0] + other, end - starts_ns[0] + other)
+
+    def _note_change(self) -> None:
+        self._has_changed = True
+        if self._unsaved_since is None:
+            self._unsaved_since = self._clock()
 
     def adjust(self, scene: Scene) -> None:
         """Class samples by other thresholds from now on."""
@@ -214,17 +220,17 @@ class StateKeeper:
     def release(self, published: float) -> None:
         """Write the state that is held if samples have been published up to this time [s], or nobody publishes them as often."""
         if self._held is not None and (published >= self._held[0] or self._clock() - self._held[1] > _UNPUBLISHED):
-            self._hand_over(self._held[2])
+            self._hand_over(self._held[2], self._held[1])
             self._held = None
 
     def events(self, now: float) -> list[Event]:
         """Return what is wrong with the state at ``now`` [s], for as long as it is wrong."""
-        events, since = [], self._clock() - self._written_at
+        events, unsaved = [], 0.0 if self._unsaved_since is None else self._clock() - self._unsaved_since
         if self._error:
-            reason = f"{self.path} cannot be written: {self._error}; {since:.0f} s would be lost now"
+            reason = f"{self.path} cannot be written: {self._error}; {unsaved:.0f} s would be lost now"
             events.append(Event(now, Level.ERROR, "state.not_written", "", reason, "the model continues, and writing is tried again"))
-        elif self._writing_since is not None and self._clock() - self._writing_since > _LATE:
-            reason = f"writing {self.path} takes {self._clock() - self._writing_since:.0f} s so far: the disk is too slow, and a kill would lose that"
+        elif unsaved > _LATE:
+            reason = f"{self.path} was not written for {unsaved:.0f} s, which a kill would lose: the disk or the machine is too slow"
             events.append(Event(now, Level.WARN, "state.late", "", reason))
         if self._history_error:
             events.append(Event(now, Level.WARN, "state.history", "", self._history_error, "days stay in the state until they can be moved"))
@@ -258,9 +264,9 @@ class StateKeeper:
         """Write the state now and wait for it; return whether it was written within ``timeout`` [s]."""
         self._held = None
         self._take_moved()
-        self._hand_over(self._snapshot())
+        self._hand_over(self._snapshot(), self._clock())
         with self._changed:
-            done = self._changed.wait_for(lambda: self._waiting is None and self._writing_since is None, timeout)
+            done = self._changed.wait_for(lambda: self._waiting is None and not self._is_writing, timeout)
         self._due_from = self._clock() + WRITE_EVERY
         return done and not self._error
 
@@ -303,9 +309,9 @@ class StateKeeper:
         self.state.written_ns = self._now_ns()
         return self.state.copy()
 
-    def _hand_over(self, snapshot: StoredState) -> None:
+    def _hand_over(self, snapshot: StoredState, taken: float) -> None:
         with self._changed:
-            self._waiting = snapshot
+            self._waiting = snapshot, taken
             if self._thread is None:
                 self._thread = threading.Thread(target=self._work, name="bearing-state", daemon=True)
                 self._thread.start()
@@ -337,14 +343,14 @@ class StateKeeper:
                 self._changed.wait_for(lambda: self._waiting is not None or self._stopping)
                 if self._waiting is None:
                     return
-                snapshot, self._waiting, self._writing_since = self._waiting, None, self._clock()
+                (snapshot, taken), self._waiting, self._is_writing = self._waiting, None, True
             try:
                 self._file.write(snapshot)
-                self._error, self._written_at = "", self._clock()
+                self._error, self._written_at, self._unsaved_since = "", self._clock(), taken if self._has_changed else None
             except (OSError, ValueError) as error:
                 self._error, self._has_changed = str(error), True
             with self._changed:
-                self._writing_since = None
+                self._is_writing = False
                 self._changed.notify_all()
             if not self._error and not self._stopping:
                 self._move_days(snapshot)

@@ -408,7 +408,7 @@ EVENTS = {
     "state.begun": ("OK", "nothing was known about the bearing: its state begins"),
     "state.continued": ("OK", "the bearing's state continues from the last run"),
     "state.history": ("OK, WARN", "the history of days is CSV because there is no pyarrow, or cannot be written"),
-    "state.late": ("WARN", "a slow disk: a kill would lose more than ten seconds of the bearing's state"),
+    "state.late": ("WARN", "a slow disk or machine: a kill would lose more than ten seconds of the bearing's state"),
     "state.not_written": ("ERROR", "the bearing's state cannot be written; the model continues, and writing is tried again"),
     "state.recalibrated": ("OK", "the scene was calibrated since the last run; what was learned about residuals is forgotten"),
     "state.restored": ("WARN", "the state file is damaged, missing or older than the one before; the newest good state is used"),
