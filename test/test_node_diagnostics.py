@@ -18,7 +18,7 @@ from lifecycle_msgs.srv import ChangeState  # noqa: E402
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue  # noqa: E402
 from rcl_interfaces.srv import SetParameters  # noqa: E402
 from rclpy.qos import qos_profile_sensor_data  # noqa: E402
-from ros_bench import GOOD, Client, NodeProcess, fresh_domain  # noqa: E402
+from ros_bench import GOOD, PATIENCE, Client, NodeProcess, fresh_domain  # noqa: E402
 from std_srvs.srv import SetBool, Trigger  # noqa: E402
 
 from bearing_sim.messages import topics  # noqa: E402
@@ -32,10 +32,18 @@ _STATUSES = 1 + len(SUBJECTS)  # of a bearing
 
 
 class Watcher(Client):
-    """A client whose aggregator judges what it hears, all the time: nothing may be stale as long as the node lives."""
+    """A client whose aggregator judges what it hears, all the time: nothing may be stale as long as the node lives.
 
-    def __init__(self, domain, namespace=""):
-        self._aggregator = Aggregator(yaml.safe_load(ANALYZERS.read_text())["/**"]["ros__parameters"])
+    Parameters
+    ----------
+    timeout : after which an item is stale [s]: by default longer than that of diagnostic_aggregator, because a busy machine may hold up the node
+        and the client; ``python test/benchmarks/diagnostics_silence.py`` measures.
+    """
+
+    def __init__(self, domain, namespace="", timeout=PATIENCE):
+        parameters = yaml.safe_load(ANALYZERS.read_text())["/**"]["ros__parameters"]
+        patient = {name: {**value, "timeout": timeout} if isinstance(value, dict) else value for name, value in parameters.items()}
+        self._aggregator = Aggregator(patient)
         super().__init__(domain, namespace)
         self.worst = OK
 
@@ -58,9 +66,11 @@ class Watcher(Client):
         return [path for path in self.levels() if ": " in path]
 
     def wrong(self):
-        """Return the level of each subject that is not OK; limits of validity hold as long as the condition does."""
+        """Return the level of each subject that is not OK; limits of validity hold as long as the condition does, and the machine may be busy."""
         named = {path.rpartition("/")[2]: level for path, level in self.levels().items() if ": " in path and level}
-        return {name.removeprefix("bearing_node "): level for name, level in named.items() if not name.endswith((": condition", ": validity"))}
+        return {
+            name.removeprefix("bearing_node "): level for name, level in named.items() if not name.endswith((": condition", ": validity", ": pace"))
+        }
 
 
 class Fleet:
@@ -68,7 +78,7 @@ class Fleet:
 
     def __init__(self, folder):
         domain = fresh_domain()
-        overrides = "overrides:=['input_limits.stale_after=0.5s']"
+        overrides = "overrides:=['input_limits.stale_after=1s']"
         state = (f"front.state_file:={folder / 'state.json'}", "front.serial:=A-17")
         parameters = ("autostart:=false", "governor:=false", "bearings:=[front, rear]", overrides, *state, "publish_rate:=10.0")
         self.process = NodeProcess(folder, domain, "--ros-args", *(word for pair in parameters for word in ("-p", pair)), limit=280)
@@ -133,7 +143,7 @@ def test_a_healthy_start_from_the_first_report_on_is_never_stale_and_never_an_er
     fleet.change("configure")
     fleet.change("activate")
     client.spin_until(lambda: process.text.count("ready: listening to") == 2, "both have warmed up", process, 100.0)
-    client.spin(1.5)  # three times the patience with an input that has begun
+    client.spin(1.5)  # longer than the patience with an input that has begun
     assert client.worst == OK and "WARN" not in process.text and "ERROR" not in process.text
     assert "holding" not in str(client.received["diagnostics"])
     for words in ("/front/shaft_speed, /front/radial_load", "/rear/cage_slip", "lifecycle: configure: unconfigured -> inactive"):
@@ -168,7 +178,7 @@ def test_each_fault_is_in_its_subject_of_its_bearing_alone_and_its_cure_is_seen(
     assert client.worst == ERROR
 
 
-def test_a_pause_and_every_state_of_the_node_are_as_healthy_as_a_run_and_its_end_is_stale_after_five_seconds(fleet):
+def test_a_pause_and_every_state_of_the_node_are_as_healthy_as_a_run_and_its_end_is_stale(fleet):
     client, process = fleet.client, fleet.process
     assert client.call(SetBool, "/front/pause", SetBool.Request(data=True), process).success
     fleet.drive_until(lambda: any("paused" in text for _, _, text in client.statuses(-2)), "the pause is told")
@@ -182,7 +192,7 @@ def test_a_pause_and_every_state_of_the_node_are_as_healthy_as_a_run_and_its_end
         assert client.wrong() == {} and len(client.items()) == 2 * _STATUSES
     assert client.worst <= WARN, "limits of validity at most"
     assert process.end(signal.SIGINT) == 0
-    levels = client.levels(later=5.1)
+    levels = client.levels(later=PATIENCE + 0.1)
     assert {level for path, level in levels.items() if path != "/Bearings"} == {STALE}
 
 
