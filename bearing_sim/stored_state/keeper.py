@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from bearing_sim.messages.events import Event, Level
-from bearing_sim.model.sample import NODE_OBSERVABLES, RING_TEMPERATURES
+from bearing_sim.model.sample import NODE_OBSERVABLES, RING_TEMPERATURES, joined
 from bearing_sim.scene.scene import Scene
 from bearing_sim.stored_state.counting import LifeCounter
 from bearing_sim.stored_state.history import history_paths, move_days
@@ -30,6 +30,7 @@ WRITE_EVERY = 2.0
 _LATE = 10.0  # [s] that are not written after which it is reported that a kill would lose more than was promised
 _UNPUBLISHED = 1.0  # [s] that a state waits for its samples to be published, at most
 _WARM_FOR = 600.0  # [s] *assumption*: a bearing that was seen warm ten minutes ago still is
+_TOGETHER = 256  # blocks of a log that are counted at once
 _CLOSE_WITHIN = 5.0  # [s] for the last write
 _MOVE_AGAIN = 3600.0  # [s] after a move of days to the history that failed
 
@@ -51,8 +52,6 @@ class StateKeeper:
 
     Attributes
     ----------
-    state : StoredState
-        As counted so far.
     path : of its file.
 
     Raises
@@ -75,7 +74,8 @@ class StateKeeper:
         self.path = self._file.path
         try:
             state, news = self._file.read()
-            self.state = new_state(scene, serial, now_ns()) if state is None else state
+            self._state = new_state(scene, serial, now_ns()) if state is None else state
+            self._pending: list[tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray | None]] = []  # arguments of `StoredState.take`
             self._require_same(scene, serial)
         except Exception:
             self._file.close()
@@ -136,6 +136,12 @@ class StateKeeper:
         self._news.append(News(level, kind, text))
 
     @property
+    def state(self) -> StoredState:
+        """The state as counted so far."""
+        self._take_pending()
+        return self._state
+
+    @property
     def used(self) -> float:
         """Fraction of the life used so far."""
         return self.state.totals.damage
@@ -169,7 +175,18 @@ class StateKeeper:
         times_ns = _times_ns(block, start_ns)
         self._note_change()
         counted = self._counter.take(block, times_ns, seconds)
-        self.state.take(block, times_ns, seconds, self._by, counted)
+        self._pending.append((block, times_ns, seconds, counted))
+        if len(self._pending) >= _TOGETHER:
+            self._take_pending()
+
+    def _take_pending(self) -> None:
+        """Count samples together: many cost little more than one."""
+        pending, self._pending = self._pending, []
+        if pending:
+            blocks, times_ns, seconds, counted = zip(*pending)
+            all_count = all(each is None for each in counted)
+            fractions = None if all_count else np.concatenate([np.ones(len(b)) if each is None else each for b, each in zip(blocks, counted)])
+            self._state.take(joined(blocks), np.concatenate(times_ns), np.concatenate(seconds), self._by, fractions)
 
     def count_live(self, block: np.ndarray, starts_ns: tuple[int, ...], interval: float) -> None:
         """Count samples of a bearing that runs now.
@@ -197,6 +214,7 @@ class StateKeeper:
 
     def adjust(self, scene: Scene) -> None:
         """Class samples by other thresholds from now on."""
+        self._take_pending()
         self._by = criteria(scene)
 
     def note_thermal(self, sample: np.void, time_ns: int) -> None:

@@ -45,7 +45,7 @@ def merge(path: Path, recording: Recording) -> Filled:
         state = keeper.state
         before, damage, was_turning = state.totals.monitored_seconds, state.totals.damage, state.is_turning
         state.is_turning = True  # whether the shaft turned before a gap is not known: a start is counted only where it is recorded
-        recorded = _count(keeper, recording)
+        recorded, state = _count(keeper, recording), keeper.state
         state.is_turning = was_turning
         filled = Filled(recorded, state.totals.monitored_seconds - before, state.totals.damage - damage)
     except BaseException:
