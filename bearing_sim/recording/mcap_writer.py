@@ -9,7 +9,7 @@ the cost with that of other writers.
 import struct
 import zlib
 from collections.abc import Mapping, Sequence
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 import zstandard
@@ -121,6 +121,21 @@ class SampleRows:
         return rows
 
 
+class _RowGroup(NamedTuple):
+    """Rows of a layout that stand one after the other in a chunk.
+
+    Attributes
+    ----------
+    layout : of the rows.
+    times_ns : log time of each row [ns since the epoch], uint64.
+    offset : first byte of the rows in the chunk.
+    """
+
+    layout: SampleRows
+    times_ns: np.ndarray
+    offset: int
+
+
 _HEAD_FIELDS = (("channel", 0, "<u2"), ("sequence", 2, "<u4"), ("log", 6, "<u8"), ("publish", 14, "<u8"))  # see mcap_format.MESSAGE
 
 
@@ -170,12 +185,7 @@ class McapWriter:
         per_chunk = max(1, CHUNK_SIZE // layout.size)
         for start in range(0, len(rows), per_chunk):
             part, times = rows[start : start + per_chunk], times_ns[start : start + per_chunk]
-            entries = np.empty((len(channels), len(part), 2), "<u8")
-            entries[:, :, 0] = times
-            entries[:, :, 1] = np.add.outer(layout.starts, np.uint64(self._size) + np.uint64(layout.size) * np.arange(len(part), dtype=np.uint64))
-            for channel, own in zip(channels, entries):
-                self._index.setdefault(channel, []).append(own.tobytes())
-                self._counts[channel] = self._counts.get(channel, 0) + len(part)
+            self._groups.setdefault(tuple(channels), []).append(_RowGroup(layout, times, self._size))
             self._put(part.data, int(times.min()), int(times.max()))
 
     def add_metadata(self, name: str, metadata: Mapping[str, str]) -> None:
@@ -190,8 +200,9 @@ class McapWriter:
 
     def flush(self) -> None:
         """Write the chunk in progress, if it has a message."""
-        if not self._index:
+        if not self._index and not self._groups:
             return
+        self._index_groups()
         records = b"".join(self._parts)
         compressed = self._compress(records)
         span = {"message_start_time": self._chunk_span[0], "message_end_time": self._chunk_span[1], "compression": "zstd"}
@@ -259,7 +270,23 @@ class McapWriter:
         self._parts: list[bytes | memoryview] = []
         self._size = 0
         self._index: dict[int, list[bytes]] = {}
+        self._groups: dict[tuple[int, ...], list[_RowGroup]] = {}  # by channels
         self._chunk_span: tuple[int, int] | None = None
+
+    def _index_groups(self) -> None:
+        """Enter all rows of the chunk into its index at once: group by group, small ones would cost more than their writing."""
+        for channels, groups in self._groups.items():
+            times = np.concatenate([group.times_ns for group in groups])
+            layout = groups[0].layout
+            begins = np.concatenate(
+                [np.uint64(group.offset) + np.uint64(layout.size) * np.arange(len(group.times_ns), dtype=np.uint64) for group in groups]
+            )
+            entries = np.empty((len(channels), len(times), 2), "<u8")
+            entries[:, :, 0] = times
+            entries[:, :, 1] = np.add.outer(layout.starts, begins)
+            for channel, own in zip(channels, entries):
+                self._index.setdefault(channel, []).append(own.tobytes())
+                self._counts[channel] = self._counts.get(channel, 0) + len(times)
 
     def _put(self, packed: bytes | memoryview, first: int, last: int) -> None:
         """Put messages with these lowest and highest log times into the chunk in progress, and write it when it is full."""
