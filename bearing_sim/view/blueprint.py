@@ -7,8 +7,7 @@ from typing import NamedTuple
 import rerun as rr
 import rerun.blueprint as rrb
 
-from bearing_sim.messages.topics import LIFE_SYMBOLS, RING_TEMPERATURES
-from bearing_sim.model.characteristic_frequencies import FREQUENCIES
+from bearing_sim.messages.topics import FREQUENCIES, LIFE_SYMBOLS, RING_TEMPERATURES
 from bearing_sim.scene.scene import Scene
 from bearing_sim.view import section
 from bearing_sim.view.drawings import BODIES, CLEARANCES, HEAT_ROOT, ORBIT_EDGE, SAMPLES, bar_bounds, causes_of, heat_bounds

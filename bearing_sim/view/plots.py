@@ -13,8 +13,7 @@ import numpy as np
 import rerun as rr
 
 from bearing_sim.messages.events import Event, Level
-from bearing_sim.messages.topics import LIFE_SYMBOLS, RING_TEMPERATURES, ZERO_CELSIUS
-from bearing_sim.model.characteristic_frequencies import FREQUENCIES, characteristic_frequencies
+from bearing_sim.messages.topics import FREQUENCIES, LIFE_SYMBOLS, RING_TEMPERATURES, ZERO_CELSIUS, characteristic_frequencies
 from bearing_sim.scene.fidelity import LEVELS, level_of
 from bearing_sim.scene.scene import NO_CLEARANCE_LIMIT, Scene
 from bearing_sim.view import colours, section
