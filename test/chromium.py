@@ -70,7 +70,7 @@ class Chromium:
         """Go to an address, and wait until its page is loaded."""
         self._loaded = False
         self._call("Page.navigate", url=url)
-        self._wait(lambda: self._loaded, f"{url} is not loaded")
+        self.wait(lambda: self._loaded, f"{url} is not loaded")
 
     def picture(self) -> np.ndarray:
         """Return what the page shows, shape (height, width, 3), and keep it as ``png``."""
@@ -83,12 +83,13 @@ class Chromium:
         if self._session:
             message["sessionId"] = self._session
         os.write(self._write, json.dumps(message).encode() + b"\0")
-        self._wait(lambda: self._number in self._answers, f"no answer to {method}")
+        self.wait(lambda: self._number in self._answers, f"no answer to {method}")
         answer = self._answers.pop(self._number)
         assert "error" not in answer, answer
         return answer["result"]
 
-    def _wait(self, condition, otherwise):
+    def wait(self, condition, otherwise):
+        """Wait until a condition of what the page has done holds."""
         deadline = time.monotonic() + _PATIENCE
         while not condition():
             assert self._process.poll() is None, "the browser ended"
