@@ -19,11 +19,12 @@ FLEET = (
     Argument(
         "one_process", "false", "true: one node, bearing_node, hosts all bearings; same topics, services NAME/reset and so on", ("true", "false")
     ),
+    Argument("serials", "", "NAME=NUMBER of each bearing whose state is kept over restarts, by its serial number; empty: none"),
     Argument("record_folder", "", "folder for a recording of each bearing, named after it and the start time; empty: none"),
     Argument("first_rerun_port", "0", "port on 127.0.0.1 for viewers of the first bearing; the others use the ports after it; 0: none"),
     Argument("first_rerun_web_port", "0", "port on 127.0.0.1 for browsers, likewise"),
 )
-SET_FOR_EACH = ("bearings", "scene", "record", "rrd", "rerun_port", "rerun_web_port")
+SET_FOR_EACH = ("bearings", "scene", "record", "rrd", "rerun_port", "rerun_web_port", "serial", "state_file")
 
 
 def generate_launch_description():
@@ -33,18 +34,27 @@ def generate_launch_description():
 
 def _start(context):
     folder, start = value(context, "record_folder"), now()
+    scenes = _by_name(value(context, "bearings"), "bearings", "NAME=SCENE, such as front=a.yaml")
+    if not scenes:
+        raise RuntimeError("bearings is empty: give NAME=SCENE for each bearing")
+    serials = _by_name(value(context, "serials"), "serials", "NAME=NUMBER, such as front=A17")
+    if unknown := set(serials) - set(scenes):
+        raise RuntimeError(f"serials: {', '.join(sorted(unknown))}: no such bearing; bearings has {', '.join(scenes)}")
     ports = {key: number(context, f"first_{key}", int) for key in ("rerun_port", "rerun_web_port")}
     own = {
         name: {
             "scene": scene,
             "record": str(Path(folder) / f"{name}_{start}.mcap") if folder else "",
             "rrd": "",
+            "serial": serials.get(name, ""),
+            "state_file": "",
             **{key: str(first + index if first else 0) for key, first in ports.items()},
         }
-        for index, (name, scene) in enumerate(_bearings(value(context, "bearings")).items())
+        for index, (name, scene) in enumerate(scenes.items())
     }
     if value(context, "one_process") == "true":
-        of_each = {"scene": next(iter(own.values()))["scene"], "record": "", "rrd": "", "rerun_port": "0", "rerun_web_port": "0"}
+        of_each = {key: "0" if key in ports else "" for key in SET_FOR_EACH if key != "bearings"}
+        of_each["scene"] = next(iter(scenes.values()))
         return [bearing_node(context, name="bearing_node", fleet=own, **of_each)]
     on_exit = fails_after_last(len(own))
     return [
@@ -61,16 +71,14 @@ def _start(context):
     ]
 
 
-def _bearings(text):
-    """Return scenes by the bearings' names."""
-    scenes = {}
+def _by_name(text, argument, form):
+    """Return what an argument gives to each bearing, by the bearings' names."""
+    given = {}
     for word in shlex.split(text):
-        name, _, scene = word.partition("=")
-        if not re.fullmatch(r"[a-z][a-z0-9_]*", name) or not scene:
-            raise RuntimeError(f"bearings: {word!r} is not NAME=SCENE, such as front=a.yaml; a NAME has lower-case letters, digits and underscores")
-        if name in scenes:
-            raise RuntimeError(f"bearings: {name!r} is given twice; every bearing needs its own name")
-        scenes[name] = scene
-    if not scenes:
-        raise RuntimeError("bearings is empty: give NAME=SCENE for each bearing")
-    return scenes
+        name, _, own = word.partition("=")
+        if not re.fullmatch(r"[a-z][a-z0-9_]*", name) or not own:
+            raise RuntimeError(f"{argument}: {word!r} is not {form}; a NAME has lower-case letters, digits and underscores")
+        if name in given:
+            raise RuntimeError(f"{argument}: {name!r} is given twice; every bearing needs its own name")
+        given[name] = own
+    return given

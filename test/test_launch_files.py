@@ -120,7 +120,7 @@ def test_what_the_node_can_be_told_can_be_told_to_launch(launched, path):
     run = launched(path.name.partition(".")[0])
     names = {argument.name for argument in run.declarations}
     own = {"use_sim_time"} if "replay" in path.name else set()
-    own |= {"scene", "record", "rrd", "rerun_port", "rerun_web_port", "name"} if path.name.startswith("fleet") else set()
+    own |= {"scene", "record", "rrd", "rerun_port", "rerun_web_port", "serial", "state_file", "name"} if path.name.startswith("fleet") else set()
     wanted = {row.name for row in (*DECLARATIONS, *SCENE_DECLARATIONS)} | {"name", "namespace", "remaps", "log_level", "use_sim_time"}
     assert wanted - own <= names
 
@@ -296,7 +296,7 @@ def test_a_fleet_in_one_process_is_one_node_that_gets_each_bearings_own_paramete
     values = handed_over(node, run.context)
     assert values["bearings"] == ["front", "rear"] and values["publish_rate"] == 20.0
     assert set(values) == set(PARAMETERS) | {
-        f"{name}.{key}" for name in ("front", "rear") for key in ("scene", "record", "rrd", "rerun_port", "rerun_web_port")
+        f"{name}.{key}" for name in ("front", "rear") for key in ("scene", "record", "rrd", "rerun_port", "rerun_web_port", "serial", "state_file")
     }
     assert (values["front.scene"], values["rear.scene"], values["rear.rerun_port"]) == ("deng2017_table1", "my scenes/b.yaml", 9901)
     assert values["front.record"] != values["rear.record"] and values["record"] == ""
@@ -314,6 +314,16 @@ def test_a_fleets_default_bearings_are_bundled_scenes_without_recordings_and_vie
         values = handed_over(node, run.context)
         assert load_scene(values["scene"]) and values["record"] == values["rrd"] == "" and values["rerun_port"] == 0
     assert [node.namespace for node in nodes(run)] == ["front", "rear"]
+
+
+def test_bearings_of_a_fleet_have_serial_numbers_of_their_own(launched):
+    run = launched("fleet", serials="rear=B2 front=A1")
+    assert [handed_over(node, run.context)["serial"] for node in nodes(run)] == ["A1", "B2"]
+    run = launched("fleet", serials="rear=B2", one_process="true")
+    values = handed_over(nodes(run)[0], run.context)
+    assert (values["serial"], values["front.serial"], values["rear.serial"]) == ("", "", "B2")
+    with pytest.raises(RuntimeError, match="serials: middle: no such bearing; bearings has front, rear"):
+        launched("fleet", serials="middle=C3")
 
 
 @pytest.mark.parametrize(
