@@ -13,6 +13,8 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 from fake_simulation import START, FakeSimulation
+from sim_time_bench import RATE, FalseWall, Player, course
+from sim_time_bench import SCENE as SIM_SCENE
 
 from bearing_sim.cli.main import main
 from bearing_sim.messages.events import Level
@@ -23,6 +25,7 @@ from bearing_sim.recording.reader import Recording
 from bearing_sim.recording.writer import McapSink
 from bearing_sim.runtime.live import LiveModel
 from bearing_sim.runtime.pacing import tick_schedule
+from bearing_sim.runtime.sim_time import SimTimeModel
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.simulation import Inputs, Simulation, start_sample
 from bearing_sim.stored_state import history
@@ -506,6 +509,27 @@ def test_a_log_that_is_replayed_for_a_state_counts_once_and_without_one_touches_
     assert once["damage"] == twice["damage"] > 0.0, "of the run alone"
     assert once["state"]["totals"]["damage"] == pytest.approx(once["damage"])
     assert twice["state"]["totals"] == once["state"]["totals"]
+
+
+def test_a_log_that_is_played_twice_under_sim_time_counts_once_and_shows_the_life_used(tmp_path):
+    messages, wall = course(2.0, oil=False), FalseWall()
+    ticks = np.arange(0.0, 2.2, 0.05).tolist()
+    keeper = StateKeeper(tmp_path / "a.json", SIM_SCENE, "A1", once=True, clock=wall)
+    keeper.state.totals.damage = 0.5
+    keeper.restart()
+    model = SimTimeModel(SIM_SCENE, FakeSimulation(), RATE, RATE, wall=wall, keeper=keeper)
+    player, used, shown = Player(model, wall), [], []
+    for _ in range(2):
+        player.play(messages, ticks)
+        player.stand(1.0)
+        player.until_idle()
+        used.append(keeper.used)
+        shown.append([float(each.sample["damage"]) for each in model.published()])
+    model.close()
+    keeper.close()
+    assert used[0] > 0.5 and used[1] == pytest.approx(used[0], abs=1e-12)
+    assert sorted(shown[0]) == shown[0] and shown[0][-1] == used[0] and shown[1][0] == pytest.approx(used[0], abs=1e-12)
+    assert read_state(keeper.path)[0].totals.monitored_seconds == pytest.approx(2.0, abs=0.1)
 
 
 # -- commands and what is learned
