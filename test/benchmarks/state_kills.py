@@ -6,7 +6,7 @@ or while it runs, and started again.  After each kill the state file is read as 
 
 How to read it: **restored** is the life used that a restart continues from.  It must lie between what the killed process published 10 s before its
 end, or began with if it did not live that long, and the last that it published.  **lost** is how long before the end the restored life was
-published.  The sum over all lives must not be above what they published, and that not above the damage of an uninterrupted run of the same
+published; **damage lost** is the life that is missing, as the time in which the bearing uses it: less where the machine was too busy to simulate.  The sum over all lives must not be above what they published, and that not above the damage of an uninterrupted run of the same
 bearing over the same time, from the first input that was sent to the last output that was heard.
 After each kill a loss of power is played on copies of the files: cut short, overwritten, missing, or an older one in place of the newest; the
 older state must be found, and said.  Exit code 1 otherwise.
@@ -266,7 +266,8 @@ def command(kills, at_once, seed, as_json):
         largest = max(path.stat().st_size for path in Path(folder).glob("bearing_*.json*"))
     lost, lived = np.array([kill.lost for kill in done]), sum(kill.lived for kill in done)
     simulation = Simulation(load_scene(_SETTINGS["scene"], ["level=steady"]), _INPUTS)
-    uninterrupted = lived * float(simulation.advance(1.0)["damage"][-1])
+    rate = float(simulation.advance(1.0)["damage"][-1])  # [1/s]
+    uninterrupted, taken = lived * rate, np.array([kill.last - kill.restored for kill in done]) / rate
     published = sum(kill.last - kill.begun_with for kill in done)
     faults = {fault: [kill.is_said for kill in done if kill.fault == fault] for fault in FAULTS}
     report = {
@@ -276,6 +277,7 @@ def command(kills, at_once, seed, as_json):
         "killed_before_an_output": sum(not kill.lived for kill in done),
         "lost_median": float(np.median(lost)),
         "lost_most": float(lost.max()),
+        "damage_lost_most": float(taken.max()),
         "lived": lived,
         "restored_in_total": sum(totals),
         "published_in_total": published,
@@ -290,6 +292,7 @@ def command(kills, at_once, seed, as_json):
             ("restored between 10 s earlier and the last published", f"{report['good']} of {len(done)}"),
             ("killed before their first output", str(report["killed_before_an_output"])),
             ("lost by a kill", f"median {np.median(lost):.2f} s, most {lost.max():.2f} s"),
+            ("damage lost by a kill, as running time", f"median {np.median(taken):.2f} s, most {taken.max():.2f} s"),
             ("restored in total", f"{sum(totals):.6e}, published {published:.6e}, an uninterrupted run of {lived:.0f} s {uninterrupted:.6e}"),
             ("loss of power: older state found and said", ", ".join(f"{fault} {said}" for fault, said in report["older_state_said"].items())),
             ("largest state file", f"{largest} bytes"),
