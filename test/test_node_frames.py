@@ -145,7 +145,7 @@ def item_is_load(item):
         ("frame_orientation", [0.0, 0.0, 0.0, 3.0], "a quaternion of length 3, expected 1"),
         ("frame_position", [1.0, 2.0], "frame_position = .*expected 3 finite numbers"),
         ("frame_position", [1.0, 2.0, float("nan")], "expected 3 finite numbers"),
-        ("frame_position", "here", "frame_position = .*could not convert string to float"),
+        ("frame_position", "here", "frame_position = 'here': expected numbers, such as"),
         ("frame_position", 5.0, "frame_position = 5.0: expected numbers, such as"),
         ("frame_position", ["a", "b", "c"], "frame_position = "),
     ],

@@ -277,6 +277,8 @@ def checked(declaration: Declaration, name: str, value: object) -> object:
 def _pose_numbers(declaration: Declaration, name: str, value: object) -> list[float]:
     """Return the numbers of a position or an orientation; raises as `checked`."""
     try:
+        if isinstance(value, str):
+            raise TypeError
         numbers = [float(number) for number in value]
         if declaration.name == "frame_orientation":
             quaternion(numbers)
