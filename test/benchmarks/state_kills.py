@@ -4,12 +4,13 @@
 Real nodes with a state file get constant inputs over DDS on the loopback interface; each is killed (SIGKILL) at a random moment, in its start
 or while it runs, and started again.  After each kill the state file is read as a restart reads it.
 
-How to read it: **restored** is the life used that a restart continues from.  It must lie between what the killed process published 10 s before its
-end, or began with if it did not live that long, and the last that it published.  **lost** is how long before the end the restored life was
-published; **damage lost** is the life that is missing, as the time in which the bearing uses it: less where the machine was too busy to simulate.  The sum over all lives must not be above what they published, and that not above the damage of an uninterrupted run of the same
-bearing over the same time, from the first input that was sent to the last output that was heard.
-After each kill a loss of power is played on copies of the files: cut short, overwritten, missing, or an older one in place of the newest; the
-older state must be found, and said.  Exit code 1 otherwise.
+How to read it: **restored** is the life used that a restart continues from. It must lie between what the killed process published 10 s before
+its end, or began with if it did not live that long, and the last that it published. **lost** is how long before the end the restored life was
+published; **damage lost** is the life that is missing, as the time in which the bearing uses it: less where the machine was too busy to
+simulate. The sum over all lives must not be above what they published, and that not above the damage of an uninterrupted run of the same bearing
+over the same time, from the first input that was sent to the last output that was heard. After each kill a loss of power is played on copies of
+the files: cut short, overwritten, missing, or an older one in place of the newest; the older state must be found, and said. Exit code 1
+otherwise.
 """
 
 import os
