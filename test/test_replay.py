@@ -27,7 +27,7 @@ from bearing_sim.monitoring.monitor import Monitor
 from bearing_sim.recording.writer import McapSink
 from bearing_sim.runtime.replay import Replay, replay
 from bearing_sim.scene.loader import load_scene
-from bearing_sim.simulation import Counters, Inputs
+from bearing_sim.simulation import Counters, Inputs, Simulation
 
 SCENE = load_scene("deng2017_table1")
 HELD = Inputs(0.0, 0.0, 0.0, 393.15)
@@ -344,7 +344,7 @@ def test_given_up_run_exits_1_with_a_finished_file(tmp_path, monkeypatch):
         simulation.counters = Counters(7, 2, 1, 0, 0, 0)
         return simulation
 
-    monkeypatch.setattr(replay, "__defaults__", (*replay.__defaults__[:-1], model))
+    monkeypatch.setattr(replay, "__defaults__", tuple(model if default is Simulation else default for default in replay.__defaults__))
     log = steady_log(tmp_path / "log.mcap", duration=5.0)
     ran = command(log, "--scene", "deng2017_table1", "-o", tmp_path / "out.mcap", "--json")
     assert ran.exit_code == 1 and "10 stretches" in ran.stderr
