@@ -167,6 +167,7 @@ class _Run:
         keeper: StateKeeper | None,
     ):
         self._keeper = keeper
+        self._newest: np.void | None = None  # that the keeper has counted
         self._scene, self._profile, self._watchers, self._progress, self._rate = scene, profile, watchers, progress, rate
         self._recordings = (recording,) if recording is not None else ()
         self._result = Replay(profile.log_seconds)
@@ -214,6 +215,8 @@ class _Run:
         if self._profile.unknown_seconds:
             self._write_event(self._profile.unknown_event)
         self._write_to_watchers()
+        if self._newest is not None:
+            self._note_condition()
         if run.simulation is not None:
             result.steps, result.rejected_steps, result.non_finite_steps = run.simulation.counters[:3]
         result.sim_seconds, result.gap_seconds = run.simulated_ns * 1e-9, run.in_gaps_ns * 1e-9
@@ -232,11 +235,17 @@ class _Run:
         """Count outputs for the bearing's state, and have it written from time to time."""
         keeper, start_ns = self._keeper, self._profile.start_ns
         keeper.count(output.block, start_ns, output.weights)
+        self._newest = output.block[-1]
         if keeper.is_due:
-            newest = output.block[-1]
-            note(keeper, self._comparison.residual, self._monitor, newest, start_ns + round(1e9 * float(newest["time"])))
+            self._note_condition()
             keeper.hold(0.0)
             keeper.release(math.inf)
+
+    def _note_condition(self) -> None:
+        """Put temperatures and what the monitors have learned into the bearing's state."""
+        newest = self._newest
+        time_ns = self._profile.start_ns + round(1e9 * float(newest["time"]))
+        note(self._keeper, self._comparison.residual, self._monitor, newest, time_ns)
 
     def _take(self, output: Output) -> None:
         """Write outputs and judge them."""
