@@ -10,7 +10,8 @@ run, in units per day.
 import json
 import math
 import os
-import signal
+import random
+import subprocess
 import sys
 import tempfile
 import time
@@ -18,17 +19,15 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-
 import click
 import numpy as np
 import rclpy
-from ros_bench import NodeProcess, fresh_domain
 from rosgraph_msgs.msg import Clock
 
 from bearing_sim.cli.reporting import print_rows
 from bearing_sim.messages import topics
 from bearing_sim.ros.interface import STATE_QOS
+from bearing_sim.ros.measure import DOMAINS, START_LIMIT, end, log_tail
 from bearing_sim.ros.messages import message, message_class
 from bearing_sim.simulation import Inputs
 
@@ -36,7 +35,6 @@ _AHEAD = 4.0  # [s] of wall time, at the rate, between the clock and the newest 
 _START_NS = 1_800_000_000_000_000_000
 _PERIOD = 900.0  # [s] of simulated time between looks
 _STUCK = 60.0  # [s] of wall time without an output
-_START_LIMIT = 600.0  # [s] for the first start, which compiles
 _MIB = 2.0**20
 
 
@@ -125,7 +123,7 @@ def watched(feed: Feed, pid: int, hours: float, rate: float, folder: Path, log: 
             progress, progressed = feed.heard, time.monotonic()
         if feed.time - max(feed.heard, 0.0) > _AHEAD * rate:  # the node is behind: let it come
             if time.monotonic() - progressed > _STUCK:
-                raise click.ClickException(f"no output for {_STUCK:.0f} s at {feed.time:.0f} s:\n{log()[-3000:]}")
+                raise click.ClickException(f"no output for {_STUCK:.0f} s at {feed.time:.0f} s; {log()}")
             time.sleep(0.002)
             feed.hear()
             continue
@@ -138,33 +136,33 @@ def watched(feed: Feed, pid: int, hours: float, rate: float, folder: Path, log: 
 
 def run(hours: float, rate: float, feed_of: Callable[[], Feed], parameters: dict[str, str]) -> tuple[list[Look], float, int]:
     """Run a node under sim time and return what it held, the rate that was reached, and the number of outputs."""
-    domain = fresh_domain()
-    os.environ["ROS_DOMAIN_ID"] = str(domain)
-    with tempfile.TemporaryDirectory() as folder:
+    environment = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", "ROS_DOMAIN_ID": str(random.choice(DOMAINS))}
+    os.environ.update(environment)
+    with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryFile() as log:
         state = Path(folder) / "state"
         state.mkdir()
         parameters = {"use_sim_time": "true", "publish_rate": "5.0", "sample_rate": "5.0", **parameters}
         if "state_file" in parameters:
             parameters["state_file"] = str(state / parameters["state_file"])
         words = [word for name, value in parameters.items() for word in ("-p", f"{name}:={value}")]
-        process = NodeProcess(Path(folder), domain, "--ros-args", *words, limit=6 * 3600, from_scratch=True)
+        node = subprocess.Popen(
+            [sys.executable, "-m", "bearing_sim.ros.node", "--ros-args", *words], stdout=log, stderr=subprocess.STDOUT, cwd=folder
+        )
         try:
             rclpy.init()
             feed = feed_of()
-            end = time.monotonic() + _START_LIMIT
+            deadline = time.monotonic() + START_LIMIT
             while not feed.is_matched:
-                if process.process.poll() is not None or time.monotonic() > end:
-                    raise click.ClickException(f"the node does not listen:\n{process.text}")
+                if node.poll() is not None or time.monotonic() > deadline:
+                    raise click.ClickException(f"the node does not listen; {log_tail(log)}")
                 time.sleep(0.05)
-            watchdog = process.process.pid
-            (pid,) = map(int, Path(f"/proc/{watchdog}/task/{watchdog}/children").read_text().split())
-            looks, reached = watched(feed, pid, hours, rate, state, lambda: process.text)
+            looks, reached = watched(feed, node.pid, hours, rate, state, lambda: log_tail(log))
         finally:
-            code = process.end(signal.SIGTERM)
+            end(node)
             rclpy.try_shutdown()
-        print(process.text, file=sys.stderr)
-        if code:
-            raise click.ClickException(f"the node ended with code {code}")
+        print(log_tail(log), file=sys.stderr)
+        if node.returncode:
+            raise click.ClickException(f"the node ended with code {node.returncode}")
         return looks, reached, feed.outputs
 
 
