@@ -202,8 +202,8 @@ class Client:
         return [(event.level, f"{component}: {event.kind}", event.text) for component, event in told]
 
     def values(self) -> dict[str, str]:
-        """Return the numbers of the newest diagnostics."""
-        return {pair.key: pair.value for pair in self.received["diagnostics"][-1].status[0].values}
+        """Return the numbers of the newest diagnostics; none before the first."""
+        return {pair.key: pair.value for report in self.received["diagnostics"][-1:] for pair in report.status[0].values}
 
     def call(self, kind, service: str, request, process: NodeProcess):
         """Call a service of bearing_node, or one by its full name, and return its response.

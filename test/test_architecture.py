@@ -35,7 +35,7 @@ ROOMS = {
     "inputs": ("numpy pyarrow pydantic yaml", "scene simulation messages recording"),
     "monitoring": ("numpy scipy", "scene physics model messages inputs"),
     "runtime": ("numpy", "scene numerics model levels simulation messages recording stored_state inputs monitoring"),
-    "view": ("PIL numpy platformdirs rerun rerun_cli", "scene model messages recording"),
+    "view": ("PIL numpy platformdirs rerun rerun_cli", "scene messages recording"),
     "sweep": ("numpy pandas pyarrow matplotlib distributed xarray", "scene numerics model levels simulation recording"),
     "fleet": ("numpy pyarrow", "scene levels simulation messages recording inputs model runtime sweep"),
     "studies": (
