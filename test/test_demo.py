@@ -49,7 +49,8 @@ def test_the_demonstration_plays_a_mission_over_dds_and_leaves_recording_view_an
     assert verified.returncode == 0
     assert re.search(r"largest shaft speed\s+45000 rpm", process.text)
     assert re.search(r"cage slip while turning\s+mean \d", process.text)
-    assert f"rerun '{run / 'run.rrd'}'" in process.text, "the command that opens the recording, quoted for the space in its path"
+    opened = f"rerun --bind 127.0.0.1 --port auto '{run / 'run.rrd'}'"
+    assert opened in process.text, "the command that opens the recording, quoted for the space in its path"
     assert "Traceback" not in process.text
 
 

@@ -15,8 +15,9 @@ from synthetic_run import synthetic_block
 
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.view import worker
-from bearing_sim.view.screenshot import HOW_TO_GET_VULKAN, HeadlessViewer, ViewerFailed, free_port
+from bearing_sim.view.screenshot import HOW_TO_GET_VULKAN, HeadlessViewer, ViewerFailed
 from bearing_sim.view.sink import RerunSink
+from bearing_sim.view.viewer import free_port
 
 SCENE = load_scene("deng2017_table1")
 BLOCK = synthetic_block(SCENE, 1e-3 * np.arange(1, 201))

@@ -17,8 +17,8 @@ pytest.importorskip("rclpy", reason="the launch files take their arguments from 
 from bearing_sim.recording.priority import in_idle_time  # noqa: E402
 from bearing_sim.ros.parameters import DECLARATIONS, SCENE_DECLARATIONS  # noqa: E402
 from bearing_sim.ros.player import command as player_command  # noqa: E402
-from bearing_sim.ros.recordings import viewer_command  # noqa: E402
 from bearing_sim.scene.loader import load_scene  # noqa: E402
+from bearing_sim.view.viewer import stream_url, viewer_command  # noqa: E402
 
 ROOT = Path(__file__).resolve().parent.parent
 FILES = sorted((ROOT / "launch_scripts").glob("*.launch.py"))
@@ -228,7 +228,7 @@ def test_a_live_launch_opens_a_viewer_once_when_the_node_is_ready(launched):
     assert handler.target_action is nodes(run)[0]
     assert handler.on_stderr(SimpleNamespace(text=b"warming up")) is None
     viewer = handler.on_stderr(SimpleNamespace(text=b"[INFO] [bearing_node]: ready: listening to shaft_speed"))
-    command = viewer_command(9900)
+    command = viewer_command(stream_url(9900))
     assert Path(command[0]).name == "rerun" and command[-1] == "rerun+http://127.0.0.1:9900/proxy"
     assert command[1:5] == ["--bind", "127.0.0.1", "--port", "auto"], "it listens to this machine only, and collides with no other viewer"
     assert viewer.cmd == in_idle_time(command), "drawing shall not hold up the solver"

@@ -20,8 +20,9 @@ from bearing_sim.recording import priority
 from bearing_sim.recording.recorder import Recorder
 from bearing_sim.ros.warm_up import start_compiling
 from bearing_sim.scene.loader import load_scene
-from bearing_sim.view.screenshot import HOW_TO_GET_VULKAN, HeadlessViewer, ViewerFailed, free_port
+from bearing_sim.view.screenshot import HOW_TO_GET_VULKAN, HeadlessViewer, ViewerFailed
 from bearing_sim.view.sink import RerunSink
+from bearing_sim.view.viewer import free_port
 
 if not hasattr(os, "SCHED_IDLE") or not Path("/proc/self/task").is_dir():
     pytest.skip("needs Linux' policies and its /proc", allow_module_level=True)

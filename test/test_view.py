@@ -49,7 +49,7 @@ def test_recording_becomes_a_file_for_rerun_with_its_events(recording, tmp_path)
     result = run(recording, "-o", tmp_path / "run.rrd", "--no-open")
     assert result.exit_code == 0, result.output
     words = shlex.split(result.output.removeprefix("open it with: "))
-    assert shutil.which(words[0]) and words[0].endswith("rerun") and words[1:] == [str(tmp_path / "run.rrd")]
+    assert shutil.which(words[0]) and words[0].endswith("rerun") and words[1:] == ["--bind", "127.0.0.1", "--port", "auto", str(tmp_path / "run.rrd")]
     texts, speeds = [], 0
     for chunk in RrdReader(str(tmp_path / "run.rrd")).stream():
         if chunk.entity_path == "/log":

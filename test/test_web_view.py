@@ -18,7 +18,8 @@ from synthetic_run import synthetic_block
 
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.view.sink import RerunSink
-from bearing_sim.view.web import HOST, NoWebViewer, WebViewer, free_port
+from bearing_sim.view.viewer import HOST, free_port
+from bearing_sim.view.web import NoWebViewer, WebViewer
 from bearing_sim.view.worker import RerunFile
 
 SCENE = load_scene("deng2017_table1")

@@ -188,14 +188,14 @@ def _has_display() -> bool:
 
 def _open(rrd: Path, opens: bool | None) -> None:
     import shlex
-    import shutil
     import subprocess
     import sys
 
-    rerun = "rerun" if shutil.which("rerun") else str(Path(sys.executable).with_name("rerun"))
+    from bearing_sim.view.viewer import viewer_command
+
+    command = viewer_command(str(rrd)) or [sys.executable, "-m", "rerun", str(rrd)]
     if opens is False or (opens is None and not _has_display()):
-        click.echo(f"open it with: {shlex.join([rerun, str(rrd)])}")
+        click.echo(f"open it with: {shlex.join(command)}")
         return
-    command = [sys.executable, "-m", "rerun", str(rrd)]
     subprocess.Popen(command, start_new_session=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     click.echo(f"{rrd} opens in rerun")

@@ -28,7 +28,7 @@ from bearing_sim.monitoring.health import Condition, Phase, not_running
 from bearing_sim.ros.messages import InputReader, Refused, message, message_class
 from bearing_sim.ros.parameters import OIL_TEMPERATURE, BearingSettings, NodeSettings, follows_clock, scene_values_in
 from bearing_sim.ros.polling import PolledSubscriptions
-from bearing_sim.ros.recordings import fresh_path, limits_of, open_lossless_recording, open_recording, open_view, prepare, viewer_command
+from bearing_sim.ros.recordings import fresh_path, limits_of, open_lossless_recording, open_recording, open_view, prepare
 from bearing_sim.ros.warm_up import WarmUp, levels_to_compile, start_compiling
 from bearing_sim.runtime.governor import Governor
 from bearing_sim.runtime.live import LiveModel, governor_of, warmed_up
@@ -40,6 +40,7 @@ from bearing_sim.scene.uncertainty import messages, with_values
 from bearing_sim.simulation import IntegrationError, Simulation
 from bearing_sim.stored_state.keeper import RECORD, StateKeeper
 from bearing_sim.stored_state.state_file import checked_serial, default_path
+from bearing_sim.view.viewer import stream_url, viewer_command
 
 _DIAGNOSTICS_PERIOD = 1.0  # [s] (REP 107)
 _SCALAR = "std_msgs/msg/Float64"
@@ -569,7 +570,7 @@ class BearingInterface:
         except ModuleNotFoundError as error:
             self.live.sinks.lack("view", what_is_missing(error))
             return
-        if settings.rerun_port and (command := viewer_command(settings.rerun_port)):
+        if settings.rerun_port and (command := viewer_command(stream_url(settings.rerun_port))):
             self._log(f"to see it, run {shlex.join(command)}")
 
     def _served(self, act: Callable[[object], tuple[bool, str]]) -> Callable:
@@ -590,10 +591,15 @@ class BearingInterface:
         """Begin a recording; the answer names the file."""
         if self.live.has("record"):
             return False, "a recording is already running; stop it first"
-        name = f"run_{self.settings.name}" if self.settings.name else "run"
-        path = fresh_path(Path(self.settings.record or f"recordings/{name}.mcap"))
+        path = fresh_path(self._recording_path)
         self._start_recording(path)
         return True, str(path.resolve())
+
+    @property
+    def _recording_path(self) -> Path:
+        """Where a recording goes that a service begins."""
+        name = f"run_{self.settings.name}" if self.settings.name else "run"
+        return Path(self.settings.record or f"recordings/{name}.mcap")
 
     def _stop_recording(self, _) -> tuple[bool, str]:
         """Complete the recording; the answer names the file."""
@@ -643,7 +649,7 @@ class BearingInterface:
             self.settings = dataclasses.replace(self.settings, serial=serial)
         finally:
             if recording:
-                self._start_recording(Path(self.settings.record or f"recordings/run_{self.settings.name or serial}.mcap"))
+                self._start_recording(self._recording_path)
         life = 100.0 * self.live.keeper.used
         ended = f"; the state of {number!r} is kept in {kept[0]}" if kept else ""
         return True, f"serial number {serial}: {life:.6g} % of life used, in {self.live.keeper.path}{ended}"

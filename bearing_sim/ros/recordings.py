@@ -3,8 +3,6 @@
 
 import importlib
 import math
-import shutil
-import sys
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
@@ -120,13 +118,3 @@ def open_view(scene: Scene, start_ns: int, path: str, port: int, web_port: int =
     if path:
         Path(path).parent.mkdir(parents=True, exist_ok=True)
     return RerunSink(scene, path=path or None, serve_port=port or None, start_ns=start_ns, web_port=web_port or None)
-
-
-def viewer_command(port: int) -> list[str] | None:
-    """Return the command that opens a viewer of the view at a port on 127.0.0.1; None if the viewer is not installed.
-
-    The viewer listens by itself, by default to everyone in the network and at the port 9876, which another viewer may have.
-    """
-    beside = Path(sys.executable).with_name("rerun")
-    found = shutil.which("rerun") or (str(beside) if beside.is_file() else None)
-    return None if found is None else [found, "--bind", "127.0.0.1", "--port", "auto", f"rerun+http://127.0.0.1:{port}/proxy"]

@@ -6,7 +6,6 @@ Needs a Vulkan driver; a software one will do.
 
 import io
 import os
-import socket
 import subprocess
 import tempfile
 import time
@@ -16,6 +15,7 @@ from PIL import Image
 
 from bearing_sim.recording.priority import in_idle_time
 from bearing_sim.view.plots import TIMELINE
+from bearing_sim.view.viewer import HOST, free_port, stream_url
 
 HOW_TO_GET_VULKAN = (
     "the viewer found no graphics driver; a software one is enough: on Debian or Ubuntu "
@@ -54,7 +54,7 @@ class HeadlessViewer:
         environment.pop("DISPLAY", None)
         subprocess.run([program, "analytics", "disable"], env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)
         port = free_port()
-        options = ["--headless", "--bind", "127.0.0.1", "--port", str(port), "--memory-limit", "2GB", "--hide-welcome-screen"]
+        options = ["--headless", "--bind", HOST, "--port", str(port), "--memory-limit", "2GB", "--hide-welcome-screen"]
         self._messages = tempfile.TemporaryFile()
         command = [program, *options, "--window-size", f"{self._size[0]}x{self._size[1]}", self._recording]
         self._process = subprocess.Popen(
@@ -89,7 +89,7 @@ class HeadlessViewer:
             if self._process.poll() is not None:
                 raise ViewerFailed(self._why_it_ended())
             try:
-                self._client = ViewerClient.connect(f"rerun+http://127.0.0.1:{port}/proxy")
+                self._client = ViewerClient.connect(stream_url(port))
                 state = self._client.get_state()
                 if state.recordings and state.recordings[0].timelines and not state.loading:
                     return
@@ -155,10 +155,3 @@ def viewer_program() -> Path:
     import rerun_cli
 
     return Path(rerun_cli.__file__).with_name("rerun.exe" if os.name == "nt" else "rerun")
-
-
-def free_port() -> int:
-    """Return a free port on 127.0.0.1."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]

@@ -26,7 +26,7 @@ import numpy as np
 from bearing_sim.recording.priority import in_idle_time, with_low_priority
 from bearing_sim.scene.scene import Scene
 from bearing_sim.view.run_view import ViewOptions
-from bearing_sim.view.web import free_port
+from bearing_sim.view.viewer import free_port
 from bearing_sim.view.worker import Dropped, View
 
 _HAND_ON_EVERY = 0.03  # [s]; the solver is interrupted no more often than this

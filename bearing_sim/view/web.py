@@ -12,7 +12,6 @@ import logging
 import os
 import re
 import shutil
-import socket
 import subprocess
 import sys
 import tempfile
@@ -28,7 +27,8 @@ from urllib.parse import quote, urlsplit
 
 import platformdirs
 
-HOST = "127.0.0.1"
+from bearing_sim.view.viewer import HOST, free_port, stream_url
+
 _PAGE = "index.html"
 _FILES = {  # of the viewer, with their types; the icon is not needed
     _PAGE: "text/html; charset=utf-8",
@@ -89,7 +89,7 @@ class WebViewer:
             )
             raise NoWebViewer(text) from None
         self.url = f"http://{HOST}:{self._server.server_port}"
-        shown = f"{self.url}/recording.rrd" if stream is None else f"rerun+http://{HOST}:{stream}/proxy"
+        shown = f"{self.url}/recording.rrd" if stream is None else stream_url(stream)
         self._server.served, self._server.shown = served, f"/?url={quote(shown, safe='')}&hide_welcome_screen&persist=0&theme=dark"
         self._thread = threading.Thread(target=self._server.serve_forever, name="web-viewer", daemon=True)
         self._thread.start()
@@ -216,13 +216,6 @@ def _unpack(folder: Path) -> None:
         process.wait()
     if not all((folder / name).is_file() for name in _NEEDED):
         raise NoWebViewer(f"the installed rerun {version('rerun-sdk')} has no web viewer; open the native one: rerun RUN.rrd")
-
-
-def free_port() -> int:
-    """Return a port on 127.0.0.1 that nobody uses."""
-    with socket.socket() as probe:
-        probe.bind((HOST, 0))
-        return probe.getsockname()[1]
 
 
 def _downloaded(port: int, name: str, deadline: float, process: subprocess.Popen) -> bytes | None:

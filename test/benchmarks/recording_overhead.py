@@ -34,8 +34,9 @@ from bearing_sim.recording.recorder import Recorder
 from bearing_sim.runtime.live import LiveModel, warmed_up
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.scene import Scene
-from bearing_sim.view.screenshot import HeadlessViewer, ViewerFailed, free_port, viewer_program
+from bearing_sim.view.screenshot import HeadlessViewer, ViewerFailed, viewer_program
 from bearing_sim.view.sink import RerunSink
+from bearing_sim.view.viewer import free_port
 
 _INPUT_PERIOD = 0.02  # [s] between messages of speed and load
 _REVIEW_PERIOD = 0.2  # [s] between reviews of the sinks, as in the node

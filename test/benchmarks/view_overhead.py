@@ -31,8 +31,9 @@ from bearing_sim.cli.reporting import FailedRun, announce_compilation, print_jso
 from bearing_sim.recording.priority import in_idle_time
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.simulation import Simulation
-from bearing_sim.view.screenshot import HeadlessViewer, ViewerFailed, free_port
+from bearing_sim.view.screenshot import HeadlessViewer, ViewerFailed
 from bearing_sim.view.sink import RerunSink
+from bearing_sim.view.viewer import free_port
 from bearing_sim.view.worker import RerunFile
 
 _SCENE = ("deng2017_table1", ("level=slip", "operating.shaft_speed=15000 rpm"))
