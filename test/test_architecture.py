@@ -32,7 +32,7 @@ ROOMS = {
     "messages": ("numpy rosbags", "model"),
     "recording": ("lz4 mcap mcap_ros2 numpy pyarrow rosbags yaml zstandard", "scene model messages"),
     "stored_state": ("numpy platformdirs pyarrow", "scene model messages recording"),
-    "inputs": ("numpy pyarrow pydantic yaml", "scene simulation messages recording"),
+    "inputs": ("numpy pyarrow pydantic yaml", "extras scene simulation messages recording"),
     "monitoring": ("numpy scipy", "scene physics model messages inputs"),
     "runtime": ("numpy", "scene numerics model levels simulation messages recording stored_state inputs monitoring"),
     "view": ("PIL numpy platformdirs rerun rerun_cli", "scene messages recording"),

@@ -55,7 +55,7 @@ def replay_fleet(paths, scene_name, overrides, bearings_path, mapping_name, by, 
     """
     from bearing_sim.fleet.bearings import bearings_of, read_bearings
     from bearing_sim.fleet.logs import NoLogs, find_logs
-    from bearing_sim.fleet.replay import replay_fleet
+    from bearing_sim.fleet.replay import OK, UNKNOWN, replay_fleet
     from bearing_sim.inputs.csv_text import TableError
     from bearing_sim.scene.loader import SceneError
     from bearing_sim.sweep.table import write_table
@@ -89,7 +89,7 @@ def replay_fleet(paths, scene_name, overrides, bearings_path, mapping_name, by, 
         print_json(report | {"bearings": table.rows})
     else:
         _print(table, report)
-    without = [row for row in table.rows if row["status"] not in ("ok", "unknown inputs")]
+    without = [row for row in table.rows if row["status"] not in (OK, UNKNOWN)]
     if without:
         raise FailedRun(f"{len(without)} of {len(table.rows)} bearings have no complete result; {files[1]} says why (columns status, reason)")
     if report["unknown_inputs_bearings"]:

@@ -5,14 +5,11 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.cli.options import json_option
+from bearing_sim.cli.options import json_option, set_option
 from bearing_sim.cli.reporting import UsageError, as_file_error, as_usage_error, print_json, print_table
 
 _TABLES = (".csv", ".parquet")
-
-
-def _state_argument(function):
-    return click.argument("name", metavar="STATE")(function)
+_state_argument = click.argument("name", metavar="STATE")
 
 
 def _path_of(name: str) -> Path:
@@ -45,11 +42,8 @@ def _days(path: Path, state) -> list[dict]:
     """Return the totals of all days, those in the history and those that are not there yet."""
     from bearing_sim.stored_state.history import all_days
 
-    try:
-        with as_file_error():
-            return all_days(path, state)
-    except ImportError:
-        raise UsageError(f"the history of days of {path} is Parquet: install pyarrow to read it") from None
+    with as_file_error():
+        return all_days(path, state)
 
 
 @click.command("show")
@@ -69,6 +63,7 @@ def show(name, as_json):
 
 
 def _rows(path: Path, state) -> list[tuple[str, str]]:
+    from bearing_sim.messages.topics import ZERO_CELSIUS
     from bearing_sim.stored_state.state import time_text
 
     totals = state.totals
@@ -92,7 +87,12 @@ def _rows(path: Path, state) -> list[tuple[str, str]]:
     learned = [name.replace("_", " ") for name, each in state.learned.items() if each]
     rows.append(("learned residuals", ", ".join(learned) or "none"))
     if state.thermal is not None:
-        rows.append(("temperatures", f"of {time_text(state.thermal.time_ns)}: " + ", ".join(f"{kelvin:.1f} K" for kelvin in state.thermal.nodes)))
+        rows.append(
+            (
+                "temperatures",
+                f"of {time_text(state.thermal.time_ns)}: " + ", ".join(f"{kelvin - ZERO_CELSIUS:.1f} degC" for kelvin in state.thermal.nodes),
+            )
+        )
     if state.retired_ns is not None:
         rows.append(("taken out", time_text(state.retired_ns)))
     return rows
@@ -135,8 +135,7 @@ def export(name, out):
         else:
             from bearing_sim.stored_state.history import export_days
 
-            with as_usage_error(ImportError):
-                export_days(out, days)
+            export_days(out, days)
     click.echo(f"{out}: {len(days)} day{'s' * (len(days) != 1)}")
 
 
@@ -171,7 +170,7 @@ def merge(name, recordings, as_json):
 @click.command("adopt")
 @_state_argument
 @click.option("--scene", "scene_name", required=True, metavar="SCENE", help="Bundled scene or YAML file that the state is to belong to.")
-@click.option("--set", "overrides", multiple=True, metavar="FIELD=VALUE", help="Override a field of the scene; can be repeated.")
+@set_option
 @click.option("--serial", default="", metavar="NUMBER", help="Serial number that the bearing is to have [default: its own].")
 def adopt(name, scene_name, overrides, serial):
     """Let a stored state belong to another scene, after a correction of the scene, or get another serial number.

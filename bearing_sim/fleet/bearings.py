@@ -13,7 +13,7 @@ from pathlib import Path
 from bearing_sim.fleet.logs import Log, Reading, mapping_of
 from bearing_sim.fleet.replay import Bearing
 from bearing_sim.inputs.csv_text import DELIMITERS, TableError, encoding_of
-from bearing_sim.inputs.parquet_table import is_parquet
+from bearing_sim.inputs.parquet_table import is_parquet, rows_of
 from bearing_sim.scene.errors import InvalidField, SceneError, did_you_mean
 from bearing_sim.scene.loader import load_scene, read_named
 from bearing_sim.scene.scene import Scene
@@ -105,7 +105,7 @@ def read_bearings(path: Path) -> list[dict[str, str]]:
     TableError
         It cannot be read, has no column ``log``, or has one that nobody knows.
     """
-    rows = _parquet_rows(path) if is_parquet(path) else _text_rows(path)
+    rows = [{name: text.strip() for name, text in row.items()} for row in rows_of(path)] if is_parquet(path) else _text_rows(path)
     names = list(rows[0]) if rows else []
     if "log" not in names:
         raise TableError(f"{path}: the table of bearings has no column 'log'{did_you_mean('log', names)}; it has {', '.join(names) or 'no rows'}")
@@ -137,13 +137,3 @@ def _text_rows(path: Path) -> list[dict[str, str]]:
         if len(line) != len(names):
             raise TableError(f"{path}, row {number}: {len(line)} cells, expected {len(names)} ({', '.join(names)})")
     return [dict(zip(names, (cell.strip() for cell in line))) for line in lines[1:]]
-
-
-def _parquet_rows(path: Path) -> list[dict[str, str]]:
-    import pyarrow.parquet
-
-    try:
-        rows = pyarrow.parquet.read_table(path).to_pylist()
-    except pyarrow.ArrowException as error:
-        raise TableError(f"{path}: cannot be read as Parquet: {error}") from None
-    return [{name: "" if value is None else str(value).strip() for name, value in row.items()} for row in rows]

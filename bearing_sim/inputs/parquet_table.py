@@ -8,6 +8,7 @@ import hashlib
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
+from bearing_sim.extras import what_is_missing
 from bearing_sim.inputs.csv_text import Layout, TableError
 from bearing_sim.scene.loader import did_you_mean
 
@@ -84,6 +85,19 @@ def parquet_records(path: Path, layout: Layout, only: Mapping[str, str], time: s
     yield from enumerate(map(list, zip(*columns)), 1)
 
 
+def rows_of(path: Path) -> list[dict[str, str]]:
+    """Return all rows of a small table as texts by column.
+
+    Raises
+    ------
+    TableError
+        It cannot be read.
+    """
+    dataset = _dataset(path)
+    names, table = dataset.schema.names, dataset.to_table()
+    return [dict(zip(names, row)) for row in zip(*(_texts(table.column(name), ".") for name in names))]
+
+
 def values_of(path: Path, column: str) -> list[str]:
     """Return the different texts of a column in order, without empty ones.
 
@@ -122,8 +136,8 @@ def _dataset(path: Path):
     try:
         import pyarrow
         import pyarrow.dataset
-    except ImportError:
-        raise TableError(f"{path}: reading Parquet needs the package pyarrow: pip install pyarrow") from None
+    except ModuleNotFoundError as error:
+        raise TableError(f"{path}: {what_is_missing(error)}") from None
     try:
         files = sorted(map(str, path.rglob("*.parquet"))) if path.is_dir() else str(path)
         return pyarrow.dataset.dataset(files, format="parquet", partitioning=pyarrow.dataset.partitioning(flavor="hive"))

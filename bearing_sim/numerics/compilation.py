@@ -55,9 +55,9 @@ def template(function):
 
 
 def is_cached(function: Callable) -> bool:
-    """Return whether some version of a compiled function is in the cache of this machine; False where numba is switched off."""
+    """Return whether a function needs no compiling: some version of it is in the cache of this machine, or numba is switched off."""
     if not hasattr(function, "stats"):
-        return False
+        return True
     name = f"{function.__module__.rpartition('.')[2]}.{function.__name__}"
     return any(Path(function.stats.cache_path).glob(f"{name}-*.nbi"))
 

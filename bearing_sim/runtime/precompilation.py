@@ -51,8 +51,6 @@ def is_compiled_for(scene: "Scene") -> bool:
 
     level = LEVELS[scene.level]
     advance = level.advance if scene.integration.fixed_step is None else level.advance_fixed
-    if not hasattr(advance, "stats"):  # numba is switched off
-        return True
     searches = scene.heat.law == "network" and scene.heat.start == "equilibrium"
     return is_cached(advance) and (not searches or is_cached(solve_condition))
 
