@@ -268,6 +268,27 @@ def test_a_pause_holds_the_model_and_a_reset_works_meanwhile(make):
     assert "run.paused" not in one.kinds()
 
 
+@pytest.mark.parametrize("odd", [0, 1], ids=["between messages", "before a message"])  # two outputs from message to message
+def test_a_reset_in_a_pause_amid_a_stretch_computes_nothing_until_the_run_continues(odd):
+    one = SimDriver()
+    try:
+        one.until(lambda: one.newest("time") > 0.1)
+        last = len(one.simulation.calls) // 2 * 2 + 10 + odd
+        one.simulation.fails_at = lambda time, inputs: len(one.simulation.calls) == last - 1 and one.model.pause()
+        for _ in range(20):  # the clock is read once after them: they become known together
+            one.wait()
+            one.model.offer("shaft_speed", (one.speed,), one.now_ns, one.now_ns)
+            one.model.offer("radial_load", (800.0, 0.0), one.now_ns, one.now_ns)
+        one.until(lambda: one.model.solver.phase is Phase.PAUSED, drive=False)
+        assert len(one.simulation.calls) == last and one.model.reset()
+        one.run(0.3)
+        assert len(one.simulation.calls) == last
+        one.model.pause(False)
+        one.until(lambda: len(one.simulation.calls) > last + 20)
+    finally:
+        one.model.close()
+
+
 def test_sinks_are_opened_with_run_time_0_get_everything_in_order_and_are_completed_once(make):
     one, opened = make(), []
 

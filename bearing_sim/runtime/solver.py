@@ -619,19 +619,26 @@ class SimTimeSolver(Solver):
             simulated, began = run.simulated_ns, self._clock()
 
     def _put(self, profile: OnlineInputProfile, item: Item) -> bool:
-        """Queue an item when there is room, obeying requests; return False if its profile was left or the run has ended."""
+        """Queue an item when there is room, obeying requests; return False if its profile was left or the run has ended.
+
+        A reset in a pause does not end the pause: nothing is computed until the run continues.
+        """
         with self._changed:
+            queued = False
             while not (self._stopping or self._profile is not profile):
-                if self._reset_wanted:  # the item is from before it
-                    self._queue.append(item)
+                if self._reset_wanted:
+                    if not queued:  # the item is from before the reset
+                        self._queue.append(item)
+                        queued = True
                     self._reset()
-                    return True
-                if not self._paused and len(self._queue) < self._capacity:
+                elif self._paused or len(self._queue) >= self._capacity:
+                    self._holding = self._paused
+                    self._changed.wait()
+                else:
                     self._holding = False
-                    self._queue.append(item)
+                    if not queued:
+                        self._queue.append(item)
                     return True
-                self._holding = self._paused
-                self._changed.wait()
             return False
 
     def _begin(self, inputs: Inputs) -> Simulation:
