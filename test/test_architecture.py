@@ -23,6 +23,7 @@ STANDARD = set(sys.stdlib_module_names)
 ROOMS = {
     "__init__": ("", ""),
     "extras": ("", ""),
+    "files": ("", ""),
     "scene": ("numpy scipy pint pydantic pydantic_core yaml", ""),
     "numerics": ("numpy numba llvmlite platformdirs", ""),
     "physics": ("numpy scipy", "numerics"),
