@@ -310,6 +310,24 @@ def test_a_full_disk_is_an_error_while_counting_goes_on_and_is_over_when_it_can_
     assert read_state(tmp_path / "a.json")[0].totals.damage == 2e-9
 
 
+@pytest.mark.parametrize(
+    ("published", "waited", "expected"),
+    [(0.1, 0.0, 1e-9), (0.2, 0.0, 2e-9), (0.1, 1.1, 2e-9)],
+    ids=["its samples are not published", "they are", "nobody publishes"],
+)
+def test_a_state_is_written_only_once_its_samples_are_published_or_nobody_publishes(tmp_path, published, waited, expected):
+    now = [0.0]
+    keeper = StateKeeper(tmp_path / "a.json", SCENE, "A1", clock=lambda: now[0])
+    keeper.count_live(samples([0.1], [1e-9]), (MIDNIGHT,), 0.1)
+    assert keeper.save()
+    keeper.count_live(samples([0.2], [2e-9]), (MIDNIGHT,), 0.1)
+    keeper.hold(0.2)
+    now[0] += waited
+    keeper.release(published)
+    keeper.abandon()  # as a kill: what was handed over is written, what is held is not
+    assert read_state(tmp_path / "a.json")[0].totals.damage == expected
+
+
 # -- days
 
 
