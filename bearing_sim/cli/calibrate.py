@@ -59,7 +59,7 @@ def calibrate(
     warn_of_scene(scene)
     names = {"shaft_speed": speed_topic, "radial_load": load_topic, "oil_temperature": temperature_topic, "cage_speed_measured": cage_topic}
     measured, lines, unknown = _measured(log, scene, names, joint, stamps, cage_joint)
-    announce_compilation()
+    announce_compilation(scene)
     from bearing_sim.studies.calibration import CalibrationError, block_length, calibrate, cut
 
     length = batch or block_length(measured.times[-1] - measured.times[0])

@@ -101,7 +101,7 @@ def design(
         scene = load_scene(scene_name, overrides)
         _check_design(scene, points or points_file)
         warn(plausibility(scene))
-        announce_compilation()
+        announce_compilation(scene)
         from bearing_sim.studies import design as studied
         from bearing_sim.sweep.point import DURATION
 

@@ -125,7 +125,7 @@ def replay(
                 from bearing_sim.view.worker import RerunFile
 
                 watchers.append(stack.enter_context(RerunFile(scene, rrd, course.start_ns, seconds)))
-            announce_compilation()
+            announce_compilation(scene)
             choice = _choice(scene, course)
             started = time.perf_counter()
             with suppress(IntegrationError):  # the replay itself will report it
@@ -308,7 +308,7 @@ def reproduce(path: Path, out: Path | None, as_json: bool) -> None:
             origin = {"bearing_sim_replay": {"log": path.name, "from_recording": "true"}}
             origin |= {name: record for name, record in recording.records.items() if name == RECORD}
             sink = stack.enter_context(McapSink(out, recording.scene, recording.start_ns, origin, replace=True))
-        announce_compilation()
+        announce_compilation(recording.scene)
         progress = stack.enter_context(progress_bar(f"reproducing {path.name}", recording.duration))
         result = reproduction.reproduce(recording, sink, progress)
     was = {name: recording.metadata.get(name, "") for name in ("package_version", "git_hash")}

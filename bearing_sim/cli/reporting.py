@@ -127,20 +127,20 @@ def command_line() -> str:
 
 
 def announce_compilation(scene=None) -> None:
-    """Announce on stderr that compiling will take a while, if this version of the model has not been compiled yet.
+    """Announce on stderr that compiling will take a while, if what is needed has not been compiled in this version of the model yet.
 
     Parameters
     ----------
-    scene : that is going to begin in thermal equilibrium if it has a thermal network: its level and the search are then compiled side by side.
+    scene : that is going to run; what it needs is known then.  If it begins in thermal equilibrium, its level and the search are compiled side
+        by side here.
     """
     from bearing_sim.numerics.compilation import CACHE_FOLDER
+    from bearing_sim.runtime.precompilation import Build, compile_all, is_compiled_for
 
-    if any(CACHE_FOLDER.rglob("*.nbi")):
+    if is_compiled_for(scene) if scene is not None else any(CACHE_FOLDER.rglob("*.nbi")):
         return
     click.echo("compiling the model, once per version: about half a minute ...", err=True)
     if scene is not None and scene.heat.law == "network" and scene.level != "steady":  # whose code is nearly the search's
-        from bearing_sim.runtime.precompilation import Build, compile_all
-
         for _ in compile_all([Build(scene.level), Build("slip", equilibrium=True)]):
             pass
 
