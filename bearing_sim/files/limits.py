@@ -1,0 +1,126 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""The limits on what is read: each bounds the memory or the time that a file from a stranger can cost.
+
+They are generous: what people write stays far below them.  Whoever means a larger file raises a limit by its name in the environment
+variable ``BEARING_SIM_LIMITS``, such as ``BEARING_SIM_LIMITS=scene_file=16e6,yaml_nodes=50000``; a refusal says which.  A file cannot raise
+a limit itself, because then it would bound nothing.  The variable applies to commands, nodes and the processes that they start.
+"""
+
+import os
+from dataclasses import dataclass
+from functools import lru_cache
+
+VARIABLE = "BEARING_SIM_LIMITS"
+"""Environment variable that raises limits: ``NAME=NUMBER``, separated by commas."""
+
+_LARGEST = 2**63 - 1
+
+
+class FileError(ValueError):
+    """A file that cannot be read, or whose content exceeds a limit; the message says which file, why and what to do."""
+
+
+class LimitError(FileError):
+    """A file or a text that exceeds a limit; or ``BEARING_SIM_LIMITS`` itself cannot be read."""
+
+
+@dataclass(frozen=True)
+class Limit:
+    """One limit on what is read.
+
+    Attributes
+    ----------
+    name : by which ``BEARING_SIM_LIMITS`` raises it.
+    default : its value unless it is raised.
+    unit : of the value, in the plural.
+    bounds : what it bounds, in words.
+    """
+
+    name: str
+    default: int
+    unit: str
+    bounds: str
+
+    @property
+    def value(self) -> int:
+        """The limit in force.
+
+        Raises
+        ------
+        LimitError
+            ``BEARING_SIM_LIMITS`` cannot be read.
+        """
+        return _raised(os.environ.get(VARIABLE, "")).get(self.name, self.default)
+
+    def check(self, found: int, what: str) -> None:
+        """Refuse something that exceeds the limit.
+
+        Parameters
+        ----------
+        found : how much it has, in the unit of the limit.
+        what : the file, line or field, which begins the message.
+
+        Raises
+        ------
+        LimitError
+            ``found`` is above the limit.
+        """
+        if found > self.value:
+            raise LimitError(f"{what}: {self.refusal(found)}")
+
+    def refusal(self, found: int | None = None) -> str:
+        """Return why something is refused and which name raises the limit.
+
+        Parameters
+        ----------
+        found : how much it has; None where only that it is too much is known.
+        """
+        has = f"more {self.unit}" if found is None else f"{found:,} {self.unit}, more"
+        advice = f"if it is meant, raise the limit: {VARIABLE}={self.name}=NUMBER"
+        return f"{has} than the limit of {self.value:,} for {self.bounds}; {advice}"
+
+
+SCENE_FILE = Limit("scene_file", 8_000_000, "bytes", "a scene, a mapping or another YAML file")
+YAML_NODES = Limit("yaml_nodes", 20_000, "values", "a YAML text with its aliases written out")
+YAML_DEPTH = Limit("yaml_depth", 40, "levels", "blocks within blocks of a YAML text")
+CONTOUR_FILE = Limit("contour_file", 4_000_000, "bytes", "the contour of one turn")
+CONTOUR_POINTS = Limit("contour_points", 100_000, "points", "the contour of one turn")
+CROWN_FILE = Limit("crown_file", 1_000_000, "bytes", "the profile of a roller")
+TABLE_FILE = Limit("table_file", 4_000_000_000, "bytes", "a measured table")
+TABLE_ROWS = Limit("table_rows", 5_000_000, "rows", "a measured table")
+TABLE_LINE = Limit("table_line", 1_000_000, "characters", "one line of a measured table")
+TABLE_COLUMNS = Limit("table_columns", 10_000, "columns", "a measured table")
+STATE_FILE = Limit("state_file", 64_000_000, "bytes", "a stored state")
+
+LIMITS = (
+    SCENE_FILE,
+    YAML_NODES,
+    YAML_DEPTH,
+    CONTOUR_FILE,
+    CONTOUR_POINTS,
+    CROWN_FILE,
+    TABLE_FILE,
+    TABLE_ROWS,
+    TABLE_LINE,
+    TABLE_COLUMNS,
+    STATE_FILE,
+)
+"""All limits, in the order in which the documentation lists them."""
+
+
+@lru_cache(maxsize=4)
+def _raised(text: str) -> dict[str, int]:
+    """Return the values that the environment variable sets, by name."""
+    values, known = {}, {limit.name for limit in LIMITS}
+    for entry in filter(None, (part.strip() for part in text.split(","))):
+        name, _, number = (part.strip() for part in entry.partition("="))
+        if name not in known:
+            raise LimitError(f"{VARIABLE}: {name!r} is no limit; expected NAME=NUMBER with one of {', '.join(sorted(known))}")
+        try:
+            value = float(number)
+        except ValueError:
+            value = 0.0
+        if not 1.0 <= value < _LARGEST:
+            raise LimitError(f"{VARIABLE}: {name}={number}: expected a number of at least 1 and below 2^63, such as 16e6")
+        values[name] = int(value)
+    return values
