@@ -56,6 +56,15 @@ def test_reference_viscosities_are_those_of_the_standards_table(viscosity, low, 
     assert reference_viscosities(viscosity) == pytest.approx((low, high), rel=1e-3)
 
 
+def test_reference_viscosities_run_on_from_each_row_of_the_standard_to_the_next_up_to_the_thickest_oils():
+    starts = np.array([3.8, 4.4, 5.0, 6.4, 7.0, 7.7, 9.0, 12.0, 15.0, 18.0, 22.0, 28.0, 40.0, 55.0, 70.0])
+    below, at, above = (np.array([reference_viscosities(y) for y in starts * factor]) for factor in (1.0 - 1e-9, 1.0, 1.0 + 1e-6))
+    np.testing.assert_allclose(at, below, rtol=2e-3)
+    slopes = (above - at) / (1e-6 * starts[:, None])
+    before = (below - np.array([reference_viscosities(y * (1.0 - 1e-6)) for y in starts])) / (1e-6 * starts[:, None])
+    np.testing.assert_allclose(slopes, before, rtol=0.1)
+
+
 def test_every_class_of_iso_3448_has_its_viscosity_and_its_kind_of_base_oil():
     assert list(ISO_VISCOSITY_CLASSES) == [2, 3, 5, 7, 10, 15, 22, 32, 46, 68, 100, 150, 220, 320, 460, 680, 1000, 1500, 2200, 3200]
     for number, middle in ISO_VISCOSITY_CLASSES.items():
