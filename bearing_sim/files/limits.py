@@ -91,6 +91,16 @@ TABLE_ROWS = Limit("table_rows", 5_000_000, "rows", "a measured table")
 TABLE_LINE = Limit("table_line", 1_000_000, "characters", "one line of a measured table")
 TABLE_COLUMNS = Limit("table_columns", 10_000, "columns", "a measured table")
 STATE_FILE = Limit("state_file", 64_000_000, "bytes", "a stored state")
+RECORDING_RECORD = Limit("recording_record", 128_000_000, "bytes", "one record of a recording, compressed or not")
+RECORDING_EXPANSION = Limit("recording_expansion", 100, "times its size", "what a compressed recording unpacks to, beyond its first 64 MB")
+RECORDING_TEXTS = Limit("recording_texts", 64_000_000, "bytes", "topics, message definitions and metadata of a recording")
+BAG_METADATA = Limit("bag_metadata", 2_000_000, "bytes", "the metadata.yaml of a bag")
+DEFINITION = Limit("definition", 1_000_000, "bytes", "the definition of a message type")
+DEFINITION_FIELDS = Limit("definition_fields", 10_000, "fields", "the definition of a message type")
+DEFINITION_DEPTH = Limit("definition_depth", 32, "levels", "messages within messages")
+MESSAGE_ITEMS = Limit("message_items", 1_000_000, "texts, arrays and messages", "what one message contains")
+LOG_MESSAGES = Limit("log_messages", 10_000_000, "messages", "one channel of an input log")
+VIEW_NUMBERS = Limit("view_numbers", 50_000_000, "numbers", "the view of a bag from another source")
 
 LIMITS = (
     SCENE_FILE,
@@ -104,6 +114,16 @@ LIMITS = (
     TABLE_LINE,
     TABLE_COLUMNS,
     STATE_FILE,
+    RECORDING_RECORD,
+    RECORDING_EXPANSION,
+    RECORDING_TEXTS,
+    BAG_METADATA,
+    DEFINITION,
+    DEFINITION_FIELDS,
+    DEFINITION_DEPTH,
+    MESSAGE_ITEMS,
+    LOG_MESSAGES,
+    VIEW_NUMBERS,
 )
 """All limits, in the order in which the documentation lists them."""
 

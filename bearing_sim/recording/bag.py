@@ -10,6 +10,9 @@ from typing import NamedTuple
 
 import yaml
 
+from bearing_sim.files.limits import FileError
+from bearing_sim.files.reading import why_not_readable
+
 ACTIVE = ".active"
 """Suffix of the name of an unfinished file."""
 
@@ -30,7 +33,7 @@ QOS = [
 """Quality of service that recorded topics offer."""
 
 
-class RecordingError(ValueError):
+class RecordingError(FileError):
     """A recording that cannot be used: the message says what is wrong, where, what was expected and what to do."""
 
 
@@ -162,7 +165,7 @@ def mcap_files(path: str | Path) -> list[Path]:
     if path.is_file():
         return [path]
     if not path.is_dir():
-        raise RecordingError(f"{path}: no such file or folder; expected an MCAP file or the folder of a bag")
+        raise RecordingError(f"{path}: {why_not_readable(path)}; expected an MCAP file or the folder of a bag")
     files = _files_in(path)
     for _ in range(_RENAMED_MEANWHILE):
         if all(file.exists() for file in files if file.name.endswith(ACTIVE)):

@@ -55,11 +55,14 @@ class Message(NamedTuple):
 class _Content(ReadDataStream):
     """The content of a record; a field that goes beyond its end is an error."""
 
+    def __init__(self, content: bytes):
+        super().__init__(BytesIO(content))
+        self._size = len(content)
+
     def read(self, length: int) -> bytes:
-        data = super().read(length)
-        if len(data) < length:
+        if length > self._size - self.count:  # before anything of a length such as 2^63 is asked for
             raise EndOfFile
-        return data
+        return super().read(length)
 
 
 def packed(record: records.McapRecord) -> bytes:
@@ -80,7 +83,7 @@ def parsed(opcode: int, content: bytes):
     try:
         if opcode == Opcode.MESSAGE:
             return Message(*MESSAGE.unpack_from(content), content[MESSAGE.size :])
-        record = _KINDS[opcode].read(_Content(BytesIO(content))) if opcode in _KINDS else None
+        record = _KINDS[opcode].read(_Content(content)) if opcode in _KINDS else None
     except (EndOfFile, struct.error, UnicodeDecodeError) as error:
         raise DamagedRecord(f"a record is not what its kind says: {error!r}") from None
     if opcode == Opcode.ATTACHMENT and int.from_bytes(content[-4:], "little") not in (0, zlib.crc32(content[:-4])):

@@ -19,6 +19,8 @@ import zstandard
 from mcap.opcode import Opcode
 from mcap.records import Attachment, Channel, Chunk, Footer, Header, Metadata, MetadataIndex, Schema, Statistics
 
+from bearing_sim.files.limits import RECORDING_EXPANSION, RECORDING_RECORD, RECORDING_TEXTS, FileError
+from bearing_sim.files.reading import open_regular
 from bearing_sim.recording.bag import RecordingError
 from bearing_sim.recording.mcap_format import (
     INDEX,
@@ -40,6 +42,8 @@ _DATA = RECORD.size + MESSAGE.size
 _REMEMBERED = 64  # messages; longer rows are not found
 _MOST_SHAPES = 256
 _CONTENT = (Header, Schema, Channel, Message, Metadata, Attachment)
+_IN_CHUNKS = {Opcode.SCHEMA, Opcode.CHANNEL, Opcode.MESSAGE}
+_FREE_EXPANSION = 64_000_000  # [byte] that chunks may unpack to however small the file is
 
 
 class Rows(NamedTuple):
@@ -96,7 +100,7 @@ class McapReader:
     Attributes
     ----------
     is_finished : whether the file has its proper end.
-    ends : why reading ended before that, or ``""``.
+    ends : why reading ended before that, or why a record was left out that exceeds a limit, or ``""``.
     damaged : chunks and records that could not be read.
     size, read : length of the file, and how far it was read [byte].
     topics : topic by channel.
@@ -105,17 +109,17 @@ class McapReader:
     Raises
     ------
     RecordingError
-        It does not begin as an MCAP file.
+        It is no regular file or does not begin as an MCAP file; while reading, it unpacks to more than the limits allow.
     OSError
         It cannot be read.
     """
 
     def __init__(self, path: str | Path, in_rows: Callable[[str], bool] | None = None, stops_at_damage: bool = False):
         self.path, self._in_rows, self._stops = Path(path), in_rows, stops_at_damage
-        self.size = self.path.stat().st_size
         self._decompress = zstandard.ZstdDecompressor().decompress
-        self._restart()
-        with open(self.path, "rb") as stream:
+        with _opened(self.path) as stream:
+            self.size = self.path.stat().st_size
+            self._restart()
             if stream.read(len(MAGIC)) != MAGIC:
                 raise RecordingError(f"{self.path}: not an MCAP file ({self.size} bytes); expected a recording, finished or not")
 
@@ -124,11 +128,12 @@ class McapReader:
         self.topics: dict[int, str] = {}
         self.types: dict[str, str] = {}
         self._schemas: dict[int, str] = {}
+        self._texts, self._unpacked, self._reason = 0, 0, ""
         self._finder = None if self._in_rows is None else _RowFinder(lambda channel: self._in_rows(self.topics.get(channel, "")))
 
     def __iter__(self) -> Iterator[Header | Schema | Channel | Message | Metadata | Attachment | Rows]:
         self._restart()
-        with open(self.path, "rb") as stream:
+        with _opened(self.path) as stream:
             stream.seek(len(MAGIC))
             in_data = True
             for opcode, content in self._top_level(stream):
@@ -136,13 +141,14 @@ class McapReader:
                 if in_data:
                     yield from self._contained(opcode, content)
                 if self.damaged and self._stops:
-                    self.ends = "what follows is damaged"
+                    self.ends = self._reason or "what follows is damaged"
                     return
                 if opcode == Opcode.FOOTER:
                     stream.seek(self.read)
-                    self.is_finished = stream.read() == MAGIC
+                    self.is_finished = stream.read(len(MAGIC) + 1) == MAGIC
                     self.ends = "" if self.is_finished else "what follows the footer is not the end of an MCAP file"
-                    return
+                    break
+            self.ends = "; ".join(filter(None, (self.ends, self._reason)))
 
     def _top_level(self, stream: BinaryIO) -> Iterator[tuple[int, bytes]]:
         """Yield opcode and content of all records but the many small indexes, reading by blocks."""
@@ -160,7 +166,19 @@ class McapReader:
                 self.ends = f"there is no record at byte {self.read}"
                 return
             whole = RECORD.size + length
-            if self.read + whole > self.size or not has(whole):
+            if self.read + whole > self.size:
+                break
+            if length > RECORDING_RECORD.value:
+                is_needed = opcode != Opcode.MESSAGE_INDEX and not (opcode == Opcode.ATTACHMENT and self._stops)
+                if is_needed:
+                    self._leave_out(f"a record at byte {self.read} has {RECORDING_RECORD.refusal(length)}")
+                self.read += whole
+                stream.seek(self.read)
+                block, at = b"", 0
+                if is_needed and self._stops:
+                    yield opcode, b""
+                continue
+            if not has(whole):
                 break
             begin, at = at + RECORD.size, at + whole
             self.read += whole
@@ -168,16 +186,24 @@ class McapReader:
                 yield opcode, block[begin:at]
         self.ends = "it was not completed" if self.read == self.size else "it ends within a record"
 
-    def _contained(self, opcode: int, content: bytes) -> list:
+    def _leave_out(self, reason: str = "") -> None:
+        self.damaged += 1
+        self._reason = self._reason or reason
+
+    def _contained(self, opcode: int, content: bytes) -> Iterator:
         try:
             record = parsed(opcode, content)
-            return list(self._records_of(self._decompressed(record))) if isinstance(record, Chunk) else self._noted(record)
+            yield from self._records_of(self._decompressed(record)) if isinstance(record, Chunk) else self._noted(record, len(content))
         except DamagedRecord:
-            self.damaged += 1
-            return []
+            self._leave_out()
 
-    def _noted(self, record) -> list:
-        """Return a record as a list, empty if it is of no use here; remember what later ones refer to."""
+    def _noted(self, record, length: int) -> list:
+        """Return a record of a length [byte] as a list, empty if it is of no use here; remember what later ones refer to."""
+        is_new = isinstance(record, Metadata)
+        is_new |= isinstance(record, Schema) and record.id not in self._schemas or isinstance(record, Channel) and record.id not in self.topics
+        self._texts += length if is_new else 0
+        if self._texts > RECORDING_TEXTS.value:
+            raise RecordingError(f"{self.path}: it has {RECORDING_TEXTS.refusal()}")
         if isinstance(record, Schema):
             self._schemas[record.id] = record.name
         elif isinstance(record, Channel):
@@ -188,18 +214,33 @@ class McapReader:
     def _decompressed(self, chunk: Chunk) -> bytes:
         """Return the records of a chunk, checked."""
         if chunk.compression not in ("zstd", "lz4", ""):
-            raise RecordingError(f"{self.path}: a chunk is compressed by {chunk.compression!r}; expected zstd, lz4 or no compression")
-        data = chunk.data
-        try:
-            if chunk.compression == "zstd":
-                data = self._decompress(data, max_output_size=chunk.uncompressed_size)
-            elif chunk.compression == "lz4":
-                data = lz4.frame.decompress(data)
-        except (zstandard.ZstdError, RuntimeError) as error:  # lz4 raises RuntimeError
-            raise DamagedRecord(str(error)) from None
+            self._reason = self._reason or f"a chunk is compressed by {chunk.compression[:40]!r}; expected zstd, lz4 or no compression"
+            raise DamagedRecord("unknown compression")
+        if chunk.uncompressed_size > RECORDING_RECORD.value:
+            self._reason = self._reason or f"a chunk unpacks to {RECORDING_RECORD.refusal(chunk.uncompressed_size)}"
+            raise DamagedRecord("a chunk exceeds the limit")
+        data = self._unpack(chunk)
         if len(data) != chunk.uncompressed_size or chunk.uncompressed_crc not in (0, zlib.crc32(data)):
             raise DamagedRecord("the checksum of a chunk is wrong")
+        if not chunk.uncompressed_crc:  # then only its structure tells damage
+            _check_records(data)
         return data
+
+    def _unpack(self, chunk: Chunk) -> bytes:
+        """Return the content of a chunk, whose size is within the limit; nothing longer is ever unpacked, whatever the compressed data say."""
+        if not chunk.compression:
+            return chunk.data
+        self._unpacked += chunk.uncompressed_size
+        if self._unpacked > _FREE_EXPANSION + RECORDING_EXPANSION.value * self.size:
+            raise RecordingError(f"{self.path}: its chunks unpack to {RECORDING_EXPANSION.refusal()}")
+        try:
+            if chunk.compression == "lz4":
+                return lz4.frame.LZ4FrameDecompressor().decompress(chunk.data, chunk.uncompressed_size + 1)
+            if zstandard.frame_content_size(chunk.data) not in (-1, chunk.uncompressed_size):  # -1: the frame does not say
+                raise DamagedRecord("a chunk is not as long as it says")
+            return self._decompress(chunk.data, max_output_size=chunk.uncompressed_size)
+        except (zstandard.ZstdError, RuntimeError, EOFError) as error:  # lz4 raises RuntimeError
+            raise DamagedRecord(str(error)) from None
 
     def _records_of(self, data: bytes) -> Iterator:
         at = 0
@@ -209,13 +250,31 @@ class McapReader:
                 at += rows.table.size
                 continue
             end = _end_of_record(data, at)
+            if data[at] not in _IN_CHUNKS:
+                raise DamagedRecord("a chunk contains a record of another kind")
             if data[at] == Opcode.MESSAGE:
                 yield message_at(data, at, end)
                 if self._finder is not None:
                     self._finder.learn(data, at)
             else:
-                yield from self._noted(parsed(data[at], data[at + RECORD.size : end]))
+                yield from self._noted(parsed(data[at], data[at + RECORD.size : end]), end - at)
             at = end
+
+
+def _opened(path: Path) -> BinaryIO:
+    try:
+        return open_regular(path)
+    except FileError as error:
+        raise RecordingError(f"{error}; expected an MCAP file") from None
+
+
+def _check_records(data: bytes) -> None:
+    """Raise `DamagedRecord` unless records that a chunk may have follow each other from its beginning to its end."""
+    at = 0
+    while at < len(data):
+        if data[at] not in _IN_CHUNKS:
+            raise DamagedRecord("a chunk contains a record of another kind")
+        at = _end_of_record(data, at)
 
 
 def _end_of_record(data: bytes, at: int) -> int:
@@ -314,7 +373,7 @@ def read_index(path: str | Path, topic: str) -> FileIndex | None:
     OSError
         It cannot be read.
     """
-    with open(path, "rb") as stream:
+    with _opened(Path(path)) as stream:
         try:
             return _index(stream, Path(path).stat().st_size, topic)
         except (ValueError, struct.error, OverflowError):  # numbers that make no sense in a file like this
@@ -340,15 +399,27 @@ def _index(stream: BinaryIO, size: int, topic: str) -> FileIndex | None:
         return None
     wanted = {channel for channel, name in topics.items() if name == topic}
     places = [place for chunk in chunks for channel, place in chunk.items() if channel in wanted]
-    log_ns = _log_times(stream, places, wanted)
+    log_ns = _log_times(stream, size, places, wanted)
     if len(log_ns) != sum(counts[channel] for channel in wanted):
         return None
     return FileIndex(
         {channel.topic: schemas.get(channel.schema_id, "") for channel in found[Channel]},
         {topics[channel] for channel, count in counts.items() if count and channel in topics},
-        {index.name: parsed(Opcode.METADATA, _content_at(stream, index.offset, Opcode.METADATA)).metadata for index in found[MetadataIndex]},
+        _metadata(stream, size, found[MetadataIndex]),
         log_ns,
     )
+
+
+def _metadata(stream: BinaryIO, size: int, indexes: Iterable[MetadataIndex]) -> dict[str, dict[str, str]]:
+    """Return the metadata records that a summary lists, by name."""
+    found, length = {}, 0
+    for index in indexes:
+        content = _content_at(stream, size, index.offset, Opcode.METADATA)
+        length += len(content)
+        if length > min(size, RECORDING_TEXTS.value):
+            raise DamagedRecord("the summary lists more metadata than the file has")
+        found[index.name] = parsed(Opcode.METADATA, content).metadata
+    return found
 
 
 def _summary(stream: BinaryIO, size: int) -> bytes:
@@ -361,6 +432,8 @@ def _summary(stream: BinaryIO, size: int) -> bytes:
     footer = parsed(end[0], end[RECORD.size : -len(MAGIC)]) if end.endswith(MAGIC) else None
     if not isinstance(footer, Footer) or not 0 < footer.summary_start < size:
         raise DamagedRecord("it has no footer")
+    if size - footer.summary_start > RECORDING_RECORD.value:
+        raise DamagedRecord("its summary exceeds the limit")
     stream.seek(footer.summary_start)
     summary = stream.read(size - tail - footer.summary_start)
     if footer.summary_crc not in (0, zlib.crc32(end[: -len(MAGIC) - 4], zlib.crc32(summary))):
@@ -368,11 +441,14 @@ def _summary(stream: BinaryIO, size: int) -> bytes:
     return summary
 
 
-def _log_times(stream: BinaryIO, places: Iterable[int], channels: set[int]) -> np.ndarray:
+def _log_times(stream: BinaryIO, size: int, places: Iterable[int], channels: set[int]) -> np.ndarray:
     """Return the log times that the message indexes of some channels list; these stand at ``places``."""
-    parts = [np.empty(0, np.uint64)]
+    parts, length = [np.empty(0, np.uint64)], 0
     for place in places:
-        content = _content_at(stream, place, Opcode.MESSAGE_INDEX)
+        content = _content_at(stream, size, place, Opcode.MESSAGE_INDEX)
+        length += len(content)
+        if length > size:
+            raise DamagedRecord("the summary lists more indexes than the file has")
         channel, extent = INDEX.unpack_from(content)
         if channel not in channels or extent != len(content) - INDEX.size:
             raise DamagedRecord("an index is not where the summary says")
@@ -380,12 +456,12 @@ def _log_times(stream: BinaryIO, places: Iterable[int], channels: set[int]) -> n
     return np.concatenate(parts)
 
 
-def _content_at(stream: BinaryIO, offset: int, expected: Opcode) -> bytes:
-    """Return the content of a record of the file."""
+def _content_at(stream: BinaryIO, size: int, offset: int, expected: Opcode) -> bytes:
+    """Return the content of a record of the file, which has that size [byte]."""
     stream.seek(offset)
     head = stream.read(RECORD.size)
     opcode, length = RECORD.unpack(head)
-    content = stream.read(length) if opcode == expected else b""
+    content = stream.read(length) if opcode == expected and length < size else b""
     if opcode != expected or len(content) < length:
         raise DamagedRecord("a record is not where the summary says")
     return content
