@@ -22,7 +22,8 @@ def info(recording, prints_scene, as_json):
     """Show what RUN.mcap holds: topics, counts, time span, scene, versions, and whether the file is complete.
 
     RUN.mcap is any MCAP file, finished or not, or a bag's folder; or a bag in SQLite or of ROS 1, which has no checksums. The whole file is read
-    and its checksums are verified. Exit code 1 if a file is incomplete or damaged.
+    and its checksums are verified: those of a recording of this version cover every byte, the scene too; what other files leave uncovered is
+    said. Exit code 1 if a file is incomplete or damaged.
     """
     from bearing_sim.recording.bag import RecordingError, mcap_files
     from bearing_sim.recording.recovery import contents, foreign_contents
@@ -69,6 +70,8 @@ def _file_report(file) -> dict:
         "finished": file.is_finished,
         "ends": file.ends,
         "damaged": file.damaged,
+        "damage": file.damage,
+        "checksums": _coverage(file),
         "first_ns": file.first_ns,
         "last_ns": file.last_ns,
         "seconds": file.seconds,
@@ -83,8 +86,7 @@ def _file_report(file) -> dict:
 def _print_info(recording, files, own) -> None:
     rows = []
     for file in files:
-        checked = "all checksums correct" if file.has_checksums else "all messages can be read; the format has no checksums"
-        health = f"complete, {checked}" if file.is_sound else f"INCOMPLETE: {_trouble(file)}"
+        health = f"complete, {_checked(file)}" if file.is_sound else f"{'DAMAGED' if file.is_finished else 'INCOMPLETE'}: {_trouble(file)}"
         rows.append((file.path.name, f"{file.size / 1e6:.4g} MB, {health}"))
     started = [file.first_ns for file in files if file.messages]
     if started:
@@ -113,9 +115,24 @@ def _print_info(recording, files, own) -> None:
     print_table(str(recording), rows)
 
 
+def _coverage(file) -> str:
+    """Return what the verified checksums of a file cover: ``all`` of it, its ``chunks`` and perhaps its summary, or nothing: ``none``."""
+    return "none" if not file.has_checksums else "all" if file.covers_all else "chunks"
+
+
+def _checked(file) -> str:
+    """Return what was verified of a file in which nothing is wrong."""
+    if file.covers_all:
+        return "all checksums correct"
+    if not file.has_checksums:
+        return "all messages can be read; the format has no checksums"
+    writer = "by an earlier version" if file.library == _OWN else "by a program that makes none"
+    return f"the checksums of its chunks correct; no checksum of the scene and other metadata, written {writer}"
+
+
 def _trouble(file) -> str:
     troubles = [file.ends] if file.ends else []
-    troubles += [f"{file.damaged} damaged chunks or records"] if file.damaged else []
+    troubles += [f"{file.damaged} damaged parts: {'; '.join(file.damage[:3])}{'; ...' if file.damaged > 3 else ''}"] if file.damaged else []
     if not file.has_checksums:
         return "; ".join(troubles)
     return "; ".join(troubles) + f" (bearing-sim recover {file.path} -o GOOD.mcap)"
@@ -227,11 +244,11 @@ def recover(broken, out, as_json):
     if as_json:
         report = {"broken": str(broken), "out": str(out), "broken_size": found.size, "size": out.stat().st_size, "seconds": found.seconds}
         report |= {"messages": found.messages.total(), "messages_by_topic": dict(found.messages), "metadata": list(found.metadata)}
-        print_json({**report, "damaged": found.damaged, "was_finished": found.is_finished, "ends": found.ends})
+        print_json({**report, "damaged": found.damaged, "damage": found.damage, "was_finished": found.is_finished, "ends": found.ends})
         return
     rows = [
         ("the file", f"{found.size / 1e6:.4g} MB; {lost}"),
-        ("damaged chunks left out", str(found.damaged)),
+        ("damaged parts", "; ".join([str(found.damaged), *found.damage[:3], *(["..."] if found.damaged > 3 else [])])),
         ("saved", f"{found.messages.total()} messages over {found.seconds:.6g} s, {len(found.metadata)} metadata records"),
         *((topic, f"{count} messages") for topic, count in sorted(found.messages.items())),
     ]

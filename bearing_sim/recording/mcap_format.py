@@ -5,6 +5,10 @@ By the specification of MCAP version 0 (https://mcap.dev/spec): a file is a magi
 an opcode (1 byte), the length of its content (8 bytes) and the content.  Numbers are little-endian, a string is its length in bytes (4
 bytes) and UTF-8 text, a map or array its length in bytes and its entries.  Messages of the file stand in compressed chunks, each followed by an
 index for each channel; a summary at the end repeats schemas and channels, counts the messages and says where chunks and metadata stand.
+
+The format has checksums for the messages of a chunk, for the whole data section of a completed file and for its summary, but none for metadata,
+indexes and whatever else is outside the chunks of an unfinished file.  `McapWriter` therefore follows whatever it writes by a checksum record of
+its own, with an opcode that the specification leaves to applications and that other readers pass over: the bytes between two of them are a section.
 """
 
 import struct
@@ -24,6 +28,12 @@ MESSAGE = struct.Struct("<HIQQ")
 """Head of the content of a message: channel, sequence, log time and publish time [ns since the epoch]."""
 INDEX = struct.Struct("<HI")
 """Head of the content of a message index: channel, and length of the entries (log time, offset in the chunk's records; 8 bytes each)."""
+CHECKSUM = 0xB5
+"""Opcode of a checksum record; more than one bit away from every opcode of the format, so that no flipped bit makes one of another record."""
+CHECKSUM_RECORD = struct.Struct("<BQQI")
+"""A checksum record: opcode, length of its content, first byte of its section in the file, and CRC-32 of the bytes from there to this record."""
+CHECKSUM_HEAD = RECORD.pack(CHECKSUM, CHECKSUM_RECORD.size - RECORD.size)
+"""How each checksum record begins."""
 PROFILE = "ros2"
 _KINDS = {
     Opcode.HEADER: records.Header,
@@ -40,6 +50,10 @@ _KINDS = {
 
 class DamagedRecord(ValueError):
     """Bytes that are not the record that they should be."""
+
+
+class RefusedRecord(DamagedRecord):
+    """A record that is not read although it may be sound, because it exceeds a limit or is in a form that nothing here can read."""
 
 
 class Message(NamedTuple):
@@ -70,6 +84,11 @@ def packed(record: records.McapRecord) -> bytes:
     builder = RecordBuilder()
     record.write(builder)
     return builder.end()
+
+
+def checksum_record(begin: int, checksum: int) -> bytes:
+    """Return the record that ends the section with this first byte and this CRC-32."""
+    return CHECKSUM_RECORD.pack(CHECKSUM, CHECKSUM_RECORD.size - RECORD.size, begin, checksum)
 
 
 def parsed(opcode: int, content: bytes):

@@ -23,24 +23,29 @@ from bearing_sim.files.limits import RECORDING_EXPANSION, RECORDING_RECORD, RECO
 from bearing_sim.files.reading import open_regular
 from bearing_sim.recording.bag import RecordingError
 from bearing_sim.recording.mcap_format import (
+    CHECKSUM_HEAD,
+    CHECKSUM_RECORD,
     INDEX,
     MAGIC,
     MESSAGE,
     RECORD,
     DamagedRecord,
     Message,
+    RefusedRecord,
+    checksum_record,
     chunk_index_places,
     message_at,
     packed,
     parsed,
 )
+from bearing_sim.recording.mcap_sections import Section, SectionReader, records_in
 
-_BLOCK = 1024 * 1024  # [byte] read at once
 _HEAD = RECORD.size + 2  # [byte] of a message record that identify its kind: opcode, length, channel
 _LOG = RECORD.size + 6  # [byte] of a record before its log time
 _DATA = RECORD.size + MESSAGE.size
 _REMEMBERED = 64  # messages; longer rows are not found
 _MOST_SHAPES = 256
+_MOST_REPORTED = 20
 _CONTENT = (Header, Schema, Channel, Message, Metadata, Attachment)
 _IN_CHUNKS = {Opcode.SCHEMA, Opcode.CHANNEL, Opcode.MESSAGE}
 _FREE_EXPANSION = 64_000_000  # [byte] that chunks may unpack to however small the file is
@@ -87,7 +92,7 @@ class Rows(NamedTuple):
 
 
 class McapReader:
-    """Everything that can be read of an MCAP file, in file order; a damaged chunk is left out, and what follows it is read.
+    """Everything that can be read of an MCAP file, in file order; what is damaged is left out, and what follows it is read.
 
     Iterate over it for headers, schemas, channels, messages, metadata and attachments (see `bearing_sim.recording.mcap_format`).
 
@@ -96,12 +101,15 @@ class McapReader:
     path : the file.
     in_rows : whether messages of a topic may come many at once, as `Rows`; none do if absent.
     stops_at_damage : whether to read nothing after the first damaged chunk or record.
+    corrects : whether a single flipped bit is corrected where the checksums say which one it is; it counts as damage nevertheless.
 
     Attributes
     ----------
     is_finished : whether the file has its proper end.
-    ends : why reading ended before that, or why a record was left out that exceeds a limit, or ``""``.
-    damaged : chunks and records that could not be read.
+    ends : why reading ended before that, or ``""``.
+    damaged : chunks, records and other parts of the file that are damaged or exceed a limit.
+    damage : what the first of them are and where.
+    has_checksums : after reading: whether checksums cover all of the file, not only its chunks.
     size, read : length of the file, and how far it was read [byte].
     topics : topic by channel.
     types : message type by topic, as far as read.
@@ -114,8 +122,8 @@ class McapReader:
         It cannot be read.
     """
 
-    def __init__(self, path: str | Path, in_rows: Callable[[str], bool] | None = None, stops_at_damage: bool = False):
-        self.path, self._in_rows, self._stops = Path(path), in_rows, stops_at_damage
+    def __init__(self, path: str | Path, in_rows: Callable[[str], bool] | None = None, stops_at_damage: bool = False, corrects: bool = False):
+        self.path, self._in_rows, self._stops, self._corrects = Path(path), in_rows, stops_at_damage, corrects
         self._decompress = zstandard.ZstdDecompressor().decompress
         with _opened(self.path) as stream:
             self.size = self.path.stat().st_size
@@ -124,78 +132,51 @@ class McapReader:
                 raise RecordingError(f"{self.path}: not an MCAP file ({self.size} bytes); expected a recording, finished or not")
 
     def _restart(self) -> None:
-        self.read, self.damaged, self.is_finished, self.ends = len(MAGIC), 0, False, ""
+        self.read, self.damaged, self.is_finished, self.ends, self.has_checksums = len(MAGIC), 0, False, "", False
+        self.damage: list[str] = []
         self.topics: dict[int, str] = {}
         self.types: dict[str, str] = {}
         self._schemas: dict[int, str] = {}
-        self._texts, self._unpacked, self._reason = 0, 0, ""
+        self._texts, self._unpacked, self._refusal = 0, 0, ""
         self._finder = None if self._in_rows is None else _RowFinder(lambda channel: self._in_rows(self.topics.get(channel, "")))
 
     def __iter__(self) -> Iterator[Header | Schema | Channel | Message | Metadata | Attachment | Rows]:
         self._restart()
         with _opened(self.path) as stream:
-            stream.seek(len(MAGIC))
-            in_data = True
-            for opcode, content in self._top_level(stream):
-                in_data = in_data and opcode != Opcode.DATA_END
-                if in_data:
-                    yield from self._contained(opcode, content)
+            unneeded = {Opcode.MESSAGE_INDEX, *({Opcode.ATTACHMENT} if self._stops else ())}
+            sections = SectionReader(stream, self.size, self._report, self._corrects, unneeded)
+            for section in sections:
+                self.read = sections.read
+                if not (self.damaged and self._stops):
+                    yield from self._contained(section)
                 if self.damaged and self._stops:
-                    self.ends = self._reason or "what follows is damaged"
+                    self.ends = self._refusal or f"what follows is damaged: {self.damage[0]}"
                     return
-                if opcode == Opcode.FOOTER:
-                    stream.seek(self.read)
-                    self.is_finished = stream.read(len(MAGIC) + 1) == MAGIC
-                    self.ends = "" if self.is_finished else "what follows the footer is not the end of an MCAP file"
-                    break
-            self.ends = "; ".join(filter(None, (self.ends, self._reason)))
+            self.read, self.is_finished, self.ends = sections.read, sections.is_finished, sections.ends
+            self.has_checksums = sections.has_checksums
 
-    def _top_level(self, stream: BinaryIO) -> Iterator[tuple[int, bytes]]:
-        """Yield opcode and content of all records but the many small indexes, reading by blocks."""
-        block, at = b"", 0
-
-        def has(length: int) -> bool:
-            nonlocal block, at
-            if len(block) - at < length:
-                block, at = block[at:] + stream.read(max(length, _BLOCK)), 0
-            return len(block) - at >= length
-
-        while has(RECORD.size):
-            opcode, length = RECORD.unpack_from(block, at)
-            if opcode == 0:
-                self.ends = f"there is no record at byte {self.read}"
-                return
-            whole = RECORD.size + length
-            if self.read + whole > self.size:
-                break
-            if length > RECORDING_RECORD.value:
-                is_needed = opcode != Opcode.MESSAGE_INDEX and not (opcode == Opcode.ATTACHMENT and self._stops)
-                if is_needed:
-                    self._leave_out(f"a record at byte {self.read} has {RECORDING_RECORD.refusal(length)}")
-                self.read += whole
-                stream.seek(self.read)
-                block, at = b"", 0
-                if is_needed and self._stops:
-                    yield opcode, b""
-                continue
-            if not has(whole):
-                break
-            begin, at = at + RECORD.size, at + whole
-            self.read += whole
-            if opcode != Opcode.MESSAGE_INDEX:
-                yield opcode, block[begin:at]
-        self.ends = "it was not completed" if self.read == self.size else "it ends within a record"
-
-    def _leave_out(self, reason: str = "") -> None:
+    def _report(self, text: str, is_refused: bool = False) -> None:
+        """Count something damaged or, if it is refused, something that exceeds a limit; note the first ones."""
         self.damaged += 1
-        self._reason = self._reason or reason
+        if is_refused and not self._refusal:
+            self._refusal = text
+        if len(self.damage) < _MOST_REPORTED:
+            self.damage.append(text)
 
-    def _contained(self, opcode: int, content: bytes) -> Iterator:
-        try:
-            record = parsed(opcode, content)
-            yield from self._records_of(self._decompressed(record)) if isinstance(record, Chunk) else self._noted(record, len(content))
-        except DamagedRecord:
-            self._leave_out()
+    def _contained(self, section: Section) -> Iterator:
+        """Yield the records of a section that can be used: if it is not sound, only those of chunks with a right checksum."""
+        for opcode, content in records_in(section.data):
+            if not section.is_sound and opcode != Opcode.CHUNK:
+                continue
+            try:
+                record = parsed(opcode, content)
+                if isinstance(record, Chunk):
+                    yield from self._records_of(self._decompressed(record, needs_checksum=not section.is_sound))
+                else:
+                    yield from self._noted(record, len(content))
+            except DamagedRecord as error:
+                if section.is_sound:  # otherwise it has been reported
+                    self._report(str(error), isinstance(error, RefusedRecord))
 
     def _noted(self, record, length: int) -> list:
         """Return a record of a length [byte] as a list, empty if it is of no use here; remember what later ones refer to."""
@@ -211,16 +192,15 @@ class McapReader:
             self.types[record.topic] = self._schemas.get(record.schema_id, "")
         return [record] if isinstance(record, _CONTENT) else []
 
-    def _decompressed(self, chunk: Chunk) -> bytes:
-        """Return the records of a chunk, checked."""
+    def _decompressed(self, chunk: Chunk, needs_checksum: bool) -> bytes:
+        """Return the records of a chunk, checked; ``needs_checksum`` if one that states no checksum cannot be trusted."""
         if chunk.compression not in ("zstd", "lz4", ""):
-            self._reason = self._reason or f"a chunk is compressed by {chunk.compression[:40]!r}; expected zstd, lz4 or no compression"
-            raise DamagedRecord("unknown compression")
+            raise RefusedRecord(f"a chunk is compressed by {chunk.compression[:40]!r}; expected zstd, lz4 or no compression")
         if chunk.uncompressed_size > RECORDING_RECORD.value:
-            self._reason = self._reason or f"a chunk unpacks to {RECORDING_RECORD.refusal(chunk.uncompressed_size)}"
-            raise DamagedRecord("a chunk exceeds the limit")
+            raise RefusedRecord(f"a chunk unpacks to {RECORDING_RECORD.refusal(chunk.uncompressed_size)}")
         data = self._unpack(chunk)
-        if len(data) != chunk.uncompressed_size or chunk.uncompressed_crc not in (0, zlib.crc32(data)):
+        accepted = {zlib.crc32(data)} if needs_checksum else {0, zlib.crc32(data)}
+        if len(data) != chunk.uncompressed_size or chunk.uncompressed_crc not in accepted:
             raise DamagedRecord("the checksum of a chunk is wrong")
         if not chunk.uncompressed_crc:  # then only its structure tells damage
             _check_records(data)
@@ -230,14 +210,15 @@ class McapReader:
         """Return the content of a chunk, whose size is within the limit; nothing longer is ever unpacked, whatever the compressed data say."""
         if not chunk.compression:
             return chunk.data
-        self._unpacked += chunk.uncompressed_size
-        if self._unpacked > _FREE_EXPANSION + RECORDING_EXPANSION.value * self.size:
-            raise RecordingError(f"{self.path}: its chunks unpack to {RECORDING_EXPANSION.refusal()}")
         try:
-            if chunk.compression == "lz4":
-                return lz4.frame.LZ4FrameDecompressor().decompress(chunk.data, chunk.uncompressed_size + 1)
-            if zstandard.frame_content_size(chunk.data) not in (-1, chunk.uncompressed_size):  # -1: the frame does not say
+            is_zstd = chunk.compression == "zstd"
+            if is_zstd and zstandard.frame_content_size(chunk.data) not in (-1, chunk.uncompressed_size):  # -1: the frame does not say
                 raise DamagedRecord("a chunk is not as long as it says")
+            self._unpacked += chunk.uncompressed_size
+            if self._unpacked > _FREE_EXPANSION + RECORDING_EXPANSION.value * self.size:
+                raise RecordingError(f"{self.path}: its chunks unpack to {RECORDING_EXPANSION.refusal()}")
+            if not is_zstd:
+                return lz4.frame.LZ4FrameDecompressor().decompress(chunk.data, chunk.uncompressed_size + 1)
             return self._decompress(chunk.data, max_output_size=chunk.uncompressed_size)
         except (zstandard.ZstdError, RuntimeError, EOFError) as error:  # lz4 raises RuntimeError
             raise DamagedRecord(str(error)) from None
@@ -418,6 +399,9 @@ def _metadata(stream: BinaryIO, size: int, indexes: Iterable[MetadataIndex]) -> 
         length += len(content)
         if length > min(size, RECORDING_TEXTS.value):
             raise DamagedRecord("the summary lists more metadata than the file has")
+        if RECORD.size + len(content) != index.length:
+            raise DamagedRecord("a metadata record has another length than the summary says")
+        _verify_section(stream, index.offset, content)
         found[index.name] = parsed(Opcode.METADATA, content).metadata
     return found
 
@@ -454,6 +438,15 @@ def _log_times(stream: BinaryIO, size: int, places: Iterable[int], channels: set
             raise DamagedRecord("an index is not where the summary says")
         parts.append(np.frombuffer(content, "<u8", offset=INDEX.size)[::2])
     return np.concatenate(parts)
+
+
+def _verify_section(stream: BinaryIO, begin: int, content: bytes) -> None:
+    """Verify a metadata record that the stream has just read, if it has a section of its own, which begins at that byte of the file."""
+    record = stream.read(CHECKSUM_RECORD.size)
+    if record.startswith(CHECKSUM_HEAD):
+        checksum = zlib.crc32(content, zlib.crc32(RECORD.pack(Opcode.METADATA, len(content))))
+        if record != checksum_record(begin, checksum):
+            raise DamagedRecord("the checksum of a metadata record is wrong")
 
 
 def _content_at(stream: BinaryIO, size: int, offset: int, expected: Opcode) -> bytes:

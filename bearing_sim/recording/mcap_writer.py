@@ -33,7 +33,7 @@ from mcap.records import (
 from bearing_sim.messages.sample_messages import message_templates
 from bearing_sim.messages.topics import FRAME, Topic
 from bearing_sim.model.sample import flat
-from bearing_sim.recording.mcap_format import INDEX, MAGIC, MESSAGE, PROFILE, RECORD, Message, packed, packed_message
+from bearing_sim.recording.mcap_format import INDEX, MAGIC, MESSAGE, PROFILE, RECORD, Message, checksum_record, packed, packed_message
 
 CHUNK_SIZE = 64 * 1024
 """Length of a chunk before compression [byte].  The writer holds one chunk in memory: small chunks keep each write and each loss short."""
@@ -142,9 +142,11 @@ _HEAD_FIELDS = (("channel", 0, "<u2"), ("sequence", 2, "<u4"), ("log", 6, "<u8")
 class McapWriter:
     """Writes one MCAP file: header, chunks with their indexes, metadata, attachments, and at the end the summary.
 
+    Each of these is followed by a checksum record (see `bearing_sim.recording.mcap_format`).
+
     Parameters
     ----------
-    output : takes whole records: a chunk comes in one call together with its indexes.
+    output : takes whole records: a chunk comes in one call together with its indexes and their checksum.
     profile, library : what the header says.
     """
 
@@ -157,8 +159,9 @@ class McapWriter:
         self._attachments: list[AttachmentIndex] = []
         self._chunks: list[bytes] = []  # packed: there are many
         self._span: tuple[int, int] | None = None
+        self._checksum = 0  # CRC-32 of all that is in the file
         self._begin_chunk()
-        output.write(MAGIC + packed(Header(profile, library)))
+        self._write(MAGIC + packed(Header(profile, library)))
 
     def add_schema(self, name: str, encoding: str, data: bytes) -> int:
         """Add a message type and return its id."""
@@ -242,7 +245,7 @@ class McapWriter:
             message_end_time=last,
             channel_message_counts=self._counts,
         )
-        self._write(packed(DataEnd(0)))
+        self._output.write(packed(DataEnd(self._checksum)))
         begin = at = self._output.tell()
         summary, offsets = b"", b""
         for opcode, records in (
@@ -258,12 +261,14 @@ class McapWriter:
                 offsets += packed(SummaryOffset(opcode, at, len(group)))
             summary, at = summary + group, at + len(group)
         unchecked = packed(Footer(begin, at, 0))[:-4]
-        self._write(b"".join((summary, offsets, packed(Footer(begin, at, zlib.crc32(summary + offsets + unchecked))), MAGIC)))
+        self._output.write(b"".join((summary, offsets, packed(Footer(begin, at, zlib.crc32(summary + offsets + unchecked))), MAGIC)))
 
     def _write(self, data: bytes) -> tuple[int, int]:
-        """Write whole records; return where they stand and their length."""
+        """Write whole records and their checksum; return where the records stand and their length."""
         offset = self._output.tell()
-        self._output.write(data)
+        section = data + checksum_record(offset, zlib.crc32(data))
+        self._output.write(section)
+        self._checksum = zlib.crc32(section, self._checksum)
         return offset, len(data)
 
     def _begin_chunk(self) -> None:

@@ -93,6 +93,8 @@ class Recording:
         self.records: dict[str, dict[str, str]] = {name: record for part in reversed(parts) for name, record in part.metadata.items()}
         self.command = next((part.metadata[COMMAND].get("command", "") for part in parts if COMMAND in part.metadata), "")
         listing = ", ".join(sorted(set().union(*(part.present for part in parts)))) or "no topics"
+        if metadata is None and self.unfinished:
+            raise RecordingError(f"{self.path}: no scene can be read: {self.unfinished}; bearing-sim recover saves what is left of it")
         if metadata is None:
             raise RecordingError(f"{self.path}: no metadata record {METADATA!r}, so this is no recording of bearing_sim; it has {listing}")
         try:

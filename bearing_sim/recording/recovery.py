@@ -3,6 +3,7 @@
 
 import math
 import os
+import re
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -18,6 +19,7 @@ from bearing_sim.recording.mcap_reader import McapReader
 from bearing_sim.recording.mcap_writer import McapWriter
 
 _BAG = "rosbag2"
+_MESSAGE_COUNT = re.compile(r"^\s*message_count: (\d{1,20})$", re.MULTILINE)  # the first one is that of the whole bag
 
 
 @dataclass
@@ -33,10 +35,12 @@ class Contents:
     attachments : number of attachments.
     first_ns, last_ns : lowest and highest log time [ns since the epoch]; zeros without messages.
     out_of_order : messages with a log time before that of an earlier one of their topic.
-    damaged : chunks and records that could not be read.
+    damaged : chunks, records and other parts that are damaged, whether they could be read or not.
+    damage : what the first of them are and where.
     is_finished : whether the file has its proper end.
     ends : why not, or ``""``.
     has_checksums : whether the format has some, which were verified.
+    covers_all : whether these cover all of the file; otherwise only chunks and, where the writer made one, the summary.
     """
 
     path: Path
@@ -52,9 +56,11 @@ class Contents:
     last_ns: int = 0
     out_of_order: int = 0
     damaged: int = 0
+    damage: list[str] = field(default_factory=list)
     is_finished: bool = False
     ends: str = ""
     has_checksums: bool = True
+    covers_all: bool = False
 
     @property
     def is_sound(self) -> bool:
@@ -82,7 +88,7 @@ def contents(path: str | Path, progress: Callable[[float], None] = lambda done: 
     OSError
         It cannot be read.
     """
-    return _walk(Path(path), progress, lambda record: None)
+    return _walk(McapReader(path), progress, lambda record: None)
 
 
 def foreign_contents(path: str | Path) -> Contents | None:
@@ -120,8 +126,9 @@ def foreign_contents(path: str | Path) -> Contents | None:
 def recover(source: str | Path, target: str | Path, progress: Callable[[float], None] = lambda done: None) -> Contents:
     """Write all that can be read of an MCAP file into a sound one; return what was found.
 
-    Messages keep their bytes, times and order; a damaged chunk is left out and counted.  The metadata of the bag, which a ROS 2 recorder
-    writes at the end, is rebuilt if it is missing.
+    Messages keep their bytes, times and order.  A chunk or a metadata record in which one bit is flipped is corrected, if the file has checksums
+    that say which one; what is damaged otherwise is left out.  Both are counted.  The metadata of the bag, which a ROS 2 recorder writes at the
+    end, is rebuilt if it is missing or does not count what was found.
 
     Parameters
     ----------
@@ -141,15 +148,15 @@ def recover(source: str | Path, target: str | Path, progress: Callable[[float], 
     for taken in (target, draft):
         if taken.exists():
             raise RecordingError(f"{taken} exists; recover into another file")
-    McapReader(source)  # before a draft is made
+    reader = McapReader(source, corrects=True)  # before a draft is made
     try:
         with open(draft, "xb") as stream:
             copy = _Copy(stream)
-            found = _walk(source, progress, copy.take)
+            found = _walk(reader, progress, copy.take)
             if not found.messages and not found.metadata:
                 raise RecordingError(f"{source}: nothing complete in its {found.size} bytes, so there is nothing to recover")
-            if found.profile == PROFILE and _BAG not in found.metadata:
-                copy.writer.add_metadata(_BAG, {"serialized_metadata": _bag_metadata(found, target.name)})
+            if bag := _bag_record(found, target.name):
+                copy.writer.add_metadata(_BAG, bag)
             copy.writer.finish()
         os.replace(draft, target)
     except BaseException:
@@ -185,15 +192,15 @@ class _Copy:
             schema = self._schemas.get(record.schema_id, 0)
             self._channels[record.id] = self.writer.add_channel(record.topic, record.message_encoding, schema, record.metadata)
         elif isinstance(record, Metadata):
-            self.writer.add_metadata(record.name, record.metadata)
+            if record.name != _BAG:  # which is the last one
+                self.writer.add_metadata(record.name, record.metadata)
         elif isinstance(record, Attachment):
             self.writer.add_attachment(record)
 
 
-def _walk(path: Path, progress: Callable[[float], None], take: Callable) -> Contents:
+def _walk(reader: McapReader, progress: Callable[[float], None], take: Callable) -> Contents:
     """Hand every record that can be read and understood to ``take``; return what there is."""
-    reader = McapReader(path)
-    found = Contents(path, reader.size)
+    found = Contents(reader.path, reader.size)
     newest: dict[int, int] = {}
     orphans, first, last = 0, math.inf, 0
     for record in reader:
@@ -219,10 +226,24 @@ def _walk(path: Path, progress: Callable[[float], None], take: Callable) -> Cont
         take(record)
         progress(reader.read / max(reader.size, 1))
     found.first_ns, found.last_ns = (int(first), last) if found.messages else (0, 0)
-    found.damaged, found.is_finished, found.ends = reader.damaged + orphans, reader.is_finished, reader.ends
+    found.damaged, found.damage = reader.damaged + orphans, list(reader.damage)
+    if orphans:
+        found.damage.append(f"{orphans} messages whose channels were described in what is damaged")
+    found.is_finished, found.ends, found.covers_all = reader.is_finished, reader.ends, reader.has_checksums
     return found
 
 
-def _bag_metadata(found: Contents, name: str) -> str:
+def _bag_record(found: Contents, name: str) -> dict[str, str]:
+    """Return the bag's metadata record of a recovered file with this name: the one that was found if it counts its messages, else a new one.
+
+    It is empty for a file that is no bag of ROS 2 and had none.
+    """
+    record = found.metadata.get(_BAG, {})
+    if found.profile != PROFILE:
+        return record
+    counted = _MESSAGE_COUNT.search(record.get("serialized_metadata", ""))
+    if counted is not None and int(counted[1]) == found.messages.total():
+        return record
     counts = [TopicCount(topic, kind, found.hashes[topic], found.messages[topic]) for topic, kind in found.types.items()]
-    return bag_metadata([Part(name, found.first_ns, found.last_ns, found.messages.total())], [counts], {"recovered": "true"})
+    part = Part(name, found.first_ns, found.last_ns, found.messages.total())
+    return {"serialized_metadata": bag_metadata([part], [counts], {"recovered": "true"})}

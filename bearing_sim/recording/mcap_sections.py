@@ -1,0 +1,395 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Take an MCAP file apart into sections, and verify whatever checksums it has.
+
+A file of this version has a checksum record after each section (see `bearing_sim.recording.mcap_format`): any flipped bit of it is found, also in
+an unfinished file, and what follows a damaged section is found again by the next checksum record.  In other files each record is a section of its
+own, which nothing covers but the checksum of the whole data section, if the writer made one.
+"""
+
+import zlib
+from collections.abc import Container, Iterator
+from typing import BinaryIO, NamedTuple, Protocol
+
+from mcap.opcode import Opcode
+from mcap.records import DataEnd, Footer
+
+from bearing_sim.files.limits import RECORDING_RECORD
+from bearing_sim.recording.mcap_format import (
+    CHECKSUM_HEAD,
+    CHECKSUM_RECORD,
+    MAGIC,
+    RECORD,
+    checksum_record,
+    packed,
+    parsed,
+)
+
+_BLOCK = 1024 * 1024  # [byte] read at once
+_FOOTER = len(packed(Footer(0, 0, 0)))  # [byte]
+_DATA_END = packed(DataEnd(0))
+_CRC_POLYNOMIAL = 0xEDB88320  # of CRC-32 with the lowest bit first, as in zlib
+_LONGEST_CORRECTED = 1024 * 1024  # [byte] of a section, of which each bit is tried
+_MOST_CORRECTED = 100  # sections; more damage than that is no flipped bit here and there
+_LONGEST_SALVAGED = 64 * 1024 * 1024  # [byte] of a damaged section that are looked at
+_LONGEST_INDEX = 4 * 1024 * 1024  # [byte] between the first record of a section and its checksum record
+_KINDS = {
+    Opcode.HEADER: "the header",
+    Opcode.CHUNK: "a chunk",
+    Opcode.METADATA: "a metadata record",
+    Opcode.ATTACHMENT: "an attachment",
+}
+
+
+class Section(NamedTuple):
+    """Records that stand one after the other.
+
+    Attributes
+    ----------
+    data : the records.
+    is_sound : whether nothing says that they are damaged; otherwise only what has a checksum of its own can be used.
+    """
+
+    data: bytes
+    is_sound: bool
+
+
+class Report(Protocol):
+    """Takes a text that names something damaged or, if it is refused, says why something is not read."""
+
+    def __call__(self, text: str, is_refused: bool = False) -> None: ...
+
+
+class SectionReader:
+    """Yields the sections of the data section of a file, and verifies its end.
+
+    Parameters
+    ----------
+    stream : the file, which begins with the magic number.
+    size : its length [byte].
+    report : called for each damage, before the section is yielded.
+    corrects : whether a section in which one bit is flipped is corrected; it is reported nevertheless.
+    unneeded : opcodes of records that need no report if they are longer than the limit.
+
+    Attributes
+    ----------
+    read : how far the file was read [byte].
+    has_checksums : whether checksums cover all of it: those of sections or, after reading, that of the data section.
+    is_finished : after reading: whether the file has its proper end.
+    ends : why reading ended before that, or ``""``.
+    """
+
+    def __init__(self, stream: BinaryIO, size: int, report: Report, corrects: bool = False, unneeded: Container[int] = ()):
+        self._stream, self._size, self._report, self._corrects, self._unneeded = stream, size, report, corrects, unneeded
+        self._longest, self._corrected = RECORDING_RECORD.value, 0
+        self.read, self.is_finished, self.ends = 0, False, ""
+        self._has_sections = self._finds_checksum_record()
+        self.has_checksums = self._has_sections
+
+    def __iter__(self) -> Iterator[Section]:
+        return self._sections() if self._has_sections else self._single_records()
+
+    def _finds_checksum_record(self) -> bool:
+        """Whether there is a checksum record near the beginning; not only the first one, because that may be damaged."""
+        data = self._bytes(0, _BLOCK)
+        at = data.find(CHECKSUM_HEAD)
+        while 0 <= at <= len(data) - CHECKSUM_RECORD.size:
+            *_, begin, _ = CHECKSUM_RECORD.unpack_from(data, at)
+            if begin < at:
+                return True
+            at = data.find(CHECKSUM_HEAD, at + 1)
+        return False
+
+    def _single_records(self) -> Iterator[Section]:
+        window = _Window(self._stream, len(MAGIC), self._size)
+        checksum: int | None = zlib.crc32(MAGIC)  # of the file so far; None once something was not read
+        while window.has(RECORD.size):
+            opcode, length = window.head(0)
+            if length > self._longest and window.position + RECORD.size + length <= self._size:
+                if opcode not in self._unneeded:
+                    self._report(f"a record at byte {window.position} has {RECORDING_RECORD.refusal(length)}", is_refused=True)
+                checksum = None
+                window.skip(RECORD.size + length)
+                yield Section(b"", True)
+                continue
+            whole = self._fits(window, 0)
+            if not whole:
+                break
+            if opcode in (Opcode.DATA_END, Opcode.FOOTER):
+                self._finish(window, checksum)
+                return
+            data = window.bytes(0, whole)
+            checksum = None if checksum is None else zlib.crc32(data, checksum)
+            window.advance(whole)
+            self.read = window.position
+            yield Section(data, True)
+        self.read, self.ends = window.position, self._reason(window.position)
+
+    def _sections(self) -> Iterator[Section]:
+        window = _Window(self._stream, 0, self._size)
+        checksum: int | None = 0  # of the file so far; None once anything is damaged
+        while window.position < self._size and not window.begins_with(_DATA_END[: RECORD.size]):
+            begin, length = window.position, self._section_length(window)
+            if length is not None:
+                data, record = window.bytes(0, length), window.bytes(length, length + CHECKSUM_RECORD.size)
+                *_, expected = CHECKSUM_RECORD.unpack(record)
+                checksum = None if checksum is None or zlib.crc32(data) != expected else zlib.crc32(record, zlib.crc32(data, checksum))
+                window.advance(length + CHECKSUM_RECORD.size)
+            else:
+                checksum = None
+                end, expected, after = self._next_section(begin)
+                if begin == end == after:
+                    self._report(f"the end of the data section, byte {begin}")
+                    break
+                if after == self._size:
+                    self.read, self.ends = after, self._reason(begin)
+                    yield self._last(begin, self._bytes(begin, min(end, begin + _LONGEST_SALVAGED)))
+                    return
+                window = _Window(self._stream, after, self._size)
+                if end - begin > self._longest + _LONGEST_INDEX:
+                    self._report(f"bytes {begin} to {end} have {RECORDING_RECORD.refusal(end - begin)}", is_refused=True)
+                    yield Section(b"", False)
+                    continue
+                data = self._bytes(begin, end)
+            self.read = window.position
+            yield self._verified(begin, data, expected)
+        if window.position < self._size:
+            self._finish(window, checksum)
+        else:
+            self.ends = self._reason(window.position)
+
+    def _section_length(self, window: "_Window") -> int | None:
+        """Return the length of the section at the window, up to its checksum record; None if that does not follow soon after the first record.
+
+        The records after the first one are small and many, and need not be told apart: the first byte of the section, which the checksum record
+        repeats, is a mark that is found nowhere else.
+        """
+        first = len(MAGIC) if window.position == 0 else 0
+        if window.has(first + RECORD.size):
+            first += self._fits(window, first)
+        end = window.find(checksum_record(window.position, 0)[:-4], first, first + _LONGEST_INDEX)
+        return end if end is not None and window.has(end + CHECKSUM_RECORD.size) else None
+
+    def _fits(self, window: "_Window", at: int) -> int:
+        """Return the length of the record at a byte of the window, with its head; 0 if there is no whole record."""
+        if not window.has(at + RECORD.size):
+            return 0
+        opcode, length = window.head(at)
+        whole = RECORD.size + length
+        return whole if opcode and length <= self._longest and window.position + at + whole <= self._size and window.has(at + whole) else 0
+
+    def _next_section(self, begin: int) -> tuple[int, int | None, int]:
+        """Find the end of a section whose records do not lead there.
+
+        Returns
+        -------
+        end : of its records in the file.
+        checksum : that its checksum record states; None if that was not found, and may be the last of the records.
+        after : where the next section begins; the length of the file if there is none.
+        """
+        left = 4 * self._size  # [byte] to be looked at; more are only needed for a file that was made to waste time
+        for at, first, checksum in self._checksum_records(begin):
+            if first == begin:
+                return at, checksum, at + CHECKSUM_RECORD.size
+            if begin < first <= at and (left := left - (at - first)) > 0 and zlib.crc32(self._bytes(first, at)) == checksum:
+                return first, None, first
+        footer = self._footer()
+        end = -1 if footer is None else footer.summary_start - len(_DATA_END)
+        return (end, None, end) if begin <= end < self._size else (self._size, None, self._size)
+
+    def _checksum_records(self, begin: int) -> Iterator[tuple[int, int, int]]:
+        """Yield (byte of the file, first byte of its section, checksum) of whatever begins as a checksum record from a byte on."""
+        data, position = b"", begin
+        while block := self._bytes(position + len(data), position + len(data) + _BLOCK):
+            data += block
+            at = data.find(CHECKSUM_HEAD)
+            while 0 <= at <= len(data) - CHECKSUM_RECORD.size:
+                yield position + at, *CHECKSUM_RECORD.unpack_from(data, at)[2:]
+                at = data.find(CHECKSUM_HEAD, at + 1)
+            kept = data[1 - CHECKSUM_RECORD.size :]
+            position, data = position + len(data) - len(kept), kept
+
+    def _verified(self, begin: int, data: bytes, checksum: int | None) -> Section:
+        """Return a section; ``checksum`` as of `_next_section`."""
+        if checksum is None:
+            return self._without_checksum(begin, data)
+        records = data[len(MAGIC) :] if begin == 0 else data
+        difference = zlib.crc32(data) ^ checksum
+        if not difference:
+            return Section(records, True)
+        kind = _KINDS.get(records[0], "a record") if records else "a record"
+        where = f"{kind}, bytes {begin} to {begin + len(data)}"
+        if difference.bit_count() == 1:
+            self._report(f"a checksum record, byte {begin + len(data)}")
+            return Section(records, True)
+        bit = self._flipped_bit(data, difference)
+        if bit is None:
+            self._report(where)
+            return Section(records, False)
+        self._report(f"{where}: bit {bit % 8} of byte {begin + bit // 8} is flipped")
+        if not self._corrects:
+            return Section(records, False)
+        corrected = bytearray(data)
+        corrected[bit // 8] ^= 1 << bit % 8
+        return Section(bytes(corrected[len(MAGIC) :] if begin == 0 else corrected), True)
+
+    def _without_checksum(self, begin: int, data: bytes) -> Section:
+        """Return a section of which no checksum record was found."""
+        records, record = data[: -CHECKSUM_RECORD.size], data[-CHECKSUM_RECORD.size :]
+        if _differing_bits(record, checksum_record(begin, zlib.crc32(records))) == 1:
+            self._report(f"a checksum record, byte {begin + len(records)}")
+            data, is_sound = records, True
+        else:
+            self._report(f"bytes {begin} to {begin + len(data)}")
+            is_sound = False
+        return Section(data[len(MAGIC) :] if begin == 0 else data, is_sound)
+
+    def _last(self, begin: int, data: bytes) -> Section:
+        """Return what follows the last checksum record of an unfinished file: its writer was stopped there, which is no damage."""
+        records, record = data[: -CHECKSUM_RECORD.size], data[-CHECKSUM_RECORD.size :]
+        if _differing_bits(record, checksum_record(begin, zlib.crc32(records))) == 1:
+            return self._without_checksum(begin, data)
+        return Section(data[len(MAGIC) :] if begin == 0 else data, False)
+
+    def _flipped_bit(self, data: bytes, difference: int) -> int | None:
+        """Return which bit of some bytes is wrong if one is, counted from the lowest bit of the first byte; None otherwise.
+
+        A flipped bit changes a CRC by a number that depends only on its distance from the end and differs between all bits: the remainder of a
+        power of x (Koopman, 32-bit cyclic redundancy codes for internet applications, DSN 2002).
+
+        Parameters
+        ----------
+        data : the bytes.
+        difference : of their CRC-32 and the right one, bit by bit.
+        """
+        self._corrected += 1
+        if self._corrected > _MOST_CORRECTED or len(data) > _LONGEST_CORRECTED:
+            return None
+        remainder = 1
+        for bit in range(8 * len(data) - 1, -1, -1):
+            remainder = (remainder >> 1) ^ _CRC_POLYNOMIAL if remainder & 1 else remainder >> 1
+            if remainder == difference:
+                return bit
+        return None
+
+    def _finish(self, window: "_Window", checksum: int | None) -> None:
+        """Verify what follows the data section.
+
+        Parameters
+        ----------
+        window : at the end of the data section.
+        checksum : of the file up to there; None if it is known to be damaged.
+        """
+        self.read, footer = self._size, self._footer()
+        if footer is None:
+            self.ends = "it is cut short, or its last bytes are not the end of an MCAP file"
+            return
+        self.is_finished = True
+        begin = window.position
+        if window.begins_with(_DATA_END[: RECORD.size]) and window.has(len(_DATA_END)):
+            stated = int.from_bytes(window.bytes(RECORD.size, len(_DATA_END)), "little")
+            if checksum not in (None, stated) and (stated or self._has_sections):
+                self._report("the checksum of the data section")
+            self.has_checksums |= stated != 0
+        elif not self._has_sections:
+            self._report(f"the end of the data section, byte {begin}")
+        self._verify_summary(footer, begin + len(_DATA_END))
+
+    def _verify_summary(self, footer: Footer, begin: int) -> None:
+        """Report a summary whose checksum is wrong; ``begin`` is where the data section ends."""
+        if not self._has_sections and (footer.summary_start == 0 or footer.summary_crc == 0):
+            return
+        first, end = footer.summary_start, self._size - len(MAGIC) - 4  # up to the checksum in the footer
+        checksum, at = 0, first
+        while at < end:
+            block = self._bytes(at, min(at + _BLOCK, end))
+            checksum, at = zlib.crc32(block, checksum), at + len(block)
+        if checksum != footer.summary_crc or (self._has_sections and first != begin):
+            self._report(f"the summary, bytes {begin} to {self._size}")
+
+    def _footer(self) -> Footer | None:
+        """Return the record at the end of the file; None if it has no proper end."""
+        tail = self._bytes(max(self._size - _FOOTER - len(MAGIC), 0), self._size)
+        if len(tail) < _FOOTER + len(MAGIC) or not tail.endswith(MAGIC) or tail[: RECORD.size] != RECORD.pack(Opcode.FOOTER, _FOOTER - RECORD.size):
+            return None
+        footer = parsed(Opcode.FOOTER, tail[RECORD.size : -len(MAGIC)])
+        return footer if footer.summary_start < self._size else None
+
+    def _reason(self, position: int) -> str:
+        """Return why reading ended at a byte."""
+        if position >= self._size:
+            return "it was not completed"
+        if self._bytes(position, position + 1) == b"\0":
+            return f"there is no record at byte {position}"
+        return "it ends within a record"
+
+    def _bytes(self, begin: int, end: int) -> bytes:
+        self._stream.seek(begin)
+        return self._stream.read(max(min(end, self._size) - begin, 0))
+
+
+def records_in(data: bytes) -> Iterator[tuple[int, bytes]]:
+    """Yield opcode and content of the records of a section but the many small indexes, as far as they can be told apart."""
+    at = 0
+    while at + RECORD.size <= len(data):
+        opcode, length = RECORD.unpack_from(data, at)
+        begin, at = at + RECORD.size, at + RECORD.size + length
+        if at > len(data):
+            return
+        if opcode != Opcode.MESSAGE_INDEX:
+            yield opcode, data[begin:at]
+
+
+def _differing_bits(first: bytes, second: bytes) -> int:
+    return (int.from_bytes(first, "little") ^ int.from_bytes(second, "little")).bit_count() if len(first) == len(second) else 8 * len(second)
+
+
+class _Window:
+    """The bytes of a file from a position on, read by blocks.
+
+    Parameters
+    ----------
+    stream : the file; whoever else reads from it may move its position.
+    position : of the first byte.
+    size : length of the file [byte].
+    """
+
+    def __init__(self, stream: BinaryIO, position: int, size: int):
+        self._stream, self._size, self.position = stream, size, position
+        self._data, self._at = b"", 0
+
+    def has(self, length: int) -> bool:
+        """Whether the file has so many more bytes, which are read."""
+        there = len(self._data) - self._at
+        if there < length:
+            self._stream.seek(self.position + there)
+            self._data, self._at = self._data[self._at :] + self._stream.read(max(length - there, _BLOCK)), 0
+        return len(self._data) - self._at >= length
+
+    def head(self, at: int) -> tuple[int, int]:
+        """Return opcode and length of the record at a byte, which `has` has read."""
+        return RECORD.unpack_from(self._data, self._at + at)
+
+    def bytes(self, begin: int, end: int) -> bytes:
+        """Return bytes which `has` has read."""
+        return self._data[self._at + begin : self._at + end]
+
+    def find(self, wanted: bytes, begin: int, end: int) -> int | None:
+        """Return where some bytes stand next, beginning between two bytes of the window; None if they do not."""
+        for upto in range(begin + _BLOCK, end + _BLOCK, _BLOCK):
+            is_more = self.has(min(upto, end))
+            at = self._data.find(wanted, self._at + begin, self._at + end)
+            if at >= 0 or not is_more:
+                return at - self._at if at >= 0 else None
+        return None
+
+    def begins_with(self, head: bytes) -> bool:
+        """Whether the next bytes are these."""
+        return self.has(len(head)) and self.bytes(0, len(head)) == head
+
+    def advance(self, length: int) -> None:
+        """Move on by so many bytes, which `has` has read."""
+        self._at, self.position = self._at + length, self.position + length
+
+    def skip(self, length: int) -> None:
+        """Move on by so many bytes without reading them."""
+        self._data, self._at, self.position = b"", 0, self.position + length
