@@ -332,7 +332,7 @@ class Simulation:
         self._newest = flat(new_block(1, self._params.rollers.count))[0]
         before = flat(previous)[0]
         self._newest[COLUMN.shaft_angle] = before[COLUMN.shaft_angle]
-        self._level.observe(self.time, state, self._model(self.inputs, 1.0), self._work, 0.0, before, self._newest, self._memory.scratch[0])
+        self._level.observe(self.time, state, self._model(self.inputs, 1.0), self._work, 0.0, before, self._newest, self._memory)
         self._newest[COLUMN.level] = NUMBERS[self.scene.level]
         self._newest[_MEASURED_COLUMNS] = self.inputs[-len(RING_TEMPERATURES) :]
         self._write_temperatures(self._newest)

@@ -13,7 +13,7 @@ import math
 
 from bearing_sim.numerics.compilation import template
 from bearing_sim.numerics.newton import solve_implicit
-from bearing_sim.numerics.time_stepping import OK, advance_adaptively, advance_in_fixed_steps
+from bearing_sim.numerics.time_stepping import INNER_STAGE, OK, advance_adaptively, advance_in_fixed_steps
 
 GAMMA = 1.0 - 1.0 / math.sqrt(2.0)
 _ENOUGH = 1 / 60  # of the tolerances: the error that the iteration of a stage may leave (assumption)
@@ -25,11 +25,12 @@ def sdirk2_attempt(rhs, rhs_and_jacobian, predict, factor, solve, error_norm, t,
 
     The error estimate is the difference to the embedded method of order 1, y + h f(Y_1), filtered by the iteration's matrix so that
     stiff components do not dominate it (L. F. Shampine, L. S. Baca: Error estimators for stiff differential equations, J. Comput.
-    Appl. Math. 11, 1984).  Row 8 of ``memory.scratch`` keeps the slope at the end of a step for the next one to predict with.
+    Appl. Math. 11, 1984).  Row 8 of ``memory.scratch`` keeps the slope at the end of a step for the next one to predict with, row
+    `INNER_STAGE` the state Y_1, at ``memory.stage_time``.
     """
     scratch = memory.scratch
     result, error = scratch[1], scratch[2]
-    first, known, rate, change, slope, next_slope = scratch[3], scratch[4], scratch[5], scratch[6], scratch[7], scratch[8]
+    first, known, rate, change, slope, next_slope = scratch[INNER_STAGE], scratch[4], scratch[5], scratch[6], scratch[7], scratch[8]
     shift = GAMMA * h
     per_shift = 1.0 / shift
     if abs(memory.derivative_time[0] - t) < 0.01 * h:
@@ -55,7 +56,7 @@ def sdirk2_attempt(rhs, rhs_and_jacobian, predict, factor, solve, error_norm, t,
     for i in range(y.shape[0]):
         next_slope[i] = (result[i] - known[i]) * per_shift
         error[i] = shift * (next_slope[i] - error[i])
-    memory.derivative_time[0] = t + h
+    memory.derivative_time[0], memory.stage_time[0] = t + h, t + shift
     solve(work, error)
     return OK
 

@@ -69,6 +69,7 @@ class Control(NamedTuple):
 
 
 CONTROL = Control()
+INNER_STAGE = 3  # row of ``memory.scratch`` that keeps the state of a step's inner stage, where a method's forces act in it too
 
 
 class Memory(NamedTuple):
@@ -77,11 +78,12 @@ class Memory(NamedTuple):
     scratch: np.ndarray  # rate, result, error and up to six rows of the method's own, shape (9, n); the first is free between calls
     control: np.ndarray  # see `Control`
     derivative_time: np.ndarray  # where the derivatives that the method keeps belong to [s], NaN where it keeps none, shape (1,)
+    stage_time: np.ndarray  # of the inner stage of the newest step [s], whose state is row `INNER_STAGE`; NaN where there is none, shape (1,)
 
 
 def new_memory(size: int) -> Memory:
     """Return memory for ``size`` states."""
-    return Memory(np.zeros((9, size)), np.zeros(len(CONTROL)), np.full(1, np.nan))
+    return Memory(np.zeros((9, size)), np.zeros(len(CONTROL)), np.full(1, np.nan), np.full(1, np.nan))
 
 
 @kernel

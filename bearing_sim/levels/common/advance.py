@@ -44,6 +44,6 @@ def advance_by(
         )  # fmt: skip
         if status != OK:
             return status, h
-        observe(end, y, model, work, interval, before, rows[k], memory.scratch[0])
+        observe(end, y, model, work, interval, before, rows[k], memory)
         before = rows[k]
     return OK, h

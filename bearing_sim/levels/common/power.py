@@ -39,6 +39,26 @@ class Powers(NamedTuple):
 
 
 @kernel
+def mean_powers(earlier, later, share):
+    """Return the weighted mean of two `Powers`; ``share`` is the weight of the later one."""
+    return Powers(
+        earlier.shaft + share * (later.shaft - earlier.shaft),
+        earlier.inner_sliding + share * (later.inner_sliding - earlier.inner_sliding),
+        earlier.outer_sliding + share * (later.outer_sliding - earlier.outer_sliding),
+        earlier.inner_rolling + share * (later.inner_rolling - earlier.inner_rolling),
+        earlier.outer_rolling + share * (later.outer_rolling - earlier.outer_rolling),
+        earlier.churning + share * (later.churning - earlier.churning),
+        earlier.windage + share * (later.windage - earlier.windage),
+        earlier.land + share * (later.land - earlier.land),
+        earlier.pocket + share * (later.pocket - earlier.pocket),
+        earlier.damping + share * (later.damping - earlier.damping),
+        earlier.seal + share * (later.seal - earlier.seal),
+        earlier.flange + share * (later.flange - earlier.flange),
+        earlier.support + share * (later.support - earlier.support),
+    )
+
+
+@kernel
 def write_powers(powers, row):
     """Write `Powers` into a flat sample (see `bearing_sim.model.sample.flat`), which has its shaft speed."""
     row[COLUMN.shaft_power] = powers.shaft

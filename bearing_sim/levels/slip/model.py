@@ -72,16 +72,16 @@ def step_limit(t, y, model):
 
 
 @kernel
-def observe(t, y, model, work, interval, previous, row, rate):
+def observe(t, y, model, work, interval, previous, row, memory):
     """Write the sample of state ``y``.
 
     Parameters
     ----------
     interval : time since the previous sample [s]; damage and angles accumulate over it.
     previous, row : flat samples, shape (SCALARS + runs * Z,); see `bearing_sim.model.sample.flat`.
-    rate : scratch, shape (Z + 2,).
+    memory : of the method, see `bearing_sim.numerics.time_stepping.Memory`.
     """
-    params, loads = model.params, work.loads
+    params, loads, rate = model.params, work.loads, memory.scratch[0]
     count, cage_speed = params.rollers.count, y[OMEGA]
     load_y, load_z = load_at(t, model.drive)
     work.growth[0] = inner_growth(shaft_speed_at(t, model.drive), model)

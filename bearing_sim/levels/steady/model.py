@@ -163,7 +163,7 @@ def _write_sample(t, y, model, work, interval, previous, row):
 
 
 @kernel
-def observe(t, y, model, work, interval, previous, row, rate):
+def observe(t, y, model, work, interval, previous, row, memory):
     """Write the sample of state ``y``; parameters as of `bearing_sim.levels.slip.model.observe`."""
     load_y, load_z = load_at(t, model.drive)
     if not answer_at(shaft_speed_at(t, model.drive), load_y, load_z, model, work):
