@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.cli.options import json_option, picture_option
+from bearing_sim.cli.options import allow_outside_option, json_option, picture_option
 from bearing_sim.cli.reporting import (
     UsageError,
     announce_compilation,
@@ -25,6 +25,7 @@ _UNLIKELY = 0.01
 
 @click.command("calibrate")
 @click.argument("log", type=click.Path(path_type=Path), metavar="RUN.mcap")
+@allow_outside_option
 @click.option("--scene", "scene_name", metavar="SCENE", help="Bundled scene or YAML file [default: the scene in the recording].")
 @click.option("--set", "overrides", multiple=True, metavar="FIELD=VALUE", help="Override a field or a range of the scene; can be repeated.")
 @click.option("--fit", "fields", multiple=True, metavar="FIELD", help="Fit this field; can be repeated [default: lubricant.mixture_fraction].")

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.cli.options import channel_sources, executor_options, json_option, log_options, set_option, table_option
+from bearing_sim.cli.options import allow_outside_option, channel_sources, executor_options, json_option, log_options, set_option, table_option
 from bearing_sim.cli.reporting import (
     FailedRun,
     Points,
@@ -28,6 +28,7 @@ _MOST_SHOWN = 40
 
 @click.command("replay-fleet")
 @click.argument("paths", nargs=-1, type=click.Path(path_type=Path), metavar="[LOGS]...")
+@allow_outside_option
 @click.option("--scene", "scene_name", metavar="SCENE", help="Bundled scene or YAML file of every bearing that --bearings does not give another.")
 @set_option
 @click.option("--bearings", "bearings_path", type=click.Path(path_type=Path), metavar="TABLE.csv", help="Which log is of which bearing, see above.")

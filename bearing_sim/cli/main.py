@@ -9,6 +9,7 @@ import click
 
 from bearing_sim.cli.reporting import ARGUMENTS, UsageError
 from bearing_sim.extras import what_is_missing
+from bearing_sim.files.limits import FileError
 
 
 class Entry(NamedTuple):
@@ -94,11 +95,13 @@ class LazyGroup(click.Group):
         return context
 
     def invoke(self, context):
-        """Run a command; one that needs a package that is not installed is refused with the extra that installs it."""
+        """Run a command; one that needs a package that is not installed is refused with the extra that installs it, a file that cannot be read with its reason."""
         try:
             return super().invoke(context)
         except ModuleNotFoundError as error:
             raise UsageError(what_is_missing(error)) from error
+        except FileError as error:
+            raise UsageError(str(error)) from error
 
     def list_commands(self, context):
         """Return the names in order."""

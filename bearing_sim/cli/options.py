@@ -7,15 +7,35 @@ from pathlib import Path
 import click
 
 from bearing_sim.cli.reporting import UsageError, as_usage_error
+from bearing_sim.files.outside import OPTION, allowing_outside
 from bearing_sim.scene.fidelity import LEVELS
 
 PICTURES = (".png", ".svg", ".pdf")
 
 level_type = click.Choice(LEVELS)
-scene_argument = click.argument("scene_name", metavar="SCENE")
 set_option = click.option("--set", "overrides", multiple=True, metavar="FIELD=VALUE", help="Override a field of the scene; can be repeated.")
 json_option = click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 quick_option = click.option("--quick", is_flag=True, help="Measure almost nothing, to check that everything works.")
+
+
+def _allow_outside(context: click.Context, parameter: click.Parameter, allowed: bool) -> None:
+    """Allow files outside of a scene's folder until the command ends, if the option is given."""
+    context.with_resource(allowing_outside(allowed))
+
+
+allow_outside_option = click.option(
+    OPTION,
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=_allow_outside,
+    help="Read files that a scene names although they lie outside of its folder.",
+)
+
+
+def scene_argument(command: Callable) -> Callable:
+    """Add the argument for a scene, ``scene_name``, and the option that allows it to name files outside of its folder."""
+    return click.argument("scene_name", metavar="SCENE")(allow_outside_option(command))
 
 
 _LOG_OPTIONS = (

@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 
 from bearing_sim.cli.lives import hours
-from bearing_sim.cli.options import channel_sources, json_option, log_options, set_option
+from bearing_sim.cli.options import allow_outside_option, channel_sources, json_option, log_options, set_option
 from bearing_sim.cli.reporting import (
     FailedRun,
     UnknownInputs,
@@ -35,6 +35,7 @@ _ROUNDED = 5.0  # [K] to which the oil temperatures of a table are
 
 @click.command("replay")
 @click.argument("logs", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="IN.mcap...")
+@allow_outside_option
 @click.option("--scene", "scene_name", metavar="SCENE", help="Bundled scene or YAML file.")
 @click.option(
     "--from-recording", is_flag=True, help="Compute a recorded run again from its recording alone: scene, start and inputs, sample by sample."

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.cli.options import json_option, set_option
+from bearing_sim.cli.options import allow_outside_option, json_option, set_option
 from bearing_sim.cli.reporting import UsageError, as_file_error, as_usage_error, print_json, print_table
 
 _TABLES = (".csv", ".parquet")
@@ -169,6 +169,7 @@ def merge(name, recordings, as_json):
 
 @click.command("adopt")
 @_state_argument
+@allow_outside_option
 @click.option("--scene", "scene_name", required=True, metavar="SCENE", help="Bundled scene or YAML file that the state is to belong to.")
 @set_option
 @click.option("--serial", default="", metavar="NUMBER", help="Serial number that the bearing is to have [default: its own].")

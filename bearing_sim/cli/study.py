@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.cli.options import executor_options, json_option, level_type, picture_option, scene_argument, set_option
+from bearing_sim.cli.options import allow_outside_option, executor_options, json_option, level_type, picture_option, scene_argument, set_option
 from bearing_sim.cli.reporting import (
     FailedRun,
     Points,
@@ -63,6 +63,7 @@ def deng2017(out, overrides, quick, workers, dask, as_json):
 
 @click.command("damage")
 @click.argument("log", type=click.Path(path_type=Path), metavar="IN.mcap")
+@allow_outside_option
 @click.option("--scene", "scene_name", required=True, metavar="SCENE", help="Name of a bundled scene, or a scene file.")
 @set_option
 @click.option("--windows", default=10, show_default=True, type=click.IntRange(1, 1000), help="Number of windows that level planar computes.")
@@ -109,6 +110,7 @@ def _print_damage(log, name, found) -> None:
 
 
 @click.command("misalignment")
+@allow_outside_option
 @click.argument("scene_name", metavar="[SCENE]", default="deng2017_table1")
 @set_option
 @click.option("--largest", default=3.0, show_default=True, type=click.FloatRange(0.0, 20.0), metavar="MRAD", help="Largest misalignment.")
@@ -176,6 +178,7 @@ def _print_misalignment(name, rows) -> None:
 
 
 @click.command("support")
+@allow_outside_option
 @click.argument("scene_name", metavar="[SCENE]", default="deng2017_table1")
 @set_option
 @click.option("--from", "lowest", default=10000.0, show_default=True, type=click.FloatRange(1.0), metavar="RPM", help="Lowest shaft speed.")
@@ -338,6 +341,7 @@ def _print_situations(report, out) -> None:
 
 
 @click.command("slices")
+@allow_outside_option
 @click.argument("scene_name", metavar="[SCENE]", default="deng2017_table1")
 @set_option
 @click.option("--settle", default=0.15, show_default=True, type=click.FloatRange(min=1e-6), metavar="S", help="Simulated time before measuring.")
@@ -373,6 +377,7 @@ def _print_slices(name, found) -> None:
 
 
 @click.command("friction")
+@allow_outside_option
 @click.argument("scene_name", metavar="[SCENE]", required=False)
 @set_option
 @click.option("--series", metavar="SERIES", help="Series of SCENE's bearing: 10, 2, 3, 22 or 23 [default: that in its name].")

@@ -80,12 +80,13 @@ class Limit:
         return f"{has} than the limit of {self.value:,} for {self.bounds}; {advice}"
 
 
-SCENE_FILE = Limit("scene_file", 8_000_000, "bytes", "a scene, a mapping or another YAML file")
+SCENE_FILE = Limit("scene_file", 5_000_000, "bytes", "a scene, a mapping or another YAML file")
 YAML_NODES = Limit("yaml_nodes", 20_000, "values", "a YAML text with its aliases written out")
 YAML_DEPTH = Limit("yaml_depth", 40, "levels", "blocks within blocks of a YAML text")
 CONTOUR_FILE = Limit("contour_file", 4_000_000, "bytes", "the contour of one turn")
 CONTOUR_POINTS = Limit("contour_points", 100_000, "points", "the contour of one turn")
 CROWN_FILE = Limit("crown_file", 1_000_000, "bytes", "the profile of a roller")
+CROWN_POINTS = Limit("crown_points", 5_000, "points", "the profile of a roller")
 TABLE_FILE = Limit("table_file", 4_000_000_000, "bytes", "a measured table")
 TABLE_ROWS = Limit("table_rows", 5_000_000, "rows", "a measured table")
 TABLE_LINE = Limit("table_line", 1_000_000, "characters", "one line of a measured table")
@@ -109,6 +110,7 @@ LIMITS = (
     CONTOUR_FILE,
     CONTOUR_POINTS,
     CROWN_FILE,
+    CROWN_POINTS,
     TABLE_FILE,
     TABLE_ROWS,
     TABLE_LINE,

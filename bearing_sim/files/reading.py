@@ -12,6 +12,9 @@ from typing import BinaryIO
 from bearing_sim.files.limits import FileError, Limit
 from bearing_sim.files.outputs import remember_input
 
+NO_FILE = "no such file"
+"""Why a path cannot be read at which there is nothing."""
+
 _KINDS = (
     (stat.S_ISDIR, "a folder"),
     (stat.S_ISFIFO, "a pipe"),
@@ -31,8 +34,7 @@ def why_not_readable(path: str | Path) -> str:
     try:
         mode = os.stat(path).st_mode
     except FileNotFoundError:
-        dangles = os.path.islink(path)
-        return "a link to a file that does not exist" if dangles else "no such file"
+        return "a link to a file that does not exist" if os.path.islink(path) else NO_FILE
     except (OSError, ValueError) as error:  # ValueError: a null character in the path
         return (getattr(error, "strerror", None) or str(error)).lower()
     if stat.S_ISREG(mode):

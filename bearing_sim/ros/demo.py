@@ -21,6 +21,7 @@ from pathlib import Path
 import click
 import numpy as np
 
+from bearing_sim.files.outside import OPTION
 from bearing_sim.messages import topics
 from bearing_sim.messages.diagnostics import WHOLE
 from bearing_sim.messages.events import Event, Level
@@ -46,12 +47,13 @@ class Demo:
     folder : for mission, recording, view and log; created if absent.
     scene : bundled scene or scene file.
     overrides : scene fields to change, each ``FIELD=VALUE``.
+    allow_outside : whether the scene file may name files outside of its own folder.
     """
 
-    def __init__(self, folder: Path, scene: str, overrides: tuple[str, ...] = ()):
+    def __init__(self, folder: Path, scene: str, overrides: tuple[str, ...] = (), allow_outside: bool = False):
         self.folder = folder
         self.recording, self.view, self.log = folder / "run.mcap", folder / "run.rrd", folder / "node.log"
-        self._scene, self._overrides = scene, overrides
+        self._scene, self._overrides, self._allow_outside = scene, overrides, allow_outside
         domain = os.environ.get("BEARING_SIM_DEMO_DOMAIN_ID") or str(random.SystemRandom().choice(_DOMAINS))
         self._environment = {**os.environ, "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", "ROS_DOMAIN_ID": domain}
 
@@ -85,7 +87,7 @@ class Demo:
     @contextmanager
     def _node(self) -> Iterator[subprocess.Popen]:
         # Without governor: every demonstration shows the same level, and a first start does not compile another one.
-        parameters = {"scene": self._scene, "record": str(self.recording), "governor": "false"}
+        parameters = {"scene": self._scene, "record": str(self.recording), "governor": "false", "allow_outside": str(self._allow_outside).lower()}
         if self._overrides:
             parameters["overrides"] = "[" + ", ".join(f"'{text}'" for text in self._overrides) + "]"
         words = [word for name, value in parameters.items() for word in ("-p", f"{name}:={value}")]
@@ -204,17 +206,18 @@ def _diagnostics(path: Path) -> list[dict[str, str]]:
 @click.option("--out", type=click.Path(path_type=Path), default=Path("runs"), show_default=True, help="Folder for runs, each in its own subfolder.")
 @click.option("--scene", default="deng2017_table1", show_default=True, help="Bundled scene or scene file.")
 @click.option("--set", "overrides", multiple=True, metavar="FIELD=VALUE", help="Change a field of the scene; can be repeated.")
+@click.option(OPTION, "allow_outside", is_flag=True, help="Read files that the scene names although they lie outside of its folder.")
 @click.option("--mission", type=click.Path(path_type=Path, exists=True), help="Input log to play instead of the bundled mission.")
 @click.option("--duration", type=click.FloatRange(1.0, 3600.0), default=60.0, show_default=True, help="Length of the bundled mission [s].")
 @click.option("--open/--no-open", "opens", default=None, help="Open the view in rerun [default: if there is a display].")
-def command(out, scene, overrides, mission, duration, opens):
+def command(out, scene, overrides, allow_outside, mission, duration, opens):
     """Run the node on the bundled synthetic mission, record it, and show the results."""
     try:
-        load_scene(scene, overrides)
+        load_scene(scene, overrides, allow_outside)
     except SceneError as error:
         click.echo(f"demo: {error}", err=True)
         sys.exit(2)
-    demo = Demo(fresh_path(out / time.strftime("%Y-%m-%d_%H-%M-%S")), scene, overrides)
+    demo = Demo(fresh_path(out / time.strftime("%Y-%m-%d_%H-%M-%S")), scene, overrides, allow_outside)
     before = {number: signal.signal(number, signal.default_int_handler) for number in (signal.SIGTERM, signal.SIGHUP)}
     try:
         demo.run(mission or demo.write_mission(duration))

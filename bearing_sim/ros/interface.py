@@ -216,7 +216,7 @@ class BearingInterface:
 
     def __init__(self, node: LifecycleNode, settings: BearingSettings, shared: NodeSettings):
         self._node, self._logger, self.settings, self._shared = node, node.get_logger(), settings, shared
-        self.scene: Scene = load_scene(settings.scene, settings.scene_overrides)
+        self.scene: Scene = load_scene(settings.scene, settings.scene_overrides, settings.allow_outside)
         self._keeper = self._open_state(settings.serial)
         self.live: LiveModel | SimTimeModel | None = None
         self._wanted_serial = settings.serial  # in use from ~/replace_bearing on

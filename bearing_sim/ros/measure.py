@@ -313,7 +313,7 @@ def measure(
     RuntimeError
         The node does not start, or ends early; with its last log lines.
     """
-    loaded = load_scene(scene, overrides)
+    loaded = load_scene(scene, overrides, parameters.get("allow_outside") is True)
     listen = _listened(loaded, listen)
     names = [f"bearing_{k:0{len(str(bearings))}}" for k in range(1, bearings + 1)]
     chosen = {"bearings": names, "scene": scene, "overrides": list(overrides) or [""], "publish_rate": float(rate), "governor": False} | parameters

@@ -365,7 +365,7 @@ class BearingNode(LifecycleNode):
 
     def _start_workers(self, bearings: Sequence[BearingSettings], processes: int) -> None:
         """Start worker processes for bearings whose scenes can be used."""
-        self._scenes = {settings.name: load_scene(settings.scene, settings.scene_overrides) for settings in bearings}
+        self._scenes = {each.name: load_scene(each.scene, each.scene_overrides, each.allow_outside) for each in bearings}
         for name, scene in self._scenes.items():
             self.parameters.show_scene(name, scene)
         node, workers = self.get_name(), []

@@ -72,6 +72,12 @@ DECLARATIONS = (
         per_bearing=True,
     ),
     Declaration(
+        "allow_outside",
+        False,
+        "whether a scene file may name files of contour and crown outside of its own folder",
+        per_bearing=True,
+    ),
+    Declaration(
         "serial",
         "",
         "serial number of the bearing: its state (life used, hours, starts, what was learned) is kept in a file over restarts, with use_sim_time "
@@ -148,6 +154,7 @@ class BearingSettings:
     name: str
     scene: str
     overrides: tuple[str, ...]
+    allow_outside: bool
     serial: str
     state_file: str
     joint: str

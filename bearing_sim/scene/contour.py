@@ -13,6 +13,8 @@ from pathlib import Path
 
 import numpy as np
 
+from bearing_sim.files.limits import CONTOUR_FILE, CONTOUR_POINTS, FileError, LimitError
+from bearing_sim.files.reading import read_text
 from bearing_sim.scene.quantity import to_si
 from bearing_sim.scene.tree import at
 
@@ -158,6 +160,7 @@ def settled_form(raceway) -> tuple[dict, list[str]]:
 FEWEST_POINTS = 12
 _WIDEST_GAP = 3.0  # times the median spacing
 _OVERSHOOT = 0.1  # of the measured range; how far the spline may leave that range
+_LONGEST_LINE = 1000  # characters
 _COLUMN = re.compile(r"^\s*(angle|azimuth|phi|radius|r)\s*(?:[\[(_]\s*([^\])]*?)\s*[\])]?)?\s*$", re.IGNORECASE)
 _ANGLES, _TURN = {"angle", "azimuth", "phi"}, 2.0 * math.pi
 
@@ -187,8 +190,7 @@ def read_contour(text: str, angle_unit: str | None = None, radius_unit: str | No
     ContourError
         Listing all errors in the text.
     """
-    lines = [(number, line.split("#")[0].strip()) for number, line in enumerate(text.splitlines(), 1)]
-    lines = [(number, line) for number, line in lines if line]
+    lines = _lines_of(text)
     if not lines:
         raise ContourError(["no points: the contour is empty"])
     order, units, lines = _header(lines)
@@ -217,6 +219,20 @@ def read_contour(text: str, angle_unit: str | None = None, radius_unit: str | No
     return angles, radii
 
 
+def _lines_of(text: str) -> list[tuple[int, str]]:
+    """Return number and text of the lines that are not empty, without comments."""
+    lines = [(number, line.split("#")[0].strip()) for number, line in enumerate(text.splitlines(), 1)]
+    lines = [(number, line) for number, line in lines if line]
+    long = next((number for number, line in lines if len(line) > _LONGEST_LINE), None)
+    if long is not None:
+        raise ContourError([f"line {long}: longer than {_LONGEST_LINE} characters; expected an angle and a radius"])
+    try:
+        CONTOUR_POINTS.check(len(lines), "its points")
+    except LimitError as error:
+        raise ContourError([str(error)]) from None
+    return lines
+
+
 def _fields(line: str) -> list[str]:
     if ";" in line:
         return [field.strip().replace(",", ".") for field in line.split(";")]  # as written by spreadsheets with decimal commas
@@ -226,7 +242,7 @@ def _fields(line: str) -> list[str]:
 def _header(lines):
     """Return the column order, the units and the lines after the header."""
     first = lines[0][1]
-    names = [_COLUMN.match(field) for field in re.split(r"[;,\t]|\s+(?=[A-Za-z])", first)]
+    names = [_COLUMN.match(" ".join(field.split())) for field in re.split(r"[;,\t]|\s+(?=[A-Za-z])", first)]
     names = [name for name in names if name]
     if len(names) != 2:
         if re.match(r"^[A-Za-z]", first) and not re.match(r"^(nan|inf)", first, re.IGNORECASE):
@@ -318,7 +334,6 @@ def measured_spline(text: str, angle_unit: str | None = None, radius_unit: str |
 
 
 _POINT_FORMS = (("contour", "contour_file"), ("low_points", "high_points"))
-_LARGEST_FILE = 4_000_000  # bytes
 
 
 def drop_other_forms(raceway: dict, given: Iterable[str]) -> None:
@@ -339,16 +354,13 @@ def with_contour_text(tree: Mapping) -> tuple[dict, tuple[str, str] | None]:
     tree, raceway = dict(tree), at(tree, "bearing.outer_raceway")
     raceway = dict(raceway) if isinstance(raceway, Mapping) else {}
     path = raceway.get("contour_file")
-    if not isinstance(path, str) or raceway.get("contour") is not None:
+    if not isinstance(path, str):
         return tree, None
-    try:
-        if Path(path).stat().st_size > _LARGEST_FILE:
-            return tree, (repr(path), f"larger than {_LARGEST_FILE / 1e6:g} MB; expected a contour of one turn")
-        raceway["contour"] = Path(path).read_text()
-    except OSError as error:
-        return tree, (repr(path), (error.strerror or "cannot be read").lower())
-    except (UnicodeDecodeError, ValueError):
-        return tree, (repr(path), "is not a text file")
+    if raceway.get("contour") is None:
+        try:
+            raceway["contour"] = read_text(path, CONTOUR_FILE)
+        except FileError as error:
+            return tree, (repr(path), str(error))
     raceway["contour_file"] = Path(path).name
     tree["bearing"] = {**tree["bearing"], "outer_raceway": raceway}
     return tree, None

@@ -8,6 +8,8 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import BeforeValidator, Field
 
+from bearing_sim.files.limits import CROWN_FILE, CROWN_POINTS, FileError
+from bearing_sim.files.reading import read_text
 from bearing_sim.scene.quantity import check, named_law, quantity, record
 
 _TABLE_HEADER = "expected a header of two columns, position and drop, each with its unit in brackets, such as position[mm],drop[um]"
@@ -83,9 +85,10 @@ def crown_points(path: str | Path) -> dict[str, list[str]]:
         The file cannot be read or has another format.
     """
     try:
-        with open(path, encoding="utf-8", newline="") as file:
-            rows = [row for row in csv.reader(line for line in file if not line.lstrip().startswith("#")) if any(cell.strip() for cell in row)]
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        lines = [line for line in read_text(path, CROWN_FILE).splitlines() if not line.lstrip().startswith("#")]
+        rows = [row for row in csv.reader(lines) if any(cell.strip() for cell in row)]
+        CROWN_POINTS.check(len(rows), "its points")
+    except (FileError, csv.Error) as error:
         raise ValueError(f"file {str(path)!r} cannot be read: {error}") from None
     names = [cell.strip().rstrip("]").split("[") for cell in rows[0]] if rows else []
     units = {name[0].strip(): (column, name[1]) for column, name in enumerate(names) if len(name) == 2}

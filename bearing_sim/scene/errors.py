@@ -6,6 +6,15 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 
+_LONGEST_VALUE, _LONGEST_REASON = 200, 2000  # characters in a message
+_LONGEST_WORD = 80  # characters of a name; finding the nearest of a long text takes long
+
+
+def shortened(text: str, longest: int) -> str:
+    """Return a text for a message, without its middle if it is longer than that many characters; it may be as long as a file."""
+    return text if len(text) <= longest else f"{text[: longest // 2]} ... ({len(text)} characters) ... {text[-longest // 4 :]}"
+
+
 @dataclass(frozen=True)
 class InvalidField:
     """One error in a scene: where it is, the value found (as text) and what was expected."""
@@ -15,8 +24,8 @@ class InvalidField:
     reason: str
 
     def __str__(self) -> str:
-        found = f" = {self.value}" if self.value else ""
-        return f"{self.path or 'scene'}{found}: {self.reason}"
+        found = f" = {shortened(self.value, _LONGEST_VALUE)}" if self.value else ""
+        return f"{shortened(self.path, _LONGEST_VALUE) or 'scene'}{found}: {shortened(self.reason, _LONGEST_REASON)}"
 
 
 class SceneError(ValueError):
@@ -31,5 +40,5 @@ class SceneError(ValueError):
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
     """Return ``" (did you mean ...?)"`` for the nearest known word, or an empty text."""
-    close = difflib.get_close_matches(word, list(known), n=1)
+    close = difflib.get_close_matches(word, list(known), n=1) if len(word) <= _LONGEST_WORD else []
     return f" (did you mean {close[0]!r}?)" if close else ""

@@ -7,14 +7,19 @@ import functools
 import re
 import types
 import typing
-from collections.abc import Hashable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from importlib import resources
 from pathlib import Path
+from typing import NamedTuple
 
 import yaml
 from pydantic import TypeAdapter, ValidationError
 from pydantic_core import PydanticCustomError
 
+from bearing_sim.files.limits import SCENE_FILE, FileError
+from bearing_sim.files.outside import allowing_outside, why_outside
+from bearing_sim.files.reading import NO_FILE, read_text, why_not_readable
+from bearing_sim.files.yaml_text import values_of
 from bearing_sim.scene.bearing import Bearing, drop_other_lands
 from bearing_sim.scene.contour import UNREAD, drop_other_forms, with_contour_text
 from bearing_sim.scene.designation import DesignationError, is_designation
@@ -36,36 +41,6 @@ _UNION_TAGS = frozenset(
 )
 
 
-class _UniqueKeyLoader(yaml.SafeLoader):
-    """SafeLoader that rejects a repeated key; PyYAML would silently keep the last value."""
-
-
-def _mapping_with_unique_keys(loader: yaml.SafeLoader, node: yaml.MappingNode) -> dict:
-    seen = set()
-    for key_node, _ in node.value:
-        key = loader.construct_object(key_node)
-        if not isinstance(key, Hashable):
-            raise yaml.constructor.ConstructorError(None, None, "a key cannot be a list or a mapping", key_node.start_mark)
-        if key in seen:
-            raise yaml.constructor.ConstructorError(None, None, f"the key {key!r} is written twice", key_node.start_mark)
-        seen.add(key)
-    return loader.construct_mapping(node, deep=True)
-
-
-_UniqueKeyLoader.add_constructor(yaml.resolver.BaseResolver.DEFAULT_MAPPING_TAG, _mapping_with_unique_keys)
-
-# Numbers as in YAML 1.2: PyYAML follows YAML 1.1, which reads 1:30:00 as 5400, 010 as 8 and 1_000 as 1000, and 1e-5 as a text.
-_INT, _FLOAT = "tag:yaml.org,2002:int", "tag:yaml.org,2002:float"
-_UniqueKeyLoader.yaml_implicit_resolvers = {
-    first: [(tag, pattern) for tag, pattern in resolvers if tag not in (_INT, _FLOAT)]
-    for first, resolvers in yaml.SafeLoader.yaml_implicit_resolvers.items()
-}
-_UniqueKeyLoader.add_implicit_resolver(_INT, re.compile(r"^[-+]?(?:0|[1-9]\d*)$"), list("-+0123456789"))
-_UniqueKeyLoader.add_implicit_resolver(
-    _FLOAT,
-    re.compile(r"^(?:[-+]?(?:\.\d+|\d+(?:\.\d*)?)(?:[eE][-+]?\d+)?|[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN))$"),
-    list("-+.0123456789"),
-)
 _MATERIALS = (
     ("bearing", "material"),
     ("bearing", "cage", "material"),
@@ -92,6 +67,7 @@ _RENAMED = {
 _MISSING = {
     "bearing.cage": f"missing; give its block, or the kind of cage, from which it is estimated: {', '.join(CAGE_RULES)}",
 }
+_MOST_ERRORS = 100  # that are listed
 _STAND_IN = "NU 210"  # for a bearing whose name is unknown, so that the rest of its scene can be checked
 _WRITTEN = {"written": True}  # context of a validation: the values come from a file or an option, see `Quantity.read`
 
@@ -127,27 +103,28 @@ def read_named(name: str | Path, folder: str, kind: str) -> tuple[str, Path | No
     Raises
     ------
     SceneError
-        There is no such file, or it is not text.
+        There is no such file, it is no regular file or not text, or is too large.
     """
     known, path = _bundled_names(folder), Path(name)
     if str(name) in known:
         return _bundled_text(folder, str(name)), None
-    if not path.is_file():
+    if why_not_readable(path) == NO_FILE:
         reason = f"no such file or bundled {kind}{did_you_mean(str(name), known)}; bundled: {', '.join(known)}"
         raise SceneError(str(name), [InvalidField(kind, "", reason)])
     try:
-        return path.read_text(encoding="utf-8"), path.parent
-    except UnicodeDecodeError as error:
-        raise SceneError(str(name), [InvalidField(kind, "", f"not readable as UTF-8 text: {error.reason}")]) from None
+        return read_text(path, SCENE_FILE), path.parent
+    except FileError as error:
+        raise SceneError(str(name), [InvalidField(kind, "", str(error))]) from None
 
 
-def load_scene(scene: str | Path | Mapping | Scene, overrides: Iterable[str] = ()) -> Scene:
+def load_scene(scene: str | Path | Mapping | Scene, overrides: Iterable[str] = (), allow_outside: bool = False) -> Scene:
     """Load a scene by bundled name or file path, or from nested mappings, or change any fields of a loaded one.
 
     Parameters
     ----------
     scene : the name of a bundled scene (see `scene_names`), the path of a YAML file, what such a file holds, or a scene.
     overrides : texts such as ``"bearing.outer_raceway.low_radius=34.865mm"``, applied in order over the file.
+    allow_outside : whether a file may name files of contour and crown outside of its own folder.
 
     Raises
     ------
@@ -159,26 +136,45 @@ def load_scene(scene: str | Path | Mapping | Scene, overrides: Iterable[str] = (
     if isinstance(scene, Mapping):
         return scene_from_mapping(_overridden(copy.deepcopy(dict(scene)), overrides), origin=str(scene.get("name", "scene")))
     text, folder = read_named(scene, "scenes", "scene")
-    return scene_from_yaml(text, overrides, origin=str(scene), folder=folder)
+    with allowing_outside(allow_outside):
+        return scene_from_yaml(text, overrides, origin=str(scene), folder=folder)
 
 
 def scene_from_yaml(text: str, overrides: Iterable[str] = (), origin: str = "scene", folder: Path | None = None) -> Scene:
     """Build a scene from YAML text (see `load_scene`).
 
-    Paths in the text are relative to ``folder``, paths in overrides to the current folder.
+    Paths in the text are relative to ``folder`` and stay below it; without a folder, as in the scene of a recording, the text may name no file
+    to be read.  Paths in overrides are relative to the current folder.
     """
     tree = yaml_mapping(text, origin, "bearing, lubricant, operating ...")
-    if folder is not None:
-        _anchor_files(tree, folder)
-    return scene_from_mapping(_overridden(tree, overrides), origin)
+    refused = _anchor_files(tree, folder)
+    tree = _overridden(tree, overrides)
+    if errors := [error for error in refused if at(tree, error.path) is error.written]:
+        raise SceneError(origin, [InvalidField(error.path, repr(error.written), error.reason) for error in errors])
+    return scene_from_mapping(tree, origin)
 
 
-def _anchor_files(tree: dict, folder: Path) -> None:
-    """Resolve the paths of the files of contour and crown relative to the folder of the scene file, in place."""
+class _RefusedFile(NamedTuple):
+    """A file that a scene names and that is not read: the field, its value as it is written, and the reason."""
+
+    path: str
+    written: str
+    reason: str
+
+
+def _anchor_files(tree: dict, folder: Path | None) -> list[_RefusedFile]:
+    """Resolve the paths of the files of contour and crown relative to the folder of the scene file, in place; return those that are refused."""
+    refused = []
     for *blocks, name in (("bearing", "outer_raceway", "contour_file"), ("bearing", "roller", "crown", "file")):
         node = at(tree, ".".join(blocks))
-        if isinstance(node, dict) and isinstance(node.get(name), str) and node.get("contour") is None:  # with its text, the file is but a name
+        if not isinstance(node, dict) or not isinstance(node.get(name), str) or node.get("contour") is not None:
+            continue  # with the text of the contour, the file is but a name
+        reason = why_outside(node[name], folder) if folder is not None else "this scene is no file of its own, so it cannot name others"
+        if reason:
+            refused.append(_RefusedFile(".".join((*blocks, name)), node[name], reason))
+        else:
             node[name] = str(folder / node[name])
+    return refused
 
 
 def scene_from_mapping(tree: Mapping, origin: str = "scene") -> Scene:
@@ -296,12 +292,12 @@ def yaml_mapping(text: str, origin: str, expected: str) -> dict:
     Raises
     ------
     SceneError
-        The text is not YAML, is not a mapping, or has a repeated key.
+        The text is not YAML, is not a mapping, has a repeated key, or exceeds a limit (see `bearing_sim.files.yaml_text`).
     """
     try:
-        tree = yaml.load(text, Loader=_UniqueKeyLoader)
-    except yaml.YAMLError as error:
-        raise SceneError(origin, [InvalidField("", "", f"not readable as YAML: {' '.join(str(error).split())}")]) from None
+        tree = values_of(text)
+    except FileError as error:
+        raise SceneError(origin, [InvalidField("", "", str(error))]) from None
     if not isinstance(tree, dict):
         raise SceneError(origin, [InvalidField("", repr(tree), f"expected a mapping with {expected}")])
     return tree
@@ -320,8 +316,8 @@ def _apply_override(tree: dict, override: str) -> None:
     if not equals or not all(keys):
         raise SceneError("--set", [InvalidField(path, "", "expected FIELD=VALUE, such as bearing.outer_raceway.low_radius=34.865mm")])
     try:
-        value = yaml.load(text, Loader=_UniqueKeyLoader)
-    except yaml.YAMLError:
+        value = values_of(text)
+    except FileError:
         value = text.strip()
     if keys[0] == "uncertainty" and len(keys) > 1:
         override_range(tree, keys, value)
@@ -387,7 +383,7 @@ def _from_catalog(kind: str, name: str, path: str) -> tuple[dict, list[InvalidFi
 
 
 def _catalog_entry(kind: str, name: str) -> dict:
-    return yaml.load(_bundled_text(f"catalog/{kind}", name), Loader=_UniqueKeyLoader)
+    return values_of(_bundled_text(f"catalog/{kind}", name))
 
 
 def _bearing_preset(name) -> tuple[dict, list[InvalidField]]:
@@ -479,7 +475,11 @@ def invalid_fields(error: ValidationError, record: type, laws: frozenset[str]) -
     record : the record type of the whole tree.
     laws : values of the field ``law``, which selects the record of a union; pydantic includes them in its paths.
     """
-    return [_invalid_field(problem, record, laws) for problem in error.errors(include_url=False)]
+    problems = error.errors(include_url=False)
+    found = [_invalid_field(problem, record, laws) for problem in problems[:_MOST_ERRORS]]
+    if len(problems) > _MOST_ERRORS:
+        found.append(InvalidField("", "", f"and {len(problems) - _MOST_ERRORS} more errors"))
+    return found
 
 
 def _invalid_field(problem: Mapping, record: type, laws: frozenset[str]) -> InvalidField:

@@ -24,6 +24,11 @@ from pydantic_core import PydanticCustomError, core_schema
 
 Record = TypeVar("Record")
 _NUMBER_THEN_UNIT = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|[-+]?(?:nan|inf(?:inity)?))\s*(.*?)\s*$", re.IGNORECASE)
+_LONGEST_TEXT = 100  # characters of a number and its unit
+_POWER = r"\s*(?:\*\*|\^)"
+_PLAIN_EXPONENT = r"\s*[-+]?\d{1,2}(?:\.\d{1,2})?(?![\d.])"
+_EXCESSIVE_POWER = re.compile(rf"{_POWER}(?!{_PLAIN_EXPONENT})|{_POWER}{_PLAIN_EXPONENT}{_POWER}|\){_POWER}.*\){_POWER}")
+"""An exponent that is not a number of one or two digits, a power of a power, or a second power of a bracket."""
 
 
 @cache
@@ -51,7 +56,9 @@ def to_si(value: object, unit: str) -> float:
     if isinstance(value, bool) or not isinstance(value, (numbers.Real, str)):
         raise ValueError(f"expected {expected(unit)}, got {value!r}")
     if not isinstance(value, str):
-        return float(value)
+        return _as_float(value, unit)
+    if len(value) > _LONGEST_TEXT:
+        raise ValueError(f"expected {expected(unit)}, got a text of {len(value)} characters, {value[:20]!r} ...")
     match = _NUMBER_THEN_UNIT.match(value)
     if match is None:
         raise ValueError(f"expected {expected(unit)}, got {value!r}")
@@ -60,6 +67,8 @@ def to_si(value: object, unit: str) -> float:
         if unit == SPEED and number:
             raise ValueError(_bare_speed(value))
         return number
+    if _EXCESSIVE_POWER.search(written_unit):  # pint would compute 9**9**9**9
+        raise ValueError(f"{value!r} has powers of powers in its unit; expected {expected(unit)}")
     if unit == SPEED:
         written_unit = _TURNS.get("".join(written_unit.casefold().split()), written_unit)
     import pint
@@ -77,6 +86,14 @@ def to_si(value: object, unit: str) -> float:
     if reason := _other_kind(written, unit):
         raise ValueError(f"{value!r} is {reason}; expected {expected(unit)}")
     return float(converted.magnitude)
+
+
+def _as_float(value: numbers.Real, unit: str) -> float:
+    """Return a number as a float; one that is too large for that is refused."""
+    try:
+        return float(value)
+    except OverflowError:
+        raise ValueError(f"expected {expected(unit)}, got an integer above 1.8e308") from None
 
 
 SPEED = "rad/s"
