@@ -23,8 +23,8 @@ STANDARD = set(sys.stdlib_module_names)
 ROOMS = {
     "__init__": ("", ""),
     "extras": ("", ""),
-    "files": ("", ""),
-    "scene": ("numpy scipy pint pydantic pydantic_core yaml", ""),
+    "files": ("yaml", ""),
+    "scene": ("numpy scipy pint pydantic pydantic_core yaml", "files"),
     "numerics": ("numpy numba llvmlite platformdirs", ""),
     "physics": ("numpy scipy", "numerics"),
     "model": ("numpy pandas scipy xarray", "scene physics"),
@@ -45,11 +45,11 @@ ROOMS = {
     ),
     "cli": (
         "click numpy pydantic_core rich",
-        "extras scene numerics model levels simulation messages recording stored_state inputs runtime view sweep fleet studies",
+        "extras files scene numerics model levels simulation messages recording stored_state inputs runtime view sweep fleet studies",
     ),
     "ros": (
         "click launch launch_ros numpy rcl_interfaces rclpy rich rosgraph_msgs std_srvs yaml",
-        "extras scene numerics simulation messages recording stored_state inputs monitoring runtime view",
+        "extras files scene numerics simulation messages recording stored_state inputs monitoring runtime view",
     ),
     "programs": ("", "extras"),
 }

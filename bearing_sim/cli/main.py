@@ -95,7 +95,7 @@ class LazyGroup(click.Group):
         return context
 
     def invoke(self, context):
-        """Run a command; one that needs a package that is not installed is refused with the extra that installs it, a file that cannot be read with its reason."""
+        """Run a command; a package that is not installed is named with the extra that installs it, a file that cannot be read with the reason."""
         try:
             return super().invoke(context)
         except ModuleNotFoundError as error:

@@ -17,7 +17,16 @@ _LARGEST = 2**63 - 1
 
 
 class FileError(ValueError):
-    """A file that cannot be read, or whose content exceeds a limit; the message says which file, why and what to do."""
+    """A file that cannot be read, or whose content exceeds a limit; the message says which file, why and what to do.
+
+    Attributes
+    ----------
+    reason : the message without the name of the file.
+    """
+
+    def __init__(self, reason: str, where: str = ""):
+        self.reason = reason
+        super().__init__(f"{where}: {reason}" if where else reason)
 
 
 class LimitError(FileError):
@@ -66,7 +75,7 @@ class Limit:
             ``found`` is above the limit.
         """
         if found > self.value:
-            raise LimitError(f"{what}: {self.refusal(found)}")
+            raise LimitError(self.refusal(found), what)
 
     def refusal(self, found: int | None = None) -> str:
         """Return why something is refused and which name raises the limit.

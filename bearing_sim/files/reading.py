@@ -57,15 +57,15 @@ def open_regular(path: str | Path, limit: Limit | None = None) -> BinaryIO:
         There is no such file, it is no regular file, may not be read, or is larger than the limit.
     """
     if reason := why_not_readable(path):
-        raise FileError(f"{_shown(path)}: {reason}")
+        raise FileError(reason, _shown(path))
     try:
         descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
     except OSError as error:
-        raise FileError(f"{_shown(path)}: {(error.strerror or 'cannot be opened').lower()}") from None
+        raise FileError((error.strerror or "cannot be opened").lower(), _shown(path)) from None
     try:
         status = os.fstat(descriptor)
         if not stat.S_ISREG(status.st_mode):  # replaced since it was looked at
-            raise FileError(f"{_shown(path)}: no regular file")
+            raise FileError("no regular file", _shown(path))
         if limit is not None:
             limit.check(status.st_size, _shown(path))
         remember_input(path)
@@ -96,7 +96,7 @@ def read_bytes(path: str | Path, limit: Limit) -> bytes:
                 length += len(piece)
                 limit.check(length, _shown(path))
         except OSError as error:
-            raise FileError(f"{_shown(path)}: {(error.strerror or 'cannot be read').lower()}") from None
+            raise FileError((error.strerror or "cannot be read").lower(), _shown(path)) from None
     return b"".join(pieces)
 
 
@@ -125,7 +125,7 @@ def decoded(data: bytes, origin: str | Path) -> str:
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
         found = f"line {line}: byte 0x{data[error.start]:02x} is no UTF-8 text" if encoding.startswith("utf-8") else f"no {encoding.upper()} text"
-        raise FileError(f"{_shown(origin)}: {found}; save the file as UTF-8") from None
+        raise FileError(f"{found}; save the file as UTF-8", _shown(origin)) from None
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 

@@ -40,11 +40,25 @@ def values_of(text: str) -> object:
         loader = _Loader(text)
         return loader.get_single_data()
     except yaml.YAMLError as error:
-        reason = " ".join(str(error).split())
+        reason = _reason(error)
         raise YamlError(f"not readable as YAML: {reason if len(reason) <= _LONGEST_REASON else reason[:_LONGEST_REASON] + ' ...'}") from None
+    except RecursionError:  # only with a limit that was raised far
+        raise YamlError("too many levels of blocks within blocks") from None
     finally:
         if loader is not None:
             loader.dispose()
+
+
+def _reason(error: yaml.YAMLError) -> str:
+    """Return what is wrong and where, without the line itself: whoever sees the message may not be meant to read the file."""
+    if isinstance(error, yaml.reader.ReaderError):
+        return f"character {error.position}: {error.reason} (U+{error.character:04X})"
+    if not isinstance(error, yaml.MarkedYAMLError) or error.problem is None:
+        return " ".join(str(error).split())
+    mark, context = error.problem_mark, error.context_mark
+    where = f"line {mark.line + 1}, column {mark.column + 1}: " if mark else ""
+    began = f" (in line {context.line + 1})" if context else ""
+    return where + (f"{error.context}{began}: " if error.context else "") + error.problem
 
 
 class _Loader(yaml.SafeLoader):

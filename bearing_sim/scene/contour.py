@@ -229,7 +229,7 @@ def _lines_of(text: str) -> list[tuple[int, str]]:
     try:
         CONTOUR_POINTS.check(len(lines), "its points")
     except LimitError as error:
-        raise ContourError([str(error)]) from None
+        raise ContourError([error.reason]) from None
     return lines
 
 
@@ -360,7 +360,7 @@ def with_contour_text(tree: Mapping) -> tuple[dict, tuple[str, str] | None]:
         try:
             raceway["contour"] = read_text(path, CONTOUR_FILE)
         except FileError as error:
-            return tree, (repr(path), str(error))
+            return tree, (repr(path), error.reason)
     raceway["contour_file"] = Path(path).name
     tree["bearing"] = {**tree["bearing"], "outer_raceway": raceway}
     return tree, None

@@ -88,7 +88,9 @@ def crown_points(path: str | Path) -> dict[str, list[str]]:
         lines = [line for line in read_text(path, CROWN_FILE).splitlines() if not line.lstrip().startswith("#")]
         rows = [row for row in csv.reader(lines) if any(cell.strip() for cell in row)]
         CROWN_POINTS.check(len(rows), "its points")
-    except (FileError, csv.Error) as error:
+    except FileError as error:
+        raise ValueError(f"file {str(path)!r} cannot be read: {error.reason}") from None
+    except csv.Error as error:
         raise ValueError(f"file {str(path)!r} cannot be read: {error}") from None
     names = [cell.strip().rstrip("]").split("[") for cell in rows[0]] if rows else []
     units = {name[0].strip(): (column, name[1]) for column, name in enumerate(names) if len(name) == 2}

@@ -5,7 +5,6 @@ import difflib
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-
 _LONGEST_VALUE, _LONGEST_REASON = 200, 2000  # characters in a message
 _LONGEST_WORD = 80  # characters of a name; finding the nearest of a long text takes long
 
@@ -35,7 +34,8 @@ class SceneError(ValueError):
         self.origin = origin
         self.errors = tuple(errors)
         count = len(self.errors)
-        super().__init__("\n".join([f"{origin}: {count} error{'s' * (count != 1)}"] + [f"  {error}" for error in self.errors]))
+        heading = f"{shortened(origin, _LONGEST_VALUE)}: {count} error{'s' * (count != 1)}"
+        super().__init__("\n".join([heading, *(f"  {error}" for error in self.errors)]))
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:

@@ -67,7 +67,8 @@ _RENAMED = {
 _MISSING = {
     "bearing.cage": f"missing; give its block, or the kind of cage, from which it is estimated: {', '.join(CAGE_RULES)}",
 }
-_MOST_ERRORS = 100  # that are listed
+_KINDS = {type(None): "empty", list: "a list", str: "a text", int: "a number", float: "a number"}  # of what a YAML file holds
+_MOST_ERRORS = 50  # that are listed
 _STAND_IN = "NU 210"  # for a bearing whose name is unknown, so that the rest of its scene can be checked
 _WRITTEN = {"written": True}  # context of a validation: the values come from a file or an option, see `Quantity.read`
 
@@ -114,7 +115,7 @@ def read_named(name: str | Path, folder: str, kind: str) -> tuple[str, Path | No
     try:
         return read_text(path, SCENE_FILE), path.parent
     except FileError as error:
-        raise SceneError(str(name), [InvalidField(kind, "", str(error))]) from None
+        raise SceneError(str(name), [InvalidField(kind, "", error.reason)]) from None
 
 
 def load_scene(scene: str | Path | Mapping | Scene, overrides: Iterable[str] = (), allow_outside: bool = False) -> Scene:
@@ -299,7 +300,7 @@ def yaml_mapping(text: str, origin: str, expected: str) -> dict:
     except FileError as error:
         raise SceneError(origin, [InvalidField("", "", str(error))]) from None
     if not isinstance(tree, dict):
-        raise SceneError(origin, [InvalidField("", repr(tree), f"expected a mapping with {expected}")])
+        raise SceneError(origin, [InvalidField("", "", f"{_KINDS.get(type(tree), 'a value')}, expected a mapping with {expected}")])
     return tree
 
 
