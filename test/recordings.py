@@ -73,5 +73,13 @@ def spoiled(path, target, chunk):
     return target
 
 
+def flipped(path, target, byte, bit=0):
+    """Copy a file with one bit flipped."""
+    data = bytearray(path.read_bytes())
+    data[byte] ^= 1 << bit
+    target.write_bytes(data)
+    return target
+
+
 def raw_cdr_float64(value):
     return b"\x00\x01\x00\x00" + struct.pack("<d", value)

@@ -15,7 +15,7 @@ import pyarrow.parquet
 import pytest
 from click.testing import CliRunner
 from mcap.reader import make_reader
-from recordings import spoiled, steady_log, truncated
+from recordings import flipped, spoiled, steady_log, truncated
 from rosbags.typesys import Stores, get_typestore
 from synthetic_run import synthetic_block
 
@@ -274,3 +274,20 @@ def test_tables_refuse_what_is_not_there(recording, tmp_path):
     assert "did you mean 'cage_slip'" in invoke("to-csv", recording, "-o", tmp_path / "a.csv", "--column", "cage_slp", code=2)
     assert "no sample between" in invoke("to-csv", recording, "-o", tmp_path / "a.csv", "--from", 100, code=2)
     assert "no metadata record" in invoke("to-parquet", steady_log(tmp_path / "log.mcap"), "-o", tmp_path / "a.parquet", code=2)
+
+
+def test_two_runs_that_began_at_different_moments_are_compared_by_run_time(recording, tmp_path):
+    with McapSink(tmp_path / "later.mcap", SCENE, START + 12_345_678_901) as sink:
+        for start in range(0, len(RUN), 20):
+            sink.write_inputs(float(RUN["time"][start]), Inputs(4000.0, 800.0, -50.0, 393.15))
+            sink.write(RUN[start : start + 20])
+    for pair in ((recording, tmp_path / "later.mcap"), (tmp_path / "later.mcap", recording)):
+        told = json.loads(invoke("compare", *pair, "--json"))
+        assert told["agree"] and {topic["only_in_first"] + topic["only_in_second"] for topic in told["topics"]} == {0}
+    told = json.loads(invoke("compare", recording, tmp_path / "later.mcap", "--clock", "--json", code=1))
+    assert {topic["messages"] for topic in told["topics"]} == {0}, "no sample is at the same moment"
+
+
+def test_compare_says_which_file_is_not_whole(recording, tmp_path):
+    flipped(recording, tmp_path / "flipped.mcap", recording.stat().st_size // 2)
+    assert "is flipped; what can be read of it is compared" in invoke("compare", recording, tmp_path / "flipped.mcap", code=1)

@@ -148,9 +148,13 @@ def _trouble(file) -> str:
     metavar="NUMBER | TOPIC=NUMBER",
     help="Accepted difference relative to the largest magnitude of a quantity, for all topics or for one [default: 1e-6].",
 )
+@click.option("--clock", "by_clock", is_flag=True, help="Match messages by the clock, for runs that began at different moments of one log.")
 @json_option
-def compare(first, second, tolerances, as_json):
-    """Compare two recordings topic by topic; messages are matched by their times.
+def compare(first, second, tolerances, by_clock, as_json):
+    """Compare two recordings topic by topic; messages are matched by run time.
+
+    Two runs of one command are therefore compared from their beginnings on, whenever they were made. Recordings that do not say when their run
+    began, such as those of other programs, are matched by the clock.
 
     A topic agrees if both recordings have the same messages and all their numbers agree within the tolerance. Exit code 0 if all topics
     agree, 1 otherwise. Diagnostics are text and are not compared.
@@ -160,7 +164,7 @@ def compare(first, second, tolerances, as_json):
 
     general, own = _tolerances(tolerances)
     with as_usage_error(RecordingError), as_file_error():
-        differences, skipped = compare(first, second, general, own)
+        differences, skipped = compare(first, second, general, own, by_clock, lambda text: click.echo(text, err=True))
     if not differences:
         raise UsageError(f"{first} and {second} have no messages to compare")
     unknown = [topic for topic in own if f"/{topic.lstrip('/')}" not in {difference.topic for difference in differences}]

@@ -1,30 +1,38 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Compare two recordings message by message: what differs, where, and by how much."""
+"""Compare two recordings message by message: what differs, where, and by how much.
+
+Messages belong together by run time: two runs of one command begin at different moments and are nevertheless the same.
+"""
 
 import math
+import re
 from collections import defaultdict, deque
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import groupby
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from mcap.records import Metadata
 
 from bearing_sim.messages.cdr import CdrError, CdrLayout, NumberColumns, is_known, layout_of
 from bearing_sim.messages.topics import ARRAYS, OUTPUTS
 from bearing_sim.recording.bag import mcap_files
 from bearing_sim.recording.mcap_format import Message
 from bearing_sim.recording.mcap_reader import McapReader, Rows
+from bearing_sim.recording.writer import METADATA
 
 _BATCH = 4 * 1024 * 1024  # [byte] of a recording compared at once
 _EQUAL_EXAMINED = 32  # one in so many equal messages is examined, for the magnitude
+_START = re.compile(r"\d{1,19}")
+_LATEST_START = 2**62  # [ns], in the year 2116; differences of later ones might not fit into 64 bits
 _TEXT = "diagnostic_msgs/msg/DiagnosticArray"  # text, at times of its own
 
 
 @dataclass
 class TopicDifference:
-    """How a topic differs between two recordings; messages belong together by their log times.
+    """How a topic differs between two recordings.  Log times are those of the first one, also where only the second has a message.
 
     Attributes
     ----------
@@ -70,7 +78,12 @@ class TopicDifference:
 
 
 def compare(
-    first: str | Path, second: str | Path, tolerance: float = 1e-6, tolerances: Mapping[str, float] | None = None
+    first: str | Path,
+    second: str | Path,
+    tolerance: float = 1e-6,
+    tolerances: Mapping[str, float] | None = None,
+    by_clock: bool = False,
+    warn: Callable[[str], None] = lambda text: None,
 ) -> tuple[list[TopicDifference], list[str]]:
     """Compare two recordings.
 
@@ -79,6 +92,9 @@ def compare(
     first, second : MCAP files or folders of bags, finished or not.
     tolerance : of all topics, relative to the largest magnitude of a field.
     tolerances : of some topics by name (``"/pocket_forces"``).
+    by_clock : whether messages belong together by their log times, although the runs began at different moments: two replays of one log, of which
+        began later in it.  So do those of recordings that do not say when run time began, in any case.
+    warn : called with a text for each file that is unfinished or damaged, of which only what can be read is compared.
 
     Returns
     -------
@@ -94,7 +110,9 @@ def compare(
     found: dict[str, _Pairing] = {}
     skipped: set[str] = set()
     first_ns = None
-    for side, topic, ros_type, column in _alternating(first, second):
+    starts = [None if by_clock else _start_ns(path) for path in (first, second)]
+    delay = 0 if None in starts else starts[1] - starts[0]
+    for side, topic, ros_type, column in _alternating(_batches(first, 0, warn), _batches(second, delay, warn)):
         earliest = int(column.log_ns.min())
         first_ns = earliest if first_ns is None else min(first_ns, earliest)
         if ros_type == _TEXT:
@@ -126,9 +144,20 @@ class _Column(NamedTuple):
         return _Column(self.log_ns[rows], self.data[rows])
 
 
-def _alternating(first: str | Path, second: str | Path) -> Iterator[tuple[int, str, str, _Column]]:
+def _start_ns(path: str | Path) -> int | None:
+    """Return the log time at which run time began [ns since the epoch]; None if a recording does not say."""
+    for file in mcap_files(path):
+        for record in McapReader(file, stops_at_damage=True):
+            if isinstance(record, Metadata) and record.name == METADATA:
+                start = record.metadata.get("start_ns", "")
+                return int(start) if _START.fullmatch(start) and int(start) < _LATEST_START else None
+            if isinstance(record, Message):  # the metadata of a run come first
+                break
+    return None
+
+
+def _alternating(*sides: Iterator[list[tuple[str, str, _Column]]]) -> Iterator[tuple[int, str, str, _Column]]:
     """Yield (0 or 1, topic, type, messages) of both recordings in step, so that few messages wait for their partner."""
-    sides = [_batches(first), _batches(second)]
     heads = [next(side, None) for side in sides]
     while any(head is not None for head in heads):
         side = min((k for k in (0, 1) if heads[k] is not None), key=lambda k: max((column.log_ns[-1] for *_, column in heads[k]), default=0))
@@ -137,8 +166,8 @@ def _alternating(first: str | Path, second: str | Path) -> Iterator[tuple[int, s
         heads[side] = next(sides[side], None)
 
 
-def _batches(path: str | Path) -> Iterator[list[tuple[str, str, _Column]]]:
-    """Yield parts of a recording, as (topic, type, messages) in the order of each topic."""
+def _batches(path: str | Path, delay: int, warn: Callable[[str], None]) -> Iterator[list[tuple[str, str, _Column]]]:
+    """Yield parts of a recording, as (topic, type, messages) in the order of each topic; log times less a delay [ns]."""
     for file in mcap_files(path):
         reader = McapReader(file, in_rows=lambda topic: True)
         columns: dict[int, list[_Column]] = defaultdict(list)  # by channel
@@ -146,16 +175,18 @@ def _batches(path: str | Path) -> Iterator[list[tuple[str, str, _Column]]]:
         for record in reader:
             if isinstance(record, Rows):
                 for k, channel in enumerate(record.channels):
-                    columns[channel].append(_Column(record.log_ns(k), record.data(k)))
+                    columns[channel].append(_Column(record.log_ns(k).astype(np.int64) - delay, record.data(k)))
                 size += record.table.size
             elif isinstance(record, Message):
-                log_ns = np.array([record.log_time], np.uint64)
+                log_ns = np.array([record.log_time], np.uint64).astype(np.int64) - delay
                 columns[record.channel_id].append(_Column(log_ns, np.frombuffer(record.data, np.uint8)[None]))
                 size += len(record.data)
             if size > _BATCH:
                 yield list(_by_topic(reader, columns))
                 columns, size = defaultdict(list), 0
         yield list(_by_topic(reader, columns))
+        if reader.ends or reader.damaged:
+            warn(f"{file}: {'; '.join(filter(None, [reader.ends, *reader.damage[:3]]))}; what can be read of it is compared")
 
 
 def _by_topic(reader: McapReader, columns: Mapping[int, list[_Column]]) -> Iterator[tuple[str, str, _Column]]:
