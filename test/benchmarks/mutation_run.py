@@ -280,6 +280,7 @@ def main() -> None:
     parser.add_argument("--faults", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--seconds", type=float, default=240.0, help="of tests for each fault")
+    parser.add_argument("--again", action="store_true", help="repeat those whose time was over before all their tests had run")
     parser.add_argument("--folder", type=Path, default=Path("mutation_run"), help="for the clone and the rows")
     chosen = parser.parse_args()
     clone, rows_file = chosen.folder.resolve() / "clone", chosen.folder / "faults.jsonl"
@@ -287,6 +288,9 @@ def main() -> None:
         subprocess.run(["git", "clone", "-q", str(ROOT), str(clone)], check=True)
     subprocess.run(["git", "checkout", "-q", "--", "."], cwd=clone, check=True)
     rows = [json.loads(line) for line in rows_file.read_text().splitlines()] if rows_file.exists() else []
+    if chosen.again:
+        rows = [row for row in rows if row["outcome"] != "survived so far"]
+        rows_file.write_text("".join(json.dumps(row) + "\n" for row in rows), encoding="utf-8")
     done = {(row["file"], row["begin"], row["new"]) for row in rows}
     tests, good = nearest_tests(clone), {}
     for fault in drawn(clone, chosen.faults, chosen.seed):
