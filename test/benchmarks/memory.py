@@ -1,5 +1,9 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""How the memory of long-lived processes grows: ``python test/benchmarks/memory.py cycles`` and ``python test/benchmarks/memory.py view``.
+"""How the memory of long-lived processes grows: ``python test/benchmarks/memory.py hour``, ``cycles`` and ``view``.
+
+``hour`` runs a node in real time for an hour, with a live view, and with a recording that is started and stopped by turns.  Every quarter of a
+minute it reads the resident memory of the node's process and of those that the node has started.  Below the table stands the slope of each, a
+straight line through the last three quarters of the run.
 
 ``cycles`` configures and cleans up a node again and again, as a lifecycle manager may, and reads the resident memory of its process.  With
 ``--empty-cache`` no earlier process has compiled the model, as after an installation.
@@ -16,6 +20,8 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections import defaultdict
+from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from pathlib import Path
@@ -24,10 +30,12 @@ import click
 import numpy as np
 
 from bearing_sim.cli.reporting import print_rows
+from bearing_sim.ros.measure import processes_of
 
 _DOMAINS = range(60, 100)  # above the usual choices of users, below where ports collide with ephemeral ports
 _PATIENCE = 60.0  # [s] for an answer of the node
 _SAMPLE_RATE, _BLOCK = 100, 5  # [Hz], samples
+_LOOK_EVERY = 15.0  # [s] in a run of an hour
 _FLUSH_EVERY = 5  # blocks: four times a second, as `bearing_sim.view.worker` does
 
 
@@ -96,6 +104,109 @@ def _cycled(pid: int, count: int, labels: tuple[str, ...], stay: float):
 def _row(pid: int, cycle: int) -> tuple[str, ...]:
     counts = (len(os.listdir(f"/proc/{pid}/{kind}")) for kind in ("task", "fd"))
     return (str(cycle), f"{resident_memory(pid):.0f}", *map(str, counts))
+
+
+@main.command("hour")
+@click.option("--minutes", default=60.0, show_default=True, help="Duration of the run, in real time.")
+@click.option("--level", default="slip", show_default=True, help="Level of fidelity.")
+@click.option("--rate", default=10.0, show_default=True, help="Inputs, samples and outputs per second [Hz].")
+@click.option("--recording", default=5.0, show_default=True, help="Minutes of recording, and of none, by turns.")
+@click.option("--port", default=9899, show_default=True, help="Port of the view on 127.0.0.1.")
+def hour(minutes: float, level: str, rate: float, recording: float, port: int):
+    """Run a node with a live view in real time, recording off and on."""
+    os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+    os.environ.setdefault("ROS_DOMAIN_ID", str(random.SystemRandom().choice(_DOMAINS)))
+    parameters = {"overrides": f"[level={level}]", "publish_rate": rate, "sample_rate": rate, "rerun_port": port, "governor": "false"}
+    words = [word for name, value in parameters.items() for word in ("-p", f"{name}:={value}")]
+    memory = defaultdict(list)  # of each kind of process: (minute, resident memory [MB])
+    with tempfile.TemporaryDirectory() as folder:
+        command = [sys.executable, "-m", "bearing_sim.ros.node", "--ros-args", "--log-level", "warn", *words]
+        node = subprocess.Popen(command, cwd=folder)
+        try:
+            for minute in _fed(node, minutes, rate, recording):
+                for kind, megabytes in _memory_by_kind(node.pid).items():
+                    memory[kind].append((minute, megabytes))
+                    print(f"{minute:.2f} {kind} {megabytes:.2f}", file=sys.stderr, flush=True)
+        finally:
+            node.terminate()
+            node.wait(_PATIENCE)
+        recorded = sorted(file.stat().st_size for file in Path(folder).rglob("*.mcap"))
+    rows = [_growth(kind, np.array(looks), minutes) for kind, looks in memory.items()]
+    names = ("process", "looks", "first [MB]", "at a quarter [MB]", "last [MB]", "slope [MB/h]")
+    print_rows(f"level {level}, {rate:g} samples a second, {minutes:g} minutes, {len(recorded)} recordings of {sum(recorded)} bytes", names, rows)
+
+
+def _fed(node: subprocess.Popen, minutes: float, rate: float, recording: float) -> Iterator[float]:
+    """Feed a node in real time, start and stop recordings; yield the minutes since the first output when it is time to look."""
+    import rclpy
+    from rclpy.qos import qos_profile_sensor_data
+    from std_srvs.srv import Trigger
+
+    from bearing_sim.messages import topics
+    from bearing_sim.ros.messages import message, message_class
+    from bearing_sim.simulation import Inputs
+
+    rclpy.init(args=[])
+    try:
+        client = rclpy.create_node("memory_benchmark")
+        inputs = {name: topics.INPUTS[name] for name in ("shaft_speed", "radial_load")}
+        publishers = {name: client.create_publisher(message_class(topic.ros_type), name, qos_profile_sensor_data) for name, topic in inputs.items()}
+        services = [client.create_client(Trigger, f"bearing_node/{name}_recording") for name in ("start", "stop")]
+        output = topics.OUTPUTS["bearing_joints"]
+        heard: list[float] = []  # when the first output arrived
+        client.create_subscription(
+            message_class(output.ros_type), "bearing_joints", lambda _: heard or heard.append(time.monotonic()), qos_profile_sensor_data
+        )
+        started = due = time.monotonic()
+        next_look, recordings, answer = 0.0, 0, None
+        while True:
+            now = time.monotonic()
+            if node.poll() is not None:
+                raise click.ClickException(f"the node ended with code {node.returncode}; see its messages above")
+            if not heard and now - started > 10.0 * _PATIENCE:
+                raise click.ClickException("the node publishes nothing; see its messages above")
+            minute = (now - heard[0]) / 60.0 if heard else 0.0
+            if minute >= minutes:
+                return
+            if heard and minute >= next_look:
+                yield minute
+                next_look += _LOOK_EVERY / 60.0
+            if minute >= (recordings + 1) * recording:  # the first turn is without a recording
+                if answer is not None and not (answer.done() and answer.result().success):
+                    raise click.ClickException("a recording did not start or stop; see the node's messages above")
+                answer = services[recordings % 2].call_async(Trigger.Request())
+                recordings += 1
+            day = 2.0 * np.pi * (now - started) / 600.0
+            values = Inputs(2000.0 * (1.0 + 0.25 * np.sin(day)), 800.0 * (1.0 + 0.4 * np.cos(7.0 * day)), 40.0 * np.sin(5.0 * day), np.nan)
+            stamp = client.get_clock().now().nanoseconds
+            for name, topic in inputs.items():
+                publishers[name].publish(message(topic.ros_type, topic.message(stamp, values)))
+            due = max(due + 1.0 / rate, time.monotonic())
+            while (rest := due - time.monotonic()) > 0.0:
+                rclpy.spin_once(client, timeout_sec=rest)
+    finally:
+        rclpy.try_shutdown()
+
+
+def _memory_by_kind(pid: int) -> dict[str, float]:
+    """Return the resident memory of a process and its descendants [MB], by the module that each runs."""
+    memory: dict[str, float] = defaultdict(float)
+    for each in processes_of(pid):
+        try:
+            words = Path(f"/proc/{each}/cmdline").read_text().split("\0")
+            kind = words[words.index("-m") + 1] if "-m" in words[:-1] else words[0]
+            memory[kind] += resident_memory(each)
+        except OSError:  # it has ended in the meantime
+            continue
+    return dict(memory)
+
+
+def _growth(kind: str, looks: np.ndarray, minutes: float) -> tuple[str, ...]:
+    """Return a row of the table: how the memory of one kind of process went."""
+    late = looks[looks[:, 0] >= 0.25 * minutes]
+    slope = 60.0 * np.polyfit(*late.T, 1)[0] if len(late) > 2 else np.nan
+    late = late if len(late) else looks
+    return (kind, str(len(looks)), f"{looks[0, 1]:.1f}", f"{late[0, 1]:.1f}", f"{looks[-1, 1]:.1f}", f"{slope:.2f}")
 
 
 @main.command("view")
