@@ -35,13 +35,21 @@ setup(
     version="0.1.0",
     packages=find_packages(exclude=["test"]),
     package_data={
-        package_name: ["py.typed", "__init__.pyi", "scene/catalog/*/*.yaml", "scene/catalog/designations/*.csv", "scene/scenes/*.yaml"],
+        package_name: [
+            "py.typed",
+            "__init__.pyi",
+            "scene/catalog/*/*.yaml",
+            "scene/catalog/designations/*.csv",
+            "scene/scenes/*.yaml",
+            "ros/dds/*.xml",
+        ],
     },
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{package_name}"]),
         (f"share/{package_name}", ["package.xml"]),
         (f"share/{package_name}/launch", glob("launch_scripts/*.launch.py")),
         (f"share/{package_name}/config", glob("launch_scripts/*.yaml")),
+        (f"share/{package_name}/dds", glob("bearing_sim/ros/dds/*.xml")),
         (f"share/{package_name}/layouts", glob("launch_scripts/layouts/*")),
         (f"lib/{package_name}", glob("launch_scripts/libexec/*")),
     ],

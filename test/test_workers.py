@@ -38,11 +38,12 @@ def test_bearings_are_shared_out_evenly_and_each_goes_to_one_process():
     assert {len(share) for share in found} == {5, 6}
 
 
-def test_workers_get_remappings_and_log_settings_but_no_parameters_and_no_names():
+def test_workers_get_remappings_log_settings_and_the_enclave_but_no_parameters_and_no_names():
     given = (
-        "node --ros-args -r __node:=a -r __ns:=/b -p x:=1 --params-file f.yaml -r front/cage_slip:=slip --log-level debug -r a:y:=z -- --own".split()
-    )
-    assert passed_arguments(given, "a") == "-r front/cage_slip:=slip --log-level debug -r y:=z".split()
+        "node --ros-args -r __node:=a -r __ns:=/b -p x:=1 --params-file f.yaml -r front/cage_slip:=slip --log-level debug "
+        "--enclave /e -r a:y:=z -- --own"
+    ).split()
+    assert passed_arguments(given, "a") == "-r front/cage_slip:=slip --log-level debug --enclave /e -r y:=z".split()
 
 
 class Fleet:

@@ -222,8 +222,10 @@ class Fleet:
         import rclpy
 
         from bearing_sim.ros.messages import message_class
+        from bearing_sim.ros.network import close_other_interfaces
 
         self._node = rclpy.create_node("bearing_measure", start_parameter_services=False, enable_rosout=False)
+        close_other_interfaces(self._node)
         templates = {"shaft_speed": _Template("shaft_speed", inputs, "velocity"), "radial_load": _Template("radial_load", inputs, "wrench.force.y")}
         self.bearings = [_Bearing(self._node, f"{name}/", listen, templates, inputs) for name in names]
         self._reports_type = message_class(topics.DIAGNOSTICS[1])
@@ -491,6 +493,9 @@ def command(counts, scene, overrides, parameters, duration, input_rate, rate, li
     os.environ.setdefault("ROS_DOMAIN_ID", str(random.SystemRandom().choice(DOMAINS)))
     import rclpy
 
+    from bearing_sim.ros.network import use_loopback
+
+    use_loopback()
     rclpy.init(args=[])
     names = [name.strip() for name in listen.split(",") if name.strip()]
     cases = []

@@ -36,6 +36,7 @@ from bearing_sim.numerics.cores import cores
 from bearing_sim.recording.recorder import Recorder
 from bearing_sim.ros.interface import STATE_QOS, BearingInterface
 from bearing_sim.ros.messages import message_class
+from bearing_sim.ros.network import close_other_interfaces
 from bearing_sim.ros.parameters import BearingSettings, NodeSettings, ParameterServer, SettingsError, follows_clock, scene_values_in
 from bearing_sim.ros.polling import POLLED_FROM, PolledSubscriptions
 from bearing_sim.ros.process import CannotRun, run_node
@@ -513,6 +514,7 @@ class WorkerNode(BearingNode):
 
 
 def _started(node: BearingNode) -> BearingNode:
+    close_other_interfaces(node)
     try:
         if node.manages_itself:
             node.start()

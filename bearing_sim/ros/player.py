@@ -31,6 +31,7 @@ from bearing_sim.inputs.gate import with_values
 from bearing_sim.inputs.log import REQUIRED, InputLog, InputLogError, read_input_log
 from bearing_sim.messages import topics
 from bearing_sim.ros.messages import message, message_class
+from bearing_sim.ros.network import close_other_interfaces, use_loopback
 from bearing_sim.ros.process import signals_end
 from bearing_sim.runtime.sim_time import CAUGHT_UP
 from bearing_sim.simulation import Inputs
@@ -334,7 +335,12 @@ def command(context, log, rate, clock_rate, stamps, start_paused, loop, use_limi
         click.echo(f"bearing_player: {recording.unfinished}", err=True)
     messages = schedule(recording, by_stamps=clock_rate is not None)
     ended: Future = context.obj  # done after a signal
-    node = rclpy.create_node("bearing_player", start_parameter_services=False)
+    try:
+        node = rclpy.create_node("bearing_player", start_parameter_services=False)
+    except rclpy_implementation.RCLError as error:
+        click.echo(f"bearing_player: cannot start ROS: {' '.join(str(error).split())}", err=True)
+        context.exit(2)
+    close_other_interfaces(node)
     joints = {"shaft_speed": joint, topics.MEASURED: cage_joint}
     player = Player(node, ended.done, recording.series, Timeline(rate, start_paused), input_type == "scalar", clock_rate, joints)
     try:
@@ -379,6 +385,8 @@ def main(args: list[str] | None = None) -> int:
     own = remove_ros_args(argv)[1:]
     if {"-h", "--help"} & set(own):
         return command.main(own, prog_name="bearing_player", standalone_mode=False) or 0
+    if note := use_loopback():
+        click.echo(f"bearing_player: {note}", err=True)
     try:
         rclpy.init(args=argv, signal_handler_options=SignalHandlerOptions.NO)
     except RuntimeError as error:

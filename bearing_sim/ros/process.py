@@ -9,11 +9,14 @@ from contextlib import contextmanager
 
 import rclpy
 from rclpy.executors import Executor, ExternalShutdownException, SingleThreadedExecutor
+from rclpy.impl.implementation_singleton import rclpy_implementation
+from rclpy.logging import get_logger
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from rclpy.task import Future
 
 from bearing_sim.recording.priority import lower_thread_priority
+from bearing_sim.ros.network import use_loopback
 
 _TIMERS = "dds.ev"  # name of the timer thread of Fast DDS
 _LONG = 3600.0  # [s] without a limit, the EventsExecutor of an rclpy built against glibc before 2.30 waits busily and receives nothing
@@ -88,13 +91,19 @@ def run_node(name: str, make_node: Callable[[Future], Node], args: list[str] | N
 
 
 def _run(name: str, make_node: Callable[[Future], Node], args: list[str] | None, ended: Future) -> int:
+    note = use_loopback()
     try:
         rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
     except RuntimeError as error:  # the base of rclpy's own errors
-        return _complain(name, f"cannot start ROS: {' '.join(str(error).split())}", 2)
+        return _complain(name, _cannot_start(error), 2)
     node, executor, code, closed = None, None, 0, True
     try:
-        node = make_node(ended)
+        if note:
+            get_logger(name).info(note)
+        try:
+            node = make_node(ended)
+        except rclpy_implementation.RCLError as error:  # such as a middleware that cannot do what the environment asks for
+            raise CannotRun(_cannot_start(error)) from error
         # Every published message wakes the timer thread; if it preempts the publisher, that costs a fifth of the node's processor time.
         lower_thread_priority(_TIMERS)
         executor = make_executor()
@@ -119,6 +128,10 @@ def _run(name: str, make_node: Callable[[Future], Node], args: list[str] | None,
         sys.stderr.flush()
         os._exit(code)
     return code
+
+
+def _cannot_start(error: RuntimeError) -> str:
+    return f"cannot start ROS: {' '.join(str(error).split())}"
 
 
 def _complain(name: str, text: str, code: int) -> int:

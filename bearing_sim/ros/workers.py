@@ -62,7 +62,7 @@ def shares(names: Sequence[str], processes: int) -> list[list[str]]:
 
 
 def passed_arguments(arguments: Sequence[str], node_name: str) -> list[str]:
-    """Return those ROS arguments of a command line that workers need: remappings and log settings, but no parameters and no names.
+    """Return those ROS arguments of a command line that workers need: remappings, log settings and the enclave, but no parameters and no names.
 
     Parameters
     ----------
@@ -78,9 +78,9 @@ def passed_arguments(arguments: Sequence[str], node_name: str) -> list[str]:
             rule = next(words, "").removeprefix(f"{node_name}:")
             if not rule.startswith(("__node:=", "__name:=", "__ns:=")):
                 passed += [word, rule]
-        elif is_ros and word in ("-p", "--param", "--params-file", "-e", "--enclave"):
+        elif is_ros and word in ("-p", "--param", "--params-file"):
             next(words, "")
-        elif is_ros and word in ("--log-level", "--log-config-file", "--log-file-name"):
+        elif is_ros and word in ("-e", "--enclave", "--log-level", "--log-config-file", "--log-file-name"):
             passed += [word, next(words, "")]
         elif is_ros:
             passed.append(word)

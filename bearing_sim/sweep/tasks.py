@@ -317,7 +317,7 @@ def _on_cluster(tasks, address) -> Iterator[tuple[Task, dict, bool]]:
     try:
         client = Client(address, timeout=_DASK_TIMEOUT, set_as_default=False)
     except (OSError, TimeoutError, ValueError) as error:
-        raise ClusterError(f"no Dask scheduler answers at {address} ({error}); start one with 'dask scheduler'") from None
+        raise ClusterError(f"no Dask scheduler answers at {address} ({error}); start one with 'dask scheduler --host 127.0.0.1'") from None
     with client:
         under_way = {}
         for task in tasks:
