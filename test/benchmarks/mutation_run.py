@@ -4,8 +4,8 @@
     python test/benchmarks/mutation_run.py --faults 200 --seed 1
 
 Each fault is one changed operator, number, condition or removed statement, drawn with a seed from all rooms.  It is planted in a clone of the last
-commit, and the tests nearest to the changed module run until one fails or their time is over: first those that import the module, then those that
-import it through one other module, those that name it first in each group.  A test that fails with a fault is run once without it, so that no
+commit, and the 16 test files nearest to the changed module run until one fails or their time is over: first those named like it, then those that
+import it, directly or through other modules.  A test that fails with a fault is run once without it, so that no
 test that fails anyway counts.  Rows are kept in ``FOLDER/faults.jsonl``; the same command continues where it was stopped.
 
 A fault that survives is either a claim that no test makes, a change without consequence, or one that only tests further away would see.
@@ -28,6 +28,8 @@ from typing import NamedTuple
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = "bearing_sim"
 LEAST_PER_ROOM = 6
+MOST_IMPORTS = 4  # from a test to the module, that are followed
+MOST_TESTS = 16
 SKIPPED_TESTS = {"test_flake8", "test_pep257", "test_doc", "test_architecture", "test_package"}  # they look at the text
 ARITHMETIC = {ast.Add: ("+", "-"), ast.Sub: ("-", "+"), ast.Mult: ("*", "/"), ast.Div: ("/", "*")}
 COMPARISON = {
@@ -167,9 +169,10 @@ def drawn(root: Path, number: int, seed: int) -> list[Fault]:
 
 
 def imports_of(path: Path) -> set[str]:
-    """Return the modules of the package that a file imports."""
-    found = set()
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    """Return the modules of the package that a file imports, also by name as the command line does."""
+    text = path.read_text(encoding="utf-8")
+    found = {f"{PACKAGE}.{path.parent.name}.{module}" for module in re.findall(r'Entry\("(\w+):', text)}
+    for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.ImportFrom) and node.module and node.module.startswith(PACKAGE):
             found |= {node.module, *(f"{node.module}.{name.name}" for name in node.names)}
         elif isinstance(node, ast.Import):
@@ -178,7 +181,10 @@ def imports_of(path: Path) -> set[str]:
 
 
 def nearest_tests(root: Path) -> dict[str, list[str]]:
-    """Return for each module of the package the test files that may see a fault in it, the nearest first."""
+    """Return for each module of the package the test files that may see a fault in it, the nearest first.
+
+    Near is a test that names the module in its own name, then one that imports it, directly or through other modules, or runs it as a program.
+    """
     tests = [path for path in sorted((root / "test").glob("test_*.py")) if path.stem not in SKIPPED_TESTS]
     modules = {path.relative_to(root).as_posix(): path for path in (root / PACKAGE).rglob("*.py")}
     names = {file: file[:-3].replace("/", ".").removesuffix(".__init__") for file in modules}
@@ -188,15 +194,25 @@ def nearest_tests(root: Path) -> dict[str, list[str]]:
     found = {}
     for file, module in names.items():
         stem = module.rsplit(".", 1)[-1]
-        users = {other for other, used in imported.items() if module in used}
+        distances = _distances(module, imported)
         ranked = []
         for path in tests:
-            distance = 0 if module in by_test[path] else 1 if users & by_test[path] else 2
+            distance = min((distances[other] for other in by_test[path] if other in distances), default=MOST_IMPORTS)
+            runs_it = module in texts[path]
             named = 0 if stem in path.stem else 1 if re.search(rf"\b{stem}\b", texts[path]) else 2
-            if distance < 2 or named == 0:
-                ranked.append((distance + (0 if named == 0 else named), path.stem.startswith("test_node"), len(by_test[path]), path.name))
-        found[file] = [f"test/{name}" for *_, name in sorted(ranked)]
+            if distance < MOST_IMPORTS or runs_it or named == 0:
+                ranked.append((named != 0, distance - runs_it + named, path.stem.startswith("test_node"), len(by_test[path]), path.name))
+        found[file] = [f"test/{name}" for *_, name in sorted(ranked)][:MOST_TESTS]
     return found
+
+
+def _distances(module: str, imported: dict[str, set[str]]) -> dict[str, int]:
+    """Return the modules that import a module, directly or through others, with the number of imports between them."""
+    distances, nearest = {module: 0}, {module}
+    for distance in range(1, MOST_IMPORTS):
+        nearest = {other for other, used in imported.items() if other not in distances and used & nearest}
+        distances |= dict.fromkeys(nearest, distance)
+    return distances
 
 
 def run_tests(folder: Path, files: list[str], seconds: float) -> tuple[str, str, float]:
