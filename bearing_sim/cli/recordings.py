@@ -132,7 +132,9 @@ def _checked(file) -> str:
 
 def _trouble(file) -> str:
     troubles = [file.ends] if file.ends else []
-    troubles += [f"{file.damaged} damaged parts: {'; '.join(file.damage[:3])}{'; ...' if file.damaged > 3 else ''}"] if file.damaged else []
+    if file.damaged:
+        parts = "1 damaged part" if file.damaged == 1 else f"{file.damaged} damaged parts"
+        troubles.append(f"{parts}: {'; '.join(file.damage[:3])}{'; ...' if file.damaged > 3 else ''}")
     if not file.has_checksums:
         return "; ".join(troubles)
     return "; ".join(troubles) + f" (bearing-sim recover {file.path} -o GOOD.mcap)"

@@ -83,12 +83,17 @@ def exit_on_sigterm() -> Iterator[None]:
 
 
 def judged(log, scene):
-    """Return the profile of a log for a scene; a warning on stderr says for how long inputs are unknown, because every result depends on it."""
+    """Return the profile of a log for a scene; every result depends on it.
+
+    Warnings on stderr say that only a part of the log could be read, and for how long inputs are unknown.
+    """
     from bearing_sim.inputs.profile import judge
     from bearing_sim.simulation import Inputs
 
     held = Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature)
     profile = judge(log, scene.accepted_inputs, held, heat_law=scene.heat.law)
+    if log.unfinished:
+        click.echo(f"warning: {log.unfinished}", err=True)
     if profile.unknown_seconds:
         click.echo(f"warning: {profile.unknown_event.text}", err=True)
     return profile

@@ -234,7 +234,10 @@ def read_input_log(
         except RecordingError as error:
             raise InputLogError(str(error)) from None
     together = paths[0] if len(paths) == 1 else Path(" + ".join(map(str, paths)))
-    _check_found(together, wanted, tuple(each for each in required if each not in constants), names or {})
+    try:
+        _check_found(together, wanted, tuple(each for each in required if each not in constants), names or {})
+    except InputLogError as error:
+        raise InputLogError("; ".join([str(error), *unfinished])) from None
     for series in wanted.found.values():
         _sort_by_log_time(series)
     for channel, value in constants.items():

@@ -94,7 +94,7 @@ class Recording:
         self.command = next((part.metadata[COMMAND].get("command", "") for part in parts if COMMAND in part.metadata), "")
         listing = ", ".join(sorted(set().union(*(part.present for part in parts)))) or "no topics"
         if metadata is None and self.unfinished:
-            raise RecordingError(f"{self.path}: no scene can be read: {self.unfinished}; bearing-sim recover saves what is left of it")
+            raise RecordingError(f"{self.path}: no scene can be read: {self.unfinished}")
         if metadata is None:
             raise RecordingError(f"{self.path}: no metadata record {METADATA!r}, so this is no recording of bearing_sim; it has {listing}")
         try:
@@ -167,7 +167,8 @@ class Recording:
                 yield (), record
         if not reader.is_finished:
             name = "the file" if len(self.files) == 1 else file.name
-            self.unfinished = f"{name} ends early ({reader.ends}); what was complete before that is shown"
+            advice = f"; bearing-sim recover {file} -o GOOD.mcap saves what follows" if reader.damaged else ""
+            self.unfinished = f"{name} ends early ({reader.ends}); what was complete before that is shown{advice}"
 
     def _require_type(self, topic: str, ros_type: str) -> None:
         expected = _TYPES.get(topic)
