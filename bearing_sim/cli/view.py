@@ -69,6 +69,7 @@ def view(recording, out, screenshot, seconds, size, speed, load, cage, temperatu
     _open(out, opens)
 
 
+_MOST_LEFT_OUT = 30  # lines
 _CHANNELS = {"speed": "shaft_speed", "load": "radial_load", "cage_speed": "cage_speed_measured", "temperature": "oil_temperature"}
 
 
@@ -109,8 +110,10 @@ def _write_bag(recording: Path, out: Path, seconds: float | None, lines: dict, c
     found = read_bag_series(recording, lines, constants)
     _require_within(seconds, 0.0, found.duration)
     click.echo(f"shown as a bag from another source ({why}); not shown:", err=True)
-    for line in found.left_out:
+    for line in found.left_out[:_MOST_LEFT_OUT]:
         click.echo(f"  {line}", err=True)
+    if (more := len(found.left_out) - _MOST_LEFT_OUT) > 0:
+        click.echo(f"  and {more} more, which the view lists", err=True)
     write_bag_view(out, recording.name, found)
     return 0.0, found.duration
 

@@ -105,12 +105,14 @@ RECORDING_RECORD = Limit("recording_record", 128_000_000, "bytes", "one record o
 RECORDING_EXPANSION = Limit("recording_expansion", 100, "times its size", "what a compressed recording unpacks to, beyond its first 64 MB")
 RECORDING_TEXTS = Limit("recording_texts", 64_000_000, "bytes", "topics, message definitions and metadata of a recording")
 BAG_METADATA = Limit("bag_metadata", 2_000_000, "bytes", "the metadata.yaml of a bag")
-DEFINITION = Limit("definition", 1_000_000, "bytes", "the definition of a message type")
+DEFINITION = Limit("definition", 2_000_000, "bytes", "the definition of a message type")
 DEFINITION_FIELDS = Limit("definition_fields", 10_000, "fields", "the definition of a message type")
 DEFINITION_DEPTH = Limit("definition_depth", 32, "levels", "messages within messages")
 MESSAGE_ITEMS = Limit("message_items", 1_000_000, "texts, arrays and messages", "what one message contains")
 LOG_MESSAGES = Limit("log_messages", 10_000_000, "messages", "one channel of an input log")
 VIEW_NUMBERS = Limit("view_numbers", 50_000_000, "numbers", "the view of a bag from another source")
+VIEW_LINES = Limit("view_lines", 2_000, "lines", "the view of a bag from another source")
+VIEW_EVENTS = Limit("view_events", 100_000, "events", "the view of a bag from another source")
 
 LIMITS = (
     SCENE_FILE,
@@ -135,6 +137,8 @@ LIMITS = (
     MESSAGE_ITEMS,
     LOG_MESSAGES,
     VIEW_NUMBERS,
+    VIEW_LINES,
+    VIEW_EVENTS,
 )
 """All limits, in the order in which the documentation lists them."""
 

@@ -1,7 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Input logs: shaft speed, radial load, temperatures of oil and rings and measured cage speed from recordings of any origin, complete or cut short.
 
-MCAP files are read record by record, which works without their end; all other bags are read by the rosbags library.
+Files are read record by record, which works without their end.
 
 Reading takes what is there.  Judging (`bearing_sim.inputs.profile.judge`) passes every message through the same gate as a live run
 (`bearing_sim.inputs.gate`): bad messages are refused and counted, never repaired.
@@ -18,16 +18,20 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.files.limits import LOG_MESSAGES
 from bearing_sim.inputs.gate import REQUIRED, UNITS, shown
 from bearing_sim.messages import topics
 from bearing_sim.recording.bag import RecordingError
-from bearing_sim.recording.bag_reader import BagReader, BagTopic
+from bearing_sim.recording.bag_reader import BagReader, BagTopic, printable
 from bearing_sim.recording.message_fields import numbers, suggestion
 from bearing_sim.scene.loader import did_you_mean
 from bearing_sim.scene.quantity import conversion, to_si
 
 _CHANNELS = (*topics.INPUTS, topics.MEASURED)
 _WITH_UNIT = {"rad/s": "{}rpm", "N": "{}N or {}kN", "K": "{}degC"}
+_LATEST = 2**62  # [ns since the epoch], in the year 2116
+_LONGEST_REASON = 500  # characters
+_MOST_LISTED = 50  # topics in a message
 _STEP = re.compile(r"\.?([A-Za-z_]\w*)|\[(-?\d+)\]")
 
 
@@ -302,20 +306,26 @@ def _message_reader(channel: str, where: Source, ros_type: str, decode: Callable
     if series.ros_type != ros_type:
         raise InputLogError(f"{where.topic} carries both {series.ros_type} and {ros_type}; expected one type")
 
+    most = LOG_MESSAGES.value
+
     def read(log_time: int, data: bytes) -> None:
+        if len(series.stamps) + len(series.errors) >= most:
+            raise InputLogError(f"{where.topic} has {LOG_MESSAGES.refusal()}")
         try:
             decoded = decode(data)
         except RecordingError:
             raise
         except Exception as error:  # decoders raise exceptions of any kind on damaged data
-            series.errors.append(ReadError(log_time, "input.unreadable", f"cannot be decoded ({type(error).__name__}: {error})"))
+            series.errors.append(ReadError(log_time, "input.unreadable", f"cannot be decoded ({printable(str(error), _LONGEST_REASON)})"))
             return
         try:
             values = source_values(channel, where, ros_type, decoded, wanted.joints[channel])
-        except ValueError as error:
-            series.errors.append(ReadError(log_time, "input.malformed", str(error)))
+            stamp = topics.header_stamp_ns(decoded) if wanted.stamps == "header" else None
+            if stamp is not None and not 0 < stamp < _LATEST:
+                raise ValueError("the header's stamp is before 1970 or after 2116")
+        except (AttributeError, LookupError, TypeError, ValueError, ArithmeticError) as error:  # a definition may give a type any fields
+            series.errors.append(ReadError(log_time, "input.malformed", printable(str(error), _LONGEST_REASON)))
             return
-        stamp = topics.header_stamp_ns(decoded) if wanted.stamps == "header" else None
         if not series.stamps and stamp is not None:
             series.stamped_by = "header"
         if series.stamped_by == "header" and stamp is None:
@@ -344,7 +354,8 @@ def _refusal(channel: str, where: Source, ros_type: str, decode: Callable) -> Ca
 
 def _check_found(path: Path, wanted: _Wanted, required: tuple[str, ...], named: Mapping[str, str | Source | None]) -> None:
     found, present = wanted.found, wanted.present
-    listing = ", ".join(f"{topic} ({kind})" for topic, kind in sorted(present.items())) or "no topics"
+    listing = ", ".join(f"{topic} ({kind})" for topic, kind in sorted(present.items())[:_MOST_LISTED]) or "no topics"
+    listing += f" and {len(present) - _MOST_LISTED} more topics" if len(present) > _MOST_LISTED else ""
     absent = [where.topic for channel, where in wanted.sources.items() if channel not in found and (channel in required or named.get(channel))]
     if absent:
         hints = "; ".join(f"no message on {topic}" if topic in present else f"no {topic}{did_you_mean(topic, present)}" for topic in absent)

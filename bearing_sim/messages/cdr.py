@@ -19,13 +19,14 @@ import numpy as np
 from rosbags.interfaces import Nodetype
 from rosbags.typesys import Stores, get_typestore
 
+from bearing_sim.files.limits import MESSAGE_ITEMS
 from bearing_sim.messages import topics
 from bearing_sim.messages.point_cloud import NUMPY_TYPES
 
 ENCAPSULATION = 4  # [byte] before the fields: two that name the representation, two of options
 STAMP_FIELDS = ("header.stamp.sec", "header.stamp.nanosec")
-_ORDERS = {b"\0\0": ">", b"\0\1": "<"}  # by the name of the representation: CDR version 1, big-endian and little-endian
-_NUMBERS = {"bool": "?", "byte": "u1", "char": "u1", "float32": "f4", "float64": "f8"} | {
+ORDERS = {b"\0\0": ">", b"\0\1": "<"}  # by the name of the representation: CDR version 1, big-endian and little-endian
+NUMBERS = {"bool": "?", "byte": "u1", "char": "u1", "float32": "f4", "float64": "f8"} | {
     f"{sign}int{8 * size}": f"{sign or 'i'}{size}" for size in (1, 2, 4, 8) for sign in ("", "u")
 }
 """NumPy type of each kind of number of message definitions."""
@@ -84,11 +85,12 @@ class CdrLayout:
     """
 
     def __init__(self, ros_type: str, data: bytes):
-        order = _ORDERS.get(bytes(data[:2]))
+        order = ORDERS.get(bytes(data[:2]))
         if order is None or len(data) < ENCAPSULATION:
             raise CdrError(f"{len(data)} bytes that do not begin as a message of {ros_type} in CDR version 1")
         self.fields: list[Field] = []
         self._data, self._at, self._order = data, ENCAPSULATION, order
+        self._most_fields = MESSAGE_ITEMS.value
         try:
             self._walk("", ros_type)
         except struct.error:
@@ -123,22 +125,24 @@ class CdrLayout:
             (item, item_detail), count = detail
             if node == Nodetype.SEQUENCE:
                 count = self._length(path, is_count=True)
-            if item == Nodetype.BASE and item_detail[0] in _NUMBERS:
+            if item == Nodetype.BASE and item_detail[0] in NUMBERS:
                 self._base(path, item_detail[0], count)
                 return
             if count > len(self._data) - self._at:  # no item takes less than a byte
                 raise struct.error
             for k in range(count):
                 self._enter(f"{path}[{k}]", item, item_detail)
+                if len(self.fields) > self._most_fields:
+                    raise CdrError(f"it contains {MESSAGE_ITEMS.refusal()}")
 
     def _base(self, path: str, kind: str, count: int) -> None:
-        if kind not in _NUMBERS:
+        if kind not in NUMBERS:
             begin = self._align(4)
             length = self._length(path)
             self._at += length
             self.fields.append(Field(path, None, begin, 1, self._at))
             return
-        dtype = _dtype(self._order + _NUMBERS[kind])
+        dtype = _dtype(self._order + NUMBERS[kind])
         begin = self._align(dtype.itemsize) if count else self._at
         self._at += count * dtype.itemsize
         self.fields.append(Field(path, dtype, begin, count, self._at))
@@ -176,6 +180,8 @@ class PointCloudLayout(CdrLayout):
             if kind not in NUMPY_TYPES or offset + count * dtype.itemsize > step:
                 continue
             text = data[name.begin + 4 : name.end - 1].decode(errors="replace")
+            if len(points) + rows * width > self._most_fields:
+                raise CdrError(f"it contains {MESSAGE_ITEMS.refusal()}")
             begins = (whole.begin + row * row_step + point * step + offset for row in range(rows) for point in range(width))
             points += [Field(text, dtype, begin, count, begin + count * dtype.itemsize) for begin in begins]
         self._points = [field for field in points if field.end <= whole.end]

@@ -430,6 +430,7 @@ def _of_scene(table: Mapping[str, Topic], scene) -> dict[str, Topic]:
     return {name: topic if topic.of_scene is None else topic.of_scene(scene) for name, topic in table.items() if name not in absent}
 
 
+_MOST_LISTED = 10  # joints in a message
 DIAGNOSTICS = ("diagnostics", "diagnostic_msgs/msg/DiagnosticArray")
 """Name and type of the topic of `bearing_sim.messages.diagnostics`."""
 
@@ -468,7 +469,8 @@ def input_values(channel: str, ros_type: str, message, joint: str = SHAFT_JOINT)
         return (float(message.wrench.force.y), float(message.wrench.force.z))
     names = list(message.name)
     if joint not in names:
-        raise ValueError(f"no joint {joint!r} in the message; it has {', '.join(map(repr, names)) or 'none'}")
+        there = [repr(name[:80]) for name in names[:_MOST_LISTED]] + ["..."] * (len(names) > _MOST_LISTED)
+        raise ValueError(f"no joint {joint!r} in the message; it has {', '.join(there) or 'none'}")
     place = names.index(joint)
     if place >= len(message.velocity):
         raise ValueError(f"the message has no velocity for the joint {joint!r} ({len(message.velocity)} velocities for {len(names)} joints)")

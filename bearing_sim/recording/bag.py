@@ -5,13 +5,14 @@ import math
 import os
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from typing import NamedTuple
 
 import yaml
 
-from bearing_sim.files.limits import FileError
-from bearing_sim.files.reading import why_not_readable
+from bearing_sim.files.limits import BAG_METADATA, FileError
+from bearing_sim.files.reading import read_text, why_not_readable
+from bearing_sim.files.yaml_text import values_of
 
 ACTIVE = ".active"
 """Suffix of the name of an unfinished file."""
@@ -144,6 +145,8 @@ def to_yaml(tree) -> str:
     return yaml.dump(tree, Dumper=_PlainDumper, sort_keys=False)
 
 
+FREE_EXPANSION = 64_000_000
+"""Bytes to which the compressed parts of a recording may unpack however small it is."""
 _RENAMED_MEANWHILE = 5  # times that a folder is listed again while a recorder completes its parts
 QOS_TEXT = to_yaml(QOS)
 """The same as YAML, for the metadata of a channel."""
@@ -195,15 +198,37 @@ def require_listed(path: Path, files: Sequence[Path]) -> None:
 
 
 def listed_files(path: Path) -> list[Path] | None:
-    """Return the files that the metadata of a bag's folder lists; None if it has none."""
+    """Return the files that the metadata of a bag's folder lists, which are in that folder; None if it has none."""
+    metadata = folder_metadata(path)
+    if metadata is None:
+        return None
+    names = metadata.get("relative_file_paths")
+    if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
+        raise RecordingError(f"{path / 'metadata.yaml'}: not the metadata of a bag; expected relative_file_paths, a list of names")
+    # Of a path only the name counts: earlier versions of rosbag2 wrote the folder before it, and a stranger may name any file of the machine.
+    return [path / (PurePosixPath(name.replace("\0", "")).name or "unnamed") for name in names]
+
+
+def folder_metadata(path: Path) -> dict | None:
+    """Return what the metadata of a bag's folder says; None if it has none.
+
+    Raises
+    ------
+    RecordingError
+        There is a ``metadata.yaml``, but it is not the metadata of a bag.
+    """
     index = path / "metadata.yaml"
-    if not index.is_file():
+    if not index.exists():
         return None
     try:
-        listed = yaml.safe_load(index.read_text())["rosbag2_bagfile_information"]["relative_file_paths"]
-        return [path / str(name) for name in listed]
-    except (yaml.YAMLError, KeyError, TypeError, UnicodeDecodeError):
-        raise RecordingError(f"{index}: not the metadata of a bag") from None
+        found = values_of(read_text(index, BAG_METADATA))
+    except FileError as error:
+        text = str(error)
+        raise RecordingError(text if text.startswith(str(index)) else f"{index}: not the metadata of a bag: {text}") from None
+    bag = found.get("rosbag2_bagfile_information") if isinstance(found, dict) else None
+    if not isinstance(bag, dict):
+        raise RecordingError(f"{index}: not the metadata of a bag; expected the block rosbag2_bagfile_information")
+    return bag
 
 
 def _files_in(path: Path) -> list[Path]:

@@ -21,7 +21,7 @@ from mcap.records import Attachment, Channel, Chunk, Footer, Header, Metadata, M
 
 from bearing_sim.files.limits import RECORDING_EXPANSION, RECORDING_RECORD, RECORDING_TEXTS, FileError
 from bearing_sim.files.reading import open_regular
-from bearing_sim.recording.bag import RecordingError
+from bearing_sim.recording.bag import FREE_EXPANSION, RecordingError
 from bearing_sim.recording.mcap_format import (
     CHECKSUM_HEAD,
     CHECKSUM_RECORD,
@@ -48,7 +48,6 @@ _MOST_SHAPES = 256
 _MOST_REPORTED = 20
 _CONTENT = (Header, Schema, Channel, Message, Metadata, Attachment)
 _IN_CHUNKS = {Opcode.SCHEMA, Opcode.CHANNEL, Opcode.MESSAGE}
-_FREE_EXPANSION = 64_000_000  # [byte] that chunks may unpack to however small the file is
 
 
 class Rows(NamedTuple):
@@ -215,7 +214,7 @@ class McapReader:
             if is_zstd and zstandard.frame_content_size(chunk.data) not in (-1, chunk.uncompressed_size):  # -1: the frame does not say
                 raise DamagedRecord("a chunk is not as long as it says")
             self._unpacked += chunk.uncompressed_size
-            if self._unpacked > _FREE_EXPANSION + RECORDING_EXPANSION.value * self.size:
+            if self._unpacked > FREE_EXPANSION + RECORDING_EXPANSION.value * self.size:
                 raise RecordingError(f"{self.path}: its chunks unpack to {RECORDING_EXPANSION.refusal()}")
             if not is_zstd:
                 return lz4.frame.LZ4FrameDecompressor().decompress(chunk.data, chunk.uncompressed_size + 1)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 import yaml
-from mcap.records import Metadata
+from mcap.records import Channel, Metadata
 
 from bearing_sim.messages.cdr import CdrError, CdrLayout, NumberColumns, typestore
 from bearing_sim.messages.diagnostics import events_of
@@ -153,16 +153,14 @@ class Recording:
 
     def _records_of(self, file: Path) -> Iterator[tuple[tuple[str, ...], Message | Rows | Metadata]]:
         reader = McapReader(file, in_rows=_SAMPLE_TOPICS.__contains__, stops_at_damage=True)
-        checked = 0
         for record in reader:
-            if len(reader.types) > checked:
-                checked = len(reader.types)
-                for topic, ros_type in reader.types.items():
-                    self._require_type(topic, ros_type)
-            if isinstance(record, Rows):
+            if isinstance(record, Channel):
+                self._require_type(record.topic, reader.types[record.topic])
+            elif isinstance(record, Rows):
                 yield tuple(reader.topics[channel] for channel in record.channels), record
             elif isinstance(record, Message):
-                yield (reader.topics[record.channel_id],), record
+                if record.channel_id in reader.topics:
+                    yield (reader.topics[record.channel_id],), record
             elif isinstance(record, Metadata):
                 yield (), record
         if not reader.is_finished:

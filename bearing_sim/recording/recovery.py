@@ -113,7 +113,7 @@ def foreign_contents(path: str | Path) -> Contents | None:
             topic, log_ns, _ = item
             found.messages[topic.name] += 1
             first, last = min(first, log_ns), max(last, log_ns)
-        found.is_finished = True
+        found.is_finished, found.ends = not bag.unfinished, bag.unfinished
     except RecordingError as error:
         if not found.types:
             raise

@@ -1,11 +1,12 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Recordings that other programs wrote: what can be read of them without knowing the bearing, and how it is shown.
 
-Any rosbag2 recording that `rosbags` opens, MCAP or SQLite, a file or a folder.  Times are those of recording (log times), because not all
+Any recording that `bearing_sim.recording.bag_reader` reads, a file or a folder.  Times are those of recording (log times), because not all
 types have a stamp.
 """
 
 import math
+from array import array
 from collections.abc import Iterator, Mapping
 from itertools import islice
 from pathlib import Path
@@ -16,12 +17,13 @@ import numpy as np
 import rerun as rr
 import rerun.blueprint as rrb
 
+from bearing_sim.files.limits import VIEW_EVENTS, VIEW_LINES, VIEW_NUMBERS, LimitError
 from bearing_sim.messages import topics
 from bearing_sim.messages.cdr import POINT_CLOUD
 from bearing_sim.messages.diagnostics import WHOLE, events_of
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.recording.bag import RecordingError
-from bearing_sim.recording.bag_reader import BagReader, BagTopic
+from bearing_sim.recording.bag_reader import BagReader, BagTopic, printable
 from bearing_sim.recording.message_fields import numbers, suggestion
 from bearing_sim.scene.errors import did_you_mean
 from bearing_sim.view import colours
@@ -47,6 +49,8 @@ _PLOTTED = {  # by role: factor, the value in SI that is zero, and unit of what 
     "temperature": (1.0, topics.ZERO_CELSIUS, "°C"),
 }
 _MOST_LINES = 64  # of one array
+_MOST_REASONS = 5  # in an error
+_LONGEST_TEXT = 1000  # characters of an event
 
 
 class BagSeries(NamedTuple):
@@ -104,23 +108,23 @@ def read_bag_series(path: str | Path, named: Mapping[str, Line] | None = None, c
     by_field = [role for role, line in named.items() if line.fields]
     roles = {named[role].topic if role in named else usual: role for role, usual in _USUAL.items() if role not in (*by_field, *constants)}
     missing: dict[str, str] = {}
-    rows: dict[tuple[str, str, str], list[tuple[int, float]]] = {}
-    events, unread, present, times, clouds = [], {}, set(), [], {}
+    taken = _Taken(path)
+    unread, present, clouds = {}, set(), {}
     bag = BagReader(path)
     for found in bag:
         if isinstance(found, BagTopic):
             present.add(found.name)
             continue
         (topic, ros_type, decode), log_ns, data = found
-        times.append(log_ns)
+        taken.note_time(log_ns)
         if ros_type in _PICTURES:
             unread[topic] = f"{topic}: nothing to plot in {ros_type}"
             continue
         try:
             message = decode(data)
-            events += _events_in(ros_type, message, log_ns)
+            taken.add_events(_events_in(ros_type, message, log_ns))
             if ros_type == POINT_CLOUD:
-                clouds.setdefault(topic, CloudCourse()).take(message, log_ns)
+                taken.count(clouds.setdefault(topic, CloudCourse()).take(message, log_ns))
             found_here = [*_numbers_in(ros_type, topic, roles.get(topic, ""), message)]
             for role, line in named.items():
                 if line.topic == topic and line.fields:
@@ -130,24 +134,85 @@ def read_bag_series(path: str | Path, named: Mapping[str, Line] | None = None, c
             if not found_here and ros_type not in _LOGS and ros_type != POINT_CLOUD:
                 unread[topic] = f"{topic}: nothing to plot in {ros_type}"
             for *key, value in found_here:
-                rows.setdefault(tuple(key), []).append((log_ns, float(value)))
+                taken.add(tuple(key), log_ns, float(value))
+        except LimitError as error:
+            raise RecordingError(f"{path}: {error}") from None
         except Exception as error:  # decoders raise many kinds of exceptions
-            unread[topic] = f"{topic}: {ros_type} cannot be read ({type(error).__name__}: {error})"
+            unread[topic] = f"{topic}: {ros_type} cannot be read ({printable(str(error))})"
+    rows, times = taken.rows, (taken.first, taken.last)
     _require_named(path, present, named, missing, {role for role, _, _ in rows})
     if bag.unfinished:
         unread[""] = bag.unfinished
+    unread |= taken.left_out
     clouds = {topic: course for topic, course in clouds.items() if course.clouds}
     if not rows and not clouds:
-        raise RecordingError(f"{path}: nothing in it can be shown: {'; '.join(unread.values()) or 'it has no messages'}")
+        reasons = [*islice(unread.values(), _MOST_REASONS), *(["..."] if len(unread) > _MOST_REASONS else [])]
+        raise RecordingError(f"{path}: nothing in it can be shown: {'; '.join(reasons) or 'it has no messages'}")
     absent = [f"no {role.replace('_', ' ')} ({topic})" for topic, role in roles.items() if not any(key[0] == role for key in rows)]
     start_ns, duration = min(times), max(max(times) - min(times), 1) * 1e-9
     for role, value in constants.items():
         factor, zero, unit = _PLOTTED[role]
-        rows[role, f"{role.replace('_', ' ')} throughout, not measured", unit] = [(at, factor * (value - zero)) for at in (min(times), max(times))]
-    origin = sorted((event._replace(time=(event.time - start_ns) * 1e-9) for event in events), key=lambda event: event.time)
+        rows[role, f"{role.replace('_', ' ')} throughout, not measured", unit] = array("q", times), array("d", [factor * (value - zero)] * 2)
+    origin = sorted((event._replace(time=(event.time - start_ns) * 1e-9) for event in taken.events), key=lambda event: event.time)
     model = ["slip, loads, life, powers and pictures of the bearing: they need a model (`bearing-sim replay`)"]
     series = {key: _sorted(values, start_ns) for key, values in rows.items()}
     return BagSeries(series, origin, [*unread.values(), *absent, *model], start_ns, duration, clouds)
+
+
+class _Taken:
+    """What was found in the messages so far, within the limits.
+
+    Parameters
+    ----------
+    path : of the recording, for messages.
+
+    Attributes
+    ----------
+    rows : by role, line and unit: times [ns since the epoch] and values.
+    events : in the order of the messages; their times are [ns since the epoch].
+    first, last : lowest and highest time [ns since the epoch].
+    left_out : what exceeds the limits on lines and events, as texts.
+    """
+
+    def __init__(self, path: Path):
+        self._path = path
+        self.rows: dict[tuple[str, str, str], tuple[array, array]] = {}
+        self.events: list[Event] = []
+        self.first, self.last = 2**63, 0
+        self.left_out: dict[str, str] = {}
+        self._left = VIEW_NUMBERS.value
+        self._most_lines, self._most_events = VIEW_LINES.value, VIEW_EVENTS.value
+
+    def note_time(self, log_ns: int) -> None:
+        """Note the time of a message."""
+        self.first, self.last = min(self.first, log_ns), max(self.last, log_ns)
+
+    def count(self, numbers: int) -> None:
+        """Count numbers; raise `LimitError` if there are too many."""
+        self._left -= numbers
+        if self._left < 0:
+            raise LimitError(f"it has {VIEW_NUMBERS.refusal()}")
+
+    def add(self, key: tuple[str, str, str], log_ns: int, value: float) -> None:
+        """Add a number to a line; a line too many is left out."""
+        row = self.rows.get(key)
+        if row is None:
+            if len(self.rows) >= self._most_lines:
+                self.left_out["lines"] = f"further lines: {VIEW_LINES.refusal()}"
+                return
+            row = self.rows[key] = array("q"), array("d")
+        self.count(1)
+        row[0].append(log_ns)
+        row[1].append(value)
+
+    def add_events(self, events: Iterator[Event]) -> None:
+        """Add events; those too many are left out."""
+        for event in events:
+            if len(self.events) >= self._most_events:
+                self.left_out["events"] = f"further events: {VIEW_EVENTS.refusal()}"
+                return
+            texts = {name: printable(str(getattr(event, name)), _LONGEST_TEXT) for name in ("kind", "subject", "reason", "action")}
+            self.events.append(event._replace(**texts))
 
 
 def _role_of_fields(role: str, line: Line, message, missing: dict[str, str]) -> Iterator[tuple[str, str, str, float]]:
@@ -173,10 +238,10 @@ def _require_named(path: Path, present: set[str], named: Mapping[str, Line], mis
             raise RecordingError(f"{path}: {missing[role]}")
 
 
-def _sorted(rows: list[tuple[int, float]], start_ns: int) -> tuple[np.ndarray, np.ndarray]:
-    times = np.array([time for time, _ in rows], np.int64)
+def _sorted(row: tuple[array, array], start_ns: int) -> tuple[np.ndarray, np.ndarray]:
+    times, values = np.frombuffer(row[0], np.int64), np.frombuffer(row[1], float)
     order = np.argsort(times, kind="stable")
-    return (times[order] - start_ns) * 1e-9, np.array([value for _, value in rows], float)[order]
+    return (times[order] - start_ns) * 1e-9, values[order]
 
 
 def _numbers_in(ros_type: str, topic: str, role: str, message) -> Iterator[tuple[str, str, str, float]]:
@@ -184,10 +249,10 @@ def _numbers_in(ros_type: str, topic: str, role: str, message) -> Iterator[tuple
     if ros_type == "sensor_msgs/msg/JointState":
         for name, velocity in zip(message.name, message.velocity):
             own = role or {topics.SHAFT_JOINT: "speed", topics.CAGE_JOINT: "cage_speed"}.get(name, "")
-            yield own, f"{topic} {name}", "rpm", _RPM * velocity
+            yield own, f"{topic} {printable(name)}", "rpm", _RPM * velocity
         if not len(message.velocity):  # then positions are what the message is about, with or without a unit behind the name
             for text, position in zip(message.name, message.position):
-                name, _, unit = text.removesuffix("]").partition(" [")
+                name, _, unit = printable(text).removesuffix("]").partition(" [")
                 yield "", f"{topic} {name}", unit or "-", position
     elif ros_type in _WRENCHES:
         force = getattr(message, "wrench", message).force
