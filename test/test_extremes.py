@@ -22,8 +22,11 @@ from bearing_sim.physics.load_balance import LOAD
 from bearing_sim.physics.traction import traction
 from bearing_sim.scene.scene import tolerance_overrides
 from bearing_sim.simulation import scene_inputs
-from bearing_sim.studies.extremes import FAILED, FINISHED, REFUSED, STEP_LIMITED, course_segments, kinds_of_reason, long_run, run_case
+from bearing_sim.studies.extremes import kinds_of_reason
 from bearing_sim.studies.extremes_cases import BEARING, DIMENSIONS, Case, oil_of, sampled_cases
+from bearing_sim.studies.extremes_long import long_run
+from bearing_sim.studies.extremes_run import FAILED, FINISHED, REFUSED, STEP_LIMITED, course_segments, run_case
+from bearing_sim.studies.extremes_stock import SLOW, TURNS, at_stock, energy_gap, run_at_stock
 
 
 def case(*overrides, level="slip", course="steady", seconds=1e-3):
@@ -86,7 +89,7 @@ def test_a_scene_that_cannot_be_is_refused_with_the_bound_it_broke():
 
 
 def test_a_tight_tolerance_exhausts_its_steps_and_is_step_limited_and_a_loose_one_is_too_slow(monkeypatch):
-    monkeypatch.setattr("bearing_sim.studies.extremes._step_budget", lambda scene: 20)
+    monkeypatch.setattr("bearing_sim.studies.extremes_run._step_budget", lambda scene: 20)
     assert run_case(case(*tolerance_overrides(1e-6))).status == STEP_LIMITED
     outcome = run_case(case(*tolerance_overrides(0.2)))
     assert outcome.status == FAILED and outcome.reason.startswith("too slow: 20 steps last for ")
@@ -136,15 +139,80 @@ def test_the_command_writes_totals_a_table_and_a_picture(tmp_path, monkeypatch):
     monkeypatch.setattr("bearing_sim.studies.extremes.corner_cases", lambda level: corners)
     table, picture = tmp_path / "map.csv", tmp_path / "map.png"
     result = CliRunner().invoke(
-        main, ["study", "extremes", "--samples", "4", "--level", "slip", "--no-long", "--json", "--csv", str(table), "--picture", str(picture)]
+        main,
+        ["study", "extremes", "--samples", "3", "--seed", "1", "--level", "slip", "--no-long", "--workers", "1", "--json"]
+        + ["--csv", str(table), "--picture", str(picture)],
     )
     report = json.loads(result.stdout)
     assert result.exit_code == (1 if report["failed"] else 0)
-    assert sum(report[name] for name in ("finished", "step_limited", "refused", "failed")) == 6 and report["failed"] == 0
+    assert sum(report[name] for name in ("finished", "step_limited", "refused", "failed")) == 5 and report["failed"] == 0
+    assert report["step_limited"] == 1 and report["levels"]["slip"]["step_limited_at_stock"] == {"finished": 1}
     assert report["levels"]["slip"]["refused_by"]["bearing.roller.count"] == 1
     rows = list(csv.DictReader(table.open()))
-    assert len(rows) == 6 and rows[0]["status"] == "finished" and "--set 'bearing.roller.count=2'" in rows[1]["overrides"]
+    assert len(rows) == 5 and rows[0]["status"] == "finished" and "--set 'bearing.roller.count=2'" in rows[1]["overrides"]
     assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+def test_at_stock_settings_a_scene_turns_its_cage_50_times_or_settles_and_keeps_its_books():
+    tight = case(*tolerance_overrides(1e-8), "integration.maximum_step=1e-7", "operating.radial_load=50 kN", level="planar")
+    assert not any("integration" in override for override in at_stock(tight).overrides)
+    outcome = run_at_stock(tight)
+    assert outcome.status == FINISHED and (outcome.settled or outcome.turns >= TURNS) and outcome.turns > 15.0
+    assert abs(outcome.books) < 0.003 + 3 * outcome.books_error
+
+
+@pytest.mark.parametrize("course", ["start", "stop", "reversal", "load_step"])
+def test_a_course_at_stock_settings_lasts_for_50_turns_of_an_ideal_cage(course):
+    outcome = run_at_stock(case(level="slip", course=course))
+    assert outcome.status == FINISHED and outcome.turns > 0.7 * TURNS and (outcome.settled or outcome.turns >= TURNS)
+    assert math.isnan(outcome.books) == (course == "stop")
+
+
+def test_a_cage_that_hardly_turns_and_wanders_is_given_up_and_said_so(monkeypatch):
+    monkeypatch.setattr("bearing_sim.studies.extremes_stock.LONGEST_TURNS", 16.0)
+    monkeypatch.setattr("bearing_sim.sweep.settling.has_settled", lambda *arguments: False)
+    outcome = run_at_stock(case())
+    assert outcome.status == FINISHED and not outcome.settled and outcome.turns < TURNS and outcome.reason.startswith(f"{SLOW}: ")
+
+
+def test_a_run_at_stock_settings_says_what_limited_refused_or_broke_it(monkeypatch):
+    assert run_at_stock(case("bearing.roller.count=2")).reason.startswith("bearing.roller.count = 2: ")
+    monkeypatch.setattr("bearing_sim.studies.extremes_stock.STEPS", 50)
+    limited = run_at_stock(case())
+    assert limited.status == STEP_LIMITED and limited.reason.startswith("step budget: 50 steps last for ")
+    monkeypatch.setattr(Simulation, "advance", lambda *arguments, **named: 1 / 0)
+    assert run_at_stock(case()).reason == "ZeroDivisionError: division by zero"
+
+
+def test_the_books_of_energy_miss_what_is_taken_from_a_loss():
+    run = Simulation(load_scene(BEARING, ["level=slip"]))
+    run.advance(0.1)
+    block = run.advance(0.02, samples=400)
+    off, error = energy_gap(block, run)
+    assert abs(off) < 0.002 and error < 0.01
+    block["churning_power"] -= 0.05 * block["shaft_power"].mean()
+    assert energy_gap(block, run)[0] == pytest.approx(off + 0.05, abs=1e-3)
+
+
+def test_the_night_gives_one_table_and_resumes(tmp_path, monkeypatch):
+    monkeypatch.setattr("bearing_sim.studies.nightly.corner_cases", lambda level: [case(), case("bearing.roller.count=2")])
+    monkeypatch.setattr("bearing_sim.studies.nightly.LONG_RUNS", {"slip": ((15_000.0, 2.0),)})
+    arguments = ["study", "nightly", "--level", "slip", "--samples", "2", "--workers", "1", "--journal", str(tmp_path / "night.journal")]
+    result = CliRunner().invoke(main, [*arguments, "--json", "--csv", str(tmp_path / "night.csv")])
+    report = json.loads(result.stdout)
+    assert [(row["runs"], sum(row["counts"].values())) for row in report["rows"]] == [
+        ("scenes", 2),
+        ("corners", 2),
+        ("corners with their own settings", 2),
+        ("2 s at 15000 rpm", 1),
+    ]
+    assert result.exit_code == 0 and report["rows"][1]["counts"] == {"finished": 1, "step_limited": 0, "refused": 1, "failed": 0}
+    assert report["rows"][1]["books"]["number"] == 1 and report["rows"][3]["books"]["largest"] < 0.005
+    rows = list(csv.DictReader((tmp_path / "night.csv").open()))
+    assert len(rows) == 6 and {row["program"] for row in rows} == {report["program"]} and {row["seed"] for row in rows} == {"0"}
+    monkeypatch.setattr("bearing_sim.studies.extremes_stock.run_at_stock", lambda case: 1 / 0)  # nothing runs again
+    again = CliRunner().invoke(main, arguments)
+    assert again.exit_code == 0 and "slip, corners: 1 refused: bearing.roller.count" in again.output
 
 
 # What the study found, and its repairs
@@ -234,7 +302,7 @@ def test_the_mixture_never_drives_a_roller():
 
 
 def test_a_long_run_drifts_in_nothing():
-    found = long_run("slip", 1.0)
+    found = long_run("slip", 15_000.0, 1.0)
     assert found.failure == "" and found.simulated == pytest.approx(1.0)
     assert abs(found.shaft_angle_error) < 1e-12 and abs(found.slip_drift) < 1e-4 and abs(found.damage_drift) < 1e-3 and found.cage_slip > 0.0
 
@@ -250,6 +318,6 @@ def test_what_changes_by_5_percent_in_the_second_half_of_a_long_run_is_reported_
         return block
 
     monkeypatch.setattr(Simulation, "advance", changed)
-    found = long_run("slip", 1.0)
+    found = long_run("slip", 15_000.0, 1.0)
     assert getattr(found, drift) == pytest.approx(0.05, rel=0.03), "settling takes the rest"
     assert found.failure.startswith(f"drift: {drift} 0.05")

@@ -36,6 +36,7 @@ _STUDIES = {
     "findings": Entry("study:findings", "Published findings about slip, and whether the model finds the same."),
     "catalog": Entry("study:catalog_rules", "Rules for the inside of catalogue bearings, and their errors."),
     "extremes": Entry("study:extremes", "Map which scenes finish, are step-limited, are refused or fail."),
+    "nightly": Entry("study:nightly", "Extreme scenes at stock settings, corners and long runs, with their books of energy."),
 }
 _STATES = {
     "show": Entry("state:show", "Show the stored state of a bearing: life used, hours, starts, regimes."),

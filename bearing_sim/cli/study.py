@@ -674,19 +674,20 @@ _SHOWN = 12  # reasons per table
 @click.option("--level", "levels", multiple=True, type=level_type, help="Study this level; can be repeated [default: all].")
 @click.option("--seed", default=0, show_default=True, type=click.IntRange(0), help="Seed of the Latin hypercube.")
 @click.option("--long/--no-long", default=True, show_default=True, help="Also make the long continuous runs.")
+@click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="Number of processes [default: all cores].")
 @json_option
 @picture_option("Draw the map")
 @click.option("--csv", "table", type=click.Path(path_type=Path), metavar="PATH.csv", help="Write all cases, one per line.")
-def extremes(samples, levels, seed, long, as_json, picture, table):
+def extremes(samples, levels, seed, long, workers, as_json, picture, table):
     """Run scenes at the extremes of all parameters and report which finish, are step-limited, are refused or fail.
 
     Speed, load, play, lobes, rollers, pockets, lands, oil, slices, tolerances and steps from a Latin hypercube, and named corner
-    cases, on all cores available to this process.  Exit code 1 if any case fails.
+    cases, on all cores available to this process.  Scenes that their own settings limit run again at stock settings.  Exit code 1 if any case fails.
     """
     from bearing_sim.studies.extremes import run_extremes, table_rows
 
     with progress_bar("extremes", 1.0) as progress:
-        report, outcomes = run_extremes(samples, levels, seed, long, lambda text: click.echo(f"{text} ...", err=True), progress)
+        report, outcomes = run_extremes(samples, levels, seed, long, lambda text: click.echo(f"{text} ...", err=True), progress, workers)
     with as_file_error():
         if table is not None:
             write_csv(table, table_rows(outcomes))
@@ -699,6 +700,8 @@ def extremes(samples, levels, seed, long, as_json, picture, table):
     else:
         for level, results in report["levels"].items():
             _print_extremes(level, results)
+    if report["failed_at_stock"]:
+        raise FailedRun(f"{report['failed_at_stock']} step-limited cases failed at stock settings")
     if report["failed"]:
         raise FailedRun(f"{report['failed']} of {sum(report[name] for name in ('finished', 'step_limited', 'refused', 'failed'))} cases failed")
 
@@ -706,8 +709,12 @@ def extremes(samples, levels, seed, long, as_json, picture, table):
 def _print_extremes(level, results) -> None:
     rows = [(name.replace("_", "-"), str(results[name])) for name in ("finished", "step_limited", "refused", "failed")]
     rows += [(f"step-limited by {reason}", str(count)) for reason, count in list(results["step_limited_by"].items())[:_SHOWN]]
+    rows += [
+        (f"step-limited, at stock settings {status.replace('_', '-')}", str(count)) for status, count in results["step_limited_at_stock"].items()
+    ]
     rows += [(f"refused for {reason}", str(count)) for reason, count in list(results["refused_by"].items())[:_SHOWN]]
     rows += [(f"failed: {failure['case']}", failure["reason"]) for failure in results["failures"][:_SHOWN]]
+    rows += [(f"failed at stock settings: {failure['case']}", failure["reason"]) for failure in results["failures_at_stock"][:_SHOWN]]
     worst = {
         "steps_per_ms": "most steps per simulated ms",
         "right_hand_sides_per_ms": "most right-hand sides per simulated ms",
@@ -725,8 +732,70 @@ def _print_extremes(level, results) -> None:
             f"{run['simulated']:g} s at {run['speed_rpm']:g} rpm",
             run["failure"]
             or f"{run['real_time_factor']:.3g} times real time; drift of slip {run['slip_drift']:.1e}, damage rate {run['damage_drift']:.1e}, energy "
-            f"{run['energy_drift']:.1e}; angle errors {run['shaft_angle_error']:.1e} shaft, {run['cage_angle_error']:.1e} cage",
+            f"{run['energy_drift']:.1e}; books of energy off by {100 * run['books']:.2g} %; "
+            f"angle errors {run['shaft_angle_error']:.1e} shaft, {run['cage_angle_error']:.1e} cage",
         )
         for run in results["long_runs"]
     ]
     print_table(f"extremes at level {level}, {results['core_seconds']:.0f} s of core time", rows)
+
+
+@click.command("nightly")
+@click.option("--level", "levels", multiple=True, type=level_type, help="Run this level; can be repeated [default: all].")
+@click.option(
+    "--samples",
+    type=click.IntRange(0, 1_000_000),
+    help="Scenes of the Latin hypercube per level [default: 2000 at steady and slip, 500 at planar, 200 at spatial].",
+)
+@click.option("--seed", default=0, show_default=True, type=click.IntRange(0), help="Seed of the Latin hypercube.")
+@click.option("--corners/--no-corners", default=True, show_default=True, help="Also run the named corner cases.")
+@click.option("--long/--no-long", default=True, show_default=True, help="Also make the long runs: 60 s at planar, 10 min at slip, 24 h at steady.")
+@click.option("--journal", type=click.Path(path_type=Path), metavar="PATH", help="File from which an interrupted night resumes.")
+@click.option(
+    "--csv", "table", type=click.Path(path_type=Path), metavar="PATH.csv", help="Write all runs, one per line, with seed and hash of the program."
+)
+@click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="Number of processes [default: all cores].")
+@json_option
+def nightly(levels, samples, seed, corners, long, journal, table, workers, as_json):
+    """Run extreme scenes at stock settings, corners and long runs, and report outcomes and books of energy in one table.
+
+    Every scene runs for at least 50 turns of its cage, or until it settles.  Takes hours.  Exit code 1 if any run fails.
+    """
+    from bearing_sim.studies.nightly import SAMPLES, run_nightly
+    from bearing_sim.sweep.tasks import JournalInUse
+
+    announce_compilation()
+    wanted = {level: SAMPLES[level] if samples is None else samples for level in levels or SAMPLES}
+    with as_file_error(), as_usage_error(JournalInUse), Points("nightly", 0) as points:
+        report = run_nightly(wanted, seed, corners, long, journal, workers, points.update)
+        if table is not None:
+            write_csv(table, report.cases)
+    if as_json:
+        rows = [row._asdict() | {"books": row.books and row.books._asdict()} for row in report.rows]
+        print_json({"seed": report.seed, "program": report.program, "failed": report.failed, "rows": rows})
+    else:
+        _print_nightly(report)
+    if report.failed:
+        raise FailedRun(f"{report.failed} of {sum(sum(row.counts.values()) for row in report.rows)} runs failed")
+
+
+def _print_nightly(report) -> None:
+    rows = []
+    for row in report.rows:
+        books = ("", "", "", "") if row.books is None else (*(f"{100 * off:.2g}" for off in row.books[1:4]), row.books.worst)
+        rows.append((row.level, row.runs, *map(str, row.counts.values()), str(row.slow), *books, f"{row.core_seconds:.0f}"))
+    counts = ("finished", "step-limited", "refused", "failed", "slow cage")
+    books = ("books off by, %: median", "95 %", "largest", "in")
+    print_rows(
+        f"seed {report.seed}, program {report.program[:12]}",
+        ("level", "runs", *counts, *books, "core, s"),
+        rows,
+        words=("level", "runs", "in"),
+        width=190,
+    )
+    for row in report.rows:
+        for status, reasons in row.reasons.items():
+            for reason, count in list(reasons.items())[:_SHOWN]:
+                click.echo(f"{row.level}, {row.runs}: {count} {status.replace('_', '-')}: {reason}")
+        for name, reason in row.failures[:_SHOWN]:
+            click.echo(f"{row.level}, {row.runs}: {name} failed: {reason}")

@@ -1,396 +1,19 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""The stability map: scenes at the extremes of all inputs, run on all cores.
+"""The stability map: scenes at the extremes of all inputs, run on all cores; see `bearing_sim.studies.extremes_run` for what can come of a case."""
 
-A case is *finished*; *step-limited*, if it ran well but something other than the equations limited it
-(a fixed step that had to be divided, the study's budget of steps where the case's own settings ask for so many: a tolerance or
-a step); *refused*, by the scene's checks before it starts; or *failed*: not finite, an exception, a process that
-died, a hang, too slow without settings that explain it, or a physically impossible value.
-"""
-
-import math
 import re
-import time
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import NamedTuple
-
-import numpy as np
 
 from bearing_sim.levels.level import LEVELS
-from bearing_sim.model.sample import NODE_OBSERVABLES, RING_TEMPERATURES
 from bearing_sim.numerics.cores import cores
-from bearing_sim.numerics.time_stepping import STEP_BUDGET
-from bearing_sim.scene.fidelity import level_of
-from bearing_sim.scene.loader import SceneError, load_scene
-from bearing_sim.scene.scene import Integration, Scene
-from bearing_sim.simulation import Inputs, IntegrationError, Simulation, scene_inputs, tolerances_of
-from bearing_sim.studies.extremes_cases import BEARING, Case, corner_cases, sampled_cases
-from bearing_sim.sweep.point import LIVES
+from bearing_sim.studies.extremes_cases import Case, corner_cases, sampled_cases
+from bearing_sim.studies.extremes_long import LONG_RUNS, LongRun, long_run_result
+from bearing_sim.studies.extremes_run import FAILED, FINISHED, OUTCOMES, REFUSED, STEP_LIMITED, Outcome, case_result
+from bearing_sim.studies.extremes_stock import StockOutcome, at_stock, stock_result
 from bearing_sim.sweep.table import new_figure
 from bearing_sim.sweep.tasks import Journal, run_tasks, task
-
-FINISHED, STEP_LIMITED, REFUSED, FAILED = OUTCOMES = ("finished", "step_limited", "refused", "failed")
-STEPS = 20_000  # budget of a run whose settings require small steps
-_PATIENT = 5  # times as many for other runs; needing more, one step per 0.2 us of 20 ms, is too slow
-_FEWEST_STEPS, _STOCK_SLICES = 2_000, 18 * 20  # of a run with expensive steps, with more rollers times slices than this
-_SHORTEST, _LONGEST, _PITCHES = 2e-3, 20e-3, 20.0  # simulated [s], and in roller pitches
-_PATIENCE = 300.0  # s of wall time; a longer run counts as a hang
-_SEGMENTS = 12  # of a run, at least; inputs are linear within each
-_SAMPLES = 4  # per segment
-_SEGMENT_TO_TIME = 2e-5  # s; the cost of shorter segments is ignored
-_STEP_SEGMENT = 1e-6  # s, duration of a step of the load
-_RIPPLE, _RIPPLE_SEGMENTS = 1e3, 8  # Hz; segments per period
-# A run that exhausts its steps is step-limited if its settings are tight, and too slow otherwise.  Tight settings are those of the references of the
-# bench: a tenth of the default tolerance or less.
-_TIGHT, _TIGHT_STEP = Integration().with_tolerances(0.1), 1e-5
-_LEAST_SLIP, _RISE_OF_LIFE = -0.05, 1.01
-_RUNNING = 10.0  # rad/s of the shaft, below which slip and losses are not judged
-_NOT_COMPUTED = {"steady": ("roller_spin", "roller_rotation", "pocket_force")}  # NaN at these levels
-_NOT_IN_EVERY_SCENE = (
-    "contamination_factor",  # NaN without a cleanliness class
-    *(f"{name}_{kind}" for name in RING_TEMPERATURES for kind in ("measured", "uncorrected")),
-    *(*NODE_OBSERVABLES, "heat_to_oil", "heat_to_ambient"),  # NaN without a law of heat
-)
-_MAY_BE_INFINITE = (*LIVES, "static_safety")  # without load or at rest
-# Losses that cannot be negative at any instant by their laws.  Pocket friction follows spin alone (Deng 2017, eq. 13), and the published
-# torque of the guide land's film omits the power of its eccentric force; both may be negative.
-_LOSSES = (
-    "inner_sliding_power",
-    "outer_sliding_power",
-    "inner_rolling_power",
-    "outer_rolling_power",
-    "churning_power",
-    "damping_power",
-    "seal_power",
-)
-_FIRST_PARTS = (1e-3, 9e-3, 9e-2, 0.9)  # of the first segment, to distinguish stuck from slow runs
-
-
-class Outcome(NamedTuple):
-    """Outcome of one case."""
-
-    case: Case
-    status: str  # one of OUTCOMES
-    reason: str = ""  # what limited it, or why it was refused or failed
-    simulated: float = 0.0  # [s]
-    core_seconds: float = 0.0
-    steps: int = 0
-    rejected_steps: int = 0
-    non_finite_steps: int = 0
-    right_hand_sides: int = 0
-    jacobians: int = 0
-    steps_per_ms: float = 0.0  # in the segment with the most
-    right_hand_sides_per_ms: float = 0.0  # likewise
-    core_ms_per_ms: float = 0.0  # likewise
-    step_us: float = 0.0  # core time of a step, in the segment with the slowest steps
-    asks_for_small_steps: bool = False  # whether the case's own tolerance or step does
-
-
-class Segment(NamedTuple):
-    """A segment of time over which the inputs change linearly to these values."""
-
-    duration: float  # [s]
-    inputs: Inputs
-
-
-def case_result(case: Case) -> dict:
-    """Return the fields of the outcome of one case, without the case."""
-    fields = run_case(case)._asdict()
-    del fields["case"]
-    return fields
-
-
-def run_case(case: Case) -> Outcome:
-    """Run one case; any error becomes an outcome."""
-    try:
-        scene = load_scene(BEARING, case.overrides)
-        scene = load_scene(BEARING, [*case.overrides, f"integration.step_budget={_step_budget(scene)}"])
-        segments = first_divided(list(course_segments(case.course, case.seconds or _seconds(scene), scene_inputs(scene))))
-        simulation = Simulation(scene, segments[0].inputs)
-    except SceneError as error:
-        return Outcome(case, REFUSED, "; ".join(str(each) for each in error.errors))
-    except Exception as error:
-        return Outcome(case, FAILED, f"{type(error).__name__} at the start: {error}")
-    try:
-        return _run(case, simulation, segments)
-    except Exception as error:
-        return Outcome(case, FAILED, f"{type(error).__name__}: {error}", simulation.time)
-
-
-def _step_budget(scene: Scene) -> int:
-    slices = scene.bearing.roller.count * (scene.bearing.roller.slices if scene.level == "spatial" else 1)
-    return max(_FEWEST_STEPS, round(STEPS * min(1.0, _STOCK_SLICES / slices))) * (1 if _asks_for_small_steps(scene) else _PATIENT)
-
-
-def _seconds(scene: Scene) -> float:
-    """Return the time to simulate: some roller pitches, but no more than the step budget allows at the required steps."""
-    integration, bearing = scene.integration, scene.bearing
-    pitches = 2 * math.pi * _PITCHES / (bearing.roller.count * max(0.5 * abs(scene.operating.shaft_speed) * (1 - bearing.diameter_ratio), 1e-9))
-    step = integration.maximum_step if integration.fixed_step is None else integration.fixed_step
-    return min(max(_SHORTEST, min(pitches, _LONGEST)), 0.5 * _step_budget(scene) * step)
-
-
-def course_segments(course: str, seconds: float, inputs: Inputs) -> Iterator[Segment]:
-    """Yield the segments of a course; the first one, of zero duration, gives the start.
-
-    Parameters
-    ----------
-    course : ``steady``; ``reversal`` of speed; ``stop`` and ``start`` with a rest; ``load_step`` there and back; ``ripple`` on the load.
-    seconds : duration of the course.
-    inputs : from which or to which it leads.
-    """
-
-    def at(speed, load):
-        return inputs._replace(shaft_speed=speed * inputs.shaft_speed, load_y=load * inputs.load_y, load_z=load * inputs.load_z)
-
-    if course == "ripple":
-        yield Segment(0.0, at(1.0, 1.0))
-        duration = min(1.0 / (_RIPPLE * _RIPPLE_SEGMENTS), seconds / _SEGMENTS)
-        for number in range(1, round(seconds / duration) + 1):
-            yield Segment(duration, at(1.0, 1.0 + 0.9 * math.sin(2 * math.pi * _RIPPLE * number * duration)))
-        return
-    step = min(_STEP_SEGMENT, 0.01 * seconds)
-    points = {
-        "steady": [(0.0, 1.0, 1.0), (1.0, 1.0, 1.0)],
-        "reversal": [(0.0, 1.0, 1.0), (0.25, 1.0, 1.0), (0.75, -1.0, 1.0), (1.0, -1.0, 1.0)],
-        "stop": [(0.0, 1.0, 1.0), (0.25, 1.0, 1.0), (0.5, 0.0, 1.0), (1.0, 0.0, 1.0)],
-        "start": [(0.0, 0.0, 1.0), (0.25, 0.0, 1.0), (0.75, 1.0, 1.0), (1.0, 1.0, 1.0)],
-        "load_step": [
-            (0.0, 1.0, 0.0),
-            (0.3, 1.0, 0.0),
-            (0.3 + step / seconds, 1.0, 1.0),
-            (0.7, 1.0, 1.0),
-            (0.7 + step / seconds, 1.0, 0.0),
-            (1.0, 1.0, 0.0),
-        ],
-    }[course]
-    yield Segment(0.0, at(*points[0][1:]))
-    for (start, speed, load), (end, next_speed, next_load) in zip(points, points[1:]):
-        pieces = max(1, math.ceil((end - start) * _SEGMENTS - 1e-9))
-        for piece in range(1, pieces + 1):
-            done = piece / pieces
-            yield Segment((end - start) * seconds / pieces, at(speed + done * (next_speed - speed), load + done * (next_load - load)))
-
-
-def first_divided(segments: list[Segment]) -> list[Segment]:
-    """Return the segments with the first one of nonzero duration cut into ever longer pieces."""
-    start, first, *rest = segments
-    pieces, passed = [], 0.0
-    for part in _FIRST_PARTS:
-        passed += part
-        between = Inputs(*(a + passed * (b - a) for a, b in zip(start.inputs, first.inputs)))
-        pieces.append(Segment(part * first.duration, between))
-    return [start, *pieces, *rest]
-
-
-def _run(case: Case, simulation: Simulation, segments: list[Segment]) -> Outcome:
-    _load_machine_code(simulation)
-    began, failure = time.perf_counter(), _rising_life(simulation, segments[0].inputs)
-    worst, spent, blocks, stopped = _Worst(), 0.0, [simulation.sample.copy().reshape(1)], ""
-    budget = simulation.scene.integration.step_budget
-    for segment in segments[1:]:
-        before, started = simulation.counters, time.process_time()
-        try:
-            blocks.append(simulation.advance(segment.duration, segment.inputs, _SAMPLES))
-        except IntegrationError as error:
-            if error.status == STEP_BUDGET:
-                stopped = f"{budget} steps last for {simulation.time:.3g} s and less than {segment.duration:.3g} s more"
-            else:
-                failure = failure or str(error)
-        core, after = time.process_time() - started, simulation.counters
-        spent += core
-        worst = worst.with_segment(segment.duration, before, after, core)
-        if not stopped and after.steps + after.rejected_steps > budget:
-            stopped = f"{budget} steps last for {simulation.time:.3g} s"
-        failure = failure or _impossible(blocks[-1], simulation.state)
-        if time.perf_counter() - began > _PATIENCE:
-            failure = failure or f"hang: {simulation.time:.3g} s simulated in {_PATIENCE:g} s"
-        if failure or stopped:
-            break
-    samples = np.concatenate(blocks)
-    failure = failure or _unsteady_slip(samples, case.course)
-    limits = _limits(simulation)
-    if stopped:
-        if _asks_for_small_steps(simulation.scene):
-            limits.append(f"step budget: {stopped}")
-        else:
-            failure = failure or f"too slow: {stopped}"
-    status = FAILED if failure else (STEP_LIMITED if limits else FINISHED)
-    counters = simulation.counters
-    return Outcome(
-        case, status, failure or ", ".join(limits), simulation.time, spent, counters.steps, counters.rejected_steps, counters.non_finite_steps,
-        counters.right_hand_sides, counters.jacobians, *worst, _asks_for_small_steps(simulation.scene),
-    )  # fmt: skip
-
-
-def _load_machine_code(simulation: Simulation) -> None:
-    """Advance by a billionth of a second, so that loading is not counted in a segment."""
-    try:
-        simulation.advance(1e-9)
-    except IntegrationError:
-        pass  # the run reports it
-
-
-class _Worst(NamedTuple):
-    """The most expensive segment so far, by each measure."""
-
-    steps_per_ms: float = 0.0
-    right_hand_sides_per_ms: float = 0.0
-    core_ms_per_ms: float = 0.0
-    step_us: float = 0.0
-
-    def with_segment(self, duration, before, after, core):
-        steps = after.steps + after.rejected_steps - before.steps - before.rejected_steps
-        evaluated = after.right_hand_sides - before.right_hand_sides
-        now = (1e-3 * steps / duration, 1e-3 * evaluated / duration, core / duration, 1e6 * core / max(steps, 1))
-        # In a short segment the overhead of the call exceeds the cost of its steps.
-        return _Worst(*map(max, self, now)) if duration >= _SEGMENT_TO_TIME else self
-
-
-def _asks_for_small_steps(scene: Scene) -> bool:
-    integration = scene.integration
-    step = integration.maximum_step if integration.fixed_step is None else integration.fixed_step
-    tolerances, tight = (tolerances_of(settings) for settings in (integration, _TIGHT))
-    return any(given < bound for given, bound in zip(tolerances, tight)) or step < _TIGHT_STEP
-
-
-def _rising_life(simulation: Simulation, inputs: Inputs) -> str:
-    """Return an error message if the life at the start rises with load; the simulation is reset afterwards."""
-    lives = []
-    for factor in (0.5, 1.0, 2.0):
-        simulation.reset(inputs._replace(load_y=factor * inputs.load_y, load_z=factor * inputs.load_z))
-        lives.append(float(simulation.sample["rating_life"]))
-    simulation.reset(inputs)
-    if any(later > _RISE_OF_LIFE * life for life, later in zip(lives, lives[1:])):
-        return f"life rises with load: {', '.join(f'{life:.6g}' for life in lives)} h at 0.5, 1 and 2 times the load"
-    return ""
-
-
-def _impossible(block: np.ndarray, state: np.ndarray) -> str:
-    """Return an error message for physically impossible samples."""
-    if not np.isfinite(state).all():
-        return "the state is not finite"
-    turning = np.abs(block["shaft_speed"]) >= _RUNNING
-    for name in block.dtype.names:
-        values = block[name]
-        if name in (*_NOT_COMPUTED.get(level_of(block[0]), ()), *_NOT_IN_EVERY_SCENE):
-            continue
-        if name in ("cage_slip", "friction_moment"):  # NaN at rest
-            values = values[turning]
-        good = ~np.isnan(values) & (values > 0.0) if name in _MAY_BE_INFINITE else np.isfinite(values)
-        if not good.all():
-            return f"{name} = {values[~good].flat[0]}"
-    for name in ("inner_load", "outer_load"):
-        if (block[name] < 0.0).any():
-            return f"{name} = {block[name].min():.6g} N pulls"
-    scale = 1.0 + np.abs(block["shaft_power"])
-    for name in _LOSSES:
-        if (turning & (block[name] < -1e-6 * scale)).any():
-            return f"{name} = {block[name].min():.6g} W is a gain"
-    return ""
-
-
-def _unsteady_slip(samples: np.ndarray, course: str) -> str:
-    """Return an error message if, at steady speed, the cage overtakes the shaft or turns backwards in the second half of the run."""
-    later = samples[len(samples) // 2 :]
-    if course != "steady" or abs(later["shaft_speed"][0]) < _RUNNING:
-        return ""
-    slip = float(later["cage_slip"].mean())
-    return "" if _LEAST_SLIP <= slip <= 1.0 - _LEAST_SLIP else f"cage slip {100 * slip:.4g} % in steady drive"
-
-
-def _limits(simulation: Simulation) -> list[str]:
-    """Return what limited the run apart from the equations."""
-    divided = simulation.scene.integration.fixed_step is not None and simulation.counters.rejected_steps > 0
-    limits = ["fixed step divided"] if divided else []
-    limits += ["smallest step"] if simulation.counters.smallest_steps else []
-    return limits + (["operating point without a steady state"] if simulation.counters.unsettled_points else [])
-
-
-# Simulated seconds at 15,000 rpm.
-_SECONDS = {"steady": 1000.0, "slip": 1000.0, "planar": 100.0, "spatial": 10.0}
-_SPEED = 15_000.0  # rpm
-_SAMPLES_PER_SECOND, _BLOCK = 200, 100
-_WINDOWS = 10  # of the run that are compared
-_LARGEST_DRIFT = {"shaft_angle_error": 1e-9, "slip_drift": 1e-3, "damage_drift": 0.01, "energy_drift": 0.01, "cage_angle_error": 1e-3}
-
-
-class LongRun(NamedTuple):
-    """Results of a long run at constant conditions.
-
-    Each drift compares the last tenth of the run with the second one, after settling: slip in absolute numbers, damage rate and
-    power balance relative.  Angles: of the shaft against speed times time, of the cage against its mean sampled speed.
-    """
-
-    level: str
-    speed_rpm: float
-    simulated: float = 0.0
-    core_seconds: float = 0.0
-    real_time_factor: float = math.nan
-    steps: int = 0
-    rejected_steps: int = 0
-    cage_slip: float = math.nan
-    slip_drift: float = math.nan
-    damage_drift: float = math.nan
-    energy_drift: float = math.nan
-    shaft_angle_error: float = math.nan
-    cage_angle_error: float = math.nan
-    failure: str = ""  # empty if the run was good
-
-
-def long_run_result(level: str, seconds: float) -> dict:
-    """Return the fields of `long_run`."""
-    return long_run(level, seconds)._asdict()
-
-
-def long_run(level: str, seconds: float) -> LongRun:
-    """Make one long run of ``seconds`` of simulated time."""
-    simulation = Simulation(load_scene(BEARING, [f"level={level}", f"operating.shaft_speed={_SPEED} rpm"]))
-    windows, failure = [], ""
-    began = time.process_time()
-    for _ in range(_WINDOWS):
-        try:
-            windows.append(_window(simulation, seconds / _WINDOWS))
-        except IntegrationError as error:
-            failure = str(error)
-            break
-    core, counters = time.process_time() - began, simulation.counters
-    if failure:
-        done = (core, simulation.time / core, counters.steps, counters.rejected_steps)
-        return LongRun(level, _SPEED, simulation.time, *done, failure=failure)
-    means = np.array(windows)
-    early, late, last = means[1], means[-1], simulation.sample
-    slip, damage, surplus = (late - early)[:3] / (1.0, early[1], early[3])
-    turned = float(means[:, 4].sum())
-    drifts = {
-        "slip_drift": float(slip),
-        "damage_drift": float(damage),
-        "energy_drift": float(surplus),
-        "shaft_angle_error": float(last["shaft_angle"] / (_SPEED * math.pi / 30 * seconds) - 1.0),
-        "cage_angle_error": float(last["cage_angle"] / turned - 1.0),
-    }
-    beyond = [f"{name} {value:.3g}" for name, value in drifts.items() if not abs(value) <= _LARGEST_DRIFT[name]]
-    return LongRun(
-        level, _SPEED, simulation.time, core, seconds / core, counters.steps, counters.rejected_steps, float(late[0]), **drifts,
-        failure=f"drift: {', '.join(beyond)}" if beyond else "",
-    )  # fmt: skip
-
-
-def _window(simulation: Simulation, seconds: float) -> tuple[float, ...]:
-    """Advance; return mean slip, damage rate [1/s], input minus losses [W], input [W], and the cage's rotation from its sampled speed [rad]."""
-    samples = round(seconds * _SAMPLES_PER_SECOND)
-    damage, slip, surplus, shaft, turn = float(simulation.sample["damage"]), 0.0, 0.0, 0.0, 0.0
-    for first in range(0, samples, _BLOCK):
-        count = min(_BLOCK, samples - first)
-        block = simulation.advance(count / _SAMPLES_PER_SECOND, samples=count)
-        losses = sum(block[name] for name in block.dtype.names if name.endswith("_power") and name != "shaft_power")
-        slip += float(block["cage_slip"].sum()) / samples
-        shaft += float(block["shaft_power"].sum()) / samples
-        surplus += float((block["shaft_power"] - losses).sum()) / samples
-        turn += float(block["cage_speed"].sum()) / _SAMPLES_PER_SECOND
-    return slip, (float(simulation.sample["damage"]) - damage) / seconds, surplus, shaft, turn
-
 
 # The field in an error message: at its start, or after the name of the record.
 _NAMED = re.compile(r"(?:(?<=^)|(?<=; )|(?<=bearing: )|(?<=scene: ))([a-z_]+(?:\.[a-z_0-9]+)*)(?: = [^:;]*)?(?=: )")
@@ -404,6 +27,7 @@ def run_extremes(
     long: bool = True,
     announce: Callable[[str], None] = lambda text: None,
     progress: Callable[[float], None] = lambda fraction: None,
+    workers: int | None = None,
 ) -> tuple[dict, list[Outcome]]:
     """Run the study.
 
@@ -415,6 +39,7 @@ def run_extremes(
     long : whether to include the long runs.
     announce : called with a line of text before the start.
     progress : called with the finished fraction of the cases.
+    workers : number of processes; None: one per core.
 
     Returns
     -------
@@ -423,38 +48,47 @@ def run_extremes(
     """
     levels = tuple(levels) or tuple(LEVELS)
     cases = [case for level in levels for case in corner_cases(level) + sampled_cases(level, samples, seed)]
-    long_levels = levels if long else ()
-    tasks = [task(_compiled_for(case), case_result, case) for case in cases]
-    tasks += [task(level, long_run_result, level, _SECONDS[level]) for level in long_levels]
-    announce(f"{len(cases)} scenes, {len(long_levels)} long runs")
-    results = run_tasks(tasks, Journal(), progress=lambda done, total: progress(done / total))
+    long_runs = [(level, *run) for level in levels for run in LONG_RUNS[level]] if long else []
+    tasks = [task(compiled_for(case), case_result, case) for case in cases]
+    tasks += [task(run[0], long_run_result, *run) for run in long_runs]
+    announce(f"{len(cases)} scenes, {len(long_runs)} long runs")
+    results = run_tasks(tasks, Journal(), workers, progress=lambda done, total: progress(done / total))
     outcomes = [Outcome(**{"case": case} | result) for case, result in zip(cases, results)]
-    long_outcomes = [_long_outcome(level, result) for level, result in zip(long_levels, results[len(cases) :])]
-    return _report(levels, samples, seed, outcomes, long_outcomes), outcomes
+    long_outcomes = [long_outcome(*run, result) for run, result in zip(long_runs, results[len(cases) :])]
+    limited = [at_stock(outcome.case) for outcome in outcomes if outcome.status == STEP_LIMITED]
+    announce(f"{len(limited)} step-limited scenes again, at stock settings")
+    again = run_tasks([task(case.level, stock_result, case) for case in limited], Journal(), workers)
+    stock_outcomes = [StockOutcome(**{"case": case} | result) for case, result in zip(limited, again)]
+    return _report(levels, samples, seed, outcomes, stock_outcomes, long_outcomes), outcomes
 
 
-def _compiled_for(case: Case) -> str:
+def compiled_for(case: Case) -> str:
     """Return which machine code a case needs: that of its level, with error control or with a fixed step."""
     fixed = any(override.startswith("integration.fixed_step=") for override in case.overrides)
     return f"{case.level}, fixed step" if fixed else case.level
 
 
-def _long_outcome(level: str, result: dict) -> LongRun:
+def long_outcome(level: str, speed: float, seconds: float, result: dict) -> LongRun:
     """Return a long run from its result; that of a lost worker has only a reason."""
-    return LongRun(**result) if "failure" in result else LongRun(level, _SPEED, failure=result["reason"])
+    return LongRun(**result) if "failure" in result else LongRun(level, speed, seconds, failure=result["reason"])
 
 
-def _report(levels, samples, seed, outcomes, long_outcomes) -> dict:
+def _report(levels, samples, seed, outcomes, stock_outcomes, long_outcomes) -> dict:
     return {
         **_totals(outcomes, long_outcomes),
+        "failed_at_stock": sum(outcome.status == FAILED for outcome in stock_outcomes),
         "samples": samples,
         "seed": seed,
         "cores": cores(),
         "levels": {
-            level: _level_report([o for o in outcomes if o.case.level == level], [run for run in long_outcomes if run.level == level])
+            level: _level_report(_of_level(level, outcomes), _of_level(level, stock_outcomes), [run for run in long_outcomes if run.level == level])
             for level in levels
         },
     }
+
+
+def _of_level(level: str, outcomes: Sequence) -> list:
+    return [outcome for outcome in outcomes if outcome.case.level == level]
 
 
 def _totals(outcomes, long_outcomes) -> dict[str, int]:
@@ -464,12 +98,14 @@ def _totals(outcomes, long_outcomes) -> dict[str, int]:
     return counts
 
 
-def _level_report(outcomes: Sequence[Outcome], long_outcomes: Sequence[LongRun]) -> dict:
+def _level_report(outcomes: Sequence[Outcome], stock_outcomes: Sequence[StockOutcome], long_outcomes: Sequence[LongRun]) -> dict:
     return {
         **_totals(outcomes, long_outcomes),
-        "step_limited_by": _counted(outcomes, STEP_LIMITED),
-        "refused_by": _counted(outcomes, REFUSED),
-        "failures": [{"case": o.case.name, "reason": o.reason, "overrides": list(o.case.overrides)} for o in outcomes if o.status == FAILED],
+        "step_limited_by": counted(outcomes, STEP_LIMITED),
+        "step_limited_at_stock": dict(Counter(outcome.status for outcome in stock_outcomes)),
+        "failures": _failures(outcomes),
+        "failures_at_stock": _failures(stock_outcomes),
+        "refused_by": counted(outcomes, REFUSED),
         "worst": _worst(outcomes),
         "worst_by_the_model": _worst([outcome for outcome in outcomes if not outcome.asks_for_small_steps]),
         "core_seconds": sum(outcome.core_seconds for outcome in outcomes),
@@ -483,13 +119,19 @@ def _level_report(outcomes: Sequence[Outcome], long_outcomes: Sequence[LongRun])
     }
 
 
+def _failures(outcomes: Sequence[Outcome | StockOutcome]) -> list[dict]:
+    """Return name, reason and overrides of each failed case."""
+    failed = [outcome for outcome in outcomes if outcome.status == FAILED]
+    return [{"case": each.case.name, "reason": each.reason, "overrides": list(each.case.overrides)} for each in failed]
+
+
 def _worst(outcomes: Sequence[Outcome]) -> dict[str, dict]:
     """Return the most expensive case by each measure of cost."""
     costliest = {name: max(outcomes, key=lambda outcome: getattr(outcome, name), default=None) for name in _COSTS}
     return {name: {"case": found.case.name, "value": getattr(found, name)} for name, found in costliest.items() if found is not None}
 
 
-def _counted(outcomes: Sequence[Outcome], status: str) -> dict[str, int]:
+def counted(outcomes: Sequence[Outcome | StockOutcome], status: str) -> dict[str, int]:
     """Count the reasons of one outcome without their numbers, most frequent first."""
     counts = Counter(reason for outcome in outcomes if outcome.status == status for reason in kinds_of_reason(outcome.reason))
     return dict(counts.most_common())

@@ -19,6 +19,7 @@ _TRACTIONS = ("oil_4109", "constant", "kragelskii", "eyring")
 _CROWNS = ("none", "iso_log", "{law: straight_arc, straight_length: 4 mm, crown_radius: 1 m}")
 _DIAMETER, _INNER_RADIUS, _CAGE_BORE, _GUIDE_RADIUS = 7e-3, 27.875e-3, 29.6e-3, 33.5e-3  # of the bearing [m]
 _LARGEST_PLAY = 1.3  # times the clearance that leaves no bar between pockets
+_WIDEST_POCKET = 5e-3  # m of pocket clearance, the most that a scene takes; a corner asks for it
 _ROLLERS_THAT_FIT = 24  # with bars of the cage between them; for more rollers the bearing grows
 
 
@@ -112,7 +113,7 @@ def sampled_cases(level: str, samples: int, seed: int) -> list[Case]:
         point = {name: law(float(u)) for (name, law), u in zip(DIMENSIONS.items(), row)}
         for name in ignored:
             del point[name]
-        point["pocket_clearance"] = _logarithmic(1e-6, _LARGEST_PLAY * _room(point["rollers"]))(point["pocket_clearance"])
+        point["pocket_clearance"] = _logarithmic(1e-6, min(_LARGEST_PLAY * _room(point["rollers"]), _WIDEST_POCKET))(point["pocket_clearance"])
         point["fixed"] = point["fixed"] and LEVELS[level].advance_fixed is not None
         cases.append(Case(f"sample {number}", level, tuple(overrides_of(level, point)), point["course"], point))
     return cases

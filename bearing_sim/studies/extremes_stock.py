@@ -1,0 +1,252 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""One scene at the extremes at stock settings: tolerances, steps and method of a scene that says nothing about them.
+
+The case runs for at least 50 turns of its cage, or until it has settled.  Its inputs change once over what are 50 turns of an ideal cage;
+under the last ones it goes on until it settles or its cage has turned often enough; a cage that hardly turns and wanders is given up, and
+counted as slow, after 500 turns of an ideal one.  Then follow the books of energy: over ten more turns, under constant
+inputs, what the shaft and the load put in, less what is lost and what is stored.
+"""
+
+import math
+import time
+from typing import NamedTuple
+
+import numpy as np
+
+from bearing_sim.model.sample import joined
+from bearing_sim.numerics.time_stepping import STEP_BUDGET
+from bearing_sim.scene.loader import SceneError, load_scene
+from bearing_sim.scene.scene import Integration, Scene
+from bearing_sim.simulation import Inputs, IntegrationError, Simulation, scene_inputs
+from bearing_sim.studies.extremes_cases import BEARING, Case
+from bearing_sim.studies.extremes_run import FAILED, FINISHED, REFUSED, STEP_LIMITED, course_segments, impossible, rising_life, unsteady_slip
+from bearing_sim.sweep.settling import SHORTEST_TURNS, advance_until_settled, cage_turn, sampled
+
+TURNS = 50.0  # of the cage in a run that does not settle
+LONGEST_TURNS = 500.0  # of an ideal cage, under constant inputs, in a run whose cage hardly turns and does not settle either
+STEPS = Integration().step_budget  # of a whole run
+BOOK_TURNS = 10.0  # of an ideal cage over which the books of energy are kept
+_BOOK_SAMPLES, _BATCHES = 1009, 10
+_SHORTEST = 20e-3  # s of any run
+SLOW = "cage hardly turns"
+"""Begins the reason of a finished run that has neither settled nor turned often enough."""
+_LONGEST_RIPPLE = 0.2  # s; the load stays after that
+_SAMPLES, _SAMPLES_OF_A_TURN = 24, 60  # of a segment in which inputs change; of a turn under constant ones
+_LONGEST_SOLVED_RIPPLE, _SOLVED_SAMPLES = 5e-3, 2  # the same at level steady, which solves for an operating point at every sample
+_SAMPLES_OF_A_PIECE, _KEPT = 900, 2000  # between two looks at the turns; about the most of a stretch that are kept
+_MEAN_SPEED = {"steady": 1.0, "load_step": 1.0, "ripple": 1.0, "reversal": 0.75, "start": 0.5, "stop": 0.375}  # over a course, of the full one
+_PATIENCE = 1800.0  # s of core time; a longer run counts as a hang
+
+
+class StockOutcome(NamedTuple):
+    """Outcome of one case at stock settings."""
+
+    case: Case
+    status: str  # one of `bearing_sim.studies.extremes_run.OUTCOMES`
+    reason: str = ""  # what limited it, or why it was refused or failed
+    settled: bool = False  # whether slip and life rest under the last inputs
+    turns: float = 0.0  # of the cage, in either direction
+    simulated: float = 0.0  # [s]
+    core_seconds: float = 0.0
+    steps: int = 0
+    rejected_steps: int = 0
+    books: float = math.nan  # energy put in less energy lost and stored, over the larger of what is put in and lost; NaN at rest
+    books_error: float = math.nan  # standard error of that, because losses are known at samples only
+
+
+class _Ended(Exception):
+    """Ends a run with a status and a reason."""
+
+    def __init__(self, status: str, reason: str):
+        super().__init__(reason)
+        self.status, self.reason = status, reason
+
+
+class _TurnedEnough(Exception):
+    """The cage has turned often enough, so that the run need not settle."""
+
+
+def at_stock(case: Case) -> Case:
+    """Return a case without its settings of the integration."""
+    return case._replace(overrides=tuple(each for each in case.overrides if not each.startswith("integration.")))
+
+
+def stock_result(case: Case) -> dict:
+    """Return the fields of the outcome of one case at stock settings, without the case."""
+    fields = run_at_stock(case)._asdict()
+    del fields["case"]
+    return fields
+
+
+def run_at_stock(case: Case) -> StockOutcome:
+    """Run one case at stock settings; any error becomes an outcome."""
+    try:
+        scene = load_scene(BEARING, at_stock(case).overrides)
+        inputs = scene_inputs(scene)
+        segments = [] if case.course == "steady" else list(course_segments(case.course, _seconds(scene, case.course), inputs))
+        simulation = Simulation(scene, segments[0].inputs if segments else inputs)
+    except SceneError as error:
+        return StockOutcome(case, REFUSED, "; ".join(str(each) for each in error.errors))
+    except Exception as error:
+        return StockOutcome(case, FAILED, f"{type(error).__name__} at the start: {error}")
+    run = _Run(case, simulation)
+    try:
+        run.start()
+        run.follow(segments[1:])
+        run.go_on()
+        books, error = run.books()
+        return run.outcome(FINISHED, "", books, error)
+    except _Ended as end:
+        return run.outcome(end.status, end.reason)
+    except Exception as error:
+        return run.outcome(FAILED, f"{type(error).__name__}: {error}")
+
+
+def _seconds(scene: Scene, course: str) -> float:
+    """Return the time over which inputs change [s]: 50 turns of an ideal cage, less for a ripple."""
+    turn = cage_turn(scene)
+    seconds = max(TURNS * turn / _MEAN_SPEED[course], _SHORTEST) if math.isfinite(turn) else _SHORTEST
+    return min(seconds, _LONGEST_SOLVED_RIPPLE if scene.level == "steady" else _LONGEST_RIPPLE) if course == "ripple" else seconds
+
+
+class _Run:
+    """A run of a case, and what has been seen of it."""
+
+    def __init__(self, case: Case, simulation: Simulation):
+        self._case, self._simulation = case, simulation
+        self._began, self._turns, self._settled, self._blocks = time.process_time(), 0.0, False, []
+
+    def start(self) -> None:
+        """Judge the start."""
+        failure = rising_life(self._simulation, self._simulation.inputs)
+        if failure:
+            raise _Ended(FAILED, failure)
+        self._take(self._simulation.sample.copy().reshape(1))
+
+    def follow(self, segments) -> None:
+        """Follow the segments in which inputs change."""
+        samples = 1 if self._case.course == "ripple" else _SOLVED_SAMPLES if self._case.level == "steady" else _SAMPLES
+        for segment in segments:
+            self._take(self._advance(segment.duration, segment.inputs, samples))
+
+    def go_on(self) -> None:
+        """Go on under constant inputs until the run settles or the cage has turned often enough."""
+        turn = cage_turn(self._simulation.scene)
+        stands = self._simulation.inputs.shaft_speed == 0.0
+        shortest = _SHORTEST if stands else max(_SHORTEST, SHORTEST_TURNS * turn)
+        spacing = min(turn / _SAMPLES_OF_A_TURN, shortest / 100)
+        try:
+            longest = math.inf if stands else max(LONGEST_TURNS * turn, shortest)
+            found = advance_until_settled(self._simulation, shortest, longest, lambda seconds: self._sampled(seconds, spacing))
+            self._settled = stands or found.settled  # at rest the latter wants turns
+        except _TurnedEnough:
+            pass
+        except IntegrationError as error:
+            raise _ended(error) from None
+        if self._case.course == "steady":
+            failure = unsteady_slip(joined(self._blocks), self._case.course)
+            if failure:
+                raise _Ended(FAILED, failure)
+
+    def books(self) -> tuple[float, float]:
+        """Return what the books of energy miss over some more turns, and the standard error of that; see `StockOutcome`."""
+        simulation = self._simulation
+        if simulation.inputs.shaft_speed == 0.0:
+            return math.nan, math.nan
+        before = simulation.sample.copy().reshape(1)
+        block = self._advance(BOOK_TURNS * cage_turn(simulation.scene), None, _BOOK_SAMPLES)
+        self._take(block)
+        return energy_gap(joined([before, block]), simulation)
+
+    @property
+    def _is_slow(self) -> bool:
+        return not self._settled and self._turns < TURNS
+
+    def outcome(self, status: str, reason: str, books: float = math.nan, books_error: float = math.nan) -> StockOutcome:
+        """Return the outcome of the run as far as it came."""
+        simulation, core = self._simulation, time.process_time() - self._began
+        counters = simulation.counters
+        if status == FINISHED and counters.unsettled_points:
+            status, reason = STEP_LIMITED, "operating point without a steady state"
+        elif status == FINISHED and counters.smallest_steps:
+            status, reason = STEP_LIMITED, "smallest step"
+        elif status == FINISHED and self._is_slow:
+            reason = f"{SLOW}: {self._turns:.3g} turns in {LONGEST_TURNS:g} of an ideal one, wandering"
+        return StockOutcome(
+            self._case, status, reason, self._settled, self._turns, simulation.time, core, counters.steps, counters.rejected_steps, books, books_error
+        )
+
+    def _advance(self, seconds: float, inputs: Inputs | None, samples: int) -> np.ndarray:
+        try:
+            return self._simulation.advance(seconds, inputs, samples)
+        except IntegrationError as error:
+            raise _ended(error) from None
+
+    def _sampled(self, seconds: float, spacing: float) -> np.ndarray:
+        """Advance piece by piece, so that a long stretch ends as soon as the cage has turned often enough, and return some of the samples."""
+        pieces = math.ceil(seconds / (_SAMPLES_OF_A_PIECE * spacing))
+        kept = []
+        for _ in range(pieces):
+            if self._turns >= TURNS:
+                raise _TurnedEnough
+            block = sampled(self._simulation, seconds / pieces, spacing)
+            self._take(block)
+            stride = math.ceil(pieces * len(block) / _KEPT)
+            kept.append(block[(len(block) - 1) % stride :: stride].copy())
+        return joined(kept)
+
+    def _take(self, block: np.ndarray) -> None:
+        """Take samples that follow, and end the run if they are impossible or the run takes too many steps."""
+        angles = np.concatenate([self._blocks[-1]["cage_angle"][-1:], block["cage_angle"]] if self._blocks else [block["cage_angle"]])
+        self._turns += float(np.abs(np.diff(angles)).sum()) / (2.0 * math.pi)
+        self._blocks = [*self._blocks[-1:], block]
+        failure = impossible(block, self._simulation.state)
+        if failure:
+            raise _Ended(FAILED, failure)
+        counters = self._simulation.counters
+        if counters.steps + counters.rejected_steps > STEPS:
+            raise _Ended(STEP_LIMITED, f"step budget: {STEPS} steps last for {self._simulation.time:.3g} s and {self._turns:.3g} turns of the cage")
+        if time.process_time() - self._began > _PATIENCE:
+            raise _Ended(FAILED, f"hang: {self._simulation.time:.3g} s simulated in {_PATIENCE:g} s")
+
+
+def _ended(error: IntegrationError) -> _Ended:
+    return _Ended(STEP_LIMITED if error.status == STEP_BUDGET else FAILED, str(error))
+
+
+def energy_gap(samples: np.ndarray, simulation: Simulation) -> tuple[float, float]:
+    """Return the energy that the books of some samples miss, over the larger of what is put in and what is lost, and its standard error.
+
+    At level steady, which stores nothing, only powers count.  Elsewhere the shaft and the load put in, the losses take, and the rest is stored as
+    kinetic energy of cage and rollers along the orbit and as elastic energy of the contacts; of what else is stored, such as by the motion
+    of the ring, little changes.
+
+    Parameters
+    ----------
+    samples : evenly spaced, the first one at the start; shape (n,).
+    simulation : that has made them.
+    """
+    seconds = np.diff(samples["time"])
+    losses = sum(samples[name] for name in samples.dtype.names if name.endswith("_power") and name != "shaft_power")
+    given, lost = (seconds * 0.5 * (power[1:] + power[:-1]) for power in (samples["shaft_power"], losses))
+    missing = given - lost
+    if simulation.scene.level != "steady":
+        for axis in ("y", "z"):
+            load = samples[f"load_{axis}"]
+            missing += 0.5 * (load[1:] + load[:-1]) * np.diff(samples[f"ring_{axis}"])
+        missing -= np.diff(_stored(samples, simulation))
+    scale = max(abs(float(given.sum())), abs(float(lost.sum())))
+    if scale == 0.0:
+        return math.nan, math.nan
+    batches = np.array([part.sum() for part in np.array_split(missing, _BATCHES)])
+    return float(missing.sum()) / scale, float(batches.std(ddof=1)) * math.sqrt(_BATCHES) / scale
+
+
+def _stored(samples: np.ndarray, simulation: Simulation) -> np.ndarray:
+    """Return the kinetic energy of cage and rollers along the orbit and the elastic energy of the contacts [J], shape (n,)."""
+    params = simulation._params
+    rollers, stiffness = params.rollers, params.raceways.stiffness
+    moving = 0.5 * rollers.mass * (samples["roller_radius"] * samples["orbital_speed"]) ** 2 + 0.5 * rollers.inertia * samples["roller_spin"] ** 2
+    # 9/19 K d^(19/9) with Q = K d^(10/9)
+    elastic = 9.0 / 19.0 * stiffness**-0.9 * (np.maximum(samples["inner_load"], 0.0) ** 1.9 + np.maximum(samples["outer_load"], 0.0) ** 1.9)
+    return 0.5 * params.cage.inertia * samples["cage_speed"] ** 2 + (moving + elastic).sum(axis=1)
