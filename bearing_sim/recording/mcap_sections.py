@@ -30,8 +30,9 @@ _DATA_END = packed(DataEnd(0))
 _CRC_POLYNOMIAL = 0xEDB88320  # of CRC-32 with the lowest bit first, as in zlib
 _LONGEST_CORRECTED = 1024 * 1024  # [byte] of a section, of which each bit is tried
 _MOST_CORRECTED = 100  # sections; more damage than that is no flipped bit here and there
+_MOST_SEARCHED = 2000  # sections whose end is searched; a file with more of them was made to waste time
 _LONGEST_SALVAGED = 64 * 1024 * 1024  # [byte] of a damaged section that are looked at
-_LONGEST_INDEX = 4 * 1024 * 1024  # [byte] between the first record of a section and its checksum record
+_LONGEST_INDEX = 128 * 1024  # [byte] between the first record of a section and its checksum record; indexes of a chunk of 64 KiB are shorter
 _KINDS = {
     Opcode.HEADER: "the header",
     Opcode.CHUNK: "a chunk",
@@ -81,6 +82,7 @@ class SectionReader:
     def __init__(self, stream: BinaryIO, size: int, report: Report, corrects: bool = False, unneeded: Container[int] = ()):
         self._stream, self._size, self._report, self._corrects, self._unneeded = stream, size, report, corrects, unneeded
         self._longest, self._corrected = RECORDING_RECORD.value, 0
+        self._searched, self._left = 0, 4 * size + _BLOCK  # [byte] that searches may still look at; an honest file needs twice its size
         self.read, self.is_finished, self.ends = 0, False, ""
         self._has_sections = self._finds_checksum_record()
         self.has_checksums = self._has_sections
@@ -186,11 +188,14 @@ class SectionReader:
         checksum : that its checksum record states; None if that was not found, and may be the last of the records.
         after : where the next section begins; the length of the file if there is none.
         """
-        left = 4 * self._size  # [byte] to be looked at; more are only needed for a file that was made to waste time
-        for at, first, checksum in self._checksum_records(begin):
+        self._searched += 1
+        for at, first, checksum in self._checksum_records(begin) if self._searched <= _MOST_SEARCHED else ():
             if first == begin:
                 return at, checksum, at + CHECKSUM_RECORD.size
-            if begin < first <= at and (left := left - (at - first)) > 0 and zlib.crc32(self._bytes(first, at)) == checksum:
+            if not begin < first <= at:
+                continue
+            self._left -= at - first
+            if self._left > 0 and zlib.crc32(self._bytes(first, at)) == checksum:
                 return first, None, first
         footer = self._footer()
         end = -1 if footer is None else footer.summary_start - len(_DATA_END)
