@@ -29,7 +29,7 @@ SCENE = load_scene("deng2017_table1")
 
 
 def run(*arguments):
-    return CliRunner().invoke(view.view, [str(argument) for argument in arguments])
+    return CliRunner().invoke(view.view, [*(str(argument) for argument in arguments), "--force"])
 
 
 @pytest.fixture

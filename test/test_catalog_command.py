@@ -78,7 +78,8 @@ def test_a_new_scene_loads_and_names_every_choice_that_was_made(tmp_path, lubric
     assert (scene.lubricant.supply.law, scene.life.a_iso, scene.heat.law, scene.mounting.shaft.fit) == (supply, cleanliness, "network", "j6")
     assert all(f"#   {each.field}: " in text for each in scene.bearing.estimated) and text.count("Assumption") >= 4
     assert f"bearing-sim run {out}" in told and "estimated" in told
-    assert "exists; give another name, or --force" in called("new", "NU 210", *lubricant, "--speed", "1rpm", "--load", "1N", "-o", out, code=2).output
+    refused = called("new", "NU 210", *lubricant, "--speed", "1rpm", "--load", "1N", "-o", out, code=2)
+    assert "exists; --force replaces it" in refused.output
     assert out.read_text() == text
 
 

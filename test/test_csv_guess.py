@@ -140,7 +140,7 @@ def test_the_command_prints_and_writes_the_guess_and_fails_where_something_is_to
     assert done.exit_code == 0 and out.read_text(encoding="utf-8") == done.stdout and "import-csv" in done.stderr
     assert json.loads(command(data, "--json").stdout)["mapping"]["shaft_speed"] == {"column": "Speed [rpm]", "unit": "rpm"}
     data.write_text(ENGLISH.replace("Load (kN)", "Torque"), encoding="utf-8")
-    done = command(data, "-o", out)
+    done = command(data, "-o", out, "--force")
     assert done.exit_code == 1 and "radial_load" in done.stderr and "TO DECIDE" in out.read_text(encoding="utf-8")
     for options, words in (
         (("-o", tmp_path / "rig.mcap"), "ends in .yaml"),

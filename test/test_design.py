@@ -151,7 +151,7 @@ EXACT = ["--speed-tolerance", "0", "--load-tolerance", "0", "--verify-level", "n
 
 def test_what_stands_beside_the_paper_spans_its_d_values_whatever_the_grid(tmp_path):
     def within(d_values):
-        words = [*WORDS, "--d-value", d_values, "-o", str(tmp_path / "w.parquet"), *EXACT, "--json"]
+        words = [*WORDS, "--d-value", d_values, "-o", str(tmp_path / "w.parquet"), *EXACT, "--json", "--force"]
         return json.loads(CliRunner().invoke(main, words, catch_exceptions=False).stdout)["nominal_within_deng"]
 
     ours, other = within("0.095mm:0.105mm:2"), within("0.09mm:0.11mm:2")

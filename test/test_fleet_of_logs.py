@@ -34,6 +34,7 @@ def text(values):
 def fleet(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "logs" / "north").mkdir(parents=True)
+    (tmp_path / "out").mkdir()
     (tmp_path / "rig.yaml").write_text(MAPPING)
     (tmp_path / "logs" / "A.csv").write_text(text(rows(20_000.0)))
     (tmp_path / "logs" / "north" / "B.csv").write_text(text(rows(30_000.0)))
@@ -42,7 +43,7 @@ def fleet(tmp_path, monkeypatch):
 
 def replay_fleet(*words, code=0):
     common = ["--mapping", "rig.yaml", "--scene", "deng2017_table1", "--set", "level=slip", "--workers", "1", "-o", "out/fleet.parquet", "--json"]
-    result = CliRunner().invoke(main, ["replay-fleet", *common, *map(str, words)], catch_exceptions=False)
+    result = CliRunner().invoke(main, ["replay-fleet", *common, "--force", *map(str, words)], catch_exceptions=False)
     assert result.exit_code == code, result.output
     return (json.loads(result.stdout) if code in (0, 1, 3) else {}), result.stderr
 

@@ -110,7 +110,7 @@ def test_the_command_writes_a_contour_that_a_scene_uses(tmp_path):
         (["--low-radius", "34 mm", "--ground-radius", "35 mm"], "give one"),
         (["--picture", "c.jpg"], "expected a name that ends in .png"),
         (["--thickness", "0 mm"], "0 mm is outside 0.01 mm to 500 mm"),
-        (["-o", "/nowhere/c.csv"], "No such file"),
+        (["-o", "/nowhere/c.csv"], "there is no folder /nowhere"),
     ],
 )
 def test_what_cannot_be_machined_says_why(arguments, expected):

@@ -187,9 +187,12 @@ def test_unfinished_file_keeps_a_name_that_says_so(tmp_path, scene):
 
 def test_remains_of_a_killed_run_are_not_overwritten(tmp_path, scene):
     (tmp_path / "run.mcap.active").write_bytes(b"precious")
-    with pytest.raises(FileExistsError, match="killed run"):
-        McapSink(tmp_path / "run.mcap", scene, START)
-    assert (tmp_path / "run.mcap.active").read_bytes() == b"precious"
+    with McapSink(tmp_path / "run.mcap", scene, START) as sink:
+        assert [kind for _, kind, _ in sink.news()] == ["recording.set_aside"]
+        with pytest.raises(FileExistsError, match="another run is writing it"):
+            McapSink(tmp_path / "run.mcap", scene, START)
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == ["run.mcap", "run_killed_1.mcap.active"]
+    assert (tmp_path / "run_killed_1.mcap.active").read_bytes() == b"precious"
 
 
 def test_writing_after_close_is_refused_and_closing_twice_is_not(tmp_path, scene):

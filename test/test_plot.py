@@ -215,10 +215,11 @@ def test_the_command_draws_a_recording_into_the_format_of_the_suffix(recording, 
 
 def test_the_command_compares_recordings_over_time_and_load_and_takes_panels(recording, tmp_path):
     for options in (("--over", "load"), ("--panel", "slip", "--panel", "damage")):
-        done = plotted(recording, recording, *options, "-o", tmp_path / "a.png")
+        done = plotted(recording, recording, *options, "-o", tmp_path / "a.png", "--force")
         assert done.exit_code == 0, done.output
     assert plotted(recording, "--panel", "slip").exit_code == 0 and recording.with_suffix(".png").is_file()
-    assert "will be replaced" in plotted(recording, "--panel", "slip").stderr
+    refused = plotted(recording, "--panel", "slip")
+    assert refused.exit_code == 2 and "exists; --force replaces it" in refused.output
 
 
 @pytest.mark.parametrize(
@@ -253,7 +254,7 @@ def test_what_cannot_be_drawn_is_refused_in_words(recording, tmp_path):
     assert "no column operating.radial_load" in plotted(tmp_path / "a.csv", "--over", "load").stderr
     assert "give --over load" in plotted(tmp_path / "a.csv").stderr
     assert "a table is drawn alone" in plotted(tmp_path / "a.csv", recording).stderr
-    assert "what is to be drawn" in plotted(recording, "-o", _as_png(recording, tmp_path)).stderr
+    assert "is an input of this command" in plotted(recording, "-o", _as_png(recording, tmp_path)).stderr
 
 
 def _as_png(recording, folder):

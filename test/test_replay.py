@@ -24,6 +24,7 @@ from bearing_sim.inputs.log import read_input_log
 from bearing_sim.inputs.profile import judge
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.monitoring.monitor import Monitor
+from bearing_sim.recording.append_file import AppendFile
 from bearing_sim.recording.writer import McapSink
 from bearing_sim.runtime.replay import Replay, replay
 from bearing_sim.scene.loader import load_scene
@@ -322,10 +323,11 @@ def test_log_is_never_overwritten_by_its_own_replay(tmp_path):
 def test_output_that_cannot_be_written_is_one_message_and_exit_code_2(tmp_path):
     log = steady_log(tmp_path / "log.mcap", duration=0.3)
     (tmp_path / "folder").mkdir()
-    (tmp_path / "busy.mcap.active").write_bytes(b"")
-    for out, words in (("folder", "is a folder"), ("log.mcap/out.mcap", "log.mcap"), ("busy.mcap", "killed run")):
+    busy = AppendFile(tmp_path / "busy.mcap.active")
+    for out, words in (("folder", "is a folder"), ("log.mcap/out.mcap", "log.mcap"), ("busy.mcap", "another run is writing it")):
         ran = command(log, "--scene", "deng2017_table1", "-o", tmp_path / out)
         assert ran.exit_code == 2 and words in ran.stderr and "Traceback" not in ran.stderr
+    busy.close()
 
 
 def test_disk_that_fills_up_during_the_run_is_a_failed_run(tmp_path, monkeypatch):

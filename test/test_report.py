@@ -67,7 +67,7 @@ def folder(tmp_path_factory):
 
 
 def page_of(source, out):
-    invoked("report", source, "-o", out)
+    invoked("report", source, "-o", out, "--force")
     page = Page(out)
     assert all(each.startswith("data:image/png;base64,") for each in page.sources) and all(link.startswith("#") for link in page.links)
     assert "url(" not in out.read_text() and "@import" not in out.read_text()

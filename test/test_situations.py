@@ -41,7 +41,7 @@ def command_output(folder):
 def _output_of(words):
     result = CliRunner().invoke(study.situations, words)
     if HOW_TO_GET_VULKAN in result.output:
-        result = CliRunner().invoke(study.situations, [*words, "--no-pictures"])
+        result = CliRunner().invoke(study.situations, [*words, "--no-pictures", "--force"])
     assert result.exit_code == 0, result.output
     return result.stdout
 

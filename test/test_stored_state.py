@@ -573,7 +573,7 @@ def test_the_commands_show_export_and_adopt(tmp_path, monkeypatch):
     run("export", "A1", "-o", tmp_path / "days.parquet")
     run("export", "A1", "-o", tmp_path / "all.json")
     assert json.loads((tmp_path / "all.json").read_text())["history"][0]["day"] == "2024-10-04"
-    assert ".json, .csv or .parquet" in run("export", "A1", "-o", tmp_path / "x.txt", code=2)
+    assert ".json, .csv, .parquet" in run("export", "A1", "-o", tmp_path / "x.txt", code=2)
     assert "17 instead of 18" in run("adopt", "A1", "--scene", "deng2017_table1", "--set", "bearing.roller.count=17")
     with pytest.raises(StateError, match="18 instead of 17"):
         StateKeeper(path, SCENE, "A1")

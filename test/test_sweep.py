@@ -222,7 +222,7 @@ def test_command_killed_in_mid_run_goes_on_with_nothing_computed_twice(tmp_path)
 
 def test_a_finer_sweep_computes_only_what_is_new(tmp_path):
     def run(count):
-        words = ["sweep", "deng2017_table1", "--level", "steady", "--vary", f"{LOW}=34.86mm:34.865mm:{count}", "-o", str(tmp_path / "f")]
+        words = ["sweep", "deng2017_table1", "--level", "steady", "--vary", f"{LOW}=34.86mm:34.865mm:{count}", "-o", str(tmp_path / "f"), "--force"]
         return json.loads(CliRunner().invoke(main, [*words, "--json", "--workers", "1"]).stdout)
 
     assert run(3)["computed"] == 3

@@ -285,7 +285,7 @@ def test_the_command_tells_bands_shares_errors_and_sources(tmp_path):
     assert (tmp_path / "bands.png").stat().st_size > 20_000
     again = json.loads(bands("--samples", 16, "--json").stdout)
     assert again["cage_slip"] == slip and again["kept_from_before"] == 0, "the seed decides"
-    resumed = json.loads(bands("--samples", 16, "--json", "--csv", tmp_path / "points.csv").stdout)
+    resumed = json.loads(bands("--samples", 16, "--json", "--csv", tmp_path / "points.csv", "--force").stdout)
     assert resumed["cage_slip"] == slip and resumed["kept_from_before"] == 16 * 8
 
 

@@ -2,12 +2,12 @@
 """``bearing-sim scenes``, ``loads`` and ``machine``: what is bundled, static load distributions, and machined raceways."""
 
 import math
-from pathlib import Path
 
 import click
 
 from bearing_sim.cli.lives import life_rows
 from bearing_sim.cli.options import json_option, picture_option, scene_argument, set_option
+from bearing_sim.cli.outputs import OutputFile, WritingCommand
 from bearing_sim.cli.reporting import (
     FailedRun,
     UsageError,
@@ -38,7 +38,7 @@ def scenes(as_json):
     click.echo("any designation, such as NU 210 ECP/C3, is a bearing, too (bearing-sim catalog), and ISO VG 2 to 3200 are oils")
 
 
-@click.command("loads")
+@click.command("loads", cls=WritingCommand)
 @scene_argument
 @set_option
 @click.option(
@@ -69,8 +69,8 @@ def loads(scene_name, overrides, slices, picture, as_json):
         from bearing_sim.studies.statics import draw
 
         operating = scene.operating
-        with as_file_error():
-            draw(picture, f"{scene.name}: {operating.radial_load:g} N, {operating.shaft_speed * 30 / math.pi:.6g} rpm", found)
+        with as_file_error(), picture.draft() as draft:
+            draw(draft, f"{scene.name}: {operating.radial_load:g} N, {operating.shaft_speed * 30 / math.pi:.6g} rpm", found)
     warnings = outside(scene, _still_sample(scene, found))
     if as_json:
         print_json({**_report_loads(scene, slices, found), **warnings_report(scene, warnings), "picture": picture and str(picture)})
@@ -186,7 +186,7 @@ def _option(name, default, unit, meaning, minimum, maximum, shown_in):
     return click.option(f"--{name}", metavar="QUANTITY", callback=read, help=f"{meaning[0].upper()}{meaning[1:]}.", **shown)
 
 
-@click.command("machine")
+@click.command("machine", cls=WritingCommand)
 @_option("pressure", "2.0 MPa", "Pa", "mean pressure on the arcs", 1e3, 1e9, "MPa")
 @_option("arc-turn", "0 deg", "rad", "angle by which one arc is turned from its even position, phi_f", -math.pi / 2, math.pi / 2, "deg")
 @_option("arc-width", "60 deg", "rad", "width of each pressed arc", 1e-3, math.pi, "deg")
@@ -198,7 +198,7 @@ def _option(name, default, unit, meaning, minimum, maximum, shown_in):
 @_option("modulus", "206 GPa", "Pa", "Young's modulus", 1e9, 1e12, "GPa")
 @_option("low-radius", None, "m", "smallest radius of the finished raceway [default: 34.8625 mm unless --ground-radius is given]", 1e-3, 2.0, "mm")
 @_option("ground-radius", None, "m", "radius to which the pressed ring is ground", 1e-3, 2.0, "mm")
-@click.option("-o", "--out", type=click.Path(path_type=Path), metavar="CONTOUR.csv", help="Contour file for bearing.outer_raceway.contour_file.")
+@click.option("-o", "--out", type=OutputFile(), metavar="CONTOUR.csv", help="Contour file for bearing.outer_raceway.contour_file.")
 @picture_option("Draw the contour")
 @json_option
 def machine(
@@ -240,7 +240,8 @@ def machine(
         if picture is not None:
             from bearing_sim.studies.machining import draw
 
-            draw(picture, section, pressing, machined)
+            with picture.draft() as draft:
+                draw(draft, section, pressing, machined)
     if as_json:
         print_json({**report, "out": out and str(out), "picture": picture and str(picture)})
     else:

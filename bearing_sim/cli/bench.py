@@ -2,11 +2,11 @@
 """``bearing-sim bench``, ``trade`` and ``compile``: how fast the model is, what accuracy costs, and compiling ahead of a run."""
 
 import time
-from pathlib import Path
 
 import click
 
-from bearing_sim.cli.options import json_option, level_type, picture_option, quick_option, scene_argument, set_option
+from bearing_sim.cli.options import csv_option, json_option, level_type, picture_option, quick_option, scene_argument, set_option
+from bearing_sim.cli.outputs import WritingCommand
 from bearing_sim.cli.reporting import (
     FailedRun,
     announce_compilation,
@@ -159,7 +159,7 @@ _COLUMNS = ("level", "setting", *_MEASURED, "on_front", "failure")
 _FACTORS, _ERRORS = (1.0, 3.0, 10.0, 100.0, 1000.0), (0.01, 0.1, 1.0)
 
 
-@click.command("trade")
+@click.command("trade", cls=WritingCommand)
 @scene_argument
 @set_option
 @click.option("--level", "levels", multiple=True, type=level_type, help="Measure this level; can be repeated [default: all].")
@@ -170,7 +170,7 @@ _FACTORS, _ERRORS = (1.0, 3.0, 10.0, 100.0, 1000.0), (0.01, 0.1, 1.0)
     type=click.FloatRange(min=0.0, min_open=True),
     help="Recommend the fastest setting with at most this error of slip [percentage points].",
 )
-@click.option("--csv", "table", type=click.Path(path_type=Path), metavar="PATH.csv", help="Write all settings to a table.")
+@csv_option("Write all settings to a table.")
 @picture_option("Draw error against speed")
 @json_option
 @quick_option
@@ -200,7 +200,8 @@ def trade(scene_name, overrides, levels, against, factor, error, table, picture,
         if picture is not None:
             from bearing_sim.studies.trade import draw
 
-            draw(picture, scene_name, found)
+            with picture.draft() as draft:
+                draw(draft, scene_name, found)
     best = recommend(found, factor, error) if factor is not None or error is not None else None
     if as_json:
         print_json(_report(found) | {"recommended": best and best.setting.name})

@@ -6,6 +6,7 @@ from pathlib import Path
 import click
 
 from bearing_sim.cli.options import allow_outside_option, json_option, picture_option
+from bearing_sim.cli.outputs import OutputFile, WritingCommand
 from bearing_sim.cli.reporting import (
     UsageError,
     announce_compilation,
@@ -23,7 +24,7 @@ _EXPECTED = 30  # evaluations of a typical search, for the progress bar
 _UNLIKELY = 0.01
 
 
-@click.command("calibrate")
+@click.command("calibrate", cls=WritingCommand)
 @click.argument("log", type=click.Path(path_type=Path), metavar="RUN.mcap")
 @allow_outside_option
 @click.option("--scene", "scene_name", metavar="SCENE", help="Bundled scene or YAML file [default: the scene in the recording].")
@@ -34,7 +35,7 @@ _UNLIKELY = 0.01
     "--confidence", default=0.95, show_default=True, type=click.FloatRange(0.5, 0.999), metavar="FRACTION", help="Level of the confidence intervals."
 )
 @click.option(
-    "-o", "--out", type=click.Path(path_type=Path), metavar="SCENE.yaml", help="Write the scene with the fitted values and their intervals."
+    "-o", "--out", type=OutputFile(".yaml", ".yml"), metavar="SCENE.yaml", help="Write the scene with the fitted values and their intervals."
 )
 @picture_option("Draw measured and predicted slip")
 @click.option("--speed-topic", metavar="TOPIC", help="Topic of the shaft speed [default: /shaft_speed].")
@@ -54,8 +55,6 @@ def calibrate(
     RUN.mcap is any rosbag2 recording in MCAP with shaft speed, radial load and measured cage speed: from bearing-sim, from any bag, or
     from a table by `bearing-sim import-csv`. Only settled operation is used. Fields that the data cannot determine are refused.
     """
-    if out is not None and out.suffix.lower() not in (".yaml", ".yml"):
-        raise UsageError(f"--out {out}: expected a name that ends in .yaml")
     scene = _scene(log, scene_name, overrides)
     warn_of_scene(scene)
     names = {"shaft_speed": speed_topic, "radial_load": load_topic, "oil_temperature": temperature_topic, "cage_speed_measured": cage_topic}
@@ -74,7 +73,8 @@ def calibrate(
         if picture is not None:
             from bearing_sim.studies.calibration import draw
 
-            draw(picture, f"{scene.name} calibrated by {log.name}", found)
+            with picture.draft() as draft:
+                draw(draft, f"{scene.name} calibrated by {log.name}", found)
     if as_json:
         print_json({**_report(log, scene, found), **unknown})
     else:
@@ -119,13 +119,13 @@ def _override(found) -> list[str]:
     return [f"{one.range.field}={one.value:.9g}" for one in found.fitted]
 
 
-def _write(path, log, found) -> None:
+def _write(out, log, found) -> None:
     from bearing_sim.recording.provenance import package_version
     from bearing_sim.scene.loader import scene_to_yaml
 
     fields = ", ".join(one.range.field for one in found.fitted)
     head = f"# Calibrated by bearing_sim {package_version()}: {fields} fitted to the cage speed in {log.name}, {len(found.blocks.slip)} blocks.\n"
-    path.write_text(head + scene_to_yaml(found.scene))
+    out.write_text(head + scene_to_yaml(found.scene))
 
 
 def _root_mean_square(values) -> float:

@@ -3,11 +3,11 @@
 
 import math
 from collections.abc import Iterator
-from pathlib import Path
 
 import click
 
 from bearing_sim.cli.options import json_option, level_type, picture_option
+from bearing_sim.cli.outputs import OutputFile, WritingCommand
 from bearing_sim.cli.reporting import UsageError, as_file_error, as_usage_error, command_line, print_json, print_rows, print_table, quantity_of
 
 _COLUMNS = ("designation", "d", "D", "B", "C [kN]", "C_0 [kN]", "C_u [kN]", "limiting speed [rpm]", "ratings by")
@@ -41,7 +41,7 @@ def _above_option(name: str, unit: str, meaning: str, example: str):
     return click.option(name, metavar="QUANTITY", callback=read, help=f"{meaning} of at least this, such as {example}.")
 
 
-@click.command("catalog")
+@click.command("catalog", cls=WritingCommand)
 @click.argument("designation", required=False)
 @click.option("--type", "types", multiple=True, metavar="TYPE", help="Type, such as NU; can be repeated.")
 @click.option("--series", "series", multiple=True, metavar="SERIES", help="Dimension series, such as 2 or 23; can be repeated.")
@@ -141,7 +141,8 @@ def _show(designation: str, picture, as_json) -> None:
         from bearing_sim.studies.bearing_drawing import draw
 
         with as_file_error():
-            draw(picture, bearing)
+            with picture.draft() as draft:
+                draw(draft, bearing)
     if as_json:
         print_json({**facts(bearing), "picture": picture and str(picture)})
         return
@@ -150,7 +151,7 @@ def _show(designation: str, picture, as_json) -> None:
         click.echo("--picture bearing.png draws it; bearing-sim new writes a scene with it")
 
 
-@click.command("new")
+@click.command("new", cls=WritingCommand)
 @click.argument("bearing", metavar="DESIGNATION")
 @click.option("--oil", metavar="OIL", help="Oil by name, such as 'ISO VG 68' or 'ISO VG 220 PAO'.")
 @click.option("--grease", metavar="GREASE", help="Grease by name, instead of an oil.")
@@ -159,9 +160,8 @@ def _show(designation: str, picture, as_json) -> None:
 @click.option("--load", required=True, metavar="QUANTITY", help="Radial load, such as 5kN.")
 @click.option("--temperature", metavar="QUANTITY", help="Temperature of bearing and oil, such as 70degC [default: computed from the losses].")
 @click.option("--level", type=level_type, default="slip", show_default=True, help="Level of fidelity.")
-@click.option("--force", is_flag=True, help="Replace an existing file.")
-@click.option("-o", "--out", type=click.Path(path_type=Path), metavar="SCENE.yaml", help="File to write [default: standard output].")
-def new(bearing, oil, grease, supply, speed, load, temperature, level, force, out):
+@click.option("-o", "--out", type=OutputFile(), metavar="SCENE.yaml", help="File to write [default: standard output].")
+def new(bearing, oil, grease, supply, speed, load, temperature, level, out):
     """Write the scene of a bearing by DESIGNATION in an oil or a grease, with a comment for every choice that was made for you.
 
     Then: bearing-sim run SCENE.yaml.
@@ -171,17 +171,15 @@ def new(bearing, oil, grease, supply, speed, load, temperature, level, force, ou
 
     if (oil is None) == (grease is None):
         raise UsageError("give --oil or --grease, such as --oil 'ISO VG 68'")
-    if out is not None and out.exists() and not force:
-        raise UsageError(f"{out} exists; give another name, or --force to replace it")
     lubricant = {"grease": grease} if oil is None else {"oil": oil}
     if supply is not None:
         lubricant["supply"] = {"law": supply}
     with as_usage_error(SceneError):
-        text, scene = new_scene(Wish(bearing, lubricant, speed, load, temperature, level), default_name(out), command_line())
+        text, scene = new_scene(Wish(bearing, lubricant, speed, load, temperature, level), default_name(out and out.path), command_line())
     if out is None:
         click.echo(text, nl=False)
         return
     with as_file_error():
-        out.write_text(text, encoding="utf-8")
+        out.write_text(text)
     estimated = f"; {len(scene.bearing.estimated)} of its dimensions are estimated, see the comments" if scene.bearing.estimated else ""
     click.echo(f"{out} written{estimated}\nnext: bearing-sim run {out}")

@@ -6,6 +6,7 @@ from pathlib import Path
 import click
 
 from bearing_sim.cli.options import executor_options, json_option, picture_option, scene_argument, set_option, table_option
+from bearing_sim.cli.outputs import WritingCommand
 from bearing_sim.cli.reporting import (
     Points,
     UsageError,
@@ -13,7 +14,6 @@ from bearing_sim.cli.reporting import (
     as_file_error,
     as_usage_error,
     command_line,
-    exit_on_sigterm,
     print_json,
     print_rows,
     warn,
@@ -22,7 +22,7 @@ from bearing_sim.cli.reporting import (
 _NONE = "none"
 
 
-@click.command("design")
+@click.command("design", cls=WritingCommand)
 @scene_argument
 @click.option("--slip-below", required=True, metavar="SLIP", help="Largest cage slip, such as 10%.")
 @click.option("--life-above", required=True, metavar="LIFE", help="Smallest life, such as 300h; the kind of life is chosen in the scene.")
@@ -56,7 +56,7 @@ _NONE = "none"
 @click.option(
     "--verify-level", metavar="LEVEL", help="Level that verifies edges and centre of each interval, or none [default: planar; of planar, spatial]."
 )
-@table_option("design.parquet", "Map; also written: PATH.csv, PATH_borders and PATH_checks (.parquet, .csv), and")
+@table_option("design.parquet", "Map; also written: PATH.csv, PATH_borders and PATH_checks (.parquet, .csv), and", "_borders", "_checks")
 @executor_options
 @picture_option("Draw the results")
 @json_option
@@ -104,6 +104,7 @@ def design(
         announce_compilation(scene)
         from bearing_sim.studies import design as studied
         from bearing_sim.sweep.point import DURATION
+        from bearing_sim.sweep.table import require_same_study, study_digest
 
         axes = list(studied.default_axes(scene))
         for place, (path, text) in enumerate(((studied.LOW, radii), (studied.D_VALUE, d_values))):
@@ -112,17 +113,21 @@ def design(
     limits = _limits(scene, slip_below, life_above, speed_tolerance, load_tolerance, tolerances, points, points_file)
     verify_level = _verify_level(verify_level, scene)
     raceways = Points("raceways", 0)
-    with as_file_error(), exit_on_sigterm(), as_usage_error(SceneError, ClusterError, JournalInUse):
-        with Journal(out.with_suffix(".journal")) as journal, raceways:
+    with as_file_error(), as_usage_error(SceneError, ClusterError, JournalInUse):
+        study = study_digest("design", scene, limits, [(axis.field.path, axis.values) for axis in axes], DURATION, verify_level)
+        require_same_study(out, study, studied.TABLES)
+        with Journal(out.path.with_suffix(".journal")) as journal, raceways:
             designed = studied.design(
                 scene_name, overrides, limits, *axes, journal, DURATION, workers, dask, raceways.update, verify_level=verify_level
             )
-        designed.grid.about["command"] = command_line()
-        files = studied.write_design(out, designed)
+        designed.grid.about.update(command=command_line(), study=study)
+        require_same_study(out, study, studied.TABLES)
+        files = studied.write_design(out.path, designed)
         beside = _beside(scene, limits)
         if picture is not None:
-            studied.draw(picture, designed, beside)
-            files.append(picture)
+            with picture.draft() as draft:
+                studied.draw(draft, designed, beside)
+            files.append(picture.path)
     report = _report_design(scene, designed, beside, files)
     if as_json:
         print_json(report)

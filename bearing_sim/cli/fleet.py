@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from bearing_sim.cli.options import allow_outside_option, channel_sources, executor_options, json_option, log_options, set_option, table_option
+from bearing_sim.cli.outputs import WritingCommand
 from bearing_sim.cli.reporting import (
     FailedRun,
     Points,
@@ -16,7 +17,6 @@ from bearing_sim.cli.reporting import (
     as_file_error,
     as_usage_error,
     command_line,
-    exit_on_sigterm,
     print_json,
     print_rows,
     warn,
@@ -26,7 +26,7 @@ _SHOWN = ("bearing", "running_hours", "revolutions", "slip_mean", "slip_p95", "s
 _MOST_SHOWN = 40
 
 
-@click.command("replay-fleet")
+@click.command("replay-fleet", cls=WritingCommand)
 @click.argument("paths", nargs=-1, type=click.Path(path_type=Path), metavar="[LOGS]...")
 @allow_outside_option
 @click.option("--scene", "scene_name", metavar="SCENE", help="Bundled scene or YAML file of every bearing that --bearings does not give another.")
@@ -59,7 +59,7 @@ def replay_fleet(paths, scene_name, overrides, bearings_path, mapping_name, by, 
     from bearing_sim.fleet.replay import OK, UNKNOWN, replay_fleet
     from bearing_sim.inputs.csv_text import TableError
     from bearing_sim.scene.loader import SceneError
-    from bearing_sim.sweep.table import write_table
+    from bearing_sim.sweep.table import require_same_study, study_digest, write_table
     from bearing_sim.sweep.tasks import ClusterError, Journal, JournalInUse
 
     if not paths and bearings_path is None:
@@ -67,24 +67,28 @@ def replay_fleet(paths, scene_name, overrides, bearings_path, mapping_name, by, 
     if scene_name is None and bearings_path is None:
         raise UsageError("no bearing; give --scene, or --bearings TABLE.csv with a column scene")
     reading = _reading(mapping_name, *channel_sources(**channels), joint, stamps)
+    asked = [str(path.absolute()) for path in (*paths, *([bearings_path] if bearings_path is not None else []))]
     with as_usage_error(TableError, NoLogs), as_file_error():
         rows = read_bearings(bearings_path) if bearings_path is not None else []
         if not paths:
             rows = [row | {"log": str(bearings_path.parent / row["log"])} for row in rows]
             paths = list(dict.fromkeys(path for row in rows if (path := Path(row["log"])).exists()))
-        results = (out.with_suffix(".parquet"), out.with_suffix(".csv"), out.with_suffix(".journal"))
+        results = tuple(out.path.with_suffix(suffix) for suffix in (".parquet", ".csv", ".journal"))
         known = (*results, *([bearings_path] if bearings_path is not None else []))
         logs = find_logs([path.absolute() for path in paths], by, known) if paths else []
         rows = [row | {"log": str(Path(row["log"]).absolute()) if Path(row["log"]).exists() else row["log"]} for row in rows]
         bearings = bearings_of(logs, rows, scene_name, overrides, reading, str(bearings_path or ""))
     _require_a_scene(bearings)
+    study = study_digest("fleet", asked, sorted({repr(bearing.scene) for bearing in bearings}), by, reading, longest_gap)
     announce_compilation()
     reading_bar, replay_bar = Points("reading", len(bearings)), Points("replay", len(bearings))
     bars = {"reading": reading_bar, "replay": replay_bar}
-    with as_file_error(), exit_on_sigterm(), as_usage_error(SceneError, ClusterError, JournalInUse):
-        with Journal(out.with_suffix(".journal")) as journal, reading_bar, replay_bar:
+    with as_file_error(), as_usage_error(SceneError, ClusterError, JournalInUse):
+        require_same_study(out, study)
+        with Journal(out.path.with_suffix(".journal")) as journal, reading_bar, replay_bar:
             table = replay_fleet(bearings, longest_gap, journal, workers, dask, lambda act, done, total: bars[act].update(done, total), _build_table)
-        files = write_table(out, table._replace(about=table.about | {"command": command_line()}))
+        require_same_study(out, study)
+        files = write_table(out.path, table._replace(about=table.about | {"command": command_line(), "study": study}))
     report = _report(table, replay_bar, files)
     if as_json:
         print_json(report | {"bearings": table.rows})

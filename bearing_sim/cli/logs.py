@@ -7,10 +7,10 @@ from pathlib import Path
 import click
 
 from bearing_sim.cli.options import json_option
+from bearing_sim.cli.outputs import OutputRecording, WritingCommand
 from bearing_sim.cli.reporting import (
     FailedRun,
     UsageError,
-    announce_replacement,
     as_file_error,
     as_usage_error,
     print_json,
@@ -19,11 +19,11 @@ from bearing_sim.cli.reporting import (
 )
 
 
-@click.command("import-csv")
+@click.command("import-csv", cls=WritingCommand)
 @click.argument("data", type=click.Path(path_type=Path), metavar="DATA.csv")
 @click.argument("mapping_name", metavar="[MAPPING]", required=False)
 @click.option(
-    "-o", "--out", type=click.Path(path_type=Path), metavar="OUT.mcap", help="Log of shaft speed and radial load; with --guess the mapping, OUT.yaml."
+    "-o", "--out", type=OutputRecording(), metavar="OUT.mcap", help="Log of shaft speed and radial load; with --guess the mapping, OUT.yaml."
 )
 @click.option("--guess", "guesses", is_flag=True, help="Instead of importing, guess a mapping from the headings, and say why and what is not clear.")
 @click.option("--load", metavar="FORCE", help="Radial load throughout, such as 800N, where none was measured.")
@@ -67,17 +67,15 @@ def import_csv(
     if out is None:
         raise UsageError("no output file; give -o OUT.mcap")
     with as_usage_error(SceneError, TableError), as_file_error():
-        if out.exists() and data.exists() and out.samefile(data):
-            raise UsageError(f"{out} is the input table; choose another file")
-        announce_replacement(out)
         overrides = [*overrides, *(f"{name}={_flow(tree)}" for name, tree in _constants(given).items())]
         if only:
             overrides.append(f"only={_flow(_pairs('--only', only))}")
         overrides += [f"{name}={_flow(text)}" for name, text in (("delimiter", delimiter), ("decimal", decimal)) if text is not None]
         mapping, text = load_mapping(mapping_name, overrides)
         table = read_table(data, mapping)
+        out.check()  # again, now that mapping and table have been read
         with progress_bar(f"importing {data.name}", sum(map(len, table.stamps.values()))) as progress:
-            write_log(table, text, data, out, progress)
+            write_log(table, text, data, out.path, progress, replace=out.force)
     if as_json:
         print_json(_report(table, mapping, out))
     else:
@@ -133,13 +131,12 @@ def _guess(data, out, as_json, *decided) -> None:
     from bearing_sim.inputs.csv_guess import guess
     from bearing_sim.inputs.csv_text import TableError
 
-    if out is not None and out.suffix.lower() not in (".yaml", ".yml"):
+    if out is not None and out.path.suffix.lower() not in (".yaml", ".yml"):
         raise UsageError(f"-o {out}: a mapping is a YAML file; expected a name that ends in .yaml")
     with as_usage_error(TableError), as_file_error():
         found = guess(data, *decided)
         if out is not None:
-            announce_replacement(out)
-            out.write_text(found.text, encoding="utf-8")
+            out.write_text(found.text)
     if as_json:
         print_json({"mapping": found.tree, "reasons": found.reasons, "questions": found.questions, "not_used": found.left, "out": out and str(out)})
     else:
@@ -195,8 +192,8 @@ def _print(table, mapping, data, out) -> None:
     print_table(f"{data.name} by {mapping.name}", rows)
 
 
-@click.command("mission")
-@click.option("-o", "--out", required=True, type=click.Path(path_type=Path), metavar="OUT.mcap", help="Log of the inputs.")
+@click.command("mission", cls=WritingCommand)
+@click.option("-o", "--out", required=True, type=OutputRecording(), metavar="OUT.mcap", help="Log of the inputs.")
 @click.option("--duration", default=60.0, show_default=True, type=click.FloatRange(1, 3600), metavar="S", help="Duration; all phases scale with it.")
 @click.option("--rate", default=50.0, show_default=True, type=click.FloatRange(1, 2000), metavar="HZ", help="Rate of the speed and load messages.")
 @click.option("--start", type=click.DateTime(), help="Start time in UTC [default: now].")
@@ -211,9 +208,8 @@ def mission(out, duration, rate, start, as_json):
     from bearing_sim.inputs.mission import write_mission
 
     start_ns = time.time_ns() if start is None else int(start.replace(tzinfo=UTC).timestamp()) * 1_000_000_000
-    announce_replacement(out)
     with as_file_error(), progress_bar("writing the mission", duration) as progress:
-        messages = write_mission(out, start_ns, duration, rate, progress)
+        messages = write_mission(out.path, start_ns, duration, rate, progress, replace=out.force)
     if as_json:
         print_json({"out": str(out), "synthetic": True, "duration_seconds": duration, "rate": rate, "messages": messages, "start_ns": start_ns})
     else:

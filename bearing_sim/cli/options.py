@@ -2,11 +2,11 @@
 """Options and arguments that several commands have."""
 
 from collections.abc import Callable
-from pathlib import Path
 
 import click
 
-from bearing_sim.cli.reporting import UsageError, as_usage_error
+from bearing_sim.cli.outputs import OutputFile, OutputTable
+from bearing_sim.cli.reporting import as_usage_error
 from bearing_sim.files.outside import OPTION, allowing_outside
 from bearing_sim.scene.fidelity import LEVELS
 
@@ -116,11 +116,22 @@ def executor_options(command: Callable) -> Callable:
     return click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="Number of processes [default: all cores].")(command)
 
 
-def table_option(default: str, beside: str) -> Callable:
-    """Return the option for the output path of many points; ``beside`` is the part of its help that names the files."""
-    kind = click.Path(path_type=Path)
+def table_option(default: str, beside: str, *parts: str) -> Callable:
+    """Return the option for the output path of many points.
+
+    Parameters
+    ----------
+    default : name of the table.
+    beside : the part of its help that names the files.
+    parts : what is added to the name for further tables.
+    """
     text = f"{beside} PATH.journal, from which an interrupted run resumes."
-    return click.option("-o", "--out", type=kind, default=Path(default), show_default=True, metavar="PATH.parquet", help=text)
+    return click.option("-o", "--out", type=OutputTable(*parts), default=default, show_default=True, metavar="PATH.parquet", help=text)
+
+
+def csv_option(written: str) -> Callable:
+    """Return the option for the path of a CSV table; ``written`` is its help."""
+    return click.option("--csv", "table", type=OutputFile(), metavar="PATH.csv", help=written)
 
 
 def picture_option(drawn: str, *names: str) -> Callable:
@@ -131,11 +142,5 @@ def picture_option(drawn: str, *names: str) -> Callable:
     drawn : what it draws, as in "Draw the map".
     names : other names, such as ``-o``.
     """
-
-    def checked(context, parameter, path):
-        if path is not None and path.suffix.lower() not in PICTURES:
-            raise UsageError(f"{max(parameter.opts[:2], key=len)} {path}: expected a name that ends in {', '.join(PICTURES)}")
-        return path
-
-    kind, text = click.Path(path_type=Path), f"{drawn} ({', '.join(PICTURES[:-1])} or {PICTURES[-1]})."
-    return click.option(*names, "--picture", "picture", type=kind, callback=checked, metavar="PATH.png", help=text)
+    text = f"{drawn} ({', '.join(PICTURES[:-1])} or {PICTURES[-1]})."
+    return click.option(*names, "--picture", "picture", type=OutputFile(*PICTURES), metavar="PATH.png", help=text)

@@ -7,12 +7,13 @@ from pathlib import Path
 import click
 
 from bearing_sim.cli.options import picture_option
-from bearing_sim.cli.reporting import Points, UsageError, announce_replacement, as_file_error, as_usage_error, progress_bar
+from bearing_sim.cli.outputs import WritingCommand, default_output
+from bearing_sim.cli.reporting import Points, UsageError, as_file_error, as_usage_error, progress_bar
 
 _TABLES = (".parquet", ".csv")
 
 
-@click.command("plot")
+@click.command("plot", cls=WritingCommand)
 @click.argument("paths", metavar="RESULT...", nargs=-1, required=True, type=click.Path(path_type=Path))
 @picture_option("The picture", "-o", "--out")
 @click.option("--over", type=click.Choice(["time", "load"]), help="Draw over this [default: time for recordings, what was varied for sweeps].")
@@ -34,13 +35,10 @@ def plot(paths, picture, over, panels, band, quantities):
     The table of a sweep (.parquet, or the .csv beside it) has lines for one varied field, maps for two; --over load wants the load varied.
     """
     tables = [path for path in paths if path.suffix.lower() in _TABLES and not path.is_dir()]
-    picture = picture or paths[0].with_suffix(".png")
+    picture = picture or default_output(paths[0].with_suffix(".png"))
     if tables and len(paths) > 1:
         raise UsageError(f"{tables[0]}: a table is drawn alone; only recordings are compared")
     with as_file_error():
-        if any(path.exists() and picture.exists() and picture.samefile(path) for path in paths):
-            raise UsageError(f"{picture} is what is to be drawn; choose another file")
-        announce_replacement(picture)
         if tables:
             if panels or band:
                 raise UsageError("--panel and --band are for recordings; a table has --quantity")
@@ -78,7 +76,8 @@ def _plot_recordings(paths, picture, over, panels, band) -> None:
         courses.append(course)
     scene, names = courses[0].scene, ", ".join(course.name for course in courses)
     title = f"{scene.name} at level {scene.level}: {names}" if len(courses) == 1 else f"{scene.name}: {names}"
-    (draw_over_load if over == "load" else draw_over_time)(picture, courses, title)
+    with picture.draft() as draft:
+        (draw_over_load if over == "load" else draw_over_time)(draft, courses, title)
 
 
 def _band_of(course, samples):
@@ -125,7 +124,8 @@ def _plot_table(path, picture, over, quantities) -> None:
         elif not table.about:
             raise UsageError(f"{path}: there is no .parquet beside it, so what was varied is not known; give --over load, or the .parquet")
         else:
-            draw(picture, table, quantities or QUANTITIES)
+            with picture.draft() as draft:
+                draw(draft, table, quantities or QUANTITIES)
 
 
 _LOAD, _SPEED = "operating.radial_load", "operating.shaft_speed"
@@ -166,4 +166,5 @@ def _plot_over_load(path, picture, table) -> None:
     ]
     about = table.about
     where = f"{about['scene']} {' '.join(about.get('overrides', ()))} at level {about['level']}" if "scene" in about else path.name
-    draw_table_over_load(picture, points, scene, where)
+    with picture.draft() as draft:
+        draw_table_over_load(draft, points, scene, where)

@@ -9,7 +9,9 @@ from pathlib import Path
 import click
 
 from bearing_sim.cli.options import json_option
+from bearing_sim.cli.outputs import OutputFile, WritingCommand
 from bearing_sim.cli.reporting import UsageError, as_file_error, as_usage_error, print_json, print_rows, print_table, progress_bar
+from bearing_sim.files.outputs import Output
 
 _OWN = "bearing_sim"
 
@@ -232,9 +234,9 @@ def _print_comparison(first, second, differences, skipped, agree) -> None:
     click.echo("the recordings agree" if agree else "the recordings differ")
 
 
-@click.command("recover")
+@click.command("recover", cls=WritingCommand)
 @click.argument("broken", type=click.Path(path_type=Path, dir_okay=False), metavar="BROKEN.mcap")
-@click.option("-o", "--out", required=True, type=click.Path(path_type=Path), metavar="GOOD.mcap", help="Recovered file; must not exist.")
+@click.option("-o", "--out", required=True, type=OutputFile(), metavar="GOOD.mcap", help="Recovered file.")
 @json_option
 def recover(broken, out, as_json):
     """Recover everything readable from BROKEN.mcap into GOOD.mcap: a file of a killed writer (RUN.mcap.active), truncated or damaged.
@@ -246,9 +248,10 @@ def recover(broken, out, as_json):
 
     with as_usage_error(RecordingError), as_file_error(), progress_bar(f"recovering {broken.name}", 1.0) as progress:
         found = recover(broken, out, progress)
+        size = out.path.stat().st_size
     lost = "nothing known to be missing" if found.is_sound else found.ends or "parts of it were damaged"
     if as_json:
-        report = {"broken": str(broken), "out": str(out), "broken_size": found.size, "size": out.stat().st_size, "seconds": found.seconds}
+        report = {"broken": str(broken), "out": str(out), "broken_size": found.size, "size": size, "seconds": found.seconds}
         report |= {"messages": found.messages.total(), "messages_by_topic": dict(found.messages), "metadata": list(found.metadata)}
         print_json({**report, "damaged": found.damaged, "damage": found.damage, "was_finished": found.is_finished, "ends": found.ends})
         return
@@ -276,7 +279,7 @@ def with_excerpt(command: Callable) -> Callable:
     return command
 
 
-def export(kind: str, recording: Path, out: Path, columns, no_rollers, every, first, last, as_json) -> None:
+def export(kind: str, recording: Path, out: Output, columns, no_rollers, every, first, last, as_json) -> None:
     """Export a recording as a table of a kind, ``csv`` or ``parquet``, and report it."""
     from bearing_sim.recording.bag import RecordingError
     from bearing_sim.recording.reader import Recording
@@ -287,19 +290,20 @@ def export(kind: str, recording: Path, out: Path, columns, no_rollers, every, fi
     excerpt = Excerpt(tuple(columns), not no_rollers, every, -infinity if first is None else first, infinity if last is None else last)
     with as_usage_error(RecordingError, TableError), as_file_error():
         source = Recording(recording)
-        with progress_bar(f"writing {out.name}", source.duration) as progress:
-            rows = write(source, out, excerpt, progress)
+        with progress_bar(f"writing {out.path.name}", source.duration) as progress, out.draft() as draft:
+            rows = write(source, draft, excerpt, progress)
+        size = out.path.stat().st_size
     if source.unfinished:
         click.echo(f"{recording}: {source.unfinished}", err=True)
     if as_json:
-        print_json({"recording": str(recording), "out": str(out), "rows": rows, "size": out.stat().st_size})
+        print_json({"recording": str(recording), "out": str(out), "rows": rows, "size": size})
     else:
-        click.echo(f"{out}: {rows} samples, {out.stat().st_size / 1e6:.4g} MB")
+        click.echo(f"{out}: {rows} samples, {size / 1e6:.4g} MB")
 
 
-@click.command("to-csv")
+@click.command("to-csv", cls=WritingCommand)
 @with_excerpt
-@click.option("-o", "--out", required=True, type=click.Path(path_type=Path, dir_okay=False), metavar="RUN.csv", help="The table.")
+@click.option("-o", "--out", required=True, type=OutputFile(), metavar="RUN.csv", help="The table.")
 def to_csv(recording, out, columns, no_rollers, every, first, last, as_json):
     """Export the samples of RUN.mcap, a recording of bearing-sim or the node, as a CSV table.
 
@@ -309,9 +313,9 @@ def to_csv(recording, out, columns, no_rollers, every, first, last, as_json):
     export("csv", recording, out, columns, no_rollers, every, first, last, as_json)
 
 
-@click.command("to-parquet")
+@click.command("to-parquet", cls=WritingCommand)
 @with_excerpt
-@click.option("-o", "--out", required=True, type=click.Path(path_type=Path, dir_okay=False), metavar="RUN.parquet", help="The table.")
+@click.option("-o", "--out", required=True, type=OutputFile(), metavar="RUN.parquet", help="The table.")
 def to_parquet(recording, out, columns, no_rollers, every, first, last, as_json):
     """Export the samples of RUN.mcap, a recording of bearing-sim or the node, as a Parquet table.
 

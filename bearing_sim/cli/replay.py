@@ -10,16 +10,15 @@ import click
 
 from bearing_sim.cli.lives import hours
 from bearing_sim.cli.options import allow_outside_option, channel_sources, json_option, log_options, set_option
+from bearing_sim.cli.outputs import OutputFile, OutputRecording, WritingCommand, recording_into
 from bearing_sim.cli.reporting import (
     FailedRun,
     UnknownInputs,
     UsageError,
     announce_compilation,
-    announce_replacement,
     as_file_error,
     as_usage_error,
     command_line,
-    exit_on_sigterm,
     print_json,
     print_table,
     progress_bar,
@@ -33,7 +32,7 @@ _HEADROOM = 1.02  # of a table of operating points above the speeds of a log
 _ROUNDED = 5.0  # [K] to which the oil temperatures of a table are
 
 
-@click.command("replay")
+@click.command("replay", cls=WritingCommand)
 @click.argument("logs", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="IN.mcap...")
 @allow_outside_option
 @click.option("--scene", "scene_name", metavar="SCENE", help="Bundled scene or YAML file.")
@@ -41,8 +40,8 @@ _ROUNDED = 5.0  # [K] to which the oil temperatures of a table are
     "--from-recording", is_flag=True, help="Compute a recorded run again from its recording alone: scene, start and inputs, sample by sample."
 )
 @set_option
-@click.option("-o", "--out", type=click.Path(path_type=Path), metavar="OUT.mcap", help="Record inputs and outputs [default: no recording].")
-@click.option("--rrd", type=click.Path(path_type=Path), metavar="RUN.rrd", help="Also write a view for rerun.")
+@click.option("-o", "--out", type=OutputRecording(), metavar="OUT.mcap", help="Record inputs and outputs [default: no recording].")
+@click.option("--rrd", type=OutputFile(), metavar="RUN.rrd", help="Also write a view for rerun.")
 @click.option("--rate", type=click.FloatRange(min=0, min_open=True), metavar="HZ", help="Outputs per simulated second [default: one per stamp].")
 @click.option(
     "--state-file",
@@ -99,9 +98,7 @@ def replay(
     from bearing_sim.stored_state.state_file import checked_serial
 
     names, constants = channel_sources(**channels)
-    with as_usage_error(SceneError, InputLogError), as_file_error(), exit_on_sigterm():
-        if out is not None and out.exists() and any(log.exists() and out.samefile(log) for log in logs):
-            raise UsageError(f"{out} is the input log; choose another file")
+    with as_usage_error(SceneError, InputLogError), as_file_error():
         for log in logs:
             _require_one_log(log, scene_name)
         scene = load_scene(scene_name, overrides)
@@ -117,15 +114,15 @@ def replay(
             if keeper is not None:
                 stack.callback(keeper.close)
             if out is not None:
-                announce_replacement(out)
+                out.check()  # again, now that scene and logs have been read
                 metadata = {"bearing_sim_replay": {"log": " ".join(names_of)}, COMMAND: {"command": command_line()}}
                 metadata |= {RECORD: keeper.record} if keeper is not None else {}
-                recording = stack.enter_context(McapSink(out, scene, course.start_ns, metadata, replace=True))
+                recording = stack.enter_context(recording_into(out, McapSink(out.path, scene, course.start_ns, metadata, replace=out.force)))
             watchers = []
             if rrd is not None:
                 from bearing_sim.view.worker import RerunFile
 
-                watchers.append(stack.enter_context(RerunFile(scene, rrd, course.start_ns, seconds)))
+                watchers.append(stack.enter_context(RerunFile(scene, stack.enter_context(rrd.draft()), course.start_ns, seconds)))
             announce_compilation(scene)
             choice = _choice(scene, course)
             started = time.perf_counter()
@@ -289,7 +286,7 @@ def reproduce(path: Path, out: Path | None, as_json: bool) -> None:
     Parameters
     ----------
     path : a recording of bearing-sim, finished or not.
-    out : the new recording, or None.
+    out : the `bearing_sim.files.outputs.Output` of the new recording, or None.
     as_json : whether to print JSON.
     """
     from bearing_sim.recording.bag import RecordingError
@@ -299,16 +296,14 @@ def reproduce(path: Path, out: Path | None, as_json: bool) -> None:
     from bearing_sim.runtime import reproduction
     from bearing_sim.stored_state.keeper import RECORD
 
-    with as_usage_error(RecordingError, ValueError), as_file_error(), exit_on_sigterm(), ExitStack() as stack:
+    with as_usage_error(RecordingError, ValueError), as_file_error(), ExitStack() as stack:
         recording = Recording(path)
         sink = _Nowhere()
         if out is not None:
-            if out.exists() and path.exists() and out.samefile(path):
-                raise UsageError(f"{out} is the input recording; choose another file")
-            announce_replacement(out)
+            out.check()  # again, now that the recording has been read
             origin = {"bearing_sim_replay": {"log": path.name, "from_recording": "true"}}
             origin |= {name: record for name, record in recording.records.items() if name == RECORD}
-            sink = stack.enter_context(McapSink(out, recording.scene, recording.start_ns, origin, replace=True))
+            sink = stack.enter_context(recording_into(out, McapSink(out.path, recording.scene, recording.start_ns, origin, replace=out.force)))
         announce_compilation(recording.scene)
         progress = stack.enter_context(progress_bar(f"reproducing {path.name}", recording.duration))
         result = reproduction.reproduce(recording, sink, progress)

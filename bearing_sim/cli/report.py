@@ -5,14 +5,13 @@ from pathlib import Path
 
 import click
 
+from bearing_sim.cli.outputs import OutputFile, WritingCommand, default_output
 from bearing_sim.cli.reporting import as_file_error, as_usage_error
 
 
-@click.command("report")
+@click.command("report", cls=WritingCommand)
 @click.argument("source", type=click.Path(path_type=Path), metavar="RESULT")
-@click.option(
-    "-o", "--out", type=click.Path(path_type=Path), metavar="PATH.html", help="The page [default: RESULT.html, or report.html in a folder]."
-)
+@click.option("-o", "--out", type=OutputFile(), metavar="PATH.html", help="The page [default: RESULT.html, or report.html in a folder].")
 def report(source, out):
     """Make one HTML page of RESULT: scene and bearing, tables, pictures, warnings, where it comes from, and the command that made it.
 
@@ -21,9 +20,10 @@ def report(source, out):
     needs no network and no other file.
     """
     from bearing_sim.studies.page import NoResults
-    from bearing_sim.studies.report_page import write_page
+    from bearing_sim.studies.report_page import page_of
 
-    out = out or (source / "report.html" if source.is_dir() else source.with_suffix(".html"))
+    out = out or default_output(source / "report.html" if source.is_dir() else source.with_suffix(".html"))
     with as_usage_error(NoResults), as_file_error():
-        write_page(source, out)
-    click.echo(f"{out}: {out.stat().st_size / 1e6:.1f} MB")
+        page = page_of(source)
+        out.write_text(page)
+    click.echo(f"{out}: {len(page.encode()) / 1e6:.1f} MB")

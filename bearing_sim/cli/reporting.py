@@ -12,9 +12,10 @@ import sys
 import threading
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
-from pathlib import Path
 
 import click
+
+from bearing_sim.files.outputs import Output
 
 
 class UsageError(click.ClickException):
@@ -71,15 +72,28 @@ def as_file_error() -> Iterator[None]:
 
 @contextmanager
 def exit_on_sigterm() -> Iterator[None]:
-    """Let SIGTERM unwind the program as Ctrl-C does, so that recordings are completed; exit code 143."""
+    """Let SIGTERM unwind the program as Ctrl-C does, so that recordings are completed and drafts removed; exit code 143.
+
+    Further signals of the kind do not disturb this.  The same holds for SIGHUP, which comes when a terminal is closed, unless it is ignored, as it
+    is under nohup; exit code 129.
+    """
     if threading.current_thread() is not threading.main_thread():  # only the main thread may set handlers
         yield
         return
-    before = signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
+
+    def unwind(number, _):
+        signal.signal(number, signal.SIG_IGN)
+        sys.exit(128 + number)
+
+    before = {number: signal.getsignal(number) for number in (signal.SIGTERM, signal.SIGHUP)}
+    for number, handler in before.items():
+        if number == signal.SIGTERM or handler == signal.SIG_DFL:
+            signal.signal(number, unwind)
     try:
         yield
     finally:
-        signal.signal(signal.SIGTERM, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def judged(log, scene):
@@ -150,12 +164,6 @@ def announce_compilation(scene=None) -> None:
             pass
 
 
-def announce_replacement(out: Path) -> None:
-    """Announce on stderr that an existing file will be replaced."""
-    if out.is_file():
-        click.echo(f"{out} exists and will be replaced when the new file is complete", err=True)
-
-
 def suggest_level(scene) -> None:
     """Suggest a faster level on stderr if one gives the same results."""
     from bearing_sim.scene.fidelity import hint
@@ -216,9 +224,9 @@ def _finite(value):
     return value
 
 
-def write_csv(path: Path, rows: Sequence[Mapping]) -> None:
+def write_csv(output: Output, rows: Sequence[Mapping]) -> None:
     """Write rows to a CSV table; the keys of the first row are the columns of all."""
-    with open(path, "w", newline="") as file:
+    with output.draft() as draft, open(draft, "w", newline="") as file:
         writer = csv.DictWriter(file, rows[0])
         writer.writeheader()
         writer.writerows(rows)

@@ -5,18 +5,17 @@ import math
 import shlex
 import time
 from contextlib import ExitStack
-from pathlib import Path
 from typing import NamedTuple
 
 import click
 
 from bearing_sim.cli.lives import life_rows
 from bearing_sim.cli.options import json_option, scene_argument, set_option
+from bearing_sim.cli.outputs import OutputFile, OutputRecording, WritingCommand, recording_into
 from bearing_sim.cli.reporting import (
     Unsettled,
     UsageError,
     announce_compilation,
-    announce_replacement,
     as_failed_run,
     as_file_error,
     as_usage_error,
@@ -47,7 +46,7 @@ _TEMPERATURES = {
 _FLOWS = ("heat_to_oil", "heat_to_ambient")
 
 
-@click.command("run")
+@click.command("run", cls=WritingCommand)
 @scene_argument
 @set_option
 @click.option("--duration", metavar="S", help="Simulated time, such as 0.5 or '300 ms' [default: until slip and life rest, at least 0.5 s].")
@@ -59,8 +58,8 @@ _FLOWS = ("heat_to_oil", "heat_to_ambient")
     metavar="HZ",
     help="Samples per simulated second [default: 1000, fewer if the run takes more than 10 s at least].",
 )
-@click.option("--out", type=click.Path(path_type=Path), metavar="RUN.mcap", help="Record the run.")
-@click.option("--rrd", type=click.Path(path_type=Path), metavar="RUN.rrd", help="Also write a view for rerun.")
+@click.option("--out", type=OutputRecording(), metavar="RUN.mcap", help="Record the run.")
+@click.option("--rrd", type=OutputFile(), metavar="RUN.rrd", help="Also write a view for rerun.")
 @click.option(
     "--uncertainty", type=click.IntRange(2, 65536), metavar="N", help="Also compute ranges of slip and life from N samples of uncertain fields."
 )
@@ -152,13 +151,14 @@ def _sinks(stack, scene, seconds, interval, out, rrd) -> list:
     if out is not None:
         from bearing_sim.recording.writer import COMMAND, McapSink
 
-        announce_replacement(out)
+        out.check()  # again, now that the scene has been read
         metadata = {COMMAND: {"command": command_line()}}
-        sinks.append(stack.enter_context(McapSink(out, scene, start_ns, metadata, replace=True, advance=(_BLOCK * interval, _BLOCK))))
+        sink = McapSink(out.path, scene, start_ns, metadata, replace=out.force, advance=(_BLOCK * interval, _BLOCK))
+        sinks.append(stack.enter_context(recording_into(out, sink)))
     if rrd is not None:
         from bearing_sim.view.worker import RerunFile
 
-        sinks.append(stack.enter_context(RerunFile(scene, rrd, start_ns, seconds)))
+        sinks.append(stack.enter_context(RerunFile(scene, stack.enter_context(rrd.draft()), start_ns, seconds)))
     return sinks
 
 

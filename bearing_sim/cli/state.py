@@ -6,7 +6,9 @@ from pathlib import Path
 import click
 
 from bearing_sim.cli.options import allow_outside_option, json_option, set_option
+from bearing_sim.cli.outputs import OutputFile, WritingCommand
 from bearing_sim.cli.reporting import UsageError, as_file_error, as_usage_error, print_json, print_table
+from bearing_sim.files.outputs import remember_input
 
 _TABLES = (".csv", ".parquet")
 _state_argument = click.argument("name", metavar="STATE")
@@ -113,19 +115,21 @@ def _regimes(totals) -> list[tuple[str, str]]:
     ]
 
 
-@click.command("export")
+@click.command("export", cls=WritingCommand)
 @_state_argument
 @click.option(
-    "-o", "--out", type=click.Path(path_type=Path), required=True, metavar="OUT", help="JSON of the whole state, or the days as CSV or Parquet."
+    "-o",
+    "--out",
+    type=OutputFile(".json", *_TABLES),
+    required=True,
+    metavar="OUT",
+    help="JSON of the whole state, or the days as CSV or Parquet.",
 )
 def export(name, out):
     """Write a stored state to OUT.json, or its totals by UTC day to OUT.csv or OUT.parquet."""
     path = _path_of(name)
-    state, suffix = _read(path), out.suffix.lower()
-    if suffix not in (".json", *_TABLES):
-        raise UsageError(f"--out {out}: expected a name that ends in .json, .csv or .parquet")
-    if out.exists() and out.samefile(path):
-        raise UsageError(f"{out} is the state file itself; choose another file")
+    remember_input(path)
+    state, suffix = _read(path), out.path.suffix.lower()
     days = _days(path, state)
     with as_file_error():
         if suffix == ".json":
@@ -135,7 +139,8 @@ def export(name, out):
         else:
             from bearing_sim.stored_state.history import export_days
 
-            export_days(out, days)
+            with out.draft() as draft:
+                export_days(draft, days, as_parquet=suffix == ".parquet")
     click.echo(f"{out}: {len(days)} day{'s' * (len(days) != 1)}")
 
 

@@ -6,7 +6,17 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.cli.options import allow_outside_option, executor_options, json_option, level_type, picture_option, scene_argument, set_option
+from bearing_sim.cli.options import (
+    allow_outside_option,
+    csv_option,
+    executor_options,
+    json_option,
+    level_type,
+    picture_option,
+    scene_argument,
+    set_option,
+)
+from bearing_sim.cli.outputs import OutputFolder, OutputJournal, OutputTable, WritingCommand
 from bearing_sim.cli.reporting import (
     FailedRun,
     Points,
@@ -16,7 +26,6 @@ from bearing_sim.cli.reporting import (
     as_file_error,
     as_usage_error,
     command_line,
-    exit_on_sigterm,
     judged,
     print_json,
     print_rows,
@@ -27,10 +36,11 @@ from bearing_sim.cli.reporting import (
     warn_of_scene,
     write_csv,
 )
+from bearing_sim.files.outputs import Output
 
 
-@click.command("deng2017")
-@click.option("-o", "--out", type=click.Path(path_type=Path), default=Path("deng2017"), show_default=True, metavar="FOLDER", help="Output folder.")
+@click.command("deng2017", cls=WritingCommand)
+@click.option("-o", "--out", type=OutputFolder(), default="deng2017", show_default=True, metavar="FOLDER", help="Output folder.")
 @set_option
 @click.option("--quick", is_flag=True, help="Few points and short runs, to check that everything works.")
 @executor_options
@@ -45,11 +55,12 @@ def deng2017(out, overrides, quick, workers, dask, as_json):
     from bearing_sim.sweep.tasks import ClusterError, JournalInUse
 
     announce_compilation()
-    from bearing_sim.studies.deng2017.run import run_study
+    from bearing_sim.studies.deng2017.run import require_same_study, run_study
 
     points = Points("deng2017", 0)
-    with as_file_error(), exit_on_sigterm(), as_usage_error(SceneError, ClusterError, JournalInUse), points:
-        findings = run_study(out, quick, workers, dask, points.update, overrides)
+    with as_file_error(), as_usage_error(SceneError, ClusterError, JournalInUse), points:
+        require_same_study(out, quick, overrides)
+        findings = run_study(out.path, quick, workers, dask, points.update, overrides)
     if as_json:
         print_json({"folder": str(out), "computed": points.computed, "claims": [finding._asdict() for finding in findings]})
         return
@@ -109,7 +120,7 @@ def _print_damage(log, name, found) -> None:
     print_rows(f"{log.name}, {name}: damage in millionths of the life, by level", columns, rows)
 
 
-@click.command("misalignment")
+@click.command("misalignment", cls=WritingCommand)
 @allow_outside_option
 @click.argument("scene_name", metavar="[SCENE]", default="deng2017_table1")
 @set_option
@@ -117,7 +128,7 @@ def _print_damage(log, name, found) -> None:
 @click.option("--points", default=7, show_default=True, type=click.IntRange(2, 1000), help="Number of misalignments, starting at 0.")
 @click.option("--crown", "crowns", multiple=True, metavar="LAW", help="Value of bearing.roller.crown; can be repeated [default: none, iso_log].")
 @click.option("--slices", default=30, show_default=True, type=click.IntRange(5, 400), help="Slices per roller (ISO/TS 16281: at least 30).")
-@click.option("--csv", "table", type=click.Path(path_type=Path), metavar="PATH.csv", help="Write the results to a table.")
+@csv_option("Write the results to a table.")
 @picture_option("Draw the results")
 @json_option
 def misalignment(scene_name, overrides, largest, points, crowns, slices, table, picture, as_json):
@@ -142,7 +153,8 @@ def misalignment(scene_name, overrides, largest, points, crowns, slices, table, 
         if picture is not None:
             from bearing_sim.studies.misalignment import draw
 
-            draw(picture, f"{scene_name} {' '.join(overrides)}: misalignment of the inner ring, {slices} slices", found)
+            with picture.draft() as draft:
+                draw(draft, f"{scene_name} {' '.join(overrides)}: misalignment of the inner ring, {slices} slices", found)
     if as_json:
         print_json({"scene": scene_name, "slices": slices, "points": rows})
     else:
@@ -177,7 +189,7 @@ def _print_misalignment(name, rows) -> None:
     click.echo("pressures, tilt and skew: time average of the largest value at each instant; no slip: life by slices in quasi-static equilibrium")
 
 
-@click.command("support")
+@click.command("support", cls=WritingCommand)
 @allow_outside_option
 @click.argument("scene_name", metavar="[SCENE]", default="deng2017_table1")
 @set_option
@@ -185,7 +197,7 @@ def _print_misalignment(name, rows) -> None:
 @click.option("--to", "highest", default=52000.0, show_default=True, type=click.FloatRange(1.0), metavar="RPM", help="Highest shaft speed.")
 @click.option("--points", default=29, show_default=True, type=click.IntRange(2, 1000), help="Number of speeds.")
 @click.option("--level", default="planar", show_default=True, type=click.Choice(["planar", "spatial"]), help="Level with vibration.")
-@click.option("--csv", "table", type=click.Path(path_type=Path), metavar="PATH.csv", help="Write the results to a table.")
+@csv_option("Write the results to a table.")
 @picture_option("Draw the results")
 @json_option
 def support(scene_name, overrides, lowest, highest, points, level, table, picture, as_json):
@@ -213,7 +225,8 @@ def support(scene_name, overrides, lowest, highest, points, level, table, pictur
         if picture is not None:
             from bearing_sim.studies.support import draw
 
-            draw(picture, f"{' '.join([scene_name, *overrides])}: response over speed, level {level}", found)
+            with picture.draft() as draft:
+                draw(draft, f"{' '.join([scene_name, *overrides])}: response over speed, level {level}", found)
     if as_json:
         print_json({"scene": scene_name, "level": level, "points": rows})
     else:
@@ -235,8 +248,8 @@ def _response_row(one, relative) -> dict:
     }
 
 
-@click.command("situations")
-@click.option("--out", type=click.Path(path_type=Path), required=True, metavar="FOLDER", help="Folder for NAME.rrd and NAME.png.")
+@click.command("situations", cls=WritingCommand)
+@click.option("--out", type=OutputFolder(), required=True, metavar="FOLDER", help="Folder for NAME.rrd and NAME.png.")
 @click.option("--only", "names", multiple=True, metavar="NAME", help="Run only this situation; can be repeated.")
 @click.option("--size", type=(int, int), default=(1600, 1000), show_default=True, metavar="W H", help="Size of the pictures [px].")
 @click.option("--pictures/--no-pictures", default=True, show_default=True, help="Pictures need a Vulkan driver; a software driver is sufficient.")
@@ -256,15 +269,20 @@ def situations(out, names, size, pictures, as_json):
     announce_compilation()
     report = {}
     with as_file_error():
-        out.mkdir(parents=True, exist_ok=True)
-        for name in names or known:
-            situation, rrd = known[name], out / f"{name}.rrd"
-            report[name] = _run(situation, rrd)
+        views = {name: Output(out.path / f"{name}.rrd", out.force) for name in names or known}
+        drawn = {name: Output(out.path / f"{name}.png", out.force) for name in names or known}
+        out.path.mkdir(exist_ok=True)
+        for each in (*views.values(), *drawn.values()):
+            each.check()
+        for name, view in views.items():
+            situation, rrd = known[name], view.path
+            with view.draft() as draft:
+                report[name] = _run(situation, draft)
             if pictures:
                 try:
                     with HeadlessViewer(rrd, size) as viewer:
                         viewer.seek(situation.picture_at)
-                        (out / f"{name}.png").write_bytes(viewer.png())
+                        drawn[name].write_bytes(viewer.png())
                         problems = viewer.problems()
                 except ViewerFailed as error:
                     raise FailedRun(f"{rrd} is written, but no picture could be made: {error}") from None
@@ -298,8 +316,6 @@ def _run(situation, rrd: Path) -> dict:
                 else:
                     sink.write_event(item)
                     kinds.append(item.kind)
-    if sink.failure:
-        raise FailedRun(f"{rrd}: {sink.failure}")
     return _figures(situation, np.concatenate(blocks), residuals, kinds)
 
 
@@ -376,12 +392,12 @@ def _print_slices(name, found) -> None:
     print_rows(f"{name}: results by number of slices", columns, rows)
 
 
-@click.command("friction")
+@click.command("friction", cls=WritingCommand)
 @allow_outside_option
 @click.argument("scene_name", metavar="[SCENE]", required=False)
 @set_option
 @click.option("--series", metavar="SERIES", help="Series of SCENE's bearing: 10, 2, 3, 22 or 23 [default: that in its name].")
-@click.option("--csv", "table", type=click.Path(path_type=Path), metavar="PATH.csv", help="Write all operating points to a table.")
+@csv_option("Write all operating points to a table.")
 @json_option
 def friction(scene_name, overrides, series, table, as_json):
     """Compare the frictional moment with makers' models, for the bearings of the catalogue or for SCENE at its operating point.
@@ -480,12 +496,12 @@ def _print_thermal_speeds(speeds) -> None:
     print_rows("thermal reference speed, rpm (ISO 15312)", columns, rows, words=("bearing",))
 
 
-@click.command("scenes")
+@click.command("scenes", cls=WritingCommand)
 @click.option("--count", default=500, show_default=True, type=click.IntRange(1, 1_000_000), help="Random scenes.")
 @click.option("--level", type=level_type, default="slip", show_default=True, help="Level of fidelity.")
 @click.option("--seed", default=0, show_default=True, type=click.IntRange(0), help="Seed of the scenes.")
 @click.option("--at-most", default="100 s", show_default=True, metavar="S", help="Longest simulated time of a scene.")
-@click.option("--journal", type=click.Path(path_type=Path), metavar="PATH", help="File from which an interrupted study resumes.")
+@click.option("--journal", type=OutputJournal(), metavar="PATH", help="File from which an interrupted study resumes.")
 @click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="Number of processes [default: all cores].")
 @json_option
 def scenes(count, level, seed, at_most, journal, workers, as_json):
@@ -497,7 +513,7 @@ def scenes(count, level, seed, at_most, journal, workers, as_json):
 
     announce_compilation()
     with Points(f"{count} scenes at level {level}", count) as points:
-        report = run_scenes(count, level, seed, seconds_of(at_most, "--at-most"), journal, workers, points.update)
+        report = run_scenes(count, level, seed, seconds_of(at_most, "--at-most"), journal and journal.path, workers, points.update)
     if as_json:
         print_json(
             {"level": level, "settled": report.settled, "counts": report.counts, "others": [[one._asdict(), *why] for one, *why in report.others]}
@@ -571,13 +587,13 @@ def _errors(one) -> str:
     return f"off by {100 * one['median']:.2g} % in the median, {100 * one['p95']:.2g} % at 95 %, {100 * one['largest']:.2g} % at most"
 
 
-@click.command("clearance")
+@click.command("clearance", cls=WritingCommand)
 @scene_argument
 @set_option
 @click.option("--speed", "speeds", metavar="START:STOP:N", help="Shaft speeds [default: 9 from 20 to 120 % of the scene's].")
 @click.option("--load", "loads", metavar="START:STOP:N", help="Radial loads, or one [default: 7 from 0.5 to 3.5 times the scene's].")
 @click.option("--life-above", default="10 h", show_default=True, metavar="LIFE", help="Life below which it counts as lost.")
-@click.option("-o", "--out", type=click.Path(path_type=Path), metavar="PATH.parquet", help="Also write the table, and PATH.csv.")
+@click.option("-o", "--out", type=OutputTable(), metavar="PATH.parquet", help="Also write the table, and PATH.csv.")
 @picture_option("Draw the map; lines with one load")
 @json_option
 def clearance(scene_name, overrides, speeds, loads, life_above, out, picture, as_json):
@@ -599,23 +615,27 @@ def clearance(scene_name, overrides, speeds, loads, life_above, out, picture, as
     warn_of_scene(scene)
     announce_compilation()
     from bearing_sim.studies.clearance_map import LOAD, SPEED, draw, in_words, map_clearance
-    from bearing_sim.sweep.table import write_table
+    from bearing_sim.sweep.table import require_same_study, study_digest, write_table
 
     operating = scene.operating
     defaults = (SPEED, speeds or _from_to(operating.shaft_speed, 0.2, 1.2, 9)), (LOAD, loads or _from_to(operating.radial_load, 0.5, 3.5, 7))
     with as_usage_error(FieldError, ValueError):
         grid = [sorted(read_axis(f"{field}={text}").values) for field, text in defaults]
         least = to_si(life_above, "h")
-    files = []
+    files, study = [], study_digest("clearance", scene, grid, least)
+    if out is not None:
+        require_same_study(out, study)
     with progress_bar("points", math.prod(map(len, grid))) as show, as_usage_error(ValidationError):
         found = map_clearance(scene, *grid, least, show)
     with as_file_error():
         if out is not None:
-            table = found.table._replace(about=found.table.about | {"command": command_line()})
-            files += write_table(out, table)
+            require_same_study(out, study)
+            table = found.table._replace(about=found.table.about | {"command": command_line(), "study": study})
+            files += write_table(out.path, table)
         if picture is not None:
-            draw(picture, _title(scene, overrides), found)
-            files.append(picture)
+            with picture.draft() as draft:
+                draw(draft, _title(scene, overrides), found)
+            files.append(picture.path)
     words = in_words(found)
     if as_json:
         losses = [each._asdict() for each in found.losses]
@@ -669,7 +689,7 @@ def _print_clearances(table) -> None:
 _SHOWN = 12  # reasons per table
 
 
-@click.command("extremes")
+@click.command("extremes", cls=WritingCommand)
 @click.option("--samples", default=500, show_default=True, type=click.IntRange(0, 1_000_000), help="Scenes of the Latin hypercube per level.")
 @click.option("--level", "levels", multiple=True, type=level_type, help="Study this level; can be repeated [default: all].")
 @click.option("--seed", default=0, show_default=True, type=click.IntRange(0), help="Seed of the Latin hypercube.")
@@ -677,7 +697,7 @@ _SHOWN = 12  # reasons per table
 @click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="Number of processes [default: all cores].")
 @json_option
 @picture_option("Draw the map")
-@click.option("--csv", "table", type=click.Path(path_type=Path), metavar="PATH.csv", help="Write all cases, one per line.")
+@csv_option("Write all cases, one per line.")
 def extremes(samples, levels, seed, long, workers, as_json, picture, table):
     """Run scenes at the extremes of all parameters and report which finish, are step-limited, are refused or fail.
 
@@ -694,7 +714,8 @@ def extremes(samples, levels, seed, long, workers, as_json, picture, table):
         if picture is not None:
             from bearing_sim.studies.extremes import draw
 
-            draw(picture, outcomes)
+            with picture.draft() as draft:
+                draw(draft, outcomes)
     if as_json:
         print_json(report)
     else:
@@ -740,7 +761,7 @@ def _print_extremes(level, results) -> None:
     print_table(f"extremes at level {level}, {results['core_seconds']:.0f} s of core time", rows)
 
 
-@click.command("nightly")
+@click.command("nightly", cls=WritingCommand)
 @click.option("--level", "levels", multiple=True, type=level_type, help="Run this level; can be repeated [default: all].")
 @click.option(
     "--samples",
@@ -750,10 +771,8 @@ def _print_extremes(level, results) -> None:
 @click.option("--seed", default=0, show_default=True, type=click.IntRange(0), help="Seed of the Latin hypercube.")
 @click.option("--corners/--no-corners", default=True, show_default=True, help="Also run the named corner cases.")
 @click.option("--long/--no-long", default=True, show_default=True, help="Also make the long runs: 60 s at planar, 10 min at slip, 24 h at steady.")
-@click.option("--journal", type=click.Path(path_type=Path), metavar="PATH", help="File from which an interrupted night resumes.")
-@click.option(
-    "--csv", "table", type=click.Path(path_type=Path), metavar="PATH.csv", help="Write all runs, one per line, with seed and hash of the program."
-)
+@click.option("--journal", type=OutputJournal(), metavar="PATH", help="File from which an interrupted night resumes.")
+@csv_option("Write all runs, one per line, with seed and hash of the program.")
 @click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="Number of processes [default: all cores].")
 @json_option
 def nightly(levels, samples, seed, corners, long, journal, table, workers, as_json):
@@ -767,7 +786,7 @@ def nightly(levels, samples, seed, corners, long, journal, table, workers, as_js
     announce_compilation()
     wanted = {level: SAMPLES[level] if samples is None else samples for level in levels or SAMPLES}
     with as_file_error(), as_usage_error(JournalInUse), Points("nightly", 0) as points:
-        report = run_nightly(wanted, seed, corners, long, journal, workers, points.update)
+        report = run_nightly(wanted, seed, corners, long, journal and journal.path, workers, points.update)
         if table is not None:
             write_csv(table, report.cases)
     if as_json:

@@ -7,6 +7,7 @@ from contextlib import suppress
 import click
 
 from bearing_sim.cli.options import executor_options, json_option, picture_option, scene_argument, set_option, table_option
+from bearing_sim.cli.outputs import WritingCommand
 from bearing_sim.cli.reporting import (
     Points,
     UsageError,
@@ -14,7 +15,6 @@ from bearing_sim.cli.reporting import (
     as_file_error,
     as_usage_error,
     command_line,
-    exit_on_sigterm,
     print_json,
     print_rows,
     seconds_of,
@@ -24,7 +24,7 @@ from bearing_sim.cli.reporting import (
 _SHOWN = ("cage_slip", "rating_life", "inner_load_maximum", "outer_load_maximum", "shaft_power", "status")
 
 
-@click.command("sweep")
+@click.command("sweep", cls=WritingCommand)
 @scene_argument
 @click.option(
     "--vary",
@@ -52,8 +52,8 @@ def sweep(scene_name, axes, overrides, level, duration, out, workers, dask, pict
     """
     from bearing_sim.model.plausibility import plausibility
     from bearing_sim.scene.loader import SceneError, load_scene
-    from bearing_sim.sweep.grid import FieldError, point_count, read_axis
-    from bearing_sim.sweep.tasks import ClusterError, Journal, JournalInUse
+    from bearing_sim.sweep.grid import FieldError, plan_sweep, point_count, read_axis
+    from bearing_sim.sweep.tasks import ClusterError, Journal, JournalInUse, run_tasks
 
     seconds = seconds_of(duration)
     with as_usage_error(FieldError):
@@ -63,34 +63,33 @@ def sweep(scene_name, axes, overrides, level, duration, out, workers, dask, pict
     with suppress(SceneError):  # what varies may be what makes the scene valid
         warn(plausibility(load_scene(scene_name, overrides)))
     announce_compilation()
-    from bearing_sim.sweep.grid import run_sweep
-    from bearing_sim.sweep.table import write_table
+    from bearing_sim.sweep.table import require_same_study, study_digest, write_table
 
     points = Points("sweep", count)
-    with as_file_error(), exit_on_sigterm(), as_usage_error(SceneError, ClusterError, JournalInUse):
-        with Journal(out.with_suffix(".journal")) as journal, points:
-            table = run_sweep(
-                scene_name,
-                varied,
-                overrides,
-                level=level,
-                duration=seconds,
-                journal=journal,
-                workers=workers,
-                dask=dask,
-                progress=points.update,
-            )
-        files = write_table(out, table._replace(about=table.about | {"command": command_line()}))
+    with as_file_error(), as_usage_error(SceneError, ClusterError, JournalInUse):
+        plan = plan_sweep(scene_name, [*overrides, *([f"level={level}"] if level else [])], varied, seconds)
+        study = study_digest("sweep", [(axis.field.path, axis.values) for axis in plan.axes], plan.duration, list(map(_defined, plan.scenes)))
+        require_same_study(out, study)
+        with Journal(out.path.with_suffix(".journal")) as journal, points:
+            table = plan.table(run_tasks(plan.tasks, journal, workers, dask, points.update))
+        require_same_study(out, study)
+        files = write_table(out.path, table._replace(about=table.about | {"command": command_line(), "study": study}))
         if picture is not None:
             from bearing_sim.sweep.table import NotDrawable, draw
 
             with as_usage_error(NotDrawable):
-                draw(picture, table)
+                with picture.draft() as draft:
+                    draw(draft, table)
     report = _report_sweep(table, points, files, picture)
     if as_json:
         print_json(report | {"points": table.rows})
     else:
         _print_sweep(table, report)
+
+
+def _defined(scene):
+    """Return what defines a point: its scene, or the text of the error of an invalid one."""
+    return str(scene) if isinstance(scene, ValueError) else scene
 
 
 def _check_sweep(axes, level) -> None:

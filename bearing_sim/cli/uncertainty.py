@@ -7,12 +7,12 @@ from pathlib import Path
 import click
 
 from bearing_sim.cli.options import executor_options, json_option, level_type, picture_option, scene_argument
+from bearing_sim.cli.outputs import OutputWithJournal, WritingCommand
 from bearing_sim.cli.reporting import (
     Points,
     announce_compilation,
     as_file_error,
     as_usage_error,
-    exit_on_sigterm,
     judged,
     print_json,
     print_table,
@@ -24,7 +24,7 @@ from bearing_sim.cli.reporting import (
 SEED = 2017
 
 
-@click.command("uncertainty")
+@click.command("uncertainty", cls=WritingCommand)
 @scene_argument
 @click.option("--set", "overrides", multiple=True, metavar="FIELD=VALUE", help="Override a field or a range of the scene; can be repeated.")
 @click.option(
@@ -38,7 +38,7 @@ SEED = 2017
 @click.option(
     "--csv",
     "table",
-    type=click.Path(path_type=Path),
+    type=OutputWithJournal(),
     metavar="PATH.csv",
     help="Write all points; also written: PATH.journal, from which an interrupted run resumes.",
 )
@@ -59,8 +59,8 @@ def uncertainty(scene_name, overrides, samples, seed, level, log, stretches, wor
         scene = load_scene(scene_name, overrides)
     warn_of_scene(scene)
     scene, course, unknown = _course(log, scene, stretches) if log is not None else (scene, None, {})
-    with as_file_error(), exit_on_sigterm(), as_usage_error(JournalInUse):
-        with Journal(table and table.with_suffix(".journal")) as journal:
+    with as_file_error(), as_usage_error(JournalInUse):
+        with Journal(table and table.path.with_suffix(".journal")) as journal:
             found, report = bands_of(scene, samples, seed, level, course, journal, workers, dask)
     with as_file_error():
         if table is not None:
@@ -69,7 +69,8 @@ def uncertainty(scene_name, overrides, samples, seed, level, log, stretches, wor
             from bearing_sim.studies.uncertainty import draw
 
             ranges = f"{len(found.ranges)} uncertain fields, {found.design.base} samples, level {found.level}"
-            draw(picture, f"{scene.name}{'' if log is None else f' under {log.name}'}: {ranges}", found, course and course.middles)
+            with picture.draft() as draft:
+                draw(draft, f"{scene.name}{'' if log is None else f' under {log.name}'}: {ranges}", found, course and course.middles)
     if as_json:
         print_json({"scene": scene.name, "log": log and log.name, **report, **unknown})
     else:

@@ -1,17 +1,21 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """``bearing-sim view``: a recording in rerun."""
 
+from contextlib import ExitStack
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import click
 
-from bearing_sim.cli.reporting import FailedRun, UsageError, as_usage_error, exit_on_sigterm, progress_bar
+from bearing_sim.cli.outputs import OutputFile, WritingCommand, default_output
+from bearing_sim.cli.reporting import FailedRun, UsageError, as_file_error, as_usage_error, progress_bar
+from bearing_sim.files.outputs import Output
 
 
-@click.command("view")
+@click.command("view", cls=WritingCommand)
 @click.argument("recording", type=click.Path(path_type=Path), metavar="RUN.mcap")
-@click.option("-o", "--out", type=click.Path(path_type=Path), metavar="RUN.rrd", help="File for rerun [default: next to the recording].")
-@click.option("--screenshot", type=click.Path(path_type=Path), metavar="PICTURE.png", help="Write a picture of the view instead of opening it.")
+@click.option("-o", "--out", type=OutputFile(), metavar="RUN.rrd", help="File for rerun [default: next to the recording].")
+@click.option("--screenshot", type=OutputFile(), metavar="PICTURE.png", help="Write a picture of the view instead of opening it.")
 @click.option("--at", "seconds", type=float, metavar="SECONDS", help="Simulated time of the picture [default: the end].")
 @click.option("--size", default="1600x1000", show_default=True, metavar="WxH", help="Size of the picture [px].")
 @click.option(
@@ -53,20 +57,22 @@ def view(recording, out, screenshot, seconds, size, speed, load, cage, temperatu
     if is_web and screenshot is not None:
         raise UsageError("--web and --screenshot contradict each other; give one of them")
     picture_size = _size(size)
-    unfinished = recording.suffix == ".active"
-    out = out or (recording.with_suffix("") if unfinished else recording).with_suffix(".rrd")
     given = {"speed": (speed, speed_unit), "load": (load, load_unit), "cage_speed": (cage, speed_unit), "temperature": (temperature, None)}
     lines = _lines({role: texts for role, texts in given.items() if texts[0]})
-    with as_usage_error(RecordingError, PermissionError):
-        span = _write(recording, out, seconds, *lines)
-    if screenshot is not None:
-        _take_picture(out, screenshot, span[1] if seconds is None else seconds, picture_size)
-        click.echo(f"{screenshot}")
-        return
+    with as_usage_error(RecordingError), as_file_error(), ExitStack() as stack:
+        if out is None and screenshot is not None:  # nobody has asked for the file itself
+            out = Output(Path(stack.enter_context(TemporaryDirectory())) / "view.rrd")
+        out = out or default_output((recording.with_suffix("") if recording.suffix == ".active" else recording).with_suffix(".rrd"))
+        with out.draft() as draft:
+            span = _write(recording, draft, seconds, *lines)
+        if screenshot is not None:
+            _take_picture(out.path, screenshot, span[1] if seconds is None else seconds, picture_size)
+            click.echo(f"{screenshot}")
+            return
     if is_web:
-        _serve(out, 9090 if web_port is None else web_port, opens)
+        _serve(out.path, 9090 if web_port is None else web_port, opens)
         return
-    _open(out, opens)
+    _open(out.path, opens)
 
 
 _MOST_LEFT_OUT = 30  # lines
@@ -144,20 +150,19 @@ def _convert(source, out: Path) -> None:
                 else:
                     sink.write(item)
                     progress(float(item["time"][-1]) - source.first_time)
-    if sink.failure:
-        raise FailedRun(f"{out}: {sink.failure}")
 
 
-def _take_picture(rrd: Path, picture: Path, seconds: float, size: tuple[int, int]) -> None:
+def _take_picture(rrd: Path, picture: Output, seconds: float, size: tuple[int, int]) -> None:
     from bearing_sim.view.screenshot import HeadlessViewer, ViewerFailed
 
     try:
         with HeadlessViewer(rrd, size) as viewer:
             viewer.seek(seconds)
-            picture.write_bytes(viewer.png())
-            problems = viewer.problems()
+            content, problems = viewer.png(), viewer.problems()
     except ViewerFailed as error:
         raise FailedRun(f"no picture: {error}") from None
+    with as_file_error():
+        picture.write_bytes(content)
     if problems:
         raise FailedRun(f"{picture} was written, but the viewer reports: {'; '.join(problems)}")
 
@@ -170,7 +175,7 @@ def _serve(rrd: Path, port: int, opens: bool | None) -> None:
     from bearing_sim.view.web import NoWebViewer, WebViewer
 
     try:
-        with exit_on_sigterm(), WebViewer(port, recording=rrd) as viewer:
+        with WebViewer(port, recording=rrd) as viewer:
             click.echo(f"{rrd} is shown at {viewer.url} for browsers on this machine; end with Ctrl-C")
             if opens or (opens is None and _has_display()):
                 webbrowser.open(viewer.url)

@@ -18,6 +18,8 @@ FORCE = "--force"
 """Option that allows an output to replace an existing file."""
 _LONGEST_NAME = 200  # [byte] of a file whose draft has the same name with a prefix and a suffix; file systems allow 255
 
+_CHOSEN_BY_SUFFIX = (".png", ".svg", ".pdf")  # Formats that matplotlib chooses by the name; other drafts are taken for no file of their kind.
+
 
 class RefusedOutput(OSError):
     """An output that must not be written where it was asked for; the message says why and what to do.  Nothing was changed."""
@@ -51,7 +53,7 @@ class Output:
     def draft(self) -> Iterator[Path]:
         """Yield the path of an empty draft in the same folder; what is in it at the end takes the place of the file.
 
-        The draft has the suffix of the file.  It is removed if an exception, such as KeyboardInterrupt, leaves the block.
+        The draft of a picture has the suffix of the file.  It is removed if an exception, such as KeyboardInterrupt, leaves the block.
 
         Raises
         ------
@@ -64,7 +66,7 @@ class Output:
         with _draft(target) as draft:
             yield draft
             _keep_mode(draft, target)
-            _synchronise(draft)
+            synchronise(draft)
             checked(self.path, self.force, self.inputs)
             _give_name(draft, target, self.force)
 
@@ -90,7 +92,7 @@ def replaced(path: str | Path) -> Iterator[Path]:
     target = Path(path)
     with _draft(target) as draft:
         yield draft
-        _synchronise(draft)
+        synchronise(draft)
         _give_name(draft, target, force=True)
 
 
@@ -177,7 +179,7 @@ def _draft(target: Path) -> Iterator[Path]:
     nobody, because the lock ended with its process.
     """
     name = target.name if len(os.fsencode(target.name)) <= _LONGEST_NAME else hashlib.sha256(os.fsencode(target.name)).hexdigest()
-    draft = target.with_name(f".{name}.draft{target.suffix[:20]}")
+    draft = target.with_name(f".{name}.draft{target.suffix if target.suffix.lower() in _CHOSEN_BY_SUFFIX else ''}")
     try:
         descriptor = _locked(draft, target)
     except OSError as error:
@@ -187,8 +189,8 @@ def _draft(target: Path) -> Iterator[Path]:
     try:
         yield draft
     finally:
-        with suppress(OSError):
-            if os.path.samestat(os.lstat(draft), os.fstat(descriptor)):
+        with suppress(FileNotFoundError):
+            if os.path.samestat(os.lstat(draft), os.fstat(descriptor)):  # else it has got its name, and this may be that of another writer
                 os.unlink(draft)
         os.close(descriptor)
 
@@ -228,7 +230,7 @@ def _keep_mode(draft: Path, target: Path) -> None:
         os.chmod(draft, stat.S_IMODE(os.stat(target).st_mode))
 
 
-def _synchronise(path: Path) -> None:
+def synchronise(path: Path) -> None:
     """Wait until a file or folder is on the disk."""
     descriptor = os.open(path, os.O_RDONLY | os.O_CLOEXEC)
     try:
@@ -250,4 +252,4 @@ def _give_name(draft: Path, target: Path, force: bool) -> None:
             os.rename(draft, target)  # a file system without links
         else:
             os.unlink(draft)
-    _synchronise(target.parent)
+    synchronise(target.parent)

@@ -632,7 +632,14 @@ def _find_gaps(table: Table, mapping: Mapping, row_spacings: np.ndarray) -> None
             table.gaps.append((channel, table.lines[channel][k + 1], float(spacings[k])))
 
 
-def write_log(table: Table, mapping_text: str, source: str | Path, out: str | Path, progress: Callable[[float], None] = lambda done: None) -> None:
+def write_log(
+    table: Table,
+    mapping_text: str,
+    source: str | Path,
+    out: str | Path,
+    progress: Callable[[float], None] = lambda done: None,
+    replace: bool = True,
+) -> None:
     """Write a table as an input log, each channel at its own stamps, in order of time.
 
     Parameters
@@ -642,12 +649,13 @@ def write_log(table: Table, mapping_text: str, source: str | Path, out: str | Pa
     source : the table's file; its name and checksum go into the metadata.
     out : the recording to write.
     progress : called now and then with the number of messages written.
+    replace : whether an existing recording is replaced.
     """
     origin = {"package_version": package_version(), "git_hash": git_hash()}
     files = sorted(Path(source).rglob("*.parquet")) if Path(source).is_dir() else [Path(source)]
     metadata = {"mapping": mapping_text, "file": Path(source).name, "sha256": checksum(files), **origin}
     messages = sorted((stamp, channel, k) for channel, stamps in table.stamps.items() for k, stamp in enumerate(stamps))
-    with McapFile(out, {METADATA: metadata}, {"generator": "bearing_sim", **origin}, replace=True) as recording:
+    with McapFile(out, {METADATA: metadata}, {"generator": "bearing_sim", **origin}, replace=replace) as recording:
         for done, (stamp, channel, k) in enumerate(messages):
             topic, value = (topics.INPUTS | topics.MEASUREMENTS)[channel], table.values[channel][k]
             content = value if channel == topics.MEASURED else with_values(Inputs(0.0, 0.0, 0.0, 0.0), channel, (value,))

@@ -66,7 +66,12 @@ def _gust(fraction: float) -> float:
 
 
 def write_mission(
-    path: str | Path, start_ns: int, duration: float = DURATION, rate: float = 50.0, progress: Callable[[float], None] = lambda seconds: None
+    path: str | Path,
+    start_ns: int,
+    duration: float = DURATION,
+    rate: float = 50.0,
+    progress: Callable[[float], None] = lambda seconds: None,
+    replace: bool = True,
 ) -> int:
     """Write the mission as an input log.
 
@@ -77,6 +82,7 @@ def write_mission(
     duration : length of the mission [s].
     rate : rate of the messages of speed and load [Hz]; the oil temperature has one per second.
     progress : called repeatedly with the time reached [s].
+    replace : whether an existing recording is replaced.
 
     Returns
     -------
@@ -85,7 +91,7 @@ def write_mission(
     origin = {"package_version": package_version(), "git_hash": git_hash()}
     record = {"synthetic": "true", "duration": repr(duration), "rate": repr(rate), **origin}
     ticks, written = round(duration * rate), 0
-    with McapFile(path, {METADATA: record}, {"generator": "bearing_sim", "synthetic": "true", **origin}, replace=True) as recording:
+    with McapFile(path, {METADATA: record}, {"generator": "bearing_sim", "synthetic": "true", **origin}, replace=replace) as recording:
         next_oil = 0.0
         for tick in range(ticks + 1):
             time = tick / rate

@@ -2,9 +2,12 @@
 """A file to which whole records are appended, and which stays readable when the disk is full or somebody deletes it."""
 
 import errno
+import fcntl
+import itertools
 import os
 import shutil
 import time
+from contextlib import suppress
 from pathlib import Path
 
 from bearing_sim.messages.events import Level
@@ -116,8 +119,35 @@ class AppendFile:
         self.news.append((Level.WARN, "recording.restored", text))
 
 
+def set_aside(path: Path) -> Path | None:
+    """Give the unfinished file of a killed process another name, so that it blocks nobody, and return that; None if a process is writing it.
+
+    Parameters
+    ----------
+    path : of the unfinished file, such as ``run.mcap.active``, which becomes ``run_killed_1.mcap.active``.
+    """
+    name, _, suffixes = path.name.partition(".")
+    descriptor = os.open(path, os.O_RDWR | os.O_CLOEXEC | os.O_NOFOLLOW | os.O_NONBLOCK)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        for number in itertools.count(1):
+            other = path.with_name(f"{name}_killed_{number}.{suffixes}")
+            with suppress(FileExistsError):
+                os.link(path, other)  # unlike renaming, this replaces nothing
+                os.unlink(path)
+                return other
+    except OSError:  # it is locked by its writer, or the file system has no locks or links
+        return None
+    finally:
+        os.close(descriptor)
+
+
 def _created(path: Path) -> int:
-    return os.open(path, os.O_RDWR | os.O_CREAT | os.O_EXCL | getattr(os, "O_CLOEXEC", 0), 0o644)
+    """Return the descriptor of a new file, locked, which tells it from what a killed process has left."""
+    descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o644)
+    with suppress(OSError):  # a file system without locks
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    return descriptor
 
 
 def _write_all(descriptor: int, data: bytes, begin: int) -> None:

@@ -2,7 +2,6 @@
 """The files of a recording: limits that split it, the folder of a bag, and rosbag2's metadata (version 9) inside and beside the files."""
 
 import math
-import os
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path, PurePosixPath
@@ -11,6 +10,7 @@ from typing import NamedTuple
 import yaml
 
 from bearing_sim.files.limits import BAG_METADATA, FileError
+from bearing_sim.files.outputs import replaced
 from bearing_sim.files.reading import read_text, why_not_readable
 from bearing_sim.files.yaml_text import values_of
 
@@ -120,9 +120,8 @@ def bag_metadata(parts: Sequence[Part], topics: Sequence[Iterable[TopicCount]], 
 
 def write_bag_metadata(folder: Path, text: str) -> None:
     """Write ``metadata.yaml`` into a bag's folder; a reader never sees half of it."""
-    draft = folder / f"metadata.yaml{ACTIVE}"
-    draft.write_text(text)
-    os.replace(draft, folder / "metadata.yaml")
+    with replaced(folder / "metadata.yaml") as draft:
+        draft.write_text(text)
 
 
 def _times(part: Part) -> dict:

@@ -2,7 +2,6 @@
 """Recover an MCAP file whose writer was killed, and report what an MCAP file contains and whether it is whole."""
 
 import math
-import os
 import re
 from collections import Counter
 from collections.abc import Callable
@@ -12,7 +11,8 @@ from typing import BinaryIO
 
 from mcap.records import Attachment, Channel, Header, Metadata, Schema
 
-from bearing_sim.recording.bag import ACTIVE, Part, RecordingError, TopicCount, bag_metadata
+from bearing_sim.files.outputs import Output
+from bearing_sim.recording.bag import Part, RecordingError, TopicCount, bag_metadata
 from bearing_sim.recording.bag_reader import BagReader, BagTopic
 from bearing_sim.recording.mcap_format import PROFILE, Message
 from bearing_sim.recording.mcap_reader import McapReader
@@ -123,7 +123,7 @@ def foreign_contents(path: str | Path) -> Contents | None:
     return found
 
 
-def recover(source: str | Path, target: str | Path, progress: Callable[[float], None] = lambda done: None) -> Contents:
+def recover(source: str | Path, target: str | Path | Output, progress: Callable[[float], None] = lambda done: None) -> Contents:
     """Write all that can be read of an MCAP file into a sound one; return what was found.
 
     Messages keep their bytes, times and order.  A chunk or a metadata record in which one bit is flipped is corrected, if the file has checksums
@@ -133,35 +133,29 @@ def recover(source: str | Path, target: str | Path, progress: Callable[[float], 
     Parameters
     ----------
     source : the file, finished or not.
-    target : must not exist.
+    target : must not exist, except if it is an `Output` with force.
     progress : called repeatedly with the fraction that was read.
 
     Raises
     ------
     RecordingError
-        The source is not an MCAP file or contains nothing complete, or the target exists.
+        The source is not an MCAP file or contains nothing complete.
+    RefusedOutput
+        The target must not be written, such as one that exists.
     OSError
         A file cannot be read or written.
     """
-    source, target = Path(source), Path(target)
-    draft = target.with_name(target.name + ACTIVE)
-    for taken in (target, draft):
-        if taken.exists():
-            raise RecordingError(f"{taken} exists; recover into another file")
+    source = Path(source)
+    output = target if isinstance(target, Output) else Output(target, inputs=[source])
     reader = McapReader(source, corrects=True)  # before a draft is made
-    try:
-        with open(draft, "xb") as stream:
-            copy = _Copy(stream)
-            found = _walk(reader, progress, copy.take)
-            if not found.messages and not found.metadata:
-                raise RecordingError(f"{source}: nothing complete in its {found.size} bytes, so there is nothing to recover")
-            if bag := _bag_record(found, target.name):
-                copy.writer.add_metadata(_BAG, bag)
-            copy.writer.finish()
-        os.replace(draft, target)
-    except BaseException:
-        draft.unlink(missing_ok=True)
-        raise
+    with output.draft() as draft, open(draft, "wb") as stream:
+        copy = _Copy(stream)
+        found = _walk(reader, progress, copy.take)
+        if not found.messages and not found.metadata:
+            raise RecordingError(f"{source}: nothing complete in its {found.size} bytes, so there is nothing to recover")
+        if bag := _bag_record(found, output.path.name):
+            copy.writer.add_metadata(_BAG, bag)
+        copy.writer.finish()
     return found
 
 

@@ -14,10 +14,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.files.outputs import synchronise
 from bearing_sim.messages import diagnostics, topics
 from bearing_sim.messages.cdr import message_type
 from bearing_sim.messages.events import Event, Level
-from bearing_sim.recording.append_file import AppendFile
+from bearing_sim.recording.append_file import AppendFile, set_aside
 from bearing_sim.recording.bag import ACTIVE, QOS_TEXT, UNLIMITED, Limits, Part, TopicCount, bag_metadata, write_bag_metadata
 from bearing_sim.recording.mcap_format import Message
 from bearing_sim.recording.mcap_writer import McapWriter, SampleRows, widened
@@ -45,7 +46,8 @@ class McapFile(AbstractContextManager):
 
     While it is written it is called ``<path>.active``; `close` completes it and removes the suffix.  A chunk goes to the operating system as
     soon as it is full, and the chunk in progress every ``flush_every`` seconds.  A killed process therefore loses what was written after the
-    last flush and no more; there is no fsync, so a power cut may lose more.  Methods may be called from several threads.
+    last flush and no more.  There is no fsync, so a power cut may lose more; only a file that replaces another one is on the
+    disk before that.  Methods may be called from several threads.
 
     Parameters
     ----------
@@ -59,8 +61,8 @@ class McapFile(AbstractContextManager):
     Raises
     ------
     OSError
-        The file cannot be written there; FileExistsError if it exists and must not be replaced, or if ``<path>.active`` exists: another
-        run is writing it, or a killed run left it.
+        The file cannot be written there; FileExistsError if it exists and must not be replaced, or if another run is writing ``<path>.active``.
+        What a killed run has left there is set aside under another name.
     """
 
     def __init__(
@@ -79,12 +81,14 @@ class McapFile(AbstractContextManager):
             raise FileExistsError(f"{self.path} exists; a recording does not replace another one")
         self.path.parent.mkdir(parents=True, exist_ok=True)
         active = self.path.with_name(self.path.name + ACTIVE)
+        left = set_aside(active) if active.is_file() else None
         try:
             self._file = AppendFile(active, keep_free)
         except FileExistsError:
-            raise FileExistsError(
-                f"{active} exists: another run is writing it, or a killed run left it; complete it with bearing-sim recover, or rename or remove it"
-            ) from None
+            raise FileExistsError(f"{active} exists, and another run is writing it; wait for its end, or name another file") from None
+        if left is not None:
+            text = f"{active} was left by a killed run and is now {left}; bearing-sim recover completes it"
+            self._file.news.append((Level.WARN, "recording.set_aside", text))
         self._writer = McapWriter(self._file)
         for name, record in (metadata or {}).items():
             self._writer.add_metadata(name, record)
@@ -188,8 +192,17 @@ class McapFile(AbstractContextManager):
             self._counts[name] += len(block)
         return rows, ids
 
-    def __exit__(self, *_) -> None:
-        self.close()
+    def __exit__(self, kind, *_) -> None:
+        """Complete the file, or remove it if an exception ends the block or it cannot be completed."""
+        try:
+            self.close(named=kind is None)
+        except FileExistsError:
+            raise
+        except OSError:
+            self.active_path.unlink(missing_ok=True)
+            raise
+        if kind is not None:
+            self.active_path.unlink(missing_ok=True)
 
     def flush(self) -> None:
         """Hand everything written so far to the operating system.  Raises as `write`."""
@@ -202,8 +215,12 @@ class McapFile(AbstractContextManager):
         """Return (level, kind, text) of what happened to the file since the last call."""
         return [self._file.news.pop(0) for _ in range(len(self._file.news))]
 
-    def close(self) -> None:
+    def close(self, named: bool = True) -> None:
         """Complete the file and give it its name; a second call does nothing.
+
+        Parameters
+        ----------
+        named : whether it gets its name; otherwise it stays ``<path>.active``.
 
         Raises
         ------
@@ -225,7 +242,8 @@ class McapFile(AbstractContextManager):
                 self._file.close()
             if not complete:
                 raise self._error()
-            _rename(self.active_path, self.path, self._replace)
+            if named:
+                _rename(self.active_path, self.path, self._replace)
 
     def part(self) -> Part:
         """Return the entry of this file in the metadata of its bag."""
@@ -266,6 +284,8 @@ def _rename(active: Path, path: Path, replace: bool) -> None:
     """Give a complete file its name, unless another program has taken it meanwhile."""
     try:
         if replace:
+            if path.exists():
+                synchronise(active)  # so that a power cut leaves one of the two whole
             os.replace(active, path)
             return
         try:
@@ -334,11 +354,16 @@ class SplitFiles:
         news, self._news = self._news, []
         return news + self._current.news()
 
-    def close(self) -> None:
-        """Complete the last file and the bag; a second call does nothing."""
+    def close(self, interrupted: bool = False) -> None:
+        """Complete the last file and the bag; a second call does nothing.
+
+        Parameters
+        ----------
+        interrupted : whether the recording ends before its time; then it does not replace an older one, but stays ``<path>.active``.
+        """
         if self._completing is not None:
             self._completing.join()
-        self._current.close()
+        self._current.close(named=not (interrupted and self._current.path.exists()))
         if self._is_bag:
             self._write_metadata([*self._done, (self._current.part(), self._current.topic_counts())])
 
@@ -514,8 +539,8 @@ class McapSink(AbstractContextManager):
         """Complete the recording and give it its name; a second call does nothing."""
         self._files.close()
 
-    def __exit__(self, *_) -> None:
-        self.close()
+    def __exit__(self, kind, *_) -> None:
+        self._files.close(interrupted=kind is not None)
 
     def _time_ns(self, time: float) -> int:
         return self.start_ns + round(time * 1e9)

@@ -15,6 +15,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple, TextIO
 
+from bearing_sim.files.outputs import replaced
 from bearing_sim.stored_state.state import StoredState
 from bearing_sim.stored_state.totals import KAPPA_BOUNDS, LOAD_BOUNDS, SLIP_BOUNDS, Totals
 
@@ -166,16 +167,15 @@ def write_history(path: Path, new: list[dict[str, object]], number: int) -> bool
     rows, last = read_history(path)
     new, move = _not_moved(new, number, last)
     rows = _with(rows, new)
-    draft = parquet.with_name(f"{parquet.name}.new")
-    _write_parquet(draft, rows, {_LAST_MOVE: json.dumps(move).encode()})
-    _replace(draft, parquet)
+    with replaced(parquet) as draft:
+        _write_parquet(draft, rows, {_LAST_MOVE: json.dumps(move).encode()})
     table.unlink(missing_ok=True)
     return True
 
 
-def export_days(out: Path, rows: list[dict[str, object]]) -> None:
-    """Write rows as ``OUT.csv`` or ``OUT.parquet``; ImportError where that needs pyarrow and there is none."""
-    if out.suffix.lower() == ".parquet":
+def export_days(out: Path, rows: list[dict[str, object]], as_parquet: bool) -> None:
+    """Write rows as Parquet or as CSV; ImportError where that needs pyarrow and there is none."""
+    if as_parquet:
         _write_parquet(out, rows, {})
         return
     with open(out, "w", newline="") as text:
@@ -214,17 +214,9 @@ def _with(rows: list[dict[str, object]], new: list[dict[str, object]]) -> list[d
 
 
 def _write_csv(table: Path, rows: list[dict[str, object]], move: Move) -> None:
-    draft = table.with_name(f"{table.name}.new")
-    with open(draft, "w", newline="") as text:
+    with replaced(table) as draft, open(draft, "w", newline="") as text:
         text.write(f"# totals of a bearing by UTC day; last move: {json.dumps(move)}\n")
         _write_rows(text, rows)
-    _replace(draft, table)
-
-
-def _replace(draft: Path, path: Path) -> None:
-    with open(draft, "rb") as written:
-        os.fsync(written.fileno())
-    os.replace(draft, path)
 
 
 def main(arguments: list[str]) -> int:

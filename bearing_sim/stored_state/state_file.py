@@ -18,6 +18,7 @@ from urllib.parse import quote, unquote
 
 import platformdirs
 
+from bearing_sim.files.outputs import replaced, synchronise
 from bearing_sim.messages.events import Level
 from bearing_sim.stored_state.state import VERSION, Damaged, StoredState, migrated, time_text
 
@@ -180,19 +181,11 @@ class StateFile:
         OSError
             It cannot be written; the files are as they were.
         """
-        draft, previous = self.path.with_name(f"{self.path.name}.new"), previous_path(self.path)
-        descriptor = os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o644)
-        try:
-            data = serialised(state)
-            while data:
-                data = data[os.write(descriptor, data) :]
-            os.fsync(descriptor)
-        finally:
-            os.close(descriptor)
-        if self.path.exists():
-            _link_or_rename(self.path, previous)
-        os.replace(draft, self.path)
-        _synchronise(self.path.parent)
+        with replaced(self.path) as draft:
+            draft.write_bytes(serialised(state))
+            synchronise(draft)
+            if self.path.exists():
+                _link_or_rename(self.path, previous_path(self.path))
         self._note_owner(state.writes)
 
     def archive(self, serial: str, time_ns: int) -> Path:
@@ -204,7 +197,7 @@ class StateFile:
         os.replace(self.path, archived)
         for history in self.path.parent.glob(f"{self.path.stem}.days.*"):
             os.replace(history, history.with_name(f"{self.path.stem}.{number}.days{history.suffix}"))
-        _synchronise(self.path.parent)
+        synchronise(self.path.parent)
         self._note_owner(0)
         return archived
 
@@ -296,11 +289,3 @@ def _link_or_rename(path: Path, previous: Path) -> None:
         os.replace(path, previous)
     else:
         os.replace(linked, previous)
-
-
-def _synchronise(folder: Path) -> None:
-    descriptor = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)

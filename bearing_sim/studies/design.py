@@ -212,10 +212,14 @@ class Designed(NamedTuple):
         return Table(columns, [dict(zip(names, row)) for row in rows], self.grid.about | {"kind": kind})
 
 
+TABLES = ("", "_borders", "_checks")
+"""What the names of the tables of a design add to the name of its map."""
+
+
 def write_design(path: Path, designed: Designed) -> list[Path]:
     """Write the tables of a design: PATH.parquet, PATH_borders.parquet, PATH_checks.parquet, and CSV of each; return the paths."""
-    tables = {"": designed.grid, "_borders": designed.border_table, "_checks": designed.check_table}
-    return [file for suffix, table in tables.items() for file in write_table(path.with_name(f"{path.stem}{suffix}.parquet"), table)]
+    tables = zip(TABLES, (designed.grid, designed.border_table, designed.check_table))
+    return [file for suffix, table in tables for file in write_table(path.with_name(f"{path.stem}{suffix}.parquet"), table)]
 
 
 def read_design(path: Path) -> Designed:

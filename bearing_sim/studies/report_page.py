@@ -48,28 +48,25 @@ class _Part(NamedTuple):
     sections: dict[str, str]
 
 
-def write_page(source: Path, out: Path) -> None:
-    """Write the page of a result.
+def page_of(source: Path) -> str:
+    """Return the HTML page of a result.
 
     Parameters
     ----------
     source : a table (Parquet, or CSV beside it), a recording (MCAP file or bag's folder), or a folder of such files or of a study.
-    out : the HTML file.
 
     Raises
     ------
     NoResults
         There is nothing of which a page could be made, or it cannot be read; the message says what to do.
     OSError
-        A file cannot be opened, or the page cannot be written.
+        A file cannot be opened.
     """
     if not source.exists():
         raise NoResults(f"{source}: does not exist; expected a table of sweep or design, a recording of run or replay, or a folder of them")
     if (source / STUDY_FILE).is_file():
-        page = study_page(source)
-    else:
-        page = document(*_part(source)) if _is_result(source) else _folder_page(source)
-    out.write_text(page)
+        return study_page(source)
+    return document(*_part(source)) if _is_result(source) else _folder_page(source)
 
 
 def _is_result(source: Path) -> bool:

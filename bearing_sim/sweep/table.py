@@ -3,9 +3,10 @@
 
 import collections
 import csv
+import hashlib
+import io
 import json
 import math
-import os
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -13,6 +14,7 @@ from typing import TYPE_CHECKING, BinaryIO, NamedTuple
 
 import numpy as np
 
+from bearing_sim.files.outputs import FORCE, Output, RefusedOutput, replaced
 from bearing_sim.scene.quantity import conversion
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import quantities
@@ -23,6 +25,7 @@ if TYPE_CHECKING:
     import xarray
 
 _ABOUT = b"bearing_sim"
+_CSV = b"bearing_sim_csv_sha256"
 _HEADED = re.compile(r"(.*?)(?: \[(.*)\])?")
 _RESULTS = {each.name: each for each in RESULTS}
 
@@ -115,7 +118,7 @@ class Table(NamedTuple):
 
 
 def write_table(path: Path, table: Table) -> tuple[Path, Path]:
-    """Write a table as Parquet and CSV; each file is replaced atomically.
+    """Write a table as Parquet and CSV; existing files are replaced, each as a whole, when both are complete.
 
     Parquet holds units and meanings in the metadata of its fields, and ``about`` as JSON in the metadata of its schema under
     ``bearing_sim``.  CSV gives the unit in brackets after the column name.
@@ -133,16 +136,67 @@ def write_table(path: Path, table: Table) -> tuple[Path, Path]:
 
     parquet, text = path.with_suffix(".parquet"), path.with_suffix(".csv")
     path.parent.mkdir(parents=True, exist_ok=True)
-    _replace(parquet, lambda part: pyarrow.parquet.write_table(_arrow(table), part))
-
-    def write_csv(part):
-        with open(part, "w", newline="") as file:
-            writer = csv.writer(file)
-            writer.writerow([headed(column) for column in table.columns])
-            writer.writerows([row[column.name] for column in table.columns] for row in table.rows)
-
-    _replace(text, write_csv)
+    with replaced(text) as text_draft, replaced(parquet) as draft:
+        text_draft.write_bytes(_csv(table))
+        pyarrow.parquet.write_table(_arrow(table, _digest_of(text_draft)), draft)
     return parquet, text
+
+
+def _csv(table: Table) -> bytes:
+    """Return the contents of the CSV file of a table."""
+    file = io.StringIO(newline="")
+    writer = csv.writer(file)
+    writer.writerow([headed(column) for column in table.columns])
+    writer.writerows([row[column.name] for column in table.columns] for row in table.rows)
+    return file.getvalue().encode()
+
+
+def study_digest(*parts: object) -> str:
+    """Return the digest of a study, which its tables hold as ``study`` in what they say of their origin.
+
+    Parameters
+    ----------
+    parts : all that defines the study, with an exact `repr`: its kind, scenes, numbers, texts and tuples of these.
+    """
+    return hashlib.sha256("\n".join(map(repr, parts)).encode()).hexdigest()
+
+
+def require_same_study(output: Output, study: str, parts: Sequence[str] = ("",)) -> None:
+    """Raise `RefusedOutput` if tables exist where an output is to be written, unless they are of the same study, which is then completed.
+
+    A table is of the same study if its Parquet file holds the digest of the study, and its CSV file is what was written beside that.
+
+    Parameters
+    ----------
+    output : of the tables.
+    study : see `study_digest`.
+    parts : what is added to the name for each table.
+    """
+    for part in parts:
+        parquet, text = (output.path.with_name(f"{output.path.stem}{part}{suffix}") for suffix in (".parquet", ".csv"))
+        found, csv_digest = _origin_of(parquet)
+        is_same = found == study
+        is_its_text = is_same and text.is_file() and _digest_of(text) == csv_digest
+        for path, may_replace in ((parquet, is_same), (text, is_its_text)):
+            if path.is_file() and not (may_replace or output.force):
+                raise RefusedOutput(f"{path} exists and was not written by this study; {FORCE} replaces it, or name another file")
+            Output(path, True, output.inputs).check()
+
+
+def _origin_of(parquet: Path) -> tuple[str | None, bytes | None]:
+    """Return the digest of the study of a table and that of its CSV file; None for what its Parquet file does not say."""
+    import pyarrow.parquet
+
+    try:
+        notes = pyarrow.parquet.read_schema(parquet).metadata if parquet.is_file() else None
+        return (json.loads(notes[_ABOUT]).get("study"), notes.get(_CSV)) if notes else (None, None)
+    except (OSError, pyarrow.ArrowException, ValueError, LookupError, AttributeError):
+        return None, None
+
+
+def _digest_of(path: Path) -> bytes:
+    with open(path, "rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest().encode()
 
 
 def headed(column: Column) -> str:
@@ -150,17 +204,8 @@ def headed(column: Column) -> str:
     return f"{column.name} [{column.unit}]" if column.unit else column.name
 
 
-def _replace(path, write) -> None:
-    part = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        write(part)
-        os.replace(part, path)
-    finally:
-        part.unlink(missing_ok=True)
-
-
-def _arrow(table):
-    """Return a table as one of Arrow."""
+def _arrow(table, csv_digest):
+    """Return a table as one of Arrow, which also holds the digest of its CSV file."""
     import pyarrow
 
     arrays = [pyarrow.array(table.values(column.name)) for column in table.columns]
@@ -168,7 +213,7 @@ def _arrow(table):
         pyarrow.field(column.name, array.type, metadata={"unit": column.unit, "meaning": column.meaning})
         for column, array in zip(table.columns, arrays)
     ]
-    return pyarrow.Table.from_arrays(arrays, schema=pyarrow.schema(fields, metadata={_ABOUT: json.dumps(table.about)}))
+    return pyarrow.Table.from_arrays(arrays, schema=pyarrow.schema(fields, metadata={_ABOUT: json.dumps(table.about), _CSV: csv_digest}))
 
 
 def read_table(path: Path) -> Table:

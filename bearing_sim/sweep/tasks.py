@@ -89,11 +89,12 @@ def task(kind: str, function: Callable[..., dict], *arguments: Any) -> Task:
     return Task(digest.hexdigest()[:32], kind, function, arguments)
 
 
+_BEGIN = b'{"key": "'
 _SYNC = 1.0  # s between syncs to disk, the most that a power cut loses; a killed process loses nothing
 
 
 class JournalInUse(RuntimeError):
-    """Another process is writing this journal."""
+    """Another process is writing this journal, or it is no journal."""
 
 
 class Journal:
@@ -125,6 +126,10 @@ class Journal:
         except OSError:
             file.close()
             raise JournalInUse(f"{path}: another process is writing it; wait until it has finished, or give another output") from None
+        file.seek(0)
+        if (begin := file.read(len(_BEGIN))) and not _BEGIN.startswith(begin):
+            file.close()
+            raise JournalInUse(f"{path} is no journal of bearing-sim, to which results could be added; move it, or give another output")
         file.seek(0)
         whole = 0
         for line in file:

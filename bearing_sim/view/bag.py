@@ -31,6 +31,7 @@ from bearing_sim.view.blueprint import log_view, page
 from bearing_sim.view.clouds import CloudCourse, cloud_view, write_clouds
 from bearing_sim.view.plots import LINES, Lines, Overview, bucket_for, describe_range, log_event, plottable, range_path, send_columns, send_thinned
 from bearing_sim.view.run_view import APPLICATION
+from bearing_sim.view.viewer import incomplete, is_complete
 
 _NUMBERS = {
     f"std_msgs/msg/{kind}" for kind in ("Float64", "Float32", "Int8", "Int16", "Int32", "Int64", "UInt8", "UInt16", "UInt32", "UInt64", "Bool")
@@ -296,7 +297,7 @@ _MOST_PLOTS = 9
 
 
 def write_bag_view(path: str | Path, name: str, found: BagSeries) -> None:
-    """Write an .rrd file with what was found in a recording of this name."""
+    """Write an .rrd file with what was found in a recording of this name; raise OSError if it cannot be written completely."""
     recording = rr.RecordingStream(APPLICATION)
     recording.set_log_time_enabled(False)
     recording.set_sinks(rr.FileSink(str(path)))
@@ -320,8 +321,13 @@ def write_bag_view(path: str | Path, name: str, found: BagSeries) -> None:
     text = "\n".join([f"## {name}", "", "Not written by bearing_sim. Not shown:", "", *(f"- {line}" for line in found.left_out)])
     recording.log("/about", rr.TextDocument(text, media_type=rr.MediaType.MARKDOWN), static=True)
     recording.send_blueprint(_blueprint(plots, scenes))
-    recording.flush(timeout_sec=30.0)
+    try:
+        recording.flush(timeout_sec=30.0)
+    except (RuntimeError, ValueError) as error:  # what rerun raises once its writer has stopped
+        raise incomplete(str(error)) from None
     recording.disconnect()
+    if not is_complete(path):
+        raise incomplete(None)
 
 
 def _entity(line: str) -> str:

@@ -30,6 +30,7 @@ from bearing_sim.messages.events import Event, Measurement
 from bearing_sim.messages.topics import Origin
 from bearing_sim.scene.scene import Scene
 from bearing_sim.view.run_view import NOTHING_KNOWN, RunView, ViewOptions
+from bearing_sim.view.viewer import incomplete, is_complete
 from bearing_sim.view.web import WebViewer
 
 QUEUED_ROWS = 20_000  # about 20 MB with 18 rollers
@@ -227,13 +228,14 @@ class RerunFile(ViewThread):
     Raises
     ------
     OSError
-        The file cannot be written.
+        The file cannot be written; at the end of a ``with`` block, too, if it is not complete.
     """
 
     _real_time = False
 
     def __init__(self, scene: Scene, path: str | Path, start_ns: int | None = None, duration: float | None = None, load_scale: float | None = None):
-        Path(path).open("wb").close()  # rerun itself would only log that it cannot write
+        self._path = Path(path)
+        self._path.open("wb").close()  # rerun itself would only log that it cannot write
         super().__init__(scene, path, None, ViewOptions(start_ns, duration, load_scale))
 
     def _enqueue(self, item) -> None:
@@ -243,11 +245,15 @@ class RerunFile(ViewThread):
                 return
             except queue.Full:
                 continue
-        raise OSError(f"rerun stopped: {self.failure}")
+        raise incomplete(self.failure)
+
+    def __exit__(self, kind, *_) -> None:
+        if not self.close() and kind is None:
+            raise incomplete(self.failure)
 
     def close(self, timeout: float = 120.0) -> bool:
-        """Show what is queued and finish within ``timeout`` [s] (see `ViewThread.close`)."""
-        return super().close(timeout)
+        """Show what is queued and finish within ``timeout`` [s] (see `ViewThread.close`); return whether the file is complete."""
+        return super().close(timeout) and is_complete(self._path)
 
 
 _REPORT_EVERY = 0.1  # [s], where there is news

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from bearing_sim.files.outputs import replaced
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.studies.deng2017.pictures import DENG_REGION, Pictured
 from bearing_sim.studies.design import D_VALUE, LOW, NOMINAL, WORST, Border, Designed, Limits, default_axes, design, draw
@@ -62,7 +63,8 @@ def write_answer(folder: Path, designed: Designed) -> Pictured:
     """Write the tables and the figure of an answer into the folders ``tables`` and ``figures``, and return the figure's entry."""
     write_table(folder / "tables" / "design", designed.grid)
     write_table(folder / "tables" / "design_borders", designed.border_table)
-    draw(folder / "figures" / "design.png", designed, BESIDE)
+    with replaced(folder / "figures" / "design.png") as draft:
+        draw(draft, designed, BESIDE)
     ranges = []
     for kind, when in ((NOMINAL, "at nominal speed and load"), (WORST, "with speeds within 2 % and loads within 10 %")):
         found = radii_within([border for border in designed.borders if border.kind == kind])

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.files.outputs import replaced
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.studies.deng2017.study import ANGLE, D_VALUE, LOAD, LOW, LOW_RADII, MASS, MIXTURE, ROUNDNESS, SPEED
 from bearing_sim.studies.machining import Machined
@@ -161,7 +162,8 @@ def draw_map(path: Path, tables: Tables, slip_below: float = 10.0, life_above: f
             each.xaxis.set_major_locator(MaxNLocator(5))
             figure.colorbar(mesh, ax=each, label=label(table.column(quantity)))
     axes[0, 0].legend(loc="upper left", fontsize=8)
-    figure.savefig(path, dpi=_DPI)
+    with replaced(path) as draft:
+        figure.savefig(draft, dpi=_DPI)
 
 
 def draw_trajectories(path: Path, found: Mapping[float, dict], guide_clearance: float) -> None:
@@ -215,7 +217,8 @@ def _finish(figure, path, axes) -> None:
             each.ticklabel_format(useOffset=False)
             if "[deg]" not in each.get_xlabel():  # long tick labels of radii and speeds would overlap
                 each.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 2.5, 5, 10]))
-    figure.savefig(path, dpi=_DPI)
+    with replaced(path) as draft:
+        figure.savefig(draft, dpi=_DPI)
 
 
 def draw_study(folder: Path, tables: Tables, profiles: Mapping, trajectories: Mapping, rings: Mapping[float, Machined]) -> list[Pictured]:

@@ -10,6 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from importlib import metadata
 from pathlib import Path
 
+from bearing_sim.files.outputs import FORCE, Output, RefusedOutput, replaced
 from bearing_sim.levels.level import LEVELS as ALL_LEVELS
 from bearing_sim.recording.provenance import git_hash, package_version
 from bearing_sim.scene.loader import load_scene, scene_to_yaml
@@ -22,6 +23,7 @@ from bearing_sim.sweep.table import Table, write_table
 from bearing_sim.sweep.tasks import Journal, run_tasks
 
 STUDY_FILE = "study.json"
+_JOURNAL = "study.journal"
 _PACKAGES = ("numba", "numpy", "scipy", "pyarrow", "matplotlib")
 _FINDING_MEANINGS = {
     "claim": "number; 0: the machined contours",
@@ -70,7 +72,7 @@ def run_study(
         counts[:] = done, total
         progress(done, total)
 
-    with Journal(folder / "study.journal") as journal:
+    with Journal(folder / _JOURNAL) as journal:
         results = iter(run_tasks(planned.tasks, journal, workers, dask, counted))
         designed = answer(journal, quick, workers, dask, overrides)
     tables = {key: plan.table([next(results) for _ in plan.tasks]) for key, plan in planned.sweeps.items()}
@@ -85,6 +87,7 @@ def run_study(
         "doi": "10.1016/j.cja.2017.07.001",
         "command": shlex.join(["bearing-sim", "study", "deng2017", "-o", folder.name, *(["--quick"] if quick else []), *_as_options(overrides)]),
         "quick": quick,
+        "overrides": list(overrides),
         "points": len(planned.tasks),
         "computed": counts[0],
         "seconds": round(time.monotonic() - began, 1),
@@ -108,8 +111,33 @@ def run_study(
         "claims": [finding._asdict() for finding in findings],
         "figures": [each._asdict() for each in pictured],
     }
-    (folder / STUDY_FILE).write_text(json.dumps(about, indent=2))
+    with replaced(folder / STUDY_FILE) as draft:
+        draft.write_text(json.dumps(about, indent=2))
     return findings
+
+
+def require_same_study(output: Output, quick: bool, overrides: Sequence[str]) -> None:
+    """Raise `RefusedOutput` if a folder is in use for anything but the same study, which is then completed or written again.
+
+    Parameters
+    ----------
+    output : the folder; by force, anything there may be replaced.
+    quick, overrides : of the study that is going to be written, see `run_study`.
+    """
+    folder = output.path
+    if output.force or not folder.is_dir() or not any(folder.iterdir()):
+        return
+    if not (folder / _JOURNAL).is_file():
+        raise RefusedOutput(f"{folder} holds other files; name a new folder, or replace what is in the way with {FORCE}")
+    try:
+        about = json.loads((folder / STUDY_FILE).read_text())
+        same = about["quick"] == quick and about["overrides"] == list(overrides)
+    except FileNotFoundError:
+        return  # interrupted before its end
+    except (ValueError, LookupError, TypeError):
+        same = False
+    if not same:
+        raise RefusedOutput(f"{folder} holds a study with other settings (see {STUDY_FILE}); name a new folder, or replace it with {FORCE}")
 
 
 def _as_options(overrides: Sequence[str]) -> list[str]:

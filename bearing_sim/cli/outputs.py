@@ -1,0 +1,207 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Outputs of commands: types of the options that name them, and the command that checks all of them before it begins.
+
+`WritingCommand` refuses an output that is an input, exists (without ``--force``), is no regular file, or is named twice.
+"""
+
+import os
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+import click
+
+from bearing_sim.cli.reporting import UsageError, exit_on_sigterm
+from bearing_sim.files.outputs import FORCE, Output, RefusedOutput, protecting_inputs
+
+_RECORDINGS = (".mcap", ".active", ".db3", ".bag", ".zstd", ".yaml")  # files of an input folder that no command replaces
+_OUTPUTS = "bearing_sim.outputs"
+
+
+class OutputFile(click.ParamType):
+    """The type of an option that names a file to write; the command gets an `Output`.
+
+    Parameters
+    ----------
+    suffixes : of which the name must have one; empty if any will do.
+    """
+
+    name = "file"
+
+    def __init__(self, *suffixes: str):
+        self.suffixes = suffixes
+
+    def convert(self, value, param, ctx):
+        """Return the output, which `WritingCommand` completes by the rest of the command line; a wrong suffix is refused."""
+        output = value if isinstance(value, Output) else Output(value)
+        if self.suffixes and output.path.suffix.lower() not in self.suffixes:
+            raise UsageError(f"{_option(param)} {output}: expected a name that ends in {', '.join(self.suffixes)}")
+        return output
+
+    def made(self, path: Path) -> list[Path]:
+        """Return the files that this option makes, which must not exist unless by force."""
+        return [path]
+
+    def continued(self, path: Path) -> list[Path]:
+        """Return the files that may exist, because they are continued, or because the command itself decides whether it may replace them."""
+        return []
+
+    def check(self, output: Output) -> None:
+        """Raise `RefusedOutput` if one of the files must not be written."""
+        for path in self.made(output.path):
+            Output(path, output.force, output.inputs).check()
+        for path in self.continued(output.path):
+            Output(path, True, output.inputs).check()
+
+
+class OutputRecording(OutputFile):
+    """The type of an option that names a recording, which is ``PATH.active`` while it is written."""
+
+    def continued(self, path: Path) -> list[Path]:
+        """Return the recording's draft; one that a killed run has left is set aside."""
+        return [path.with_name(f"{path.name}.active")]
+
+
+class OutputWithJournal(OutputFile):
+    """The type of an option that names a file with a journal beside it, from which an interrupted run resumes."""
+
+    def continued(self, path: Path) -> list[Path]:
+        """Return the journal."""
+        return [path.with_suffix(".journal")]
+
+
+class OutputTable(OutputWithJournal):
+    """The type of an option that names the table of many points: Parquet, CSV and a journal.
+
+    Whether tables that exist may be replaced is for the command to decide once it knows its study (`bearing_sim.sweep.table.require_same_study`).
+
+    Parameters
+    ----------
+    parts : what is added to the name for further tables.
+    """
+
+    def __init__(self, *parts: str):
+        super().__init__()
+        self._parts = ("", *parts)
+
+    def made(self, path: Path) -> list[Path]:
+        """Return no file."""
+        return []
+
+    def continued(self, path: Path) -> list[Path]:
+        """Return the tables and the journal."""
+        tables = [path.with_name(f"{path.stem}{part}{suffix}") for part in self._parts for suffix in (".parquet", ".csv")]
+        return [*tables, *super().continued(path)]
+
+
+class OutputJournal(OutputFile):
+    """The type of an option that names a journal, to which results are appended."""
+
+    def made(self, path: Path) -> list[Path]:
+        """Return no file."""
+        return []
+
+    def continued(self, path: Path) -> list[Path]:
+        """Return the journal."""
+        return [path]
+
+
+class OutputFolder(OutputFile):
+    """The type of an option that names a folder to write into, which is made if absent; what is in it is for the command to check."""
+
+    name = "folder"
+
+    def made(self, path: Path) -> list[Path]:
+        """Return the folder if it has to be made."""
+        return [] if path.is_dir() else [path]
+
+
+class WritingCommand(click.Command):
+    """A command that writes files: all its outputs are checked before it begins, and SIGTERM unwinds it, so that it leaves no drafts."""
+
+    def __init__(self, *args, **options):
+        super().__init__(*args, **options)
+        self.params.append(click.Option([FORCE, "force"], is_flag=True, help="Replace existing files; an input is never replaced."))
+
+    def invoke(self, context):
+        """Run the command with its outputs checked."""
+        force = context.params.pop("force")
+        types = {parameter.name: parameter for parameter in self.params if isinstance(parameter.type, OutputFile)}
+        given = {name: value for name, value in context.params.items() if name in types and value is not None}
+        inputs = [path for name, value in context.params.items() if name not in types for path in _paths_in(value)]
+        outputs = {name: Output(value.path, force, inputs) for name, value in given.items()}
+        context.params.update(outputs)
+        context.meta[_OUTPUTS] = outputs, force, inputs
+        try:
+            kinds = {_option(types[name]): (types[name].type, output) for name, output in outputs.items()}
+            _require_distinct({option: [*kind.made(output.path), *kind.continued(output.path)] for option, (kind, output) in kinds.items()})
+            for kind, output in kinds.values():
+                kind.check(output)
+            with protecting_inputs(), exit_on_sigterm():
+                return super().invoke(context)
+        except RefusedOutput as error:
+            raise UsageError(str(error)) from None
+
+
+@contextmanager
+def recording_into(output: Output, sink) -> Iterator:
+    """Yield the sink that writes an output, say what happened to its file, and where an interrupted recording is.
+
+    Parameters
+    ----------
+    output : the recording.
+    sink : a `bearing_sim.recording.writer.McapSink`, which this completes.
+    """
+    for _, _, text in sink.news():
+        click.echo(f"warning: {text}", err=True)
+    try:
+        with sink:
+            yield sink
+    except BaseException:
+        unfinished = output.path.with_name(f"{output.path.name}.active")
+        click.echo(f"interrupted; what was recorded until then is {unfinished if unfinished.exists() else output}", err=True)
+        raise
+
+
+def default_output(path: Path) -> Output:
+    """Return an output of the running command under a name that the command chooses, checked; an option names it otherwise.
+
+    Raises
+    ------
+    RefusedOutput
+        It must not be written, or another option names it.
+    """
+    outputs, force, inputs = click.get_current_context().meta[_OUTPUTS]
+    _require_distinct({"the default output": [path]} | {f"--{name}": [output.path] for name, output in outputs.items()})
+    output = Output(path, force, inputs)
+    output.check()
+    return output
+
+
+def _paths_in(value) -> Iterator[Path]:
+    """Yield the files that the value of an option or argument may name: paths, names of scene files, ``FIELD=FILE``, files of a bag's folder."""
+    if isinstance(value, (tuple, list)):
+        for each in value:
+            yield from _paths_in(each)
+    elif isinstance(value, str):
+        for text in {value, value.rpartition("=")[2]}:
+            if 0 < len(text) < 4096 and "\0" not in text:
+                yield from _paths_in(Path(text))
+    elif isinstance(value, Path):
+        yield value
+        if value.is_dir():
+            yield from (path for path in value.glob("*") if path.suffix in _RECORDINGS)
+
+
+def _require_distinct(files: dict[str, Sequence[Path]]) -> None:
+    """Raise `RefusedOutput` if two options name the same file."""
+    owners: dict[str, str] = {}
+    for option, paths in files.items():
+        for path in dict.fromkeys(os.path.realpath(each) for each in paths):
+            if path in owners:
+                raise RefusedOutput(f"{owners[path]} and {option} both write {path}; name different files")
+            owners[path] = option
+
+
+def _option(parameter) -> str:
+    return max(parameter.opts[:2], key=len) if parameter is not None else "output"

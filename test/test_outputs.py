@@ -1,0 +1,236 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""No output of any command destroys a file of its user; ``python test/benchmarks/output_walk.py`` kills commands and fills disks."""
+
+import errno
+import os
+import signal
+import stat
+import time
+
+import click
+import pytest
+from click.testing import CliRunner
+from output_cases import CASES, commands, file_name, outputs
+
+from bearing_sim.cli.main import main
+from bearing_sim.cli.outputs import OutputFile, OutputFolder, OutputJournal, OutputTable, WritingCommand
+from bearing_sim.files.outputs import Output, RefusedOutput, protecting_inputs, remember_input, replaced
+from bearing_sim.sweep.point import Column
+from bearing_sim.sweep.table import Table, require_same_study, study_digest, write_table
+from bearing_sim.sweep.tasks import Journal, JournalInUse
+
+OLD = b"worth a lot"
+INPUTS = {"replay --state-file", "replay-fleet --bearings", "design --points", "uncertainty --log"}
+"""Options with a path that is read; the state file of `replay` is also kept by it, as by the node."""
+OUTPUTS = outputs()
+NAMES = [f"{name} {option.opts[-1]}" for name, option in OUTPUTS]
+READING = [(name, option) for name, option in OUTPUTS if any(argument.startswith("{") for argument in CASES[name].arguments)]
+CONTINUED = (OutputTable, OutputJournal, OutputFolder)
+
+
+def called(arguments, folder):
+    """Return the outcome of a command with files of a folder in place of its inputs."""
+    return CliRunner().invoke(main, [argument.format_map(Names(folder)) for argument in arguments])
+
+
+class Names(dict):
+    """A file in a folder for every name of an input."""
+
+    def __init__(self, folder):
+        self._folder = folder
+
+    def __missing__(self, name):
+        return str(self._folder / name)
+
+
+def contents(folder):
+    """Return what is in a folder: bytes of files, targets of links, kinds of other things."""
+    return {
+        path.name: path.read_bytes() if path.is_file() else os.readlink(path) if path.is_symlink() else stat.S_IFMT(path.lstat().st_mode)
+        for path in folder.iterdir()
+    }
+
+
+def test_every_option_with_a_path_is_known_as_an_output_or_an_input_and_every_output_is_tried():
+    plain = {
+        f"{name} {max(option.opts, key=len)}"
+        for name, command in commands()
+        for option in command.params
+        if isinstance(option, click.Option) and isinstance(option.type, click.Path)
+    }
+    assert plain == INPUTS, "an output has a type of bearing_sim.cli.outputs"
+    assert {name for name, _ in OUTPUTS} == set(CASES)
+    assert all(isinstance(command, WritingCommand) for name, command in commands() if name in CASES)
+
+
+@pytest.mark.parametrize(("name", "option"), OUTPUTS, ids=NAMES)
+def test_an_output_is_refused_where_there_is_anything_but_a_file_of_its_own(name, option, tmp_path):
+    target = tmp_path / file_name(option)
+    arguments = [*CASES[name].arguments, option.opts[-1], str(target)]
+
+    def refused(reason, *more):
+        before = contents(tmp_path)
+        result = called([*arguments, *more], tmp_path)
+        assert result.exit_code == 2 and reason in result.output, result.output
+        assert "Traceback" not in result.output and contents(tmp_path) == before
+
+    for path in (*option.type.made(target), *option.type.continued(target)):
+        os.mkfifo(path)
+        refused(f"{path} is a pipe", "--force")
+        path.unlink()
+        if not isinstance(option.type, OutputFolder):
+            path.mkdir()
+            refused(f"{path} is a folder", "--force")
+            path.rmdir()
+        path.symlink_to(tmp_path / "gone")
+        refused("which does not exist", "--force")
+        path.unlink()
+    if not isinstance(option.type, CONTINUED):
+        target.write_bytes(OLD)
+        refused("exists; --force replaces it")
+    arguments[-1] = str(tmp_path / "absent" / target.name)
+    refused("there is no folder")
+
+
+@pytest.mark.parametrize(("name", "option"), READING, ids=[f"{name} {option.opts[-1]}" for name, option in READING])
+def test_an_output_never_replaces_an_input_by_whatever_name(name, option, tmp_path):
+    arguments = CASES[name].arguments
+    given = [argument for argument in arguments if argument.startswith("{")]
+    target = tmp_path / file_name(option)
+    written = [*option.type.made(target), *option.type.continued(target)][0]
+    for source in given:
+        path = tmp_path / source[1:-1]
+        for link in (os.link, os.symlink):
+            path.write_bytes(OLD)
+            link(path, written)
+            result = called([*arguments, option.opts[-1], str(target), "--force"], tmp_path)
+            if isinstance(option.type, OutputFolder):
+                assert result.exit_code == 2
+            else:
+                assert result.exit_code == 2 and "is an input of this command" in result.output, result.output
+            assert path.read_bytes() == OLD
+            written.unlink()
+
+
+def test_two_outputs_of_a_command_are_two_files(tmp_path):
+    result = called(["run", "deng2017_table1", "--out", str(tmp_path / "x"), "--rrd", str(tmp_path / "." / "x")], tmp_path)
+    assert result.exit_code == 2 and "--out and --rrd both write" in result.output and not contents(tmp_path)
+
+
+def test_a_file_that_a_scene_names_is_an_input_too(tmp_path):
+    contour = tmp_path / "contour.csv"
+    with protecting_inputs():
+        contour.write_bytes(OLD)
+        remember_input(contour)
+        with pytest.raises(RefusedOutput, match="input of this command"):
+            Output(contour, force=True).check()
+    Output(contour, force=True).check()
+
+
+def test_a_study_completes_its_own_table_and_replaces_no_other(tmp_path):
+    def written(digest, slip, force=False):
+        require_same_study(Output(tmp_path / "s.parquet", force), digest)
+        write_table(tmp_path / "s.parquet", Table((Column("slip", "", "of the cage"),), [{"slip": slip}], {"study": digest}))
+        return contents(tmp_path)
+
+    ours, others = study_digest("sweep", [0.5, 0.8]), study_digest("sweep", [0.5, 0.9])
+    (tmp_path / "s.csv").write_bytes(OLD)
+    with pytest.raises(RefusedOutput, match=r"s\.csv exists and was not written by this study; --force replaces it"):
+        written(ours, 0.1)
+    (tmp_path / "s.csv").unlink()
+    assert set(made := written(ours, 0.1)) == {"s.csv", "s.parquet"}
+    assert (again := written(ours, 0.2)) != made
+    with pytest.raises(RefusedOutput, match=r"s\.parquet exists and was not written by this study"):
+        written(others, 0.3)
+    assert contents(tmp_path) == again != written(others, 0.3, force=True)
+    (tmp_path / "s.csv").write_bytes(OLD)  # notes of the user in the table that we made
+    with pytest.raises(RefusedOutput, match=r"s\.csv exists"):
+        written(others, 0.3)
+    assert contents(tmp_path)["s.csv"] == OLD
+
+
+def test_a_journal_is_never_added_to_another_file(tmp_path):
+    for old in (OLD, b"", b'{"ke', b'{"key": "a", "result": {}}\n{"key": "b'):
+        (tmp_path / "s.journal").write_bytes(old)
+        if old == OLD:
+            with pytest.raises(JournalInUse, match="no journal of bearing-sim"), Journal(tmp_path / "s.journal"):
+                pass
+            assert (tmp_path / "s.journal").read_bytes() == OLD
+        else:
+            with Journal(tmp_path / "s.journal") as journal:
+                assert len(journal) == old.count(b"\n")
+
+
+@pytest.mark.parametrize("error", [ValueError("bad"), OSError(errno.EIO, "bad"), KeyboardInterrupt(), SystemExit(143)], ids=repr)
+@pytest.mark.parametrize("old", [None, OLD])
+def test_a_write_that_fails_leaves_the_old_file_and_no_draft(tmp_path, old, error):
+    if old is not None:
+        (tmp_path / "a.csv").write_bytes(old)
+    before = contents(tmp_path)
+    for writing in (Output(tmp_path / "a.csv", force=True).draft(), replaced(tmp_path / "a.csv")):
+        with pytest.raises(type(error)), writing as draft:
+            draft.write_bytes(b"half")
+            raise error
+        assert contents(tmp_path) == before
+
+
+def test_a_full_disk_leaves_the_old_file_and_no_draft(small_disk):
+    (small_disk / "a.csv").write_bytes(OLD)
+    with pytest.raises(OSError) as raised:
+        Output(small_disk / "a.csv", force=True).write_bytes(bytes(2_000_000))
+    assert raised.value.errno == errno.ENOSPC and contents(small_disk) == {"a.csv": OLD}
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT, signal.SIGHUP])
+def test_a_signal_unwinds_a_command_that_writes(tmp_path, number):
+    @click.command(cls=WritingCommand)
+    @click.option("--out", type=OutputFile())
+    def write(out):
+        with out.draft() as draft:
+            draft.write_bytes(b"half")
+            os.kill(os.getpid(), number)
+            time.sleep(60)  # the handler runs before this returns
+
+    handlers = [signal.getsignal(each) for each in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)]
+    (tmp_path / "a.csv").write_bytes(OLD)
+    result = CliRunner().invoke(write, ["--out", str(tmp_path / "a.csv"), "--force"])
+    assert result.exit_code == (1 if number == signal.SIGINT else 128 + number) and contents(tmp_path) == {"a.csv": OLD}
+    assert handlers == [signal.getsignal(each) for each in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)]
+
+
+def test_an_output_keeps_permissions_and_links(tmp_path):
+    (tmp_path / "real.csv").write_bytes(OLD)
+    (tmp_path / "real.csv").chmod(0o640)
+    (tmp_path / "link.csv").symlink_to("real.csv")
+    Output(tmp_path / "link.csv", force=True).write_bytes(b"new")
+    assert contents(tmp_path) == {"real.csv": b"new", "link.csv": b"new"} and (tmp_path / "link.csv").is_symlink()
+    assert stat.S_IMODE((tmp_path / "real.csv").stat().st_mode) == 0o640
+
+
+def test_a_file_made_meanwhile_is_not_replaced(tmp_path):
+    with pytest.raises(RefusedOutput, match="exists"), Output(tmp_path / "a.csv").draft() as draft:
+        draft.write_bytes(b"new")
+        (tmp_path / "a.csv").write_bytes(OLD)
+    assert contents(tmp_path) == {"a.csv": OLD}
+
+
+def test_one_program_writes_a_file_at_a_time_and_what_a_killed_one_left_blocks_nobody(tmp_path):
+    output = Output(tmp_path / "a.csv")
+    with output.draft() as draft:
+        draft.write_bytes(b"first")
+        with pytest.raises(RefusedOutput, match="another program"), Output(tmp_path / "a.csv").draft():
+            pass
+    assert contents(tmp_path) == {"a.csv": b"first"}
+    draft.write_bytes(b"much longer than what comes now")  # as a killed process leaves it
+    Output(tmp_path / "a.csv", force=True).write_bytes(b"second")
+    assert contents(tmp_path) == {"a.csv": b"second"}
+    os.link(tmp_path / "a.csv", draft)  # killed just when the file had got its name
+    with pytest.raises(KeyboardInterrupt), Output(tmp_path / "a.csv", force=True).draft():
+        raise KeyboardInterrupt
+    assert contents(tmp_path) == {"a.csv": b"second"}
+
+
+@pytest.mark.parametrize("name", ["a" * 251 + ".csv", "\udce4\udcff.csv", " ", "a\nb.png"])
+def test_names_of_any_kind_are_written(tmp_path, name):
+    Output(tmp_path / name).write_bytes(b"new")
+    assert contents(tmp_path) == {name: b"new"}
