@@ -64,7 +64,7 @@ def _special(name: str, make: Callable[[Path], None]) -> Case:
     return Case(f"scene: {name}", make, _READ)
 
 
-def _fifo(name: str, scene: str = "") -> Callable[[Path], None]:
+def fifo(name: str, scene: str = "") -> Callable[[Path], None]:
     def make(folder: Path) -> None:
         os.mkfifo(folder / name)
         if scene:
@@ -73,7 +73,7 @@ def _fifo(name: str, scene: str = "") -> Callable[[Path], None]:
     return make
 
 
-def _link(name: str, target: str, scene: str = "") -> Callable[[Path], None]:
+def link(name: str, target: str, scene: str = "") -> Callable[[Path], None]:
     def make(folder: Path) -> None:
         (folder / name).symlink_to(target)
         if scene:
@@ -82,7 +82,7 @@ def _link(name: str, target: str, scene: str = "") -> Callable[[Path], None]:
     return make
 
 
-def _sparse(name: str, size: int, scene: str = "") -> Callable[[Path], None]:
+def sparse(name: str, size: int, scene: str = "") -> Callable[[Path], None]:
     def make(folder: Path) -> None:
         with open(folder / name, "wb") as stream:
             stream.truncate(size)
@@ -195,21 +195,21 @@ CASES = [
     _scene("uncertainty of a million points", f"{plain()}uncertainty: {{operating.radial_load: [{'1 N, ' * 1_000_000}]}}\n"),
     _scene("slices of 10^9", f"{plain()}model: {{slices: 1000000000}}\n"),
     _scene("rollers of 10^9", plain(bearing="roller: {count: 1000000000}")),
-    _special("a pipe", _fifo("scene.yaml")),
+    _special("a pipe", fifo("scene.yaml")),
     _special("a folder", lambda folder: (folder / "scene.yaml").mkdir()),
-    _special("a dangling link", _link("scene.yaml", "nowhere")),
-    _special("a link to itself", _link("scene.yaml", "scene.yaml")),
-    _special("a link to /dev/zero", _link("scene.yaml", "/dev/zero")),
-    _special("10 GB of zeros", _sparse("scene.yaml", _TEN_GIGABYTE)),
+    _special("a dangling link", link("scene.yaml", "nowhere")),
+    _special("a link to itself", link("scene.yaml", "scene.yaml")),
+    _special("a link to /dev/zero", link("scene.yaml", "/dev/zero")),
+    _special("10 GB of zeros", sparse("scene.yaml", _TEN_GIGABYTE)),
     Case("scene: a name of 5,000 letters", lambda folder: None, ("loads", "x" * 5000)),
     Case("scene: the memory of the process", lambda folder: None, ("loads", "/proc/self/mem")),
     Case("contour: /dev/zero", file("scene.yaml", _CONTOUR % "/dev/zero"), (*_READ, "--allow-outside")),
-    Case("contour: /dev/zero through a link", _link("c.csv", "/dev/zero", _CONTOUR % "c.csv"), _READ),
-    Case("contour: a pipe", _fifo("c.csv", _CONTOUR % "c.csv"), _READ),
-    Case("contour: 10 GB of zeros", _sparse("c.csv", _TEN_GIGABYTE, _CONTOUR % "c.csv"), _READ),
+    Case("contour: /dev/zero through a link", link("c.csv", "/dev/zero", _CONTOUR % "c.csv"), _READ),
+    Case("contour: a pipe", fifo("c.csv", _CONTOUR % "c.csv"), _READ),
+    Case("contour: 10 GB of zeros", sparse("c.csv", _TEN_GIGABYTE, _CONTOUR % "c.csv"), _READ),
     Case("contour: /etc/passwd", file("scene.yaml", _CONTOUR % "/etc/passwd"), _READ),
     Case("contour: /etc/passwd from above", file("scene.yaml", _CONTOUR % ("../" * 20 + "etc/passwd")), _READ),
-    Case("contour: /etc/passwd through a link", _link("c.csv", "/etc/passwd", _CONTOUR % "c.csv"), _READ),
+    Case("contour: /etc/passwd through a link", link("c.csv", "/etc/passwd", _CONTOUR % "c.csv"), _READ),
     Case("contour: /etc/passwd, allowed", file("scene.yaml", _CONTOUR % "/etc/passwd"), (*_READ, "--allow-outside")),
     Case("contour: a folder", file("scene.yaml", _CONTOUR % "."), _READ),
     Case("contour: a null character", file("scene.yaml", _CONTOUR % '"a\\0b"'), _READ),
@@ -231,9 +231,9 @@ CASES = [
         _READ,
     ),
     Case("crown: /dev/zero", file("scene.yaml", _CROWN % "/dev/zero"), (*_READ, "--allow-outside")),
-    Case("crown: /dev/zero through a link", _link("c.csv", "/dev/zero", _CROWN % "c.csv"), _READ),
-    Case("crown: a pipe", _fifo("c.csv", _CROWN % "c.csv"), _READ),
-    Case("crown: 10 GB of zeros", _sparse("c.csv", _TEN_GIGABYTE, _CROWN % "c.csv"), _READ),
+    Case("crown: /dev/zero through a link", link("c.csv", "/dev/zero", _CROWN % "c.csv"), _READ),
+    Case("crown: a pipe", fifo("c.csv", _CROWN % "c.csv"), _READ),
+    Case("crown: 10 GB of zeros", sparse("c.csv", _TEN_GIGABYTE, _CROWN % "c.csv"), _READ),
     Case("crown: /etc/passwd", file("scene.yaml", _CROWN % "/etc/passwd"), _READ),
     Case("crown: /etc/passwd, allowed", file("scene.yaml", _CROWN % "/etc/passwd"), (*_READ, "--allow-outside")),
     _crown("Latin-1", "position[mm],drop[um]\n0,1 # ü\n".encode("latin-1")),
