@@ -30,9 +30,10 @@ def table_of(tmp_path, text, mapping=MAPPING):
 
 def test_rows_become_messages_in_si_at_their_times(tmp_path):
     table = table_of(tmp_path, "t,n,f\n0.000000001,30,800\n0.1,60,-5\n")
-    assert table.stamps == {"shaft_speed": [EPOCH + 1, EPOCH + 100_000_000], "radial_load": [EPOCH + 1, EPOCH + 100_000_000]}
+    stamps = {channel: list(each) for channel, each in table.stamps.items()}
+    assert stamps == {"shaft_speed": [EPOCH + 1, EPOCH + 100_000_000], "radial_load": [EPOCH + 1, EPOCH + 100_000_000]}
     assert table.values["shaft_speed"] == pytest.approx([math.pi, 2 * math.pi])
-    assert table.values["radial_load"] == [800.0, -5.0]
+    assert list(table.values["radial_load"]) == [800.0, -5.0]
     assert not table.refused and not table.gaps
 
 
@@ -138,7 +139,7 @@ def test_semicolons_decimal_commas_and_a_byte_order_mark(tmp_path):
     (tmp_path / "data.csv").write_bytes("\ufefft;n;f\n0,5;30;1,5\n1,0;30;1.000\n".encode())
     table = read_table(tmp_path / "data.csv", mapping_from_yaml(mapping))
     assert table.stamps["shaft_speed"][0] == EPOCH + 500_000_000
-    assert table.values["radial_load"] == [1.5] and table.refused == {"radial_load.not_a_number": 1}
+    assert list(table.values["radial_load"]) == [1.5] and table.refused == {"radial_load.not_a_number": 1}
 
 
 @pytest.mark.parametrize(
@@ -151,7 +152,7 @@ def test_semicolons_decimal_commas_and_a_byte_order_mark(tmp_path):
 def test_timestamps_are_read_with_their_zone_or_as_utc(tmp_path, how, cells):
     mapping = MAPPING.replace("unit: s, epoch: 2020-01-01", how)
     table = table_of(tmp_path, "t,n,f\n" + "".join(f"{cell},1,1\n" for cell in cells), mapping)
-    assert table.stamps["shaft_speed"] == [EPOCH, EPOCH + 1_000_000_000]
+    assert list(table.stamps["shaft_speed"]) == [EPOCH, EPOCH + 1_000_000_000]
 
 
 def test_missing_columns_are_all_named_with_a_guess(tmp_path):
@@ -187,7 +188,7 @@ def test_log_holds_the_table_its_mapping_and_its_checksum(tmp_path):
     write_log(table, MAPPING, tmp_path / "data.csv", tmp_path / "log.mcap")
     log = read_input_log(tmp_path / "log.mcap")
     assert log.series["radial_load"].values == [(800.0, 0.0), (700.0, 0.0)]
-    assert log.series["shaft_speed"].stamps == table.stamps["shaft_speed"]
+    assert log.series["shaft_speed"].stamps == list(table.stamps["shaft_speed"])
     with open(tmp_path / "log.mcap", "rb") as stream:
         record = next(record.metadata for record in make_reader(stream).iter_metadata() if record.name == METADATA)
     assert record["mapping"] == MAPPING and record["file"] == "data.csv" and len(record["sha256"]) == 64

@@ -109,9 +109,9 @@ def _band_of(course, samples):
 
 
 def _plot_table(path, picture, over, quantities) -> None:
-    from bearing_sim.sweep.table import QUANTITIES, NotDrawable, draw, read_any_table
+    from bearing_sim.sweep.table import QUANTITIES, NotDrawable, draw, read_any_table, written_by_us
 
-    with as_usage_error(NotDrawable, ValueError):
+    with as_usage_error(NotDrawable, ValueError), written_by_us(path):
         table = read_any_table(path)
         if over == "load":
             if quantities:

@@ -44,7 +44,7 @@ def _days(path: Path, state) -> list[dict]:
     """Return the totals of all days, those in the history and those that are not there yet."""
     from bearing_sim.stored_state.history import all_days
 
-    with as_file_error():
+    with as_file_error(), as_usage_error(ValueError):
         return all_days(path, state)
 
 

@@ -99,8 +99,17 @@ CROWN_POINTS = Limit("crown_points", 5_000, "points", "the profile of a roller")
 TABLE_FILE = Limit("table_file", 4_000_000_000, "bytes", "a measured table")
 TABLE_ROWS = Limit("table_rows", 5_000_000, "rows", "a measured table")
 TABLE_LINE = Limit("table_line", 1_000_000, "characters", "one line of a measured table")
-TABLE_COLUMNS = Limit("table_columns", 10_000, "columns", "a measured table")
-STATE_FILE = Limit("state_file", 64_000_000, "bytes", "a stored state")
+TABLE_COLUMNS = Limit("table_columns", 2_000, "columns", "a measured table")
+TABLE_BYTES = Limit("table_bytes", 2_000_000_000, "bytes", "the columns of a Parquet table that are read")
+BEARINGS_ROWS = Limit("bearings_rows", 10_000, "rows", "a table of bearings")
+POINTS_FILE = Limit("points_file", 1_000_000, "bytes", "a table of operating points")
+POINTS_ROWS = Limit("points_rows", 10_000, "points", "a table of operating points")
+RESULT_TEXT = Limit("result_text", 64_000_000, "bytes", "a table of results as CSV")
+RESULT_ROWS = Limit("result_rows", 200_000, "rows", "a table of results")
+RESULT_CELLS = Limit("result_cells", 5_000_000, "cells", "a table of results")
+STATE_FILE = Limit("state_file", 4_000_000, "bytes", "a stored state, which has some 50 kB")
+HISTORY_FILE = Limit("history_file", 64_000_000, "bytes", "the history of days of a stored state")
+JSON_FILE = Limit("json_file", 64_000_000, "bytes", "the description or a figure of a study")
 RECORDING_RECORD = Limit("recording_record", 128_000_000, "bytes", "one record of a recording, compressed or not")
 RECORDING_EXPANSION = Limit("recording_expansion", 100, "times its size", "what a compressed recording unpacks to, beyond its first 64 MB")
 RECORDING_TEXTS = Limit("recording_texts", 64_000_000, "bytes", "topics, message definitions and metadata of a recording")
@@ -126,7 +135,16 @@ LIMITS = (
     TABLE_ROWS,
     TABLE_LINE,
     TABLE_COLUMNS,
+    TABLE_BYTES,
+    BEARINGS_ROWS,
+    POINTS_FILE,
+    POINTS_ROWS,
+    RESULT_TEXT,
+    RESULT_ROWS,
+    RESULT_CELLS,
     STATE_FILE,
+    HISTORY_FILE,
+    JSON_FILE,
     RECORDING_RECORD,
     RECORDING_EXPANSION,
     RECORDING_TEXTS,

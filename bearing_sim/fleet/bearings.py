@@ -8,13 +8,15 @@ A table (CSV or Parquet) has the column ``log`` and, where bearings differ, ``se
 import csv
 from collections import Counter
 from collections.abc import Sequence
+from itertools import chain, islice
 from pathlib import Path
 
+from bearing_sim.files.limits import BEARINGS_ROWS
 from bearing_sim.fleet.logs import Log, Reading, mapping_of
 from bearing_sim.fleet.replay import Bearing
-from bearing_sim.inputs.csv_text import DELIMITERS, TableError, encoding_of
+from bearing_sim.inputs.csv_text import DELIMITERS, TableError, encoding_of, lines_of, opened_text, within
 from bearing_sim.inputs.parquet_table import is_parquet, rows_of
-from bearing_sim.scene.errors import InvalidField, SceneError, did_you_mean
+from bearing_sim.scene.errors import InvalidField, SceneError, did_you_mean, shortened
 from bearing_sim.scene.loader import load_scene, read_named
 from bearing_sim.scene.scene import Scene
 
@@ -114,7 +116,7 @@ def read_bearings(path: Path) -> list[dict[str, str]]:
     for name in names:
         if name not in _HEADINGS and not name.startswith(_OF_MAPPING) and name.partition(".")[0] not in blocks:
             expected = f"expected {', '.join(_HEADINGS)}, a field of the scene such as lubricant.temperature, or mapping.FIELD"
-            raise TableError(f"{path}: unknown column {name!r}{did_you_mean(name.partition('.')[0], known)}; {expected}")
+            raise TableError(f"{path}: unknown column {shortened(repr(name), 200)}{did_you_mean(name.partition('.')[0], known)}; {expected}")
     empty = [number for number, row in enumerate(rows, 2) if not row["log"]]
     if empty:
         raise TableError(f"{path}, line {empty[0]}: no log")
@@ -122,11 +124,15 @@ def read_bearings(path: Path) -> list[dict[str, str]]:
 
 
 def _text_rows(path: Path) -> list[dict[str, str]]:
-    with open(path, newline="", encoding=encoding_of(path)) as file:
-        first = file.readline()
-        delimiter = max(DELIMITERS, key=first.count)
-        file.seek(0)
-        lines = [line for line in csv.reader(file, delimiter=delimiter) if any(cell.strip() for cell in line)]
+    try:
+        with opened_text(path, encoding_of(path)) as file:
+            first = next(lines_of(file, path), "")
+            delimiter = max(DELIMITERS, key=first.count)
+            rows = csv.reader(chain([first], lines_of(file, path)), delimiter=delimiter)
+            lines = [line for line in islice(rows, BEARINGS_ROWS.value + 2) if any(cell.strip() for cell in line)]
+    except (csv.Error, UnicodeDecodeError) as error:
+        raise TableError(f"{path}: cannot be read as a table: {error}") from None
+    within(BEARINGS_ROWS, len(lines) - 1, path)
     if len(lines) < 2:
         raise TableError(f"{path}: expected a heading and a line for each bearing")
     names = [name.strip() for name in lines[0]]

@@ -35,7 +35,10 @@ from bearing_sim.inputs.csv_text import (
     uncommented,
     unit_in,
 )
-from bearing_sim.scene.loader import did_you_mean
+from bearing_sim.scene.errors import did_you_mean, shortened
+
+Cells = AnyMapping[str, Sequence[str]]
+"""The first cells of a table, by heading."""
 
 
 class Role(NamedTuple):
@@ -100,6 +103,8 @@ _EPOCHS = ((1e8, 4e9, "s"), (1e11, 4e12, "ms"), (1e14, 4e15, "us"), (1e17, 4e18,
 
 _SPREADSHEET_DAYS = (30_000.0, 60_000.0)  # of dates from 1982 to 2064, counted from 1899-12-30
 _CELLS_LOOKED_AT = 500
+_LONGEST_LIST = 10_000  # characters of headings
+_LONGEST_LABEL, _LONGEST_HEADING = 100, 300  # characters
 _MOST_LABELS = 50  # different texts in a column that tells machines apart
 
 
@@ -132,7 +137,7 @@ class Guess:
             lines.append(f"{name}: {dumped.strip().removesuffix('...').strip()}{reason}")
         lines += [f"# {name}: TO DECIDE: {question}" for name, question in self.questions.items()]
         if self.left:
-            lines.append(f"# columns that are not used: {', '.join(self.left)}")
+            lines.append(f"# columns that are not used: {shortened(', '.join(self.left), _LONGEST_LIST)}")
         return "\n".join(lines) + "\n"
 
 
@@ -182,7 +187,7 @@ def guess(
         found.tree["encoding"], found.reasons["encoding"] = encoding, "the file is not UTF-8"
     if only:
         found.tree["only"], found.reasons["only"] = dict(only), "given"
-    used = _guess_time(found, lines, columns.pop("time", None), units.pop("time", None), time_format)
+    used = _guess_time(found, _first_cells(lines, layout), columns.pop("time", None), units.pop("time", None), time_format)
     named: dict[str, list[str]] = {}
     for heading in layout.names:
         if heading and heading not in used and (role := _role_of(heading, layout, columns)) is not None:
@@ -237,11 +242,13 @@ def _decimal(lines: Sequence[str], layout: Layout, found: Guess) -> str:
         return "."
 
 
-def _values(lines: Sequence[str], layout: Layout, heading: str) -> list[str]:
-    """Return the first cells of a column that are not empty, without a second line of the header."""
-    cells = [text.strip() for _, _, text in cells_in(lines, layout, [heading])]
-    cells = cells[1:] if layout.units else cells
-    return [cell for cell in cells if cell][:_CELLS_LOOKED_AT]
+def _first_cells(lines: Sequence[str], layout: Layout) -> Cells:
+    """Return the first cells of each column that are not empty, by heading, without a second line of the header."""
+    named = list(dict.fromkeys(layout.names))
+    found: dict[str, list[str]] = {name: [] for name in named}
+    for _, name, text in cells_in(lines, layout, named):
+        found[name].append(text.strip())
+    return {name: [cell for cell in cells[bool(layout.units) :] if cell][:_CELLS_LOOKED_AT] for name, cells in found.items()}
 
 
 def _number(text: str, decimal: str) -> float:
@@ -251,21 +258,21 @@ def _number(text: str, decimal: str) -> float:
         return float("nan")
 
 
-def _guess_time(found: Guess, lines: Sequence[str], given: str | None, unit: str | None, format_: str | None) -> set[str]:
+def _guess_time(found: Guess, cells: Cells, given: str | None, unit: str | None, format_: str | None) -> set[str]:
     """Enter the time into a guess; return the headings of its columns."""
     layout = found.layout
-    likely = [given] if given else [name for name in layout.names if name and _TIME_WORDS.search(name) and _is_time(lines, layout, name)]
+    likely = [given] if given else [name for name in layout.names if name and _TIME_WORDS.search(name) and _is_time(cells, layout, name)]
     if not likely:
-        likely = [name for name in layout.names[:1] if name and _is_time(lines, layout, name)]
+        likely = [name for name in layout.names[:1] if name and _is_time(cells, layout, name)]
     if not likely:
         found.questions["time"] = "no column looks like a time; name it: --column time=HEADING"
         return set()
-    pair = _date_and_clock(lines, layout, likely)
+    pair = _date_and_clock(cells, likely)
     heading = pair[0] if pair else likely[0]
     others = [name for name in likely if name not in (pair or (heading,))]
-    values = _values(lines, layout, heading)
+    values = cells[heading]
     if pair:
-        values = [f"{date} {clock}" for date, clock in zip(values, _values(lines, layout, pair[1]))]
+        values = [f"{date} {clock}" for date, clock in zip(values, cells[pair[1]])]
     tree = {"column": heading} | ({"time_of_day": pair[1]} if pair else {})
     reason = f"of {', '.join(likely)} the first" if others else "by its heading" if _TIME_WORDS.search(heading) else "the first column rises"
     how, why, question = _time_of(values, layout, heading, unit, format_)
@@ -283,8 +290,8 @@ def _zone_note(values: Sequence[str], how: AnyMapping) -> str:
     return "no zone is told, so UTC is assumed; zone: Europe/Berlin says otherwise"
 
 
-def _is_time(lines: Sequence[str], layout: Layout, heading: str) -> bool:
-    values, unit = _values(lines, layout, heading), spelled(_heading_unit(heading, layout)[1])
+def _is_time(cells: Cells, layout: Layout, heading: str) -> bool:
+    values, unit = cells[heading], spelled(_heading_unit(heading, layout)[1])
     if not values or (_is_a_unit(unit) and not is_unit_of(unit, "s")):
         return False
     numbers = [_number(value, layout.decimal) for value in values]
@@ -294,10 +301,10 @@ def _is_time(lines: Sequence[str], layout: Layout, heading: str) -> bool:
     return _is_iso(values[0]) or re.search(r"\d", values[0]) is not None and re.search(r"[:./-]", values[0]) is not None
 
 
-def _date_and_clock(lines: Sequence[str], layout: Layout, likely: Sequence[str]) -> tuple[str, str] | None:
+def _date_and_clock(cells: Cells, likely: Sequence[str]) -> tuple[str, str] | None:
     """Return the headings of a date and of a time of day, if the table has them in two columns."""
-    dates = [name for name in likely if any(re.fullmatch(pattern, (_values(lines, layout, name) or [""])[0]) for pattern, _, _ in _DATES)]
-    clocks = [name for name in likely if any(re.fullmatch(pattern, (_values(lines, layout, name) or [""])[0]) for pattern, _ in _CLOCKS)]
+    dates = [name for name in likely if any(re.fullmatch(pattern, (cells[name] or [""])[0]) for pattern, _, _ in _DATES)]
+    clocks = [name for name in likely if any(re.fullmatch(pattern, (cells[name] or [""])[0]) for pattern, _ in _CLOCKS)]
     return (dates[0], clocks[0]) if dates and clocks else None
 
 
@@ -378,8 +385,8 @@ def _ask_for_rows(found: Guess, path: Path, lines: Sequence[str]) -> None:
         if len(cells) != len(layout.names):
             continue
         for k in list(labels):
-            labels[k].add(cells[k].strip())
-            if len(labels[k]) > _MOST_LABELS or re.fullmatch(r"[-+]?[.,]?\d.*|", cells[k].strip()):
+            labels[k].add(cells[k].strip()[:_LONGEST_LABEL])
+            if not cells[k].isprintable() or len(labels[k]) > _MOST_LABELS or re.fullmatch(r"[-+]?[.,]?\d.*|", cells[k].strip()):
                 del labels[k]
         try:
             now = read(" ".join([cells[place], *([cells[clock]] if clock is not None else [])]).strip(), None)
@@ -399,14 +406,14 @@ def _heading_unit(heading: str, layout: Layout) -> tuple[str, str]:
     place = layout.names.index(heading)
     if not unit and place < len(layout.units):
         unit = layout.units[place].strip("[]() ")
-    if not unit and (found := _SUFFIX.fullmatch(heading)):
+    if not unit and len(heading) <= _LONGEST_HEADING and (found := _SUFFIX.fullmatch(heading)):
         name, unit = found[1], found[2]
     return name, unit
 
 
 def _role_of(heading: str, layout: Layout, columns: AnyMapping[str, str]) -> Role | None:
     """Return what a heading says that its column is; None if it says nothing that is needed."""
-    if heading in columns.values():
+    if heading in columns.values() or len(heading) > _LONGEST_HEADING:
         return None
     name, unit = _heading_unit(heading, layout)
     words = _CAMEL.sub(" ", f"{name} {unit}").replace("_", " ")

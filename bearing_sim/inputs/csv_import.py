@@ -9,13 +9,15 @@ smoothed.
 """
 
 import datetime
+import heapq
 import math
 import re
 import zoneinfo
+from array import array
 from collections import Counter
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from decimal import Decimal, InvalidOperation
+from decimal import Decimal
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -50,6 +52,11 @@ METADATA = "bearing_sim_import"
 
 _LINES_KEPT = 5  # of each kind of error; all are counted
 _USUAL_SPACINGS = 3.0  # median spacings above which there is a gap, if the mapping does not set longest_step
+
+_LONGEST_FORMAT = 100  # characters
+_TIMES_END = 2**31 * 1_000_000_000  # [ns since 1970], in the year 2038: stamps of ROS count seconds in 31 bits
+_LONGEST_TIME = 10_000 * 366 * 86_400 * 1_000_000_000  # [ns] from any epoch that a date can name
+_SHOWN = 60  # characters of a cell in a message
 
 _LAWS = frozenset({"sum", "norm", "mass_times_acceleration", "gear_force", "constant"})
 
@@ -137,23 +144,42 @@ class TimeColumn:
         if self.format is None and (self.time_of_day or self.zone != "UTC"):
             return ["time_of_day and zone go with format only; give the epoch with its zone, such as 2026-01-01T00:00:00+01:00"]
         self.zone_info()
+        if self.format is not None and self.format != "iso":
+            self._check_format()
         if self.unit is not None:
             self.nanoseconds_per_unit()
             self.epoch_ns()
         return []
 
+    def _check_format(self) -> None:
+        """Raise ValueError if Python's strptime does not know the format; it compiles the format only when it reads the first time."""
+        if len(self.format) > _LONGEST_FORMAT:
+            raise ValueError(f"format: {len(self.format)} characters; expected such as %d.%m.%Y %H:%M:%S, at most {_LONGEST_FORMAT}")
+        try:
+            datetime.datetime.strptime("", self.format)
+        except re.error:
+            raise ValueError(f"format = {self.format!r}: has a part twice; expected such as %d.%m.%Y %H:%M:%S") from None
+        except (ValueError, LookupError) as error:
+            if "does not match" not in str(error):  # an empty text matches no format
+                raise ValueError(f"format = {self.format!r}: {error}; expected such as %d.%m.%Y %H:%M:%S") from None
+
     def nanoseconds_per_unit(self) -> float:
         """Return the number of nanoseconds in one unit of the cell."""
-        return to_si(f"1 {spelled(self.unit)}", "s") * 1e9
+        factor = to_si(f"1 {spelled(self.unit)}", "s") * 1e9
+        if not 0.0 < factor < _TIMES_END:
+            raise ValueError(f"unit = {self.unit!r}: expected a unit of times such as s, ms, min, h or day")
+        return factor
 
     def zone_info(self) -> datetime.tzinfo:
         """Return the zone of timestamps that do not name theirs."""
         if found := re.fullmatch(r"([-+])(\d{1,2}):?(\d{2})?", self.zone):
             minutes = 60 * int(found[2]) + int(found[3] or 0)
+            if minutes >= 24 * 60:
+                raise ValueError(f"zone = {self.zone!r}: expected an offset of less than 24 hours, such as +01:00")
             return datetime.timezone((-1 if found[1] == "-" else 1) * datetime.timedelta(minutes=minutes))
         try:
             return zoneinfo.ZoneInfo(self.zone)
-        except (zoneinfo.ZoneInfoNotFoundError, ValueError, OSError):
+        except (zoneinfo.ZoneInfoNotFoundError, ValueError, OSError, LookupError):
             raise ValueError(f"zone = {self.zone!r}: expected a name such as Europe/Berlin, UTC, or an offset such as +01:00") from None
 
     def epoch_ns(self) -> int:
@@ -162,7 +188,7 @@ class TimeColumn:
             return 0
         try:
             return nanoseconds(datetime.datetime.fromisoformat(str(self.epoch)))
-        except ValueError:
+        except (ValueError, OverflowError):
             raise ValueError("epoch: expected a date such as 2019-03-12 or 2019-03-12T06:00:00Z") from None
 
 
@@ -347,6 +373,10 @@ def _apply_override(tree: dict, override: str) -> None:
         tree[name] = text.strip()
 
 
+class _TimeOutOfRange(ValueError):
+    """A time that no stamp can hold."""
+
+
 class _BadCell(ValueError):
     """A cell without a usable number."""
 
@@ -375,11 +405,11 @@ class Table:
 
     rows: int = 0
     left_out: int = 0
-    stamps: dict[str, list[int]] = field(default_factory=dict)
-    values: dict[str, list[float]] = field(default_factory=dict)
+    stamps: dict[str, Sequence[int]] = field(default_factory=dict)
+    values: dict[str, Sequence[float]] = field(default_factory=dict)
     refused: Counter = field(default_factory=Counter)
     examples: dict[str, list[tuple[int, str]]] = field(default_factory=dict)
-    lines: dict[str, list[int]] = field(default_factory=dict)
+    lines: dict[str, Sequence[int]] = field(default_factory=dict)
     gaps: list[tuple[str, int, float]] = field(default_factory=list)
     longest_step: float = math.nan
     spacing: float = math.nan
@@ -441,7 +471,7 @@ def input_log(table: Table, path: Path) -> InputLog:
     series = {}
     for channel, stamps in table.stamps.items():
         values = [(value,) for value in table.values[channel]]
-        series[channel] = Series(path.name, "column of a table", "header", stamps, stamps, values)
+        series[channel] = Series(path.name, "column of a table", "header", list(stamps), list(stamps), values)
     return InputLog(path, series, "")
 
 
@@ -527,15 +557,18 @@ class _RowReader:
         text = " ".join(cells[column].strip() for column in self._time_columns).strip()
         try:
             time_ns = self._time(text, self.newest)
-        except (ValueError, InvalidOperation, OverflowError):
-            refuse("time.unreadable" if text else "time.empty_cell", line, f"{text!r} is not a time" if text else "the time is empty")
+        except _TimeOutOfRange:
+            refuse("time.out_of_range", line, f"{text[:_SHOWN]!r} is not within 1970 to 2038, which stamps can hold; see epoch in the mapping")
+            return None
+        except (ValueError, ArithmeticError):
+            refuse("time.unreadable" if text else "time.empty_cell", line, f"{text[:_SHOWN]!r} is not a time" if text else "the time is empty")
             return None
         if self.newest is not None and time_ns <= self.newest:
             back = (self.newest - time_ns) * 1e-9
             if back:
-                refuse("time.backwards", line, f"{text} lies {back:.6g} s before the last row used")
+                refuse("time.backwards", line, f"{text[:_SHOWN]} lies {back:.6g} s before the last row used")
             else:
-                refuse("time.repeated", line, f"{text} repeats the time of the last row used")
+                refuse("time.repeated", line, f"{text[:_SHOWN]} repeats the time of the last row used")
             return None
         return time_ns
 
@@ -546,9 +579,14 @@ class _RowReader:
         except _BadCell as error:
             self._table.refuse(f"{channel}.{error.kind}", line, str(error))
             return math.nan
-        self._table.stamps.setdefault(channel, []).append(time_ns)
-        self._table.values.setdefault(channel, []).append(value)
-        self._table.lines.setdefault(channel, []).append(line)
+        except OverflowError:
+            value = math.inf
+        if not math.isfinite(value):  # as the sum of cells that are
+            self._table.refuse(f"{channel}.not_finite", line, f"{channel} is not finite in SI")
+            return math.nan
+        self._table.stamps.setdefault(channel, array("q")).append(time_ns)
+        self._table.values.setdefault(channel, array("d")).append(value)
+        self._table.lines.setdefault(channel, array("q")).append(line)
         return value
 
     def _cell(self, cells: list[str], column: int, name: str, scale: float, offset: float) -> float:
@@ -558,10 +596,13 @@ class _RowReader:
         try:
             number = float(_with_point(text, self._comma))
         except ValueError:
-            raise _BadCell("not_a_number", f"{name} = {text!r} is not a number") from None
+            raise _BadCell("not_a_number", f"{name} = {text[:_SHOWN]!r} is not a number") from None
         if not math.isfinite(number):
-            raise _BadCell("not_finite", f"{name} = {text} is not finite")
-        return offset + scale * number
+            raise _BadCell("not_finite", f"{name} = {text[:_SHOWN]} is not finite")
+        value = offset + scale * number
+        if not math.isfinite(value):
+            raise _BadCell("not_finite", f"{name} = {text[:_SHOWN]} is not finite in SI")
+        return value
 
 
 def time_reader(time: TimeColumn, comma: bool) -> Callable[[str, int | None], int]:
@@ -580,14 +621,28 @@ def time_reader(time: TimeColumn, comma: bool) -> Callable[[str, int | None], in
         def of_timestamp(text: str, newest: int | None) -> int:
             moment = datetime.datetime.fromisoformat(text) if is_iso else datetime.datetime.strptime(text, time.format)
             if moment.tzinfo is not None:
-                return nanoseconds(moment)
+                return _stamp(nanoseconds(moment))
             told = nanoseconds(moment.replace(tzinfo=zone))
-            return told if newest is None or told > newest else nanoseconds(moment.replace(tzinfo=zone, fold=1))
+            return _stamp(told if newest is None or told > newest else nanoseconds(moment.replace(tzinfo=zone, fold=1)))
 
         return of_timestamp
     # Decimal keeps every digit of a time; a float would lose nanoseconds.
     factor, epoch = Decimal(repr(time.nanoseconds_per_unit())), time.epoch_ns()
-    return lambda text, newest: epoch + round(Decimal(_with_point(text, comma)) * factor)
+
+    def of_number(text: str, newest: int | None) -> int:
+        since_epoch = Decimal(_with_point(text, comma)) * factor
+        if since_epoch.is_finite() and abs(since_epoch) >= _LONGEST_TIME:  # before it becomes an integer of 990,000 digits
+            raise _TimeOutOfRange
+        return _stamp(epoch + round(since_epoch))
+
+    return of_number
+
+
+def _stamp(time_ns: int) -> int:
+    """Return a time [ns since 1970] that a stamp can hold; raise `_TimeOutOfRange` for another."""
+    if not 0 <= time_ns < _TIMES_END:
+        raise _TimeOutOfRange
+    return time_ns
 
 
 def _with_point(text: str, comma: bool) -> str:
@@ -632,6 +687,12 @@ def _find_gaps(table: Table, mapping: Mapping, row_spacings: np.ndarray) -> None
             table.gaps.append((channel, table.lines[channel][k + 1], float(spacings[k])))
 
 
+def _messages(channel: str, stamps: Sequence[int]) -> Iterator[tuple[int, str, int]]:
+    """Yield (stamp, channel, position) of the messages of a channel."""
+    for position, stamp in enumerate(stamps):
+        yield stamp, channel, position
+
+
 def write_log(
     table: Table,
     mapping_text: str,
@@ -654,7 +715,7 @@ def write_log(
     origin = {"package_version": package_version(), "git_hash": git_hash()}
     files = sorted(Path(source).rglob("*.parquet")) if Path(source).is_dir() else [Path(source)]
     metadata = {"mapping": mapping_text, "file": Path(source).name, "sha256": checksum(files), **origin}
-    messages = sorted((stamp, channel, k) for channel, stamps in table.stamps.items() for k, stamp in enumerate(stamps))
+    messages = heapq.merge(*(_messages(channel, stamps) for channel, stamps in table.stamps.items()))  # each rises
     with McapFile(out, {METADATA: metadata}, {"generator": "bearing_sim", **origin}, replace=replace) as recording:
         for done, (stamp, channel, k) in enumerate(messages):
             topic, value = (topics.INPUTS | topics.MEASUREMENTS)[channel], table.values[channel][k]

@@ -7,13 +7,18 @@ otherwise asked for; what was found is kept as text, so that nobody has to guess
 
 import codecs
 import csv
+import io
 import math
 import re
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import BinaryIO, TextIO
 
-from bearing_sim.scene.loader import did_you_mean
+from bearing_sim.files.limits import TABLE_COLUMNS, TABLE_FILE, TABLE_LINE, TABLE_ROWS, FileError, Limit, LimitError
+from bearing_sim.files.reading import open_regular
+from bearing_sim.scene.errors import did_you_mean, shortened
 from bearing_sim.scene.quantity import conversion
 
 DELIMITERS = (",", ";", "\t", "|")
@@ -21,7 +26,10 @@ NAMES = {",": "comma", ";": "semicolon", "\t": "tab", "|": "vertical bar"}
 """Words for delimiters, for messages."""
 
 _COMMENTS = ("#", "//")
-_FIRST_LINES = 2000  # of a file, in which header, delimiter and decimal mark are looked for
+_FIRST_LINES, _FIRST_CHARACTERS = 2000, 2_000_000  # of a file, in which header, delimiter and decimal mark are looked for
+_LONGEST_HEADING = 300  # characters in which a unit is looked for
+_CONTROL = re.compile("[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff]")  # acts on a terminal, or ends a line of YAML
+_SHOWN = 1000  # characters of a header in a message
 _MARKS = ((codecs.BOM_UTF8, "utf-8-sig"), (codecs.BOM_UTF16_LE, "utf-16"), (codecs.BOM_UTF16_BE, "utf-16"))
 _BINARY = {
     b"PK\x03\x04": "a workbook of a spreadsheet or another archive; save the sheet as CSV",
@@ -86,9 +94,7 @@ def encoding_of(path: Path, given: str | None = None) -> str:
     TableError
         The file is missing, is no text, or cannot be read in the encoding given.
     """
-    if not path.is_file():
-        raise TableError(f"{path}: no such file")
-    with open(path, "rb") as stream:
+    with opened(path) as stream:
         begin = stream.read(4)
         for magic, what in _BINARY.items():
             if begin.startswith(magic):
@@ -100,26 +106,91 @@ def encoding_of(path: Path, given: str | None = None) -> str:
             return marked
         stream.seek(0)
         decoder = codecs.getincrementaldecoder("utf-8")()
-        is_utf8, has_zero = True, False
+        is_utf8, lines = True, 0
         while piece := stream.read(1 << 20):
-            has_zero = has_zero or b"\0" in piece
+            if b"\0" in piece:
+                raise TableError(f"{path}: no text, it has bytes of zero; expected a CSV table")
+            lines += piece.count(b"\n")
+            within(TABLE_ROWS, lines, path)
             if is_utf8:
                 try:
                     decoder.decode(piece)
                 except UnicodeDecodeError:
                     is_utf8 = False
-    if has_zero:
-        raise TableError(f"{path}: no text, it has bytes of zero; expected a CSV table")
     return "utf-8" if is_utf8 else "cp1252"
+
+
+def opened(path: Path) -> BinaryIO:
+    """Return a table's file, opened for reading bytes.
+
+    Raises
+    ------
+    TableError
+        It cannot be opened, or is too large.
+    """
+    try:
+        return open_regular(path, TABLE_FILE)
+    except FileError as error:
+        raise TableError(str(error)) from None
+
+
+def within(limit: Limit, found: int, where: str | Path) -> None:
+    """Raise `TableError` if what was found exceeds a limit; ``where`` opens the message."""
+    try:
+        limit.check(found, str(where))
+    except LimitError as error:
+        raise TableError(str(error)) from None
+
+
+@contextmanager
+def opened_text(path: Path, encoding: str, errors: str = "strict") -> Iterator[TextIO]:
+    """Open a table's file for reading text, with its line ends as they are.
+
+    Raises
+    ------
+    TableError
+        It cannot be opened, or the encoding is unknown or not one of texts.
+    """
+    try:
+        found = codecs.lookup(encoding)
+    except (LookupError, ValueError) as error:  # ValueError: a null character in the name
+        raise TableError(f"{path}: encoding {encoding!r}: {error}") from None
+    if not getattr(found, "_is_text_encoding", True):
+        raise TableError(f"{path}: encoding {encoding!r}: no encoding of texts; expected such as utf-8 or latin-1")
+    with opened(path) as stream, io.TextIOWrapper(stream, encoding=encoding, errors=errors, newline="") as text:
+        yield text
+
+
+def lines_of(stream: TextIO, path: Path) -> Iterator[str]:
+    """Yield the lines of a text with their ends.
+
+    Raises
+    ------
+    TableError
+        A line is longer than the limit.
+    """
+    number, longest = 0, TABLE_LINE.value
+    while line := stream.readline(longest + 1):
+        number += 1
+        if len(line) > longest:
+            raise TableError(f"{path}, line {number}: {TABLE_LINE.refusal()}")
+        yield line
 
 
 def first_lines(path: Path, encoding: str) -> list[str]:
     """Return the first lines of a file, without their ends."""
+    found: list[str] = []
+    length = 0
     try:
-        with open(path, newline="", encoding=encoding, errors="replace") as stream:
-            return [line.rstrip("\r\n") for line, _ in zip(stream, range(_FIRST_LINES))]
+        with opened_text(path, encoding, errors="replace") as stream:
+            for line in lines_of(stream, path):
+                found.append(line.rstrip("\r\n"))
+                length += len(line)
+                if len(found) == _FIRST_LINES or length > _FIRST_CHARACTERS:
+                    break
     except (LookupError, UnicodeError) as error:
         raise TableError(f"{path}: encoding {encoding!r}: {error}") from None
+    return found
 
 
 def is_comment(line: str) -> bool:
@@ -173,16 +244,25 @@ def find_header(path: Path, lines: Sequence[str], wanted: Sequence[tuple[str, st
                 best, most = (number, cells), likeness
     number, cells = best
     errors = [f"{where}: no column {name!r}{did_you_mean(name, cells)}" for where, name in wanted if name not in cells]
-    shown = f"the header has {', '.join(cells) or 'nothing'}"
+    shown = f"the header has {_shown(cells)}"
     if len(cells) == 1:
         shown += f", one column only (delimiter: expected {', '.join(NAMES[each] for each in DELIMITERS)}, or what the mapping says)"
     raise TableError("\n".join([f"{path}, line {number}: {shown}", *(f"  {error}" for error in errors)]))
 
 
+def _shown(cells: Sequence[str]) -> str:
+    """Return headings for a message: what would act on a terminal is escaped, and the middle of many left out."""
+    texts = [cell if cell.isprintable() else repr(cell) for cell in cells]
+    return shortened(", ".join(texts), _SHOWN) or "nothing"
+
+
 def _enter_header(path, wanted, layout, delimiter, cells, number, commented, was_searched) -> None:
     errors = [f"  {where}: {cells.count(name)} columns are called {name!r}" for where, name in wanted if cells.count(name) > 1]
     if errors:
-        raise TableError("\n".join([f"{path}, line {number}: the header has {', '.join(cells)}", *errors]))
+        raise TableError("\n".join([f"{path}, line {number}: the header has {_shown(cells)}", *errors]))
+    within(TABLE_COLUMNS, len(cells), f"{path}, line {number}")
+    if odd := next((cell for cell in cells if _CONTROL.search(cell)), None):
+        raise TableError(f"{path}, line {number}: the heading {odd[:_SHOWN]!r} has control characters; expected text")
     layout.delimiter, layout.names, layout.header_line, layout.is_comment = delimiter, tuple(cells), number, commented
     if was_searched and delimiter != ",":
         layout.found.append(f"delimiter: {NAMES[delimiter]}")
@@ -197,7 +277,7 @@ def _second_line(lines: Sequence[str], layout: Layout) -> tuple[str, ...]:
     filled = [cell for cell in cells if cell]
     if len(filled) < 2 or not all(_UNIT_LIKE.fullmatch(cell) for cell in filled):
         return ()
-    layout.found.append(f"second line of the header: {', '.join(cells)}")
+    layout.found.append(f"second line of the header: {_shown(cells)}")
     return tuple(cells)
 
 
@@ -256,12 +336,12 @@ def records(path: Path, layout: Layout) -> Iterator[tuple[int, list[str]]]:
     Raises
     ------
     TableError
-        A quotation mark is out of place, or a byte has no meaning in the encoding.
+        A quotation mark is out of place, a byte has no meaning in the encoding, or there are more or longer rows than the limits allow.
     """
-    width, lines = len(layout.names), _Lines(layout)
+    width, lines, most_rows = len(layout.names), _Lines(layout), TABLE_ROWS.value
     named = max((k for k, name in enumerate(layout.names) if name), default=-1) + 1
-    with open(path, newline="", encoding=layout.encoding) as stream:
-        lines.stream = enumerate(stream, 1)
+    with opened_text(path, layout.encoding) as stream:
+        lines.stream = enumerate(lines_of(stream, path), 1)
         rows = csv.reader(lines, delimiter=layout.delimiter, strict=True)
         skipped_units = not layout.units
         while True:
@@ -281,6 +361,8 @@ def records(path: Path, layout: Layout) -> Iterator[tuple[int, list[str]]]:
                 continue
             while len(cells) > width and not cells[-1].strip():
                 cells.pop()
+            if lines.began - layout.header_line > most_rows:
+                within(TABLE_ROWS, lines.began - layout.header_line, path)
             if named <= len(cells) < width:
                 cells += [""] * (width - len(cells))
             yield lines.began, cells
@@ -294,12 +376,18 @@ class _Lines:
     at_start : whether the next line begins a row.
     began : line number at which the last row began.
     number : of the last line.
+
+    Raises
+    ------
+    TableError
+        A row that goes on over many lines, within quotation marks, has more characters than a line may have.
     """
 
     def __init__(self, layout: Layout):
         self._layout = layout
         self.stream: Iterator[tuple[int, str]] = iter(())
         self.at_start, self.began, self.number = True, 0, 0
+        self._length = 0  # of the row so far
 
     def __iter__(self):
         return self
@@ -313,14 +401,17 @@ class _Lines:
                 if is_comment(line):
                     self._layout.comments += 1
                     continue
-                self.at_start, self.began = False, number
+                self.at_start, self.began, self._length = False, number, 0
+            self._length += len(line)
+            if self._length > len(line):
+                within(TABLE_LINE, self._length, f"the row that begins in line {self.began}")
             return line
         raise StopIteration
 
 
 def unit_in(heading: str) -> tuple[str, str]:
     """Return what a heading names and the text of its unit: ``Speed [rpm]``, ``Load (kN)``, ``T_oil/°C``; the unit is empty if there is none."""
-    for pattern in _HEADED:
+    for pattern in _HEADED if len(heading) <= _LONGEST_HEADING else ():
         found = pattern.fullmatch(heading.strip())
         if found is not None and found[1]:
             return found[1], found[2]

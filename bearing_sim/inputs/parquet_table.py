@@ -9,11 +9,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from bearing_sim.extras import what_is_missing
-from bearing_sim.inputs.csv_text import Layout, TableError
-from bearing_sim.scene.loader import did_you_mean
+from bearing_sim.files.limits import TABLE_BYTES, TABLE_FILE, TABLE_ROWS, FileError
+from bearing_sim.files.reading import open_regular
+from bearing_sim.inputs.csv_text import Layout, TableError, within
+from bearing_sim.scene.errors import did_you_mean, shortened
 
 _MAGIC = b"PAR1"
 _CHUNK = 1 << 20  # byte
+_SHOWN = 500  # characters in a message
 
 
 def is_parquet(path: Path) -> bool:
@@ -21,9 +24,9 @@ def is_parquet(path: Path) -> bool:
     if path.is_dir():
         return next(path.rglob("*.parquet"), None) is not None
     try:
-        with open(path, "rb") as stream:
+        with open_regular(path) as stream:
             return stream.read(len(_MAGIC)) == _MAGIC
-    except OSError:
+    except (FileError, OSError):
         return False
 
 
@@ -71,10 +74,7 @@ def parquet_records(path: Path, layout: Layout, only: Mapping[str, str], time: s
     is_timestamp = pyarrow.types.is_timestamp(dataset.schema.field(time).type)
     if is_timestamp and not takes_timestamps:
         raise TableError(f"{path}: column {time} holds timestamps; expected time.format: iso in the mapping, and no time.unit or time_of_day")
-    try:
-        table = dataset.to_table(columns=list(layout.names), filter=_filter(dataset.schema, only))
-    except (pyarrow.ArrowException, OSError) as error:
-        raise TableError(f"{path}: cannot be read as Parquet: {error}") from None
+    table = _read(path, dataset, list(layout.names), _filter(dataset.schema, only))
     is_number = pyarrow.types.is_integer(table.schema.field(time).type) or pyarrow.types.is_floating(table.schema.field(time).type)
     if len(dataset.files) > 1 and (is_timestamp or is_number):
         table = table.sort_by(time)
@@ -94,7 +94,8 @@ def rows_of(path: Path) -> list[dict[str, str]]:
         It cannot be read.
     """
     dataset = _dataset(path)
-    names, table = dataset.schema.names, dataset.to_table()
+    names = dataset.schema.names
+    table = _read(path, dataset, names, None)
     return [dict(zip(names, row)) for row in zip(*(_texts(table.column(name), ".") for name in names))]
 
 
@@ -107,7 +108,7 @@ def values_of(path: Path, column: str) -> list[str]:
         See `parquet_layout`.
     """
     layout = parquet_layout(path, [("--by", column)], None)
-    return sorted({text for text in _texts(_dataset(path).to_table(columns=list(layout.names)).column(column), ".") if text.strip()})
+    return sorted({text for text in _texts(_read(path, _dataset(path), list(layout.names), None).column(column), ".") if text.strip()})
 
 
 def files_of(path: Path, only: Mapping[str, str]) -> list[Path]:
@@ -139,10 +140,35 @@ def _dataset(path: Path):
     except ModuleNotFoundError as error:
         raise TableError(f"{path}: {what_is_missing(error)}") from None
     try:
-        files = sorted(map(str, path.rglob("*.parquet"))) if path.is_dir() else str(path)
+        files = sorted(map(str, path.rglob("*.parquet"))) if path.is_dir() else [str(path)]
+        for file in files:
+            open_regular(file, TABLE_FILE).close()
+        files = files if path.is_dir() else files[0]
         return pyarrow.dataset.dataset(files, format="parquet", partitioning=pyarrow.dataset.partitioning(flavor="hive"))
+    except FileError as error:
+        raise TableError(str(error)) from None
     except (pyarrow.ArrowException, OSError) as error:
-        raise TableError(f"{path}: cannot be read as Parquet: {error}") from None
+        raise TableError(f"{path}: cannot be read as Parquet: {_reason(error)}") from None
+
+
+def _read(path: Path, dataset, columns: Sequence[str], condition):
+    """Return columns of a data set, those rows that meet a condition, or all if it is None."""
+    import pyarrow
+
+    try:
+        within(TABLE_ROWS, dataset.count_rows(filter=condition), path)
+        table = dataset.to_table(columns=columns, filter=condition)
+    except MemoryError:
+        raise TableError(f"{path}: its columns {shortened(', '.join(columns), _SHOWN)} do not fit into the memory of this machine") from None
+    except (pyarrow.ArrowException, OSError) as error:
+        raise TableError(f"{path}: cannot be read as Parquet: {_reason(error)}") from None
+    within(TABLE_BYTES, table.nbytes, path)
+    return table
+
+
+def _reason(error: Exception) -> str:
+    """Return why Parquet cannot be read, on one line."""
+    return shortened(" ".join(str(error).split()), _SHOWN)
 
 
 def _filter(schema, only: Mapping[str, str]):

@@ -7,6 +7,7 @@ Every move has a number, which the history keeps: a move that was interrupted by
 
 import csv
 import importlib.util
+import io
 import json
 import os
 import subprocess
@@ -15,7 +16,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple, TextIO
 
+from bearing_sim.files.limits import HISTORY_FILE
 from bearing_sim.files.outputs import replaced
+from bearing_sim.files.reading import open_regular, read_text
 from bearing_sim.stored_state.state import StoredState
 from bearing_sim.stored_state.totals import KAPPA_BOUNDS, LOAD_BOUNDS, SLIP_BOUNDS, Totals
 
@@ -92,8 +95,11 @@ def read_history(path: Path) -> tuple[list[dict[str, object]], Move]:
         A file of the history cannot be read; ImportError where it is Parquet and there is no pyarrow.
     """
     parquet, table = history_paths(path)
-    rows, last = _read_parquet(parquet) if parquet.exists() else ([], _NO_MOVE)
-    later, move = _read_csv(table)
+    try:
+        rows, last = _read_parquet(parquet) if parquet.exists() else ([], _NO_MOVE)
+        later, move = _read_csv(table)
+    except (LookupError, TypeError, AttributeError, ArithmeticError, RecursionError, csv.Error) as error:
+        raise ValueError(f"the history of days of {path} is damaged: {type(error).__name__}: {error}") from None
     # A move into the other file that was interrupted before it removed this one: its days are there already.
     return (_with(rows, later), move) if move.number > last.number else (rows, last)
 
@@ -108,6 +114,7 @@ def all_days(path: Path, state: StoredState) -> list[dict[str, object]]:
 def _read_parquet(parquet: Path) -> tuple[list[dict[str, object]], Move]:
     from pyarrow import parquet as files
 
+    open_regular(parquet, HISTORY_FILE).close()
     read = files.read_table(parquet)
     return read.to_pylist(), Move(*json.loads((read.schema.metadata or {}).get(_LAST_MOVE, b"[0, []]")))
 
@@ -115,7 +122,7 @@ def _read_parquet(parquet: Path) -> tuple[list[dict[str, object]], Move]:
 def _read_csv(table: Path) -> tuple[list[dict[str, object]], Move]:
     if not table.exists():
         return [], _NO_MOVE
-    with open(table, newline="") as text:
+    with io.StringIO(read_text(table, HISTORY_FILE)) as text:
         move = Move(*json.loads(text.readline().partition(": ")[2]))
         return [{name: _cell(name, value) for name, value in row.items()} for row in csv.DictReader(text)], move
 

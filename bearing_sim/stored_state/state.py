@@ -19,6 +19,8 @@ from bearing_sim.stored_state.totals import Criteria, Totals, totals_of
 VERSION = 1
 """Of the contents of a state file; `migrated` brings older ones to it."""
 
+_END_OF_TIMES = 2**63  # [ns since the epoch]
+_LONGEST_REASON = 300  # characters
 _DAY = 86_400_000_000_000  # [ns]
 _SAME_STRETCH = 1_000_000  # [ns] between samples that follow each other: stamps are rounded
 _CALIBRATED = "lubricant.mixture_fraction"  # what `bearing-sim calibrate` fits unless told otherwise
@@ -172,14 +174,40 @@ class StoredState:
         try:
             fields = {each.name: mapping[each.name] for each in dataclasses.fields(cls) if each.name in mapping}
             for name in ("until_ns", "folds", "writes", "created_ns", "written_ns"):
-                fields[name] = int(fields.get(name, 0))
+                fields[name] = _counted(name, fields.get(name, 0))
+            if fields.get("retired_ns") is not None:
+                fields["retired_ns"] = _counted("retired_ns", fields["retired_ns"])
             fields["totals"] = Totals.from_mapping(mapping["totals"])
             fields["covered"] = Covered(mapping.get("covered", ()))
             fields["days"] = {day: Totals.from_mapping(each) for day, each in mapping.get("days", {}).items()}
-            fields["thermal"] = Thermal(**mapping["thermal"]) if mapping.get("thermal") else None
-            return cls(**{**fields, "serial": str(mapping["serial"]), "identity": dict(mapping["identity"])})
-        except (KeyError, TypeError, ValueError, AttributeError) as error:
-            raise Damaged(f"it is not a bearing's state: {type(error).__name__}: {error}") from None
+            fields["thermal"] = _thermal(mapping["thermal"]) if mapping.get("thermal") else None
+            fields["calibration"] = {str(name): float(value) for name, value in mapping.get("calibration", {}).items()}
+            fields["learned"] = {str(name): dict(each) for name, each in mapping.get("learned", {}).items()}
+            serial = str(mapping["serial"])
+            if not serial.isprintable():
+                raise ValueError(f"serial = {serial!r}: expected printable characters")
+            for totals in (fields["totals"], *fields["days"].values()):
+                for extreme in filter(None, (totals.largest_slip, totals.lowest_clearance)):
+                    _counted("the time of an extreme", extreme.time_ns)
+            for edge in (edge for pair in fields["covered"].stretches for edge in pair):
+                _counted("the edge of a stretch", edge)
+            return cls(**{**fields, "serial": serial, "identity": dict(mapping["identity"])})
+        except (LookupError, TypeError, ValueError, AttributeError, ArithmeticError) as error:
+            raise Damaged(f"it is not a bearing's state: {type(error).__name__}: {str(error)[:_LONGEST_REASON]}") from None
+
+
+def _counted(name: str, value: object) -> int:
+    """Return a time [ns since the epoch] or a count; raise ValueError for one that no state has."""
+    number = int(value)
+    if not 0 <= number < _END_OF_TIMES:
+        raise ValueError(f"{name}: expected a number from 0 to 2^63")
+    return number
+
+
+def _thermal(fields: Mapping[str, object]) -> Thermal:
+    """Return temperatures from the contents of a file."""
+    known = Thermal(**fields)
+    return Thermal(_counted("time_ns", known.time_ns), [float(each) for each in known.nodes], [float(each) for each in known.rings])
 
 
 def new_state(scene: Scene, serial: str, now_ns: int) -> StoredState:

@@ -18,14 +18,15 @@ from urllib.parse import quote, unquote
 
 import platformdirs
 
+from bearing_sim.files.limits import STATE_FILE, FileError, LimitError
 from bearing_sim.files.outputs import replaced, synchronise
+from bearing_sim.files.reading import NO_FILE, read_bytes, why_not_readable
 from bearing_sim.messages.events import Level
 from bearing_sim.stored_state.state import VERSION, Damaged, StoredState, migrated, time_text
 
 FORMAT = "bearing_sim state"
 _STATE = b', "state": '  # what the checksum is of stands behind it
 _LONGEST_SERIAL = 100
-_MOST_BYTES = 4_000_000  # a state has some 50 kB at most: a larger file is something else
 
 
 class StateError(OSError):
@@ -86,10 +87,6 @@ def read_state(path: Path) -> tuple[StoredState, list[News]]:
             found[each] = _parsed(each)
         except FileNotFoundError:
             continue
-        except IsADirectoryError:
-            raise StateError(f"{each} is a folder; expected a state file") from None
-        except PermissionError as error:
-            raise StateError(f"the state file {each} cannot be read: {error.strerror}") from None
         except Damaged as error:
             faults[each] = str(error)
     if not found:
@@ -233,6 +230,8 @@ def parsed(data: bytes) -> StoredState:
     """
     try:
         whole = json.loads(data)
+    except RecursionError:
+        raise Damaged("it is cut short or overwritten: lists in lists without end") from None
     except ValueError as error:
         raise Damaged(f"it is cut short or overwritten: {error}" if data.strip() else "it is empty") from None
     if not isinstance(whole, dict) or whole.get("format") != FORMAT or not isinstance(whole.get("version"), int):
@@ -249,10 +248,17 @@ def parsed(data: bytes) -> StoredState:
 
 
 def _parsed(path: Path) -> StoredState:
-    if path.stat().st_size > _MOST_BYTES:
-        raise Damaged(f"it has {path.stat().st_size} bytes, more than any state")
+    reason = why_not_readable(path)
+    if reason == NO_FILE:
+        raise FileNotFoundError(path)
+    if reason:
+        raise StateError(f"the state file {path} cannot be read: {reason}")
     try:
-        return parsed(path.read_bytes())
+        return parsed(read_bytes(path, STATE_FILE))
+    except LimitError as error:
+        raise Damaged(error.reason) from None
+    except FileError as error:
+        raise StateError(f"the state file {path} cannot be read: {error.reason}") from None
     except StateError as error:
         raise StateError(f"{path}: {error}") from None
 

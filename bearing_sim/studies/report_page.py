@@ -31,7 +31,7 @@ from bearing_sim.studies.deng2017.run import STUDY_FILE
 from bearing_sim.studies.page import NoResults, command, document, folded, pairs, paragraph, picture, rows_table, warnings
 from bearing_sim.studies.run_plot import DEFAULT_PANELS, course_of, draw_over_time
 from bearing_sim.sweep.point import OK, Column, mean_life
-from bearing_sim.sweep.table import COLOURS, NotDrawable, Table, draw, new_figure, read_any_table
+from bearing_sim.sweep.table import COLOURS, NotDrawable, Table, draw, new_figure, read_any_table, written_by_us
 
 _RECORDINGS, _TABLES = (".mcap", ACTIVE), (".parquet", ".csv")
 _MOST_ROWS = 1000  # of a table on a page; the files have all
@@ -122,11 +122,10 @@ def _part(path: Path) -> _Part:
     kept = path.with_suffix(".parquet")
     try:
         table = read_any_table(path)
-        if table.about.get("kind") == "design":
-            return _design_part(kept, studied.read_design(kept))
+        with written_by_us(path):
+            return _design_part(kept, studied.read_design(kept)) if table.about.get("kind") == "design" else _table_part(path, table)
     except (ValueError, FileNotFoundError) as error:
         raise NoResults(f"{path}: {error}") from None
-    return _table_part(path, table)
 
 
 def _drawn(into) -> bytes:

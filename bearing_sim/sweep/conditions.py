@@ -16,6 +16,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from bearing_sim.files.limits import POINTS_FILE, POINTS_ROWS, FileError
+from bearing_sim.files.reading import read_text
+from bearing_sim.scene.errors import shortened
 from bearing_sim.scene.quantity import to_si
 from bearing_sim.scene.scene import OPERATING_POINT, Scene
 from bearing_sim.scene.uncertainty import BLOCKS, messages, value_at, with_values
@@ -132,21 +135,25 @@ def read_points(path: Path) -> tuple[OperatingPoint, ...]:
 
     Raises
     ------
-    OSError
-        The file cannot be read.
     PointError
-        A column is missing or unknown, a value is not the quantity expected, or there are no points.
+        The file cannot be read, or is too long; a column is missing or unknown, a value is not the quantity expected, or there are no points.
     """
-    with open(path, newline="", encoding="utf-8-sig") as file:
-        lines = [(number, row) for number, row in enumerate(csv.reader(file), 1) if any(cell.strip() for cell in row)]
+    try:
+        text = read_text(path, POINTS_FILE)
+        lines = [(number, row) for number, row in enumerate(csv.reader(text.splitlines()), 1) if any(cell.strip() for cell in row)]
+        POINTS_ROWS.check(len(lines) - 1, str(path))
+    except (FileError, csv.Error) as error:
+        raise PointError(str(error) if isinstance(error, FileError) else f"{path}: cannot be read as a table: {error}") from None
     if len(lines) < 2:
         raise PointError(f"{path}: no operating points; expected a heading of {', '.join(_REQUIRED)} and a line for each point")
     (_, heading), *rows = lines
-    matches = [_HEADING.fullmatch(cell) for cell in heading]
+    matches = [_HEADING.fullmatch(" ".join(cell.split())) for cell in heading]
     names, units = [match[1] if match else cell for match, cell in zip(matches, heading)], [match[2] or "" if match else "" for match in matches]
     for name in names:
         if name not in _KNOWN or names.count(name) > 1:
-            raise PointError(f"{path}: column {name!r} is {'given twice' if name in _KNOWN else 'unknown'}; expected {', '.join(_KNOWN)}")
+            raise PointError(
+                f"{path}: column {shortened(repr(name), 200)} is {'given twice' if name in _KNOWN else 'unknown'}; expected {', '.join(_KNOWN)}"
+            )
     if missing := [name for name in _REQUIRED if name not in names]:
         raise PointError(f"{path}: no column {' and no column '.join(missing)}; expected {', '.join(_REQUIRED)}, each with its unit in brackets")
     points = []

@@ -8,13 +8,16 @@ import io
 import json
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, NamedTuple
 
 import numpy as np
 
+from bearing_sim.files.limits import RESULT_CELLS, RESULT_ROWS, RESULT_TEXT
 from bearing_sim.files.outputs import FORCE, Output, RefusedOutput, replaced
+from bearing_sim.files.reading import NO_FILE, read_text, why_not_readable
 from bearing_sim.scene.quantity import conversion
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import quantities
@@ -24,6 +27,7 @@ if TYPE_CHECKING:
     import pandas
     import xarray
 
+_LONGEST_REASON = 300  # characters
 _ABOUT = b"bearing_sim"
 _CSV = b"bearing_sim_csv_sha256"
 _HEADED = re.compile(r"(.*?)(?: \[(.*)\])?")
@@ -228,16 +232,53 @@ def read_table(path: Path) -> Table:
     """
     import pyarrow.parquet
 
+    if (reason := why_not_readable(path)) and reason != NO_FILE:
+        raise ValueError(f"{path}: {reason}")
     try:
-        found = pyarrow.parquet.read_table(path)
-    except pyarrow.ArrowInvalid as error:
-        raise ValueError(f"{path}: not readable as Parquet: {error}") from None
+        with pyarrow.parquet.ParquetFile(path) as file:
+            RESULT_ROWS.check(file.metadata.num_rows, str(path))
+            RESULT_CELLS.check(file.metadata.num_rows * file.metadata.num_columns, str(path))
+            found = file.read()
+    except MemoryError:
+        raise ValueError(f"{path}: it does not fit into the memory of this machine") from None
+    except pyarrow.ArrowException as error:
+        raise ValueError(f"{path}: not readable as Parquet: {' '.join(str(error).split())[:_LONGEST_REASON]}") from None
     about = (found.schema.metadata or {}).get(_ABOUT)
     if about is None:
         raise ValueError(f"{path}: a Parquet file, but not a table of bearing-sim")
-    notes: list[Mapping] = [field.metadata or {} for field in found.schema]
-    columns = [Column(field.name, note.get(b"unit", b"").decode(), note.get(b"meaning", b"").decode()) for field, note in zip(found.schema, notes)]
-    return Table(tuple(columns), found.to_pylist(), json.loads(about))
+    try:
+        described = json.loads(about)
+    except (ValueError, RecursionError) as error:
+        raise ValueError(f"{path}: its description is not readable as JSON: {error}") from None
+    with written_by_us(path):
+        notes: list[Mapping] = [field.metadata or {} for field in found.schema]
+        columns = [
+            Column(field.name, note.get(b"unit", b"").decode(), note.get(b"meaning", b"").decode()) for field, note in zip(found.schema, notes)
+        ]
+        return Table(tuple(columns), found.to_pylist(), _checked(described))
+
+
+@contextmanager
+def written_by_us(path: Path) -> Iterator[None]:
+    """Raise ValueError where the contents of a table, or what it says about itself, are not as this program writes them.
+
+    Columns and description can hold anything in a file from somebody else; what reads them relies on what `write_table` writes.
+    """
+    try:
+        yield
+    except (ArithmeticError, AttributeError, LookupError, StopIteration, TypeError, UnicodeError) as error:
+        found = " ".join(f"{type(error).__name__}: {error}".split())[:_LONGEST_REASON]
+        raise ValueError(f"{path}: its columns or its description are not as bearing-sim writes them ({found}); make the table again") from None
+
+
+def _checked(about: object) -> dict:
+    """Return the description of a table; raise TypeError or LookupError if it is none."""
+    if not isinstance(about, dict):
+        raise TypeError(f"the description is no mapping but {type(about).__name__}")
+    for axis in about.get("axes", ()):
+        if not isinstance(axis["field"], str) or not isinstance(axis["values"], list):
+            raise TypeError(f"axis of the field {axis['field']!r}")
+    return about
 
 
 def read_any_table(path: Path) -> Table:
@@ -251,8 +292,11 @@ def read_any_table(path: Path) -> Table:
     kept = path.with_suffix(".parquet")
     if kept.is_file() or path.suffix.lower() == ".parquet":
         return read_table(kept)
-    with open(path, newline="", encoding="utf-8-sig") as file:
-        lines = list(csv.reader(file))
+    try:
+        lines = list(csv.reader(io.StringIO(read_text(path, RESULT_TEXT))))
+    except csv.Error as error:
+        raise ValueError(f"{path}: cannot be read as a table: {error}") from None
+    RESULT_ROWS.check(len(lines) - 1, str(path))
     if len(lines) < 2 or len({len(line) for line in lines}) > 1:
         raise ValueError(f"{path}: expected a heading and lines with as many values")
     columns = [Column(found[1], found[2] or "", "") for found in map(_HEADED.fullmatch, lines[0])]

@@ -111,13 +111,16 @@ def resident() -> int:
 def run_case(case: Case, folder: Path) -> Outcome:
     """Run one case in a process of its own, in a folder that is empty."""
     case.make(folder)
-    with tempfile.TemporaryFile() as output:
-        before, began = resident(), time.monotonic()
+    with tempfile.TemporaryFile() as output, tempfile.TemporaryFile() as memory:
+        began = time.monotonic()
         process = os.fork()
         if not process:
+            os.write(memory.fileno(), str(resident()).encode())
             _run_here(case, folder, output.fileno())
         status, usage, timed_out = _waited(process, began)
         seconds = time.monotonic() - began
+        memory.seek(0)
+        before = int(memory.read())
         output.seek(0)
         message = output.read(10_000_000).decode(errors="backslashreplace")
     code = os.waitstatus_to_exitcode(status)

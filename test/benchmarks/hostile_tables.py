@@ -1,21 +1,24 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Hostile mappings, measured tables, tables of results, of operating points and of bearings, and stored states, for ``hostile_files.py``."""
 
+import hashlib
 import json
+import math
 import random
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from hostile_files import Case
-from hostile_scenes import fifo, file, files, link, plain, sparse
+from hostile_scenes import fifo, file, files, link, sparse
 
+from bearing_sim.stored_state.state import VERSION
 from bearing_sim.stored_state.state_file import FORMAT
 
 _IMPORT = ("import-csv", "data.csv", "mapping.yaml", "-o", "out.mcap")
 _GUESS = ("import-csv", "data.csv", "--guess")
 _PLOT = ("plot", "table.parquet", "-o", "picture.png")
 _REPORT = ("report", "table.parquet", "-o", "page.html")
-_DESIGN = ("design", "scene.yaml", "--slip-below", "10%", "--life-above", "300h", "--points", "points.csv")
+_DESIGN = ("design", "deng2017_table1", "--slip-below", "10%", "--life-above", "300h", "--points", "points.csv")
 _FLEET = ("replay-fleet", "log.mcap", "--bearings", "bearings.csv")
 _STATE = ("state", "show", "state.json")
 _MAPPING = """\
@@ -27,6 +30,7 @@ radial_load: {law: sum, columns: [{column: f, unit: N}]}
 _TIMES = _MAPPING.replace("unit: s%s", "format: '%s'")
 _HEADING = "t,n,f\n"
 _ROWS = "".join(f"{k},1500,800\n" for k in range(100))
+_PROPOSAL = "a guess is a proposal to be checked, and computes nothing"
 _TEN_GIGABYTE = 10_000_000_000
 
 
@@ -103,14 +107,16 @@ def _same_rows(rows: int) -> Callable[[], object]:
     return make
 
 
-def _both(name: str, make: Callable[[Path], None]) -> list[Case]:
-    return [Case(f"plot: {name}", make, _PLOT), Case(f"report: {name}", make, _REPORT)]
+def _both(name: str, make: Callable[[Path], None], shown: str = "") -> list[Case]:
+    """Return the cases of a table for ``plot`` and for ``report``; ``shown`` says why a page may show it."""
+    return [Case(f"plot: {name}", make, _PLOT), Case(f"report: {name}", make, _REPORT, shown)]
 
 
 def _state_text(**fields: object) -> bytes:
-    """Return a state as somebody writes it by hand, which needs no checksum."""
-    state = {"serial": "A1", "identity": {}, "totals": {}} | fields
-    return json.dumps({"format": FORMAT, "version": 0, "state": state}).encode()
+    """Return a state with fields of a stranger and the checksum that fits them."""
+    state = json.dumps({"serial": "A1", "identity": {}, "totals": {}} | fields).encode()
+    checksum = hashlib.sha256(b"%d " % VERSION + state).hexdigest()
+    return json.dumps({"format": FORMAT, "version": VERSION, "checksum": checksum}).encode()[:-1] + b', "state": ' + state + b"}\n"
 
 
 def _state(name: str, content: str | bytes, accepted: str = "") -> Case:
@@ -118,7 +124,7 @@ def _state(name: str, content: str | bytes, accepted: str = "") -> Case:
 
 
 def _points(name: str, content: str | bytes) -> Case:
-    return Case(f"operating points: {name}", files(points__csv=content, scene__yaml=plain()), _DESIGN)
+    return Case(f"operating points: {name}", file("points.csv", content), _DESIGN)
 
 
 def _bearings(name: str, content: str | bytes) -> Case:
@@ -190,9 +196,7 @@ CASES = [
     _table("a cell of 20 MB of lines in quotation marks", _HEADING + '0,"' + "1\n" * 10_000_000),
     _table("a million columns", ",".join(f"c{k}" for k in range(1_000_000)) + "\n" + _HEADING),
     _table("a header of 900 kB of brackets", "t,n,f,x" + "[" * 900_000 + "\n" + _ROWS),
-    _table(
-        "a header of 900 kB of blanks", "t,n,f,x" + " " * 900_000 + "y\n" + _ROWS, accepted="its columns are there, whatever else the header says"
-    ),
+    _table("a header of 900 kB of blanks", "t,n,f,x" + " " * 900_000 + "y\n" + _ROWS.replace("\n", ",1\n"), accepted="its columns are there"),
     _table("null characters", _HEADING + "0,\0,800\n"),
     _table("null characters in UTF-16", ("t,n,f\n" + "0,\0,800\n").encode("utf-16")),
     _table("UTF-16 cut in a character", (_HEADING + _ROWS).encode("utf-16")[:-1]),
@@ -215,12 +219,12 @@ CASES = [
     _guess("a heading of 900 kB of brackets", "time,speed " + "[" * 900_000 + "\n" + _ROWS),
     _guess("a heading of 900 kB of blanks", "time,speed" + " " * 900_000 + "rpm]\n" + _ROWS),
     _guess("a heading of 900 kB of underscores", "time,speed" + "_ " * 450_000 + "[\n" + _ROWS),
-    _guess("a unit of powers of powers", "time [s],speed [rpm**9**9**9**9],load [N]\n" + _ROWS),
+    _guess("a unit of powers of powers", "time [s],speed [rpm**9**9**9**9],load [N]\n" + _ROWS, accepted=_PROPOSAL),
     _guess("100,000 columns", ",".join(f"speed{k} [rpm]" for k in range(100_000)) + "\n" + ",".join("1" for _ in range(100_000)) + "\n"),
     _guess("5,000 columns of times", "\n".join([",".join(f"time{k}" for k in range(5_000)), *[",".join("1" for _ in range(5_000))] * 3])),
-    _guess("times beyond all bounds", "time [ns],speed [rpm],load [N]\n1e999,1,1\n2e999,1,1\n"),
+    _guess("times beyond all bounds", "time [ns],speed [rpm],load [N]\n1e999,1,1\n2e999,1,1\n", accepted=_PROPOSAL),
     _guess("times of the size of nanoseconds, negative", "time,speed [rpm],load [N]\n-1e18,1,1\n-1e17,1,1\n"),
-    _guess("a date that is none", "date,speed [rpm],load [N]\n99/99/2026,1,1\n"),
+    _guess("a date that is none", "date,speed [rpm],load [N]\n99/99/2026,1,1\n", accepted=_PROPOSAL),
     Case("Parquet: a table with bytes changed", _parquet(_result({}), "data.csv", 20), _IMPORT),
     Case("Parquet: its first letters only", file("data.csv", b"PAR1"), (*_GUESS[:2], "wind_turbine_scada", "-o", "o.mcap")),
     Case("Parquet: a length of 2^31", files(mapping__yaml=_MAPPING % "", data__csv=b"PAR1" + bytes(100) + b"\xff\xff\xff\x7fPAR1"), _IMPORT),
@@ -240,7 +244,11 @@ CASES = [
     *_both("axes that are a number", _parquet(_result({"axes": 5}))),
     *_both("axes without fields", _parquet(_result({"axes": [{}]}))),
     *_both("axes of columns that are not there", _parquet(_result({"axes": [{"field": "nothing", "values": [1.0]}]}))),
-    *_both("lists instead of numbers", _parquet(_result({"axes": []}, {"cage_slip": [[1.0], [2.0]], "rating_life": [[1.0], [2.0]]}))),
+    *_both(
+        "lists instead of numbers",
+        _parquet(_result({"axes": []}, {"cage_slip": [[1.0], [2.0]], "rating_life": [[1.0], [2.0]]})),
+        "a page shows whatever is in a table",
+    ),
     *_both("10 GB of zeros", sparse("table.parquet", _TEN_GIGABYTE)),
     *_both("a pipe", fifo("table.parquet")),
     *_both("bytes changed", _parquet(_result({"axes": []}), flips=20)),
@@ -259,14 +267,12 @@ CASES = [
     _state("no totals", json.dumps({"format": FORMAT, "version": 0, "state": {"serial": "A", "identity": {}}})),
     _state("totals that are words", _state_text(totals={"damage": "much", "starts": "many"})),
     _state("totals beyond all bounds", _state_text(totals={"damage": 1e308, "starts": 10**300, "running_seconds": -1e308})),
-    _state(
-        "totals that are none", b'{"format": "bearing_sim state", "version": 0, "state": {"serial": "A", "identity": {}, "totals": {"damage": NaN}}}'
-    ),
+    _state("totals that are none", _state_text(totals={"damage": math.nan})),
     _state("a time of 1e30", _state_text(written_ns=10**30)),
     _state("a time of -1e30", _state_text(until_ns=-(10**30), written_ns=-(10**30), created_ns=-(10**30))),
     _state(
         "a time that is infinite",
-        b'{"format": "bearing_sim state", "version": 0, "state": {"serial": "A", "identity": {}, "totals": {}, "written_ns": Infinity}}',
+        _state_text(written_ns=math.inf),
     ),
     _state("a stretch of 1e30", _state_text(covered=[[0, 10**30]])),
     _state("stretches that are words", _state_text(covered=["ab", "cd"])),
@@ -287,9 +293,9 @@ CASES = [
     _points("a cell of 1 MB", "shaft_speed [rpm],radial_load [N],weight\n" + "1" * 1_000_000 + ",1,1\n"),
     _points("a heading of 100 kB of blanks", "shaft_speed [rpm]" + " " * 100_000 + "x,radial_load [N],weight\n1,1,1\n"),
     _points("a million", "shaft_speed [rpm],radial_load [N],weight\n" + "3000,1,1\n" * 1_000_000),
-    Case("operating points: a pipe", fifo("points.csv", plain()), _DESIGN),
-    Case("operating points: /dev/zero through a link", link("points.csv", "/dev/zero", plain()), _DESIGN),
-    Case("operating points: 10 GB of zeros", sparse("points.csv", _TEN_GIGABYTE, plain()), _DESIGN),
+    Case("operating points: a pipe", fifo("points.csv"), _DESIGN),
+    Case("operating points: /dev/zero through a link", link("points.csv", "/dev/zero"), _DESIGN),
+    Case("operating points: 10 GB of zeros", sparse("points.csv", _TEN_GIGABYTE), _DESIGN),
     _bearings("a scene that is /dev/zero", "log,scene\nlog.mcap,/dev/zero\n"),
     _bearings("null characters", b"log,scene\n\0,\0\n"),
     _bearings("a quotation mark that is not closed", 'log,scene\n"' + "x\n" * 1_000_000),

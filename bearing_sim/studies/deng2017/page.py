@@ -6,8 +6,11 @@ from collections.abc import Mapping, Sequence
 from html import escape
 from pathlib import Path
 
+from bearing_sim.files.limits import JSON_FILE
+from bearing_sim.files.reading import NO_FILE, read_bytes, read_text, why_not_readable
 from bearing_sim.studies.deng2017.run import STUDY_FILE
 from bearing_sim.studies.page import NoResults, document, folded, pairs, picture
+from bearing_sim.sweep.table import written_by_us
 
 _CLASSES = {"holds": "holds", "holds in part": "part", "does not hold": "fails"}
 
@@ -24,20 +27,25 @@ def study_page(folder: Path) -> str:
     NoResults
         The folder has no finished study, or a figure is missing.
     """
+    file = folder / STUDY_FILE
     try:
-        about = json.loads((folder / STUDY_FILE).read_text())
+        about = json.loads(read_text(file, JSON_FILE))
+    except (ValueError, RecursionError) as error:
+        raise NoResults(f"{file}: not readable as JSON: {error}") from None
+    try:
+        with written_by_us(file):
+            return document(
+                about["title"],
+                _opening(about),
+                {
+                    "Claims": f"{_counts(about['claims'])}{_claims(about['claims'])}",
+                    "Figures": "".join(_figure(folder, each) for each in about["figures"]),
+                    "Settings": _settings(about),
+                    "Versions": pairs(about["versions"]),
+                },
+            )
     except ValueError as error:
-        raise NoResults(f"{folder / STUDY_FILE}: not readable as JSON: {error}") from None
-    return document(
-        about["title"],
-        _opening(about),
-        {
-            "Claims": f"{_counts(about['claims'])}{_claims(about['claims'])}",
-            "Figures": "".join(_figure(folder, each) for each in about["figures"]),
-            "Settings": _settings(about),
-            "Versions": pairs(about["versions"]),
-        },
-    )
+        raise NoResults(str(error)) from None
 
 
 def _opening(about) -> str:
@@ -45,10 +53,10 @@ def _opening(about) -> str:
     quick = f"<p><b>{warning}</b></p>" if about["quick"] else ""
     levels = "; ".join(f"<b>{escape(level)}</b> {escape(text)}" for level, text in about["levels"].items())
     doi = escape(about["doi"], quote=True)
-    statuses = ", ".join(f"{count} {escape(status)}" for status, count in about["statuses"].items())
+    statuses = ", ".join(f"{escape(str(count))} {escape(status)}" for status, count in about["statuses"].items())
     return (
         f"{quick}<p>All figures use the parameters of the bundled scenes; nothing is tuned. Every sweep ran at two levels of "
-        f'fidelity: {levels}.</p><p class="soft">{about["points"]} runs; points of sweeps: {statuses}. '
+        f'fidelity: {levels}.</p><p class="soft">{escape(str(about["points"]))} runs; points of sweeps: {statuses}. '
         f"Made by <code>{escape(about['command'])}</code>. "
         f'The paper: <a href="https://doi.org/{doi}">doi {doi}</a>.</p>'
     )
@@ -81,12 +89,13 @@ def _claims(claims: Sequence[Mapping]) -> str:
 
 
 def _figure(folder: Path, each: Mapping) -> str:
+    if Path(each["file"]).name != each["file"]:  # of another folder: whoever reads the page is not meant to see that file
+        raise NoResults(f"{folder / STUDY_FILE}: figure {each['file']!r}: expected the name of a file in the folder figures")
     path = folder / "figures" / each["file"]
     tables = ", ".join(f"<code>tables/{escape(name)}.csv</code>" for name in each["tables"])
-    try:
-        data = path.read_bytes()
-    except FileNotFoundError:
-        raise NoResults(f"{path}: figure missing; run the study again") from None
+    if why_not_readable(path) == NO_FILE:
+        raise NoResults(f"{path}: figure missing; run the study again")
+    data = read_bytes(path, JSON_FILE)
     return picture(data, each["title"], f'{escape(each["caption"])} <span class="soft">Numbers: {tables}.</span>')
 
 
