@@ -18,25 +18,33 @@ import click
 from bearing_sim.files.outputs import Output
 
 
-class UsageError(click.ClickException):
+class Ending(click.ClickException):
+    """An end of a command with one message and an exit code."""
+
+    def format_message(self) -> str:
+        """Return the message with everything escaped that would act on a terminal: it may quote a file from a stranger."""
+        return "".join(letter if letter.isprintable() or letter in "\n\t" else repr(letter)[1:-1] for letter in self.message)
+
+
+class UsageError(Ending):
     """An argument or an input that cannot be used: one message, exit code 2."""
 
     exit_code = 2
 
 
-class FailedRun(click.ClickException):
+class FailedRun(Ending):
     """A run that failed: one message, exit code 1."""
 
     exit_code = 1
 
 
-class UnknownInputs(click.ClickException):
+class UnknownInputs(Ending):
     """A run whose inputs were unknown for some of the time, because they were refused: one message after the result, exit code 3."""
 
     exit_code = 3
 
 
-class Unsettled(click.ClickException):
+class Unsettled(Ending):
     """A run that was to go on until it settles and has not: one message after the result, exit code 4."""
 
     exit_code = 4
