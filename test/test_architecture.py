@@ -31,7 +31,7 @@ ROOMS = {
     "levels": ("numpy platformdirs", "scene numerics physics model"),
     "simulation": ("numpy", "scene numerics model levels"),
     "messages": ("numpy rosbags", "files model"),
-    "recording": ("lz4 mcap numpy pyarrow yaml zstandard", "files scene model messages"),
+    "recording": ("lz4 mcap numpy pyarrow rosbags yaml zstandard", "files scene model messages"),
     "stored_state": ("numpy platformdirs pyarrow", "files scene model messages recording"),
     "inputs": ("numpy pyarrow pydantic yaml", "extras files scene simulation messages recording"),
     "monitoring": ("numpy scipy", "scene physics model messages inputs"),

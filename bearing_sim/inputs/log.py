@@ -18,10 +18,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.files.limits import LOG_MESSAGES
+from bearing_sim.files.limits import LOG_MESSAGES, FileError
 from bearing_sim.inputs.gate import REQUIRED, UNITS, shown
 from bearing_sim.messages import topics
-from bearing_sim.recording.bag import RecordingError
+from bearing_sim.recording.bag import LATEST, RecordingError
 from bearing_sim.recording.bag_reader import BagReader, BagTopic, printable
 from bearing_sim.recording.message_fields import numbers, suggestion
 from bearing_sim.scene.loader import did_you_mean
@@ -29,7 +29,6 @@ from bearing_sim.scene.quantity import conversion, to_si
 
 _CHANNELS = (*topics.INPUTS, topics.MEASURED)
 _WITH_UNIT = {"rad/s": "{}rpm", "N": "{}N or {}kN", "K": "{}degC"}
-_LATEST = 2**62  # [ns since the epoch], in the year 2116
 _LONGEST_REASON = 500  # characters
 _MOST_LISTED = 50  # topics in a message
 _STEP = re.compile(r"\.?([A-Za-z_]\w*)|\[(-?\d+)\]")
@@ -235,7 +234,7 @@ def read_input_log(
         try:
             if why := _read(BagReader(each), wanted):
                 unfinished.append(why)
-        except RecordingError as error:
+        except FileError as error:
             raise InputLogError(str(error)) from None
     together = paths[0] if len(paths) == 1 else Path(" + ".join(map(str, paths)))
     try:
@@ -321,7 +320,7 @@ def _message_reader(channel: str, where: Source, ros_type: str, decode: Callable
         try:
             values = source_values(channel, where, ros_type, decoded, wanted.joints[channel])
             stamp = topics.header_stamp_ns(decoded) if wanted.stamps == "header" else None
-            if stamp is not None and not 0 < stamp < _LATEST:
+            if stamp is not None and not 0 < stamp < LATEST:
                 raise ValueError("the header's stamp is before 1970 or after 2116")
         except (AttributeError, LookupError, TypeError, ValueError, ArithmeticError) as error:  # a definition may give a type any fields
             series.errors.append(ReadError(log_time, "input.malformed", printable(str(error), _LONGEST_REASON)))

@@ -144,6 +144,8 @@ def to_yaml(tree) -> str:
     return yaml.dump(tree, Dumper=_PlainDumper, sort_keys=False)
 
 
+LATEST = 2**62
+"""Time after all those of recordings [ns since the epoch], in the year 2116; with later ones, differences would not fit 64 bits."""
 FREE_EXPANSION = 64_000_000
 """Bytes to which the compressed parts of a recording may unpack however small it is."""
 _RENAMED_MEANWHILE = 5  # times that a folder is listed again while a recorder completes its parts

@@ -13,13 +13,12 @@ from mcap.records import Channel, Schema
 from bearing_sim.files.limits import RECORDING_EXPANSION, RECORDING_RECORD, FileError
 from bearing_sim.files.reading import open_regular
 from bearing_sim.messages.definitions import DefinitionError, decoder
-from bearing_sim.recording.bag import FREE_EXPANSION, RecordingError, folder_metadata, listed_files, mcap_files, require_listed
+from bearing_sim.recording.bag import FREE_EXPANSION, LATEST, RecordingError, folder_metadata, listed_files, mcap_files, require_listed
 from bearing_sim.recording.mcap_format import Message
 from bearing_sim.recording.mcap_reader import McapReader
 from bearing_sim.recording.ros1_bag import Connection, Ros1Bag
 from bearing_sim.recording.sqlite_bag import SqliteBag
 
-_LATEST = 2**62  # [ns since the epoch], in the year 2116
 _LONGEST_NAME = 200  # characters of a topic or a type
 _PIECE = 1 << 20  # [byte] that is unpacked at once
 
@@ -73,7 +72,7 @@ class BagReader:
             read = self._mcap if not self.is_foreign else self._ros1 if file.suffix == ".bag" else self._sqlite
             late = 0
             for item in read(file):
-                if isinstance(item, BagTopic) or 0 <= item[1] < _LATEST:
+                if isinstance(item, BagTopic) or 0 <= item[1] < LATEST:
                     yield item
                 else:
                     late += 1

@@ -3,6 +3,7 @@
 
 import math
 from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
@@ -10,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 import yaml
 from mcap.records import Channel, Metadata
+from rosbags.serde import SerdeError
 
 from bearing_sim.messages.cdr import CdrError, CdrLayout, NumberColumns, typestore
 from bearing_sim.messages.diagnostics import events_of
@@ -28,7 +30,7 @@ from bearing_sim.messages.topics import (
     input_values,
 )
 from bearing_sim.model.sample import flat, new_block
-from bearing_sim.recording.bag import RecordingError, mcap_files
+from bearing_sim.recording.bag import LATEST, RecordingError, mcap_files
 from bearing_sim.recording.mcap_format import Message
 from bearing_sim.recording.mcap_reader import FileIndex, McapReader, Rows, read_index
 from bearing_sim.recording.writer import COMMAND, METADATA
@@ -100,6 +102,8 @@ class Recording:
         try:
             self.scene: Scene = scene_from_yaml(metadata["scene"], origin=f"{self.path}: scene in the metadata")
             self.start_ns = int(metadata["start_ns"])
+            if not 0 <= self.start_ns < LATEST:
+                raise ValueError("start_ns is before 1970 or after 2116")
         except (KeyError, ValueError, SceneError, yaml.YAMLError) as error:
             raise RecordingError(f"{self.path}: the metadata cannot be used: {error}") from None
         times = np.unique(np.concatenate([part.log_ns for part in parts])).astype(np.int64)
@@ -121,7 +125,7 @@ class Recording:
             if _LAST_OF_SAMPLE not in topics:
                 continue
             data = record.data(topics.index(_LAST_OF_SAMPLE)) if isinstance(record, Rows) else np.frombuffer(record.data, np.uint8)[None]
-            field = CdrLayout(_TYPES[_LAST_OF_SAMPLE], data[0].tobytes()).by_path["data"]
+            field = _layout(_LAST_OF_SAMPLE, data[0].tobytes()).by_path["data"]
             loads = np.ascontiguousarray(data[:, field.begin : field.end]).view(field.dtype)
             largest = max(largest, float(loads[np.isfinite(loads).all(axis=1)].max(initial=0.0)))
         return largest
@@ -188,7 +192,9 @@ class Recording:
             if isinstance(item, Received):
                 name = item.topic[1:]
                 if name in MEASUREMENTS:
-                    waiting.setdefault(item.log_ns, {})[name] = _measured_number(name, _decoded(item.data, item.topic))
+                    with _as_unreadable(item.topic):
+                        number = _measured_number(name, _decoded(item.data, item.topic))
+                    waiting.setdefault(item.log_ns, {})[name] = number
                 continue
             if isinstance(item, np.ndarray):
                 end_ns = self.start_ns + round(float(item["time"][-1]) * 1e9)
@@ -211,7 +217,9 @@ class Recording:
             elif topics[0] in _RECEIVED and with_received:
                 yield Received(topics[0], _TYPES[topics[0]], record.log_time, record.publish_time, record.data)
             elif topics[0] == f"/{DIAGNOSTICS[0]}":
-                yield from _events(_decoded(record.data, topics[0]), (record.log_time - self.start_ns) * 1e-9, reported)
+                with _as_unreadable(topics[0]):
+                    events = list(_events(_decoded(record.data, topics[0]), (record.log_time - self.start_ns) * 1e-9, reported))
+                yield from events
         last = samples.take()
         if len(last):
             yield last
@@ -285,10 +293,7 @@ class _Samples:
         for topic, begin in zip(topics, begins):
             if _SAMPLE_TOPICS[topic].repeats:
                 continue
-            try:
-                layout = CdrLayout(_TYPES[topic], row[begin:].tobytes())
-            except CdrError as error:
-                raise RecordingError(f"a message on {topic} cannot be read: {error}") from None
+            layout = _layout(topic, row[begin:].tobytes())
             own = sample_columns(_SAMPLE_TOPICS[topic], self._scene.bearing.roller.count)
             for field in layout.numbers:
                 belong = own.get(field.path, np.full(field.count, -1))  # no sample has torques of joints
@@ -329,6 +334,22 @@ class _Samples:
             for field in _OF_TILTING_LEVELS:
                 block[field] = 0.0
         return block
+
+
+def _layout(topic: str, data: bytes) -> CdrLayout:
+    try:
+        return CdrLayout(_TYPES[topic], data)
+    except CdrError as error:
+        raise RecordingError(f"a message on {topic} cannot be read: {error}") from None
+
+
+@contextmanager
+def _as_unreadable(topic: str) -> Iterator[None]:
+    """Convert what a damaged message raises, which can be of many kinds, to a `RecordingError`."""
+    try:
+        yield
+    except (ArithmeticError, AttributeError, LookupError, SerdeError, TypeError, ValueError) as error:
+        raise RecordingError(f"a message on {topic} cannot be read: {error}") from None
 
 
 def _decoded(data: bytes, topic: str):

@@ -34,7 +34,7 @@ _DATA = b"\0\1\0\0" + struct.pack("<d", 1.0)
 _RLE_BLOCK = 131_072  # bytes of one zstd block that repeats one byte
 
 VIEW = ("view", "log.mcap", "--no-open", "-o", "log.rrd")
-REPLAY = ("replay", "log.mcap", "--scene", "deng2017_table1", "--level", "steady", "--out", "run.mcap")
+REPLAY = ("replay", "log.mcap", "--scene", "deng2017_table1", "--set", "level=steady", "--out", "run.mcap")
 
 
 def zeros_by_zstd(length: int, states_length: bool) -> bytes:
@@ -539,7 +539,7 @@ RUNS = [
     Case("run: a scene whose contour is /dev/zero", run(_SECRET.replace("/etc/passwd", "/dev/zero")), ("plot", "log.mcap", "-o", "a.png")),
     Case("run: a scene of aliases of aliases", run("a0: &a0 [1]\n" + _ALIASES), ("report", "log.mcap", "-o", "a.html")),
     Case("run: a scene of 3,000 levels", run("[" * 3000), ("to-parquet", "log.mcap", "-o", "a.parquet")),
-    Case("run: a scene of nothing", run(""), ("replay", "log.mcap", "--out", "b.mcap")),
+    Case("run: a scene of nothing", run(""), ("replay", "log.mcap", "--from-recording", "--out", "b.mcap")),
     Case("run: a scene that names a class of Python", run("!!python/object/apply:os.system ['true']"), _CSV),
     Case("run: a scene with 100 million rollers", lambda folder: run(_with_rollers(100_000_000))(folder), _CSV),
     Case("run: a scene with another count of rollers", lambda folder: run(_with_rollers(12))(folder), _CSV),
@@ -549,7 +549,7 @@ RUNS = [
     Case(
         "run: a stored state that is not one",
         run(bearing_sim_state={"state": "[" * 100_000, "counts": "once"}),
-        ("replay", "log.mcap", "--level", "steady", "--out", "b.mcap"),
+        ("replay", "log.mcap", "--from-recording", "--out", "b.mcap"),
         accepted="",
     ),
 ]
