@@ -212,7 +212,7 @@ def test_options_stand_for_columns_that_a_table_lacks_and_choose_rows_and_fields
         (("--delimiter", "abc"), "expected one character"),
         (("--column", "time=t"), "go with --guess"),
     ):
-        refused = command(*here, *options)
+        refused = command(*here, "--force", *options)
         assert refused.exit_code == 2 and words in refused.stderr
     assert "bearing-sim import-csv --guess" in command(tmp_path / "data.csv", "-o", tmp_path / "log.mcap").stderr
 

@@ -112,7 +112,7 @@ def read_text(path: str | Path, limit: Limit) -> str:
 
 
 def decoded(data: bytes, origin: str | Path) -> str:
-    """Return bytes as text: UTF-8, or the encoding of their byte-order mark; line ends become ``\\n``.
+    """Return bytes as text: UTF-8, or the encoding of their byte-order mark; line ends become line feeds.
 
     Raises
     ------
