@@ -214,7 +214,7 @@ def test_options_stand_for_columns_that_a_table_lacks_and_choose_rows_and_fields
     ):
         refused = command(*here, "--force", *options)
         assert refused.exit_code == 2 and words in refused.stderr
-    assert "bearing-sim import-csv --guess" in command(tmp_path / "data.csv", "-o", tmp_path / "log.mcap").stderr
+    assert "bearing-sim import-csv --guess" in command(tmp_path / "data.csv", "--force", "-o", tmp_path / "log.mcap").stderr
 
 
 def test_every_channel_of_the_gate_has_a_unit_that_a_constant_can_name():

@@ -189,7 +189,7 @@ def _paths_in(value) -> Iterator[Path]:
                 yield from _paths_in(Path(text))
     elif isinstance(value, Path):
         yield value
-        if value.is_dir():
+        if os.path.isdir(value):  # False also for a text that is too long for a path
             yield from (path for path in value.glob("*") if path.suffix in _RECORDINGS)
 
 
