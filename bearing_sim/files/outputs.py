@@ -65,7 +65,7 @@ class Output:
         target = checked(self.path, self.force, self.inputs)
         with _draft(target) as draft:
             yield draft
-            _keep_mode(draft, target)
+            _keep_owner(draft, target)
             synchronise(draft)
             checked(self.path, self.force, self.inputs)
             _give_name(draft, target, self.force)
@@ -179,7 +179,7 @@ def _draft(target: Path) -> Iterator[Path]:
     nobody, because the lock ended with its process.
     """
     name = target.name if len(os.fsencode(target.name)) <= _LONGEST_NAME else hashlib.sha256(os.fsencode(target.name)).hexdigest()
-    draft = target.with_name(f".{name}.draft{target.suffix if target.suffix.lower() in _CHOSEN_BY_SUFFIX else ''}")
+    draft = target.with_name(f".{name}.bearing_sim_draft{target.suffix if target.suffix.lower() in _CHOSEN_BY_SUFFIX else ''}")
     try:
         descriptor = _locked(draft, target)
     except OSError as error:
@@ -224,10 +224,13 @@ def _lock(descriptor: int, target: Path) -> None:
         pass  # a file system without locks: drafts of two writers may then mix
 
 
-def _keep_mode(draft: Path, target: Path) -> None:
-    """Give a draft the permissions of the file that it is going to replace."""
-    with suppress(OSError):
-        os.chmod(draft, stat.S_IMODE(os.stat(target).st_mode))
+def _keep_owner(draft: Path, target: Path) -> None:
+    """Give a draft the owner, as far as the user may, and the permissions of the file that it is going to replace."""
+    with suppress(FileNotFoundError):
+        old = os.stat(target)
+        with suppress(PermissionError):
+            os.chown(draft, old.st_uid, old.st_gid)
+        os.chmod(draft, stat.S_IMODE(old.st_mode))
 
 
 def synchronise(path: Path) -> None:

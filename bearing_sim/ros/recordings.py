@@ -91,7 +91,7 @@ def limits_of(settings: "NodeSettings") -> Limits:
 
 
 def fresh_path(path: Path) -> Path:
-    """Return ``path``, or the first of ``path_2``, ``path_3`` ... not used by any recording, finished or not, whole or in parts."""
+    """Return ``path``, or the first of ``path_2``, ``path_3`` ... not used by any file, finished or not, whole or in parts."""
     number, candidate = 1, path
     while any(_is_taken(candidate.with_stem(f"{candidate.stem}{part}")) for part in ("", "_0")):
         number += 1
@@ -106,6 +106,8 @@ def _is_taken(path: Path) -> bool:
 def open_view(scene: Scene, start_ns: int, path: str, port: int, web_port: int = 0):
     """Return a rerun sink (see `bearing_sim.view.sink.RerunSink`) that writes a file, serves viewers or browsers, or all of these.
 
+    The file has a fresh name, as recordings have.
+
     Raises
     ------
     OSError
@@ -117,4 +119,4 @@ def open_view(scene: Scene, start_ns: int, path: str, port: int, web_port: int =
 
     if path:
         Path(path).parent.mkdir(parents=True, exist_ok=True)
-    return RerunSink(scene, path=path or None, serve_port=port or None, start_ns=start_ns, web_port=web_port or None)
+    return RerunSink(scene, path=fresh_path(Path(path)) if path else None, serve_port=port or None, start_ns=start_ns, web_port=web_port or None)

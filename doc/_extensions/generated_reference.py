@@ -387,6 +387,7 @@ EVENTS = {
     "recording.part": ("ERROR", "a file of a recording could not be completed"),
     "recording.restarted": ("WARN", "the writer ended early; the recording continues in a new file"),
     "recording.restored": ("WARN", "a file was deleted or replaced while it was written, and was restored"),
+    "recording.set_aside": ("WARN", "the unfinished file of a killed run had the name of this recording and has another one now"),
     "reproduction.failed": ("ERROR", "a sample of a recording could not be computed again; the run continues from the recorded one"),
     "residual.shift": ("WARN", "lasting change of the measured against the predicted slip, or of a measured against a predicted ring temperature"),
     "run.behind": ("WARN", "the model lags behind `/clock` and catches up"),

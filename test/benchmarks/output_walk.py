@@ -10,10 +10,10 @@ Every output option of every command (found in the tree of commands, see ``test/
 - killed: likewise, with SIGTERM, SIGINT and SIGKILL at random instants.
 
 How to read it: numbers are trials.  A trial is lost, and the exit code 1, if an input or what stood at the output has changed although the exit code
-is not 0, or if the exit code is 0 where the output cannot have been written.  "left" counts files that a trial has left besides: drafts after
-anything but SIGKILL must not be among them.  Recordings of interrupted runs (``.active``) and journals are kept on purpose and are not counted.
-"next" is the exit code of the same command after the last kill, with ``--force``.  Commands that take longer than ``--longest`` are tried in
-the first three ways only, and have a dash in the others.
+is not 0 (unless the new file is whole: the signal came after it had got its name), or if the exit code is 0 where the output cannot have been
+written.  "left" counts files that a trial has left besides: drafts after anything but SIGKILL must not be among them.  Recordings of interrupted runs
+(``.active``) and journals are kept on purpose and are not counted.  "next" is the exit code of the same command after the last kill, with
+``--force``.  Commands that take longer than ``--longest`` are tried in the first three ways only, and have a dash in the others.
 """
 
 import hashlib
@@ -44,6 +44,7 @@ _COMMAND = [sys.executable, "-m", "bearing_sim.cli"]
 _OLD = random.Random(19).randbytes(20_000)
 _DISK = 64 * 1024  # [byte] of a small disk
 _PATIENCE = 600.0  # [s] for a command to end
+_WITH_END = (".html", ".mcap", ".parquet", ".png", ".rrd")  # formats whose last bytes say that they are complete
 _KEPT = (".active", ".journal")  # by intention
 
 
@@ -55,7 +56,7 @@ def prepare(folder: Path) -> None:
         if result.exit_code not in (0, 3):  # 3: inputs of the log are unknown for some of the time
             raise click.ClickException(f"{' '.join(map(str, arguments))}: {result.output}")
 
-    done("new", "NU 210/C3", "--oil", "ISO VG 68", "--speed", "3000rpm", "--load", "5kN", "-o", folder / "scene")
+    done("new", "NU 210/C3", "--oil", "ISO VG 68", "--speed", "3000rpm", "--load", "5kN", "--temperature", "70degC", "-o", folder / "scene")
     done("run", folder / "scene", "--duration", "0.05", "--out", folder / "recording.mcap")
     (folder / "recording.mcap").rename(folder / "recording")
     whole = (folder / "recording").read_bytes()
@@ -73,7 +74,7 @@ def prepare(folder: Path) -> None:
     (folder / "t.parquet").rename(folder / "table.parquet")
     for left in ("t.csv", "t.journal"):
         (folder / left).unlink()
-    done("replay", folder / "log", "--scene", folder / "scene", "--set", "level=steady", "--state-file", folder / "state")
+    done("replay", folder / "log", "--scene", folder / "scene", "--set", "level=slip", "--state-file", folder / "state")
 
 
 def arguments_of(name: str, inputs: Path, option, target: Path, *more: str) -> list[str]:
@@ -104,6 +105,7 @@ class Walk:
         self.faults: list[str] = []
         self._inputs, self._folder, self._kind = inputs, folder, option.type
         self._places = 0
+        self._usual: dict[str, tuple[int, bytes]] = {}  # length and last bytes of what the command writes, by name
 
     def _place(self) -> tuple[Path, Path, Path]:
         """Return a folder with copies of the inputs, an empty one, and a target in that."""
@@ -123,15 +125,23 @@ class Walk:
 
     def _judge(self, way: str, code: int, before: dict, after: dict, must_fail: bool = False, drafts_count: bool = True) -> None:
         self.counts[way] += 1
-        lost = [path.name for path, digest in before.items() if after.get(path) != digest] if code or must_fail else []
+        changed = [path for path, digest in before.items() if after.get(path) != digest] if code or must_fail else []
+        lost = [path.name for path in changed if not self._is_complete(path)]
         if lost or (must_fail and not code):
             self.counts["lost"] += 1
             self.faults.append(f"{way}: exit code {code}, changed: {', '.join(lost) or 'nothing'}")
-        left = [path for path in set(after) - set(before) if code and path.suffix not in _KEPT and not path.name.startswith(".bearing")]
-        left = [path for path in left if drafts_count or ".draft" not in path.name]
+        left = [path for path in set(after) - set(before) if code and path.suffix not in _KEPT]
+        left = [path for path in left if drafts_count or ".bearing_sim_draft" not in path.name]
         if left:
             self.counts["left"] += len(left)
             self.faults.append(f"{way}: exit code {code}, left: {', '.join(path.name for path in left)}")
+
+    def _is_complete(self, path: Path) -> bool:
+        """Return whether a file is what the command writes when nothing happens to it, which it is if the signal came after that."""
+        usual = self._usual.get(path.name)
+        if usual is None or not path.is_file() or path.read_bytes()[-8:] != usual[1]:
+            return False
+        return path.suffix in _WITH_END or abs(path.stat().st_size - usual[0]) <= 0.05 * usual[0]
 
     def try_refusals(self) -> None:
         """Try everything that a command has to refuse before it begins."""
@@ -169,6 +179,7 @@ class Walk:
         began = time.monotonic()
         usual = subprocess.run(_COMMAND + arguments_of(self.name, inputs, self.option, target), capture_output=True, timeout=_PATIENCE).returncode
         seconds = time.monotonic() - began
+        self._usual = {path.name: (path.stat().st_size, path.read_bytes()[-8:]) for path in out.iterdir()}
         self._full_disk()
         for number in (signal.SIGTERM, signal.SIGINT, signal.SIGKILL) * kills:
             inputs, out, target = self._place()
