@@ -48,7 +48,7 @@ ROOMS = {
         "extras files scene numerics model levels simulation messages recording stored_state inputs runtime view sweep fleet studies",
     ),
     "ros": (
-        "click launch launch_ros numpy rcl_interfaces rclpy rich rosgraph_msgs std_srvs yaml",
+        "click launch launch_ros numpy rcl_interfaces rclpy rich rosgraph_msgs std_srvs",
         "extras files scene numerics simulation messages recording stored_state inputs monitoring runtime view",
     ),
     "programs": ("", "extras"),

@@ -13,12 +13,13 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import List, NamedTuple  # noqa: UP035
 
-import yaml
 from launch.actions import DeclareLaunchArgument, LogInfo, OpaqueFunction, SetEnvironmentVariable, Shutdown
 from launch.substitutions import LaunchConfiguration, TextSubstitution
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
 
+from bearing_sim.files.limits import FileError
+from bearing_sim.files.yaml_text import values_of
 from bearing_sim.ros.parameters import DECLARATIONS, SCENE_DECLARATIONS, Declaration, checked
 from bearing_sim.scene.errors import did_you_mean
 
@@ -234,14 +235,9 @@ def _typed(row: Declaration, name: str, text: str) -> ParameterValue:
     kind, read = type(row.default), text
     if kind is not str:
         try:
-            read = yaml.safe_load(text) if text else row.default
-        except yaml.YAMLError:
-            read = text
-        if kind is float and isinstance(read, str):
-            try:
-                read = float(read)  # such as 1e3, which is a text in YAML
-            except ValueError:
-                pass  # a quantity with its unit, or an error, which `checked` reports
+            read = values_of(text) if text else row.default
+        except FileError:
+            read = text  # a quantity with its unit, or an error, which `checked` reports
     usable = checked(row, name, read)
     # Without a type launch parses the text as YAML: a scene named 1.50 would become a number.
     value_type = List[type(row.default[0])] if kind is list else kind  # noqa: UP006 - launch supports typing.List only

@@ -552,6 +552,13 @@ def rooms() -> str:
     return table(["room", "purpose", "imports these rooms", "imports these packages"], rows)
 
 
+def limits() -> str:
+    """Return the limits on files that are read, by the names that raise them."""
+    from bearing_sim.files.limits import LIMITS
+
+    return table(["name", "limit", "of"], [[code(limit.name), f"{limit.default:,} {limit.unit}", limit.bounds] for limit in LIMITS])
+
+
 def claims() -> str:
     """Return the names of all tests as sentences, file by file."""
     sections = []
@@ -577,7 +584,7 @@ PARTS: dict[str, Callable[[], str]] = {
     function.__name__: function
     for function in (
         *(scene_fields, mapping_fields, bundled, input_topics, output_topics, cloud_fields, named_numbers, array_rows, observables, recorded_topics),
-        *(parameters, services, subjects, events, validity, unwatched_laws, command_line, modules, rooms, claims, external_links),
+        *(parameters, services, subjects, events, validity, unwatched_laws, command_line, modules, rooms, limits, claims, external_links),
     )
 }
 _REQUEST = re.compile(r"^% generated: (\w+)$", re.MULTILINE)
