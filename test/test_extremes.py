@@ -197,7 +197,8 @@ def test_the_books_of_energy_miss_what_is_taken_from_a_loss():
 def test_the_night_gives_one_table_and_resumes(tmp_path, monkeypatch):
     monkeypatch.setattr("bearing_sim.studies.nightly.corner_cases", lambda level: [case(), case("bearing.roller.count=2")])
     monkeypatch.setattr("bearing_sim.studies.nightly.LONG_RUNS", {"slip": ((15_000.0, 2.0),)})
-    arguments = ["study", "nightly", "--level", "slip", "--samples", "2", "--workers", "1", "--journal", str(tmp_path / "night.journal")]
+    options = "--level slip --samples 9 --first 2 --workers 1".split()
+    arguments = ["study", "nightly", *options, "--journal", str(tmp_path / "night.journal")]
     result = CliRunner().invoke(main, [*arguments, "--json", "--csv", str(tmp_path / "night.csv")])
     report = json.loads(result.stdout)
     assert [(row["runs"], sum(row["counts"].values())) for row in report["rows"]] == [

@@ -768,6 +768,7 @@ def _print_extremes(level, results) -> None:
     type=click.IntRange(0, 1_000_000),
     help="Scenes of the Latin hypercube per level [default: 2000 at steady and slip, 500 at planar, 200 at spatial].",
 )
+@click.option("--first", type=click.IntRange(0), metavar="N", help="Run only the first N of these scenes [default: all].")
 @click.option("--seed", default=0, show_default=True, type=click.IntRange(0), help="Seed of the Latin hypercube.")
 @click.option("--corners/--no-corners", default=True, show_default=True, help="Also run the named corner cases.")
 @click.option("--long/--no-long", default=True, show_default=True, help="Also make the long runs: 60 s at planar, 10 min at slip, 24 h at steady.")
@@ -775,7 +776,7 @@ def _print_extremes(level, results) -> None:
 @csv_option("Write all runs, one per line, with seed and hash of the program.")
 @click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="Number of processes [default: all cores].")
 @json_option
-def nightly(levels, samples, seed, corners, long, journal, table, workers, as_json):
+def nightly(levels, samples, first, seed, corners, long, journal, table, workers, as_json):
     """Run extreme scenes at stock settings, corners and long runs, and report outcomes and books of energy in one table.
 
     Every scene runs for at least 50 turns of its cage, or until it settles.  Takes hours.  Exit code 1 if any run fails.
@@ -786,7 +787,7 @@ def nightly(levels, samples, seed, corners, long, journal, table, workers, as_js
     announce_compilation()
     wanted = {level: SAMPLES[level] if samples is None else samples for level in levels or SAMPLES}
     with as_file_error(), as_usage_error(JournalInUse), Points("nightly", 0) as points:
-        report = run_nightly(wanted, seed, corners, long, journal and journal.path, workers, points.update)
+        report = run_nightly(wanted, seed, corners, long, journal and journal.path, workers, points.update, first)
         if table is not None:
             write_csv(table, report.cases)
     if as_json:

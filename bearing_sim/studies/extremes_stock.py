@@ -26,7 +26,7 @@ TURNS = 50.0  # of the cage in a run that does not settle
 LONGEST_TURNS = 500.0  # of an ideal cage, under constant inputs, in a run whose cage hardly turns and does not settle either
 STEPS = Integration().step_budget  # of a whole run
 BOOK_TURNS = 10.0  # of an ideal cage over which the books of energy are kept
-_BOOK_SAMPLES, _BATCHES = 1009, 10
+_BOOK_SAMPLES, _BATCHES = {"steady": 100, "slip": 8000, "planar": 4000, "spatial": 1000}, 10
 _SHORTEST = 20e-3  # s of any run
 SLOW = "cage hardly turns"
 """Begins the reason of a finished run that has neither settled nor turned often enough."""
@@ -51,7 +51,7 @@ class StockOutcome(NamedTuple):
     steps: int = 0
     rejected_steps: int = 0
     books: float = math.nan  # energy put in less energy lost and stored, over the larger of what is put in and lost; NaN at rest
-    books_error: float = math.nan  # standard error of that, because losses are known at samples only
+    books_error: float = math.nan  # of that, because powers are known at samples only
 
 
 class _Ended(Exception):
@@ -149,12 +149,12 @@ class _Run:
                 raise _Ended(FAILED, failure)
 
     def books(self) -> tuple[float, float]:
-        """Return what the books of energy miss over some more turns, and the standard error of that; see `StockOutcome`."""
+        """Return what the books of energy miss over some more turns, and the error of that; see `StockOutcome`."""
         simulation = self._simulation
         if simulation.inputs.shaft_speed == 0.0:
             return math.nan, math.nan
         before = simulation.sample.copy().reshape(1)
-        block = self._advance(BOOK_TURNS * cage_turn(simulation.scene), None, _BOOK_SAMPLES)
+        block = self._advance(BOOK_TURNS * cage_turn(simulation.scene), None, _BOOK_SAMPLES[self._case.level])
         self._take(block)
         return energy_gap(joined([before, block]), simulation)
 
@@ -215,17 +215,29 @@ def _ended(error: IntegrationError) -> _Ended:
 
 
 def energy_gap(samples: np.ndarray, simulation: Simulation) -> tuple[float, float]:
-    """Return the energy that the books of some samples miss, over the larger of what is put in and what is lost, and its standard error.
+    """Return the energy that the books of some samples miss, over the larger of what is put in and what is lost, and the error of that.
 
-    At level steady, which stores nothing, only powers count.  Elsewhere the shaft and the load put in, the losses take, and the rest is stored as
-    kinetic energy of cage and rollers along the orbit and as elastic energy of the contacts; of what else is stored, such as by the motion
-    of the ring, little changes.
+    The error is what every second sample would change, or the standard error of ten batches if that is larger.  At level steady, which stores
+    nothing, only powers count.  Elsewhere the shaft and the load put in, the losses take, and the rest is stored as kinetic energy of cage and
+    rollers along the orbit and as elastic energy of the contacts; of what else is stored, such as by the motion of the ring, little changes.
 
     Parameters
     ----------
     samples : evenly spaced, the first one at the start; shape (n,).
     simulation : that has made them.
     """
+    missing, scale = _missing(samples, simulation)
+    if scale == 0.0:
+        return math.nan, math.nan
+    coarse, coarse_scale = _missing(samples[(len(samples) - 1) % 2 :: 2], simulation)
+    batches = np.array([part.sum() for part in np.array_split(missing, _BATCHES)])
+    scatter = float(batches.std(ddof=1)) * math.sqrt(_BATCHES) / scale
+    off = float(missing.sum()) / scale
+    return off, max(scatter, abs(off - float(coarse.sum()) / coarse_scale))
+
+
+def _missing(samples: np.ndarray, simulation: Simulation) -> tuple[np.ndarray, float]:
+    """Return what the books miss between samples [J], shape (n - 1,), and the larger of what is put in and what is lost [J]."""
     seconds = np.diff(samples["time"])
     losses = sum(samples[name] for name in samples.dtype.names if name.endswith("_power") and name != "shaft_power")
     given, lost = (seconds * 0.5 * (power[1:] + power[:-1]) for power in (samples["shaft_power"], losses))
@@ -235,11 +247,7 @@ def energy_gap(samples: np.ndarray, simulation: Simulation) -> tuple[float, floa
             load = samples[f"load_{axis}"]
             missing += 0.5 * (load[1:] + load[:-1]) * np.diff(samples[f"ring_{axis}"])
         missing -= np.diff(_stored(samples, simulation))
-    scale = max(abs(float(given.sum())), abs(float(lost.sum())))
-    if scale == 0.0:
-        return math.nan, math.nan
-    batches = np.array([part.sum() for part in np.array_split(missing, _BATCHES)])
-    return float(missing.sum()) / scale, float(batches.std(ddof=1)) * math.sqrt(_BATCHES) / scale
+    return missing, max(abs(float(given.sum())), abs(float(lost.sum())))
 
 
 def _stored(samples: np.ndarray, simulation: Simulation) -> np.ndarray:

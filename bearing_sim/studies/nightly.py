@@ -97,6 +97,7 @@ def run_nightly(
     journal: Path | None = None,
     workers: int | None = None,
     progress: Callable[[int, int], None] = lambda done, total: None,
+    first: int | None = None,
 ) -> Report:
     """Run everything on all cores.
 
@@ -108,9 +109,10 @@ def run_nightly(
     journal : file from which an interrupted night resumes with the same program; None: it cannot.
     workers : number of processes; None: one per core.
     progress : called with the number of finished runs and of all that are not in the journal.
+    first : how many of the scenes of each level are run, from the first one on; None: all.
     """
     levels = [level for level in LEVELS if level in samples]
-    sampled = {level: sampled_cases(level, samples[level], seed) for level in levels}
+    sampled = {level: sampled_cases(level, samples[level], seed)[:first] for level in levels}
     at_corners = {level: corner_cases(level) if corners else [] for level in levels}
     lasting = {level: LONG_RUNS[level] if long else () for level in levels}
     tasks, places = [], {}
