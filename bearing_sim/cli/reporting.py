@@ -12,6 +12,7 @@ import sys
 import threading
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
+from pathlib import Path
 
 import click
 
@@ -149,8 +150,19 @@ ARGUMENTS = "bearing_sim.arguments"
 
 
 def command_line() -> str:
-    """Return the command line of the running command as it was written."""
-    return shlex.join(["bearing-sim", *click.get_current_context().meta.get(ARGUMENTS, ())])
+    """Return the command line of the running command as it was written, but for folders of absolute paths, which nobody else needs to know."""
+    return shlex.join(["bearing-sim", *map(_without_folder, click.get_current_context().meta.get(ARGUMENTS, ()))])
+
+
+def _without_folder(argument: str) -> str:
+    """Return an argument with only the name of a file whose absolute path it is, or has after an equals sign; topics begin with a slash, too."""
+    begin, sign, text = argument.rpartition("=")
+    path = Path(text)
+    try:
+        is_file = len(path.parts) > 2 and path.is_absolute() and path.parent.is_dir()
+    except (OSError, ValueError):  # ValueError: a null character
+        is_file = False
+    return f"{begin}{sign}{path.name}" if is_file else argument
 
 
 def announce_compilation(scene=None) -> None:

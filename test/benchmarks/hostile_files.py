@@ -176,6 +176,8 @@ def _fault(case: Case, code: int, message: str, timed_out: bool) -> str:
         return "traceback"
     if "MemoryError" in message or "bad_alloc" in message:
         return "out of memory"
+    if "No such option" in message or "Missing argument" in message or "Missing option" in message:
+        return "the command is none, so that it reads no file"
     if case.accepted:
         return "" if code == 0 else f"refused, although {case.accepted}"
     if code == 0:
