@@ -118,7 +118,7 @@ def test_a_load_changed_in_the_scene_is_not_loaded(recording, tmp_path):
         Recording(broken)
     shown = CliRunner().invoke(main, ["info", str(broken)])
     assert shown.exit_code == 1 and "DAMAGED" in shown.output and f"bit 0 of byte {byte} is" in " ".join(shown.output.replace("│", " ").split())
-    recover(broken, tmp_path / "good.mcap")
+    assert "is flipped, which was corrected" in recover(broken, tmp_path / "good.mcap").damage[0]
     assert Recording(tmp_path / "good.mcap").scene == SCENE
 
 
@@ -168,12 +168,20 @@ def test_a_recording_of_an_earlier_version_is_read_and_what_nothing_covers_is_sa
     assert "the summary" in contents(flipped(old, tmp_path / "flipped.mcap", summary)).damage[0]
 
 
-def without_checksums(path, target):
+def test_a_file_of_another_program_is_verified_as_far_as_its_writer_made_checksums(recording, tmp_path):
+    without_checksums(recording, tmp_path / "foreign.mcap", enable_data_crcs=True)
+    assert contents(tmp_path / "foreign.mcap").is_sound and contents(tmp_path / "foreign.mcap").covers_all
+    byte = (tmp_path / "foreign.mcap").read_bytes().index(b"radial_load: 800")
+    report = contents(flipped(tmp_path / "foreign.mcap", tmp_path / "flipped.mcap", byte))
+    assert report.damage == ["the checksum of the data section"]
+
+
+def without_checksums(path, target, **options):
     """Write what an earlier version would have written, by the writer of the mcap library."""
     reader = McapReader(path)
     ids = {}
     with open(target, "wb") as stream:
-        writer = Writer(stream)
+        writer = Writer(stream, **options)
         writer.start("ros2", "bearing_sim")
         for record in reader:
             if isinstance(record, Metadata):

@@ -6,6 +6,7 @@ import os
 import sqlite3
 import struct
 import sys
+import zlib
 from collections.abc import Callable
 from contextlib import closing
 from pathlib import Path
@@ -16,7 +17,7 @@ from hostile_files import Case
 from mcap.opcode import Opcode
 from mcap.records import Attachment, Channel, Chunk, ChunkIndex, DataEnd, Footer, Header, Metadata, MetadataIndex, Schema, Statistics
 
-from bearing_sim.recording.mcap_format import MAGIC, RECORD, Message, packed, packed_message
+from bearing_sim.recording.mcap_format import CHECKSUM_RECORD, MAGIC, RECORD, Message, checksum_record, packed, packed_message
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
@@ -152,6 +153,29 @@ COMPRESSION = [
     _mcap_case("a chunk within a chunk", lambda: mcap(described(), chunk(chunk(message())))),
     _mcap_case("a compression that nobody knows", lambda: mcap(described(), chunk(message(), "\x1b[31mbrotli"))),
 ]
+
+
+def _lost_sections(count: int) -> bytes:
+    """Return a file with checksum records, before each of whose sections stands a byte that belongs to none."""
+    found = MAGIC + packed(Header("ros2", "stranger"))
+    parts, begin = [found, checksum_record(0, zlib.crc32(found))], len(found) + CHECKSUM_RECORD.size
+    record = _record(0x90, 9, b"123456789")
+    for _ in range(count):
+        parts += [b"\x90", record, checksum_record(begin + 1, zlib.crc32(record))]
+        begin += 1 + len(record) + CHECKSUM_RECORD.size
+    return b"".join(parts)
+
+
+def _hole_as_summary(folder: Path) -> None:
+    """Write a file whose footer says that its summary is almost all of it."""
+    begin = mcap(ends=False) + packed(DataEnd(0))
+    with open(folder / "log.mcap", "wb") as stream:
+        stream.write(begin)
+        stream.seek(10**10)
+        stream.write(packed(Footer(len(begin), 0, 1)) + MAGIC)
+
+
+RECOVER = ("recover", "log.mcap", "-o", "good.mcap")
 LENGTHS = [
     _mcap_case("a record of 2^63 bytes", mcap(_record(Opcode.CHUNK, 2**63), ends=False)),
     _mcap_case("a record of 2^64-1 bytes", mcap(_record(Opcode.MESSAGE, 2**64 - 1), ends=False), REPLAY),
@@ -183,6 +207,13 @@ LENGTHS = [
         "MCAP: a hole of 10 GB that is one record", lambda folder: _sparse(folder / "log.mcap", mcap(_record(Opcode.CHUNK, 10**10), ends=False)), VIEW
     ),
     Case("MCAP: a hole of 10 GB without records", lambda folder: _sparse(folder / "log.mcap", mcap(ends=False)), VIEW),
+    _mcap_case("500,000 sections, every second of which is lost", lambda: _lost_sections(500_000), RECOVER),
+    Case(
+        "MCAP: a hole of 10 GB after a sound section",
+        lambda folder: _sparse(folder / "log.mcap", _lost_sections(0)),
+        ("recover", "log.mcap", "-o", "good.mcap"),
+    ),
+    Case("MCAP: a summary that is a hole of 10 GB", _hole_as_summary, RECOVER),
     _mcap_case("nothing but its first bytes", MAGIC),
     _mcap_case("an empty file", b"", REPLAY),
     _mcap_case("random bytes", bytes(range(256)) * 100, ("info", "log.mcap")),
