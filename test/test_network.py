@@ -1,7 +1,9 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """What the programs open to the network: nothing beyond the loopback interface, unless the user has chosen so; and the policy of SROS 2."""
 
+import os
 import re
+import socket
 import subprocess
 import sys
 from pathlib import Path
@@ -18,7 +20,8 @@ from sockets import open_sockets  # noqa: E402
 
 from bearing_sim.messages import topics  # noqa: E402
 from bearing_sim.model.sample import RING_TEMPERATURES  # noqa: E402
-from bearing_sim.ros.network import FOLDER, LOOPBACK_PROFILE, loopback_variables  # noqa: E402
+from bearing_sim.ros import network, process  # noqa: E402
+from bearing_sim.ros.network import FOLDER, LOOPBACK_PROFILE, close_other_interfaces, loopback_variables  # noqa: E402
 from bearing_sim.ros.policy import policy  # noqa: E402
 from bearing_sim.view.viewer import free_port  # noqa: E402
 
@@ -178,6 +181,63 @@ def test_a_user_who_has_chosen_the_network_is_left_alone(environment, tmp_path):
 def test_a_profile_in_the_working_directory_is_left_alone(name, tmp_path):
     (tmp_path / name).write_text("<dds/>")
     assert loopback_variables({RANGE: "LOCALHOST"}, tmp_path) == {}
+
+
+class Listener:
+    """A node of which only the log matters; keeps its warnings."""
+
+    def __init__(self):
+        self.warnings = []
+
+    def get_logger(self):
+        return self
+
+    def warning(self, text):
+        self.warnings.append(text)
+
+
+@pytest.fixture
+def sockets_of_a_middleware(monkeypatch):
+    """Yield two sockets, that of a receiver and that of a sender on all interfaces, and what takes the place of all sockets of this process."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as receiver, socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+        sender.bind(("", 0))
+        sender.settimeout(10.0)
+        monkeypatch.setenv("FASTRTPS_DEFAULT_PROFILES_FILE", str(LOOPBACK_PROFILE))
+        monkeypatch.setattr(network, "get_rmw_implementation_identifier", lambda: "rmw_fastrtps_cpp")
+        monkeypatch.setattr(os, "listdir", lambda _: [str(receiver.fileno()), str(sender.fileno())])
+        yield receiver, sender
+
+
+def test_a_socket_for_sending_moves_to_the_loopback_interface_and_still_sends(sockets_of_a_middleware):
+    receiver, sender = sockets_of_a_middleware
+    receiver.bind(("127.0.0.1", 0))
+    receiver.settimeout(10.0)
+    node = Listener()
+    close_other_interfaces(node)
+    assert sender.getsockname()[0] == "127.0.0.1" and node.warnings == []
+    sender.sendto(b"found", receiver.getsockname())
+    assert receiver.recvfrom(16) == (b"found", sender.getsockname())
+
+
+def test_sockets_that_may_receive_stay_as_they_are_and_are_reported_where_the_profile_has_no_effect(sockets_of_a_middleware):
+    receiver, sender = sockets_of_a_middleware
+    receiver.bind(("", 0))
+    before, node = receiver.getsockname(), Listener()
+    close_other_interfaces(node)
+    assert (receiver.getsockname(), sender.getsockname()[0]) == (before, "0.0.0.0")
+    (warning,) = node.warnings
+    assert f"0.0.0.0:{before[1]}" in warning and "has no effect" in warning
+
+
+def test_a_middleware_that_cannot_start_is_one_message(capfd, monkeypatch):
+    monkeypatch.setattr(process, "use_loopback", str)  # which would set variables of this process
+
+    def make_node(ended):
+        raise rclpy_implementation.RCLError("error creating node: This Fast DDS version doesn't have\nthe security libraries")
+
+    assert process.run_node("bearing_node", make_node, []) == 2
+    printed = capfd.readouterr().err
+    assert printed == "bearing_node: cannot start ROS: error creating node: This Fast DDS version doesn't have the security libraries\n"
 
 
 def test_the_dask_scheduler_of_the_how_to_listens_on_the_loopback_interface(tmp_path):
