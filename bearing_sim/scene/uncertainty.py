@@ -26,6 +26,8 @@ from pydantic_core import PydanticCustomError
 from bearing_sim.scene.bearing import Bearing
 from bearing_sim.scene.quantity import SPEED, Quantity, check, record
 
+_MOST_ERRORS = 50  # that are listed
+_LONGEST_PATH = 200  # characters of a path for which the nearest is looked for
 BLOCKS = ("bearing", "lubricant", "operating", "mounting", "heat", "support")  # of a scene; their quantities may have ranges
 _ENDS, _WORDS = ("low", "high", "mode"), ("distribution", "source")
 _LOW_RADIUS = "outer_raceway.low_radius"
@@ -94,6 +96,8 @@ def declared_in(path: str, hint) -> Iterator[tuple[str, Quantity]]:
 def nearest(path: str, known: Iterable[str]) -> str:
     """Return ``" (did you mean ...?)"`` for the nearest known path, compared as a whole and by its last word, or an empty text."""
     known, word = list(known), path.rpartition(".")[2]
+    if len(path) > _LONGEST_PATH:  # comparing takes long
+        return ""
 
     def likeness(other: str) -> float:
         compare = difflib.SequenceMatcher
@@ -154,7 +158,11 @@ def read_ranges(given, scene_type: type) -> tuple[list[dict], list[tuple[str, st
     if not isinstance(given, Mapping):
         return [], [("uncertainty", repr(given), "expected a mapping of field to range, such as lubricant.mixture_fraction: [0.015, 0.05]")]
     known, ranges, errors = quantities(scene_type), [], []
-    for path, value in flattened(given).items():
+    fields = flattened(given)
+    for number, (path, value) in enumerate(fields.items()):
+        if len(errors) > _MOST_ERRORS:
+            errors.append(("uncertainty", "", f"{len(fields) - number} more fields were not looked at"))
+            break
         if value is None:  # --set uncertainty.FIELD=null removes a range
             continue
         where = f"uncertainty.{path}"

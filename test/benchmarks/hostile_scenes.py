@@ -193,6 +193,8 @@ CASES = [
     _load("a unit with line ends", '"1 N\\n\\n\\nimport os"'),
     _load("digits of another script", "٣ kN٣"),
     _scene("uncertainty of a million points", f"{plain()}uncertainty: {{operating.radial_load: [{'1 N, ' * 1_000_000}]}}\n"),
+    _scene("4,500 ranges of unknown fields", plain() + "uncertainty:\n" + "".join(f"  bearing.field{k}: [1, 2]\n" for k in range(4500))),
+    _scene("a range of a field of 100,000 letters", f"{plain()}uncertainty:\n  ? {'bearing.' * 12_500}\n  : [1, 2]\n"),
     _scene("slices of 10^9", f"{plain()}model: {{slices: 1000000000}}\n"),
     _scene("rollers of 10^9", plain(bearing="roller: {count: 1000000000}")),
     _special("a pipe", fifo("scene.yaml")),
