@@ -120,8 +120,16 @@ class Walk:
 
     def _refused(self, way: str, inputs: Path, out: Path, target: Path, *more: str) -> None:
         before = digests(inputs, out)
-        result = CliRunner().invoke(main, arguments_of(self.name, inputs, self.option, target, *more))
-        self._judge(way, result.exit_code, before, digests(inputs, out), must_fail=True)
+        code = self._called(arguments_of(self.name, inputs, self.option, target, *more))
+        self._judge(way, code, before, digests(inputs, out), must_fail=True)
+
+    def _called(self, arguments: list[str]) -> int:
+        """Return the exit code of a command; an exception that it does not handle is a fault."""
+        result = CliRunner().invoke(main, arguments)
+        if result.exception is not None and not isinstance(result.exception, SystemExit):
+            self.counts["lost"] += 1
+            self.faults.append(f"{' '.join(arguments)}: {result.exception!r}")
+        return result.exit_code
 
     def _judge(self, way: str, code: int, before: dict, after: dict, must_fail: bool = False, drafts_count: bool = True) -> None:
         self.counts[way] += 1
@@ -176,11 +184,14 @@ class Walk:
     def try_failures(self, kills: int, chance: random.Random) -> None:
         """Try a full disk, and kills at random instants."""
         inputs, out, target = self._place()
-        began = time.monotonic()
-        usual = subprocess.run(_COMMAND + arguments_of(self.name, inputs, self.option, target), capture_output=True, timeout=_PATIENCE).returncode
-        seconds = time.monotonic() - began
+        usual = self._called(arguments_of(self.name, inputs, self.option, target))
         self._usual = {path.name: (path.stat().st_size, path.read_bytes()[-8:]) for path in out.iterdir()}
         self._full_disk()
+        if not kills:
+            return
+        began = time.monotonic()
+        subprocess.run(_COMMAND + arguments_of(self.name, inputs, self.option, target, "--force"), capture_output=True, timeout=_PATIENCE)
+        seconds = time.monotonic() - began
         for number in (signal.SIGTERM, signal.SIGINT, signal.SIGKILL) * kills:
             inputs, out, target = self._place()
             for path in self._tables(target):
@@ -194,7 +205,7 @@ class Walk:
                 process.send_signal(number)
             code = process.wait(_PATIENCE)
             self._judge("killed", 0 if code == usual else code, before, digests(inputs, out), drafts_count=number != signal.SIGKILL)
-        again = subprocess.run(command, capture_output=True, timeout=_PATIENCE).returncode
+        again = self._called(command[len(_COMMAND) :])
         self.next = f"{again}"
         if again != usual:
             self.counts["lost"] += 1
@@ -205,7 +216,7 @@ class Walk:
         subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={_DISK}", "tmpfs", str(out)], check=True)
         try:
             for path in self._tables(target):
-                path.write_bytes(_OLD[: _DISK // 4])
+                path.write_bytes(_OLD[:4096])
             with open(out / "filler", "wb", buffering=0) as filler:
                 try:
                     while filler.write(bytes(1024)):
@@ -213,8 +224,7 @@ class Walk:
                 except OSError:
                     pass
             before = digests(inputs, out)
-            command = _COMMAND + arguments_of(self.name, inputs, self.option, target, "--force")
-            code = subprocess.run(command, capture_output=True, timeout=_PATIENCE).returncode
+            code = self._called(arguments_of(self.name, inputs, self.option, target, "--force"))
             self._judge("full disk", code, before, digests(inputs, out), must_fail=True)
         finally:
             subprocess.run(["umount", "-l", str(out)], check=True)
