@@ -64,9 +64,8 @@ class _Cursor:
 
     __slots__ = ("data", "at", "order", "base", "items")
 
-    def __init__(self, data: bytes, at: int, order: str, base: int):
-        self.data, self.at, self.order, self.base = data, at, order, base
-        self.items = MESSAGE_ITEMS.value
+    def __init__(self, data: bytes, at: int, order: str, base: int, items: int):
+        self.data, self.at, self.order, self.base, self.items = data, at, order, base, items
 
     def take(self, size: int, count: int = 1) -> int:
         """Return where numbers of a size [byte] begin, and go behind them."""
@@ -122,17 +121,17 @@ def decoder(name: str, encoding: str, definition: bytes) -> Callable[[bytes], ob
         types = _from_msg(name, text)
     else:
         raise DefinitionError(f"the definition of {name[:80]} is written in {encoding[:40]!r}; expected ros2msg, ros2idl or ros1msg")
-    is_ros1 = encoding == "ros1msg"
+    is_ros1, items = encoding == "ros1msg", MESSAGE_ITEMS.value
     read = _Readers(types, is_ros1).message(_short(name))
 
     def decode(data: bytes) -> object:
         data = bytes(data)
         if is_ros1:
-            return read(_Cursor(data, 0, "<", -1))
+            return read(_Cursor(data, 0, "<", -1, items))
         order = ORDERS.get(data[:2])
         if order is None or len(data) < ENCAPSULATION:
             raise MessageError(f"expected a message in CDR version 1; its first bytes are {data[:ENCAPSULATION].hex() or 'none'}")
-        return read(_Cursor(data, ENCAPSULATION, order, ENCAPSULATION))
+        return read(_Cursor(data, ENCAPSULATION, order, ENCAPSULATION, items))
 
     return decode
 

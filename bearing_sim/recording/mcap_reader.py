@@ -137,6 +137,7 @@ class McapReader:
         self.types: dict[str, str] = {}
         self._schemas: dict[int, str] = {}
         self._texts, self._unpacked, self._refusal = 0, 0, ""
+        self._most_texts = RECORDING_TEXTS.value
         self._finder = None if self._in_rows is None else _RowFinder(lambda channel: self._in_rows(self.topics.get(channel, "")))
 
     def __iter__(self) -> Iterator[Header | Schema | Channel | Message | Metadata | Attachment | Rows]:
@@ -182,7 +183,7 @@ class McapReader:
         is_new = isinstance(record, Metadata)
         is_new |= isinstance(record, Schema) and record.id not in self._schemas or isinstance(record, Channel) and record.id not in self.topics
         self._texts += length if is_new else 0
-        if self._texts > RECORDING_TEXTS.value:
+        if self._texts > self._most_texts:
             raise RecordingError(f"{self.path}: it has {RECORDING_TEXTS.refusal()}")
         if isinstance(record, Schema):
             self._schemas[record.id] = record.name

@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""How the memory of long-lived processes grows: ``python test/benchmarks/memory.py hour``, ``cycles`` and ``view``.
+"""How the memory of long-lived processes grows: ``python test/benchmarks/memory.py hour``, ``cycles``, ``view`` and ``reader``.
 
 ``hour`` runs a node in real time for an hour, with a live view, and with a recording that is started and stopped by turns.  Every quarter of a
 minute it reads the resident memory of the node's process and of those that the node has started.  Below the table stands the slope of each, a
@@ -11,6 +11,9 @@ straight line through the last three quarters of the run.
 ``view`` shows samples at 100 Hz to a live view and reads the resident memory of its process.  The view's clock follows the samples instead of
 wall time: it draws the same 20 pictures for each second of the run, and the run passes as fast as pictures are drawn.  What the process
 keeps, it keeps by picture and sample, not by time.
+
+``reader`` writes a recording of an hour and reads it in three ways, each in a process of its own: as samples, as `to-csv` does; message by
+message, as `view` and `replay` read a bag from another source; and with all checksums, as `info` does.
 """
 
 import multiprocessing
@@ -207,6 +210,71 @@ def _growth(kind: str, looks: np.ndarray, minutes: float) -> tuple[str, ...]:
     slope = 60.0 * np.polyfit(*late.T, 1)[0] if len(late) > 2 else np.nan
     late = late if len(late) else looks
     return (kind, str(len(looks)), f"{looks[0, 1]:.1f}", f"{late[0, 1]:.1f}", f"{looks[-1, 1]:.1f}", f"{slope:.2f}")
+
+
+@main.command("reader")
+@click.option("--minutes", default=60.0, show_default=True, help="Length of the recording.")
+@click.option("--rate", default=100, show_default=True, help="Samples per second.")
+def reader(minutes: float, rate: int):
+    """Read a recording."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "run.mcap"
+        with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
+            pool.submit(_write_run, path, minutes, rate).result()
+        rows = []
+        for way in ("samples", "messages", "checksums"):
+            with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
+                looks = pool.submit(_read_run, path, way).result()
+            done, megabytes = looks.T
+            late = done > 0.25
+            slope = np.polyfit(done[late] * minutes, megabytes[late], 1)[0]
+            rows.append((way, f"{megabytes[0]:.0f}", f"{megabytes[late][0]:.0f}", f"{megabytes[-1]:.0f}", f"{megabytes.max():.0f}", f"{slope:+.3f}"))
+        size = path.stat().st_size
+    columns = ("way", "before [MB]", "at a quarter", "at the end", "largest", "MB per minute of the recording")
+    print_rows(f"A recording of {minutes:g} min at {rate} Hz, {size / 1e6:.0f} MB", columns, rows, words=("way",))
+
+
+def _write_run(path: Path, minutes: float, rate: int) -> None:
+    sys.path.insert(0, str(Path(__file__).parents[1]))
+    from synthetic_run import synthetic_block
+
+    from bearing_sim.recording.writer import McapSink
+    from bearing_sim.scene.loader import load_scene
+
+    scene = load_scene("deng2017_table1")
+    block = synthetic_block(scene, np.arange(1, 1001) / rate)
+    with McapSink(path, scene, 1_700_000_000_000_000_000) as sink:
+        for _ in range(max(round(minutes * 60 * rate / len(block)), 1)):
+            sink.write(block)
+            block["time"] += len(block) / rate
+
+
+def _read_run(path: Path, way: str) -> np.ndarray:
+    """Return (fraction that was read, resident memory [MB]) while a recording is read."""
+    from bearing_sim.recording.bag_reader import BagReader, BagTopic
+    from bearing_sim.recording.reader import Recording
+    from bearing_sim.recording.recovery import contents
+
+    looks = [(0.0, resident_memory("self"))]
+
+    def look(done: float) -> None:
+        if done - looks[-1][0] >= 0.01:
+            looks.append((done, resident_memory("self")))
+
+    if way == "samples":
+        recording = Recording(path)
+        for item in recording:
+            if isinstance(item, np.ndarray):
+                look((float(item["time"][-1]) - recording.first_time) / recording.duration)
+    elif way == "messages":
+        run = Recording(path)
+        first, last = run.start_ns, run.start_ns + run.last_time * 1e9
+        for found in BagReader(path):
+            if not isinstance(found, BagTopic):
+                look((found[1] - first) / (last - first))
+    else:
+        contents(path, look)
+    return np.array([*looks, (1.0, resident_memory("self"))])
 
 
 @main.command("view")
