@@ -181,8 +181,18 @@ def test_a_full_disk_leaves_the_old_file_and_no_draft(small_disk):
     assert raised.value.errno == errno.ENOSPC and contents(small_disk) == {"a.csv": OLD}
 
 
+@pytest.fixture
+def usual_handlers():
+    """Handle signals as in a terminal; a shell starts background jobs with SIGINT ignored, and nohup ignores SIGHUP."""
+    usual = {signal.SIGTERM: signal.SIG_DFL, signal.SIGINT: signal.default_int_handler, signal.SIGHUP: signal.SIG_DFL}
+    before = {number: signal.signal(number, handler) for number, handler in usual.items()}
+    yield usual
+    for number, handler in before.items():
+        signal.signal(number, handler)
+
+
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT, signal.SIGHUP])
-def test_a_signal_unwinds_a_command_that_writes(tmp_path, number):
+def test_a_signal_unwinds_a_command_that_writes(tmp_path, usual_handlers, number):
     @click.command(cls=WritingCommand)
     @click.option("--out", type=OutputFile())
     def write(out):
@@ -191,11 +201,10 @@ def test_a_signal_unwinds_a_command_that_writes(tmp_path, number):
             os.kill(os.getpid(), number)
             time.sleep(60)  # the handler runs before this returns
 
-    handlers = [signal.getsignal(each) for each in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)]
     (tmp_path / "a.csv").write_bytes(OLD)
     result = CliRunner().invoke(write, ["--out", str(tmp_path / "a.csv"), "--force"])
     assert result.exit_code == (1 if number == signal.SIGINT else 128 + number) and contents(tmp_path) == {"a.csv": OLD}
-    assert handlers == [signal.getsignal(each) for each in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)]
+    assert usual_handlers == {each: signal.getsignal(each) for each in usual_handlers}
 
 
 def test_an_output_keeps_permissions_and_links(tmp_path):

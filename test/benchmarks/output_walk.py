@@ -241,6 +241,7 @@ def walk(only, longest, kills, seed):
     with tempfile.TemporaryDirectory() as folder:
         inputs = Path(folder) / "inputs"
         inputs.mkdir()
+        os.chdir(folder)  # outputs that are not named go into the current folder
         prepare(inputs)
         for number, (name, option) in enumerate(outputs()):
             if only and name not in only:
