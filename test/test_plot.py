@@ -234,7 +234,7 @@ def test_the_command_compares_recordings_over_time_and_load_and_takes_panels(rec
     ],
 )
 def test_options_that_do_not_fit_are_refused_in_words(recording, tmp_path, options, words):
-    refused = plotted(recording, *options)
+    refused = plotted(recording, *options, "--force")
     assert refused.exit_code == 2 and words in refused.stderr
 
 
