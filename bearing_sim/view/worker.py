@@ -248,12 +248,13 @@ class RerunFile(ViewThread):
         raise incomplete(self.failure)
 
     def __exit__(self, kind, *_) -> None:
-        if not self.close() and kind is None:
+        finished = self.close()
+        if kind is None and not (finished and is_complete(self._path)):
             raise incomplete(self.failure)
 
     def close(self, timeout: float = 120.0) -> bool:
-        """Show what is queued and finish within ``timeout`` [s] (see `ViewThread.close`); return whether the file is complete."""
-        return super().close(timeout) and is_complete(self._path)
+        """Show what is queued and finish within ``timeout`` [s] (see `ViewThread.close`)."""
+        return super().close(timeout)
 
 
 _REPORT_EVERY = 0.1  # [s], where there is news
