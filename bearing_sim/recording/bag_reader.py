@@ -106,6 +106,7 @@ class BagReader:
 
     def _mcap(self, file: Path) -> Iterator[BagTopic | tuple[BagTopic, int, bytes]]:
         schemas: dict[int, _Type] = {}
+        kinds: dict[tuple[str, str, bytes], _Type] = {}  # thousands of schemas may be the same: each is parsed once
         found: dict[int, BagTopic] = {}
         nothing = _Type("", "", b"")
         reader = McapReader(file, stops_at_damage=True)
@@ -114,7 +115,8 @@ class BagReader:
                 if record.channel_id in found:
                     yield found[record.channel_id], record.log_time, record.data
             elif isinstance(record, Schema):
-                schemas[record.id] = _Type(record.name, record.encoding, record.data)
+                kind = record.name, record.encoding, bytes(record.data)
+                schemas[record.id] = kinds.setdefault(kind, _Type(*kind))
             elif isinstance(record, Channel) and record.id not in found:
                 found[record.id] = schemas.get(record.schema_id, nothing).topic(record.topic, record.message_encoding)
                 yield found[record.id]
