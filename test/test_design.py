@@ -135,7 +135,7 @@ def test_command_answers_beside_deng_writes_tables_and_picture_and_computes_noth
     reported = CliRunner().invoke(main, words, catch_exceptions=False)
     assert reported.exit_code == 0 and "Deng 2017 has 34.8625 to 34.8650 mm" in reported.output and "life, slip" in reported.output
     entries = (tmp_path / "d.journal").read_text().count("\n")
-    report = json.loads(CliRunner().invoke(main, [*words, "--json"]).stdout)
+    report = json.loads(CliRunner().invoke(main, [*words, "--json", "--force"]).stdout)  # for the picture, which is drawn again
     assert (tmp_path / "d.journal").read_text().count("\n") == entries
     within = report["nominal_within_deng"]
     assert report["verify_level"] == "slip" and "pocket play" in reported.stderr
