@@ -4,6 +4,7 @@
 On several cores (``pytest -n auto --dist loadgroup``) the files run side by side, but never two that run something in real time.
 """
 
+import signal
 import subprocess
 
 import pytest
@@ -28,6 +29,12 @@ _REAL_TIME = {
     "test_solver",
     "test_view",
 }
+
+
+def pytest_configure():
+    """Let SIGINT reach the programs that tests interrupt: a shell starts what runs in its background without it."""
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.hookimpl(tryfirst=True)  # before xdist reads the groups

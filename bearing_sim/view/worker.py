@@ -10,6 +10,7 @@ server have a thread and a queue each, so that a server that is stuck behind a v
 process that feeds this one; whichever way that process ends, the input ends, and the file is finished.  The starting process sets the priority.
 """
 
+import atexit
 import json
 import logging
 import os
@@ -20,7 +21,7 @@ import sys
 import threading
 import time
 import time as wall
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, suppress
 from pathlib import Path
 from typing import NamedTuple
 
@@ -143,6 +144,7 @@ class ViewThread(View):
     def __init__(self, scene: Scene, path: str | Path | None, serve_port: int | None, options: ViewOptions = NOTHING_KNOWN):
         super().__init__()
         self._dropped_before = 0
+        self._is_abandoned = False  # nobody wants what is queued any more
         self._worker = threading.Thread(target=self._work, args=(scene, path, serve_port, options), name="rerun", daemon=True)
         self._worker.start()
 
@@ -191,7 +193,7 @@ class ViewThread(View):
         flushed, reported = wall.monotonic(), 0
         while True:
             item = self._next_item()
-            if item is None:
+            if item is None or self._is_abandoned:
                 break
             if isinstance(item, Event):
                 view.write_event(item)
@@ -234,7 +236,7 @@ class RerunFile(ViewThread):
     _real_time = False
 
     def __init__(self, scene: Scene, path: str | Path, start_ns: int | None = None, duration: float | None = None, load_scale: float | None = None):
-        self._path = Path(path)
+        self._path, self._exit_code = Path(path), 1
         self._path.open("wb").close()  # rerun itself would only log that it cannot write
         super().__init__(scene, path, None, ViewOptions(start_ns, duration, load_scale))
 
@@ -247,16 +249,45 @@ class RerunFile(ViewThread):
                 continue
         raise incomplete(self.failure)
 
-    def __exit__(self, kind, *_) -> None:
+    def __exit__(self, kind, error, _) -> None:
+        if kind is not None:
+            self._abandon(error)
         finished = self.close()
         if kind is None and not (finished and is_complete(self._path)):
             raise incomplete(self.failure)
 
     def close(self, timeout: float = 120.0) -> bool:
-        """Show what is queued and finish within ``timeout`` [s] (see `ViewThread.close`)."""
-        return super().close(timeout)
+        """Show what is queued and finish within ``timeout`` [s] (see `ViewThread.close`); a signal meanwhile leaves the file incomplete."""
+        atexit.unregister(self._end_process)
+        atexit.register(self._end_process)  # runs before what rerun has registered when it was imported
+        try:
+            return super().close(timeout)
+        except BaseException as error:
+            self._abandon(error)
+            self._worker.join(_ABANDON_WITHIN)
+            raise
+
+    def _abandon(self, error: BaseException) -> None:
+        """Have the thread finish at once: nobody wants the file any more."""
+        self._is_abandoned = True
+        if isinstance(error, SystemExit) and isinstance(error.code, int):
+            self._exit_code = error.code
+        with suppress(queue.Full):
+            self._queue.put_nowait(None)
+
+    def _end_process(self) -> None:
+        """End the process if the thread is still in rerun.
+
+        At the end of the interpreter rerun waits for what is not written, and holds the lock of the interpreter meanwhile, which the threads that
+        write need in order to release arrays: a file that was not finished, as on a full disk, would block the process for ever.
+        """
+        if self._worker.is_alive():
+            sys.stdout.flush()
+            sys.stderr.flush()
+            os._exit(self._exit_code)
 
 
+_ABANDON_WITHIN = 10.0  # [s] that rerun has for its last chunks after a signal
 _REPORT_EVERY = 0.1  # [s], where there is news
 _FINISH_WITHIN = {True: 60.0, False: 1.5}  # [s]: a file, which must be complete even on a busy machine; a server, which a viewer may block
 
