@@ -22,7 +22,7 @@ from bearing_sim.physics.load_balance import LOAD
 from bearing_sim.physics.traction import traction
 from bearing_sim.scene.scene import tolerance_overrides
 from bearing_sim.simulation import scene_inputs
-from bearing_sim.studies.extremes import kinds_of_reason
+from bearing_sim.studies.extremes import counted, kinds_of_reason
 from bearing_sim.studies.extremes_cases import BEARING, DIMENSIONS, Case, oil_of, sampled_cases
 from bearing_sim.studies.extremes_long import long_run
 from bearing_sim.studies.extremes_run import FAILED, FINISHED, REFUSED, STEP_LIMITED, course_segments, run_case
@@ -322,3 +322,11 @@ def test_what_changes_by_5_percent_in_the_second_half_of_a_long_run_is_reported_
     found = long_run("slip", 15_000.0, 1.0)
     assert getattr(found, drift) == pytest.approx(0.05, rel=0.03), "settling takes the rest"
     assert found.failure.startswith(f"drift: {drift} 0.05")
+
+
+def test_a_failure_is_counted_once_without_its_numbers():
+    class Failed:
+        status = FAILED
+        reason = "the equations could not be solved, not even for the smallest step between 0 and 0.01 s (shaft 67 rad/s, load 19 N); kept"
+
+    assert counted([Failed, Failed], FAILED) == {"the equations could not be solved, not even for the smallest step between 0 and 0.01 s": 2}

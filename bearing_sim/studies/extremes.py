@@ -133,7 +133,8 @@ def _worst(outcomes: Sequence[Outcome]) -> dict[str, dict]:
 
 def counted(outcomes: Sequence[Outcome | StockOutcome], status: str) -> dict[str, int]:
     """Count the reasons of one outcome without their numbers, most frequent first."""
-    counts = Counter(reason for outcome in outcomes if outcome.status == status for reason in kinds_of_reason(outcome.reason))
+    kinds = (lambda reason: [reason.split(" (")[0]]) if status == "failed" else kinds_of_reason
+    counts = Counter(reason for outcome in outcomes if outcome.status == status for reason in kinds(outcome.reason))
     return dict(counts.most_common())
 
 
