@@ -13,9 +13,12 @@ its flanges, through seals, and through an unbalance; what the ring and the shaf
 import math
 from typing import NamedTuple
 
+from bearing_sim.levels.common.model import shaft_speed_at
 from bearing_sim.model.sample import COLUMN
-from bearing_sim.numerics.compilation import kernel
+from bearing_sim.numerics.compilation import kernel, template
+from bearing_sim.numerics.sdirk2 import GAMMA
 from bearing_sim.numerics.simd import LANES
+from bearing_sim.numerics.time_stepping import INNER_STAGE
 from bearing_sim.physics.contact import CONTACT
 from bearing_sim.physics.drag import bore_torque, mixture_torque
 
@@ -39,7 +42,7 @@ class Powers(NamedTuple):
 
 
 @kernel
-def mean_powers(earlier, later, share):
+def _mean_powers(earlier, later, share):
     """Return the weighted mean of two `Powers`; ``share`` is the weight of the later one."""
     return Powers(
         earlier.shaft + share * (later.shaft - earlier.shaft),
@@ -56,6 +59,28 @@ def mean_powers(earlier, later, share):
         earlier.flange + share * (later.flange - earlier.flange),
         earlier.support + share * (later.support - earlier.support),
     )
+
+
+@template
+def step_powers(rhs, state_powers, t, y, model, work, memory):
+    """Return the powers of the step that ended at ``t`` in state ``y``, or those of the state itself before the first step.
+
+    The work in a step of sdirk2 is that of both its stages, (1 - gamma) h P(Y_1) + gamma h P(y).  At its end alone stiff forces, those of
+    pockets above all, are too large where a step is long beside their own times.  The right-hand side at ``y`` is in ``work`` afterwards.
+
+    Parameters
+    ----------
+    rhs : kernel of the level.
+    state_powers : kernel of the level, ``(t, y, shaft_speed, model, work)``, that returns the `Powers` of the state in ``work``.
+    """
+    time, stage = memory.stage_time[0], memory.scratch[INNER_STAGE]
+    if math.isnan(time):
+        rhs(t, y, model, work, memory.scratch[0])
+        return state_powers(t, y, shaft_speed_at(t, model.drive), model, work)
+    rhs(time, stage, model, work, memory.scratch[0])
+    within = state_powers(time, stage, shaft_speed_at(time, model.drive), model, work)
+    rhs(t, y, model, work, memory.scratch[0])
+    return _mean_powers(within, state_powers(t, y, shaft_speed_at(t, model.drive), model, work), GAMMA)
 
 
 @kernel

@@ -10,7 +10,7 @@ import math
 from bearing_sim.levels.common.flanges import observe_flanges
 from bearing_sim.levels.common.model import FIFTH_PITCH, orbital_speed_tolerance, pitch_step, shaft_speed_at
 from bearing_sim.levels.common.observation import average_moments, observe_course, oil_at_speed
-from bearing_sim.levels.common.power import mean_powers, write_powers
+from bearing_sim.levels.common.power import step_powers, write_powers
 from bearing_sim.levels.common.rollers import land_eccentricity, observe_rollers
 from bearing_sim.levels.common.state_transfer import first_cage_centre, rolling_state
 from bearing_sim.levels.common.support import factor_supported, observe_support, place_support, solve_supported, support_change
@@ -22,8 +22,6 @@ from bearing_sim.levels.planar.state import BLOCK, BORDER, CAGE_Y, CAGE_Z, OMEGA
 from bearing_sim.model.params import Params
 from bearing_sim.model.sample import COLUMN
 from bearing_sim.numerics.compilation import kernel
-from bearing_sim.numerics.sdirk2 import GAMMA
-from bearing_sim.numerics.time_stepping import INNER_STAGE
 from bearing_sim.physics.contact import CONTACT
 from bearing_sim.physics.lamina_life import equivalent_loads
 
@@ -105,19 +103,8 @@ def average_loads(h, y, model, work):
 
 @kernel
 def _powers(t, y, model, work, memory):
-    """Return the powers of the step that ended at ``t`` in state ``y``, or those of the state itself before the first step.
-
-    The work in a step of sdirk2 is that of both its stages, (1 - gamma) h P(Y_1) + gamma h P(y).  At its end alone stiff forces, those of
-    pockets above all, are too large where a step is long beside their own times.  The right-hand side at ``y`` is in ``work`` afterwards.
-    """
-    time, stage = memory.stage_time[0], memory.scratch[INNER_STAGE]
-    if math.isnan(time):
-        rhs(t, y, model, work, memory.scratch[0])
-        return planar_powers(t, y, shaft_speed_at(t, model.drive), model, work)
-    rhs(time, stage, model, work, memory.scratch[0])
-    within = planar_powers(time, stage, shaft_speed_at(time, model.drive), model, work)
-    rhs(t, y, model, work, memory.scratch[0])
-    return mean_powers(within, planar_powers(t, y, shaft_speed_at(t, model.drive), model, work), GAMMA)
+    """Return the powers of the step that ended at ``t`` in state ``y`` (see `step_powers`)."""
+    return step_powers(rhs, planar_powers, t, y, model, work, memory)
 
 
 @kernel
