@@ -18,6 +18,7 @@ from pydantic_core import PydanticCustomError
 from bearing_sim.scene.bearing import Bearing
 from bearing_sim.scene.diameters import override_by_radius
 from bearing_sim.scene.errors import InvalidField, SceneError, did_you_mean
+from bearing_sim.scene.estimation import Estimation, estimation_errors
 from bearing_sim.scene.fidelity import LEVELS, WANTS, refusals
 from bearing_sim.scene.flanges import axial_errors
 from bearing_sim.scene.heat import Heat, NoHeat, sink_errors
@@ -358,6 +359,7 @@ class Scene:
     life: LifeRating = field(default_factory=LifeRating)
     table: SteadyTable = field(default_factory=SteadyTable)
     uncertainty: tuple[Range, ...] = ()  # a mapping of field to range in a file, see `bearing_sim.scene.uncertainty`
+    estimation: Estimation = field(default_factory=Estimation)
 
     def at(
         self,
@@ -456,7 +458,7 @@ class Scene:
     def _operation_is_within_bounds(self) -> list[str]:
         errors = step_errors(self) + moment_errors(self) + mounting_errors(self.bearing, self.mounting) + support_errors(self)
         errors += axial_errors(self) + sink_errors(self.heat, self.lubricant) + cleanliness_errors(self)
-        return errors + range_errors(self)
+        return errors + range_errors(self) + estimation_errors(self)
 
 
 def _without_estimates(scene: Scene, paths: Container[str]) -> Scene:
