@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Published findings about slip that the model reproduces; those that it does not are named in doc/validation.md."""
+"""Published findings about slip that the model reproduces; those that it does not are named in doc/validation/trends.md."""
 
 import pytest
 
