@@ -7,6 +7,7 @@
 import json
 import os
 import sys
+import threading
 from pathlib import Path
 
 import click
@@ -17,7 +18,8 @@ from click.testing import CliRunner
 from bearing_sim import load_scene
 from bearing_sim.cli.main import main
 from bearing_sim.files import limits
-from bearing_sim.files.limits import FileError, LimitError
+from bearing_sim.files.limits import FileError, LimitError, printable
+from bearing_sim.files.outside import allowing_outside, why_outside
 from bearing_sim.files.reading import read_bytes, read_text
 from bearing_sim.files.yaml_text import values_of
 from bearing_sim.inputs.csv_import import mapping_from_yaml, read_table
@@ -148,6 +150,30 @@ def test_a_scene_names_files_below_its_folder_only_unless_that_is_allowed(tmp_pa
     crown.write_text(hostile_scenes.plain(bearing="roller: {crown: {law: table, file: ../crown.csv}}"))
     with pytest.raises(SceneError, match=r"roller\.crown\.file = '\.\./crown\.csv': outside"):
         load_scene(crown)
+
+
+def test_what_one_thread_may_read_outside_no_other_may(tmp_path):
+    reasons = []
+    with allowing_outside():
+        other = threading.Thread(target=lambda: reasons.append(why_outside("../c.csv", tmp_path)))
+        other.start()
+        other.join()
+        assert why_outside("../c.csv", tmp_path) == ""
+    assert "outside of the folder" in reasons[0] and reasons[0] == why_outside("../c.csv", tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        ("a/b.csv", "a/b.csv"),
+        ("bell\a", "bell\\x07"),
+        ("ä" * 20, "ä" * 20),
+        ("0123456789" * 5, "012345678...23456789"),
+        ("\a" * 50, "\\x07\\x07\\...\\x07\\x07"),
+    ],
+)
+def test_of_a_long_text_beginning_and_end_are_shown_and_nothing_acts_on_a_terminal(text, shown):
+    assert printable(text, 20) == shown and len(shown) <= 20
 
 
 def test_a_scene_without_a_file_of_its_own_reads_none_and_keeps_no_path(tmp_path):

@@ -5,6 +5,7 @@ import errno
 import os
 import signal
 import stat
+import threading
 import time
 
 import click
@@ -14,7 +15,7 @@ from output_cases import CASES, commands, file_name, outputs
 
 from bearing_sim.cli.main import main
 from bearing_sim.cli.outputs import OutputFile, OutputFolder, OutputJournal, OutputTable, WritingCommand
-from bearing_sim.files.outputs import Output, RefusedOutput, protecting_inputs, remember_input, replaced
+from bearing_sim.files.outputs import Output, RefusedOutput, protecting_inputs, remember_input, rename_without_replacing, replaced
 from bearing_sim.sweep.point import Column
 from bearing_sim.sweep.table import Table, require_same_study, study_digest, write_table
 from bearing_sim.sweep.tasks import Journal, JournalInUse
@@ -125,6 +126,33 @@ def test_a_file_that_a_scene_names_is_an_input_too(tmp_path):
         with pytest.raises(RefusedOutput, match="input of this command"):
             Output(contour, force=True).check()
     Output(contour, force=True).check()
+
+
+def test_what_another_thread_reads_is_no_input_of_this_command(tmp_path):
+    (tmp_path / "s.csv").write_bytes(OLD)
+    with protecting_inputs():
+        other = threading.Thread(target=remember_input, args=(tmp_path / "s.csv",))
+        other.start()
+        other.join()
+        Output(tmp_path / "s.csv", force=True).check()
+
+
+@pytest.mark.parametrize("has_links", [True, False])
+def test_a_file_takes_a_free_name_and_no_taken_one_on_any_file_system(has_links, tmp_path, monkeypatch):
+    def no_links(*_):
+        raise OSError(errno.EPERM, "no links here")
+
+    if not has_links:
+        monkeypatch.setattr(os, "link", no_links)
+    (tmp_path / "draft").write_bytes(b"new")
+    (tmp_path / "taken").write_bytes(OLD)
+    (tmp_path / "gone").symlink_to("nowhere")
+    for name in ("taken", "gone"):
+        with pytest.raises(FileExistsError):
+            rename_without_replacing(tmp_path / "draft", tmp_path / name)
+    assert contents(tmp_path) == {"draft": b"new", "taken": OLD, "gone": "nowhere"}
+    rename_without_replacing(tmp_path / "draft", tmp_path / "free")
+    assert contents(tmp_path) == {"free": b"new", "taken": OLD, "gone": "nowhere"}
 
 
 def test_a_study_completes_its_own_table_and_replaces_no_other(tmp_path):

@@ -16,6 +16,24 @@ VARIABLE = "BEARING_SIM_LIMITS"
 _LARGEST = 2**63 - 1
 
 
+LONGEST_NAME = 300
+"""Characters of a path or of a name from a file that a message shows."""
+
+
+def printable(text: str | os.PathLike, longest: int = LONGEST_NAME) -> str:
+    """Return a path or a text from a file as messages show it: at most so many characters, and none that would act on a terminal.
+
+    Of a longer one the beginning and the end are kept: a path is recognised by its last part.
+    """
+    text = _shortened(str(text), longest)  # before anything is escaped, because a file can hold a text of any length
+    return text if text.isprintable() else _shortened(repr(text)[1:-1], longest)
+
+
+def _shortened(text: str, longest: int) -> str:
+    end = (longest - 3) // 2
+    return text if len(text) <= longest else f"{text[: longest - 3 - end]}...{text[-end:]}"
+
+
 class FileError(ValueError):
     """A file that cannot be read, or whose content exceeds a limit; the message says which file, why and what to do.
 

@@ -12,6 +12,7 @@ import os
 import stat
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
+from contextvars import ContextVar
 from pathlib import Path
 
 FORCE = "--force"
@@ -96,26 +97,29 @@ def replaced(path: str | Path) -> Iterator[Path]:
         _give_name(draft, target, force=True)
 
 
-_files_read: dict[tuple[int, int], Path] | None = None
+_files_read: ContextVar[dict[tuple[int, int], Path] | None] = ContextVar("files read by the running command", default=None)
 
 
 @contextmanager
 def protecting_inputs() -> Iterator[None]:
-    """Remember within the block which files are read (see `remember_input`), so that no `Output` replaces them."""
-    global _files_read
-    before, _files_read = _files_read, {}
+    """Remember within the block which files are read (see `remember_input`), so that no `Output` replaces them.
+
+    The block protects what its own thread reads, and threads to which it hands a copy of its context.
+    """
+    before = _files_read.set({})
     try:
         yield
     finally:
-        _files_read = before
+        _files_read.reset(before)
 
 
 def remember_input(path: str | Path) -> None:
     """Note that the running command reads a file; called by whatever opens a file that a user has named, also indirectly as in a scene."""
-    if _files_read is not None:
+    files_read = _files_read.get()
+    if files_read is not None:
         with suppress(OSError):
             found = os.stat(path)
-            _files_read[found.st_dev, found.st_ino] = Path(path)
+            files_read[found.st_dev, found.st_ino] = Path(path)
 
 
 def checked(path: Path, force: bool = False, inputs: Iterable[Path] = ()) -> Path:
@@ -139,7 +143,7 @@ def checked(path: Path, force: bool = False, inputs: Iterable[Path] = ()) -> Pat
     if stat.S_ISDIR(found.st_mode):
         raise RefusedOutput(f"{path} is a folder; expected the name of a file to write")
     if not stat.S_ISREG(found.st_mode):
-        raise RefusedOutput(f"{path} is {_kind(found.st_mode)}, no regular file; it is never replaced: name another file")
+        raise RefusedOutput(f"{path} is {kind_of(found.st_mode)}, no regular file; it is never replaced: name another file")
     _refuse_input(path, found, inputs)
     if not force:
         raise RefusedOutput(f"{path} exists; {FORCE} replaces it, or name another file")
@@ -149,7 +153,7 @@ def checked(path: Path, force: bool = False, inputs: Iterable[Path] = ()) -> Pat
 def _refuse_input(path: Path, found: os.stat_result, inputs: Iterable[Path]) -> None:
     """Raise `RefusedOutput` if an existing file is an input, by whatever name."""
     identity = found.st_dev, found.st_ino
-    read = [(_files_read or {}).get(identity), *(each for each in inputs if _is_among(identity, path, each))]
+    read = [(_files_read.get() or {}).get(identity), *(each for each in inputs if _is_among(identity, path, each))]
     for source in filter(None, read):
         name = "" if os.fspath(source) == os.fspath(path) else f" ({source})"
         raise RefusedOutput(f"{path} is an input of this command{name}, which it never overwrites, not even with {FORCE}; name another file")
@@ -166,8 +170,15 @@ def _is_among(identity: tuple[int, int], path: Path, source: Path) -> bool:
     return (found.st_dev, found.st_ino) == identity
 
 
-def _kind(mode: int) -> str:
-    kinds = (stat.S_ISCHR, "a device"), (stat.S_ISBLK, "a device"), (stat.S_ISFIFO, "a pipe"), (stat.S_ISSOCK, "a socket")
+def kind_of(mode: int) -> str:
+    """Return in words what a path is that is no regular file, from its mode as `os.stat` gives it."""
+    kinds = (
+        (stat.S_ISDIR, "a folder"),
+        (stat.S_ISFIFO, "a pipe"),
+        (stat.S_ISCHR, "a device"),
+        (stat.S_ISBLK, "a device"),
+        (stat.S_ISSOCK, "a socket"),
+    )
     return next((text for is_kind, text in kinds if is_kind(mode)), "something else")
 
 
@@ -248,11 +259,32 @@ def _give_name(draft: Path, target: Path, force: bool) -> None:
         os.replace(draft, target)
     else:
         try:
-            os.link(draft, target)  # unlike renaming, this replaces nothing
+            rename_without_replacing(draft, target)
         except FileExistsError:
             raise RefusedOutput(f"{target} was made by another program meanwhile; {FORCE} replaces it, or name another file") from None
-        except OSError:
-            os.rename(draft, target)  # a file system without links
-        else:
-            os.unlink(draft)
     synchronise(target.parent)
+
+
+def rename_without_replacing(path: Path, name: Path) -> None:
+    """Give a file a name in the same folder that nobody has taken.
+
+    A hard link fails where the name is taken, unlike renaming, so no other program can lose a file.  On a file system without links a file that
+    appears between the look and the renaming is replaced.
+
+    Raises
+    ------
+    FileExistsError
+        The name is taken; the file keeps its own.
+    OSError
+        It cannot be renamed.
+    """
+    try:
+        os.link(path, name)
+    except FileExistsError:
+        raise
+    except OSError:
+        if os.path.lexists(name):
+            raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), os.fspath(name)) from None
+        os.rename(path, name)
+    else:
+        os.unlink(path)

@@ -6,23 +6,26 @@ A scene from a stranger could otherwise make a command read, and its messages or
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
 from pathlib import Path
 
 OPTION = "--allow-outside"
 """Option of the command line; the node has the parameter ``allow_outside``, Python the argument of that name."""
 
-_is_allowed = False
+_is_allowed: ContextVar[bool] = ContextVar("files outside are allowed", default=False)
 
 
 @contextmanager
 def allowing_outside(allowed: bool = True) -> Iterator[None]:
-    """Allow files outside of the folder within the block, if ``allowed``; otherwise leave it as it is."""
-    global _is_allowed
-    before, _is_allowed = _is_allowed, _is_allowed or allowed
+    """Allow files outside of the folder within the block, if ``allowed``; otherwise leave it as it is.
+
+    Only the thread of the block is allowed to, so that what one thread of a node reads is never decided by the parameters of another.
+    """
+    before = _is_allowed.set(_is_allowed.get() or allowed)
     try:
         yield
     finally:
-        _is_allowed = before
+        _is_allowed.reset(before)
 
 
 def why_outside(named: str, folder: Path) -> str:
@@ -33,7 +36,7 @@ def why_outside(named: str, folder: Path) -> str:
     named : path as it is written, relative to the folder.
     folder : of the file that names it.  Symbolic links are followed: one that leads out of the folder is outside, too.
     """
-    if _is_allowed:
+    if _is_allowed.get():
         return ""
     try:
         inside = (folder / named).resolve().is_relative_to(folder.resolve())

@@ -9,19 +9,12 @@ import stat
 from pathlib import Path
 from typing import BinaryIO
 
-from bearing_sim.files.limits import FileError, Limit
-from bearing_sim.files.outputs import remember_input
+from bearing_sim.files.limits import FileError, Limit, printable
+from bearing_sim.files.outputs import kind_of, remember_input
 
 NO_FILE = "no such file"
 """Why a path cannot be read at which there is nothing."""
 
-_KINDS = (
-    (stat.S_ISDIR, "a folder"),
-    (stat.S_ISFIFO, "a pipe"),
-    (stat.S_ISCHR, "a device"),
-    (stat.S_ISBLK, "a device"),
-    (stat.S_ISSOCK, "a socket"),
-)
 _PIECE = 1 << 20  # [byte] that is read at once
 _MARKS = ((b"\xef\xbb\xbf", "utf-8-sig"), (b"\xff\xfe", "utf-16"), (b"\xfe\xff", "utf-16"))
 
@@ -37,10 +30,7 @@ def why_not_readable(path: str | Path) -> str:
         return "a link to a file that does not exist" if os.path.islink(path) else NO_FILE
     except (OSError, ValueError) as error:  # ValueError: a null character in the path
         return (getattr(error, "strerror", None) or str(error)).lower()
-    if stat.S_ISREG(mode):
-        return ""
-    kind = next((name for is_kind, name in _KINDS if is_kind(mode)), "no regular file")
-    return f"{kind}, expected a file"
+    return "" if stat.S_ISREG(mode) else f"{kind_of(mode)}, expected a file"
 
 
 def open_regular(path: str | Path, limit: Limit | None = None) -> BinaryIO:
@@ -57,17 +47,17 @@ def open_regular(path: str | Path, limit: Limit | None = None) -> BinaryIO:
         There is no such file, it is no regular file, may not be read, or is larger than the limit.
     """
     if reason := why_not_readable(path):
-        raise FileError(reason, _shown(path))
+        raise FileError(reason, printable(path))
     try:
         descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
     except OSError as error:
-        raise FileError((error.strerror or "cannot be opened").lower(), _shown(path)) from None
+        raise FileError((error.strerror or "cannot be opened").lower(), printable(path)) from None
     try:
         status = os.fstat(descriptor)
         if not stat.S_ISREG(status.st_mode):  # replaced since it was looked at
-            raise FileError("no regular file", _shown(path))
+            raise FileError("no regular file", printable(path))
         if limit is not None:
-            limit.check(status.st_size, _shown(path))
+            limit.check(status.st_size, printable(path))
         remember_input(path)
         return os.fdopen(descriptor, "rb")
     except BaseException:
@@ -94,9 +84,9 @@ def read_bytes(path: str | Path, limit: Limit) -> bytes:
             while piece := stream.read(_PIECE):
                 pieces.append(piece)
                 length += len(piece)
-                limit.check(length, _shown(path))
+                limit.check(length, printable(path))
         except OSError as error:
-            raise FileError((error.strerror or "cannot be read").lower(), _shown(path)) from None
+            raise FileError((error.strerror or "cannot be read").lower(), printable(path)) from None
     return b"".join(pieces)
 
 
@@ -125,12 +115,5 @@ def decoded(data: bytes, origin: str | Path) -> str:
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
         found = f"line {line}: byte 0x{data[error.start]:02x} is no UTF-8 text" if encoding.startswith("utf-8") else f"no {encoding.upper()} text"
-        raise FileError(f"{found}; save the file as UTF-8", _shown(origin)) from None
+        raise FileError(f"{found}; save the file as UTF-8", printable(origin)) from None
     return text.replace("\r\n", "\n").replace("\r", "\n")
-
-
-def _shown(path: str | Path) -> str:
-    """Return a path as a message shows it: long ones shortened, characters that would act on a terminal escaped."""
-    text = str(path)
-    text = text if text.isprintable() else repr(text)[1:-1]
-    return text if len(text) <= 300 else f"{text[:150]}...{text[-100:]}"

@@ -18,11 +18,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.files.limits import LOG_MESSAGES, FileError
+from bearing_sim.files.limits import LOG_MESSAGES, FileError, printable
 from bearing_sim.inputs.gate import REQUIRED, UNITS, shown
 from bearing_sim.messages import topics
 from bearing_sim.recording.bag import LATEST, RecordingError
-from bearing_sim.recording.bag_reader import BagReader, BagTopic, printable
+from bearing_sim.recording.bag_reader import BagReader, BagTopic
 from bearing_sim.recording.message_fields import numbers, suggestion
 from bearing_sim.scene.loader import did_you_mean
 from bearing_sim.scene.quantity import conversion, to_si

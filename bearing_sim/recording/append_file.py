@@ -10,6 +10,7 @@ import time
 from contextlib import suppress
 from pathlib import Path
 
+from bearing_sim.files.outputs import rename_without_replacing
 from bearing_sim.messages.events import Level
 
 _COPY = 1024 * 1024  # [byte] copied at once
@@ -133,10 +134,9 @@ def set_aside(path: Path) -> Path | None:
         for number in itertools.count(1):
             other = path.with_name(f"{name}_killed_{number}.{suffixes}")
             with suppress(FileExistsError):
-                os.link(path, other)  # unlike renaming, this replaces nothing
-                os.unlink(path)
+                rename_without_replacing(path, other)
                 return other
-    except OSError:  # it is locked by its writer, or the file system has no locks or links
+    except OSError:  # it is locked by its writer, or the file system has no locks
         return None
     finally:
         os.close(descriptor)

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import zstandard
 from mcap.records import Channel, Schema
 
-from bearing_sim.files.limits import RECORDING_EXPANSION, RECORDING_RECORD, FileError
+from bearing_sim.files.limits import RECORDING_EXPANSION, RECORDING_RECORD, FileError, printable
 from bearing_sim.files.reading import open_regular
 from bearing_sim.messages.definitions import DefinitionError, decoder
 from bearing_sim.recording.bag import FREE_EXPANSION, LATEST, RecordingError, folder_metadata, listed_files, mcap_files, require_listed
@@ -19,7 +19,6 @@ from bearing_sim.recording.mcap_reader import McapReader
 from bearing_sim.recording.ros1_bag import Connection, Ros1Bag
 from bearing_sim.recording.sqlite_bag import SqliteBag
 
-_LONGEST_NAME = 200  # characters of a topic or a type
 _PIECE = 1 << 20  # [byte] that is unpacked at once
 
 
@@ -228,9 +227,3 @@ def _refusal(topic: str, serialization: str) -> Callable[[bytes], object]:
         raise RecordingError(f"{topic} is encoded as {serialization[:40]!r}; expected cdr")
 
     return refuse
-
-
-def printable(text: str, longest: int = _LONGEST_NAME) -> str:
-    """Return a text of a recording as messages and tables show it: at most so many characters, and none that would act on a terminal."""
-    text = text if len(text) <= longest else f"{text[: longest - 3]}..."
-    return text if text.isprintable() else ascii(text)[1:-1]

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.files.outputs import synchronise
+from bearing_sim.files.outputs import rename_without_replacing, synchronise
 from bearing_sim.messages import diagnostics, topics
 from bearing_sim.messages.cdr import message_type
 from bearing_sim.messages.events import Event, Level
@@ -287,15 +287,10 @@ def _rename(active: Path, path: Path, replace: bool) -> None:
             if path.exists():
                 synchronise(active)  # so that a power cut leaves one of the two whole
             os.replace(active, path)
-            return
-        try:
-            os.link(active, path)  # unlike renaming, this replaces nothing
-        except FileExistsError:
-            raise FileExistsError(f"{path} was made by another program meanwhile; the complete recording is {active}") from None
-        except OSError:
-            os.rename(active, path)  # a file system without links
         else:
-            os.unlink(active)
+            rename_without_replacing(active, path)
+    except FileExistsError:
+        raise FileExistsError(f"{path} was made by another program meanwhile; the complete recording is {active}") from None
     except PermissionError as error:
         raise PermissionError(error.errno, f"{active} is complete, but cannot be renamed to {path.name}: {error.strerror}") from None
 

@@ -17,13 +17,13 @@ import numpy as np
 import rerun as rr
 import rerun.blueprint as rrb
 
-from bearing_sim.files.limits import VIEW_EVENTS, VIEW_LINES, VIEW_NUMBERS, LimitError
+from bearing_sim.files.limits import VIEW_EVENTS, VIEW_LINES, VIEW_NUMBERS, LimitError, printable
 from bearing_sim.messages import topics
 from bearing_sim.messages.cdr import POINT_CLOUD
 from bearing_sim.messages.diagnostics import WHOLE, events_of
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.recording.bag import RecordingError
-from bearing_sim.recording.bag_reader import BagReader, BagTopic, printable
+from bearing_sim.recording.bag_reader import BagReader, BagTopic
 from bearing_sim.recording.message_fields import numbers, suggestion
 from bearing_sim.scene.errors import did_you_mean
 from bearing_sim.view import colours
