@@ -35,13 +35,14 @@ ROOMS = {
     "stored_state": ("numpy platformdirs pyarrow", "files scene model messages recording"),
     "inputs": ("numpy pyarrow pydantic yaml", "extras files scene simulation messages recording"),
     "monitoring": ("numpy scipy", "scene physics model messages inputs"),
+    "estimation": ("numpy platformdirs scipy", "scene numerics model levels"),
     "runtime": ("numpy", "scene numerics model levels simulation messages recording stored_state inputs monitoring"),
     "view": ("PIL numpy platformdirs rerun rerun_cli", "files scene messages recording"),
     "sweep": ("numpy pandas pyarrow matplotlib distributed xarray", "files scene numerics model levels simulation recording"),
     "fleet": ("numpy pyarrow", "files scene levels simulation messages recording inputs model runtime sweep"),
     "studies": (
         "numpy numba pandas scipy matplotlib pydantic sksundae",
-        "files scene numerics physics model levels simulation messages recording monitoring sweep",
+        "files scene numerics physics model levels simulation messages recording monitoring estimation sweep",
     ),
     "cli": (
         "click numpy pydantic_core rich",

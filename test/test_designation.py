@@ -15,7 +15,7 @@ from bearing_sim.scene.mounting import clearance_limits
 from bearing_sim.scene.ratings import load_rating, rate
 from bearing_sim.scene.uncertainty import ranges_of, with_values
 from bearing_sim.studies.catalog_rules import diameter_errors, fitted, held_back, left_out, printed_rating_ratios, sections_of, summary
-from bearing_sim.studies.uncertainty import _varied
+from bearing_sim.studies.uncertainty import varied
 
 SCENE = """
 name: designation
@@ -198,7 +198,7 @@ def test_a_draw_of_estimated_fields_keeps_the_static_rating_and_is_always_a_bear
         made = scene(text)
         for _ in range(20):
             drawn = {one.field: random.uniform(one.low, one.high) for one in ranges_of(made)}
-            bearing = _varied(made, drawn).bearing
+            bearing = varied(made, drawn).bearing
             factor = drawn["bearing.roller.length"] / made.bearing.roller.length
             if bearing.roller.length != pytest.approx(made.bearing.roller.length):
                 near = abs(rate(bearing).computed.static / (factor * rate(made.bearing).computed.static) - 1.0)

@@ -312,7 +312,7 @@ def study(
     designed = design([distribution(one, value_at(scene, one.field)) for one in ranges], base, seed)
     if not shares:
         designed = designed._replace(points=designed.points[: 2 * base])
-    own = settled(_varied(scene, {}), conditions)
+    own = settled(varied(scene, {}), conditions)
     kept = Journal() if journal is None else journal
     found = _at_points(scene, [one.field for one in ranges], designed.points, conditions, len(seconds), kept, workers, dask, progress)
     answers = dict(zip(VALUES, _over_course(found, seconds)))
@@ -359,7 +359,7 @@ def settled_batch(
     points : numbers of the fields [SI], one tuple per point.
     """
     asked = None if conditions is None else np.array(conditions)
-    return {"settled": [settled(_varied(scene, dict(zip(fields, point))), asked).tolist() for point in points]}
+    return {"settled": [settled(varied(scene, dict(zip(fields, point))), asked).tolist() for point in points]}
 
 
 def _check(scene: Scene, on_course: bool) -> None:
@@ -383,7 +383,7 @@ def _check(scene: Scene, on_course: bool) -> None:
             )
 
 
-def _varied(scene: Scene, values: dict[str, float]) -> Scene:
+def varied(scene: Scene, values: dict[str, float]) -> Scene:
     """Return a scene with other numbers; estimated ones whose parts do not fit together are drawn towards the scene's own until they do.
 
     The rollers' length follows a draw of their number and diameter so that the static rating stays, from which it was estimated.
