@@ -14,7 +14,7 @@ from click.testing import CliRunner
 from output_cases import CASES, commands, file_name, outputs
 
 from bearing_sim.cli.main import main
-from bearing_sim.cli.outputs import OutputFile, OutputFolder, OutputJournal, OutputTable, WritingCommand
+from bearing_sim.cli.outputs import OutputFile, OutputFolder, OutputJournal, OutputWithJournal, WritingCommand
 from bearing_sim.files.outputs import Output, RefusedOutput, protecting_inputs, remember_input, rename_without_replacing, replaced
 from bearing_sim.sweep.point import Column
 from bearing_sim.sweep.table import Table, require_same_study, study_digest, write_table
@@ -26,7 +26,7 @@ INPUTS = {"replay --state-file", "replay-fleet --bearings", "design --points", "
 OUTPUTS = outputs()
 NAMES = [f"{name} {option.opts[-1]}" for name, option in OUTPUTS]
 READING = [(name, option) for name, option in OUTPUTS if any(argument.startswith("{") for argument in CASES[name].arguments)]
-CONTINUED = (OutputTable, OutputJournal, OutputFolder)
+CONTINUED = (OutputWithJournal, OutputJournal, OutputFolder)
 
 
 def called(arguments, folder):

@@ -285,8 +285,15 @@ def test_the_command_tells_bands_shares_errors_and_sources(tmp_path):
     assert (tmp_path / "bands.png").stat().st_size > 20_000
     again = json.loads(bands("--samples", 16, "--json").stdout)
     assert again["cage_slip"] == slip and again["kept_from_before"] == 0, "the seed decides"
-    resumed = json.loads(bands("--samples", 16, "--json", "--csv", tmp_path / "points.csv", "--force").stdout)
-    assert resumed["cage_slip"] == slip and resumed["kept_from_before"] == 16 * 8
+    resumed = json.loads(bands("--samples", 16, "--json", "--csv", tmp_path / "points.csv").stdout)
+    assert resumed["cage_slip"] == slip and resumed["kept_from_before"] == 16 * 8, "the study may replace its own file"
+    before = (tmp_path / "points.csv").read_bytes()
+    other = bands("--samples", 16, "--seed", 1, "--csv", tmp_path / "points.csv")
+    assert other.exit_code == 2 and "points.csv exists and was not written by this study; --force replaces it" in other.output
+    assert (tmp_path / "points.csv").read_bytes() == before
+    (tmp_path / "points.csv").write_text("notes of the user")
+    edited = bands("--samples", 16, "--csv", tmp_path / "points.csv")
+    assert edited.exit_code == 2 and (tmp_path / "points.csv").read_text() == "notes of the user"
 
 
 def test_the_command_prints_a_table_and_refuses_in_one_line():

@@ -63,11 +63,18 @@ class OutputRecording(OutputFile):
 
 
 class OutputWithJournal(OutputFile):
-    """The type of an option that names a file with a journal beside it, from which an interrupted run resumes."""
+    """The type of an option that names a file with a journal beside it, from which an interrupted run resumes.
+
+    Whether a file that exists may be replaced is for the command to decide once it knows its study (`bearing_sim.sweep.table.same_points`).
+    """
+
+    def made(self, path: Path) -> list[Path]:
+        """Return no file."""
+        return []
 
     def continued(self, path: Path) -> list[Path]:
-        """Return the journal."""
-        return [path.with_suffix(".journal")]
+        """Return the file and the journal."""
+        return [path, path.with_suffix(".journal")]
 
 
 class OutputTable(OutputWithJournal):
@@ -84,14 +91,10 @@ class OutputTable(OutputWithJournal):
         super().__init__()
         self._parts = ("", *parts)
 
-    def made(self, path: Path) -> list[Path]:
-        """Return no file."""
-        return []
-
     def continued(self, path: Path) -> list[Path]:
         """Return the tables and the journal."""
         tables = [path.with_name(f"{path.stem}{part}{suffix}") for part in self._parts for suffix in (".parquet", ".csv")]
-        return [*tables, *super().continued(path)]
+        return [*tables, path.with_suffix(".journal")]
 
 
 class OutputJournal(OutputFile):

@@ -60,11 +60,19 @@ def uncertainty(scene_name, overrides, samples, seed, level, log, stretches, wor
     warn_of_scene(scene)
     scene, course, unknown = _course(log, scene, stretches) if log is not None else (scene, None, {})
     with as_file_error(), as_usage_error(JournalInUse):
+        from bearing_sim.studies.uncertainty import rounded_up
+        from bearing_sim.sweep.table import note_points, same_points, study_digest
+
+        conditions = course and (course.seconds.tolist(), course.conditions.tolist())
+        digest = study_digest("uncertainty", scene, rounded_up(samples), seed, level, conditions)
+        if table is not None:
+            table = same_points(table, digest)
         with Journal(table and table.path.with_suffix(".journal")) as journal:
             found, report = bands_of(scene, samples, seed, level, course, journal, workers, dask)
+            if table is not None:
+                write_csv(table, _rows(found))
+                note_points(journal, digest, table.path)
     with as_file_error():
-        if table is not None:
-            write_csv(table, _rows(found))
         if picture is not None:
             from bearing_sim.studies.uncertainty import draw
 

@@ -22,6 +22,7 @@ from bearing_sim.scene.quantity import conversion
 from bearing_sim.scene.scene import Scene
 from bearing_sim.scene.uncertainty import quantities
 from bearing_sim.sweep.point import OK, RESULTS, UNSETTLED, Column
+from bearing_sim.sweep.tasks import Journal
 
 if TYPE_CHECKING:
     import pandas
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 _LONGEST_REASON = 300  # characters
 _ABOUT = b"bearing_sim"
 _CSV = b"bearing_sim_csv_sha256"
+_POINTS = "csv_sha256"
 _HEADED = re.compile(r"(.*?)(?: \[(.*)\])?")
 _RESULTS = {each.name: each for each in RESULTS}
 
@@ -185,6 +187,37 @@ def require_same_study(output: Output, study: str, parts: Sequence[str] = ("",))
             if path.is_file() and not (may_replace or output.force):
                 raise RefusedOutput(f"{path} exists and was not written by this study; {FORCE} replaces it, or name another file")
             Output(path, True, output.inputs).check()
+
+
+def same_points(output: Output, study: str) -> Output:
+    """Return the output of a CSV file of points, which may replace a file that this study has written, as the journal beside it says.
+
+    Parameters
+    ----------
+    output : of the CSV file.
+    study : see `study_digest`.
+
+    Raises
+    ------
+    RefusedOutput
+        There is another file, or an input.
+    """
+    exists = output.path.is_file()
+    if exists and not output.force:
+        beside, origin = output.path.with_suffix(".journal"), {}
+        if beside.is_file():
+            with Journal(beside) as journal:
+                origin = journal[study] if study in journal else {}
+        if origin.get(_POINTS) != _digest_of(output.path).decode():
+            raise RefusedOutput(f"{output.path} exists and was not written by this study; {FORCE} replaces it, or name another file")
+    own = Output(output.path, output.force or exists, output.inputs)
+    own.check()
+    return own
+
+
+def note_points(journal: Journal, study: str, path: Path) -> None:
+    """Note in the journal of a study which CSV file of points it has written, for `same_points`."""
+    journal.add(study, {_POINTS: _digest_of(path).decode()})
 
 
 def _origin_of(parquet: Path) -> tuple[str | None, bytes | None]:

@@ -37,7 +37,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from output_cases import CASES, file_name, outputs  # noqa: E402
 
 from bearing_sim.cli.main import main  # noqa: E402
-from bearing_sim.cli.outputs import OutputFolder, OutputJournal, OutputTable  # noqa: E402
+from bearing_sim.cli.outputs import OutputFolder, OutputJournal, OutputWithJournal  # noqa: E402
 from bearing_sim.cli.reporting import print_rows  # noqa: E402
 
 _COMMAND = [sys.executable, "-m", "bearing_sim.cli"]
@@ -179,7 +179,7 @@ class Walk:
 
     def _tables(self, target: Path) -> list[Path]:
         """Return the files that stand at an output which is replaced."""
-        return [path for path in self._own(target) if path.suffix not in _KEPT] if isinstance(self._kind, OutputTable) else [target]
+        return [path for path in self._own(target) if path.suffix not in _KEPT] if isinstance(self._kind, OutputWithJournal) else [target]
 
     def try_failures(self, kills: int, chance: random.Random) -> None:
         """Try a full disk, and kills at random instants."""
