@@ -12,6 +12,7 @@ SCENE = "{scene}"  # names of inputs in arguments, see `Case`
 LOG, RECORDING, BROKEN, MEASURED = "{log}", "{recording}", "{broken}", "{measured}"
 DATA, MAPPING, TABLE, STATE = "{data}", "{mapping}", "{table}", "{state}"
 _DESIGN = ("design", "deng2017_table1", "--low-radius", "34.86mm:34.865mm:2", "--d-value", "0.1mm:0.11mm:2")
+_RANGE = "uncertainty.lubricant.mixture_fraction=[0.01, 0.9]"
 _STEADY = ("--set", "level=steady")
 
 
@@ -38,7 +39,7 @@ CASES = {
     "new": Case(("new", "NU 210/C3", "--oil", "ISO VG 68", "--speed", "3000rpm", "--load", "5kN")),
     "machine": Case(("machine",)),
     "uncertainty": Case(("uncertainty", SCENE, "--samples", "2", "--workers", "1"), 5),
-    "calibrate": Case(("calibrate", MEASURED, "--scene", SCENE, "--set", "level=slip"), 20),
+    "calibrate": Case(("calibrate", MEASURED, "--scene", SCENE, "--set", "level=slip", "--set", _RANGE), 5),
     "sweep": Case(("sweep", SCENE, *_STEADY, "--vary", "operating.radial_load=500N:800N:2", "--workers", "1"), 2),
     "plot": Case(("plot", TABLE)),
     "design": Case((*_DESIGN, "--slip-below", "10%", "--life-above", "300h", "--verify-level", "none", "--workers", "1"), 5),
