@@ -72,3 +72,15 @@ def test_nothing_is_written_below_the_free_space_to_be_kept_until_the_end(tmp_pa
     file.write(b"last")
     assert "less than the" in str(file.error) and (tmp_path / "grows").read_bytes() == b"first,"
     assert file.retry() and (tmp_path / "grows").read_bytes() == b"first,last"
+
+
+def test_a_closed_file_writes_no_more_into_what_may_be_another_files_descriptor(tmp_path, monkeypatch):
+    file, disk = AppendFile(tmp_path / "grows"), Disk(monkeypatch)
+    disk.room = 6
+    file.write(b"first,")
+    file.write(b"last")
+    file.close()
+    disk.room = 10**9
+    with open(tmp_path / "other", "wb"):  # takes the free descriptor
+        assert file.retry() and file.tell() == 6
+    assert (tmp_path / "other").read_bytes() == b"" and (tmp_path / "grows").read_bytes() == b"first,"

@@ -7,7 +7,9 @@ import pytest
 from click.testing import CliRunner
 
 from bearing_sim.cli.main import main
-from bearing_sim.scene.loader import load_scene
+from bearing_sim.scene.loader import load_bearing, load_scene
+from bearing_sim.studies import bearing_drawing
+from bearing_sim.sweep.table import new_figure
 
 
 def called(*arguments, code=0):
@@ -88,3 +90,15 @@ def test_fast_bearings_get_a_jet_and_heavy_loads_a_tighter_fit():
     assert "supply: oil_jet" in made and "fit: k6" in made
     given = called("new", "NU 210", "--oil", "ISO VG 10", "--speed", "9000rpm", "--load", "15kN", "--temperature", "70degC").stdout
     assert "temperature: 70degC" in given and "heat:" not in given
+
+
+@pytest.mark.parametrize("designation", ["NU 210", "NU 1010", "N 2310 ECP"])
+def test_all_of_a_drawing_lies_within_its_frame(designation):
+    axes = new_figure(6, 6).subplots()
+    bearing_drawing._draw_section(axes, load_bearing(designation))
+    (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
+    places = [text.get_position() for text in axes.texts]
+    places += [corner for patch in axes.patches for corner in patch.get_corners()]
+    places += [point for line in axes.lines for point in line.get_xydata()]
+    assert len(places) > 30
+    assert all(left < x < right and bottom < y < top for x, y in places)

@@ -267,3 +267,17 @@ def test_a_folder_without_a_study_is_refused_with_what_to_do(tmp_path):
 def test_every_claim_names_its_figure_in_words_of_the_paper():
     assert [number for number, *_ in CLAIMS] == list(range(1, 10))
     assert all(figures and len(says) > 30 for _, figures, says, _ in CLAIMS)
+
+
+def test_slip_that_rises_ever_faster_holds_and_its_slope_is_told_in_points_for_a_micrometre():
+    rows = [
+        {LOW: 34.86 + 0.0025 * k, "cage_slip": slip, "rating_life": 300.0 + k, "inner_equivalent_load": 1.0, "churning_power": 900.0}
+        for k, slip in enumerate((1.0, 2.0, 4.0, 7.0))
+    ]
+    columns = tuple(Column(name, "", "") for name in rows[0])
+    found = deng2017_claims.low_radius({("low_radius", "slip"): Table(columns, rows, {})}, "slip")
+    assert found.verdict == HOLDS and found.gives.endswith("slope of slip 0.4 to 1.2 points/um")
+
+
+def test_claims_are_numbered_as_they_are_listed():
+    assert [number for number, *_ in CLAIMS] == list(range(1, len(CLAIMS) + 1))

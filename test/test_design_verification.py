@@ -307,3 +307,12 @@ def test_every_level_but_the_highest_is_verified_by_one_that_includes_more():
     assert tuple(studied.VERIFIED_BY) == LEVELS[:-1]
     assert all(LEVELS.index(verifying) > LEVELS.index(level) for level, verifying in studied.VERIFIED_BY.items())
     assert studied.VERIFIED_BY["steady"] == "planar", "level slip solves the same equations"
+
+
+def test_the_radii_that_show_a_verification_are_the_edges_and_centres_of_both_intervals():
+    interval = studied._Interval(NOMINAL, 1e-4, 34.0e-3, 34.4e-3, "slip", "life")
+    assert studied._places(interval, None) == pytest.approx({34.0e-3: "lower edge", 34.2e-3: "centre", 34.4e-3: "upper edge"})
+    narrowed = studied._places(interval, interval._replace(low=34.1e-3))
+    assert {place: radius for radius, place in narrowed.items()} == pytest.approx(
+        {"lower edge": 34.0e-3, "verified lower edge": 34.1e-3, "centre": 34.2e-3, "verified centre": 34.25e-3, "upper edge": 34.4e-3}
+    )

@@ -30,8 +30,15 @@ def test_a_fleet_holds_where_all_keep_real_time_and_are_driven_as_often_as_meant
 
 @pytest.mark.parametrize(("capacity", "found"), [(7, 7), (6, 6), (10, 9), (100, 9), (1, 1), (0, 1)])
 def test_fewer_are_tried_where_not_all_hold(monkeypatch, capacity, found):
-    monkeypatch.setattr(fleet, "run_fleet", lambda scene, count, seconds: FleetRun(count, 0.1, 0.0 if count <= capacity else 1.0, 1.0, 100.0))
+    tried = []
+
+    def run(scene, count, seconds):
+        tried.append(count)
+        return FleetRun(count, 0.1, 0.0 if count <= capacity else 1.0, 1.0, 100.0)
+
+    monkeypatch.setattr(fleet, "run_fleet", run)
     runs = most_bearings(None, 1.0)
+    assert tried[0] == 1, "what one takes says how many are tried next"
     assert runs[-1].bearings == found and runs[-1].holds == (capacity > 0)
     assert 1 in [run.bearings for run in runs] and len({run.bearings for run in runs}) == len(runs)
 

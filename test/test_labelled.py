@@ -6,6 +6,7 @@ import pytest
 from synthetic_run import synthetic_block
 
 from bearing_sim import load_scene, to_pandas, to_xarray
+from bearing_sim.sweep.table import Table
 
 pytest.importorskip("pandas", reason="pip install 'bearing_sim[tables]'")
 pytest.importorskip("xarray", reason="pip install 'bearing_sim[tables]'")
@@ -39,3 +40,8 @@ def test_a_frame_is_indexed_by_time_and_has_a_column_and_a_unit_for_each_roller(
 def test_an_unknown_column_is_refused(block):
     with pytest.raises(KeyError, match="no observable 'cage_slipp'; expected one of time"):
         to_pandas(block, ["cage_slipp"])
+
+
+def test_a_table_without_axes_is_no_dataset_and_says_so():
+    with pytest.raises(ValueError, match="a table of design has no axes; use to_pandas"):
+        Table((), [], {"kind": "design"}).to_xarray()

@@ -18,8 +18,8 @@ from node_overhead import _wait_until_running  # noqa: E402
 from ros_bench import fresh_domain  # noqa: E402
 
 from bearing_sim.messages import topics  # noqa: E402
-from bearing_sim.ros.measure import cost_of  # noqa: E402
-from bearing_sim.runtime.solver_threads import name_this_thread  # noqa: E402
+from bearing_sim.ros.measure import Cost, _share, cost_of  # noqa: E402
+from bearing_sim.runtime.solver_threads import THREAD_NAME, name_this_thread  # noqa: E402
 from bearing_sim.scene.loader import load_scene  # noqa: E402
 
 pytestmark = pytest.mark.timeout(240)
@@ -80,3 +80,15 @@ def test_a_node_that_does_not_begin_is_told_in_its_own_words(tmp_path):
         node = subprocess.Popen([sys.executable, "-c", "raise SystemExit('bearing_node: no such scene')"], stdout=log, stderr=subprocess.STDOUT)
         with pytest.raises(RuntimeError, match="did not start; its log:\nbearing_node: no such scene"):
             _wait_until_running(silent, node, log)
+
+
+def test_shares_of_a_core_are_the_cost_over_the_time_and_new_threads_count_from_nothing():
+    before = Cost({THREAD_NAME: 4.0, "idle": 1.0}, 1e8)
+    after = Cost({THREAD_NAME: 5.0, "idle": 1.0, "new": 0.5}, 2e8)
+    assert _share(before, after, 4.0) == {
+        "cpu_percent": 37.5,
+        "cpu_solver_percent": 25.0,
+        "cpu_without_solver_percent": 12.5,
+        "memory_mb": 200.0,
+        "cpu_by_thread_percent": {THREAD_NAME: 25.0, "new": 12.5},
+    }

@@ -12,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bearing_sim import load_scene
+from bearing_sim.cli.bench import _print_trade
 from bearing_sim.cli.main import main
 from bearing_sim.studies.trade import Course, Setting, Trade, Traded, front_of, recommend, settings_of, trade
 from bearing_sim.studies.trade import _errors as errors
@@ -99,3 +100,9 @@ def test_a_scene_at_rest_is_refused():
     result = CliRunner().invoke(main, ["trade", "deng2017_table1", "--set", "operating.shaft_speed=0 rpm"])
     assert result.exit_code == 2
     assert "expected a rotating shaft" in result.output
+
+
+def test_a_trade_names_the_levels_that_it_did_not_measure(capsys):
+    found = Trade([], [], "planar", (0.01, 0.02, 1e-3, 1e-3), 0.5, {"spatial": "needs slices"})
+    _print_trade("motor", found)
+    assert "not measured: spatial (needs slices)" in capsys.readouterr().out

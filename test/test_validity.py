@@ -470,3 +470,27 @@ def test_a_reversed_shaft_is_judged_as_one_that_turns_forwards(scenes):
 def test_at_rest_only_what_needs_no_motion_is_judged(scenes):
     scene = load_scene(scenes["motor"], ["operating.shaft_speed=0 rpm", "operating.radial_load=90 kN"])
     assert {each.law.name for each in outside(scene, still_sample(scene))} == {"mixture_fraction", "static_load"}
+
+
+@pytest.mark.parametrize(
+    ("fit", "applies"),
+    [("interference=10 um", True), ("interference=0 um", False)],
+)
+def test_the_pressure_of_a_seat_is_judged_where_there_is_one_and_dimensions_are_those_of_the_cold_bearing(fit, applies):
+    cold = load_scene(PAPER, ["bearing.dimensions_at=cold", f"mounting.shaft.{fit}"])
+    assert BY_NAME["shaft_seat"].applies(cold) == applies
+    assert not BY_NAME["shaft_seat"].applies(load_scene(PAPER))
+
+
+@pytest.mark.parametrize(
+    ("grease", "factor"),
+    [
+        ("{base_oil: ISO VG 100, nlgi: 2}", 350e3),
+        ("{base_oil: ISO VG 460, nlgi: 2}", 175e3),
+        ("{base_oil: ISO VG 100 PAO, nlgi: 2}", 500e3),
+        ("{base_oil: ISO VG 460 PAO, nlgi: 2}", 250e3),
+        ("{base_oil: ISO VG 460 PAO, nlgi: 2, speed_factor: 600000}", 600e3),
+    ],
+)
+def test_a_grease_turns_as_fast_as_its_maker_says_or_as_is_usual_of_its_base_oil(grease, factor):
+    assert BY_NAME["grease_speed"].limits(load_scene(PAPER, [f"lubricant={{grease: {grease}, temperature: 70 degC}}"]))[1] == factor
