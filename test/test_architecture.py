@@ -35,7 +35,7 @@ ROOMS = {
     "stored_state": ("numpy platformdirs pyarrow", "files scene model messages recording"),
     "inputs": ("numpy pyarrow pydantic yaml", "extras files scene simulation messages recording"),
     "monitoring": ("numpy scipy", "scene physics model messages inputs"),
-    "estimation": ("numpy platformdirs scipy", "scene numerics model levels"),
+    "estimation": ("numpy platformdirs scipy", "scene numerics model levels messages monitoring"),
     "runtime": ("numpy", "scene numerics model levels simulation messages recording stored_state inputs monitoring"),
     "view": ("PIL numpy platformdirs rerun rerun_cli", "files scene messages recording"),
     "sweep": ("numpy pandas pyarrow matplotlib distributed xarray", "files scene numerics model levels simulation recording"),

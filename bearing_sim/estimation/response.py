@@ -43,7 +43,7 @@ _SLOWEST, _LIGHTEST = 0.03, 0.002  # of the largest speed and load: below, the r
 _DEGREE, _SCORE_DEGREE = 5, 3  # of polynomials together, and in the scores alone
 _RIDGE = 1e-9
 _FOLDS = 5  # of the cross validation
-_SLIP_SCALE = 1e-3  # slip far above counts by its logarithm, far below as it is
+SLIP_SCALE = 1e-3  # slip far above counts by its logarithm, far below as it is
 _SLIPS = np.concatenate([-np.geomspace(1.0, 1e-7, 2000), [0.0], np.geomspace(1e-7, 0.999, 4000), 1.0 + np.linspace(0.0, 0.0099, 200)])
 
 
@@ -202,7 +202,7 @@ def slip_scale(slip: np.ndarray) -> np.ndarray:
     """Return slip on a scale without ends: logarithmic from 0.1 % on, since what drives and brakes a cage are factors; its distance from a
     stopped cage by its logarithm, too; and linear about 0, where a cage may lead.
     """  # noqa: D205
-    return np.arcsinh(slip / _SLIP_SCALE) - np.log(1.01 - np.minimum(slip, 1.0099))
+    return np.arcsinh(slip / SLIP_SCALE) - np.log(1.01 - np.minimum(slip, 1.0099))
 
 
 _SLIP_SCALES = slip_scale(_SLIPS)
@@ -293,12 +293,25 @@ class ResponseModel(NamedTuple):
         conditions : columns `CONDITIONS`, shape (n, 4).
         basis : `basis_of` scores, shape (m, j).
         """
+        return np.swapaxes(self.condition_coefficients(conditions) @ basis.T, 1, 2)
+
+    def condition_coefficients(self, conditions: np.ndarray) -> np.ndarray:
+        """Return the coefficients of the polynomials of the fields (`basis_of`) at operating points, on the scales of `transformed`.
+
+        Parameters
+        ----------
+        conditions : columns `CONDITIONS`, shape (n, 4).
+
+        Returns
+        -------
+        for each of `ANSWERS`, shape (n, 6, j); NaN at points outside of the response.
+        """
         conditions = np.asarray(conditions, float)
         outside = self.outside(conditions)
         there = _condition_basis(coordinates(np.where(outside[:, None], 1.0, conditions), self.domain), self.condition_terms)
-        found = np.einsum("ni,qij->nqj", there, self.coefficients, optimize=True) @ basis.T
+        found = np.einsum("ni,qij->nqj", there, self.coefficients, optimize=True)
         found[outside] = math.nan
-        return np.swapaxes(found, 1, 2)
+        return found
 
 
 def _legendre(positions: np.ndarray, degree: int) -> np.ndarray:

@@ -10,7 +10,7 @@ two sensors was read first; temperatures follow a change late.
 
 import math
 from bisect import bisect_left, bisect_right, insort
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -36,7 +36,7 @@ _MOST_CORRELATED = 0.98
 _STEEPEST_TAIL = 8.0  # beyond it, Student's distribution differs from 1 by round-off only
 
 _KEPT = 2000  # outputs: a measurement may arrive this many outputs after its time
-_PREDICTED = ("time", "shaft_speed", "ideal_cage_speed", "cage_slip")
+_COMPARED = ("shaft_speed", "ideal_cage_speed", "cage_slip")
 
 
 class Comparand(NamedTuple):
@@ -69,6 +69,12 @@ SLIP = Comparand(
     "fraction",
     {0: "as predicted", 1: "slips more than predicted", -1: "slips less than predicted"},
     "not judged: at rest, at a changing speed, or predicted by another level",
+)
+
+CALIBRATED_SLIP = SLIP._replace(
+    what="calibrated residual slip",
+    verdicts={0: "as calibrated", 1: "slips more than the calibrated model explains", -1: "slips less than the calibrated model explains"},
+    unjudged="not judged: at rest, at a changing speed, or not calibrated yet",
 )
 
 
@@ -385,6 +391,22 @@ class ResidualMonitor:
         """When measured and predicted were last compared [s]; NaN before that."""
         return self._measured_at
 
+    @property
+    def is_quiet(self) -> bool:
+        """Whether nothing speaks for a change: neither one that holds nor one that may come to hold."""
+        return self._cusum.side == 0 and self._cusum.height < 0.5 * self._cusum.threshold
+
+    @property
+    def side(self) -> int:
+        """1 where the residual has risen, -1 where it has fallen, else 0."""
+        return self._cusum.side
+
+    @property
+    def changing_for(self) -> float:
+        """How long the larger of both sums has been above 0 [s of measurement]: since when a change may hold."""
+        steps = self._cusum.rising_for if self._cusum.up >= self._cusum.down else self._cusum.falling_for
+        return steps * self._detection.batch
+
     def events(self, now: float) -> list[Event]:
         """Return the event of a change that holds, stamped ``now`` [s]."""
         side = self._cusum.side
@@ -446,7 +468,7 @@ class ResidualMonitor:
 
     def _close_batch(self) -> None:
         """Judge the batch that is complete."""
-        quiet = self._cusum.side == 0 and self._cusum.height < 0.5 * self._cusum.threshold  # a possible change must not become usual
+        quiet = self.is_quiet  # a possible change must not become usual
         learned = self._whitener.count * self._detection.batch >= self._detection.learning
         self._newest_mean = self._batch_total / self._batch_count
         number = self._whitener.take(self._newest_mean, learn=quiet)
@@ -516,6 +538,49 @@ class TemperatureResiduals:
         return {key: value for monitor in self._monitors.values() for key, value in monitor.values(now).items()}
 
 
+class Course:
+    """Numbers of the newest samples of a run, which are linear in between.
+
+    Parameters
+    ----------
+    names : of the observables.
+    """
+
+    def __init__(self, names: Sequence[str]):
+        self._names = ("time", *names)
+        self.restart()
+
+    def restart(self) -> None:
+        """Forget all samples."""
+        self._times: list[float] = []
+        self._rows: list[tuple[float, ...]] = []
+
+    @property
+    def newest(self) -> float:
+        """Time of the newest sample [s]; minus infinity before the first."""
+        return self._times[-1] if self._times else -math.inf
+
+    def take(self, block: np.ndarray) -> None:
+        """Take samples in order of time (see `bearing_sim.model.sample`)."""
+        rows = list(zip(*(block[name].tolist() for name in self._names)))
+        self._times += [row[0] for row in rows]
+        self._rows += [row[1:] for row in rows]
+        if len(self._times) > 2 * _KEPT:
+            del self._times[:-_KEPT], self._rows[:-_KEPT]
+
+    def at(self, time: float) -> tuple[float, ...]:
+        """Return the numbers at a time that is not later than the newest; NaN at one before all samples kept."""
+        position = bisect_left(self._times, time)
+        after = self._rows[position]
+        if self._times[position] == time:
+            return after
+        if position == 0:
+            return (math.nan,) * len(after)
+        before, start = self._rows[position - 1], self._times[position - 1]
+        fraction = (time - start) / (self._times[position] - start)
+        return tuple(old + fraction * (new - old) for old, new in zip(before, after))
+
+
 class Comparison:
     """Feeds a `ResidualMonitor` each measurement with the prediction at its own stamp, whichever arrives first.
 
@@ -528,13 +593,12 @@ class Comparison:
     """
 
     def __init__(self, residual: ResidualMonitor):
-        self.residual = residual
+        self.residual, self._course = residual, Course(_COMPARED)
         self.restart()
 
     def restart(self) -> None:
         """Forget outputs and measurements; ``residual`` keeps what it has learned."""
-        self._times: list[float] = []
-        self._rows: list[tuple[float, ...]] = []
+        self._course.restart()
         self._waiting: list[tuple[float, float]] = []
 
     def measure(self, time: float, cage_speed: float) -> None:
@@ -543,35 +607,19 @@ class Comparison:
 
     def predict(self, block: np.ndarray) -> list[Measurement]:
         """Take outputs in order of time (see `bearing_sim.model.sample`) and return the comparisons that they complete."""
-        rows = list(zip(*(block[name].tolist() for name in _PREDICTED)))
-        self._times += [row[0] for row in rows]
-        self._rows += rows
-        found = self.due()
-        if len(self._times) > 2 * _KEPT:
-            del self._times[:-_KEPT], self._rows[:-_KEPT]
-        return found
+        self._course.take(block)
+        return self.due()
 
     def due(self) -> list[Measurement]:
         """Return the comparisons that measurements since the last call complete."""
-        if not self._times or not self._waiting:
+        if not self._waiting:
             return []
-        ready = bisect_right(self._waiting, (self._times[-1], math.inf))
+        ready = bisect_right(self._waiting, (self._course.newest, math.inf))
         taken, self._waiting = self._waiting[:ready], self._waiting[ready:]
         return [self._compare(time, speed) for time, speed in taken]
 
     def _compare(self, time: float, cage_speed: float) -> Measurement:
-        _, shaft_speed, ideal, predicted = self._at(time)
+        shaft_speed, ideal, predicted = self._course.at(time)
         measured = 1.0 - cage_speed / ideal if ideal else math.nan
         self.residual.take(time, shaft_speed, measured, predicted)
         return Measurement(time, cage_speed, measured - predicted)
-
-    def _at(self, time: float) -> tuple[float, ...]:
-        position = bisect_left(self._times, time)
-        after = self._rows[position]
-        if after[0] == time:
-            return after
-        if position == 0:
-            return (time, after[1], math.nan, math.nan)
-        before = self._rows[position - 1]
-        fraction = (time - before[0]) / (after[0] - before[0])
-        return tuple(old + fraction * (new - old) for old, new in zip(before, after))

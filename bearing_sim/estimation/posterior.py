@@ -1,0 +1,368 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""What measurements say about the uncertain fields of a bearing: a Bayesian posterior that is updated measurement by measurement.
+
+**What is kept of the measurements.** Where the bearing has been, at operating points apart from each other (`Row`), how far the measured
+quantity departs from the level's own prediction: a mean and a variance, updated by every measurement there (a scalar Kalman filter) and widening
+with time, because fields wander.  These few numbers are all that the posterior depends on; nothing is linearised, so no early measurement
+leaves a mistake behind.
+
+**The model errs.** With all fields right it would still depart from the machine, by an error that is a Gaussian process over operating points
+(Kennedy and O'Hagan, J. R. Stat. Soc. B 63, 2001, 425).  So a long measurement at one point is no proof of the fields: only what changes from
+point to point tells them apart.
+
+**Draws.** The posterior is represented by m equally probable draws of the fields' scores (`bearing_sim.estimation.response`).  Whenever the
+rows have changed enough they take steps of Markov chains whose stationary distribution is the posterior: differences of other draws
+(differential evolution; ter Braak, Stat. Comput. 16, 2006, 239) and autoregressive steps that keep the prior (Cotter, Roberts, Stuart and White,
+Stat. Sci. 28, 2013, 424); after a surprise, through tempered posteriors.  A field that is not calibrated keeps its prior draws, and the others
+follow given these: what is not to be learned stays as uncertain as it was (a cut posterior; Plummer, Stat. Comput. 25, 2015, 37).
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+from scipy.linalg import cho_factor, cho_solve
+from scipy.special import ndtri
+from scipy.stats import qmc
+
+from bearing_sim.estimation.response import ANSWERS, SLIP_SCALE, ResponseModel, restored, transformed
+from bearing_sim.scene.scene import Scene
+
+SLIP, INNER, OUTER, CLEARANCE = MEASURED = ("cage_slip", "inner_ring_temperature", "outer_ring_temperature", "running_clearance")
+"""What may be measured, by the names of the answers of a response."""
+DRAWS = 512
+_DISTANCES = (0.5, 0.7, 25.0)  # over which errors of the model forget each other: logarithms of speed and of load, and temperature [K] (assumption)
+_LOAD_FLOOR = 0.05  # of the scene's load; loads below it count as the same condition (assumption)
+_SAME, _ALIKE = 0.97, 0.5  # correlation of errors from which on points share a row, and, where there are many rows, may share one
+_MOST_ROWS = 32  # of each measured quantity
+_NOTICED = 0.1  # change of a row, over its standard deviation, after which draws move
+_MOVES, _ANNEALED = 4, 24  # steps after a change, and after a surprise
+_SURPRISE = 3.0  # mean square of standardised departures from which on the posterior is approached through tempered ones
+_AUTOREGRESSION = (0.02, 0.5)  # step of it
+_DIFFERENCE = (0.2, 1.2)  # of the length of a difference that is best for a normal distribution, 2.38/(2 d)^(1/2)
+
+
+class Outcome(NamedTuple):
+    """What a measurement was to the posterior before it: its innovation, the standard deviation of that, and the probability that it was wild."""
+
+    innovation: float
+    deviation: float
+    wild: float
+
+
+@dataclass(frozen=True)
+class Row:
+    """What was measured at an operating point.
+
+    Attributes
+    ----------
+    quantity : of `MEASURED`.
+    conditions : the operating point, as `bearing_sim.estimation.response.CONDITIONS`.
+    own : the level's prediction there.
+    departure, variance : measured minus own: mean, and variance of what is not known about it.
+    prior : variance of the departure by the ranges of the fields alone.
+    """
+
+    quantity: str
+    conditions: tuple[float, float, float, float]
+    own: float
+    departure: float
+    variance: float
+    prior: float
+
+
+def slip_error(scene: Scene, response: ResponseModel, slip: float) -> float:
+    """Return the standard deviation of the error in slip of a model all of whose fields are right, the level's and the response's, near a slip."""
+    rising = 1.0 / math.hypot(slip, SLIP_SCALE) + 1.0 / max(1.01 - slip, 0.01)
+    return math.hypot(scene.estimation.model_error.slip, float(response.errors[0]) / rising)
+
+
+def prior_scores(count: int, dimensions: int, seed: int = 0) -> np.ndarray:
+    """Return draws of scores of which nothing is measured, evenly spread, shape (count, dimensions); ``count`` a power of two."""
+    uniform = qmc.Sobol(d=max(dimensions, 1), scramble=True, seed=np.random.default_rng(seed)).random_base2(count.bit_length() - 1)
+    return ndtri(np.clip(uniform, 1e-4, 1.0 - 1e-4))[:, :dimensions]
+
+
+class Posterior:
+    """Draws of the uncertain fields, given what was measured.
+
+    Parameters
+    ----------
+    scene : its block ``estimation`` says how far the model errs, and how fast fields wander.
+    response : of the scene.
+    calibrated : which fields measurements may change, shape (d,) of bool.
+    known : which fields are inputs of the run and have the scene's own values, shape (d,) of bool.
+
+    Attributes
+    ----------
+    scores : the draws, shape (m, d).
+    rows : what was measured.
+    """
+
+    def __init__(self, scene: Scene, response: ResponseModel, calibrated: np.ndarray, known: np.ndarray):
+        self._scene, self._response = scene, response
+        self._columns, self._known = np.flatnonzero(calibrated & ~known), known
+        self._own_basis = response.basis_of(response.nominal[None])
+        self.restart()
+
+    def restart(self) -> None:
+        """Return to the ranges of the scene."""
+        self._random = np.random.default_rng(0)
+        self.scores = np.where(self._known, self._response.nominal, prior_scores(DRAWS, len(self._known)))
+        self._noise = self._random.permutation(ndtri((np.arange(DRAWS) + 0.5) / DRAWS))  # of what the draws do not explain
+        self._basis = self._response.basis_of(self.scores)
+        self.rows: list[Row] = []
+        self._arrange()
+
+    def copy(self) -> "Posterior":
+        """Return another posterior of the same content, which learns by itself from now on."""
+        other = object.__new__(Posterior)
+        other.__dict__ |= {name: value.copy() if isinstance(value, np.ndarray | list) else value for name, value in self.__dict__.items()}
+        other._random = np.random.default_rng(1)
+        return other
+
+    @property
+    def learned(self) -> list[list]:
+        """What was measured, as lists of numbers and names, as `restore` takes it."""
+        return [[row.quantity, *row.conditions, row.own, row.departure, row.variance, row.prior] for row in self.rows]
+
+    def restore(self, learned: Sequence[Sequence]) -> None:
+        """Continue from what was measured earlier.
+
+        Raises
+        ------
+        TypeError, ValueError
+            It is something else.
+        """
+        self.restart()
+        rows = []
+        for quantity, *numbers in learned:
+            speed, load, kelvin, angle, own, departure, variance, prior = (float(each) for each in numbers)
+            row = Row(quantity, (speed, load, kelvin, angle), own, departure, variance, prior)
+            if quantity not in MEASURED or not np.isfinite(numbers).all() or not (variance > 0.0 and prior >= 0.0):
+                raise ValueError(f"expected a measured quantity and eight finite numbers with variances above 0; found {[quantity, *numbers]}")
+            if not self._response.outside(np.array([row.conditions]))[0]:
+                rows.append(row)
+        self.rows = rows
+        self._arrange()
+        self._approach()
+
+    def wait(self, seconds: float) -> None:
+        """Let time pass in which fields wander, so that what was measured says less and less."""
+        if seconds > 0.0 and self.rows:
+            fraction = seconds / self._scene.estimation.drift.wander_time
+            self.rows = [replace(row, variance=row.variance + fraction * (row.prior + error**2)) for row, error in zip(self.rows, self._errors)]
+            self._diagonal += fraction * self._wander
+
+    def forget(self) -> None:
+        """Allow for a sudden change: a field may now lie anywhere in its range."""
+        self.rows = [replace(row, variance=row.variance + row.prior + error**2) for row, error in zip(self.rows, self._errors)]
+        self._arrange()
+        self._approach()
+
+    def predict(self, quantity: str, conditions: np.ndarray, own: float) -> tuple[np.ndarray, float]:
+        """Return the departure of a quantity from the level's own prediction by each draw, shape (m,), and the variance that none explains."""
+        departures = self._departures(quantity, conditions, own, self._basis)
+        error = self._error(quantity, own)
+        same = [k for k, row in enumerate(self.rows) if row.quantity == quantity]
+        if not same:
+            return departures, error**2
+        beside = np.zeros(len(self.rows))
+        places = np.array([self._scaled(self.rows[k].conditions) for k in same])
+        beside[same] = error * self._errors[same] * _correlation(self._scaled(conditions)[None], places)[0]
+        factor = cho_factor(self._covariance(), lower=True)
+        gain = cho_solve(factor, beside)
+        return departures + (self._measured - self._predicted) @ gain, max(error**2 - float(beside @ gain), 0.0)
+
+    def drawn(self, quantity: str, conditions: np.ndarray, own: float) -> np.ndarray:
+        """Return draws of the departure of a quantity, the model's error included, shape (m,)."""
+        departures, left = self.predict(quantity, conditions, own)
+        return departures + math.sqrt(left) * self._noise
+
+    def take(self, quantity: str, conditions: np.ndarray, own: float, departure: float, variance: float, wild: tuple[float, float]) -> Outcome:
+        """Learn from a measurement.
+
+        Parameters
+        ----------
+        quantity : of `MEASURED`.
+        conditions : the operating point, shape (4,).
+        own : the level's prediction.
+        departure : measured minus own.
+        variance : of its noise.
+        wild : fraction of measurements that say nothing, and the standard deviation of such.
+        """
+        expected, left = self.predict(quantity, conditions, own)
+        outcome = _judged(departure - expected, left + variance, *wild)
+        variance /= max(1.0 - outcome.wild, 1e-9)
+        place = self._place(quantity, conditions)
+        if place is None:
+            prior = float(self._departures(quantity, conditions, own, self._response.basis_of(self._prior())).var())
+            self.rows.append(Row(quantity, tuple(map(float, conditions)), float(own), float(departure), float(variance), prior))
+            if math.isfinite(prior):
+                self._arrange()
+                self._approach()
+            else:
+                self.rows.pop()
+            return outcome
+        row = self.rows[place]
+        gain = row.variance / (row.variance + variance)
+        self.rows[place] = replace(
+            row,
+            own=row.own + gain * (own - row.own),
+            departure=row.departure + gain * (departure - row.departure),
+            variance=max((1.0 - gain) * row.variance, 1e-12),
+        )
+        self._update(place)
+        return outcome
+
+    def _prior(self) -> np.ndarray:
+        return np.where(self._known, self._response.nominal, prior_scores(DRAWS // 4, len(self._known)))
+
+    def _place(self, quantity: str, conditions: np.ndarray) -> int | None:
+        """Return the row that a measurement belongs to; None where it needs a new one."""
+        same = [k for k, row in enumerate(self.rows) if row.quantity == quantity]
+        if not same:
+            return None
+        places = np.array([self._scaled(self.rows[k].conditions) for k in same])
+        correlation = _correlation(self._scaled(conditions)[None], places)[0]
+        best = int(correlation.argmax())
+        if correlation[best] > (_SAME if len(same) < _MOST_ROWS else _ALIKE):
+            return same[best]
+        if len(same) >= _MOST_ROWS:  # the least known gives way
+            del self.rows[max(same, key=lambda k: self.rows[k].variance)]
+        return None
+
+    def _arrange(self) -> None:
+        """Compute what follows from the rows."""
+        rows = self.rows
+        self._errors = np.array([self._error(row.quantity, row.own) for row in rows])
+        correlation = _correlation(*[np.array([self._scaled(row.conditions) for row in rows]).reshape(-1, len(_DISTANCES))] * 2)
+        alike = np.array([[one.quantity == other.quantity for other in rows] for one in rows]).reshape(len(rows), len(rows))
+        self._model = self._errors[:, None] * self._errors * correlation * alike
+        self._diagonal = np.array([row.variance for row in rows])
+        self._wander = np.array([row.prior for row in rows]) + self._errors**2
+        self._measured = np.array([row.departure for row in rows])
+        slopes = [self._coefficients(row.quantity, np.array(row.conditions)) for row in rows]
+        self._slopes = np.array(slopes).reshape(len(rows), self._basis.shape[1] + 1)
+        self._predicted = self._at_rows(self._basis)
+        self._seen = self._measured.copy(), self._model.diagonal() + self._diagonal
+
+    def _update(self, place: int) -> None:
+        """Take over a row that has changed, and let draws move if it has changed by enough since they did."""
+        self._measured[place], self._diagonal[place] = self.rows[place].departure, self.rows[place].variance
+        measured, total = self._seen
+        now = self._model[place, place] + self._diagonal[place]
+        moved = abs(self._measured[place] - measured[place]) / math.sqrt(now)
+        if moved > _NOTICED or abs(math.log(now / total[place])) > _NOTICED:
+            self._arrange()
+            self._approach()
+
+    def _covariance(self) -> np.ndarray:
+        return self._model + np.diag(self._diagonal)
+
+    def _error(self, quantity: str, own: float) -> float:
+        errors = self._scene.estimation.model_error
+        if quantity == SLIP:
+            return slip_error(self._scene, self._response, own)
+        settled = float(self._response.errors[ANSWERS.index(quantity)])
+        return max(math.hypot(errors.clearance if quantity == CLEARANCE else errors.temperature, settled), 1e-9)
+
+    def _coefficients(self, quantity: str, conditions: np.ndarray) -> np.ndarray:
+        """Return the coefficients of the polynomials of the fields at an operating point, the last of them that of the scene's own values."""
+        rows = self._response.condition_coefficients(conditions[None])[0, ANSWERS.index(quantity)]
+        return np.append(rows, -rows @ self._own_basis[0])
+
+    def _at_rows(self, basis: np.ndarray) -> np.ndarray:
+        """Return departures at all rows for draws with a basis of shape (m, j), shape (m, rows)."""
+        if not self.rows:
+            return np.zeros((len(basis), 0))
+        changes = basis @ self._slopes[:, :-1].T + self._slopes[:, -1]
+        return np.stack([_departure(row.quantity, row.own, change) for row, change in zip(self.rows, changes.T)], axis=1)
+
+    def _departures(self, quantity: str, conditions: np.ndarray, own: float, basis: np.ndarray) -> np.ndarray:
+        slopes = self._coefficients(quantity, np.asarray(conditions, float))
+        return _departure(quantity, own, basis @ slopes[:-1] + slopes[-1])
+
+    def _log_likelihood(self, predicted: np.ndarray) -> np.ndarray:
+        left = np.linalg.solve(self._factor, (self._measured - predicted).T)
+        return -0.5 * np.square(left).sum(axis=0)
+
+    def _approach(self) -> None:
+        """Let the draws approach the posterior of the rows as they are."""
+        if not len(self._columns) or not self.rows:
+            return
+        self._factor = np.linalg.cholesky(self._covariance())
+        logarithms = self._log_likelihood(self._predicted)
+        surprise = -2.0 * float(np.median(logarithms)) / len(self.rows)
+        if surprise > _SURPRISE:
+            for power in np.geomspace(min(2.0 / surprise, 0.5), 1.0, _ANNEALED):
+                logarithms = self._move(logarithms, power)
+        for _ in range(_MOVES):
+            logarithms = self._move(logarithms, 1.0)
+
+    def _move(self, logarithms: np.ndarray, power: float) -> np.ndarray:
+        """Let every draw take both kinds of steps towards a posterior whose likelihood has a power; return logarithms of likelihoods."""
+        half = DRAWS // 2
+        best = 2.38 / math.sqrt(2.0 * len(self._columns))
+        for mine, others in ((slice(0, half), slice(half, None)), (slice(half, None), slice(0, half))):
+            states, pool = self.scores[mine], self.scores[others]
+            pairs = self._random.integers(0, half, (2, half))
+            length = best * self._random.uniform(*_DIFFERENCE, (half, 1))
+            proposed = states.copy()
+            differences = (pool[pairs[0]] - pool[pairs[1]])[:, self._columns]
+            proposed[:, self._columns] += length * differences + 0.01 * self._random.normal(size=differences.shape)
+            prior = 0.5 * (np.square(states) - np.square(proposed))[:, self._columns].sum(axis=1)
+            logarithms[mine] = self._decide(mine, proposed, logarithms[mine], power, prior)
+        step = np.exp(self._random.uniform(*np.log(_AUTOREGRESSION), (DRAWS, 1)))
+        proposed = self.scores.copy()
+        noise = self._random.normal(size=(DRAWS, len(self._columns)))
+        proposed[:, self._columns] = np.sqrt(1.0 - step**2) * proposed[:, self._columns] + step * noise
+        return self._decide(slice(None), proposed, logarithms, power, 0.0)
+
+    def _decide(self, mine: slice, proposed: np.ndarray, logarithms: np.ndarray, power: float, prior: np.ndarray | float) -> np.ndarray:
+        """Accept proposals with the probability of Metropolis and Hastings; return logarithms of the likelihoods of the draws there are then."""
+        basis = self._response.basis_of(proposed)
+        predicted = self._at_rows(basis)
+        found = self._log_likelihood(predicted)
+        accepted = np.log(self._random.random(len(found))) < power * (found - logarithms) + prior
+        self.scores[mine] = np.where(accepted[:, None], proposed, self.scores[mine])
+        self._basis[mine] = np.where(accepted[:, None], basis, self._basis[mine])
+        self._predicted[mine] = np.where(accepted[:, None], predicted, self._predicted[mine])
+        return np.where(accepted, found, logarithms)
+
+    def _scaled(self, conditions: Sequence[float]) -> np.ndarray:
+        floor = max(_LOAD_FLOOR * self._scene.operating.radial_load, 1.0)
+        speed, load, temperature = conditions[:3]
+        return np.array([math.log(max(abs(speed), 1e-3)), math.log(max(load, 0.0) + floor), temperature]) / _DISTANCES
+
+
+def _departure(quantity: str, own: float, change: np.ndarray) -> np.ndarray:
+    """Return how far a quantity departs from its own value, from a change on the scale of the response."""
+    if quantity != SLIP:
+        return change
+    values = np.zeros((len(change), len(ANSWERS)))
+    values[:, 0] = transformed(np.array([own, *[1.0] * (len(ANSWERS) - 1)]))[0] + change
+    return restored(values)[:, 0] - own
+
+
+def _correlation(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Return the correlation of the model's errors at scaled conditions, shape (n, m): Matern's with a smoothness of 3/2."""
+    distance = math.sqrt(3.0) * np.linalg.norm(one[:, None] - other[None], axis=-1)
+    return (1.0 + distance) * np.exp(-distance)
+
+
+def _judged(innovations: np.ndarray, variance: float, fraction: float, width: float) -> Outcome:
+    """Return the probability that a measurement is wild, of which there is a fraction with that standard deviation.
+
+    Parameters
+    ----------
+    innovations : by each draw, shape (m,).
+    variance : of what none of them explains.
+    """
+    spread = float(innovations.var())
+    mean, wide = float(innovations.mean()), variance + spread + width**2
+    good = (1.0 - fraction) * float(np.exp(-0.5 * np.square(innovations) / variance).mean()) / math.sqrt(variance)
+    bad = fraction * math.exp(-0.5 * mean**2 / wide) / math.sqrt(wide)
+    return Outcome(mean, math.sqrt(variance + spread), bad / (good + bad) if good + bad > 0.0 else 1.0)

@@ -1,0 +1,191 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""How good the calibration of a running model is: runs of machines whose hidden fields are known, because level ``steady`` plays the machine.
+
+Each machine has fields drawn from the ranges of the scene, which wander, at settled points that the level itself solves for, never the response
+that the estimator uses.  Its cage sensor has noise, drifts, now and then reads anything, and falls silent at times.  The estimator sees what a
+live run would give it: samples of the scene with its own values, and the sensor.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from bearing_sim.estimation.estimator import Estimator
+from bearing_sim.estimation.response import ANSWERS, ResponseModel
+from bearing_sim.messages.events import Event
+from bearing_sim.model.params import pack
+from bearing_sim.model.sample import new_block
+from bearing_sim.scene.scene import Scene
+from bearing_sim.studies.response import at_points
+from bearing_sim.sweep.tasks import Journal
+
+RATE = 10.0  # Hz, of the sensor and of the samples
+NOISE = 0.002  # of a reading of slip
+_OUTLIERS = 0.01  # fraction of readings that are anything between a stopped cage and one at twice its ideal speed
+_DRIFT = 0.003 / 3600.0  # 1/s, slip that the sensor drifts by
+_SILENT, _SILENCE = 0.1, 5.0  # probability that a plateau has a silence of the sensor, and its length [s]
+_PLATEAU = 60.0  # s
+_BLOCK = 10  # samples
+_SPEEDS, _LOADS, _TEMPERATURES = (0.45, 1.1), (0.4, 4.0), (-10.0, 20.0)  # of plateaus: of the scene's speed and load, and K from its oil temperature
+_EARLY, _LATE = 1.0, 55.0  # s into a plateau at which predictions are judged: before anything was learned there, and after
+_ENDS = (0.5, 0.05, 0.95)  # quantiles of a prediction
+_HOUR = 3600.0
+
+
+class Machine(NamedTuple):
+    """A machine on a course of plateaus.
+
+    Attributes
+    ----------
+    conditions : of the p plateaus, as `bearing_sim.estimation.response.CONDITIONS`, shape (p, 4).
+    scores : of its hidden fields at the start of each plateau and at the end of the last, shape (p + 1, d).
+    own : slip of the scene's own values, shape (p,).
+    slip : of the machine at the start and at the end of each plateau, shape (p, 2).
+    """
+
+    conditions: np.ndarray
+    scores: np.ndarray
+    own: np.ndarray
+    slip: np.ndarray
+
+
+class Judgement(NamedTuple):
+    """What the estimator made of a machine.
+
+    Attributes
+    ----------
+    fields : whether the hidden value of each calibrated field lay in its 90 % interval at the end, shape (d,).
+    widths : of the intervals, over those before any measurement, shape (d,).
+    slips : whether the machine's slip lay in the 90 % interval of the prediction, early and late in each plateau, shape (p, 2).
+    errors : of the prediction, shape (p, 2).
+    stated : half the width of its interval, shape (p, 2).
+    open_loop : errors of the scene's own values, shape (p, 2).
+    alarms : events of a change.
+    """
+
+    fields: np.ndarray
+    widths: np.ndarray
+    slips: np.ndarray
+    errors: np.ndarray
+    stated: np.ndarray
+    open_loop: np.ndarray
+    alarms: int
+
+
+def plateaus(scene: Scene, count: int, random: np.random.Generator) -> np.ndarray:
+    """Return operating points about that of a scene, shape (count, 4)."""
+    operating, kelvin = scene.operating, scene.lubricant.temperature
+    speed = operating.shaft_speed * random.uniform(*_SPEEDS, count)
+    load = operating.radial_load * np.exp(random.uniform(*np.log(_LOADS), count))
+    return np.stack([speed, load, kelvin + random.uniform(*_TEMPERATURES, count), np.full(count, operating.load_angle)], axis=1)
+
+
+def wandering(scene: Scene, free: np.ndarray, nominal: np.ndarray, count: int, seconds: float, random: np.random.Generator) -> np.ndarray:
+    """Return scores of fields that wander as the scene's block ``estimation`` says; those that are not free keep theirs; shape (count, d)."""
+    kept = math.exp(-0.5 * seconds / scene.estimation.drift.wander_time)
+    rows = [random.normal(size=len(nominal))]
+    for _ in range(count - 1):
+        rows.append(kept * rows[-1] + math.sqrt(1.0 - kept**2) * random.normal(size=len(nominal)))
+    return np.where(free, rows, nominal)
+
+
+def machines(
+    scene: Scene, response: ResponseModel, runs: int, seed: int, *, count: int = 12, known: Sequence[str] = (), journal: Journal | None = None,
+    workers: int | None = None, dask: str | None = None, progress: Callable[[int, int], None] = lambda done, total: None,
+) -> list[Machine]:  # fmt: skip
+    """Return machines with hidden fields, solved for at level ``steady``.
+
+    Parameters
+    ----------
+    scene : its ranges are those of the hidden fields.
+    response : of the scene; only names and scores of its fields are used.
+    runs, seed : number of machines, and what they are drawn from.
+    count : of plateaus.
+    known : dotted paths of fields that have the scene's own values, because they are inputs.
+    journal, workers, dask, progress : see `bearing_sim.studies.response.at_points`.
+    """
+    random, free = np.random.default_rng(seed), np.array([name not in known for name in response.names])
+    scores, conditions = [], []
+    course = plateaus(scene, count, random)
+    for _ in range(runs):
+        conditions.append(course[random.permutation(count)])
+        scores.append(wandering(scene, free, response.nominal, count + 1, _PLATEAU, random))
+    asked_scores = np.concatenate([np.repeat(response.nominal[None], count, axis=0), *(np.repeat(each, 2, axis=0)[1:-1] for each in scores)])
+    asked_conditions = np.concatenate([course, *(np.repeat(each, 2, axis=0) for each in conditions)])
+    slips = at_points(scene, asked_scores, asked_conditions, journal, workers, dask, progress)[:, ANSWERS.index("cage_slip")]
+    own = {tuple(row): slip for row, slip in zip(course, slips[:count])}
+    return [
+        Machine(each, score, np.array([own[tuple(row)] for row in each]), slip.reshape(count, 2))
+        for each, score, slip in zip(conditions, scores, slips[count:].reshape(runs, 2 * count))
+        if np.isfinite(slip).all()
+    ]
+
+
+def samples(scene: Scene, times: np.ndarray, conditions: np.ndarray, own: np.ndarray) -> np.ndarray:
+    """Return samples of a settled run, shape (n,); what the estimator does not read is 0.
+
+    Parameters
+    ----------
+    times : [s], shape (n,).
+    conditions : shape (n, 4), as `bearing_sim.estimation.response.CONDITIONS`.
+    own : slip, shape (n,).
+    """
+    params = pack(scene)
+    block = new_block(len(times), params.rollers.count)
+    block["time"], block["shaft_speed"], block["oil_temperature"] = times, conditions[:, 0], conditions[:, 2]
+    block["load_y"], block["load_z"] = conditions[:, 1] * np.cos(conditions[:, 3]), conditions[:, 1] * np.sin(conditions[:, 3])
+    block["ideal_cage_speed"] = 0.5 * conditions[:, 0] * (1.0 - params.raceways.diameter_ratio)
+    block["cage_slip"] = own
+    for name in ("inner_ring_temperature", "outer_ring_temperature"):
+        block[f"{name}_measured"] = math.nan
+    return block
+
+
+def judge(scene: Scene, response: ResponseModel, machine: Machine, seed: int, known: Sequence[str] = ()) -> Judgement:
+    """Let an estimator learn a machine from its sensor, and judge its intervals and predictions."""
+    random, estimator = np.random.default_rng(seed), Estimator(scene, response, known)
+    count, per_plateau = len(machine.own), round(_PLATEAU * RATE)
+    found = np.zeros((4, count, 2))  # predicted median and ends of its interval, truth
+    alarms, holding = 0, False
+    for k in range(count):
+        start = k * _PLATEAU
+        times = start + (np.arange(per_plateau) + 1.0) / RATE
+        slips = np.interp(times, [start, start + _PLATEAU], machine.slip[k])
+        block = samples(scene, times, np.repeat(machine.conditions[k : k + 1], per_plateau, axis=0), np.full(per_plateau, machine.own[k]))
+        readings = slips + _DRIFT * times + NOISE * random.normal(size=per_plateau)
+        wild = random.random(per_plateau) < _OUTLIERS
+        readings[wild] = random.uniform(-1.0, 1.0, int(wild.sum()))
+        silent = random.random() < _SILENT
+        quiet_from = start + random.uniform(0.0, _PLATEAU - _SILENCE)
+        for first in range(0, per_plateau, _BLOCK):
+            part = slice(first, first + _BLOCK)
+            for time, reading, ideal in zip(times[part], readings[part], block["ideal_cage_speed"][part]):
+                if not (silent and quiet_from <= time < quiet_from + _SILENCE):
+                    estimator.measure(float(time), float((1.0 - reading) * ideal))
+            if first == 0:
+                found[:, k, 0] = *np.quantile(estimator.prediction(block[first]), _ENDS), slips[first]
+            estimator.take(block[part])
+            if first == round(_LATE * RATE):
+                found[:, k, 1] = *np.quantile(estimator.prediction(block[first]), _ENDS), slips[first]
+            changed = bool(_changes(estimator, float(times[part][-1])))
+            alarms, holding = alarms + (changed and not holding), changed
+    truth = response.values_of(machine.scores[-1])
+    rows = [(one.low <= value <= one.high, (one.high - one.low) / (one.prior_high - one.prior_low), one.calibrated)
+            for one, value in zip(estimator.estimates(), truth)]  # fmt: skip
+    calibrated = np.array([row[2] for row in rows])
+    errors = found[0] - found[3]
+    return Judgement(
+        np.array([row[0] for row in rows])[calibrated],
+        np.array([row[1] for row in rows])[calibrated],
+        (found[1] <= found[3]) & (found[3] <= found[2]),
+        errors,
+        0.5 * (found[2] - found[1]),
+        machine.own[:, None] - found[3],
+        alarms,
+    )
+
+
+def _changes(estimator: Estimator, now: float) -> list[Event]:
+    return [event for event in estimator.events(now) if event.kind == "calibration.change"]
