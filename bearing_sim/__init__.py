@@ -16,8 +16,9 @@ room             purpose
 ``messages``     what topics and recordings carry: topics, events, the CDR layout of messages
 ``inputs``       everything that comes in: gate, profiles over time, logs, CSV import, the synthetic mission
 ``recording``    MCAP out and in: writer, writer process, reader, recovery, comparison, export
-``monitoring``   thresholds, alarms, residual slip and its CUSUM, health, film ratio
-``runtime``      running against a clock: wall time and sim time, solver thread, pacing, governor, sinks, replay
+``monitoring``   thresholds, alarms, residual slip and its CUSUM, film ratio
+``estimation``   bands of results by uncertain fields, and their calibration by measurements
+``runtime``      running against a clock: wall time and sim time, solver thread, pacing, governor, health, sinks, replay
 ``view``         pictures in rerun
 ``sweep``        a scene at many points: tasks, journal, tables
 ``studies``      questions answered by many runs: bench, trade-off, uncertainty, calibration, design, the paper's results

@@ -34,23 +34,23 @@ ROOMS = {
     "recording": ("lz4 mcap numpy pyarrow rosbags yaml zstandard", "files scene model messages"),
     "stored_state": ("numpy platformdirs pyarrow", "files scene model messages recording"),
     "inputs": ("numpy pyarrow pydantic yaml", "extras files scene simulation messages recording"),
-    "monitoring": ("numpy scipy", "scene physics model messages inputs"),
+    "monitoring": ("numpy scipy", "scene physics model messages"),
     "estimation": ("numpy platformdirs scipy", "scene numerics model levels messages monitoring"),
-    "runtime": ("numpy", "scene numerics model levels simulation messages recording stored_state inputs monitoring"),
+    "runtime": ("numpy", "scene numerics model levels simulation messages recording stored_state inputs monitoring estimation"),
     "view": ("PIL numpy platformdirs rerun rerun_cli", "files scene messages recording"),
     "sweep": ("numpy pandas pyarrow matplotlib distributed xarray", "files scene numerics model levels simulation recording"),
     "fleet": ("numpy pyarrow", "files scene levels simulation messages recording inputs model runtime sweep"),
     "studies": (
         "numpy numba pandas scipy matplotlib pydantic sksundae",
-        "files scene numerics physics model levels simulation messages recording monitoring estimation sweep",
+        "files scene numerics physics model levels simulation messages recording monitoring estimation runtime sweep",
     ),
     "cli": (
         "click numpy pydantic_core rich",
-        "extras files scene numerics model levels simulation messages recording stored_state inputs runtime view sweep fleet studies",
+        "extras files scene numerics model levels simulation messages recording stored_state inputs estimation runtime view sweep fleet studies",
     ),
     "ros": (
         "click launch launch_ros numpy rcl_interfaces rclpy rich rosgraph_msgs std_srvs",
-        "extras files scene numerics simulation messages recording stored_state inputs monitoring runtime view",
+        "extras files scene numerics simulation messages recording stored_state inputs estimation runtime view",
     ),
     "programs": ("", "extras"),
 }

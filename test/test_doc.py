@@ -38,7 +38,7 @@ def test_the_generated_reference_has_an_entry_for_what_the_code_declares(built):
     _, html = built
     for page, names in {
         "observables": [observable.name for observable in OBSERVABLES],
-        "topics": [*topics.INPUTS, *topics.OUTPUTS, *topics.MEASUREMENTS],
+        "topics": [*topics.INPUTS, *topics.OUTPUTS, *topics.MEASUREMENTS, *topics.ESTIMATED],
         "recording": list(topics.RECORDED),
         "scene": ["bearing.outer_raceway", "mixture_fraction", "pocket_friction", "relative_tolerance"],
         "services": ["~/reset", "~/start_recording", "~/stop_recording", "~/pause"],

@@ -9,7 +9,7 @@ import pytest
 from fake_simulation import FakeSimulation
 
 from bearing_sim.messages.events import Event, Level
-from bearing_sim.monitoring.health import Phase
+from bearing_sim.runtime.health import Phase
 from bearing_sim.runtime.live import LiveModel
 from bearing_sim.runtime.pacing import LONGEST_TICK, SHORTEST_LIMIT, tick_limit, tick_schedule
 from bearing_sim.scene.loader import load_scene

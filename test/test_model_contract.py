@@ -10,7 +10,7 @@ from fake_simulation import FakeSimulation
 from sim_time_bench import START_NS, FalseWall
 
 from bearing_sim.messages.events import Level
-from bearing_sim.monitoring.health import Phase
+from bearing_sim.runtime.health import Phase
 from bearing_sim.runtime.live import LiveModel
 from bearing_sim.runtime.sim_time import SimTimeModel
 from bearing_sim.scene.loader import load_scene

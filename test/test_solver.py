@@ -9,7 +9,7 @@ import pytest
 from fake_simulation import START, FakeSimulation
 
 from bearing_sim.messages.events import Event, Level
-from bearing_sim.monitoring.health import Phase
+from bearing_sim.runtime.health import Phase
 from bearing_sim.runtime.pacing import Pacer, TickSchedule
 from bearing_sim.runtime.solver import WallTimeSolver
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import click
 
+from bearing_sim.cli.estimation import band_numbers, band_rows, response_with_progress
 from bearing_sim.cli.lives import hours
 from bearing_sim.cli.options import allow_outside_option, channel_sources, json_option, log_options, set_option
 from bearing_sim.cli.outputs import OutputFile, OutputRecording, WritingCommand, recording_into
@@ -125,6 +126,7 @@ def replay(
                 watchers.append(stack.enter_context(RerunFile(scene, stack.enter_context(rrd.draft()), course.start_ns, seconds)))
             announce_compilation(scene)
             choice = _choice(scene, course)
+            response = response_with_progress(scene)
             started = time.perf_counter()
             with suppress(IntegrationError):  # the replay itself will report it
                 warm = choice.get("model", Simulation)(scene)
@@ -133,7 +135,7 @@ def replay(
                     warm.advance_profile(np.array([1e-6]), np.array([warm.inputs]))
             start_up = time.perf_counter() - started
             progress = stack.enter_context(progress_bar(f"replaying {', '.join(names_of)}", seconds))
-            result = replay(scene, course, recording, watchers, rate, progress, keeper=keeper, **choice)
+            result = replay(scene, course, recording, watchers, rate, progress, keeper=keeper, response=response, **choice)
     for event in keeper.news(0.0) + keeper.events(0.0) if keeper is not None else []:
         click.echo(f"{event.level.name.lower().replace('ok', 'note')}: {event.text}", err=True)
     if as_json:
@@ -206,6 +208,7 @@ def _report(result, course, recorded, scene, out) -> dict:
         "life_hours": result.life_hours,
         "least_rating_life_hours": result.least_rating_life,
         "damage": result.damage,
+        **band_numbers(result.band_statistics()),
         "turning_seconds": turning,
         "seconds_below_minimum_load": below,
         "log_seconds": result.log_seconds,
@@ -254,6 +257,7 @@ def _print(result, course, recorded, scene, out, keeper) -> None:
             f"{'at most ' * bool(course.verdict)}{hours(result.life_hours)} by {symbol}; "
             f"least rating life at an instant {hours(result.least_rating_life)}",
         ),
+        *band_rows(result.band_statistics()),
         ("life used", f"{'at least ' * bool(course.verdict)}{100 * result.damage:.4g} %"),
         ("below the minimum load", _below(*result.seconds_below(lambda speeds: minimum_load(scene, speeds)[0]), minimum_load(scene)[1])),
         ("inputs unknown", course.unknown_event.text if course.unknown_seconds else "0 s"),

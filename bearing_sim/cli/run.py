@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import click
 
+from bearing_sim.cli.estimation import band_numbers, estimation_with_progress, live_band_rows
 from bearing_sim.cli.lives import life_rows
 from bearing_sim.cli.options import json_option, scene_argument, set_option
 from bearing_sim.cli.outputs import OutputFile, OutputRecording, WritingCommand, recording_into
@@ -91,6 +92,7 @@ def run(scene_name, overrides, duration, at_most, level, rate, out, rrd, uncerta
     suggest_level(scene)
     warn_of_scene(scene)
     plan = _plan(scene, seconds, most, rate)
+    estimation = estimation_with_progress(scene)
     with as_file_error(), as_failed_run(IntegrationError), ExitStack() as stack:
         sinks = _sinks(stack, scene, seconds, plan.interval, out, rrd)
         until = "" if seconds else f" until it has settled, at most {plan.longest:.4g} s"
@@ -104,18 +106,19 @@ def run(scene_name, overrides, duration, at_most, level, rate, out, rrd, uncerta
         for sink in sinks[: out is not None]:
             sink.write(start_sample(simulation))
         first = time.perf_counter()
-        outcome = _advance(simulation, plan, sinks, progress)
+        outcome = _advance(simulation, plan, sinks, progress, estimation)
         wall = time.perf_counter() - first
         warnings = outside(scene, outcome.window)
         for sink in sinks:
             for each in warnings:
                 sink.write_event(validity_event(outcome.simulated, each))
     report = {**_report(simulation, outcome, wall, first - started), **warnings_report(scene, warnings)}
+    report |= band_numbers(estimation.newest) if estimation is not None else {}
     bands = bands_of(scene, uncertainty)[1] if uncertainty else None
     if as_json:
         print_json({**report, "uncertainty": bands} if bands else report)
     else:
-        _print(report, scene, bands)
+        _print(report, scene, bands, estimation)
     warn_of_limits(scene, warnings)
     if seconds is None and not outcome.settled:
         raise Unsettled(f"not settled: {outcome.reason}; give more time with --at-most")
@@ -162,13 +165,16 @@ def _sinks(stack, scene, seconds, interval, out, rrd) -> list:
     return sinks
 
 
-def _advance(simulation, plan, sinks, progress):
+def _advance(simulation, plan, sinks, progress, estimation):
     """Advance to the end block by block; return how the run ended."""
     from bearing_sim.sweep.settling import advance_in_calls, advance_until_settled
 
     def take(block):
         for sink in sinks:
             sink.write(block)
+        for bands in estimation.take(block) if estimation is not None else ():
+            for sink in sinks:
+                sink.write_bands(bands)
         progress(float(block["time"][-1]))
 
     def advance(seconds):
@@ -245,7 +251,7 @@ def _thermal_rows(report) -> list[tuple[str, str]]:
     return rows
 
 
-def _print(report, scene, bands) -> None:
+def _print(report, scene, bands, estimation) -> None:
     from bearing_sim.cli.uncertainty import band_rows
     from bearing_sim.model.characteristic_frequencies import frequencies_text
     from bearing_sim.studies.clearance import clearance_row
@@ -262,6 +268,7 @@ def _print(report, scene, bands) -> None:
             clearance_row(scene, report),
             *_thermal_rows(report),
             *life_rows(scene, report),
+            *(live_band_rows(estimation.newest) if estimation is not None else []),
             ("friction", loss_text(report)),
             *_pressures(report, scene),
             ("largest roller load", f"inner {report['inner_load_maximum']:.4g} N, outer {report['outer_load_maximum']:.4g} N"),

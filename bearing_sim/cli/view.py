@@ -137,6 +137,7 @@ def _size(text: str) -> tuple[int, int]:
 
 
 def _convert(source, out: Path) -> None:
+    from bearing_sim.messages.bands import Bands
     from bearing_sim.messages.events import Event, Measurement
     from bearing_sim.view.worker import RerunFile
 
@@ -145,6 +146,8 @@ def _convert(source, out: Path) -> None:
             for item in source.with_measurements():
                 if isinstance(item, Measurement):
                     sink.write_measurement(*item)
+                elif isinstance(item, Bands):
+                    sink.write_bands(item)
                 elif isinstance(item, Event):
                     sink.write_event(item)
                 else:

@@ -36,14 +36,24 @@ class BandEstimator:
     response : of the scene.
     known : dotted paths of fields that are measured in this run, such as ``lubricant.temperature`` where an oil temperature comes in; they have
         the scene's own values in all draws.
+
+    Attributes
+    ----------
+    remaining_life : of the samples that were taken last, by the lives that they have themselves [h], shape (n,).
     """
 
     def __init__(self, scene: Scene, response: ResponseModel, known: Sequence[str] = ()):
         self.response, self._memory = response, scene.thresholds.remaining_life_memory
-        self._known = np.array([name in known for name in response.names], bool)
         self._own = response.basis_of(response.nominal[None])
-        self._time, self._rates = math.nan, np.full(2, math.nan)
-        self.use(*prior_draws(len(response.fields)))
+        self._time, self._rates = math.nan, np.full(3, math.nan)
+        self.remaining_life = np.empty(0)
+        self._drawn = prior_draws(len(response.fields))
+        self.know(known)
+
+    def know(self, known: Sequence[str]) -> None:
+        """Take which fields are measured from now on (see the parameter)."""
+        self._known = np.array([name in known for name in self.response.names], bool)
+        self.use(*self._drawn)
 
     def use(self, scores: np.ndarray, weights: np.ndarray) -> None:
         """Take draws of the uncertain fields, such as those of a posterior, for all samples from now on.
@@ -53,6 +63,7 @@ class BandEstimator:
         scores : shape (m, d).
         weights : of the draws, of any sum, shape (m,).
         """
+        self._drawn = scores, weights
         self.scores = np.where(self._known, self.response.nominal, scores)
         self.weights = np.asarray(weights, float) / np.sum(weights)
         self._basis = np.concatenate([self._own, self.response.basis_of(self.scores)])
@@ -76,7 +87,8 @@ class BandEstimator:
         found = np.empty((len(block), len(QUANTITIES), len(PROBABILITIES)))
         for column, answer in enumerate((_SLIP, _LIFE, _CLEARANCE)):
             found[:, column] = ends[:, :, answer]
-        self._take_remaining(block, np.exp(-changes[:, :, _MODIFIED]), found[:, 3])
+        remaining = self._remaining_lives(block, np.exp(-changes[:, :, _MODIFIED]))
+        self.remaining_life, found[:, 3] = remaining[:, 0], remaining[:, 1:]
         return found
 
     def _changes(self, block: np.ndarray) -> np.ndarray:
@@ -87,12 +99,23 @@ class BandEstimator:
         scaled = self.response.respond_scaled(there, self._basis)
         return weighted_quantiles(scaled[:, 1:] - scaled[:, :1], self.weights, PROBABILITIES)[indices.ravel()]
 
-    def _take_remaining(self, block: np.ndarray, factors: np.ndarray, found: np.ndarray) -> None:
-        """Write the band of remaining life, (1 - D)/(dD/dt) with dD/dt the fading mean of the damage rate, as `Monitor` computes it.
+    def _remaining_lives(self, block: np.ndarray, factors: np.ndarray) -> np.ndarray:
+        """Return the remaining life [h] and its band, (1 - D)/(dD/dt) with dD/dt the fading mean of the damage rate, as `Monitor` computes it.
 
         The fields have been what they are for as long as the bearing runs: what was off by a factor in the rate was off by it in the damage.
+
+        Parameters
+        ----------
+        block : samples, shape (n,).
+        factors : of the rates of damage at both ends of the band, shape (n, 2).
+
+        Returns
+        -------
+        shape (n, 3).
         """
-        rates = factors / (_HOUR * block["modified_rating_life"][:, None])  # of the long and of the short end
+        factors = np.concatenate([np.ones((len(block), 1)), factors], axis=1)
+        rates = factors / (_HOUR * block["modified_rating_life"][:, None])
+        found = np.empty_like(rates)
         for k, (time, damage) in enumerate(zip(block["time"].tolist(), block["damage"].tolist())):
             elapsed = time - self._time
             weight = 1.0 - math.exp(-elapsed / self._memory) if elapsed >= 0.0 else 1.0
@@ -101,6 +124,7 @@ class BandEstimator:
             left = np.clip(1.0 - damage * factors[k], 0.0, 1.0)
             with np.errstate(divide="ignore", invalid="ignore"):
                 found[k] = np.where(left > 0.0, left / (_HOUR * self._rates), 0.0 * left)
+        return found
 
 
 def prior_draws(fields: int, count: int = _DRAWS) -> tuple[np.ndarray, np.ndarray]:

@@ -13,8 +13,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.messages.bands import Bands
 from bearing_sim.messages.cdr import ENCAPSULATION, STAMP_FIELDS, CdrLayout, message_type
-from bearing_sim.messages.topics import FRAME, Topic
+from bearing_sim.messages.topics import ESTIMATED, FRAME, Topic
 from bearing_sim.model.sample import new_block, sample_dtype
 
 _STAMP = struct.Struct("<iI")  # builtin_interfaces/Time
@@ -148,3 +149,34 @@ class SampleMessages:
         self._words[self._targets] = np.frombuffer(sample, np.float64)[self._sources]
         for at in self._stamps:
             _STAMP.pack_into(self._buffer, at, *divmod(stamp_ns, 1_000_000_000))
+
+
+class BandMessages:
+    """Serialised messages of bands: those of the same quantities differ in stamp and numbers only.
+
+    Parameters
+    ----------
+    frame : the bearing's, for headers.
+    """
+
+    def __init__(self, frame: str = FRAME):
+        self._frame = frame
+        self._templates: dict[tuple[str, ...], tuple[bytearray, int, int]] = {}
+
+    def each(self, bands: Bands, stamps_ns: Sequence[int]) -> list[bytes]:
+        """Return the message of each instant, with its stamp [ns since the epoch]."""
+        key = (bands.topic, *bands.names, *bands.units)
+        if key not in self._templates:
+            topic = ESTIMATED[bands.topic]
+            message = topic.message(0, bands)
+            message["header"]["frame_id"] = self._frame
+            data = message_type(topic.ros_type).serialize(message)
+            by_path = CdrLayout(topic.ros_type, data).by_path
+            self._templates[key] = bytearray(data), by_path[STAMP_FIELDS[0]].begin, by_path["position"].begin
+        data, stamp, position = self._templates[key]
+        messages = []
+        for stamp_ns, numbers in zip(stamps_ns, np.ascontiguousarray(bands.numbers, np.float64), strict=True):
+            _STAMP.pack_into(data, stamp, *divmod(int(stamp_ns), 1_000_000_000))
+            data[position : position + numbers.nbytes] = numbers.tobytes()
+            messages.append(bytes(data))
+        return messages

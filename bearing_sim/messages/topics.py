@@ -18,6 +18,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from bearing_sim.messages.bands import BANDS, ESTIMATES, Bands
 from bearing_sim.messages.point_cloud import ROLLER_FIELDS, RollerField, point_cloud, roller_fields, roller_points
 from bearing_sim.model.characteristic_frequencies import FREQUENCIES, characteristic_frequencies
 from bearing_sim.model.sample import NODE_OBSERVABLES, OBSERVABLES, RING_TEMPERATURES
@@ -347,6 +348,32 @@ MEASUREMENTS = {
 }
 """Topics of a measured cage, by name: the measurement, and its difference from the prediction; the source of each is one number."""
 
+
+def _quantities_with_bands(stamp_ns: int, bands: Bands) -> dict:
+    return _joints(stamp_ns, list(bands.message_names), bands.numbers[0].ravel())
+
+
+ESTIMATED = {
+    topic.name: topic
+    for topic in (
+        Topic(
+            BANDS,
+            "sensor_msgs/msg/JointState",
+            "where the scene asks for `estimation.bands`: cage slip [fraction], rating life [h], running clearance [m] and remaining life [h], each "
+            "with its 5 and 95 % quantiles, by name and unit, in position",
+            _quantities_with_bands,
+        ),
+        Topic(
+            ESTIMATES,
+            "sensor_msgs/msg/JointState",
+            "where the scene names fields in `estimation.calibrated`: the value of each in its SI unit with its 5 and 95 % quantiles, by name and "
+            "unit, in position",
+            _quantities_with_bands,
+        ),
+    )
+}
+"""Topics of estimates by name; the source of each message is a `bearing_sim.messages.bands.Bands` of one instant."""
+
 OUTPUTS = {
     topic.name: topic
     for topic in (
@@ -417,6 +444,12 @@ def recorded(scene) -> dict[str, Topic]:
 def outputs(scene) -> dict[str, Topic]:
     """Return the output topics that a scene has, by name."""
     return _of_scene(OUTPUTS, scene)
+
+
+def estimated(scene) -> dict[str, Topic]:
+    """Return the topics of estimates that a scene asks for, by name."""
+    asked = {BANDS: scene.estimation.bands, ESTIMATES: bool(scene.estimation.calibrated)}
+    return {name: topic for name, topic in ESTIMATED.items() if asked[name]}
 
 
 def inputs(scene) -> dict[str, Topic]:

@@ -13,6 +13,7 @@ import yaml
 from mcap.records import Channel, Metadata
 from rosbags.serde import SerdeError
 
+from bearing_sim.messages.bands import Bands, bands_of_message
 from bearing_sim.messages.cdr import CdrError, CdrLayout, NumberColumns, typestore
 from bearing_sim.messages.diagnostics import events_of
 from bearing_sim.messages.events import Event, Level, Measurement
@@ -21,6 +22,7 @@ from bearing_sim.messages.topics import (
     ARRAYS,
     CAGE_JOINT,
     DIAGNOSTICS,
+    ESTIMATED,
     INPUTS,
     MEASURED,
     MEASUREMENTS,
@@ -41,10 +43,11 @@ ROWS_PER_BLOCK = 1000
 _REPEATS_WITHIN = 2.5  # [s] a lasting trouble is reported every second, and is one event
 _SAMPLE_TOPICS = {f"/{name}": topic for name, topic in {**RECORDED, **OUTPUTS}.items()}
 _TYPES = {topic: kind.ros_type for topic, kind in _SAMPLE_TOPICS.items()} | {
-    f"/{topic.name}": topic.ros_type for topic in (*INPUTS.values(), *MEASUREMENTS.values())
+    f"/{topic.name}": topic.ros_type for topic in (*INPUTS.values(), *MEASUREMENTS.values(), *ESTIMATED.values())
 }
 _TYPES[f"/{DIAGNOSTICS[0]}"] = DIAGNOSTICS[1]
 _RECEIVED = {f"/{name}" for name in (*INPUTS, *MEASUREMENTS)}
+_ESTIMATED = {f"/{name}": name for name in ESTIMATED}
 _LAST_OF_SAMPLE = "/roller_loads"
 _LABEL = 12  # first byte of the first label in a serialised Float64MultiArray
 _OF_TILTING_LEVELS = tuple(field for name, topic in OUTPUTS.items() if topic.of_tilting_levels for field in ARRAYS[name].fields)
@@ -185,10 +188,10 @@ class Recording:
         """Yield what iterating yields, and the messages of inputs and measurements as they were recorded."""
         return self._items(with_received=True)
 
-    def with_measurements(self) -> Iterator["np.ndarray | Event | Measurement"]:
-        """Yield what iterating yields and, before a block, the measurements up to its end that were read by then, in order of time."""
+    def with_measurements(self) -> Iterator["np.ndarray | Event | Measurement | Bands"]:
+        """Yield what iterating yields and, before a block, the measurements up to its end that were read by then, in order of time; bands, too."""
         waiting: dict[int, dict[str, float]] = {}
-        for item in self.with_received():
+        for item in self._items(with_received=True, with_bands=True):
             if isinstance(item, Received):
                 name = item.topic[1:]
                 if name in MEASUREMENTS:
@@ -204,7 +207,13 @@ class Recording:
                         yield Measurement((log_ns - self.start_ns) * 1e-9, numbers[MEASURED], numbers.get(RESIDUAL, math.nan))
             yield item
 
-    def _items(self, with_received: bool = False) -> Iterator["np.ndarray | Event | Received"]:
+    def bands(self) -> Iterator[Bands]:
+        """Yield the bands of the recording, each of one instant, in the order of the file."""
+        for item in self._items(with_bands=True):
+            if isinstance(item, Bands):
+                yield item
+
+    def _items(self, with_received: bool = False, with_bands: bool = False) -> Iterator["np.ndarray | Event | Received | Bands"]:
         samples = _Samples(self.scene, self.start_ns)
         reported: dict[tuple[tuple[str, str], Level], float] = {}
         for topics, record in self._records():
@@ -216,6 +225,12 @@ class Recording:
                 yield from samples.blocks_with(topics[0], record)
             elif topics[0] in _RECEIVED and with_received:
                 yield Received(topics[0], _TYPES[topics[0]], record.log_time, record.publish_time, record.data)
+            elif topics[0] in _ESTIMATED:
+                if with_bands:
+                    with _as_unreadable(topics[0]):
+                        found, time = _decoded(record.data, topics[0]), (record.log_time - self.start_ns) * 1e-9
+                        bands = bands_of_message(_ESTIMATED[topics[0]], time, found.name, found.position)
+                    yield bands
             elif topics[0] == f"/{DIAGNOSTICS[0]}":
                 with _as_unreadable(topics[0]):
                     events = list(_events(_decoded(record.data, topics[0]), (record.log_time - self.start_ns) * 1e-9, reported))

@@ -31,6 +31,7 @@ from pathlib import Path
 import numpy as np
 
 from bearing_sim.messages import topics
+from bearing_sim.messages.bands import Bands
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.model.sample import flat
 from bearing_sim.recording.bag import UNLIMITED, Limits
@@ -163,6 +164,10 @@ class _Recording(AbstractContextManager):
     def write_measurement(self, time: float, cage_speed: float, residual: float, origin: topics.Origin | None = None) -> None:
         """Write a measured cage speed [rad/s] that arrived at ``time`` [s], and its residual slip."""
         self.offer("write_measurement", (time, cage_speed, residual, origin))
+
+    def write_bands(self, bands: Bands) -> None:
+        """Write quantities with their bands."""
+        self.offer("write_bands", (bands,), bands.numbers.nbytes)
 
     def write_event(self, event: Event) -> None:
         """Write one event as diagnostics."""

@@ -16,8 +16,10 @@ import numpy as np
 
 from bearing_sim.files.outputs import rename_without_replacing, synchronise
 from bearing_sim.messages import diagnostics, topics
+from bearing_sim.messages.bands import Bands
 from bearing_sim.messages.cdr import message_type
 from bearing_sim.messages.events import Event, Level
+from bearing_sim.messages.sample_messages import BandMessages
 from bearing_sim.recording.append_file import AppendFile, set_aside
 from bearing_sim.recording.bag import ACTIVE, QOS_TEXT, UNLIMITED, Limits, Part, TopicCount, bag_metadata, write_bag_metadata
 from bearing_sim.recording.mcap_format import Message
@@ -437,6 +439,7 @@ class McapSink(AbstractContextManager):
         self._topics = tuple(topic for topic in recorded if not topic.repeats)
         self._repeating_topics = tuple(topic for topic in recorded if topic.repeats)
         self._lay_out(scene.bearing.roller.count)
+        self._band_messages = BandMessages(frame)
         self._last_period = -1  # of `REPEATING_RATE`, in which a sample was written with its repeating topics
         origin = {"package_version": package_version(), "git_hash": git_hash()}
         packages = {f"version_{name}": version for name, version in versions().items()}
@@ -495,6 +498,13 @@ class McapSink(AbstractContextManager):
         """Write a measured cage speed [rad/s] that arrived at ``time`` [s], and its slip less the predicted slip."""
         for topic, number in zip(topics.MEASUREMENTS.values(), (cage_speed, residual)):
             self._write_input(topic, time, number, origin)
+
+    def write_bands(self, bands: Bands) -> None:
+        """Write quantities with their bands, a message at each of their instants."""
+        topic = topics.ESTIMATED[bands.topic]
+        times_ns = [self._time_ns(time) for time in bands.times.tolist()]
+        for time_ns, message in zip(times_ns, self._band_messages.each(bands, times_ns)):
+            self._files.current.write_cdr(f"/{topic.name}", topic.ros_type, time_ns, message)
 
     def _write_input(self, topic: topics.Topic, time: float, source, origin: topics.Origin | None) -> None:
         received_ns = self._time_ns(time)

@@ -19,18 +19,20 @@ from rclpy.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.subscription import Subscription
 from std_srvs.srv import SetBool, Trigger
 
+from bearing_sim.estimation.response import ResponseModel, kept_response
 from bearing_sim.extras import what_is_missing
 from bearing_sim.messages import topics
+from bearing_sim.messages.bands import Bands
 from bearing_sim.messages.events import Event, Level
-from bearing_sim.messages.sample_messages import SampleMessages, message_templates
+from bearing_sim.messages.sample_messages import BandMessages, SampleMessages, message_templates
 from bearing_sim.messages.topics import Topic
-from bearing_sim.monitoring.health import Condition, Phase, not_running
 from bearing_sim.ros.messages import InputReader, Refused, message, message_class
 from bearing_sim.ros.parameters import OIL_TEMPERATURE, BearingSettings, NodeSettings, follows_clock, scene_values_in
 from bearing_sim.ros.polling import PolledSubscriptions
 from bearing_sim.ros.recordings import fresh_path, limits_of, open_lossless_recording, open_recording, open_view, prepare
 from bearing_sim.ros.warm_up import WarmUp, levels_to_compile, start_compiling
 from bearing_sim.runtime.governor import Governor
+from bearing_sim.runtime.health import Condition, Phase, not_running
 from bearing_sim.runtime.live import LiveModel, governor_of, warmed_up
 from bearing_sim.runtime.sim_time import SimTimeModel
 from bearing_sim.scene.fidelity import hint
@@ -108,7 +110,7 @@ class DeferredCall:
 
 
 class Outputs:
-    """The output topics of a bearing, and the residual slip of a measured cage.
+    """The output topics of a bearing, the residual slip of a measured cage, and the bands that the scene asks for.
 
     The serialised messages of a sample are filled with its numbers all at once, and only topics with a subscriber are published: building
     message objects and serialising them with rclpy would cost more than the rest of the node.  QoS events are not watched; a subscriber with
@@ -133,6 +135,8 @@ class Outputs:
         self._messages: SampleMessages | None = None
         self._residual_topic = topics.MEASUREMENTS["cage_slip_residual"]
         self._residual = self._publisher(self._residual_topic)
+        self._estimates = {topic.name: self._publisher(topic) for topic in topics.estimated(scene).values()}
+        self._band_messages = BandMessages(frame)
         self._subscribed: tuple[SampleMessages | None, list[tuple[memoryview, Callable[[bytes], None]]]] = (None, [])
 
     def prepare(self) -> None:
@@ -165,17 +169,28 @@ class Outputs:
     @property
     def topic_names(self) -> list[str]:
         """The full names of the topics, after namespace and remapping."""
-        return [publisher.topic_name for publisher in (*self._publishers, self._residual)]
+        return [publisher.topic_name for publisher in self._all_publishers]
 
     def publish_residual(self, stamp_ns: int, residual: float) -> None:
         """Publish the measured minus the predicted cage slip."""
         topic = self._residual_topic
         self._residual.publish(message(topic.ros_type, topic.message(stamp_ns, residual)))
 
+    def publish_bands(self, bands: Bands, stamps_ns: list[int]) -> None:
+        """Publish quantities with their bands, a message for each stamp [ns since the epoch]."""
+        publisher = self._estimates[bands.topic]
+        if publisher.get_subscription_count():
+            for serialised in self._band_messages.each(bands, stamps_ns):
+                publisher.publish(serialised)
+
+    @property
+    def _all_publishers(self) -> list[Publisher]:
+        return [*self._publishers, self._residual, *self._estimates.values()]
+
     def destroy(self) -> None:
         """Destroy the publishers."""
         self._borrowed.close()
-        for publisher in (*self._publishers, self._residual):
+        for publisher in self._all_publishers:
             self._node.destroy_publisher(publisher)
 
     def _publisher(self, topic: Topic) -> Publisher:
@@ -222,6 +237,7 @@ class BearingInterface:
         self._wanted_serial = settings.serial  # in use from ~/replace_bearing on
         self.error = ""  # why the model cannot run; reported until the next configure
         self._simulation: Simulation | None = None
+        self._response: ResponseModel | None = None  # of the bearing to its uncertain fields
         self._governor: Governor | None = None
         self._new_governor: Governor | None = None  # made on the warm-up thread, taken over at the next review
         self._compiling: subprocess.Popen | None = None
@@ -263,6 +279,7 @@ class BearingInterface:
         try:
             prepare(settings.has_view, None if follows_clock(self._node) else self._node.recorder)
             self._outputs.prepare()
+            self._response = kept_response(self.scene) if self.scene.estimation.is_asked else None
             simulation = warmed_up(self.scene)
             governs = self._shared.governor and not follows_clock(self._node)  # with sim time no time is skipped
             if governs and levels_to_compile(self.scene):
@@ -287,7 +304,13 @@ class BearingInterface:
         if follows_clock(self._node):
             self._now_ns = self._node.now_ns
             self.live = SimTimeModel(
-                self.scene, self._simulation, shared.sample_rate, shared.publish_rate, shared.clock_jump_back, keeper=self._keeper
+                self.scene,
+                self._simulation,
+                shared.sample_rate,
+                shared.publish_rate,
+                shared.clock_jump_back,
+                keeper=self._keeper,
+                response=self._response,
             )
             self.live.tick(self._now_ns())
         else:
@@ -304,6 +327,7 @@ class BearingInterface:
                 receiver=self._now_ns,
                 threads=self._node.solver_threads,
                 keeper=self._keeper,
+                response=self._response,
             )
             temperature = self.scene.lubricant.temperature
             if self._simulation.inputs.oil_temperature != temperature:  # set while inactive, or given by the topic in the last run
@@ -378,6 +402,8 @@ class BearingInterface:
         self._outputs.update_subscribed()
         if follows_clock(self._node):  # otherwise outputs are published as soon as they are due
             self._publish_all()
+        for bands in self.live.bands():
+            self._outputs.publish_bands(bands, [self.live.stamp(time) for time in bands.times.tolist()])
         if self._report_is_due(self.live.level):
             self._report(now_ns, self.live.condition(now_ns))
 

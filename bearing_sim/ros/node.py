@@ -31,7 +31,6 @@ from bearing_sim.inputs.static_transforms import StaticTransforms
 from bearing_sim.messages import diagnostics, topics
 from bearing_sim.messages.cdr import message_type
 from bearing_sim.messages.events import Event, Level
-from bearing_sim.monitoring.health import Condition, not_running
 from bearing_sim.numerics.cores import cores
 from bearing_sim.recording.recorder import Recorder
 from bearing_sim.ros.interface import STATE_QOS, BearingInterface
@@ -43,6 +42,7 @@ from bearing_sim.ros.process import CannotRun, run_node
 from bearing_sim.ros.transforms import TransformInterface
 from bearing_sim.ros.warm_up import WarmUp
 from bearing_sim.ros.workers import NodeLink, Order, Worker, Workers, passed_arguments, process_count, shares, worker_connection
+from bearing_sim.runtime.health import Condition, not_running
 from bearing_sim.runtime.solver_threads import SolverThreads
 from bearing_sim.scene.loader import SceneError, load_scene
 from bearing_sim.scene.scene import Scene

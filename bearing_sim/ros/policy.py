@@ -38,7 +38,7 @@ def policy(namespace: str = "/", node: str = "bearing_node", bearings: Sequence[
     """
     prefixes = [f"{name}/" for name in bearings] or [""]
     inputs = [f"{prefix}{name}" for prefix in prefixes for name in (*topics.INPUTS, topics.MEASURED)]
-    outputs = [f"{prefix}{name}" for prefix in prefixes for name in (*topics.OUTPUTS, topics.RESIDUAL)]
+    outputs = [f"{prefix}{name}" for prefix in prefixes for name in (*topics.OUTPUTS, topics.RESIDUAL, *topics.ESTIMATED)]
     offered = [f"{name}/{service}" for name in bearings for service in SERVICES] or [f"~/{service}" for service in SERVICES]
     workers = [f"_{node}_{number}" for number in range(1, processes + 1)]
     bearing_node = _enclave(

@@ -13,17 +13,20 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.estimation.live import LiveEstimation
+from bearing_sim.estimation.response import ResponseModel
 from bearing_sim.inputs.gate import UNITS, Coverage, InputGate, PublisherConflict, unknown_inputs, unused_event, with_values
 from bearing_sim.messages import topics
+from bearing_sim.messages.bands import Bands
 from bearing_sim.messages.diagnostics import further_condition
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.model.plausibility import plausibility
 from bearing_sim.model.sample import RING_TEMPERATURES, joined
-from bearing_sim.monitoring.health import Condition, Health, Phase, level_of, numbers, remarks
 from bearing_sim.monitoring.limits import LimitsMonitor
 from bearing_sim.monitoring.monitor import Monitor
 from bearing_sim.monitoring.residual import ResidualMonitor
 from bearing_sim.runtime.governor import Governor
+from bearing_sim.runtime.health import Condition, Health, Phase, level_of, numbers, remarks
 from bearing_sim.runtime.pacing import LONGEST_TICK, Decimator, OutputCount, Pacer, WallClock, tick_schedule
 from bearing_sim.runtime.remembering import note, recall, warm_start
 from bearing_sim.runtime.sink_registry import Sink, SinkRegistry
@@ -86,6 +89,7 @@ class Model:
     solver : the thread that advances the simulation.
     start_ns : run time 0 [ns since the epoch].
     keeper : of the bearing's state; None where nothing is remembered.
+    response : of the scene, for what its block ``estimation`` asks for; without one nothing is estimated, which is reported.
 
     Attributes
     ----------
@@ -93,8 +97,12 @@ class Model:
         The worst level that held when `collect` last reviewed the health.
     """
 
-    def __init__(self, scene: Scene, gate: InputGate, solver: Solver, start_ns: int, keeper: StateKeeper | None = None):
+    def __init__(
+        self, scene: Scene, gate: InputGate, solver: Solver, start_ns: int, keeper: StateKeeper | None = None, response: ResponseModel | None = None
+    ):
         self.keeper = keeper
+        self._estimation = LiveEstimation(scene, response) if response is not None and scene.estimation.is_asked else None
+        self._bands: list[Bands] = []
         self._counted: np.void | None = None  # the newest sample that is in the bearing's state
         self.scene, self.gate, self.solver, self.start_ns = scene, gate, solver, start_ns
         self.health, self.monitor, self.limits = Health(), Monitor(scene), LimitsMonitor(scene)
@@ -250,6 +258,20 @@ class Model:
         residuals, self._residuals = self._residuals, []
         return residuals
 
+    def bands(self) -> list[Bands]:
+        """Return the bands since the last call, which are to be published."""
+        bands, self._bands = self._bands, []
+        return bands
+
+    def _estimate(self, block: np.ndarray, now: float) -> None:
+        """Estimate at samples in order, shape (n,), at run time ``now`` [s]."""
+        if self._estimation is None:
+            return
+        self._estimation.know([channel for channel, count in self.gate.accepted.items() if count])
+        for bands in self._estimation.take(block):
+            self.sinks.write_bands(now, bands)
+            self._bands.append(bands)
+
     def reset(self, timeout: float = 2.0) -> bool:
         """Return state and damage to the start (see `bearing_sim.runtime.solver.Solver.reset`)."""
         return self.solver.reset(timeout)
@@ -284,7 +306,9 @@ class Model:
         values["inputs unknown [s]"] = self.gate.coverage.unknown_until(now)
         values |= self.monitor.values | self.residual.values(now) | self.sinks.values | self._values()
         values |= self.keeper.values if self.keeper is not None else {}
+        values |= self._estimation.values if self._estimation is not None else {}
         said = remarks(self.gate, self.solver, self._running_level) | self.sinks.remarks
+        said["estimate"] = "nothing is estimated: the scene does not ask for it" if self._estimation is None else "bands are estimated"
         said["state"] = "nothing is remembered" if self.keeper is None else str(self.keeper.path)
         return Condition(self._events(now), values, said)
 
@@ -333,6 +357,7 @@ class Model:
         conflicts += [unused_event(now, channel) for channel in sorted(self._unused)]
         judged = (*self.monitor.events(now), *self.limits.events(now), *self.residual.events(now))
         kept = self.keeper.events(now) if self.keeper is not None else []
+        kept += [_no_response(now)] if self._estimation is None and self.scene.estimation.is_asked else []
         events = [*self.sinks.events(now), *kept, *judged, *self._further_events(now), *conflicts]
         coverage = self.gate.coverage
         if coverage.is_overloaded:
@@ -350,8 +375,18 @@ class Model:
             self.monitor.restart()
             self.limits.restart()
             self.residual.interrupt(event.time)
+            if self._estimation is not None:
+                self._estimation.restart()
             if self.keeper is not None:
                 self.keeper.restart()
+
+
+def _no_response(now: float) -> Event:
+    """Return the event of a scene that asks for estimates, and for which nothing is kept that they could come from."""
+    reason = "the scene asks for bands or a calibration, and no response of the bearing to its uncertain fields is kept here; nothing is estimated"
+    return Event(
+        now, Level.WARN, "estimate.absent", "", reason, "build it with bearing-sim table SCENE --bands, with the same --set, and start again"
+    )
 
 
 class LiveModel(Model):
@@ -371,6 +406,7 @@ class LiveModel(Model):
     receiver : reads the receiver's clock [ns since the epoch] (see `bearing_sim.runtime.pacing.WallClock`).
     threads : shared with the solvers of other bearings; a thread of its own where absent.
     keeper : of the bearing's state, which all time of the run counts for; None where nothing is remembered.
+    response : see `Model`.
 
     Attributes
     ----------
@@ -392,6 +428,7 @@ class LiveModel(Model):
         receiver: Callable[[], int] | None = None,
         threads: SolverThreads | None = None,
         keeper: StateKeeper | None = None,
+        response: ResponseModel | None = None,
     ):
         self._governor = governor
         self._sample_rate, self.schedule = sample_rate, tick_schedule(sample_rate, publish_rate)
@@ -400,7 +437,7 @@ class LiveModel(Model):
         began = clock()
         solver = WallTimeSolver(simulation, pacer, self.schedule, capacity, clock, governor, self._advanced, threads, begin, used)
         held = simulation.inputs._replace(**dict.fromkeys(RING_TEMPERATURES, math.nan))  # measured in this run or not at all
-        super().__init__(scene, InputGate(scene.accepted_inputs, held, heat_law=scene.heat.law), solver, start_ns, keeper)
+        super().__init__(scene, InputGate(scene.accepted_inputs, held, heat_law=scene.heat.law), solver, start_ns, keeper, response)
         self._starts_ns = [start_ns]  # by the clock now, and before it was set
         self._sample_decimator, self._publish_decimator, self._due = Decimator(sample_rate), Decimator(publish_rate), due
         self._wall_clock = WallClock(start_ns, clock, receiver)
@@ -484,6 +521,8 @@ class LiveModel(Model):
         self.monitor.take_all(blocks[judged:])
         if blocks[judged:]:
             self.limits.take(blocks[-1])
+        if blocks and self._estimation is not None:
+            self._estimate(joined(blocks), now)
         if blocks and self.keeper is not None:
             self.keeper.count_live(joined(blocks), tuple(self._starts_ns), self.schedule.tick / self.schedule.samples)
             self._counted = blocks[-1][-1]

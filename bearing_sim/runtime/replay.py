@@ -10,17 +10,20 @@ from functools import partial
 
 import numpy as np
 
+from bearing_sim.estimation.live import LiveEstimation
+from bearing_sim.estimation.response import ResponseModel
 from bearing_sim.inputs.profile import InputProfile
+from bearing_sim.messages.bands import BANDS, Bands
 from bearing_sim.messages.diagnostics import condition, further_condition
 from bearing_sim.messages.events import Event
 from bearing_sim.model.sample import joined
 from bearing_sim.model.turning import turns
 from bearing_sim.model.validity import Exceedance, in_order
-from bearing_sim.monitoring.health import Changes
 from bearing_sim.monitoring.limits import LimitsMonitor
 from bearing_sim.monitoring.monitor import Monitor
 from bearing_sim.monitoring.residual import Comparison, ResidualMonitor
 from bearing_sim.runtime.advance_segment import Begun, Output, ProfileRun
+from bearing_sim.runtime.health import Changes
 from bearing_sim.runtime.remembering import note, recall, warm_start
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Inputs, Simulation
@@ -29,6 +32,7 @@ from bearing_sim.stored_state.keeper import StateKeeper
 _REPORT_EVERY = 1.0  # [s] of simulated time between diagnostics
 _PROGRESS_EVERY = 50  # items
 _JUDGED = 400  # outputs judged at once if none of them can raise or clear an alarm
+_ENDLESS = 1e7  # [h]; longer lives are those of a shaft that hardly turns
 _WATCHED_BLOCK = 100  # samples: views take one long block far faster than single samples
 
 
@@ -48,6 +52,7 @@ class Replay:
     events : number of events by kind.
     given_up : why the run ended before the log did, or ``""``.
     warnings : laws used outside of their ranges, each with its worst value.
+    bands : 5 and 95 % quantiles of the results (`bearing_sim.estimation.bands.QUANTITIES`), where the scene asks for them.
     """
 
     log_seconds: float
@@ -69,6 +74,7 @@ class Replay:
     events: Counter = field(default_factory=Counter)
     given_up: str = ""
     warnings: list[Exceedance] = field(default_factory=list)
+    bands: list[Bands] = field(default_factory=list)
 
     @property
     def real_time_factor(self) -> float:
@@ -116,6 +122,31 @@ class Replay:
         below = turning & (load < minimum_load(speed))
         return float(weight[below].sum()), float(weight[turning].sum())
 
+    def band_statistics(self) -> dict[str, tuple[float, float]]:
+        """Return the 5 and 95 % quantiles of the results while the shaft turns; empty without bands.
+
+        Returns
+        -------
+        by name: ``cage_slip``, the means over time of both quantiles; ``largest_cage_slip``, ``least_rating_life`` [h] and
+        ``least_running_clearance`` [m], the largest and least of each; ``remaining_life`` [h], those at the end.
+        """
+        if not self.bands:
+            return {}
+        times, edges = np.concatenate([bands.times for bands in self.bands]), np.concatenate([bands.numbers for bands in self.bands])[:, :, 1:]
+        slip, life, clearance, remaining = np.moveaxis(edges, 1, 0)
+        known = np.isfinite(slip).all(axis=1) & (life[:, 0] < _ENDLESS)
+        if not known.any():
+            return {}
+        weight = np.diff(times, prepend=2.0 * times[0] - times[1] if len(times) > 1 else times[0] - 1.0)[known]
+        pairs = {
+            "cage_slip": np.average(slip[known], axis=0, weights=weight),
+            "largest_cage_slip": slip[known].max(axis=0),
+            "least_rating_life": life[known].min(axis=0),
+            "least_running_clearance": clearance[known].min(axis=0),
+            "remaining_life": remaining[known][-1],
+        }
+        return {name: (float(low), float(high)) for name, (low, high) in pairs.items()}
+
     @property
     def least_rating_life(self) -> float:
         """The shortest rating life of all outputs [h]."""
@@ -131,6 +162,7 @@ def replay(
     progress: Callable[[float], None] = lambda seconds: None,
     model: Callable[[Scene, Inputs], Simulation] = Simulation,
     keeper: StateKeeper | None = None,
+    response: ResponseModel | None = None,
 ) -> Replay:
     """Run the model over an input profile and write inputs, outputs and events.
 
@@ -144,13 +176,14 @@ def replay(
     progress : called repeatedly with the time reached [s].
     model : makes the simulation.
     keeper : of the state of the bearing whose log it is; times that the state contains are not counted again.  None counts nothing.
+    response : of the scene, for what its block ``estimation`` asks for; None estimates nothing.
 
     Returns
     -------
     The result.  A stretch that cannot be integrated is skipped, reported by an event and counted, and the next one is tried from the last
     good state; after ten in a row the run is given up.
     """
-    return _Run(scene, profile, recording, tuple(watchers), rate, progress, keeper).run(model)
+    return _Run(scene, profile, recording, tuple(watchers), rate, progress, keeper, response).run(model)
 
 
 class _Run:
@@ -165,8 +198,12 @@ class _Run:
         rate: float | None,
         progress: Callable,
         keeper: StateKeeper | None,
+        response: ResponseModel | None,
     ):
         self._keeper = keeper
+        self._estimation = LiveEstimation(scene, response) if response is not None and scene.estimation.is_asked else None
+        if self._estimation is not None:
+            self._estimation.know([channel for channel, stamps in profile.stamps.items() if len(stamps)])
         self._newest: np.void | None = None  # that the keeper has counted
         self._scene, self._profile, self._watchers, self._progress, self._rate = scene, profile, watchers, progress, rate
         self._recordings = (recording,) if recording is not None else ()
@@ -265,6 +302,9 @@ class _Run:
             self._watched.append(block)
             if sum(map(len, self._watched)) >= _WATCHED_BLOCK:
                 self._write_to_watchers()
+        if self._estimation is not None:
+            for bands in self._estimation.take(block):
+                self._write_bands(bands)
         for begin in range(0, len(block), _JUDGED):
             part = block[begin : begin + _JUDGED]
             self._unjudged.append(part)
@@ -292,6 +332,12 @@ class _Run:
                 self._write_measured(compared)
             self._report(block[k], float(block["time"][k]))
 
+    def _write_bands(self, bands: Bands) -> None:
+        if bands.topic == BANDS:
+            self._result.bands.append(bands)
+        for sink in (*self._recordings, *self._watchers):
+            sink.write_bands(bands)
+
     def _write_measured(self, compared) -> None:
         for sink in (*self._recordings, *self._watchers):
             sink.write_measurement(*compared)
@@ -312,6 +358,7 @@ class _Run:
             holding = [*self._changes.holding.values(), *self._limits.events(moment)]
             worst_first = sorted(holding, key=lambda event: -event.level)
             values = condition(sample) | further_condition(self._scene, sample) | self._monitor.values | residual.values(moment)
+            values |= self._estimation.values if self._estimation is not None else {}
             for recording in self._recordings:
                 recording.write_diagnostics(moment, worst_first, values)
 

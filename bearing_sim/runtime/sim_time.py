@@ -16,6 +16,7 @@ from enum import Enum
 
 import numpy as np
 
+from bearing_sim.estimation.response import ResponseModel
 from bearing_sim.inputs.gate import REQUIRED, ClockJumpFilter, InputGate, Message, Verdict
 from bearing_sim.inputs.profile import Arrival, OnlineInputProfile, gap_event
 from bearing_sim.messages import topics
@@ -117,6 +118,7 @@ class SimTimeModel(Model):
     jump_back : ``"reset"`` or ``"error"``.
     wall : wall clock [s], monotonic; outputs do not depend on it.
     keeper : of the bearing's state, which times that it does not contain yet count for; None where nothing is remembered.
+    response : see `bearing_sim.runtime.live.Model`.
 
     Attributes
     ----------
@@ -133,6 +135,7 @@ class SimTimeModel(Model):
         jump_back: str = "reset",
         wall: Callable[[], float] = time.monotonic,
         keeper: StateKeeper | None = None,
+        response: ResponseModel | None = None,
     ):
         self._rate, self._publish_rate = sample_rate, publish_rate
         self._jump_back, self._wall, self._wall_start = jump_back, wall, wall()
@@ -150,7 +153,7 @@ class SimTimeModel(Model):
         self._published: list[Published] = []
         begin = warm_start(keeper, lambda: self.solver.start_ns or 0) if keeper is not None else None
         solver = SimTimeSolver(simulation, self._new_profile(scene), clock=wall, begin=begin)
-        super().__init__(scene, self._new_gate(scene), solver, 0, keeper)
+        super().__init__(scene, self._new_gate(scene), solver, 0, keeper, response)
         self._comparison = Comparison(self.residual)
         self.solver.start()
 
@@ -386,6 +389,8 @@ class SimTimeModel(Model):
             self.keeper.restart()
         self.monitor.restart()
         self.limits.restart()
+        if self._estimation is not None:
+            self._estimation.restart()
         self.residual.interrupt(-math.inf)
         self._comparison.restart()
         measured, self._measured = self._measured, []
@@ -406,6 +411,7 @@ class SimTimeModel(Model):
         self.monitor.take(block)
         self.limits.take(block)
         self.sinks.write(float(block["time"][-1]), block)
+        self._estimate(block, float(block["time"][-1]))
         self._pass_on(self._comparison.predict(block))
         fraction = min(self._publish_rate / self._rate, 1.0)
         for sample in block:

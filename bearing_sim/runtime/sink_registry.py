@@ -6,6 +6,7 @@ from typing import Protocol
 
 import numpy as np
 
+from bearing_sim.messages.bands import Bands
 from bearing_sim.messages.diagnostics import sink_subject
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.messages.topics import Origin
@@ -13,7 +14,7 @@ from bearing_sim.simulation import Inputs
 
 
 class Sink(Protocol):
-    """A destination of samples, events and measured cage speeds (see `bearing_sim.recording` and `bearing_sim.view`).
+    """A destination of samples, events, measured cage speeds and bands (see `bearing_sim.recording` and `bearing_sim.view`).
 
     A block of samples must not be changed, and is not changed by its sender afterwards.
     """
@@ -21,6 +22,7 @@ class Sink(Protocol):
     def write(self, block: np.ndarray) -> None: ...
     def write_event(self, event: Event) -> None: ...
     def write_measurement(self, time: float, cage_speed: float, residual: float, origin: Origin | None = None) -> None: ...
+    def write_bands(self, bands: Bands) -> None: ...
     def close(self) -> None: ...
 
 
@@ -90,6 +92,10 @@ class SinkRegistry:
     def write_measurement(self, time: float, cage_speed: float, residual: float, *origin: Origin) -> None:
         """Write a measured cage speed [rad/s] to all sinks."""
         self._each(self.by_name, time, "write_measurement", time, cage_speed, residual, *origin)
+
+    def write_bands(self, now: float, bands: Bands) -> None:
+        """Write quantities with their bands to all sinks, at ``now`` [s]."""
+        self._each(self.by_name, now, "write_bands", bands)
 
     def write_start(self, time: float, block: np.ndarray) -> None:
         """Write the state at the start to all recorders."""

@@ -17,9 +17,9 @@ import numpy as np
 
 from bearing_sim.inputs.profile import Arrival, OnlineInputProfile, Segment
 from bearing_sim.messages.events import Event, Level
-from bearing_sim.monitoring.health import Phase
 from bearing_sim.runtime.advance_segment import Begun, Output, ProfileRun
 from bearing_sim.runtime.governor import Governor
+from bearing_sim.runtime.health import Phase
 from bearing_sim.runtime.pacing import Pace, Pacer, TickSchedule
 from bearing_sim.runtime.solver_threads import SolverThreads, Step
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation, start_sample

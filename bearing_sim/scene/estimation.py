@@ -66,6 +66,7 @@ class Estimation:
     """
 
     bands: bool = False  # whether cage slip, rating life, running clearance and remaining life get a 5 to 95 % band
+    rate: quantity("Hz", "most bands in a simulated second", 1e-4, 1000.0) = 50.0
     # Fields that measurements calibrate, by dotted path, each with a range; none: no calibration.
     calibrated: Annotated[tuple[str, ...], BeforeValidator(_paths)] = ()
     interval: quantity("s", "least time between two updates by measurements; readings in between are averaged", 0.01, 3600.0) = 1.0

@@ -10,6 +10,7 @@ import rerun.blueprint as rrb
 from bearing_sim.messages.topics import FREQUENCIES, LIFE_SYMBOLS, RING_TEMPERATURES
 from bearing_sim.scene.scene import Scene
 from bearing_sim.view import section
+from bearing_sim.view.bands import REMAINING_LIFE, field_plots, field_title
 from bearing_sim.view.drawings import BODIES, CLEARANCES, HEAT_ROOT, ORBIT_EDGE, SAMPLES, bar_bounds, causes_of, heat_bounds
 from bearing_sim.view.load_map import map_bounds
 from bearing_sim.view.plots import END, TIMELINE, compared_life, range_path
@@ -167,9 +168,13 @@ def _orbit(scene: Scene) -> rrb.Spatial2DView:
 
 def _middle(scene: Scene, axes: _Axes, measured: bool) -> rrb.Vertical:
     rows = [_speeds(axes, measured), _slips(scene, axes, measured), _rollers(axes), _lives(scene, axes), _loads(scene, axes)]
-    if measured:
-        title = "Residual slip [points]: measured less predicted (grey: none)"
-        rows.insert(2, axes.plot(title, ["/slip/no_residual", "/slip/residual"]))
+    title = "Residual slip [points]: measured less predicted (grey: none)"
+    residual = [axes.plot(title, ["/slip/no_residual", "/slip/residual"])] if measured else []
+    fields = field_plots(scene)
+    learned = [axes.plot(f"{field_title(path)}, 5 to 95 %", [plot.path, plot.line], from_zero=False) for path, plot in fields.items()]
+    beside = [*residual, *([rrb.Tabs(*learned, active_tab=0)] if learned else [])]
+    if beside:
+        rows.insert(2, beside[0] if len(beside) == 1 else rrb.Horizontal(*beside))
     return rrb.Vertical(*rows, *([_tilts(axes)] if scene.bodies_tilt else []))
 
 
@@ -189,6 +194,8 @@ def _slips(scene: Scene, axes: _Axes, measured: bool) -> rrb.Tabs:
             "Cage slip [%] (blue: predicted, white: measured)",
             ["/slip/warning", "/slip/error", "/slip/measured", "/slip/cage"],
         )
+    if scene.estimation.bands:
+        title, paths = f"{title[:-1]}, shaded: 5 to 95 %)", ["/slip/band", *paths]
     pocket = axes.plot("Pocket [N]", ["/loads/pocket_warning", "/loads/pocket_error", "/loads/pocket_largest"])
     return rrb.Tabs(axes.plot(title, paths), pocket, *whirl, active_tab=0)
 
@@ -217,15 +224,22 @@ def _loads(scene: Scene, axes: _Axes) -> rrb.Tabs:
     )
 
 
-def _lives(scene: Scene, axes: _Axes) -> rrb.TimeSeriesView:
-    """Return the plot of the life by the scene's method, that of another standard, and the modified one where the scene wants it."""
+def _lives(scene: Scene, axes: _Axes) -> rrb.TimeSeriesView | rrb.Tabs:
+    """Return the plot of the life by the scene's method, that of another standard, and the modified one where the scene wants it.
+
+    Where there are bands, the remaining life has a plot, too.
+    """
     basic, modified = scene.life.symbols
     other = compared_life(scene)
     shown = [f"green {basic}", f"white {LIFE_SYMBOLS[other]}"]
     paths = ["/life/warning", "/life/error", f"/life/{other}_log10_hours", "/life/log10_hours"]
     if not scene.life.is_basic:
         paths, shown = [*paths, "/life/modified_log10_hours"], [*shown, f"purple {modified}"]
-    return axes.plot(f"Lives, log10 of hours ({', '.join(shown)})", paths, from_zero=False)
+    if not scene.estimation.bands:
+        return axes.plot(f"Lives, log10 of hours ({', '.join(shown)})", paths, from_zero=False)
+    lives = axes.plot(f"Lives, log10 of hours ({', '.join(shown)}, shaded: 5 to 95 %)", ["/life/band", *paths], from_zero=False)
+    remaining = axes.plot("Remaining life, log10 of hours (shaded: 5 to 95 %)", [REMAINING_LIFE.path, REMAINING_LIFE.line], from_zero=False)
+    return rrb.Tabs(lives, remaining, active_tab=0)
 
 
 def _tilts(axes: _Axes) -> rrb.Tabs:
@@ -241,7 +255,7 @@ def _tilts(axes: _Axes) -> rrb.Tabs:
 def _right(scene: Scene, axes: _Axes) -> rrb.Vertical:
     bars = _flat("/power_now", f"Power: mean of {SAMPLES} samples", bar_bounds(len(causes_of(scene))))
     clearance_bars = _flat("/clearance_now", "Running clearance", bar_bounds(len(CLEARANCES), signed=True))
-    clearance = _clearance(axes)
+    clearance = _clearance(scene, axes)
     load, damage = axes.plot("Radial load [N]", ["/load/radial"]), axes.plot("Damage [millionths of the life]", ["/damage/ppm"])
     oil = axes.plot("Oil [°C]", ["/oil/temperature"])
     texts = rrb.Tabs(rrb.TextDocumentView(origin="/now", name="Now"), rrb.TextDocumentView(origin="/about", name="About"))
@@ -257,8 +271,9 @@ def _right(scene: Scene, axes: _Axes) -> rrb.Vertical:
     return rrb.Vertical(texts, powers, loads, rrb.Tabs(damage, oil, active_tab=0), row_shares=[0.39, 0.295, 0.1575, 0.1575])
 
 
-def _clearance(axes: _Axes) -> rrb.TimeSeriesView:
-    paths = ["/clearance/warning", "/clearance/error", *(f"/clearance/{part}" for part in reversed(CLEARANCES))]
+def _clearance(scene: Scene, axes: _Axes) -> rrb.TimeSeriesView:
+    paths = ["/clearance/band"] if scene.estimation.bands else []
+    paths += ["/clearance/warning", "/clearance/error", *(f"/clearance/{part}" for part in reversed(CLEARANCES))]
     return axes.plot("Clearance [µm]: white running, grey initial, orange fits, blue rotation, purple heat, green contour", paths)
 
 

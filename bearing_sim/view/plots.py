@@ -397,6 +397,11 @@ class RunSeries:
     scene : whose thresholds are drawn and whose bearing is described.
     thin : whether a long run is thinned out (see `bearing_sim.view.plots`); for files.
     duration : simulated time that will come [s], where known.
+
+    Attributes
+    ----------
+    is_measured : whether a measured cage was drawn.
+    bucket : length of the buckets that a long run is thinned out to [s]; None where all is kept.
     """
 
     def __init__(self, recording: rr.RecordingStream, scene: Scene, thin: bool = False, duration: float | None = None):
@@ -412,6 +417,7 @@ class RunSeries:
         self._measured: list[tuple[float, float, float]] = []  # time, cage speed, residual
         self._newest: list[np.ndarray] = []  # the last two blocks written: measurements come before or after those of their times
         self._started: float | None = None
+        self.bucket: float | None = None
         self.is_measured = False
 
     def describe(self) -> None:
@@ -465,7 +471,7 @@ class RunSeries:
         if self._chosen or not self._thin or len(times) < 2:
             return
         self._chosen = True
-        bucket = bucket_for(float(np.median(np.diff(times))), self._duration)
+        self.bucket = bucket = bucket_for(float(np.median(np.diff(times))), self._duration)
         if bucket is not None:
             whole = FULL_ROWS if self._duration is None else 0
             self._overview, self._measured_overview = Overview(bucket, whole), Overview(bucket, whole)

@@ -9,10 +9,12 @@ from typing import NamedTuple
 import numpy as np
 import rerun as rr
 
+from bearing_sim.messages.bands import Bands
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.messages.topics import ZERO_CELSIUS
 from bearing_sim.scene.scene import Scene
 from bearing_sim.view import section
+from bearing_sim.view.bands import BandSeries
 from bearing_sim.view.blueprint import LIVE_WINDOW, Extent, blueprint
 from bearing_sim.view.drawings import CageDrawing, HeatDrawing, SectionDrawing, SolidDrawing, clearance_drawing, labels, power_drawing
 from bearing_sim.view.load_map import LoadMap, label_distance, map_size
@@ -200,6 +202,7 @@ class RunView:
         if start_ns is not None:
             self._recording.send_recording_start_time_nanos(start_ns)
         self._series = RunSeries(self._recording, scene, thin=not live, duration=duration)
+        self._bands = BandSeries(self._recording, scene) if scene.estimation.is_asked else None
         self._frames = LiveFrames(_RATE) if live else FileFrames(duration, shortest=2 / _RATE if real_time else 0.0)
         self._details = LiveFrames(rate=10.0) if live else None  # numbers that change faster cannot be read
         self._map_times = LiveFrames(rate=2.0) if live else FileFrames(duration, most=30)
@@ -213,6 +216,8 @@ class RunView:
         for drawing in filter(None, (self._drawing, self._solid, *self._bars, self._cage, self._heat)):
             drawing.draw_still_parts()
         self._series.describe()
+        if self._bands is not None:
+            self._bands.describe()
         self._recording.log("/about", rr.TextDocument(about(scene, self._drawing.factor), media_type=rr.MediaType.MARKDOWN), static=True)
         self.dropped = 0
 
@@ -250,6 +255,11 @@ class RunView:
         """Take a cage speed [rad/s] measured at ``time`` [s] and its residual slip, a fraction or NaN."""
         self._series.note_measurement(time, cage_speed, residual)
 
+    def write_bands(self, bands: Bands) -> None:
+        """Take quantities with their bands; they may wait for `flush`."""
+        if self._bands is not None:
+            self._bands.write(bands)
+
     def write_dropped(self, dropped: int) -> None:
         """Show that ``dropped`` blocks in total were dropped before they reached the view."""
         self.dropped = dropped
@@ -260,9 +270,14 @@ class RunView:
         if self._pending:
             self._series.write(np.concatenate(self._pending))
             self._pending.clear()
+            if self._bands is not None and self._series.bucket is not None:
+                self._bands.thin(self._series.bucket)
             if self._live and self._series.is_measured and not self._laid_out_measured:
                 self._laid_out_measured = True
                 self._recording.send_blueprint(blueprint(self._scene, self._drawing.bounds(), live=True, measured=True))
+
+        if self._bands is not None:
+            self._bands.flush()
 
     def close(self) -> None:
         """Send the rest and finish the file."""
@@ -273,7 +288,11 @@ class RunView:
             self._draw_maps(last)
             if not self._live:  # now that every series is known, its axis can be chosen to hold it
                 self._series.finish()
-                extent = Extent((self._first_time, last), self._series.ranges())
+                ranges = self._series.ranges()
+                if self._bands is not None:
+                    self._bands.finish()
+                    ranges |= self._bands.ranges()
+                extent = Extent((self._first_time, last), ranges)
                 measured = self._series.is_measured
                 self._recording.send_blueprint(blueprint(self._scene, self._drawing.bounds(), live=False, extent=extent, measured=measured))
         self._recording.flush(timeout_sec=5.0)

@@ -27,6 +27,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.messages.bands import Bands
 from bearing_sim.messages.events import Event, Measurement
 from bearing_sim.messages.topics import Origin
 from bearing_sim.scene.scene import Scene
@@ -70,7 +71,7 @@ def _rows(item) -> int:
 
 
 class View(AbstractContextManager):
-    """What takes blocks of samples, events and measurements for a view, and drops and counts what does not fit into its queue.
+    """What takes blocks of samples, events, measurements and bands for a view, and drops and counts what does not fit into its queue.
 
     Attributes
     ----------
@@ -105,7 +106,11 @@ class View(AbstractContextManager):
         """
         self.put(Measurement(time, cage_speed, residual))
 
-    def put(self, item: np.ndarray | Event | Measurement) -> None:
+    def write_bands(self, bands: Bands) -> None:
+        """Take quantities with their bands; returns at once."""
+        self.put(bands)
+
+    def put(self, item: np.ndarray | Event | Measurement | Bands) -> None:
         """Queue an item, which must not be changed any more; returns at once, except if nothing is dropped."""
         if self._closed:
             raise ValueError("the rerun view is closed")
@@ -199,6 +204,8 @@ class ViewThread(View):
                 view.write_event(item)
             elif isinstance(item, Measurement):
                 view.write_measurement(*item)
+            elif isinstance(item, Bands):
+                view.write_bands(item)
             elif len(item):
                 view.write(item)
             if self._real_time and wall.monotonic() - flushed > _FLUSH_EVERY:

@@ -205,7 +205,9 @@ def output_topics() -> str:
     from bearing_sim.messages import topics
 
     tilting = [topic.name for topic in topics.OUTPUTS.values() if topic.of_tilting_levels]
-    listed = table(["topic", "type", "meaning"], _topic_rows([*topics.OUTPUTS.values(), topics.MEASUREMENTS[topics.RESIDUAL]]))
+    listed = table(
+        ["topic", "type", "meaning"], _topic_rows([*topics.OUTPUTS.values(), topics.MEASUREMENTS[topics.RESIDUAL], *topics.ESTIMATED.values()])
+    )
     warm = [topic.name for topic in topics.OUTPUTS.values() if topic.of_heat]
     only = f"Only level `spatial` publishes {', '.join(map(code, tilting))}, and only scenes with a law of heat {', '.join(map(code, warm))}."
     return f"{listed}\n{only}\n"
@@ -347,6 +349,7 @@ EVENTS = {
     "clock.passed": ("OK", "`/clock` has passed the time before its jump back; the model continues"),
     "clock.stands_still": ("OK", "`/clock` does not advance: paused"),
     "governor.change": ("OK, WARN", "the governor changed the level of fidelity"),
+    "estimate.absent": ("WARN", "the scene asks for bands or a calibration, and there is no response of the bearing that they could come from"),
     "governor.level": ("WARN", "the model computes below the level of the scene, because the machine is too slow"),
     "input.frame": ("ERROR", "message refused: it is in another frame than `frame_id`"),
     "input.gap": ("WARN", "a gap in the inputs of a log; it is not simulated"),

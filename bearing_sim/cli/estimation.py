@@ -1,0 +1,70 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""What the commands share about estimates: the response of a scene, and bands as rows and numbers."""
+
+import math
+
+import click
+
+from bearing_sim.cli.lives import hours
+from bearing_sim.cli.reporting import progress_bar
+
+_SHOWN = {  # words and text of the bands of a replay by name
+    "cage_slip": ("cage slip, 5 to 95 %", lambda low, high: f"{100 * low:.2f} to {100 * high:.2f} %, mean while turning"),
+    "largest_cage_slip": ("largest cage slip, 5 to 95 %", lambda low, high: f"{100 * low:.2f} to {100 * high:.2f} %"),
+    "least_rating_life": ("least rating life, 5 to 95 %", lambda low, high: f"{hours(low)} to {hours(high)}"),
+    "least_running_clearance": ("least running clearance, 5 to 95 %", lambda low, high: f"{1e6 * low:.1f} to {1e6 * high:.1f} um"),
+    "remaining_life": ("remaining life at the end, 5 to 95 %", lambda low, high: f"{hours(low)} to {hours(high)}"),
+}
+_NEWEST = {  # of a run at its end
+    "cage_slip": ("cage slip, 5 to 95 %", lambda low, high: f"{100 * low:.2f} to {100 * high:.2f} %"),
+    "rating_life": ("rating life, 5 to 95 %", lambda low, high: f"{hours(low)} to {hours(high)}"),
+    "running_clearance": ("running clearance, 5 to 95 %", lambda low, high: f"{1e6 * low:.1f} to {1e6 * high:.1f} um"),
+    "remaining_life": ("remaining life, 5 to 95 %", lambda low, high: f"{hours(low)} to {hours(high)}"),
+}
+
+
+def response_with_progress(scene):
+    """Return the response of a scene that asks for estimates, from disk or newly built; None for a scene that does not ask.
+
+    Raises
+    ------
+    UncertaintyError, ClusterError, JournalInUse
+        See `bearing_sim.studies.response.obtain_response`.
+    """
+    if not scene.estimation.is_asked:
+        return None
+    from bearing_sim.estimation.response import kept_response
+    from bearing_sim.studies.response import obtain_response
+
+    if (kept := kept_response(scene)) is not None:
+        return kept
+    click.echo(f"building the response of {scene.name} to its uncertain fields, once for this bearing and oil ...", err=True)
+    with progress_bar("operating points", 1.0) as show:
+        return obtain_response(scene, progress=lambda done, total: show(done / max(total, 1)))
+
+
+def estimation_with_progress(scene):
+    """Return what estimates during a run of a scene that asks for it (`bearing_sim.estimation.live.LiveEstimation`); None otherwise."""
+    from bearing_sim.estimation.live import LiveEstimation
+
+    response = response_with_progress(scene)
+    return None if response is None else LiveEstimation(scene, response)
+
+
+def band_rows(statistics) -> list[tuple[str, str]]:
+    """Return the rows of a table for the bands of a replay (`bearing_sim.runtime.replay.Replay.band_statistics`)."""
+    return _rows(_SHOWN, statistics)
+
+
+def live_band_rows(newest) -> list[tuple[str, str]]:
+    """Return the rows of a table for the newest bands of a run (`bearing_sim.estimation.live.LiveEstimation.newest`)."""
+    return _rows(_NEWEST, newest)
+
+
+def _rows(shown, bands) -> list[tuple[str, str]]:
+    return [(words, text(*bands[name])) for name, (words, text) in shown.items() if name in bands and not math.isnan(sum(bands[name]))]
+
+
+def band_numbers(bands) -> dict[str, list[float]]:
+    """Return bands for JSON: the 5 and 95 % quantiles by name."""
+    return {f"{name}_band": list(pair) for name, pair in bands.items()}

@@ -1,0 +1,225 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Claims about bands on their way: from the samples of a run into messages, recordings, results, diagnostics and views; none where none is asked."""
+
+import math
+
+import numpy as np
+import pytest
+from fake_simulation import FakeSimulation
+from made_up_response import FACTOR, FIELD, asking_scene, made_up_response
+from recordings import steady_log
+from rerun_files import column, views_in
+from synthetic_run import synthetic_block
+from test_live import Bench
+
+from bearing_sim.estimation.live import LiveEstimation
+from bearing_sim.inputs.log import read_input_log
+from bearing_sim.inputs.profile import judge
+from bearing_sim.messages import topics
+from bearing_sim.messages.bands import BANDS, ESTIMATES, Bands, bands_of_message
+from bearing_sim.messages.cdr import typestore
+from bearing_sim.messages.diagnostics import report
+from bearing_sim.messages.events import Level
+from bearing_sim.messages.sample_messages import BandMessages
+from bearing_sim.recording.bag import RecordingError
+from bearing_sim.recording.reader import Recording
+from bearing_sim.recording.writer import McapSink
+from bearing_sim.runtime.replay import replay
+from bearing_sim.scene.loader import load_scene
+from bearing_sim.simulation import Counters, Inputs
+from bearing_sim.view.blueprint import blueprint
+from bearing_sim.view.worker import RerunFile
+
+START = 1_700_000_000_000_000_000
+SCENE = asking_scene()
+NAMES = ("cage_slip", "rating_life", "running_clearance", "remaining_life")
+UNITS = ("", "h", "m", "h")
+
+
+@pytest.fixture(scope="module")
+def response():
+    return made_up_response(SCENE)
+
+
+def some_bands(count=3):
+    numbers = np.arange(count * 12.0).reshape(count, 4, 3)
+    return Bands(BANDS, NAMES, UNITS, 0.02 * np.arange(1, count + 1), numbers)
+
+
+def test_a_message_names_every_quantity_with_its_unit_and_both_edges():
+    message = topics.ESTIMATED[BANDS].message(START, some_bands())
+    assert message["name"] == [
+        *("cage_slip", "cage_slip 5 %", "cage_slip 95 %"),
+        *("rating_life [h]", "rating_life 5 % [h]", "rating_life 95 % [h]"),
+        *("running_clearance [m]", "running_clearance 5 % [m]", "running_clearance 95 % [m]"),
+        *("remaining_life [h]", "remaining_life 5 % [h]", "remaining_life 95 % [h]"),
+    ]
+    assert message["position"].tolist() == list(range(12))
+
+
+def test_messages_filled_from_a_template_are_those_of_the_topic():
+    bands, topic = some_bands(), topics.ESTIMATED[BANDS]
+    for k, data in enumerate(BandMessages("m1").each(bands, [START + k for k in range(3)])):
+        found = typestore().deserialize_cdr(data, topic.ros_type)
+        assert (found.header.frame_id, found.header.stamp.nanosec) == ("m1", k)
+        assert tuple(found.name) == bands.message_names and found.position.tolist() == bands.numbers[k].ravel().tolist()
+
+
+def test_a_recording_returns_bands_as_they_were_written(tmp_path):
+    path, bands = tmp_path / "run.mcap", some_bands()
+    estimates = Bands(ESTIMATES, (FIELD, "lubricant.temperature"), ("", "K"), np.array([0.06]), np.arange(6.0).reshape(1, 2, 3))
+    with McapSink(path, SCENE, START) as sink:
+        sink.write(synthetic_block(SCENE, 0.02 * np.arange(5)))
+        sink.write_bands(bands)
+        sink.write_bands(estimates)
+    found = list(Recording(path).bands())
+    assert [one.topic for one in found] == [BANDS] * 3 + [ESTIMATES]
+    assert np.allclose([one.times[0] for one in found[:3]], bands.times) and np.array_equal(
+        np.concatenate([one.numbers for one in found[:3]]), bands.numbers
+    )
+    assert (found[3].names, found[3].units) == (estimates.names, estimates.units) and np.array_equal(found[3].numbers, estimates.numbers)
+
+
+@pytest.mark.parametrize(
+    ("names", "numbers"),
+    [
+        (["cage_slip", "cage_slip 5 %"], [1.0, 2.0]),
+        (["cage_slip", "cage_slip 5 %", "cage_slip 95 %"], [1.0, 2.0]),
+        (["cage_slip", "cage_slip 5 %", "rating_life 95 %"], [1.0, 2.0, 3.0]),
+        (["", " 5 %", " 95 %"], [1.0, 2.0, 3.0]),
+        (["a [", "a 5 % [", "a 95 % ["], [1.0, 2.0, 3.0]),
+    ],
+)
+def test_names_that_are_not_those_of_bands_are_refused(names, numbers):
+    with pytest.raises(ValueError, match="expected each quantity with its 5 % and 95 % quantiles"):
+        bands_of_message(BANDS, 0.0, names, np.array(numbers))
+
+
+def test_a_recording_with_another_message_on_the_topic_says_so(tmp_path):
+    path = tmp_path / "run.mcap"
+    with McapSink(path, SCENE, START) as sink:
+        sink.write(synthetic_block(SCENE, 0.02 * np.arange(5)))
+        sink.write_received("/bands", "sensor_msgs/msg/JointState", START, BandMessages().each(some_bands(), [0, 0, 0])[0][:-100])
+    with pytest.raises(RecordingError, match="a message on /bands cannot be read"):
+        list(Recording(path).bands())
+    assert sum(len(item) for item in Recording(path)) == 5, "samples can be read all the same"
+
+
+def test_bands_come_at_most_at_the_rate_of_the_scene(response):
+    block = synthetic_block(SCENE, 0.005 * np.arange(200))
+    for rate, expected in (("50 Hz", 50), ("10 Hz", 10), ("1000 Hz", 200)):
+        live = LiveEstimation(asking_scene(f"estimation.rate={rate}"), response)
+        times = np.concatenate([bands.times for part in np.array_split(block, 7) for bands in live.take(part)])
+        assert len(times) == expected and (np.diff(times) > 0.0).all()
+
+
+def test_a_band_lies_about_the_value_of_the_sample_as_the_field_moves_it(response):
+    live, block = LiveEstimation(SCENE, response), synthetic_block(SCENE, 0.1 * np.arange(20), slips=(0.02, 0.02))
+    (bands,) = live.take(block)
+    slip, life = bands.numbers[:, 0], bands.numbers[:, 1]
+    assert np.array_equal(slip[:, 0], block["cage_slip"]) and np.array_equal(life[:, 0], block["rating_life"])
+    # The middle nine tenths of a uniform range, 0.02 to 0.06, about the scene's own 0.03, at a quarter of it.
+    for values, factor in ((slip, FACTOR), (life, FACTOR**-0.2)):
+        edges = sorted((factor ** (0.05 - 0.25), factor ** (0.95 - 0.25)))
+        assert np.allclose(values[:, 1:] / values[:, :1], edges, rtol=0.02)
+
+
+def test_diagnostics_show_both_edges_with_their_subject(response):
+    live = LiveEstimation(SCENE, response)
+    assert live.values == {}
+    live.take(synthetic_block(SCENE, 0.1 * np.arange(20)))
+    status = {each["name"].partition(": ")[2]: {pair["key"] for pair in each["values"]} for each in report(START, (), live.values)["status"]}
+    assert {"cage slip 5 % [fraction]", "cage slip 95 % [fraction]"} <= status["slip"]
+    assert {"rating life 5 % [h]", "remaining life 95 % [h]"} <= status["life"]
+    assert {"running clearance 5 % [m]", "running clearance 95 % [m]"} <= status["clearance"]
+
+
+class ListSink:
+    """Keeps the bands that it is given."""
+
+    def __init__(self):
+        self.bands = []
+
+    def write_bands(self, bands):
+        self.bands.append(bands)
+
+    def write(self, *_):
+        pass
+
+    write_start = write_inputs = write_event = write_measurement = write_diagnostics = close = write
+
+
+def replayed(scene, tmp_path, **options):
+    def model(scene, inputs):
+        simulation = FakeSimulation(inputs)
+        simulation.counters = Counters(7, 2, 1, 0, 0, 0)
+        return simulation
+
+    steady_log(tmp_path / "log.mcap", rate=50)
+    profile = judge(read_input_log(tmp_path / "log.mcap"), scene.accepted_inputs, Inputs(0.0, 0.0, 0.0, 393.15))
+    sink = ListSink()
+    return replay(scene, profile, sink, model=model, **options), sink
+
+
+def test_a_replay_writes_bands_and_sums_them_up(response, tmp_path):
+    result, sink = replayed(SCENE, tmp_path, response=response)
+    assert sum(len(bands.times) for bands in sink.bands) == result.samples
+    low, high = result.band_statistics()["cage_slip"]
+    assert low == pytest.approx(0.01 * FACTOR**-0.2, rel=0.05) and high == pytest.approx(0.01 * FACTOR**0.7, rel=0.05)
+
+
+def test_a_scene_that_does_not_ask_has_no_bands_and_no_topic_of_them(response, tmp_path):
+    scene = load_scene("deng2017_table1")
+    result, sink = replayed(scene, tmp_path, response=response)
+    assert sink.bands == [] and result.band_statistics() == {} and topics.estimated(scene) == {}
+
+
+def test_a_live_model_records_and_hands_on_bands(response):
+    bench, sink = Bench(scene=["estimation.bands=true"], response=response), ListSink()
+    bench.live.open("list", lambda start_ns: sink)
+    try:
+        bench.run(0.6)
+        published = bench.live.bands()
+        assert published and bench.live.bands() == []
+        assert [bands.times.tolist() for bands in sink.bands] == [bands.times.tolist() for bands in published]
+        assert "cage slip 95 % [fraction]" in bench.live.condition(bench.now_ns).values
+    finally:
+        bench.live.close()
+
+
+def test_a_live_model_without_a_response_says_what_builds_one():
+    bench = Bench(scene=["estimation.bands=true"])
+    try:
+        bench.run(0.1)
+        (event,) = (event for event in bench.live.condition(bench.now_ns).events if event.kind == "estimate.absent")
+        assert event.level is Level.WARN and "bearing-sim table SCENE --bands" in event.action
+    finally:
+        bench.live.close()
+
+
+def test_a_view_shades_from_one_edge_to_the_other(tmp_path):
+    path, block = tmp_path / "run.rrd", synthetic_block(SCENE, 0.02 * np.arange(50))
+    numbers = np.broadcast_to(np.array([[0.05, 0.03, 0.11], [300.0, 100.0, 1000.0], [1e-5, 0.0, 3e-5], [1e3, 1e2, 1e12]]), (50, 4, 3))
+    with RerunFile(SCENE, path) as sink:
+        sink.write(block)
+        sink.write_bands(Bands(BANDS, NAMES, UNITS, block["time"], numbers))
+    expected = {"/slip/band": (3.0, 11.0), "/life/band": (2.0, 3.0), "/clearance/band": (0.0, 30.0), "/remaining_life/band": (2.0, 7.0)}
+    for entity, edges in expected.items():
+        (_, middle), (_, variance) = (column(path, entity, f"Measurements:{part}") for part in ("values", "variances"))
+        assert np.allclose([middle - np.sqrt(variance), middle + np.sqrt(variance)], np.array(edges)[:, None], atol=1e-5), entity
+
+
+def test_bands_and_calibrated_fields_have_plots_only_where_a_scene_asks_for_them():
+    def contents(scene):
+        views = views_in(blueprint(scene, ((0.0, 1.0), (0.0, 1.0)), live=False, measured=True).root_container)
+        return {path for view in views for path in (view.contents if isinstance(view.contents, list) else [])}
+
+    asked = contents(asking_scene(f"estimation.calibrated=[{FIELD}]")) - contents(load_scene("deng2017_table1"))
+    assert {"/slip/band", "/life/band", "/clearance/band", "/remaining_life/band", "/estimate/lubricant_mixture_fraction/band"} <= asked
+
+
+def test_a_band_without_numbers_leaves_a_gap(response):
+    block = synthetic_block(SCENE, 0.1 * np.arange(4))
+    block["oil_temperature"][1] = 800.0  # outside of what the response was fitted to
+    (bands,) = LiveEstimation(SCENE, response).take(block)
+    assert np.isnan(bands.numbers[1, 0, 1:]).all() and not math.isnan(bands.numbers[1, 0, 0]) and np.isfinite(bands.numbers[2, 0]).all()
