@@ -12,6 +12,7 @@ SCENE = "{scene}"  # names of inputs in arguments, see `Case`
 LOG, RECORDING, BROKEN, MEASURED = "{log}", "{recording}", "{broken}", "{measured}"
 DATA, MAPPING, TABLE, STATE = "{data}", "{mapping}", "{table}", "{state}"
 _DESIGN = ("design", "deng2017_table1", "--low-radius", "34.86mm:34.865mm:2", "--d-value", "0.1mm:0.11mm:2")
+_SHORT = ("--level", "steady", "--no-long", "--workers", "1")
 _RANGE = "uncertainty.lubricant.mixture_fraction=[0.01, 0.9]"
 _STEADY = ("--set", "level=steady")
 
@@ -44,7 +45,7 @@ CASES = {
     "plot": Case(("plot", TABLE)),
     "design": Case((*_DESIGN, "--slip-below", "10%", "--life-above", "300h", "--verify-level", "none", "--workers", "1"), 5),
     "report": Case(("report", TABLE)),
-    "trade": Case(("trade", "deng2017_table1", "--quick", "--level", "steady"), 60),
+    "trade": Case(("trade", "deng2017_table1", "--quick", "--level", "slip", "--against", "slip"), 5),
     "recover": Case(("recover", BROKEN)),
     "to-csv": Case(("to-csv", RECORDING)),
     "to-parquet": Case(("to-parquet", RECORDING)),
@@ -55,11 +56,11 @@ CASES = {
     "study misalignment": Case(("study", "misalignment", SCENE, "--points", "2", "--slices", "5", "--crown", "none"), 30),
     "study support": Case(("study", "support", "deng2017_table1", "--points", "2"), 30),
     "study situations": Case(("study", "situations", "--only", "skid", "--no-pictures"), 60),
-    "study friction": Case(("study", "friction"), 60),
+    "study friction": Case(("study", "friction"), 8),
     "study scenes": Case(("study", "scenes", "--count", "1"), 60),
     "study clearance": Case(("study", "clearance", SCENE, "--speed", "1000rpm:3000rpm:2", "--load", "5kN:5kN:1"), 3),
-    "study nightly": Case(("study", "nightly", "--samples", "0", "--no-corners", "--level", "steady"), 600),
-    "study extremes": Case(("study", "extremes", "--samples", "1"), 60),
+    "study nightly": Case(("study", "nightly", "--samples", "1", "--no-corners", *_SHORT), 8),
+    "study extremes": Case(("study", "extremes", "--samples", "1", *_SHORT), 20),
 }
 
 

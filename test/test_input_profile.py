@@ -266,3 +266,12 @@ def test_measured_temperatures_of_a_log_are_left_out_and_told_where_the_scene_ha
     assert "inner_ring_temperature" not in unused.stamps and math.isnan(unused.at(np.array([SECOND]), 300.0)[0, 4])
     (told,) = [event for event in unused.events if event.kind == "input.unused"]
     assert told.subject == "inner_ring_temperature" and "set heat.law to given or network" in told.action
+
+
+def test_measured_cage_speeds_come_with_their_times_in_seconds(tmp_path):
+    from sim_time_bench import Message, write
+
+    found = [Message(time, channel, values) for time in (0.0, 0.5) for channel, values in (("shaft_speed", (100.0,)), ("radial_load", (800.0, 0.0)))]
+    path = write(tmp_path / "log.mcap", [*found, Message(0.25, "cage_speed_measured", (40.0,)), Message(0.5, "cage_speed_measured", (41.0,))])
+    assert course_of(path).measured == pytest.approx([(0.25, 40.0), (0.5, 41.0)])
+    assert course_of(write_log(tmp_path / "without.mcap", [(0.0, 100.0), (0.5, 100.0)], [(0.0, 1.0, 0.0), (0.5, 1.0, 0.0)])).measured == []

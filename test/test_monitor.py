@@ -240,3 +240,10 @@ def test_a_preload_flickers_around_its_limit_in_one_event_and_an_error_outranks_
 
 def test_no_running_clearance_is_wrong_unless_the_scene_says_so():
     assert told(monitor(), course(50, running_clearance=np.full(50, -200e-6))) == []
+
+
+def test_samples_of_a_long_life_are_calm_and_those_that_use_up_the_life_are_not():
+    assert monitor().is_calm(course(10, rating_life=1e5, modified_rating_life=1e5))
+    nearly = course(10, damage=np.full(10, 0.99))  # 10 of 1000 h are left
+    assert monitor("thresholds.remaining_life_warning=5 h", "thresholds.remaining_life_error=1 h").is_calm(nearly)
+    assert not monitor("thresholds.remaining_life_warning=20 h", "thresholds.remaining_life_error=1 h").is_calm(nearly)

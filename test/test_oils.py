@@ -294,3 +294,10 @@ def test_what_a_name_alone_says_about_an_oil_enters_the_uncertainty():
     aviation = ranges_of(scene("lubricant.oil=MIL-PRF-23699"))
     measured = ranges_of(scene("lubricant.oil={viscosity_40: 70 mm^2/s, viscosity_100: 9 mm^2/s}", "lubricant.traction={law: constant, b: 0.5}"))
     assert not any(one.field.startswith("lubricant.") for one in (*aviation, *measured))
+
+
+@pytest.mark.parametrize(
+    ("base", "stress", "ratio"), [("mineral", 5e6, 0.07), ("pao", 5e6, 0.055), ("ester", 5e6, 0.05), ("pag", 4.5e6, 0.04), ("aviation", 5e6, 0.075)]
+)
+def test_shear_strengths_at_40_degrees_are_those_of_the_theory_page(base, stress, ratio):
+    assert shear_strength(base, 40.0 + ZERO) == pytest.approx((stress, ratio))

@@ -5,7 +5,7 @@ import math
 
 import pytest
 
-from bearing_sim.runtime.pacing import Pacer
+from bearing_sim.runtime.pacing import SHORTEST_LIMIT, Pacer, tick_limit, tick_schedule
 
 TICK = 0.01
 
@@ -92,3 +92,21 @@ def test_nothing_is_claimed_before_the_first_tick():
 def test_a_parameter_that_is_no_positive_number_is_refused_by_name(parameter, value):
     with pytest.raises(ValueError, match=parameter):
         Pacer(**{parameter: value})
+
+
+@pytest.mark.parametrize("sample_rate", [0.5, 10.0, 48.0, 100.0, 1000.0, 44100.0])
+@pytest.mark.parametrize("publish_rate", [1.0, 30.0, 50.0, 100.0, 200.0])
+def test_ticks_give_the_sample_rate_and_are_as_long_as_the_outputs_allow(sample_rate, publish_rate):
+    tick, samples, every = tick_schedule(sample_rate, publish_rate)
+    assert samples / (tick * every) == pytest.approx(sample_rate) and min(samples, every) == 1
+    limit = tick_limit(publish_rate)
+    assert tick <= limit * (1 + 1e-9)
+    if tick < SHORTEST_LIMIT / 2:  # then another sample in each block would be too long
+        assert (samples + 1) / sample_rate > SHORTEST_LIMIT
+
+
+def test_ticks_are_long_only_where_a_period_of_outputs_is_a_whole_number_of_them():
+    assert tick_schedule(100.0, 50.0).tick == pytest.approx(0.01)
+    assert tick_schedule(100.0, 100.0).tick == pytest.approx(0.005)
+    assert tick_schedule(100.0, 30.0).tick == pytest.approx(0.005), "30 outputs a second are no whole number of ticks of 10 ms apart"
+    assert tick_schedule(200.0, 40.0).tick == pytest.approx(0.005) and tick_schedule(200.0, 20.0).tick == pytest.approx(0.01)

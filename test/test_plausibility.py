@@ -3,6 +3,7 @@
 
 import dataclasses
 import json
+import math
 
 import pytest
 from click.testing import CliRunner
@@ -113,3 +114,12 @@ def test_commands_print_what_is_implausible_and_go_on(command, tmp_path):
     if name != "uncertainty":
         (found,) = json.loads(result.stdout)["implausible"]
         assert found.startswith("bearing.cage.mass: ")
+
+
+def test_the_mass_of_a_cage_is_judged_by_a_ring_less_its_pockets():
+    found = plausibility(motor("bearing.cage.mass=2 kg"))
+    # 33.5 to 37.7 mm by 14 mm, less 16 pockets of 11 mm and twice the pockets' clearance by 12 mm by the thickness of the ring
+    cage = motor().bearing.cage
+    inside, outside, pocket = 33.5e-3, 37.7e-3, 11e-3 + 2 * cage.pocket_clearance
+    volume = math.pi * (outside**2 - inside**2) * 14e-3 - 16 * pocket * 12e-3 * (outside - inside)
+    assert f"for about {1e6 * volume:.3g} cm^3" in found[0], found

@@ -9,11 +9,21 @@ from scipy.integrate import solve_bvp
 
 from bearing_sim import Inputs, SceneError, Simulation, load_scene
 from bearing_sim.model.params import lubricate, pack
-from bearing_sim.model.running_clearance import largest_hoop_stress, mounted, uniform
+from bearing_sim.model.running_clearance import largest_hoop_stress, mounted, sleeve_pressure, uniform
 from bearing_sim.physics.growth import Temperatures, clearance_at, growth_at, total_growth
 from bearing_sim.physics.layers import Layer, State, contact_pressures, displacement, hoop_stress, spinning_roller_growth
+from bearing_sim.scene import mounting
 from bearing_sim.scene.loader import scene_from_yaml, scene_to_yaml
-from bearing_sim.scene.mounting import Housing, Shaft, clearance_limits, housing_interference, shaft_interference, smoothed, tolerance_limits
+from bearing_sim.scene.mounting import (
+    Housing,
+    Mounting,
+    Shaft,
+    clearance_limits,
+    housing_interference,
+    shaft_interference,
+    smoothed,
+    tolerance_limits,
+)
 
 COLD = "bearing.dimensions_at=cold"
 STEEL = (2.06e11, 0.3, 7850.0, 1.2e-5)
@@ -296,3 +306,28 @@ def test_the_stress_at_the_bore_is_that_of_fit_and_rotation():
     pressure = 2.06e11 * ring_on_shaft(30e-6, Layer(0.0, b, *STEEL), Layer(b, c, *STEEL))
     assert at_rest == pytest.approx(pressure * (c * c + b * b) / (c * c - b * b), rel=1e-10)
     assert largest_hoop_stress(scene.bearing, parts, 6000.0) > at_rest
+
+
+def test_tables_of_fits_and_clearances_are_to_the_digit_those_that_were_compared_with_printed_ones():
+    """Sums of the standards' tables [um], over all ranges of diameter, of copies other than the one that the package was written from."""
+    sums = {
+        "IT4 to IT8 (ISO 286-1)": ([sum(row) for row in mounting._GRADES.values()], [127, 184, 266, 424, 655]),
+        "f to p (ISO 286-2)": ([sum(row) for row in mounting._DEVIATIONS.values()], [-435, -139, 0, 32, 156, 278, 447]),
+        "j5 to j7 (ISO 286-2)": ([sum(row) for row in mounting._J_SHAFT.values()], [-112, -112, -189]),
+        "J6, J7 (ISO 286-2)": ([sum(row) for row in mounting._J_HOLE.values()], [192, 268]),
+        "r, s (ISO 286-2)": ([sum(row) for row in mounting._FINE_DEVIATIONS.values()], [1427, 2326]),
+        "least clearance, C2 to C5 (ISO 5753-1)": (np.sum(mounting._CLEARANCES, axis=0)[:, 0].tolist(), [1675, 3640, 5525, 7455, 11025]),
+        "largest clearance, C2 to C5 (ISO 5753-1)": (np.sum(mounting._CLEARANCES, axis=0)[:, 1].tolist(), [3670, 5635, 7520, 9450, 13020]),
+    }
+    for name, (found, printed) in sums.items():
+        assert found == printed, name
+
+
+def test_a_sleeve_loses_pressure_with_the_square_of_the_speed():
+    scene = load_scene("deng2017_table1", ["bearing.dimensions_at=cold", f"mounting.shaft={{interference: 30 um, {SLEEVE}}}"])
+    still, slow, fast = (sleeve_pressure(scene.bearing, scene.mounting, speed) for speed in (0.0, 2000.0, 4000.0))
+    assert 0.0 < fast < slow < still and still - fast == pytest.approx(4.0 * (still - slow))
+    assert sleeve_pressure(scene.bearing, Mounting(), 2000.0) == math.inf, "there is none"
+
+
+SLEEVE = "sleeve: {bore_radius: 22 mm, interference: 20 um}"

@@ -261,7 +261,9 @@ def test_another_level_oil_threshold_or_calibration_is_the_same_bearing(tmp_path
     keeper.close()
     assert keeper.state.learned and keeper.state.serial == "A1"
     keeper = StateKeeper(path, load_scene("deng2017_table1", ["lubricant.mixture_fraction=0.05"]), "A1")
-    assert [event.kind for event in keeper.news(0.0)] == ["state.continued", "state.recalibrated"] and keeper.state.learned == {}
+    continued, recalibrated = keeper.news(0.0)
+    assert (continued.kind, recalibrated.kind) == ("state.continued", "state.recalibrated") and keeper.state.learned == {}
+    assert "calibrated since: lubricant.mixture_fraction 0.05; what" in recalibrated.reason, "only what has changed is named"
     keeper.close()
 
 

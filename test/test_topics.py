@@ -453,3 +453,8 @@ def test_slip_lowers_the_frequencies_of_cage_and_outer_ring_and_raises_that_of_t
     np.testing.assert_allclose(slipping[:2], [0.9 * cage, 0.9 * outer], rtol=1e-14)
     assert inner + outer == pytest.approx(18 * 1000.0 / (2 * math.pi)) == slipping[1] + slipping[2] and slipping[2] > inner
     assert (spin, slipping[3]) == pytest.approx((4040.0 / (2 * math.pi), 3796.0 / (2 * math.pi))), "of the rollers that are loaded"
+
+
+def test_temperatures_and_flows_of_heat_are_published_only_for_scenes_with_a_law_of_heat():
+    without, given = (topics.outputs(load_scene("deng2017_table1", overrides)) for overrides in ([], ["heat.law=given"]))
+    assert given.keys() - without.keys() == {"predicted_temperatures", "heat_flows"} and without.keys() <= given.keys()
