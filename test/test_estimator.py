@@ -1,13 +1,16 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The estimator against machines with known fields, whose slip is a closed form that only the response's polynomials have been fitted to."""
 
+import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.special import ndtri
 from scipy.stats import qmc
 
+from bearing_sim.estimation.causes import CLEARANCE, LOAD, OIL, OIL_QUANTITY, SENSOR, TRACTION, Evidence, causes_of
 from bearing_sim.estimation.estimator import Estimator
 from bearing_sim.estimation.response import conditions_at, domain_of, fit_response, scene_fields
 from bearing_sim.scene.loader import load_scene
@@ -42,8 +45,9 @@ def response(scene):
     conditions, scores = conditions_at(uniform[:, :4], domain), ndtri(np.clip(uniform[:, 4:], 1e-5, 1.0 - 1e-5))
     answers = np.full((len(scores), 6), math.nan)
     answers[:, 0] = [slip_of(fields, *each) for each in zip(scores, conditions)]
-    answers[:, 1:3], answers[:, 3] = 300.0, 5e-6 * scores[:, 2]
-    print(fit_response(fields, domain, conditions, scores, answers).errors)
+    positions = 4.0 * fields.fractions_of(scores) - 2.0
+    answers[:, 1:3], answers[:, 3] = 300.0, 5e-6 * positions[:, 2]
+    answers[:, 4:] = 400.0 + 5.0 * positions[:, :1]
     assert tuple(one.field for one in fields.ranges) == FIELDS
     return fit_response(fields, domain, conditions, scores, answers)
 
@@ -85,3 +89,160 @@ def test_a_measured_cage_moves_the_prediction_to_it_and_narrows_its_band(scene, 
     after = estimator.prediction(rig.sample())
     assert after.mean() == pytest.approx(truth, abs=5e-4) and before.std() > 0.01
     assert abs(after.mean() - truth) < 3.0 * after.std() < 0.1 * before.std()
+
+
+def test_quantity_and_traction_of_the_oil_cannot_be_told_apart_and_that_is_said(scene, response):
+    rig, estimator = Rig(scene, response, [1.0, -0.5, 0.0]), Estimator(scene, response)
+    for conditions in COURSE:
+        rig.run(estimator, 30, conditions)
+    known = {one.field: one for one in estimator.estimates()}
+    shrunk = widths(estimator)
+    assert (QUANTITY, SCALE) in estimator.unresolved()
+    assert shrunk[QUANTITY] > 0.4 and shrunk[SCALE] > 0.6, "each alone is nearly as uncertain as before"
+    assert all(one.low <= response.values_of(rig.scores)[k] <= one.high for k, one in enumerate(known.values()))
+
+
+def widths(estimator):
+    """Return the widths of all intervals over those before any measurement, by field."""
+    return {one.field: (one.high - one.low) / (one.prior_high - one.prior_low) for one in estimator.estimates()}
+
+
+def test_a_ring_temperature_that_follows_the_quantity_of_oil_tells_it_from_the_traction(scene, response):
+    rig, estimator = Rig(scene, response, [1.0, -0.5, 0.0]), Estimator(scene, response)
+    rig.run(estimator, 60)
+    before = widths(estimator)
+    warm = 5.0 * (4.0 * response.fields.fractions_of(rig.scores)[0] - 2.0)
+    usual = 5.0 * (4.0 * response.fields.fractions_of(response.nominal)[0] - 2.0)
+    block = np.repeat(rig.sample()[None], 600, axis=0)
+    block["time"] = rig.now + 0.1 * np.arange(1.0, 601.0)
+    block["inner_ring_temperature_uncorrected"] = 380.0
+    block["inner_ring_temperature_measured"] = 380.0 + warm - usual + 0.5 * rig.random.normal(size=600)
+    for first in range(0, 600, 10):
+        estimator.take(block[first : first + 10])
+    after = widths(estimator)
+    assert after[QUANTITY] < 0.5 * before[QUANTITY] and after[SCALE] < before[SCALE]
+    found = estimator.estimates()[0]
+    assert found.low <= response.values_of(rig.scores)[0] <= found.high
+
+
+def test_a_measured_clearance_teaches_the_raceway(scene, response):
+    rig, estimator = Rig(scene, response, [0.0, 0.0, 0.8]), Estimator(scene, response)
+    positions = [4.0 * response.fields.fractions_of(scores)[2] - 2.0 for scores in (rig.scores, response.nominal)]
+    for _ in range(20):
+        estimator.measure_clearance(rig.now + 0.05, 5e-6 * (positions[0] - positions[1]) + 2e-6 * rig.random.normal())
+        block = np.repeat(rig.sample()[None], 1, axis=0)
+        block["time"] = rig.now = rig.now + 0.1
+        estimator.take(block)
+    found = estimator.estimates()[2]
+    assert widths(estimator)[RADIUS] < 0.6 and found.low <= response.values_of(rig.scores)[2] <= found.high
+
+
+def test_a_field_that_is_not_calibrated_keeps_its_range(scene, response):
+    rig, estimator = Rig(scene, response, [1.0, 1.0, 0.0]), Estimator(load_at(scene, QUANTITY), response)
+    rig.run(estimator, 60)
+    by_field = {one.field: one for one in estimator.estimates()}
+    for path in (SCALE, RADIUS):
+        one = by_field[path]
+        assert not one.calibrated and one.low == one.prior_low and one.high == one.prior_high
+
+
+def load_at(scene, *calibrated):
+    """Return the scene with other calibrated fields."""
+    return replace(scene, estimation=replace(scene.estimation, calibrated=calibrated))
+
+
+def test_one_wild_reading_in_five_leaves_the_prediction_where_the_others_are(scene, response):
+    rig, estimator = Rig(scene, response, [0.5, 0.5, 0.5]), Estimator(scene, response)
+    told = rig.run(estimator, 200, wild=0.2)
+    assert estimator.prediction(rig.sample()).mean() == pytest.approx(slip_of(response.fields, rig.scores, POINT), abs=1.5e-3)
+    assert math.isnan(told)
+
+
+def test_a_silent_sensor_changes_nothing_and_time_widens_what_is_known(scene, response):
+    rig, estimator = Rig(scene, response, [1.0, 0.0, 0.0]), Estimator(scene, response)
+    rig.run(estimator, 60)
+    known = estimator.prediction(rig.sample())
+    estimator.posterior.wait(0.2 * scene.estimation.drift.wander_time)
+    later = estimator.prediction(rig.sample())
+    assert later.mean() == pytest.approx(known.mean(), abs=2e-3) and later.std() > 2.0 * known.std()
+
+
+def test_a_step_of_the_mixture_fraction_from_003_to_004_is_told_within_30_s_with_its_cause_among_those_named(scene, response):
+    start, end = (response.scores_of(np.array([quantity, 1.0, 34.8625e-3]))[0] for quantity in (0.03, 0.04))
+    rig, estimator = Rig(scene, response, [start, 0.0, 0.0]), Estimator(scene, response)
+    assert math.isnan(rig.run(estimator, 200))
+    began, rig.scores[0] = rig.now, end
+    told = rig.run(estimator, 40)
+    assert told - began <= 30.0
+    likeliest = estimator.change.causes[0]
+    assert OIL_QUANTITY in {cause.group for cause in estimator.change.causes if cause.probability > likeliest.probability / 3.0}
+    assert estimator.prediction(rig.sample()).mean() == pytest.approx(slip_of(response.fields, rig.scores, POINT), abs=2e-3)
+    event = next(event for event in estimator.events(rig.now) if event.kind == "calibration.change")
+    assert "likeliest cause" in event.reason
+
+
+def test_an_alarm_ends_when_the_machine_is_as_before_or_when_the_change_is_accepted(scene, response):
+    rig, estimator = Rig(scene, response, [0.0, 0.0, 0.0]), Estimator(scene, response)
+    rig.run(estimator, 150)
+    rig.run(estimator, 15, offset=0.03)
+    assert estimator.change is not None
+    rig.run(estimator, 60)
+    assert estimator.change is None and estimator.events(rig.now) == []
+    rig.run(estimator, 15, offset=0.03)
+    estimator.accept()
+    assert estimator.change is None and math.isnan(rig.run(estimator, 60, offset=0.03))
+
+
+@pytest.mark.parametrize(
+    ("group", "change"),
+    [
+        (CLEARANCE, lambda scores, conditions: (scores + [0.0, 0.0, 1.6], conditions, 1.0)),
+        (LOAD, lambda scores, conditions: (scores, conditions * [1.0, 0.6, 1.0, 1.0], 1.0)),
+        (SENSOR, lambda scores, conditions: (scores, conditions, 0.97)),
+        (OIL_QUANTITY, lambda scores, conditions: (scores + [1.3, 0.0, 0.0], conditions, 1.0)),
+    ],
+    ids=["clearance", "load", "sensor", "quantity"],
+)
+def test_a_change_at_several_operating_points_is_named_after_its_cause_or_after_one_that_acts_alike(scene, response, group, change):
+    estimator = Estimator(scene, response)
+    rig = Rig(scene, response, [0.0, 0.0, -0.5])
+    for conditions in COURSE:
+        rig.run(estimator, 20, conditions)
+    before = estimator.posterior
+    rows = []
+    for conditions in COURSE:
+        scores, actual, scale = change(rig.scores, conditions)
+        own, slip = slip_of(response.fields, response.nominal, conditions), slip_of(response.fields, scores, actual)
+        rows.append((conditions, own, 1.0 - scale * (1.0 - slip) - own, 4e-7))
+    evidence = Evidence(*(np.array(column) for column in zip(*rows)))
+    causes = causes_of(scene, response, before, evidence)
+    assert sum(cause.probability for cause in causes) == pytest.approx(1.0)
+    factors = {OIL_QUANTITY, TRACTION, OIL, LOAD}  # slip grows by a factor that is nearly the same at all conditions
+    rivals = {cause.group for cause in causes if cause.probability > 0.2 * causes[0].probability}
+    assert causes[0].group in (factors if group in factors else {group}) and group in rivals
+
+
+def test_what_was_learned_survives_a_restart_as_json(scene, response):
+    rig, estimator = Rig(scene, response, [1.0, -0.5, 0.6]), Estimator(scene, response)
+    for conditions in COURSE[:2]:
+        rig.run(estimator, 70, conditions)
+    other = Estimator(scene, response)
+    other.restore(json.loads(json.dumps(estimator.learned)))
+    now, then = (each.prediction(rig.sample(COURSE[1])) for each in (estimator, other))
+    assert then.mean() == pytest.approx(now.mean(), abs=2e-4) and then.std() == pytest.approx(now.std(), rel=0.3)
+    assert other.is_calibrated and Estimator(scene, response).learned == {}
+
+
+@pytest.mark.parametrize(
+    "broken", [{"ranges": 1}, {"measured": [["cage_slip", 1.0]]}, {"measured": [["x", *[1.0] * 8]]}, {"noise": [0, 1, 2, 3]}, {"updates": "x"}]
+)
+def test_a_broken_posterior_is_refused_and_leaves_the_ranges_of_the_scene(scene, response, broken):
+    rig, estimator = Rig(scene, response, [1.0, 0.0, 0.0]), Estimator(scene, response)
+    rig.run(estimator, 20)
+    other = Estimator(scene, response)
+    if "ranges" in broken:
+        other.restore({**estimator.learned, **broken})
+    else:
+        with pytest.raises((KeyError, TypeError, ValueError)):
+            other.restore({**estimator.learned, **broken})
+    assert not other.is_calibrated

@@ -34,6 +34,7 @@ _STUDIES = {
     "friction": Entry("study:friction", "Frictional moment and thermal reference speed against makers' models."),
     "scenes": Entry("study:scenes", "Whether random scenes of catalogue bearings settle, level by level."),
     "findings": Entry("study:findings", "Published findings about slip, and whether the model finds the same."),
+    "estimator": Entry("estimator_study:estimator", "Whether the calibration of a running model is right about machines with hidden fields."),
     "catalog": Entry("study:catalog_rules", "Rules for the inside of catalogue bearings, and their errors."),
     "extremes": Entry("study:extremes", "Map which scenes finish, are step-limited, are refused or fail."),
     "nightly": Entry("study:nightly", "Extreme scenes at stock settings, corners and long runs, with their books of energy."),

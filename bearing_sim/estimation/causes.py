@@ -32,10 +32,11 @@ _GROUPS = {  # by what the path of a field contains
     CLEARANCE: ("clearance", "radius", "diameter", "interference", "d_value", "mounting"),
     COOLING: ("heat.",),
 }
-_SIZES = 41  # of a change that are tried
+_SIZES, _FINE = 41, 20  # sizes of a change at which its effect is computed, and parts of the way between two at which it is interpolated
 _TEMPERATURE_CHANGE = 15.0  # K; standard deviation of an oil temperature given wrongly, or of a viscosity that corresponds to it (assumption)
 _LOAD_CHANGE = 0.3  # of the logarithm of a load given wrongly (assumption)
 _SCALE_CHANGE = 0.03  # of a sensor's scale (assumption)
+_SENSITIVITY = 0.15  # relative; how far the fields that are not known may change what a cause does, alike at all points (assumption)
 _UNEXPLAINED = 0.05  # slip; standard deviation of a departure without a modelled cause, independent from point to point (assumption)
 _NEAR = (0.02, 0.1, 2.0)  # relative speed, relative load, and K, within which batches share an operating point
 _LEAST_ERROR = 1e-4  # of the mean slip at a point; the response is not better
@@ -148,13 +149,31 @@ class _Departures:
         return np.array(rows)
 
     def log_likelihood(self, effects: np.ndarray, more: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
-        """Return logarithms of the probability of the departures under effects of shape (k, m), and the mean squares left; each of shape (k,)."""
+        """Return logarithms of the probability of the departures under effects, and the mean squares left; each at the sizes of `_finely`.
+
+        Parameters
+        ----------
+        effects : of k sizes, shape (k, m).
+        more : standard deviation of what is not explained besides.
+        """
         covariance = self.covariance + more**2 * np.eye(len(self.residual))
+        effects = _finely(effects)
         factor = np.linalg.cholesky(covariance)
-        left = np.linalg.solve(factor, (self.residual - np.nan_to_num(effects)).T).T
-        found = -0.5 * np.square(left).sum(axis=1) - np.log(np.diag(factor)).sum()
+        left = np.linalg.solve(factor, (self.residual - np.nan_to_num(effects)).T)
+        scaled = np.linalg.solve(factor, _SENSITIVITY * np.nan_to_num(effects).T)
+        more_variance = 1.0 + np.square(scaled).sum(axis=0)
+        squares = np.square(left).sum(axis=0) - np.square((left * scaled).sum(axis=0)) / more_variance
+        found = -0.5 * squares - np.log(np.diag(factor)).sum() - 0.5 * np.log(more_variance)
         found[np.isnan(effects).any(axis=1)] = -np.inf
-        return found, np.square(left).mean(axis=1)
+        return found, squares / len(self.residual)
+
+
+def _finely(values: np.ndarray) -> np.ndarray:
+    """Return rows of shape (k, m) with others in between, on straight lines; departures may be known much better than effects are spaced."""
+    fine = np.linspace(0.0, len(values) - 1.0, (len(values) - 1) * _FINE + 1)
+    below = np.minimum(fine.astype(int), max(len(values) - 2, 0))
+    above = np.minimum(below + 1, len(values) - 1)
+    return values[below] + (fine - below)[:, None] * (values[above] - values[below])
 
 
 def causes_of(scene: Scene, response: ResponseModel, before: Posterior, evidence: Evidence) -> tuple[Cause, ...]:
@@ -201,6 +220,7 @@ def causes_of(scene: Scene, response: ResponseModel, before: Posterior, evidence
 
 def _cause(group: str, what: str, before: float, values: np.ndarray, likelihood: tuple[np.ndarray, np.ndarray], quiet: float, show) -> Cause:
     """Return a cause from the probabilities of the sizes that it may have, all equally probable beforehand."""
+    values = _finely(values[:, None])[:, 0]
     logarithms, misfits = likelihood
     total = float(logsumexp(logarithms))
     if not math.isfinite(total):

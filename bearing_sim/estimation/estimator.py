@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.estimation.causes import Cause, Evidence, causes_of
-from bearing_sim.estimation.posterior import CLEARANCE, INNER, OUTER, SLIP, Posterior, prior_scores
+from bearing_sim.estimation.posterior import CLEARANCE, DRAWS, INNER, OUTER, SLIP, Posterior, prior_scores
 from bearing_sim.estimation.response import ResponseModel
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.monitoring.residual import CALIBRATED_SLIP, Course, ResidualMonitor
@@ -34,11 +34,13 @@ _SETTLING = 0.5  # s; lags of settled cages are below a third of it
 _WARMING = 300.0  # s; time constant by which the conditions of rings are averaged (assumption)
 _WARM = 0.05  # relative difference of speed and load to their averages up to which rings count as settled
 _TEMPERATURES_EVERY = 10.0  # s
+_SYSTEMATIC = 0.25  # of the noise of a reading; standard deviation of what the cage sensor is off by all the time (assumption)
 _WIDE = 0.3  # slip; standard deviation of wild readings (assumption)
 _TOO_FEW = 5  # readings of a batch, below which their scatter is not known
 _SCATTER_WEIGHT = 20.0  # readings that the scene's noise counts for
 _SCATTER_MEMORY = 2000.0  # readings
-_FARTHEST = 2.0  # standard deviations that a reading counts in the mean of a batch (Huber)
+_FARTHEST = 3.0  # standard deviations from the median up to which a reading counts in the mean of a batch
+_NORMAL = 1.4826  # standard deviation of a normal distribution over its median absolute deviation
 _LARGEST_CORRELATION = 0.95
 _HELD = 300  # batches that are kept aside while a change is suspected, and that are remembered since one
 _EXPLAIN_EVERY = 10  # batches
@@ -47,7 +49,7 @@ _CONTRADICTED = 0.5  # of the newest batches wild: the ranges do not contain wha
 _CONTRADICTION = 60  # batches
 _ENDS = (0.5, 0.05, 0.95)  # quantiles of an estimate
 _LEARNED = 0.5  # standard deviation of a combination of scores below which it counts as learned
-_OPEN = 0.7  # of a score above which its field counts as not learned
+_WORSE = 2.0  # times as uncertain is a field alone that is known only in a combination
 _TAKES_PART = 0.3  # coefficient of a field in a learned combination, of a unit vector
 
 
@@ -134,17 +136,16 @@ class _Scatter:
 
     def mean(self, values: np.ndarray) -> tuple[float, float]:
         """Return the robust mean of readings and its variance, and learn their scatter."""
-        count, deviation = len(values), self.deviation
-        middle = float(np.median(values))
-        for _ in range(3):
-            middle += float(np.clip(values - middle, -_FARTHEST * deviation, _FARTHEST * deviation).mean())
+        count, middle = len(values), float(np.median(values))
+        deviation = max(self.deviation, _NORMAL * float(np.median(np.abs(values - middle)))) if count >= _TOO_FEW else self.deviation
+        near = values[np.abs(values - middle) <= _FARTHEST * deviation]
+        middle, deviation = float(near.mean()), self.deviation
         usual = middle if math.isnan(self._usual) or abs(middle - self._usual) > _FARTHEST * deviation else self._usual
         away = np.clip(values - usual, -3.0 * deviation, 3.0 * deviation)
         self._usual = usual + 0.1 * (middle - usual)
         if count >= _TOO_FEW:
             self._fade(count)
-            near = np.abs(values - middle) < 3.0 * max(deviation, 1.4826 * float(np.median(np.abs(values - middle))))
-            self._squares += float(np.square(values - middle)[near].sum()) * count / max(int(near.sum()) - 1, 1)
+            self._squares += float(np.square(near - middle).sum()) * count / max(len(near) - 1, 1)
             self._count += count
         self._products += float(away[1:] @ away[:-1])
         self._pairs += count - 1
@@ -176,6 +177,9 @@ class Estimator:
         settings = self._settings
         self._known = np.array([name in known for name in response.names], bool)
         self._calibrated = np.array([name in settings.calibrated for name in response.names], bool) & ~self._known
+        self._prior = np.quantile(
+            response.values_of(np.where(self._known, response.nominal, prior_scores(DRAWS, len(self._known)))), _ENDS[1:], axis=0
+        )
         self._residual = ResidualMonitor(scene.thresholds.residual, scene.thresholds.slip_from_speed, CALIBRATED_SLIP)
         self._course = Course(_OBSERVED)
         self.restart()
@@ -436,47 +440,32 @@ class Estimator:
         """Return draws of the slip that the calibrated model predicts, from a sample of the level; shape (m,), NaN outside of the response."""
         row = [float(sample[name]) for name in _OBSERVED]
         conditions, own = self._conditions(row), row[5]
-        return own + self.posterior.drawn(SLIP, conditions, own)
-
-    def draws(self, conditions: np.ndarray, slips: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return equally probable draws of what is uncertain, for `bearing_sim.estimation.bands.BandEstimator.use`.
-
-        Parameters
-        ----------
-        conditions : operating points as `bearing_sim.estimation.response.CONDITIONS`, shape (n, 4).
-        slips : of the level there, shape (n,).
-
-        Returns
-        -------
-        scores : of the fields, shape (m, d).
-        slips : by the calibrated model at the operating points, shape (m, n).
-        """
-        found = [slip + self.posterior.drawn(SLIP, each, float(slip)) for each, slip in zip(conditions, slips)]
-        return self.posterior.scores, np.stack(found, axis=-1)
+        return own + self.posterior.drawn(SLIP, conditions, own, _SYSTEMATIC * self._settings.noise.cage_speed)
 
     def estimates(self) -> tuple[Estimate, ...]:
         """Return what is known about each uncertain field, in the order of the response."""
         values = np.quantile(self._response.values_of(self.posterior.scores), _ENDS, axis=0)
-        prior = np.quantile(self._response.values_of(prior_scores(len(self.posterior.scores), len(self._known))), _ENDS[1:], axis=0)
+        prior = self._prior
         return tuple(
             Estimate(name, *map(float, values[:, k]), *map(float, prior[:, k]), bool(self._calibrated[k]))
             for k, name in enumerate(self._response.names)
         )
 
     def unresolved(self) -> tuple[tuple[str, ...], ...]:
-        """Return groups of fields of which only a combination is known: each of them alone is about as uncertain as before.
+        """Return groups of fields of which a combination is known much better than each of them alone.
 
-        A combination counts as known where its standard deviation, in scores, is below a half; a field as unknown above 0.7.
+        A combination counts as known where its standard deviation, in scores, is below a half, and a field belongs to it that is twice as
+        uncertain by itself.
         """
         where = np.flatnonzero(self._calibrated)
         if not len(where):
             return ()
         covariance = np.atleast_2d(np.cov(self.posterior.scores[:, where].T))
         values, vectors = np.linalg.eigh(covariance)
-        open_fields = np.sqrt(np.diag(covariance)) > _OPEN
+        alone = np.diag(covariance)
         groups = []
         for value, vector in zip(values, vectors.T):
-            part = np.flatnonzero((np.abs(vector) > _TAKES_PART) & open_fields)
+            part = np.flatnonzero((np.abs(vector) > _TAKES_PART) & (alone > _WORSE**2 * value))
             if value < _LEARNED**2 and len(part) > 1:
                 groups.append(tuple(self._response.names[where[k]] for k in part))
         return tuple(dict.fromkeys(groups))

@@ -176,10 +176,10 @@ class Posterior:
         gain = cho_solve(factor, beside)
         return departures + (self._measured - self._predicted) @ gain, max(error**2 - float(beside @ gain), 0.0)
 
-    def drawn(self, quantity: str, conditions: np.ndarray, own: float) -> np.ndarray:
-        """Return draws of the departure of a quantity, the model's error included, shape (m,)."""
+    def drawn(self, quantity: str, conditions: np.ndarray, own: float, systematic: float = 0.0) -> np.ndarray:
+        """Return draws of the departure of a quantity, shape (m,): the model's error included, and a systematic one of what was measured."""
         departures, left = self.predict(quantity, conditions, own)
-        return departures + math.sqrt(left) * self._noise
+        return departures + math.hypot(math.sqrt(left), systematic if self.rows else 0.0) * self._noise
 
     def take(self, quantity: str, conditions: np.ndarray, own: float, departure: float, variance: float, wild: tuple[float, float]) -> Outcome:
         """Learn from a measurement.

@@ -11,12 +11,15 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
+from scipy.signal import lfilter
 
+from bearing_sim.estimation.causes import group_of
 from bearing_sim.estimation.estimator import Estimator
 from bearing_sim.estimation.response import ANSWERS, ResponseModel
 from bearing_sim.messages.events import Event
 from bearing_sim.model.params import pack
 from bearing_sim.model.sample import new_block
+from bearing_sim.monitoring.residual import CALIBRATED_SLIP, ResidualMonitor
 from bearing_sim.scene.scene import Scene
 from bearing_sim.studies.response import at_points
 from bearing_sim.sweep.tasks import Journal
@@ -32,6 +35,12 @@ _SPEEDS, _LOADS, _TEMPERATURES = (0.45, 1.1), (0.4, 4.0), (-10.0, 20.0)  # of pl
 _EARLY, _LATE = 1.0, 55.0  # s into a plateau at which predictions are judged: before anything was learned there, and after
 _ENDS = (0.5, 0.05, 0.95)  # quantiles of a prediction
 _HOUR = 3600.0
+RESIDUALS = {  # noise of the mean of a batch, and correlation of neighbours
+    "the sensor's noise": (NOISE / math.sqrt(RATE), 0.0),
+    "ten times the noise": (10.0 * NOISE / math.sqrt(RATE), 0.0),
+    "ten times the noise, correlated over 10 s": (10.0 * NOISE / math.sqrt(RATE), 0.9),
+}
+"""Kinds of residuals in which nothing changes."""
 
 
 class Machine(NamedTuple):
@@ -189,3 +198,158 @@ def judge(scene: Scene, response: ResponseModel, machine: Machine, seed: int, kn
 
 def _changes(estimator: Estimator, now: float) -> list[Event]:
     return [event for event in estimator.events(now) if event.kind == "calibration.change"]
+
+
+class Detection(NamedTuple):
+    """How a sudden change was found.
+
+    Attributes
+    ----------
+    seconds : from the change to its alarm; NaN where there was none.
+    rank : of the true group of causes among all, 1 for the likeliest; 0 where none was named.
+    told_apart : whether no other group was a third as probable as the likeliest.
+    """
+
+    seconds: float
+    rank: int
+    told_apart: bool
+
+
+def detections(
+    scene: Scene, response: ResponseModel, field: str, values: tuple[float, float], runs: int, seed: int, *, known: Sequence[str] = (),
+    seconds: float = 60.0, workers: int | None = None,
+) -> list[Detection]:  # fmt: skip
+    """Return how a step of a field is found at the scene's operating point, in machines whose other fields are hidden.
+
+    Parameters
+    ----------
+    scene, response, known : as of `judge`.
+    field : dotted path of the field.
+    values : before and after the step [SI].
+    runs, seed : number of machines, and what they are drawn from.
+    seconds : to wait for an alarm.
+    workers : see `bearing_sim.studies.response.at_points`.
+    """
+    random, column = np.random.default_rng(seed), response.names.index(field)
+    free = np.array([name not in known for name in response.names])
+    scores = np.where(free, random.normal(size=(runs, len(free))), response.nominal)
+    both = np.repeat(scores, 2, axis=0)
+    both[:, column] = np.tile(
+        [response.scores_of(np.where(np.arange(len(free)) == column, value, response.fields.own))[column] for value in values], runs
+    )
+    operating = scene.operating
+    there = np.array([operating.shaft_speed, operating.radial_load, scene.lubricant.temperature, operating.load_angle])
+    asked = np.concatenate([response.nominal[None], both])
+    slips = at_points(scene, asked, np.repeat(there[None], len(asked), axis=0), None, workers)[:, ANSWERS.index("cage_slip")]
+    own, pairs = float(slips[0]), slips[1:].reshape(runs, 2)
+    return [_detected(scene, response, there, own, pair, field, known, random, seconds) for pair in pairs if np.isfinite(pair).all()]
+
+
+def _detected(scene, response, there, own, slips, field, known, random, seconds) -> Detection:
+    learning = 1.5 * scene.thresholds.residual.learning
+    estimator, now, told = Estimator(scene, response, known), 0.0, math.nan
+    ideal = float(samples(scene, np.zeros(1), there[None], np.array([own]))["ideal_cage_speed"][0])
+    while now < learning + seconds:
+        times = now + (np.arange(RATE) + 1.0) / RATE
+        block = samples(scene, times, np.repeat(there[None], len(times), axis=0), np.full(len(times), own))
+        for time in times:
+            reading = slips[int(time > learning)] + NOISE * random.normal()
+            estimator.measure(float(time), (1.0 - reading) * ideal)
+        estimator.take(block)
+        now = float(times[-1])
+        if now > learning and math.isnan(told) and _changes(estimator, now):
+            told = now - learning
+    causes = estimator.change.causes if estimator.change is not None else ()
+    groups = list(dict.fromkeys(cause.group for cause in causes))
+    rank = groups.index(group_of(field)) + 1 if group_of(field) in groups else 0
+    others = [cause.probability for cause in causes if cause.group != causes[0].group]
+    return Detection(told, rank, bool(causes) and max(others, default=0.0) < causes[0].probability / 3.0)
+
+
+def false_alarms(scene: Scene, hours: float, noise: float, correlation: float, seed: int) -> int:
+    """Return how many alarms the change detector gives in hours of residuals in which nothing changes, one each batch.
+
+    Parameters
+    ----------
+    scene : its block ``thresholds.residual`` says what is promised.
+    hours : of residuals.
+    noise : standard deviation of a batch's mean, in slip.
+    correlation : of neighbouring batches.
+    seed : of the noise.
+    """
+    detection, random = scene.thresholds.residual, np.random.default_rng(seed)
+    monitor, alarms, before = ResidualMonitor(detection, 0.0, CALIBRATED_SLIP), 0, 0
+    now, state, left = 0.0, 0.0, math.sqrt(1.0 - correlation**2)
+    for _ in range(math.ceil(hours)):
+        values = noise * random.normal(size=round(_HOUR / detection.batch))
+        if correlation:
+            values, last = lfilter([left], [1.0, -correlation], values, zi=[state])
+            state = float(last[0])
+        for value in values.tolist():
+            monitor.take(now, 1.0, value, 0.0)
+            now += detection.batch
+            side = monitor.side
+            alarms, before = alarms + (side != 0 and before == 0), side
+    return alarms
+
+
+class Findings(NamedTuple):
+    """What a study of the estimator found; fractions, slip and seconds.
+
+    Attributes
+    ----------
+    runs : machines.
+    field_coverage : of the 90 % intervals of calibrated fields, over all fields and runs.
+    slip_coverage : of the 90 % intervals of slip, early and late in a plateau.
+    error, stated, open_loop : root mean square error of the prediction early and late, half the mean width of its interval, and root mean square
+        error of the scene's own values.
+    worse_runs : machines in which the prediction's root mean square error was larger than that of the scene's own values by more than is stated.
+    worse_instants : fraction of single predictions that were off by more than the scene's own values by more than is stated.
+    alarms : in all runs, in which nothing changes but slowly.
+    hours : of all runs.
+    by_field : coverage, and mean width over that before any measurement, by path.
+    """
+
+    runs: int
+    field_coverage: float
+    slip_coverage: tuple[float, float]
+    error: tuple[float, float]
+    stated: tuple[float, float]
+    open_loop: tuple[float, float]
+    worse_runs: int
+    worse_instants: float
+    alarms: int
+    hours: float
+    by_field: dict[str, tuple[float, float]]
+
+
+def findings(response: ResponseModel, judged: Sequence[Judgement], calibrated: Sequence[str]) -> Findings:
+    """Return what judgements of several machines amount to.
+
+    Parameters
+    ----------
+    response : of the scene.
+    judged : of each machine.
+    calibrated : paths of the calibrated fields.
+    """
+    names = [name for name in response.names if name in calibrated]
+    fields, widths = (np.array([getattr(one, name) for one in judged]) for name in ("fields", "widths"))
+    slips, errors, stated, own = (np.array([getattr(one, name) for one in judged]) for name in ("slips", "errors", "stated", "open_loop"))
+
+    def mean_square(values: np.ndarray, axis: tuple[int, ...]) -> np.ndarray:
+        return np.sqrt(np.mean(values**2, axis=axis))
+
+    worse = mean_square(errors, (1, 2)) > mean_square(own, (1, 2)) + stated.mean(axis=(1, 2))
+    return Findings(
+        len(judged),
+        float(fields.mean()),
+        tuple(map(float, slips.mean(axis=(0, 1)))),
+        tuple(map(float, mean_square(errors, (0, 1)))),
+        tuple(map(float, stated.mean(axis=(0, 1)))),
+        tuple(map(float, mean_square(own, (0, 1)))),
+        int(worse.sum()),
+        float(np.mean(np.abs(errors) > np.abs(own) + stated)),
+        int(sum(one.alarms for one in judged)),
+        len(judged) * errors.shape[1] * _PLATEAU / _HOUR,
+        {name: (float(fields[:, k].mean()), float(widths[:, k].mean())) for k, name in enumerate(names)},
+    )
