@@ -193,6 +193,13 @@ def test_a_slow_bearing_is_waited_for_and_ends_where_a_run_of_three_times_the_le
     assert later == pytest.approx(outcome.slip, abs=1e-3)
 
 
+def test_the_time_of_a_run_counts_from_where_its_simulation_stood():
+    simulation = Simulation(load_scene("deng2017_table1", ["level=slip"]))
+    simulation.advance(1.0)
+    length = shortest_run(simulation.scene, 0.05)
+    assert advance_until_settled(simulation, length, length).simulated == pytest.approx(length)
+
+
 @pytest.mark.parametrize("level", ["steady", "slip", "planar"])
 @pytest.mark.parametrize("speed", [-600.0, -1.0, 0.001, 1.0, 10.0])
 def test_slip_is_defined_for_every_turning_shaft(level, speed):
