@@ -1,6 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Claims about bands on their way: from the samples of a run into messages, recordings, results, diagnostics and views; none where none is asked."""
 
+import json
 import math
 
 import numpy as np
@@ -21,12 +22,15 @@ from bearing_sim.messages.cdr import typestore
 from bearing_sim.messages.diagnostics import report
 from bearing_sim.messages.events import Level
 from bearing_sim.messages.sample_messages import BandMessages
+from bearing_sim.model.sample import RING_TEMPERATURES
 from bearing_sim.recording.bag import RecordingError
 from bearing_sim.recording.reader import Recording
 from bearing_sim.recording.writer import McapSink
 from bearing_sim.runtime.replay import replay
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.simulation import Counters, Inputs
+from bearing_sim.stored_state.keeper import StateKeeper
+from bearing_sim.stored_state.state import Damaged, StoredState, migrated, new_state
 from bearing_sim.view.blueprint import blueprint
 from bearing_sim.view.worker import RerunFile
 
@@ -126,9 +130,9 @@ def test_a_band_lies_about_the_value_of_the_sample_as_the_field_moves_it(respons
 
 def test_diagnostics_show_both_edges_with_their_subject(response):
     live = LiveEstimation(SCENE, response)
-    assert live.values == {}
+    assert live.values(0.0) == {}
     live.take(synthetic_block(SCENE, 0.1 * np.arange(20)))
-    status = {each["name"].partition(": ")[2]: {pair["key"] for pair in each["values"]} for each in report(START, (), live.values)["status"]}
+    status = {each["name"].partition(": ")[2]: {pair["key"] for pair in each["values"]} for each in report(START, (), live.values(2.0))["status"]}
     assert {"cage slip 5 % [fraction]", "cage slip 95 % [fraction]"} <= status["slip"]
     assert {"rating life 5 % [h]", "remaining life 95 % [h]"} <= status["life"]
     assert {"running clearance 5 % [m]", "running clearance 95 % [m]"} <= status["clearance"]
@@ -149,14 +153,19 @@ class ListSink:
     write_start = write_inputs = write_event = write_measurement = write_diagnostics = close = write
 
 
-def replayed(scene, tmp_path, **options):
+def replayed(scene, tmp_path, measured=None, **options):
     def model(scene, inputs):
         simulation = FakeSimulation(inputs)
         simulation.counters = Counters(7, 2, 1, 0, 0, 0)
         return simulation
 
-    steady_log(tmp_path / "log.mcap", rate=50)
-    profile = judge(read_input_log(tmp_path / "log.mcap"), scene.accepted_inputs, Inputs(0.0, 0.0, 0.0, 393.15))
+    path = tmp_path / "log.mcap"
+    if not path.exists():
+        steady_log(path, duration=2.0 if measured is None else 4.0, rate=50)
+    profile = judge(read_input_log(path), scene.accepted_inputs, Inputs(0.0, 0.0, 0.0, 393.15))
+    if measured is not None:
+        profile.stamps[topics.MEASURED] = 100_000_000 * np.arange(1, 40)
+        profile.values[topics.MEASURED] = np.full(39, 0.4 * 4000.0 * (1.0 - measured))
     sink = ListSink()
     return replay(scene, profile, sink, model=model, **options), sink
 
@@ -223,3 +232,112 @@ def test_a_band_without_numbers_leaves_a_gap(response):
     block["oil_temperature"][1] = 800.0  # outside of what the response was fitted to
     (bands,) = LiveEstimation(SCENE, response).take(block)
     assert np.isnan(bands.numbers[1, 0, 1:]).all() and not math.isnan(bands.numbers[1, 0, 0]) and np.isfinite(bands.numbers[2, 0]).all()
+
+
+CALIBRATED = asking_scene(f"estimation.calibrated={FIELD}")
+
+
+def measured_run(live, seconds, true_slip, start=0.0):
+    """Let a cage with that slip be measured beside samples of 2 %; return the bands and estimates."""
+    random, found = np.random.default_rng(1), []
+    for second in range(round(seconds)):
+        block = synthetic_block(CALIBRATED, start + second + 0.1 * np.arange(1, 11), speeds=(4700.0, 4700.0), slips=(0.02, 0.02))
+        for name in RING_TEMPERATURES:
+            block[f"{name}_measured"] = math.nan
+        for sample in block:
+            live.measure(float(sample["time"]), float(sample["ideal_cage_speed"]) * (1.0 - true_slip - 0.001 * random.normal()))
+        found += live.take(block)
+    return found
+
+
+@pytest.fixture(scope="module")
+def calibrated(response):
+    live = LiveEstimation(CALIBRATED, response)
+    return live, measured_run(live, 60, 0.025)
+
+
+def test_a_measured_cage_moves_the_prediction_to_it_and_narrows_the_bands(calibrated):
+    live, found = calibrated
+    bands = [each for each in found if each.topic == BANDS]
+    slip = np.concatenate([each.numbers for each in bands])[:, 0]
+    assert slip[0, 0] == pytest.approx(0.02) and slip[-1, 0] == pytest.approx(0.025, abs=1e-3)
+    assert np.ptp(slip[-1, 1:]) < 0.2 * np.ptp(slip[0, 1:]) and slip[-1, 1] < 0.025 < slip[-1, 2]
+    life = np.concatenate([each.numbers for each in bands])[:, 1]
+    assert np.ptp(np.log(life[-1, 1:])) < 0.5 * np.ptp(np.log(life[0, 1:])), "what shares its cause with slip is known better, too"
+    assert live.is_calibrated and live.remark == "calibrated by measurements"
+
+
+def test_estimates_come_every_interval_and_close_in_on_the_field_that_was_hidden(calibrated):
+    estimates = [each for each in calibrated[1] if each.topic == ESTIMATES]
+    assert len(estimates) == 60 and {each.names for each in estimates} == {(FIELD,)}
+    hidden = 0.02 + 0.04 * (0.25 + math.log(0.025 / 0.02) / math.log(FACTOR))
+    value, low, high = estimates[-1].numbers[0, 0]
+    assert low < hidden < high and high - low < 0.5 * np.ptp(estimates[0].numbers[0, 0, 1:]) and low < value < high
+
+
+def test_what_was_learned_survives_and_says_less_the_longer_ago_it_was(calibrated, response):
+    def width(seconds):
+        again = LiveEstimation(CALIBRATED, response)
+        again.restore(json.loads(json.dumps(calibrated[0].learned, allow_nan=False)), seconds)
+        (value, low, high) = again.estimates[FIELD]
+        assert value == pytest.approx(calibrated[0].estimates[FIELD][0], rel=0.05)
+        return high - low
+
+    assert width(0.0) == pytest.approx(np.ptp(calibrated[0].estimates[FIELD][1:]), rel=0.3)
+    assert width(30 * 86400.0) > 1.2 * width(0.0)
+
+
+def test_a_measured_oil_temperature_keeps_what_was_learned_of_other_fields(response):
+    live = LiveEstimation(CALIBRATED, response)
+    measured_run(live, 20, 0.025)
+    before = live.estimates[FIELD]
+    live.know(["shaft_speed", "oil_temperature"])
+    assert live.estimates[FIELD] == pytest.approx(before, rel=0.1)
+
+
+def test_learned_by_something_else_is_refused_and_nothing_is_kept_of_it(response):
+    live = LiveEstimation(CALIBRATED, response)
+    with pytest.raises((KeyError, TypeError, ValueError)):
+        live.restore({"ranges": [[one.field, one.low, one.high, one.distribution, one.mode] for one in response.ranges]})
+    assert not live.is_calibrated and live.estimates == {}
+
+
+def test_a_replay_of_a_measured_cage_stores_what_it_has_learned_with_the_bearing(response, tmp_path):
+    state = tmp_path / "state.json"
+
+    def run():
+        keeper = StateKeeper(state, CALIBRATED, "A-17", once=True)
+        result, sink = replayed(CALIBRATED, tmp_path, response=response, keeper=keeper, measured=0.025)
+        keeper.close()
+        return keeper.state, sink
+
+    first, sink = run()
+    assert {bands.topic for bands in sink.bands} == {BANDS, ESTIMATES}
+    assert first.learned["estimation"]["updates"] > 0 and list(first.estimates[0].fields) == [FIELD]
+    second, _ = run()
+    assert second.learned["estimation"]["updates"] == first.learned["estimation"]["updates"], "a log that was counted teaches nothing again"
+    assert second.estimates == first.estimates, "an hour has one entry"
+
+
+def test_a_state_of_the_version_before_has_no_estimates_and_everything_else(tmp_path):
+    state = new_state(CALIBRATED, "A-17", START)
+    state.note_estimates(START, {FIELD: (0.03, 0.02, 0.04)})
+    old = {name: value for name, value in state.as_mapping().items() if name != "estimates"}
+    again = StoredState.from_mapping(migrated(1, json.loads(json.dumps(old))))
+    assert again.estimates == [] and again.serial == "A-17" and again.identity == state.identity
+    assert StoredState.from_mapping(json.loads(json.dumps(state.as_mapping()))).estimates == state.estimates
+
+
+@pytest.mark.parametrize("fields", [{FIELD: [0.03, 0.02]}, {FIELD: [0.03, 0.02, "nan"]}, {FIELD: "abc"}, [FIELD]])
+def test_a_history_of_estimates_that_is_none_is_damage(fields):
+    mapping = json.loads(json.dumps(new_state(CALIBRATED, "A-17", START).as_mapping()))
+    with pytest.raises(Damaged):
+        StoredState.from_mapping({**mapping, "estimates": [[START, fields]]})
+
+
+def test_a_history_of_estimates_stays_short_over_years_and_reaches_back_to_the_first():
+    state, hour = new_state(CALIBRATED, "A-17", START), 3_600_000_000_000
+    for k in range(5000):
+        state.note_estimates(START + k * hour // 2, {FIELD: (0.03, 0.02, 0.04)})
+    times = np.array([past.time_ns for past in state.estimates])
+    assert 200 <= len(times) <= 400 and times[0] == START and times[-1] > START + 2400 * hour and np.diff(times).min() >= hour

@@ -86,7 +86,10 @@ def _rows(path: Path, state) -> list[tuple[str, str]]:
     if stretches:
         rows.append(("counted", f"{time_text(stretches[0][0])} to {time_text(stretches[-1][1])}, with {len(stretches) - 1} gaps"))
     rows.append(("calibration", ", ".join(f"{name} {value:g}" for name, value in state.calibration.items()) or "none"))
-    learned = [name.replace("_", " ") for name, each in state.learned.items() if each]
+    if state.estimates:
+        time_ns, fields = state.estimates[-1]
+        rows.append(("estimates", f"of {time_text(time_ns)}, 5 to 95 % in parentheses: {', '.join(_estimate(*each) for each in fields.items())}"))
+    learned = [name.replace("_", " ") for name, each in state.learned.items() if each and name != "estimation"]
     rows.append(("learned residuals", ", ".join(learned) or "none"))
     if state.thermal is not None:
         rows.append(
@@ -98,6 +101,15 @@ def _rows(path: Path, state) -> list[tuple[str, str]]:
     if state.retired_ns is not None:
         rows.append(("taken out", time_text(state.retired_ns)))
     return rows
+
+
+def _estimate(path: str, numbers) -> str:
+    """Return a calibrated field with its band, in the unit in which it is shown."""
+    from bearing_sim.scene.scene import Scene
+    from bearing_sim.scene.uncertainty import quantities, shown
+
+    value, low, high = (shown(quantities(Scene), path, number) for number in numbers)
+    return f"{path} {value} ({low} to {high})"
 
 
 def _regimes(totals) -> list[tuple[str, str]]:

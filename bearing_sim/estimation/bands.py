@@ -17,6 +17,7 @@ QUANTITIES = ("cage_slip", "rating_life", "running_clearance", "remaining_life")
 PROBABILITIES = (0.05, 0.95)
 """Of lying below the ends of a band."""
 
+_QUANTILES = (*PROBABILITIES, 0.5)
 _DRAWS = 256  # of the scores before anything is measured, a power of two
 _HOUR = 3600.0
 _SLIP, _LIFE, _MODIFIED, _CLEARANCE = (ANSWERS.index(name) for name in ("cage_slip", "rating_life", "modified_rating_life", "running_clearance"))
@@ -40,13 +41,14 @@ class BandEstimator:
     Attributes
     ----------
     remaining_life : of the samples that were taken last, by the lives that they have themselves [h], shape (n,).
+    medians : of the quantities, of the samples that were taken last, shape (n, 4).
     """
 
     def __init__(self, scene: Scene, response: ResponseModel, known: Sequence[str] = ()):
         self.response, self._memory = response, scene.thresholds.remaining_life_memory
         self._own = response.basis_of(response.nominal[None])
-        self._time, self._rates = math.nan, np.full(3, math.nan)
-        self.remaining_life = np.empty(0)
+        self._time, self._rates = math.nan, np.full(4, math.nan)
+        self.remaining_life, self.medians = np.empty(0), np.empty((0, len(QUANTITIES)))
         self._drawn = prior_draws(len(response.fields))
         self.know(known)
 
@@ -84,34 +86,35 @@ class BandEstimator:
         own = np.stack([block["cage_slip"], block["rating_life"], block["modified_rating_life"], block["running_clearance"]], axis=1)
         own = transformed(np.concatenate([own, np.zeros((len(block), 2))], axis=1))
         ends = restored(own[:, None] + changes)
-        found = np.empty((len(block), len(QUANTITIES), len(PROBABILITIES)))
+        found = np.empty((len(block), len(QUANTITIES), len(_QUANTILES)))
         for column, answer in enumerate((_SLIP, _LIFE, _CLEARANCE)):
             found[:, column] = ends[:, :, answer]
         remaining = self._remaining_lives(block, np.exp(-changes[:, :, _MODIFIED]))
         self.remaining_life, found[:, 3] = remaining[:, 0], remaining[:, 1:]
-        return found
+        self.medians = found[:, :, -1]
+        return found[:, :, :-1]
 
     def _changes(self, block: np.ndarray) -> np.ndarray:
-        """Return the quantiles of the differences from the scene's own values on the scales of `transformed`, shape (n, 2, 6)."""
+        """Return the quantiles of the differences from the scene's own values on the scales of `transformed`, shape (n, 3, 6)."""
         load = np.hypot(block["load_y"], block["load_z"])
         conditions = np.stack([block["shaft_speed"], load, block["oil_temperature"], np.arctan2(block["load_z"], block["load_y"])], axis=1)
         there, indices = np.unique(conditions, axis=0, return_inverse=True)
         scaled = self.response.respond_scaled(there, self._basis)
-        return weighted_quantiles(scaled[:, 1:] - scaled[:, :1], self.weights, PROBABILITIES)[indices.ravel()]
+        return weighted_quantiles(scaled[:, 1:] - scaled[:, :1], self.weights, _QUANTILES)[indices.ravel()]
 
     def _remaining_lives(self, block: np.ndarray, factors: np.ndarray) -> np.ndarray:
-        """Return the remaining life [h] and its band, (1 - D)/(dD/dt) with dD/dt the fading mean of the damage rate, as `Monitor` computes it.
+        """Return the remaining life [h], its band and its median: (1 - D)/(dD/dt) with dD/dt the fading mean of the damage rate, as in `Monitor`.
 
         The fields have been what they are for as long as the bearing runs: what was off by a factor in the rate was off by it in the damage.
 
         Parameters
         ----------
         block : samples, shape (n,).
-        factors : of the rates of damage at both ends of the band, shape (n, 2).
+        factors : of the rates of damage at both ends of the band and at its median, shape (n, 3).
 
         Returns
         -------
-        shape (n, 3).
+        shape (n, 4).
         """
         factors = np.concatenate([np.ones((len(block), 1)), factors], axis=1)
         rates = factors / (_HOUR * block["modified_rating_life"][:, None])

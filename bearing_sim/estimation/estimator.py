@@ -261,6 +261,7 @@ class Estimator:
             raise
         for posterior in self._posteriors():
             posterior.wait(seconds)
+            posterior.restore(posterior.learned)  # so that the draws follow
         self.interrupt()
 
     def accept(self) -> None:

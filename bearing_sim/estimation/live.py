@@ -1,27 +1,35 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""What a run says about how sure it is: the bands of its results, sample by sample, for topics, recordings, views and diagnostics.
+"""What a run says about how sure it is: bands of its results, and what measurements teach about its scene, for topics, recordings and diagnostics.
 
-Samples in, bands and numbers out; all times are those of the samples.  A run has it where its scene asks for it (block ``estimation``).
+Samples and measurements in, bands, events and numbers out; all times are those of the samples.  A run has it where its scene asks for it (block
+``estimation``).
 """
 
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 
 import numpy as np
 
-from bearing_sim.estimation.bands import QUANTITIES, BandEstimator
+from bearing_sim.estimation.bands import PROBABILITIES, QUANTITIES, BandEstimator, weighted_quantiles
+from bearing_sim.estimation.estimator import Estimator
 from bearing_sim.estimation.response import ResponseModel
-from bearing_sim.messages.bands import BANDS, EDGES, Bands
+from bearing_sim.messages.bands import BANDS, EDGES, ESTIMATES, Bands
+from bearing_sim.messages.events import Event
 from bearing_sim.scene.scene import Scene
+from bearing_sim.scene.uncertainty import quantities
 
 UNITS = ("", "h", "m", "h")
 """Of `bearing_sim.estimation.bands.QUANTITIES`."""
+_SLIP = QUANTITIES.index("cage_slip")
 _OIL = "lubricant.temperature"  # the field that an input replaces
 _SHOWN_UNITS = {"": "fraction"}  # in diagnostics
 
 
 class LiveEstimation:
     """Estimates of one run.
+
+    Before anything is measured, bands lie about what the level computes.  Once measurements have calibrated fields, values and bands are those of the
+    calibrated model; the samples stay what the level computes.
 
     Parameters
     ----------
@@ -33,30 +41,95 @@ class LiveEstimation:
         self._scene, self._response = scene, response
         self._known: frozenset[str] = frozenset()
         self._period = 1.0 / scene.estimation.rate
+        self._estimator = Estimator(scene, response) if scene.estimation.calibrated else None
         self.restart()
 
     def restart(self) -> None:
-        """Forget the run so far."""
+        """Begin another run; what measurements have taught is kept."""
         self._bands = BandEstimator(self._scene, self._response, sorted(self._known))
-        self._last_period = -math.inf
+        self._last_period = self._next_estimates = -math.inf
         self._newest: Bands | None = None
+        if self._estimator is not None:
+            self._estimator.interrupt()
+            self._use_posterior()
 
     def know(self, channels: Collection[str]) -> None:
         """Take which input channels have messages: what is measured is not uncertain."""
         known = frozenset([_OIL] if "oil_temperature" in channels else [])
-        if known != self._known:
-            self._known = known
-            self._bands.know(sorted(known))
+        if known == self._known:
+            return
+        self._known = known
+        self._bands.know(sorted(known))
+        if self._estimator is not None:
+            learned = self._estimator.learned
+            self._estimator = Estimator(self._scene, self._response, sorted(known))
+            self._estimator.restore(learned)
+            self._use_posterior()
+
+    @property
+    def is_calibrated(self) -> bool:
+        """Whether measurements have taught anything."""
+        return self._estimator is not None and self._estimator.is_calibrated
+
+    @property
+    def learned(self) -> dict[str, object]:
+        """What measurements have taught, as JSON has it (see `bearing_sim.estimation.estimator.Estimator.learned`)."""
+        return {} if self._estimator is None else self._estimator.learned
+
+    def restore(self, learned: Mapping[str, object], seconds: float = 0.0) -> None:
+        """Continue from what was learned some time ago [s]; from nothing where it is empty, or of other ranges.
+
+        Raises
+        ------
+        KeyError, TypeError, ValueError
+            It is something else.
+        """
+        if self._estimator is not None:
+            try:
+                self._estimator.restore(learned, seconds)
+            finally:
+                self._use_posterior()
+
+    def accept_change(self) -> bool:
+        """Take the machine as it is since a change for the new normal; return whether there was a change."""
+        if self._estimator is None or self._estimator.change is None:
+            return False
+        self._estimator.accept()
+        self._use_posterior()
+        return True
+
+    @property
+    def remark(self) -> str:
+        """What is said about the estimates while there is nothing to report."""
+        if self._estimator is None:
+            return "bands by the ranges of the scene; nothing is calibrated"
+        return "calibrated by measurements" if self.is_calibrated else "waiting for measurements to calibrate by"
+
+    def measure(self, time: float, cage_speed: float, standard_error: float = math.nan) -> None:
+        """Take a measured cage speed and its standard error [rad/s], NaN where it is not known; ``time`` [s] may be later than the newest sample."""
+        if self._estimator is not None:
+            self._estimator.measure(time, cage_speed, standard_error)
 
     def take(self, block: np.ndarray) -> list[Bands]:
-        """Return the bands of the samples that follow, at most ``estimation.rate`` a simulated second.
+        """Return the bands of the samples that follow, at most ``estimation.rate`` a simulated second, and the estimates every ``interval``.
 
         Parameters
         ----------
-        block : samples in order, shape (n,), see `bearing_sim.model.sample`.
+        block : samples in order, shape (n,), n at least 1, see `bearing_sim.model.sample`.
         """
-        if not self._scene.estimation.bands:
-            return []
+        found = []
+        if self._estimator is not None:
+            if self._estimator.take(block):
+                self._use_posterior()
+            now = float(block["time"][-1])
+            if now >= self._next_estimates:
+                self._next_estimates = now + self._scene.estimation.interval * (1.0 - 1e-9)
+                found.append(self._estimates(now))
+        if self._scene.estimation.bands:
+            found += self._take_bands(block)
+        return found
+
+    def _take_bands(self, block: np.ndarray) -> list[Bands]:
         periods = np.floor(block["time"] / self._period + 1e-6)
         chosen = np.flatnonzero(np.diff(periods, prepend=self._last_period))
         if not len(chosen):
@@ -64,9 +137,44 @@ class LiveEstimation:
         self._last_period = float(periods[-1])
         samples = block[chosen]
         edges = self._bands.take(samples)
-        own = np.stack([samples["cage_slip"], samples["rating_life"], samples["running_clearance"], self._bands.remaining_life], axis=1)
-        self._newest = Bands(BANDS, QUANTITIES, UNITS, samples["time"].copy(), np.concatenate([own[:, :, None], edges], axis=2))
+        if self.is_calibrated:
+            numbers = np.concatenate([self._bands.medians[:, :, None], edges], axis=2)
+            numbers[:, _SLIP] = self._calibrated_slip(samples)
+        else:
+            own = np.stack([samples["cage_slip"], samples["rating_life"], samples["running_clearance"], self._bands.remaining_life], axis=1)
+            numbers = np.concatenate([own[:, :, None], edges], axis=2)
+        self._newest = Bands(BANDS, QUANTITIES, UNITS, samples["time"].copy(), numbers)
         return [self._newest]
+
+    def _calibrated_slip(self, samples: np.ndarray) -> np.ndarray:
+        """Return median, 5 and 95 % quantile of the slip by the calibrated model with its own error, shape (n, 3)."""
+        drawn = np.stack([self._estimator.prediction(sample) for sample in samples])
+        return weighted_quantiles(drawn[:, :, None], np.full(drawn.shape[1], 1.0 / drawn.shape[1]), (0.5, *PROBABILITIES))[:, :, 0]
+
+    def _use_posterior(self) -> None:
+        """Let bands follow from what measurements have taught."""
+        if self._estimator.is_calibrated:
+            scores = self._estimator.posterior.scores
+            self._bands.use(scores, np.ones(len(scores)))
+
+    def _estimates(self, now: float) -> Bands:
+        """Return the calibrated fields with their bands at ``now`` [s]."""
+        fields = [one for one in self._estimator.estimates() if one.field in self._scene.estimation.calibrated]
+        declared = quantities(type(self._scene))
+        units = tuple(declared[one.field].unit if one.field in declared else "" for one in fields)
+        numbers = np.array([[(one.value, one.low, one.high) for one in fields]])
+        return Bands(ESTIMATES, tuple(one.field for one in fields), units, np.array([now]), numbers)
+
+    @property
+    def estimates(self) -> dict[str, tuple[float, float, float]]:
+        """Value, 5 and 95 % quantile of the calibrated fields [SI], by path; empty before anything is measured."""
+        if not self.is_calibrated:
+            return {}
+        return {one.field: (one.value, one.low, one.high) for one in self._estimator.estimates() if one.field in self._scene.estimation.calibrated}
+
+    def events(self, now: float) -> list[Event]:
+        """Return the events that hold, stamped ``now`` [s] (see `bearing_sim.estimation.estimator.Estimator.events`)."""
+        return [] if self._estimator is None else self._estimator.events(now)
 
     @property
     def newest(self) -> dict[str, tuple[float, float]]:
@@ -75,12 +183,13 @@ class LiveEstimation:
             return {}
         return {name: (float(low), float(high)) for name, (_, low, high) in zip(QUANTITIES, self._newest.numbers[-1])}
 
-    @property
-    def values(self) -> dict[str, float]:
-        """Diagnostics values, the unit in each key: the newest band of each quantity; empty before the first."""
+    def values(self, now: float) -> dict[str, object]:
+        """Return diagnostics values at ``now`` [s], the unit in each key: the newest bands, and what measurements have taught."""
         units = dict(zip(QUANTITIES, UNITS))
-        return {
+        bands = {
             f"{name.replace('_', ' ')} {edge} [{_SHOWN_UNITS.get(units[name], units[name])}]": number
             for name, pair in self.newest.items()
             for edge, number in zip(EDGES, pair)
         }
+        taught = {} if self._estimator is None else self._estimator.values(now)
+        return bands | {f"estimate: {key}": value for key, value in taught.items()}

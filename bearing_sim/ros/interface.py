@@ -254,6 +254,7 @@ class BearingInterface:
                 (Trigger, "reset", self._reset),
                 (Trigger, "get_stored_state", self._get_stored_state),
                 (Trigger, "replace_bearing", self._replace_bearing),
+                (Trigger, "accept_change", self._accept_change),
                 (Trigger, "start_recording", self._begin_recording),
                 (Trigger, "stop_recording", self._stop_recording),
                 (SetBool, "pause", self._pause),
@@ -637,6 +638,12 @@ class BearingInterface:
         if self.live.reset():
             return True, "state and damage are reset" if self.live.keeper is None else "the model is reset; the totals of the bearing continue"
         return False, "not done within two seconds; the reset follows after the running tick"
+
+    def _accept_change(self, _) -> tuple[bool, str]:
+        """Take the machine as it is since a change that the calibration has found for the new normal."""
+        if self.live.accept_change():
+            return True, "the calibration continues from the changed machine; the change is reported no longer"
+        return False, "there is no change to accept: no calibration.change is reported"
 
     def _get_stored_state(self, _) -> tuple[bool, str]:
         """Answer with the stored state of the bearing as JSON: totals, calibration, temperatures."""

@@ -13,7 +13,7 @@ import click
 
 from bearing_sim.messages import topics
 
-SERVICES = ("reset", "get_stored_state", "replace_bearing", "start_recording", "stop_recording", "pause")
+SERVICES = ("reset", "get_stored_state", "replace_bearing", "accept_change", "start_recording", "stop_recording", "pause")
 """Of each bearing: below its name in a node with several, else below the node."""
 
 _LIFECYCLE = ("change_state", "get_state", "get_available_states", "get_available_transitions", "get_transition_graph")

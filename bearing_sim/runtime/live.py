@@ -203,7 +203,7 @@ class Model:
         if self.keeper is None:
             return
         self.keeper.restart()
-        recall(self.keeper, self.residual, self.monitor)
+        recall(self.keeper, self.residual, self.monitor, self._estimation, self.start_ns)
 
     def _keep_state(self) -> None:
         """Write the bearing's state from time to time."""
@@ -216,7 +216,7 @@ class Model:
     def _note_condition(self) -> None:
         """Put temperatures and what the monitors have learned into the bearing's state."""
         if self._counted is not None:
-            note(self.keeper, self.residual, self.monitor, self._counted, self.stamp(float(self._counted["time"])))
+            note(self.keeper, self.residual, self.monitor, self._estimation, self._counted, self.stamp(float(self._counted["time"])))
 
     @property
     def _published_until(self) -> float:
@@ -257,6 +257,10 @@ class Model:
         """Return the residual slips since the last call that are to be published, each with its stamp [ns since the epoch]."""
         residuals, self._residuals = self._residuals, []
         return residuals
+
+    def accept_change(self) -> bool:
+        """Take the machine as it is since a change for the new normal; return whether there was a change to accept."""
+        return self._estimation is not None and self._estimation.accept_change()
 
     def bands(self) -> list[Bands]:
         """Return the bands since the last call, which are to be published."""
@@ -306,9 +310,9 @@ class Model:
         values["inputs unknown [s]"] = self.gate.coverage.unknown_until(now)
         values |= self.monitor.values | self.residual.values(now) | self.sinks.values | self._values()
         values |= self.keeper.values if self.keeper is not None else {}
-        values |= self._estimation.values if self._estimation is not None else {}
+        values |= self._estimation.values(now) if self._estimation is not None else {}
         said = remarks(self.gate, self.solver, self._running_level) | self.sinks.remarks
-        said["estimate"] = "nothing is estimated: the scene does not ask for it" if self._estimation is None else "bands are estimated"
+        said["estimate"] = "nothing is estimated: the scene does not ask for it" if self._estimation is None else self._estimation.remark
         said["state"] = "nothing is remembered" if self.keeper is None else str(self.keeper.path)
         return Condition(self._events(now), values, said)
 
@@ -355,7 +359,11 @@ class Model:
         """Return the events that hold at ``now`` [s], the worst first."""
         conflicts = [event for conflict in self._conflicts.values() if (event := conflict.event(now)) is not None]
         conflicts += [unused_event(now, channel) for channel in sorted(self._unused)]
-        judged = (*self.monitor.events(now), *self.limits.events(now), *self.residual.events(now))
+        judged = [*self.monitor.events(now), *self.limits.events(now)]
+        if self._estimation is not None:
+            judged += self._estimation.events(now)
+        if self._estimation is None or not self._estimation.is_calibrated:  # else what the calibrated model does not explain is judged
+            judged += self.residual.events(now)
         kept = self.keeper.events(now) if self.keeper is not None else []
         kept += [_no_response(now)] if self._estimation is None and self.scene.estimation.is_asked else []
         events = [*self.sinks.events(now), *kept, *judged, *self._further_events(now), *conflicts]
@@ -566,6 +574,8 @@ class LiveModel(Model):
             predicted = float(sample["cage_slip"]) if own else math.nan
             before = self.residual.time
             self.residual.take(float(sample["time"]), float(sample["shaft_speed"]), measured, predicted)
+            if self._estimation is not None and own:
+                self._estimation.measure(now, self.gate.measured)
             residual = measured - predicted
             if self.residual.time != before and not math.isnan(self.residual.time):
                 self._residuals = [(self.stamp(self.residual.time), self.residual.residual)]  # only the newest is published

@@ -5,6 +5,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from bearing_sim.estimation.live import LiveEstimation
 from bearing_sim.monitoring.monitor import Monitor
 from bearing_sim.monitoring.residual import ResidualMonitor
 from bearing_sim.simulation import Inputs, Simulation, begin_at_temperatures
@@ -29,9 +30,20 @@ def warm_start(keeper: StateKeeper, now_ns: Callable[[], int]) -> Callable[[Simu
     return begin
 
 
-def recall(keeper: StateKeeper, residual: ResidualMonitor, monitor: Monitor) -> None:
-    """Let monitors continue from what they had learned about the bearing; from nothing if another version of them had learned it."""
+def recall(keeper: StateKeeper, residual: ResidualMonitor, monitor: Monitor, estimation: LiveEstimation | None, now_ns: int) -> None:
+    """Let monitors continue from what they had learned about the bearing; from nothing if another version of them had learned it.
+
+    Parameters
+    ----------
+    estimation : continues from what measurements have taught, which says the less, the longer ago that was.
+    now_ns : the clock [ns since the epoch]; 0 where it is not known yet.
+    """
     learned = keeper.state.learned
+    if estimation is not None:
+        try:
+            estimation.restore(learned.get("estimation", {}), max(now_ns - keeper.state.until_ns, 0) * 1e-9)
+        except (KeyError, TypeError, ValueError):
+            estimation.restore({})
     try:
         residual.restore(learned.get("cage_slip", {}))
         monitor.temperatures.restore(learned.get("temperatures", {}))
@@ -40,7 +52,11 @@ def recall(keeper: StateKeeper, residual: ResidualMonitor, monitor: Monitor) -> 
         monitor.temperatures.restore({})
 
 
-def note(keeper: StateKeeper, residual: ResidualMonitor, monitor: Monitor, sample: np.void, time_ns: int) -> None:
+def note(keeper: StateKeeper, residual: ResidualMonitor, monitor: Monitor, estimation: LiveEstimation | None, sample: np.void, time_ns: int) -> None:
     """Put the temperatures of a sample, taken at an instant [ns since the epoch], and what monitors have learned into the state."""
     keeper.note_thermal(sample, time_ns)
-    keeper.state.learned = {"cage_slip": residual.learned, "temperatures": monitor.temperatures.learned}
+    kept = keeper.state.learned.get("estimation", {})  # a run that does not estimate keeps what another one has learned
+    learned = {"cage_slip": residual.learned, "temperatures": monitor.temperatures.learned}
+    keeper.state.learned = learned | {"estimation": kept if estimation is None else estimation.learned}
+    if estimation is not None:
+        keeper.state.note_estimates(time_ns, estimation.estimates)

@@ -215,15 +215,17 @@ class _Run:
         self._monitor, self._limits = Monitor(scene), LimitsMonitor(scene)
         self._unjudged: list[np.ndarray] = []
         self._comparison = Comparison(ResidualMonitor(scene.thresholds.residual, scene.thresholds.slip_from_speed))
-        for time_, speed in profile.measured:
-            self._comparison.measure(time_, speed)
         if keeper is not None:
             keeper.restart()
-            recall(keeper, self._comparison.residual, self._monitor)
+            recall(keeper, self._comparison.residual, self._monitor, self._estimation, profile.start_ns)
+        for time_, speed in profile.measured:
+            self._comparison.measure(time_, speed)
+            if self._estimation is not None and not (keeper is not None and keeper.contained(profile.start_ns + round(1e9 * time_))):
+                self._estimation.measure(time_, speed)
 
     def run(self, model: Callable[[Scene, Inputs], Simulation]) -> Replay:
         began, began_cpu = time.perf_counter(), time.process_time()
-        result, outputs_only = self._result, not self._recordings and not self._watchers
+        result, outputs_only = self._result, not self._recordings and not self._watchers and not self._scene.estimation.calibrated
         run = ProfileRun(partial(self._begin, model), outputs_only)
         segment = self._profile.segment(self._rate, self._scene.lubricant.temperature)
         for k, item in enumerate(run.advance_segment(segment)):
@@ -282,7 +284,7 @@ class _Run:
         """Put temperatures and what the monitors have learned into the bearing's state."""
         newest = self._newest
         time_ns = self._profile.start_ns + round(1e9 * float(newest["time"]))
-        note(self._keeper, self._comparison.residual, self._monitor, newest, time_ns)
+        note(self._keeper, self._comparison.residual, self._monitor, self._estimation, newest, time_ns)
 
     def _take(self, output: Output) -> None:
         """Write outputs and judge them."""
@@ -345,7 +347,10 @@ class _Run:
     def _report(self, sample, moment: float) -> None:
         """Write a change of the bearing's condition at once, and the condition once a second."""
         residual = self._comparison.residual
-        changes = self._changes.take(moment, (*self._monitor.events(moment), *residual.events(moment)))
+        judged = residual.events(moment)
+        if self._estimation is not None:  # what the calibrated model does not explain, instead of what the scene's own values do not
+            judged = self._estimation.events(moment) if self._estimation.is_calibrated else [*judged, *self._estimation.events(moment)]
+        changes = self._changes.take(moment, (*self._monitor.events(moment), *judged))
         if changes or moment >= self._next_report:
             self._judge_limits()  # their events come first
         for event in changes:
@@ -358,7 +363,7 @@ class _Run:
             holding = [*self._changes.holding.values(), *self._limits.events(moment)]
             worst_first = sorted(holding, key=lambda event: -event.level)
             values = condition(sample) | further_condition(self._scene, sample) | self._monitor.values | residual.values(moment)
-            values |= self._estimation.values if self._estimation is not None else {}
+            values |= self._estimation.values(moment) if self._estimation is not None else {}
             for recording in self._recordings:
                 recording.write_diagnostics(moment, worst_first, values)
 

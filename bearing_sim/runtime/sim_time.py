@@ -320,7 +320,7 @@ class SimTimeModel(Model):
         self._conflicts[channel].take(values)
         if channel == topics.MEASURED:
             if self._started:
-                self._comparison.measure(self.run_time(stamp), self.gate.measured)
+                self._measure(self.run_time(stamp), self.gate.measured)
             else:
                 self._measured.append((stamp, self.gate.measured))
             return None
@@ -395,13 +395,19 @@ class SimTimeModel(Model):
         self._comparison.restart()
         measured, self._measured = self._measured, []
         for stamp, speed in measured:
-            self._comparison.measure(self.run_time(stamp), speed)
+            self._measure(self.run_time(stamp), speed)
         for name, open_sink in self._openers.items():
             try:
                 self.sinks.detach(name)
                 self.sinks.attach(name, open_sink(start_ns))
             except (OSError, ValueError) as error:
                 self.sinks.fail(name, 0.0, error)
+
+    def _measure(self, time: float, cage_speed: float) -> None:
+        """Take a measured cage speed [rad/s] of a run time [s]."""
+        self._comparison.measure(time, cage_speed)
+        if self._estimation is not None and not (self.keeper is not None and self.keeper.contained(self.stamp(time))):
+            self._estimation.measure(time, cage_speed)
 
     def _take_output(self, block: np.ndarray, weights: np.ndarray) -> None:
         """Count, judge, record and publish outputs; each stands for some time [s]."""

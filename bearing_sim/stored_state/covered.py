@@ -40,6 +40,11 @@ class Covered:
 
     __hash__ = None
 
+    def __contains__(self, time_ns: int) -> bool:
+        """Whether an instant [ns since the epoch] is covered."""
+        place = bisect_right(self._begins, time_ns) - 1
+        return place >= 0 and time_ns <= self._ends[place]
+
     @property
     def stretches(self) -> list[list[int]]:
         """Begin and end of each stretch [ns since the epoch]."""

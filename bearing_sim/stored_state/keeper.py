@@ -16,6 +16,7 @@ from bearing_sim.messages.events import Event, Level
 from bearing_sim.model.sample import NODE_OBSERVABLES, RING_TEMPERATURES, joined
 from bearing_sim.scene.scene import Scene
 from bearing_sim.stored_state.counting import LifeCounter
+from bearing_sim.stored_state.covered import Covered
 from bearing_sim.stored_state.history import history_paths, move_days
 from bearing_sim.stored_state.state import StoredState, Thermal, calibration_of, day_of, new_state, time_text
 from bearing_sim.stored_state.state_file import News, StateError, StateFile, serialised
@@ -160,8 +161,13 @@ class StateKeeper:
 
     def restart(self) -> None:
         """Begin another run, or continue after a reset: its damage begins at 0 again."""
-        self._counter = LifeCounter(self.used, self.state.covered.copy() if self._once else None)
+        self._before = self.state.covered.copy() if self._once else Covered()
+        self._counter = LifeCounter(self.used, self._before if self._once else None)
         self._last_time = None
+
+    def contained(self, time_ns: int) -> bool:
+        """Return whether the state contained an instant [ns since the epoch] before this run, so that nothing of it counts again."""
+        return time_ns in self._before
 
     def count(self, block: np.ndarray, start_ns: int, seconds: np.ndarray) -> None:
         """Count samples of a log: write the life used into them, without times that the state contains already.
@@ -274,7 +280,7 @@ class StateKeeper:
     def summary(self) -> dict[str, object]:
         """Return the state for people and programs, without the times that it contains and what was learned."""
         contents = self.state.as_mapping()
-        for name in ("covered", "learned", "folds"):
+        for name in ("covered", "learned", "folds", "estimates"):
             del contents[name]
         return contents | {"file": str(self.path)}
 

@@ -7,6 +7,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,12 +17,13 @@ from bearing_sim.scene.uncertainty import value_at
 from bearing_sim.stored_state.covered import Covered
 from bearing_sim.stored_state.totals import Criteria, Totals, totals_of
 
-VERSION = 1
+VERSION = 2
 """Of the contents of a state file; `migrated` brings older ones to it."""
 
 _END_OF_TIMES = 2**63  # [ns since the epoch]
 _LONGEST_REASON = 300  # characters
-_DAY = 86_400_000_000_000  # [ns]
+_DAY, _HOUR = 86_400_000_000_000, 3_600_000_000_000  # [ns]
+_MOST_ESTIMATES = 400  # entries of the history of calibrated fields; a longer one is kept at wider intervals
 _SAME_STRETCH = 1_000_000  # [ns] between samples that follow each other: stamps are rounded
 _CALIBRATED = "lubricant.mixture_fraction"  # what `bearing-sim calibrate` fits unless told otherwise
 _OF_BEARING = (
@@ -57,6 +59,19 @@ class Thermal:
     rings: list[float]
 
 
+class PastEstimates(NamedTuple):
+    """Calibrated fields at an instant.
+
+    Attributes
+    ----------
+    time_ns : [ns since the epoch].
+    fields : value, 5 and 95 % quantile [SI] by dotted path.
+    """
+
+    time_ns: int
+    fields: dict[str, tuple[float, float, float]]
+
+
 @dataclass
 class StoredState:
     """The state of a bearing in service.
@@ -73,7 +88,9 @@ class StoredState:
     is_turning : whether the shaft turned at the end.
     calibration : the scene's values of fields that a calibration fits.
     thermal : of the thermal network; None without one.
-    learned : statistics of residuals by what is compared (see `bearing_sim.monitoring.residual.ResidualMonitor.learned`).
+    learned : statistics of residuals by what is compared (see `bearing_sim.monitoring.residual.ResidualMonitor.learned`), and what measurements
+        have taught about uncertain fields, as ``estimation`` (see `bearing_sim.estimation.live.LiveEstimation.learned`).
+    estimates : the calibrated fields as they were, at most one entry an hour.
     writes : how often it was written.
     created_ns, written_ns : when it was begun, and written last [ns since the epoch].
     retired_ns : when the bearing was taken out (``~/replace_bearing``); None while it is in service.
@@ -90,6 +107,7 @@ class StoredState:
     calibration: dict[str, float] = field(default_factory=dict)
     thermal: Thermal | None = None
     learned: dict[str, dict] = field(default_factory=dict)
+    estimates: list[PastEstimates] = field(default_factory=list)
     writes: int = 0
     created_ns: int = 0
     written_ns: int = 0
@@ -133,6 +151,19 @@ class StoredState:
         for first, after in zip(cuts, cuts[1:]):
             self.covered.add(int(begins[first]), int(times[after - 1]))
 
+    def note_estimates(self, time_ns: int, fields: Mapping[str, tuple[float, float, float]]) -> None:
+        """Take the calibrated fields as they are at an instant [ns since the epoch], unless the newest entry is of the same hour.
+
+        Parameters
+        ----------
+        fields : value, 5 and 95 % quantile [SI] by dotted path.
+        """
+        past = self.estimates
+        if not fields or past and time_ns - past[-1].time_ns < max(_HOUR, (past[-1].time_ns - past[0].time_ns) // _MOST_ESTIMATES):
+            return
+        past = [*past, PastEstimates(time_ns, dict(fields))]
+        self.estimates = past[::2] if len(past) > _MOST_ESTIMATES else past  # a new list: copies of the state share the old one
+
     def copy(self) -> "StoredState":
         """Return an independent state with the same contents."""
         days = {day: copy.copy(totals) for day, totals in self.days.items()}  # totals never change their lists
@@ -159,6 +190,7 @@ class StoredState:
             "covered": self.covered.stretches,
             "days": {day: totals.as_mapping() for day, totals in self.days.items()},
             "thermal": None if self.thermal is None else dataclasses.asdict(self.thermal),
+            "estimates": [[past.time_ns, past.fields] for past in self.estimates],
             "package_version": package_version(),
         }
 
@@ -183,6 +215,7 @@ class StoredState:
             fields["thermal"] = _thermal(mapping["thermal"]) if mapping.get("thermal") else None
             fields["calibration"] = {str(name): float(value) for name, value in mapping.get("calibration", {}).items()}
             fields["learned"] = {str(name): dict(each) for name, each in mapping.get("learned", {}).items()}
+            fields["estimates"] = [_past_estimates(*each) for each in mapping["estimates"]]
             serial = str(mapping["serial"])
             if not serial.isprintable():
                 raise ValueError(f"serial = {serial!r}: expected printable characters")
@@ -202,6 +235,14 @@ def _counted(name: str, value: object) -> int:
     if not 0 <= number < _END_OF_TIMES:
         raise ValueError(f"{name}: expected a number from 0 to 2^63")
     return number
+
+
+def _past_estimates(time_ns: object, fields: Mapping[str, object]) -> PastEstimates:
+    """Return an entry of the history of calibrated fields from the contents of a file."""
+    known = {str(path): tuple(float(number) for number in numbers) for path, numbers in fields.items()}
+    if not all(len(numbers) == 3 and all(map(math.isfinite, numbers)) for numbers in known.values()):
+        raise ValueError("estimates: expected value, 5 and 95 % quantile of each field")
+    return PastEstimates(_counted("the time of estimates", time_ns), known)
 
 
 def _thermal(fields: Mapping[str, object]) -> Thermal:
@@ -267,7 +308,12 @@ def _from_books(contents: Mapping[str, object]) -> dict[str, object]:
     return {"serial": contents.get("serial", ""), "identity": {}, "totals": totals}
 
 
-_MIGRATIONS = {0: _from_books}
+def _without_estimates(contents: Mapping[str, object]) -> dict[str, object]:
+    """Migrate from version 1, which knew no calibration by measurements."""
+    return {**contents, "estimates": []}
+
+
+_MIGRATIONS = {0: _from_books, 1: _without_estimates}
 
 
 def _is_same(one: object, other: object) -> bool:

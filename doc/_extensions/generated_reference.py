@@ -342,6 +342,8 @@ EVENTS = {
     "bearing.life_used": ("ERROR", "damage has reached 1: the rating life is used up"),
     "bearing.lambda": ("WARN, ERROR", "film thickness over roughness below its threshold"),
     "bearing.pocket_force": ("WARN, ERROR", "pocket force above its threshold"),
+    "calibration.change": ("WARN", "lasting change of the measured cage speed that the calibrated model does not explain, with its likeliest cause"),
+    "calibration.contradicted": ("WARN", "most measurements of the cage lie outside of what the ranges of the scene allow"),
     "clock.absent": ("WARN", "`use_sim_time` is set and no `/clock` has arrived"),
     "clock.jumped": ("WARN", "the wall clock was set; run and recording continue evenly"),
     "clock.jumped_back": ("WARN, ERROR", "`/clock` jumped back: the run restarts, or the last state is held (`clock_jump_back`)"),
