@@ -27,7 +27,7 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.special import ndtri
 from scipy.stats import qmc
 
-from bearing_sim.estimation.response import ANSWERS, SLIP_SCALE, ResponseModel, restored, transformed
+from bearing_sim.estimation.response import ANSWERS, SLIP_SCALE, ResponseModel, restored, slip_scale
 from bearing_sim.scene.scene import Scene
 
 SLIP, INNER, OUTER, CLEARANCE = MEASURED = ("cage_slip", "inner_ring_temperature", "outer_ring_temperature", "running_clearance")
@@ -37,10 +37,13 @@ _DISTANCES = (0.5, 0.7, 25.0)  # over which errors of the model forget each othe
 _LOAD_FLOOR = 0.05  # of the scene's load; loads below it count as the same condition (assumption)
 _SAME, _ALIKE = 0.97, 0.5  # correlation of errors from which on points share a row, and, where there are many rows, may share one
 _MOST_ROWS = 32  # of each measured quantity
-_NOTICED = 0.1  # change of a row, over its standard deviation, after which draws move
-_MOVES, _ANNEALED = 4, 24  # steps after a change, and after a surprise
-_SURPRISE = 3.0  # mean square of standardised departures from which on the posterior is approached through tempered ones
+_NOTICED = 0.15  # change of a row, over its standard deviation, after which draws move
+_REMEMBERED = 64  # operating points whose coefficients are kept
+_MOVES, _ANNEALED = 30, 24  # steps after a change, and after a surprise
+_AT_ONCE = 3  # of the former; the others are taken with the next measurements
+_SURPRISE = 2.0  # mean square of standardised departures from which on the posterior is approached through tempered ones
 _AUTOREGRESSION = (0.02, 0.5)  # step of it
+_BY_DIFFERENCE, _SCATTER = 0.7, 0.01  # fraction of steps by differences, and what is added to them
 _DIFFERENCE = (0.2, 1.2)  # of the length of a difference that is best for a normal distribution, 2.38/(2 d)^(1/2)
 
 
@@ -105,6 +108,7 @@ class Posterior:
         self._scene, self._response = scene, response
         self._columns, self._known = np.flatnonzero(calibrated & ~known), known
         self._own_basis = response.basis_of(response.nominal[None])
+        self._known_coefficients: dict[tuple, np.ndarray] = {}
         self.restart()
 
     def restart(self) -> None:
@@ -114,6 +118,7 @@ class Posterior:
         self._noise = self._random.permutation(ndtri((np.arange(DRAWS) + 0.5) / DRAWS))  # of what the draws do not explain
         self._basis = self._response.basis_of(self.scores)
         self.rows: list[Row] = []
+        self._due = 0
         self._arrange()
 
     def copy(self) -> "Posterior":
@@ -258,6 +263,8 @@ class Posterior:
         if moved > _NOTICED or abs(math.log(now / total[place])) > _NOTICED:
             self._arrange()
             self._approach()
+        else:
+            self._go_on()
 
     def _covariance(self) -> np.ndarray:
         return self._model + np.diag(self._diagonal)
@@ -271,26 +278,33 @@ class Posterior:
 
     def _coefficients(self, quantity: str, conditions: np.ndarray) -> np.ndarray:
         """Return the coefficients of the polynomials of the fields at an operating point, the last of them that of the scene's own values."""
-        rows = self._response.condition_coefficients(conditions[None])[0, ANSWERS.index(quantity)]
-        return np.append(rows, -rows @ self._own_basis[0])
+        key = (quantity, *conditions.tolist())
+        if key not in self._known_coefficients:
+            if len(self._known_coefficients) >= _REMEMBERED:
+                self._known_coefficients.clear()
+            rows = self._response.condition_coefficients(conditions[None])[0, ANSWERS.index(quantity)]
+            self._known_coefficients[key] = np.append(rows, -rows @ self._own_basis[0])
+        return self._known_coefficients[key]
 
     def _at_rows(self, basis: np.ndarray) -> np.ndarray:
         """Return departures at all rows for draws with a basis of shape (m, j), shape (m, rows)."""
-        if not self.rows:
-            return np.zeros((len(basis), 0))
         changes = basis @ self._slopes[:, :-1].T + self._slopes[:, -1]
-        return np.stack([_departure(row.quantity, row.own, change) for row, change in zip(self.rows, changes.T)], axis=1)
+        slips = [k for k, row in enumerate(self.rows) if row.quantity == SLIP]
+        changes[:, slips] = slip_departures(np.array([self.rows[k].own for k in slips]), changes[:, slips])
+        return changes
 
     def _departures(self, quantity: str, conditions: np.ndarray, own: float, basis: np.ndarray) -> np.ndarray:
         slopes = self._coefficients(quantity, np.asarray(conditions, float))
-        return _departure(quantity, own, basis @ slopes[:-1] + slopes[-1])
+        changes = basis @ slopes[:-1] + slopes[-1]
+        return slip_departures(np.array([own]), changes[:, None])[:, 0] if quantity == SLIP else changes
 
     def _log_likelihood(self, predicted: np.ndarray) -> np.ndarray:
         left = np.linalg.solve(self._factor, (self._measured - predicted).T)
         return -0.5 * np.square(left).sum(axis=0)
 
     def _approach(self) -> None:
-        """Let the draws approach the posterior of the rows as they are."""
+        """Let the draws begin to approach the posterior of the rows as they are now; further measurements go on with it (`_go_on`)."""
+        self._due = _MOVES
         if not len(self._columns) or not self.rows:
             return
         self._factor = np.linalg.cholesky(self._covariance())
@@ -299,29 +313,36 @@ class Posterior:
         if surprise > _SURPRISE:
             for power in np.geomspace(min(2.0 / surprise, 0.5), 1.0, _ANNEALED):
                 logarithms = self._move(logarithms, power)
-        for _ in range(_MOVES):
+        self._go_on()
+
+    def _go_on(self) -> None:
+        """Let the draws take a few of the steps that are due since the rows have changed."""
+        if not self._due or not len(self._columns) or not self.rows:
+            return
+        self._factor = np.linalg.cholesky(self._covariance())
+        logarithms = self._log_likelihood(self._predicted)
+        for _ in range(min(_AT_ONCE, self._due)):
             logarithms = self._move(logarithms, 1.0)
+        self._due = max(self._due - _AT_ONCE, 0)
 
     def _move(self, logarithms: np.ndarray, power: float) -> np.ndarray:
-        """Let every draw take both kinds of steps towards a posterior whose likelihood has a power; return logarithms of likelihoods."""
+        """Let every draw take a step of one kind or the other towards a posterior whose likelihood has a power; return log-likelihoods."""
         half = DRAWS // 2
         best = 2.38 / math.sqrt(2.0 * len(self._columns))
         for mine, others in ((slice(0, half), slice(half, None)), (slice(half, None), slice(0, half))):
-            states, pool = self.scores[mine], self.scores[others]
-            pairs = self._random.integers(0, half, (2, half))
+            states, pool = self.scores[mine][:, self._columns], self.scores[others][:, self._columns]
+            pairs, noise = self._random.integers(0, half, (2, half)), self._random.normal(size=states.shape)
             length = best * self._random.uniform(*_DIFFERENCE, (half, 1))
-            proposed = states.copy()
-            differences = (pool[pairs[0]] - pool[pairs[1]])[:, self._columns]
-            proposed[:, self._columns] += length * differences + 0.01 * self._random.normal(size=differences.shape)
-            prior = 0.5 * (np.square(states) - np.square(proposed))[:, self._columns].sum(axis=1)
+            differed = states + length * (pool[pairs[0]] - pool[pairs[1]]) + _SCATTER * noise
+            step = np.exp(self._random.uniform(*np.log(_AUTOREGRESSION), (half, 1)))
+            by_difference = self._random.random(half) < _BY_DIFFERENCE
+            proposed = self.scores[mine].copy()
+            proposed[:, self._columns] = np.where(by_difference[:, None], differed, np.sqrt(1.0 - step**2) * states + step * noise)
+            prior = np.where(by_difference, 0.5 * (np.square(states) - np.square(differed)).sum(axis=1), 0.0)
             logarithms[mine] = self._decide(mine, proposed, logarithms[mine], power, prior)
-        step = np.exp(self._random.uniform(*np.log(_AUTOREGRESSION), (DRAWS, 1)))
-        proposed = self.scores.copy()
-        noise = self._random.normal(size=(DRAWS, len(self._columns)))
-        proposed[:, self._columns] = np.sqrt(1.0 - step**2) * proposed[:, self._columns] + step * noise
-        return self._decide(slice(None), proposed, logarithms, power, 0.0)
+        return logarithms
 
-    def _decide(self, mine: slice, proposed: np.ndarray, logarithms: np.ndarray, power: float, prior: np.ndarray | float) -> np.ndarray:
+    def _decide(self, mine: slice, proposed: np.ndarray, logarithms: np.ndarray, power: float, prior: np.ndarray) -> np.ndarray:
         """Accept proposals with the probability of Metropolis and Hastings; return logarithms of the likelihoods of the draws there are then."""
         basis = self._response.basis_of(proposed)
         predicted = self._at_rows(basis)
@@ -338,13 +359,11 @@ class Posterior:
         return np.array([math.log(max(abs(speed), 1e-3)), math.log(max(load, 0.0) + floor), temperature]) / _DISTANCES
 
 
-def _departure(quantity: str, own: float, change: np.ndarray) -> np.ndarray:
-    """Return how far a quantity departs from its own value, from a change on the scale of the response."""
-    if quantity != SLIP:
-        return change
-    values = np.zeros((len(change), len(ANSWERS)))
-    values[:, 0] = transformed(np.array([own, *[1.0] * (len(ANSWERS) - 1)]))[0] + change
-    return restored(values)[:, 0] - own
+def slip_departures(own: np.ndarray, changes: np.ndarray) -> np.ndarray:
+    """Return how far slip departs from its own values, shape (k,), by changes on the scale of the response, shape (m, k)."""
+    values = np.zeros((*changes.shape, len(ANSWERS)))
+    values[..., 0] = slip_scale(own) + changes
+    return restored(values)[..., 0] - own
 
 
 def _correlation(one: np.ndarray, other: np.ndarray) -> np.ndarray:

@@ -180,14 +180,11 @@ def judge(scene: Scene, response: ResponseModel, machine: Machine, seed: int, kn
                 found[:, k, 1] = *np.quantile(estimator.prediction(block[first]), _ENDS), slips[first]
             changed = bool(_changes(estimator, float(times[part][-1])))
             alarms, holding = alarms + (changed and not holding), changed
-    truth = response.values_of(machine.scores[-1])
-    rows = [(one.low <= value <= one.high, (one.high - one.low) / (one.prior_high - one.prior_low), one.calibrated)
-            for one, value in zip(estimator.estimates(), truth)]  # fmt: skip
-    calibrated = np.array([row[2] for row in rows])
+    fields = [pair for pair in zip(estimator.estimates(), response.values_of(machine.scores[-1])) if pair[0].calibrated]
     errors = found[0] - found[3]
     return Judgement(
-        np.array([row[0] for row in rows])[calibrated],
-        np.array([row[1] for row in rows])[calibrated],
+        np.array([one.low <= value <= one.high for one, value in fields]),
+        np.array([(one.high - one.low) / (one.prior_high - one.prior_low) for one, _ in fields]),
         (found[1] <= found[3]) & (found[3] <= found[2]),
         errors,
         0.5 * (found[2] - found[1]),
