@@ -8,14 +8,11 @@ import numpy as np
 from scipy.special import ndtri
 from scipy.stats import qmc
 
-from bearing_sim.estimation.response import ANSWERS, ResponseModel, restored, transformed
+from bearing_sim.estimation.response import ANSWERS, PROBABILITIES, ResponseModel, restored, transformed
 from bearing_sim.scene.scene import Scene
 
 QUANTITIES = ("cage_slip", "rating_life", "running_clearance", "remaining_life")
 """What has a band; units [1, h, m, h]."""
-
-PROBABILITIES = (0.05, 0.95)
-"""Of lying below the ends of a band."""
 
 _QUANTILES = (*PROBABILITIES, 0.5)
 _DRAWS = 256  # of the scores before anything is measured, a power of two
@@ -130,9 +127,9 @@ class BandEstimator:
         return found
 
 
-def prior_draws(fields: int, count: int = _DRAWS) -> tuple[np.ndarray, np.ndarray]:
+def prior_draws(fields: int, count: int = _DRAWS, seed: int = 1) -> tuple[np.ndarray, np.ndarray]:
     """Return scores of fields of which nothing is measured, evenly spread, shape (count, fields), and their weights, shape (count,)."""
-    uniform = qmc.Sobol(d=max(fields, 1), scramble=True, seed=np.random.default_rng(1)).random_base2(count.bit_length() - 1)
+    uniform = qmc.Sobol(d=max(fields, 1), scramble=True, seed=np.random.default_rng(seed)).random_base2(count.bit_length() - 1)
     return ndtri(np.clip(uniform, 1e-6, 1.0 - 1e-6))[:, :fields], np.full(count, 1.0 / count)
 
 

@@ -1,8 +1,10 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """The response of a bearing: settled slip, lives, clearance and ring temperatures over the operating point and the uncertain fields of its scene.
 
-A response is a sum of products of polynomials, fitted once to settled points of level ``steady`` and kept on disk (`bearing-sim table
---bands`).  Evaluating it takes microseconds, so that thousands of values of the uncertain fields can be tried at every sample of a live run.
+At each of some hundred operating points the departures from the scene's own answers, over the width of their band there, are polynomials of
+the fields; their coefficients and the logarithms of the widths are splines over the operating points.  A response is fitted once to settled
+points of level ``steady`` and kept on disk (`bearing-sim table --bands`).  Evaluating it takes microseconds, so that thousands of values of
+the uncertain fields can be tried at every sample of a live run.
 
 An uncertain field is counted by its standard-normal *score*: the value that a standard-normal number has the same probability to fall below
 as the field has to fall below its value.  All scores are independent and alike, whatever the distributions of the fields.
@@ -10,6 +12,7 @@ as the field has to fall below its value.  All scores are independent and alike,
 
 import hashlib
 import io
+import itertools
 import json
 import math
 import os
@@ -36,12 +39,16 @@ CONDITIONS = ("shaft_speed", "load", "oil_temperature", "load_angle")
 ANSWERS = ("cage_slip", "rating_life", "modified_rating_life", "running_clearance", "inner_ring_temperature", "outer_ring_temperature")
 """Columns of answers, by the names of the observables: [1, h, h, m, K, K]; temperatures are NaN where the scene has no thermal network."""
 
+PROBABILITIES = (0.05, 0.95)
+"""Of lying below the ends of a band."""
+
 FOLDER = Path(platformdirs.user_cache_dir("bearing_sim")) / "tables"
-VERSION = 1  # of the files
+VERSION = 2  # of the files
 _FARTHEST = 4.5  # largest score; one draw in 300,000 lies beyond
 _SLOWEST, _LIGHTEST = 0.03, 0.002  # of the largest speed and load: below, the response is that of these
-_DEGREE, _SCORE_DEGREE = 5, 3  # of polynomials together, and in the scores alone
-_RIDGE = 1e-9
+_RIDGE, _PRODUCT_RIDGE = 1e-6, 1.0  # of polynomials of one field, and of two
+_NARROWEST = np.array([1e-9, 1e-11, 1e-11, 1e-13, 1e-6, 1e-6])  # widths of bands on the scales of `transformed`, below which there is none
+_CIRCLE = 0.6  # radius of the circle that stands for the angle, beside coordinates from -1 to 1
 _FOLDS = 5  # of the cross validation
 SLIP_SCALE = 1e-3  # slip far above counts by its logarithm, far below as it is
 _SLIPS = np.concatenate([-np.geomspace(1.0, 1e-7, 2000), [0.0], np.geomspace(1e-7, 0.999, 4000), 1.0 + np.linspace(0.0, 0.0099, 200)])
@@ -193,9 +200,13 @@ def transformed(answers: np.ndarray) -> np.ndarray:
 def restored(scaled: np.ndarray) -> np.ndarray:
     """Return answers in their units again, the inverse of `transformed`."""
     found = np.array(scaled, float)
-    found[..., 0] = np.interp(found[..., 0], _SLIP_SCALES, _SLIPS)
+    found[..., 0] = _restored_slip(found[..., 0])
     found[..., 1:3] = np.exp(found[..., 1:3])
     return found
+
+
+def _restored_slip(scaled: np.ndarray) -> np.ndarray:
+    return np.interp(scaled, _SLIP_SCALES, _SLIPS)
 
 
 def slip_scale(slip: np.ndarray) -> np.ndarray:
@@ -208,6 +219,44 @@ def slip_scale(slip: np.ndarray) -> np.ndarray:
 _SLIP_SCALES = slip_scale(_SLIPS)
 
 
+class LivesBySlip(NamedTuple):
+    """How lives follow slip while all else stays: a cage that lags presses its rollers outwards by less.
+
+    The logarithm of a life is taken as a parabola of the square of the cage's speed over that without slip, to which centrifugal forces are
+    proportional.  Both coefficients, over the square of the shaft speed and the inverse of the load, are interpolated linearly on a grid.
+
+    Attributes
+    ----------
+    values : on knots evenly spread in the coordinates of the response, for rating life and modified rating life, shape
+        (speeds, loads, temperatures, angles, 2, 2).
+    exponents : of what coefficients are over, by the first two coordinates.
+    """
+
+    values: np.ndarray
+    exponents: tuple[float, float]
+
+    def coefficients(self, there: np.ndarray) -> np.ndarray:
+        """Return the factors of (u - 1) and (u - 1)^2, with u = (1 - slip)^2, for both lives at `coordinates`, shape (n, 2, 2)."""
+        lowest, fractions = [], []
+        for column in range(3):
+            last = self.values.shape[column] - 1
+            position = np.clip(0.5 * (there[:, column] + 1.0), 0.0, 1.0) * last
+            lowest.append(np.minimum(position.astype(int), max(last - 1, 0)))
+            fractions.append(position - lowest[-1])
+        angles = self.values.shape[3]
+        position = np.mod(there[:, 3] / (2.0 * math.pi), 1.0) * angles
+        lowest.append(position.astype(int))
+        fractions.append(position - lowest[-1])
+        found = np.zeros((len(there), 2, 2))
+        for corner in itertools.product((0, 1), repeat=4):
+            if any(side and size == 1 for side, size in zip(corner, self.values.shape)):
+                continue
+            weight = math.prod(fraction if side else 1.0 - fraction for side, fraction in zip(corner, fractions))
+            places = tuple((low + side) % size for low, side, size in zip(lowest, corner, self.values.shape))
+            found += np.asarray(weight)[:, None, None] * self.values[places]
+        return found * np.exp(there[:, :2] @ self.exponents)[:, None, None]
+
+
 class ResponseModel(NamedTuple):
     """The response of a bearing; see the module.
 
@@ -215,19 +264,24 @@ class ResponseModel(NamedTuple):
     ----------
     fields : of the d uncertain fields.
     domain : operating points that it answers for.
-    condition_terms : degrees of the polynomials of the operating point, int, shape (i, 4).
-    score_terms : degrees of those of the fields, int, shape (j, d).
-    coefficients : of the products of both, for each of `ANSWERS`, shape (6, i, j).
-    errors : by cross validation, root mean square on the scales of `transformed`, shape (6,).
+    centres : coordinates of the operating points that were solved for, shape (k, c).
+    score_terms : degrees of the polynomials of the fields, the first of them a constant, int, shape (j, d).
+    own_basis : these polynomials at the scene's own values, shape (j,).
+    weights : of the functions of the operating point, for each of `ANSWERS`: of its own value, the logarithm of the width of its band, and the
+        coefficients of the polynomials but the first over that width; shape (k + c + 1, 6, j + 1).
+    lives_by_slip : what slip does to lives, which is not in the polynomials.
+    errors : by cross validation, of departures from the scene's own values, root mean square on the scales of `transformed`, shape (6,).
     points : settled points that it was fitted to.
     seconds : that building it took.
     """
 
     fields: Fields
     domain: Domain
-    condition_terms: np.ndarray
+    centres: np.ndarray
     score_terms: np.ndarray
-    coefficients: np.ndarray
+    own_basis: np.ndarray
+    weights: np.ndarray
+    lives_by_slip: LivesBySlip
     errors: np.ndarray
     points: int
     seconds: float
@@ -283,7 +337,7 @@ class ResponseModel(NamedTuple):
 
     def basis_of(self, scores: np.ndarray) -> np.ndarray:
         """Return the polynomials of the fields at scores of shape (m, d), shape (m, j); worth keeping while the scores stay."""
-        return _products(_legendre(2.0 * self.fields.fractions_of(scores) - 1.0, self.score_terms.max(initial=0)), self.score_terms)
+        return _basis(self.fields, self.score_terms, scores)
 
     def respond_scaled(self, conditions: np.ndarray, basis: np.ndarray) -> np.ndarray:
         """Return the answers on the scales of `transformed`, shape (n, m, 6).
@@ -293,10 +347,18 @@ class ResponseModel(NamedTuple):
         conditions : columns `CONDITIONS`, shape (n, 4).
         basis : `basis_of` scores, shape (m, j).
         """
-        return np.swapaxes(self.condition_coefficients(conditions) @ basis.T, 1, 2)
+        conditions = np.asarray(conditions, float)
+        coefficients = self.condition_coefficients(conditions)
+        found = np.swapaxes(coefficients @ basis.T, 1, 2)
+        own = coefficients[:, 0] @ self.own_basis
+        slips = _restored_slip(np.concatenate([own[:, None], found[:, :, 0]], axis=1))
+        found[:, :, 1:3] += _by_slip(slips[:, 1:], slips[:, :1], self.lives_by_slip.coefficients(coordinates(conditions, self.domain)))
+        return found
 
     def condition_coefficients(self, conditions: np.ndarray) -> np.ndarray:
         """Return the coefficients of the polynomials of the fields (`basis_of`) at operating points, on the scales of `transformed`.
+
+        What slip does to lives is not in them.
 
         Parameters
         ----------
@@ -307,11 +369,44 @@ class ResponseModel(NamedTuple):
         for each of `ANSWERS`, shape (n, 6, j); NaN at points outside of the response.
         """
         conditions = np.asarray(conditions, float)
-        outside = self.outside(conditions)
-        there = _condition_basis(coordinates(np.where(outside[:, None], 1.0, conditions), self.domain), self.condition_terms)
-        found = np.einsum("ni,qij->nqj", there, self.coefficients, optimize=True)
-        found[outside] = math.nan
-        return found
+        there = _embedded(coordinates(conditions, self.domain), self.domain)
+        found = (_functions(there, self.centres) @ self.weights.reshape(len(self.weights), -1)).reshape(-1, *self.weights.shape[1:])
+        departures = found[:, :, 2:] * np.exp(found[:, :, 1:2])
+        coefficients = np.concatenate([found[:, :, :1] - departures @ self.own_basis[1:, None], departures], axis=2)
+        coefficients[self.outside(conditions)] = math.nan
+        return coefficients
+
+
+def _by_slip(slip: np.ndarray, own: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
+    """Return by how much the logarithms of both lives differ from those at the own slip, shape (n, m, 2); see `LivesBySlip`."""
+    there, before = np.square(1.0 - slip) - 1.0, np.square(1.0 - own) - 1.0
+    powers = np.stack([there - before, np.square(there) - np.square(before)], axis=-1)
+    return powers @ np.swapaxes(coefficients, 1, 2)
+
+
+def _embedded(there: np.ndarray, domain: Domain) -> np.ndarray:
+    """Return coordinates with the angle as a point on a circle, without those that do not vary, shape (n, c)."""
+    columns = [there[:, 0], there[:, 1]]
+    if domain.temperatures[1] > domain.temperatures[0]:
+        columns.append(there[:, 2])
+    if domain.period:
+        columns += [_CIRCLE * np.cos(there[:, 3]), _CIRCLE * np.sin(there[:, 3])]
+    return np.stack(columns, axis=1)
+
+
+def _functions(there: np.ndarray, centres: np.ndarray) -> np.ndarray:
+    """Return the functions of the operating point: thin-plate splines about the centres (J. Duchon 1977), and planes; shape (n, k + c + 1)."""
+    square = np.sum(np.square(there), axis=1)[:, None] + np.sum(np.square(centres), axis=1) - 2.0 * there @ centres.T
+    square = np.maximum(square, 1e-30)
+    return np.concatenate([0.5 * square * np.log(square), np.ones((len(there), 1)), there], axis=1)
+
+
+def _spline_weights(centres: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Return the weights of `_functions` that pass through values at the centres, shapes (k, v) and (k + c + 1, v)."""
+    square = _functions(centres, centres)
+    planes = square[:, len(centres) :]
+    whole = np.block([[square[:, : len(centres)], planes], [planes.T, np.zeros((planes.shape[1],) * 2)]])
+    return np.linalg.solve(whole, np.concatenate([values, np.zeros((planes.shape[1], values.shape[1]))]))
 
 
 def _legendre(positions: np.ndarray, degree: int) -> np.ndarray:
@@ -333,77 +428,97 @@ def _products(table: np.ndarray, terms: np.ndarray) -> np.ndarray:
     return found
 
 
-def _condition_basis(there: np.ndarray, terms: np.ndarray) -> np.ndarray:
-    """Return the functions of the operating point: polynomials of the first three coordinates, waves of the angle; shape (n, i)."""
-    degree = terms[:, :3].max(initial=0)
-    smooth = _products(_legendre(there[:, :3], degree), terms[:, :3])
-    waves = [np.ones(len(there))]
-    for order in range(1, (terms[:, 3].max(initial=0) + 1) // 2 + 1):
-        waves += [math.sqrt(2.0) * np.cos(order * there[:, 3]), math.sqrt(2.0) * np.sin(order * there[:, 3])]
-    return smooth * np.stack(waves, axis=1)[:, terms[:, 3]]
-
-
-def _terms(domain: Domain, count: int) -> np.ndarray:
-    """Return the degrees of all products, in the operating point and in ``count`` fields, int, shape (k, 4 + count)."""
-    warm, turning = domain.temperatures[1] > domain.temperatures[0], domain.period > 0.0
-    found = []
-    for scores in _multi_indices(count, _SCORE_DEGREE):
-        for point in _multi_indices(3, _DEGREE - sum(scores)):
-            if point[2] and not warm:
-                continue
-            left = _DEGREE - sum(scores) - sum(point)
-            waves = range(5 if turning and left >= 2 else 3 if turning and left else 1)
-            found += [(*point, wave, *scores) for wave in waves]
-    return np.array(found, int)
-
-
-def _multi_indices(columns: int, degree: int) -> list[tuple[int, ...]]:
-    """Return all tuples of degrees whose sum is at most a degree."""
-    found = [()]
-    for _ in range(columns):
-        found = [(*one, more) for one in found for more in range(degree - sum(one) + 1)]
-    return found
+def _score_terms(count: int) -> np.ndarray:
+    """Return the degrees of the polynomials of ``count`` fields: a constant, each field, its square, and products of two; int, shape (j, count)."""
+    each = np.eye(count, dtype=int)
+    pairs = [one + other for one, other in itertools.combinations(each, 2)]
+    return np.concatenate([np.zeros((1, count), int), each, 2 * each, np.array(pairs, int).reshape(-1, count)])
 
 
 def fit_response(
-    fields: Fields, domain: Domain, conditions: np.ndarray, scores: np.ndarray, answers: np.ndarray, seconds: float = 0.0
+    fields: Fields,
+    domain: Domain,
+    conditions: np.ndarray,
+    scores: np.ndarray,
+    answers: np.ndarray,
+    seconds: float = 0.0,
+    lives_by_slip: LivesBySlip | None = None,
 ) -> ResponseModel:
-    """Return the response fitted to settled points.
+    """Return the response fitted to settled points: the same m scores at each of k operating points.
 
     Parameters
     ----------
     fields, domain : of the scene.
-    conditions : columns `CONDITIONS`, shape (n, 4).
-    scores : of the fields at each point, shape (n, d).
-    answers : columns `ANSWERS`, shape (n, 6); points with NaN in the first four are left out.
+    conditions : columns `CONDITIONS` of each point, those of one operating point in a row, shape (k m, 4).
+    scores : of the fields at each point, shape (k m, d); the first at each operating point are those of the scene's own values.
+    answers : columns `ANSWERS`, shape (k m, 6); an operating point at which one of the first four is NaN is left out.
     seconds : that the points took.
+    lives_by_slip : what is known about lives by slip; None: nothing, it is left to the polynomials.
+
+    Raises
+    ------
+    ValueError
+        The scores differ between operating points, do not begin with the scene's own, or too few operating points have answers.
     """
-    kept = np.isfinite(transformed(answers)[:, :4]).all(axis=1)
-    scaled = np.nan_to_num(transformed(answers[kept]))
-    terms = _terms(domain, len(fields))
-    condition_terms, first = np.unique(terms[:, :4], axis=0, return_inverse=True)
-    score_terms, second = np.unique(terms[:, 4:], axis=0, return_inverse=True)
-    basis = _products(_legendre(2.0 * fields.fractions_of(scores[kept]) - 1.0, score_terms.max(initial=0)), score_terms)[:, second]
-    basis *= _condition_basis(coordinates(conditions[kept], domain), condition_terms)[:, first]
-    found = _least_squares(basis, scaled)
-    order = np.random.default_rng(1).permutation(len(scaled))
-    left = np.empty_like(scaled)
-    for part in np.array_split(order, _FOLDS):
-        others = np.setdiff1d(order, part)
-        left[part] = basis[part] @ _least_squares(basis[others], scaled[others]) - scaled[part]
-    coefficients = np.zeros((len(ANSWERS), len(condition_terms), len(score_terms)))
-    coefficients[:, first, second] = found.T
-    if np.isnan(answers[kept][:, 4:]).all():
-        coefficients[4:] = math.nan
-    return ResponseModel(
-        fields, domain, condition_terms, score_terms, coefficients, np.sqrt(np.mean(left**2, axis=0)), int(np.count_nonzero(kept)), seconds
-    )
+    nodes = conditions[np.concatenate([[True], np.any(np.diff(conditions, axis=0) != 0.0, axis=1)])]
+    drawn = scores.reshape(len(nodes), -1, len(fields))
+    if not np.allclose(drawn, drawn[0]) or not np.allclose(drawn[0, 0], fields.scores_of(fields.own)):
+        raise ValueError("expected the same scores at each operating point, the scene's own values first")
+    scaled = transformed(answers).reshape(len(nodes), -1, len(ANSWERS))
+    kept = np.isfinite(scaled[:, :, :4]).all(axis=(1, 2))
+    there = coordinates(nodes[kept], domain)
+    centres = _embedded(there, domain)
+    if len(centres) < 4 * (centres.shape[1] + 1):
+        raise ValueError(f"{len(centres)} of {len(nodes)} operating points have answers; expected {4 * (centres.shape[1] + 1)} or more")
+    lives_by_slip = LivesBySlip(np.zeros((1, 1, 1, 1, 2, 2)), (0.0, 0.0)) if lives_by_slip is None else lives_by_slip
+    departures = scaled[kept, 1:] - scaled[kept, :1]
+    slips = answers.reshape(scaled.shape)[kept, :, 0]
+    departures[:, :, 1:3] -= _by_slip(slips[:, 1:], slips[:, :1], lives_by_slip.coefficients(there))
+    terms = _score_terms(len(fields))
+    basis = _basis(fields, terms, drawn[0])
+    is_product = np.count_nonzero(terms[1:], axis=1) > 1
+    values = _node_values(np.nan_to_num(scaled[kept, 0]), np.nan_to_num(departures), basis, is_product)
+    weights = _spline_weights(centres, values.reshape(len(centres), -1)).reshape(-1, *values.shape[1:])
+    if np.isnan(scaled[kept][:, :, 4:]).any():
+        weights[:, 4:] = math.nan
+    left = _left_out(centres, values, basis, departures)
+    errors = np.sqrt(np.mean(np.square(left), axis=(0, 1)))
+    return ResponseModel(fields, domain, centres, terms, basis[0], weights, lives_by_slip, errors, int(np.isfinite(scaled[:, :, 0]).sum()), seconds)
 
 
-def _least_squares(basis: np.ndarray, values: np.ndarray) -> np.ndarray:
-    square = basis.T @ basis
-    square[np.diag_indices_from(square)] += _RIDGE * len(basis)
-    return np.linalg.solve(square, basis.T @ values)
+def _basis(fields: Fields, terms: np.ndarray, scores: np.ndarray) -> np.ndarray:
+    return _products(_legendre(2.0 * fields.fractions_of(scores) - 1.0, 2), terms)
+
+
+def _node_values(own: np.ndarray, departures: np.ndarray, basis: np.ndarray, is_product: np.ndarray) -> np.ndarray:
+    """Return at each operating point the own answers, the logarithms of widths, and coefficients over these, shape (k, 6, j + 1).
+
+    Parameters
+    ----------
+    own : answers at the scene's own values, shape (k, 6).
+    departures : from them, shape (k, m - 1, 6).
+    basis : polynomials at the m scores, shape (m, j).
+    is_product : whether each polynomial but the first is of two fields, shape (j - 1,); these are held back by a ridge, so that there may be more
+        of them than draws.
+    """
+    low, high = np.quantile(departures, PROBABILITIES, axis=1)
+    widths = np.maximum(high - low, _NARROWEST)
+    change = basis[1:, 1:] - basis[0, 1:]
+    inverse = np.linalg.solve(change.T @ change + np.diag(np.where(is_product, _PRODUCT_RIDGE, _RIDGE)), change.T)
+    coefficients = np.einsum("jm,kmq->kqj", inverse, departures / widths[:, None])
+    return np.concatenate([own[:, :, None], np.log(widths)[:, :, None], coefficients], axis=2)
+
+
+def _left_out(centres: np.ndarray, values: np.ndarray, basis: np.ndarray, departures: np.ndarray) -> np.ndarray:
+    """Return the errors of departures at operating points that were left out of the splines, a fifth at a time, shape (k, m - 1, 6)."""
+    errors = np.empty_like(departures)
+    change = basis[1:, 1:] - basis[0, 1:]
+    for part in np.array_split(np.random.default_rng(1).permutation(len(centres)), _FOLDS):
+        others = np.setdiff1d(np.arange(len(centres)), part)
+        weights = _spline_weights(centres[others], values[others].reshape(len(others), -1))
+        found = (_functions(centres[part], centres[others]) @ weights).reshape(len(part), *values.shape[1:])
+        errors[part] = np.einsum("mj,kqj->kmq", change, found[:, :, 2:] * np.exp(found[:, :, 1:2])) - departures[part]
+    return errors
 
 
 def response_digest(scene: Scene) -> str:
@@ -417,15 +532,19 @@ def response_path(scene: Scene) -> Path:
     return FOLDER / f"{response_digest(scene)}.bands.npz"
 
 
+_ARRAYS = ("centres", "score_terms", "own_basis", "weights", "errors")
+
+
 def write_response(path: Path, model: ResponseModel) -> None:
     """Write a response atomically: a reader finds the old file or the new one, never a part."""
     written = {
         "ranges": [asdict(one) for one in model.fields.ranges],
         "domain": model.domain._asdict(),
+        "exponents": model.lives_by_slip.exponents,
         "points": model.points,
         "seconds": model.seconds,
     }
-    arrays = {name: getattr(model, name) for name in ("condition_terms", "score_terms", "coefficients", "errors")}
+    arrays = {name: getattr(model, name) for name in _ARRAYS} | {"lives_by_slip": model.lives_by_slip.values}
     buffer = io.BytesIO()
     np.savez_compressed(buffer, written=np.frombuffer(json.dumps(written).encode(), np.uint8), own=model.fields.own, **arrays)
     data = buffer.getvalue()
@@ -445,8 +564,9 @@ def read_response(path: Path) -> ResponseModel | None:
             written: Mapping = json.loads(file["written"].tobytes())
             fields = Fields([Range(**one) for one in written["ranges"]], file["own"])
             domain = Domain(*(tuple(value) if isinstance(value, list) else value for value in written["domain"].values()))
-            arrays = [file[name] for name in ("condition_terms", "score_terms", "coefficients", "errors")]
-            return ResponseModel(fields, domain, *arrays, written["points"], written["seconds"])
+            arrays = {name: file[name] for name in _ARRAYS}
+            lives = LivesBySlip(file["lives_by_slip"], tuple(written["exponents"]))
+            return ResponseModel(fields, domain, **arrays, lives_by_slip=lives, points=written["points"], seconds=written["seconds"])
     except Exception:  # whatever a broken file makes its reader raise, the response is built again
         return None
 
