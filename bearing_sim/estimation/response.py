@@ -43,13 +43,14 @@ PROBABILITIES = (0.05, 0.95)
 """Of lying below the ends of a band."""
 
 FOLDER = Path(platformdirs.user_cache_dir("bearing_sim")) / "tables"
-VERSION = 2  # of the files
+VERSION = 3  # of the files
 _FARTHEST = 4.5  # largest score; one draw in 300,000 lies beyond
 _SLOWEST, _LIGHTEST = 0.03, 0.002  # of the largest speed and load: below, the response is that of these
 _RIDGE, _PRODUCT_RIDGE = 1e-6, 1.0  # of polynomials of one field, and of two
 _NARROWEST = np.array([1e-9, 1e-11, 1e-11, 1e-13, 1e-6, 1e-6])  # widths of bands on the scales of `transformed`, below which there is none
 _CIRCLE = 0.6  # radius of the circle that stands for the angle, beside coordinates from -1 to 1
-_FOLDS = 5  # of the cross validation
+_SPEED_SCALES, _LOAD_SCALES, _TEMPERATURE_SCALES = (0.5, 1.0, 2.0), (1.0, 2.0, 4.0), (0.35, 0.7, 1.4)  # that are tried
+_WIDEST = 50.0  # logarithm of a width that a spline may reach
 SLIP_SCALE = 1e-3  # slip far above counts by its logarithm, far below as it is
 _SLIPS = np.concatenate([-np.geomspace(1.0, 1e-7, 2000), [0.0], np.geomspace(1e-7, 0.999, 4000), 1.0 + np.linspace(0.0, 0.0099, 200)])
 
@@ -265,6 +266,7 @@ class ResponseModel(NamedTuple):
     fields : of the d uncertain fields.
     domain : operating points that it answers for.
     centres : coordinates of the operating points that were solved for, shape (k, c).
+    scales : by which coordinates count for each of `ANSWERS`, shape (6, c).
     score_terms : degrees of the polynomials of the fields, the first of them a constant, int, shape (j, d).
     own_basis : these polynomials at the scene's own values, shape (j,).
     weights : of the functions of the operating point, for each of `ANSWERS`: of its own value, the logarithm of the width of its band, and the
@@ -278,6 +280,7 @@ class ResponseModel(NamedTuple):
     fields: Fields
     domain: Domain
     centres: np.ndarray
+    scales: np.ndarray
     score_terms: np.ndarray
     own_basis: np.ndarray
     weights: np.ndarray
@@ -370,7 +373,11 @@ class ResponseModel(NamedTuple):
         """
         conditions = np.asarray(conditions, float)
         there = _embedded(coordinates(conditions, self.domain), self.domain)
-        found = (_functions(there, self.centres) @ self.weights.reshape(len(self.weights), -1)).reshape(-1, *self.weights.shape[1:])
+        found = np.empty((len(there), *self.weights.shape[1:]))
+        for scale in np.unique(self.scales, axis=0):
+            alike = np.flatnonzero((self.scales == scale).all(axis=1))
+            weights = self.weights[:, alike].reshape(len(self.weights), -1)
+            found[:, alike] = (_functions(there * scale, self.centres * scale) @ weights).reshape(len(there), len(alike), -1)
         departures = found[:, :, 2:] * np.exp(found[:, :, 1:2])
         coefficients = np.concatenate([found[:, :, :1] - departures @ self.own_basis[1:, None], departures], axis=2)
         coefficients[self.outside(conditions)] = math.nan
@@ -401,12 +408,26 @@ def _functions(there: np.ndarray, centres: np.ndarray) -> np.ndarray:
     return np.concatenate([0.5 * square * np.log(square), np.ones((len(there), 1)), there], axis=1)
 
 
-def _spline_weights(centres: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Return the weights of `_functions` that pass through values at the centres, shapes (k, v) and (k + c + 1, v)."""
+def _spline_matrix(centres: np.ndarray) -> np.ndarray:
+    """Return the matrix of the splines through values at centres, shape (k + c + 1, k + c + 1)."""
     square = _functions(centres, centres)
     planes = square[:, len(centres) :]
-    whole = np.block([[square[:, : len(centres)], planes], [planes.T, np.zeros((planes.shape[1],) * 2)]])
-    return np.linalg.solve(whole, np.concatenate([values, np.zeros((planes.shape[1], values.shape[1]))]))
+    return np.block([[square[:, : len(centres)], planes], [planes.T, np.zeros((planes.shape[1],) * 2)]])
+
+
+def _spline_weights(centres: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Return the weights of `_functions` that pass through values at the centres, shapes (k, v) and (k + c + 1, v)."""
+    padded = np.concatenate([values, np.zeros((centres.shape[1] + 1, values.shape[1]))])
+    return np.linalg.solve(_spline_matrix(centres), padded)
+
+
+def _left_out(centres: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Return by how much the spline through all centres but one misses the values there, shape (k, v).
+
+    S. Rippa, Adv. Comput. Math. 11 (1999) 193: the weight over the diagonal of the inverse.
+    """
+    inverse = np.linalg.inv(_spline_matrix(centres))[: len(centres), : len(centres)]
+    return inverse @ values / np.diagonal(inverse)[:, None]
 
 
 def _legendre(positions: np.ndarray, degree: int) -> np.ndarray:
@@ -478,12 +499,17 @@ def fit_response(
     basis = _basis(fields, terms, drawn[0])
     is_product = np.count_nonzero(terms[1:], axis=1) > 1
     values = _node_values(np.nan_to_num(scaled[kept, 0]), np.nan_to_num(departures), basis, is_product)
-    weights = _spline_weights(centres, values.reshape(len(centres), -1)).reshape(-1, *values.shape[1:])
+    change = basis[1:, 1:] - basis[0, 1:]
+    scales = _best_scales(centres, domain, values, change, departures)
+    weights = np.stack([_spline_weights(centres * scale, values[:, column]) for column, scale in enumerate(scales)], axis=1)
+    left = [
+        _departures_left_out(centres * scale, values[:, [column]], change, departures[:, :, [column]])[:, :, 0] for column, scale in enumerate(scales)
+    ]
     if np.isnan(scaled[kept][:, :, 4:]).any():
         weights[:, 4:] = math.nan
-    left = _left_out(centres, values, basis, departures)
-    errors = np.sqrt(np.mean(np.square(left), axis=(0, 1)))
-    return ResponseModel(fields, domain, centres, terms, basis[0], weights, lives_by_slip, errors, int(np.isfinite(scaled[:, :, 0]).sum()), seconds)
+    errors = np.sqrt(np.mean(np.square(left), axis=(1, 2)))
+    points = int(np.isfinite(scaled[:, :, 0]).sum())
+    return ResponseModel(fields, domain, centres, scales, terms, basis[0], weights, lives_by_slip, errors, points, seconds)
 
 
 def _basis(fields: Fields, terms: np.ndarray, scores: np.ndarray) -> np.ndarray:
@@ -509,16 +535,33 @@ def _node_values(own: np.ndarray, departures: np.ndarray, basis: np.ndarray, is_
     return np.concatenate([own[:, :, None], np.log(widths)[:, :, None], coefficients], axis=2)
 
 
-def _left_out(centres: np.ndarray, values: np.ndarray, basis: np.ndarray, departures: np.ndarray) -> np.ndarray:
-    """Return the errors of departures at operating points that were left out of the splines, a fifth at a time, shape (k, m - 1, 6)."""
-    errors = np.empty_like(departures)
-    change = basis[1:, 1:] - basis[0, 1:]
-    for part in np.array_split(np.random.default_rng(1).permutation(len(centres)), _FOLDS):
-        others = np.setdiff1d(np.arange(len(centres)), part)
-        weights = _spline_weights(centres[others], values[others].reshape(len(others), -1))
-        found = (_functions(centres[part], centres[others]) @ weights).reshape(len(part), *values.shape[1:])
-        errors[part] = np.einsum("mj,kqj->kmq", change, found[:, :, 2:] * np.exp(found[:, :, 1:2])) - departures[part]
-    return errors
+def _departures_left_out(centres: np.ndarray, values: np.ndarray, change: np.ndarray, departures: np.ndarray) -> np.ndarray:
+    """Return the errors of departures at operating points that were left out of the splines, shape (k, m - 1, a).
+
+    Parameters
+    ----------
+    centres : scaled, shape (k, c).
+    values : of `_node_values` for some answers, shape (k, a, j + 1).
+    change : of the polynomials from the scene's own values, shape (m - 1, j - 1).
+    departures : shape (k, m - 1, a).
+    """
+    found = values - _left_out(centres, values.reshape(len(values), -1)).reshape(values.shape)
+    return np.einsum("mj,kaj->kma", change, found[:, :, 2:] * np.exp(np.minimum(found[:, :, 1:2], _WIDEST))) - departures
+
+
+def _best_scales(centres: np.ndarray, domain: Domain, values: np.ndarray, change: np.ndarray, departures: np.ndarray) -> np.ndarray:
+    """Return by which scales of the coordinates each answer is met best at operating points that were left out, shape (6, c)."""
+    warm = domain.temperatures[1] > domain.temperatures[0]
+    axes = [_SPEED_SCALES, _LOAD_SCALES, *[_TEMPERATURE_SCALES] * warm]
+    best, scales = np.full(len(ANSWERS), math.inf), np.ones((len(ANSWERS), centres.shape[1]))
+    widths = np.exp(values[:, None, :, 1])
+    for chosen in itertools.product(*axes):
+        scale = np.array([*chosen, *[1.0] * (centres.shape[1] - len(chosen))])
+        errors = np.abs(_departures_left_out(centres * scale, values, change, departures)) / widths
+        missed = np.minimum(errors, 1.0).mean(axis=(0, 1))
+        better = missed < best
+        best[better], scales[better] = missed[better], scale
+    return scales
 
 
 def response_digest(scene: Scene) -> str:
@@ -532,7 +575,7 @@ def response_path(scene: Scene) -> Path:
     return FOLDER / f"{response_digest(scene)}.bands.npz"
 
 
-_ARRAYS = ("centres", "score_terms", "own_basis", "weights", "errors")
+_ARRAYS = ("centres", "scales", "score_terms", "own_basis", "weights", "errors")
 
 
 def write_response(path: Path, model: ResponseModel) -> None:

@@ -37,7 +37,7 @@ from bearing_sim.studies.uncertainty import UncertaintyError, varied
 from bearing_sim.sweep.tasks import Journal, run_tasks, task
 
 DRAWS = 64  # of the fields' scores at each operating point, the scene's own values among them
-_POINTS = 32_768  # that a response is fitted to, a power of two
+_POINTS = 16_384  # that a response is fitted to, a power of two
 _SPEEDS, _LOADS, _TEMPERATURES, _ANGLES = 24, 20, 4, 16  # knots of lives by slip
 _SLIPS = (0.0, 0.05, 0.13)  # at which lives are computed
 _BATCH = 64  # points of a task
