@@ -4,6 +4,7 @@
 import dataclasses
 import itertools
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -282,3 +283,16 @@ def test_a_sweep_is_drawn_over_its_loads_from_parquet_and_from_csv_alone(tmp_pat
     parquet.unlink()
     alone = plotted(text, "--over", "load", "-o", tmp_path / "c.png")
     assert alone.exit_code == 0 and "no minimum load" in alone.stderr and (tmp_path / "c.png").is_file()
+
+
+@pytest.mark.parametrize(
+    ("count", "span", "start_ns", "label"),
+    [
+        (1, 3599.0, 1_700_000_000 * 10**9, "simulated time [s]"),
+        (1, 3600.0, 1_700_000_000 * 10**9, "time since 2023-11-14 22:13 UTC [s]"),
+        (1, 86400.0, None, "simulated time [s]"),
+        (2, 86400.0, 1_700_000_000 * 10**9, "simulated time from the start of each run [s]"),
+    ],
+)
+def test_the_axis_of_a_long_run_names_the_date_of_its_start(count, span, start_ns, label):
+    assert run_plot._time_label([SimpleNamespace(start_ns=start_ns)] * count, span, "s") == label

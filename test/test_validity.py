@@ -494,3 +494,10 @@ def test_the_pressure_of_a_seat_is_judged_where_there_is_one_and_dimensions_are_
 )
 def test_a_grease_turns_as_fast_as_its_maker_says_or_as_is_usual_of_its_base_oil(grease, factor):
     assert BY_NAME["grease_speed"].limits(load_scene(PAPER, [f"lubricant={{grease: {grease}, temperature: 70 degC}}"]))[1] == factor
+
+
+@pytest.mark.parametrize(
+    ("value", "low", "high", "excess"), [(12.0, 0.0, 10.0, 0.2), (5.0, 10.0, 20.0, 0.5), (-3.0, -2.0, 1.0, 0.5), (2.0, -math.inf, 1.0, 1.0)]
+)
+def test_how_far_a_value_is_outside_counts_in_parts_of_the_limit_that_it_passes(value, low, high, excess):
+    assert Exceedance(law=LAWS[0], value=value, low=low, high=high).excess == pytest.approx(excess)

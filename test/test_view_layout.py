@@ -14,6 +14,7 @@ from synthetic_run import synthetic_block
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.view.blueprint import blueprint
+from bearing_sim.view.drawings import BarDrawing
 from bearing_sim.view.plots import AROUND, LINES, RunSeries, roller_series, threshold_lines
 from bearing_sim.view.worker import RerunFile
 
@@ -171,3 +172,24 @@ def column_of_pairs(path, entity):
     for chunk in RrdReader(str(path)).stream():
         if chunk.entity_path == entity and not chunk.is_static:
             yield from chunk.to_record_batch().column("Scalars:scalars").to_pylist()
+
+
+class KeptBars(BarDrawing):
+    """Bars that keep what they log instead of writing it."""
+
+    def __init__(self, values):
+        super().__init__(None, "/bars", {name: (name, (0, 0, 0, 255)) for name in values}, "{}", 1.0, "W", signed=True)
+        self.logged = {}
+        self.add({name: np.full(4, value) for name, value in values.items()})
+        self.draw()
+
+    def _log(self, path, archetype):
+        self.logged[path] = archetype
+
+
+def test_a_bar_with_its_round_ends_reaches_from_zero_to_its_value_however_short_it_is():
+    values = {"long": 80.0, "negative": -40.0, "short": 0.8, "tiny": 1e-3, "none": 0.0}
+    bars = KeptBars(values).logged["bars"]
+    strips, radii = bars.strips.as_arrow_array().to_pylist(), np.array(bars.radii.as_arrow_array().to_pylist())
+    for value, radius, ((left, _), (right, _)) in zip(values.values(), radii, strips):
+        assert left - 1e-5 <= right and (left - radius, right + radius) == pytest.approx((min(1.25 * value, 0.0), max(1.25 * value, 0.0)), abs=1e-4)
