@@ -16,6 +16,7 @@ from bearing_sim.scene.ratings import load_rating, rate
 from bearing_sim.scene.uncertainty import ranges_of, with_values
 from bearing_sim.studies.catalog_rules import diameter_errors, fitted, held_back, left_out, printed_rating_ratios, sections_of, summary
 from bearing_sim.studies.uncertainty import varied
+from bearing_sim.studies.validation.catalogues import BOUNDARIES
 
 SCENE = """
 name: designation
@@ -24,40 +25,15 @@ bearing: {bearing}
 lubricant: {{oil: iso_vg_32, temperature: 70 degC, supply: oil_bath, traction: {{law: eyring}}}}
 operating: {{shaft_speed: 1000 rpm, radial_load: 5 kN}}
 """
-# D, B of the general catalogue of IBB (types with a cage) and of INA's price list (SL18 29 and 30, which are NCF), none of which the tables of
-# caged bearings were made from; and clearances as SKF's general catalogue prints them for the bore (ISO 5753-1) [mm, um].
-INDEPENDENT = {
-    "NU 1005": (25, 47, 12, "CN", 20, 45),
-    "NU 1030 ML/C3": (150, 225, 35, "C3", 115, 165),
-    "NU 1052/C4": (260, 400, 65, "C4", 260, 330),
-    "NU 1080": (400, 600, 90, "CN", 190, 280),
-    "NU 210 ECP/C3": (50, 90, 20, "C3", 50, 80),
-    "N 232": (160, 290, 48, "CN", 70, 120),
-    "NJ 260/C2": (300, 540, 85, "C2", 55, 130),
-    "NU 2205": (25, 52, 18, "CN", 20, 45),
-    "NJ 2220 ECP/C5": (100, 180, 46, "C5", 155, 190),
-    "NUP 2252": (260, 480, 130, "CN", 125, 195),
-    "NU 306": (30, 72, 19, "CN", 20, 45),
-    "NUP 324/C3": (120, 260, 55, "C3", 85, 125),
-    "NF 348": (240, 500, 95, "CN", 110, 175),
-    "NU 2304": (20, 52, 21, "CN", 20, 45),
-    "NJ 2332 MA/C4": (160, 340, 114, "C4", 165, 215),
-    "NU 410/C2": (50, 130, 31, "C2", 5, 35),
-    "NJ 430": (150, 380, 85, "CN", 70, 120),
-    "NCF 2928 CV/C3": (140, 190, 30, "C3", 100, 145),
-    "NCF 2948 CV": (240, 320, 48, "CN", 110, 175),
-    "NCF 3008 CV": (40, 68, 21, "CN", 25, 50),
-    "NCF 3012 CV/C4": (60, 95, 26, "C4", 80, 110),
-}
 
 
 def scene(bearing, level="steady"):
     return scene_from_yaml(SCENE.format(bearing=bearing, level=level))
 
 
-@pytest.mark.parametrize("text", INDEPENDENT)
+@pytest.mark.parametrize("text", BOUNDARIES)
 def test_boundary_dimensions_and_clearance_are_those_of_an_independent_list(text):
-    bore, outside, width, group, low, high = INDEPENDENT[text]
+    bore, outside, width, group, low, high = BOUNDARIES[text]
     bearing = scene(text).bearing
     found = 2e3 * bearing.inner_raceway.bore_radius, 2e3 * bearing.outer_raceway.outside_radius, 1e3 * bearing.width
     assert found == pytest.approx((bore, outside, width)) and bearing.clearance == group
@@ -66,7 +42,7 @@ def test_boundary_dimensions_and_clearance_are_those_of_an_independent_list(text
 
 
 def test_the_independent_list_covers_all_series_and_types():
-    read = [parse_designation(text) for text in INDEPENDENT]
+    read = [parse_designation(text) for text in BOUNDARIES]
     assert {each.series for each in read} == {"10", "2", "22", "3", "23", "4", "29", "30"} and len(read) >= 20
     assert {each.type for each in read} == {"N", "NU", "NJ", "NUP", "NF", "NCF"}
 

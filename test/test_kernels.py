@@ -1,6 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Laws against closed forms, published values and limits."""
 
+import functools
 import math
 
 import numpy as np
@@ -20,11 +21,10 @@ from bearing_sim.physics.drag import churning_force, cylinder_torque, end_face_t
 from bearing_sim.physics.land import land_torque
 from bearing_sim.physics.load_balance import LOAD, balance_ring, squeezed_roller
 from bearing_sim.physics.raceway import TABLE_INTERVALS, contour_at, tabulated
-from bearing_sim.physics.rating_life import rating_life_revolutions, ring_ratings
+from bearing_sim.physics.rating_life import rating_life_revolutions
 from bearing_sim.physics.traction import traction
 from bearing_sim.scene.bearing import OuterRaceway
 from bearing_sim.scene.contour import outer_contour
-from bearing_sim.scene.ratings import load_rating
 
 STIFFNESS = line_contact_stiffness(7e-3, 2.06e11, 0.3)
 
@@ -72,10 +72,6 @@ def test_laws_on_lanes_are_those_of_numbers():
     np.testing.assert_allclose(found, np.stack(expected, axis=1), rtol=1e-10, atol=1e-10)
 
 
-def test_line_contact_stiffness_is_palmgrens_for_a_7_mm_steel_roller():
-    assert STIFFNESS / 1000 ** (10 / 9) == pytest.approx(4.535e5, rel=1e-3)  # N/mm^(10/9)
-
-
 @given(st.floats(1e-9, 1e-3))
 def test_penetration_is_that_of_palmgrens_force(penetration):
     assert line_penetration(STIFFNESS * penetration ** (10 / 9), STIFFNESS) == pytest.approx(penetration, rel=1e-9)
@@ -102,19 +98,18 @@ def test_contour_is_continuous_with_its_slope_around_the_turn():
         assert before == pytest.approx(after, abs=1e-11)
 
 
-def traction_coefficient(slide_to_roll, load=1000.0, rolling=73.0, contact="inner", overrides=()):
+@functools.cache
+def lubrication_with(overrides):
     scene = load_scene("deng2017_table1", overrides)
-    lubrication = lubricate(scene.lubricant, pack(scene), 393.15)
+    return lubricate(scene.lubricant, pack(scene), 393.15)
+
+
+def traction_coefficient(slide_to_roll, load=1000.0, rolling=73.0, contact="inner", overrides=()):
+    lubrication = lubrication_with(tuple(overrides))
     contacts = np.zeros((2, len(CONTACT), LANES))
     contacts[:, CONTACT.rolling], contacts[:, CONTACT.sliding], contacts[:, CONTACT.load] = rolling, slide_to_roll * abs(rolling), load
     traction(contacts, lubrication.inner, lubrication.outer)
     return contacts[0 if contact == "inner" else 1, :, 1]
-
-
-@pytest.mark.parametrize(("slide_to_roll", "expected"), [(0.01, 0.0013), (0.05, 0.0052), (0.2, 0.0094)])
-def test_oil_4109_traction_has_its_check_values(slide_to_roll, expected):
-    # MIL-L-7808 class at 120 degC, inner contact, 1000 N, 73 m/s; the published values have two digits
-    assert traction_coefficient(slide_to_roll)[CONTACT.force] / 1000 == pytest.approx(expected, abs=0.6e-4)
 
 
 def test_oil_4109_traction_is_the_published_product_of_powers():
@@ -250,18 +245,6 @@ def test_a_singular_or_nan_arrow_is_told():
     assert not factor_shifted(jacobian, 1.0, factored)
     jacobian.rows[ARROW.diagonal] = math.nan
     assert not factor_shifted(jacobian, 1.0, factored)
-
-
-@pytest.mark.parametrize(("oil", "temperature", "viscosity"), [("mil_l_7808", 393.15, 2.09e-3), ("mil_l_23699", 373.15, 5.01e-3)])
-def test_oil_viscosities_have_their_check_values(oil, temperature, viscosity):
-    scene = load_scene("deng2017_table1", [f"lubricant.oil={oil}"])
-    assert oil_at(scene.lubricant.oil, temperature).viscosity == pytest.approx(viscosity, rel=2e-3)
-
-
-def test_load_ratings_of_the_table_1_bearing_have_their_check_values():
-    gamma = 7 / 62.75
-    assert load_rating(18, 7e-3, 7e-3, gamma) == pytest.approx(30.2e3, rel=1e-3)
-    assert ring_ratings(load_rating(18, 7e-3, 7e-3, gamma), 18, gamma) == pytest.approx((5681, 7646), rel=1e-4)
 
 
 def test_rating_life_falls_with_the_load_to_the_fourth_power():

@@ -109,14 +109,6 @@ def test_the_life_by_slices_does_not_hang_on_their_number():
     assert lives[2] == pytest.approx(lives[3], rel=5e-3) and lives[0] == pytest.approx(lives[3], rel=5e-2)
 
 
-def test_reliability_factors_are_those_of_the_standards_table():
-    table = {0.9: 1, 0.95: 0.64, 0.96: 0.55, 0.97: 0.47, 0.98: 0.37, 0.99: 0.25, 0.992: 0.22, 0.994: 0.19, 0.996: 0.16, 0.998: 0.12}
-    for reliability, factor in table.items():
-        assert reliability_factor(reliability) == pytest.approx(factor, abs=0.0051)
-    for reliability, factor in {0.999: 0.093, 0.9992: 0.087, 0.9994: 0.080, 0.9995: 0.077}.items():
-        assert reliability_factor(reliability) == pytest.approx(factor, abs=0.00051)
-
-
 def test_viscosity_ratio_by_hand():
     # 3000 rpm, 64 mm: nu_1 = 4500/(sqrt(3000) * 8) = 10.2698 mm^2/s; 100 rpm, 64 mm: 45000 * 100^-0.83/8 = 123.06 mm^2/s
     assert viscosity_ratio(10.2698e-6, 100 * math.pi, 64e-3) == pytest.approx(1.0, rel=1e-5)

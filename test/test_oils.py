@@ -51,11 +51,6 @@ def test_viscosity_indices_are_those_of_the_standards_examples(viscosity_40, vis
     assert viscosity_at_100(viscosity_40, found) == pytest.approx(viscosity_100, rel=1e-9)
 
 
-@pytest.mark.parametrize(("viscosity", "low", "high"), [(2.0, 7.994, 6.394), (5.0, 40.23, 28.49), (10.0, 147.7, 82.87), (20.0, 493.2, 229.5)])
-def test_reference_viscosities_are_those_of_the_standards_table(viscosity, low, high):
-    assert reference_viscosities(viscosity) == pytest.approx((low, high), rel=1e-3)
-
-
 def test_reference_viscosities_run_on_from_each_row_of_the_standard_to_the_next_up_to_the_thickest_oils():
     starts = np.array([3.8, 4.4, 5.0, 6.4, 7.0, 7.7, 9.0, 12.0, 15.0, 18.0, 22.0, 28.0, 40.0, 55.0, 70.0])
     below, at, above = (np.array([reference_viscosities(y) for y in starts * factor]) for factor in (1.0 - 1e-9, 1.0, 1.0 + 1e-6))

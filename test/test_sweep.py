@@ -165,7 +165,7 @@ def test_a_row_says_means_extremes_and_lives_as_damage_adds_up(monkeypatch):
     window["cage_slip"], window["rating_life"] = [0.1, 0.3], [100.0, 300.0]
     window["inner_load"], window["outer_load"] = [[0.0, 0.0, 0.0, 5.0], [0.0, 2.0, 3.0, 7.0]], [[9.0] * 4, [9.0, 9.0, 9.0, 11.0]]
     pitch, work = window[1:], Counters(*[0] * 6)
-    monkeypatch.setattr(point, "run_until_settled", lambda scene, duration: Outcome("settled", 0.5, 0.1, "", 0.2, window, pitch, work))
+    monkeypatch.setattr(point, "run_until_settled", lambda scene, duration, longest: Outcome("settled", 0.5, 0.1, "", 0.2, window, pitch, work))
     row = point_row(load_scene("deng2017_table1"))
     assert (row["cage_slip_minimum"], row["cage_slip"], row["cage_slip_maximum"]) == pytest.approx((10.0, 20.0, 30.0))
     assert row["rating_life"] == pytest.approx(150.0), "half of the time at 100 h and half at 300 h uses as much up as 150 h do"

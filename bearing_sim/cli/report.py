@@ -1,29 +1,80 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""``bearing-sim report``: one HTML page of any result."""
+"""``bearing-sim report``: one page of any result, or of what the model has been compared with."""
 
 from pathlib import Path
 
 import click
 
 from bearing_sim.cli.outputs import OutputFile, WritingCommand, default_output
-from bearing_sim.cli.reporting import as_file_error, as_usage_error
+from bearing_sim.cli.reporting import UsageError, announce_compilation, as_file_error, as_usage_error, command_line, progress_bar
+from bearing_sim.files.limits import FileError
+
+_VALIDATION = "validation"
 
 
 @click.command("report", cls=WritingCommand)
-@click.argument("source", type=click.Path(path_type=Path), metavar="RESULT")
-@click.option("-o", "--out", type=OutputFile(), metavar="PATH.html", help="The page [default: RESULT.html, or report.html in a folder].")
-def report(source, out):
-    """Make one HTML page of RESULT: scene and bearing, tables, pictures, warnings, where it comes from, and the command that made it.
+@click.argument("source", metavar="RESULT")
+@click.option(
+    "-o",
+    "--out",
+    type=OutputFile(),
+    metavar="PATH.html",
+    help="The page [default: RESULT.html, or report.html in a folder]; of validation also PATH.md.",
+)
+@click.option("--only", "names", multiple=True, metavar="CHECK", help="Of validation: run only this check; can be repeated.")
+@click.option(
+    "--tests",
+    type=click.Path(path_type=Path),
+    metavar="FILE.xml",
+    help="Of validation: what pytest wrote with --junitxml, of the claims of the test suite.",
+)
+@click.option("--quick", is_flag=True, help="Of validation: leave out the checks that take minutes; the page says so.")
+def report(source, out, names, tests, quick):
+    """Make one page of RESULT: scene and bearing, tables, pictures, warnings, where it comes from, and the command that made it.
 
     RESULT is a table written by `sweep`, `design` or `study` (.parquet, or the .csv beside it), a recording written by `run` or `replay`
     (.mcap, or a bag's folder), a folder of such files, or the folder of `bearing-sim study deng2017`. The page is self-contained: it
     needs no network and no other file.
+
+    The word `validation` (a result of that name: ./validation) runs every check of the model against something independent of it and makes a page
+    of figures, tolerances and verdicts, which begins with what is not validated.
     """
+    if source == _VALIDATION:  # as it is written: ./validation is a path
+        _report_validation(out or default_output(Path("validation.html")), names, tests, quick)
+        return
+    if names or tests or quick:
+        raise UsageError(f"--only, --tests and --quick are for `bearing-sim report {_VALIDATION}`; {source} is a result")
     from bearing_sim.studies.page import NoResults
     from bearing_sim.studies.report_page import page_of
 
-    out = out or default_output(source / "report.html" if source.is_dir() else source.with_suffix(".html"))
+    result = Path(source)
+    out = out or default_output(result / "report.html" if result.is_dir() else result.with_suffix(".html"))
     with as_usage_error(NoResults), as_file_error():
-        page = page_of(source)
+        page = page_of(result)
         out.write_text(page)
     click.echo(f"{out}: {len(page.encode()) / 1e6:.1f} MB")
+
+
+def _report_validation(out, names, tests, quick) -> None:
+    announce_compilation()
+    from bearing_sim.studies.validation.check import run
+    from bearing_sim.studies.validation.checks import CHECKS
+    from bearing_sim.studies.validation.page import counted, html_page, markdown_page
+    from bearing_sim.studies.validation.suite import SuiteError, suite_results
+
+    known = {check.name: check for check in CHECKS}
+    for name in names:
+        if name not in known:
+            raise UsageError(f"--only {name}: there is no such check; expected one of {', '.join(known)}")
+    chosen = [known[name] for name in dict.fromkeys(names)] or CHECKS
+    with as_usage_error(SuiteError, FileError):
+        held_by_tests = [] if names else suite_results(tests)
+    with progress_bar("checks", len(chosen)) as show:
+        results = [*run(chosen, quick, show), *held_by_tests]
+    page = (markdown_page if out.path.suffix == ".md" else html_page)(results, command_line())
+    with as_file_error():
+        out.write_text(page)
+    for each in results:
+        if each.verdict != "holds":
+            click.echo(f"{each.verdict}: {each.quantity}: {each.found}")
+    click.echo(f"{out}: {counted(results)}")

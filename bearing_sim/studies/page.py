@@ -27,6 +27,7 @@ td p { margin: 0 0 .4rem; }
 .claims td:nth-child(2) { width: 21%; } .claims td:nth-child(5) { width: 31%; } .claims td:nth-child(6) { width: 31%; }
 td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; }
 td.pair { width: 24%; }
+td.day { white-space: nowrap; }
 .wide { overflow-x: auto; }
 .warnings { border-left: 4px solid var(--part); background: #fdf6ec; padding: .6rem 1rem; margin: 1rem 0; }
 .warnings ul { margin: .3rem 0 0; padding-left: 1.2rem; }

@@ -299,6 +299,7 @@ class Plan(NamedTuple):
     overrides, axes, duration : see `run_sweep`.
     combinations : of the values, one of each axis.
     scenes : the scene of each combination, or the error of an invalid one.
+    longest : of the longest run of a point [s], see `bearing_sim.sweep.point.run_until_settled`; None for its default.
     """
 
     name: str
@@ -307,11 +308,13 @@ class Plan(NamedTuple):
     duration: float
     combinations: tuple[tuple, ...]
     scenes: tuple[Scene | SceneError, ...]
+    longest: float | None = None
 
     @property
     def tasks(self) -> list[Task]:
         """One task for each valid point."""
-        return [task(scene.level, point_row, scene, self.duration) for scene in self.scenes if isinstance(scene, Scene)]
+        limits = (self.duration,) if self.longest is None else (self.duration, self.longest)
+        return [task(scene.level, point_row, scene, *limits) for scene in self.scenes if isinstance(scene, Scene)]
 
     def table(self, results: Iterable[dict]) -> Table:
         """Return the table of all points from the results of `tasks`."""
@@ -337,15 +340,21 @@ class Plan(NamedTuple):
         }
 
 
-def plan_sweep(scene: Scene | Mapping | str | Path, overrides: Sequence[str], axes: Sequence[Axis], duration: float = DURATION) -> Plan:
-    """Return the plan of a sweep; parameters and errors as for `run_sweep`."""
+def plan_sweep(
+    scene: Scene | Mapping | str | Path,
+    overrides: Sequence[str],
+    axes: Sequence[Axis],
+    duration: float = DURATION,
+    longest: float | None = None,
+) -> Plan:
+    """Return the plan of a sweep; ``longest`` as of `Plan`, the other parameters and errors as for `run_sweep`."""
     point_count(axes)
     combinations = tuple(itertools.product(*(axis.values for axis in axes)))
     scenes = tuple(scene_at(scene, overrides, axes, combination) for combination in combinations)
     if not any(isinstance(each, Scene) for each in scenes):
         raise scenes[0]
     name = scene.name if isinstance(scene, Scene) else str(scene.get("name", "scene") if isinstance(scene, Mapping) else scene)
-    return Plan(name, tuple(overrides), tuple(axes), float(duration), combinations, scenes)
+    return Plan(name, tuple(overrides), tuple(axes), float(duration), combinations, scenes, longest)
 
 
 def scene_at(scene: Scene | Mapping | str | Path, overrides: Sequence[str], axes: Sequence[Axis], combination: Sequence) -> Scene | SceneError:

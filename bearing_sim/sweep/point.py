@@ -99,15 +99,15 @@ def run_until_settled(scene: Scene, duration: float = DURATION, longest: float |
     return advance_until_settled(run, shortest, longest)
 
 
-def point_row(scene: Scene, duration: float = DURATION) -> dict:
+def point_row(scene: Scene, duration: float = DURATION, longest: float | None = None) -> dict:
     """Return the results of a scene by the names of `RESULTS` and `TEXTS`, in their units; NaN if the run failed.
 
     Parameters
     ----------
-    scene, duration : see `run_until_settled`.
+    scene, duration, longest : see `run_until_settled`.
     """
     try:
-        outcome = run_until_settled(scene, duration)
+        outcome = run_until_settled(scene, duration, longest)
     except IntegrationError as error:
         return empty_row(FAILED, str(error))
     found = results_of(outcome)

@@ -1,0 +1,109 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""The page of all checks, as HTML or as Markdown: what is not validated first, then each figure with tolerance, verdict, command and date."""
+
+from collections import Counter
+from collections.abc import Sequence
+from html import escape
+
+from bearing_sim.recording.provenance import git_hash, package_version, versions
+from bearing_sim.studies.page import command as command_block
+from bearing_sim.studies.page import document, pairs, paragraph
+from bearing_sim.studies.validation.check import FAILS, HOLDS, IN_PART, NOT_RUN, Result
+from bearing_sim.studies.validation.data_sets import DATA_SETS
+
+TITLE = "Validation"
+NOT_VALIDATED = (
+    "What is not validated: cage slip over speed and load. We found no readable measurement of it for a cylindrical roller bearing whose dimensions "
+    "are known, so no slip on this page is held to a test rig. Slip is compared with a published model, with independent calculations of the same "
+    "bearing, and with published findings that have a direction but no digits. Nor is there a measurement behind the bands of slip under unknown "
+    "parameters, forces on the cage, skew of rollers, temperatures inside a bearing, and lives against failures of real bearings."
+)
+_CLASSES = {HOLDS: "holds", IN_PART: "part", FAILS: "fails", NOT_RUN: "soft"}
+_HEADINGS = ("what", "compared with", "expected", "found", "deviation", "tolerance", "verdict", "command", "date")
+_MEANING = (
+    "Every figure was computed by the command in its line on the day in its line. A tolerance is the most by which a figure may deviate. Where a "
+    f"verdict is '{IN_PART}' or '{FAILS}', the line says by how much the model is off."
+)
+_NOT_RUN_HERE = "Open recordings of bearings that would show the slip of a cage. None of them was run here."
+_DETAILS = (
+    ("deng2017", "the results of Deng et al. (2017), its design question, the bearing as it runs"),
+    ("friction_and_heat", "heat, friction and catalogue bearings, table by table"),
+    ("trends", "published trends"),
+    ("independent_models", "plain NumPy models, complex steps and other references in the test suite"),
+    ("uncertainty", "unknown parameters, and a measured flight"),
+    ("robustness", "extreme scenes, damaged recordings, outputs, files from others"),
+)
+
+
+def html_page(results: Sequence[Result], made_by: str) -> str:
+    """Return the page as HTML.
+
+    Parameters
+    ----------
+    results : of all checks.
+    made_by : the command line that made it.
+    """
+    opening = f"<p><b>{escape(NOT_VALIDATED)}</b></p>{paragraph(_MEANING)}{_counts(results)}{command_block(made_by)}"
+    sections = {group: _table(_HEADINGS, [_html_cells(each) for each in results if each.group == group]) for group in _groups(results)}
+    sections["Open data that would validate slip"] = paragraph(_NOT_RUN_HERE) + _table(
+        _DATA_HEADINGS, ["".join(f"<td>{escape(text)}</td>" for text in row) for row in _data_rows()]
+    )
+    sections["Provenance"] = pairs({"version": package_version(), "commit": git_hash()} | versions())
+    return document(f"bearing_sim: {TITLE.lower()}", opening, sections)
+
+
+def markdown_page(results: Sequence[Result], made_by: str) -> str:
+    """Return the page as Markdown, for the documents; parameters as of `html_page`."""
+    parts = [f"# {TITLE}", f"**{NOT_VALIDATED}**", _MEANING, f"```text\n{made_by}\n```", f"{counted(results)}."]
+    for group in _groups(results):
+        rows = [[*each[2:9], f"`{each.command}`", each.date] for each in results if each.group == group]
+        parts += [f"## {group}", _markdown_table(_HEADINGS, rows)]
+    parts += ["## Open data that would validate slip", _NOT_RUN_HERE, _markdown_table(_DATA_HEADINGS, _data_rows(code="`"))]
+    parts += ["## Details", "\n".join(f"- [{name.replace('_', ' ')}](validation/{name}.md): {text}" for name, text in _DETAILS)]
+    return "\n\n".join(parts) + "\n"
+
+
+def _groups(results: Sequence[Result]) -> list[str]:
+    return list(dict.fromkeys(each.group for each in results))
+
+
+def counted(results: Sequence[Result]) -> str:
+    """Return how many results have each verdict, in words."""
+    counts = Counter(each.verdict for each in results)
+    return ", ".join(f"{counts[verdict]} {verdict}" for verdict in _CLASSES if counts[verdict])
+
+
+def _counts(results: Sequence[Result]) -> str:
+    counts = Counter(each.verdict for each in results)
+    shown = "".join(f'<div><b class="{name}">{counts[verdict]}</b> {verdict}</div>' for verdict, name in _CLASSES.items() if counts[verdict])
+    return f'<div class="counts">{shown}</div>'
+
+
+def _html_cells(each: Result) -> str:
+    texts = (each.quantity, each.source, each.expected, each.found, each.deviation, each.tolerance)
+    cells = "".join(f"<td>{escape(text)}</td>" for text in texts)
+    verdict = f'<td class="verdict {_CLASSES[each.verdict]}">{escape(each.verdict)}</td>'
+    return f'{cells}{verdict}<td><code>{escape(each.command)}</code></td><td class="day">{escape(each.date)}</td>'
+
+
+def _table(headings: Sequence[str], rows: Sequence[str]) -> str:
+    head = "".join(f"<th>{escape(heading)}</th>" for heading in headings)
+    body = "".join(f"<tr>{row}</tr>" for row in rows)
+    return f'<div class="wide"><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>'
+
+
+_DATA_HEADINGS = ("data", "bearings", "varied", "files", "where", "command (not run here)", "what else it takes")
+
+
+def _data_rows(code: str = "") -> list[list[str]]:
+    return [[*each[:5], "; ".join(f"{code}{text}{code}" for text in each.commands), each.missing] for each in DATA_SETS]
+
+
+def _markdown_table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    lines = [headings, ["---"] * len(headings), *rows]
+    return "\n".join("| " + " | ".join(_escaped(text) for text in line) + " |" for line in lines)
+
+
+def _escaped(text: str) -> str:
+    """Return a text for a cell of a Markdown table."""
+    return text.replace("|", "\\|").replace("<", "&lt;").replace("\n", " ")
