@@ -57,7 +57,8 @@ install_package() {
         return
     fi
     printf 'installing bearing_sim and its dependencies (a minute or two the first time)\n' >&2
-    "$venv/bin/python" -m pip install -qq --upgrade "$here${extra:+[$extra]}" || {
+    # --no-compile: Python compiles what is imported, a small part of what is installed, when it is.
+    "$venv/bin/python" -m pip install -qq --no-compile --upgrade "$here${extra:+[$extra]}" || {
         printf '%s: the installation failed; see the message above\n' "$(basename "$0")" >&2
         exit 1
     }
