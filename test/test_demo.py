@@ -26,7 +26,9 @@ SCRIPTS = REPOSITORY / "launch_scripts"
 
 def demo(folder, *arguments):
     """Start the demonstration with its runs in a folder."""
-    return NodeProcess(folder, fresh_domain(), "--out", str(folder / "my runs"), "--no-open", *arguments, module="bearing_sim.ros.demo", limit=220)
+    return NodeProcess(
+        folder, fresh_domain(), "--out", str(folder / "my runs"), "--no-open", "--no-estimates", *arguments, module="bearing_sim.ros.demo", limit=220
+    )
 
 
 def the_run(folder):

@@ -6,7 +6,7 @@ import math
 import click
 
 from bearing_sim.cli.lives import hours
-from bearing_sim.cli.reporting import progress_bar
+from bearing_sim.cli.reporting import as_usage_error, progress_bar
 
 _SHOWN = {  # words and text of the bands of a replay by name
     "cage_slip": ("cage slip, 5 to 95 %", lambda low, high: f"{100 * low:.2f} to {100 * high:.2f} %, mean while turning"),
@@ -23,32 +23,37 @@ _NEWEST = {  # of a run at its end
 }
 
 
-def response_with_progress(scene):
-    """Return the response of a scene that asks for estimates, from disk or newly built; None for a scene that does not ask.
+def response_with_progress(scene, rebuild=False, workers=None):
+    """Return the response of a scene to its uncertain fields, from disk or newly built.
+
+    Parameters
+    ----------
+    scene : the scene.
+    rebuild : whether to build it even if it is kept.
+    workers : number of processes; None: all cores.
 
     Raises
     ------
-    UncertaintyError, ClusterError, JournalInUse
-        See `bearing_sim.studies.response.obtain_response`.
+    UsageError
+        The scene has no uncertain fields, or another command is building the response.
     """
-    if not scene.estimation.is_asked:
-        return None
     from bearing_sim.estimation.response import kept_response
     from bearing_sim.studies.response import obtain_response
+    from bearing_sim.studies.uncertainty import UncertaintyError
+    from bearing_sim.sweep.tasks import JournalInUse
 
-    if (kept := kept_response(scene)) is not None:
+    if not rebuild and (kept := kept_response(scene)) is not None:
         return kept
     click.echo(f"building the response of {scene.name} to its uncertain fields, once for this bearing and oil ...", err=True)
-    with progress_bar("operating points", 1.0) as show:
-        return obtain_response(scene, progress=lambda done, total: show(done / max(total, 1)))
+    with as_usage_error(UncertaintyError, JournalInUse), progress_bar("operating points", 1.0) as show:
+        return obtain_response(scene, workers, progress=lambda done, total: show(done / max(total, 1)), rebuild=rebuild)
 
 
 def estimation_with_progress(scene):
     """Return what estimates during a run of a scene that asks for it (`bearing_sim.estimation.live.LiveEstimation`); None otherwise."""
     from bearing_sim.estimation.live import LiveEstimation
 
-    response = response_with_progress(scene)
-    return None if response is None else LiveEstimation(scene, response)
+    return LiveEstimation(scene, response_with_progress(scene)) if scene.estimation.is_asked else None
 
 
 def band_rows(statistics) -> list[tuple[str, str]]:

@@ -6,11 +6,12 @@ from pathlib import Path
 
 import click
 
-from bearing_sim.cli.options import json_option
+from bearing_sim.cli.options import allow_outside_option, json_option, set_option
 from bearing_sim.cli.outputs import OutputRecording, WritingCommand
 from bearing_sim.cli.reporting import (
     FailedRun,
     UsageError,
+    as_failed_run,
     as_file_error,
     as_usage_error,
     print_json,
@@ -197,20 +198,34 @@ def _print(table, mapping, data, out) -> None:
 @click.option("--duration", default=60.0, show_default=True, type=click.FloatRange(1, 3600), metavar="S", help="Duration; all phases scale with it.")
 @click.option("--rate", default=50.0, show_default=True, type=click.FloatRange(1, 2000), metavar="HZ", help="Rate of the speed and load messages.")
 @click.option("--start", type=click.DateTime(), help="Start time in UTC [default: now].")
+@click.option("--cage", "machine", metavar="SCENE", help="Also write a measured cage speed: that of this scene's model, with noise.")
+@set_option
+@allow_outside_option
 @json_option
-def mission(out, duration, rate, start, as_json):
+def mission(out, duration, rate, start, machine, overrides, as_json):
     """Write the synthetic mission: start, idle, take-off at 45,000 rpm, cruise, light-load descent with a gust, stop.
 
-    It is invented, not measured, and meant for demonstrations only.
+    It is invented, not measured, and meant for demonstrations only; so is the cage speed that --cage adds at 10 Hz: a model plays the machine, with
+    noise of 0.2 points of slip. With other values than those of the scene that is calibrated (--set), the calibration has something to find.
     """
     import time
 
     from bearing_sim.inputs.mission import write_mission
+    from bearing_sim.scene.loader import SceneError, load_scene
+    from bearing_sim.simulation import IntegrationError
 
+    if overrides and machine is None:
+        raise UsageError("--set changes the scene of --cage; give that, too")
+    with as_usage_error(SceneError):
+        scene = load_scene(machine, overrides) if machine is not None else None
     start_ns = time.time_ns() if start is None else int(start.replace(tzinfo=UTC).timestamp()) * 1_000_000_000
-    with as_file_error(), progress_bar("writing the mission", duration) as progress:
-        messages = write_mission(out.path, start_ns, duration, rate, progress, replace=out.force)
+    with as_file_error():
+        out.check()  # again, now that the scene has been read
+    with as_file_error(), as_failed_run(IntegrationError), progress_bar("writing the mission", duration) as progress:
+        messages = write_mission(out.path, start_ns, duration, rate, progress, replace=out.force, machine=scene)
     if as_json:
-        print_json({"out": str(out), "synthetic": True, "duration_seconds": duration, "rate": rate, "messages": messages, "start_ns": start_ns})
+        report = {"out": str(out), "synthetic": True, "duration_seconds": duration, "rate": rate, "messages": messages, "start_ns": start_ns}
+        print_json({**report, "cage": scene and scene.name})
     else:
-        click.echo(f"{out}: synthetic mission of {duration:g} s, {messages} messages of shaft speed, radial load and oil temperature")
+        cage = f", and a synthetic measured cage: the model of {scene.name} with noise" if scene is not None else ""
+        click.echo(f"{out}: synthetic mission of {duration:g} s, {messages} messages of shaft speed, radial load and oil temperature{cage}")

@@ -126,7 +126,7 @@ def replay(
                 watchers.append(stack.enter_context(RerunFile(scene, stack.enter_context(rrd.draft()), course.start_ns, seconds)))
             announce_compilation(scene)
             choice = _choice(scene, course)
-            response = response_with_progress(scene)
+            response = response_with_progress(scene) if scene.estimation.is_asked else None
             started = time.perf_counter()
             with suppress(IntegrationError):  # the replay itself will report it
                 warm = choice.get("model", Simulation)(scene)

@@ -24,8 +24,11 @@ from bearing_sim.cli.reporting import UsageError, announce_compilation, as_usage
     help="Instead compare the solver with level slip at N random operating points.",
 )
 @click.option("--seed", default=2017, show_default=True, help="Seed of the random points.")
+@click.option(
+    "--bands", is_flag=True, help="Instead build the response to the uncertain fields, from which bands and calibration follow, or show it."
+)
 @json_option
-def table(scene_name, overrides, rebuild, workers, points, against_slip, seed, as_json):
+def table(scene_name, overrides, rebuild, workers, points, against_slip, seed, bands, as_json):
     """Build the table of operating points of SCENE at level steady, or show the existing one.
 
     Its range is given in the scene's block `table` (maximum_speed, maximum_load, minimum_temperature, maximum_temperature, tolerance);
@@ -35,6 +38,11 @@ def table(scene_name, overrides, rebuild, workers, points, against_slip, seed, a
 
     with as_usage_error(SceneError):
         scene = load_scene(scene_name, [*overrides, "level=steady"])
+    if bands:
+        if points or against_slip is not None:
+            raise UsageError("--bands goes with --rebuild and --workers only; leave --at and --against-slip out")
+        _show_response(scene, rebuild, workers, as_json)
+        return
     if against_slip is not None:
         _compare(scene, against_slip, seed, as_json)
         return
@@ -46,6 +54,29 @@ def table(scene_name, overrides, rebuild, workers, points, against_slip, seed, a
         print_json(report)
     else:
         _print(report)
+
+
+def _show_response(scene, rebuild, workers, as_json) -> None:
+    """Build the response of a scene to its uncertain fields, or take the one that is kept, and show what it is good for."""
+    from bearing_sim.cli.estimation import response_with_progress
+    from bearing_sim.estimation.response import response_path
+
+    announce_compilation()
+    found = response_with_progress(scene, rebuild, workers)
+    domain, path = found.domain, str(response_path(scene))
+    if as_json:
+        report = {"scene": scene.name, "file": path, "fields": list(found.names), "points": found.points, "seconds": found.seconds}
+        print_json({**report, "domain": domain._asdict()})
+        return
+    rpm, celsius = [speed * 30 / math.pi for speed in domain.speeds], [kelvin - 273.15 for kelvin in domain.temperatures]
+    rows = [
+        ("uncertain fields", ", ".join(found.names)),
+        ("shaft speed", f"up to {rpm[1]:.6g} rpm"),
+        ("radial load", f"up to {domain.loads[1]:.6g} N"),
+        ("oil temperature", f"{celsius[0]:.6g} to {celsius[1]:.6g} degC"),
+        ("built", f"from {found.points} settled points in {found.seconds:.3g} s; {path}"),
+    ]
+    print_table(f"response of {scene.name} to its uncertain fields", rows)
 
 
 def build_with_progress(scene, temperatures=None, workers=None, rebuild=False):

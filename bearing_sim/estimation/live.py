@@ -139,7 +139,9 @@ class LiveEstimation:
         edges = self._bands.take(samples)
         if self.is_calibrated:
             numbers = np.concatenate([self._bands.medians[:, :, None], edges], axis=2)
-            numbers[:, _SLIP] = self._calibrated_slip(samples)
+            turning = np.isfinite(numbers[:, _SLIP]).all(axis=1) & (np.abs(samples["shaft_speed"]) >= self._scene.thresholds.slip_from_speed)
+            if turning.any():
+                numbers[turning, _SLIP] = self._calibrated_slip(samples[turning])
         else:
             own = np.stack([samples["cage_slip"], samples["rating_life"], samples["running_clearance"], self._bands.remaining_life], axis=1)
             numbers = np.concatenate([own[:, :, None], edges], axis=2)

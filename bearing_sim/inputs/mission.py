@@ -5,17 +5,23 @@ Start, idle, take-off at 45,000 rpm, cruise, descent under light load with a gus
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
+
+import numpy as np
 
 from bearing_sim.messages import topics
 from bearing_sim.recording.provenance import git_hash, package_version
 from bearing_sim.recording.writer import McapFile
-from bearing_sim.simulation import Inputs
+from bearing_sim.scene.scene import Scene
+from bearing_sim.simulation import Inputs, Simulation
 
 DURATION = 60.0  # [s]
 METADATA = "bearing_sim_mission"
-"""Name of the metadata record: synthetic ("true"), duration [s], rate [Hz], package_version, git_hash."""
+"""Name of the metadata record: synthetic ("true"), duration [s], rate [Hz], package_version, git_hash; of a cage what is said to be measured."""
+CAGE_RATE, CAGE_NOISE = 10.0, 0.002
+"""Of the synthetic sensor of the cage: readings a second [Hz], and the standard deviation of one over the ideal cage's speed."""
+_SEED = 1
 
 # For each phase: its name, its end as a fraction of the mission, and the inputs at its end:
 # shaft speed [rpm], load along y and z [N], oil temperature [degC].
@@ -72,6 +78,7 @@ def write_mission(
     rate: float = 50.0,
     progress: Callable[[float], None] = lambda seconds: None,
     replace: bool = True,
+    machine: Scene | None = None,
 ) -> int:
     """Write the mission as an input log.
 
@@ -83,13 +90,25 @@ def write_mission(
     rate : rate of the messages of speed and load [Hz]; the oil temperature has one per second.
     progress : called repeatedly with the time reached [s].
     replace : whether an existing recording is replaced.
+    machine : a bearing whose cage is said to be measured: what its model computes, with noise.  None: no cage is measured.
 
     Returns
     -------
     Number of messages written.
+
+    Raises
+    ------
+    IntegrationError
+        The model of the machine cannot be advanced.
     """
     origin = {"package_version": package_version(), "git_hash": git_hash()}
     record = {"synthetic": "true", "duration": repr(duration), "rate": repr(rate), **origin}
+    if machine is not None:
+        text = (
+            f"synthetic: the model of {machine.name} at level {machine.level}, with noise of {100 * CAGE_NOISE:g} points of slip at {CAGE_RATE:g} Hz"
+        )
+        record["cage"] = text
+    cage = _Cage(machine, duration) if machine is not None else None
     ticks, written = round(duration * rate), 0
     with McapFile(path, {METADATA: record}, {"generator": "bearing_sim", "synthetic": "true", **origin}, replace=replace) as recording:
         next_oil = 0.0
@@ -104,5 +123,32 @@ def write_mission(
                 topic = topics.INPUTS[channel]
                 recording.write(f"/{topic.name}", topic.ros_type, stamp, topic.message(stamp, inputs))
             written += len(channels)
+            if cage is not None:
+                for reading, speed in cage.until(time):
+                    topic, stamp = topics.MEASUREMENTS[topics.MEASURED], start_ns + round(reading * 1e9)
+                    recording.write(f"/{topic.name}", topic.ros_type, stamp, topic.message(stamp, speed))
+                    written += 1
             progress(time)
     return written
+
+
+class _Cage:
+    """The synthetic measured cage of the mission.
+
+    Parameters
+    ----------
+    machine : whose model is the machine.
+    duration : of the mission [s].
+    """
+
+    def __init__(self, machine: Scene, duration: float):
+        self._simulation, self._duration = Simulation(machine, mission(0.0, duration)), duration
+        self._random, self._count = np.random.default_rng(_SEED), 0
+
+    def until(self, time: float) -> Iterator[tuple[float, float]]:
+        """Yield times [s] and measured speeds [rad/s] of the readings up to a time of the mission [s]."""
+        while (reading := (self._count + 1) / CAGE_RATE) <= time + 1e-9:
+            self._count += 1
+            sample = self._simulation.advance(1.0 / CAGE_RATE, mission(reading, self._duration))[-1]
+            noise = CAGE_NOISE * float(sample["ideal_cage_speed"]) * self._random.normal()
+            yield reading, float(sample["cage_speed"]) + noise

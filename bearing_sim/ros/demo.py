@@ -23,15 +23,20 @@ import numpy as np
 
 from bearing_sim.files.outside import OPTION
 from bearing_sim.messages import topics
+from bearing_sim.messages.bands import ESTIMATES
 from bearing_sim.messages.diagnostics import WHOLE
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.recording.bag_reader import BagReader, BagTopic
 from bearing_sim.recording.reader import Recording
 from bearing_sim.ros.recordings import fresh_path
 from bearing_sim.scene.loader import SceneError, load_scene
+from bearing_sim.scene.scene import Scene
+from bearing_sim.scene.uncertainty import quantities, ranges_of, shown, value_at
 
 _DOMAINS = range(60, 100)  # above the usual choices of users, below where ports collide with ephemeral ports
 _NODE_ENDS_WITHIN = 30.0  # [s]
+_CALIBRATED = ("lubricant.mixture_fraction",)  # what a measured cage teaches most about
+_HIDDEN = 0.5  # of the way from the scene's value to the end of its range lies the synthetic machine's
 _PR_SET_PDEATHSIG = 1  # Linux: prctl
 
 
@@ -48,12 +53,13 @@ class Demo:
     scene : bundled scene or scene file.
     overrides : scene fields to change, each ``FIELD=VALUE``.
     allow_outside : whether the scene file may name files outside of its own folder.
+    hidden : fields in which the synthetic machine with the measured cage differs from the scene, each ``FIELD=VALUE``; None: no cage is measured.
     """
 
-    def __init__(self, folder: Path, scene: str, overrides: tuple[str, ...] = (), allow_outside: bool = False):
+    def __init__(self, folder: Path, scene: str, overrides: tuple[str, ...] = (), allow_outside: bool = False, hidden: tuple[str, ...] | None = None):
         self.folder = folder
         self.recording, self.view, self.log = folder / "run.mcap", folder / "run.rrd", folder / "node.log"
-        self._scene, self._overrides, self._allow_outside = scene, overrides, allow_outside
+        self._scene, self._overrides, self._allow_outside, self._hidden = scene, overrides, allow_outside, hidden
         domain = os.environ.get("BEARING_SIM_DEMO_DOMAIN_ID") or str(random.SystemRandom().choice(_DOMAINS))
         self._environment = {**os.environ, "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", "ROS_DOMAIN_ID": domain}
 
@@ -81,8 +87,18 @@ class Demo:
         """Write the synthetic mission and return its path."""
         path = self.folder / "mission.mcap"
         self.folder.mkdir(parents=True, exist_ok=True)
-        self._run_to_end("mission", "-o", str(path), "--duration", str(duration), stdout=subprocess.DEVNULL)
+        machine = []
+        if self._hidden is not None:
+            changes = [word for override in (*self._overrides, *self._hidden) for word in ("--set", override)]
+            machine = ["--cage", self._scene, *changes, *([OPTION] if self._allow_outside else [])]
+        self._run_to_end("mission", "-o", str(path), "--duration", str(duration), *machine, stdout=subprocess.DEVNULL)
         return path
+
+    def prepare_estimates(self) -> None:
+        """Build the response of the bearing to its uncertain fields, unless it is kept already."""
+        changes = [word for override in self._overrides for word in ("--set", override)]
+        outside = [OPTION] if self._allow_outside else []
+        self._run_to_end("table", self._scene, "--bands", *changes, *outside, stdout=subprocess.DEVNULL)
 
     @contextmanager
     def _node(self) -> Iterator[subprocess.Popen]:
@@ -185,10 +201,45 @@ def summary(path: Path) -> str:
         ("life at the worst condition", f"{column('modified_rating_life').min():.4g} h"),
         ("life used", f"{100 * column('damage').max():.3g} %"),
         ("real time", f"{lost:.2f} s skipped; speed of the solver alone: median {np.median(factors):.1f}, minimum {min(factors):.1f} x real time"),
+        *_estimate_rows(recording),
         ("warnings and errors", ", ".join(f"{kind} ({count} times)" for kind, count in warnings.items()) or "none"),
     ]
     width = max(len(name) for name, _ in rows)
     return "\n".join(f"{name:<{width}}  {value}" for name, value in rows)
+
+
+def _estimate_rows(recording: Recording) -> list[tuple[str, str]]:
+    """Return the rows of the band of the slip where it reaches highest, and of the calibrated fields before and after the run."""
+    newest, first, slip, known = {}, {}, np.zeros(3), quantities(Scene)
+    for bands in recording.bands():
+        numbers = dict(zip(bands.names, bands.numbers[0]))
+        if bands.topic == ESTIMATES:
+            first, newest = first or numbers, numbers
+        elif numbers["cage_slip"][2] > slip[2]:
+            slip = numbers["cage_slip"]
+    rows = [("band of cage slip at its highest", f"{100 * slip[1]:.2f} to {100 * slip[2]:.2f} %")] if slip[2] > 0.0 else []
+    for path, after in newest.items():
+        texts = [f"{shown(known, path, low)} to {shown(known, path, high)}" for _, low, high in (first[path], after)]
+        rows.append((path, f"{texts[0]} before, {texts[1]} after the measured cage (synthetic)"))
+    return rows
+
+
+def _estimates(scene: Scene) -> tuple[tuple[str, ...], tuple[str, ...] | None]:
+    """Return the overrides by which a scene asks for bands and a calibration, and those of a machine that is not quite as the scene says.
+
+    Both are empty for a scene whose fields have no ranges; without a field that a measured cage teaches much about, there is no such machine.
+    """
+    ranges = {one.field: one for one in ranges_of(scene)}
+    calibrated = [path for path in _CALIBRATED if path in ranges]
+    if not ranges:
+        return (), None
+    asked = () if scene.estimation.bands else ("estimation.bands=true",)
+    if not calibrated:
+        return asked, None
+    own = [value_at(scene, path) for path in calibrated]
+    hidden = [value + _HIDDEN * (ranges[path].high - value) for path, value in zip(calibrated, own)]
+    asked += () if scene.estimation.calibrated else (f"estimation.calibrated=[{', '.join(calibrated)}]",)
+    return asked, tuple(f"{path}={value:.4g}" for path, value in zip(calibrated, hidden))
 
 
 def _diagnostics(path: Path) -> list[dict[str, str]]:
@@ -209,17 +260,30 @@ def _diagnostics(path: Path) -> list[dict[str, str]]:
 @click.option(OPTION, "allow_outside", is_flag=True, help="Read files that the scene names although they lie outside of its folder.")
 @click.option("--mission", type=click.Path(path_type=Path, exists=True), help="Input log to play instead of the bundled mission.")
 @click.option("--duration", type=click.FloatRange(1.0, 3600.0), default=60.0, show_default=True, help="Length of the bundled mission [s].")
+@click.option("--estimates/--no-estimates", default=True, show_default=True, help="Show bands, and a calibration by a synthetic measured cage.")
 @click.option("--open/--no-open", "opens", default=None, help="Open the view in rerun [default: if there is a display].")
-def command(out, scene, overrides, allow_outside, mission, duration, opens):
-    """Run the node on the bundled synthetic mission, record it, and show the results."""
+def command(out, scene, overrides, allow_outside, mission, duration, estimates, opens):
+    """Run the node on the bundled synthetic mission, record it, and show the results.
+
+    With --estimates, which needs a minute more for the first time, results have 5 to 95 % bands by the ranges of the scene. The cage of a synthetic
+    machine is measured: a model whose oil quantity differs from the scene's, which the calibration finds while the node runs.
+    """
     try:
-        load_scene(scene, overrides, allow_outside)
+        loaded = load_scene(scene, overrides, allow_outside)
+        asked, hidden = _estimates(loaded) if estimates else ((), None)
+        load_scene(scene, (*overrides, *asked), allow_outside)
     except SceneError as error:
         click.echo(f"demo: {error}", err=True)
         sys.exit(2)
-    demo = Demo(fresh_path(out / time.strftime("%Y-%m-%d_%H-%M-%S")), scene, overrides, allow_outside)
+    folder = fresh_path(out / time.strftime("%Y-%m-%d_%H-%M-%S"))
+    demo = Demo(folder, scene, (*overrides, *asked), allow_outside, hidden)
     before = {number: signal.signal(number, signal.default_int_handler) for number in (signal.SIGTERM, signal.SIGHUP)}
     try:
+        if asked:
+            click.echo("preparing the bands; the first time this takes about a minute", err=True)
+            demo.prepare_estimates()
+        if hidden is not None and mission is None:
+            click.echo(f"the measured cage is synthetic: the model with {', '.join(hidden)}, and noise", err=True)
         demo.run(mission or demo.write_mission(duration))
         click.echo(summary(demo.recording))
         click.echo(f"recording: {demo.recording}")

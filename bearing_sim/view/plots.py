@@ -415,6 +415,7 @@ class RunSeries:
         self._ranges: dict[str, tuple[float, float]] = {}  # lowest and highest value so far, by entity path
         self._slip_ranges: dict[int, tuple[float, float]] = {}  # the same for the slip, by octave of the shaft speed
         self._measured: list[tuple[float, float, float]] = []  # time, cage speed, residual
+        self._fastest_cage = 0.0  # that was measured [rad/s]
         self._newest: list[np.ndarray] = []  # the last two blocks written: measurements come before or after those of their times
         self._started: float | None = None
         self.bucket: float | None = None
@@ -497,8 +498,10 @@ class RunSeries:
         rows = rows[np.argsort(rows[:, 0], kind="stable")]
         values = measured_series(*rows.T, np.concatenate(self._newest))
         lines = Lines(rows[:, 0], {path: plottable(column) for path, column in values.items()})
+        self._fastest_cage = max(self._fastest_cage, float(np.abs(rows[:, 1]).max()))
+        turning = np.abs(rows[:, 1]) >= 0.1 * self._fastest_cage  # as for the predicted slip, see `ranges`
         for path, column in lines.values.items():
-            _widen(self._ranges, path, column)
+            _widen(self._ranges, path, column if path.startswith("/speed") else column[turning])
         self.is_measured = True
         self._send(lines, self._measured_overview)
         self._send_level("/slip/no_residual", rows[[0, -1], 0], 0.0)
