@@ -211,9 +211,11 @@ def _restored_slip(scaled: np.ndarray) -> np.ndarray:
 
 
 def slip_scale(slip: np.ndarray) -> np.ndarray:
-    """Return slip on a scale without ends: logarithmic from 0.1 % on, since what drives and brakes a cage are factors; its distance from a
-    stopped cage by its logarithm, too; and linear about 0, where a cage may lead.
-    """  # noqa: D205
+    """Return slip on a scale without ends.
+
+    It is logarithmic from 0.1 % on, since what drives and brakes a cage are factors, and so is its distance from a stopped cage; it is linear
+    about 0, where a cage may lead.
+    """
     return np.arcsinh(slip / SLIP_SCALE) - np.log(1.01 - np.minimum(slip, 1.0099))
 
 
