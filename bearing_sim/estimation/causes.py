@@ -28,7 +28,7 @@ _GROUPS = {  # by what the path of a field contains
     OIL_QUANTITY: ("mixture_fraction", "oil_flow", "lubricant.flow", "oil_level", "supply"),
     OIL: ("viscosity", "lubricant.temperature", "lubricant.oil"),
     TRACTION: ("traction",),
-    CAGE: ("bearing.cage",),
+    CAGE: ("cage.",),
     CLEARANCE: ("clearance", "radius", "diameter", "interference", "d_value", "mounting"),
     COOLING: ("heat.",),
 }
