@@ -11,18 +11,7 @@ from bearing_sim.levels.planar import model as planar
 from bearing_sim.levels.planar.forces import equations
 from bearing_sim.levels.planar.state import BLOCK, BORDER, LOCAL, ROLLERS
 from bearing_sim.numerics.simd import LANES
-
-# Settings of the independent calculation; its pockets had no friction.
-INDEPENDENT = [
-    "integration.fixed_step=10 us",  # loose rollers hit hard and ring at 70 kHz: longer steps are 10 % off where slip is largest
-    "bearing.contact.damping=0.3",
-    "support.shaft.mass=0.25",
-    "bearing.outer_raceway.contour_slope=false",
-    "bearing.cage.land_film=4.5 um",
-    "bearing.cage.land_squeeze=false",
-    "bearing.cage.land_friction=0",
-    "bearing.cage.pocket_friction=0",
-]
+from bearing_sim.studies.validation.independent import INDEPENDENT
 
 
 def simulation(*overrides, inputs=None):

@@ -8,18 +8,31 @@ import click
 from bearing_sim.cli.lives import hours
 from bearing_sim.cli.reporting import as_usage_error, progress_bar
 
+
+def _percent(low, high) -> str:
+    return f"{100 * low:.2f} to {100 * high:.2f} %"
+
+
+def _hours(low, high) -> str:
+    return f"{hours(low)} to {hours(high)}"
+
+
+def _micrometres(low, high) -> str:
+    return f"{1e6 * low:.1f} to {1e6 * high:.1f} um"
+
+
 _SHOWN = {  # words and text of the bands of a replay by name
-    "cage_slip": ("cage slip, 5 to 95 %", lambda low, high: f"{100 * low:.2f} to {100 * high:.2f} %, mean while turning"),
-    "largest_cage_slip": ("largest cage slip, 5 to 95 %", lambda low, high: f"{100 * low:.2f} to {100 * high:.2f} %"),
-    "least_rating_life": ("least rating life, 5 to 95 %", lambda low, high: f"{hours(low)} to {hours(high)}"),
-    "least_running_clearance": ("least running clearance, 5 to 95 %", lambda low, high: f"{1e6 * low:.1f} to {1e6 * high:.1f} um"),
-    "remaining_life": ("remaining life at the end, 5 to 95 %", lambda low, high: f"{hours(low)} to {hours(high)}"),
+    "cage_slip": ("cage slip, 5 to 95 %", lambda low, high: f"{_percent(low, high)}, mean while turning"),
+    "largest_cage_slip": ("largest cage slip, 5 to 95 %", _percent),
+    "least_rating_life": ("least rating life, 5 to 95 %", _hours),
+    "least_running_clearance": ("least running clearance, 5 to 95 %", _micrometres),
+    "remaining_life": ("remaining life at the end, 5 to 95 %", _hours),
 }
 _NEWEST = {  # of a run at its end
-    "cage_slip": ("cage slip, 5 to 95 %", lambda low, high: f"{100 * low:.2f} to {100 * high:.2f} %"),
-    "rating_life": ("rating life, 5 to 95 %", lambda low, high: f"{hours(low)} to {hours(high)}"),
-    "running_clearance": ("running clearance, 5 to 95 %", lambda low, high: f"{1e6 * low:.1f} to {1e6 * high:.1f} um"),
-    "remaining_life": ("remaining life, 5 to 95 %", lambda low, high: f"{hours(low)} to {hours(high)}"),
+    "cage_slip": ("cage slip, 5 to 95 %", _percent),
+    "rating_life": ("rating life, 5 to 95 %", _hours),
+    "running_clearance": ("running clearance, 5 to 95 %", _micrometres),
+    "remaining_life": ("remaining life, 5 to 95 %", _hours),
 }
 
 

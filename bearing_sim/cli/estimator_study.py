@@ -41,7 +41,6 @@ def estimator(scene_name, overrides, runs, steps, hours, seed, workers, dask, as
         more += [] if any("wander_time" in each for each in overrides) else ["estimation.drift.wander_time=2 h"]
         scene = load_scene(scene_name, ["level=steady", *overrides, *more])
     announce_compilation()
-    from bearing_sim.estimation.response import kept_response
     from bearing_sim.studies import estimator as study
     from bearing_sim.studies.response import obtain_response
 
@@ -51,7 +50,7 @@ def estimator(scene_name, overrides, runs, steps, hours, seed, workers, dask, as
         def in_part(first: float, last: float):
             return lambda done, total: show(first + (last - first) * done / max(total, 1))
 
-        response = kept_response(scene) or obtain_response(scene, workers, dask, in_part(0.0, 0.3))
+        response = obtain_response(scene, workers, dask, in_part(0.0, 0.3))
         machines = study.machines(scene, response, runs, seed, known=known, workers=workers, dask=dask, progress=in_part(0.3, 0.5))
         if not machines:
             raise UsageError("no machine of this scene settles at all of its operating points; give narrower ranges")

@@ -23,11 +23,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-import platformdirs
 from scipy.special import ndtr, ndtri
 
 from bearing_sim.levels.steady.table import contour_period, mirror_axis
-from bearing_sim.levels.steady.table_builder import span_of
+from bearing_sim.levels.steady.table_builder import FOLDER, span_of
 from bearing_sim.model.params import pack
 from bearing_sim.numerics.compilation import sources_hash
 from bearing_sim.scene.scene import Scene
@@ -42,7 +41,6 @@ ANSWERS = ("cage_slip", "rating_life", "modified_rating_life", "running_clearanc
 PROBABILITIES = (0.05, 0.95)
 """Of lying below the ends of a band."""
 
-FOLDER = Path(platformdirs.user_cache_dir("bearing_sim")) / "tables"
 VERSION = 3  # of the files
 _FARTHEST = 4.5  # largest score; one draw in 300,000 lies beyond
 _SLOWEST, _LIGHTEST = 0.03, 0.002  # of the largest speed and load: below, the response is that of these
