@@ -58,6 +58,7 @@ def _start(known, shift, guess, count, raceways, rows):
         block, lane, roller = j // LANES, j % LANES, ROLLERS + min(j, last)
         rows[block, ROLLER.angle, lane] = guess[roller + PHI * count]
         rows[block, ROLLER.orbital_speed, lane] = guess[roller + PHI_SPEED * count]
+        rows[block, ROLLER.spin, lane] = guess[roller + SPIN * count]
         rows[block, ROLLER.tilt, lane] = guess[roller + TILT * count]
         rows[block, ROLLER.skew, lane] = guess[roller + SKEW * count]
         rows[block, ROLLER.skew_speed, lane] = guess[roller + SKEW_SPEED * count]
