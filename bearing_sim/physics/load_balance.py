@@ -19,6 +19,8 @@ _CENTRING_STIFFNESS = 1e3  # N/m; assumption
 _FIRST_LONGEST_STEP = 2e-5  # m, a few contact penetrations; doubled with each good step, as across a wide play
 _ITERATIONS = 400  # a ring in a wide play rolls from roller to roller before it has found its position
 _RELATIVE_RESIDUAL = 1e-7
+_FREE_ERROR = 1e-3  # relative, an upper bound of that of a free penetration; within it the force decides whether an inner contact carries
+_LEAST_INNER = 1e-12  # of the approach: where Newton's method starts at least, because it comes to the root from above after its first step
 
 
 def _outer_fractions(intervals):
@@ -69,19 +71,22 @@ def squeezed_roller(approach, centrifugal, free, stiffness):
     ----------
     approach : R_i + D_w - R_e + ring displacement towards the roller [m]; negative with clearance.
     centrifugal : F_c [N], not negative.
-    free : outer penetration under F_c alone [m], to 1e-4.
+    free : outer penetration under F_c alone [m], to 1e-4: an inner contact begins exactly where the outer one carries F_c at this approach.
     stiffness : K [N/m^(10/9)].
 
     Returns
     -------
     outer_penetration [m], inner_load [N], inner_slope [N/m] (dQ_i / d approach)
     """
-    if approach <= free:
+    if approach <= (1.0 - _FREE_ERROR) * free:
         return free, 0.0, 0.0
-    position = free / approach * (_OUTER_FRACTIONS.shape[0] - 1)
+    if approach <= (1.0 + _FREE_ERROR) * free and stiffness * approach**EXPONENT <= centrifugal:
+        return free, 0.0, 0.0
+    position = min(free / approach, 1.0) * (_OUTER_FRACTIONS.shape[0] - 1)
     index = min(int(position), _OUTER_FRACTIONS.shape[0] - 2)
     outer = approach * (_OUTER_FRACTIONS[index] + (position - index) * (_OUTER_FRACTIONS[index + 1] - _OUTER_FRACTIONS[index]))
-    inner, inner_root, outer_root, step = approach - outer, 0.0, 0.0, 0.0
+    inner, inner_root, outer_root, step = max(approach - outer, _LEAST_INNER * approach), 0.0, 0.0, 0.0
+    outer = approach - inner
     for _ in range(20):
         if inner <= 0.0:
             return approach, 0.0, 0.0
