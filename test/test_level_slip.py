@@ -90,6 +90,32 @@ def test_jacobian_is_that_of_finite_differences_where_loads_do_not_move():
     assert by_speed[slip_state.OMEGA] == pytest.approx(border[1], rel=0.2)
 
 
+THICK = ["lubricant.traction.law=eyring", "lubricant.temperature=0 degC", "operating.shaft_speed=2000 rpm"]  # sticks at almost any sliding
+
+
+def test_a_bearing_full_of_thick_oil_comes_to_rest_in_few_steps_and_stays_there():
+    # Steps that leap from one end of the law of traction to the other would be of 30 ns: 168,000 of them in 6 ms.
+    run = simulation(*THICK)
+    still = run.inputs._replace(shaft_speed=0.0)
+    run.advance(0.02, still)
+    before = run.counters
+    run.advance(0.1, still)
+    after = run.counters
+    assert after.steps + after.rejected_steps - before.steps - before.rejected_steps < 1000
+    assert run.state[slip_state.OMEGA] == pytest.approx(0.0, abs=0.1)
+
+
+def test_a_matrix_for_sticking_contacts_is_the_jacobian_where_traction_is_proportional_to_sliding():
+    run = simulation()
+    run.advance(0.01)
+    state, work, model = run._state.copy(), run._work, run._model(run.inputs, 1.0)
+    rate = np.zeros_like(state)
+    assert slip.rhs_and_jacobian(run.time, state, model, work, rate)
+    exact = np.concatenate([work.jacobian.rows.ravel(), work.jacobian.border])
+    assert slip.rhs_and_step_jacobian(run.time, state, model, work, rate)
+    np.testing.assert_allclose(np.concatenate([work.jacobian.rows.ravel(), work.jacobian.border]), exact, rtol=0.02)
+
+
 def test_leaning_normal_forces_are_the_slope_of_the_elastic_energy():
     # At standstill all normal forces derive from one potential: elastic energy less the work of the load on the ring.
     load_y, load_z = 900.0, 300.0

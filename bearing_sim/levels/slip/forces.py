@@ -18,6 +18,7 @@ from bearing_sim.levels.common.model import inner_growth, load_at, shaft_speed_a
 from bearing_sim.levels.slip.state import OMEGA, SPIN, THETA
 from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.linear_algebra import ARROW
+from bearing_sim.numerics.rosenbrock2 import GAMMA
 from bearing_sim.numerics.simd import LANES
 from bearing_sim.physics.contact import CONTACT, line_penetration
 from bearing_sim.physics.drag import mixture_torque, roller_drag
@@ -30,6 +31,7 @@ from bearing_sim.physics.pocket import FRICTION_SPIN, pocket_friction
 from bearing_sim.physics.raceway import contour_at
 from bearing_sim.physics.traction import traction
 
+_STICKING = 2.0 / GAMMA  # c of `hold_sticking_contacts`
 _PITCH_POSITIONS = 10  # cage angles over one roller pitch for the equivalent loads
 
 
@@ -171,6 +173,45 @@ def equations(t, y, model, work, rate, with_jacobian):
         border[0] = 1.0
         border[1] = d_torque / inertia
     return True
+
+
+@kernel
+def hold_sticking_contacts(model, work):
+    """Make the Jacobian of `equations` steeper for contacts that stick but for sliding within the tolerance of speeds.
+
+    A film that hardly rolls (a shaft that stops, thick oil) drags with its full strength at almost any sliding: T by du is all but a jump.
+    On its flat ends the tangent knows nothing of the jump, and linearly implicit steps leap from one end to the other.  There the slope becomes
+    dT/ddu + c (T/du - dT/ddu) with c = 2/gamma: a long step of `bearing_sim.numerics.rosenbrock2` from du = s against a constant
+    force T then has k_1 = -s gamma c^-1 gamma^-2 = -s/2, k_2 = -s/2 and ends at du = 0.  Where T is proportional to du nothing changes, and the
+    method's order needs no exact Jacobian.
+
+    Parameters
+    ----------
+    model, work : of the level; `equations` has been evaluated with its Jacobian.
+    """
+    rollers, loads, contacts, jacobian = model.params.rollers, work.loads, work.contacts, work.jacobian.rows
+    blocks, inertia, held = contacts.shape[0] // 2, model.params.cage.inertia, 0.0
+    for j in range(rollers.count):
+        radius, block, lane = loads[LOAD.radius, j], j // LANES, j % LANES
+        inertia += rollers.mass * radius * radius
+        inner = _excess_slope(contacts, block, lane, model.tolerances.speed)
+        outer = _excess_slope(contacts, blocks + block, lane, model.tolerances.speed)
+        held += radius * radius * (inner + outer)
+        jacobian[ARROW.diagonal, j] -= rollers.radius * rollers.radius * (inner + outer) / rollers.inertia
+        jacobian[ARROW.column, j] -= rollers.radius * radius * (inner - outer) / rollers.inertia
+        work.sticking[j] = rollers.radius * radius * (inner - outer)
+    for j in range(rollers.count):
+        jacobian[ARROW.row, j] -= work.sticking[j] / inertia
+    work.jacobian.border[1] -= held / inertia
+
+
+@kernel
+def _excess_slope(contacts, block, lane, tolerance):
+    """Return c (T/du - dT/ddu) of a contact that slides by less than the tolerance [N s/m], see `hold_sticking_contacts`; 0 of others."""
+    sliding = contacts[block, CONTACT.sliding, lane]
+    if abs(sliding) >= tolerance or sliding == 0.0:
+        return 0.0
+    return _STICKING * max(contacts[block, CONTACT.force, lane] / sliding - contacts[block, CONTACT.d_sliding, lane], 0.0)
 
 
 @kernel

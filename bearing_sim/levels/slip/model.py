@@ -14,9 +14,9 @@ import numpy as np
 
 from bearing_sim.levels.common.model import HALF_PITCH, inner_growth, load_at, orbital_speed_tolerance, pitch_step, shaft_speed_at
 from bearing_sim.levels.common.observation import observe_course, oil_at_speed
-from bearing_sim.levels.common.power import write_powers
-from bearing_sim.levels.slip.forces import equations, largest_axial_share, pitch_loads
-from bearing_sim.levels.slip.power import slip_powers
+from bearing_sim.levels.common.power import write_friction_moment, write_powers
+from bearing_sim.levels.slip.forces import equations, hold_sticking_contacts, largest_axial_share, pitch_loads
+from bearing_sim.levels.slip.power import slip_powers, surplus_spin_power
 from bearing_sim.levels.slip.state import OMEGA, SPIN, THETA
 from bearing_sim.model.sample import COLUMN, SCALARS
 from bearing_sim.numerics.compilation import kernel, template
@@ -46,6 +46,15 @@ def rhs_and_jacobian(t, y, model, work, rate):
     The change of loads with cage angle and speed is left out: it is slow, and the integrator's order does not need it.
     """
     return equations(t, y, model, work, rate, True)
+
+
+@kernel
+def rhs_and_step_jacobian(t, y, model, work, rate):
+    """Write dy/dt into ``rate`` and into ``work.jacobian`` the matrix for a step: the Jacobian, steeper where contacts stick."""
+    if not equations(t, y, model, work, rate, True):
+        return False
+    hold_sticking_contacts(model, work)
+    return True
 
 
 @template
@@ -90,6 +99,8 @@ def observe(t, y, model, work, interval, previous, row, memory):
     observe_course(t, y[THETA], cage_speed, equivalent, oil, model, interval, previous, row)
     rhs(t, y, model, work, rate)
     write_powers(slip_powers(cage_speed, rate[OMEGA], y[SPIN:], shaft_speed_at(t, model.drive), model, work), row)
+    row[COLUMN.shaft_power] -= surplus_spin_power(y, rate, interval, previous, params)
+    write_friction_moment(row)
     if params.flanges.on:
         row[COLUMN.inner_flange_force], row[COLUMN.outer_flange_force] = 0.0, 0.0
         for j in range(count):

@@ -4,9 +4,18 @@
 Rollers are locked to their pockets and everything radial is quasi-static: nothing is damped, no land is eccentric, and the
 kinetic energy of the balance is that of rotation: of the cage, the orbiting rollers and their spins.  The normal forces that lean, by the
 contour's slope and the ring's displacement, exchange it with the elastic energy of the contacts and the work of the load, without loss.
+
+**The shaft's power.**  Spins follow stiff tractions.  A spin that is off by the little that the tolerances allow turns the tractions of both
+raceways against each other: the shaft's power P errs by as much as the power J_r w w' that the spin takes up, while the losses hardly
+change.  A sample therefore has P - E' + (E - E_0)/(t - t_0), E the energy of all spins and E_0 that of the sample before: the same balance, with what
+spins took up in the mean since that sample in place of what they seem to take up at the instant.
 """
 
+import math
+
 from bearing_sim.levels.common.power import Powers, rolling_power, seal_power, shaft_traction_power, sliding_power, windage_powers
+from bearing_sim.levels.slip.state import SPIN
+from bearing_sim.model.sample import COLUMN, SCALARS
 from bearing_sim.numerics.compilation import kernel
 from bearing_sim.physics.drag import roller_drag
 from bearing_sim.physics.land import land_torque
@@ -59,6 +68,38 @@ def slip_powers(cage_speed, cage_acceleration, spins, shaft_speed, model, work):
         rubbing,
         0.0,
     )
+
+
+@kernel
+def spin_power(y, rate, params):
+    """Return the power that the spins take up at an instant, the sum of J_r w w' [W]; ``y`` and ``rate`` are the state and its derivative."""
+    power = 0.0
+    for j in range(params.rollers.count):
+        power += params.rollers.inertia * y[SPIN + j] * rate[SPIN + j]
+    return power
+
+
+@kernel
+def surplus_spin_power(y, rate, interval, previous, params):
+    """Return by how much more power the spins take up at an instant than they did in the mean since the sample before [W].
+
+    Parameters
+    ----------
+    y, rate : state, and its derivative.
+    interval : time since the previous sample [s].
+    previous : flat sample, see `bearing_sim.model.sample.flat`.
+
+    Returns
+    -------
+    power : 0 where no time has passed, or the sample before has no spins.
+    """
+    if not interval > 0.0:
+        return 0.0
+    gained, first = 0.0, SCALARS + COLUMN.roller_spin * params.rollers.count
+    for j in range(params.rollers.count):
+        gained += 0.5 * params.rollers.inertia * (y[SPIN + j] * y[SPIN + j] - previous[first + j] * previous[first + j])
+    power = spin_power(y, rate, params) - gained / interval
+    return 0.0 if math.isnan(power) else power
 
 
 @kernel

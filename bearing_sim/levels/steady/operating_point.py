@@ -28,12 +28,12 @@ from bearing_sim.levels.common.observation import oil_at_speed
 from bearing_sim.levels.slip.forces import pitch_loads
 from bearing_sim.levels.slip.methods import advance as advance_slip
 from bearing_sim.levels.slip.model import rhs, rhs_and_jacobian
-from bearing_sim.levels.slip.power import slip_powers
+from bearing_sim.levels.slip.power import slip_powers, spin_power
 from bearing_sim.levels.slip.state import OMEGA, SPIN, THETA
-from bearing_sim.model.sample import COLUMN, flat, new_block
+from bearing_sim.model.sample import COLUMN, SCALARS, flat, new_block
 from bearing_sim.numerics.compilation import kernel
 from bearing_sim.numerics.linear_algebra import ALPHA_0, ARROW, STEPS, backward_difference, solve_cyclic
-from bearing_sim.numerics.time_stepping import OK, STEP_BUDGET, Memory, new_counts, new_memory
+from bearing_sim.numerics.time_stepping import CONTROL, OK, STEP_BUDGET, Memory, new_counts, new_memory
 from bearing_sim.physics.load_balance import LOAD
 from bearing_sim.physics.pocket import pocket_friction
 
@@ -62,6 +62,8 @@ _SAMPLES = 24  # in a window
 _TURNS = 3.37  # of an ideal cage in the first window, no whole number of pitches
 _WINDOWS = 12  # each twice as long as the one before from the second on
 _AGREED, _AGREED_FLOOR = 2e-3, 5e-5  # of slips of two windows
+_RESTS = 5e-4  # instead of the floor where steps run out: what counts as rest in a run, see `bearing_sim.sweep.settling.OBSERVED`
+_SHORTEST_WINDOW, _CUT_WINDOWS = 0.1, 3  # of the first window, and how many of them are marched, where steps run out
 _FIRST_STEP, _LONGEST_STEP = 1e-6, 1.0  # s
 _AN_INSTANT = 1e-6  # of an ideal cage turn
 
@@ -260,8 +262,10 @@ ANSWER = AnswerColumn()
 
 @kernel
 def _roll(speed, params, orbit):
-    """Let all rollers roll on the outer raceway."""
+    """Let all rollers roll on the outer raceway, the cage at an even speed: nothing is left of the operating point before."""
     orbit.speed[0] = speed
+    for k in range(orbit.accelerations.shape[0]):
+        orbit.accelerations[k] = 0.0
     for m in range(orbit.spins.shape[0]):
         orbit.spins[m] = speed * params.raceways.pitch_radius / params.rollers.radius
 
@@ -350,7 +354,7 @@ def _lag(slip, ideal, sense, model, work, orbit):
 
 @kernel
 def _write_powers(speed, sense, model, work, orbit, answer):
-    """Write powers, means over a pitch."""
+    """Write powers, means over a pitch, in which the spins store nothing: what they seem to is an error of the differences."""
     angles, rate = orbit.accelerations.shape[0], orbit.rate
     for column in range(ANSWER.shaft_power, ANSWER.flange_power + 1):
         answer[column] = 0.0
@@ -358,7 +362,7 @@ def _write_powers(speed, sense, model, work, orbit, answer):
         set_state(k, speed, sense, model.params, orbit)
         rhs(0.0, orbit.state, model, work, rate)
         powers = slip_powers(speed, rate[OMEGA], orbit.state[SPIN:], model.drive.shaft_speed, model, work)
-        answer[ANSWER.shaft_power] += powers.shaft / angles
+        answer[ANSWER.shaft_power] += (powers.shaft - spin_power(orbit.state, rate, model.params)) / angles
         answer[ANSWER.inner_sliding_power] += powers.inner_sliding / angles
         answer[ANSWER.outer_sliding_power] += powers.outer_sliding / angles
         answer[ANSWER.inner_rolling_power] += powers.inner_rolling / angles
@@ -433,11 +437,18 @@ def new_march(count: int) -> March:
 
 
 @kernel
+def _forget_spins(row, count):
+    """Let the next sample take its powers from its instant alone: nothing was sampled where its interval begins."""
+    for j in range(count):
+        row[SCALARS + COLUMN.roller_spin * count + j] = math.nan
+
+
+@kernel
 def march(model, work, memory, answer):
     """March from ideal rolling until two windows agree; write the means over the last.
 
-    The lag is the area between the cage's speed and its end, over their first distance.  A march that runs out of steps, because spins
-    jump all the time, is taken as far as it got.
+    The lag is the area between the cage's speed and its end, over their first distance.  Where spins jump all the time a window runs out of steps.
+    It ends there, and so do the next ones; the march has settled if two of them agree as far as slip rests in any run.
 
     Parameters
     ----------
@@ -460,24 +471,34 @@ def march(model, work, memory, answer):
         memory.counts[i] = 0
     work.ring[0], work.ring[1] = 0.0, 0.0
     time, window, step, before = 0.0, _TURNS * math.tau / abs(ideal), _FIRST_STEP, math.inf
-    mean, turned, status = ideal, 0.0, OK
+    mean, turned, status, filled, cut, shortest = ideal, 0.0, OK, rows.shape[0], 0, _SHORTEST_WINDOW * window
+    _forget_spins(rows[rows.shape[0] - 1], params.rollers.count)
     for _ in range(_WINDOWS):
         angle = y[THETA]
         status, step = advance_slip(
             time, window, y, step, _LONGEST_STEP, _BUDGET, model, work, memory.memory, memory.counts, rows[rows.shape[0] - 1], rows
         )
-        if status == STEP_BUDGET:
-            break
-        if status != OK:
+        if status != OK and status != STEP_BUDGET:
             return status
-        time += window
-        turned = y[THETA]
-        mean = (y[THETA] - angle) / window
+        marched = window if status == OK else memory.memory.control[CONTROL.time] - time
+        if marched < shortest:
+            break
+        time += marched
+        turned, filled = y[THETA], int(rows.shape[0] * marched / window)
+        mean = (y[THETA] - angle) / marched
         slipped = 1.0 - mean / ideal
-        if abs(slipped - before) < _AGREED_FLOOR + _AGREED * abs(slipped):
+        if abs(slipped - before) < (_AGREED_FLOOR if status == OK else _RESTS) + _AGREED * abs(slipped):
+            status = OK
             break
         before = slipped
-        window *= 2.0
+        if status == OK:
+            window *= 2.0
+            continue
+        cut += 1
+        if cut == _CUT_WINDOWS:
+            break
+        window = marched
+        _forget_spins(rows[rows.shape[0] - 1], params.rollers.count)
     if status == STEP_BUDGET and time == 0.0:
         mean = y[OMEGA]
         instant = _AN_INSTANT * window
@@ -495,7 +516,7 @@ def march(model, work, memory, answer):
         if column >= ANSWER.shaft_power:
             source = COLUMN.shaft_power + column - ANSWER.shaft_power
         total = 0.0
-        for k in range(rows.shape[0]):
+        for k in range(filled):
             total += rows[k, source]
-        answer[column] = total / rows.shape[0]
+        answer[column] = total / filled
     return status
