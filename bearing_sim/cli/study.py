@@ -803,8 +803,8 @@ def _print_nightly(report) -> None:
     rows = []
     for row in report.rows:
         books = ("", "", "", "") if row.books is None else (*(f"{100 * off:.2g}" for off in row.books[1:4]), row.books.worst)
-        rows.append((row.level, row.runs, *map(str, row.counts.values()), str(row.slow), *books, f"{row.core_seconds:.0f}"))
-    counts = ("finished", "step-limited", "refused", "failed", "slow cage")
+        rows.append((row.level, row.runs, *map(str, row.counts.values()), *books, f"{row.core_seconds:.0f}"))
+    counts = ("finished", "step-limited", "refused", "failed")
     books = ("books off by, %: median", "95 %", "largest", "in")
     print_rows(
         f"seed {report.seed}, program {report.program[:12]}",

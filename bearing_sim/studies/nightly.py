@@ -17,7 +17,7 @@ from bearing_sim.studies.extremes import compiled_for, counted, long_outcome
 from bearing_sim.studies.extremes_cases import Case, corner_cases, sampled_cases
 from bearing_sim.studies.extremes_long import LONG_RUNS, LongRun, long_run_result
 from bearing_sim.studies.extremes_run import FAILED, FINISHED, OUTCOMES, REFUSED, STEP_LIMITED, Outcome, case_result
-from bearing_sim.studies.extremes_stock import SLOW, StockOutcome, at_stock, stock_result
+from bearing_sim.studies.extremes_stock import StockOutcome, at_stock, stock_result
 from bearing_sim.sweep.tasks import Journal, program_hash, run_tasks, task
 
 SAMPLES = {"steady": 2000, "slip": 2000, "planar": 500, "spatial": 200}
@@ -51,7 +51,6 @@ class Row(NamedTuple):
     runs : what they are, in words.
     counts : number by outcome.
     books : of energy; None where they are not kept.
-    slow : number of finished runs whose cage has neither settled nor turned 50 times.
     reasons : number of runs by reason, for each outcome but finished.
     failures : name and reason of each failed run.
     core_seconds : of all.
@@ -61,7 +60,6 @@ class Row(NamedTuple):
     runs: str
     counts: Mapping[str, int]
     books: Books | None
-    slow: int
     reasons: Mapping[str, Mapping[str, int]]
     failures: Sequence[tuple[str, str]]
     core_seconds: float
@@ -143,8 +141,7 @@ def _row(level: str, runs: str, outcomes: Sequence[Outcome | StockOutcome]) -> R
     counts = {status: sum(outcome.status == status for outcome in outcomes) for status in OUTCOMES}
     reasons = {status: counted(outcomes, status) for status in (STEP_LIMITED, REFUSED, FAILED)}
     failures = [(outcome.case.name, outcome.reason) for outcome in outcomes if outcome.status == FAILED]
-    slow = sum(outcome.status == FINISHED and outcome.reason.startswith(SLOW) for outcome in outcomes)
-    return Row(level, runs, counts, _books(outcomes), slow, reasons, failures, sum(outcome.core_seconds for outcome in outcomes))
+    return Row(level, runs, counts, _books(outcomes), reasons, failures, sum(outcome.core_seconds for outcome in outcomes))
 
 
 def _books(outcomes: Sequence[Outcome | StockOutcome]) -> Books | None:
@@ -167,7 +164,7 @@ def _long_row(run: LongRun) -> Row:
     status = FAILED if run.failure else FINISHED
     books = None if math.isnan(run.books) else Books(1, *[abs(run.books)] * 3, name)
     failures = [(name, run.failure)] if run.failure else []
-    return Row(run.level, name, {each: int(each == status) for each in OUTCOMES}, books, 0, {}, failures, run.core_seconds)
+    return Row(run.level, name, {each: int(each == status) for each in OUTCOMES}, books, {}, failures, run.core_seconds)
 
 
 def _fields(runs: str, seed: int, outcome: Outcome | StockOutcome) -> dict[str, object]:
