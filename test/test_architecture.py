@@ -28,7 +28,7 @@ ROOMS = {
     "numerics": ("numpy numba llvmlite platformdirs", ""),
     "physics": ("numpy scipy", "numerics"),
     "model": ("numpy pandas scipy xarray", "scene physics"),
-    "levels": ("numpy platformdirs", "scene numerics physics model"),
+    "levels": ("numpy platformdirs", "files scene numerics physics model"),
     "simulation": ("numpy", "scene numerics model levels"),
     "messages": ("numpy rosbags", "files model"),
     "recording": ("lz4 mcap numpy pyarrow rosbags yaml zstandard", "files scene model messages"),

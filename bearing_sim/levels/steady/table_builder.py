@@ -11,8 +11,6 @@ import hashlib
 import io
 import itertools
 import math
-import os
-import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterable
@@ -23,6 +21,7 @@ from typing import NamedTuple
 import numpy as np
 import platformdirs
 
+from bearing_sim.files.outputs import replaced
 from bearing_sim.levels.common.model import DEFAULT_TOLERANCES, Drive, Model
 from bearing_sim.levels.steady.model import look_up_conditions, new_work, solve_conditions
 from bearing_sim.levels.steady.operating_point import ANSWER
@@ -377,7 +376,7 @@ def read_table(path: Path) -> tuple[Table, Quality] | None:
 
 
 def write_table(path: Path, table: Table, quality: Quality) -> None:
-    """Write a table atomically: a reader finds the old file or the new one, never a part."""
+    """Write a table: a reader finds the old file or the new one, never a part.  Raises OSError, also if another process is writing it."""
     buffer = io.BytesIO()
     np.savez_compressed(
         buffer,
@@ -392,9 +391,8 @@ def write_table(path: Path, table: Table, quality: Quality) -> None:
     )
     data = buffer.getvalue()
     path.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.NamedTemporaryFile(dir=path.parent, prefix=path.stem, delete=False) as file:
-        file.write(data + hashlib.sha256(data).digest())
-    os.replace(file.name, path)
+    with replaced(path) as draft:
+        draft.write_bytes(data + hashlib.sha256(data).digest())
 
 
 def cached_table(scene: Scene, temperatures: tuple[float, float] | None = None) -> tuple[Table, Quality] | None:
