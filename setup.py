@@ -26,6 +26,7 @@ optional = {
     "ros": ros_wheels,
     "tables": ["pandas>=2.2", "pyarrow>=18", "xarray>=2024.6"],
     "terminal": ["rich>=13"],
+    "vibration": ["h5py>=3.11"],
     "view": ["pillow>=10", "rerun-sdk==0.41.0"],
 }
 full = [requirement for requirements in optional.values() for requirement in requirements]

@@ -9,6 +9,7 @@ EXTRAS = {
     "tables": ("pandas", "xarray", "pyarrow"),
     "plot": ("matplotlib",),
     "terminal": ("rich",),
+    "vibration": ("h5py",),
     "dask": ("dask", "distributed"),
     "ros": ("rclpy", "rcl_interfaces", "rosgraph_msgs", "std_msgs", "std_srvs", "sensor_msgs", "geometry_msgs", "diagnostic_msgs"),
 }

@@ -34,6 +34,7 @@ ROOMS = {
     "recording": ("lz4 mcap numpy pyarrow rosbags yaml zstandard", "files scene model messages"),
     "stored_state": ("numpy platformdirs pyarrow", "files scene model messages recording"),
     "inputs": ("numpy pyarrow pydantic yaml", "extras files scene simulation messages recording"),
+    "vibration": ("h5py matplotlib numpy pyarrow scipy", "extras files scene recording"),
     "monitoring": ("numpy scipy", "scene physics model messages"),
     "estimation": ("numpy platformdirs scipy", "scene numerics model levels messages monitoring"),
     "runtime": ("numpy", "scene numerics model levels simulation messages recording stored_state inputs monitoring estimation"),
@@ -42,11 +43,12 @@ ROOMS = {
     "fleet": ("numpy pyarrow", "files scene levels simulation messages recording inputs model runtime sweep"),
     "studies": (
         "numpy numba pandas scipy matplotlib pydantic sksundae",
-        "files scene numerics physics model levels simulation messages recording monitoring estimation runtime sweep",
+        "files scene numerics physics model levels simulation messages recording vibration monitoring estimation runtime sweep",
     ),
     "cli": (
         "click numpy pydantic_core rich",
-        "extras files scene numerics model levels simulation messages recording stored_state inputs estimation runtime view sweep fleet studies",
+        "extras files scene numerics model levels simulation messages recording stored_state inputs vibration estimation runtime view sweep fleet "
+        "studies",
     ),
     "ros": (
         "click launch launch_ros numpy rcl_interfaces rclpy rich rosgraph_msgs std_srvs",

@@ -119,6 +119,8 @@ TABLE_ROWS = Limit("table_rows", 5_000_000, "rows", "a measured table")
 TABLE_LINE = Limit("table_line", 1_000_000, "characters", "one line of a measured table")
 TABLE_COLUMNS = Limit("table_columns", 2_000, "columns", "a measured table")
 TABLE_BYTES = Limit("table_bytes", 2_000_000_000, "bytes", "the columns of a Parquet table that are read")
+VIBRATION_FILE = Limit("vibration_file", 1_000_000_000, "bytes", "a vibration record")
+VIBRATION_SAMPLES = Limit("vibration_samples", 50_000_000, "numbers", "all channels of a vibration record")
 BEARINGS_ROWS = Limit("bearings_rows", 10_000, "rows", "a table of bearings")
 POINTS_FILE = Limit("points_file", 1_000_000, "bytes", "a table of operating points")
 POINTS_ROWS = Limit("points_rows", 10_000, "points", "a table of operating points")
@@ -154,6 +156,8 @@ LIMITS = (
     TABLE_LINE,
     TABLE_COLUMNS,
     TABLE_BYTES,
+    VIBRATION_FILE,
+    VIBRATION_SAMPLES,
     BEARINGS_ROWS,
     POINTS_FILE,
     POINTS_ROWS,

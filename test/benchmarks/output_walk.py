@@ -17,6 +17,7 @@ written.  "left" counts files that a trial has left besides: drafts after anythi
 """
 
 import hashlib
+import math
 import os
 import random
 import shutil
@@ -30,6 +31,7 @@ from collections import Counter
 from pathlib import Path
 
 import click
+import numpy as np
 from click.testing import CliRunner
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
@@ -39,6 +41,7 @@ from output_cases import CASES, file_name, outputs  # noqa: E402
 from bearing_sim.cli.main import main  # noqa: E402
 from bearing_sim.cli.outputs import OutputFolder, OutputJournal, OutputWithJournal  # noqa: E402
 from bearing_sim.cli.reporting import print_rows  # noqa: E402
+from bearing_sim.vibration.synthetic import Machine, record  # noqa: E402
 
 _COMMAND = [sys.executable, "-m", "bearing_sim.cli"]
 _OLD = random.Random(19).randbytes(20_000)
@@ -71,6 +74,8 @@ def prepare(folder: Path) -> None:
     columns = ["--column", "time=t [s]", "--column", "shaft_speed=n [rpm]", "--column", "radial_load=F [N]", "--column", "cage_speed=cage [rpm]"]
     done("import-csv", "--guess", folder / "data", *columns, "-o", folder / "mapping.yaml")
     (folder / "mapping.yaml").rename(folder / "mapping")
+    machine = Machine("outer_ring", 13, 0.19, 0.08, 3000.0 * math.pi / 30.0)
+    np.savez(folder / "accelerations.npz", samples=record(machine, 25_600.0, 2.0, np.random.default_rng(1)).vibration.samples, fs=25_600.0)
     done("import-csv", folder / "data", folder / "mapping", "-o", folder / "measured")
     shutil.copy(folder / "measured", folder / "log.mcap")
     (folder / "log.mcap").rename(folder / "log")

@@ -1,0 +1,129 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""How well the cage speed is found in synthetic vibration, whose truth is known, and how often a line is seen where there is none."""
+
+import dataclasses
+import math
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from bearing_sim.vibration.analysis import Analysis, Geometry, analyse
+from bearing_sim.vibration.synthetic import Machine, Synthetic, record
+
+SPEEDS = (600.0, 3000.0, 10_000.0, 30_000.0)  # [rpm]
+NOISES = (0.0, -10.0, -20.0)  # [dB] impacts over noise
+RAMPS = (0.0, 0.2)
+KINDS = ("outer_ring", "inner_ring", "roller")
+HEALTHY = ("noise", "healthy")
+_ROLLERS, _SIZE, _LARGEST_SLIP = 13, 0.19, 0.1
+_NAMEPLATE, _TACHOMETER = 0.01, 0.003  # largest error of the speed that is given, steady and recorded
+
+
+class Condition(NamedTuple):
+    """What one row of the table is about: what shows, shaft speed [rpm], its change over the record, impacts over noise [dB]."""
+
+    shows: str
+    speed: float
+    ramp: float
+    signal_to_noise: float
+
+
+class Row(NamedTuple):
+    """How well the cage speed is found in one condition.
+
+    Attributes
+    ----------
+    condition : what was simulated.
+    runs, found : number of records, and of those in which a line was found.
+    right : of those, in how many the part that shows is the right one.
+    bias : mean error of the ratio of cage to shaft over the true one, where the part is right.
+    error : root mean square of these errors.
+    stated : root mean square of the standard errors that were stated.
+    within : fraction of the errors within two stated standard errors.
+    """
+
+    condition: Condition
+    runs: int
+    found: int
+    right: int
+    bias: float
+    error: float
+    stated: float
+    within: float
+
+
+def conditions() -> list[Condition]:
+    """Return the conditions of the table."""
+    return [Condition(shows, speed, ramp, noise) for shows in KINDS for speed in SPEEDS for ramp in RAMPS for noise in NOISES]
+
+
+def errors_in(condition: Condition, runs: int, seed: int, done: Callable[[], None] = lambda: None) -> Row:
+    """Return how well the cage speed is found in one condition.
+
+    Parameters
+    ----------
+    condition : what is simulated.
+    runs : number of records; each has its own slip, noise and neighbours.
+    seed : of everything random.
+    done : called after each record.
+    """
+    found = []
+    for number in range(runs):
+        words = (seed, number, KINDS.index(condition.shows), int(condition.speed), int(100 * condition.ramp), int(-condition.signal_to_noise))
+        synthetic, result = _run(condition, np.random.default_rng(words))
+        found.append((result.found, result.shows == condition.shows, result.ratio / synthetic.ratio - 1.0, result.ratio_error / synthetic.ratio))
+        done()
+    right = np.array([(error, stated) for is_found, is_right, error, stated in found if is_found and is_right]).reshape(-1, 2)
+    error, stated = right.T
+    nan = math.nan
+    summary = (
+        (float(error.mean()), float(np.sqrt(np.mean(error**2))), float(np.sqrt(np.mean(stated**2))), float(np.mean(np.abs(error) <= 2.0 * stated)))
+        if len(right)
+        else (nan, nan, nan, nan)
+    )
+    return Row(condition, runs, sum(each[0] for each in found), len(right), *summary)
+
+
+def _run(condition: Condition, rng: np.random.Generator) -> tuple[Synthetic, Analysis]:
+    """Return a synthetic record and what is found in it: at a steady speed with that of the nameplate, in a ramp with a tachometer's."""
+    speed = condition.speed * math.pi / 30.0
+    rate, duration = _sampling(condition.speed)
+    slip = rng.uniform(0.0, _LARGEST_SLIP)
+    machine = Machine(condition.shows, _ROLLERS, _SIZE, slip, speed, condition.ramp, signal_to_noise=condition.signal_to_noise)
+    synthetic = record(machine, rate, duration, rng)
+    vibration, geometry = synthetic.vibration, Geometry(_ROLLERS, _SIZE)
+    if not condition.ramp:
+        return synthetic, analyse(vibration, geometry, speed * (1.0 + rng.uniform(-_NAMEPLATE, _NAMEPLATE)), 2.0 * _NAMEPLATE)
+    course = speed * (1.0 + condition.ramp * (np.arange(len(vibration.samples)) / len(vibration.samples) - 0.5))
+    recorded = course * (1.0 + rng.uniform(-_TACHOMETER, _TACHOMETER))
+    return synthetic, analyse(dataclasses.replace(vibration, shaft_speed=recorded), geometry, tolerance=1.5 * _TACHOMETER)
+
+
+def _sampling(speed: float) -> tuple[float, float]:
+    """Return rate [Hz] and duration [s] of a record at a shaft speed [rpm]."""
+    return (51_200.0 if speed <= 6000.0 else 102_400.0), (10.0 if speed <= 1000.0 else 5.0)
+
+
+def false_lines(kind: str, records: int, seed: int, done: Callable[[], None] = lambda: None) -> Iterator[tuple[int, Analysis]]:
+    """Yield (number, result) of the records without a damaged bearing in which a line was found nevertheless.
+
+    Parameters
+    ----------
+    kind : ``noise`` alone, or a ``healthy`` machine with lines of its shaft beside two others.
+    records : number of them, of random speeds, numbers of rollers and known or unknown diameters.
+    seed : of everything random.
+    done : called after each record.
+    """
+    for number in range(records):
+        rng = np.random.default_rng((seed, number, HEALTHY.index(kind)))
+        speed = math.exp(rng.uniform(math.log(SPEEDS[0]), math.log(SPEEDS[-1])))
+        rate, _ = _sampling(speed)
+        rollers, size = int(rng.integers(10, 21)), _SIZE if rng.random() < 0.5 else math.nan
+        neighbours, lines = (0, 0.0) if kind == "noise" else (2, 0.3)
+        machine = Machine("", rollers, _SIZE, 0.0, speed * math.pi / 30.0, interfering=neighbours, shaft_lines=lines)
+        synthetic = record(machine, rate, max(1.0, 40.0 * 60.0 / speed), rng)
+        result = analyse(synthetic.vibration, Geometry(rollers, size), machine.shaft_speed * (1.0 + rng.uniform(-_NAMEPLATE, _NAMEPLATE)))
+        done()
+        if result.found:
+            yield number, result

@@ -1,0 +1,356 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""The cage speed out of a vibration record: band, shaft, comb, ratio of cage to shaft with its standard error; or that there is no line.
+
+The limit of the method is part of its answer.  The lines of both raceways add up to Z times the shaft's, whatever the slip, and slip is the
+difference of the ratio found from the one that the geometry has without slip: a roller of another size of the same designation moves that by 3 %,
+0.03 mm of clearance by 0.04 %.  Without measured diameters slip below 2 % is therefore not claimed; the ratio of cage to shaft is.
+"""
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from bearing_sim.vibration.comb import Fit, Range, orders_of, search, spectra
+from bearing_sim.vibration.order_tracking import Shaft, constant_shaft, find_shaft, recorded_shaft, shaft_signal_range
+from bearing_sim.vibration.phase import Rate, follow, mean_rate
+from bearing_sim.vibration.signal import Band, Spectrum, Vibration, VibrationError, candidate_bands
+
+CERTAIN = math.log(1e4)
+"""[nat] by which noise must be excluded: a false alarm in 10,000 records."""
+CLAIMED_SLIP = 0.02
+"""Slip below which nothing is said about it without measured diameters: another roller size of the same designation moves it by 3 %."""
+
+_NEGATIVE_SLIP, _LARGEST_SLIP = -0.06, 0.6  # range that is searched: a ratio too high by another roller size, and skidding
+_SIZES = (0.12, 0.3)  # roller diameter over pitch diameter where the geometry is unknown (assumption, wider than the catalogue's 0.12 to 0.25)
+_SPIN_TOLERANCE = 0.06
+_PER_TURN_OVER_ORDER = 2.6
+_FEWEST_TURNS = 20.0
+_QUARTERS = 4
+_ENDS = 0.05  # fraction of the record that fades in, and out
+_FEWEST_LINES = {"outer_ring": 2, "inner_ring": 2, "roller": 2, "cage": 3}  # that must be clear: near the cage's other machines have lines, too
+
+
+class Geometry(NamedTuple):
+    """What of a bearing determines its lines.
+
+    Attributes
+    ----------
+    rollers : number of them.
+    size : roller diameter over pitch diameter; NaN if unknown.
+    is_measured : whether the diameters were measured on this bearing.
+    name : for messages.
+    """
+
+    rollers: int
+    size: float = math.nan
+    is_measured: bool = False
+    name: str = ""
+
+    @property
+    def ideal_ratio(self) -> float:
+        """Cage over shaft speed without slip, (1 - D_w/d_m)/2; NaN if the size is unknown."""
+        return (1.0 - self.size) / 2.0
+
+    @property
+    def range(self) -> Range:
+        """What is searched for lines of this bearing."""
+        small, large = (self.size, self.size) if math.isfinite(self.size) else _SIZES
+        low, high = 0.5 * (1.0 - large) * (1.0 - _LARGEST_SLIP), min(0.5 * (1.0 - small) * (1.0 - _NEGATIVE_SLIP), 0.4999)
+        passes = [(1.0 - size**2) / size for size in (large, small)]
+        return Range(low, high, self.rollers, (1.0 - 2.0 * _SPIN_TOLERANCE) * passes[0], (1.0 + _SPIN_TOLERANCE) * passes[1])
+
+
+class Part(NamedTuple):
+    """The cage in a part of a record.
+
+    Attributes
+    ----------
+    begin, end : of the part [s] from the beginning of the record.
+    shaft_speed : mean [rad/s].
+    ratio : cage over shaft speed; NaN where no line can be followed in it.
+    ratio_error : standard error of the ratio, that of the shaft's own speed apart.
+    cage_speed, cage_speed_error : [rad/s].
+    """
+
+    begin: float
+    end: float
+    shaft_speed: float
+    ratio: float
+    ratio_error: float
+    cage_speed: float
+    cage_speed_error: float
+
+
+class Analysis(NamedTuple):
+    """What a vibration record shows of its bearing.
+
+    Attributes
+    ----------
+    found : whether there are lines of the bearing; if not, everything about the cage is NaN.
+    shows : what shows: ``outer_ring``, ``inner_ring``, ``roller``, ``cage``; empty if there is no line.
+    false_alarm : upper bound of the probability that noise alone looks like this.
+    shaft : frequency, its standard error and where it comes from.
+    line, line_error : frequency of the fundamental line over the shaft's, and its standard error.
+    ratio, ratio_error : cage over shaft speed, and its standard error.
+    cage_speed, cage_speed_error : [rad/s].
+    passes : meetings of a spot on a roller with the raceways in a turn; NaN for others.
+    slip, slip_error : of the cage against the geometry; NaN where the geometry is unknown.
+    claims_slip : whether the slip is more than what an unknown geometry can feign.
+    parts : the same by quarters of the record.
+    band : in which the lines are.
+    lines : orders of the lines that are clear by themselves.
+    reason : in words, why there is no line, or why slip is not claimed.
+    """
+
+    found: bool
+    shows: str
+    false_alarm: float
+    shaft: Shaft
+    line: float
+    line_error: float
+    ratio: float
+    ratio_error: float
+    cage_speed: float
+    cage_speed_error: float
+    passes: float
+    slip: float
+    slip_error: float
+    claims_slip: bool
+    parts: Sequence[Part]
+    band: Band | None
+    lines: Sequence[float]
+    reason: str
+
+
+def analyse(
+    vibration: Vibration,
+    geometry: Geometry,
+    shaft_speed: float | None = None,
+    tolerance: float = 0.02,
+    band: Band | None = None,
+    follows_lines: bool = True,
+    parts: int = _QUARTERS,
+) -> Analysis:
+    """Return what a vibration record shows of a bearing.
+
+    Parameters
+    ----------
+    vibration : the record; a shaft speed in it is used instead of ``shaft_speed``.
+    geometry : of the bearing.
+    shaft_speed : about [rad/s]; None where the record has it.
+    tolerance : within which the speed is known, relative: the shaft's own lines are searched there, and it is the error where there are none.
+    band : in which the envelope is taken; None if it is to be chosen.
+    follows_lines : whether the shaft's own lines are used; if not, the speed is taken as it is given.
+    parts : into how many the record is cut for the course of the ratio.
+
+    Raises
+    ------
+    VibrationError
+        The record is too short or sampled too slowly for this bearing, or nothing says about how fast the shaft turns.
+    """
+    low, high = _speed_range(vibration, shaft_speed, tolerance)
+    raw = Spectrum(vibration.samples, vibration.rate)
+    whitened = Spectrum(vibration.samples, vibration.rate, _ENDS).without_lines()
+    range_ = geometry.range
+    inner = range_.rollers * (1.0 - range_.low)  # order of the highest fundamental line
+    if 2.5 * high * range_.rollers * 0.5 > vibration.rate / 2.0:
+        raise VibrationError(
+            f"{vibration.name}: {vibration.rate:g} Hz is too slow for {range_.rollers} rollers at {high:.4g} turns per second; expected at least"
+            f" {2.5 * high * range_.rollers:.4g} Hz"
+        )
+    if vibration.duration * low < _FEWEST_TURNS:
+        raise VibrationError(
+            f"{vibration.name}: {vibration.duration * low:.3g} turns of the shaft in {vibration.duration:.4g} s; expected at least {_FEWEST_TURNS:g}"
+        )
+    bands = candidate_bands(whitened, min(2.2 * high * inner, raw.highest), band)
+    envelopes = [whitened.envelope(each) for each in bands]
+    shaft = _shaft_of(vibration, raw, envelopes, low, high, tolerance, follows_lines)
+    per_turn = _PER_TURN_OVER_ORDER * (3.0 * inner + 3.0)
+    best: tuple[Fit, Band, np.ndarray, float] | None = None
+    for each, (envelope, rate) in zip(bands, envelopes):
+        per_turn_here = min(per_turn, rate / shaft.frequency)
+        signal = shaft.resampled(envelope - envelope.mean(), rate, per_turn_here)
+        for fit in search(signal, per_turn_here, range_, len(bands)):
+            if len(fit.clear_lines) >= _FEWEST_LINES[fit.family.name] and (best is None or fit.false_alarm > best[0].false_alarm):
+                best = fit, each, signal, per_turn_here
+    if best is None:
+        return _nothing(shaft, None)
+    fit, chosen, signal, per_turn_here = best
+    if fit.false_alarm < CERTAIN:
+        return _nothing(shaft, fit)
+    rate = _rate_of(fit, signal, per_turn_here)
+    if rate is None or abs(rate.value) > 3.0 * fit.resolution or _is_hidden(fit, range_, len(signal) / per_turn_here):
+        return _nothing(shaft, fit)
+    course = tuple(_course(fit._replace(ratio=fit.ratio + rate.value), shaft, signal, per_turn_here, parts))
+    return _completed(fit, rate, shaft, geometry, chosen, course)
+
+
+def _speed_range(vibration: Vibration, shaft_speed: float | None, tolerance: float) -> tuple[float, float]:
+    """Return between which frequencies [Hz] the shaft turns."""
+    if vibration.shaft_speed is not None:
+        speeds = np.abs(vibration.shaft_speed) / (2.0 * math.pi)
+        low, high = float(speeds.min()), float(speeds.max())
+        if not low > 0.0:
+            raise VibrationError(f"{vibration.name}: the shaft stands still in the record; expected a part of it in which it turns")
+        return low * (1.0 - tolerance), high * (1.0 + tolerance)
+    if shaft_speed is None:
+        raise VibrationError(
+            f"{vibration.name}: about how fast does the shaft turn? the lines of a bearing look like those of a faster shaft; give the speed with"
+            " --speed, such as --speed 1500rpm, or a recorded one with --speed-channel"
+        )
+    frequency = abs(shaft_speed) / (2.0 * math.pi)
+    if not 0.0 < frequency < math.inf:
+        raise VibrationError(f"a shaft speed of {shaft_speed:g} rad/s; expected one at which the shaft turns")
+    return frequency * (1.0 - tolerance), frequency * (1.0 + tolerance)
+
+
+def _shaft_of(vibration, raw: Spectrum, envelopes, low: float, high: float, tolerance: float, follows_lines: bool) -> Shaft:
+    """Return the shaft: by its own lines, or as recorded or given."""
+    error = tolerance / math.sqrt(3.0)  # standard deviation of a uniform distribution
+    if vibration.shaft_speed is not None:
+        about = recorded_shaft(vibration.shaft_speed, vibration.rate, error)
+    else:
+        about = constant_shaft(0.5 * (low + high), error * 0.5 * (low + high), vibration.duration)
+    if follows_lines:
+        highest = shaft_signal_range(high)
+        signals = [raw.low_passed(min(highest, raw.highest))]
+        signals += [_low_passed(envelope, rate, highest) for envelope, rate in envelopes[:2]]
+        found = find_shaft(signals, about, tolerance)
+        if found is not None:
+            return found
+    return about
+
+
+def _low_passed(envelope: np.ndarray, rate: float, highest: float) -> tuple[np.ndarray, float]:
+    return Spectrum(envelope, rate).low_passed(min(highest, rate / 2.0))
+
+
+def _rate_of(fit: Fit, signal: np.ndarray, per_turn: float) -> Rate | None:
+    """Return by how much the ratio differs from that of a fit, with its standard error; None if the phase of the lines cannot be followed."""
+    orders, multipliers = orders_of(fit.family, fit.ratio, fit.passes)
+    if fit.family.name == "roller":
+        return _rate_of_roller(fit, signal, per_turn)
+    found = spectra(signal, per_turn, 1, per_turn / 2.0)
+    inside = (orders > 0.2) & (orders < 0.48 * per_turn) & (np.abs(orders - np.rint(orders)) > 6.0 * per_turn / len(signal))
+    averaged = spectra(signal, per_turn, fit.averages, per_turn / 2.0)
+    inside &= averaged.at(orders) > 3.0
+    orders, multipliers = orders[inside], multipliers[inside]
+    if not len(orders):
+        return None
+    noise = found.noise_at(orders)
+    turns = len(signal) / per_turn
+    segments = int(np.clip(max(turns / 8.0, 2.0 * fit.averages), 8, 256))
+    while True:
+        track = follow(signal, per_turn, orders, multipliers, noise, segments)
+        if track.score > 5.0 + len(orders) or segments <= max(8, fit.averages):
+            break
+        segments = max(8, fit.averages, int(segments / 1.5))
+    return mean_rate(track)
+
+
+def _is_hidden(fit: Fit, range_: Range, turns: float) -> bool:
+    """Return whether a comb of the inner ring may be the second harmonic of one of the outer ring whose first is under a line of the shaft."""
+    if fit.family.name != "inner_ring":
+        return False
+    half = 0.5 * range_.rollers * (1.0 - fit.ratio)
+    covered = abs(half - round(half)) < 4.5 / turns
+    return covered and range_.low <= half / range_.rollers <= range_.high
+
+
+def _rate_of_roller(fit: Fit, signal: np.ndarray, per_turn: float) -> Rate | None:
+    """Return the same for a roller, whose lines have no common phase because it turns as it likes: from the likelihood around the fit."""
+    found = spectra(signal, per_turn, fit.averages, per_turn / 2.0)
+    if found is None:
+        return None
+    reach = 2.0 * found.resolution
+    ratios, passes = (each.ravel() for each in np.meshgrid(*(np.linspace(at - reach, at + reach, 161) for at in (fit.ratio, fit.passes))))
+    likelihood = sum(found.at(constant + by_c * ratios + by_b * passes) for _, (constant, by_c, by_b) in fit.family.lines())
+    weights = np.exp(likelihood - likelihood.max())
+    mean = float(weights @ ratios / weights.sum())
+    spread = math.sqrt(float(weights @ (ratios - mean) ** 2 / weights.sum()))
+    return Rate(mean - fit.ratio, math.hypot(spread, 0.25 * found.resolution / math.sqrt(fit.averages)))
+
+
+def _course(fit: Fit, shaft: Shaft, signal: np.ndarray, per_turn: float, parts: int) -> Iterator[Part]:
+    """Yield the cage in parts of a record."""
+    duration = float(shaft.times[-1])
+    ends = np.linspace(0.0, duration, parts + 1)
+    turns = np.interp(ends, shaft.times, shaft.turns)
+    within = fit._replace(averages=max(1, fit.averages // parts))
+    for begin, end, first, last in zip(ends, ends[1:], turns, turns[1:]):
+        part = signal[int((first - turns[0]) * per_turn) : int((last - turns[0]) * per_turn)]
+        speed = 2.0 * math.pi * (last - first) / (end - begin)
+        rate = _rate_of(within, part, per_turn) if last - first >= _FEWEST_TURNS else None
+        if rate is None or abs(rate.value) > 3.0 * max(fit.resolution, 1.0 / (last - first)):
+            rate = Rate(math.nan, math.nan)
+        ratio = fit.ratio + rate.value
+        error = speed * math.hypot(rate.standard_error, _of_shaft(fit) * shaft.standard_error / shaft.frequency)
+        yield Part(float(begin), float(end), float(speed), ratio, rate.standard_error, ratio * speed, error)
+
+
+def _of_shaft(fit: Fit) -> float:
+    """Return how much the cage speed that follows from a line depends on the shaft's: an outer line gives it whatever the shaft does."""
+    constant, by_c, _ = fit.family.centres[0]
+    return constant / by_c if by_c else 1.0
+
+
+def _completed(fit: Fit, rate: Rate, shaft: Shaft, geometry: Geometry, band: Band, course: Sequence[Part]) -> Analysis:
+    """Return the result with the errors of the shaft in it."""
+    ratio, relative = fit.ratio + rate.value, shaft.standard_error / shaft.frequency
+    constant, by_c, by_b = fit.family.centres[0]
+    spin = 0.0 if math.isnan(fit.passes) else fit.passes
+    line = constant + by_c * ratio + by_b * spin
+    # A line is measured in Hz: where the shaft's own frequency is not known well, its order and the ratio are not either.
+    of_shaft = line / by_c * relative if by_c else ratio * relative
+    ratio_error = math.hypot(rate.standard_error, of_shaft)
+    line_error = math.hypot(by_c * rate.standard_error, line * relative) if by_c else math.nan
+    shaft_speed = 2.0 * math.pi * shaft.frequency
+    cage_error = shaft_speed * math.hypot(rate.standard_error, _of_shaft(fit) * relative)
+    slip = 1.0 - ratio / geometry.ideal_ratio
+    slip_error = ratio_error / geometry.ideal_ratio
+    claimed = geometry.is_measured and math.isfinite(slip) or abs(slip) > CLAIMED_SLIP + 2.0 * slip_error
+    reason = "" if claimed else _why_not_claimed(slip)
+    return Analysis(
+        True,
+        fit.family.name,
+        math.exp(-min(fit.false_alarm, 700.0)),
+        shaft,
+        line,
+        line_error,
+        ratio,
+        ratio_error,
+        ratio * shaft_speed,
+        cage_error,
+        fit.passes,
+        slip,
+        slip_error,
+        bool(claimed),
+        course,
+        band,
+        fit.clear_lines,
+        reason,
+    )
+
+
+def _why_not_claimed(slip: float) -> str:
+    if math.isnan(slip):
+        return "slip is not claimed: the diameters are unknown"
+    return (
+        f"slip is not claimed: {100.0 * slip:.2f} % against the drawing is less than what a roller of another size of the same designation does (3 %)"
+        " ; measure the diameters"
+    ).replace(" ;", ";")
+
+
+def _nothing(shaft: Shaft, fit: Fit | None) -> Analysis:
+    """Return the result for a record without lines of the bearing; ``fit`` is the clearest comb, if any has enough lines."""
+    nan = math.nan
+    chance = 1.0 if fit is None else math.exp(-max(0.0, min(fit.false_alarm, 700.0)))
+    if fit is None:
+        why = "no comb has enough lines that are clear by themselves"
+    elif fit.false_alarm < CERTAIN:
+        why = f"noise alone gives a comb as clear as the best in one of {1.0 / chance:,.0f} records"
+    else:
+        why = "the lines do not keep together over the record, or may be the harmonics of a line that coincides with one of the shaft's"
+    return Analysis(False, "", chance, shaft, nan, nan, nan, nan, nan, nan, nan, nan, nan, False, (), None, (), f"no line found: {why}")

@@ -1,0 +1,301 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""The angle of the shaft over a record: from its own lines in the vibration, or from a speed that was recorded beside it.
+
+The speed is searched as a path through segments of some turns, by the likelihood of the lines at 1 to 5 times the speed (dynamic programming,
+after Viterbi), or as constant, whichever is likelier; the phase of the lines is then followed along the path.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import scipy.fft
+import scipy.interpolate
+
+from bearing_sim.vibration.comb import Spectra, spectra
+from bearing_sim.vibration.phase import Track, follow, mean_rate
+
+_HARMONICS = np.arange(1.0, 6.0)
+_HIGHEST = 6.0  # orders that are kept for the shaft's lines
+_SEGMENT_TURNS = 24.0
+_MOST_SEGMENTS = 128
+_PER_TURN = 16  # samples in a turn, for the shaft's own lines
+_CLEAR = 25.0  # [nat] of all lines above what searching costs; ten of noise have 10, and more than this in one of 10,000 records
+_MOST_OF_A_LINE = 60.0  # [nat] that one line counts for being clear
+_COST_OF_A_PATH = 2.0  # by which a varying speed must fit better than a constant one, in the units of `_counted`
+_LIMITS = (1.2, 6.0, 6.0)  # of what a line counts in each signal; low in the vibration, where those of other machines are loud
+_CLEARER = 1.5  # times as clear as a constant speed a varying one must be that counts where the constant one is ambiguous
+_AMBIGUOUS = 0.6  # of what the clearest speed counts
+_LESS_CLEAR = 4.0  # by which a followed phase may look less clear, where another machine's line was near
+_CLEAR_LINE = 10.0  # [nat] of a line that is followed
+_UNREFINED = 0.3  # standard error of a frequency that is the middle of a line, in the lines' distance 1/T
+_STEEPEST = 0.08  # relative change of speed between segments
+
+
+class Shaft(NamedTuple):
+    """The turning of the shaft over a record.
+
+    Attributes
+    ----------
+    times : instants [s] from the beginning of the record, shape (n,).
+    turns : since then, at these instants, shape (n,).
+    frequency : mean [Hz].
+    standard_error : of the mean [Hz].
+    source : ``lines`` (of the shaft in the vibration), ``recorded`` or ``given``.
+    """
+
+    times: np.ndarray
+    turns: np.ndarray
+    frequency: float
+    standard_error: float
+    source: str
+
+    def resampled(self, signal: np.ndarray, rate: float, per_turn: float) -> np.ndarray:
+        """Return a signal at equal steps of the shaft's angle.
+
+        Parameters
+        ----------
+        signal : at equal steps of time from the beginning of the record.
+        rate : of its samples [Hz].
+        per_turn : samples in a turn of the result.
+        """
+        turns = self.turns[-1] - self.turns[0]
+        wanted = self.turns[0] + np.arange(int(turns * per_turn)) / per_turn
+        times = scipy.interpolate.PchipInterpolator(self.turns, self.times)(wanted)
+        places = np.clip(times * rate, 0.0, len(signal) - 1.0)
+        return scipy.interpolate.make_interp_spline(np.arange(len(signal)), signal, k=3)(places)
+
+
+def constant_shaft(frequency: float, standard_error: float, duration: float, source: str = "given") -> Shaft:
+    """Return a shaft that turns at one frequency [Hz] for a duration [s]."""
+    times = np.array([0.0, 0.5 * duration, duration])
+    return Shaft(times, frequency * times, frequency, standard_error, source)
+
+
+def recorded_shaft(speed: np.ndarray, rate: float, relative_error: float) -> Shaft:
+    """Return the shaft of a recorded speed [rad/s], one value a sample.
+
+    Parameters
+    ----------
+    speed : shape (n,); its sign is ignored.
+    rate : of the samples [Hz].
+    relative_error : standard error of the speed, relative.
+    """
+    frequency = np.abs(speed) / (2.0 * math.pi)
+    times = np.arange(len(speed)) / rate
+    turns = np.concatenate(([0.0], np.cumsum(0.5 * (frequency[1:] + frequency[:-1])) / rate))
+    kept = np.unique(np.linspace(0, len(speed) - 1, min(len(speed), 4096)).astype(int))
+    times, turns = times[kept], turns[kept]
+    moving = np.concatenate(([True], np.diff(turns) > 0.0))
+    mean = float(turns[-1] / times[-1])
+    return Shaft(times[moving], turns[moving], mean, relative_error * mean, "recorded")
+
+
+def find_shaft(signals: list[tuple[np.ndarray, float]], about: Shaft, tolerance: float) -> Shaft | None:
+    """Return the shaft by its own lines; None if they are not clear, or if the lines of something else are nearly as clear.
+
+    Parameters
+    ----------
+    signals : with the shaft's lines, and their rates [Hz]: the low-passed vibration first, then envelopes.
+    about : the shaft as it is known beforehand, constant or recorded.
+    tolerance : within which its speed is known, relative.
+    """
+    turns = float(about.turns[-1])
+    per_turn = _PER_TURN * (1.0 + tolerance)
+    by_angle = [(about.resampled(signal, rate, per_turn), per_turn) for signal, rate in signals]
+    low, high = 1.0 - tolerance, 1.0 + tolerance
+    steady, is_ambiguous = _steady(by_angle, turns, low, high)
+    candidates = []
+    for shaft, cost in ((steady, 0.0), (_path(by_angle, turns, low, high), _COST_OF_A_PATH)):
+        if shaft is not None:
+            shaft = _refined(by_angle, shaft)
+            surprise = _surprise_of_lines(by_angle, shaft)
+            clear = float(np.minimum(surprise, _MOST_OF_A_LINE).sum())
+            if abs(shaft.frequency - 1.0) < tolerance + 0.5 / turns:
+                candidates.append((_sum_counted(surprise) - cost, clear, shaft))
+    if not candidates:
+        return None
+    score, clear, shaft = max(candidates, key=lambda each: each[0])
+    if clear < _CLEAR + math.log(max(turns * 2.0 * tolerance * 8.0, 1.0)):
+        return None
+    if is_ambiguous and score < _CLEARER * _sum_counted(_surprise_of_lines(by_angle, steady)):
+        return None
+    duration = float(about.times[-1])
+    times = np.union1d(about.times, np.linspace(0.0, duration, 1024))
+    own = scipy.interpolate.PchipInterpolator(shaft.times, shaft.turns)(np.interp(times, about.times, about.turns))
+    mean = float(own[-1] / duration)
+    return Shaft(times, own, mean, mean * shaft.standard_error / shaft.frequency, "lines")
+
+
+def shaft_signal_range(high: float) -> float:
+    """Return the highest frequency [Hz] of the signals of `find_shaft`."""
+    return _HIGHEST * high
+
+
+class _Lines(NamedTuple):
+    """Spectra of segments of one signal: -ln of the probability of noise, (segment, bin), and the distance of bins [Hz]."""
+
+    surprise: np.ndarray
+    step: float
+
+    def comb(self, frequencies: np.ndarray) -> np.ndarray:
+        """Return the sum over the shaft's harmonics at frequencies, shape (segment, frequency)."""
+        total = np.zeros((len(self.surprise), len(frequencies)))
+        for harmonic in _HARMONICS:
+            places = np.rint(harmonic * frequencies / self.step).astype(int)
+            inside = places < self.surprise.shape[1]
+            total[:, inside] += self.surprise[:, places[inside]]
+        return total
+
+
+def _lines(signal: np.ndarray, rate: float, begins: np.ndarray, seconds: float, limit: float) -> _Lines:
+    length = int(seconds * rate)
+    window = np.hanning(length)
+    count = scipy.fft.next_fast_len(4 * length, real=True)
+    rows = []
+    for begin in (begins * rate).astype(int):
+        part = signal[max(0, min(begin, len(signal) - length)) :][:length]
+        power = np.abs(scipy.fft.rfft((part - part.mean()) * window, count)) ** 2
+        floors = np.array([np.median(each) for each in np.array_split(power, max(1, len(power) // 256))])
+        floor = np.interp(np.arange(len(power)), (np.arange(len(floors)) + 0.5) * len(power) / len(floors), floors) / math.log(2.0)
+        rows.append(power / np.maximum(floor, 1e-300))
+    return _Lines(_counted(np.array(rows), limit), rate / count)
+
+
+def _counted(surprise: np.ndarray, limit: float) -> np.ndarray:
+    """Return what a line counts: the logarithm of its power, so that its middle counts most, and little above a limit."""
+    logarithm = np.log1p(surprise)
+    return np.minimum(logarithm, limit) + 0.05 * np.maximum(logarithm - limit, 0.0)
+
+
+def _sum_counted(surprise: np.ndarray) -> float:
+    """Return how clear a speed is, from the surprise of its lines in each signal."""
+    return float(sum(np.sum(_counted(row, limit)) for row, limit in zip(surprise, _LIMITS)))
+
+
+def _surprise_of_lines(signals, shaft: Shaft) -> np.ndarray:
+    """Return -ln of the probability that noise is as high as each of the shaft's lines over the whole record, (signal, line)."""
+    found = np.zeros((len(signals), len(_HARMONICS)))
+    for row, (signal, rate) in zip(found, signals):
+        whole = spectra(shaft.resampled(signal, rate, _PER_TURN), _PER_TURN, 1, _HIGHEST, excludes_shaft=False)
+        if whole is not None:
+            row[:] = whole.at(_HARMONICS)
+    return found
+
+
+def _steady(signals, duration: float, low: float, high: float) -> tuple[Shaft, bool]:
+    """Return a shaft of constant speed, and whether another speed is nearly as clear."""
+    frequencies = np.linspace(low, high, int((high - low) * 10.0 * duration) + 2)
+    score = sum(_lines(signal, rate, np.zeros(1), duration, limit).comb(frequencies)[0] for (signal, rate), limit in zip(signals, _LIMITS))
+    at = int(np.argmax(score))
+    elsewhere = score[np.abs(frequencies - frequencies[at]) > 4.0 / duration]
+    usual = float(np.median(score))
+    is_ambiguous = bool(len(elsewhere)) and elsewhere.max() - usual > _AMBIGUOUS * (score[at] - usual)
+    return constant_shaft(float(frequencies[at]), 0.0, duration, "lines"), is_ambiguous
+
+
+def _path(signals, duration: float, low: float, high: float) -> Shaft | None:
+    """Return a shaft of varying speed."""
+    turns = duration * low
+    segments = int(min(_MOST_SEGMENTS, 2.0 * turns / _SEGMENT_TURNS))
+    if segments < 6:
+        return None
+    seconds = 2.0 * duration / (segments + 1)
+    begins = np.linspace(0.0, duration - seconds, segments)
+    frequencies = np.arange(low, high, 0.25 / seconds)
+    if len(frequencies) < 2:
+        return None
+    score = sum(_lines(signal, rate, begins, seconds, limit).comb(frequencies) for (signal, rate), limit in zip(signals, _LIMITS))
+    reach = max(1, min(len(frequencies) - 1, int(_STEEPEST * high / (0.25 / seconds))))
+    steps = np.arange(-reach, reach + 1)
+    cost = 2.0 * (steps / reach) ** 2
+    total, came = score[0], []
+    for row in score[1:]:
+        padded = np.pad(total, reach, constant_values=-math.inf)
+        windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1) - cost
+        best = np.argmax(windows, axis=1)
+        came.append(best - reach)
+        total = windows[np.arange(len(best)), best] + row
+    at = [int(np.argmax(total))]
+    for moves in reversed(came):
+        at.append(at[-1] + int(moves[at[-1]]))
+    path = frequencies[at[::-1]]
+    middles = begins + 0.5 * seconds
+    knots = np.concatenate(([0.0], middles, [duration]))
+    smooth = scipy.interpolate.make_smoothing_spline(middles, path)
+    speeds = np.clip(smooth(knots), low, high)
+    times = np.linspace(0.0, duration, 8 * segments)
+    course = scipy.interpolate.PchipInterpolator(knots, speeds)
+    turned = course.antiderivative()(times)
+    return Shaft(times, turned, float(turned[-1] / duration), 0.0, "lines")
+
+
+def _refined(signals, shaft: Shaft) -> Shaft:
+    """Return the shaft with the phase of its lines followed, as long as that makes its lines clearer."""
+    shaft = shaft._replace(standard_error=_UNREFINED / shaft.turns[-1] * shaft.frequency)
+    before = _sum_counted(_surprise_of_lines(signals, shaft))
+    for _ in range(2):
+        changed = _phase_followed(signals, shaft)
+        after = before if changed is shaft else _sum_counted(_surprise_of_lines(signals, changed))
+        if changed is shaft or after < before - _LESS_CLEAR:
+            break
+        shaft, before = changed, after
+    return shaft
+
+
+def _phase_followed(signals, shaft: Shaft) -> Shaft:
+    """Return the shaft with the phase of its clearest lines followed once."""
+    turns = shaft.turns[-1]
+    orders = _HARMONICS
+    resampled = [shaft.resampled(signal, rate, _PER_TURN) for signal, rate in signals]
+    best = None
+    for signal in resampled:
+        found = spectra(signal, _PER_TURN, 1, _HIGHEST, excludes_shaft=False)
+        if found is None:
+            continue
+        near, kept = _agreeing(found, orders)
+        if kept.any() and (best is None or near[kept].sum() > best[0]):
+            # No line counts for more than several others, since it may be another machine's.
+            noise = found.noise_at(orders[kept]) * np.maximum(1.0, near[kept] / _MOST_OF_A_LINE)
+            best = near[kept].sum(), signal, orders[kept], noise
+    if best is None:
+        return shaft
+    _, signal, kept, noise = best
+    segments = int(np.clip(turns / 8.0, 6, 64))
+    while True:
+        track = follow(signal, _PER_TURN, kept, kept, noise, segments)
+        if track.score > 5.0 + len(kept) or segments <= 8:
+            break
+        segments = max(8, segments // 2)
+    rate = mean_rate(track)
+    course = _smooth(track)
+    corrected = shaft.turns + course(np.clip(shaft.turns, track.places[0], track.places[-1]))
+    outside = np.where(shaft.turns < track.places[0], shaft.turns - track.places[0], np.maximum(shaft.turns - track.places[-1], 0.0))
+    corrected += outside * rate.value
+    if np.any(np.diff(corrected) <= 0.0):
+        return shaft
+    corrected -= corrected[0]
+    mean = float(corrected[-1] / shaft.times[-1])
+    return shaft._replace(turns=corrected, frequency=mean, standard_error=float(rate.standard_error * mean))
+
+
+def _agreeing(found: Spectra, orders: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return how clear each line is near its order, and which of the clear ones deviate from theirs in the same proportion.
+
+    Lines of other machines close to a harmonic deviate by another one; of two sets the larger counts, then the one with lower harmonics.
+    """
+    shifts = np.arange(-5, 6) * found.step
+    around = found.at(orders[:, None] + shifts)  # (order, shift)
+    best = np.argmax(around, axis=1)
+    near = around[np.arange(len(orders)), best]
+    deviations, tolerances = shifts[best] / orders, 0.4 * found.resolution / orders
+    agree = np.abs(deviations[:, None] - deviations) < np.hypot(tolerances[:, None], tolerances)
+    agree &= (near > _CLEAR_LINE) & (near > _CLEAR_LINE)[:, None]
+    return near, agree[np.argmax(agree @ (1.0 + 0.1 / orders))]
+
+
+def _smooth(track: Track):
+    """Return the phase of a track as a smooth function of the turns."""
+    if len(track.places) < 6:
+        return np.polynomial.Polynomial.fit(track.places, track.phases, 1)
+    return scipy.interpolate.make_smoothing_spline(track.places, track.phases)

@@ -1,0 +1,116 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""The common phase of several lines over a record, and its mean rate with a standard error.
+
+A comb's lines share one phase: line j advances by ``multiplier_j`` times as much.  It is followed from segment to segment by maximum likelihood
+for lines of unknown amplitude in noise, and a straight line is then fitted to it.  What remains is white noise of the phase and a random walk,
+because rollers slip a little differently at every pass; both are estimated, so that the standard error holds for either.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import scipy.stats
+
+_CANDIDATES = 64  # phases tried at once
+_ROUNDS = 4
+_WALKS = np.concatenate(([0.0], np.geomspace(1e-4, 1e4, 33)))  # variance of a step of the walk over that of the noise
+
+
+class Track(NamedTuple):
+    """A phase over a record.
+
+    Attributes
+    ----------
+    places : middle of each segment, in turns of the shaft, shape (n,).
+    phases : common phase there beyond the lines' nominal one, in turns, shape (n,).
+    score : likelihood ratio of the lines in a segment, mean over the segments (1 for each line is noise).
+    """
+
+    places: np.ndarray
+    phases: np.ndarray
+    score: float
+
+
+class Rate(NamedTuple):
+    """Mean rate of a phase [turn per turn of the shaft] with its standard error."""
+
+    value: float
+    standard_error: float
+
+
+def follow(signal: np.ndarray, per_turn: float, orders: np.ndarray, multipliers: np.ndarray, noise: np.ndarray, segments: int) -> Track:
+    """Follow the common phase of lines.
+
+    Parameters
+    ----------
+    signal : at equal steps of the shaft's angle, shape (m,).
+    per_turn : samples in a turn.
+    orders : of the lines, in the order of ``multipliers``, shape (j,).
+    multipliers : how much each line's phase advances with the common one, shape (j,).
+    noise : density of the noise around each line, |amplitude|^2 per order, shape (j,).
+    segments : into how many the record is cut, half overlapping.
+    """
+    length = int(2 * len(signal) / (segments + 1))
+    begins = (np.arange(segments) * (len(signal) - length) / max(segments - 1, 1)).astype(int)
+    window = np.hanning(length)
+    window /= window.sum()
+    turns = length / per_turn
+    carriers = window * np.exp(-2j * np.pi * np.outer(orders, np.arange(length) / per_turn))  # (j, length)
+    amplitudes = np.stack([carriers @ signal[begin : begin + length] for begin in begins])  # (i, j)
+    amplitudes *= np.exp(-2j * np.pi * np.outer(begins / per_turn, orders))
+    weights = 1.0 / np.maximum(1.5 * noise / turns, 1e-300)  # a Hann window has 1.5 times the noise of none
+    phases = _first_phases(amplitudes, multipliers, weights)
+    trial = (np.arange(_CANDIDATES) / _CANDIDATES - 0.5) / np.max(np.abs(multipliers))
+    rows = np.arange(segments)
+    for _ in range(_ROUNDS):
+        aligned = amplitudes * np.exp(-2j * np.pi * np.outer(phases, multipliers))
+        gains = ((weights * np.conj(aligned.mean(0)) * aligned) @ np.exp(-2j * np.pi * np.outer(multipliers, trial))).real  # (i, trial)
+        best = np.argmax(gains, axis=1)
+        before, here, after = (gains[rows, (best + shift) % _CANDIDATES] for shift in (-1, 0, 1))
+        bend = before - 2.0 * here + after
+        fine = np.where(bend < 0.0, 0.5 * (before - after) / np.where(bend < 0.0, bend, 1.0), 0.0)
+        phases = phases + trial[best] + np.clip(fine, -0.5, 0.5) * (trial[1] - trial[0])
+    aligned = amplitudes * np.exp(-2j * np.pi * np.outer(phases, multipliers))
+    return Track((begins + length / 2.0) / per_turn, phases, float(np.mean(np.abs(aligned) ** 2 @ weights)))
+
+
+def _first_phases(amplitudes: np.ndarray, multipliers: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    """Return phases from the increments between neighbouring segments: all lines vote for the increment, [turn]."""
+    products = (np.conj(amplitudes[:-1]) * amplitudes[1:]) * weights
+    lowest = np.min(np.abs(multipliers))
+    trial = (np.arange(4 * _CANDIDATES) / (4 * _CANDIDATES) - 0.5) / lowest
+    votes = (products @ np.exp(-2j * np.pi * np.outer(multipliers, trial))).real
+    return np.concatenate(([0.0], np.cumsum(trial[np.argmax(votes, axis=1)])))
+
+
+def mean_rate(track: Track) -> Rate:
+    """Return the slope of a phase with its standard error, by generalised least squares.
+
+    How large the random walk is beside the white noise is not known: slopes and variances are averaged over ratios of the two, each with its
+    restricted likelihood.  The standard error is widened as Student's distribution of as many degrees of freedom as there are independent
+    segments, less two.
+    """
+    at = (track.places - track.places.mean()) / np.ptp(track.places)
+    count = len(at)
+    design = np.stack((np.ones(count), at), axis=1)
+    step = np.min(np.diff(at))
+    overlap = np.eye(count) + (1.0 / 6.0) * (np.eye(count, k=1) + np.eye(count, k=-1))  # correlation of half overlapping Hann windows
+    walk = np.minimum.outer(at - at[0], at - at[0]) / step
+    fits = []
+    for ratio in _WALKS:
+        lower = np.linalg.cholesky(overlap + ratio * walk)
+        white_design, white = np.linalg.solve(lower, design), np.linalg.solve(lower, track.phases)
+        information = white_design.T @ white_design
+        fitted = np.linalg.solve(information, white_design.T @ white)
+        remainder = max(float(np.sum((white - white_design @ fitted) ** 2)), 1e-300)
+        freedom = count - 2
+        likelihood = -np.log(np.diag(lower)).sum() - 0.5 * np.linalg.slogdet(information)[1] - 0.5 * freedom * np.log(remainder)
+        fits.append((likelihood, fitted[1], np.linalg.inv(information)[1, 1] * remainder / freedom))
+    likelihoods, slopes, variances = np.array(fits).T
+    weights = np.exp(likelihoods - likelihoods.max())
+    weights /= weights.sum()
+    slope = float(weights @ slopes)
+    variance = float(weights @ (variances + (slopes - slope) ** 2))
+    widened = scipy.stats.t.ppf(0.8413, max(2, count // 2 - 2))  # one standard deviation of a normal distribution
+    return Rate(slope / np.ptp(track.places), math.sqrt(variance) * widened / np.ptp(track.places))

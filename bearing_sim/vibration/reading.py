@@ -1,0 +1,492 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Vibration records of any logger: CSV and other text, Parquet, MAT, NPZ and NPY, WAV, HDF5, and recordings (MCAP and other bags).
+
+A file is taken as channels: names with numbers.  Which of them is the vibration follows from its name where it is given, or where only one is
+long enough to be it; the rate from the file where it says one, or from its column of times.  What may mean two things is asked for.
+"""
+
+import math
+import re
+import zipfile
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from bearing_sim.extras import what_is_missing
+from bearing_sim.files.limits import VIBRATION_FILE, VIBRATION_SAMPLES, FileError, LimitError, printable
+from bearing_sim.files.reading import open_regular, read_text
+from bearing_sim.recording.bag_reader import BagReader, BagTopic
+from bearing_sim.scene.errors import did_you_mean
+from bearing_sim.scene.quantity import to_si
+from bearing_sim.vibration.signal import FEWEST_SAMPLES, Vibration, VibrationError
+
+FORMATS = {
+    ".csv": "text",
+    ".txt": "text",
+    ".tsv": "text",
+    ".dat": "text",
+    ".parquet": "parquet",
+    ".mat": "matlab",
+    ".npz": "numpy",
+    ".npy": "numpy",
+    ".wav": "wave",
+    ".h5": "hdf5",
+    ".hdf5": "hdf5",
+    ".hdf": "hdf5",
+    ".mcap": "bag",
+    ".active": "bag",
+    ".db3": "bag",
+    ".bag": "bag",
+}
+"""Formats by the suffix of a file; a folder is a bag."""
+
+_RATE_NAMES = re.compile(r"(?:^|[^a-z])(?:fs|sr|rate|sampling_?rate|sample_?rate|sampling_?frequency|samples_per_second)(?:_?hz)?$", re.IGNORECASE)
+_TIME_NAMES = re.compile(r"(?:^|[^a-z])(?:t|time|times|timestamp|seconds)(?:_?s)?(?:\s*[\[(].*)?$", re.IGNORECASE)
+_UNIT = re.compile(r"[\[(]\s*([^\])]*?)\s*[\])]\s*$")
+_FIRST_LINES = 200
+_MOST_SHOWN = 12
+_DEEPEST = 8  # levels of structures in a MAT or HDF5 file
+_MOST_CHANNELS = 2000
+_UNEVEN = 0.01  # of the spacing of times
+_COMMENTS = ("#", "%", "//")
+
+
+class Channels(NamedTuple):
+    """The numbers in a file.
+
+    Attributes
+    ----------
+    arrays : by name, shape (n,) each.
+    numbers : single numbers by name, among them perhaps the rate.
+    rate : of the samples [Hz], if the format has one.
+    start : time of the first sample [s since the epoch], if the format has one.
+    """
+
+    arrays: Mapping[str, np.ndarray]
+    numbers: Mapping[str, float]
+    rate: float | None = None
+    start: float = 0.0
+
+
+def read_vibration(
+    path: str | Path,
+    channel: str | None = None,
+    rate: float | None = None,
+    time_channel: str | None = None,
+    speed_channel: str | None = None,
+    speed_unit: str = "rpm",
+) -> Vibration:
+    """Read a vibration record.
+
+    Parameters
+    ----------
+    path : of the file, or of a bag's folder.
+    channel : name of the vibration in it: of a column, variable or data set, ``name[k]`` for the column k of a matrix, or ``/topic.field`` of a
+        recording; None if there is only one.
+    rate : of the samples [Hz]; None if the file says it.
+    time_channel : name of the times [s]; None if none is needed, or it is called so.
+    speed_channel : name of the shaft speed, which must have as many values as the vibration; None if there is none.
+    speed_unit : of these speeds.
+
+    Raises
+    ------
+    FileError
+        The file cannot be read, or is larger than a limit.
+    VibrationError
+        It has no such channel, or no rate; the message lists what it has.
+    """
+    path = Path(path)
+    kind = "bag" if path.is_dir() else FORMATS.get(path.suffix.lower())
+    if kind is None:
+        raise VibrationError(f"{path}: no format is known by this name; expected one that ends in {', '.join(FORMATS)}, or the folder of a bag")
+    if kind == "bag":
+        found = _bag(path, tuple(name for name in (channel, speed_channel) if name))
+    else:
+        found = _READERS[kind](path)
+    name = channel or _only_channel(path, found, time_channel, speed_channel)
+    samples = _array(path, found, name, "--channel")
+    speeds = None
+    if speed_channel is not None:
+        speeds = _array(path, found, speed_channel, "--speed-channel")
+        if len(speeds) != len(samples):
+            raise VibrationError(f"{path}: {speed_channel} has {len(speeds)} values and {name} {len(samples)}; expected as many of each")
+        speeds = speeds * _factor(speed_unit)
+    rate = rate if rate is not None else _rate(path, found, time_channel, len(samples))
+    unit = _UNIT.search(name)
+    return Vibration(samples, rate, unit[1] if unit else "", found.start, f"{path.name}, {printable(name)}", speeds)
+
+
+def _factor(unit: str) -> float:
+    try:
+        return to_si(f"1 {unit}", "rad/s")
+    except ValueError as error:
+        raise VibrationError(f"--speed-unit {unit}: {error}") from None
+
+
+def _listed(names) -> str:
+    shown = [printable(each) for each in names]
+    return ", ".join(shown[:_MOST_SHOWN]) + (f", and {len(shown) - _MOST_SHOWN} more" if len(shown) > _MOST_SHOWN else "") if shown else "none"
+
+
+def _array(path: Path, found: Channels, name: str, option: str) -> np.ndarray:
+    if name in found.arrays:
+        return np.asarray(found.arrays[name], float)
+    raise VibrationError(
+        f"{path}: no channel {name!r}{did_you_mean(name, list(found.arrays))}; there are {_listed(found.arrays)}; choose one with {option}"
+    )
+
+
+def _only_channel(path: Path, found: Channels, time_channel: str | None, speed_channel: str | None) -> str:
+    """Return the name of the channel that must be the vibration, because no other is long enough."""
+    given = {time_channel, speed_channel}
+    names = [name for name in found.arrays if name not in given and not _TIME_NAMES.search(name) and len(found.arrays[name]) >= FEWEST_SAMPLES]
+    if len(names) == 1:
+        return names[0]
+    if not names:
+        raise VibrationError(f"{path}: no channel of at least {FEWEST_SAMPLES} numbers; it has {_listed(found.arrays)}")
+    raise VibrationError(f"{path}: which channel is the vibration? there are {_listed(names)}; choose one with --channel")
+
+
+def _rate(path: Path, found: Channels, time_channel: str | None, count: int) -> float:
+    """Return the rate of the samples by the file."""
+    if time_channel is None and found.rate is not None:
+        return found.rate
+    if time_channel is None:
+        rates = {name: value for name, value in found.numbers.items() if _RATE_NAMES.search(name) and value > 0.0}
+        if len(set(rates.values())) == 1:
+            return next(iter(rates.values()))
+        if rates:
+            raise VibrationError(f"{path}: {', '.join(f'{printable(name)} = {value:g}' for name, value in rates.items())}; choose one with --rate")
+    names = [time_channel] if time_channel else [name for name, array in found.arrays.items() if _TIME_NAMES.search(name) and len(array) == count]
+    if len(names) != 1:
+        raise VibrationError(f"{path}: the file does not say its sampling rate; give it with --rate, such as --rate 50kHz")
+    times = _array(path, found, names[0], "--time-channel")
+    steps = np.diff(times)
+    step = float(np.median(steps)) if len(steps) else math.nan
+    if len(times) != count or not step > 0.0:
+        raise VibrationError(f"{path}: {names[0]} is no column of increasing times; give the sampling rate with --rate")
+    mean = float(times[-1] - times[0]) / (count - 1)
+    if abs(mean / step - 1.0) > _UNEVEN:
+        worst = int(np.argmax(np.abs(steps - step)))
+        raise VibrationError(
+            f"{path}: {names[0]} has a gap: {times[worst]:g} is followed by {times[worst + 1]:g}; expected equal steps: cut the record there"
+        )
+    unit = _UNIT.search(names[0])
+    seconds = {"ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9}.get(unit[1] if unit else "", 1.0)
+    return 1.0 / (mean * seconds)
+
+
+def _text(path: Path) -> Channels:
+    """Return the columns of a text: numbers between commas, semicolons, tabs or blanks, under headings or none."""
+    lines = read_text(path, VIBRATION_FILE).split("\n")
+    begin, delimiter, decimal = _first_row(path, lines)
+    heading = lines[begin - 1] if begin else ""
+    names = [cell.strip().strip('"').lstrip("#% ") for cell in (heading.split(delimiter) if delimiter else heading.split())]
+    width = len(_cells(lines[begin], delimiter))
+    if len(names) != width or any(_is_number(name, decimal) for name in names):
+        names = [f"column {number}" for number in range(1, width + 1)]
+    elif len(set(names)) < width:
+        names = [f"{name} ({number})" for number, name in enumerate(names, 1)]
+    rows = [line for line in lines[begin:] if line.strip() and not line.lstrip().startswith(_COMMENTS)]
+    VIBRATION_SAMPLES.check(len(rows) * width, str(path))
+    if decimal == ",":
+        rows = [row.replace(",", ".") for row in rows]
+    try:
+        table = np.loadtxt(rows, delimiter=delimiter, ndmin=2, comments=None)
+    except ValueError:
+        raise VibrationError(_first_fault(path, lines, begin, delimiter, decimal, width)) from None
+    return Channels(dict(zip(names, table.T)), {})
+
+
+def _cells(line: str, delimiter: str | None) -> list[str]:
+    return line.split(delimiter) if delimiter else line.split()
+
+
+def _is_number(text: str, decimal: str) -> bool:
+    try:
+        float(text.replace(decimal, "."))
+    except ValueError:
+        return False
+    return True
+
+
+def _first_row(path: Path, lines: list[str]) -> tuple[int, str | None, str]:
+    """Return index of the first row of numbers, delimiter (None: blanks) and decimal mark."""
+    for index, line in enumerate(lines[:_FIRST_LINES]):
+        if not line.strip() or line.lstrip().startswith(_COMMENTS):
+            continue
+        for delimiter, decimal in ((";", "."), (";", ","), ("\t", "."), ("\t", ","), (",", "."), (None, "."), (None, ",")):
+            if delimiter is not None and delimiter not in line:
+                continue
+            if all(_is_number(cell.strip(), decimal) for cell in _cells(line, delimiter)):
+                return index, delimiter, decimal
+    raise VibrationError(f"{path}: no row of numbers in the first {min(len(lines), _FIRST_LINES)} lines; expected columns of numbers under a heading")
+
+
+def _first_fault(path: Path, lines: list[str], begin: int, delimiter: str | None, decimal: str, width: int) -> str:
+    """Return what is wrong with the first row that cannot be read."""
+    for number, line in enumerate(lines[begin:], begin + 1):
+        if not line.strip() or line.lstrip().startswith(_COMMENTS):
+            continue
+        cells = _cells(line, delimiter)
+        if len(cells) != width:
+            return f"{path}, line {number}: {len(cells)} columns; expected {width}, as in line {begin + 1}"
+        for cell in cells:
+            if not _is_number(cell.strip(), decimal):
+                return f"{path}, line {number}: {printable(cell.strip(), 40)!r} is no number; expected a record without gaps: cut it there"
+    return f"{path}: cannot be read as columns of numbers"
+
+
+def _parquet(path: Path) -> Channels:
+    import pyarrow
+    import pyarrow.parquet
+
+    with open_regular(path, VIBRATION_FILE) as stream:
+        try:
+            file = pyarrow.parquet.ParquetFile(stream)
+            VIBRATION_SAMPLES.check(file.metadata.num_rows * file.metadata.num_columns, str(path))
+            table = file.read()
+        except (pyarrow.ArrowException, OSError) as error:
+            raise FileError(f"cannot be read as Parquet: {printable(' '.join(str(error).split()))}", str(path)) from None
+    arrays = {}
+    for name in table.column_names:
+        column = table.column(name)
+        if pyarrow.types.is_timestamp(column.type):
+            arrays[name] = column.cast(pyarrow.timestamp("ns", column.type.tz)).cast(pyarrow.int64()).to_numpy() * 1e-9
+        elif pyarrow.types.is_floating(column.type) or pyarrow.types.is_integer(column.type):
+            arrays[name] = column.to_numpy()
+    return Channels(arrays, {})
+
+
+class _Collector:
+    """Channels and single numbers, collected from arrays of any shape and structures within structures."""
+
+    def __init__(self, path: Path):
+        self._path, self.arrays, self.numbers, self._values = path, {}, {}, 0
+
+    def add(self, name: str, value, depth: int = 0) -> None:
+        """Add an array, a number, or what a structure holds; anything else is passed over."""
+        if depth > _DEEPEST or len(self.arrays) >= _MOST_CHANNELS:
+            return
+        value = np.asarray(value)
+        if value.dtype.names:
+            for field in value.dtype.names:
+                self.add(f"{name}.{field}", value[field], depth + 1)
+        elif value.dtype == object:
+            for index, item in enumerate(value.ravel()[:_MOST_CHANNELS]):
+                self.add(name if value.size == 1 else f"{name}[{index}]", item, depth + 1)
+        elif value.dtype.kind in "iufb":
+            value = np.squeeze(value)
+            if value.ndim == 0:
+                self.numbers[name] = float(value)
+            elif value.ndim == 1:
+                self._count(value)
+                self.arrays[name] = value
+            elif value.ndim == 2:
+                self._count(value)
+                columns = value if value.shape[1] <= value.shape[0] else value.T
+                for index, column in enumerate(columns.T[:_MOST_CHANNELS]):
+                    self.arrays[f"{name}[{index}]"] = column
+
+    def _count(self, value: np.ndarray) -> None:
+        self._values += value.size
+        VIBRATION_SAMPLES.check(self._values, str(self._path))
+
+    @property
+    def channels(self) -> Channels:
+        """What was collected."""
+        return Channels(self.arrays, self.numbers)
+
+
+def _matlab(path: Path) -> Channels:
+    import scipy.io
+
+    with open_regular(path, VIBRATION_FILE) as stream:
+        head = stream.read(128)
+        stream.seek(0)
+        if b"MATLAB 7.3" in head or head.startswith(b"\x89HDF"):
+            return _hdf5(path)
+        collector = _Collector(path)
+        try:
+            shapes = scipy.io.whosmat(stream)
+            VIBRATION_SAMPLES.check(sum(math.prod(shape) for _, shape, kind in shapes if kind not in ("struct", "cell")), str(path))
+            stream.seek(0)
+            found = scipy.io.loadmat(stream)
+        except LimitError:
+            raise
+        except Exception as error:  # the reader raises exceptions of any kind on damaged files
+            raise FileError(f"cannot be read as MAT: {printable(' '.join(str(error).split())) or type(error).__name__}", str(path)) from None
+    for name, value in found.items():
+        if not name.startswith("__"):
+            collector.add(name, value)
+    return collector.channels
+
+
+def _hdf5(path: Path) -> Channels:
+    try:
+        import h5py
+    except ModuleNotFoundError as error:
+        raise VibrationError(f"{path}: {what_is_missing(error)}") from None
+    collector = _Collector(path)
+    with open_regular(path, VIBRATION_FILE) as stream:
+        try:
+            with h5py.File(stream, "r") as file:
+
+                def visit(name: str, item) -> None:
+                    for key, value in item.attrs.items():
+                        if np.ndim(value) == 0 and np.asarray(value).dtype.kind in "iuf":
+                            collector.numbers[f"{name}.{key}"] = float(value)
+                    if isinstance(item, h5py.Dataset) and item.dtype.kind in "iuf" and not name.startswith("#refs#"):
+                        VIBRATION_SAMPLES.check(item.size, str(path))
+                        collector.add(name, item[()])
+
+                visit("", file)
+                file.visititems(visit)
+        except LimitError:
+            raise
+        except Exception as error:  # the reader raises exceptions of any kind on damaged files
+            raise FileError(f"cannot be read as HDF5: {printable(' '.join(str(error).split()))}", str(path)) from None
+    return collector.channels
+
+
+def _numpy(path: Path) -> Channels:
+    collector = _Collector(path)
+    with open_regular(path, VIBRATION_FILE) as stream:
+        try:
+            if path.suffix.lower() == ".npz":
+                with zipfile.ZipFile(stream) as archive:
+                    VIBRATION_SAMPLES.check(sum(item.file_size for item in archive.infolist()) // 8, str(path))
+                stream.seek(0)
+                with np.load(stream, allow_pickle=False) as found:
+                    for name in found.files:
+                        collector.add(name, found[name])
+            else:
+                collector.add("samples", np.load(stream, allow_pickle=False))
+        except LimitError:
+            raise
+        except Exception as error:  # the reader raises exceptions of any kind on damaged files
+            raise FileError(f"cannot be read as {path.suffix[1:].upper()}: {printable(' '.join(str(error).split()))}", str(path)) from None
+    return collector.channels
+
+
+def _wave(path: Path) -> Channels:
+    import warnings
+
+    import scipy.io.wavfile
+
+    with open_regular(path, VIBRATION_FILE) as stream:
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", scipy.io.wavfile.WavFileWarning)  # chunks of loggers that are not known
+                rate, samples = scipy.io.wavfile.read(stream)
+        except Exception as error:  # the reader raises exceptions of any kind on damaged files
+            raise FileError(f"cannot be read as WAV: {printable(' '.join(str(error).split())) or type(error).__name__}", str(path)) from None
+    collector = _Collector(path)
+    collector.add("samples", samples)
+    return collector.channels._replace(rate=float(rate))
+
+
+_READERS: Mapping[str, Callable[[Path], Channels]] = {
+    "text": _text,
+    "parquet": _parquet,
+    "matlab": _matlab,
+    "hdf5": _hdf5,
+    "numpy": _numpy,
+    "wave": _wave,
+}
+
+
+class Block(NamedTuple):
+    """Samples of one message.
+
+    Attributes
+    ----------
+    samples : shape (n,).
+    rate : of the samples [Hz]; NaN where the message does not say it.
+    """
+
+    samples: np.ndarray
+    rate: float
+
+
+def block_of(message, field: str = "data") -> Block:
+    """Return the samples of a message and their rate, which a std_msgs/Float64MultiArray tells as the size of a dimension with the label ``rate``.
+
+    Parameters
+    ----------
+    message : any object with the fields of a message as attributes.
+    field : path of the samples in it: of an array, or of one number.
+
+    Raises
+    ------
+    ValueError
+        There is no such field, or it does not hold numbers.
+    """
+    value = message
+    for part in field.split("."):
+        if not hasattr(value, part):
+            raise ValueError(f"no field {field!r} in the message")
+        value = getattr(value, part)
+    try:
+        samples = np.atleast_1d(np.asarray(value, float))
+    except (TypeError, ValueError):
+        raise ValueError(f"{field} holds no numbers") from None
+    if samples.ndim != 1:
+        raise ValueError(f"{field} holds no row of numbers")
+    rates = [float(each.size) for each in getattr(getattr(message, "layout", None), "dim", ()) if str(each.label) == "rate"]
+    return Block(samples, rates[0] if rates and rates[0] > 0.0 else math.nan)
+
+
+def _bag(path: Path, wanted: tuple[str, ...]) -> Channels:
+    """Return the channels of a recording: those that are named, or all topics of arrays of numbers."""
+    bag, topics = BagReader(path), {}
+    named = {name: _topic_and_field(name) for name in wanted}
+    pieces: dict[str, list[Block]] = {}
+    times: dict[str, list[int]] = {}
+    total = 0
+    for item in bag:
+        if isinstance(item, BagTopic):
+            topics[item.name] = item.ros_type
+            continue
+        topic, time, data = item
+        for name, field in _channels_of(topic, named):
+            try:
+                block = block_of(topic.decode(data), field)
+            except Exception as error:  # decoders raise exceptions of any kind on damaged data
+                if named:
+                    raise VibrationError(f"{path}, {name}: a message cannot be used: {printable(str(error))}") from None
+                continue
+            total += len(block.samples)
+            VIBRATION_SAMPLES.check(total, str(path))
+            pieces.setdefault(name, []).append(block)
+            times.setdefault(name, []).append(time)
+    missing = [name for name in wanted if name not in pieces]
+    if missing:
+        raise VibrationError(f"{path}: no messages on {missing[0]}{did_you_mean(missing[0], list(topics))}; there are {_listed(topics)}")
+    arrays = {name: np.concatenate([block.samples for block in blocks]) for name, blocks in pieces.items()}
+    if not arrays:
+        raise VibrationError(f"{path}: no topic of std_msgs/msg/Float64MultiArray; name one with --channel /topic.field; there are {_listed(topics)}")
+    name = wanted[0] if wanted else max(arrays, key=lambda each: len(arrays[each]))
+    stamps, blocks = times[name], pieces[name]
+    rates = {block.rate for block in blocks if math.isfinite(block.rate)}
+    if len(rates) > 1:
+        raise VibrationError(f"{path}, {name}: blocks of {' and '.join(f'{rate:g} Hz' for rate in sorted(rates)[:4])}; expected one rate")
+    rate = next(iter(rates), None)
+    if rate is None and len(stamps) > 1 and stamps[-1] > stamps[0]:
+        rate = sum(len(block.samples) for block in blocks[1:]) / ((stamps[-1] - stamps[0]) * 1e-9)
+    return Channels(arrays, {}, rate, stamps[0] * 1e-9)
+
+
+def _topic_and_field(name: str) -> tuple[str, str]:
+    topic, _, field = name.partition(".")
+    return (topic if topic.startswith("/") else f"/{topic}"), field or "data"
+
+
+def _channels_of(topic: BagTopic, named: Mapping[str, tuple[str, str]]) -> Iterator[tuple[str, str]]:
+    if not named and topic.ros_type == "std_msgs/msg/Float64MultiArray":
+        yield topic.name, "data"
+    for name, (wanted, field) in named.items():
+        if wanted == topic.name:
+            yield name, field

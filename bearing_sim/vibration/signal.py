@@ -1,0 +1,199 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""A record of an accelerometer, and the signals that are made of it: without discrete lines, low-passed, the envelope of a band.
+
+Every filter works on the spectrum of the whole record, so that none has a phase and each can change the sampling rate at once.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import scipy.fft
+import scipy.ndimage
+import scipy.signal
+
+FEWEST_SAMPLES = 1024
+_FLOOR_BLOCK = 256  # bins over which the floor of a spectrum is a median
+_LINE = 4.0  # times the floor: noise exceeds it in 1.5e-5 of the bins (its magnitude has a Rayleigh distribution)
+_SKIRT = 3  # bins on either side of a line that go with it
+_TAPER = 0.1  # fraction of a band's width over which its edges fall off
+_OVERSAMPLED = 1.28  # rate of a signal over twice its highest frequency
+_LARGEST_ENVELOPE = 20.0  # times its median: what is higher is a knock or a fault of the sensor, not a bearing
+
+
+class VibrationError(ValueError):
+    """A vibration record that cannot be used: the message says what is wrong, where, what was expected and what to do."""
+
+
+class Band(NamedTuple):
+    """A band of frequencies [Hz]."""
+
+    low: float
+    high: float
+
+    @property
+    def width(self) -> float:
+        """Its width [Hz]."""
+        return self.high - self.low
+
+
+@dataclass(frozen=True)
+class Vibration:
+    """A record of an accelerometer.
+
+    Attributes
+    ----------
+    samples : shape (n,), in any unit: no result depends on it.
+    rate : of the samples [Hz].
+    unit : of the samples as a text; empty if unknown.
+    start : time of the first sample [s], on whatever clock the record has.
+    name : of the channel, for messages.
+    shaft_speed : shape (n,) [rad/s] at every sample, where a speed was recorded beside the vibration; None where not.
+
+    Raises
+    ------
+    VibrationError
+        The record is too short, has gaps or no finite rate, or does not vibrate.
+    """
+
+    samples: np.ndarray
+    rate: float
+    unit: str = ""
+    start: float = 0.0
+    name: str = "vibration"
+    shaft_speed: np.ndarray | None = None
+
+    def __post_init__(self):
+        count, unusable = len(self.samples), np.flatnonzero(~np.isfinite(self.samples))
+        if count < FEWEST_SAMPLES:
+            raise VibrationError(f"{self.name}: {count} samples; expected at least {FEWEST_SAMPLES}")
+        if unusable.size:
+            raise VibrationError(
+                f"{self.name}: sample {unusable[0]} is {self.samples[unusable[0]]}, and {unusable.size - 1} others are not finite; expected a record"
+                " without gaps: cut it at the gap"
+            )
+        if not 0.0 < self.rate < np.inf:
+            raise VibrationError(f"{self.name}: a rate of {self.rate} Hz; expected a positive one")
+        if not np.ptp(self.samples) > 0.0:
+            raise VibrationError(f"{self.name}: all samples are {self.samples[0]}; expected a vibration: check the sensor and the channel")
+        if self.shaft_speed is not None and (len(self.shaft_speed) != count or not np.all(np.isfinite(self.shaft_speed))):
+            raise VibrationError(f"{self.name}: expected a finite shaft speed at each of the {count} samples")
+
+    @property
+    def duration(self) -> float:
+        """Its duration [s]."""
+        return len(self.samples) / self.rate
+
+    def part(self, begin: int, end: int) -> "Vibration":
+        """Return the samples from ``begin`` to before ``end`` as a record."""
+        speed = None if self.shaft_speed is None else self.shaft_speed[begin:end]
+        return Vibration(self.samples[begin:end], self.rate, self.unit, self.start + begin / self.rate, self.name, speed)
+
+
+class Spectrum:
+    """The spectrum of a whole record, from which filtered signals are made.
+
+    Parameters
+    ----------
+    samples : shape (n,).
+    rate : of the samples [Hz].
+    ends : fraction of the record over which it fades in and out, so that a line does not leak to its neighbours.
+    """
+
+    def __init__(self, samples: np.ndarray, rate: float, ends: float = 0.0):
+        self._count = len(samples)
+        window = scipy.signal.windows.tukey(self._count, 2.0 * ends) if ends else 1.0
+        self._lines = scipy.fft.rfft((samples - samples.mean()) * window)
+        self._step = rate / self._count  # [Hz]
+        self.highest = rate / 2.0
+        self.rate = rate
+
+    def without_lines(self) -> "Spectrum":
+        """Return this spectrum with its level evened out, and discrete lines cut out.
+
+        Rotors, gears and the mains make lines that are sharper than those of a bearing: its rollers jitter, which spreads its lines at the high
+        frequencies where they are looked for (Borghesani, Pennacchi, Randall, Sawalhi and Ricci, Mechanical Systems and Signal Processing 36, 2013,
+        whiten all bins alike; here only the bins of lines are cut).
+        """
+        magnitude = np.abs(self._lines)
+        blocks = max(1, len(magnitude) // _FLOOR_BLOCK)
+        edges = np.linspace(0, len(magnitude), blocks + 1).astype(int)
+        floors = np.array([np.median(magnitude[low:high]) for low, high in zip(edges, edges[1:])])
+        floor = np.interp(np.arange(len(magnitude)), (edges[1:] + edges[:-1]) / 2.0, np.maximum(floors, 1e-12 * max(magnitude.max(), 1e-300)))
+        relative = magnitude / floor
+        is_line = scipy.ndimage.binary_dilation(relative > _LINE, iterations=_SKIRT)
+        gain = np.where(is_line, 0.0, 1.0) / floor
+        found = object.__new__(Spectrum)
+        found._count, found._step, found.highest, found.rate = self._count, self._step, self.highest, self.rate
+        found._lines = self._lines * gain
+        return found
+
+    def low_passed(self, highest: float) -> tuple[np.ndarray, float]:
+        """Return the signal below a frequency [Hz], and its rate [Hz]."""
+        rate = min(2.0 * _OVERSAMPLED * highest, self.rate)
+        count = max(16, scipy.fft.next_fast_len(int(self._count * rate / self.rate), real=True))
+        count = min(count, self._count)
+        kept = min(int(highest / self._step) + 1, count // 2 + 1, len(self._lines))
+        lines = np.zeros(count // 2 + 1, complex)
+        lines[:kept] = self._lines[:kept]
+        return scipy.fft.irfft(lines, count) * (count / self._count), count * self._step
+
+    def in_band(self, band: Band) -> tuple[np.ndarray, float]:
+        """Return the complex envelope of a band, and its rate [Hz]; its magnitude is the envelope of the signal in the band."""
+        low, high = int(band.low / self._step), min(int(band.high / self._step), len(self._lines) - 1)
+        lines = self._lines[max(low, 1) : high]
+        edge = max(1, int(_TAPER * len(lines)))
+        taper = 0.5 - 0.5 * np.cos(np.pi * (np.arange(edge) + 0.5) / edge)
+        weights = np.ones(len(lines))
+        weights[:edge], weights[-edge:] = taper, taper[::-1]
+        count = scipy.fft.next_fast_len(len(lines))
+        spread = np.zeros(count, complex)
+        spread[: len(lines)] = lines * weights
+        return scipy.fft.ifft(spread) * (2.0 * count / self._count), count * self._step
+
+    def envelope(self, band: Band) -> tuple[np.ndarray, float]:
+        """Return the envelope of a band, limited to 20 times its median, and its rate [Hz]."""
+        signal, rate = self.in_band(band)
+        envelope = np.abs(signal)
+        return np.minimum(envelope, _LARGEST_ENVELOPE * np.median(envelope)), rate
+
+    def kurtosis(self, band: Band, parts: int = 8) -> float:
+        """Return how much more impulsive a band is than noise: E|z|^4/(E|z|^2)^2 - 2 of its complex envelope z, median over parts of the record.
+
+        This is the kurtogram's measure (Antoni, Mechanical Systems and Signal Processing 20, 2006, 282-307; 21, 2007, 108-124); the median keeps a
+        single knock from choosing the band.
+        """
+        power = np.abs(self.in_band(band)[0]) ** 2
+        return float(np.median([np.mean(each**2) / max(np.mean(each) ** 2, 1e-300) - 2.0 for each in np.array_split(power, parts)]))
+
+
+def kurtogram(spectrum: Spectrum, narrowest: float) -> list[tuple[float, Band]]:
+    """Return the bands of a tree of halves and thirds with their kurtosis, the most impulsive first.
+
+    Parameters
+    ----------
+    spectrum : of the record.
+    narrowest : width of a band [Hz] below which it would not hold the lines that are looked for.
+    """
+    highest, found = spectrum.highest, []
+    for parts in (1, 2, 3, 4, 6, 8, 12, 16):
+        width = highest / parts
+        if width < narrowest and parts > 1:
+            break
+        bands = [Band(k * width, (k + 1) * width) for k in range(parts)]
+        found += [(spectrum.kurtosis(band), band) for band in bands]
+    return sorted(found, key=lambda each: -each[0])
+
+
+def candidate_bands(spectrum: Spectrum, narrowest: float, given: Band | None = None) -> list[Band]:
+    """Return the bands in which lines are looked for: the one that is given, or the two most impulsive ones, the whole, and quarters of it.
+
+    Where noise covers the impulses no kurtosis shows their band, so that the quarters are tried as well; the false alarms of all are counted.
+    """
+    if given is not None:
+        return [given]
+    ranked = [band for _, band in kurtogram(spectrum, narrowest)]
+    parts = next((count for count in (4, 2) if spectrum.highest / count >= narrowest), 1)
+    width = spectrum.highest / parts
+    bands = [*ranked[:2], Band(0.0, spectrum.highest), *(Band(k * width, (k + 1) * width) for k in range(parts))]
+    return list(dict.fromkeys(bands))

@@ -1,0 +1,317 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""The cage speed out of vibration: against synthetic records whose truth is known, recorded ones, and closed forms; every format of files.
+
+The errors over speeds, noise and ramps, and false lines in thousands of records, are computed by ``bearing-sim study vibration``.
+"""
+
+import dataclasses
+import math
+import re
+import zipfile
+
+import numpy as np
+import pyarrow
+import pyarrow.parquet
+import pytest
+import scipy.io
+import scipy.io.wavfile
+from click.testing import CliRunner
+from measured_data import measured_file
+
+from bearing_sim.cli.main import main
+from bearing_sim.files.limits import VARIABLE, FileError
+from bearing_sim.recording.writer import McapFile
+from bearing_sim.vibration.analysis import CLAIMED_SLIP, Geometry, analyse
+from bearing_sim.vibration.comb import families, orders_of, spectra
+from bearing_sim.vibration.order_tracking import recorded_shaft
+from bearing_sim.vibration.phase import Track, follow, mean_rate
+from bearing_sim.vibration.reading import read_vibration
+from bearing_sim.vibration.signal import Band, Spectrum, VibrationError
+from bearing_sim.vibration.synthetic import Machine, record
+
+ROLLERS, SIZE, RATE = 13, 0.19, 25_600.0
+SPEED = 3000.0 * math.pi / 30.0
+
+
+def made(shows, seed=1, slip=0.08, **changes):
+    machine = Machine(shows, ROLLERS, SIZE, slip, SPEED, **{"interfering": 0, **changes})
+    return record(machine, RATE, 2.0, np.random.default_rng(seed))
+
+
+@pytest.fixture(scope="module")
+def outer():
+    synthetic = made("outer_ring", interfering=2)
+    return synthetic, analyse(synthetic.vibration, Geometry(ROLLERS, SIZE), 1.005 * SPEED)
+
+
+def test_a_damaged_outer_ring_beside_two_machines_gives_the_cage_speed_within_its_error(outer):
+    synthetic, found = outer
+    assert found.found and found.shows == "outer_ring"
+    assert abs(found.ratio - synthetic.ratio) < 3.0 * found.ratio_error < 0.01
+    assert found.cage_speed == pytest.approx(found.ratio * 2.0 * math.pi * found.shaft.frequency)
+    assert abs(found.shaft.frequency / synthetic.shaft_frequency - 1.0) < 1e-3 and found.shaft.source == "lines"
+    assert len(found.parts) == 4 and all(abs(part.ratio - synthetic.ratio) < 5.0 * part.ratio_error for part in found.parts)
+
+
+@pytest.mark.parametrize("shows", ["inner_ring", "roller"])
+def test_a_damaged_inner_ring_or_roller_is_told_from_an_outer_ring(shows):
+    synthetic = made(shows)
+    found = analyse(synthetic.vibration, Geometry(ROLLERS, SIZE), 1.005 * SPEED)
+    assert found.shows == shows and abs(found.ratio - synthetic.ratio) < 3.0 * found.ratio_error
+
+
+def test_a_line_is_followed_through_a_ramp_of_the_recorded_speed():
+    synthetic = made("outer_ring", ramp=0.2)
+    course = SPEED * (1.0 + 0.2 * (np.arange(len(synthetic.vibration.samples)) / len(synthetic.vibration.samples) - 0.5))
+    recorded = dataclasses.replace(synthetic.vibration, shaft_speed=1.002 * course)
+    found = analyse(recorded, Geometry(ROLLERS, SIZE), tolerance=0.005)
+    assert found.shows == "outer_ring" and abs(found.ratio - synthetic.ratio) < 3.0 * found.ratio_error < 0.01
+    constant = analyse(synthetic.vibration, Geometry(ROLLERS, SIZE), SPEED, follows_lines=False)
+    assert not constant.found or abs(constant.ratio - synthetic.ratio) < 3.0 * constant.ratio_error
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_noise_and_healthy_machines_have_no_line(seed):
+    synthetic = made("", seed, interfering=2 * (seed % 2), shaft_lines=0.3 * (seed % 2))
+    found = analyse(synthetic.vibration, Geometry(ROLLERS, math.nan if seed % 3 else SIZE), SPEED)
+    assert not found.found and found.reason.startswith("no line found") and math.isnan(found.cage_speed) and not found.claims_slip
+
+
+def test_a_result_depends_neither_on_the_unit_nor_on_the_sense_of_the_vibration_or_of_the_shaft(outer):
+    synthetic, found = outer
+    other = dataclasses.replace(synthetic.vibration, samples=-9.81e6 * synthetic.vibration.samples + 3.0)
+    again = analyse(other, Geometry(ROLLERS, SIZE), -1.005 * SPEED)
+    assert again.ratio == pytest.approx(found.ratio, rel=1e-9) and again.shows == found.shows
+
+
+def test_the_lines_of_both_raceways_add_up_to_the_rollers_whatever_the_cage_does():
+    by_name = {family.name: family for family in families(ROLLERS)}
+    for ratio in (0.2, 0.38, 0.45):
+        outer_line, inner_line = (orders_of(by_name[name], ratio)[0][0] for name in ("outer_ring", "inner_ring"))
+        assert outer_line + inner_line == pytest.approx(ROLLERS) and outer_line == pytest.approx(ROLLERS * ratio)
+
+
+def test_slip_below_two_percent_is_claimed_only_with_measured_diameters(outer):
+    synthetic, found = outer
+    assert found.claims_slip and abs(found.slip - (1.0 - synthetic.ratio / Geometry(ROLLERS, SIZE).ideal_ratio)) < 3.0 * found.slip_error
+    near = Geometry(ROLLERS, 1.0 - 2.0 * synthetic.ratio / (1.0 - 0.01))  # a bearing whose drawing makes 1 % of slip of the same record
+    unsure, sure = (analyse(synthetic.vibration, near._replace(is_measured=is_measured), SPEED) for is_measured in (False, True))
+    assert abs(unsure.slip) < CLAIMED_SLIP and not unsure.claims_slip and "measure the diameters" in unsure.reason
+    assert sure.claims_slip and abs(sure.slip - 0.01) < 3.0 * sure.slip_error
+
+
+def test_the_rate_of_a_phase_has_an_error_that_holds_for_noise_and_for_random_walks():
+    rng, places, slope = np.random.default_rng(5), np.arange(24.0), 0.01
+    for walk, noise in ((0.0, 0.05), (0.05, 0.0), (0.03, 0.03)):
+        scaled = []
+        for _ in range(120):
+            phases = slope * places + np.cumsum(walk * rng.normal(size=24)) + noise * rng.normal(size=24)
+            rate = mean_rate(Track(places, phases, 1.0))
+            scaled.append((rate.value - slope) / rate.standard_error)
+        assert 0.3 < np.std(scaled) < 1.4 and abs(np.mean(scaled)) < 0.35
+
+
+def test_the_phase_of_a_line_is_followed_through_noise():
+    per_turn, turns, rng = 64, 400, np.random.default_rng(3)
+    at = np.arange(per_turn * turns) / per_turn
+    drift = 1e-3 * at + 0.05 * np.sin(2.0 * math.pi * at / turns)
+    signal = sum(np.cos(2.0 * math.pi * k * (5.4 * at + drift)) for k in (1, 2)) + rng.normal(size=len(at))
+    orders = np.array([5.4, 10.8])
+    noise = spectra(signal, per_turn, 1, 30.0).noise_at(orders)
+    track = follow(signal, per_turn, orders, np.array([1.0, 2.0]), noise, 40)
+    wanted = np.interp(track.places, at, drift)
+    assert np.std(track.phases - wanted) < 0.01
+
+
+def test_noise_has_the_surprise_of_an_exponential_distribution_at_any_number_of_averages():
+    signal = np.random.default_rng(8).normal(size=64 * 2000)
+    for averages in (1, 16, 64):
+        found = spectra(signal, 64, averages, 30.0, excludes_shaft=False)
+        kept = found.surprise[int(1.0 / found.step) :: 4]
+        assert np.mean(kept) == pytest.approx(1.0, abs=0.06)
+        assert np.mean(kept > 5.0) == pytest.approx(math.exp(-5.0), abs=0.006)
+
+
+def test_lines_are_cut_and_impulses_are_kept():
+    time = np.arange(51_200) / 25_600.0
+    rng = np.random.default_rng(2)
+    noise = rng.normal(size=len(time))
+    spectrum = Spectrum(noise + 30.0 * np.cos(2.0 * math.pi * 3123.4 * time), 25_600.0, 0.05).without_lines()
+    plain = Spectrum(noise, 25_600.0, 0.05).without_lines()
+    band = Band(3000.0, 3300.0)
+    kept, uncut = (np.mean(each.envelope(band)[0] ** 2) / np.mean(plain.envelope(band)[0] ** 2) for each in (spectrum, plain))
+    assert 0.6 < kept <= uncut == 1.0
+    knocks = noise.copy()
+    knocks[::256] += 30.0
+    assert Spectrum(knocks, 25_600.0).kurtosis(Band(0.0, 12_800.0)) > 10.0 * abs(plain.kurtosis(Band(0.0, 12_800.0)))
+
+
+def test_a_recorded_speed_gives_the_turns_of_its_integral():
+    speed = 2.0 * math.pi * np.linspace(10.0, 14.0, 10_001)
+    shaft = recorded_shaft(-speed, 1000.0, 0.01)
+    assert shaft.frequency == pytest.approx(12.0) and shaft.turns[-1] == pytest.approx(120.0)
+    chirp = np.cos(2.0 * math.pi * 3.0 * np.interp(np.arange(10_001) / 1000.0, shaft.times, shaft.turns))
+    lines = np.abs(np.fft.rfft(np.hanning(7680) * shaft.resampled(chirp, 1000.0, 64)[:7680]))
+    assert np.argmax(lines) == 360  # three orders in 120 turns
+
+
+@pytest.mark.parametrize(
+    ("name", "rpm", "shows", "line", "error"), [("ob600_2", 600, "outer_ring", 5.4034, 5e-4), ("ib800_2", 800, "inner_ring", 7.7661, 1e-3)]
+)
+def test_lines_of_recorded_bearings_agree_with_an_independent_fit(name, rpm, shows, line, error):
+    vibration = read_vibration(measured_file(f"jnu_roller_bearing/{name}.npz"))
+    found = analyse(vibration, Geometry(13), rpm * math.pi / 30.0)
+    assert vibration.rate == 50_000.0 and found.shows == shows
+    assert abs(found.line - line) < 2.0 * math.hypot(found.line_error, error) and found.line_error < 2.5 * error
+
+
+SAMPLES = np.round(np.random.default_rng(4).normal(size=2000), 6)
+SPEEDS = np.linspace(100.0, 110.0, 2000)
+
+
+def _write(path):
+    """Write the samples in the format of a suffix, with a rate of 2 kHz in whatever way the format can say it."""
+    times = np.arange(2000) / 2000.0
+    suffix = path.suffix
+    if suffix == ".csv":
+        rows = [f"{t:.7f};{a:.6f};{s:.6f}".replace(".", ",") for t, a, s in zip(times, SAMPLES, SPEEDS)]
+        path.write_text("\n".join(["# logger 7", "Time [s];acceleration [m/s^2];speed", *rows, ""]))
+    elif suffix == ".txt":
+        path.write_text("\n".join(["time\tacceleration\tspeed", *(f"{t}\t{a}\t{s}" for t, a, s in zip(times, SAMPLES, SPEEDS))]))
+    elif suffix == ".parquet":
+        pyarrow.parquet.write_table(pyarrow.table({"time": times, "acceleration": SAMPLES, "speed": SPEEDS, "note": ["x"] * 2000}), path)
+    elif suffix == ".mat":
+        scipy.io.savemat(path, {"acceleration": SAMPLES[:, None], "speed": SPEEDS, "fs": 2000.0, "title": "x"})
+    elif suffix == ".npz":
+        np.savez(path, acceleration=SAMPLES, speed=SPEEDS, fs_hz=2000.0)
+    elif suffix == ".h5":
+        h5py = pytest.importorskip("h5py")
+        with h5py.File(path, "w") as file:
+            file["acceleration"], file["speed"] = SAMPLES, SPEEDS
+            file["acceleration"].attrs["sampling_rate"] = 2000.0
+    elif suffix == ".mcap":
+        with McapFile(path) as recording:
+            for number, (block, speeds) in enumerate(zip(SAMPLES.reshape(-1, 100), SPEEDS.reshape(-1, 100))):
+                at = 1_700_000_000_000_000_000 + number * 50_000_000
+                dimensions = [{"label": "samples", "size": 100, "stride": 100}, {"label": "rate", "size": 2000, "stride": 0}]
+                for topic, values in (("/acceleration", block), ("/speed", speeds)):
+                    recording.write(topic, "std_msgs/msg/Float64MultiArray", at, {"layout": {"dim": dimensions, "data_offset": 0}, "data": values})
+    return path
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".txt", ".parquet", ".mat", ".npz", ".h5", ".mcap"])
+def test_every_format_gives_the_samples_their_rate_and_a_recorded_speed(suffix, tmp_path):
+    prefix = "/" if suffix == ".mcap" else ""
+    path = _write(tmp_path / f"record{suffix}")
+    channel = "acceleration [m/s^2]" if suffix == ".csv" else f"{prefix}acceleration"
+    found = read_vibration(path, channel, speed_channel=f"{prefix}speed", speed_unit="rpm")
+    assert found.rate == pytest.approx(2000.0) and np.allclose(found.samples, SAMPLES, atol=1e-6)
+    assert np.allclose(found.shaft_speed, SPEEDS * math.pi / 30.0, atol=1e-6)
+    with pytest.raises(VibrationError, match="which channel|--channel"):
+        read_vibration(path)
+
+
+def test_sounds_and_single_arrays_need_no_name(tmp_path):
+    counts = np.round(1000.0 * SAMPLES).astype(np.int16)
+    scipy.io.wavfile.write(tmp_path / "r.wav", 2000, counts)
+    np.save(tmp_path / "r.npy", SAMPLES)
+    (tmp_path / "r.dat").write_text("\n".join(map(str, SAMPLES)))
+    scipy.io.savemat(tmp_path / "r.mat", {"run": {"y": np.stack((SAMPLES, SPEEDS), 1), "info": {"rate": 2000.0}}})
+    wave = read_vibration(tmp_path / "r.wav")
+    assert wave.rate == 2000.0 and np.array_equal(wave.samples, counts)
+    for name, channel, rate in (("r.npy", None, 2000.0), ("r.dat", None, 2000.0), ("r.mat", "run.y[0]", None)):
+        found = read_vibration(tmp_path / name, channel, rate)
+        assert found.rate == 2000.0 and np.array_equal(found.samples, SAMPLES)
+
+
+def _faulty(folder):
+    """Write files that cannot be used; return by name what the message must say."""
+    path = folder / "x.csv"
+    good = [f"{value}" for value in SAMPLES]
+    (folder / "empty.csv").write_text("")
+    (folder / "words.csv").write_text("a,b\nc,d\n")
+    (folder / "gap.csv").write_text("\n".join([*good[:50], "--", *good[50:]]))
+    (folder / "nan.csv").write_text("\n".join([*good[:50], "nan", *good[50:]]))
+    (folder / "ragged.csv").write_text("\n".join(["1,2"] * 2000 + ["1"]))
+    (folder / "short.csv").write_text("\n".join(good[:100]))
+    (folder / "flat.csv").write_text("\n".join(["1"] * 2000))
+    (folder / "rate.csv").write_text("\n".join(good))
+    (folder / "uneven.csv").write_text("\n".join(["time,a", *(f"{k + 500 * (k > 900)},{a}" for k, a in enumerate(good))]))
+    path.write_text("x")
+    for suffix in (".mat", ".npz", ".npy", ".wav", ".h5", ".parquet", ".mcap"):
+        (folder / f"torn{suffix}").write_bytes(b"\x89HDF" * 20 if suffix == ".h5" else b"PK\x03\x04 no more of it" * 9)
+    np.save(folder / "pickled.npy", np.array([{}], dtype=object), allow_pickle=True)
+    with zipfile.ZipFile(folder / "bomb.npz", "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("a.npy", bytes(50_000_000))
+    (folder / "x.doc").write_text("1")
+    return {
+        "empty.csv": "no row of numbers",
+        "words.csv": "no row of numbers",
+        "gap.csv": "line 51: '--' is no number",
+        "nan.csv": "sample 50 is nan",
+        "ragged.csv": "line 2001: 1 columns; expected 2",
+        "short.csv": "at least 1024",
+        "flat.csv": "check the sensor",
+        "rate.csv": "--rate",
+        "uneven.csv": "has a gap",
+        **{f"torn{suffix}": "cannot be read|no row|MCAP|mcap" for suffix in (".mat", ".npz", ".npy", ".wav", ".h5", ".parquet", ".mcap")},
+        "pickled.npy": "cannot be read as NPY",
+        "bomb.npz": "vibration_samples=NUMBER",
+        "x.doc": "expected one that ends in",
+        "absent.csv": "no such file",
+    }
+
+
+def test_a_file_that_cannot_be_used_is_refused_with_what_is_wrong_and_where(tmp_path, monkeypatch):
+    monkeypatch.setenv(VARIABLE, "vibration_samples=1e6")
+    for name, reason in _faulty(tmp_path).items():
+        rate = None if name in ("rate.csv", "uneven.csv") else 2000.0
+        with pytest.raises((FileError, VibrationError), match=reason) as refusal:
+            read_vibration(tmp_path / name, rate=rate)
+        assert name in str(refusal.value), str(refusal.value)
+
+
+def called(*arguments):
+    return CliRunner().invoke(main, ["vibration", *map(str, arguments)])
+
+
+def test_the_command_gives_ratio_error_parts_and_a_picture(outer, tmp_path):
+    import csv
+    import json
+
+    synthetic, _ = outer
+    np.savez(tmp_path / "r.npz", acceleration=synthetic.vibration.samples.astype(np.float32), fs=RATE)
+    arguments = (tmp_path / "r.npz", "--rollers", 13, "--speed", "3015rpm")
+    result = called(*arguments, "--every", "0.5s", "--csv", tmp_path / "r.csv", "--picture", tmp_path / "r.png", "--json")
+    assert result.exit_code == 0, result.output
+    found = json.loads(result.output)
+    assert abs(found["cage_to_shaft"] - synthetic.ratio) < 3.0 * found["cage_to_shaft_standard_error"] and found["shows"] == "outer_ring"
+    assert found["slip_percent"] is None and not found["slip_is_claimed"]
+    rows = list(csv.DictReader((tmp_path / "r.csv").open()))
+    assert len(rows) == len(found["parts"]) == 4 and float(rows[0]["cage_speed_rad_s"]) == pytest.approx(found["cage_speed_rad_s"], rel=0.01)
+    assert (tmp_path / "r.png").stat().st_size > 10_000
+    text = called(*arguments, "--roller-diameter", "7.6mm", "--pitch-diameter", "40mm")
+    assert text.exit_code == 0 and "cage over shaft" in text.output and re.search(r"slip\s*│ [78]\.", text.output), text.output
+
+
+def test_the_command_refuses_what_does_not_go_together(tmp_path):
+    path = _write(tmp_path / "r.npz")
+    for arguments, reason in (
+        ((), "--rollers"),
+        (("--rollers", 13, "--bearing", "NU 205"), "one of --bearing"),
+        (("--rollers", 2), "Invalid value"),
+        (("--bearing", "NU 2x5"), "NU 2x5"),
+        (("--rollers", 13, "--pitch-diameter", "40mm"), "go together"),
+        (("--rollers", 13, "--pitch-diameter", "40mm", "--roller-diameter", "12mm"), "do not go on a circle"),
+        (("--rollers", 13, "--channel", "aceleration"), "did you mean"),
+        (("--rollers", 13, "--channel", "acceleration"), "how fast does the shaft turn"),
+        (("--rollers", 13, "--channel", "acceleration", "--speed", "600"), "600"),
+        (("--rollers", 13, "--channel", "acceleration", "--speed", "0rpm"), "at which the shaft turns"),
+        (("--rollers", 13, "--channel", "acceleration", "--speed", "6000rpm", "--band", "1kHz:2kHz"), "half the sampling rate"),
+        (("--rollers", 13, "--channel", "acceleration", "--speed", "30000rpm"), "too slow"),
+        (("--rollers", 13, "--channel", "acceleration", "--speed", "600rpm"), "turns of the shaft"),
+        (("--rollers", 13, "--channel", "acceleration", "--speed", "600rpm", "--tolerance", "50%"), "at most 20 %"),
+        (("--rollers", 13, "--channel", "acceleration", "--speed", "600rpm", "--from", "5s"), "within the 1 s"),
+    ):
+        result = called(path, *arguments)
+        assert result.exit_code == 2 and reason in result.output and "Traceback" not in result.output, (arguments, result.output, result.exception)
