@@ -1,8 +1,11 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """All checks, in the order of the page."""
 
+from pathlib import Path
+
 from bearing_sim.studies.validation import catalogues, closed_forms, heat_and_friction, independent, published_digits, trends
 from bearing_sim.studies.validation.check import Check
+from bearing_sim.studies.validation.recorded_lines import recorded_checks
 
 CHECKS: tuple[Check, ...] = (
     *closed_forms.CHECKS,
@@ -12,4 +15,9 @@ CHECKS: tuple[Check, ...] = (
     *heat_and_friction.CHECKS,
     *trends.CHECKS,
 )
-"""Each has a name of its own."""
+"""Those that need no file.  Each has a name of its own."""
+
+
+def all_checks(recordings: Path | None = None) -> tuple[Check, ...]:
+    """Return all checks, also those of recordings; parameter and errors as of `recorded_checks`."""
+    return (*CHECKS, *recorded_checks(recordings))

@@ -24,13 +24,17 @@ _MEANING = (
     "Every figure was computed by the command in its line on the day in its line. A tolerance is the most by which a figure may deviate. Where a "
     f"verdict is '{IN_PART}' or '{FAILS}', the line says by how much the model is off."
 )
-_NOT_RUN_HERE = "Open recordings of bearings that would show the slip of a cage. None of them was run here."
+_NOT_RUN_HERE = (
+    "Open recordings of bearings that would show the slip of a cage, with speeds and mostly loads beside the vibration. None of them was run here. "
+    "The commands are written for the forms of files that public readers of these data rely on."
+)
 _DETAILS = (
     ("deng2017", "the results of Deng et al. (2017), its design question, the bearing as it runs"),
     ("friction_and_heat", "heat, friction and catalogue bearings, table by table"),
     ("trends", "published trends"),
     ("independent_models", "plain NumPy models, complex steps and other references in the test suite"),
     ("uncertainty", "unknown parameters, and a measured flight"),
+    ("vibration", "cage speed out of vibration: recorded bearings by quarters, errors of synthetic records"),
     ("robustness", "extreme scenes, damaged recordings, outputs, files from others"),
 )
 
@@ -70,7 +74,7 @@ def _groups(results: Sequence[Result]) -> list[str]:
 def counted(results: Sequence[Result]) -> str:
     """Return how many results have each verdict, in words."""
     counts = Counter(each.verdict for each in results)
-    return ", ".join(f"{counts[verdict]} {verdict}" for verdict in _CLASSES if counts[verdict])
+    return ", ".join(f"{verdict}: {counts[verdict]}" for verdict in _CLASSES if counts[verdict])
 
 
 def _counts(results: Sequence[Result]) -> str:
