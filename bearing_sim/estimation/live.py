@@ -110,6 +110,11 @@ class LiveEstimation:
         if self._estimator is not None:
             self._estimator.measure(time, cage_speed, standard_error)
 
+    def measure_clearance(self, time: float, clearance: float, standard_error: float = math.nan) -> None:
+        """Take a measured diametral running clearance and its standard error [m], parameters as of `measure`."""
+        if self._estimator is not None:
+            self._estimator.measure_clearance(time, clearance, standard_error)
+
     def take(self, block: np.ndarray) -> list[Bands]:
         """Return the bands of the samples that follow, at most ``estimation.rate`` a simulated second, and the estimates every ``interval``.
 
