@@ -60,7 +60,7 @@ def write(path, messages: list[Message]):
                 "shaft_speed": lambda m=message, ns=ns: joint_state(ns, m.values[0]),
                 "radial_load": lambda m=message, ns=ns: wrench(ns, *m.values),
                 **dict.fromkeys(topics.TEMPERATURES, lambda m=message, ns=ns: temperature(ns, m.values[0] - topics.ZERO_CELSIUS)),
-                topics.MEASURED: lambda m=message, ns=ns: joint_state(ns, m.values[0], "cage"),
+                topics.MEASURED: lambda m=message, ns=ns: topics.MEASUREMENTS[topics.MEASURED].message(ns, m.values),
             }[message.channel]()
             kind = ({"radial_load": WRENCH} | dict.fromkeys(topics.TEMPERATURES, TEMPERATURE)).get(message.channel, JOINTS)
             recording.write(f"/{message.channel}", kind, ns, fields)
@@ -86,7 +86,7 @@ class ListSink:
         known = {name: value for name, value in inputs._asdict().items() if not math.isnan(value)}  # NaN is not equal to itself
         self.inputs.append((self._ns(time), known, tuple(channels)))
 
-    def write_measurement(self, time, cage_speed, residual):
+    def write_measurement(self, time, cage_speed, residual, standard_error):
         self.measurements.append((self._ns(time), cage_speed, residual))
 
     def write_event(self, event):

@@ -193,6 +193,8 @@ def test_as_many_values_as_the_channel_has_are_accepted_and_no_others(channel, v
     event = gate.offer(channel, 1.0, values)
     if channel == "radial_load" and len(values) == 2:
         assert event is None and (gate.held.load_y, gate.held.load_z) == values
+    elif channel == "cage_speed_measured" and len(values) == 2:
+        assert event is None and (gate.measured, gate.standard_error) == values
     else:
         assert event.kind == "input.malformed" and f"{len(values)} values, expected" in event.text
         assert gate.held == START
@@ -253,6 +255,17 @@ def test_what_is_refused_as_too_large_makes_life_an_upper_bound_and_names_the_fi
     assert gate.coverage.verdict.endswith("(bound: input_limits.maximum_load, input_limits.maximum_speed)")
     gate.offer("cage_speed_measured", 0.4, (math.nan,))
     assert gate.coverage.unknown_until(0.4) == pytest.approx(0.3), "a measured cage is no input of the model"
+
+
+def test_a_measured_cage_may_state_its_standard_error(gate):
+    assert gate.offer("cage_speed_measured", 0.1, (400.0, 0.5)) is None and (gate.measured, gate.standard_error) == (400.0, 0.5)
+    assert gate.offer("cage_speed_measured", 0.2, (401.0,)) is None and gate.measured == 401.0 and math.isnan(gate.standard_error)
+    assert gate.offer("cage_speed_measured", 0.3, (402.0, math.nan)) is None and math.isnan(gate.standard_error), "not known"
+    for wrong in (0.0, -0.5, math.inf):
+        event = gate.offer("cage_speed_measured", 0.4, (403.0, wrong))
+        assert event.kind == "input.standard_error" and "expected a positive number" in event.reason and gate.measured == 402.0
+    event = gate.offer("cage_speed_measured", 0.4, (math.nan, 0.5))
+    assert event.kind == "input.not_finite" and event.reason == "nan rad/s is not finite", "the error of a speed that is none says nothing"
 
 
 @pytest.mark.parametrize("kind", ["input.frame", "input.not_stamped", "input.malformed"])

@@ -57,6 +57,15 @@ def test_joint_states_of_any_sender_say_what_was_put_in(names, frame):
         assert len(reader._layouts) == 1, "the first message tells where the others have their numbers"
 
 
+@pytest.mark.parametrize("names", [["cage", "cage_standard_error"], ["shaft", "cage", "cage_standard_error"], ["cage_standard_error", "cage"]])
+def test_a_measured_cage_is_read_with_its_standard_error_wherever_its_joint_is(names):
+    rng, reader = np.random.default_rng(3), InputReader(topics.MEASURED, JOINT_STATE, "cage", "bearing")
+    for _ in range(3):
+        made, (speed,) = joint_state(rng, names, "cage", "", (5, 7))
+        error = float(made.velocity[names.index("cage_standard_error")])
+        assert reader.read(serialize_message(made)) == ((speed, error), 5_000_000_007, "")
+
+
 @pytest.mark.parametrize("frame", ["", "bearing"])
 def test_loads_say_what_was_put_in_and_what_cdr_leaves_unused_does_not_count(frame, monkeypatch):
     rng, reader = np.random.default_rng(2), InputReader("radial_load", WRENCH, "", "bearing")

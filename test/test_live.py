@@ -31,7 +31,7 @@ class ListSink:
     def write_event(self, event):
         self.events.append(event)
 
-    def write_measurement(self, time, cage_speed, residual, origin):
+    def write_measurement(self, time, cage_speed, residual, standard_error, origin):
         self.measurements.append((cage_speed, residual))
 
     def close(self):

@@ -165,7 +165,7 @@ def replayed(scene, tmp_path, measured=None, **options):
     profile = judge(read_input_log(path), scene.accepted_inputs, Inputs(0.0, 0.0, 0.0, 393.15))
     if measured is not None:
         profile.stamps[topics.MEASURED] = 100_000_000 * np.arange(1, 40)
-        profile.values[topics.MEASURED] = np.full(39, 0.4 * 4000.0 * (1.0 - measured))
+        profile.values[topics.MEASURED] = np.tile([0.4 * 4000.0 * (1.0 - measured), math.nan], (39, 1))
     sink = ListSink()
     return replay(scene, profile, sink, model=model, **options), sink
 

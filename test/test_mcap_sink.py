@@ -227,7 +227,7 @@ def test_inputs_keep_the_stamps_and_frames_of_their_senders(tmp_path, scene):
         inputs = Inputs(4000.0, 800.0, -50.0, 393.15)
         sink.write_inputs(1.0, inputs, ["radial_load"], Origin(START + 990_000_000, "dyno"))
         sink.write_inputs(1.0, inputs, ["shaft_speed"], Origin(None, ""))
-        sink.write_measurement(1.5, 1800.0, 0.01, Origin(START + 1_490_000_000, "laser"))
+        sink.write_measurement(1.5, 1800.0, 0.01, 0.5, Origin(START + 1_490_000_000, "laser"))
     decoded = {topic: (log_time, message) for topic, log_time, message in messages(sink.path)}
     for topic, log_time, stamp_ns, frame in (
         ("/radial_load", 1_000_000_000, 990_000_000, "dyno"),

@@ -44,7 +44,7 @@ def recording(tmp_path_factory):
             sink.write(part)
             if size % 7 == 0:
                 sink.write_event(Event(time, Level.WARN, f"slip.{size}", "", "slip is high"))
-                sink.write_measurement(time, 1800.0 + time, 0.01)
+                sink.write_measurement(time, 1800.0 + time, 0.01, 0.5)
     return path
 
 

@@ -42,7 +42,7 @@ class Sink:
     def write_inputs(self, time, inputs, channels, origin=None):
         self.inputs.append((time, inputs, tuple(channels)))
 
-    def write_measurement(self, time, cage_speed, residual, origin=None):
+    def write_measurement(self, time, cage_speed, residual, standard_error, origin=None):
         self.measurements.append((cage_speed, residual))
 
     def write_event(self, event):

@@ -48,7 +48,8 @@ class Cage:
 
     def send(self, speed, name="m1_cage"):
         topic = topics.MEASUREMENTS[topics.MEASURED]
-        self.publisher.publish(message(topic.ros_type, topic.message(self.client.node.get_clock().now().nanoseconds, speed) | {"name": [name]}))
+        fields = topic.message(self.client.node.get_clock().now().nanoseconds, (speed, 0.5)) | {"name": [name, f"{name}_standard_error"]}
+        self.publisher.publish(message(topic.ros_type, fields))
 
     def drive_until(self, condition, extra, patience=40.0):
         """Drive the node, with a cage that slips by ``extra`` more than the node says, until the condition holds."""
@@ -88,7 +89,8 @@ def test_a_measured_cage_is_compared_judged_published_and_recorded(node, tmp_pat
     with AnyReader([tmp_path / "run.mcap"]) as reader:
         found = {connection.topic: reader.deserialize(data, connection.msgtype) for connection, _, data in reader.messages()}
     assert found["/cage_slip_residual"].data == pytest.approx(0.05, abs=0.01)
-    assert found["/cage_speed_measured"].name == ["cage"] and found["/cage_speed_measured"].velocity[0] > 100.0
+    assert found["/cage_speed_measured"].name == ["cage", "cage_standard_error"] and found["/cage_speed_measured"].velocity[1] == 0.5
+    assert found["/cage_speed_measured"].velocity[0] > 100.0
     assert len(read_input_log(tmp_path / "run.mcap").series["shaft_speed"].log_times) > 100
     samples = sum(len(item) for item in Recording(tmp_path / "run.mcap") if isinstance(item, np.ndarray))
     assert samples > 100, "readers of runs are not troubled by what they do not know"

@@ -43,7 +43,7 @@ class ListSink:
     def write_start(self, block):
         self.starts += list(block)
 
-    def write_measurement(self, time, cage_speed, residual):
+    def write_measurement(self, time, cage_speed, residual, standard_error):
         self.measurements.append((time, cage_speed, residual))
 
     def write_inputs(self, time, inputs, channels):

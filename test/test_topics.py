@@ -101,6 +101,18 @@ def test_joints_are_found_by_name_not_by_place():
     assert topics.input_values("shaft_speed", "sensor_msgs/msg/JointState", message, joint="spool") == (2.0,)
 
 
+def test_a_measured_cage_comes_with_its_standard_error_where_the_message_has_a_joint_for_it():
+    topic = topics.MEASUREMENTS[topics.MEASURED]
+    for values, expected in (((40.0, 0.2), (40.0, 0.2)), ((40.0, math.nan), (40.0,)), ((40.0,), (40.0,))):
+        message = SimpleNamespace(**topic.message(STAMP, values))
+        assert topics.input_values(topics.MEASURED, topic.ros_type, message, "cage") == expected
+    own = SimpleNamespace(name=["m1_cage_standard_error", "m1_cage"], velocity=[0.2, 40.0])
+    assert topics.input_values(topics.MEASURED, topic.ros_type, own, "m1_cage") == (40.0, 0.2)
+    assert topics.input_values("shaft_speed", topic.ros_type, own, "m1_cage") == (40.0,), "of a shaft there is none"
+    with pytest.raises(ValueError, match="no velocity for the joint 'm1_cage_standard_error'"):
+        topics.input_values(topics.MEASURED, topic.ros_type, SimpleNamespace(name=own.name[::-1], velocity=[40.0]), "m1_cage")
+
+
 def test_absent_joint_or_velocity_is_said():
     with pytest.raises(ValueError, match="no joint 'shaft'.*'fan'"):
         topics.input_values("shaft_speed", "sensor_msgs/msg/JointState", SimpleNamespace(name=["fan"], velocity=[1.0]))

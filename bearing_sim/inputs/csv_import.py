@@ -719,7 +719,7 @@ def write_log(
     with McapFile(out, {METADATA: metadata}, {"generator": "bearing_sim", **origin}, replace=replace) as recording:
         for done, (stamp, channel, k) in enumerate(messages):
             topic, value = (topics.INPUTS | topics.MEASUREMENTS)[channel], table.values[channel][k]
-            content = value if channel == topics.MEASURED else with_values(Inputs(0.0, 0.0, 0.0, 0.0), channel, (value,))
+            content = (value,) if channel == topics.MEASURED else with_values(Inputs(0.0, 0.0, 0.0, 0.0), channel, (value,))
             recording.write(f"/{topic.name}", topic.ros_type, stamp, topic.message(stamp, content))
             if done % 1000 == 0:
                 progress(done)

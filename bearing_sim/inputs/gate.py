@@ -162,8 +162,8 @@ class InputGate:
     ----------
     held : Inputs
         The last good values.
-    measured : float
-        The last good cage speed [rad/s]; NaN before the first.
+    measured, standard_error : float
+        The last good cage speed, and its standard error [rad/s]; NaN before the first, the second also where the sensor does not say.
     refused, accepted : collections.Counter
         Messages refused by kind of event, and accepted by channel.
     coverage : Coverage
@@ -181,7 +181,7 @@ class InputGate:
     ):
         self._spacings, self._waits_for = spacings, waits_for
         self.limits, self.held, self._substitute, self._stands_in = limits, held, substitute, _STANDS_IN[heat_law]
-        self.measured = math.nan
+        self.measured = self.standard_error = math.nan
         self.refused: Counter[str] = Counter()
         self.accepted: Counter[str] = Counter()
         self.coverage = Coverage()
@@ -200,8 +200,8 @@ class InputGate:
         ----------
         channel : one of `CHANNELS`.
         stamp : the sender's time [s since the start]; must rise from message to message of a channel.
-        values : ``(speed,)`` [rad/s], of shaft or cage; ``(force_y, force_z)`` [N], or ``(force,)`` [N] for a magnitude along +y, which cannot
-            be negative; ``(temperature,)`` [K].
+        values : ``(speed,)`` [rad/s], of shaft or cage; of the cage also ``(speed, standard error)``, NaN where that is not known;
+            ``(force_y, force_z)`` [N], or ``(force,)`` [N] for a magnitude along +y, which cannot be negative; ``(temperature,)`` [K].
         arrival : the receiver's time [s since the start], from which age and rate are computed; ``stamp`` by default, as in a replay.
             If it is given, a sender whose clock was set back is followed after a few messages, otherwise never.
 
@@ -234,6 +234,8 @@ class InputGate:
         error = None
         if len(values) == 1:
             is_good = state.least <= values[0] <= state.largest
+        elif channel == MEASURED:
+            is_good = len(values) == 2 and state.least <= values[0] <= state.largest and (math.isnan(values[1]) or 0.0 < values[1] < math.inf)
         else:
             is_good = len(values) == 2 and state.is_force and math.hypot(*values) <= state.largest
         if not is_good:
@@ -249,7 +251,7 @@ class InputGate:
         self.accepted[channel] += 1
         self.coverage.take_good(channel, received)
         if channel == MEASURED:
-            self.measured = float(values[0])
+            self.measured, self.standard_error = (float(values[0]), float(values[1]) if len(values) == 2 else math.nan)
             return None
         if channel in self._expired:
             self._expired.remove(channel)
@@ -284,9 +286,9 @@ class InputGate:
         return Event(time, level, kind, channel, reason, f"message refused, {self._used_instead(channel)}")
 
     def latest(self, channel: str) -> float | tuple[float, float]:
-        """Return the last good value of a channel in SI; of the load both forces."""
+        """Return the last good value of a channel in SI; of the load both forces, of a measured cage its speed and the standard error of that."""
         if channel == MEASURED:
-            return self.measured
+            return (self.measured, self.standard_error)
         if channel == "radial_load":
             return (self.held.load_y, self.held.load_z)
         return getattr(self.held, channel)
@@ -350,7 +352,7 @@ class InputGate:
         return "nothing is compared" if channel == MEASURED else f"the scene's value is used, {self._shown(channel)}"
 
     def _shown(self, channel: str) -> str:
-        latest = self.latest(channel)
+        latest = self.measured if channel == MEASURED else self.latest(channel)
         return shown(channel, latest if isinstance(latest, tuple) else (latest,))
 
     def _flowed(self, channel: str, state: _Channel) -> bool:
@@ -426,8 +428,13 @@ def shown(channel: str, values: Iterable[float]) -> str:
 
 def _value_error(channel: str, values: tuple[float, ...], state: _Channel) -> tuple[str, str]:
     """Return kind and reason of what is wrong with values that are not good."""
-    if len(values) != 1 and (len(values) != 2 or channel != "radial_load"):
-        return "input.malformed", f"{len(values)} values, expected {'1 or 2' if channel == 'radial_load' else '1'}"
+    if len(values) != 1 and (len(values) != 2 or channel not in ("radial_load", MEASURED)):
+        return "input.malformed", f"{len(values)} values, expected {'1 or 2' if channel in ('radial_load', MEASURED) else '1'}"
+    if channel == MEASURED and state.least <= values[0] <= state.largest:
+        expected = "expected a positive number, NaN, or no joint for it where it is not known"
+        return "input.standard_error", f"a standard error of {shown(channel, values[1:])}, {expected}"
+    if channel == MEASURED:
+        values = values[:1]
     unit, given = TOPIC_UNITS[channel], shown(channel, values)
     magnitude = math.hypot(*values)
     if not math.isfinite(magnitude) and not all(map(math.isfinite, values)):

@@ -126,7 +126,7 @@ def write_mission(
             if cage is not None:
                 for reading, speed in cage.until(time):
                     topic, stamp = topics.MEASUREMENTS[topics.MEASURED], start_ns + round(reading * 1e9)
-                    recording.write(f"/{topic.name}", topic.ros_type, stamp, topic.message(stamp, speed))
+                    recording.write(f"/{topic.name}", topic.ros_type, stamp, topic.message(stamp, (speed,)))
                     written += 1
             progress(time)
     return written

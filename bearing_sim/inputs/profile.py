@@ -284,11 +284,12 @@ class InputProfile:
         return segment(messages, self.gaps, -1, self.end, rate, self.limits, oil_temperature, self.spacings)
 
     @property
-    def measured(self) -> list[tuple[float, float]]:
-        """Measured cage speeds [rad/s] with their times [s], in order."""
+    def measured(self) -> list[tuple[float, float, float]]:
+        """Times [s] of measured cage speeds, the speeds, and their standard errors (NaN where they are not known) [rad/s], in order."""
         if MEASURED not in self.stamps:
             return []
-        return list(zip((self.stamps[MEASURED] * 1e-9).tolist(), self.values[MEASURED].tolist()))
+        speeds, errors = self.values[MEASURED].reshape(-1, 2).T.tolist()
+        return list(zip((self.stamps[MEASURED] * 1e-9).tolist(), speeds, errors))
 
 
 def judge(log: InputLog, limits: InputLimits, held: Inputs, longest_gap: float | None = None, heat_law: str = "none") -> InputProfile:

@@ -1,6 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """What happens in a run besides its samples: events that a person should know about, and measurements of the cage."""
 
+import math
 from enum import IntEnum
 from typing import NamedTuple
 
@@ -69,8 +70,10 @@ class Measurement(NamedTuple):
     time : [s] since the start of the run.
     cage_speed : [rad/s].
     residual : measured minus predicted cage slip, a fraction; NaN where there is no prediction to compare with.
+    standard_error : of the cage speed [rad/s]; NaN where the sensor does not say.
     """
 
     time: float
     cage_speed: float
     residual: float
+    standard_error: float = math.nan

@@ -12,7 +12,7 @@ Names are relative; a recording writes them with a leading slash.
 """
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -135,8 +135,15 @@ def _temperature(name: str, meaning: str, of_heat: bool = False) -> Topic:
     return Topic(name, "sensor_msgs/msg/Temperature", meaning, message, of_heat=of_heat)
 
 
-def _cage_speed(stamp_ns: int, speed: float) -> dict:
-    return _joints(stamp_ns, [CAGE_JOINT], velocity=[speed])
+def standard_error_joint(joint: str) -> str:
+    """Return the name of the joint whose velocity is the standard error of that of another joint."""
+    return f"{joint}_standard_error"
+
+
+def _cage_speed(stamp_ns: int, values: Sequence[float]) -> dict:
+    speed, *errors = values
+    known = [error for error in errors if not math.isnan(error)]
+    return _joints(stamp_ns, [CAGE_JOINT, *[standard_error_joint(CAGE_JOINT)] * len(known)], velocity=[speed, *known])
 
 
 def _number(name: str, meaning: str) -> Topic:
@@ -337,7 +344,13 @@ MEASURED, RESIDUAL = "cage_speed_measured", "cage_slip_residual"
 MEASUREMENTS = {
     topic.name: topic
     for topic in (
-        Topic(MEASURED, "sensor_msgs/msg/JointState", "optional: measured velocity of the joint 'cage' [rad/s]", _cage_speed),
+        Topic(
+            MEASURED,
+            "sensor_msgs/msg/JointState",
+            "optional: measured velocity of the joint 'cage' [rad/s]; where a joint 'cage_standard_error' follows, its velocity is the standard "
+            "error of the measurement [rad/s]",
+            _cage_speed,
+        ),
         Topic(
             RESIDUAL,
             "std_msgs/msg/Float64",
@@ -346,7 +359,10 @@ MEASUREMENTS = {
         ),
     )
 }
-"""Topics of a measured cage, by name: the measurement, and its difference from the prediction; the source of each is one number."""
+"""Topics of a measured cage, by name: the measurement, and its difference from the prediction.
+
+The source of the first is ``(speed,)`` or ``(speed, standard error)``, NaN where that is not known; of the other, one number.
+"""
 
 
 def _quantities_with_bands(stamp_ns: int, bands: Bands) -> dict:
@@ -482,7 +498,7 @@ def input_values(channel: str, ros_type: str, message, joint: str = SHAFT_JOINT)
     Parameters
     ----------
     channel : ``"shaft_speed"`` -> (speed,), ``"radial_load"`` -> (force_y, force_z), a temperature -> (kelvin,),
-        ``"cage_speed_measured"`` -> (speed,).
+        ``"cage_speed_measured"`` -> (speed,), or (speed, standard error) where the message has a joint for it (`standard_error_joint`).
     ros_type : one of `input_types`; a scalar load gives (force,), a magnitude along +y.
     message : any object with the fields of that type as attributes.
     joint : name of the joint in a JointState, the shaft's or the cage's.
@@ -504,10 +520,14 @@ def input_values(channel: str, ros_type: str, message, joint: str = SHAFT_JOINT)
     if joint not in names:
         there = [repr(name[:80]) for name in names[:_MOST_LISTED]] + ["..."] * (len(names) > _MOST_LISTED)
         raise ValueError(f"no joint {joint!r} in the message; it has {', '.join(there) or 'none'}")
-    place = names.index(joint)
-    if place >= len(message.velocity):
-        raise ValueError(f"the message has no velocity for the joint {joint!r} ({len(message.velocity)} velocities for {len(names)} joints)")
-    return (float(message.velocity[place]),)
+    wanted = [joint]
+    if channel == MEASURED and standard_error_joint(joint) in names:
+        wanted.append(standard_error_joint(joint))
+    places = [names.index(name) for name in wanted]
+    if max(places) >= len(message.velocity):
+        lacking = wanted[places.index(max(places))]
+        raise ValueError(f"the message has no velocity for the joint {lacking!r} ({len(message.velocity)} velocities for {len(names)} joints)")
+    return tuple(float(message.velocity[place]) for place in places)
 
 
 def header_stamp_ns(message) -> int | None:

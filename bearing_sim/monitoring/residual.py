@@ -599,11 +599,11 @@ class Comparison:
     def restart(self) -> None:
         """Forget outputs and measurements; ``residual`` keeps what it has learned."""
         self._course.restart()
-        self._waiting: list[tuple[float, float]] = []
+        self._waiting: list[tuple[float, float, float]] = []
 
-    def measure(self, time: float, cage_speed: float) -> None:
-        """Take a measurement [s, rad/s]."""
-        insort(self._waiting, (time, cage_speed))
+    def measure(self, time: float, cage_speed: float, standard_error: float = math.nan) -> None:
+        """Take a measurement [s, rad/s] and its standard error [rad/s], NaN where it is not known."""
+        insort(self._waiting, (time, cage_speed, standard_error))
 
     def predict(self, block: np.ndarray) -> list[Measurement]:
         """Take outputs in order of time (see `bearing_sim.model.sample`) and return the comparisons that they complete."""
@@ -616,10 +616,10 @@ class Comparison:
             return []
         ready = bisect_right(self._waiting, (self._course.newest, math.inf))
         taken, self._waiting = self._waiting[:ready], self._waiting[ready:]
-        return [self._compare(time, speed) for time, speed in taken]
+        return [self._compare(*each) for each in taken]
 
-    def _compare(self, time: float, cage_speed: float) -> Measurement:
+    def _compare(self, time: float, cage_speed: float, standard_error: float) -> Measurement:
         shaft_speed, ideal, predicted = self._course.at(time)
         measured = 1.0 - cage_speed / ideal if ideal else math.nan
         self.residual.take(time, shaft_speed, measured, predicted)
-        return Measurement(time, cage_speed, measured - predicted)
+        return Measurement(time, cage_speed, measured - predicted, standard_error)

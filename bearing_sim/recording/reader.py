@@ -190,21 +190,23 @@ class Recording:
 
     def with_measurements(self) -> Iterator["np.ndarray | Event | Measurement | Bands"]:
         """Yield what iterating yields and, before a block, the measurements up to its end that were read by then, in order of time; bands, too."""
-        waiting: dict[int, dict[str, float]] = {}
+        waiting: dict[int, dict[str, tuple[float, ...]]] = {}
         for item in self._items(with_received=True, with_bands=True):
             if isinstance(item, Received):
                 name = item.topic[1:]
                 if name in MEASUREMENTS:
                     with _as_unreadable(item.topic):
-                        number = _measured_number(name, _decoded(item.data, item.topic))
-                    waiting.setdefault(item.log_ns, {})[name] = number
+                        numbers = _measured_numbers(name, _decoded(item.data, item.topic))
+                    waiting.setdefault(item.log_ns, {})[name] = numbers
                 continue
             if isinstance(item, np.ndarray):
                 end_ns = self.start_ns + round(float(item["time"][-1]) * 1e9)
                 for log_ns in sorted(stamp for stamp in waiting if stamp <= end_ns):
-                    numbers = waiting.pop(log_ns)
-                    if MEASURED in numbers:
-                        yield Measurement((log_ns - self.start_ns) * 1e-9, numbers[MEASURED], numbers.get(RESIDUAL, math.nan))
+                    found = waiting.pop(log_ns)
+                    if MEASURED in found:
+                        speed, *error = found[MEASURED]
+                        (residual,) = found.get(RESIDUAL, (math.nan,))
+                        yield Measurement((log_ns - self.start_ns) * 1e-9, speed, residual, *error)
             yield item
 
     def bands(self) -> Iterator[Bands]:
@@ -371,11 +373,11 @@ def _decoded(data: bytes, topic: str):
     return typestore().deserialize_cdr(data, _TYPES[topic])
 
 
-def _measured_number(name: str, message) -> float:
+def _measured_numbers(name: str, message) -> tuple[float, ...]:
     if MEASUREMENTS[name].ros_type == "std_msgs/msg/Float64":
-        return float(message.data)
+        return (float(message.data),)
     joint = CAGE_JOINT if CAGE_JOINT in message.name else message.name[0]  # a cage of another name is recorded under its own
-    return input_values(name, MEASUREMENTS[name].ros_type, message, joint)[0]
+    return input_values(name, MEASUREMENTS[name].ros_type, message, joint)
 
 
 def _events(message, time: float, reported: dict[tuple[tuple[str, str], Level], float]) -> Iterator[Event]:

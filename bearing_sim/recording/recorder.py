@@ -15,6 +15,7 @@ processor; `test/benchmarks/recording_kills.py` measures what is lost in fact, a
 import fcntl
 import json
 import logging
+import math
 import os
 import pickle
 import signal
@@ -161,9 +162,11 @@ class _Recording(AbstractContextManager):
         """Write the inputs that arrived at ``time`` [s] (see `bearing_sim.recording.writer.McapSink.write_inputs`)."""
         self.offer("write_inputs", (time, inputs._asdict(), tuple(channels), origin))  # by name: their class would load the solver over there
 
-    def write_measurement(self, time: float, cage_speed: float, residual: float, origin: topics.Origin | None = None) -> None:
-        """Write a measured cage speed [rad/s] that arrived at ``time`` [s], and its residual slip."""
-        self.offer("write_measurement", (time, cage_speed, residual, origin))
+    def write_measurement(
+        self, time: float, cage_speed: float, residual: float, standard_error: float = math.nan, origin: topics.Origin | None = None
+    ) -> None:
+        """Write a measured cage speed and its standard error [rad/s] that arrived at ``time`` [s], and its residual slip."""
+        self.offer("write_measurement", (time, cage_speed, residual, standard_error, origin))
 
     def write_bands(self, bands: Bands) -> None:
         """Write quantities with their bands."""

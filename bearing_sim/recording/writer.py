@@ -494,10 +494,12 @@ class McapSink(AbstractContextManager):
         for channel in channels:
             self._write_input(topics.INPUTS[channel], time, inputs, origin)
 
-    def write_measurement(self, time: float, cage_speed: float, residual: float, origin: topics.Origin | None = None) -> None:
-        """Write a measured cage speed [rad/s] that arrived at ``time`` [s], and its slip less the predicted slip."""
-        for topic, number in zip(topics.MEASUREMENTS.values(), (cage_speed, residual)):
-            self._write_input(topic, time, number, origin)
+    def write_measurement(
+        self, time: float, cage_speed: float, residual: float, standard_error: float = math.nan, origin: topics.Origin | None = None
+    ) -> None:
+        """Write a measured cage speed and its standard error [rad/s] that arrived at ``time`` [s], and its slip less the predicted slip."""
+        for topic, source in zip(topics.MEASUREMENTS.values(), ((cage_speed, standard_error), residual)):
+            self._write_input(topic, time, source, origin)
 
     def write_bands(self, bands: Bands) -> None:
         """Write quantities with their bands, a message at each of their instants."""

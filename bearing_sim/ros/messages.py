@@ -159,7 +159,11 @@ class InputReader:
         fields, frame_id = CdrLayout(self._ros_type, cdr), topics.frame_of(message)
         is_turned = self._must_be_turned(frame_id)
         if self._ros_type.endswith("JointState"):
-            numbers = (fields.by_path["velocity"].begin + _WORD * list(message.name).index(self._joint),)
+            names, begin = list(message.name), fields.by_path["velocity"].begin
+            joints = (self._joint, topics.standard_error_joint(self._joint))[: len(contents[0])]
+            if names.index(joints[0]) != min(map(names.index, joints)):  # values come in the order of the message
+                return
+            numbers = tuple(begin + _WORD * names.index(joint) for joint in joints)
         elif self._ros_type.endswith("WrenchStamped"):
             numbers = tuple(fields.by_path[f"wrench.force.{axis}"].begin for axis in ("xyz" if is_turned else "yz"))
         elif "data" in fields.by_path:

@@ -213,7 +213,8 @@ class Player:
         kind = self._types[due.channel]
         fields = {"data": float(due.values[0])} if kind == _SCALAR else _fields(due, stamp_ns)
         if due.channel in self._joints and "name" in fields:
-            fields["name"] = [self._joints[due.channel]]
+            own = self._joints[due.channel]
+            fields["name"] = [own, topics.standard_error_joint(own)][: len(fields["name"])]
         filled = message(kind, fields)
         while not self.wants_end():
             try:
@@ -245,7 +246,7 @@ class Player:
 
 def _fields(due: ScheduledMessage, stamp_ns: int) -> dict:
     if due.channel == topics.MEASURED:
-        return topics.MEASUREMENTS[due.channel].message(stamp_ns, due.values[0])
+        return topics.MEASUREMENTS[due.channel].message(stamp_ns, due.values)
     return topics.INPUTS[due.channel].message(stamp_ns, with_values(Inputs(0.0, 0.0, 0.0, 0.0), due.channel, due.values))
 
 

@@ -473,7 +473,7 @@ class LiveModel(Model):
             return event
         for returned in self.gate.take_returned():
             self._note(returned)
-        self._conflicts[channel].take(values)
+        self._conflicts[channel].take(values[:1] if channel == topics.MEASURED else values)
         if channel == topics.MEASURED:
             self._compare(now, topics.Origin(stamp_ns, frame_id))
         # Speed starts the model: the scene has sensible values of load and temperature, but a wrong speed would be a false jolt.
@@ -575,8 +575,8 @@ class LiveModel(Model):
             before = self.residual.time
             self.residual.take(float(sample["time"]), float(sample["shaft_speed"]), measured, predicted)
             if self._estimation is not None and own:
-                self._estimation.measure(now, self.gate.measured)
+                self._estimation.measure(now, self.gate.measured, self.gate.standard_error)
             residual = measured - predicted
             if self.residual.time != before and not math.isnan(self.residual.time):
                 self._residuals = [(self.stamp(self.residual.time), self.residual.residual)]  # only the newest is published
-        self.sinks.write_measurement(now, self.gate.measured, residual, origin)
+        self.sinks.write_measurement(now, self.gate.measured, residual, self.gate.standard_error, origin)

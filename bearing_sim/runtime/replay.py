@@ -218,10 +218,10 @@ class _Run:
         if keeper is not None:
             keeper.restart()
             recall(keeper, self._comparison.residual, self._monitor, self._estimation, profile.start_ns)
-        for time_, speed in profile.measured:
-            self._comparison.measure(time_, speed)
+        for time_, speed, error in profile.measured:
+            self._comparison.measure(time_, speed, error)
             if self._estimation is not None and not (keeper is not None and keeper.contained(profile.start_ns + round(1e9 * time_))):
-                self._estimation.measure(time_, speed)
+                self._estimation.measure(time_, speed, error)
 
     def run(self, model: Callable[[Scene, Inputs], Simulation]) -> Replay:
         began, began_cpu = time.perf_counter(), time.process_time()

@@ -317,12 +317,12 @@ class SimTimeModel(Model):
         for returned in self.gate.take_returned():
             self._note(returned)
         self._newest[channel] = stamp
-        self._conflicts[channel].take(values)
+        self._conflicts[channel].take(values[:1] if channel == topics.MEASURED else values)
         if channel == topics.MEASURED:
             if self._started:
-                self._measure(self.run_time(stamp), self.gate.measured)
+                self._measure(self.run_time(stamp), self.gate.measured, self.gate.standard_error)
             else:
-                self._measured.append((stamp, self.gate.measured))
+                self._measured.append((stamp, self.gate.measured, self.gate.standard_error))
             return None
         try:
             gap = self.solver.add(channel, stamp, self.gate.latest(channel))
@@ -394,8 +394,8 @@ class SimTimeModel(Model):
         self.residual.interrupt(-math.inf)
         self._comparison.restart()
         measured, self._measured = self._measured, []
-        for stamp, speed in measured:
-            self._measure(self.run_time(stamp), speed)
+        for stamp, speed, error in measured:
+            self._measure(self.run_time(stamp), speed, error)
         for name, open_sink in self._openers.items():
             try:
                 self.sinks.detach(name)
@@ -403,11 +403,11 @@ class SimTimeModel(Model):
             except (OSError, ValueError) as error:
                 self.sinks.fail(name, 0.0, error)
 
-    def _measure(self, time: float, cage_speed: float) -> None:
-        """Take a measured cage speed [rad/s] of a run time [s]."""
-        self._comparison.measure(time, cage_speed)
+    def _measure(self, time: float, cage_speed: float, standard_error: float) -> None:
+        """Take a measured cage speed and its standard error [rad/s] of a run time [s]."""
+        self._comparison.measure(time, cage_speed, standard_error)
         if self._estimation is not None and not (self.keeper is not None and self.keeper.contained(self.stamp(time))):
-            self._estimation.measure(time, cage_speed)
+            self._estimation.measure(time, cage_speed, standard_error)
 
     def _take_output(self, block: np.ndarray, weights: np.ndarray) -> None:
         """Count, judge, record and publish outputs; each stands for some time [s]."""

@@ -21,7 +21,7 @@ class Sink(Protocol):
 
     def write(self, block: np.ndarray) -> None: ...
     def write_event(self, event: Event) -> None: ...
-    def write_measurement(self, time: float, cage_speed: float, residual: float, origin: Origin | None = None) -> None: ...
+    def write_measurement(self, time: float, cage_speed: float, residual: float, standard_error: float, origin: Origin | None = None) -> None: ...
     def write_bands(self, bands: Bands) -> None: ...
     def close(self) -> None: ...
 
@@ -89,9 +89,9 @@ class SinkRegistry:
         """Write an event to all sinks."""
         self._each(self.by_name, event.time, "write_event", event)
 
-    def write_measurement(self, time: float, cage_speed: float, residual: float, *origin: Origin) -> None:
-        """Write a measured cage speed [rad/s] to all sinks."""
-        self._each(self.by_name, time, "write_measurement", time, cage_speed, residual, *origin)
+    def write_measurement(self, time: float, cage_speed: float, residual: float, standard_error: float, *origin: Origin) -> None:
+        """Write a measured cage speed and its standard error [rad/s] to all sinks."""
+        self._each(self.by_name, time, "write_measurement", time, cage_speed, residual, standard_error, *origin)
 
     def write_bands(self, now: float, bands: Bands) -> None:
         """Write quantities with their bands to all sinks, at ``now`` [s]."""

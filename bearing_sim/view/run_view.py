@@ -251,8 +251,8 @@ class RunView:
         if not self._live:
             self._frames.want()
 
-    def write_measurement(self, time: float, cage_speed: float, residual: float) -> None:
-        """Take a cage speed [rad/s] measured at ``time`` [s] and its residual slip, a fraction or NaN."""
+    def write_measurement(self, time: float, cage_speed: float, residual: float, standard_error: float = math.nan) -> None:
+        """Take a cage speed [rad/s] measured at ``time`` [s] and its residual slip, a fraction or NaN; its standard error is not shown."""
         self._series.note_measurement(time, cage_speed, residual)
 
     def write_bands(self, bands: Bands) -> None:

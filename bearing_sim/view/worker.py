@@ -13,6 +13,7 @@ process that feeds this one; whichever way that process ends, the input ends, an
 import atexit
 import json
 import logging
+import math
 import os
 import pickle
 import queue
@@ -99,12 +100,14 @@ class View(AbstractContextManager):
         """Take an event; returns at once."""
         self.put(event)
 
-    def write_measurement(self, time: float, cage_speed: float, residual: float, origin: Origin | None = None) -> None:
+    def write_measurement(
+        self, time: float, cage_speed: float, residual: float, standard_error: float = math.nan, origin: Origin | None = None
+    ) -> None:
         """Take a cage speed [rad/s] measured at ``time`` [s] and its residual slip: measured less predicted (a fraction, or NaN).
 
         ``origin`` is kept by recordings and ignored here.
         """
-        self.put(Measurement(time, cage_speed, residual))
+        self.put(Measurement(time, cage_speed, residual, standard_error))
 
     def write_bands(self, bands: Bands) -> None:
         """Take quantities with their bands; returns at once."""

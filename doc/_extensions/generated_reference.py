@@ -373,6 +373,7 @@ EVENTS = {
         "no message for longer than `input_limits.stale_after`, of temperatures than ten times that, in a slower log than three of its spacings; the "
         "last value is used, for the temperature of a ring that of the model",
     ),
+    "input.standard_error": ("ERROR", "message refused: the standard error of a measured cage speed is zero, negative or infinite"),
     "input.stamp_not_finite": ("ERROR", "message refused: its stamp is not finite"),
     "input.time_backwards": ("ERROR", "message refused: its stamp lies before the last one"),
     "input.time_repeated": ("WARN", "message refused: its stamp repeats the last one"),
