@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.vibration.comb import Fit, Range, orders_of, search, spectra
-from bearing_sim.vibration.order_tracking import Shaft, constant_shaft, find_shaft, recorded_shaft, shaft_signal_range
+from bearing_sim.vibration.order_tracking import Shaft, constant_shaft, find_shaft, recorded_shaft, shaft_signal_range, wide_range
 from bearing_sim.vibration.phase import Rate, follow, mean_rate
 from bearing_sim.vibration.signal import Band, Spectrum, Vibration, VibrationError, candidate_bands
 
@@ -23,6 +23,8 @@ CLAIMED_SLIP = 0.02
 """Slip below which nothing is said about it without measured diameters: another roller size of the same designation moves it by 3 %."""
 
 _NEGATIVE_SLIP, _LARGEST_SLIP = -0.06, 0.6  # range that is searched: a ratio too high by another roller size, and skidding
+_NEGATIVE_SLIP_OF_ANY = -0.01  # where the size is unknown, and a range of sizes is searched anyway
+_GROSS_SLIP = 0.25  # from which on a raceway's line may be a roller's
 _SIZES = (0.12, 0.3)  # roller diameter over pitch diameter where the geometry is unknown (assumption, wider than the catalogue's 0.12 to 0.25)
 _SPIN_TOLERANCE = 0.06
 _PER_TURN_OVER_ORDER = 2.6
@@ -57,7 +59,8 @@ class Geometry(NamedTuple):
     def range(self) -> Range:
         """What is searched for lines of this bearing."""
         small, large = (self.size, self.size) if math.isfinite(self.size) else _SIZES
-        low, high = 0.5 * (1.0 - large) * (1.0 - _LARGEST_SLIP), min(0.5 * (1.0 - small) * (1.0 - _NEGATIVE_SLIP), 0.4999)
+        negative = _NEGATIVE_SLIP if math.isfinite(self.size) else _NEGATIVE_SLIP_OF_ANY
+        low, high = 0.5 * (1.0 - large) * (1.0 - _LARGEST_SLIP), min(0.5 * (1.0 - small) * (1.0 - negative), 0.4999)
         passes = [(1.0 - size**2) / size for size in (large, small)]
         return Range(low, high, self.rollers, (1.0 - 2.0 * _SPIN_TOLERANCE) * passes[0], (1.0 + _SPIN_TOLERANCE) * passes[1])
 
@@ -70,7 +73,7 @@ class Part(NamedTuple):
     begin, end : of the part [s] from the beginning of the record.
     shaft_speed : mean [rad/s].
     ratio : cage over shaft speed; NaN where no line can be followed in it.
-    ratio_error : standard error of the ratio, that of the shaft's own speed apart.
+    ratio_error : standard error of the ratio, with that of the shaft's angle at the ends of the part, and without that of its mean speed.
     cage_speed, cage_speed_error : [rad/s].
     """
 
@@ -181,6 +184,8 @@ def analyse(
     if fit.false_alarm < CERTAIN:
         return _nothing(shaft, fit)
     rate = _rate_of(fit, signal, per_turn_here)
+    if _may_be_a_roller(fit, range_):
+        return _nothing(shaft, fit, "the lines are those of a raceway whose cage slips grossly, or those of a roller's turns: they cannot be told apart")
     if rate is None or abs(rate.value) > 3.0 * fit.resolution or _is_hidden(fit, range_, len(signal) / per_turn_here):
         return _nothing(shaft, fit)
     course = tuple(_course(fit._replace(ratio=fit.ratio + rate.value), shaft, signal, per_turn_here, parts))
@@ -217,7 +222,7 @@ def _shaft_of(vibration, raw: Spectrum, envelopes, low: float, high: float, tole
         highest = shaft_signal_range(high)
         signals = [raw.low_passed(min(highest, raw.highest))]
         signals += [_low_passed(envelope, rate, highest) for envelope, rate in envelopes[:2]]
-        found = find_shaft(signals, about, tolerance)
+        found = find_shaft(signals, about, tolerance, raw.low_passed(min(wide_range(high), raw.highest)))
         if found is not None:
             return found
     return about
@@ -259,6 +264,16 @@ def _is_hidden(fit: Fit, range_: Range, turns: float) -> bool:
     return covered and range_.low <= half / range_.rollers <= range_.high
 
 
+def _may_be_a_roller(fit: Fit, range_: Range) -> bool:
+    """Return whether the lines of a raceway with gross slip may be at once or twice the turns of a roller with little slip."""
+    usual = range_.low / (1.0 - _LARGEST_SLIP) * (1.0 - _GROSS_SLIP)
+    if fit.family.name not in ("outer_ring", "inner_ring") or fit.ratio > usual:
+        return False
+    constant, by_c, _ = fit.family.centres[0]
+    line = constant + by_c * fit.ratio
+    return any(part * range_.passes_low <= line <= part * range_.passes_high for part in (0.5, 1.0))
+
+
 def _rate_of_roller(fit: Fit, signal: np.ndarray, per_turn: float) -> Rate | None:
     """Return the same for a roller, whose lines have no common phase because it turns as it likes: from the likelihood around the fit."""
     found = spectra(signal, per_turn, fit.averages, per_turn / 2.0)
@@ -286,8 +301,10 @@ def _course(fit: Fit, shaft: Shaft, signal: np.ndarray, per_turn: float, parts: 
         if rate is None or abs(rate.value) > 3.0 * max(fit.resolution, 1.0 / (last - first)):
             rate = Rate(math.nan, math.nan)
         ratio = fit.ratio + rate.value
-        error = speed * math.hypot(rate.standard_error, _of_shaft(fit) * shaft.standard_error / shaft.frequency)
-        yield Part(float(begin), float(end), float(speed), ratio, rate.standard_error, ratio * speed, error)
+        of_angle = math.sqrt(2.0) * shaft.angle_error / (last - first)
+        by_angle = math.hypot(rate.standard_error, abs(_of_shaft(fit) - ratio) * of_angle)
+        by_time = math.hypot(rate.standard_error, _of_shaft(fit) * math.hypot(of_angle, shaft.standard_error / shaft.frequency))
+        yield Part(float(begin), float(end), float(speed), ratio, by_angle, ratio * speed, speed * by_time)
 
 
 def _of_shaft(fit: Fit) -> float:
@@ -343,11 +360,13 @@ def _why_not_claimed(slip: float) -> str:
     ).replace(" ;", ";")
 
 
-def _nothing(shaft: Shaft, fit: Fit | None) -> Analysis:
-    """Return the result for a record without lines of the bearing; ``fit`` is the clearest comb, if any has enough lines."""
+def _nothing(shaft: Shaft, fit: Fit | None, doubt: str = "") -> Analysis:
+    """Return the result for a record without lines of the bearing; ``fit`` is the clearest comb, if any has enough lines, ``doubt`` why not that."""
     nan = math.nan
     chance = 1.0 if fit is None else math.exp(-max(0.0, min(fit.false_alarm, 700.0)))
-    if fit is None:
+    if doubt:
+        why = doubt
+    elif fit is None:
         why = "no comb has enough lines that are clear by themselves"
     elif fit.false_alarm < CERTAIN:
         why = f"noise alone gives a comb as clear as the best in one of {1.0 / chance:,.0f} records"

@@ -2,7 +2,8 @@
 """The angle of the shaft over a record: from its own lines in the vibration, or from a speed that was recorded beside it.
 
 The speed is searched as a path through segments of some turns, by the likelihood of the lines at 1 to 5 times the speed (dynamic programming,
-after Viterbi), or as constant, whichever is likelier; the phase of the lines is then followed along the path.
+after Viterbi), or as constant, whichever is likelier; the phase of the lines is then followed along the path, at last with the lines at up to 20
+times the speed, which tell the angle better the higher they are.
 """
 
 import math
@@ -13,13 +14,17 @@ import scipy.fft
 import scipy.interpolate
 
 from bearing_sim.vibration.comb import Spectra, spectra
-from bearing_sim.vibration.phase import Track, follow, mean_rate
+from bearing_sim.vibration.phase import follow, mean_rate, smoothed
 
 _HARMONICS = np.arange(1.0, 6.0)
 _HIGHEST = 6.0  # orders that are kept for the shaft's lines
+_MANY_HARMONICS = np.arange(1.0, 21.0)  # by which a shaft that is found is sharpened
+_HIGHEST_OF_MANY = 22.0
 _SEGMENT_TURNS = 24.0
 _MOST_SEGMENTS = 128
 _PER_TURN = 16  # samples in a turn, for the shaft's own lines
+_PER_TURN_OF_MANY = 56
+_FEWEST_OF_MANY = 4  # lines that must deviate in one proportion to sharpen a shaft
 _CLEAR = 25.0  # [nat] of all lines above what searching costs; ten of noise have 10, and more than this in one of 10,000 records
 _MOST_OF_A_LINE = 60.0  # [nat] that one line counts for being clear
 _COST_OF_A_PATH = 2.0  # by which a varying speed must fit better than a constant one, in the units of `_counted`
@@ -29,6 +34,7 @@ _AMBIGUOUS = 0.6  # of what the clearest speed counts
 _LESS_CLEAR = 4.0  # by which a followed phase may look less clear, where another machine's line was near
 _CLEAR_LINE = 10.0  # [nat] of a line that is followed
 _UNREFINED = 0.3  # standard error of a frequency that is the middle of a line, in the lines' distance 1/T
+_INSTANTS = 257  # at which the angle of a shaft is kept
 _STEEPEST = 0.08  # relative change of speed between segments
 
 
@@ -42,6 +48,7 @@ class Shaft(NamedTuple):
     frequency : mean [Hz].
     standard_error : of the mean [Hz].
     source : ``lines`` (of the shaft in the vibration), ``recorded`` or ``given``.
+    angle_error : standard error of the angle at an instant beside that of the mean speed [turn], which counts in parts of a record.
     """
 
     times: np.ndarray
@@ -49,6 +56,7 @@ class Shaft(NamedTuple):
     frequency: float
     standard_error: float
     source: str
+    angle_error: float = 0.0
 
     def resampled(self, signal: np.ndarray, rate: float, per_turn: float) -> np.ndarray:
         """Return a signal at equal steps of the shaft's angle.
@@ -68,7 +76,7 @@ class Shaft(NamedTuple):
 
 def constant_shaft(frequency: float, standard_error: float, duration: float, source: str = "given") -> Shaft:
     """Return a shaft that turns at one frequency [Hz] for a duration [s]."""
-    times = np.array([0.0, 0.5 * duration, duration])
+    times = np.linspace(0.0, duration, _INSTANTS)
     return Shaft(times, frequency * times, frequency, standard_error, source)
 
 
@@ -91,7 +99,9 @@ def recorded_shaft(speed: np.ndarray, rate: float, relative_error: float) -> Sha
     return Shaft(times[moving], turns[moving], mean, relative_error * mean, "recorded")
 
 
-def find_shaft(signals: list[tuple[np.ndarray, float]], about: Shaft, tolerance: float) -> Shaft | None:
+def find_shaft(
+    signals: list[tuple[np.ndarray, float]], about: Shaft, tolerance: float, wide: tuple[np.ndarray, float] | None = None
+) -> Shaft | None:
     """Return the shaft by its own lines; None if they are not clear, or if the lines of something else are nearly as clear.
 
     Parameters
@@ -99,6 +109,7 @@ def find_shaft(signals: list[tuple[np.ndarray, float]], about: Shaft, tolerance:
     signals : with the shaft's lines, and their rates [Hz]: the low-passed vibration first, then envelopes.
     about : the shaft as it is known beforehand, constant or recorded.
     tolerance : within which its speed is known, relative.
+    wide : the vibration low-passed at `wide_range`, and its rate [Hz]; its higher lines sharpen a shaft that is found.
     """
     turns = float(about.turns[-1])
     per_turn = _PER_TURN * (1.0 + tolerance)
@@ -120,16 +131,23 @@ def find_shaft(signals: list[tuple[np.ndarray, float]], about: Shaft, tolerance:
         return None
     if is_ambiguous and score < _CLEARER * _sum_counted(_surprise_of_lines(by_angle, steady)):
         return None
+    if wide is not None:
+        shaft = _sharpened(about.resampled(*wide, _PER_TURN_OF_MANY * high), _PER_TURN_OF_MANY * high, wide[1] / (2.0 * about.frequency), shaft)
     duration = float(about.times[-1])
     times = np.union1d(about.times, np.linspace(0.0, duration, 1024))
     own = scipy.interpolate.PchipInterpolator(shaft.times, shaft.turns)(np.interp(times, about.times, about.turns))
     mean = float(own[-1] / duration)
-    return Shaft(times, own, mean, mean * shaft.standard_error / shaft.frequency, "lines")
+    return Shaft(times, own, mean, mean * shaft.standard_error / shaft.frequency, "lines", shaft.angle_error)
 
 
 def shaft_signal_range(high: float) -> float:
     """Return the highest frequency [Hz] of the signals of `find_shaft`."""
     return _HIGHEST * high
+
+
+def wide_range(high: float) -> float:
+    """Return the highest frequency [Hz] of the signal by which `find_shaft` sharpens a shaft."""
+    return _HIGHEST_OF_MANY * high
 
 
 class _Lines(NamedTuple):
@@ -243,9 +261,38 @@ def _refined(signals, shaft: Shaft) -> Shaft:
     return shaft
 
 
+def _sharpened(signal: np.ndarray, per_turn: float, highest: float, shaft: Shaft) -> Shaft:
+    """Return the shaft with the phase of its lines up to high orders followed in one signal; as it is where too few of them are clear.
+
+    Parameters
+    ----------
+    signal : by the angle as it was known beforehand.
+    per_turn : samples in a turn of it.
+    highest : order up to which it has lines.
+    shaft : by the same angle.
+    """
+    orders = _MANY_HARMONICS[_MANY_HARMONICS < highest - 1.0]
+    sharpened = shaft._replace(angle_error=0.0)
+    for _ in range(2):
+        resampled = sharpened.resampled(signal, per_turn, _PER_TURN_OF_MANY)
+        found = spectra(resampled, _PER_TURN_OF_MANY, 1, _HIGHEST_OF_MANY, excludes_shaft=False)
+        if found is None:
+            break
+        near, kept = _agreeing(found, orders)
+        if kept.sum() < _FEWEST_OF_MANY:
+            break
+        noise = found.noise_at(orders[kept]) * np.maximum(1.0, near[kept] / _MOST_OF_A_LINE)
+        changed = _followed(sharpened, resampled, _PER_TURN_OF_MANY, orders[kept], noise)
+        if changed is None:
+            break
+        error = max(changed.angle_error, sharpened.angle_error)  # a phase that has been followed once deviates less than it errs
+        of_ends = math.sqrt(2.0) * error / changed.turns[-1] * changed.frequency
+        sharpened = changed._replace(angle_error=error, standard_error=max(changed.standard_error, of_ends))
+    return shaft if sharpened.angle_error == 0.0 else sharpened
+
+
 def _phase_followed(signals, shaft: Shaft) -> Shaft:
     """Return the shaft with the phase of its clearest lines followed once."""
-    turns = shaft.turns[-1]
     orders = _HARMONICS
     resampled = [shaft.resampled(signal, rate, _PER_TURN) for signal, rate in signals]
     best = None
@@ -258,25 +305,31 @@ def _phase_followed(signals, shaft: Shaft) -> Shaft:
             # No line counts for more than several others, since it may be another machine's.
             noise = found.noise_at(orders[kept]) * np.maximum(1.0, near[kept] / _MOST_OF_A_LINE)
             best = near[kept].sum(), signal, orders[kept], noise
-    if best is None:
-        return shaft
-    _, signal, kept, noise = best
-    segments = int(np.clip(turns / 8.0, 6, 64))
+    changed = None if best is None else _followed(shaft, best[1], _PER_TURN, *best[2:])
+    return shaft if changed is None else changed
+
+
+def _followed(shaft: Shaft, signal: np.ndarray, per_turn: float, orders: np.ndarray, noise: np.ndarray) -> Shaft | None:
+    """Return the shaft with the common phase of its lines followed in a signal by its angle; None if it would turn back somewhere."""
+    segments = int(np.clip(shaft.turns[-1] / 8.0, 6, 64))
     while True:
-        track = follow(signal, _PER_TURN, kept, kept, noise, segments)
-        if track.score > 5.0 + len(kept) or segments <= 8:
+        track = follow(signal, per_turn, orders, orders, noise, segments)
+        if track.score > 5.0 + len(orders) or segments <= 8:
             break
         segments = max(8, segments // 2)
-    rate = mean_rate(track)
-    course = _smooth(track)
+    rate, smooth = mean_rate(track), smoothed(track)
+    course = scipy.interpolate.PchipInterpolator(track.places, smooth.phases)
     corrected = shaft.turns + course(np.clip(shaft.turns, track.places[0], track.places[-1]))
     outside = np.where(shaft.turns < track.places[0], shaft.turns - track.places[0], np.maximum(shaft.turns - track.places[-1], 0.0))
     corrected += outside * rate.value
     if np.any(np.diff(corrected) <= 0.0):
-        return shaft
+        return None
     corrected -= corrected[0]
     mean = float(corrected[-1] / shaft.times[-1])
-    return shaft._replace(turns=corrected, frequency=mean, standard_error=float(rate.standard_error * mean))
+    of_ends = math.sqrt(2.0) * smooth.error / shaft.turns[-1]
+    return shaft._replace(
+        turns=corrected, frequency=mean, standard_error=max(float(rate.standard_error), of_ends) * mean, angle_error=smooth.error
+    )
 
 
 def _agreeing(found: Spectra, orders: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -292,10 +345,3 @@ def _agreeing(found: Spectra, orders: np.ndarray) -> tuple[np.ndarray, np.ndarra
     agree = np.abs(deviations[:, None] - deviations) < np.hypot(tolerances[:, None], tolerances)
     agree &= (near > _CLEAR_LINE) & (near > _CLEAR_LINE)[:, None]
     return near, agree[np.argmax(agree @ (1.0 + 0.1 / orders))]
-
-
-def _smooth(track: Track):
-    """Return the phase of a track as a smooth function of the turns."""
-    if len(track.places) < 6:
-        return np.polynomial.Polynomial.fit(track.places, track.phases, 1)
-    return scipy.interpolate.make_smoothing_spline(track.places, track.phases)

@@ -14,6 +14,8 @@ import scipy.stats
 
 _CANDIDATES = 64  # phases tried at once
 _ROUNDS = 4
+_BENDS = np.concatenate(([0.0], np.geomspace(1e-6, 1e8, 43)))  # variance of an integrated walk over the record, over that of the noise
+_ASTRAY = 4.0  # times the usual deviation from a smooth course, beyond which a segment does not count
 _WALKS = np.concatenate(([0.0], np.geomspace(1e-4, 1e4, 33)))  # variance of a step of the walk over that of the noise
 
 
@@ -30,6 +32,19 @@ class Track(NamedTuple):
     places: np.ndarray
     phases: np.ndarray
     score: float
+
+
+class Course(NamedTuple):
+    """A smooth phase over a record.
+
+    Attributes
+    ----------
+    phases : at the places of the track, in turns, shape (n,).
+    error : its standard error, root mean square, in turns.
+    """
+
+    phases: np.ndarray
+    error: float
 
 
 class Rate(NamedTuple):
@@ -95,7 +110,7 @@ def mean_rate(track: Track) -> Rate:
     count = len(at)
     design = np.stack((np.ones(count), at), axis=1)
     step = np.min(np.diff(at))
-    overlap = np.eye(count) + (1.0 / 6.0) * (np.eye(count, k=1) + np.eye(count, k=-1))  # correlation of half overlapping Hann windows
+    overlap = _overlap(count)
     walk = np.minimum.outer(at - at[0], at - at[0]) / step
     fits = []
     for ratio in _WALKS:
@@ -114,3 +129,48 @@ def mean_rate(track: Track) -> Rate:
     variance = float(weights @ (variances + (slopes - slope) ** 2))
     widened = scipy.stats.t.ppf(0.8413, max(2, count // 2 - 2))  # one standard deviation of a normal distribution
     return Rate(slope / np.ptp(track.places), math.sqrt(variance) * widened / np.ptp(track.places))
+
+
+def smoothed(track: Track) -> Course:
+    """Return the phase of a track as a smoothing spline, whose stiffness is averaged over with its restricted likelihood.
+
+    The rate is a random walk, and the phase its integral in white noise (Wahba, Spline Models for Observational Data, SIAM 1990, chapters 1 and 4:
+    the likelihood takes noise for a course less often than cross-validation does).  Segments that went astray do not count.
+    """
+    at = (track.places - track.places[0]) / np.ptp(track.places)
+    design = np.stack((np.ones(len(at)), at), axis=1)
+    overlap = _overlap(len(at))
+    low, high = np.minimum.outer(at, at), np.maximum.outer(at, at)
+    integrated = low**2 * (3.0 * high - low) / 6.0
+    kept = np.ones(len(at), bool)
+    for _ in range(2):
+        inside = np.ix_(kept, kept)
+        freedom = int(kept.sum()) - 2
+        fits = []
+        for ratio in _BENDS:
+            lower = np.linalg.cholesky(overlap[inside] + ratio * integrated[inside])
+            white_design, white = np.linalg.solve(lower, design[kept]), np.linalg.solve(lower, track.phases[kept])
+            information = white_design.T @ white_design
+            fitted = np.linalg.solve(information, white_design.T @ white)
+            remainder = max(float(np.sum((white - white_design @ fitted) ** 2)), 1e-300)
+            likelihood = -np.log(np.diag(lower)).sum() - 0.5 * np.linalg.slogdet(information)[1] - 0.5 * freedom * np.log(remainder)
+            gain = ratio * np.linalg.solve(lower, integrated[kept]).T  # covariance with the white data, (n, kept)
+            phases = design @ fitted + gain @ (white - white_design @ fitted)
+            rest = design - gain @ white_design
+            variances = ratio * np.diag(integrated) - np.sum(gain**2, axis=1) + np.sum(rest @ np.linalg.inv(information) * rest, axis=1)
+            fits.append((likelihood, phases, variances * remainder / freedom))
+        weights = np.exp(np.array([fit[0] for fit in fits]) - max(fit[0] for fit in fits))
+        weights /= weights.sum()
+        phases = weights @ np.array([fit[1] for fit in fits])
+        error = math.sqrt(float(np.mean(weights @ np.maximum([fit[2] for fit in fits], 0.0))))
+        deviations = np.abs(track.phases - phases)
+        nearby = deviations <= _ASTRAY * 1.4826 * np.median(deviations) + 1e-12
+        if nearby.sum() < max(6, len(at) // 2):
+            break
+        kept = nearby
+    return Course(phases, error)
+
+
+def _overlap(count: int) -> np.ndarray:
+    """Return the correlation of the noise in half overlapping Hann windows, shape (count, count)."""
+    return np.eye(count) + (1.0 / 6.0) * (np.eye(count, k=1) + np.eye(count, k=-1))
