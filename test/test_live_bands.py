@@ -13,7 +13,10 @@ from rerun_files import column, views_in
 from synthetic_run import synthetic_block
 from test_live import Bench
 
+from bearing_sim.estimation import bands
+from bearing_sim.estimation.bands import BandEstimator
 from bearing_sim.estimation.live import LiveEstimation
+from bearing_sim.estimation.response import conditions_at
 from bearing_sim.inputs.log import read_input_log
 from bearing_sim.inputs.profile import judge
 from bearing_sim.messages import topics
@@ -107,6 +110,46 @@ def test_a_recording_with_another_message_on_the_topic_says_so(tmp_path):
     with pytest.raises(RecordingError, match="a message on /bands cannot be read"):
         list(Recording(path).bands())
     assert sum(len(item) for item in Recording(path)) == 5, "samples can be read all the same"
+
+
+def anywhere(response, count):
+    """Return samples at operating points all over the response, in order of time."""
+    places = np.random.default_rng(3).random((count, 4))
+    speeds, loads, temperatures, angles = conditions_at(places, response.domain).T
+    block = synthetic_block(SCENE, 0.02 * np.arange(1, count + 1))
+    block["shaft_speed"], block["load_y"], block["load_z"] = speeds, loads * np.cos(angles), loads * np.sin(angles)
+    block["oil_temperature"] = temperatures
+    return block
+
+
+def test_edges_of_rounded_operating_points_are_off_by_little_of_their_width(response, monkeypatch):
+    block, columns = anywhere(response, 200), response.centres.shape[1]
+    weights = response.weights.copy()
+    weights[-columns:, :, 1] += 1.0 / response.scales.T  # then widths change by a factor of e^2 over each range of the operating points
+    varied = response._replace(weights=weights)
+    rounded = BandEstimator(SCENE, varied).take(block)[:, 0]
+    monkeypatch.setattr(bands, "cells", lambda conditions, domain: conditions)
+    exact = BandEstimator(SCENE, varied).take(block)[:, 0]
+    widths = np.ptp(exact, axis=1, keepdims=True)
+    off = np.abs(rounded - exact) / widths
+    assert widths.max() > 10.0 * widths.min() and 0.0 < off.max() < 0.03
+
+
+def test_bands_of_a_sample_do_not_depend_on_those_that_come_with_it(response, monkeypatch):
+    block = anywhere(response, 60)
+    monkeypatch.setattr(bands, "_CELLS_KEPT", 50)
+    together, singly = (BandEstimator(SCENE, response) for _ in range(2))
+    each = np.concatenate([singly.take(block[k : k + 1]) for k in range(60)])
+    np.testing.assert_allclose(together.take(block), each, rtol=1e-10)
+    np.testing.assert_allclose(together.take(block)[:, :3], each[:, :3], rtol=1e-10)
+
+
+def test_rounded_operating_points_stay_in_the_domain_of_the_response(response):
+    domain = response.domain
+    ends = np.array([[speed, load, kelvin, 0.0] for speed in domain.speeds for load in domain.loads for kelvin in domain.temperatures])
+    assert not response.outside(bands.cells(ends, domain)).any()
+    beyond = ends[-1:] * [1.001, 1.0, 1.0, 1.0]
+    assert response.outside(beyond).all() and response.outside(bands.cells(beyond, domain)).all()
 
 
 def test_bands_come_at_most_at_the_rate_of_the_scene(response):

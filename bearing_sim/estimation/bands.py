@@ -8,7 +8,7 @@ import numpy as np
 from scipy.special import ndtri
 from scipy.stats import qmc
 
-from bearing_sim.estimation.response import ANSWERS, PROBABILITIES, ResponseModel, restored, transformed
+from bearing_sim.estimation.response import ANSWERS, PROBABILITIES, Domain, ResponseModel, restored, transformed
 from bearing_sim.scene.scene import Scene
 
 QUANTITIES = ("cage_slip", "rating_life", "running_clearance", "remaining_life")
@@ -16,6 +16,9 @@ QUANTITIES = ("cage_slip", "rating_life", "running_clearance", "remaining_life")
 
 _QUANTILES = (*PROBABILITIES, 0.5)
 _DRAWS = 256  # of the scores before anything is measured, a power of two
+_CELL = np.array([0.01, 0.01, 0.2, math.radians(0.5)])  # of speed and load, relative, temperature [K] and angle: operating points alike in bands
+_CELLS_KEPT = 20_000
+_AT_ONCE = 64  # operating points: so many fit the processor's cache
 _HOUR = 3600.0
 _SLIP, _LIFE, _MODIFIED, _CLEARANCE = (ANSWERS.index(name) for name in ("cage_slip", "rating_life", "modified_rating_life", "running_clearance"))
 
@@ -66,6 +69,7 @@ class BandEstimator:
         self.scores = np.where(self._known, self.response.nominal, scores)
         self.weights = np.asarray(weights, float) / np.sum(weights)
         self._basis = np.concatenate([self._own, self.response.basis_of(self.scores)])
+        self._kept: dict[bytes, np.ndarray] = {}  # changes by operating point, see `_changes`
 
     def take(self, block: np.ndarray) -> np.ndarray:
         """Return the bands of the samples that follow.
@@ -92,12 +96,23 @@ class BandEstimator:
         return found[:, :, :-1]
 
     def _changes(self, block: np.ndarray) -> np.ndarray:
-        """Return the quantiles of the differences from the scene's own values on the scales of `transformed`, shape (n, 3, 6)."""
+        """Return the quantiles of the differences from the scene's own values on the scales of `transformed`, shape (n, 3, 6).
+
+        They are those at the `cells` of the operating points; those of cells that come again are kept.
+        """
         load = np.hypot(block["load_y"], block["load_z"])
         conditions = np.stack([block["shaft_speed"], load, block["oil_temperature"], np.arctan2(block["load_z"], block["load_y"])], axis=1)
-        there, indices = np.unique(conditions, axis=0, return_inverse=True)
-        scaled = self.response.respond_scaled(there, self._basis)
-        return weighted_quantiles(scaled[:, 1:] - scaled[:, :1], self.weights, _QUANTILES)[indices.ravel()]
+        there, indices = np.unique(cells(conditions, self.response.domain), axis=0, return_inverse=True)
+        keys = [row.tobytes() for row in there]
+        new = [k for k, key in enumerate(keys) if key not in self._kept]
+        if len(self._kept) + len(new) > _CELLS_KEPT:
+            self._kept, new = {}, list(range(len(keys)))
+        for begin in range(0, len(new), _AT_ONCE):
+            chosen = new[begin : begin + _AT_ONCE]
+            scaled = self.response.respond_scaled(there[chosen], self._basis)
+            changes = weighted_quantiles(scaled[:, 1:] - scaled[:, :1], self.weights, _QUANTILES)
+            self._kept.update(zip((keys[k] for k in chosen), changes))
+        return np.stack([self._kept[key] for key in keys])[indices.ravel()]
 
     def _remaining_lives(self, block: np.ndarray, factors: np.ndarray) -> np.ndarray:
         """Return the remaining life [h], its band and its median: (1 - D)/(dD/dt) with dD/dt the fading mean of the damage rate, as in `Monitor`.
@@ -125,6 +140,35 @@ class BandEstimator:
             with np.errstate(divide="ignore", invalid="ignore"):
                 found[k] = np.where(left > 0.0, left / (_HOUR * self._rates), 0.0 * left)
         return found
+
+
+def cells(conditions: np.ndarray, domain: Domain) -> np.ndarray:
+    """Return operating points rounded to the middle of cells within which bands about what is computed hardly differ.
+
+    Cells are 1 % of speed and load wide, 0.2 K of the oil temperature and half a degree of the load's direction.  Widths of bands follow speed and
+    load by powers of about one, so that edges are off by a percent of the width or so, where a tenth is asked for.  A point within the domain of
+    a response stays in it.
+
+    Parameters
+    ----------
+    conditions : columns `bearing_sim.estimation.response.CONDITIONS`, shape (n, 4).
+    domain : of the response.
+
+    Returns
+    -------
+    shape (n, 4).
+    """
+    found = np.array(conditions, float)
+    for column, (least, largest) in enumerate((domain.speeds, domain.loads)):
+        magnitude = np.maximum(np.abs(found[:, column]), least)  # below, the response is that of the least
+        rounded = np.exp(_CELL[column] * np.round(np.log(magnitude) / _CELL[column]))
+        rounded = np.where(magnitude <= largest, np.clip(rounded, least, largest), magnitude)
+        found[:, column] = np.copysign(rounded, found[:, column])
+    low, high = domain.temperatures
+    rounded = _CELL[2] * np.round(found[:, 2] / _CELL[2])
+    found[:, 2] = np.where((found[:, 2] >= low) & (found[:, 2] <= high), np.clip(rounded, low, high), found[:, 2])
+    found[:, 3] = _CELL[3] * np.round(found[:, 3] / _CELL[3]) if domain.period else 0.0
+    return found
 
 
 def prior_draws(fields: int, count: int = _DRAWS, seed: int = 1) -> tuple[np.ndarray, np.ndarray]:
