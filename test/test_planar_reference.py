@@ -209,13 +209,13 @@ def test_course_over_2_ms_is_that_of_an_explicit_method_of_order_8_and_comes_nea
 @pytest.mark.parametrize("guidance", ["outer_ring", "inner_ring", "roller"])
 @pytest.mark.parametrize("start", ["as it comes", "cage thrown against what guides it, rollers against their pockets"])
 def test_energy_and_momentum_are_kept(start, guidance):
-    reference, duration = Reference(guidance=guidance), 1e-4
+    reference, duration = Reference(guidance=guidance), 5e-5
     guided = [f"bearing.cage.guidance={guidance}", "bearing.cage.outer_radius=33.35 mm"]
     run = simulation(*tolerance_overrides(1e-3), *guided)
     run.advance(5e-3)
     state = run._state
     if start != "as it comes":
-        duration = 8e-5
+        duration = 4e-5
         turning, outward = run._params.cage.guidance.turning, state[2:4] / np.hypot(*state[2:4])
         reach = 0.0615e-3 if guidance == "roller" else 0.1475e-3  # where some pockets, or the lands, touch
         state[2:4], state[7:9] = turning * state[0:2] + reach * outward, 0.02 * outward

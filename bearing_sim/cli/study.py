@@ -326,7 +326,7 @@ def _figures(situation, block, residuals, kinds) -> dict:
         return block[np.abs(block["time"] - time) <= 0.02 * situation.duration]
 
     then, first = around(situation.picture_at), around(0.35 * situation.duration)
-    late = [residual for time, _, residual in residuals if time > situation.duration - 0.3]
+    late = [each.residual for each in residuals if each.time > situation.duration - 0.3]
     return {
         "level": situation.scene().level,
         "shaft_speed_rpm": float(then["shaft_speed"][-1]) * 30 / math.pi,

@@ -63,7 +63,9 @@ def page_of(source: Path) -> str:
         A file cannot be opened.
     """
     if not source.exists():
-        raise NoResults(f"{source}: does not exist; expected a table of sweep or design, a recording of run or replay, or a folder of them")
+        raise NoResults(
+            f"{source}: does not exist; expected a table of sweep or design, a recording of run or replay, a folder of them, or validation"
+        )
     if (source / STUDY_FILE).is_file():
         return study_page(source)
     return document(*_part(source)) if _is_result(source) else _folder_page(source)

@@ -139,19 +139,23 @@ def plan_study(quick: bool = False, overrides: Sequence[str] = ()) -> Planned:
     overrides : of every scene besides what a sweep sets, such as a support.
     """
     duration = QUICK_DURATION if quick else DURATION
+    # Level planar rests late or never: a quick study does not wait for it.
+    longest = {level: duration if quick and level == "planar" else LONGEST for level in LEVELS}
     sweeps = {
         (each.name, level): plan_sweep(
             each.scene,
             [*overrides, *each.overrides, f"level={level}"],
             [read_axis(text) for text in (each.quick_axes if quick else each.axes)],
             duration,
-            LONGEST,
+            longest[level],
         )
         for level in LEVELS
         for each in STUDIES
     }
     profiles = {
-        (name, value, level): task(level, load_profile, load_scene(_TABLE1, [*overrides, f"{field}={value}", f"level={level}"]), duration)
+        (name, value, level): task(
+            level, load_profile, load_scene(_TABLE1, [*overrides, f"{field}={value}", f"level={level}"]), duration, longest[level]
+        )
         for level in LEVELS
         for name, field, values in PROFILES
         for value in (values if not quick else (values[0], values[-1]))
@@ -161,15 +165,15 @@ def plan_study(quick: bool = False, overrides: Sequence[str] = ()) -> Planned:
     return Planned(sweeps, profiles, trajectories, duration)
 
 
-def load_profile(scene: Scene, duration: float) -> dict:
+def load_profile(scene: Scene, duration: float, longest: float) -> dict:
     """Return the mean roller loads of a settled bearing over the azimuth: lists ``azimuth`` [deg], ``inner_load`` and ``outer_load`` [N].
 
     Parameters
     ----------
-    scene, duration : see `bearing_sim.sweep.point.run_until_settled`.
+    scene, duration, longest : see `bearing_sim.sweep.point.run_until_settled`.
     """
     try:
-        window = run_until_settled(scene, duration, LONGEST).window
+        window = run_until_settled(scene, duration, longest).window
     except IntegrationError as error:
         return {"status": "failed", "reason": str(error)}
     bins = np.floor(np.mod(window["roller_angle"], 2 * np.pi) / (2 * np.pi) * _BINS).astype(int).ravel() % _BINS
