@@ -185,7 +185,8 @@ def analyse(
         return _nothing(shaft, fit)
     rate = _rate_of(fit, signal, per_turn_here)
     if _may_be_a_roller(fit, range_):
-        return _nothing(shaft, fit, "the lines are those of a raceway whose cage slips grossly, or those of a roller's turns: they cannot be told apart")
+        why = "the lines are those of a raceway whose cage slips grossly, or those of a roller's turns: they cannot be told apart"
+        return _nothing(shaft, fit, why)
     if rate is None or abs(rate.value) > 3.0 * fit.resolution or _is_hidden(fit, range_, len(signal) / per_turn_here):
         return _nothing(shaft, fit)
     course = tuple(_course(fit._replace(ratio=fit.ratio + rate.value), shaft, signal, per_turn_here, parts))
