@@ -17,6 +17,7 @@ from click.testing import CliRunner
 
 from bearing_sim import load_scene
 from bearing_sim.cli.main import main
+from bearing_sim.estimation import response
 from bearing_sim.files import limits
 from bearing_sim.files.limits import FileError, LimitError, printable
 from bearing_sim.files.outside import allowing_outside, why_outside
@@ -31,6 +32,7 @@ sys.path.insert(0, str(Path(__file__).parent / "benchmarks"))
 
 import hostile_scenes  # noqa: E402
 import hostile_tables  # noqa: E402
+import hostile_vibration  # noqa: E402
 
 CONTOUR = "angle [deg], radius [mm]\n" + "".join(f"{angle},{40.8 + 0.01 * (angle % 10 > 4)}\n" for angle in range(0, 360, 5))
 MAPPING = (
@@ -58,15 +60,50 @@ QUICK = [
     and not any(word in case.name for word in ("million", "10 GB", "100,000", "10,000", "3,000 deep", "400", "grow to 9^5"))
     and not case.accepted
 ]
+QUICK_RECORDS = (
+    "CSV: a pipe",
+    "CSV: values of 1e308",
+    "CSV: values of 5e-324",
+    "CSV: 100,000 columns",
+    "NPZ: an array of 2^62 numbers",
+    "NPY: an archive",
+    "MAT: 2,000 cells within cells",
+    "MAT: a matrix that says it has 2^31 numbers",
+    "MAT: a negative size",
+    "H5: few numbers in a piece of 4 GB",
+    "H5: numbers in /dev/zero",
+    "H5: numbers in another HDF5 file",
+    "WAV: 2^63 bytes",
+    "WAV: no channels",
+    "MCAP: blocks of two rates",
+)
+QUICK += [case for case in hostile_vibration.CASES if case.name.removeprefix("vibration ") in QUICK_RECORDS]
+RESPONSES = [
+    case for case in hostile_vibration.CASES if case.name.startswith("response: ") and not any(word in case.name for word in ("GB", "million"))
+]
 
 
 @pytest.mark.parametrize("case", QUICK, ids=[case.name.replace(" ", "_") for case in QUICK])
 def test_a_hostile_file_ends_in_one_message_and_an_exit_code(case, tmp_path, monkeypatch):
+    if " H5: " in case.name:
+        pytest.importorskip("h5py")
     case.make(tmp_path)
     monkeypatch.chdir(tmp_path)
     done = run(*case.command)
     assert done.exit_code in (1, 2) and isinstance(done.exception, SystemExit), done.exception
     assert done.stderr.startswith("Error: ") and len(done.stderr) < 20_000 and done.stderr.replace("\n", "").isprintable()
+
+
+@pytest.mark.parametrize("case", RESPONSES, ids=[case.name.replace(" ", "_") for case in RESPONSES])
+def test_a_kept_response_is_used_only_if_it_is_whole_and_that_of_the_scene(case, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(response, "FOLDER", tmp_path)
+    if case.accepted:
+        case.command()
+    else:
+        with pytest.raises(SystemExit):
+            case.command()
+    assert not Path("harmed").exists()
 
 
 def test_only_regular_files_within_the_limit_are_read(tmp_path):

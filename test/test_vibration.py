@@ -246,6 +246,18 @@ def _faulty(folder):
     with zipfile.ZipFile(folder / "bomb.npz", "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("a.npy", bytes(50_000_000))
     (folder / "x.doc").write_text("1")
+    (folder / "long.csv").write_text("1\n" * 20_001)
+    (folder / "wide.csv").write_text(",".join(["1"] * 501))
+    with zipfile.ZipFile(folder / "members.npz", "w") as archive:
+        for number in range(501):
+            archive.writestr(f"{number}.npy", b"")
+    scipy.io.savemat(folder / "structure.mat", {"run": {"y": np.zeros(1_000_001)}}, do_compression=True)
+    scipy.io.savemat(folder / "cells.mat", {"y": np.full(4001, 1.0, object)})
+    pyarrow.parquet.write_table(pyarrow.table({"a": np.zeros(1_000_001, np.int8)}), folder / "rows.parquet")
+    pyarrow.parquet.write_table(pyarrow.table({"time": pyarrow.array([2**60], pyarrow.timestamp("ms"))}), folder / "never.parquet")
+    scipy.io.wavfile.write(folder / "chunks.wav", 2000, SAMPLES)
+    with (folder / "chunks.wav").open("ab") as file:
+        file.write(b"abcd\0\0\0\0" * 501)
     return {
         "empty.csv": "no row of numbers",
         "words.csv": "no row of numbers",
@@ -260,12 +272,20 @@ def _faulty(folder):
         "pickled.npy": "cannot be read as NPY",
         "bomb.npz": "vibration_samples=NUMBER",
         "x.doc": "expected one that ends in",
+        "long.csv": "vibration_text=NUMBER",
+        "wide.csv": "vibration_parts=NUMBER",
+        "members.npz": "vibration_parts=NUMBER",
+        "structure.mat": "vibration_samples=NUMBER",
+        "cells.mat": "vibration_parts=NUMBER",
+        "rows.parquet": "vibration_samples=NUMBER",
+        "never.parquet": "cannot be read as Parquet",
+        "chunks.wav": "vibration_parts=NUMBER",
         "absent.csv": "no such file",
     }
 
 
 def test_a_file_that_cannot_be_used_is_refused_with_what_is_wrong_and_where(tmp_path, monkeypatch):
-    monkeypatch.setenv(VARIABLE, "vibration_samples=1e6")
+    monkeypatch.setenv(VARIABLE, "vibration_samples=1e6,vibration_text=2e4,vibration_parts=500")
     for name, reason in _faulty(tmp_path).items():
         rate = None if name in ("rate.csv", "uneven.csv") else 2000.0
         with pytest.raises((FileError, VibrationError), match=reason) as refusal:
@@ -294,6 +314,14 @@ def test_the_command_gives_ratio_error_parts_and_a_picture(outer, tmp_path):
     assert (tmp_path / "r.png").stat().st_size > 10_000
     text = called(*arguments, "--roller-diameter", "7.6mm", "--pitch-diameter", "40mm")
     assert text.exit_code == 0 and "cage over shaft" in text.output and re.search(r"slip\s*│ [78]\.", text.output), text.output
+
+
+def test_a_record_that_is_too_long_to_be_analysed_at_once_can_be_cut(tmp_path, monkeypatch):
+    monkeypatch.setenv(VARIABLE, "vibration_analysed=1999")
+    arguments = (_write(tmp_path / "r.npz"), "--channel", "acceleration", "--rollers", 13, "--speed", "1500rpm")
+    refused = called(*arguments)
+    assert refused.exit_code == 2 and "--from and --to" in refused.stderr and "vibration_analysed=NUMBER" in refused.stderr
+    assert called(*arguments, "--to", "0.9s").exit_code == 0
 
 
 def test_the_command_refuses_what_does_not_go_together(tmp_path):

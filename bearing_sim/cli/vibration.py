@@ -84,6 +84,7 @@ def vibration(
     --scene or --rollers.  The answer is the ratio of cage to shaft speed with its standard error.  Slip against the drawing is claimed only
     where it exceeds 2 %, or where the diameters were measured, because a roller of another size of the same designation moves it by 3 %.
     """
+    from bearing_sim.files.limits import VIBRATION_ANALYSED
     from bearing_sim.scene.loader import SceneError
     from bearing_sim.vibration.analysis import analyse
     from bearing_sim.vibration.reading import read_vibration
@@ -100,6 +101,7 @@ def vibration(
         geometry = _geometry(bearing, scene_name, rollers, roller_diameter, pitch_diameter, measured_geometry)
         record = read_vibration(data, channel, hertz, time_channel, speed_channel, speed_unit)
         record = _cut(record, begin, end)
+        VIBRATION_ANALYSED.check(len(record.samples), f"{record.name}, which --from and --to cut")
         parts = _parts(record, every)
         found = analyse(record, geometry, shaft_speed, within, _band(band, record.rate), not no_shaft_lines, parts)
     rows = [_row(part) for part in found.parts]

@@ -17,6 +17,7 @@ import json
 import math
 import os
 import tempfile
+import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -25,6 +26,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import ndtr, ndtri
 
+from bearing_sim.files.limits import RESPONSE_FILE
+from bearing_sim.files.reading import read_bytes
 from bearing_sim.levels.steady.table import contour_period, mirror_axis
 from bearing_sim.levels.steady.table_builder import FOLDER, span_of
 from bearing_sim.model.params import pack
@@ -600,23 +603,47 @@ def write_response(path: Path, model: ResponseModel) -> None:
 def read_response(path: Path) -> ResponseModel | None:
     """Return a response from disk, or None where there is none, or none that is whole."""
     try:
-        data = path.read_bytes()
+        data = read_bytes(path, RESPONSE_FILE)
         if hashlib.sha256(data[:-32]).digest() != data[-32:]:
             return None
+        with zipfile.ZipFile(io.BytesIO(data[:-32])) as archive:
+            RESPONSE_FILE.check(sum(member.file_size for member in archive.infolist()), str(path))
         with np.load(io.BytesIO(data[:-32]), allow_pickle=False) as file:
             written: Mapping = json.loads(file["written"].tobytes())
             fields = Fields([Range(**one) for one in written["ranges"]], file["own"])
             domain = Domain(*(tuple(value) if isinstance(value, list) else value for value in written["domain"].values()))
             arrays = {name: file[name] for name in _ARRAYS}
-            lives = LivesBySlip(file["lives_by_slip"], tuple(written["exponents"]))
-            return ResponseModel(fields, domain, **arrays, lives_by_slip=lives, points=written["points"], seconds=written["seconds"])
+            lives = LivesBySlip(file["lives_by_slip"], tuple(map(float, written["exponents"])))
+            found = ResponseModel(fields, domain, **arrays, lives_by_slip=lives, points=int(written["points"]), seconds=float(written["seconds"]))
+            return found if _fits_together(found) else None
     except Exception:  # whatever a broken file makes its reader raise, the response is built again
         return None
 
 
+def _fits_together(model: ResponseModel) -> bool:
+    """Return whether the arrays of a response have the shapes that belong to each other, and numbers where each answer needs one."""
+    (centres, coordinate_count), term_count, answers = model.centres.shape, len(model.score_terms), len(ANSWERS)
+    shapes = {
+        "scales": (answers, coordinate_count),
+        "score_terms": (term_count, len(model.fields)),
+        "own_basis": (term_count,),
+        "weights": (centres + coordinate_count + 1, answers, term_count + 1),
+        "errors": (answers,),
+    }
+    if any(getattr(model, name).shape != shape for name, shape in shapes.items()) or model.fields.own.shape != (len(model.fields),):
+        return False
+    lives = model.lives_by_slip
+    if lives.values.ndim != 6 or lives.values.shape[4:] != (2, 2) or not lives.values.size or len(lives.exponents) != 2:
+        return False
+    numbers = (model.centres, model.scales, model.own_basis, model.weights[:, :4], lives.values, lives.exponents, model.fields.own)
+    return bool(np.array_equal(model.score_terms, _score_terms(len(model.fields)))) and all(np.isfinite(each).all() for each in numbers)
+
+
 def kept_response(scene: Scene) -> ResponseModel | None:
     """Return the response of a scene that is on disk, or None: `bearing-sim table SCENE --bands` builds it."""
-    return read_response(response_path(scene))
+    found = read_response(response_path(scene))
+    belongs = found is not None and repr((found.ranges, found.domain)) == repr((uncertain_ranges(scene), domain_of(scene)))
+    return found if belongs else None
 
 
 def scene_fields(scene: Scene) -> Fields:

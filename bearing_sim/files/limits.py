@@ -121,6 +121,9 @@ TABLE_COLUMNS = Limit("table_columns", 2_000, "columns", "a measured table")
 TABLE_BYTES = Limit("table_bytes", 2_000_000_000, "bytes", "the columns of a Parquet table that are read")
 VIBRATION_FILE = Limit("vibration_file", 1_000_000_000, "bytes", "a vibration record")
 VIBRATION_SAMPLES = Limit("vibration_samples", 50_000_000, "numbers", "all channels of a vibration record")
+VIBRATION_TEXT = Limit("vibration_text", 20_000_000, "numbers or lines", "a vibration record in text")
+VIBRATION_PARTS = Limit("vibration_parts", 5_000, "parts", "the columns, variables, cells, fields and data sets of a vibration record")
+VIBRATION_ANALYSED = Limit("vibration_analysed", 3_000_000, "samples", "the part of a vibration record that is analysed at once")
 BEARINGS_ROWS = Limit("bearings_rows", 10_000, "rows", "a table of bearings")
 POINTS_FILE = Limit("points_file", 1_000_000, "bytes", "a table of operating points")
 POINTS_ROWS = Limit("points_rows", 10_000, "points", "a table of operating points")
@@ -128,6 +131,7 @@ RESULT_TEXT = Limit("result_text", 64_000_000, "bytes", "a table of results as C
 RESULT_ROWS = Limit("result_rows", 200_000, "rows", "a table of results")
 RESULT_CELLS = Limit("result_cells", 5_000_000, "cells", "a table of results")
 STATE_FILE = Limit("state_file", 4_000_000, "bytes", "a stored state, which has some 50 kB")
+RESPONSE_FILE = Limit("response_file", 64_000_000, "bytes", "the kept response of a bearing, packed and unpacked")
 HISTORY_FILE = Limit("history_file", 64_000_000, "bytes", "the history of days of a stored state")
 JSON_FILE = Limit("json_file", 64_000_000, "bytes", "the description or a figure of a study")
 RECORDING_RECORD = Limit("recording_record", 128_000_000, "bytes", "one record of a recording, compressed or not")
@@ -158,6 +162,9 @@ LIMITS = (
     TABLE_BYTES,
     VIBRATION_FILE,
     VIBRATION_SAMPLES,
+    VIBRATION_TEXT,
+    VIBRATION_PARTS,
+    VIBRATION_ANALYSED,
     BEARINGS_ROWS,
     POINTS_FILE,
     POINTS_ROWS,
@@ -165,6 +172,7 @@ LIMITS = (
     RESULT_ROWS,
     RESULT_CELLS,
     STATE_FILE,
+    RESPONSE_FILE,
     HISTORY_FILE,
     JSON_FILE,
     RECORDING_RECORD,

@@ -101,6 +101,11 @@ def read_text(path: str | Path, limit: Limit) -> str:
     return decoded(read_bytes(path, limit), path)
 
 
+def encoding_by_mark(data: bytes) -> str:
+    """Return the encoding of a text that begins with these bytes: that of its byte-order mark, or UTF-8."""
+    return next((name for mark, name in _MARKS if data.startswith(mark)), "utf-8")
+
+
 def decoded(data: bytes, origin: str | Path) -> str:
     """Return bytes as text: UTF-8, or the encoding of their byte-order mark; line ends become line feeds.
 
@@ -109,7 +114,7 @@ def decoded(data: bytes, origin: str | Path) -> str:
     FileError
         The bytes are no text in that encoding; the message names the line and the byte.
     """
-    encoding = next((name for mark, name in _MARKS if data.startswith(mark)), "utf-8")
+    encoding = encoding_by_mark(data)
     try:
         text = data.decode(encoding)
     except UnicodeDecodeError as error:

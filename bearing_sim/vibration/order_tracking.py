@@ -99,9 +99,7 @@ def recorded_shaft(speed: np.ndarray, rate: float, relative_error: float) -> Sha
     return Shaft(times[moving], turns[moving], mean, relative_error * mean, "recorded")
 
 
-def find_shaft(
-    signals: list[tuple[np.ndarray, float]], about: Shaft, tolerance: float, wide: tuple[np.ndarray, float] | None = None
-) -> Shaft | None:
+def find_shaft(signals: list[tuple[np.ndarray, float]], about: Shaft, tolerance: float, wide: tuple[np.ndarray, float] | None = None) -> Shaft | None:
     """Return the shaft by its own lines; None if they are not clear, or if the lines of something else are nearly as clear.
 
     Parameters
@@ -327,9 +325,7 @@ def _followed(shaft: Shaft, signal: np.ndarray, per_turn: float, orders: np.ndar
     corrected -= corrected[0]
     mean = float(corrected[-1] / shaft.times[-1])
     of_ends = math.sqrt(2.0) * smooth.error / shaft.turns[-1]
-    return shaft._replace(
-        turns=corrected, frequency=mean, standard_error=max(float(rate.standard_error), of_ends) * mean, angle_error=smooth.error
-    )
+    return shaft._replace(turns=corrected, frequency=mean, standard_error=max(float(rate.standard_error), of_ends) * mean, angle_error=smooth.error)
 
 
 def _agreeing(found: Spectra, orders: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -5,18 +5,22 @@ A file is taken as channels: names with numbers.  Which of them is the vibration
 long enough to be it; the rate from the file where it says one, or from its column of times.  What may mean two things is asked for.
 """
 
+import io
+import itertools
 import math
 import re
+import struct
 import zipfile
+import zlib
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from typing import NamedTuple
+from typing import BinaryIO, NamedTuple
 
 import numpy as np
 
 from bearing_sim.extras import what_is_missing
-from bearing_sim.files.limits import VIBRATION_FILE, VIBRATION_SAMPLES, FileError, LimitError, printable
-from bearing_sim.files.reading import open_regular, read_text
+from bearing_sim.files.limits import TABLE_LINE, VIBRATION_FILE, VIBRATION_PARTS, VIBRATION_SAMPLES, VIBRATION_TEXT, FileError, LimitError, printable
+from bearing_sim.files.reading import encoding_by_mark, open_regular
 from bearing_sim.recording.bag_reader import BagReader, BagTopic
 from bearing_sim.scene.errors import did_you_mean
 from bearing_sim.scene.quantity import to_si
@@ -51,6 +55,12 @@ _DEEPEST = 8  # levels of structures in a MAT or HDF5 file
 _MOST_CHANNELS = 2000
 _UNEVEN = 0.01  # of the spacing of times
 _COMMENTS = ("#", "%", "//")
+_PIECE = 1 << 20  # [byte] that is unpacked at once
+_MAT_MATRIX, _MAT_COMPRESSED = 14, 15  # types of elements of a MAT file
+_MAT_TAGS = 8  # elements of a usual matrix, and some more
+_DEEPEST_MAT = 32
+_ARCHIVE_END = 22 + 65_535  # [byte] in which the end of an archive stands, with its comment
+_SHORTEST_MEMBER = 46  # [byte] in the list of an archive's members
 
 
 class Channels(NamedTuple):
@@ -178,25 +188,62 @@ def _rate(path: Path, found: Channels, time_channel: str | None, count: int) -> 
     return 1.0 / (mean * seconds)
 
 
+def _cannot_be_read(path: Path, form: str, error: Exception) -> FileError:
+    """Return the refusal of a file whose reader raised an exception, which damaged files make of any kind."""
+    if isinstance(error, FileError):
+        return error
+    reason = "it asks for more memory than there is" if isinstance(error, MemoryError) else printable(" ".join(str(error).split()))
+    return FileError(f"cannot be read as {form}: {reason or type(error).__name__}", str(path))
+
+
+def _lines(path: Path) -> Iterator[str]:
+    """Yield the lines of a text in UTF-8, or in the encoding of its byte-order mark; nothing but the present one is kept."""
+    number, longest, most = 0, TABLE_LINE.value, VIBRATION_TEXT.value
+    with open_regular(path, VIBRATION_FILE) as stream:
+        encoding = encoding_by_mark(stream.peek(4)[:4])
+        text = io.TextIOWrapper(stream, encoding=encoding)
+        try:
+            while line := text.readline(longest + 1):
+                number += 1
+                if len(line) > longest:
+                    raise LimitError(TABLE_LINE.refusal(), f"{path}, line {number}")
+                if number > most:
+                    raise LimitError(VIBRATION_TEXT.refusal(), str(path))
+                yield line
+        except UnicodeError:
+            raise FileError(f"no {encoding.upper()} text from about line {number + 1} on; save the file as UTF-8", str(path)) from None
+
+
+def _rows(path: Path, begin: int, width: int, decimal: str) -> Iterator[str]:
+    """Yield the lines of numbers of a text from the line with the index ``begin`` on."""
+    count, most = 0, VIBRATION_TEXT.value
+    for line in itertools.islice(_lines(path), begin, None):
+        if not line.strip() or line.lstrip().startswith(_COMMENTS):
+            continue
+        count += width
+        if count > most:
+            raise LimitError(VIBRATION_TEXT.refusal(), str(path))
+        yield line.replace(",", ".") if decimal == "," else line
+
+
 def _text(path: Path) -> Channels:
     """Return the columns of a text: numbers between commas, semicolons, tabs or blanks, under headings or none."""
-    lines = read_text(path, VIBRATION_FILE).split("\n")
-    begin, delimiter, decimal = _first_row(path, lines)
-    heading = lines[begin - 1] if begin else ""
+    first_lines = list(itertools.islice(_lines(path), _FIRST_LINES))
+    begin, delimiter, decimal = _first_row(path, first_lines)
+    heading = first_lines[begin - 1] if begin else ""
     names = [cell.strip().strip('"').lstrip("#% ") for cell in (heading.split(delimiter) if delimiter else heading.split())]
-    width = len(_cells(lines[begin], delimiter))
+    width = len(_cells(first_lines[begin], delimiter))
+    VIBRATION_PARTS.check(width, f"{path}, line {begin + 1}")
     if len(names) != width or any(_is_number(name, decimal) for name in names):
         names = [f"column {number}" for number in range(1, width + 1)]
     elif len(set(names)) < width:
         names = [f"{name} ({number})" for number, name in enumerate(names, 1)]
-    rows = [line for line in lines[begin:] if line.strip() and not line.lstrip().startswith(_COMMENTS)]
-    VIBRATION_SAMPLES.check(len(rows) * width, str(path))
-    if decimal == ",":
-        rows = [row.replace(",", ".") for row in rows]
     try:
-        table = np.loadtxt(rows, delimiter=delimiter, ndmin=2, comments=None)
+        table = np.loadtxt(_rows(path, begin, width, decimal), delimiter=delimiter, ndmin=2, comments=None)
+    except FileError:
+        raise
     except ValueError:
-        raise VibrationError(_first_fault(path, lines, begin, delimiter, decimal, width)) from None
+        raise VibrationError(_first_fault(path, begin, delimiter, decimal, width)) from None
     return Channels(dict(zip(names, table.T)), {})
 
 
@@ -225,9 +272,9 @@ def _first_row(path: Path, lines: list[str]) -> tuple[int, str | None, str]:
     raise VibrationError(f"{path}: no row of numbers in the first {min(len(lines), _FIRST_LINES)} lines; expected columns of numbers under a heading")
 
 
-def _first_fault(path: Path, lines: list[str], begin: int, delimiter: str | None, decimal: str, width: int) -> str:
+def _first_fault(path: Path, begin: int, delimiter: str | None, decimal: str, width: int) -> str:
     """Return what is wrong with the first row that cannot be read."""
-    for number, line in enumerate(lines[begin:], begin + 1):
+    for number, line in enumerate(itertools.islice(_lines(path), begin, None), begin + 1):
         if not line.strip() or line.lstrip().startswith(_COMMENTS):
             continue
         cells = _cells(line, delimiter)
@@ -243,21 +290,32 @@ def _parquet(path: Path) -> Channels:
     import pyarrow
     import pyarrow.parquet
 
+    types = pyarrow.types
     with open_regular(path, VIBRATION_FILE) as stream:
         try:
             file = pyarrow.parquet.ParquetFile(stream)
-            VIBRATION_SAMPLES.check(file.metadata.num_rows * file.metadata.num_columns, str(path))
-            table = file.read()
-        except (pyarrow.ArrowException, OSError) as error:
-            raise FileError(f"cannot be read as Parquet: {printable(' '.join(str(error).split()))}", str(path)) from None
-    arrays = {}
-    for name in table.column_names:
-        column = table.column(name)
-        if pyarrow.types.is_timestamp(column.type):
-            arrays[name] = column.cast(pyarrow.timestamp("ns", column.type.tz)).cast(pyarrow.int64()).to_numpy() * 1e-9
-        elif pyarrow.types.is_floating(column.type) or pyarrow.types.is_integer(column.type):
-            arrays[name] = column.to_numpy()
-    return Channels(arrays, {})
+            fields = [
+                each for each in file.schema_arrow if types.is_floating(each.type) or types.is_integer(each.type) or types.is_timestamp(each.type)
+            ]
+            VIBRATION_PARTS.check(len(fields), str(path))
+            batches, values = [], 0
+            for batch in file.iter_batches(columns=[each.name for each in fields]):  # what the file says about its length need not be true
+                values += batch.num_rows * batch.num_columns
+                VIBRATION_SAMPLES.check(values, str(path))
+                batches.append(batch)
+            table = pyarrow.Table.from_batches(batches, pyarrow.schema(fields)) if batches else pyarrow.table({})
+            return Channels({name: _numbers_of(column) for name, column in zip(table.column_names, table.columns)}, {})
+        except Exception as error:
+            raise _cannot_be_read(path, "Parquet", error) from None
+
+
+def _numbers_of(column) -> np.ndarray:
+    """Return a column of Parquet as numbers, times in seconds."""
+    import pyarrow
+
+    if pyarrow.types.is_timestamp(column.type):
+        return column.cast(pyarrow.timestamp("ns", column.type.tz)).cast(pyarrow.int64()).to_numpy() * 1e-9
+    return column.to_numpy()
 
 
 class _Collector:
@@ -300,6 +358,89 @@ class _Collector:
         return Channels(self.arrays, self.numbers)
 
 
+class _Unpacked:
+    """The content of a compressed element of a MAT file, read once from its beginning and not kept."""
+
+    def __init__(self, stream: BinaryIO, packed: int):
+        self._stream, self._packed, self._unpacker, self._ready = stream, packed, zlib.decompressobj(), io.BytesIO()
+        self.position = 0
+
+    def read(self, count: int) -> bytes:
+        """Return the next bytes, fewer where it ends; at most `_PIECE` of them."""
+        found = self._ready.read(count)
+        while len(found) < count and not self._unpacker.eof:
+            source = self._unpacker.unconsumed_tail
+            if not source:
+                source = self._stream.read(min(self._packed, _PIECE))
+                self._packed -= len(source)
+            if not source:
+                break
+            self._ready = io.BytesIO(self._unpacker.decompress(source, _PIECE))
+            found += self._ready.read(count - len(found))
+        self.position += len(found)
+        return found
+
+    def skip(self, count: int) -> None:
+        """Pass over bytes."""
+        while count > 0 and (found := self.read(min(count, _PIECE))):
+            count -= len(found)
+
+
+class _Stored:
+    """An element of a MAT file that is not compressed."""
+
+    def __init__(self, stream: BinaryIO):
+        self._stream = stream
+
+    @property
+    def position(self) -> int:
+        return self._stream.tell()
+
+    def read(self, count: int) -> bytes:
+        return self._stream.read(count)
+
+    def skip(self, count: int) -> None:
+        self._stream.seek(count, io.SEEK_CUR)
+
+
+def _check_matlab(path: Path, stream: BinaryIO) -> None:
+    """Refuse a MAT file of version 5 that unpacks to more than the limits allow, before its reader keeps anything of it.
+
+    The elements of the format stand in "MAT-File Format" of The MathWorks: a tag of type and length, then data, or elements within a matrix.
+
+    Raises
+    ------
+    LimitError
+        It has more numbers or parts than the limits.
+    FileError
+        Cells or structures stand too deep within each other.
+    """
+    order = ">" if stream.read(128)[126:128] == b"MI" else "<"
+    parts = unpacked = 0
+    while len(tag := stream.read(8)) == 8:
+        kind, size = struct.unpack(f"{order}II", tag)
+        begin = stream.tell()
+        if kind in (_MAT_COMPRESSED, _MAT_MATRIX):
+            element = _Unpacked(stream, size) if kind == _MAT_COMPRESSED else _Stored(stream)
+            ends = [element.position + (8 if kind == _MAT_COMPRESSED else size)]
+            while ends:
+                if element.position >= ends[-1] or len(inner := element.read(8)) < 8:
+                    ends.pop()
+                    continue
+                parts += 1
+                VIBRATION_PARTS.check(parts // _MAT_TAGS, str(path))
+                inner_kind, length = struct.unpack(f"{order}II", inner)
+                if inner_kind == _MAT_MATRIX:
+                    ends.append(element.position + length)
+                    if len(ends) > _DEEPEST_MAT:
+                        raise FileError(f"cells or structures stand more than {_DEEPEST_MAT} deep within each other; expected a record", str(path))
+                elif not inner_kind >> 16:  # a short element is its own tag
+                    VIBRATION_SAMPLES.check((unpacked + length) // 8, str(path))
+                    element.skip(length + -length % 8)
+                    unpacked += length
+        stream.seek(begin + size)
+
+
 def _matlab(path: Path) -> Channels:
     import scipy.io
 
@@ -310,14 +451,15 @@ def _matlab(path: Path) -> Channels:
             return _hdf5(path)
         collector = _Collector(path)
         try:
+            if 0 not in head[:4]:  # version 4 begins with a number, and holds neither cells nor anything compressed
+                _check_matlab(path, stream)
+                stream.seek(0)
             shapes = scipy.io.whosmat(stream)
             VIBRATION_SAMPLES.check(sum(math.prod(shape) for _, shape, kind in shapes if kind not in ("struct", "cell")), str(path))
             stream.seek(0)
             found = scipy.io.loadmat(stream)
-        except LimitError:
-            raise
-        except Exception as error:  # the reader raises exceptions of any kind on damaged files
-            raise FileError(f"cannot be read as MAT: {printable(' '.join(str(error).split())) or type(error).__name__}", str(path)) from None
+        except Exception as error:
+            raise _cannot_be_read(path, "MAT", error) from None
     for name, value in found.items():
         if not name.startswith("__"):
             collector.add(name, value)
@@ -329,46 +471,79 @@ def _hdf5(path: Path) -> Channels:
         import h5py
     except ModuleNotFoundError as error:
         raise VibrationError(f"{path}: {what_is_missing(error)}") from None
-    collector = _Collector(path)
+    collector, parts, values = _Collector(path), 0, 0
+
+    def visit(name: str, item) -> None:
+        nonlocal parts, values
+        parts += 1 + len(item.attrs)
+        VIBRATION_PARTS.check(parts, str(path))
+        for key in item.attrs:
+            attribute = item.attrs.get_id(key)
+            if attribute.shape == () and attribute.dtype.kind in "iuf":
+                collector.numbers[f"{name}.{key}"] = float(item.attrs[key])
+        if not isinstance(item, h5py.Dataset) or item.dtype.kind not in "iuf" or name.startswith("#refs#"):
+            return
+        if item.external or item.is_virtual:
+            raise FileError(f"the numbers of {printable(name)} are in another file; expected them in this one", str(path))
+        values += max(item.size, math.prod(item.chunks or (0,)))  # a piece is unpacked as a whole, however little of it counts
+        VIBRATION_SAMPLES.check(values, str(path))
+        collector.add(name, item[()])
+
     with open_regular(path, VIBRATION_FILE) as stream:
         try:
             with h5py.File(stream, "r") as file:
-
-                def visit(name: str, item) -> None:
-                    for key, value in item.attrs.items():
-                        if np.ndim(value) == 0 and np.asarray(value).dtype.kind in "iuf":
-                            collector.numbers[f"{name}.{key}"] = float(value)
-                    if isinstance(item, h5py.Dataset) and item.dtype.kind in "iuf" and not name.startswith("#refs#"):
-                        VIBRATION_SAMPLES.check(item.size, str(path))
-                        collector.add(name, item[()])
-
                 visit("", file)
                 file.visititems(visit)
-        except LimitError:
-            raise
-        except Exception as error:  # the reader raises exceptions of any kind on damaged files
-            raise FileError(f"cannot be read as HDF5: {printable(' '.join(str(error).split()))}", str(path)) from None
+        except Exception as error:
+            raise _cannot_be_read(path, "HDF5", error) from None
     return collector.channels
+
+
+def _check_archive(path: Path, stream: BinaryIO) -> None:
+    """Refuse an archive with too many members or too much in them; the list of its members is not read before its length is known."""
+    stream.seek(0, io.SEEK_END)
+    stream.seek(max(stream.tell() - _ARCHIVE_END, 0))
+    end = stream.read()
+    place = end.rfind(b"PK\x05\x06")
+    if place >= 0 and len(end) >= place + 22:
+        length = struct.unpack("<I", end[place + 12 : place + 16])[0]
+        VIBRATION_PARTS.check(length // _SHORTEST_MEMBER, str(path))
+        if end[max(place - 20, 0) : place].startswith(b"PK\x06\x07"):
+            raise FileError("an archive in the format for more than 65,535 members or 4 GB; expected a smaller one", str(path))
+    stream.seek(0)
+    with zipfile.ZipFile(stream) as archive:
+        VIBRATION_PARTS.check(len(archive.infolist()), str(path))
+        VIBRATION_SAMPLES.check(sum(item.file_size for item in archive.infolist()) // 8, str(path))
+    stream.seek(0)
 
 
 def _numpy(path: Path) -> Channels:
-    collector = _Collector(path)
+    collector, is_archive = _Collector(path), path.suffix.lower() == ".npz"
     with open_regular(path, VIBRATION_FILE) as stream:
         try:
-            if path.suffix.lower() == ".npz":
-                with zipfile.ZipFile(stream) as archive:
-                    VIBRATION_SAMPLES.check(sum(item.file_size for item in archive.infolist()) // 8, str(path))
-                stream.seek(0)
+            if is_archive:
+                _check_archive(path, stream)
                 with np.load(stream, allow_pickle=False) as found:
                     for name in found.files:
                         collector.add(name, found[name])
+            elif stream.read(6) != b"\x93NUMPY":
+                raise FileError("cannot be read as NPY: it does not begin as one; the name of an archive of arrays ends in .npz", str(path))
             else:
+                stream.seek(0)
                 collector.add("samples", np.load(stream, allow_pickle=False))
-        except LimitError:
-            raise
-        except Exception as error:  # the reader raises exceptions of any kind on damaged files
-            raise FileError(f"cannot be read as {path.suffix[1:].upper()}: {printable(' '.join(str(error).split()))}", str(path)) from None
+        except Exception as error:
+            raise _cannot_be_read(path, "NPZ" if is_archive else "NPY", error) from None
     return collector.channels
+
+
+def _check_wave(path: Path, stream: BinaryIO) -> None:
+    """Refuse a WAV file of too many chunks."""
+    order, parts = ">" if stream.read(12)[:4] == b"RIFX" else "<", 0
+    while len(tag := stream.read(8)) == 8:
+        parts += 1
+        VIBRATION_PARTS.check(parts, str(path))
+        stream.seek(struct.unpack(f"{order}I", tag[4:])[0], io.SEEK_CUR)
+    stream.seek(0)
 
 
 def _wave(path: Path) -> Channels:
@@ -378,11 +553,12 @@ def _wave(path: Path) -> Channels:
 
     with open_regular(path, VIBRATION_FILE) as stream:
         try:
+            _check_wave(path, stream)
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", scipy.io.wavfile.WavFileWarning)  # chunks of loggers that are not known
                 rate, samples = scipy.io.wavfile.read(stream)
-        except Exception as error:  # the reader raises exceptions of any kind on damaged files
-            raise FileError(f"cannot be read as WAV: {printable(' '.join(str(error).split())) or type(error).__name__}", str(path)) from None
+        except Exception as error:
+            raise _cannot_be_read(path, "WAV", error) from None
     collector = _Collector(path)
     collector.add("samples", samples)
     return collector.channels._replace(rate=float(rate))

@@ -13,6 +13,7 @@ import scipy.ndimage
 import scipy.signal
 
 FEWEST_SAMPLES = 1024
+_LEAST = 1e-100  # difference of samples, in any unit
 _FLOOR_BLOCK = 256  # bins over which the floor of a spectrum is a median
 _LINE = 4.0  # times the floor: noise exceeds it in 1.5e-5 of the bins (its magnitude has a Rayleigh distribution)
 _SKIRT = 3  # bins on either side of a line that go with it
@@ -74,7 +75,10 @@ class Vibration:
             )
         if not 0.0 < self.rate < np.inf:
             raise VibrationError(f"{self.name}: a rate of {self.rate} Hz; expected a positive one")
-        if not np.ptp(self.samples) > 0.0:
+        low, high = float(np.min(self.samples)), float(np.max(self.samples))
+        if 0.0 < high - low < _LEAST or not max(-low, high) < 1.0 / _LEAST:  # squares of such numbers cannot be computed
+            raise VibrationError(f"{self.name}: values from {low:g} to {high:g}; expected those of an accelerometer: check the channel")
+        if not high > low:
             raise VibrationError(f"{self.name}: all samples are {self.samples[0]}; expected a vibration: check the sensor and the channel")
         if self.shaft_speed is not None and (len(self.shaft_speed) != count or not np.all(np.isfinite(self.shaft_speed))):
             raise VibrationError(f"{self.name}: expected a finite shaft speed at each of the {count} samples")

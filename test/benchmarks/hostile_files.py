@@ -38,6 +38,9 @@ _HEADING = re.compile(r": \d+ errors?$")
 _PACKAGES = (
     "numpy",
     "scipy.interpolate",
+    "scipy.io",
+    "scipy.signal",
+    "h5py",
     "pydantic",
     "pint",
     "yaml",
@@ -48,7 +51,7 @@ _PACKAGES = (
     "zstandard",
     "lz4",
 )
-_MODULES = ("hostile_scenes", "hostile_tables", "hostile_recordings")
+_MODULES = ("hostile_scenes", "hostile_tables", "hostile_recordings", "hostile_vibration")
 
 
 @dataclass(frozen=True)
