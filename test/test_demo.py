@@ -58,7 +58,7 @@ def test_the_demonstration_plays_a_mission_over_dds_and_leaves_recording_view_an
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_an_interrupted_demonstration_ends_its_processes_and_completes_the_recording(tmp_path, number):
-    process = demo(tmp_path, "--duration", "25")
+    process = demo(tmp_path, "--duration", "15")
     deadline = time.monotonic() + 100.0
     while "10 %" not in process.text:
         assert time.monotonic() < deadline and process.process.poll() is None, process.text
@@ -71,7 +71,7 @@ def test_an_interrupted_demonstration_ends_its_processes_and_completes_the_recor
 
 
 def test_killing_the_demonstration_by_force_leaves_no_node_behind(tmp_path):
-    process = demo(tmp_path, "--duration", "25")
+    process = demo(tmp_path, "--duration", "15")
     deadline = time.monotonic() + 100.0
     while "10 %" not in process.text:
         assert time.monotonic() < deadline and process.process.poll() is None, process.text

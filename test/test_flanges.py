@@ -219,11 +219,13 @@ def test_jacobian_has_what_flanges_add_to_the_right_hand_side(level, module, den
     # how rollers share an axial load is taken as constant, so that only columns by spin are complete
     columns = range(len(steps)) if options is NUP else [len(steps) - 1]
 
+    models = [run._model(run.inputs, 1.0) for run in found]
+
     def added(state):
         rates = []
-        for run in found:
+        for run, model in zip(found, models):
             rate = np.zeros_like(state)
-            module.rhs(0.0, state, run._model(run.inputs, 1.0), run._work, rate)
+            module.rhs(0.0, state, model, run._work, rate)
             rates.append(rate)
         whole[:] = rates[0]
         return rates[0] - rates[1]

@@ -48,7 +48,7 @@ def test_the_cost_of_a_thread_is_found_under_its_name():
 
 
 def test_a_node_is_measured_over_dds_and_the_figures_hang_together():
-    words = [sys.executable, NODE_OVERHEAD, "--level", "slip", "--duration", "4", "--rate", "50", "--record", "--json"]
+    words = [sys.executable, NODE_OVERHEAD, "--level", "slip", "--duration", "2", "--rate", "50", "--record", "--json"]
     environment = {**os.environ, "ROS_DOMAIN_ID": str(fresh_domain()), "PYTHONPATH": str(ROOT)}
     found = subprocess.run(words, capture_output=True, text=True, timeout=200, check=True, env=environment)
     (case,) = json.loads(found.stdout)

@@ -18,7 +18,7 @@ SLIP, PLANAR = (load_scene("deng2017_table1", [f"level={level}"]) for level in (
 pytestmark = pytest.mark.usefixtures("strict_rerun")
 
 
-def whirling_block(samples=60, turns=10.0):
+def whirling_block(samples=30, turns=10.0):
     block = synthetic_block(PLANAR, 1e-4 * np.arange(1, samples + 1), speeds=(4000.0, 4000.0))
     turn = np.linspace(0.0, 2 * math.pi * turns, samples)
     block["cage_angle"] = turn
@@ -129,7 +129,7 @@ def test_recording_that_does_not_know_the_cages_place_is_shown_without(tmp_path)
 
 
 def test_line_and_dots_take_turns_as_the_sampling_does(tmp_path):
-    fine, coarse = whirling_block(samples=90, turns=1.8), whirling_block(samples=90, turns=60.0)
+    fine, coarse = whirling_block(samples=45, turns=1.5), whirling_block(samples=45, turns=30.0)
     coarse["time"] += fine["time"][-1]
     coarse["cage_angle"] += fine["cage_angle"][-1]
     for name, block, line, dots in (("a", fine, True, False), ("b", np.concatenate((fine, coarse)), False, True)):

@@ -79,19 +79,20 @@ def rig_findings(level: str = "slip") -> list[Finding]:
             all(point.slip <= NO_SLIP for point in above if point.share == _SHARES[-1]) and all(point.slip > NO_SLIP for point in below),
         ),
         Finding(
-            "and free of it from the minimum load on",
+            "free of slip from the minimum load on",
             "the maker's rule",
-            f"at it {_percents(usual[speed, 1.0] for speed in _SPEEDS)}, at twice it {_percents(usual[speed, 2.0] for speed in _SPEEDS)}",
+            f"at the minimum load {_percents(usual[speed, 1.0] for speed in _SPEEDS)}, "
+            f"at twice it {_percents(usual[speed, 2.0] for speed in _SPEEDS)}",
             all(point.slip <= NO_SLIP for point in above),
         ),
         Finding(
-            "below it slip rises with speed",
+            "below the minimum load slip rises with speed",
             "Dawoud 2022, part I",
-            "; ".join(f"{share:g} of it: {_percents(usual[speed, share] for speed in _SPEEDS)}" for share in _SHARES if share < 1.0),
+            "; ".join(f"{share:g} of the minimum load: {_percents(usual[speed, share] for speed in _SPEEDS)}" for share in _SHARES if share < 1.0),
             _rises(below, lambda point: point.speed, lambda point: (point.share, point.flow)),
         ),
         Finding(
-            "below it slip rises with the quantity of oil",
+            "below the minimum load slip rises with the quantity of oil",
             "Dawoud 2022, part I",
             "; ".join(f"{speed} rpm: {_percents(point.slip for point in below if point.speed == speed and point.share == 0.3)}" for speed in _SPEEDS),
             _rises(below, lambda point: point.flow, lambda point: (point.speed, point.share)),
@@ -100,14 +101,20 @@ def rig_findings(level: str = "slip") -> list[Finding]:
             "a cage guided by the rollers slips less than one guided by the outer ring",
             "Dawoud 2022, part I",
             "; ".join(
-                f"{speed:g} rpm, {share:g}: {_percents((guided[speed, share], usual[speed, share]))}" for speed, share in usual if share == 0.3
+                f"{speed:g} rpm, {share:g} of the minimum load: {_percents((guided[speed, share], usual[speed, share]))}"
+                for speed, share in usual
+                if share == 0.3
             ),
             all(guided[key] < usual[key] for key in light),
         ),
         Finding(
             "a tight clearance that preloads all rollers ends slip",
             "Dawoud 2022, part III",
-            "; ".join(f"{speed:g} rpm, {share:g}: {_percents((usual[speed, share], tight[speed, share]))}" for speed, share in usual if share == 0.1),
+            "; ".join(
+                f"{speed:g} rpm, {share:g} of the minimum load: {_percents((usual[speed, share], tight[speed, share]))}"
+                for speed, share in usual
+                if share == 0.1
+            ),
             all(slip <= NO_SLIP for slip in tight.values()),
         ),
     ]
@@ -124,9 +131,9 @@ def gearbox_findings(level: str = "slip") -> list[Finding]:
             f"{_IDLING:g} N, {', '.join(map(str, _TEMPERATURES))} degC: {_percents(idling)}",
             max(idling) >= 0.2,
         ),
-        Finding("it falls as the oil warms", "Guo and Keller 2020", _percents(idling), all(b < a for a, b in itertools.pairwise(idling))),
+        Finding("idling, slip falls as the oil warms", "Guo and Keller 2020", _percents(idling), all(b < a for a, b in itertools.pairwise(idling))),
         Finding(
-            "it falls as the load grows",
+            "with cold oil, slip falls as the load grows",
             "Guo and Keller 2020",
             f"20 degC, {', '.join(f'{100 * wind:g}' for wind in _WINDS)} % of {1e-3 * _NOMINAL:g} kN: {_percents(cold)}",
             all(b <= a + _NEAR for a, b in itertools.pairwise(cold)) and cold[-1] <= NO_SLIP,

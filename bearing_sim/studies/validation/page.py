@@ -15,8 +15,10 @@ TITLE = "Validation"
 NOT_VALIDATED = (
     "What is not validated: cage slip over speed and load. We found no readable measurement of it for a cylindrical roller bearing whose dimensions "
     "are known, so no slip on this page is held to a test rig. Slip is compared with a published model, with independent calculations of the same "
-    "bearing, and with published findings that have a direction but no digits. Nor is there a measurement behind the bands of slip under unknown "
-    "parameters, forces on the cage, skew of rollers, temperatures inside a bearing, and lives against failures of real bearings."
+    "bearing, and with published findings that have a direction but no digits. The lines of recorded vibration are ratios of frequencies: neither "
+    "load nor diameters of those bearings are known, so no slip follows from them. Nor is there a measurement behind the bands of slip under unknown "
+    "parameters and their calibration, forces on the cage, skew of rollers, temperatures inside a bearing, and lives against failures of real "
+    "bearings."
 )
 _CLASSES = {HOLDS: "holds", IN_PART: "part", FAILS: "fails", NOT_RUN: "soft"}
 _HEADINGS = ("what", "compared with", "expected", "found", "deviation", "tolerance", "verdict", "command", "date")

@@ -17,7 +17,7 @@ def _claims() -> list[Comparison]:
     return [
         judged(
             f"claim {each.claim} at level {each.level}" if each.claim else "machined contours",
-            f"Deng 2017, figures {each.figures}",
+            f"Deng 2017, figure{'s' if ',' in each.figures else ''} {each.figures}",
             each.says,
             each.gives,
             each.verdict,
