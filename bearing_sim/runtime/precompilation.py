@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from bearing_sim.scene.scene import Scene
 
 _SECONDS = 1e-4  # a run this short calls everything that has to be compiled
+_SLOWEST_FIRST = "spatial", "planar", "steady", "slip"
 _COLLECTIONS = 100_000, 50, 10  # thresholds of the garbage collector; with Python's own a seventh of the time goes into objects that live on
 
 
@@ -67,7 +68,7 @@ def builds(levels: Sequence[str], fixed_step: bool = False) -> list[Build]:
     """
     from bearing_sim.levels.level import LEVELS
 
-    slowest_first = [level for level in reversed(LEVELS) if level in levels]
+    slowest_first = [level for level in _SLOWEST_FIRST if level in levels]
     others = [Build(level, True) for level in slowest_first if fixed_step and LEVELS[level].advance_fixed is not None]
     return [*map(Build, slowest_first), *others]
 
