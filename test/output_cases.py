@@ -51,7 +51,7 @@ CASES = {
     "to-csv": Case(("to-csv", RECORDING)),
     "to-parquet": Case(("to-parquet", RECORDING)),
     "view": Case(("view", RECORDING, "--no-open"), 3),
-    "mission": Case(("mission", "--duration", "5")),
+    "mission": Case(("mission", "--duration", "5", "--cage", SCENE), 2),
     "state export": Case(("state", "export", STATE)),
     "study deng2017": Case(("study", "deng2017", "--quick"), 300),
     "study misalignment": Case(("study", "misalignment", SCENE, "--points", "2", "--slices", "5", "--crown", "none"), 30),

@@ -1,6 +1,7 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """Claims about bands on their way: from the samples of a run into messages, recordings, results, diagnostics and views; none where none is asked."""
 
+import dataclasses
 import json
 import math
 
@@ -150,6 +151,17 @@ def test_rounded_operating_points_stay_in_the_domain_of_the_response(response):
     assert not response.outside(bands.cells(ends, domain)).any()
     beyond = ends[-1:] * [1.001, 1.0, 1.0, 1.0]
     assert response.outside(beyond).all() and response.outside(bands.cells(beyond, domain)).all()
+
+
+def test_another_memory_of_the_damage_rate_acts_on_the_remaining_life_from_then_on(response):
+    block = synthetic_block(SCENE, 10.0 * np.arange(1, 5))
+    block["modified_rating_life"], block["damage"] = [400.0, 400.0, 40.0, 40.0], 0.0
+    kept, adjusted = (LiveEstimation(SCENE, response) for _ in range(2))
+    for live in (kept, adjusted):
+        live.take(block[:2])
+    adjusted.adjust(dataclasses.replace(SCENE.thresholds, remaining_life_memory=1e-3))
+    slow, quick = (live.take(block[2:])[0].numbers[-1, NAMES.index("remaining_life")] for live in (kept, adjusted))
+    assert quick[0] == pytest.approx(40.0) and slow[0] > 1.5 * quick[0] and (slow[1:] > 1.5 * quick[1:]).all()
 
 
 def test_bands_come_at_most_at_the_rate_of_the_scene(response):

@@ -71,6 +71,10 @@ class BandEstimator:
         self._basis = np.concatenate([self._own, self.response.basis_of(self.scores)])
         self._kept: dict[bytes, np.ndarray] = {}  # changes by operating point, see `_changes`
 
+    def adjust(self, remaining_life_memory: float) -> None:
+        """Take another time constant of the mean damage rate [s] from now on."""
+        self._memory = remaining_life_memory
+
     def take(self, block: np.ndarray) -> np.ndarray:
         """Return the bands of the samples that follow.
 

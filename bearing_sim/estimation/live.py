@@ -5,6 +5,7 @@ Samples and measurements in, bands, events and numbers out; all times are those 
 ``estimation``).
 """
 
+import dataclasses
 import math
 from collections.abc import Collection, Mapping
 
@@ -15,7 +16,7 @@ from bearing_sim.estimation.estimator import Estimator
 from bearing_sim.estimation.response import ResponseModel
 from bearing_sim.messages.bands import BANDS, EDGES, ESTIMATES, Bands
 from bearing_sim.messages.events import Event
-from bearing_sim.scene.scene import Scene
+from bearing_sim.scene.scene import Scene, Thresholds
 from bearing_sim.scene.uncertainty import quantities
 
 UNITS = ("", "h", "m", "h")
@@ -65,6 +66,11 @@ class LiveEstimation:
             self._estimator = Estimator(self._scene, self._response, sorted(known))
             self._estimator.restore(learned)
             self._use_posterior()
+
+    def adjust(self, thresholds: Thresholds) -> None:
+        """Use other thresholds from now on; what was learned is kept."""
+        self._scene = dataclasses.replace(self._scene, thresholds=thresholds)
+        self._bands.adjust(thresholds.remaining_life_memory)
 
     @property
     def is_calibrated(self) -> bool:

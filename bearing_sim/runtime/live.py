@@ -170,6 +170,8 @@ class Model:
         self.monitor.adjust(thresholds)
         self.limits.adjust(self.scene)
         self.residual.adjust(thresholds.residual, thresholds.slip_from_speed)
+        if self._estimation is not None:
+            self._estimation.adjust(thresholds)
         if self.keeper is not None:
             self.keeper.adjust(self.scene)
 

@@ -33,6 +33,7 @@ _REPORT_EVERY = 1.0  # [s] of simulated time between diagnostics
 _PROGRESS_EVERY = 50  # items
 _JUDGED = 400  # outputs judged at once if none of them can raise or clear an alarm
 _ENDLESS = 1e7  # [h]; longer lives are those of a shaft that hardly turns
+_ESTIMATED = 100  # outputs that bands are computed for at once
 _WATCHED_BLOCK = 100  # samples: views take one long block far faster than single samples
 
 
@@ -214,6 +215,7 @@ class _Run:
         self._next_report = 0.0
         self._monitor, self._limits = Monitor(scene), LimitsMonitor(scene)
         self._unjudged: list[np.ndarray] = []
+        self._unestimated: list[np.ndarray] = []
         self._comparison = Comparison(ResidualMonitor(scene.thresholds.residual, scene.thresholds.slip_from_speed))
         if keeper is not None:
             keeper.restart()
@@ -250,6 +252,7 @@ class _Run:
         if not run.given_up:
             self._progress(self._profile.end * 1e-9)
         self._judge_limits()
+        self._estimate()
         self._write_events_until(math.inf)
         if self._profile.unknown_seconds:
             self._write_event(self._profile.unknown_event)
@@ -305,14 +308,22 @@ class _Run:
             if sum(map(len, self._watched)) >= _WATCHED_BLOCK:
                 self._write_to_watchers()
         if self._estimation is not None:
-            for bands in self._estimation.take(block):
-                self._write_bands(bands)
+            self._unestimated.append(block)
+            if self._scene.estimation.calibrated or sum(map(len, self._unestimated)) >= _ESTIMATED:  # measurements act from output to output
+                self._estimate()
         for begin in range(0, len(block), _JUDGED):
             part = block[begin : begin + _JUDGED]
             self._unjudged.append(part)
             if sum(map(len, self._unjudged)) >= _JUDGED:
                 self._judge_limits()
             self._judge(part)
+
+    def _estimate(self) -> None:
+        """Write the bands of the outputs since the last call: those of many at once cost a fraction of single ones."""
+        blocks, self._unestimated = self._unestimated, []
+        if blocks:
+            for bands in self._estimation.take(joined(blocks)):
+                self._write_bands(bands)
 
     def _judge_limits(self) -> None:
         """Write which limits of validity the outputs since the last call began or ceased to exceed: many at once cost little more than one."""
@@ -353,6 +364,7 @@ class _Run:
         changes = self._changes.take(moment, (*self._monitor.events(moment), *judged))
         if changes or moment >= self._next_report:
             self._judge_limits()  # their events come first
+            self._estimate()
         for event in changes:
             self._write_event(event)
         if moment >= self._next_report:

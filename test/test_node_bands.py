@@ -1,0 +1,77 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""A node whose scene asks for bands and a calibration, over DDS: its topics, what a measured cage with a standard error does, the service."""
+
+import math
+import signal
+
+import pytest
+
+pytest.importorskip("rclpy", reason="the node needs ROS 2 (pip install 'bearing_sim[ros]', or a ROS installation)")
+
+from made_up_response import FIELD, asking_scene, made_up_response  # noqa: E402
+from rclpy.qos import qos_profile_sensor_data  # noqa: E402
+from ros_bench import Client, NodeProcess, fresh_domain  # noqa: E402
+from std_srvs.srv import Trigger  # noqa: E402
+
+from bearing_sim.estimation.response import response_path, write_response  # noqa: E402
+from bearing_sim.messages import topics  # noqa: E402
+from bearing_sim.messages.bands import BANDS, ESTIMATES, bands_of_message  # noqa: E402
+from bearing_sim.recording.reader import Recording  # noqa: E402
+from bearing_sim.ros.messages import message, message_class  # noqa: E402
+
+pytestmark = pytest.mark.timeout(180)
+OVERRIDES = ("uncertainty=null", f"uncertainty.{FIELD}=[0.0201, 0.0601]", "estimation.bands=true", f"estimation.calibrated=[{FIELD}]")
+"""A range that no other scene has, so that the response made up for it serves this test alone."""
+QUICK = "estimation.interval=0.2s"
+
+
+@pytest.fixture
+def node(tmp_path):
+    """A node that records, for whose scene a response is kept, and a client of it."""
+    scene, domain = asking_scene(*OVERRIDES, QUICK), fresh_domain()
+    path = response_path(scene)
+    write_response(path, made_up_response(scene))
+    words = ", ".join(f"'{word}'" for word in (*OVERRIDES, QUICK))
+    arguments = ("-p", f"overrides:=[{words}]", "-p", "governor:=false", "-p", f"record:={tmp_path / 'run.mcap'}")
+    process, client = NodeProcess(tmp_path, domain, "--ros-args", *arguments), Client(domain)
+    yield process, client
+    client.close()
+    process.end(signal.SIGKILL)
+    path.unlink(missing_ok=True)
+
+
+def test_bands_and_estimates_are_published_calibrated_by_a_measured_cage_and_recorded(node, tmp_path):
+    process, client = node
+    kind, heard = topics.ESTIMATED[BANDS].ros_type, {BANDS: [], ESTIMATES: []}
+    for name, found in heard.items():
+        client.listen(kind, name, found.append)
+    topic = topics.MEASUREMENTS[topics.MEASURED]
+    cage = client.node.create_publisher(message_class(topic.ros_type), topics.MEASURED, qos_profile_sensor_data)
+    client.wait_until_matched(process)
+    client.drive_until(lambda: heard[BANDS] and heard[ESTIMATES] and client.received["diagnostics"], "bands and estimates", process)
+    first = heard[BANDS][-1]
+    bands = bands_of_message(BANDS, 0.0, list(first.name), first.position)
+    assert bands.names == ("cage_slip", "rating_life", "running_clearance", "remaining_life") and first.header.frame_id == "bearing"
+    slip, low, high = bands.numbers[0, 0]
+    assert low < slip < high and not any(key.endswith(", calibrated") for key in client.values())
+
+    def calibrated():
+        if joints := client.received["bearing_joints"]:
+            speed = joints[-1].velocity[2] * (1.0 - slip) * (1.0 + 1e-5 * math.sin(joints[-1].header.stamp.nanosec))
+            stamp_ns = client.node.get_clock().now().nanoseconds
+            cage.publish(message(topic.ros_type, topic.message(stamp_ns, (speed, 1e-3 * speed))))
+        return any(key.endswith(", calibrated") for key in client.values())
+
+    client.drive_until(calibrated, "the measured cage teaches the field", process)
+    count = len(heard[ESTIMATES])
+    client.drive_until(lambda: len(heard[ESTIMATES]) > count, "newer estimates", process)
+    estimates = heard[ESTIMATES][-1]
+    assert list(estimates.name) == [FIELD, f"{FIELD} 5 %", f"{FIELD} 95 %"] and estimates.position[1] < estimates.position[0] < estimates.position[2]
+    answer = client.call(Trigger, "accept_change", Trigger.Request(), process)
+    assert not answer.success and "no change to accept" in answer.message
+
+    assert process.end(signal.SIGINT) == 0, process.text
+    recorded = list(Recording(tmp_path / "run.mcap").bands())
+    assert {each.topic for each in recorded} == {BANDS, ESTIMATES}
+    errors = [each.standard_error for each in Recording(tmp_path / "run.mcap").with_measurements() if hasattr(each, "standard_error")]
+    assert errors and all(error > 0.0 for error in errors), "a measurement is recorded with its standard error"
