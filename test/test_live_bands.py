@@ -183,6 +183,13 @@ def test_a_band_lies_about_the_value_of_the_sample_as_the_field_moves_it(respons
         assert np.allclose(values[:, 1:] / values[:, :1], edges, rtol=0.02)
 
 
+def test_the_life_that_remains_is_what_damage_has_left_of_the_modified_life(response):
+    bands, block = BandEstimator(SCENE, response), synthetic_block(SCENE, [0.1], slips=(0.02, 0.02))
+    block["damage"] = 0.25
+    bands.take(block)
+    assert np.allclose(bands.remaining_life, 0.75 * block["modified_rating_life"])
+
+
 def test_diagnostics_show_both_edges_with_their_subject(response):
     live = LiveEstimation(SCENE, response)
     assert live.values(0.0) == {}
@@ -320,6 +327,7 @@ def test_a_measured_cage_moves_the_prediction_to_it_and_narrows_the_bands(calibr
     life = np.concatenate([each.numbers for each in bands])[:, 1]
     assert np.ptp(np.log(life[-1, 1:])) < 0.5 * np.ptp(np.log(life[0, 1:])), "what shares its cause with slip is known better, too"
     assert live.is_calibrated and live.remark == "calibrated by measurements"
+    assert not live.accept_change(), "there was no change"
 
 
 def test_estimates_come_every_interval_and_close_in_on_the_field_that_was_hidden(calibrated):

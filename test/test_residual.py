@@ -148,6 +148,15 @@ def test_measurements_rarer_than_batches_are_judged_one_by_one():
     assert one.verdict(799.0) == "slips more than predicted"
 
 
+def test_a_restarted_monitor_is_as_one_that_has_never_measured():
+    fresh, restarted = monitor(), monitor()
+    feed(restarted, 40.3, 0.02, 0.0, np.random.default_rng(5))
+    restarted.restart()
+    for one in (fresh, restarted):
+        feed(one, 45.0, 0.01, 100.0, np.random.default_rng(6))
+    assert restarted.learned == fresh.learned and restarted.values(145.0) == fresh.values(145.0)
+
+
 def test_settings_that_cannot_be_are_refused():
     with pytest.raises(ValueError, match="30 or more"):
         ResidualDetection(batch=10.0)

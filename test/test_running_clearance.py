@@ -305,7 +305,9 @@ def test_the_stress_at_the_bore_is_that_of_fit_and_rotation():
     b, c = 25.0135e-3, 27.875e-3
     pressure = 2.06e11 * ring_on_shaft(30e-6, Layer(0.0, b, *STEEL), Layer(b, c, *STEEL))
     assert at_rest == pytest.approx(pressure * (c * c + b * b) / (c * c - b * b), rel=1e-10)
-    assert largest_hoop_stress(scene.bearing, parts, 6000.0) > at_rest
+    turning = largest_hoop_stress(scene.bearing, parts, 6000.0)
+    free = largest_hoop_stress(scene.bearing, mounted(scene.bearing, load_scene("deng2017_table1", [COLD]).mounting), 6000.0)
+    assert at_rest < turning < at_rest + free, "the fit loosens while the ring grows"
 
 
 def test_tables_of_fits_and_clearances_are_to_the_digit_those_that_were_compared_with_printed_ones():

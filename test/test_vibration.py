@@ -25,8 +25,8 @@ from bearing_sim.vibration.comb import families, orders_of, spectra
 from bearing_sim.vibration.order_tracking import recorded_shaft
 from bearing_sim.vibration.phase import Track, follow, mean_rate, smoothed
 from bearing_sim.vibration.reading import read_vibration
-from bearing_sim.vibration.signal import Band, Spectrum, VibrationError
-from bearing_sim.vibration.synthetic import Machine, record
+from bearing_sim.vibration.signal import Band, Spectrum, Vibration, VibrationError
+from bearing_sim.vibration.synthetic import Machine, _turns, record
 
 ROLLERS, SIZE, RATE = 13, 0.19, 25_600.0
 SPEED = 3000.0 * math.pi / 30.0
@@ -90,6 +90,14 @@ def test_the_lines_of_both_raceways_add_up_to_the_rollers_whatever_the_cage_does
         assert outer_line + inner_line == pytest.approx(ROLLERS) and outer_line == pytest.approx(ROLLERS * ratio)
 
 
+def test_what_modulates_the_impacts_of_a_ring_or_roller_gives_sidebands_up_to_the_second():
+    by_name, ratio, passes = {family.name: family for family in families(ROLLERS)}, 0.4, 5.2
+    for name, line, modulation in (("inner_ring", ROLLERS * (1.0 - ratio), 1.0), ("roller", passes, ratio)):
+        orders = orders_of(by_name[name], ratio, passes)[0]
+        for shift in (-2, -1, 0, 1, 2):
+            assert np.min(np.abs(orders - line - shift * modulation)) < 1e-9, (name, shift)
+
+
 def test_slip_below_two_percent_is_claimed_only_with_measured_diameters(outer):
     synthetic, found = outer
     assert found.claims_slip and abs(found.slip - (1.0 - synthetic.ratio / Geometry(ROLLERS, SIZE).ideal_ratio)) < 3.0 * found.slip_error
@@ -121,6 +129,27 @@ def test_a_smoothed_phase_errs_as_it_states_and_leaves_out_what_went_astray():
             smooth = smoothed(Track(places, phases, 1.0))
             scaled.append(np.sqrt(np.mean((smooth.phases - course) ** 2)) / smooth.error)
         assert 0.6 < np.mean(scaled) < 1.35
+
+
+def test_phases_stand_in_the_middles_of_their_segments():
+    track = follow(np.cos(0.8 * np.pi * np.arange(6400) / 64), 64, np.array([0.4]), np.array([1.0]), np.ones(1), 9)
+    assert np.allclose(track.places, np.arange(1, 10) * 10.0, atol=0.1), "nine segments of 20 turns, half overlapping, in 100 turns"
+
+
+def test_a_ramp_of_a_synthetic_shaft_is_linear_and_about_its_mean_speed():
+    time = np.linspace(0.0, 2.0, 4001)
+    speeds = np.diff(_turns(time, 50.0, 0.1)) / np.diff(time)
+    assert np.allclose(speeds, np.linspace(47.5, 52.5, 4000), rtol=1e-4)
+
+
+def test_a_rate_from_which_a_bearing_can_be_seen_is_named_and_enough():
+    samples, geometry = np.random.default_rng(2).normal(size=4096), Geometry(ROLLERS)
+    with pytest.raises(VibrationError, match="too slow") as refusal:
+        analyse(Vibration(samples, 1000.0), geometry, SPEED)
+    enough = float(re.search(r"at least ([\d.]+) Hz", str(refusal.value))[1])
+    with pytest.raises(VibrationError, match="too slow"):
+        analyse(Vibration(samples, 0.999 * enough), geometry, SPEED)
+    assert not analyse(Vibration(samples, 1.001 * enough), geometry, SPEED).found
 
 
 def test_the_phase_of_a_line_is_followed_through_noise():
@@ -211,6 +240,12 @@ def test_every_format_gives_the_samples_their_rate_and_a_recorded_speed(suffix, 
     assert np.allclose(found.shaft_speed, SPEEDS * math.pi / 30.0, atol=1e-6)
     with pytest.raises(VibrationError, match="which channel|--channel"):
         read_vibration(path)
+
+
+def test_a_recorded_speed_has_as_many_values_as_the_vibration(tmp_path):
+    np.savez(tmp_path / "r.npz", a=SAMPLES, speed=SPEEDS[:-1])
+    with pytest.raises(VibrationError, match="speed has 1999 values and a 2000"):
+        read_vibration(tmp_path / "r.npz", "a", 2000.0, speed_channel="speed")
 
 
 def test_sounds_and_single_arrays_need_no_name(tmp_path):
