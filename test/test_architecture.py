@@ -34,10 +34,10 @@ ROOMS = {
     "recording": ("lz4 mcap numpy pyarrow rosbags yaml zstandard", "files scene model messages"),
     "stored_state": ("numpy platformdirs pyarrow", "files scene model messages recording"),
     "inputs": ("numpy pyarrow pydantic yaml", "extras files scene simulation messages recording"),
-    "vibration": ("h5py matplotlib numpy pyarrow scipy", "extras files scene recording"),
+    "vibration": ("h5py matplotlib numpy pyarrow scipy", "extras files scene messages recording"),
     "monitoring": ("numpy scipy", "scene physics model messages"),
     "estimation": ("numpy platformdirs scipy", "files scene numerics model levels messages monitoring"),
-    "runtime": ("numpy", "scene numerics model levels simulation messages recording stored_state inputs monitoring estimation"),
+    "runtime": ("numpy", "scene numerics model levels simulation messages recording stored_state inputs monitoring estimation vibration"),
     "view": ("PIL numpy platformdirs rerun rerun_cli", "files scene messages recording"),
     "sweep": ("numpy pandas pyarrow matplotlib distributed xarray", "files scene numerics model levels simulation recording"),
     "fleet": ("numpy pyarrow", "files scene levels simulation messages recording inputs model runtime sweep"),
@@ -52,7 +52,7 @@ ROOMS = {
     ),
     "ros": (
         "click launch launch_ros numpy rcl_interfaces rclpy rich rosgraph_msgs std_srvs",
-        "extras files scene numerics simulation messages recording stored_state inputs estimation runtime view",
+        "extras files scene numerics simulation messages recording stored_state inputs estimation vibration runtime view",
     ),
     "programs": ("", "extras"),
 }

@@ -72,6 +72,7 @@ SUBJECTS = (
     Subject("pocket_force", "pocket force against its thresholds", ("bearing.pocket_force",), ("largest pocket force [N]",)),
     Subject("clearance", "running clearance against its thresholds", ("bearing.clearance",), ("running clearance",)),
     Subject("residual", "measured against predicted slip and temperatures", ("residual.",), ("residual ",)),
+    Subject("vibration", "the cage speed out of blocks of the topic `vibration`", ("vibration.",), ("vibration: ",)),
     Subject("estimate", "bands of the results, and the fields that measurements calibrate", ("estimate.", "calibration."), ("estimate: ",)),
     Subject("validity", "whether the laws are used within their ranges", ("validity.",)),
     Subject("scene", "whether the scene is plausible", ("scene.",)),

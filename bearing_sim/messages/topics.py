@@ -340,6 +340,16 @@ INPUTS = {
 ALWAYS_KNOWN = tuple(name for name in INPUTS if name not in RING_TEMPERATURES)
 """The input channels that have a value at every instant of a run."""
 
+VIBRATION = Topic(
+    "vibration",
+    "std_msgs/msg/Float64MultiArray",
+    "where the scene asks for `vibration.window`: a block of samples of an accelerometer, in any unit; `layout.dim` has an entry with the label "
+    "`rate` and the sampling rate [Hz] as size, and may have one with the label `sequence` and the number of the block, by which lost ones are "
+    "noticed",
+    lambda stamp_ns, samples: {"layout": {"dim": [], "data_offset": 0}, "data": samples},
+)
+"""The topic from which a live run finds the cage speed (see `bearing_sim.vibration.meter`); recordings have the cage speed, not the blocks."""
+
 MEASURED, RESIDUAL = "cage_speed_measured", "cage_slip_residual"
 MEASUREMENTS = {
     topic.name: topic

@@ -16,6 +16,7 @@ from rclpy.lifecycle import LifecycleNode
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.serialization import deserialize_message
 from rclpy.subscription import Subscription
 from std_srvs.srv import SetBool, Trigger
 
@@ -42,6 +43,7 @@ from bearing_sim.scene.uncertainty import messages, with_values
 from bearing_sim.simulation import IntegrationError, Simulation
 from bearing_sim.stored_state.keeper import RECORD, StateKeeper
 from bearing_sim.stored_state.state_file import checked_serial, default_path
+from bearing_sim.vibration.reading import block_of
 from bearing_sim.view.viewer import stream_url, viewer_command
 
 _DIAGNOSTICS_PERIOD = 1.0  # [s] (REP 107)
@@ -340,6 +342,8 @@ class BearingInterface:
         for channel, topic in topics.inputs(self.scene).items():
             self._subscribe(channel, _SCALAR if shared.input_type == "scalar" and _SCALAR in topics.input_types(channel) else topic.ros_type)
         self._subscribe(topics.MEASURED, topics.MEASUREMENTS[topics.MEASURED].ros_type)
+        if self.scene.vibration.is_asked:
+            self._subscribe_to_vibration()
         self._log(f"publishing {', '.join(self._outputs.topic_names)}")
         self._log(f"ready: listening to {', '.join(subscription.topic_name for subscription in self._subscriptions.values())}")
         if self._compiling is not None:
@@ -422,7 +426,7 @@ class BearingInterface:
             self.live.record_diagnostics(condition, now_ns)
 
     def _count_publishers(self) -> None:
-        names = {channel: subscription.topic_name for channel, subscription in self._subscriptions.items()}
+        names = {channel: each.topic_name for channel, each in self._subscriptions.items() if channel != topics.VIBRATION.name}
         unused = {channel: self._node.resolve_topic_name(self._topic_name(channel)) for channel in topics.INPUTS if channel not in names}
         for channel, name in (names | unused).items():
             self.live.note_publishers(channel, self._node.count_publishers(name))
@@ -525,6 +529,29 @@ class BearingInterface:
             return
         quiet = SubscriptionEventCallbacks(use_default_callbacks=False)  # any publisher matches: nothing to watch
         self._subscriptions[channel] = self._listener.create_subscription(kind, name, receive, _INPUT_QOS, event_callbacks=quiet, raw=True)
+
+    def _subscribe_to_vibration(self) -> None:
+        """Listen to blocks of vibration; not in simulated time, where a result would come at an instant that depends on the machine."""
+        if follows_clock(self._node):
+            self._log("vibration: not listened to with use_sim_time; find the cage speed with bearing-sim vibration, and send cage_speed_measured")
+            return
+        topic = topics.VIBRATION
+        kind, name = message_class(topic.ros_type), self._topic_name(topic.name)
+        quiet = SubscriptionEventCallbacks(use_default_callbacks=False)
+        subscription = self._listener.create_subscription(
+            kind, name, partial(self._receive_vibration, kind), _INPUT_QOS, event_callbacks=quiet, raw=True
+        )
+        self._subscriptions[topic.name] = subscription
+
+    def _receive_vibration(self, kind: type, cdr: bytes) -> None:
+        live = self.live
+        if live is None:  # the message was on its way when the run ended
+            return
+        try:
+            block = block_of(deserialize_message(cdr, kind))
+        except Exception as error:  # its type depends on the middleware
+            block = f"{len(cdr)} bytes are no block of samples: {' '.join(str(error).split())}"
+        live.offer_vibration(block, self._now_ns())
 
     @property
     def _listener(self) -> Node | PolledSubscriptions:

@@ -36,6 +36,8 @@ from bearing_sim.scene.fidelity import lower_levels
 from bearing_sim.scene.scene import Scene, Thresholds
 from bearing_sim.simulation import Simulation
 from bearing_sim.stored_state.keeper import StateKeeper
+from bearing_sim.vibration.meter import CageSpeedMeter
+from bearing_sim.vibration.reading import Block
 
 _REPLACED_WITHIN = 10.0  # [s] for the reset of a model that is held
 _CLOCKS = 3  # times 0 by clocks before the present one under which a recording may have its stamps
@@ -315,6 +317,8 @@ class Model:
         values |= self._estimation.values(now) if self._estimation is not None else {}
         said = remarks(self.gate, self.solver, self._running_level) | self.sinks.remarks
         said["estimate"] = "nothing is estimated: the scene does not ask for it" if self._estimation is None else self._estimation.remark
+        said["vibration"] = "not listened to: the scene does not ask for it, or the run has simulated time"
+        said |= self._remarks()
         said["state"] = "nothing is remembered" if self.keeper is None else str(self.keeper.path)
         return Condition(self._events(now), values, said)
 
@@ -355,6 +359,10 @@ class Model:
 
     def _values(self) -> dict[str, object]:
         """Return the diagnostics values of the kind of run."""
+        return {}
+
+    def _remarks(self) -> dict[str, str]:
+        """Return what the kind of run says about subjects without events, by name."""
         return {}
 
     def _events(self, now: float) -> list[Event]:
@@ -453,6 +461,7 @@ class LiveModel(Model):
         self._wall_clock = WallClock(start_ns, clock, receiver)
         self._published_time = -math.inf
         self._anchors, self._output_count = 0, OutputCount()
+        self._meter = CageSpeedMeter(scene) if scene.vibration.is_asked else None
         self.solver.start()
 
     def tick(self, now_ns: int) -> None:
@@ -483,6 +492,17 @@ class LiveModel(Model):
             self.solver.post(self.gate.held)
         return None
 
+    def offer_vibration(self, block: Block | str, now_ns: int) -> None:
+        """Take a block of vibration, or why a message cannot be read as one; nothing is done where the scene does not ask for it."""
+        if self._meter is None:
+            return
+        self.tick(now_ns)
+        now = self.run_time(now_ns)
+        speed = self.gate.held.shaft_speed if self.gate.accepted["shaft_speed"] else math.nan
+        events = [self._meter.refuse(block, now)] if isinstance(block, str) else self._meter.take(block, now, speed)
+        for event in events:
+            self._note(event)
+
     def set_oil_temperature(self, temperature: float, now_ns: int) -> None:
         """Set the oil temperature [K] (see `Model.set_oil_temperature`)."""
         self.gate.hold_oil_temperature(temperature)
@@ -494,6 +514,9 @@ class LiveModel(Model):
         """Pass results of the solver on and review the health (see `Model.collect`)."""
         if self.gate.expire(self.run_time(now_ns)) and self.gate.accepted["shaft_speed"]:
             self.solver.post(self.gate.held)
+        if self._meter is not None:
+            for reading in self._meter.readings(self.gate.held.shaft_speed):
+                self.offer(topics.MEASURED, reading, None, now_ns)
         self._output_count.take(self.run_time(now_ns), self._publish_decimator.picked, self._publish_decimator.left_out)
         return super().collect(now_ns)
 
@@ -545,7 +568,17 @@ class LiveModel(Model):
         return self._published_time
 
     def _values(self) -> dict[str, object]:
-        return {"outputs_left_out": self._publish_decimator.left_out, "outputs_left_out in the last five seconds": self._output_count.recent}
+        left_out = {"outputs_left_out": self._publish_decimator.left_out, "outputs_left_out in the last five seconds": self._output_count.recent}
+        return left_out if self._meter is None else left_out | self._meter.values
+
+    def _remarks(self) -> dict[str, str]:
+        return {} if self._meter is None else {"vibration": self._meter.remark}
+
+    def close(self, timeout: float = 2.0) -> bool:
+        """End the run (see `Model.close`)."""
+        if self._meter is not None:
+            self._meter.close()
+        return super().close(timeout)
 
     def _further_events(self, now: float) -> list[Event]:
         flow = self.gate.check(now)

@@ -28,6 +28,7 @@ from bearing_sim.scene.quantity import check, quantity, record
 from bearing_sim.scene.ratings import rate
 from bearing_sim.scene.support import Support, support_errors
 from bearing_sim.scene.uncertainty import Range, messages, nearest, quantities, range_errors, with_values
+from bearing_sim.scene.vibration import VibrationInput
 
 NO_CLEARANCE_LIMIT = -1e-3
 """A threshold of the running clearance that none falls below [m]."""
@@ -360,6 +361,7 @@ class Scene:
     table: SteadyTable = field(default_factory=SteadyTable)
     uncertainty: tuple[Range, ...] = ()  # a mapping of field to range in a file, see `bearing_sim.scene.uncertainty`
     estimation: Estimation = field(default_factory=Estimation)
+    vibration: VibrationInput = field(default_factory=VibrationInput)
 
     def at(
         self,

@@ -581,14 +581,19 @@ class Block(NamedTuple):
     ----------
     samples : shape (n,).
     rate : of the samples [Hz]; NaN where the message does not say it.
+    sequence : number of the block; None where the message does not say it.
     """
 
     samples: np.ndarray
     rate: float
+    sequence: int | None = None
 
 
 def block_of(message, field: str = "data") -> Block:
-    """Return the samples of a message and their rate, which a std_msgs/Float64MultiArray tells as the size of a dimension with the label ``rate``.
+    """Return the samples of a message, their rate and number.
+
+    A std_msgs/Float64MultiArray tells the rate as the size of a dimension with the label ``rate``, and its number as that of one labelled
+    ``sequence``.
 
     Parameters
     ----------
@@ -611,8 +616,8 @@ def block_of(message, field: str = "data") -> Block:
         raise ValueError(f"{field} holds no numbers") from None
     if samples.ndim != 1:
         raise ValueError(f"{field} holds no row of numbers")
-    rates = [float(each.size) for each in getattr(getattr(message, "layout", None), "dim", ()) if str(each.label) == "rate"]
-    return Block(samples, rates[0] if rates and rates[0] > 0.0 else math.nan)
+    told = {str(each.label): int(each.size) for each in getattr(getattr(message, "layout", None), "dim", ())}
+    return Block(samples, float(told["rate"]) if told.get("rate", 0) > 0 else math.nan, told.get("sequence"))
 
 
 def _bag(path: Path, wanted: tuple[str, ...]) -> Channels:

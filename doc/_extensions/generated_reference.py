@@ -197,7 +197,7 @@ def input_topics() -> str:
     """Return the topics that the node subscribes to."""
     from bearing_sim.messages import topics
 
-    return table(["topic", "type", "meaning"], _topic_rows([*topics.INPUTS.values(), topics.MEASUREMENTS[topics.MEASURED]]))
+    return table(["topic", "type", "meaning"], _topic_rows([*topics.INPUTS.values(), topics.MEASUREMENTS[topics.MEASURED], topics.VIBRATION]))
 
 
 def output_topics() -> str:
@@ -422,6 +422,10 @@ EVENTS = {
     "state.returned": ("WARN", "a bearing that was taken out is in service again"),
     "state.unlocked": ("WARN", "the file system has no locks, which would keep other nodes from using the same state"),
     "validity.axial_load": ("WARN", "the axial load on flanges is outside of what the model of roller ends is for"),
+    "vibration.behind": ("WARN", "windows of vibration are complete faster than this machine analyses them; one is left out"),
+    "vibration.gap": ("WARN", "blocks of vibration are lost, late or of another rate; the window begins again"),
+    "vibration.rate": ("WARN", "blocks of vibration arrive faster or slower than their sampling rate says; the window is left out"),
+    "vibration.refused": ("WARN", "a block of vibration cannot be used"),
     "validity.bearing": ("WARN", "what decides about the bearing is estimated, or lies outside of what its description is for"),
     "validity.clearance": ("WARN", "the inner ring is stressed beyond its strength, or has lost its fit on the shaft"),
     "validity.contact": ("WARN", "the elastic contact is outside of its range, such as a Hertz pressure above 4 GPa"),
@@ -440,7 +444,7 @@ EVENTS = {
 """Severity and meaning of each kind of event; `events` compares the kinds with the code."""
 _STATES = {"run.unconfigured", "run.inactive", "run.finalized"}  # kinds that the node makes of the names of its states
 _KIND = re.compile(rf"({'|'.join(sorted({kind.partition('.')[0] for kind in EVENTS}))})\.(?!mcap|rrd|name$|cage$)[a-z_]+")
-_ROOMS_WITH_EVENTS = ("inputs", "model", "monitoring", "estimation", "recording", "ros", "runtime", "stored_state", "view")
+_ROOMS_WITH_EVENTS = ("inputs", "model", "monitoring", "estimation", "recording", "ros", "runtime", "stored_state", "vibration", "view")
 
 
 def events() -> str:

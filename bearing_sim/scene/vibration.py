@@ -1,0 +1,23 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""What a live run makes of the vibration that is measured at a bearing: its cage speed, where something shows.
+
+A scene that does not ask for it does not listen to the vibration and pays nothing.
+"""
+
+from bearing_sim.scene.quantity import quantity, record
+
+
+@record
+class VibrationInput:
+    """Blocks of samples of an accelerometer, from which the cage speed is found window by window."""
+
+    window: quantity(
+        "s", "length of the windows; 0: the topic vibration is not listened to; some hundred turns of the shaft are good", 0.0, 600.0
+    ) = 0.0
+    rate: quantity("Hz", "sampling rate of blocks that do not say theirs; 0: they must", 0.0, 1e7) = 0.0
+    tolerance: quantity("", "within which the measured shaft speed is right: the shaft's own lines are searched there", 1e-4, 0.2, "%") = 0.01
+
+    @property
+    def is_asked(self) -> bool:
+        """Whether the scene asks for the cage speed out of vibration."""
+        return self.window > 0.0
