@@ -2,6 +2,7 @@
 """``bearing-sim study estimator``: how good the calibration of a running model is."""
 
 import math
+import statistics
 
 import click
 
@@ -19,27 +20,40 @@ _OIL = "lubricant.temperature"  # an input of every machine
 @click.option("--runs", default=60, show_default=True, type=click.IntRange(1, 10_000), help="Number of machines with hidden fields.")
 @click.option("--steps", default=20, show_default=True, type=click.IntRange(0, 10_000), help="Number of machines whose mixture fraction steps.")
 @click.option("--hours", default=10_000.0, show_default=True, type=click.FloatRange(min=0.0), help="Hours of each kind of unchanged residual.")
+@click.option("--faults", default=5, show_default=True, type=click.IntRange(0, 1000), help="Machines with each hidden fault, up and down.")
+@click.option("--level", default="steady", show_default=True, type=click.Choice(["steady", "slip"]), help="Level of the scene and of the machines.")
+@click.option(
+    "--measure",
+    "measured",
+    multiple=True,
+    type=click.Choice(["temperatures", "clearance"]),
+    help="What sensors measure besides the cage speed; can be repeated.",
+)
 @click.option("--seed", default=1, show_default=True, type=click.IntRange(min=0), help="Seed of the machines and of the noise.")
 @executor_options
 @json_option
-def estimator(scene_name, overrides, runs, steps, hours, seed, workers, dask, as_json):
+def estimator(scene_name, overrides, runs, steps, hours, faults, level, measured, seed, workers, dask, as_json):
     """Let the estimator calibrate SCENE to machines whose hidden fields are known, and count how often it is right.
 
-    Level steady plays the machines: fields drawn from the ranges of the scene that wander, on a course of twelve plateaus of a minute, with a
-    cage sensor that has noise (0.2 points at 10 Hz), drift, 1 % wild readings and silences.  Without estimation.calibrated all uncertain fields
-    are calibrated; without a wander time in --set they wander by one standard deviation in two hours.
+    The level itself plays the machines: fields drawn from the ranges of the scene that wander, on a course of twelve plateaus of a minute, with a
+    cage sensor that has noise (0.2 points at 10 Hz), drift, 1 % wild readings and silences.  Where ring temperatures are measured, half an hour
+    passes in the middle of each plateau.  Hidden faults then show which cause is named for which.  Without estimation.calibrated all uncertain
+    fields are calibrated; without a wander time in --set they wander by one standard deviation in the time of 120 plateaus.
     """
     from bearing_sim.scene.loader import SceneError, load_scene
     from bearing_sim.scene.uncertainty import ranges_of
     from bearing_sim.studies.uncertainty import UncertaintyError
     from bearing_sim.sweep.tasks import ClusterError, JournalInUse
 
+    warm = "temperatures" in measured
     with as_usage_error(SceneError):
-        scene = load_scene(scene_name, ["level=steady", *overrides])
+        overrides = [*overrides, f"level={level}"]
+        scene = load_scene(scene_name, overrides)
         fields = [one.field for one in ranges_of(scene) if one.field != _OIL and not one.field.startswith("operating.")]
         more = [] if scene.estimation.calibrated else [f"estimation.calibrated=[{', '.join(fields)}]"]
-        more += [] if any("wander_time" in each for each in overrides) else ["estimation.drift.wander_time=2 h"]
-        scene = load_scene(scene_name, ["level=steady", *overrides, *more])
+        more += [] if any("wander_time" in each for each in overrides) else [f"estimation.drift.wander_time={62 if warm else 2} h"]
+        scene = load_scene(scene_name, [*overrides, *more])
+        _require_sensors(scene, measured)
     announce_compilation()
     from bearing_sim.studies import estimator as study
     from bearing_sim.studies.response import obtain_response
@@ -51,25 +65,54 @@ def estimator(scene_name, overrides, runs, steps, hours, seed, workers, dask, as
             return lambda done, total: show(first + (last - first) * done / max(total, 1))
 
         response = obtain_response(scene, workers, dask, in_part(0.0, 0.3))
-        machines = study.machines(scene, response, runs, seed, known=known, workers=workers, dask=dask, progress=in_part(0.3, 0.5))
+        machines = study.machines(
+            scene, response, runs, seed, known=known, pause=study.PAUSE if warm else 0.0, workers=workers, dask=dask, progress=in_part(0.3, 0.5)
+        )
         if not machines:
             raise UsageError("no machine of this scene settles at all of its operating points; give narrower ranges")
         judged = []
         for number, machine in enumerate(machines):
-            judged.append(study.judge(scene, response, machine, seed + number, known))
-            in_part(0.5, 0.8)(number + 1, len(machines))
+            judged.append(study.judge(scene, response, machine, seed + number, known, measured))
+            in_part(0.5, 0.7)(number + 1, len(machines))
         found = study.findings(response, judged, scene.estimation.calibrated)
         detected = []
         if steps and _QUANTITY in response.names:
             detected = study.detections(scene, response, _QUANTITY, _STEP, steps, seed, known=known, workers=workers)
-        show(0.9)
+        verdicts = []
+        if faults:
+            verdicts = study.verdicts(scene, response, faults, seed, known=known, workers=workers, dask=dask, progress=in_part(0.7, 0.9))
         kinds = study.RESIDUALS if hours else {}
         alarms = {name: study.false_alarms(scene, hours, *kind, seed) for name, kind in kinds.items()}
     if as_json:
         steps_found = [each._asdict() for each in detected]
-        print_json({"scene": scene.name, **found._asdict(), "steps": steps_found, "hours_of_residuals": hours, "false_alarms": alarms})
+        verdicts_json = [{**each._asdict(), "fault": each.fault._asdict()} for each in verdicts]
+        numbers = {"scene": scene.name, **found._asdict(), "steps": steps_found, "faults": verdicts_json}
+        print_json({**numbers, "hours_of_residuals": hours, "false_alarms": alarms})
     else:
         _print(scene, found, detected, hours, alarms)
+        _print_faults(study.confusion(verdicts), verdicts)
+
+
+def _require_sensors(scene, measured) -> None:
+    """Raise `UsageError` where the scene computes nothing that a sensor could be compared with."""
+    if "temperatures" in measured and scene.heat.law != "network":
+        raise UsageError(f"--measure temperatures: {scene.name} computes no ring temperatures; give it heat.law: network, or leave the option away")
+
+
+def _print_faults(table, verdicts) -> None:
+    """Print which cause was named for which fault."""
+    names = list(dict.fromkeys([*table, *(name for counts in table.values() for name in counts)]))
+    rows = []
+    for group, counts in table.items():
+        mine = [one for one in verdicts if one.fault.group == group]
+        named = ", ".join(f"{name} {counts[name]}" for name in sorted(names, key=lambda name: -counts[name]) if counts[name])
+        evidences = [one.evidence for one in mine if not math.isnan(one.evidence)]
+        evidence = f"{statistics.median(evidences):.0f}" if evidences else "-"
+        size, clear = 100 * statistics.median(one.size for one in mine), sum(one.told_apart for one in mine)
+        rows.append((f"{group} ({mine[0].fault.what})", f"{size:.2f} points", f"{counts[group]} of {len(mine)}", str(clear), evidence, named))
+    if rows:
+        columns = ("hidden fault", "changes slip by", "named first", "told apart", "evidence [ln]", "what was named")
+        print_rows("causes that were named for hidden faults", columns, rows)
 
 
 def _print(scene, found, detected, hours, alarms) -> None:
@@ -81,7 +124,9 @@ def _print(scene, found, detected, hours, alarms) -> None:
         ("slip within its 90 % interval, a minute later", late),
         *((f"error of slip, {when}: calibrated, stated, open loop", _points(found, k)) for k, when in enumerate(("new", "a minute later"))),
         ("machines worse than open loop by more than is stated", f"{found.worse_runs} of {found.runs}"),
-        ("single predictions worse than open loop by more than is stated", f"{100 * found.worse_instants:.2f} %"),
+        ("single predictions worse than open loop by more than is stated", f"{found.worse_instants} of {found.instants}"),
+        ("the same, if predictions were exactly as sure as they say", f"{found.worse_expected:.1f}"),
+        ("processor time at 10 Hz", f"{100 * found.core:.2f} % of a core"),
         ("alarms though nothing stepped", str(found.alarms)),
     ]
     if detected:

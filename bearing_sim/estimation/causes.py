@@ -20,7 +20,7 @@ from scipy.special import logsumexp, ndtri
 from bearing_sim.estimation.posterior import SLIP, Posterior
 from bearing_sim.estimation.response import ANSWERS, ResponseModel, restored, transformed
 from bearing_sim.scene.scene import Scene
-from bearing_sim.scene.uncertainty import quantities
+from bearing_sim.scene.uncertainty import quantities, value_at
 
 OIL_QUANTITY, OIL, TRACTION, CLEARANCE = "oil quantity", "viscosity or temperature of the oil", "traction of the oil", "clearance"
 COOLING, CAGE, LOAD, SENSOR, NONE = "cooling", "cage and its guide", "load", "cage speed sensor", "none of the modelled causes"
@@ -31,6 +31,13 @@ _GROUPS = {  # by what the path of a field contains
     CAGE: ("cage.",),
     CLEARANCE: ("clearance", "radius", "diameter", "interference", "d_value", "mounting"),
     COOLING: ("heat.",),
+}
+_NEEDED = {  # fields of which one that a scene has needs a range, so that the group is among the causes
+    OIL_QUANTITY: ("lubricant.mixture_fraction",),
+    TRACTION: ("lubricant.traction_scale",),
+    CAGE: ("bearing.cage.guide_clearance", "bearing.cage.pocket_clearance"),
+    CLEARANCE: ("bearing.clearance", "bearing.outer_raceway.low_radius"),
+    COOLING: ("heat.convection_factor", "heat.oil_flow"),
 }
 _SIZES, _FINE = 41, 20  # sizes of a change at which its effect is computed, and parts of the way between two at which it is interpolated
 _TEMPERATURE_CHANGE = 15.0  # K; standard deviation of an oil temperature given wrongly, or of a viscosity that corresponds to it (assumption)
@@ -106,6 +113,17 @@ def gathered(evidence: Evidence) -> Evidence:
 
     conditions = np.stack([mean(column) for column in evidence.conditions.T], axis=1)
     return Evidence(conditions, mean(evidence.own), mean(evidence.residual), 1.0 / sums + _LEAST_ERROR**2)
+
+
+def not_modelled(scene: Scene, response: ResponseModel) -> dict[str, str]:
+    """Return the groups of causes that cannot be named because no field of theirs has a range, each with the field to give one."""
+    modelled = {group_of(name) for name in response.names}
+    found = {}
+    for group, fields in _NEEDED.items():
+        own = [field for field in fields if value_at(scene, field) is not None]
+        if own and group not in modelled:
+            found[group] = own[0]
+    return found
 
 
 class _Departures:

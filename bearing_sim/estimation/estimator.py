@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bearing_sim.estimation.causes import Cause, Evidence, causes_of
+from bearing_sim.estimation.causes import Cause, Evidence, causes_of, not_modelled
 from bearing_sim.estimation.posterior import CLEARANCE, DRAWS, INNER, OUTER, SLIP, Posterior, prior_scores
 from bearing_sim.estimation.response import ResponseModel
 from bearing_sim.messages.events import Event, Level
@@ -73,13 +73,14 @@ class Reading(NamedTuple):
 
 
 class Batch(NamedTuple):
-    """Readings of an interval in which conditions hold; ``residual`` is their robust mean, of that ``variance``."""
+    """Readings of an interval in which conditions hold; ``residual`` is their robust mean, of that ``variance``, ``count`` how many there are."""
 
     time: float
     conditions: np.ndarray
     own: float
     residual: float
     variance: float
+    count: int
 
 
 class Estimate(NamedTuple):
@@ -155,6 +156,14 @@ class _Scatter:
     def _fade(self, count: int) -> None:
         kept = math.exp(-count / _SCATTER_MEMORY)
         self._squares, self._count, self._products, self._pairs = (kept * each for each in (self._squares, self._count, self._products, self._pairs))
+
+
+def _weighted_mean(values: np.ndarray, errors: np.ndarray) -> tuple[float, float]:
+    """Return the mean of readings that bring their standard errors, and its variance; readings far from their median are left out."""
+    squares = np.maximum(errors, 1e-9) ** 2
+    near = np.abs(values - np.median(values)) <= _FARTHEST * np.sqrt(squares + np.median(squares))
+    weights = (near if near.any() else np.ones_like(squares)) / squares
+    return float(weights @ values / weights.sum()), float(1.0 / weights.sum())
 
 
 class Estimator:
@@ -345,12 +354,11 @@ class Estimator:
         residuals, errors = (np.array([getattr(each, name) for each in readings]) for name in ("residual", "error"))
         told = np.isfinite(errors)
         if told.all():
-            weights = 1.0 / np.maximum(errors, 1e-9) ** 2
-            mean, variance = float(weights @ residuals / weights.sum()), float(1.0 / weights.sum())
+            mean, variance = _weighted_mean(residuals, errors)
         else:
             mean, variance = self._scatter.mean(residuals[~told])
         conditions = np.mean([each.conditions for each in readings], axis=0)
-        batch = Batch(readings[-1].time, conditions, float(np.mean([each.own for each in readings])), mean, variance)
+        batch = Batch(readings[-1].time, conditions, float(np.mean([each.own for each in readings])), mean, variance, len(readings))
         self._judge(batch)
 
     def _judge(self, batch: Batch) -> None:
@@ -401,7 +409,7 @@ class Estimator:
 
     def _learn(self, posterior: Posterior, batch: Batch) -> None:
         wild = self._settings.noise.outliers, _WIDE
-        outcome = posterior.take(SLIP, batch.conditions, batch.own, batch.residual, batch.variance, wild)
+        outcome = posterior.take(SLIP, batch.conditions, batch.own, batch.residual, batch.variance, wild, batch.count)
         self._updates += 1
         self._wild.append(outcome.wild > 0.5)
 
@@ -475,7 +483,7 @@ class Estimator:
         """Return the events that hold, stamped ``now`` [s]: a change with its likeliest cause, and measurements that the ranges do not explain."""
         events = []
         for event in self._residual.events(now):
-            named = f"; {explained(self.change.causes)}" if self.change is not None and self.change.causes else ""
+            named = f"; {self._explained_change()}" if self.change is not None and self.change.causes else ""
             events.append(event._replace(kind="calibration.change", reason=event.reason + named))
         if len(self._wild) == _CONTRADICTION and sum(self._wild) > _CONTRADICTED * _CONTRADICTION:
             reason = (
@@ -484,6 +492,9 @@ class Estimator:
             )
             events.append(Event(now, Level.WARN, "calibration.contradicted", "measured cage", reason))
         return events
+
+    def _explained_change(self) -> str:
+        return explained(self.change.causes, not_modelled(self._scene, self._response))
 
     def values(self, now: float) -> dict[str, object]:
         """Return diagnostics values at ``now`` [s], with the unit in each key; empty before the first measurement."""
@@ -498,15 +509,24 @@ class Estimator:
         if groups:
             found["known only together"] = "; ".join(" and ".join(group) for group in groups)
         if self.change is not None and self.change.causes:
-            found["likeliest cause of the change"] = explained(self.change.causes)
+            found["likeliest cause of the change"] = self._explained_change()
         return found | self._residual.values(now)
 
 
-def explained(causes: Sequence[Cause]) -> str:
-    """Return causes in a sentence: the likeliest, its size and evidence, and those that cannot be told from it."""
+def explained(causes: Sequence[Cause], missing: Mapping[str, str]) -> str:
+    """Return causes in a sentence: the likeliest, its size and evidence, those that cannot be told from it, and those that cannot be named.
+
+    Parameters
+    ----------
+    causes : the likeliest first.
+    missing : see `bearing_sim.estimation.causes.not_modelled`.
+    """
     first, *others = causes
     rivals = [each for each in others if each.probability > first.probability / 3.0]
     text = f"likeliest cause: {first.text} (probability {100 * first.probability:.0f} %)"
     if rivals:
         text += "; not told apart from it: " + ", ".join(f"{each.text} ({100 * each.probability:.0f} %)" for each in rivals)
+    if missing:
+        wanted = ", ".join(f"{group} (give uncertainty.{field})" for group, field in missing.items())
+        text += f"; cannot be named without a range: {wanted}"
     return text

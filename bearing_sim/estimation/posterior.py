@@ -8,7 +8,7 @@ leaves a mistake behind.
 
 **The model errs.** With all fields right it would still depart from the machine, by an error that is a Gaussian process over operating points
 (Kennedy and O'Hagan, J. R. Stat. Soc. B 63, 2001, 425).  So a long measurement at one point is no proof of the fields: only what changes from
-point to point tells them apart.
+point to point tells them apart.  The response errs besides, by a fraction of the departure that it predicts (`ResponseModel.error_scales`).
 
 **Draws.** The posterior is represented by m equally probable draws of the fields' scores (`bearing_sim.estimation.response`).  Whenever the
 rows have changed enough they take steps of Markov chains whose stationary distribution is the posterior: differences of other draws
@@ -35,6 +35,7 @@ SLIP, INNER, OUTER, CLEARANCE = MEASURED = ("cage_slip", "inner_ring_temperature
 DRAWS = 512
 _DISTANCES = (0.5, 0.7, 25.0)  # over which errors of the model forget each other: logarithms of speed and of load, and temperature [K] (assumption)
 _LOAD_FLOOR = 0.05  # of the scene's load; loads below it count as the same condition (assumption)
+_RESPONSE_DISTANCES = 0.5  # of those, over which errors of the response forget each other (as its errors by cross validation do)
 _SAME, _ALIKE = 0.97, 0.5  # correlation of errors from which on points share a row, and, where there are many rows, may share one
 _MOST_ROWS = 32  # of each measured quantity
 _NOTICED = 0.15  # change of a row, over its standard deviation, after which draws move
@@ -76,12 +77,6 @@ class Row:
     prior: float
 
 
-def slip_error(scene: Scene, response: ResponseModel, slip: float) -> float:
-    """Return the standard deviation of the error in slip of a model all of whose fields are right, the level's and the response's, near a slip."""
-    rising = 1.0 / math.hypot(slip, SLIP_SCALE) + 1.0 / max(1.01 - slip, 0.01)
-    return math.hypot(scene.estimation.model_error.slip, float(response.errors[0]) / rising)
-
-
 def prior_scores(count: int, dimensions: int, seed: int = 0) -> np.ndarray:
     """Return draws of scores of which nothing is measured, evenly spread, shape (count, dimensions); ``count`` a power of two."""
     uniform = qmc.Sobol(d=max(dimensions, 1), scramble=True, seed=np.random.default_rng(seed)).random_base2(count.bit_length() - 1)
@@ -109,6 +104,7 @@ class Posterior:
         self._columns, self._known = np.flatnonzero(calibrated & ~known), known
         self._own_basis = response.basis_of(response.nominal[None])
         self._known_coefficients: dict[tuple, np.ndarray] = {}
+        self._known_scales: dict[tuple, tuple[float, float]] = {}
         self.restart()
 
     def restart(self) -> None:
@@ -151,42 +147,47 @@ class Posterior:
             if not self._response.outside(np.array([row.conditions]))[0]:
                 rows.append(row)
         self.rows = rows
-        self._arrange()
-        self._approach()
+        for _ in range(2):  # the response's errors follow from the draws
+            self._arrange()
+            self._approach()
 
     def wait(self, seconds: float) -> None:
-        """Let time pass in which fields wander, so that what was measured says less and less."""
+        """Let time pass in which fields wander, so that what was measured says less and less, and draws take the steps that are still due."""
         if seconds > 0.0 and self.rows:
             fraction = seconds / self._scene.estimation.drift.wander_time
-            self.rows = [replace(row, variance=row.variance + fraction * (row.prior + error**2)) for row, error in zip(self.rows, self._errors)]
+            self.rows = [replace(row, variance=row.variance + fraction * more) for row, more in zip(self.rows, self._wander)]
             self._diagonal += fraction * self._wander
+            self._go_on()
 
     def forget(self) -> None:
         """Allow for a sudden change: a field may now lie anywhere in its range."""
-        self.rows = [replace(row, variance=row.variance + row.prior + error**2) for row, error in zip(self.rows, self._errors)]
+        self.rows = [replace(row, variance=row.variance + more) for row, more in zip(self.rows, self._wander)]
         self._arrange()
         self._approach()
 
     def predict(self, quantity: str, conditions: np.ndarray, own: float) -> tuple[np.ndarray, float]:
         """Return the departure of a quantity from the level's own prediction by each draw, shape (m,), and the variance that none explains."""
         departures = self._departures(quantity, conditions, own, self._basis)
-        error = self._error(quantity, own)
+        errors = self._errors_at(quantity, conditions, own)
+        variance = float(errors @ errors)
         same = [k for k, row in enumerate(self.rows) if row.quantity == quantity]
         if not same:
-            return departures, error**2
+            return departures, variance
         beside = np.zeros(len(self.rows))
         places = np.array([self._scaled(self.rows[k].conditions) for k in same])
-        beside[same] = error * self._errors[same] * _correlation(self._scaled(conditions)[None], places)[0]
+        beside[same] = _shared(errors[None], self._errors[same], self._scaled(conditions)[None], places)[0]
         factor = cho_factor(self._covariance(), lower=True)
         gain = cho_solve(factor, beside)
-        return departures + (self._measured - self._predicted) @ gain, max(error**2 - float(beside @ gain), 0.0)
+        return departures + (self._measured - self._predicted) @ gain, max(variance - float(beside @ gain), 0.0)
 
     def drawn(self, quantity: str, conditions: np.ndarray, own: float, systematic: float = 0.0) -> np.ndarray:
         """Return draws of the departure of a quantity, shape (m,): the model's error included, and a systematic one of what was measured."""
         departures, left = self.predict(quantity, conditions, own)
         return departures + math.hypot(math.sqrt(left), systematic if self.rows else 0.0) * self._noise
 
-    def take(self, quantity: str, conditions: np.ndarray, own: float, departure: float, variance: float, wild: tuple[float, float]) -> Outcome:
+    def take(
+        self, quantity: str, conditions: np.ndarray, own: float, departure: float, variance: float, wild: tuple[float, float], readings: int = 1
+    ) -> Outcome:
         """Learn from a measurement.
 
         Parameters
@@ -196,12 +197,17 @@ class Posterior:
         own : the level's prediction.
         departure : measured minus own.
         variance : of its noise.
-        wild : fraction of measurements that say nothing, and the standard deviation of such.
+        wild : fraction of readings that say nothing, and the standard deviation of such.
+        readings : of which the measurement is a robust mean.  Where next to nothing is known about the operating point, it counts as wild by the
+            probability that most of them are; where much is, by that of one, since a departure is a sudden change of the machine then, which
+            waits for the change detector.
         """
         expected, left = self.predict(quantity, conditions, own)
+        place = self._place(quantity, conditions)
+        if place is None or self.rows[place].variance > self._model[place, place]:
+            wild = wild[0] ** ((readings + 1) // 2), wild[1]
         outcome = _judged(departure - expected, left + variance, *wild)
         variance /= max(1.0 - outcome.wild, 1e-9)
-        place = self._place(quantity, conditions)
         if place is None:
             prior = float(self._departures(quantity, conditions, own, self._response.basis_of(self._prior())).var())
             self.rows.append(Row(quantity, tuple(map(float, conditions)), float(own), float(departure), float(variance), prior))
@@ -241,13 +247,14 @@ class Posterior:
 
     def _arrange(self) -> None:
         """Compute what follows from the rows."""
-        rows = self.rows
-        self._errors = np.array([self._error(row.quantity, row.own) for row in rows])
-        correlation = _correlation(*[np.array([self._scaled(row.conditions) for row in rows]).reshape(-1, len(_DISTANCES))] * 2)
+        rows, self._centre = self.rows, self._basis.mean(axis=0)
+        errors = [self._errors_at(row.quantity, np.array(row.conditions), row.own) for row in rows]
+        self._errors = np.array(errors).reshape(len(rows), 2)
+        places = np.array([self._scaled(row.conditions) for row in rows]).reshape(-1, len(_DISTANCES))
         alike = np.array([[one.quantity == other.quantity for other in rows] for one in rows]).reshape(len(rows), len(rows))
-        self._model = self._errors[:, None] * self._errors * correlation * alike
+        self._model = _shared(self._errors, self._errors, places, places) * alike
         self._diagonal = np.array([row.variance for row in rows])
-        self._wander = np.array([row.prior for row in rows]) + self._errors**2
+        self._wander = np.array([row.prior for row in rows]) + self._model.diagonal()
         self._measured = np.array([row.departure for row in rows])
         slopes = [self._coefficients(row.quantity, np.array(row.conditions)) for row in rows]
         self._slopes = np.array(slopes).reshape(len(rows), self._basis.shape[1] + 1)
@@ -269,12 +276,32 @@ class Posterior:
     def _covariance(self) -> np.ndarray:
         return self._model + np.diag(self._diagonal)
 
-    def _error(self, quantity: str, own: float) -> float:
+    def _errors_at(self, quantity: str, conditions: np.ndarray, own: float) -> np.ndarray:
+        """Return what the prediction errs by where all fields are right: standard deviations of the model's error and of the response's, shape (2,).
+
+        The latter has the sign of the departure, in proportion to which the response errs; the departure is that of the draws' mean when rows were
+        arranged last, so that errors at one operating point are the same from there on.
+        """
         errors = self._scene.estimation.model_error
+        proportion, least = self._error_scales(quantity, conditions)
+        slopes = self._coefficients(quantity, conditions)
+        change, rising = float(slopes[:-1] @ self._centre + slopes[-1]), 1.0
         if quantity == SLIP:
-            return slip_error(self._scene, self._response, own)
-        settled = float(self._response.errors[ANSWERS.index(quantity)])
-        return max(math.hypot(errors.clearance if quantity == CLEARANCE else errors.temperature, settled), 1e-9)
+            slip = own + float(slip_departures(np.array([own]), np.array([[change]]))[0, 0])
+            rising, model = 1.0 / math.hypot(slip, SLIP_SCALE) + 1.0 / max(1.01 - slip, 0.01), errors.slip
+        else:
+            model = errors.clearance if quantity == CLEARANCE else errors.temperature
+        return np.array([max(model, 1e-9), math.copysign(math.hypot(proportion * change, least) / rising, change)])
+
+    def _error_scales(self, quantity: str, conditions: np.ndarray) -> tuple[float, float]:
+        """Return by what part of a departure, and by how much at least, the response errs at an operating point."""
+        key = (quantity, *conditions.tolist())
+        if key not in self._known_scales:
+            if len(self._known_scales) >= _REMEMBERED:
+                self._known_scales.clear()
+            proportion, least = self._response.error_scales(conditions[None], ANSWERS.index(quantity))
+            self._known_scales[key] = float(proportion[0]), float(least[0])
+        return self._known_scales[key]
 
     def _coefficients(self, quantity: str, conditions: np.ndarray) -> np.ndarray:
         """Return the coefficients of the polynomials of the fields at an operating point, the last of them that of the scene's own values."""
@@ -370,6 +397,12 @@ def _correlation(one: np.ndarray, other: np.ndarray) -> np.ndarray:
     """Return the correlation of the model's errors at scaled conditions, shape (n, m): Matern's with a smoothness of 3/2."""
     distance = math.sqrt(3.0) * np.linalg.norm(one[:, None] - other[None], axis=-1)
     return (1.0 + distance) * np.exp(-distance)
+
+
+def _shared(one: np.ndarray, other: np.ndarray, there: np.ndarray, elsewhere: np.ndarray) -> np.ndarray:
+    """Return the covariance of errors at scaled conditions of shapes (n, 3) and (m, 3), shape (n, m); see `Posterior._errors_at`."""
+    model = one[:, :1] * other[:, 0] * _correlation(there, elsewhere)
+    return model + one[:, 1:] * other[:, 1] * _correlation(there / _RESPONSE_DISTANCES, elsewhere / _RESPONSE_DISTANCES)
 
 
 def _judged(innovations: np.ndarray, variance: float, fraction: float, width: float) -> Outcome:

@@ -44,7 +44,7 @@ ANSWERS = ("cage_slip", "rating_life", "modified_rating_life", "running_clearanc
 PROBABILITIES = (0.05, 0.95)
 """Of lying below the ends of a band."""
 
-VERSION = 3  # of the files
+VERSION = 4  # of the files
 _FARTHEST = 4.5  # largest score; one draw in 300,000 lies beyond
 _SLOWEST, _LIGHTEST = 0.03, 0.002  # of the largest speed and load: below, the response is that of these
 _RIDGE, _PRODUCT_RIDGE = 1e-6, 1.0  # of polynomials of one field, and of two
@@ -52,6 +52,8 @@ _NARROWEST = np.array([1e-9, 1e-11, 1e-11, 1e-13, 1e-6, 1e-6])  # widths of band
 _CIRCLE = 0.6  # radius of the circle that stands for the angle, beside coordinates from -1 to 1
 _SPEED_SCALES, _LOAD_SCALES, _TEMPERATURE_SCALES = (0.5, 1.0, 2.0), (1.0, 2.0, 4.0), (0.35, 0.7, 1.4)  # that are tried
 _WIDEST = 50.0  # logarithm of a width that a spline may reach
+_SMALL = 0.2  # of the width of a band; errors of smaller departures do not follow them (found by cross validation)
+_NEIGHBOURS = 8  # operating points whose errors tell that between them (likewise)
 SLIP_SCALE = 1e-3  # slip far above counts by its logarithm, far below as it is
 _SLIPS = np.concatenate([-np.geomspace(1.0, 1e-7, 2000), [0.0], np.geomspace(1e-7, 0.999, 4000), 1.0 + np.linspace(0.0, 0.0099, 200)])
 
@@ -276,6 +278,7 @@ class ResponseModel(NamedTuple):
         coefficients of the polynomials but the first over that width; shape (k + c + 1, 6, j + 1).
     lives_by_slip : what slip does to lives, which is not in the polynomials.
     errors : by cross validation, of departures from the scene's own values, root mean square on the scales of `transformed`, shape (6,).
+    relative_errors : the same at each centre, over the size of the departures there (see `error_scales`), shape (k, 6).
     points : settled points that it was fitted to.
     seconds : that building it took.
     """
@@ -289,6 +292,7 @@ class ResponseModel(NamedTuple):
     weights: np.ndarray
     lives_by_slip: LivesBySlip
     errors: np.ndarray
+    relative_errors: np.ndarray
     points: int
     seconds: float
 
@@ -385,6 +389,31 @@ class ResponseModel(NamedTuple):
         coefficients = np.concatenate([found[:, :, :1] - departures @ self.own_basis[1:, None], departures], axis=2)
         coefficients[self.outside(conditions)] = math.nan
         return coefficients
+
+    def error_scales(self, conditions: np.ndarray, column: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return what departures from the scene's own answers are off by at operating points: in proportion to them, and at least.
+
+        Errors grow with departures and differ between operating points: where slip changes steeply they are ten times those elsewhere.  The
+        standard deviation of the error of a departure x is hypot(proportion x, least), on the scales of `transformed`.
+
+        Parameters
+        ----------
+        conditions : columns `CONDITIONS`, shape (n, 4).
+        column : of the answer among `ANSWERS`.
+
+        Returns
+        -------
+        proportions and least errors, each of shape (n,).
+        """
+        there = _embedded(coordinates(np.asarray(conditions, float), self.domain), self.domain) * self.scales[column]
+        centres = self.centres * self.scales[column]
+        distances = np.square(there[:, None] - centres).sum(axis=-1)
+        near = np.argsort(distances, axis=1)[:, :_NEIGHBOURS]
+        weights = 1.0 / (np.take_along_axis(distances, near, axis=1) + 1e-9)
+        squares = np.square(self.relative_errors[near, column])
+        proportions = np.sqrt((weights * squares).sum(axis=1) / weights.sum(axis=1))
+        widths = np.exp(np.minimum(_functions(there, centres) @ self.weights[:, column, 1], _WIDEST))
+        return proportions, proportions * _SMALL * widths
 
 
 def _by_slip(slip: np.ndarray, own: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
@@ -511,8 +540,10 @@ def fit_response(
     if np.isnan(scaled[kept][:, :, 4:]).any():
         weights[:, 4:] = math.nan
     errors = np.sqrt(np.mean(np.square(left), axis=(1, 2)))
+    sizes = np.hypot(np.nan_to_num(departures), _SMALL * np.exp(values[:, None, :, 1]))
+    relative_errors = np.sqrt(np.mean(np.square(np.moveaxis(left, 0, -1) / sizes), axis=1))
     points = int(np.isfinite(scaled[:, :, 0]).sum())
-    return ResponseModel(fields, domain, centres, scales, terms, basis[0], weights, lives_by_slip, errors, points, seconds)
+    return ResponseModel(fields, domain, centres, scales, terms, basis[0], weights, lives_by_slip, errors, relative_errors, points, seconds)
 
 
 def _basis(fields: Fields, terms: np.ndarray, scores: np.ndarray) -> np.ndarray:
@@ -578,7 +609,7 @@ def response_path(scene: Scene) -> Path:
     return FOLDER / f"{response_digest(scene)}.bands.npz"
 
 
-_ARRAYS = ("centres", "scales", "score_terms", "own_basis", "weights", "errors")
+_ARRAYS = ("centres", "scales", "score_terms", "own_basis", "weights", "errors", "relative_errors")
 
 
 def write_response(path: Path, model: ResponseModel) -> None:

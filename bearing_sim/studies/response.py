@@ -44,6 +44,7 @@ _BATCH = 64  # points of a task
 _LONG = 1e4  # s; longer than any lag of a cage; at level steady simulated time costs nothing
 _EQUAL, _BALANCED = 0.05, 1e-3  # K, and of the shaft power; slip then errs by less than 0.01 points, clearance by 10 nm
 _ROUNDS, _FARTHEST = 12, 60.0  # of losses and temperatures in turn, and K of one
+_STRETCH, _STRETCHES, _SAME_SLIP = 0.5, 40, 1e-4  # s, largest number, and difference of successive mean slips of a level that moves
 _SPARE = 4  # points more than fields from which on equilibria are expected by a linear fit
 _OIL_TEMPERATURE = "lubricant.temperature"
 
@@ -53,7 +54,7 @@ def settled_points(scene: Scene, fields: tuple[str, ...], points: tuple[tuple[fl
 
     Parameters
     ----------
-    scene : of any level.
+    scene : its level is that of slip; all else is of level ``steady``.
     fields : dotted paths of uncertain fields.
     points : their values [SI] at each point.
     conditions : columns `bearing_sim.estimation.response.CONDITIONS`.  An uncertain oil temperature is an error of the one in the conditions:
@@ -101,13 +102,29 @@ class _Equilibria:
 
 def _settled(scene: Scene, inputs: Inputs, values: tuple[float, ...], nearby: _Equilibria) -> np.ndarray:
     """Return the answers of one point, and add its equilibrium to those ``nearby``, from which the search for it begins."""
-    simulation = Simulation(scene, inputs, empty_table())
+    simulation = Simulation(scene.at_level("steady"), inputs, empty_table())
     if simulation.thermal is None:
         sample = simulation.advance(_LONG, samples=2)[-1]
     else:
         sample = _in_equilibrium(simulation, nearby.expected(values))
         nearby.add(values, simulation.thermal.temperatures.copy())
-    return np.array([float(sample[name]) for name in ANSWERS])
+    answers = np.array([float(sample[name]) for name in ANSWERS])
+    if scene.level != "steady":
+        answers[ANSWERS.index("cage_slip")] = _moving_slip(scene, inputs, simulation)
+    return answers
+
+
+def _moving_slip(scene: Scene, inputs: Inputs, settled: Simulation) -> float:
+    """Return the mean slip of a level that moves, at the temperatures of a settled run, once two means in a row agree."""
+    moving, before = Simulation(scene, inputs, empty_table()), math.nan
+    for _ in range(_STRETCHES):
+        if settled.thermal is not None:
+            moving.set_temperatures(settled.thermal.temperatures)
+        mean = float(moving.advance(_STRETCH, samples=51)["cage_slip"][1:].mean())
+        if abs(mean - before) < _SAME_SLIP:
+            return mean
+        before = mean
+    return math.nan
 
 
 def _in_equilibrium(simulation: Simulation, start: np.ndarray | None) -> np.void:
@@ -136,7 +153,7 @@ def _in_equilibrium(simulation: Simulation, start: np.ndarray | None) -> np.void
 
 def at_points(
     scene: Scene, scores: np.ndarray, conditions: np.ndarray, journal: Journal | None = None, workers: int | None = None, dask: str | None = None,
-    progress: Callable[[int, int], None] = lambda done, total: None,
+    progress: Callable[[int, int], None] = lambda done, total: None, level: str = "steady",
 ) -> np.ndarray:  # fmt: skip
     """Return settled answers at points, shape (n, 6); NaN where there is none.
 
@@ -147,12 +164,13 @@ def at_points(
     conditions : columns `bearing_sim.estimation.response.CONDITIONS`, shape (n, 4).
     journal, workers, dask : see `bearing_sim.sweep.tasks.run_tasks`.
     progress : called with the number of finished points and of all that are not in the journal.
+    level : that slip is of; all else is of level ``steady``.
     """
-    scene, fields = scene.at_level("steady"), scene_fields(scene)
+    scene, fields = scene.at_level(level), scene_fields(scene)
     names, values = tuple(one.field for one in fields.ranges), fields.values_of(scores)
     tasks = [
         task(
-            "steady",
+            level,
             settled_points,
             scene,
             names,
