@@ -13,9 +13,19 @@ from matplotlib.text import Text
 from synthetic_run import synthetic_block
 
 from bearing_sim.cli.main import main
+from bearing_sim.messages.bands import BANDS, ESTIMATES, Bands
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.studies import run_plot
-from bearing_sim.studies.run_plot import SlipBand, course_of, draw_over_load, draw_over_time, draw_table_over_load, minimum_loads, thinned
+from bearing_sim.studies.run_plot import (
+    SlipBand,
+    course_of,
+    draw_over_load,
+    draw_over_time,
+    draw_table_over_load,
+    minimum_loads,
+    recorded_bands,
+    thinned,
+)
 from bearing_sim.sweep.point import Column
 from bearing_sim.sweep.table import Table, write_table
 
@@ -168,6 +178,23 @@ def test_a_band_is_drawn_only_where_there_is_one(tmp_path):
     figure = draw_over_time(tmp_path / "b.png", [shown])
     assert len(figure.axes[2].collections) == 1 and "5 to 95 %" in figure.legends[0].get_texts()[0].get_text()
     assert figure.axes[2].get_ylim()[1] >= 50.0
+    assert_readable(figure)
+
+
+def test_bands_that_a_run_published_are_shaded_but_not_at_rest_and_dashed_where_measurements_moved_them(tmp_path):
+    shown = course(run_of(LINEAR, shaft_speed=np.where(LINEAR < 0.5, 0.0, 4700.0), cage_slip=0.02), panels=("slip", "clearance"))
+    names, units = ("cage_slip", "running_clearance"), ("", "m")
+    numbers = np.tile([[0.03, 0.02, 0.05], [28e-6, 26e-6, 31e-6]], (300, 1, 1))
+    published = [Bands(BANDS, names, units, LINEAR[k : k + 1], numbers[k : k + 1]) for k in range(300)]
+    shown.recorded = recorded_bands(published, shown.lines)
+    slip, clearance = shown.recorded["slip"], shown.recorded["clearance"]
+    assert np.isnan(slip.high[slip.times < 0.5]).all() and slip.high[-1] == pytest.approx(5.0) and clearance.low[0] == pytest.approx(26.0)
+    figure = draw_over_time(tmp_path / "a.png", [shown])
+    assert [len(axes.collections) for axes in figure.axes] == [1, 1] and [len(axes.lines) for axes in figure.axes] == [1, 1]
+    assert "as the run published it" in figure.legends[0].get_texts()[0].get_text()
+    shown.recorded = recorded_bands([*published, Bands(ESTIMATES, ("x",), ("",), LINEAR[:1], np.ones((1, 1, 3)))], shown.lines)
+    figure = draw_over_time(tmp_path / "b.png", [shown])
+    assert [len(axes.lines) for axes in figure.axes] == [2, 2] and "dashed: as measurements" in figure.legends[0].get_texts()[0].get_text()
     assert_readable(figure)
 
 

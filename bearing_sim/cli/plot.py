@@ -28,7 +28,8 @@ def plot(paths, picture, over, panels, band, quantities):
     """Draw recorded runs or a sweep into a picture; beside RESULT, with the suffix .png, unless -o is given.
 
     A recording of `run`, `replay` or the node (.mcap, or a bag's folder) is drawn over time: speed, load, slip, life, temperatures and
-    running clearance; further panels are damage and power. Several recordings are compared, each from its own start. With --band the slip
+    running clearance; further panels are damage and power. Slip and clearance are shaded by the bands that the run published, where its
+    scene asked for them. Several recordings are compared, each from its own start. With --band the slip
     has its 5 to 95 % range, by the ranges in the scene's block `uncertainty`, as `uncertainty --log` computes it; no range is made up.
     --over load shows slip and life over the radial load with the minimum load of the maker's formula.
 

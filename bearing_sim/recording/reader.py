@@ -209,11 +209,13 @@ class Recording:
                         yield Measurement((log_ns - self.start_ns) * 1e-9, speed, residual, *error)
             yield item
 
+    def with_bands(self) -> Iterator["np.ndarray | Event | Bands"]:
+        """Yield what iterating yields, and the bands of the recording, each of one instant, in the order of the file."""
+        return self._items(with_bands=True)
+
     def bands(self) -> Iterator[Bands]:
         """Yield the bands of the recording, each of one instant, in the order of the file."""
-        for item in self._items(with_bands=True):
-            if isinstance(item, Bands):
-                yield item
+        return (item for item in self.with_bands() if isinstance(item, Bands))
 
     def _items(self, with_received: bool = False, with_bands: bool = False) -> Iterator["np.ndarray | Event | Received | Bands"]:
         samples = _Samples(self.scene, self.start_ns)

@@ -13,6 +13,7 @@ from typing import BinaryIO, NamedTuple
 
 import numpy as np
 
+from bearing_sim.messages.bands import BANDS, ESTIMATES, Bands
 from bearing_sim.messages.topics import ZERO_CELSIUS
 from bearing_sim.model.plausibility import minimum_load
 from bearing_sim.model.sample import RING_TEMPERATURES
@@ -103,6 +104,27 @@ class SlipBand(NamedTuple):
     high: np.ndarray
 
 
+_BANDED = {"slip": ("cage_slip", 100.0), "clearance": ("running_clearance", 1e6)}
+"""Quantity with recorded bands of a panel, and by what its unit is smaller than that of the panel."""
+
+
+class RecordedBand(NamedTuple):
+    """A band that a run published, in the unit of its panel: instants [s] and numbers there, each of shape (m,).
+
+    Attributes
+    ----------
+    times : [s].
+    value, low, high : what the run said, its 5 and its 95 % quantile; thinned out to the extremes of each stretch.
+    is_calibrated : whether measurements calibrated fields in the run, so that the value is not the one that the level computed.
+    """
+
+    times: np.ndarray
+    value: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    is_calibrated: bool
+
+
 @dataclass
 class Course:
     """What a picture shows of one run.
@@ -118,6 +140,7 @@ class Course:
     samples : number of samples of the run.
     first, last : simulated times of its ends [s].
     band : range of the slip, if somebody computed one.
+    recorded : bands that the run published, by panel.
     start_ns : wall time of sample time 0 [ns since the epoch]; 0 if it is not known.
     """
 
@@ -131,6 +154,7 @@ class Course:
     first: float = math.nan
     last: float = math.nan
     band: SlipBand | None = None
+    recorded: dict[str, RecordedBand] = field(default_factory=dict)
     start_ns: int = 0
 
 
@@ -146,10 +170,43 @@ def read_course(
     panels : names of `PANELS`.
     progress : called repeatedly with the time reached [s].
     """
-    blocks = (item for item in recording if isinstance(item, np.ndarray))
-    course = course_of(blocks, recording.scene, name, recording.samples, panels, progress)
+    bands: list[Bands] = []
+
+    def blocks():
+        for item in recording.with_bands():
+            if isinstance(item, np.ndarray):
+                yield item
+            elif isinstance(item, Bands):
+                bands.append(item)
+
+    course = course_of(blocks(), recording.scene, name, recording.samples, panels, progress)
     course.start_ns = recording.start_ns
+    course.recorded = recorded_bands(bands, course.lines)
     return course
+
+
+def recorded_bands(bands: Sequence[Bands], lines: Mapping[tuple[str, int], tuple[np.ndarray, np.ndarray]]) -> dict[str, RecordedBand]:
+    """Return bands that a run published, in order of time, by the name of the panel that shows them; none where its line has a gap, as at rest.
+
+    Parameters
+    ----------
+    bands : of the run.
+    lines : those of `Course`.
+    """
+    is_calibrated = any(each.topic == ESTIMATES for each in bands)
+    published = [each for each in bands if each.topic == BANDS]
+    if not published:
+        return {}
+    times, numbers = np.concatenate([each.times for each in published]), np.concatenate([each.numbers for each in published])
+    starts = np.arange(0, len(times), max(1, 2 * len(times) // _MOST_POINTS))
+    found = {}
+    for panel, (quantity, scale) in _BANDED.items():
+        if quantity in published[0].names and (panel, 0) in lines:
+            value, low, high = scale * numbers[:, published[0].names.index(quantity)].T
+            value, low, high = np.where(np.isnan(np.interp(times, *lines[panel, 0])), np.nan, (value, low, high))
+            ends = np.fmin.reduceat(low, starts), np.fmax.reduceat(high, starts)
+            found[panel] = RecordedBand(times[starts], value[starts], *ends, is_calibrated)
+    return found
 
 
 def course_of(
@@ -296,6 +353,8 @@ def _draw_panel(axes, name: str, panel: Panel, courses: Sequence[Course], starts
                 look |= {"marker": "o", "ms": 4}
             axes.plot((times - starts[number]) / divisor, values, lw=1.1, label=label, **look)
             every.append(values[np.isfinite(values)])
+        if name in course.recorded:
+            every += _draw_recorded(axes, course.recorded[name], starts[number], divisor, COLOURS[number % len(COLOURS)])
         if name == "slip" and course.band is not None:
             band, colour = course.band, COLOURS[number % len(COLOURS)]
             width = max(1.0, 550.0 / max(len(band.times), 1))  # [pt] so that bars at every instant make a band
@@ -313,6 +372,15 @@ def _draw_panel(axes, name: str, panel: Panel, courses: Sequence[Course], starts
         axes.text(0.5, 0.5, "no values that are finite", ha="center", va="center", transform=axes.transAxes, fontsize=9, color="0.4")
 
 
+def _draw_recorded(axes, band: RecordedBand, start: float, divisor: float, colour: str) -> list[np.ndarray]:
+    """Shade a band that a run published, with its value where measurements moved that; return the numbers that must be seen."""
+    times = (band.times - start) / divisor
+    axes.fill_between(times, band.low, band.high, color=colour, alpha=0.22, lw=0.0)
+    if band.is_calibrated:
+        axes.plot(times, band.value, color=colour, lw=1.1, ls="--")
+    return [each[np.isfinite(each)] for each in (band.low, band.high)]
+
+
 def _name_courses(figure, courses: Sequence[Course]) -> None:
     """Add one legend of runs and bands below the picture, if there is anything to name."""
     from matplotlib.lines import Line2D
@@ -321,6 +389,10 @@ def _name_courses(figure, courses: Sequence[Course]) -> None:
     handles = []
     if len(courses) > 1:
         handles += [Line2D([], [], color=COLOURS[k % len(COLOURS)], label=_shortened(course.name, 40)) for k, course in enumerate(courses)]
+    if any(course.recorded for course in courses):
+        calibrated = any(each.is_calibrated for course in courses for each in course.recorded.values())
+        text = "5 to 95 % as the run published it" + (", dashed: as measurements calibrated it" if calibrated else "")
+        handles.append(Patch(color=COLOURS[0], alpha=0.22, label=text))
     if any(course.band is not None for course in courses):
         handles.append(Patch(color=COLOURS[0], alpha=0.22, label="settled slip, 5 to 95 % by the scene's uncertainty"))
     if handles:
