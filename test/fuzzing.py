@@ -38,9 +38,11 @@ from bearing_sim.scene.quantity import to_si
 from bearing_sim.stored_state import state_file
 from bearing_sim.stored_state.state import new_state
 from bearing_sim.stored_state.state_file import FORMAT, VERSION, StateError, read_state
+from bearing_sim.vibration.reading import read_vibration
+from bearing_sim.vibration.signal import Vibration, VibrationError
 
 CORPUS = Path(__file__).with_name("corpus")
-REFUSALS = (SceneError, FileError, TableError, InputLogError, StateError, OSError)
+REFUSALS = (SceneError, FileError, TableError, InputLogError, StateError, VibrationError, OSError)
 """Errors that the commands turn into one message and an exit code."""
 
 _LONGEST_MESSAGE = 20_000  # characters that somebody may still read
@@ -462,6 +464,51 @@ def read_a_contour(content: bytes, folder: Path) -> None:
     load_scene(path)
 
 
+@cache
+def _vibrations() -> list[bytes]:
+    """Return a small vibration record in each format but HDF5, whose reader ends the process on some damage."""
+    import numpy as np
+    import pyarrow
+    import pyarrow.parquet
+    import scipy.io
+    import scipy.io.wavfile
+
+    samples, found = np.random.default_rng(1).normal(size=1100).astype(np.float32), []
+
+    def kept(write: Callable[[io.BytesIO], object]) -> None:
+        stream = io.BytesIO()
+        write(stream)
+        found.append(stream.getvalue())
+
+    found.append("\n".join(["time [s];a [g]", *(f"{k / 2000:.4f};{value:.3f}" for k, value in enumerate(samples))]).encode())
+    kept(lambda stream: np.savez_compressed(stream, a=samples, fs=2000.0))
+    kept(lambda stream: np.save(stream, samples))
+    kept(lambda stream: scipy.io.savemat(stream, {"run": {"a": samples, "rate": 2000.0}, "cells": np.array([samples, "x"], dtype=object)}))
+    kept(lambda stream: scipy.io.savemat(stream, {"a": samples[:, None]}, do_compression=True))
+    kept(lambda stream: scipy.io.wavfile.write(stream, 2000, samples))
+    kept(lambda stream: pyarrow.parquet.write_table(pyarrow.table({"time": np.arange(1100) / 2000, "a": samples}), stream))
+    return found
+
+
+_VIBRATION_MARKS = {b"PK": ".npz", b"\x93NUMPY": ".npy", b"MATLAB": ".mat", b"RIFF": ".wav", b"PAR1": ".parquet"}
+
+
+def vibrations() -> st.SearchStrategy[bytes]:
+    """Return a strategy of vibration records."""
+    return spoiled_bytes(_vibrations, _encoded(_CSV_TOKENS))
+
+
+def read_a_vibration(content: bytes, folder: Path) -> None:
+    """Read a vibration record in the format that its beginning shows; what is accepted has finite samples."""
+    path = folder / f"record{next((suffix for mark, suffix in _VIBRATION_MARKS.items() if content.startswith(mark)), '.csv')}"
+    path.write_bytes(content)
+    _each(lambda: read_vibration(path), lambda: _finite(read_vibration(path, "a", 2000.0)), lambda: read_vibration(path, rate=2000.0))
+
+
+def _finite(record: Vibration) -> None:
+    assert all(math.isfinite(value) for value in record.samples.tolist())
+
+
 class Target(NamedTuple):
     """What is read.
 
@@ -485,6 +532,7 @@ TARGETS = {
     "recording": Target(recordings(), read_recording),
     "messages": Target(messages(), read_messages),
     "state": Target(states(), read_a_state),
+    "vibration": Target(vibrations(), read_a_vibration),
 }
 
 

@@ -26,6 +26,12 @@ def test_the_list_holds_exactly_the_bearings_within_the_bounds():
     assert [each["designation"] for each in ranged] == ["NU 210", "NU 211", "NU 212"]
 
 
+def test_bundled_scenes_are_listed_as_a_table_or_as_json():
+    found = json.loads(called("scenes", "--json").stdout)
+    table = called("scenes").stdout
+    assert "deng2017_table1" in found["scenes"] and "deng2017_table1" in table and not table.lstrip().startswith("{")
+
+
 def test_every_bearing_of_the_list_has_ratings_and_says_whose():
     found = json.loads(called("catalog", "--type", "NU", "--json").stdout)["bearings"]
     assert len(found) > 150 and all(each["dynamic_rating"] > 0.0 and each["static_rating"] > 0.0 and each["ratings_by"] for each in found)

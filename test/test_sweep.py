@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 
+import numpy as np
 import pyarrow.parquet
 import pytest
 from click.testing import CliRunner
@@ -22,7 +23,7 @@ from bearing_sim.sweep import point
 from bearing_sim.sweep.grid import FieldError, axis, read_axis, run_sweep
 from bearing_sim.sweep.point import RESULTS, point_row
 from bearing_sim.sweep.settling import Outcome
-from bearing_sim.sweep.table import NotDrawable, draw, read_table, write_table
+from bearing_sim.sweep.table import NotDrawable, draw, new_figure, read_table, set_limits, write_table
 from bearing_sim.sweep.tasks import Journal
 
 LOW = "bearing.outer_raceway.low_radius"
@@ -53,6 +54,13 @@ def test_a_text_says_which_values_a_field_takes(text, values, unit):
     read = read_axis(text)
     assert read.values == pytest.approx(values, rel=1e-11) if isinstance(values[0], float) else read.values == values
     assert read.field.unit == unit
+
+
+def test_a_logarithmic_axis_begins_and_ends_at_the_decades_about_its_values():
+    for values, ends in (([100.0, 1000.0], (100.0, 1000.0)), ([99.0, 1001.0], (10.0, 10_000.0)), ([100.0, 100.0], (100.0, 1000.0))):
+        axes = new_figure(4.0, 3.0).add_subplot()
+        set_limits(axes, np.array(values), True)
+        assert axes.get_ylim() == pytest.approx(ends)
 
 
 def test_even_steps_are_what_a_person_would_write():

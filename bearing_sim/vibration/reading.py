@@ -142,7 +142,8 @@ def _listed(names) -> str:
 
 def _array(path: Path, found: Channels, name: str, option: str) -> np.ndarray:
     if name in found.arrays:
-        return np.asarray(found.arrays[name], float)
+        with np.errstate(invalid="ignore"):  # of numbers that are none, which the record refuses
+            return np.asarray(found.arrays[name], float)
     raise VibrationError(
         f"{path}: no channel {name!r}{did_you_mean(name, list(found.arrays))}; there are {_listed(found.arrays)}; choose one with {option}"
     )

@@ -304,6 +304,9 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--seconds", type=float, default=240.0, help="of tests for each fault")
     parser.add_argument("--again", action="store_true", help="repeat those whose time was over before all their tests had run")
+    parser.add_argument("--room", action="append", help="plant in this room only; can be repeated")
+    parser.add_argument("--each", type=int, help="plant at most so many of each room, the first of those drawn")
+    parser.add_argument("--tests", type=int, default=MOST_TESTS, help="test files to run for each fault, the nearest")
     parser.add_argument("--folder", type=Path, default=Path("mutation_run"), help="for the clone and the rows")
     chosen = parser.parse_args()
     clone, rows_file = chosen.folder.resolve() / "clone", chosen.folder / "faults.jsonl"
@@ -316,10 +319,15 @@ def main() -> None:
         rows_file.write_text("".join(json.dumps(row) + "\n" for row in rows), encoding="utf-8")
     done = {(row["file"], row["begin"], row["new"]) for row in rows}
     tests, good = nearest_tests(clone), {}
+    planted = Counter()
     for fault in sorted(drawn(clone, chosen.faults, chosen.seed), key=is_compiled):
+        room = room_of(fault.file)
+        if (chosen.room and room not in chosen.room) or (chosen.each is not None and planted[room] >= chosen.each):
+            continue
+        planted[room] += 1
         if (fault.file, fault.begin, fault.new) in done:
             continue
-        row = try_fault(clone, fault, tests[fault.file], chosen.seconds, good)
+        row = try_fault(clone, fault, tests[fault.file][: chosen.tests], chosen.seconds, good)
         rows.append(row)
         with open(rows_file, "a", encoding="utf-8") as file:
             file.write(json.dumps(row) + "\n")
