@@ -37,7 +37,8 @@ def policy(namespace: str = "/", node: str = "bearing_node", bearings: Sequence[
     processes : that share these bearings.
     """
     prefixes = [f"{name}/" for name in bearings] or [""]
-    inputs = [f"{prefix}{name}" for prefix in prefixes for name in (*topics.INPUTS, topics.MEASURED, topics.VIBRATION.name)]
+    inputs = [f"{prefix}{name}" for prefix in prefixes for name in (*topics.INPUTS, topics.MEASURED)]
+    vibration = [f"{prefix}{topics.VIBRATION.name}" for prefix in prefixes]  # where a scene asks for it
     outputs = [f"{prefix}{name}" for prefix in prefixes for name in (*topics.OUTPUTS, topics.RESIDUAL, *topics.ESTIMATED)]
     offered = [f"{name}/{service}" for name in bearings for service in SERVICES] or [f"~/{service}" for service in SERVICES]
     workers = [f"_{node}_{number}" for number in range(1, processes + 1)]
@@ -45,7 +46,7 @@ def policy(namespace: str = "/", node: str = "bearing_node", bearings: Sequence[
         namespace,
         node,
         publish=[*_EVERY_NODE, f"/{topics.DIAGNOSTICS[0]}", _FRAMES, *(f"{own}/transition_event" for own in ("~", *workers)), *outputs],
-        subscribe=["/clock", _FRAMES, *inputs],
+        subscribe=["/clock", _FRAMES, *inputs, *vibration],
         reply=[*(f"{own}/{_TYPES}" for own in ("~", *workers)), *(f"~/{service}" for service in (*_LIFECYCLE, *_PARAMETERS)), *offered],
     )
     player = _enclave(
