@@ -660,13 +660,23 @@ def _fits_together(model: ResponseModel) -> bool:
         "own_basis": (term_count,),
         "weights": (centres + coordinate_count + 1, answers, term_count + 1),
         "errors": (answers,),
+        "relative_errors": (centres, answers),
     }
     if any(getattr(model, name).shape != shape for name, shape in shapes.items()) or model.fields.own.shape != (len(model.fields),):
         return False
     lives = model.lives_by_slip
     if lives.values.ndim != 6 or lives.values.shape[4:] != (2, 2) or not lives.values.size or len(lives.exponents) != 2:
         return False
-    numbers = (model.centres, model.scales, model.own_basis, model.weights[:, :4], lives.values, lives.exponents, model.fields.own)
+    numbers = (
+        model.centres,
+        model.scales,
+        model.own_basis,
+        model.weights[:, :4],
+        model.relative_errors[:, :4],
+        lives.values,
+        lives.exponents,
+        model.fields.own,
+    )
     return bool(np.array_equal(model.score_terms, _score_terms(len(model.fields)))) and all(np.isfinite(each).all() for each in numbers)
 
 
