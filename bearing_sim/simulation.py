@@ -197,9 +197,12 @@ class Simulation:
     inputs : conditions at time 0; the scene's operating block where absent.
     table : of operating points, for level ``steady``; the one on disk where absent.  Without one each of them is solved.
     start : sample in whose positions and speeds to begin, see `reset`.
+    nodes : temperatures of the thermal network's nodes to begin with, see `reset`.
     """
 
-    def __init__(self, scene: Scene, inputs: Inputs | None = None, table: Table | None = None, start: np.void | None = None):
+    def __init__(
+        self, scene: Scene, inputs: Inputs | None = None, table: Table | None = None, start: np.void | None = None, nodes: np.ndarray | None = None
+    ):  # fmt: skip
         self.scene = scene
         self._params, self._tolerances = pack(scene), tolerances_of(scene.integration)
         self._dtype = sample_dtype(self._params.rollers.count)
@@ -211,7 +214,7 @@ class Simulation:
         if self._level.advance_profile is not None:
             kept = cached_table(scene) if table is None else (table,)
             self._tables = kept[:1] if kept else ()
-        self.reset(inputs, start=start)
+        self.reset(inputs, nodes, start)
 
     def __repr__(self) -> str:
         slip = 100.0 * float(self.sample["cage_slip"])

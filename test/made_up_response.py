@@ -3,6 +3,7 @@
 
 import numpy as np
 
+from bearing_sim.estimation.lives import SlipAndOil
 from bearing_sim.estimation.response import domain_of, fit_response, scene_fields
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.studies.response import design
@@ -25,5 +26,5 @@ def made_up_response(scene):
     share = fields.fractions_of(scores)[:, 0] - 0.5
     slip, life = 0.02 * FACTOR**share, 400.0 * FACTOR ** (-0.2 * share)
     ones = np.ones(len(share))
-    answers = np.stack([slip, life, life, -25e-6 + 4e-6 * share, np.nan * ones, np.nan * ones], axis=1)
-    return fit_response(fields, domain_of(scene), conditions, scores, answers)
+    answers = np.stack([slip, life, life, -25e-6 + 4e-6 * share, np.nan * ones, np.nan * ones, ones], axis=1)
+    return fit_response(fields, domain_of(scene), conditions, scores, answers, SlipAndOil(scene))

@@ -36,7 +36,7 @@ ROOMS = {
     "inputs": ("numpy pyarrow pydantic yaml", "extras files scene simulation messages recording"),
     "vibration": ("h5py matplotlib numpy pyarrow scipy", "extras files scene messages recording"),
     "monitoring": ("numpy scipy", "scene physics model messages"),
-    "estimation": ("numpy platformdirs scipy", "files scene numerics model levels messages monitoring"),
+    "estimation": ("numpy platformdirs scipy", "files scene numerics physics model levels messages monitoring"),
     "runtime": ("numpy", "scene numerics model levels simulation messages recording stored_state inputs monitoring estimation vibration"),
     "view": ("PIL numpy platformdirs rerun rerun_cli", "files scene messages recording"),
     "sweep": ("numpy pandas pyarrow matplotlib distributed xarray", "files scene numerics model levels simulation recording"),

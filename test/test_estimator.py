@@ -13,6 +13,7 @@ from scipy.stats import qmc
 from bearing_sim.estimation.causes import CLEARANCE, LOAD, OIL, OIL_QUANTITY, SENSOR, TRACTION, Evidence, causes_of
 from bearing_sim.estimation.estimator import Estimator
 from bearing_sim.estimation.live import LiveEstimation
+from bearing_sim.estimation.lives import SlipAndOil
 from bearing_sim.estimation.response import conditions_at, domain_of, fit_response, scene_fields, slip_scale
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.studies.estimator import samples
@@ -45,13 +46,13 @@ def response(scene):
     points, draws = (qmc.Sobol(size, seed=np.random.default_rng(1)).random(128) for size in (4, 3))
     drawn = np.concatenate([fields.scores_of(fields.own)[None], ndtri(np.clip(draws[:31], 1e-5, 1.0 - 1e-5))])
     conditions, scores = np.repeat(conditions_at(points, domain), len(drawn), axis=0), np.tile(drawn, (len(points), 1))
-    answers = np.full((len(scores), 6), math.nan)
+    answers = np.full((len(scores), 7), math.nan)
     answers[:, 0] = [slip_of(fields, *each) for each in zip(scores, conditions)]
     positions = 4.0 * fields.fractions_of(scores) - 2.0
     answers[:, 1:3], answers[:, 3] = 300.0, 5e-6 * positions[:, 2]
-    answers[:, 4:] = 400.0 + 5.0 * positions[:, :1]
+    answers[:, 4:6], answers[:, 6] = 400.0 + 5.0 * positions[:, :1], 2.0
     assert tuple(one.field for one in fields.ranges) == FIELDS
-    return fit_response(fields, domain, conditions, scores, answers)
+    return fit_response(fields, domain, conditions, scores, answers, SlipAndOil(scene))
 
 
 class Rig:

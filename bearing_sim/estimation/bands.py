@@ -8,7 +8,17 @@ import numpy as np
 from scipy.special import ndtri
 from scipy.stats import qmc
 
-from bearing_sim.estimation.response import ANSWERS, PROBABILITIES, Domain, ResponseModel, restored, transformed
+from bearing_sim.estimation.lives import SlipAndOil
+from bearing_sim.estimation.response import (
+    ANSWERS,
+    PROBABILITIES,
+    Domain,
+    Interpolation,
+    ResponseModel,
+    add_slip_and_oil,
+    restored,
+    transformed,
+)
 from bearing_sim.scene.scene import Scene
 
 QUANTITIES = ("cage_slip", "rating_life", "running_clearance", "remaining_life")
@@ -20,15 +30,16 @@ _CELL = np.array([0.01, 0.01, 0.2, math.radians(0.5)])  # of speed and load, rel
 _CELLS_KEPT = 20_000
 _AT_ONCE = 64  # operating points: so many fit the processor's cache
 _HOUR = 3600.0
-_SLIP, _LIFE, _MODIFIED, _CLEARANCE = (ANSWERS.index(name) for name in ("cage_slip", "rating_life", "modified_rating_life", "running_clearance"))
+_ANSWERED = [ANSWERS.index(name) for name in ("cage_slip", "rating_life", "running_clearance", "modified_rating_life")]
+_SLIP, _BY_OIL = _ANSWERED[0], {_ANSWERED[1], ANSWERS.index("viscosity_ratio")}  # what changes by slip and by oil follow from
 
 
 class BandEstimator:
     """Bands for the samples of a run, of any level.
 
-    The response says by how much a quantity differs between the scene's own values and others that the uncertain fields may have, and its
-    quantiles are added to the level's own value.  Differences are those of slip on a scale without ends, of the logarithms of lives and of
-    clearance as it is: on these scales the fields act alike at every level and operating point, so a level above ``steady`` keeps its own
+    The response says by how much a quantity differs between the scene's own values and others that the uncertain fields may have, and the
+    quantiles of these differences are added to the level's own value.  They are those of slip on a scale without ends, of the logarithms of lives
+    and of clearance as it is: on these scales the fields act alike at every level and operating point, so a level above ``steady`` keeps its own
     value within its band, and no band of slip or life reaches beyond what can be.
 
     Parameters
@@ -46,8 +57,11 @@ class BandEstimator:
 
     def __init__(self, scene: Scene, response: ResponseModel, known: Sequence[str] = ()):
         self.response, self._memory = response, scene.thresholds.remaining_life_memory
-        self._own = response.basis_of(response.nominal[None])
-        self._time, self._rates = math.nan, np.full(4, math.nan)
+        self._effects = SlipAndOil(scene)
+        varied = set(response.varied_answers()) & set(_ANSWERED)
+        self._interpolation = Interpolation(response, sorted(varied | {_SLIP} | (_BY_OIL if self._effects.follows_oil else set())))
+        self._time, self._damage = math.nan, 0.0
+        self._rates = self._spent = np.full(1, math.nan)
         self.remaining_life, self.medians = np.empty(0), np.empty((0, len(QUANTITIES)))
         self._drawn = prior_draws(len(response.fields))
         self.know(known)
@@ -55,20 +69,15 @@ class BandEstimator:
     def know(self, known: Sequence[str]) -> None:
         """Take which fields are measured from now on (see the parameter)."""
         self._known = np.array([name in known for name in self.response.names], bool)
-        self.use(*self._drawn)
+        self.use(self._drawn)
 
-    def use(self, scores: np.ndarray, weights: np.ndarray) -> None:
-        """Take draws of the uncertain fields, such as those of a posterior, for all samples from now on.
-
-        Parameters
-        ----------
-        scores : shape (m, d).
-        weights : of the draws, of any sum, shape (m,).
-        """
-        self._drawn = scores, weights
+    def use(self, scores: np.ndarray) -> None:
+        """Take equally probable draws of the uncertain fields, such as those of a posterior, shape (m, d), for all samples from now on."""
+        self._drawn = scores
         self.scores = np.where(self._known, self.response.nominal, scores)
-        self.weights = np.asarray(weights, float) / np.sum(weights)
-        self._basis = np.concatenate([self._own, self.response.basis_of(self.scores)])
+        self._basis = np.concatenate([self.response.own_basis[None], self.response.basis_of(self.scores)])
+        # those of the level itself go on
+        self._rates, self._spent = (np.append(before[0], [math.nan] * len(_QUANTILES)) for before in (self._rates, self._spent))
         self._kept: dict[bytes, np.ndarray] = {}  # changes by operating point, see `_changes`
 
     def adjust(self, remaining_life_memory: float) -> None:
@@ -88,21 +97,23 @@ class BandEstimator:
         outside of the response.
         """
         changes = self._changes(block)
-        own = np.stack([block["cage_slip"], block["rating_life"], block["modified_rating_life"], block["running_clearance"]], axis=1)
-        own = transformed(np.concatenate([own, np.zeros((len(block), 2))], axis=1))
-        ends = restored(own[:, None] + changes)
+        own = np.zeros((len(block), 1, len(ANSWERS)))
+        for answer in _ANSWERED:
+            own[:, 0, answer] = block[ANSWERS[answer]]
+        ends = transformed(own)
+        ends = np.repeat(ends, len(_QUANTILES), axis=1)
+        ends[:, :, _ANSWERED] += changes
         found = np.empty((len(block), len(QUANTITIES), len(_QUANTILES)))
-        for column, answer in enumerate((_SLIP, _LIFE, _CLEARANCE)):
-            found[:, column] = ends[:, :, answer]
-        remaining = self._remaining_lives(block, np.exp(-changes[:, :, _MODIFIED]))
+        found[:, :3] = np.swapaxes(restored(ends)[:, :, _ANSWERED[:3]], 1, 2)
+        remaining = self._remaining_lives(block, np.exp(-changes[:, :, 3]))
         self.remaining_life, found[:, 3] = remaining[:, 0], remaining[:, 1:]
         self.medians = found[:, :, -1]
         return found[:, :, :-1]
 
     def _changes(self, block: np.ndarray) -> np.ndarray:
-        """Return the quantiles of the differences from the scene's own values on the scales of `transformed`, shape (n, 3, 6).
+        """Return the quantiles of the differences from the scene's own values on the scales of `transformed`, shape (n, 3, 4).
 
-        They are those at the `cells` of the operating points; those of cells that come again are kept.
+        They are those at the `cells` of the operating points, in the order of `_ANSWERED`; those of cells that come again are kept.
         """
         load = np.hypot(block["load_y"], block["load_z"])
         conditions = np.stack([block["shaft_speed"], load, block["oil_temperature"], np.arctan2(block["load_z"], block["load_y"])], axis=1)
@@ -113,15 +124,18 @@ class BandEstimator:
             self._kept, new = {}, list(range(len(keys)))
         for begin in range(0, len(new), _AT_ONCE):
             chosen = new[begin : begin + _AT_ONCE]
-            scaled = self.response.respond_scaled(there[chosen], self._basis)
-            changes = weighted_quantiles(scaled[:, 1:] - scaled[:, :1], self.weights, _QUANTILES)
-            self._kept.update(zip((keys[k] for k in chosen), changes))
+            scaled = np.swapaxes(self._interpolation.coefficients(there[chosen]) @ self._basis.T, 1, 2)
+            add_slip_and_oil(scaled, there[chosen], self._effects)
+            scaled = scaled[:, :, _ANSWERED]
+            self._kept.update(zip((keys[k] for k in chosen), quantiles(scaled[:, 1:] - scaled[:, :1], _QUANTILES)))
         return np.stack([self._kept[key] for key in keys])[indices.ravel()]
 
     def _remaining_lives(self, block: np.ndarray, factors: np.ndarray) -> np.ndarray:
         """Return the remaining life [h], its band and its median: (1 - D)/(dD/dt) with dD/dt the fading mean of the damage rate, as in `Monitor`.
 
-        The fields have been what they are for as long as the bearing runs: what was off by a factor in the rate was off by it in the damage.
+        What wears faster than the level says at one operating point is taken to do so at all, so that sums of quantiles are quantiles of sums; where
+        more slip shortens life at some points and prolongs it at others the band is too wide.  What was spent before the first sample is off by
+        the factor of that sample.
 
         Parameters
         ----------
@@ -138,9 +152,13 @@ class BandEstimator:
         for k, (time, damage) in enumerate(zip(block["time"].tolist(), block["damage"].tolist())):
             elapsed = time - self._time
             weight = 1.0 - math.exp(-elapsed / self._memory) if elapsed >= 0.0 else 1.0
-            self._rates = np.where(np.isnan(self._rates), rates[k], self._rates + weight * (rates[k] - self._rates))
-            self._time = time
-            left = np.clip(1.0 - damage * factors[k], 0.0, 1.0)
+            before, grown = self._rates if math.isfinite(self._rates[0]) else rates[k, :1], damage - self._damage
+            mean = before + weight * (rates[k] - before)
+            self._rates = np.where(np.isfinite(mean), mean, mean[0] * factors[k])
+            spent = self._spent + grown * factors[k]
+            self._spent = np.where(np.isfinite(spent) & (grown >= 0.0), spent, damage * factors[k])
+            self._time, self._damage = time, damage
+            left = np.clip(1.0 - self._spent, 0.0, 1.0)
             with np.errstate(divide="ignore", invalid="ignore"):
                 found[k] = np.where(left > 0.0, left / (_HOUR * self._rates), 0.0 * left)
         return found
@@ -175,35 +193,29 @@ def cells(conditions: np.ndarray, domain: Domain) -> np.ndarray:
     return found
 
 
-def prior_draws(fields: int, count: int = _DRAWS, seed: int = 1) -> tuple[np.ndarray, np.ndarray]:
-    """Return scores of fields of which nothing is measured, evenly spread, shape (count, fields), and their weights, shape (count,)."""
+def prior_draws(fields: int, count: int = _DRAWS, seed: int = 1) -> np.ndarray:
+    """Return scores of fields of which nothing is measured, evenly spread, shape (count, fields)."""
     uniform = qmc.Sobol(d=max(fields, 1), scramble=True, seed=np.random.default_rng(seed)).random_base2(count.bit_length() - 1)
-    return ndtri(np.clip(uniform, 1e-6, 1.0 - 1e-6))[:, :fields], np.full(count, 1.0 / count)
+    return ndtri(np.clip(uniform, 1e-6, 1.0 - 1e-6))[:, :fields]
 
 
-def weighted_quantiles(values: np.ndarray, weights: np.ndarray, probabilities: Sequence[float]) -> np.ndarray:
+def quantiles(values: np.ndarray, probabilities: Sequence[float]) -> np.ndarray:
     """Return quantiles along the second axis, linear between the middles of the steps of the distribution.
 
     Parameters
     ----------
-    values : shape (n, m, q).
-    weights : of the m values, their sum 1, shape (m,).
+    values : equally probable, shape (n, m, ...).
     probabilities : of the k quantiles.
 
     Returns
     -------
-    shape (n, k, q); NaN where a value is.
+    shape (n, k, ...); NaN where a value is.
     """
-    order = np.argsort(values, axis=1)
-    ordered = np.take_along_axis(values, order, axis=1)
-    steps = weights[order]
-    below = np.cumsum(steps, axis=1) - 0.5 * steps
-    found = np.empty((values.shape[0], len(probabilities), values.shape[2]))
-    for k, probability in enumerate(probabilities):
-        upper = np.clip(np.sum(below < probability, axis=1), 1, values.shape[1] - 1)[:, None]
-        low, high = (np.take_along_axis(below, at, axis=1)[:, 0] for at in (upper - 1, upper))
-        first, last = (np.take_along_axis(ordered, at, axis=1)[:, 0] for at in (upper - 1, upper))
-        with np.errstate(divide="ignore", invalid="ignore"):
-            fraction = np.clip(np.where(high > low, (probability - low) / (high - low), 0.0), 0.0, 1.0)
-        found[:, k] = first + fraction * (last - first)
-    return found
+    ordered = np.sort(values, axis=1)
+    places = np.clip(np.asarray(probabilities) * values.shape[1] - 0.5, 0.0, values.shape[1] - 1.0)
+    low = np.minimum(places.astype(int), values.shape[1] - 2)
+    fraction = (places - low).reshape(-1, *[1] * (values.ndim - 2))
+    below, above = ordered[:, low], ordered[:, low + 1]
+    with np.errstate(invalid="ignore"):
+        found = np.where(above == below, below, below + fraction * (above - below))  # also where both are infinite
+    return np.where(np.isnan(ordered[:, -1:]), math.nan, found)

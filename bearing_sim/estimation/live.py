@@ -11,7 +11,7 @@ from collections.abc import Collection, Mapping
 
 import numpy as np
 
-from bearing_sim.estimation.bands import PROBABILITIES, QUANTITIES, BandEstimator, weighted_quantiles
+from bearing_sim.estimation.bands import PROBABILITIES, QUANTITIES, BandEstimator, quantiles
 from bearing_sim.estimation.estimator import Estimator
 from bearing_sim.estimation.response import ResponseModel
 from bearing_sim.messages.bands import BANDS, EDGES, ESTIMATES, Bands
@@ -162,13 +162,12 @@ class LiveEstimation:
     def _calibrated_slip(self, samples: np.ndarray) -> np.ndarray:
         """Return median, 5 and 95 % quantile of the slip by the calibrated model with its own error, shape (n, 3)."""
         drawn = np.stack([self._estimator.prediction(sample) for sample in samples])
-        return weighted_quantiles(drawn[:, :, None], np.full(drawn.shape[1], 1.0 / drawn.shape[1]), (0.5, *PROBABILITIES))[:, :, 0]
+        return quantiles(drawn, (0.5, *PROBABILITIES))
 
     def _use_posterior(self) -> None:
         """Let bands follow from what measurements have taught."""
         if self._estimator.is_calibrated:
-            scores = self._estimator.posterior.scores
-            self._bands.use(scores, np.ones(len(scores)))
+            self._bands.use(self._estimator.posterior.scores)
 
     def _estimates(self, now: float) -> Bands:
         """Return the calibrated fields with their bands at ``now`` [s]."""

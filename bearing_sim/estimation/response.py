@@ -4,7 +4,8 @@
 At each of some hundred operating points the departures from the scene's own answers, over the width of their band there, are polynomials of
 the fields; their coefficients and the logarithms of the widths are splines over the operating points.  A response is fitted once to settled
 points of level ``steady`` and kept on disk (`bearing-sim table --bands`).  Evaluating it takes microseconds, so that thousands of values of
-the uncertain fields can be tried at every sample of a live run.
+the uncertain fields can be tried at every sample of a live run.  What slip and oil do to lives is not fitted but computed
+(`bearing_sim.estimation.lives`).
 
 An uncertain field is counted by its standard-normal *score*: the value that a standard-normal number has the same probability to fall below
 as the field has to fall below its value.  All scores are independent and alike, whatever the distributions of the fields.
@@ -15,8 +16,6 @@ import io
 import itertools
 import json
 import math
-import os
-import tempfile
 import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
@@ -26,7 +25,9 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import ndtr, ndtri
 
+from bearing_sim.estimation.lives import SlipAndOil
 from bearing_sim.files.limits import RESPONSE_FILE
+from bearing_sim.files.outputs import replaced
 from bearing_sim.files.reading import read_bytes
 from bearing_sim.levels.steady.table import contour_period, mirror_axis
 from bearing_sim.levels.steady.table_builder import FOLDER, span_of
@@ -38,23 +39,34 @@ from bearing_sim.scene.uncertainty import Range, ranges_of, value_at
 CONDITIONS = ("shaft_speed", "load", "oil_temperature", "load_angle")
 """Columns of conditions: [rad/s, N, K, rad]; the load counts by its magnitude."""
 
-ANSWERS = ("cage_slip", "rating_life", "modified_rating_life", "running_clearance", "inner_ring_temperature", "outer_ring_temperature")
-"""Columns of answers, by the names of the observables: [1, h, h, m, K, K]; temperatures are NaN where the scene has no thermal network."""
+ANSWERS = (
+    "cage_slip",
+    "rating_life",
+    "modified_rating_life",
+    "running_clearance",
+    "inner_ring_temperature",
+    "outer_ring_temperature",
+    "viscosity_ratio",
+)
+"""Columns of answers, by the names of the observables: [1, h, h, m, K, K, 1]; temperatures are NaN where the scene has no thermal network."""
 
 PROBABILITIES = (0.05, 0.95)
 """Of lying below the ends of a band."""
 
-VERSION = 4  # of the files
+VERSION = 5  # of the files
 _FARTHEST = 4.5  # largest score; one draw in 300,000 lies beyond
 _SLOWEST, _LIGHTEST = 0.03, 0.002  # of the largest speed and load: below, the response is that of these
 _RIDGE, _PRODUCT_RIDGE = 1e-6, 1.0  # of polynomials of one field, and of two
-_NARROWEST = np.array([1e-9, 1e-11, 1e-11, 1e-13, 1e-6, 1e-6])  # widths of bands on the scales of `transformed`, below which there is none
+_NARROWEST = np.array([1e-9, 1e-11, 1e-11, 1e-13, 1e-6, 1e-6, 1e-9])  # widths of bands on the scales of `transformed`, below which there is none
+_RESOLVED = 1e-3  # of the width of a band; where less than that is left to fit at most operating points, it is the noise of the level
 _CIRCLE = 0.6  # radius of the circle that stands for the angle, beside coordinates from -1 to 1
 _SPEED_SCALES, _LOAD_SCALES, _TEMPERATURE_SCALES = (0.5, 1.0, 2.0), (1.0, 2.0, 4.0), (0.35, 0.7, 1.4)  # that are tried
 _WIDEST = 50.0  # logarithm of a width that a spline may reach
 _SMALL = 0.2  # of the width of a band; errors of smaller departures do not follow them (found by cross validation)
 _NEIGHBOURS = 8  # operating points whose errors tell that between them (likewise)
 SLIP_SCALE = 1e-3  # slip far above counts by its logarithm, far below as it is
+_SLIP, _LIFE, _MODIFIED, _RATIO = (ANSWERS.index(name) for name in ("cage_slip", "rating_life", "modified_rating_life", "viscosity_ratio"))
+_LOGARITHMIC = [_LIFE, _MODIFIED, _RATIO]
 _SLIPS = np.concatenate([-np.geomspace(1.0, 1e-7, 2000), [0.0], np.geomspace(1e-7, 0.999, 4000), 1.0 + np.linspace(0.0, 0.0099, 200)])
 
 
@@ -188,24 +200,46 @@ def _mode(one: Range, own: float) -> float:
 
 
 def transformed(answers: np.ndarray) -> np.ndarray:
-    """Return answers on scales on which fields and operating points add up: lives by their logarithms, slip by `slip_scale`.
+    """Return answers on scales on which fields and operating points add up: slip by `slip_scale`, lives and viscosity ratio by their logarithms.
 
     Parameters
     ----------
-    answers : columns `ANSWERS`, shape (..., 6).
+    answers : columns `ANSWERS`, shape (..., 7).
     """
     found = np.array(answers, float)
-    found[..., 0] = slip_scale(found[..., 0])
+    found[..., _SLIP] = slip_scale(found[..., _SLIP])
     with np.errstate(divide="ignore", invalid="ignore"):
-        found[..., 1:3] = np.log(found[..., 1:3])
+        found[..., _LOGARITHMIC] = np.log(found[..., _LOGARITHMIC])
     return found
 
 
 def restored(scaled: np.ndarray) -> np.ndarray:
     """Return answers in their units again, the inverse of `transformed`."""
     found = np.array(scaled, float)
-    found[..., 0] = _restored_slip(found[..., 0])
-    found[..., 1:3] = np.exp(found[..., 1:3])
+    found[..., _SLIP] = _restored_slip(found[..., _SLIP])
+    found[..., _LOGARITHMIC] = np.exp(found[..., _LOGARITHMIC])
+    return found
+
+
+def add_slip_and_oil(scaled: np.ndarray, conditions: np.ndarray, effects: SlipAndOil) -> None:
+    """Add to the lives of a response what slip and oil do to them.
+
+    Parameters
+    ----------
+    scaled : answers of a response on the scales of `transformed`, those of the scene's own values first, shape (n, m, 7); changed in place.
+    conditions : columns `CONDITIONS`, shape (n, 4).
+    effects : of the scene's bearing.
+    """
+    if effects.follows_slip:
+        scaled[:, :, _LIFE] += effects.by_slip(conditions, _restored_slip(scaled[:, :, _SLIP]))
+    scaled[:, :, _MODIFIED] += scaled[:, :, _LIFE] - scaled[:, :1, _LIFE] + effects.by_oil(conditions, scaled[:, :, _LIFE], scaled[:, :, _RATIO])
+
+
+def _without_slip_and_oil(scaled: np.ndarray, conditions: np.ndarray, effects: SlipAndOil) -> np.ndarray:
+    """Return answers without what `add_slip_and_oil` adds; the parameters are its."""
+    found = scaled.copy()
+    found[:, :, _LIFE] -= effects.by_slip(conditions, _restored_slip(scaled[:, :, _SLIP]))
+    found[:, :, _MODIFIED] -= scaled[:, :, _LIFE] - scaled[:, :1, _LIFE] + effects.by_oil(conditions, scaled[:, :, _LIFE], scaled[:, :, _RATIO])
     return found
 
 
@@ -225,44 +259,6 @@ def slip_scale(slip: np.ndarray) -> np.ndarray:
 _SLIP_SCALES = slip_scale(_SLIPS)
 
 
-class LivesBySlip(NamedTuple):
-    """How lives follow slip while all else stays: a cage that lags presses its rollers outwards by less.
-
-    The logarithm of a life is taken as a parabola of the square of the cage's speed over that without slip, to which centrifugal forces are
-    proportional.  Both coefficients, over the square of the shaft speed and the inverse of the load, are interpolated linearly on a grid.
-
-    Attributes
-    ----------
-    values : on knots evenly spread in the coordinates of the response, for rating life and modified rating life, shape
-        (speeds, loads, temperatures, angles, 2, 2).
-    exponents : of what coefficients are over, by the first two coordinates.
-    """
-
-    values: np.ndarray
-    exponents: tuple[float, float]
-
-    def coefficients(self, there: np.ndarray) -> np.ndarray:
-        """Return the factors of (u - 1) and (u - 1)^2, with u = (1 - slip)^2, for both lives at `coordinates`, shape (n, 2, 2)."""
-        lowest, fractions = [], []
-        for column in range(3):
-            last = self.values.shape[column] - 1
-            position = np.clip(0.5 * (there[:, column] + 1.0), 0.0, 1.0) * last
-            lowest.append(np.minimum(position.astype(int), max(last - 1, 0)))
-            fractions.append(position - lowest[-1])
-        angles = self.values.shape[3]
-        position = np.mod(there[:, 3] / (2.0 * math.pi), 1.0) * angles
-        lowest.append(position.astype(int))
-        fractions.append(position - lowest[-1])
-        found = np.zeros((len(there), 2, 2))
-        for corner in itertools.product((0, 1), repeat=4):
-            if any(side and size == 1 for side, size in zip(corner, self.values.shape)):
-                continue
-            weight = math.prod(fraction if side else 1.0 - fraction for side, fraction in zip(corner, fractions))
-            places = tuple((low + side) % size for low, side, size in zip(lowest, corner, self.values.shape))
-            found += np.asarray(weight)[:, None, None] * self.values[places]
-        return found * np.exp(there[:, :2] @ self.exponents)[:, None, None]
-
-
 class ResponseModel(NamedTuple):
     """The response of a bearing; see the module.
 
@@ -271,14 +267,13 @@ class ResponseModel(NamedTuple):
     fields : of the d uncertain fields.
     domain : operating points that it answers for.
     centres : coordinates of the operating points that were solved for, shape (k, c).
-    scales : by which coordinates count for each of `ANSWERS`, shape (6, c).
+    scales : by which coordinates count for each of `ANSWERS`, shape (7, c).
     score_terms : degrees of the polynomials of the fields, the first of them a constant, int, shape (j, d).
     own_basis : these polynomials at the scene's own values, shape (j,).
     weights : of the functions of the operating point, for each of `ANSWERS`: of its own value, the logarithm of the width of its band, and the
-        coefficients of the polynomials but the first over that width; shape (k + c + 1, 6, j + 1).
-    lives_by_slip : what slip does to lives, which is not in the polynomials.
-    errors : by cross validation, of departures from the scene's own values, root mean square on the scales of `transformed`, shape (6,).
-    relative_errors : the same at each centre, over the size of the departures there (see `error_scales`), shape (k, 6).
+        coefficients of the polynomials but the first over that width; shape (k + c + 1, 7, j + 1).
+    errors : by cross validation, of departures from the scene's own values, root mean square on the scales of `transformed`, shape (7,).
+    relative_errors : the same at each centre, over the size of the departures there (see `error_scales`), shape (k, 7).
     points : settled points that it was fitted to.
     seconds : that building it took.
     """
@@ -290,7 +285,6 @@ class ResponseModel(NamedTuple):
     score_terms: np.ndarray
     own_basis: np.ndarray
     weights: np.ndarray
-    lives_by_slip: LivesBySlip
     errors: np.ndarray
     relative_errors: np.ndarray
     points: int
@@ -331,44 +325,41 @@ class ResponseModel(NamedTuple):
             inside &= speed >= 0.0
         return ~inside
 
-    def respond(self, conditions: np.ndarray, scores: np.ndarray) -> np.ndarray:
+    def respond(self, conditions: np.ndarray, scores: np.ndarray, effects: SlipAndOil) -> np.ndarray:
         """Return the answers at operating points, for each of several scores of the fields.
 
         Parameters
         ----------
         conditions : columns `CONDITIONS`, shape (n, 4).
         scores : of the fields, shape (m, d).
+        effects : of the same scene.
 
         Returns
         -------
-        columns `ANSWERS` in their units, shape (n, m, 6); NaN at points outside of the response (`outside`).
+        columns `ANSWERS` in their units, shape (n, m, 7); NaN at points outside of the response (`outside`).
         """
-        return restored(self.respond_scaled(conditions, self.basis_of(scores)))
+        scaled = self.respond_scaled(conditions, np.concatenate([self.own_basis[None], self.basis_of(scores)]))
+        add_slip_and_oil(scaled, conditions, effects)
+        return restored(scaled[:, 1:])
 
     def basis_of(self, scores: np.ndarray) -> np.ndarray:
         """Return the polynomials of the fields at scores of shape (m, d), shape (m, j); worth keeping while the scores stay."""
         return _basis(self.fields, self.score_terms, scores)
 
     def respond_scaled(self, conditions: np.ndarray, basis: np.ndarray) -> np.ndarray:
-        """Return the answers on the scales of `transformed`, shape (n, m, 6).
+        """Return the answers on the scales of `transformed`, lives without what slip and oil do to them (`add_slip_and_oil`), shape (n, m, 7).
 
         Parameters
         ----------
         conditions : columns `CONDITIONS`, shape (n, 4).
         basis : `basis_of` scores, shape (m, j).
         """
-        conditions = np.asarray(conditions, float)
-        coefficients = self.condition_coefficients(conditions)
-        found = np.swapaxes(coefficients @ basis.T, 1, 2)
-        own = coefficients[:, 0] @ self.own_basis
-        slips = _restored_slip(np.concatenate([own[:, None], found[:, :, 0]], axis=1))
-        found[:, :, 1:3] += _by_slip(slips[:, 1:], slips[:, :1], self.lives_by_slip.coefficients(coordinates(conditions, self.domain)))
-        return found
+        return np.swapaxes(self.condition_coefficients(conditions) @ basis.T, 1, 2)
 
     def condition_coefficients(self, conditions: np.ndarray) -> np.ndarray:
         """Return the coefficients of the polynomials of the fields (`basis_of`) at operating points, on the scales of `transformed`.
 
-        What slip does to lives is not in them.
+        What slip and oil do to lives is not in them.
 
         Parameters
         ----------
@@ -376,19 +367,9 @@ class ResponseModel(NamedTuple):
 
         Returns
         -------
-        for each of `ANSWERS`, shape (n, 6, j); NaN at points outside of the response.
+        for each of `ANSWERS`, shape (n, 7, j); NaN at points outside of the response.
         """
-        conditions = np.asarray(conditions, float)
-        there = _embedded(coordinates(conditions, self.domain), self.domain)
-        found = np.empty((len(there), *self.weights.shape[1:]))
-        for scale in np.unique(self.scales, axis=0):
-            alike = np.flatnonzero((self.scales == scale).all(axis=1))
-            weights = self.weights[:, alike].reshape(len(self.weights), -1)
-            found[:, alike] = (_functions(there * scale, self.centres * scale) @ weights).reshape(len(there), len(alike), -1)
-        departures = found[:, :, 2:] * np.exp(found[:, :, 1:2])
-        coefficients = np.concatenate([found[:, :, :1] - departures @ self.own_basis[1:, None], departures], axis=2)
-        coefficients[self.outside(conditions)] = math.nan
-        return coefficients
+        return Interpolation(self, range(len(ANSWERS))).coefficients(conditions)
 
     def error_scales(self, conditions: np.ndarray, column: int) -> tuple[np.ndarray, np.ndarray]:
         """Return what departures from the scene's own answers are off by at operating points: in proportion to them, and at least.
@@ -415,12 +396,38 @@ class ResponseModel(NamedTuple):
         widths = np.exp(np.minimum(_functions(there, centres) @ self.weights[:, column, 1], _WIDEST))
         return proportions, proportions * _SMALL * widths
 
+    def varied_answers(self) -> list[int]:
+        """Return which of `ANSWERS` the fields change at all."""
+        return np.flatnonzero(np.any(np.nan_to_num(self.weights[:, :, 2:]) != 0.0, axis=(0, 2))).tolist()
 
-def _by_slip(slip: np.ndarray, own: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
-    """Return by how much the logarithms of both lives differ from those at the own slip, shape (n, m, 2); see `LivesBySlip`."""
-    there, before = np.square(1.0 - slip) - 1.0, np.square(1.0 - own) - 1.0
-    powers = np.stack([there - before, np.square(there) - np.square(before)], axis=-1)
-    return powers @ np.swapaxes(coefficients, 1, 2)
+
+class Interpolation:
+    """A response prepared for some of its answers, for those who ask often.
+
+    Parameters
+    ----------
+    model : the response.
+    answers : columns of `ANSWERS`.
+    """
+
+    def __init__(self, model: ResponseModel, answers: Sequence[int]):
+        self._model, self._groups = model, []
+        for scale in np.unique(model.scales[list(answers)], axis=0):
+            alike = [answer for answer in answers if (model.scales[answer] == scale).all()]
+            weights = np.ascontiguousarray(model.weights[:, alike].reshape(len(model.weights), -1))
+            self._groups.append((alike, scale, model.centres * scale, weights))
+
+    def coefficients(self, conditions: np.ndarray) -> np.ndarray:
+        """Return what `ResponseModel.condition_coefficients` does; zeros for all other answers."""
+        model, conditions = self._model, np.asarray(conditions, float)
+        there = _embedded(coordinates(conditions, model.domain), model.domain)
+        found = np.zeros((len(there), *model.weights.shape[1:]))
+        for alike, scale, centres, weights in self._groups:
+            found[:, alike] = (_functions(there * scale, centres) @ weights).reshape(len(there), len(alike), -1)
+        departures = found[:, :, 2:] * np.exp(found[:, :, 1:2])
+        coefficients = np.concatenate([found[:, :, :1] - departures @ model.own_basis[1:, None], departures], axis=2)
+        coefficients[model.outside(conditions)] = math.nan
+        return coefficients
 
 
 def _embedded(there: np.ndarray, domain: Domain) -> np.ndarray:
@@ -434,10 +441,13 @@ def _embedded(there: np.ndarray, domain: Domain) -> np.ndarray:
 
 
 def _functions(there: np.ndarray, centres: np.ndarray) -> np.ndarray:
-    """Return the functions of the operating point: thin-plate splines about the centres (J. Duchon 1977), and planes; shape (n, k + c + 1)."""
+    """Return the functions of the operating point: cubes of the distances from the centres, and planes; shape (n, k + c + 1).
+
+    They are polyharmonic splines (J. Duchon, Lect. Notes Math. 571 (1977) 85).
+    """
     square = np.sum(np.square(there), axis=1)[:, None] + np.sum(np.square(centres), axis=1) - 2.0 * there @ centres.T
-    square = np.maximum(square, 1e-30)
-    return np.concatenate([0.5 * square * np.log(square), np.ones((len(there), 1)), there], axis=1)
+    square = np.maximum(square, 0.0)
+    return np.concatenate([square * np.sqrt(square), np.ones((len(there), 1)), there], axis=1)
 
 
 def _spline_matrix(centres: np.ndarray) -> np.ndarray:
@@ -494,8 +504,8 @@ def fit_response(
     conditions: np.ndarray,
     scores: np.ndarray,
     answers: np.ndarray,
+    effects: SlipAndOil,
     seconds: float = 0.0,
-    lives_by_slip: LivesBySlip | None = None,
 ) -> ResponseModel:
     """Return the response fitted to settled points: the same m scores at each of k operating points.
 
@@ -504,9 +514,9 @@ def fit_response(
     fields, domain : of the scene.
     conditions : columns `CONDITIONS` of each point, those of one operating point in a row, shape (k m, 4).
     scores : of the fields at each point, shape (k m, d); the first at each operating point are those of the scene's own values.
-    answers : columns `ANSWERS`, shape (k m, 6); an operating point at which one of the first four is NaN is left out.
+    answers : columns `ANSWERS`, shape (k m, 7); an operating point at which one of the first four is NaN is left out.
+    effects : what slip and oil do to the lives of the scene's bearing, which is not fitted.
     seconds : that the points took.
-    lives_by_slip : what is known about lives by slip; None: nothing, it is left to the polynomials.
 
     Raises
     ------
@@ -523,14 +533,13 @@ def fit_response(
     centres = _embedded(there, domain)
     if len(centres) < 4 * (centres.shape[1] + 1):
         raise ValueError(f"{len(centres)} of {len(nodes)} operating points have answers; expected {4 * (centres.shape[1] + 1)} or more")
-    lives_by_slip = LivesBySlip(np.zeros((1, 1, 1, 1, 2, 2)), (0.0, 0.0)) if lives_by_slip is None else lives_by_slip
-    departures = scaled[kept, 1:] - scaled[kept, :1]
-    slips = answers.reshape(scaled.shape)[kept, :, 0]
-    departures[:, :, 1:3] -= _by_slip(slips[:, 1:], slips[:, :1], lives_by_slip.coefficients(there))
+    widths = _widths(np.nan_to_num(scaled[kept, 1:] - scaled[kept, :1]))
+    fitted = _without_slip_and_oil(scaled[kept], nodes[kept], effects)
+    departures = fitted[:, 1:] - fitted[:, :1]
     terms = _score_terms(len(fields))
     basis = _basis(fields, terms, drawn[0])
     is_product = np.count_nonzero(terms[1:], axis=1) > 1
-    values = _node_values(np.nan_to_num(scaled[kept, 0]), np.nan_to_num(departures), basis, is_product)
+    values = _node_values(np.nan_to_num(scaled[kept, 0]), np.nan_to_num(departures), widths, basis, is_product)
     change = basis[1:, 1:] - basis[0, 1:]
     scales = _best_scales(centres, domain, values, change, departures)
     weights = np.stack([_spline_weights(centres * scale, values[:, column]) for column, scale in enumerate(scales)], axis=1)
@@ -538,31 +547,39 @@ def fit_response(
         _departures_left_out(centres * scale, values[:, [column]], change, departures[:, :, [column]])[:, :, 0] for column, scale in enumerate(scales)
     ]
     if np.isnan(scaled[kept][:, :, 4:]).any():
-        weights[:, 4:] = math.nan
+        weights[:, 4:6] = math.nan
     errors = np.sqrt(np.mean(np.square(left), axis=(1, 2)))
     sizes = np.hypot(np.nan_to_num(departures), _SMALL * np.exp(values[:, None, :, 1]))
     relative_errors = np.sqrt(np.mean(np.square(np.moveaxis(left, 0, -1) / sizes), axis=1))
     points = int(np.isfinite(scaled[:, :, 0]).sum())
-    return ResponseModel(fields, domain, centres, scales, terms, basis[0], weights, lives_by_slip, errors, relative_errors, points, seconds)
+    return ResponseModel(fields, domain, centres, scales, terms, basis[0], weights, errors, relative_errors, points, seconds)
 
 
 def _basis(fields: Fields, terms: np.ndarray, scores: np.ndarray) -> np.ndarray:
     return _products(_legendre(2.0 * fields.fractions_of(scores) - 1.0, 2), terms)
 
 
-def _node_values(own: np.ndarray, departures: np.ndarray, basis: np.ndarray, is_product: np.ndarray) -> np.ndarray:
-    """Return at each operating point the own answers, the logarithms of widths, and coefficients over these, shape (k, 6, j + 1).
+def _widths(departures: np.ndarray) -> np.ndarray:
+    """Return the widths of the bands of departures of shape (k, m, 7), shape (k, 7)."""
+    low, high = np.quantile(departures, PROBABILITIES, axis=1)
+    return high - low
+
+
+def _node_values(own: np.ndarray, departures: np.ndarray, widths: np.ndarray, basis: np.ndarray, is_product: np.ndarray) -> np.ndarray:
+    """Return at each operating point the own answers, the logarithms of widths, and coefficients over these, shape (k, 7, j + 1).
 
     Parameters
     ----------
-    own : answers at the scene's own values, shape (k, 6).
-    departures : from them, shape (k, m - 1, 6).
+    own : answers at the scene's own values, shape (k, 7).
+    departures : from them, without what is not fitted, shape (k, m - 1, 7).
+    widths : of the bands with what is not fitted, shape (k, 7).
     basis : polynomials at the m scores, shape (m, j).
     is_product : whether each polynomial but the first is of two fields, shape (j - 1,); these are held back by a ridge, so that there may be more
         of them than draws.
     """
-    low, high = np.quantile(departures, PROBABILITIES, axis=1)
-    widths = np.maximum(high - low, _NARROWEST)
+    left = _widths(departures)
+    departures = np.where(np.median(left - _RESOLVED * widths, axis=0) <= 0.0, 0.0, departures)
+    widths = np.maximum(np.maximum(left, _RESOLVED * widths), _NARROWEST)
     change = basis[1:, 1:] - basis[0, 1:]
     inverse = np.linalg.solve(change.T @ change + np.diag(np.where(is_product, _PRODUCT_RIDGE, _RIDGE)), change.T)
     coefficients = np.einsum("jm,kmq->kqj", inverse, departures / widths[:, None])
@@ -584,7 +601,7 @@ def _departures_left_out(centres: np.ndarray, values: np.ndarray, change: np.nda
 
 
 def _best_scales(centres: np.ndarray, domain: Domain, values: np.ndarray, change: np.ndarray, departures: np.ndarray) -> np.ndarray:
-    """Return by which scales of the coordinates each answer is met best at operating points that were left out, shape (6, c)."""
+    """Return by which scales of the coordinates each answer is met best at operating points that were left out, shape (7, c)."""
     warm = domain.temperatures[1] > domain.temperatures[0]
     axes = [_SPEED_SCALES, _LOAD_SCALES, *[_TEMPERATURE_SCALES] * warm]
     best, scales = np.full(len(ANSWERS), math.inf), np.ones((len(ANSWERS), centres.shape[1]))
@@ -613,22 +630,20 @@ _ARRAYS = ("centres", "scales", "score_terms", "own_basis", "weights", "errors",
 
 
 def write_response(path: Path, model: ResponseModel) -> None:
-    """Write a response atomically: a reader finds the old file or the new one, never a part."""
+    """Write a response: a reader finds the old file or the new one, never a part.  Raises OSError, also if another process is writing it."""
     written = {
         "ranges": [asdict(one) for one in model.fields.ranges],
         "domain": model.domain._asdict(),
-        "exponents": model.lives_by_slip.exponents,
         "points": model.points,
         "seconds": model.seconds,
     }
-    arrays = {name: getattr(model, name) for name in _ARRAYS} | {"lives_by_slip": model.lives_by_slip.values}
+    arrays = {name: getattr(model, name) for name in _ARRAYS}
     buffer = io.BytesIO()
     np.savez_compressed(buffer, written=np.frombuffer(json.dumps(written).encode(), np.uint8), own=model.fields.own, **arrays)
     data = buffer.getvalue()
     path.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.NamedTemporaryFile(dir=path.parent, prefix=path.stem, delete=False) as file:
-        file.write(data + hashlib.sha256(data).digest())
-    os.replace(file.name, path)
+    with replaced(path) as draft:
+        draft.write_bytes(data + hashlib.sha256(data).digest())
 
 
 def read_response(path: Path) -> ResponseModel | None:
@@ -644,8 +659,7 @@ def read_response(path: Path) -> ResponseModel | None:
             fields = Fields([Range(**one) for one in written["ranges"]], file["own"])
             domain = Domain(*(tuple(value) if isinstance(value, list) else value for value in written["domain"].values()))
             arrays = {name: file[name] for name in _ARRAYS}
-            lives = LivesBySlip(file["lives_by_slip"], tuple(map(float, written["exponents"])))
-            found = ResponseModel(fields, domain, **arrays, lives_by_slip=lives, points=int(written["points"]), seconds=float(written["seconds"]))
+            found = ResponseModel(fields, domain, **arrays, points=int(written["points"]), seconds=float(written["seconds"]))
             return found if _fits_together(found) else None
     except Exception:  # whatever a broken file makes its reader raise, the response is built again
         return None
@@ -664,19 +678,8 @@ def _fits_together(model: ResponseModel) -> bool:
     }
     if any(getattr(model, name).shape != shape for name, shape in shapes.items()) or model.fields.own.shape != (len(model.fields),):
         return False
-    lives = model.lives_by_slip
-    if lives.values.ndim != 6 or lives.values.shape[4:] != (2, 2) or not lives.values.size or len(lives.exponents) != 2:
-        return False
-    numbers = (
-        model.centres,
-        model.scales,
-        model.own_basis,
-        model.weights[:, :4],
-        model.relative_errors[:, :4],
-        lives.values,
-        lives.exponents,
-        model.fields.own,
-    )
+    finite = [0, 1, 2, 3, _RATIO]
+    numbers = (model.centres, model.scales, model.own_basis, model.weights[:, finite], model.relative_errors[:, finite], model.fields.own)
     return bool(np.array_equal(model.score_terms, _score_terms(len(model.fields)))) and all(np.isfinite(each).all() for each in numbers)
 
 

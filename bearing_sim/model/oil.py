@@ -149,8 +149,7 @@ def thermal_conductivity(oil: Oil | CustomOil, temperature: float) -> float:
     constant = BASE_OILS[oil.base].conductivity
     if constant is not None:
         return constant
-    gravity = _viscosity_and_density(oil, _GRAVITY_TEMPERATURE)[1] / _WATER_DENSITY
-    return 0.1172 * (1.0 - 0.00054 * (temperature - 273.15)) / gravity
+    return 0.1172 * (1.0 - 0.00054 * (temperature - 273.15)) / _specific_gravity(oil)
 
 
 def specific_heat(oil: Oil | CustomOil, temperature: float) -> float:
@@ -162,8 +161,13 @@ def specific_heat(oil: Oil | CustomOil, temperature: float) -> float:
     """
     if oil.specific_heat is not None:
         return oil.specific_heat
-    gravity = _viscosity_and_density(oil, _GRAVITY_TEMPERATURE)[1] / _WATER_DENSITY
-    return (1684.8 + 3.391 * (temperature - 273.15)) / math.sqrt(gravity)
+    return (1684.8 + 3.391 * (temperature - 273.15)) / math.sqrt(_specific_gravity(oil))
+
+
+@functools.lru_cache(maxsize=256)
+def _specific_gravity(oil: Oil | CustomOil) -> float:
+    """Return the density of an oil at 60 degF over that of water."""
+    return _viscosity_and_density(oil, _GRAVITY_TEMPERATURE)[1] / _WATER_DENSITY
 
 
 def kinematic_viscosities(oil: Oil | CustomOil, temperatures: np.ndarray) -> np.ndarray:

@@ -189,7 +189,7 @@ def partition(bearing: Bearing) -> np.ndarray:
     return fractions
 
 
-@functools.lru_cache(maxsize=32)
+@functools.lru_cache(maxsize=2048)  # as many oils as a study of an uncertain viscosity has draws, 6 kB each
 def _oils(oil: Oil | CustomOil) -> Oils:
     temperatures = np.arange(_COLDEST, _HOTTEST + 0.5 * _OIL_STEP, _OIL_STEP)
     rows = []

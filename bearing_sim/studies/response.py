@@ -9,12 +9,11 @@ import numpy as np
 from scipy.stats import qmc
 
 from bearing_sim.estimation.bands import prior_draws
+from bearing_sim.estimation.lives import SlipAndOil
 from bearing_sim.estimation.response import (
     ANSWERS,
-    LivesBySlip,
     ResponseModel,
     conditions_at,
-    coordinates,
     domain_of,
     fit_response,
     kept_response,
@@ -22,15 +21,8 @@ from bearing_sim.estimation.response import (
     scene_fields,
     write_response,
 )
-from bearing_sim.levels.common.model import DEFAULT_TOLERANCES, Drive, Model, inner_growth
-from bearing_sim.levels.common.observation import oil_at_speed
-from bearing_sim.levels.slip.forces import pitch_loads
-from bearing_sim.levels.slip.state import new_work
 from bearing_sim.levels.steady.equilibrium import thermal_equilibrium
 from bearing_sim.levels.steady.table import empty_table
-from bearing_sim.model.params import pack
-from bearing_sim.model.temperatures import lubricate_scene
-from bearing_sim.physics.rating_life import rate_lives
 from bearing_sim.scene.scene import Scene
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation
 from bearing_sim.studies.uncertainty import UncertaintyError, varied
@@ -38,14 +30,13 @@ from bearing_sim.sweep.tasks import Journal, run_tasks, task
 
 DRAWS = 64  # of the fields' scores at each operating point, the scene's own values among them
 _POINTS = 16_384  # that a response is fitted to, a power of two
-_SPEEDS, _LOADS, _TEMPERATURES, _ANGLES = 24, 20, 4, 16  # knots of lives by slip
-_SLIPS = (0.0, 0.05, 0.13)  # at which lives are computed
 _BATCH = 64  # points of a task
 _LONG = 1e4  # s; longer than any lag of a cage; at level steady simulated time costs nothing
 _EQUAL, _BALANCED = 0.05, 1e-3  # K, and of the shaft power; slip then errs by less than 0.01 points, clearance by 10 nm
 _ROUNDS, _FARTHEST = 12, 60.0  # of losses and temperatures in turn, and K of one
 _STRETCH, _STRETCHES, _SAME_SLIP = 0.5, 40, 1e-4  # s, largest number, and difference of successive mean slips of a level that moves
-_SPARE = 4  # points more than fields from which on equilibria are expected by a linear fit
+_SPARE = 4  # points more than coefficients from which on equilibria are expected by a fit
+_FITTED = 96  # points at most of that fit
 _OIL_TEMPERATURE = "lubricant.temperature"
 
 
@@ -84,11 +75,12 @@ class _Equilibria:
 
     def add(self, values: tuple[float, ...], nodes: np.ndarray) -> None:
         """Add the temperatures of the nodes [K] at values of the fields."""
-        self._values.append(values)
-        self._nodes.append(nodes)
+        if len(self._nodes) < _FITTED:
+            self._values.append(values)
+            self._nodes.append(nodes)
 
     def expected(self, values: tuple[float, ...]) -> np.ndarray | None:
-        """Return the temperatures expected at values, linear in them where enough points are known; None where none is."""
+        """Return the temperatures expected at values: a fit linear in them, with their squares where enough points are known; None where none is."""
         if not self._nodes:
             return None
         if len(self._nodes) < len(values) + _SPARE:
@@ -96,18 +88,24 @@ class _Equilibria:
         known, nodes = np.array(self._values), np.array(self._nodes)
         centre, spread = known.mean(axis=0), known.std(axis=0)
         spread[spread == 0.0] = 1.0
-        slopes, *_ = np.linalg.lstsq((known - centre) / spread, nodes - nodes.mean(axis=0))
-        return nodes.mean(axis=0) + (np.array(values) - centre) / spread @ slopes
+        terms = (np.concatenate([known, [values]]) - centre) / spread
+        if len(self._nodes) >= 2 * len(values) + _SPARE:
+            terms = np.concatenate([terms, np.square(terms)], axis=1)
+        terms = np.concatenate([np.ones((len(terms), 1)), terms], axis=1)
+        return terms[-1] @ np.linalg.lstsq(terms[:-1], nodes)[0]
 
 
 def _settled(scene: Scene, inputs: Inputs, values: tuple[float, ...], nearby: _Equilibria) -> np.ndarray:
     """Return the answers of one point, and add its equilibrium to those ``nearby``, from which the search for it begins."""
-    simulation = Simulation(scene.at_level("steady"), inputs, empty_table())
-    if simulation.thermal is None:
-        sample = simulation.advance(_LONG, samples=2)[-1]
-    else:
-        sample = _in_equilibrium(simulation, nearby.expected(values))
+    steady = scene.at_level("steady")
+    if scene.heat.law == "network":
+        start = nearby.expected(values)
+        simulation = Simulation(steady, inputs, empty_table(), nodes=start)
+        sample = _in_equilibrium(simulation, start)
         nearby.add(values, simulation.thermal.temperatures.copy())
+    else:
+        simulation = Simulation(steady, inputs, empty_table())
+        sample = simulation.advance(_LONG, samples=2)[-1]
     answers = np.array([float(sample[name]) for name in ANSWERS])
     if scene.level != "steady":
         answers[ANSWERS.index("cage_slip")] = _moving_slip(scene, inputs, simulation)
@@ -128,13 +126,13 @@ def _moving_slip(scene: Scene, inputs: Inputs, settled: Simulation) -> float:
 
 
 def _in_equilibrium(simulation: Simulation, start: np.ndarray | None) -> np.void:
-    """Bring a simulation to its thermal equilibrium and return its sample there.
+    """Bring a simulation that has begun at a guess of the temperatures to its thermal equilibrium and return its sample there.
 
     The search goes back and forth between losses and temperatures, as that of `bearing_sim.levels.steady.equilibrium`, whose operating points are
     finer and take five times as long; where back and forth alone does not end, it is that search which decides.
     """
     thermal, inlet = simulation.thermal, simulation.inputs.oil_temperature
-    simulation.set_temperatures(thermal.temperatures if start is None else start)
+    thermal.held = True
     for _ in range(_ROUNDS):
         block = simulation.advance(_LONG, samples=2)
         rest = thermal.rest(block[-1:], inlet)
@@ -155,7 +153,7 @@ def at_points(
     scene: Scene, scores: np.ndarray, conditions: np.ndarray, journal: Journal | None = None, workers: int | None = None, dask: str | None = None,
     progress: Callable[[int, int], None] = lambda done, total: None, level: str = "steady",
 ) -> np.ndarray:  # fmt: skip
-    """Return settled answers at points, shape (n, 6); NaN where there is none.
+    """Return settled answers at points, shape (n, 7); NaN where there is none.
 
     Parameters
     ----------
@@ -200,49 +198,9 @@ def design(scene: Scene, count: int, seed: int = 1) -> tuple[np.ndarray, np.ndar
     conditions, scores : shapes (count, 4) and (count, d).
     """
     fields, nodes = scene_fields(scene), count // DRAWS
-    scores = np.concatenate([fields.scores_of(fields.own)[None], prior_draws(len(fields), DRAWS, seed)[0][1:]])
+    scores = np.concatenate([fields.scores_of(fields.own)[None], prior_draws(len(fields), DRAWS, seed)[1:]])
     positions = qmc.Sobol(d=4, scramble=True, seed=np.random.default_rng(seed)).random_base2(nodes.bit_length() - 1)
     return np.repeat(conditions_at(positions, domain_of(scene)), DRAWS, axis=0), np.tile(scores, (nodes, 1))
-
-
-def lives_by_slip(scene: Scene) -> LivesBySlip:
-    """Return how the lives of a scene's bearing follow slip, by the loads of level ``steady`` at given speeds of the cage.
-
-    Where a thermal network computes the temperatures, slip itself changes them, and nothing is returned but zeros.
-    """
-    domain = domain_of(scene)
-    if scene.heat.law == "network":
-        return LivesBySlip(np.zeros((1, 1, 1, 1, 2, 2)), (0.0, 0.0))
-    params = pack(scene)
-    work = new_work(params)
-    is_warmed = domain.temperatures[1] > domain.temperatures[0] and scene.bearing.dimensions_at != "running"
-    sizes = (_SPEEDS, _LOADS, _TEMPERATURES if is_warmed else 1, _ANGLES if domain.period else 1)
-    axes = [np.linspace(0.0, 1.0, size) if size > 1 else np.array([0.5]) for size in sizes[:3]] + [np.arange(sizes[3]) / sizes[3]]
-    points = conditions_at(np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 4), domain)
-    exponents = math.log(domain.speeds[1] / domain.speeds[0]), -0.5 * math.log(domain.loads[1] / domain.loads[0])
-    there = coordinates(points, domain)
-    found = np.empty((len(points), 2, 2))
-    squares = np.square(1.0 - np.array(_SLIPS)) - 1.0
-    inverse = np.linalg.inv(np.stack([squares[1:], np.square(squares[1:])], axis=1))
-    lubrications = {kelvin: lubricate_scene(scene, params, kelvin) for kelvin in set(points[:, 2].tolist())}
-    for k, (speed, load, kelvin, angle) in enumerate(points.tolist()):
-        drive = Drive(0.0, speed, 0.0, load * math.cos(angle), 0.0, load * math.sin(angle), 0.0, 0.0)
-        model = Model(params, lubrications[kelvin], drive, DEFAULT_TOLERANCES)
-        lives = np.log([_lives(slip, model, work) for slip in _SLIPS])
-        found[k] = (inverse @ (lives[1:] - lives[0])).T
-    found /= np.exp(there[:, :2] @ exponents)[:, None, None]
-    return LivesBySlip(np.nan_to_num(found).reshape(*sizes, 2, 2), exponents)
-
-
-def _lives(slip: float, model: Model, work) -> tuple[float, float]:
-    """Return basic and modified life [revolutions] at a slip of the cage."""
-    params, drive = model.params, model.drive
-    cage = 0.5 * drive.shaft_speed * (1.0 - params.raceways.diameter_ratio) * (1.0 - slip)
-    work.growth[0] = inner_growth(drive.shaft_speed, model)
-    oil = oil_at_speed(drive.shaft_speed, model)
-    equivalent = pitch_loads(0.0, cage, drive.load_y, drive.load_z, oil, params, work)
-    lives = rate_lives(math.hypot(drive.load_y, drive.load_z), equivalent, oil, params.life)
-    return lives.basic, lives.modified
 
 
 def obtain_response(
@@ -279,8 +237,7 @@ def obtain_response(
         with Journal(path.with_suffix(".journal")) as journal:
             answers = at_points(scene, scores, conditions, journal, workers, dask, progress)
         try:
-            lives = lives_by_slip(scene)
-            found = fit_response(fields, domain_of(scene), conditions, scores, answers, time.perf_counter() - began, lives)
+            found = fit_response(fields, domain_of(scene), conditions, scores, answers, SlipAndOil(scene), time.perf_counter() - began)
         except ValueError as error:
             raise UncertaintyError(f"no response of {scene.name}: {error}; narrow its ranges, or its block `table`") from None
         write_response(path, found)

@@ -1,20 +1,32 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
 """How well bands agree with a sample of level ``steady`` itself at random operating points, and what one band costs.
 
-python test/benchmarks/band_accuracy.py [SCENE] [--points 50] [--samples 1024] [--set FIELD=VALUE ...]
+python test/benchmarks/band_accuracy.py [SCENE] [--points 50] [--samples 1024] [--journal FILE] [--set FIELD=VALUE ...]
+
+Remaining life is compared where half of the life is spent at each operating point for itself, and along a course that holds each for as long, until
+half of the life is spent: there what is off at one of the points that wear most is off at all that follow.
+
+Where life follows slip alone, its band may be narrower than what the level resolves: two solutions of the same loads from different starts differ
+by the tolerance of its load balance.  How far the level's lives are from those at the same slips, computed from another start, is its
+resolution; edges that are off by less are counted apart.
 """
 
 import argparse
 import time
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
 from bearing_sim.estimation.bands import QUANTITIES, BandEstimator, prior_draws
+from bearing_sim.estimation.lives import SlipAndOil
 from bearing_sim.estimation.response import ANSWERS, PROBABILITIES, conditions_at, domain_of, scene_fields
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.studies.response import at_points, obtain_response
+from bearing_sim.sweep.tasks import Journal
 
-COMPARED = QUANTITIES[:3]  # the fourth follows from a life and its past
+RESOLVED = 32  # samples of an operating point by which the level's resolution is found
+SPENT = 0.5  # of the life, along the course
 TOLERANCE = 0.1  # of the width of the band
 RATE = 50.0  # Hz
 BATCHES = (1, 10)  # samples that are taken at once
@@ -32,28 +44,87 @@ def samples_at(conditions, answers):
     return block
 
 
-def compare(scene, points, samples, seed):
-    """Return the distances of the bands' edges from the exact ones over the width, shape (k, 3, 2), and a sample of each operating point."""
+def samples_of(scene, points, samples, seed, journal):
+    """Return operating points, shape (k, 4), and the answers there, of the scene itself first, shape (k, samples + 1, 7)."""
     fields = scene_fields(scene)
-    random = np.random.default_rng(seed)
-    conditions = conditions_at(random.random((points, 4)), domain_of(scene))
-    drawn = prior_draws(len(fields), samples, seed)[0]
-    scores = np.concatenate([fields.scores_of(fields.own)[None], drawn])
-    answers = at_points(scene, np.tile(scores, (points, 1)), np.repeat(conditions, len(scores), axis=0)).reshape(points, len(scores), -1)
+    conditions = conditions_at(np.random.default_rng(seed).random((points, 4)), domain_of(scene))
+    scores = np.concatenate([fields.scores_of(fields.own)[None], prior_draws(len(fields), samples, seed)])
+    tiled = np.tile(scores, (points, 1)), np.repeat(conditions, len(scores), axis=0)
+    answers = at_points(scene, *tiled, journal).reshape(points, len(scores), -1)
     kept = np.isfinite(answers[:, 0, :4]).all(axis=1)
     print(f"{np.count_nonzero(~kept)} of {points} operating points without an answer of the scene itself")
     print(f"{np.isnan(answers[kept, 1:, 0]).sum()} of {answers[kept, 1:, 0].size} samples without an answer")
-    columns = [ANSWERS.index(name) for name in COMPARED]
-    exact = np.moveaxis(np.nanquantile(answers[kept][:, 1:, columns], PROBABILITIES, axis=1), 0, -1)
-    block = samples_at(conditions[kept], answers[kept, 0])
-    found = BandEstimator(scene, obtain_response(scene)).take(block)[:, : len(COMPARED)]
-    return np.abs(found - exact) / np.diff(exact, axis=-1), block
+    return conditions[kept], answers[kept]
 
 
-def cost(scene, block):
+def distances(found, exact):
+    """Return how far edges are from the exact ones over the width, and the edges; shape (k, 2) each."""
+    edges = np.nanquantile(exact, PROBABILITIES, axis=1).T
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.abs(found - edges) / np.diff(edges, axis=1), edges
+
+
+def show(name, off, edges, resolution=None):
+    """Print how many edges are within the tolerance, and with what the level resolves [1], shape (k,)."""
+    width = np.diff(edges, axis=1)
+    counted = np.isfinite(off) & (width > 0.0)
+    if not counted.any():
+        print(f"{name}: no band, its width is 0 at all points")
+        return
+    within, widths = off <= TOLERANCE, (width / np.abs(edges.mean(axis=1, keepdims=True)))[counted.any(axis=1)]
+    said = f"{name}: {100 * within[counted].mean():.1f} % of {counted.sum()} edges within a tenth of the band's width"
+    print(f"{said}; largest distance {off[counted].max():.3f} widths; median width {np.median(widths):.2g} of the value")
+    if resolution is not None:
+        either = within | (off * width <= resolution[:, None] * np.abs(edges))
+        said = f"{name}: {100 * either[counted].mean():.1f} % within that or within the level's resolution, {np.median(resolution):.1g} in the median"
+        print(f"{said}; at {np.count_nonzero(TOLERANCE * width[:, 0] < resolution * np.abs(edges).min(axis=1))} points a tenth of the width is less")
+
+
+def resolution_of(scene, conditions, answers):
+    """Return how far the level's lives are at most from those at the same slips, computed from another start [1], shape (k,)."""
+    effects, found = SlipAndOil(scene), []
+    for condition, answer in zip(conditions, answers[:, :RESOLVED]):
+        revolutions = answer[:, ANSWERS.index("rating_life")] * 3600.0 * abs(condition[0]) / (2.0 * np.pi)
+        found.append(np.nanmax(np.abs(np.log(revolutions) - effects.rating_lives(condition.tolist(), answer[:, 0].tolist()))))
+    return np.array(found)
+
+
+def compare(scene, response, conditions, answers):
+    """Print how far the edges of bands of settled answers are from the exact ones."""
+    found = BandEstimator(scene, response).take(samples_at(conditions, answers[:, 0]))
+    for column, name in enumerate(QUANTITIES[:3]):
+        by_slip_alone = name == "rating_life" and ANSWERS.index(name) not in response.varied_answers()
+        resolution = resolution_of(scene, conditions, answers) if by_slip_alone else None
+        show(name, *distances(found[:, column], answers[:, 1:, ANSWERS.index(name)]), resolution)
+
+
+def compare_remaining(scene, response, conditions, answers):
+    """Print how far the edges of the band of remaining life are from the exact ones, at each point for itself and along a course."""
+    lives = answers[:, :, ANSWERS.index("modified_rating_life")]
+    kept = np.isfinite(lives).all(axis=1)
+    conditions, answers, rates = conditions[kept], answers[kept], 1.0 / (3600.0 * lives[kept])
+    block, column = samples_at(conditions, answers[:, 0]), QUANTITIES.index("remaining_life")
+    block["damage"] = SPENT
+    found = np.concatenate([BandEstimator(scene, response).take(block[k : k + 1])[:, column] for k in range(len(block))])
+    exact = np.clip(1.0 - SPENT * rates / rates[:, :1], 0.0, 1.0) / (3600.0 * rates)
+    show("remaining_life, each point for itself", *distances(found, exact[:, 1:]))
+
+    hold = SPENT / rates[:, 0].sum()
+    spent, memory = np.cumsum(hold * rates, axis=0), 3.0 * hold
+    means = rates.copy()
+    for k in range(1, len(means)):
+        means[k] = means[k - 1] + (1.0 - np.exp(-hold / memory)) * (rates[k] - means[k - 1])
+    exact = np.clip(1.0 - spent, 0.0, 1.0) / (3600.0 * means)
+    block["time"], block["damage"] = hold * np.arange(1, len(block) + 1), spent[:, 0]
+    bands = BandEstimator(replace(scene, thresholds=replace(scene.thresholds, remaining_life_memory=memory)), response)
+    show("remaining_life, along a course", *distances(bands.take(block)[:, column], exact[:, 1:]))
+    print(f"remaining_life: that of the level itself is met to {np.abs(bands.remaining_life / exact[:, 0] - 1.0).max():.1g}")
+
+
+def cost(scene, response, block):
     """Print the processor time of a band, and of bands at `RATE`, for samples that come at once."""
     for size in BATCHES:
-        bands = BandEstimator(scene, obtain_response(scene))
+        bands = BandEstimator(scene, response)
         repeats = np.resize(block, 50 * size).reshape(50, size)
         repeats["time"] = np.arange(repeats.size).reshape(repeats.shape) / RATE
         repeats["shaft_speed"] *= 1.0 + 1e-6 * np.arange(repeats.size).reshape(repeats.shape)  # no two alike
@@ -72,19 +143,17 @@ def main():
     parser.add_argument("--points", type=int, default=50)
     parser.add_argument("--samples", type=int, default=1024, help="a power of two")
     parser.add_argument("--seed", type=int, default=2)
+    parser.add_argument("--journal", type=Path, help="keeps finished samples: the same command resumes")
     parser.add_argument("--set", dest="overrides", action="append", default=[], metavar="FIELD=VALUE")
     given = parser.parse_args()
     scene = load_scene(given.scene, [*given.overrides, "level=steady"])
     response = obtain_response(scene)
     print(f"{scene.name}: {len(response.fields)} uncertain fields, response of {response.points} points in {response.seconds:.0f} s")
-    distances, block = compare(scene, given.points, given.samples, given.seed)
-    for column, name in enumerate(COMPARED):
-        edges = distances[:, column].ravel()
-        edges = edges[np.isfinite(edges)]
-        within = np.mean(edges <= TOLERANCE) if len(edges) else np.nan
-        worst = edges.max() if len(edges) else np.nan
-        print(f"{name}: {100 * within:.1f} % of {len(edges)} edges within a tenth of the band's width; largest distance {worst:.3f} widths")
-    cost(scene, block)
+    with Journal(given.journal) as journal:
+        conditions, answers = samples_of(scene, given.points, given.samples, given.seed, journal)
+    compare(scene, response, conditions, answers)
+    compare_remaining(scene, response, conditions, answers)
+    cost(scene, response, samples_at(conditions, answers[:, 0]))
 
 
 if __name__ == "__main__":

@@ -290,7 +290,7 @@ def _response_of(**changes: object) -> Callable[[], bytes]:
         ranges, domain = uncertain_ranges(scene), domain_of(scene)
         points, degrees = 40, _score_terms(len(ranges))
         terms = len(degrees)
-        written = {"ranges": [asdict(one) for one in ranges], "domain": domain._asdict(), "exponents": (2.0, -1.0), "points": 400, "seconds": 1.0}
+        written = {"ranges": [asdict(one) for one in ranges], "domain": domain._asdict(), "points": 400, "seconds": 1.0}
         arrays = {
             "own": np.array([0.5 * (one.low + one.high) for one in ranges]),
             "centres": np.random.default_rng(1).uniform(-1.0, 1.0, (points, 5)),
@@ -299,7 +299,6 @@ def _response_of(**changes: object) -> Callable[[], bytes]:
             "own_basis": np.ones(terms),
             "weights": np.zeros((points + 6, len(ANSWERS), terms + 1)),
             "errors": np.zeros(len(ANSWERS)),
-            "lives_by_slip": np.zeros((2, 2, 2, 1, 2, 2)),
         }
         written |= {name: value for name, value in changes.items() if name in written}
         arrays |= {name: value for name, value in changes.items() if name not in written}
@@ -504,7 +503,6 @@ CASES = [
             "fields of another scene": _signed(_response_of(ranges=[])),
             "a range that ends before it begins": _signed(_response_of(ranges=[{"field": "a", "low": 2.0, "high": 1.0}])),
             "a domain of texts": _signed(_response_of(domain={"speeds": "x", "loads": "y", "temperatures": "z", "period": "", "mirror": ""})),
-            "exponents that are texts": _signed(_response_of(exponents=["a", "b"])),
         }.items()
     ),
 ]
