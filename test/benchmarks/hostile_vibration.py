@@ -6,14 +6,21 @@ import json
 import os
 import random
 import struct
+import sys
+import tempfile
 import zipfile
 import zlib
 from collections.abc import Callable, Iterable
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 from hostile_files import Case
 from hostile_scenes import fifo, file, link, sparse
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+from made_up_response import asking_scene, made_up_response  # noqa: E402
 
 _OPTIONS = ("--rollers", "13", "--speed", "3000rpm")
 _RATE = ("--rate", "20kHz")
@@ -241,18 +248,17 @@ def _recording(blocks: Iterable[tuple[object, int]], kind: str = "std_msgs/msg/F
     return make
 
 
-def _response(change: Callable[[bytes], bytes], scene: str = "deng2017_table1") -> Callable[[], None]:
+def _response(change: Callable[[Path], object]) -> Callable[[], None]:
     """Return what puts a changed response in the place of a scene's, in a folder of its own, and asks for it as node and commands do."""
 
     def ask() -> None:
         import click
 
-        from bearing_sim import load_scene
         from bearing_sim.estimation import response
 
         response.FOLDER = Path("kept").absolute()
         response.FOLDER.mkdir()
-        chosen = load_scene(scene)
+        chosen = asking_scene()
         path = response.response_path(chosen)
         change(path)
         found = response.kept_response(chosen)
@@ -277,34 +283,29 @@ def _signed(members: Callable[[], bytes]) -> Callable[[Path], None]:
     return write
 
 
+@cache
+def _whole_response() -> dict[str, np.ndarray]:
+    """Return what is in the file of a whole response, by name."""
+    from bearing_sim.estimation.response import write_response
+
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "whole.npz"
+        write_response(path, made_up_response(asking_scene()))
+        with np.load(io.BytesIO(path.read_bytes()[:-32])) as found:
+            return dict(found)
+
+
 def _response_of(**changes: object) -> Callable[[], bytes]:
-    """Return what makes the content of a response of plausible shapes, with some of it changed."""
+    """Return what makes the content of a response with some of it changed: an array, or a value of its description; None leaves it out."""
 
     def make() -> bytes:
-        from dataclasses import asdict
-
-        from bearing_sim import load_scene
-        from bearing_sim.estimation.response import ANSWERS, _score_terms, domain_of, uncertain_ranges
-
-        scene = load_scene("deng2017_table1")
-        ranges, domain = uncertain_ranges(scene), domain_of(scene)
-        points, degrees = 40, _score_terms(len(ranges))
-        terms = len(degrees)
-        written = {"ranges": [asdict(one) for one in ranges], "domain": domain._asdict(), "points": 400, "seconds": 1.0}
-        arrays = {
-            "own": np.array([0.5 * (one.low + one.high) for one in ranges]),
-            "centres": np.random.default_rng(1).uniform(-1.0, 1.0, (points, 5)),
-            "scales": np.ones((len(ANSWERS), 5)),
-            "score_terms": degrees,
-            "own_basis": np.ones(terms),
-            "weights": np.zeros((points + 6, len(ANSWERS), terms + 1)),
-            "errors": np.zeros(len(ANSWERS)),
-        }
+        arrays = dict(_whole_response())
+        written = json.loads(arrays["written"].tobytes())
         written |= {name: value for name, value in changes.items() if name in written}
         arrays |= {name: value for name, value in changes.items() if name not in written}
+        arrays["written"] = np.frombuffer(json.dumps(written).encode(), np.uint8)
         buffer = io.BytesIO()
-        text = np.frombuffer(json.dumps(written).encode(), np.uint8)
-        np.savez_compressed(buffer, written=text, **{name: value for name, value in arrays.items() if value is not None})
+        np.savez_compressed(buffer, **{name: value for name, value in arrays.items() if value is not None})
         return buffer.getvalue()
 
     return make
@@ -496,10 +497,10 @@ CASES = [
             "a directory of 2 million members": lambda path: (_directory_of(2_000_000)(path), _signed(path.read_bytes)(path)),
             "a description that nests": _signed(_archived(lambda: [("written.npy", _array_file("(100000,)", "'|u1'", b"[" * 100_000))])),
             "weights of another shape": _signed(_response_of(weights=np.zeros((2, 2)))),
-            "weights that are no numbers": _signed(_response_of(weights=np.full((46, 6, 7), np.nan))),
+            "weights that are no numbers": lambda path: _signed(_response_of(weights=np.nan * _whole_response()["weights"]))(path),
             "texts instead of weights": _signed(_response_of(weights=np.array([["x"]]))),
             "no weights": _signed(_response_of(weights=None)),
-            "terms of degree 10^9": _signed(_response_of(score_terms=np.full((6, 2), 10**9))),
+            "terms of degree 10^9": _signed(_response_of(score_terms=np.full((3, 1), 10**9))),
             "fields of another scene": _signed(_response_of(ranges=[])),
             "a range that ends before it begins": _signed(_response_of(ranges=[{"field": "a", "low": 2.0, "high": 1.0}])),
             "a domain of texts": _signed(_response_of(domain={"speeds": "x", "loads": "y", "temperatures": "z", "period": "", "mirror": ""})),
