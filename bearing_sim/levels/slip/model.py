@@ -16,7 +16,7 @@ from bearing_sim.levels.common.model import HALF_PITCH, inner_growth, load_at, o
 from bearing_sim.levels.common.observation import observe_course, oil_at_speed
 from bearing_sim.levels.common.power import write_friction_moment, write_powers
 from bearing_sim.levels.slip.forces import equations, hold_sticking_contacts, largest_axial_share, pitch_loads
-from bearing_sim.levels.slip.power import slip_powers, surplus_spin_power
+from bearing_sim.levels.slip.power import slip_powers, surplus_power
 from bearing_sim.levels.slip.state import OMEGA, SPIN, THETA
 from bearing_sim.model.sample import COLUMN, SCALARS
 from bearing_sim.numerics.compilation import kernel, template
@@ -99,7 +99,7 @@ def observe(t, y, model, work, interval, previous, row, memory):
     observe_course(t, y[THETA], cage_speed, equivalent, oil, model, interval, previous, row)
     rhs(t, y, model, work, rate)
     write_powers(slip_powers(cage_speed, rate[OMEGA], y[SPIN:], shaft_speed_at(t, model.drive), model, work), row)
-    row[COLUMN.shaft_power] -= surplus_spin_power(y, rate, interval, previous, params)
+    row[COLUMN.shaft_power] -= surplus_power(y, rate, interval, previous, model, work)
     write_friction_moment(row)
     if params.flanges.on:
         row[COLUMN.inner_flange_force], row[COLUMN.outer_flange_force] = 0.0, 0.0

@@ -7,14 +7,15 @@ contour's slope and the ring's displacement, exchange it with the elastic energy
 
 **The shaft's power.**  Spins follow stiff tractions.  A spin that is off by the little that the tolerances allow turns the tractions of both
 raceways against each other: the shaft's power P errs by as much as the power J_r w w' that the spin takes up, while the losses hardly
-change.  A sample therefore has P - E' + (E - E_0)/(t - t_0), E the energy of all spins and E_0 that of the sample before: the same balance, with what
-spins took up in the mean since that sample in place of what they seem to take up at the instant.
+change; where rollers stick, so it does by what the cage and the orbiting rollers take up.  A sample therefore has P - E' + (E - E_0)/(t - t_0), E the
+kinetic energy and E_0 that of the sample before: the same balance, with what was taken up in the mean since that sample in place of what seems to be
+taken up at the instant.
 """
 
 import math
 
 from bearing_sim.levels.common.power import Powers, rolling_power, seal_power, shaft_traction_power, sliding_power, windage_powers
-from bearing_sim.levels.slip.state import SPIN
+from bearing_sim.levels.slip.state import OMEGA, SPIN
 from bearing_sim.model.sample import COLUMN, SCALARS
 from bearing_sim.numerics.compilation import kernel
 from bearing_sim.physics.drag import roller_drag
@@ -71,23 +72,34 @@ def slip_powers(cage_speed, cage_acceleration, spins, shaft_speed, model, work):
 
 
 @kernel
-def spin_power(y, rate, params):
-    """Return the power that the spins take up at an instant, the sum of J_r w w' [W]; ``y`` and ``rate`` are the state and its derivative."""
-    power = 0.0
+def inertia_of_orbits(params, loads):
+    """Return the inertia of the cage and of the rollers that orbit with it, about the bearing's axis [kg m^2]."""
+    inertia = params.cage.inertia
     for j in range(params.rollers.count):
-        power += params.rollers.inertia * y[SPIN + j] * rate[SPIN + j]
+        inertia += params.rollers.mass * loads[LOAD.radius, j] * loads[LOAD.radius, j]
+    return inertia
+
+
+@kernel
+def kinetic_power(y, rate, model, work):
+    """Return the power that cage, orbits and spins take up at an instant [W]; ``rate`` is the derivative of ``y``, just evaluated into ``work``."""
+    rollers = model.params.rollers
+    power = inertia_of_orbits(model.params, work.loads) * y[OMEGA] * rate[OMEGA]
+    for j in range(rollers.count):
+        power += rollers.inertia * y[SPIN + j] * rate[SPIN + j]
     return power
 
 
 @kernel
-def surplus_spin_power(y, rate, interval, previous, params):
-    """Return by how much more power the spins take up at an instant than they did in the mean since the sample before [W].
+def surplus_power(y, rate, interval, previous, model, work):
+    """Return by how much more power cage, orbits and spins take up at an instant than they did in the mean since the sample before [W].
 
     Parameters
     ----------
-    y, rate : state, and its derivative.
+    y, rate : state, and its derivative, just evaluated into ``work``.
     interval : time since the previous sample [s].
     previous : flat sample, see `bearing_sim.model.sample.flat`.
+    model, work : of the level.
 
     Returns
     -------
@@ -95,10 +107,12 @@ def surplus_spin_power(y, rate, interval, previous, params):
     """
     if not interval > 0.0:
         return 0.0
-    gained, first = 0.0, SCALARS + COLUMN.roller_spin * params.rollers.count
-    for j in range(params.rollers.count):
-        gained += 0.5 * params.rollers.inertia * (y[SPIN + j] * y[SPIN + j] - previous[first + j] * previous[first + j])
-    power = spin_power(y, rate, params) - gained / interval
+    rollers, count = model.params.rollers, model.params.rollers.count
+    before, first = previous[COLUMN.cage_speed], SCALARS + COLUMN.roller_spin * count
+    gained = 0.5 * inertia_of_orbits(model.params, work.loads) * (y[OMEGA] * y[OMEGA] - before * before)
+    for j in range(count):
+        gained += 0.5 * rollers.inertia * (y[SPIN + j] * y[SPIN + j] - previous[first + j] * previous[first + j])
+    power = kinetic_power(y, rate, model, work) - gained / interval
     return 0.0 if math.isnan(power) else power
 
 

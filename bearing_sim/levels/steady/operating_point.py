@@ -28,7 +28,7 @@ from bearing_sim.levels.common.observation import oil_at_speed
 from bearing_sim.levels.slip.forces import pitch_loads
 from bearing_sim.levels.slip.methods import advance as advance_slip
 from bearing_sim.levels.slip.model import rhs, rhs_and_jacobian
-from bearing_sim.levels.slip.power import slip_powers, spin_power
+from bearing_sim.levels.slip.power import kinetic_power, slip_powers
 from bearing_sim.levels.slip.state import OMEGA, SPIN, THETA
 from bearing_sim.model.sample import COLUMN, SCALARS, flat, new_block
 from bearing_sim.numerics.compilation import kernel
@@ -357,7 +357,7 @@ def _lag(slip, ideal, sense, model, work, orbit):
 
 @kernel
 def _write_powers(speed, sense, model, work, orbit, answer):
-    """Write powers, means over a pitch, in which the spins store nothing: what they seem to is an error of the differences."""
+    """Write powers, means over a pitch, in which cage and rollers store nothing: what they seem to is an error of the differences."""
     angles, rate = orbit.accelerations.shape[0], orbit.rate
     for column in range(ANSWER.shaft_power, ANSWER.flange_power + 1):
         answer[column] = 0.0
@@ -365,7 +365,7 @@ def _write_powers(speed, sense, model, work, orbit, answer):
         set_state(k, speed, sense, model.params, orbit)
         rhs(0.0, orbit.state, model, work, rate)
         powers = slip_powers(speed, rate[OMEGA], orbit.state[SPIN:], model.drive.shaft_speed, model, work)
-        answer[ANSWER.shaft_power] += (powers.shaft - spin_power(orbit.state, rate, model.params)) / angles
+        answer[ANSWER.shaft_power] += (powers.shaft - kinetic_power(orbit.state, rate, model, work)) / angles
         answer[ANSWER.inner_sliding_power] += powers.inner_sliding / angles
         answer[ANSWER.outer_sliding_power] += powers.outer_sliding / angles
         answer[ANSWER.inner_rolling_power] += powers.inner_rolling / angles
