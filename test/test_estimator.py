@@ -4,19 +4,23 @@
 import json
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from scipy.special import ndtri
 from scipy.stats import qmc
 
+from bearing_sim.cli.estimator_study import estimator as study_estimator
 from bearing_sim.estimation.causes import CLEARANCE, LOAD, OIL, OIL_QUANTITY, SENSOR, TRACTION, Evidence, causes_of
 from bearing_sim.estimation.estimator import Estimator
 from bearing_sim.estimation.live import LiveEstimation
 from bearing_sim.estimation.lives import SlipAndOil
 from bearing_sim.estimation.response import conditions_at, domain_of, fit_response, scene_fields, slip_scale
 from bearing_sim.scene.loader import load_scene
-from bearing_sim.studies.estimator import samples
+from bearing_sim.studies.estimator import CLEARANCE as STUDIED_CLEARANCE
+from bearing_sim.studies.estimator import PAUSE, TEMPERATURES, Machine, judge, machines, samples, wandering
 
 QUANTITY, SCALE, RADIUS = "lubricant.mixture_fraction", "lubricant.traction_scale", "bearing.outer_raceway.low_radius"
 FIELDS = (QUANTITY, SCALE, RADIUS)
@@ -46,13 +50,17 @@ def response(scene):
     points, draws = (qmc.Sobol(size, seed=np.random.default_rng(1)).random(128) for size in (4, 3))
     drawn = np.concatenate([fields.scores_of(fields.own)[None], ndtri(np.clip(draws[:31], 1e-5, 1.0 - 1e-5))])
     conditions, scores = np.repeat(conditions_at(points, domain), len(drawn), axis=0), np.tile(drawn, (len(points), 1))
-    answers = np.full((len(scores), 7), math.nan)
+    assert tuple(one.field for one in fields.ranges) == FIELDS
+    return fit_response(fields, domain, conditions, scores, answers_of(fields, scores, conditions), SlipAndOil(scene))
+
+
+def answers_of(fields, scores, conditions):
+    """Return all answers of a machine, shape (n, 7): the raceway alone changes the clearance, the oil alone the temperatures of the rings."""
+    answers, positions = np.empty((len(scores), 7)), 4.0 * fields.fractions_of(scores) - 2.0
     answers[:, 0] = [slip_of(fields, *each) for each in zip(scores, conditions)]
-    positions = 4.0 * fields.fractions_of(scores) - 2.0
     answers[:, 1:3], answers[:, 3] = 300.0, 5e-6 * positions[:, 2]
     answers[:, 4:6], answers[:, 6] = 400.0 + 5.0 * positions[:, :1], 2.0
-    assert tuple(one.field for one in fields.ranges) == FIELDS
-    return fit_response(fields, domain, conditions, scores, answers, SlipAndOil(scene))
+    return answers
 
 
 class Rig:
@@ -141,6 +149,46 @@ def test_a_measured_clearance_teaches_the_raceway(scene, response):
     assert high - low < 0.6 * (prior.high - prior.low) and low <= response.values_of(rig.scores)[2] <= high
 
 
+@pytest.mark.parametrize(("sensor", "field", "pause"), [(TEMPERATURES, QUANTITY, PAUSE), (STUDIED_CLEARANCE, RADIUS, 0.0)])
+def test_a_machine_of_the_study_with_another_sensor_teaches_what_its_cage_alone_does_not(scene, response, sensor, field, pause):
+    scores, column = np.array([1.0, -0.5, 0.8]), FIELDS.index(field)
+    own, answers = (answers_of(response.fields, each[None], COURSE[:1]) for each in (response.nominal, scores))
+    machine = Machine(COURSE[:1], scores, own, np.stack([answers, answers], axis=1), pause)
+    alone, both = (judge(scene, response, machine, 1, measured=measured) for measured in ((), (sensor,)))
+    assert both.widths[column] < 0.6 * alone.widths[column] and both.fields.all() and both.alarms == 0
+
+
+def test_hidden_fields_of_the_study_wander_as_the_scene_says_and_inputs_do_not(scene):
+    free, seconds = np.arange(4000) > 0, np.array([1.0, 1800.0, 60.0])
+    drifting = replace(scene, estimation=replace(scene.estimation, drift=replace(scene.estimation.drift, wander_time=7200.0)))
+    rows = wandering(drifting, free, np.zeros(4000), seconds, np.random.default_rng(2))
+    assert rows.shape == (4, 4000) and (rows[:, 0] == 0.0).all()
+    assert rows[:, 1:].std(axis=1) == pytest.approx(1.0, abs=0.04), "they stay within their ranges"
+    assert np.square(np.diff(rows, axis=0))[:, 1:].mean(axis=1) == pytest.approx(2.0 * (1.0 - np.exp(-seconds / 14400.0)), rel=0.1)
+
+
+def test_a_machine_of_the_study_is_solved_for_within_its_plateaus_and_jumps_over_the_pause(scene, response):
+    (machine,) = machines(scene, response, 1, 3, count=2, pause=PAUSE, every=20.0, workers=1)
+    assert machine.answers.shape == (2, 4, 7) and machine.own.shape == (2, 7) and machine.scores.shape == (3,)
+    slips = machine.at(0, np.array([1e-9, 20.0, 30.0, 30.1, 60.0]))[:, 0]
+    start, before, after, end = machine.answers[0, :, 0]
+    assert slips == pytest.approx([start, before, before + 10.0 / 1820.0 * (after - before), after - 9.9 / 1820.0 * (after - before), end], rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("sensor", "message"),
+    [
+        (TEMPERATURES, "--measure temperatures: deng2017_table1 computes no ring temperatures; give it heat.law: network"),
+        (STUDIED_CLEARANCE, "--measure clearance: no uncertain field of deng2017_table1 changes its running clearance"),
+    ],
+)
+def test_the_study_refuses_a_sensor_that_says_nothing_about_the_scene(monkeypatch, sensor, message):
+    of_slip_alone = SimpleNamespace(varied_answers=lambda: [0])
+    monkeypatch.setattr("bearing_sim.studies.response.obtain_response", lambda *_: of_slip_alone)
+    result = CliRunner().invoke(study_estimator, ["deng2017_table1", "--measure", sensor])
+    assert result.exit_code == 2 and message in " ".join(result.output.split())
+
+
 def test_a_field_that_is_not_calibrated_keeps_its_range(scene, response):
     rig, estimator = Rig(scene, response, [1.0, 1.0, 0.0]), Estimator(load_at(scene, QUANTITY), response)
     rig.run(estimator, 60)
@@ -171,6 +219,16 @@ def test_a_silent_sensor_changes_nothing_and_time_widens_what_is_known(scene, re
     assert later.mean() == pytest.approx(known.mean(), abs=2e-3) and later.std() > 2.0 * known.std()
 
 
+def test_readings_from_before_a_pause_say_nothing_about_what_has_wandered_in_it(scene, response):
+    wandering_fast = replace(scene, estimation=replace(scene.estimation, drift=replace(scene.estimation.drift, wander_time=7200.0)))
+    rig, estimator = Rig(wandering_fast, response, [0.0, 0.0, 0.0]), Estimator(wandering_fast, response)
+    rig.run(estimator, 150)
+    rig.now, rig.scores = rig.now + 1800.0, rig.scores + [0.7, 0.0, 0.0]
+    told = rig.run(estimator, 5)
+    assert math.isnan(told) and estimator.change is None
+    assert estimator.prediction(rig.sample()).mean() == pytest.approx(slip_of(response.fields, rig.scores, POINT), abs=2e-3)
+
+
 def test_a_step_of_the_mixture_fraction_from_003_to_004_is_told_within_30_s_with_its_cause_among_those_named(scene, response):
     start, end = (response.scores_of(np.array([quantity, 1.0, 34.8625e-3]))[0] for quantity in (0.03, 0.04))
     rig, estimator = Rig(scene, response, [start, 0.0, 0.0]), Estimator(scene, response)
@@ -192,6 +250,33 @@ def test_what_no_field_explains_at_a_new_operating_point_is_learned_within_secon
     there = COURSE[1]
     rig.run(estimator, 3, there, offset=0.012)
     assert estimator.prediction(rig.sample(there)).mean() == pytest.approx(slip_of(response.fields, rig.scores, there) + 0.012, abs=1.5e-3)
+
+
+def test_measurements_far_from_all_that_the_ranges_allow_teach_nothing_and_are_told_until_they_end(scene, response):
+    rig, estimator, there = Rig(scene, response, [0.0, 0.0, 0.0]), Estimator(scene, response), COURSE[2]
+    rig.run(estimator, 70)
+    before = estimator.prediction(rig.sample(there))
+    offset = 15.0 * float(before.std())
+    rig.run(estimator, 40, there, offset=offset)
+    (event,) = estimator.events(rig.now)
+    assert event.kind == "calibration.contradicted" and "measurements cannot be explained by any values in the ranges" in event.reason
+    after = estimator.prediction(rig.sample(there))
+    assert after.mean() == pytest.approx(before.mean(), abs=before.std()) and after.std() == pytest.approx(before.std(), rel=0.2)
+    rig.run(estimator, 40, there)
+    assert estimator.events(rig.now) == []
+    assert estimator.prediction(rig.sample(there)).mean() == pytest.approx(slip_of(response.fields, rig.scores, there), abs=1.5e-3)
+
+
+def test_the_stated_error_of_a_known_point_is_that_of_a_scalar_filter_and_a_quarter_of_the_noise_each_once(scene, response):
+    wandering_fast = replace(scene, estimation=replace(scene.estimation, drift=replace(scene.estimation.drift, wander_time=7200.0)))
+    rig, estimator = Rig(wandering_fast, response, [0.5, 0.5, 0.5]), Estimator(wandering_fast, response)
+    rig.run(estimator, 100)
+    drawn = ndtri(np.random.default_rng(4).uniform(size=(2000, 3)))
+    prior = np.var([slip_of(response.fields, each, POINT) for each in drawn]) + scene.estimation.model_error.slip**2
+    walk, noise = prior / 7200.0, NOISE**2 / 10.0  # variances: of a second of wandering, and of a mean of ten readings
+    expected = 0.5 * (walk + math.sqrt(walk**2 + 4.0 * walk * noise))  # Riccati's equation of the scalar filter, before a measurement
+    stated = math.hypot(math.sqrt(expected * noise / (expected + noise)), 0.25 * NOISE)
+    assert estimator.prediction(rig.sample()).std() == pytest.approx(stated, rel=0.08)
 
 
 def test_a_response_says_that_it_errs_in_proportion_to_the_departure_and_by_how_much_where(response):

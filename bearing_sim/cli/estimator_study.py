@@ -36,8 +36,9 @@ def estimator(scene_name, overrides, runs, steps, hours, faults, level, measured
     """Let the estimator calibrate SCENE to machines whose hidden fields are known, and count how often it is right.
 
     The level itself plays the machines: fields drawn from the ranges of the scene that wander, on a course of twelve plateaus of a minute, with a
-    cage sensor that has noise (0.2 points at 10 Hz), drift, 1 % wild readings and silences.  Where ring temperatures are measured, half an hour
-    passes in the middle of each plateau.  Hidden faults then show which cause is named for which.  Without estimation.calibrated all uncertain
+    cage sensor that has noise (0.2 points at 10 Hz), drift, 1 % wild readings and silences.  The level is solved for at each second; at level slip
+    or with a thermal network every ten seconds, between which fields go straight.  Where ring temperatures are measured, half an hour passes in
+    the middle of each plateau.  Hidden faults then show which cause is named for which.  Without estimation.calibrated all uncertain
     fields are calibrated; without a wander time in --set they wander by one standard deviation in the time of 120 plateaus.
     """
     from bearing_sim.scene.loader import SceneError, load_scene
@@ -65,8 +66,11 @@ def estimator(scene_name, overrides, runs, steps, hours, faults, level, measured
             return lambda done, total: show(first + (last - first) * done / max(total, 1))
 
         response = obtain_response(scene, workers, dask, in_part(0.0, 0.3))
+        _require_varied(scene, response, measured)
+        slow, pause = level != "steady" or scene.heat.law == "network", study.PAUSE if warm else 0.0
+        every = study.WANDERING_OF_SLOW_POINTS if slow else study.WANDERING
         machines = study.machines(
-            scene, response, runs, seed, known=known, pause=study.PAUSE if warm else 0.0, workers=workers, dask=dask, progress=in_part(0.3, 0.5)
+            scene, response, runs, seed, known=known, pause=pause, every=every, workers=workers, dask=dask, progress=in_part(0.3, 0.5)
         )
         if not machines:
             raise UsageError("no machine of this scene settles at all of its operating points; give narrower ranges")
@@ -97,6 +101,17 @@ def _require_sensors(scene, measured) -> None:
     """Raise `UsageError` where the scene computes nothing that a sensor could be compared with."""
     if "temperatures" in measured and scene.heat.law != "network":
         raise UsageError(f"--measure temperatures: {scene.name} computes no ring temperatures; give it heat.law: network, or leave the option away")
+
+
+def _require_varied(scene, response, measured) -> None:
+    """Raise `UsageError` where a measured clearance says nothing, because no uncertain field changes it."""
+    from bearing_sim.estimation.response import ANSWERS
+
+    if "clearance" in measured and ANSWERS.index("running_clearance") not in response.varied_answers():
+        raise UsageError(
+            f"--measure clearance: no uncertain field of {scene.name} changes its running clearance, so that measuring it says nothing; give a "
+            "dimension or a fit a range, such as --set uncertainty.bearing.clearance='[37 um, 47 um]', or leave the option away"
+        )
 
 
 def _print_faults(table, verdicts) -> None:

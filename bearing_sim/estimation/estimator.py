@@ -302,6 +302,7 @@ class Estimator:
         if len(block) and not float(block["time"][0]) > self._course.newest - 1e-9:
             self.interrupt()
         self._course.take(block)
+        self._close_before(float(block["time"][0]))  # before time passes: it says nothing about what has changed since
         self._watch_conditions(block)
         before = self._updates
         self._take_temperatures(block[-1])
@@ -344,13 +345,15 @@ class Estimator:
         if not usable or self._response.outside(conditions[None])[0]:
             return
         reading = Reading(time, tuple(conditions), own, 1.0 - cage_speed / ideal - own, abs(error / ideal))
-        if self._readings and time - self._readings[0].time >= self._settings.interval * (1.0 - 1e-9):
-            self._close(self._readings)
-            self._readings = []
+        self._close_before(time)
         self._readings.append(reading)
 
-    def _close(self, readings: list[Reading]) -> None:
-        """Average readings and learn from them."""
+    def _close_before(self, time: float) -> None:
+        """Average the readings so far and learn from them, if a time [s] is no more of their interval."""
+        readings = self._readings
+        if not readings or time - readings[0].time < self._settings.interval * (1.0 - 1e-9):
+            return
+        self._readings = []
         residuals, errors = (np.array([getattr(each, name) for each in readings]) for name in ("residual", "error"))
         told = np.isfinite(errors)
         if told.all():

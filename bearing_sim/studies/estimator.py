@@ -41,6 +41,10 @@ TEMPERATURES, CLEARANCE = "temperatures", "clearance"
 """What may be measured besides the cage."""
 PAUSE = 1800.0
 """Seconds that pass unseen in the middle of a plateau where ring temperatures are measured: until they are settled."""
+WANDERING = 1.0
+"""Seconds within which hidden fields go straight: a batch of readings by default."""
+WANDERING_OF_SLOW_POINTS = 10.0
+"""The same where settled points take long to solve for: at level ``slip``, and with a thermal network."""
 _RINGS = ("inner_ring_temperature", "outer_ring_temperature")
 _CLEARANCE_EVERY = 10.0  # s
 _WILD = 20.0  # of the noise; standard deviation of wild readings of temperature and clearance
@@ -63,9 +67,9 @@ class Machine(NamedTuple):
     Attributes
     ----------
     conditions : of the p plateaus, as `bearing_sim.estimation.response.CONDITIONS`, shape (p, 4).
-    scores : of its hidden fields at the start of each plateau and at the end of the last, shape (p + 1, d).
-    own : columns `bearing_sim.estimation.response.ANSWERS` by the scene's own values, shape (p, 6).
-    answers : of the machine at the start and at the end of each plateau, shape (p, 2, 6).
+    scores : of its hidden fields at the end, shape (d,).
+    own : columns `bearing_sim.estimation.response.ANSWERS` by the scene's own values, shape (p, 7).
+    answers : of the machine at n equally spaced times of each plateau, the first and the last of them its start and its end, shape (p, n, 7).
     pause : seconds that pass in the middle of each plateau, unseen.
     """
 
@@ -74,6 +78,23 @@ class Machine(NamedTuple):
     own: np.ndarray
     answers: np.ndarray
     pause: float = 0.0
+
+    def at(self, plateau: int, played: np.ndarray) -> np.ndarray:
+        """Return the answers at times of a plateau that are played, shape (m, 7); they go straight between the times that they are known at.
+
+        Parameters
+        ----------
+        plateau : its number.
+        played : seconds since its start, without the pause, shape (m,).
+        """
+        known = self.answers[plateau]
+        times = _passed(np.linspace(0.0, _PLATEAU, len(known)), self.pause)
+        return np.stack([np.interp(_passed(played, self.pause), times, column) for column in known.T], axis=1)
+
+
+def _passed(played: np.ndarray, pause: float) -> np.ndarray:
+    """Return seconds since the start of a plateau with the pause in its middle, from those without it."""
+    return played + pause * (played > 0.5 * _PLATEAU)
 
 
 class Judgement(NamedTuple):
@@ -111,18 +132,30 @@ def plateaus(scene: Scene, count: int, random: np.random.Generator) -> np.ndarra
     return np.stack([speed, load, kelvin + random.uniform(*_TEMPERATURES, count), np.full(count, operating.load_angle)], axis=1)
 
 
-def wandering(scene: Scene, free: np.ndarray, nominal: np.ndarray, count: int, seconds: float, random: np.random.Generator) -> np.ndarray:
-    """Return scores of fields that wander as the scene's block ``estimation`` says; those that are not free keep theirs; shape (count, d)."""
-    kept = math.exp(-0.5 * seconds / scene.estimation.drift.wander_time)
+def wandering(scene: Scene, free: np.ndarray, nominal: np.ndarray, seconds: np.ndarray, random: np.random.Generator) -> np.ndarray:
+    """Return scores of fields that wander as the scene's block ``estimation`` says; those that are not free keep theirs.
+
+    Parameters
+    ----------
+    scene : says how fast.
+    free : which fields wander, shape (d,).
+    nominal : scores of the others, shape (d,).
+    seconds : between one state and the next, shape (n,).
+    random : what they are drawn from.
+
+    Returns
+    -------
+    shape (n + 1, d).
+    """
     rows = [random.normal(size=len(nominal))]
-    for _ in range(count - 1):
+    for kept in np.exp(-0.5 * seconds / scene.estimation.drift.wander_time).tolist():
         rows.append(kept * rows[-1] + math.sqrt(1.0 - kept**2) * random.normal(size=len(nominal)))
     return np.where(free, rows, nominal)
 
 
 def machines(
     scene: Scene, response: ResponseModel, runs: int, seed: int, *, count: int = 12, known: Sequence[str] = (), pause: float = 0.0,
-    journal: Journal | None = None, workers: int | None = None, dask: str | None = None,
+    every: float = WANDERING, journal: Journal | None = None, workers: int | None = None, dask: str | None = None,
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> list[Machine]:  # fmt: skip
     """Return machines with hidden fields, solved for at the level of the scene, ``steady`` or ``slip``.
@@ -135,22 +168,25 @@ def machines(
     count : of plateaus.
     known : dotted paths of fields that have the scene's own values, because they are inputs.
     pause : seconds that pass in the middle of each plateau, unseen.
+    every : seconds within which hidden fields go straight; the pause counts as one step.
     journal, workers, dask, progress : see `bearing_sim.studies.response.at_points`.
     """
     random, free = np.random.default_rng(seed), np.array([name not in known for name in response.names])
+    course, steps = plateaus(scene, count, random), max(round(_PLATEAU / every), 2)
+    durations = np.diff(_passed(np.linspace(0.0, _PLATEAU, steps + 1), pause))
     scores, conditions = [], []
-    course = plateaus(scene, count, random)
     for _ in range(runs):
         conditions.append(course[random.permutation(count)])
-        scores.append(wandering(scene, free, response.nominal, count + 1, _PLATEAU + pause, random))
-    asked_scores = np.concatenate([np.repeat(response.nominal[None], count, axis=0), *(np.repeat(each, 2, axis=0)[1:-1] for each in scores)])
-    asked_conditions = np.concatenate([course, *(np.repeat(each, 2, axis=0) for each in conditions)])
+        scores.append(wandering(scene, free, response.nominal, np.tile(durations, count), random))
+    plateau = np.arange(count)[:, None] * steps + np.arange(steps + 1)  # the end of one is the start of the next
+    asked_scores = np.concatenate([np.repeat(response.nominal[None], count, axis=0), *(each[plateau.ravel()] for each in scores)])
+    asked_conditions = np.concatenate([course, *(np.repeat(each, steps + 1, axis=0) for each in conditions)])
     answers = at_points(scene, asked_scores, asked_conditions, journal, workers, dask, progress, level=scene.level)
     own = {tuple(row): each for row, each in zip(course, answers[:count])}
     return [
-        Machine(each, score, np.array([own[tuple(row)] for row in each]), found, pause)
-        for each, score, found in zip(conditions, scores, answers[count:].reshape(runs, count, 2, len(ANSWERS)))
-        if np.isfinite(found[:, :, 0]).all()
+        Machine(each, score[-1], np.array([own[tuple(row)] for row in each]), found, pause)
+        for each, score, found in zip(conditions, scores, answers[count:].reshape(runs, count, steps + 1, len(ANSWERS)))
+        if np.isfinite(found[:, :, 0]).all() and np.isfinite(answers[:count, 0]).all()
     ]
 
 
@@ -199,11 +235,8 @@ def judge(
 
     alarms, holding = 0, False
     for k in range(count):
-        start, played = k * (_PLATEAU + machine.pause), (np.arange(per_plateau) + 1.0) / RATE
-        times = start + played + machine.pause * (played > 0.5 * _PLATEAU)
-        answers = np.stack(
-            [np.interp(times, [start, start + _PLATEAU + machine.pause], machine.answers[k, :, column]) for column in range(len(ANSWERS))], axis=1
-        )
+        played = (np.arange(per_plateau) + 1.0) / RATE
+        times, answers = k * (_PLATEAU + machine.pause) + _passed(played, machine.pause), machine.at(k, played)
         slips = answers[:, ANSWERS.index("cage_slip")]
         block = samples(scene, times, np.repeat(machine.conditions[k : k + 1], per_plateau, axis=0), np.full(per_plateau, own_slip[k]))
         if TEMPERATURES in measured:
@@ -236,7 +269,7 @@ def judge(
                 predict(k, 1, block[first], slips[first])
             changed = bool(_changes(estimator, float(times[part][-1])))
             alarms, holding = alarms + (changed and not holding), changed
-    fields = [pair for pair in zip(estimator.estimates(), response.values_of(machine.scores[-1])) if pair[0].calibrated]
+    fields = [pair for pair in zip(estimator.estimates(), response.values_of(machine.scores)) if pair[0].calibrated]
     errors = found[0] - found[3]
     return Judgement(
         np.array([one.low <= value <= one.high for one, value in fields]),
