@@ -101,14 +101,15 @@ def test_slip_changes_the_life_of_a_response_as_it_does_that_of_the_level(effect
     assert effects.by_slip(condition, slips)[0, 1] == pytest.approx(math.log(lives[0, 1] / lives[0, 0]), rel=1e-5)
 
 
-def test_oil_changes_the_life_of_a_response_as_it_does_that_of_the_level():
-    scene = load_scene("deng2017_table1", ["level=steady", "life.method=iso281", "life.a_iso=bath_17_14"])
+@pytest.mark.parametrize(("method", "within"), [("iso281", 1e-9), ("iso16281", 2e-4)])
+def test_oil_changes_the_life_of_a_response_as_it_does_that_of_the_level(method, within):
+    scene = load_scene("deng2017_table1", ["level=steady", f"life.method={method}", "life.a_iso=bath_17_14"])
     ends = [settled(scene, Inputs(4000.0, 500.0, 0.0, kelvin)) for kelvin in (350.0, 400.0)]
     lives, ratios = (np.log([[float(end[name]) for end in ends]]) for name in ("rating_life", "viscosity_ratio"))
-    found = SlipAndOil(scene).by_oil(np.array([[4000.0, 500.0, 350.0, 0.0]]), lives, ratios)
-    factors = [float(end["modification_factor"]) for end in ends]
-    assert factors[0] != pytest.approx(factors[1], rel=0.1)
-    assert found[0] == pytest.approx([0.0, math.log(factors[1] / factors[0])], rel=1e-9)
+    modified = np.array([float(end["modified_rating_life"]) for end in ends])
+    change = math.log(modified[1] / modified[0]) - (lives[0, 1] - lives[0, 0])
+    found = SlipAndOil(scene).by_oil(np.array([[4000.0, 500.0, 350.0, 0.0]]), np.array([float(ends[0]["cage_slip"])]), lives, ratios)
+    assert abs(change) > 0.1 and found[0] == pytest.approx([0.0, change], rel=within)
 
 
 def test_a_written_response_is_read_as_it_was(response, effects, tmp_path):

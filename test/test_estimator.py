@@ -280,15 +280,16 @@ def test_the_stated_error_of_a_known_point_is_that_of_a_scalar_filter_and_a_quar
 
 
 def test_a_response_says_that_it_errs_in_proportion_to_the_departure_and_by_how_much_where(response):
-    proportions, least = response.error_scales(COURSE, 0)
-    assert proportions.shape == least.shape == (len(COURSE),) and (proportions > 0.0).all() and (least > 0.0).all()
-    scores = ndtri(np.random.default_rng(3).uniform(0.01, 0.99, (200, 3)))
-    for conditions, proportion, floor in zip(COURSE, proportions, least):
-        truth = slip_scale(np.array([slip_of(response.fields, each, conditions) for each in (response.nominal, *scores)]))
-        found = response.respond_scaled(conditions[None], response.basis_of(np.concatenate([response.nominal[None], scores])))[0, :, 0]
-        departures = truth[1:] - truth[0]
-        errors = (found[1:] - found[0] - departures) / np.hypot(proportion * departures, floor)
-        assert 0.05 < np.sqrt(np.mean(errors**2)) < 2.0
+    random = np.random.default_rng(3)
+    points, scores = conditions_at(random.random((40, 4)), response.domain), ndtri(random.uniform(0.01, 0.99, (64, 3)))
+    proportions, least = response.error_scales(points, 0)
+    assert proportions.shape == least.shape == (len(points),) and (proportions > 0.0).all() and (least > 0.0).all()
+    found = response.respond_scaled(points, response.basis_of(np.concatenate([response.nominal[None], scores])))[:, :, 0]
+    truth = slip_scale(np.array([[slip_of(response.fields, each, conditions) for each in (response.nominal, *scores)] for conditions in points]))
+    departures = truth[:, 1:] - truth[:, :1]
+    errors = (found[:, 1:] - found[:, :1] - departures) / np.hypot(proportions[:, None] * departures, least[:, None])
+    sizes = np.sqrt(np.mean(errors**2, axis=1))
+    assert 0.5 < np.sqrt(np.mean(sizes**2)) < 1.5 and np.mean((sizes > 0.2) & (sizes < 2.0)) > 0.9
 
 
 def test_an_alarm_ends_when_the_machine_is_as_before_or_when_the_change_is_accepted(scene, response):

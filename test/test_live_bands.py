@@ -126,7 +126,8 @@ def anywhere(response, count):
 def test_edges_of_rounded_operating_points_are_off_by_little_of_their_width(response, monkeypatch):
     block, columns = anywhere(response, 200), response.centres.shape[1]
     weights = response.weights.copy()
-    weights[-columns:, :, 1] += 1.0 / response.scales.T  # then widths change by a factor of e^2 over each range of the operating points
+    # widths change by a factor of e^2 over each range of the operating points
+    weights[-columns:, :, 1] += np.linalg.inv(response.metrics).sum(axis=2).T
     varied = response._replace(weights=weights)
     rounded = BandEstimator(SCENE, varied).take(block)[:, 0]
     monkeypatch.setattr(bands, "cells", lambda conditions, domain: conditions)

@@ -27,11 +27,12 @@ QUANTITIES = ("cage_slip", "rating_life", "running_clearance", "remaining_life")
 _QUANTILES = (*PROBABILITIES, 0.5)
 _DRAWS = 256  # of the scores before anything is measured, a power of two
 _CELL = np.array([0.01, 0.01, 0.2, math.radians(0.5)])  # of speed and load, relative, temperature [K] and angle: operating points alike in bands
-_CELLS_KEPT = 20_000
+_CELLS_KEPT = 5_000
 _AT_ONCE = 64  # operating points: so many fit the processor's cache
 _HOUR = 3600.0
-_ANSWERED = [ANSWERS.index(name) for name in ("cage_slip", "rating_life", "running_clearance", "modified_rating_life")]
-_SLIP, _BY_OIL = _ANSWERED[0], {_ANSWERED[1], ANSWERS.index("viscosity_ratio")}  # what changes by slip and by oil follow from
+_ANSWERED = [ANSWERS.index(name) for name in ("cage_slip", "rating_life", "running_clearance")]
+_SLIP, _MODIFIED = _ANSWERED[0], ANSWERS.index("modified_rating_life")
+_BY_OIL = {_ANSWERED[1], ANSWERS.index("viscosity_ratio")}  # what changes by oil follow from
 
 
 class BandEstimator:
@@ -58,7 +59,7 @@ class BandEstimator:
     def __init__(self, scene: Scene, response: ResponseModel, known: Sequence[str] = ()):
         self.response, self._memory = response, scene.thresholds.remaining_life_memory
         self._effects = SlipAndOil(scene)
-        varied = set(response.varied_answers()) & set(_ANSWERED)
+        varied = set(response.varied_answers()) & {*_ANSWERED, _MODIFIED}
         self._interpolation = Interpolation(response, sorted(varied | {_SLIP} | (_BY_OIL if self._effects.follows_oil else set())))
         self._time, self._damage = math.nan, 0.0
         self._rates = self._spent = np.full(1, math.nan)
@@ -76,9 +77,9 @@ class BandEstimator:
         self._drawn = scores
         self.scores = np.where(self._known, self.response.nominal, scores)
         self._basis = np.concatenate([self.response.own_basis[None], self.response.basis_of(self.scores)])
-        # those of the level itself go on
-        self._rates, self._spent = (np.append(before[0], [math.nan] * len(_QUANTILES)) for before in (self._rates, self._spent))
-        self._kept: dict[bytes, np.ndarray] = {}  # changes by operating point, see `_changes`
+        nothing = [math.nan] * len(scores)
+        self._rates, self._spent = (np.append(before[0], nothing) for before in (self._rates, self._spent))  # those of the level itself go on
+        self._kept: dict[bytes, tuple[np.ndarray, np.ndarray]] = {}  # changes by operating point, see `_changes`
 
     def adjust(self, remaining_life_memory: float) -> None:
         """Take another time constant of the mean damage rate [s] from now on."""
@@ -96,7 +97,7 @@ class BandEstimator:
         by quantity (`QUANTITIES`) the values that 5 and 95 % lie below, shape (n, 4, 2); NaN at rest (slip) and where the operating point is
         outside of the response.
         """
-        changes = self._changes(block)
+        changes, wear = self._changes(block)
         own = np.zeros((len(block), 1, len(ANSWERS)))
         for answer in _ANSWERED:
             own[:, 0, answer] = block[ANSWERS[answer]]
@@ -104,16 +105,17 @@ class BandEstimator:
         ends = np.repeat(ends, len(_QUANTILES), axis=1)
         ends[:, :, _ANSWERED] += changes
         found = np.empty((len(block), len(QUANTITIES), len(_QUANTILES)))
-        found[:, :3] = np.swapaxes(restored(ends)[:, :, _ANSWERED[:3]], 1, 2)
-        remaining = self._remaining_lives(block, np.exp(-changes[:, :, 3]))
-        self.remaining_life, found[:, 3] = remaining[:, 0], remaining[:, 1:]
+        found[:, :3] = np.swapaxes(restored(ends)[:, :, _ANSWERED], 1, 2)
+        remaining = self._remaining_lives(block, wear)
+        self.remaining_life, found[:, 3] = remaining[:, 0], quantiles(remaining[:, 1:], _QUANTILES)
         self.medians = found[:, :, -1]
         return found[:, :, :-1]
 
-    def _changes(self, block: np.ndarray) -> np.ndarray:
-        """Return the quantiles of the differences from the scene's own values on the scales of `transformed`, shape (n, 3, 4).
+    def _changes(self, block: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the quantiles of the differences from the scene's own values on the scales of `transformed`, and the draws' rates of damage.
 
-        They are those at the `cells` of the operating points, in the order of `_ANSWERED`; those of cells that come again are kept.
+        They are those at the `cells` of the operating points; those of cells that come again are kept.  The quantiles are in the order of
+        `_ANSWERED`, shape (n, 3, 3); the rates are factors of the level's own, shape (n, m).
         """
         load = np.hypot(block["load_y"], block["load_z"])
         conditions = np.stack([block["shaft_speed"], load, block["oil_temperature"], np.arctan2(block["load_z"], block["load_y"])], axis=1)
@@ -126,42 +128,43 @@ class BandEstimator:
             chosen = new[begin : begin + _AT_ONCE]
             scaled = np.swapaxes(self._interpolation.coefficients(there[chosen]) @ self._basis.T, 1, 2)
             add_slip_and_oil(scaled, there[chosen], self._effects)
-            scaled = scaled[:, :, _ANSWERED]
-            self._kept.update(zip((keys[k] for k in chosen), quantiles(scaled[:, 1:] - scaled[:, :1], _QUANTILES)))
-        return np.stack([self._kept[key] for key in keys])[indices.ravel()]
+            changes = scaled[:, 1:] - scaled[:, :1]
+            wear = (-changes[:, :, _MODIFIED]).astype(np.float32)
+            self._kept.update(zip((keys[k] for k in chosen), zip(quantiles(changes[:, :, _ANSWERED], _QUANTILES), wear)))
+        there = [self._kept[key] for key in keys]
+        edges, wear = np.stack([each[0] for each in there]), np.exp(np.stack([each[1] for each in there], dtype=float))
+        return edges[indices.ravel()], wear[indices.ravel()]
 
     def _remaining_lives(self, block: np.ndarray, factors: np.ndarray) -> np.ndarray:
-        """Return the remaining life [h], its band and its median: (1 - D)/(dD/dt) with dD/dt the fading mean of the damage rate, as in `Monitor`.
+        """Return the remaining life [h] of the level itself and of each draw: (1 - D)/(dD/dt) with dD/dt the fading mean of the damage rate.
 
-        What wears faster than the level says at one operating point is taken to do so at all, so that sums of quantiles are quantiles of sums; where
-        more slip shortens life at some points and prolongs it at others the band is too wide.  What was spent before the first sample is off by
-        the factor of that sample.
+        Damage is summed for each draw by its own rate at each operating point, as `Monitor` does for the level.  What was spent before the first
+        sample is off by the factor of that sample.
 
         Parameters
         ----------
         block : samples, shape (n,).
-        factors : of the rates of damage at both ends of the band and at its median, shape (n, 3).
+        factors : of the rates of damage of the draws, shape (n, m).
 
         Returns
         -------
-        shape (n, 4).
+        shape (n, m + 1).
         """
         factors = np.concatenate([np.ones((len(block), 1)), factors], axis=1)
         rates = factors / (_HOUR * block["modified_rating_life"][:, None])
-        found = np.empty_like(rates)
+        spent, means = np.empty_like(rates), np.empty_like(rates)
         for k, (time, damage) in enumerate(zip(block["time"].tolist(), block["damage"].tolist())):
-            elapsed = time - self._time
+            elapsed, grown = time - self._time, damage - self._damage
             weight = 1.0 - math.exp(-elapsed / self._memory) if elapsed >= 0.0 else 1.0
-            before, grown = self._rates if math.isfinite(self._rates[0]) else rates[k, :1], damage - self._damage
+            before = self._rates if math.isfinite(self._rates[0]) else rates[k, :1]
             mean = before + weight * (rates[k] - before)
-            self._rates = np.where(np.isfinite(mean), mean, mean[0] * factors[k])
-            spent = self._spent + grown * factors[k]
-            self._spent = np.where(np.isfinite(spent) & (grown >= 0.0), spent, damage * factors[k])
+            self._rates = means[k] = np.where(np.isfinite(mean), mean, mean[0] * factors[k])
+            total = self._spent + grown * factors[k]
+            self._spent = spent[k] = np.where(np.isfinite(total) & (grown >= 0.0), total, damage * factors[k])
             self._time, self._damage = time, damage
-            left = np.clip(1.0 - self._spent, 0.0, 1.0)
-            with np.errstate(divide="ignore", invalid="ignore"):
-                found[k] = np.where(left > 0.0, left / (_HOUR * self._rates), 0.0 * left)
-        return found
+        left = np.clip(1.0 - spent, 0.0, 1.0)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.where(left > 0.0, left / (_HOUR * means), 0.0 * left)
 
 
 def cells(conditions: np.ndarray, domain: Domain) -> np.ndarray:

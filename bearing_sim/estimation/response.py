@@ -17,12 +17,13 @@ import itertools
 import json
 import math
 import zipfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from scipy.optimize import minimize
 from scipy.special import ndtr, ndtri
 
 from bearing_sim.estimation.lives import SlipAndOil
@@ -53,14 +54,16 @@ ANSWERS = (
 PROBABILITIES = (0.05, 0.95)
 """Of lying below the ends of a band."""
 
-VERSION = 5  # of the files
+VERSION = 6  # of the files
 _FARTHEST = 4.5  # largest score; one draw in 300,000 lies beyond
 _SLOWEST, _LIGHTEST = 0.03, 0.002  # of the largest speed and load: below, the response is that of these
 _RIDGE, _PRODUCT_RIDGE = 1e-6, 1.0  # of polynomials of one field, and of two
 _NARROWEST = np.array([1e-9, 1e-11, 1e-11, 1e-13, 1e-6, 1e-6, 1e-9])  # widths of bands on the scales of `transformed`, below which there is none
 _RESOLVED = 1e-3  # of the width of a band; where less than that is left to fit at most operating points, it is the noise of the level
 _CIRCLE = 0.6  # radius of the circle that stands for the angle, beside coordinates from -1 to 1
-_SPEED_SCALES, _LOAD_SCALES, _TEMPERATURE_SCALES = (0.5, 1.0, 2.0), (1.0, 2.0, 4.0), (0.35, 0.7, 1.4)  # that are tried
+_SPEED_SCALES, _LOAD_SCALES, _TEMPERATURE_SCALES = (0.5, 1.0, 2.0), (1.0, 2.0, 4.0), (0.35, 0.7, 1.4)  # from the best of which a search starts
+_SEARCHED, _STEP, _STEEPEST = 150, 0.4, 4.0  # metrics that are tried, first step and largest value of a scale's logarithm or a slope
+_GOOD = 1e-3  # of the width of a band; where operating points left out are met to that no metric is searched for
 _WIDEST = 50.0  # logarithm of a width that a spline may reach
 _SMALL = 0.2  # of the width of a band; errors of smaller departures do not follow them (found by cross validation)
 _NEIGHBOURS = 8  # operating points whose errors tell that between them (likewise)
@@ -232,15 +235,19 @@ def add_slip_and_oil(scaled: np.ndarray, conditions: np.ndarray, effects: SlipAn
     """
     if effects.follows_slip:
         scaled[:, :, _LIFE] += effects.by_slip(conditions, _restored_slip(scaled[:, :, _SLIP]))
-    scaled[:, :, _MODIFIED] += scaled[:, :, _LIFE] - scaled[:, :1, _LIFE] + effects.by_oil(conditions, scaled[:, :, _LIFE], scaled[:, :, _RATIO])
+    scaled[:, :, _MODIFIED] += scaled[:, :, _LIFE] - scaled[:, :1, _LIFE] + _by_oil(scaled, conditions, effects)
 
 
 def _without_slip_and_oil(scaled: np.ndarray, conditions: np.ndarray, effects: SlipAndOil) -> np.ndarray:
     """Return answers without what `add_slip_and_oil` adds; the parameters are its."""
     found = scaled.copy()
     found[:, :, _LIFE] -= effects.by_slip(conditions, _restored_slip(scaled[:, :, _SLIP]))
-    found[:, :, _MODIFIED] -= scaled[:, :, _LIFE] - scaled[:, :1, _LIFE] + effects.by_oil(conditions, scaled[:, :, _LIFE], scaled[:, :, _RATIO])
+    found[:, :, _MODIFIED] -= scaled[:, :, _LIFE] - scaled[:, :1, _LIFE] + _by_oil(scaled, conditions, effects)
     return found
+
+
+def _by_oil(scaled: np.ndarray, conditions: np.ndarray, effects: SlipAndOil) -> np.ndarray:
+    return effects.by_oil(conditions, _restored_slip(scaled[:, 0, _SLIP]), scaled[:, :, _LIFE], scaled[:, :, _RATIO])
 
 
 def _restored_slip(scaled: np.ndarray) -> np.ndarray:
@@ -267,7 +274,7 @@ class ResponseModel(NamedTuple):
     fields : of the d uncertain fields.
     domain : operating points that it answers for.
     centres : coordinates of the operating points that were solved for, shape (k, c).
-    scales : by which coordinates count for each of `ANSWERS`, shape (7, c).
+    metrics : by which coordinates are multiplied (from the right) before their distances count for each of `ANSWERS`, shape (7, c, c).
     score_terms : degrees of the polynomials of the fields, the first of them a constant, int, shape (j, d).
     own_basis : these polynomials at the scene's own values, shape (j,).
     weights : of the functions of the operating point, for each of `ANSWERS`: of its own value, the logarithm of the width of its band, and the
@@ -281,7 +288,7 @@ class ResponseModel(NamedTuple):
     fields: Fields
     domain: Domain
     centres: np.ndarray
-    scales: np.ndarray
+    metrics: np.ndarray
     score_terms: np.ndarray
     own_basis: np.ndarray
     weights: np.ndarray
@@ -386,8 +393,8 @@ class ResponseModel(NamedTuple):
         -------
         proportions and least errors, each of shape (n,).
         """
-        there = _embedded(coordinates(np.asarray(conditions, float), self.domain), self.domain) * self.scales[column]
-        centres = self.centres * self.scales[column]
+        there = _embedded(coordinates(np.asarray(conditions, float), self.domain), self.domain) @ self.metrics[column]
+        centres = self.centres @ self.metrics[column]
         distances = np.square(there[:, None] - centres).sum(axis=-1)
         near = np.argsort(distances, axis=1)[:, :_NEIGHBOURS]
         weights = 1.0 / (np.take_along_axis(distances, near, axis=1) + 1e-9)
@@ -412,18 +419,18 @@ class Interpolation:
 
     def __init__(self, model: ResponseModel, answers: Sequence[int]):
         self._model, self._groups = model, []
-        for scale in np.unique(model.scales[list(answers)], axis=0):
-            alike = [answer for answer in answers if (model.scales[answer] == scale).all()]
+        for metric in np.unique(model.metrics[list(answers)], axis=0):
+            alike = [answer for answer in answers if (model.metrics[answer] == metric).all()]
             weights = np.ascontiguousarray(model.weights[:, alike].reshape(len(model.weights), -1))
-            self._groups.append((alike, scale, model.centres * scale, weights))
+            self._groups.append((alike, metric, model.centres @ metric, weights))
 
     def coefficients(self, conditions: np.ndarray) -> np.ndarray:
         """Return what `ResponseModel.condition_coefficients` does; zeros for all other answers."""
         model, conditions = self._model, np.asarray(conditions, float)
         there = _embedded(coordinates(conditions, model.domain), model.domain)
         found = np.zeros((len(there), *model.weights.shape[1:]))
-        for alike, scale, centres, weights in self._groups:
-            found[:, alike] = (_functions(there * scale, centres) @ weights).reshape(len(there), len(alike), -1)
+        for alike, metric, centres, weights in self._groups:
+            found[:, alike] = (_functions(there @ metric, centres) @ weights).reshape(len(there), len(alike), -1)
         departures = found[:, :, 2:] * np.exp(found[:, :, 1:2])
         coefficients = np.concatenate([found[:, :, :1] - departures @ model.own_basis[1:, None], departures], axis=2)
         coefficients[model.outside(conditions)] = math.nan
@@ -541,10 +548,11 @@ def fit_response(
     is_product = np.count_nonzero(terms[1:], axis=1) > 1
     values = _node_values(np.nan_to_num(scaled[kept, 0]), np.nan_to_num(departures), widths, basis, is_product)
     change = basis[1:, 1:] - basis[0, 1:]
-    scales = _best_scales(centres, domain, values, change, departures)
-    weights = np.stack([_spline_weights(centres * scale, values[:, column]) for column, scale in enumerate(scales)], axis=1)
+    metrics = _best_metrics(centres, domain, values, change, departures)
+    weights = np.stack([_spline_weights(centres @ metric, values[:, column]) for column, metric in enumerate(metrics)], axis=1)
     left = [
-        _departures_left_out(centres * scale, values[:, [column]], change, departures[:, :, [column]])[:, :, 0] for column, scale in enumerate(scales)
+        _departures_left_out(centres @ metric, values[:, [column]], change, departures[:, :, [column]])[:, :, 0]
+        for column, metric in enumerate(metrics)
     ]
     if np.isnan(scaled[kept][:, :, 4:]).any():
         weights[:, 4:6] = math.nan
@@ -552,7 +560,7 @@ def fit_response(
     sizes = np.hypot(np.nan_to_num(departures), _SMALL * np.exp(values[:, None, :, 1]))
     relative_errors = np.sqrt(np.mean(np.square(np.moveaxis(left, 0, -1) / sizes), axis=1))
     points = int(np.isfinite(scaled[:, :, 0]).sum())
-    return ResponseModel(fields, domain, centres, scales, terms, basis[0], weights, errors, relative_errors, points, seconds)
+    return ResponseModel(fields, domain, centres, metrics, terms, basis[0], weights, errors, relative_errors, points, seconds)
 
 
 def _basis(fields: Fields, terms: np.ndarray, scores: np.ndarray) -> np.ndarray:
@@ -597,22 +605,64 @@ def _departures_left_out(centres: np.ndarray, values: np.ndarray, change: np.nda
     departures : shape (k, m - 1, a).
     """
     found = values - _left_out(centres, values.reshape(len(values), -1)).reshape(values.shape)
-    return np.einsum("mj,kaj->kma", change, found[:, :, 2:] * np.exp(np.minimum(found[:, :, 1:2], _WIDEST))) - departures
+    coefficients = found[:, :, 2:] * np.exp(np.minimum(found[:, :, 1:2], _WIDEST))
+    return np.swapaxes(coefficients @ change.T, 1, 2) - departures
 
 
-def _best_scales(centres: np.ndarray, domain: Domain, values: np.ndarray, change: np.ndarray, departures: np.ndarray) -> np.ndarray:
-    """Return by which scales of the coordinates each answer is met best at operating points that were left out, shape (7, c)."""
-    warm = domain.temperatures[1] > domain.temperatures[0]
-    axes = [_SPEED_SCALES, _LOAD_SCALES, *[_TEMPERATURE_SCALES] * warm]
-    best, scales = np.full(len(ANSWERS), math.inf), np.ones((len(ANSWERS), centres.shape[1]))
-    widths = np.exp(values[:, None, :, 1])
-    for chosen in itertools.product(*axes):
-        scale = np.array([*chosen, *[1.0] * (centres.shape[1] - len(chosen))])
-        errors = np.abs(_departures_left_out(centres * scale, values, change, departures)) / widths
-        missed = np.minimum(errors, 1.0).mean(axis=(0, 1))
-        better = missed < best
-        best[better], scales[better] = missed[better], scale
-    return scales
+def _best_metrics(centres: np.ndarray, domain: Domain, values: np.ndarray, change: np.ndarray, departures: np.ndarray) -> np.ndarray:
+    """Return by which metric of the coordinates each answer is met best at operating points that were left out, shape (7, c, c).
+
+    Slip changes steeply across lines on which the load follows speed and temperature, such as where rollers begin to slide.  A metric that lets
+    distances along these lines count for less takes a sum of speed, load and temperature, not only each by its own scale.  The parameters are
+    those of `_departures_left_out` for all answers.
+    """
+    columns = 3 if domain.temperatures[1] > domain.temperatures[0] else 2
+    axes = [_SPEED_SCALES, _LOAD_SCALES, _TEMPERATURE_SCALES][:columns]
+    starts = [np.concatenate([np.log(chosen), np.zeros(columns * (columns - 1) // 2)]) for chosen in itertools.product(*axes)]
+    widths = np.exp(values[:, :, 1])
+    missed = [_missed(_metric(start, centres.shape[1], columns), centres, values, change, departures, widths) for start in starts]
+    metrics = []
+    for answer, best in enumerate(np.argmin(missed, axis=0)):
+        start, one = starts[best], [answer]
+        if missed[best][answer] > _GOOD:
+            start = _searched(
+                start,
+                lambda logarithms: _missed(
+                    _metric(logarithms, centres.shape[1], columns), centres, values[:, one], change, departures[:, :, one], widths[:, one]
+                )[0],
+            )
+        metrics.append(_metric(start, centres.shape[1], columns))
+    return np.array(metrics)
+
+
+def _searched(start: np.ndarray, missed: Callable[[np.ndarray], float]) -> np.ndarray:
+    """Return parameters of `_metric` that miss least, by J. A. Nelder and R. Mead's simplex (Comput. J. 7 (1965) 308), shape of ``start``."""
+    simplex = start + np.concatenate([np.zeros((1, len(start))), _STEP * np.eye(len(start))])
+    found = minimize(
+        lambda parameters: missed(parameters) if np.abs(parameters).max() <= _STEEPEST else math.inf,
+        start,
+        method="Nelder-Mead",
+        options={"maxfev": _SEARCHED, "initial_simplex": simplex},
+    )
+    return found.x
+
+
+def _metric(parameters: np.ndarray, size: int, columns: int) -> np.ndarray:
+    """Return a metric by the logarithms of the scales of its first columns and the slopes between these, shape (size, size)."""
+    found = np.eye(size)
+    scales = np.exp(parameters[:columns])
+    found[range(columns), range(columns)] = scales
+    rows, others = np.triu_indices(columns, 1)
+    found[rows, others] = parameters[columns:] * scales[others]
+    return found
+
+
+def _missed(
+    metric: np.ndarray, centres: np.ndarray, values: np.ndarray, change: np.ndarray, departures: np.ndarray, widths: np.ndarray
+) -> np.ndarray:  # fmt: skip
+    """Return the mean error of departures at operating points left out over the widths of bands there, each counted as 1 at most, shape (a,)."""
+    errors = np.abs(_departures_left_out(centres @ metric, values, change, departures)) / widths[:, None]
+    return np.minimum(errors, 1.0).mean(axis=(0, 1))
 
 
 def response_digest(scene: Scene) -> str:
@@ -626,7 +676,7 @@ def response_path(scene: Scene) -> Path:
     return FOLDER / f"{response_digest(scene)}.bands.npz"
 
 
-_ARRAYS = ("centres", "scales", "score_terms", "own_basis", "weights", "errors", "relative_errors")
+_ARRAYS = ("centres", "metrics", "score_terms", "own_basis", "weights", "errors", "relative_errors")
 
 
 def write_response(path: Path, model: ResponseModel) -> None:
@@ -669,7 +719,7 @@ def _fits_together(model: ResponseModel) -> bool:
     """Return whether the arrays of a response have the shapes that belong to each other, and numbers where each answer needs one."""
     (centres, coordinate_count), term_count, answers = model.centres.shape, len(model.score_terms), len(ANSWERS)
     shapes = {
-        "scales": (answers, coordinate_count),
+        "metrics": (answers, coordinate_count, coordinate_count),
         "score_terms": (term_count, len(model.fields)),
         "own_basis": (term_count,),
         "weights": (centres + coordinate_count + 1, answers, term_count + 1),
@@ -679,7 +729,7 @@ def _fits_together(model: ResponseModel) -> bool:
     if any(getattr(model, name).shape != shape for name, shape in shapes.items()) or model.fields.own.shape != (len(model.fields),):
         return False
     finite = [0, 1, 2, 3, _RATIO]
-    numbers = (model.centres, model.scales, model.own_basis, model.weights[:, finite], model.relative_errors[:, finite], model.fields.own)
+    numbers = (model.centres, model.metrics, model.own_basis, model.weights[:, finite], model.relative_errors[:, finite], model.fields.own)
     return bool(np.array_equal(model.score_terms, _score_terms(len(model.fields)))) and all(np.isfinite(each).all() for each in numbers)
 
 
