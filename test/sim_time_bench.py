@@ -36,7 +36,10 @@ class Message(NamedTuple):
 
 
 def course(seconds: float, begin: float = 0.0, oil: bool = True, cage: bool = False) -> list[Message]:
-    """Return a manoeuvre: speed at 40 Hz, a load of its own times, oil at 2 Hz, a measured cage at 10 Hz; all times odd to those of outputs."""
+    """Return a manoeuvre: speed at 40 Hz, a load of its own times, oil at 2 Hz, a measured cage at 10 Hz and clearance at 5 Hz.
+
+    All times are odd to those of outputs.
+    """
     messages = []
     for time_ in begin + np.arange(0.0, seconds, 0.025) + 0.0013:
         messages.append(Message(float(time_), "shaft_speed", (1500.0 + 300.0 * math.sin(2.0 * time_),)))
@@ -48,6 +51,8 @@ def course(seconds: float, begin: float = 0.0, oil: bool = True, cage: bool = Fa
     if cage:
         for time_ in begin + np.arange(0.0, seconds, 0.1) + 0.0093:
             messages.append(Message(float(time_), topics.MEASURED, (600.0 + time_,)))
+        for time_ in begin + np.arange(0.0, seconds, 0.2) + 0.0057:
+            messages.append(Message(float(time_), topics.MEASURED_CLEARANCE, (3e-5 + 1e-6 * time_, 1e-6)))
     return sorted(messages)
 
 
@@ -60,7 +65,7 @@ def write(path, messages: list[Message]):
                 "shaft_speed": lambda m=message, ns=ns: joint_state(ns, m.values[0]),
                 "radial_load": lambda m=message, ns=ns: wrench(ns, *m.values),
                 **dict.fromkeys(topics.TEMPERATURES, lambda m=message, ns=ns: temperature(ns, m.values[0] - topics.ZERO_CELSIUS)),
-                topics.MEASURED: lambda m=message, ns=ns: topics.MEASUREMENTS[topics.MEASURED].message(ns, m.values),
+                **{name: lambda m=message, ns=ns: topics.MEASUREMENTS[m.channel].message(ns, m.values) for name in topics.MEASURED_CHANNELS},
             }[message.channel]()
             kind = ({"radial_load": WRENCH} | dict.fromkeys(topics.TEMPERATURES, TEMPERATURE)).get(message.channel, JOINTS)
             recording.write(f"/{message.channel}", kind, ns, fields)
@@ -72,7 +77,7 @@ class ListSink:
 
     def __init__(self, start_ns: int = 0):
         self.start_ns, self.closed = start_ns, False
-        self.samples, self.inputs, self.measurements = {}, [], []
+        self.samples, self.inputs, self.measurements, self.clearances = {}, [], [], []
         self.events, self.diagnostics = [], []
 
     def write(self, block):
@@ -88,6 +93,9 @@ class ListSink:
 
     def write_measurement(self, time, cage_speed, residual, standard_error):
         self.measurements.append((self._ns(time), cage_speed, residual))
+
+    def write_clearance(self, time, clearance, standard_error):
+        self.clearances.append((self._ns(time), clearance, standard_error))
 
     def write_event(self, event):
         self.events.append(event)

@@ -218,4 +218,4 @@ def test_options_stand_for_columns_that_a_table_lacks_and_choose_rows_and_fields
 
 
 def test_every_channel_of_the_gate_has_a_unit_that_a_constant_can_name():
-    assert set(UNITS.values()) == {"rad/s", "N", "K"}
+    assert set(UNITS.values()) == {"rad/s", "N", "K", "m"}

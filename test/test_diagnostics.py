@@ -100,7 +100,7 @@ def test_each_fault_shows_in_its_subject_alone_and_its_cure_is_seen_within_a_rep
 
 
 def test_an_expected_number_of_items_is_the_number_of_subjects_of_the_bearings():
-    counted = {**ANALYZERS, "inputs": {**ANALYZERS["inputs"], "num_items": 8}}
+    counted = {**ANALYZERS, "inputs": {**ANALYZERS["inputs"], "num_items": 9}}
     aggregator = Aggregator(counted)
     aggregator.take(0.0, statuses_of(report(0, component="bearing_node/front")))
     assert aggregator.report(0.0)["/Bearings/Inputs"] == OK

@@ -186,15 +186,15 @@ def test_random_messages_never_leave_a_bad_value_held():
     assert gate.refused.total() + gate.accepted.total() == 3000 and gate.accepted.total() > 100
 
 
-@pytest.mark.parametrize("values", [(), (1.0, 2.0), (1.0, 2.0, 3.0)], ids=len)
+@pytest.mark.parametrize("values", [(), (1e-3, 2e-3), (1e-3, 2e-3, 3e-3)], ids=len)
 @pytest.mark.parametrize("channel", CHANNELS)
 def test_as_many_values_as_the_channel_has_are_accepted_and_no_others(channel, values):
     gate = InputGate(LIMITS, START)
     event = gate.offer(channel, 1.0, values)
     if channel == "radial_load" and len(values) == 2:
         assert event is None and (gate.held.load_y, gate.held.load_z) == values
-    elif channel == "cage_speed_measured" and len(values) == 2:
-        assert event is None and (gate.measured, gate.standard_error) == values
+    elif channel in ("cage_speed_measured", "running_clearance_measured") and len(values) == 2:
+        assert event is None and gate.latest(channel) == values and gate.held == START
     else:
         assert event.kind == "input.malformed" and f"{len(values)} values, expected" in event.text
         assert gate.held == START
@@ -266,6 +266,20 @@ def test_a_measured_cage_may_state_its_standard_error(gate):
         assert event.kind == "input.standard_error" and "expected a positive number" in event.reason and gate.measured == 402.0
     event = gate.offer("cage_speed_measured", 0.4, (math.nan, 0.5))
     assert event.kind == "input.not_finite" and event.reason == "nan rad/s is not finite", "the error of a speed that is none says nothing"
+
+
+def test_a_measured_clearance_may_be_preload_and_state_its_standard_error_but_not_be_in_micrometres(gate):
+    channel = "running_clearance_measured"
+    assert gate.state(channel) == "no message so far, nothing is calibrated by it"
+    assert gate.offer(channel, 0.1, (-4e-6, 1e-6)) is None and gate.latest(channel) == (-4e-6, 1e-6)
+    assert gate.offer(channel, 0.2, (3e-5,)) is None and gate.latest(channel) == pytest.approx((3e-5, math.nan), nan_ok=True)
+    for wrong in (31.0, -31.0):
+        event = gate.offer(channel, 0.3, (wrong, 1.0))
+        assert event.kind == "input.too_large" and "expected metres" in event.reason and f"{wrong:g} m" in event.reason
+    assert gate.offer(channel, 0.3, (3e-5, 0.0)).kind == "input.standard_error"
+    assert gate.offer(channel, 0.3, (math.nan,)).kind == "input.not_finite"
+    assert "holding 3e-05 m" in gate.offer(channel, 0.2, (3e-5,)).action, "a stamp that was there"
+    assert gate.coverage.unknown_until(1.0) == 0.0 and gate.held == START, "it is no input of the model"
 
 
 @pytest.mark.parametrize("kind", ["input.frame", "input.not_stamped", "input.malformed"])

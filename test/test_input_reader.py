@@ -66,6 +66,16 @@ def test_a_measured_cage_is_read_with_its_standard_error_wherever_its_joint_is(n
         assert reader.read(serialize_message(made)) == ((speed, error), 5_000_000_007, "")
 
 
+@pytest.mark.parametrize("names", [["running_clearance", "running_clearance_standard_error"], ["a", "running_clearance"]])
+def test_a_measured_clearance_is_read_out_of_the_positions(names):
+    rng, reader = np.random.default_rng(3), InputReader(topics.MEASURED_CLEARANCE, JOINT_STATE, topics.CLEARANCE_JOINT, "bearing")
+    for _ in range(3):
+        made, _ = joint_state(rng, names, topics.CLEARANCE_JOINT, "", (5, 7))
+        expected = tuple(float(made.position[k]) for k, name in enumerate(names) if name.startswith(topics.CLEARANCE_JOINT))
+        assert reader.read(serialize_message(made)) == (expected, 5_000_000_007, "")
+    assert len(reader._layouts) == 1, "the first message tells where the others have their numbers"
+
+
 @pytest.mark.parametrize("frame", ["", "bearing"])
 def test_loads_say_what_was_put_in_and_what_cdr_leaves_unused_does_not_count(frame, monkeypatch):
     rng, reader = np.random.default_rng(2), InputReader("radial_load", WRENCH, "", "bearing")

@@ -8,14 +8,16 @@ import math
 import numpy as np
 import pytest
 from fake_simulation import FakeSimulation
-from made_up_response import FACTOR, FIELD, asking_scene, made_up_response
+from made_up_response import ASKING, FACTOR, FIELD, asking_scene, made_up_response
 from recordings import steady_log
 from rerun_files import column, views_in
+from sim_time_bench import course, write
 from synthetic_run import synthetic_block
 from test_live import Bench
 
 from bearing_sim.estimation import bands
 from bearing_sim.estimation.bands import BandEstimator
+from bearing_sim.estimation.estimator import Estimator
 from bearing_sim.estimation.live import LiveEstimation
 from bearing_sim.estimation.response import conditions_at
 from bearing_sim.inputs.log import read_input_log
@@ -202,10 +204,13 @@ def test_diagnostics_show_both_edges_with_their_subject(response):
 
 
 class ListSink:
-    """Keeps the bands that it is given."""
+    """Keeps the bands and the measured clearances that it is given."""
 
     def __init__(self):
-        self.bands = []
+        self.bands, self.clearances = [], []
+
+    def write_clearance(self, *reading):
+        self.clearances.append(reading)
 
     def write_bands(self, bands):
         self.bands.append(bands)
@@ -216,12 +221,14 @@ class ListSink:
     write_start = write_inputs = write_event = write_measurement = write_diagnostics = close = write
 
 
-def replayed(scene, tmp_path, measured=None, **options):
-    def model(scene, inputs):
-        simulation = FakeSimulation(inputs)
-        simulation.counters = Counters(7, 2, 1, 0, 0, 0)
-        return simulation
+def model(scene, inputs):
+    """Return a simulation that solves nothing."""
+    simulation = FakeSimulation(inputs)
+    simulation.counters = Counters(7, 2, 1, 0, 0, 0)
+    return simulation
 
+
+def replayed(scene, tmp_path, measured=None, **options):
     path = tmp_path / "log.mcap"
     if not path.exists():
         steady_log(path, duration=2.0 if measured is None else 4.0, rate=50)
@@ -337,6 +344,44 @@ def test_estimates_come_every_interval_and_close_in_on_the_field_that_was_hidden
     hidden = 0.02 + 0.04 * (0.25 + math.log(0.025 / 0.02) / math.log(FACTOR))
     value, low, high = estimates[-1].numbers[0, 0]
     assert low < hidden < high and high - low < 0.5 * np.ptp(estimates[0].numbers[0, 0, 1:]) and low < value < high
+
+
+@pytest.fixture
+def clearances(monkeypatch):
+    """Return what reaches the estimator as measured clearances."""
+    found = []
+    monkeypatch.setattr(Estimator, "measure_clearance", lambda self, *reading: found.append(reading))
+    return found
+
+
+def test_measured_clearances_of_a_log_calibrate_are_recorded_and_can_be_read_again(response, tmp_path, clearances):
+    def replayed_clearances(path, recording):
+        log = read_input_log(path)
+        profile = judge(log, CALIBRATED.accepted_inputs, Inputs(0.0, 0.0, 0.0, 393.15))
+        with McapSink(recording, CALIBRATED, profile.start_ns) as sink:
+            replay(CALIBRATED, profile, sink, model=model, response=response)
+        return [(profile.start_ns + round(1e9 * time), *reading) for time, *reading in profile.measured_clearance]
+
+    log = write(tmp_path / "log.mcap", course(2.0, cage=True))
+    sent = [message for message in course(2.0, cage=True) if message.channel == topics.MEASURED_CLEARANCE]
+    found = replayed_clearances(log, tmp_path / "run.mcap")
+    assert found == [(message.stamp_ns, *message.values) for message in sent]
+    assert [reading[1:] for reading in clearances] == [message.values for message in sent]
+    assert replayed_clearances(tmp_path / "run.mcap", tmp_path / "again.mcap") == found
+
+
+def test_a_measured_clearance_calibrates_a_live_model_and_is_recorded(response, clearances):
+    bench, sink = Bench(scene=[*ASKING, f"estimation.calibrated={FIELD}"], response=response), ListSink()
+    bench.live.open("list", lambda start_ns: sink)
+    try:
+        bench.run(0.3)
+        assert bench.live.offer(topics.MEASURED_CLEARANCE, (3e-5, 1e-6), None, bench.now_ns, "probe") is None
+        ((time, *reading),) = clearances
+        assert reading == [3e-5, 1e-6] and sink.clearances == [(time, 3e-5, 1e-6, topics.Origin(None, "probe"))]
+        refused = bench.live.offer(topics.MEASURED_CLEARANCE, (30.0,), None, bench.now_ns)
+        assert refused.kind == "input.too_large" and len(clearances) == 1
+    finally:
+        bench.live.close()
 
 
 def test_what_was_learned_survives_and_says_less_the_longer_ago_it_was(calibrated, response):

@@ -228,11 +228,13 @@ def test_inputs_keep_the_stamps_and_frames_of_their_senders(tmp_path, scene):
         sink.write_inputs(1.0, inputs, ["radial_load"], Origin(START + 990_000_000, "dyno"))
         sink.write_inputs(1.0, inputs, ["shaft_speed"], Origin(None, ""))
         sink.write_measurement(1.5, 1800.0, 0.01, 0.5, Origin(START + 1_490_000_000, "laser"))
+        sink.write_clearance(1.75, 3e-5, 1e-6, Origin(START + 1_740_000_000, "probe"))
     decoded = {topic: (log_time, message) for topic, log_time, message in messages(sink.path)}
     for topic, log_time, stamp_ns, frame in (
         ("/radial_load", 1_000_000_000, 990_000_000, "dyno"),
         ("/shaft_speed", 1_000_000_000, 1_000_000_000, ""),
         ("/cage_speed_measured", 1_500_000_000, 1_490_000_000, "laser"),
+        ("/running_clearance_measured", 1_750_000_000, 1_740_000_000, "probe"),
     ):
         logged, message = decoded[topic]
         stamp = message.header.stamp

@@ -71,7 +71,7 @@ OF_OTHER_SETTINGS = {
         *(f"/{topic.name}" for topic in topics.OUTPUTS.values() if topic.of_tilting_levels or topic.of_heat),
         *(f"/{name}" for name in (*topics.ESTIMATED, topics.VIBRATION.name)),
     },
-    "bearing_player": {"/clock", "/diagnostics", "/oil_temperature", "/cage_speed_measured", *RINGS},
+    "bearing_player": {"/clock", "/diagnostics", "/oil_temperature", *(f"/{name}" for name in topics.MEASURED_CHANNELS), *RINGS},
 }
 
 

@@ -136,7 +136,7 @@ def test_a_log_played_at_any_rate_with_a_pause_and_again_is_what_its_replay_is(b
     assert client.values()["late inputs"] == "0" and client.values()["messages refused"] == "0"
     assert node.end(signal.SIGTERM) == 0, node.text
     whole = messages(offline)
-    assert set(whole) >= {f"/{name}" for name in (*topics.outputs(SCENE), *topics.inputs(SCENE), *topics.MEASUREMENTS)}
+    assert set(whole) >= {f"/{name}" for name in (*topics.outputs(SCENE), *topics.inputs(SCENE), topics.MEASURED, topics.RESIDUAL)}
     for name in ("run.mcap", "run_2.mcap"):
         assert messages(tmp_path / name) == whole, name
 

@@ -80,6 +80,7 @@ def test_what_the_process_writes_is_what_a_sink_in_this_process_writes(recorder,
         sink.write_inputs(0.0, INPUTS, ["radial_load"], Origin(START + 5, "dyno"))
         write(sink, first=1, last=1001)
         sink.write_measurement(0.5, 1800.0, 0.01, 0.5, Origin(START + 7, "laser"))
+        sink.write_clearance(0.5, 3e-5, 1e-6, Origin(START + 8, "probe"))
         sink.write_event(Event(0.6, Level.WARN, "slip.high", "", "text"))
         sink.write_diagnostics(0.7, [Event(0.7, Level.OK, "run.running", "", "text")], {"level": "slip", "real-time factor": np.float64(1.5)})
         sink.close()

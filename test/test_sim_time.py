@@ -96,6 +96,7 @@ def test_any_pace_of_the_clock_and_any_order_of_topics_give_what_a_replay_gives_
     assert len(got.samples) == 59 and got.start_ns == expected.start_ns == START_NS + 7_100_000
     assert got.inputs == expected.inputs
     np.testing.assert_array_equal(got.measurements, expected.measurements)
+    assert len(got.clearances) == 6 and got.clearances == expected.clearances
     assert len(got.measurements) == 12 and run.values()["late inputs"] == 0 and run.values()["messages refused"] == 0
 
 

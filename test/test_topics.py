@@ -113,6 +113,17 @@ def test_a_measured_cage_comes_with_its_standard_error_where_the_message_has_a_j
         topics.input_values(topics.MEASURED, topic.ros_type, SimpleNamespace(name=own.name[::-1], velocity=[40.0]), "m1_cage")
 
 
+def test_a_measured_clearance_is_a_position_and_comes_with_its_standard_error_where_the_message_has_a_joint_for_it():
+    topic = topics.MEASUREMENTS[topics.MEASURED_CLEARANCE]
+    for values, expected in (((3e-5, 1e-6), (3e-5, 1e-6)), ((-3e-6, math.nan), (-3e-6,)), ((3e-5,), (3e-5,))):
+        message = SimpleNamespace(**topic.message(STAMP, values))
+        assert message.velocity.tolist() == [] and message.name[0] == "running_clearance"
+        assert topics.input_values(topics.MEASURED_CLEARANCE, topic.ros_type, message, topics.CLEARANCE_JOINT) == expected
+    as_velocity = SimpleNamespace(name=["running_clearance"], velocity=[3e-5], position=[])
+    with pytest.raises(ValueError, match="no position for the joint 'running_clearance'"):
+        topics.input_values(topics.MEASURED_CLEARANCE, topic.ros_type, as_velocity, topics.CLEARANCE_JOINT)
+
+
 def test_absent_joint_or_velocity_is_said():
     with pytest.raises(ValueError, match="no joint 'shaft'.*'fan'"):
         topics.input_values("shaft_speed", "sensor_msgs/msg/JointState", SimpleNamespace(name=["fan"], velocity=[1.0]))

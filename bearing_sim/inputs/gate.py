@@ -14,21 +14,23 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from bearing_sim.messages.events import Event, Level
-from bearing_sim.messages.topics import MEASURED, RING_TEMPERATURES, TEMPERATURES, ZERO_CELSIUS
+from bearing_sim.messages.topics import MEASURED, MEASURED_CHANNELS, MEASURED_CLEARANCE, RING_TEMPERATURES, TEMPERATURES, ZERO_CELSIUS
 from bearing_sim.scene.scene import InputLimits
 from bearing_sim.simulation import Inputs
 
-CHANNELS = ("shaft_speed", "radial_load", *TEMPERATURES, MEASURED)  # the last is compared with the model, not an input of it
+CHANNELS = ("shaft_speed", "radial_load", *TEMPERATURES, *MEASURED_CHANNELS)  # the last are compared with the model, not inputs of it
 REQUIRED = ("shaft_speed", "radial_load")
-UNITS = {"shaft_speed": "rad/s", "radial_load": "N", **dict.fromkeys(TEMPERATURES, "K"), MEASURED: "rad/s"}
+UNITS = {"shaft_speed": "rad/s", "radial_load": "N", **dict.fromkeys(TEMPERATURES, "K"), MEASURED: "rad/s", MEASURED_CLEARANCE: "m"}
 """SI unit of the values of each channel."""
 TOPIC_UNITS = UNITS | dict.fromkeys(TEMPERATURES, "degC")
 """Unit of the values of each channel's topic; events name values in it."""
 
-_OPTIONAL = (*TEMPERATURES, MEASURED)
+_OPTIONAL = (*TEMPERATURES, *MEASURED_CHANNELS)
 _RATE_WINDOW = 1.0  # [s] a rate is the number of messages over at least this long
 _RATE_TOLERANCE = 0.1  # relative, because timers jitter
-_SLOW_CHANNEL = dict.fromkeys(TEMPERATURES, 10.0)  # oil and rings warm up in minutes: their messages may be rarer by this factor
+# Oil and rings warm up in minutes, and the clearance changes with them: their messages may be rarer by this factor.
+_SLOW_CHANNEL = dict.fromkeys((*TEMPERATURES, MEASURED_CLEARANCE), 10.0)
+_LARGEST_CLEARANCE = 0.01  # [m] beyond that of any rolling bearing: a measured one in another unit than metres
 _SPACINGS_OF_RATE = 10.0  # of a log: over at least this many a rate is counted, so that one missing row is no change of rate
 _SPACINGS_OF_SILENCE = 3.0  # of a log: a message may be late by this factor of its channel's usual spacing
 _RISING_TO_FOLLOW = 3  # refused messages in a row with rising stamps after which the sender's clock counts as set
@@ -107,7 +109,7 @@ class Coverage:
 
     def take_refused(self, channel: str, time: float, kind: str) -> None:
         """Take a refused message of a channel; ``kind`` is that of its event."""
-        if kind in _OLD or channel == MEASURED or channel in RING_TEMPERATURES:  # the model predicts what these measure
+        if kind in _OLD or channel in MEASURED_CHANNELS or channel in RING_TEMPERATURES:  # the model predicts what these measure
             return
         self._unknown.setdefault(channel, max(self._good.get(channel, time), self._settled))
         self.is_overloaded = self.is_overloaded or (kind == "input.too_large" and channel in REQUIRED)
@@ -162,8 +164,6 @@ class InputGate:
     ----------
     held : Inputs
         The last good values.
-    measured, standard_error : float
-        The last good cage speed, and its standard error [rad/s]; NaN before the first, the second also where the sensor does not say.
     refused, accepted : collections.Counter
         Messages refused by kind of event, and accepted by channel.
     coverage : Coverage
@@ -181,7 +181,7 @@ class InputGate:
     ):
         self._spacings, self._waits_for = spacings, waits_for
         self.limits, self.held, self._substitute, self._stands_in = limits, held, substitute, _STANDS_IN[heat_law]
-        self.measured = self.standard_error = math.nan
+        self._measured: dict[str, tuple[float, float]] = dict.fromkeys(MEASURED_CHANNELS, (math.nan, math.nan))
         self.refused: Counter[str] = Counter()
         self.accepted: Counter[str] = Counter()
         self.coverage = Coverage()
@@ -200,7 +200,8 @@ class InputGate:
         ----------
         channel : one of `CHANNELS`.
         stamp : the sender's time [s since the start]; must rise from message to message of a channel.
-        values : ``(speed,)`` [rad/s], of shaft or cage; of the cage also ``(speed, standard error)``, NaN where that is not known;
+        values : ``(speed,)`` [rad/s], of shaft or cage; of the cage also ``(speed, standard error)``, NaN where that is not known; of a clearance
+            [m] likewise;
             ``(force_y, force_z)`` [N], or ``(force,)`` [N] for a magnitude along +y, which cannot be negative; ``(temperature,)`` [K].
         arrival : the receiver's time [s since the start], from which age and rate are computed; ``stamp`` by default, as in a replay.
             If it is given, a sender whose clock was set back is followed after a few messages, otherwise never.
@@ -234,7 +235,7 @@ class InputGate:
         error = None
         if len(values) == 1:
             is_good = state.least <= values[0] <= state.largest
-        elif channel == MEASURED:
+        elif channel in MEASURED_CHANNELS:
             is_good = len(values) == 2 and state.least <= values[0] <= state.largest and (math.isnan(values[1]) or 0.0 < values[1] < math.inf)
         else:
             is_good = len(values) == 2 and state.is_force and math.hypot(*values) <= state.largest
@@ -250,8 +251,8 @@ class InputGate:
         state.arrival = max(state.arrival, received)
         self.accepted[channel] += 1
         self.coverage.take_good(channel, received)
-        if channel == MEASURED:
-            self.measured, self.standard_error = (float(values[0]), float(values[1]) if len(values) == 2 else math.nan)
+        if channel in MEASURED_CHANNELS:
+            self._measured[channel] = (float(values[0]), float(values[1]) if len(values) == 2 else math.nan)
             return None
         if channel in self._expired:
             self._expired.remove(channel)
@@ -259,6 +260,16 @@ class InputGate:
             self._returned.append(Event(received, Level.OK, "input.returned", channel, "it is measured again", "the measured temperature is used"))
         self.held = with_values(self.held, channel, values)
         return None
+
+    @property
+    def measured(self) -> float:
+        """The last good cage speed [rad/s]; NaN before the first."""
+        return self._measured[MEASURED][0]
+
+    @property
+    def standard_error(self) -> float:
+        """That of `measured` [rad/s]; NaN where the sensor does not say."""
+        return self._measured[MEASURED][1]
 
     def expire(self, now: float) -> bool:
         """Give up measured temperatures of rings whose last good message is too old at ``now`` [s]; return whether ``held`` has changed.
@@ -286,9 +297,9 @@ class InputGate:
         return Event(time, level, kind, channel, reason, f"message refused, {self._used_instead(channel)}")
 
     def latest(self, channel: str) -> float | tuple[float, float]:
-        """Return the last good value of a channel in SI; of the load both forces, of a measured cage its speed and the standard error of that."""
-        if channel == MEASURED:
-            return (self.measured, self.standard_error)
+        """Return the last good value of a channel in SI; of the load both forces, of `MEASURED_CHANNELS` value and standard error (or NaN)."""
+        if channel in MEASURED_CHANNELS:
+            return self._measured[channel]
         if channel == "radial_load":
             return (self.held.load_y, self.held.load_z)
         return getattr(self.held, channel)
@@ -349,10 +360,12 @@ class InputGate:
             return f"holding {self._shown(channel)}"
         if channel in self._waits_for:
             return "nothing is computed before the first good one"
-        return "nothing is compared" if channel == MEASURED else f"the scene's value is used, {self._shown(channel)}"
+        if channel in MEASURED_CHANNELS:
+            return "nothing is compared" if channel == MEASURED else "nothing is calibrated by it"
+        return f"the scene's value is used, {self._shown(channel)}"
 
     def _shown(self, channel: str) -> str:
-        latest = self.measured if channel == MEASURED else self.latest(channel)
+        latest = self._measured[channel][0] if channel in MEASURED_CHANNELS else self.latest(channel)
         return shown(channel, latest if isinstance(latest, tuple) else (latest,))
 
     def _flowed(self, channel: str, state: _Channel) -> bool:
@@ -414,6 +427,8 @@ def _good_from_to(channel: str, limits: InputLimits) -> tuple[float, float]:
     largest_speed, largest_load = (math.inf if bound is None else bound for bound in (limits.maximum_speed, limits.maximum_load))
     if channel in TEMPERATURES:
         return limits.minimum_temperature, limits.maximum_temperature
+    if channel == MEASURED_CLEARANCE:
+        return -_LARGEST_CLEARANCE, _LARGEST_CLEARANCE
     if channel == "radial_load":
         return 0.0, largest_load
     return -largest_speed if limits.reverse_rotation else 0.0, largest_speed
@@ -428,12 +443,13 @@ def shown(channel: str, values: Iterable[float]) -> str:
 
 def _value_error(channel: str, values: tuple[float, ...], state: _Channel) -> tuple[str, str]:
     """Return kind and reason of what is wrong with values that are not good."""
-    if len(values) != 1 and (len(values) != 2 or channel not in ("radial_load", MEASURED)):
-        return "input.malformed", f"{len(values)} values, expected {'1 or 2' if channel in ('radial_load', MEASURED) else '1'}"
-    if channel == MEASURED and state.least <= values[0] <= state.largest:
+    may_have_two = channel == "radial_load" or channel in MEASURED_CHANNELS
+    if len(values) != 1 and (len(values) != 2 or not may_have_two):
+        return "input.malformed", f"{len(values)} values, expected {'1 or 2' if may_have_two else '1'}"
+    if channel in MEASURED_CHANNELS and state.least <= values[0] <= state.largest:
         expected = "expected a positive number, NaN, or no joint for it where it is not known"
         return "input.standard_error", f"a standard error of {shown(channel, values[1:])}, {expected}"
-    if channel == MEASURED:
+    if channel in MEASURED_CHANNELS:
         values = values[:1]
     unit, given = TOPIC_UNITS[channel], shown(channel, values)
     magnitude = math.hypot(*values)
@@ -443,6 +459,8 @@ def _value_error(channel: str, values: tuple[float, ...], state: _Channel) -> tu
         kind = "input.too_small" if values[0] < state.least else "input.too_large"
         least, largest = shown(channel, (state.least,)), shown(channel, (state.largest,))
         return kind, f"{given} is outside {least} to {largest} ({_BOUNDS[kind, channel]})"
+    if channel == MEASURED_CLEARANCE:
+        return "input.too_large", f"{given} is more than any bearing has, expected metres, and at most {state.largest:g} of them"
     if len(values) == 1 and state.least == 0.0 > values[0]:
         hint = "" if state.is_force else " (input_limits.reverse_rotation is off)"
         return "input.negative", f"{given} is negative, expected zero or more{hint}"

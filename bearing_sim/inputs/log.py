@@ -1,5 +1,5 @@
 # Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
-"""Input logs: shaft speed, radial load, temperatures of oil and rings and measured cage speed from recordings of any origin, complete or cut short.
+"""Input logs: shaft speed, radial load, temperatures, measured cage speed and clearance from recordings of any origin, complete or cut short.
 
 Files are read record by record, which works without their end.
 
@@ -27,8 +27,8 @@ from bearing_sim.recording.message_fields import numbers, suggestion
 from bearing_sim.scene.loader import did_you_mean
 from bearing_sim.scene.quantity import conversion, to_si
 
-_CHANNELS = (*topics.INPUTS, topics.MEASURED)
-_WITH_UNIT = {"rad/s": "{}rpm", "N": "{}N or {}kN", "K": "{}degC"}
+_CHANNELS = (*topics.INPUTS, *topics.MEASURED_CHANNELS)
+_WITH_UNIT = {"rad/s": "{}rpm", "N": "{}N or {}kN", "K": "{}degC", "m": "{}um"}
 _LONGEST_REASON = 500  # characters
 _MOST_LISTED = 50  # topics in a message
 _STEP = re.compile(r"\.?([A-Za-z_]\w*)|\[(-?\d+)\]")
@@ -228,7 +228,8 @@ def read_input_log(
         raise InputLogError("both speed and load are constants, so that nothing is left of the log; `bearing-sim run` takes them")
     paths = [Path(path)] if isinstance(path, (str, Path)) else [Path(each) for each in path]
     sources = {channel: where for channel, where in _sources(names).items() if channel not in constants}
-    wanted = _Wanted(sources, dict.fromkeys(_CHANNELS, joint) | {topics.MEASURED: cage_joint}, stamps, {}, {}, {})
+    joints = dict.fromkeys(_CHANNELS, joint) | {topics.MEASURED: cage_joint, topics.MEASURED_CLEARANCE: topics.CLEARANCE_JOINT}
+    wanted = _Wanted(sources, joints, stamps, {}, {}, {})
     unfinished = []
     for each in paths:
         try:

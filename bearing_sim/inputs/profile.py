@@ -19,7 +19,7 @@ import numpy as np
 from bearing_sim.inputs.gate import REQUIRED, InputGate, patience, unknown_inputs, unused_event
 from bearing_sim.inputs.log import InputLog, InputLogError, ReadError, Series, usual_spacing
 from bearing_sim.messages.events import Event, Level
-from bearing_sim.messages.topics import INPUTS, MEASURED, RING_TEMPERATURES, TEMPERATURES
+from bearing_sim.messages.topics import INPUTS, MEASURED, MEASURED_CLEARANCE, RING_TEMPERATURES, TEMPERATURES
 from bearing_sim.scene.scene import InputLimits
 from bearing_sim.simulation import Inputs
 
@@ -286,10 +286,18 @@ class InputProfile:
     @property
     def measured(self) -> list[tuple[float, float, float]]:
         """Times [s] of measured cage speeds, the speeds, and their standard errors (NaN where they are not known) [rad/s], in order."""
-        if MEASURED not in self.stamps:
+        return self._readings(MEASURED)
+
+    @property
+    def measured_clearance(self) -> list[tuple[float, float, float]]:
+        """Times [s] of measured clearances, the clearances, and their standard errors (NaN where they are not known) [m], in order."""
+        return self._readings(MEASURED_CLEARANCE)
+
+    def _readings(self, channel: str) -> list[tuple[float, float, float]]:
+        if channel not in self.stamps:
             return []
-        speeds, errors = self.values[MEASURED].reshape(-1, 2).T.tolist()
-        return list(zip((self.stamps[MEASURED] * 1e-9).tolist(), speeds, errors))
+        values, errors = self.values[channel].reshape(-1, 2).T.tolist()
+        return list(zip((self.stamps[channel] * 1e-9).tolist(), values, errors))
 
 
 def judge(log: InputLog, limits: InputLimits, held: Inputs, longest_gap: float | None = None, heat_law: str = "none") -> InputProfile:

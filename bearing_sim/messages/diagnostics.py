@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.messages.events import Event, Level
-from bearing_sim.messages.topics import ARRAYS, INPUTS, LIFE_SYMBOLS, MEASURED, ZERO_CELSIUS, header
+from bearing_sim.messages.topics import ARRAYS, INPUTS, LIFE_SYMBOLS, MEASURED_CHANNELS, ZERO_CELSIUS, header
 from bearing_sim.model.sample import RING_TEMPERATURES
 
 WHOLE = "condition"
@@ -39,7 +39,7 @@ class Subject(NamedTuple):
     values: tuple[str, ...] = ()
 
 
-_CHANNELS = (*INPUTS, MEASURED)
+_CHANNELS = (*INPUTS, *MEASURED_CHANNELS)
 _VALUES = {"shaft_speed": "shaft speed [", "radial_load": "radial load [", "oil_temperature": "oil temperature ["}
 _VALUES |= {name: f"{name.replace('_', ' ')} measured [" for name in RING_TEMPERATURES}
 """Beginnings of the keys of the inputs' values in `condition` and `further_condition`."""

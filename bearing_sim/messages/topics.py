@@ -23,7 +23,7 @@ from bearing_sim.messages.point_cloud import ROLLER_FIELDS, RollerField, point_c
 from bearing_sim.model.characteristic_frequencies import FREQUENCIES, characteristic_frequencies
 from bearing_sim.model.sample import NODE_OBSERVABLES, OBSERVABLES, RING_TEMPERATURES
 
-SHAFT_JOINT, CAGE_JOINT = "shaft", "cage"
+SHAFT_JOINT, CAGE_JOINT, CLEARANCE_JOINT = "shaft", "cage", "running_clearance"
 FRAME = "bearing"  # unless the bearing has another frame; x along the shaft
 ZERO_CELSIUS = 273.15  # [K]
 TEMPERATURES = ("oil_temperature", *RING_TEMPERATURES)
@@ -136,14 +136,25 @@ def _temperature(name: str, meaning: str, of_heat: bool = False) -> Topic:
 
 
 def standard_error_joint(joint: str) -> str:
-    """Return the name of the joint whose velocity is the standard error of that of another joint."""
+    """Return the name of the joint whose number is the standard error of that of another joint."""
     return f"{joint}_standard_error"
 
 
 def _cage_speed(stamp_ns: int, values: Sequence[float]) -> dict:
-    speed, *errors = values
+    names, numbers = _with_standard_error(CAGE_JOINT, values)
+    return _joints(stamp_ns, names, velocity=numbers)
+
+
+def _running_clearance(stamp_ns: int, values: Sequence[float]) -> dict:
+    names, numbers = _with_standard_error(CLEARANCE_JOINT, values)
+    return _joints(stamp_ns, names, position=numbers)
+
+
+def _with_standard_error(joint: str, values: Sequence[float]) -> tuple[list[str], list[float]]:
+    """Return joints and numbers of a measurement (value,) or (value, standard error); without the latter where it is NaN."""
+    value, *errors = values
     known = [error for error in errors if not math.isnan(error)]
-    return _joints(stamp_ns, [CAGE_JOINT, *[standard_error_joint(CAGE_JOINT)] * len(known)], velocity=[speed, *known])
+    return [joint, *[standard_error_joint(joint)] * len(known)], [value, *known]
 
 
 def _number(name: str, meaning: str) -> Topic:
@@ -350,7 +361,9 @@ VIBRATION = Topic(
 )
 """The topic from which a live run finds the cage speed (see `bearing_sim.vibration.meter`); recordings have the cage speed, not the blocks."""
 
-MEASURED, RESIDUAL = "cage_speed_measured", "cage_slip_residual"
+MEASURED, RESIDUAL, MEASURED_CLEARANCE = "cage_speed_measured", "cage_slip_residual", "running_clearance_measured"
+MEASURED_CHANNELS = (MEASURED, MEASURED_CLEARANCE)
+"""The input channels of what the model predicts: each has a value and, where it is known, the standard error of that."""
 MEASUREMENTS = {
     topic.name: topic
     for topic in (
@@ -367,11 +380,18 @@ MEASUREMENTS = {
             "measured less predicted cage slip [fraction]",
             lambda stamp_ns, residual: {"data": residual},
         ),
+        Topic(
+            MEASURED_CLEARANCE,
+            "sensor_msgs/msg/JointState",
+            "optional: measured diametral clearance of the running bearing, position of the joint 'running_clearance' [m], negative is preload; "
+            "where a joint 'running_clearance_standard_error' follows, its position is the standard error of the measurement [m]",
+            _running_clearance,
+        ),
     )
 }
-"""Topics of a measured cage, by name: the measurement, and its difference from the prediction.
+"""Topics of what the model predicts and somebody measures, by name: measured cage, difference from the prediction, measured clearance.
 
-The source of the first is ``(speed,)`` or ``(speed, standard error)``, NaN where that is not known; of the other, one number.
+The source of a measurement is ``(value,)`` or ``(value, standard error)``, NaN where that is not known; of the difference, one number.
 """
 
 
@@ -496,10 +516,15 @@ DIAGNOSTICS = ("diagnostics", "diagnostic_msgs/msg/DiagnosticArray")
 
 def input_types(channel: str) -> tuple[str, ...]:
     """Return the message types that can carry a channel."""
-    if channel == MEASURED:
+    if channel in MEASURED_CHANNELS:
         return (MEASUREMENTS[channel].ros_type,)
     scalar = ("std_msgs/msg/Float64",) if channel not in TEMPERATURES else ()
     return (INPUTS[channel].ros_type, *scalar)
+
+
+def joint_numbers(channel: str) -> str:
+    """Return the field of a JointState that has the numbers of a channel."""
+    return "position" if channel == MEASURED_CLEARANCE else "velocity"
 
 
 def input_values(channel: str, ros_type: str, message, joint: str = SHAFT_JOINT) -> tuple[float, ...]:
@@ -508,15 +533,16 @@ def input_values(channel: str, ros_type: str, message, joint: str = SHAFT_JOINT)
     Parameters
     ----------
     channel : ``"shaft_speed"`` -> (speed,), ``"radial_load"`` -> (force_y, force_z), a temperature -> (kelvin,),
-        ``"cage_speed_measured"`` -> (speed,), or (speed, standard error) where the message has a joint for it (`standard_error_joint`).
+        ``"cage_speed_measured"`` -> (speed,), or (speed, standard error) where the message has a joint for it (`standard_error_joint`);
+        ``"running_clearance_measured"`` likewise.
     ros_type : one of `input_types`; a scalar load gives (force,), a magnitude along +y.
     message : any object with the fields of that type as attributes.
-    joint : name of the joint in a JointState, the shaft's or the cage's.
+    joint : name of the joint in a JointState: of the shaft, the cage or the clearance.
 
     Raises
     ------
     ValueError
-        The type does not fit the channel, or the message does not hold the joint's velocity.
+        The type does not fit the channel, or the message does not hold the joint's number.
     """
     if ros_type not in input_types(channel):
         raise ValueError(f"{ros_type} cannot carry {channel}; expected {' or '.join(input_types(channel))}")
@@ -531,13 +557,15 @@ def input_values(channel: str, ros_type: str, message, joint: str = SHAFT_JOINT)
         there = [repr(name[:80]) for name in names[:_MOST_LISTED]] + ["..."] * (len(names) > _MOST_LISTED)
         raise ValueError(f"no joint {joint!r} in the message; it has {', '.join(there) or 'none'}")
     wanted = [joint]
-    if channel == MEASURED and standard_error_joint(joint) in names:
+    if channel in MEASURED_CHANNELS and standard_error_joint(joint) in names:
         wanted.append(standard_error_joint(joint))
-    places = [names.index(name) for name in wanted]
-    if max(places) >= len(message.velocity):
+    places, field = [names.index(name) for name in wanted], joint_numbers(channel)
+    numbers = getattr(message, field)
+    if max(places) >= len(numbers):
         lacking = wanted[places.index(max(places))]
-        raise ValueError(f"the message has no velocity for the joint {lacking!r} ({len(message.velocity)} velocities for {len(names)} joints)")
-    return tuple(float(message.velocity[place]) for place in places)
+        counted = "velocities" if field == "velocity" else "positions"
+        raise ValueError(f"the message has no {field} for the joint {lacking!r} ({len(numbers)} {counted} for {len(names)} joints)")
+    return tuple(float(numbers[place]) for place in places)
 
 
 def header_stamp_ns(message) -> int | None:

@@ -194,7 +194,7 @@ class Recording:
         for item in self._items(with_received=True, with_bands=True):
             if isinstance(item, Received):
                 name = item.topic[1:]
-                if name in MEASUREMENTS:
+                if name in (MEASURED, RESIDUAL):
                     with _as_unreadable(item.topic):
                         numbers = _measured_numbers(name, _decoded(item.data, item.topic))
                     waiting.setdefault(item.log_ns, {})[name] = numbers

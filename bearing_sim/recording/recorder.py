@@ -168,6 +168,10 @@ class _Recording(AbstractContextManager):
         """Write a measured cage speed and its standard error [rad/s] that arrived at ``time`` [s], and its residual slip."""
         self.offer("write_measurement", (time, cage_speed, residual, standard_error, origin))
 
+    def write_clearance(self, time: float, clearance: float, standard_error: float = math.nan, origin: topics.Origin | None = None) -> None:
+        """Write a measured clearance and its standard error [m] that arrived at ``time`` [s]."""
+        self.offer("write_clearance", (time, clearance, standard_error, origin))
+
     def write_bands(self, bands: Bands) -> None:
         """Write quantities with their bands."""
         self.offer("write_bands", (bands,), bands.numbers.nbytes)

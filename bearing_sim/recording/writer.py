@@ -498,8 +498,12 @@ class McapSink(AbstractContextManager):
         self, time: float, cage_speed: float, residual: float, standard_error: float = math.nan, origin: topics.Origin | None = None
     ) -> None:
         """Write a measured cage speed and its standard error [rad/s] that arrived at ``time`` [s], and its slip less the predicted slip."""
-        for topic, source in zip(topics.MEASUREMENTS.values(), ((cage_speed, standard_error), residual)):
-            self._write_input(topic, time, source, origin)
+        for name, source in ((topics.MEASURED, (cage_speed, standard_error)), (topics.RESIDUAL, residual)):
+            self._write_input(topics.MEASUREMENTS[name], time, source, origin)
+
+    def write_clearance(self, time: float, clearance: float, standard_error: float = math.nan, origin: topics.Origin | None = None) -> None:
+        """Write a measured clearance and its standard error [m] that arrived at ``time`` [s]."""
+        self._write_input(topics.MEASUREMENTS[topics.MEASURED_CLEARANCE], time, (clearance, standard_error), origin)
 
     def write_bands(self, bands: Bands) -> None:
         """Write quantities with their bands, a message at each of their instants."""

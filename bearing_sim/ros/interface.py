@@ -341,7 +341,8 @@ class BearingInterface:
             self._open_view()
         for channel, topic in topics.inputs(self.scene).items():
             self._subscribe(channel, _SCALAR if shared.input_type == "scalar" and _SCALAR in topics.input_types(channel) else topic.ros_type)
-        self._subscribe(topics.MEASURED, topics.MEASUREMENTS[topics.MEASURED].ros_type)
+        for channel in topics.MEASURED_CHANNELS:
+            self._subscribe(channel, topics.MEASUREMENTS[channel].ros_type)
         if self.scene.vibration.is_asked:
             self._subscribe_to_vibration()
         self._log(f"publishing {', '.join(self._outputs.topic_names)}")
@@ -520,7 +521,8 @@ class BearingInterface:
             self._outputs.publish_residual(stamp_ns, residual)
 
     def _subscribe(self, channel: str, ros_type: str) -> None:
-        joint = self.settings.cage_joint if channel == topics.MEASURED else self.settings.joint
+        joints = {topics.MEASURED: self.settings.cage_joint, topics.MEASURED_CLEARANCE: topics.CLEARANCE_JOINT}
+        joint = joints.get(channel, self.settings.joint)
         receive = partial(self._receive, channel, InputReader(channel, ros_type, joint, self.settings.frame_id, self._node.transforms))
         kind, name = message_class(ros_type), self._topic_name(channel)
         if follows_clock(self._node):

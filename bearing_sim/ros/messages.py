@@ -105,7 +105,7 @@ class InputReader:
         Raises
         ------
         Refused
-            The message is not of the type, lacks the joint's velocity, or names another frame from which no transform is known.
+            The message is not of the type, lacks the joint's number, or names another frame from which no transform is known.
         """
         layout = self._layouts.get(len(cdr))
         if layout is not None:
@@ -159,7 +159,7 @@ class InputReader:
         fields, frame_id = CdrLayout(self._ros_type, cdr), topics.frame_of(message)
         is_turned = self._must_be_turned(frame_id)
         if self._ros_type.endswith("JointState"):
-            names, begin = list(message.name), fields.by_path["velocity"].begin
+            names, begin = list(message.name), fields.by_path[topics.joint_numbers(self._channel)].begin
             joints = (self._joint, topics.standard_error_joint(self._joint))[: len(contents[0])]
             if names.index(joints[0]) != min(map(names.index, joints)):  # values come in the order of the message
                 return

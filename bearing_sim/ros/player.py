@@ -245,7 +245,7 @@ class Player:
 
 
 def _fields(due: ScheduledMessage, stamp_ns: int) -> dict:
-    if due.channel == topics.MEASURED:
+    if due.channel in topics.MEASURED_CHANNELS:
         return topics.MEASUREMENTS[due.channel].message(stamp_ns, due.values)
     return topics.INPUTS[due.channel].message(stamp_ns, with_values(Inputs(0.0, 0.0, 0.0, 0.0), due.channel, due.values))
 
@@ -323,7 +323,7 @@ def services_running(node: Node) -> Iterator[None]:
 @click.option("--cage-joint", default=topics.CAGE_JOINT, show_default=True, help="Name of the cage's joint, likewise.")
 @click.pass_context
 def command(context, log, rate, clock_rate, stamps, start_paused, loop, use_limit, wait_for_subscribers, wait_limit, input_type, joint, cage_joint):
-    """Publish the inputs of the MCAP recording LOG with its timing: shaft speed, radial load, oil temperature, measured cage speed.
+    """Publish the inputs of the MCAP recording LOG with its timing: speed, load, temperatures, measured cage speed and clearance.
 
     ROS arguments (remappings, namespace) follow --ros-args.
     """

@@ -37,7 +37,7 @@ def policy(namespace: str = "/", node: str = "bearing_node", bearings: Sequence[
     processes : that share these bearings.
     """
     prefixes = [f"{name}/" for name in bearings] or [""]
-    inputs = [f"{prefix}{name}" for prefix in prefixes for name in (*topics.INPUTS, topics.MEASURED)]
+    inputs = [f"{prefix}{name}" for prefix in prefixes for name in (*topics.INPUTS, *topics.MEASURED_CHANNELS)]
     vibration = [f"{prefix}{topics.VIBRATION.name}" for prefix in prefixes]  # where a scene asks for it
     outputs = [f"{prefix}{name}" for prefix in prefixes for name in (*topics.OUTPUTS, topics.RESIDUAL, *topics.ESTIMATED)]
     offered = [f"{name}/{service}" for name in bearings for service in SERVICES] or [f"~/{service}" for service in SERVICES]

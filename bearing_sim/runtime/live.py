@@ -476,7 +476,7 @@ class LiveModel(Model):
         """Take one message (see `Model.offer`); recorders get it as it is, even if it is refused."""
         self.tick(now_ns)
         now = self.run_time(now_ns)
-        if channel != topics.MEASURED and self.sinks.recorders:
+        if channel not in topics.MEASURED_CHANNELS and self.sinks.recorders:
             self.sinks.write_inputs(now, with_values(self.gate.held, channel, values), [channel], topics.Origin(stamp_ns, frame_id))
         event = self.gate.offer(channel, now if stamp_ns is None else self.run_time(stamp_ns), values, now)
         if event is not None:
@@ -484,9 +484,11 @@ class LiveModel(Model):
             return event
         for returned in self.gate.take_returned():
             self._note(returned)
-        self._conflicts[channel].take(values[:1] if channel == topics.MEASURED else values)
+        self._conflicts[channel].take(values[:1] if channel in topics.MEASURED_CHANNELS else values)
         if channel == topics.MEASURED:
             self._compare(now, topics.Origin(stamp_ns, frame_id))
+        elif channel == topics.MEASURED_CLEARANCE:
+            self._take_clearance(now, topics.Origin(stamp_ns, frame_id))
         # Speed starts the model: the scene has sensible values of load and temperature, but a wrong speed would be a false jolt.
         elif self.gate.accepted["shaft_speed"]:
             self.solver.post(self.gate.held)
@@ -604,8 +606,7 @@ class LiveModel(Model):
         if sample is not None and self.solver.phase is Phase.RUNNING:
             ideal = float(sample["ideal_cage_speed"])
             measured = 1.0 - self.gate.measured / ideal if ideal else math.nan
-            # Levels predict slips that are points apart: what is usual at one says nothing about another.
-            own = self._governor is None or self._governor.level == self._governor.wanted
+            own = self._is_at_own_level
             predicted = float(sample["cage_slip"]) if own else math.nan
             before = self.residual.time
             self.residual.take(float(sample["time"]), float(sample["shaft_speed"]), measured, predicted)
@@ -615,3 +616,15 @@ class LiveModel(Model):
             if self.residual.time != before and not math.isnan(self.residual.time):
                 self._residuals = [(self.stamp(self.residual.time), self.residual.residual)]  # only the newest is published
         self.sinks.write_measurement(now, self.gate.measured, residual, self.gate.standard_error, origin)
+
+    def _take_clearance(self, now: float, origin: topics.Origin) -> None:
+        """Let a measured clearance calibrate, while there is a sample that it belongs to."""
+        reading = self.gate.latest(topics.MEASURED_CLEARANCE)
+        if self._estimation is not None and self.solver.newest is not None and self.solver.phase is Phase.RUNNING and self._is_at_own_level:
+            self._estimation.measure_clearance(now, *reading)
+        self.sinks.write_clearance(now, *reading, origin)
+
+    @property
+    def _is_at_own_level(self) -> bool:
+        """Whether the scene's level is computed: levels predict slips that are points apart, so what is usual at one says nothing about another."""
+        return self._governor is None or self._governor.level == self._governor.wanted

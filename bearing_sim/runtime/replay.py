@@ -3,7 +3,7 @@
 
 import math
 import time
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import partial
@@ -210,6 +210,7 @@ class _Run:
         self._recordings = (recording,) if recording is not None else ()
         self._result = Replay(profile.log_seconds)
         self._pending_events = list(profile.events)
+        self._pending_clearances = deque(profile.measured_clearance)
         self._changes = Changes()
         self._watched: list[np.ndarray] = []
         self._next_report = 0.0
@@ -222,8 +223,16 @@ class _Run:
             recall(keeper, self._comparison.residual, self._monitor, self._estimation, profile.start_ns)
         for time_, speed, error in profile.measured:
             self._comparison.measure(time_, speed, error)
-            if self._estimation is not None and not (keeper is not None and keeper.contained(profile.start_ns + round(1e9 * time_))):
+            if self._may_teach(time_):
                 self._estimation.measure(time_, speed, error)
+        for time_, clearance, error in profile.measured_clearance:
+            if self._may_teach(time_):
+                self._estimation.measure_clearance(time_, clearance, error)
+
+    def _may_teach(self, moment: float) -> bool:
+        """Whether a measurement at a time [s] calibrates: not where the bearing's state contains what it taught."""
+        contained = self._keeper is not None and self._keeper.contained(self._profile.start_ns + round(1e9 * moment))
+        return self._estimation is not None and not contained
 
     def run(self, model: Callable[[Scene, Inputs], Simulation]) -> Replay:
         began, began_cpu = time.perf_counter(), time.process_time()
@@ -392,5 +401,10 @@ class _Run:
             sink.write_event(event)
 
     def _write_events_until(self, moment: float) -> None:
+        """Write the events and the measured clearances of the log up to a time [s]."""
+        while self._pending_clearances and self._pending_clearances[0][0] <= moment:
+            for recording in self._recordings:
+                recording.write_clearance(*self._pending_clearances[0])
+            self._pending_clearances.popleft()
         while self._pending_events and self._pending_events[0].time <= moment:
             self._write_event(self._pending_events.pop(0))

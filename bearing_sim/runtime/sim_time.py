@@ -145,7 +145,7 @@ class SimTimeModel(Model):
         self._epoch: int | None = None  # of the gate's times
         self._held_until: int | None = None  # while a jump back is an error
         self._newest: dict[str, int] = {}
-        self._measured: list[tuple[int, float]] = []  # until the profile starts
+        self._measured: list[tuple[str, int, tuple[float, float]]] = []  # until the profile starts
         self._started = False
         self._expected: tuple[str, ...] = ()  # the temperatures that have a publisher
         self._late = self._gaps = 0
@@ -317,12 +317,12 @@ class SimTimeModel(Model):
         for returned in self.gate.take_returned():
             self._note(returned)
         self._newest[channel] = stamp
-        self._conflicts[channel].take(values[:1] if channel == topics.MEASURED else values)
-        if channel == topics.MEASURED:
+        self._conflicts[channel].take(values[:1] if channel in topics.MEASURED_CHANNELS else values)
+        if channel in topics.MEASURED_CHANNELS:
             if self._started:
-                self._measure(self.run_time(stamp), self.gate.measured, self.gate.standard_error)
+                self._measure(channel, self.run_time(stamp), *self.gate.latest(channel))
             else:
-                self._measured.append((stamp, self.gate.measured, self.gate.standard_error))
+                self._measured.append((channel, stamp, self.gate.latest(channel)))
             return None
         try:
             gap = self.solver.add(channel, stamp, self.gate.latest(channel))
@@ -393,21 +393,25 @@ class SimTimeModel(Model):
             self._estimation.restart()
         self.residual.interrupt(-math.inf)
         self._comparison.restart()
-        measured, self._measured = self._measured, []
-        for stamp, speed, error in measured:
-            self._measure(self.run_time(stamp), speed, error)
         for name, open_sink in self._openers.items():
             try:
                 self.sinks.detach(name)
                 self.sinks.attach(name, open_sink(start_ns))
             except (OSError, ValueError) as error:
                 self.sinks.fail(name, 0.0, error)
+        measured, self._measured = self._measured, []
+        for channel, stamp, reading in measured:
+            self._measure(channel, self.run_time(stamp), *reading)
 
-    def _measure(self, time: float, cage_speed: float, standard_error: float) -> None:
-        """Take a measured cage speed and its standard error [rad/s] of a run time [s]."""
-        self._comparison.measure(time, cage_speed, standard_error)
+    def _measure(self, channel: str, time: float, value: float, standard_error: float) -> None:
+        """Take a measurement of one of `bearing_sim.messages.topics.MEASURED_CHANNELS` and its standard error [SI] of a run time [s]."""
+        if channel == topics.MEASURED:
+            self._comparison.measure(time, value, standard_error)
+        else:
+            self.sinks.write_clearance(time, value, standard_error)
         if self._estimation is not None and not (self.keeper is not None and self.keeper.contained(self.stamp(time))):
-            self._estimation.measure(time, cage_speed, standard_error)
+            take = self._estimation.measure if channel == topics.MEASURED else self._estimation.measure_clearance
+            take(time, value, standard_error)
 
     def _take_output(self, block: np.ndarray, weights: np.ndarray) -> None:
         """Count, judge, record and publish outputs; each stands for some time [s]."""

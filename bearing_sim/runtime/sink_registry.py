@@ -31,6 +31,7 @@ class Recorder(Sink, Protocol):
 
     def write_start(self, block: np.ndarray) -> None: ...
     def write_inputs(self, time: float, inputs: Inputs, channels, origin: Origin | None = None) -> None: ...
+    def write_clearance(self, time: float, clearance: float, standard_error: float, origin: Origin | None = None) -> None: ...
     def write_diagnostics(self, time: float, events, values) -> None: ...
 
 
@@ -92,6 +93,10 @@ class SinkRegistry:
     def write_measurement(self, time: float, cage_speed: float, residual: float, standard_error: float, *origin: Origin) -> None:
         """Write a measured cage speed and its standard error [rad/s] to all sinks."""
         self._each(self.by_name, time, "write_measurement", time, cage_speed, residual, standard_error, *origin)
+
+    def write_clearance(self, time: float, clearance: float, standard_error: float, *origin: Origin) -> None:
+        """Write a measured clearance and its standard error [m] to all recorders."""
+        self._each(self.recorders, time, "write_clearance", time, clearance, standard_error, *origin)
 
     def write_bands(self, now: float, bands: Bands) -> None:
         """Write quantities with their bands to all sinks, at ``now`` [s]."""

@@ -197,7 +197,8 @@ def input_topics() -> str:
     """Return the topics that the node subscribes to."""
     from bearing_sim.messages import topics
 
-    return table(["topic", "type", "meaning"], _topic_rows([*topics.INPUTS.values(), topics.MEASUREMENTS[topics.MEASURED], topics.VIBRATION]))
+    measured = [topics.MEASUREMENTS[name] for name in topics.MEASURED_CHANNELS]
+    return table(["topic", "type", "meaning"], _topic_rows([*topics.INPUTS.values(), *measured, topics.VIBRATION]))
 
 
 def output_topics() -> str:
@@ -373,7 +374,7 @@ EVENTS = {
         "no message for longer than `input_limits.stale_after`, of temperatures than ten times that, in a slower log than three of its spacings; the "
         "last value is used, for the temperature of a ring that of the model",
     ),
-    "input.standard_error": ("ERROR", "message refused: the standard error of a measured cage speed is zero, negative or infinite"),
+    "input.standard_error": ("ERROR", "message refused: the standard error of a measured cage speed or clearance is zero, negative or infinite"),
     "input.stamp_not_finite": ("ERROR", "message refused: its stamp is not finite"),
     "input.time_backwards": ("ERROR", "message refused: its stamp lies before the last one"),
     "input.time_repeated": ("WARN", "message refused: its stamp repeats the last one"),
@@ -470,9 +471,9 @@ def events() -> str:
 def subjects() -> str:
     """Return the subjects of diagnostics, and the beginnings of the kinds of their events."""
     from bearing_sim.messages.diagnostics import SUBJECTS
-    from bearing_sim.messages.topics import INPUTS, MEASURED
+    from bearing_sim.messages.topics import INPUTS, MEASURED_CHANNELS
 
-    others = {name: "`input.` of this topic" for name in (*INPUTS, MEASURED)} | {"view": "`recording.`, `sink.` of the view"}
+    others = {name: "`input.` of this topic" for name in (*INPUTS, *MEASURED_CHANNELS)} | {"view": "`recording.`, `sink.` of the view"}
     rows = ([code(each.name), each.meaning, ", ".join(map(code, each.kinds)) or others[each.name]] for each in SUBJECTS)
     return table(["subject", "about", "kinds of events begin with"], rows)
 
