@@ -40,7 +40,7 @@ ROOMS = {
     "runtime": ("numpy", "scene numerics model levels simulation messages recording stored_state inputs monitoring estimation vibration"),
     "view": ("PIL numpy platformdirs rerun rerun_cli", "files scene messages recording"),
     "sweep": ("numpy pandas pyarrow matplotlib distributed xarray", "files scene numerics model levels simulation recording"),
-    "fleet": ("numpy pyarrow", "files scene levels simulation messages recording inputs model runtime sweep"),
+    "fleet": ("numpy pyarrow", "files scene levels simulation messages recording inputs model estimation runtime sweep"),
     "studies": (
         "numpy numba pandas scipy matplotlib pydantic sksundae",
         "files scene numerics physics model levels simulation messages recording vibration monitoring estimation runtime sweep",

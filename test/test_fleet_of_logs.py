@@ -8,7 +8,10 @@ import pyarrow
 import pyarrow.parquet
 import pytest
 from click.testing import CliRunner
+from made_up_response import ASKING, made_up_response
 
+from bearing_sim.cli import estimation
+from bearing_sim.cli import replay as replay_command
 from bearing_sim.cli.main import main
 from bearing_sim.sweep.table import read_table
 
@@ -73,6 +76,33 @@ def test_a_row_says_what_replay_says_of_its_log_and_turns_are_speed_times_time(f
         assert 0.0 <= row["above_slip_error"] <= row["above_slip_warning"] <= 100.0 and (row["above_slip_warning"] > 0.0) == (slips > limit)
     table = read_table(fleet / "out" / "fleet.parquet")
     assert table.column("revolutions").meaning and table.column("damage").unit == "%" and "replay-fleet" in table.about["command"]
+
+
+def test_bearings_whose_scene_asks_for_bands_have_those_of_their_replay_and_equal_bearings_share_one_response(fleet, monkeypatch):
+    made = []
+
+    def respond(scene):
+        made.append(made_up_response(scene))
+        return made[-1]
+
+    for module in (estimation, replay_command):
+        monkeypatch.setattr(module, "response_with_progress", respond)
+    ends = [f"{name}_{end}" for name in ("slip_mean", "least_rating_life", "least_running_clearance", "remaining_life") for end in ("low", "high")]
+    without = bearings("logs")["A"]
+    assert all(without[end] is None for end in ends) and made == []
+    asking = [word for override in ASKING for word in ("--set", override)]
+    found = bearings("logs", *asking)["A"]
+    assert len(made) == 1 and found["slip_mean"] == without["slip_mean"]
+    CliRunner().invoke(main, ["import-csv", "logs/A.csv", "rig.yaml", "-o", "one.mcap"], catch_exceptions=False)
+    words = ["replay", "one.mcap", "--scene", "deng2017_table1", "--set", "level=slip", *asking, "--json"]
+    alone = json.loads(CliRunner().invoke(main, words, catch_exceptions=False).stdout)
+    bands = [
+        *(100.0 * each for each in alone["cage_slip_band"]),
+        *alone["least_rating_life_band"],
+        *(1e6 * each for each in alone["least_running_clearance_band"]),
+        *alone["remaining_life_band"],
+    ]
+    assert [found[end] for end in ends] == pytest.approx(bands, rel=1e-9) and found["slip_mean_low"] < found["slip_mean"] < found["slip_mean_high"]
 
 
 def test_a_log_that_cannot_be_used_is_a_row_that_says_why_and_the_others_are_computed(fleet):

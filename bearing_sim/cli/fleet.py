@@ -86,7 +86,9 @@ def replay_fleet(paths, scene_name, overrides, bearings_path, mapping_name, by, 
     with as_file_error(), as_usage_error(SceneError, ClusterError, JournalInUse):
         require_same_study(out, study)
         with Journal(out.path.with_suffix(".journal")) as journal, reading_bar, replay_bar:
-            table = replay_fleet(bearings, longest_gap, journal, workers, dask, lambda act, done, total: bars[act].update(done, total), _build_table)
+            table = replay_fleet(
+                bearings, longest_gap, journal, workers, dask, lambda act, done, total: bars[act].update(done, total), _build_table, _respond
+            )
         require_same_study(out, study)
         files = write_table(out.path, table._replace(about=table.about | {"command": command_line(), "study": study}))
     report = _report(table, replay_bar, files)
@@ -133,6 +135,12 @@ def _build_table(scene, temperatures) -> None:
     from bearing_sim.cli.table import build_with_progress
 
     build_with_progress(scene, temperatures)
+
+
+def _respond(scene):
+    from bearing_sim.cli.estimation import response_with_progress
+
+    return response_with_progress(scene)
 
 
 def _report(table, points, files) -> dict:

@@ -17,6 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bearing_sim.estimation.response import ResponseModel, response_digest
 from bearing_sim.fleet.logs import Log, Reading, read_log
 from bearing_sim.inputs.csv_text import TableError
 from bearing_sim.inputs.log import InputLogError
@@ -39,10 +40,19 @@ UNKNOWN = "unknown inputs"
 
 STATUSES = (OK, UNKNOWN, FAILED, REFUSED, UNAVAILABLE)
 
-_SOURCES = ("fleet/*.py", "inputs/*.py", "messages/*.py", "monitoring/*.py", "recording/*.py", "runtime/*.py", "sweep/tasks.py")
+_SOURCES = ("estimation/*.py", "fleet/*.py", "inputs/*.py", "messages/*.py", "monitoring/*.py", "recording/*.py", "runtime/*.py", "sweep/tasks.py")
 _HEADROOM = 1.02  # of a table of operating points above the speeds of the logs
 _ROUNDED = 5.0  # [K] to which the oil temperatures of a table are
 _TABLES_KEPT = 4  # by a worker
+
+# By name: unit, name in `bearing_sim.runtime.replay.Replay.band_statistics`, by what the unit is smaller than that there, meaning.
+_BANDS = {
+    "slip_mean": ("%", "cage_slip", 100.0, "cage slip while the shaft turns, mean over time"),
+    "slip_maximum": ("%", "largest_cage_slip", 100.0, "likewise, largest"),
+    "least_rating_life": ("h", "least_rating_life", 1.0, "shortest rating life at an instant"),
+    "least_running_clearance": ("um", "least_running_clearance", 1e6, "least running clearance at an instant"),
+    "remaining_life": ("h", "remaining_life", 1.0, "life that remains at the end"),
+}
 
 NAMES = (
     Column("bearing", "", "serial number where it is given, otherwise the name of the log"),
@@ -77,6 +87,11 @@ RESULTS = (
     Column("inputs_refused", "", "messages refused"),
     Column("failed_intervals", "", "intervals that could not be integrated"),
     Column("samples", "", "operating points computed"),
+    *(
+        Column(f"{name}_{end}", unit, f"{meaning}, {quantile} % quantile; where the scene asks for bands")
+        for name, (unit, _, _, meaning) in _BANDS.items()
+        for end, quantile in (("low", 5), ("high", 95))
+    ),
 )
 NOTES = (
     Column("life_and_damage", "", "as given; or at most, at least, since inputs were refused that were too large"),
@@ -111,6 +126,7 @@ def replay_fleet(
     dask: str | None = None,
     progress: Callable[[str, int, int], None] = lambda act, done, total: None,
     prepare: Callable[[Scene, tuple[float, float]], object] | None = None,
+    respond: Callable[[Scene], ResponseModel] | None = None,
 ) -> Table:
     """Replay the log of each bearing; return the table of them, in their order.
 
@@ -124,6 +140,7 @@ def replay_fleet(
     workers, dask : see `bearing_sim.sweep.tasks.run_tasks`; workers of a cluster open the logs under the same paths.
     progress : called with what is under way (``reading``, ``replay``), the number of finished tasks and of all that are to be computed.
     prepare : called with a scene and its oil temperatures [K] before its table is needed, where workers are of this machine.
+    respond : returns the response of a scene that asks for bands; called once for bearings that are equal.  None computes no bands.
 
     Raises
     ------
@@ -134,6 +151,7 @@ def replay_fleet(
     rows: list[dict] = [_refused_row(bearing) for bearing in bearings]
     checksums = _checksums(bearings, rows)
     ready = [k for k, row in enumerate(rows) if not row]
+    responses = _responses([bearings[k].scene for k in ready], respond)
     scenes = {k: bearings[k].scene for k in ready}
     temperatures: dict[int, tuple[float, float] | None] = dict.fromkeys(ready)
 
@@ -154,9 +172,24 @@ def replay_fleet(
     ready = [k for k in ready if not rows[k]]
     wanted = {k: bearings[k]._replace(scene=scenes[k]) for k in ready}
     tasks = [_task(scenes[k].level, replay_bearing, wanted[k], checksums[k], longest_gap, temperatures[k]) for k in ready]
+    tasks = [each._replace(arguments=(*each.arguments, responses.get(repr(bearings[k].scene)))) for k, each in zip(ready, tasks)]
     for k, found in zip(ready, run("replay", tasks)):
         rows[k] = found
     return Table(COLUMNS, [_complete(bearing, row) for bearing, row in zip(bearings, rows)], _about(bearings))
+
+
+def _responses(scenes: Sequence[Scene], respond: Callable[[Scene], ResponseModel] | None) -> dict[str, ResponseModel]:
+    """Return the responses of the scenes that ask for bands, by how these are written; bearings that differ in name alone share one."""
+    found: dict[str, ResponseModel] = {}
+    shared: dict[str, ResponseModel] = {}
+    for scene in scenes if respond is not None else ():
+        if not scene.estimation.is_asked or repr(scene) in found:
+            continue
+        digest = response_digest(scene)
+        if digest not in shared:
+            shared[digest] = respond(scene)
+        found[repr(scene)] = shared[digest]
+    return found
 
 
 def _refused_row(bearing: Bearing) -> dict:
@@ -233,7 +266,9 @@ def _survey(bearing: Bearing) -> dict:
     return {"fastest": float(speeds.max(initial=0.0)), "coldest": ends[0], "warmest": ends[1]}
 
 
-def replay_bearing(bearing: Bearing, longest_gap: float | None, temperatures: tuple[float, float] | None) -> dict:
+def replay_bearing(
+    bearing: Bearing, longest_gap: float | None, temperatures: tuple[float, float] | None, response: ResponseModel | None = None
+) -> dict:
     """Return the results of one bearing by the names of `TEXTS`, `RESULTS` and `NOTES`; those of a log that cannot be read have only the first.
 
     Parameters
@@ -241,8 +276,9 @@ def replay_bearing(bearing: Bearing, longest_gap: float | None, temperatures: tu
     bearing : with its log.
     longest_gap : see `replay_fleet`.
     temperatures : lowest and highest oil temperature of the table of operating points [K]; None without a table.
+    response : of a scene that asks for bands.
     """
-    return _caught(_replay_bearing, bearing, longest_gap, temperatures)
+    return _caught(_replay_bearing, bearing, longest_gap, temperatures, response)
 
 
 def _caught(function: Callable[..., dict], *arguments) -> dict:
@@ -257,12 +293,12 @@ def _caught(function: Callable[..., dict], *arguments) -> dict:
         return {"status": UNAVAILABLE, "reason": f"{type(error).__name__}: {error}"}
 
 
-def _replay_bearing(bearing: Bearing, longest_gap: float | None, temperatures: tuple[float, float] | None) -> dict:
+def _replay_bearing(bearing: Bearing, longest_gap: float | None, temperatures: tuple[float, float] | None, response: ResponseModel | None) -> dict:
     scene, log = bearing.scene, read_log(bearing.log, bearing.reading)
     held = Inputs(0.0, 0.0, 0.0, scene.lubricant.temperature)
     profile = judge(log, scene.accepted_inputs, held, longest_gap, scene.heat.law)
     model = Simulation if temperatures is None else partial(Simulation, table=_operating_points(scene, temperatures))
-    result = replay(scene, profile, model=model)
+    result = replay(scene, profile, model=model, response=response)
     status, reason = (FAILED, result.given_up) if result.given_up else (OK, "")
     if profile.unknown_seconds and not reason:
         status, reason = UNKNOWN, profile.unknown_event.text
@@ -304,7 +340,17 @@ def _results(scene: Scene, result: Replay) -> dict:
         "least_rating_life": result.least_rating_life,
         "failed_intervals": result.failed_ticks,
         "samples": result.samples,
+        **_band_results(result),
     }
+
+
+def _band_results(result: Replay) -> dict[str, float]:
+    """Return the ends of the bands of a replay by the names of their columns; NaN without bands."""
+    statistics, found = result.band_statistics(), {}
+    for name, (_, statistic, scale, _) in _BANDS.items():
+        low, high = statistics.get(statistic, (math.nan, math.nan))
+        found |= {f"{name}_low": scale * low, f"{name}_high": scale * high}
+    return found
 
 
 _tables: dict[tuple[str, tuple[float, float]], OperatingPoints] = {}
