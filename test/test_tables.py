@@ -3,6 +3,7 @@
 
 import json
 import math
+import os
 import random
 from functools import partial
 
@@ -303,6 +304,21 @@ def test_broken_file_is_as_good_as_none(small, tmp_path, spoil):
     write_table(path, table, quality)
     assert read_table(path) is not None
     path.write_bytes(spoil(path.read_bytes()))
+    assert read_table(path) is None
+
+
+@pytest.mark.parametrize("kind", ["pipe", "endless device", "folder", "sparse file of 1 GB"])
+def test_what_is_no_table_is_neither_waited_for_nor_read_whole(tmp_path, kind):
+    path = tmp_path / "table.npz"
+    if kind == "pipe":
+        os.mkfifo(path)
+    elif kind == "endless device":
+        path.symlink_to("/dev/zero")
+    elif kind == "folder":
+        path.mkdir()
+    else:
+        with open(path, "wb") as file:
+            file.truncate(1_000_000_000)
     assert read_table(path) is None
 
 
