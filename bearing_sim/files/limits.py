@@ -132,7 +132,7 @@ RESULT_ROWS = Limit("result_rows", 200_000, "rows", "a table of results")
 RESULT_CELLS = Limit("result_cells", 5_000_000, "cells", "a table of results")
 STATE_FILE = Limit("state_file", 4_000_000, "bytes", "a stored state, which has some 50 kB")
 RESPONSE_FILE = Limit("response_file", 64_000_000, "bytes", "the kept response of a bearing, packed and unpacked")
-TABLE_FILE = Limit("table_file", 256_000_000, "bytes", "the kept table of a bearing, packed and unpacked")
+KEPT_TABLE_FILE = Limit("kept_table_file", 256_000_000, "bytes", "the kept table of a bearing, packed and unpacked")
 HISTORY_FILE = Limit("history_file", 64_000_000, "bytes", "the history of days of a stored state")
 JSON_FILE = Limit("json_file", 64_000_000, "bytes", "the description or a figure of a study")
 RECORDING_RECORD = Limit("recording_record", 128_000_000, "bytes", "one record of a recording, compressed or not")
@@ -174,7 +174,7 @@ LIMITS = (
     RESULT_CELLS,
     STATE_FILE,
     RESPONSE_FILE,
-    TABLE_FILE,
+    KEPT_TABLE_FILE,
     HISTORY_FILE,
     JSON_FILE,
     RECORDING_RECORD,

@@ -22,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 import platformdirs
 
-from bearing_sim.files.limits import TABLE_FILE
+from bearing_sim.files.limits import KEPT_TABLE_FILE
 from bearing_sim.files.outputs import replaced
 from bearing_sim.files.reading import read_bytes
 from bearing_sim.levels.common.model import DEFAULT_TOLERANCES, Drive, Model
@@ -363,11 +363,11 @@ def table_path(scene: Scene, span: Span) -> Path:
 def read_table(path: Path) -> tuple[Table, Quality] | None:
     """Return a table from disk, or None where there is none, or none that is whole."""
     try:
-        data = read_bytes(path, TABLE_FILE)
+        data = read_bytes(path, KEPT_TABLE_FILE)
         if hashlib.sha256(data[:-32]).digest() != data[-32:]:
             return None
         with zipfile.ZipFile(io.BytesIO(data[:-32])) as archive:
-            TABLE_FILE.check(sum(member.file_size for member in archive.infolist()), str(path))
+            KEPT_TABLE_FILE.check(sum(member.file_size for member in archive.infolist()), str(path))
         with np.load(io.BytesIO(data[:-32]), allow_pickle=False) as file:
             period, mirror = (float(number) for number in file["symmetry"])
             quality = Quality(*(kind(number) for kind, number in zip(Quality.__annotations__.values(), file["quality"].tolist())))
