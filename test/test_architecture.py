@@ -23,7 +23,7 @@ STANDARD = set(sys.stdlib_module_names)
 ROOMS = {
     "__init__": ("", ""),
     "extras": ("", ""),
-    "files": ("yaml", ""),
+    "files": ("numpy yaml", ""),
     "scene": ("numpy scipy pint pydantic pydantic_core yaml", "files"),
     "numerics": ("numpy numba llvmlite platformdirs", ""),
     "physics": ("numpy scipy", "numerics"),

@@ -204,21 +204,23 @@ def test_every_force_of_level_slip_stands_in_the_books(seed, options):
     assert all((lost == 0.0) if name in absent else (lost > 0.0) for name, lost in powers._asdict().items() if name != "shaft")
 
 
+def assert_the_shaft_gives_what_is_lost(run, seconds, samples, relative):
+    block = run.advance(seconds, samples=samples)
+    lost = sum(block[f"{name}_power"] for name in LOSSES).mean()
+    assert block["shaft_power"].mean() == pytest.approx(lost, rel=relative)
+
+
 def test_what_the_shaft_gives_at_level_slip_is_lost_in_the_mean():
     run = simulation("slip")
     run.advance(0.3)
-    block = run.advance(0.05, samples=1009)
-    lost = sum(block[f"{name}_power"] for name in LOSSES).mean()
-    assert block["shaft_power"].mean() == pytest.approx(lost, rel=0.005)
+    assert_the_shaft_gives_what_is_lost(run, 0.05, 1009, 0.005)
 
 
 def test_what_the_shaft_gives_at_level_slip_is_lost_in_the_mean_with_few_steps_a_turn_too():
     # Powers at the end of each step alone miss 6 % here: spins are off by what the tolerances allow.
     run = simulation("slip", "operating.shaft_speed=15000 rpm")
     run.advance(0.3)
-    block = run.advance(0.5, samples=211)
-    lost = sum(block[f"{name}_power"] for name in LOSSES).mean()
-    assert block["shaft_power"].mean() == pytest.approx(lost, rel=0.015)
+    assert_the_shaft_gives_what_is_lost(run, 0.5, 211, 0.015)
 
 
 @pytest.mark.parametrize("level", ["steady", "slip"])
@@ -227,9 +229,7 @@ def test_what_the_shaft_gives_is_lost_where_rollers_stick(level):
     sticking = ["lubricant.traction={law: kragelskii}", "lubricant.mixture_fraction=0.0015", "operating.radial_load=200 N"]
     run = simulation(level, "operating.shaft_speed=30000 rpm", *sticking)
     run.advance(0.1)
-    block = run.advance(0.1, samples=211)
-    lost = sum(block[f"{name}_power"] for name in LOSSES).mean()
-    assert block["shaft_power"].mean() == pytest.approx(lost, rel=0.003)
+    assert_the_shaft_gives_what_is_lost(run, 0.1, 211, 0.003)
 
 
 @pytest.mark.parametrize("level", ["slip", "planar"])

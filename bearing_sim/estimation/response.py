@@ -12,11 +12,9 @@ as the field has to fall below its value.  All scores are independent and alike,
 """
 
 import hashlib
-import io
 import itertools
 import json
 import math
-import zipfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -27,9 +25,8 @@ from scipy.optimize import minimize
 from scipy.special import ndtr, ndtri
 
 from bearing_sim.estimation.lives import SlipAndOil
+from bearing_sim.files.kept_arrays import read_arrays, write_arrays
 from bearing_sim.files.limits import RESPONSE_FILE
-from bearing_sim.files.outputs import replaced
-from bearing_sim.files.reading import read_bytes
 from bearing_sim.levels.steady.table import contour_period, mirror_axis
 from bearing_sim.levels.steady.table_builder import FOLDER, span_of
 from bearing_sim.model.params import pack
@@ -688,29 +685,19 @@ def write_response(path: Path, model: ResponseModel) -> None:
         "seconds": model.seconds,
     }
     arrays = {name: getattr(model, name) for name in _ARRAYS}
-    buffer = io.BytesIO()
-    np.savez_compressed(buffer, written=np.frombuffer(json.dumps(written).encode(), np.uint8), own=model.fields.own, **arrays)
-    data = buffer.getvalue()
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with replaced(path) as draft:
-        draft.write_bytes(data + hashlib.sha256(data).digest())
+    write_arrays(path, {"written": np.frombuffer(json.dumps(written).encode(), np.uint8), "own": model.fields.own, **arrays})
 
 
 def read_response(path: Path) -> ResponseModel | None:
     """Return a response from disk, or None where there is none, or none that is whole."""
     try:
-        data = read_bytes(path, RESPONSE_FILE)
-        if hashlib.sha256(data[:-32]).digest() != data[-32:]:
-            return None
-        with zipfile.ZipFile(io.BytesIO(data[:-32])) as archive:
-            RESPONSE_FILE.check(sum(member.file_size for member in archive.infolist()), str(path))
-        with np.load(io.BytesIO(data[:-32]), allow_pickle=False) as file:
-            written: Mapping = json.loads(file["written"].tobytes())
-            fields = Fields([Range(**one) for one in written["ranges"]], file["own"])
-            domain = Domain(*(tuple(value) if isinstance(value, list) else value for value in written["domain"].values()))
-            arrays = {name: file[name] for name in _ARRAYS}
-            found = ResponseModel(fields, domain, **arrays, points=int(written["points"]), seconds=float(written["seconds"]))
-            return found if _fits_together(found) else None
+        file = read_arrays(path, RESPONSE_FILE)
+        written: Mapping = json.loads(file["written"].tobytes())
+        fields = Fields([Range(**one) for one in written["ranges"]], file["own"])
+        domain = Domain(*(tuple(value) if isinstance(value, list) else value for value in written["domain"].values()))
+        arrays = {name: file[name] for name in _ARRAYS}
+        found = ResponseModel(fields, domain, **arrays, points=int(written["points"]), seconds=float(written["seconds"]))
+        return found if _fits_together(found) else None
     except Exception:  # whatever a broken file makes its reader raise, the response is built again
         return None
 

@@ -136,9 +136,9 @@ def cost(scene, response, block):
         print(f"{size:2d} at once: {1e3 * each:.3f} ms a band, {100.0 * RATE * each:.2f} % of a core at {RATE:g} Hz")
 
 
-def main():
-    """Print the comparison and the cost."""
-    parser = argparse.ArgumentParser(description=__doc__)
+def scene_and_arguments(description):
+    """Return the scene of a comparison at level ``steady`` and the other arguments of its command."""
+    parser = argparse.ArgumentParser(description=description)
     parser.add_argument("scene", nargs="?", default="deng2017_table1")
     parser.add_argument("--points", type=int, default=50)
     parser.add_argument("--samples", type=int, default=1024, help="a power of two")
@@ -146,7 +146,12 @@ def main():
     parser.add_argument("--journal", type=Path, help="keeps finished samples: the same command resumes")
     parser.add_argument("--set", dest="overrides", action="append", default=[], metavar="FIELD=VALUE")
     given = parser.parse_args()
-    scene = load_scene(given.scene, [*given.overrides, "level=steady"])
+    return load_scene(given.scene, [*given.overrides, "level=steady"]), given
+
+
+def main():
+    """Print the comparison and the cost."""
+    scene, given = scene_and_arguments(__doc__)
     response = obtain_response(scene)
     print(f"{scene.name}: {len(response.fields)} uncertain fields, response of {response.points} points in {response.seconds:.0f} s")
     with Journal(given.journal) as journal:

@@ -13,20 +13,17 @@ It needs scikit-learn and chaospy, which the package itself does not (`pip insta
 All of them see slip on its scale (`bearing_sim.estimation.response.slip_scale`), and operating points by the coordinates of the response.
 """
 
-import argparse
 import time
-from pathlib import Path
 
 import chaospy
 import numpy as np
-from band_accuracy import TOLERANCE, distances, samples_of
+from band_accuracy import TOLERANCE, distances, samples_of, scene_and_arguments
 from sklearn.gaussian_process import GaussianProcessRegressor
 from sklearn.gaussian_process.kernels import RBF, ConstantKernel, Matern, WhiteKernel
 
 from bearing_sim.estimation.bands import prior_draws
 from bearing_sim.estimation.lives import SlipAndOil
 from bearing_sim.estimation.response import ANSWERS, PROBABILITIES, coordinates, domain_of, fit_response, scene_fields, slip_scale, transformed
-from bearing_sim.scene.loader import load_scene
 from bearing_sim.studies.response import DRAWS, at_points, design
 from bearing_sim.sweep.tasks import Journal
 
@@ -142,15 +139,7 @@ def compare(scene, training, conditions, exact):
 
 def main():
     """Print the comparison."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("scene", nargs="?", default="deng2017_table1")
-    parser.add_argument("--points", type=int, default=50)
-    parser.add_argument("--samples", type=int, default=1024, help="a power of two")
-    parser.add_argument("--seed", type=int, default=2)
-    parser.add_argument("--journal", type=Path, help="keeps finished samples: the same command resumes")
-    parser.add_argument("--set", dest="overrides", action="append", default=[], metavar="FIELD=VALUE")
-    given = parser.parse_args()
-    scene = load_scene(given.scene, [*given.overrides, "level=steady"])
+    scene, given = scene_and_arguments(__doc__)
     nodes, scores = design(scene, POINTS)
     with Journal(given.journal) as journal:
         training = nodes, scores, at_points(scene, scores, nodes, journal)

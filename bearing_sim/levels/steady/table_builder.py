@@ -8,12 +8,10 @@ On disk each table stands under a hash of all that its numbers depend on; a file
 """
 
 import hashlib
-import io
 import itertools
 import math
 import threading
 import time
-import zipfile
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -22,9 +20,8 @@ from typing import NamedTuple
 import numpy as np
 import platformdirs
 
+from bearing_sim.files.kept_arrays import read_arrays, write_arrays
 from bearing_sim.files.limits import KEPT_TABLE_FILE
-from bearing_sim.files.outputs import replaced
-from bearing_sim.files.reading import read_bytes
 from bearing_sim.levels.common.model import DEFAULT_TOLERANCES, Drive, Model
 from bearing_sim.levels.steady.model import look_up_conditions, new_work, solve_conditions
 from bearing_sim.levels.steady.operating_point import ANSWER
@@ -363,41 +360,31 @@ def table_path(scene: Scene, span: Span) -> Path:
 def read_table(path: Path) -> tuple[Table, Quality] | None:
     """Return a table from disk, or None where there is none, or none that is whole."""
     try:
-        data = read_bytes(path, KEPT_TABLE_FILE)
-        if hashlib.sha256(data[:-32]).digest() != data[-32:]:
+        file = read_arrays(path, KEPT_TABLE_FILE)
+        period, mirror = (float(number) for number in file["symmetry"])
+        quality = Quality(*(kind(number) for kind, number in zip(Quality.__annotations__.values(), file["quality"].tolist())))
+        knots = [np.ascontiguousarray(file[name], float) for name in ("speeds", "loads", "temperatures", "angles", "growths")]
+        values = file["values"]
+        if values.shape[1:] != (*map(len, knots), len(ANSWER)):
             return None
-        with zipfile.ZipFile(io.BytesIO(data[:-32])) as archive:
-            KEPT_TABLE_FILE.check(sum(member.file_size for member in archive.infolist()), str(path))
-        with np.load(io.BytesIO(data[:-32]), allow_pickle=False) as file:
-            period, mirror = (float(number) for number in file["symmetry"])
-            quality = Quality(*(kind(number) for kind, number in zip(Quality.__annotations__.values(), file["quality"].tolist())))
-            knots = [np.ascontiguousarray(file[name], float) for name in ("speeds", "loads", "temperatures", "angles", "growths")]
-            values = file["values"]
-            if values.shape[1:] != (*map(len, knots), len(ANSWER)):
-                return None
-            return assembled(knots, period, mirror, values), quality
+        return assembled(knots, period, mirror, values), quality
     except Exception:  # whatever a broken file makes its reader raise, the table is built again
         return None
 
 
 def write_table(path: Path, table: Table, quality: Quality) -> None:
     """Write a table: a reader finds the old file or the new one, never a part.  Raises OSError, also if another process is writing it."""
-    buffer = io.BytesIO()
-    np.savez_compressed(
-        buffer,
-        speeds=table.speeds,
-        loads=table.loads,
-        temperatures=table.temperatures,
-        angles=table.angles,
-        growths=table.growths,
-        symmetry=np.array([table.period, table.mirror]),
-        values=np.ascontiguousarray(table.nodes[..., 0, :]),
-        quality=np.array(quality, float),
-    )
-    data = buffer.getvalue()
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with replaced(path) as draft:
-        draft.write_bytes(data + hashlib.sha256(data).digest())
+    arrays = {
+        "speeds": table.speeds,
+        "loads": table.loads,
+        "temperatures": table.temperatures,
+        "angles": table.angles,
+        "growths": table.growths,
+        "symmetry": np.array([table.period, table.mirror]),
+        "values": np.ascontiguousarray(table.nodes[..., 0, :]),
+        "quality": np.array(quality, float),
+    }
+    write_arrays(path, arrays)
 
 
 def cached_table(scene: Scene, temperatures: tuple[float, float] | None = None) -> tuple[Table, Quality] | None:
