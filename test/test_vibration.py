@@ -15,6 +15,8 @@ import pyarrow.parquet
 import pytest
 import scipy.io
 import scipy.io.wavfile
+import scipy.signal
+import scipy.sparse
 from click.testing import CliRunner
 
 from bearing_sim.cli.main import main
@@ -25,7 +27,7 @@ from bearing_sim.vibration.comb import families, orders_of, spectra
 from bearing_sim.vibration.order_tracking import recorded_shaft
 from bearing_sim.vibration.phase import Track, follow, mean_rate, smoothed
 from bearing_sim.vibration.reading import read_vibration
-from bearing_sim.vibration.signal import Band, Spectrum, Vibration, VibrationError
+from bearing_sim.vibration.signal import Band, Spectrum, Vibration, VibrationError, repetition
 from bearing_sim.vibration.synthetic import Machine, _turns, record
 
 ROLLERS, SIZE, RATE = 13, 0.19, 25_600.0
@@ -74,6 +76,27 @@ def test_noise_and_healthy_machines_have_no_line(seed):
     synthetic = made("", seed, interfering=2 * (seed % 2), shaft_lines=0.3 * (seed % 2))
     found = analyse(synthetic.vibration, Geometry(ROLLERS, math.nan if seed % 3 else SIZE), SPEED)
     assert not found.found and found.reason.startswith("no line found") and math.isnan(found.cage_speed) and not found.claims_slip
+
+
+@pytest.mark.parametrize("blocks", [2, 2.5, 15, 40])
+@pytest.mark.parametrize("noise", [0.0, 0.3])
+def test_a_record_that_repeats_itself_is_said_to_and_has_no_line(blocks, noise):
+    rng, count = np.random.default_rng(7), int(2.0 * RATE)
+    block = rng.normal(size=int(count / blocks))
+    samples = np.tile(block, 41)[:count] + noise * rng.normal(size=count)
+    found = analyse(Vibration(samples, RATE), Geometry(ROLLERS), SPEED)
+    assert not found.found and f"repeats itself every {len(block) / RATE:.6g} s" in found.reason and math.isnan(found.ratio)
+
+
+def test_a_loop_that_was_sampled_again_repeats_itself_and_machines_do_not():
+    rng = np.random.default_rng(8)
+    loop = scipy.signal.resample_poly(np.tile(rng.normal(size=4001), 12), 147, 160)  # 3675.92 samples
+    assert repetition(loop, RATE, 0.02) == pytest.approx(3676 / RATE)
+    for shows in ("outer_ring", "inner_ring", "roller"):
+        regular = made(shows, signal_to_noise=20.0, pocket_play=0.0, wandering=0.0, interfering=2)
+        assert repetition(regular.vibration.samples, RATE, 0.02) is None
+    turns = np.tile(rng.normal(size=512), 100)  # of a shaft, each like the one before
+    assert repetition(turns, RATE, 0.02) is None
 
 
 def test_a_result_depends_neither_on_the_unit_nor_on_the_sense_of_the_vibration_or_of_the_shaft(outer):
@@ -304,7 +327,7 @@ def _faulty(folder):
         "rate.csv": "--rate",
         "uneven.csv": "has a gap",
         **{f"torn{suffix}": "cannot be read|no row|MCAP|mcap" for suffix in (".mat", ".npz", ".npy", ".wav", ".h5", ".parquet", ".mcap")},
-        "pickled.npy": "cannot be read as NPY",
+        "pickled.npy": "samples holds Python objects; .* expected numbers",
         "bomb.npz": "vibration_samples=NUMBER",
         "x.doc": "expected one that ends in",
         "long.csv": "vibration_text=NUMBER",
@@ -317,6 +340,55 @@ def _faulty(folder):
         "chunks.wav": "vibration_parts=NUMBER",
         "absent.csv": "no such file",
     }
+
+
+def _complex_and_objects(folder):
+    """Write files whose vibration is complex or made of objects; return by name the channel and what the message must say of it."""
+    h5py = pytest.importorskip("h5py")
+    wave, objects = SAMPLES + 0.5j, np.array([*SAMPLES[:-1], None], object)
+    np.save(folder / "c.npy", wave)
+    np.savez(folder / "c.npz", wave=wave, temperature=SPEEDS, fs=2000.0)
+    np.savez(folder / "o.npz", allow_pickle=True, wave=objects, temperature=SPEEDS, fs=2000.0)
+    scipy.io.savemat(folder / "c.mat", {"wave": wave[:, None], "temperature": SPEEDS, "fs": 2000.0})
+    scipy.io.savemat(folder / "o.mat", {"wave": SAMPLES.astype(object), "temperature": SPEEDS, "fs": 2000.0})
+    scipy.io.savemat(folder / "s.mat", {"wave": scipy.sparse.csc_array(SAMPLES[:, None]), "temperature": SPEEDS, "fs": 2000.0})
+    with h5py.File(folder / "c.h5", "w") as file:
+        file["wave"], file["temperature"] = wave, SPEEDS
+    with h5py.File(folder / "m.h5", "w") as file:
+        file["wave"] = np.array([(each, 0.5) for each in SAMPLES], [("real", "f8"), ("imag", "f8")])
+        file["temperature"] = SPEEDS
+    with h5py.File(folder / "t.h5", "w") as file:
+        file["wave"] = [f"{each}" for each in SAMPLES]
+    with h5py.File(folder / "f.h5", "w") as file:
+        file["wave"] = np.array([(each, 0.5) for each in SAMPLES], [("x", "f8"), ("y", "f8")])
+    pairs = pyarrow.array([{"re": each, "im": 0.5} for each in SAMPLES])
+    pyarrow.parquet.write_table(pyarrow.table({"wave": pairs, "temperature": SPEEDS}), folder / "c.parquet")
+    pyarrow.parquet.write_table(pyarrow.table({"wave": [f"{each}" for each in SAMPLES]}), folder / "o.parquet")
+    is_complex = "wave holds complex numbers; expected the measured signal, which is real"
+    return {
+        "c.npy": ("samples", "samples holds complex numbers"),
+        "c.npz": ("wave", is_complex),
+        "o.npz": ("wave", "wave holds Python objects; these are not read"),
+        "c.mat": ("wave", is_complex),
+        "o.mat": ("wave", "wave holds cells or objects; expected one array"),
+        "s.mat": ("wave", "wave holds a sparse matrix"),
+        "c.h5": ("wave", is_complex),
+        "m.h5": ("wave[0]", is_complex),
+        "t.h5": ("wave", "wave holds texts; expected real numbers"),
+        "f.h5": ("wave", "wave holds rows of the fields x, y"),
+        "c.parquet": ("wave", "wave holds values of the type struct<re: double, im: double>"),
+        "o.parquet": ("wave", "wave holds values of the type string"),
+    }
+
+
+def test_complex_and_object_arrays_are_named_with_what_they_hold_and_nothing_else_is_taken_for_the_vibration(tmp_path):
+    for name, (channel, reason) in _complex_and_objects(tmp_path).items():
+        for chosen in (channel, None):
+            with pytest.raises(VibrationError, match=re.escape(reason)) as refusal:
+                read_vibration(tmp_path / name, chosen, 2000.0)
+            assert name in str(refusal.value)
+    for name in ("c.npz", "o.npz", "c.mat", "o.mat", "s.mat", "m.h5", "c.parquet"):
+        assert np.array_equal(read_vibration(tmp_path / name, "temperature", 2000.0).samples, SPEEDS)
 
 
 def test_a_file_that_cannot_be_used_is_refused_with_what_is_wrong_and_where(tmp_path, monkeypatch):

@@ -14,6 +14,7 @@ import zipfile
 import zlib
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import BinaryIO, NamedTuple
 
 import numpy as np
@@ -51,6 +52,7 @@ _TIME_NAMES = re.compile(r"(?:^|[^a-z])(?:t|time|times|timestamp|seconds)(?:_?s)
 _UNIT = re.compile(r"[\[(]\s*([^\])]*?)\s*[\])]\s*$")
 _FIRST_LINES = 200
 _MOST_SHOWN = 12
+_MOST_TOLD = 3
 _DEEPEST = 8  # levels of structures in a MAT or HDF5 file
 _MOST_CHANNELS = 2000
 _UNEVEN = 0.01  # of the spacing of times
@@ -61,6 +63,31 @@ _MAT_TAGS = 8  # elements of a usual matrix, and some more
 _DEEPEST_MAT = 32
 _ARCHIVE_END = 22 + 65_535  # [byte] in which the end of an archive stands, with its comment
 _SHORTEST_MEMBER = 46  # [byte] in the list of an archive's members
+_COMPLEX, _OBJECTS, _CELLS, _SPARSE = "complex numbers", "Python objects", "cells or objects", "a sparse matrix"
+_KINDS = {"c": _COMPLEX, "U": "texts", "S": "texts", "M": "dates", "m": "spans of time", "V": "bytes"}  # by kind of NumPy type
+_EXPECTED = {
+    _COMPLEX: "expected the measured signal, which is real: save that, or the real part if the other is zero",
+    _OBJECTS: "these are not read, because they can run programs; expected numbers: save numpy.asarray(ARRAY, float)",
+    _CELLS: "expected one array of numbers: save cell2mat(...) or [...{:}] of them",
+    _SPARSE: "expected an array of numbers: save full(...) of it",
+}
+
+
+class Unusable(NamedTuple):
+    """An array of something else than real numbers.
+
+    Attributes
+    ----------
+    holds : what it holds, in words.
+    may_be_meant : whether it may be the vibration, saved in a wrong way.
+    """
+
+    holds: str
+    may_be_meant: bool
+
+    def told(self, name: str) -> str:
+        """Return what is wrong with it, and what was expected."""
+        return f"{printable(name)} holds {self.holds}; {_EXPECTED.get(self.holds, 'expected real numbers')}"
 
 
 class Channels(NamedTuple):
@@ -72,12 +99,14 @@ class Channels(NamedTuple):
     numbers : single numbers by name, among them perhaps the rate.
     rate : of the samples [Hz], if the format has one.
     start : time of the first sample [s since the epoch], if the format has one.
+    unusable : arrays that do not hold real numbers, by name.
     """
 
     arrays: Mapping[str, np.ndarray]
     numbers: Mapping[str, float]
     rate: float | None = None
     start: float = 0.0
+    unusable: Mapping[str, Unusable] = MappingProxyType({})
 
 
 def read_vibration(
@@ -144,6 +173,9 @@ def _array(path: Path, found: Channels, name: str, option: str) -> np.ndarray:
     if name in found.arrays:
         with np.errstate(invalid="ignore"):  # of numbers that are none, which the record refuses
             return np.asarray(found.arrays[name], float)
+    for whole in (name, name.rpartition("[")[0]):
+        if whole in found.unusable:
+            raise VibrationError(f"{path}: {found.unusable[whole].told(whole)}")
     raise VibrationError(
         f"{path}: no channel {name!r}{did_you_mean(name, list(found.arrays))}; there are {_listed(found.arrays)}; choose one with {option}"
     )
@@ -153,11 +185,16 @@ def _only_channel(path: Path, found: Channels, time_channel: str | None, speed_c
     """Return the name of the channel that must be the vibration, because no other is long enough."""
     given = {time_channel, speed_channel}
     names = [name for name in found.arrays if name not in given and not _TIME_NAMES.search(name) and len(found.arrays[name]) >= FEWEST_SAMPLES]
-    if len(names) == 1:
+    doubtful = [name for name, array in found.unusable.items() if array.may_be_meant and name not in given]
+    if len(names) == 1 and not doubtful:
         return names[0]
+    others = doubtful or list(found.unusable)
+    told = "".join(f"; {found.unusable[name].told(name)}" for name in others[:_MOST_TOLD])
+    told += f"; {len(others) - _MOST_TOLD} more are not of real numbers" if len(others) > _MOST_TOLD else ""
     if not names:
-        raise VibrationError(f"{path}: no channel of at least {FEWEST_SAMPLES} numbers; it has {_listed(found.arrays)}")
-    raise VibrationError(f"{path}: which channel is the vibration? there are {_listed(names)}; choose one with --channel")
+        raise VibrationError(f"{path}: no channel of at least {FEWEST_SAMPLES} numbers; it has {_listed(found.arrays)}{told}")
+    told = told if doubtful else ""
+    raise VibrationError(f"{path}: which channel is the vibration? there are {_listed(names)}; choose one with --channel{told}")
 
 
 def _rate(path: Path, found: Channels, time_channel: str | None, count: int) -> float:
@@ -295,17 +332,22 @@ def _parquet(path: Path) -> Channels:
     with open_regular(path, VIBRATION_FILE) as stream:
         try:
             file = pyarrow.parquet.ParquetFile(stream)
+            VIBRATION_PARTS.check(len(file.schema_arrow), str(path))
             fields = [
                 each for each in file.schema_arrow if types.is_floating(each.type) or types.is_integer(each.type) or types.is_timestamp(each.type)
             ]
-            VIBRATION_PARTS.check(len(fields), str(path))
+            unusable = {
+                each.name: Unusable(f"values of the type {printable(str(each.type), 60)}", types.is_nested(each.type) or types.is_decimal(each.type))
+                for each in file.schema_arrow
+                if each not in fields
+            }
             batches, values = [], 0
             for batch in file.iter_batches(columns=[each.name for each in fields]):  # what the file says about its length need not be true
                 values += batch.num_rows * batch.num_columns
                 VIBRATION_SAMPLES.check(values, str(path))
                 batches.append(batch)
             table = pyarrow.Table.from_batches(batches, pyarrow.schema(fields)) if batches else pyarrow.table({})
-            return Channels({name: _numbers_of(column) for name, column in zip(table.column_names, table.columns)}, {})
+            return Channels({name: _numbers_of(column) for name, column in zip(table.column_names, table.columns)}, {}, unusable=unusable)
         except Exception as error:
             raise _cannot_be_read(path, "Parquet", error) from None
 
@@ -323,10 +365,10 @@ class _Collector:
     """Channels and single numbers, collected from arrays of any shape and structures within structures."""
 
     def __init__(self, path: Path):
-        self._path, self.arrays, self.numbers, self._values = path, {}, {}, 0
+        self._path, self.arrays, self.numbers, self.unusable, self._values = path, {}, {}, {}, 0
 
     def add(self, name: str, value, depth: int = 0) -> None:
-        """Add an array, a number, or what a structure holds; anything else is passed over."""
+        """Add an array, a number, or what a structure holds; of anything else only its name and what it holds."""
         if depth > _DEEPEST or len(self.arrays) >= _MOST_CHANNELS:
             return
         value = np.asarray(value)
@@ -334,6 +376,8 @@ class _Collector:
             for field in value.dtype.names:
                 self.add(f"{name}.{field}", value[field], depth + 1)
         elif value.dtype == object:
+            if value.size >= FEWEST_SAMPLES:
+                self.pass_over(name, _CELLS, value.size)
             for index, item in enumerate(value.ravel()[:_MOST_CHANNELS]):
                 self.add(name if value.size == 1 else f"{name}[{index}]", item, depth + 1)
         elif value.dtype.kind in "iufb":
@@ -348,6 +392,26 @@ class _Collector:
                 columns = value if value.shape[1] <= value.shape[0] else value.T
                 for index, column in enumerate(columns.T[:_MOST_CHANNELS]):
                     self.arrays[f"{name}[{index}]"] = column
+            else:
+                self.pass_over(name, f"numbers in {value.ndim} dimensions", value.size)
+        else:
+            self.pass_over(name, _KINDS.get(value.dtype.kind, f"values of the type {value.dtype}"), value.size)
+
+    def add_loaded(self, name: str, load: Callable[[], np.ndarray]) -> None:
+        """Add what ``load`` returns; Python objects, which NumPy refuses to read, are passed over."""
+        try:
+            value = load()
+        except ValueError as error:
+            if "allow_pickle" not in str(error):
+                raise
+            self.pass_over(name, _OBJECTS, FEWEST_SAMPLES)  # how many they are is not known without reading them
+        else:
+            self.add(name, value)
+
+    def pass_over(self, name: str, holds: str, count: int) -> None:
+        """Keep the name of an array that cannot be used, with what it holds and how many."""
+        if len(self.unusable) < _MOST_CHANNELS:
+            self.unusable[name] = Unusable(holds, count >= FEWEST_SAMPLES and holds in _EXPECTED)
 
     def _count(self, value: np.ndarray) -> None:
         self._values += value.size
@@ -356,7 +420,7 @@ class _Collector:
     @property
     def channels(self) -> Channels:
         """What was collected."""
-        return Channels(self.arrays, self.numbers)
+        return Channels(self.arrays, self.numbers, unusable=self.unusable)
 
 
 class _Unpacked:
@@ -444,6 +508,7 @@ def _check_matlab(path: Path, stream: BinaryIO) -> None:
 
 def _matlab(path: Path) -> Channels:
     import scipy.io
+    import scipy.sparse
 
     with open_regular(path, VIBRATION_FILE) as stream:
         head = stream.read(128)
@@ -462,7 +527,13 @@ def _matlab(path: Path) -> Channels:
         except Exception as error:
             raise _cannot_be_read(path, "MAT", error) from None
     for name, value in found.items():
-        if not name.startswith("__"):
+        if name.startswith("__"):
+            continue
+        if scipy.sparse.issparse(value):
+            collector.pass_over(name, _SPARSE, math.prod(value.shape))
+        elif isinstance(value, (scipy.io.matlab.MatlabOpaque, scipy.io.matlab.MatlabFunction)):
+            collector.pass_over(name, _CELLS, FEWEST_SAMPLES)  # of an object only its class is known
+        else:
             collector.add(name, value)
     return collector.channels
 
@@ -474,6 +545,16 @@ def _hdf5(path: Path) -> Channels:
         raise VibrationError(f"{path}: {what_is_missing(error)}") from None
     collector, parts, values = _Collector(path), 0, 0
 
+    def held(kind: np.dtype) -> str:
+        """Return what a data set holds that does not hold numbers."""
+        if kind.names in (("r", "i"), ("real", "imag")):  # as MATLAB and others write complex numbers
+            return _COMPLEX
+        if h5py.check_string_dtype(kind) is not None:
+            return "texts"
+        if h5py.check_ref_dtype(kind) is not None:
+            return _CELLS  # as MATLAB writes them
+        return f"rows of the fields {_listed(kind.names)}" if kind.names else _KINDS.get(kind.kind, f"values of the type {kind}")
+
     def visit(name: str, item) -> None:
         nonlocal parts, values
         parts += 1 + len(item.attrs)
@@ -482,7 +563,10 @@ def _hdf5(path: Path) -> Channels:
             attribute = item.attrs.get_id(key)
             if attribute.shape == () and attribute.dtype.kind in "iuf":
                 collector.numbers[f"{name}.{key}"] = float(item.attrs[key])
-        if not isinstance(item, h5py.Dataset) or item.dtype.kind not in "iuf" or name.startswith("#refs#"):
+        if not isinstance(item, h5py.Dataset) or name.startswith("#refs#"):
+            return
+        if item.dtype.kind not in "iuf":
+            collector.pass_over(name, held(item.dtype), item.size or 0)
             return
         if item.external or item.is_virtual:
             raise FileError(f"the numbers of {printable(name)} are in another file; expected them in this one", str(path))
@@ -526,12 +610,12 @@ def _numpy(path: Path) -> Channels:
                 _check_archive(path, stream)
                 with np.load(stream, allow_pickle=False) as found:
                     for name in found.files:
-                        collector.add(name, found[name])
+                        collector.add_loaded(name, lambda: found[name])
             elif stream.read(6) != b"\x93NUMPY":
                 raise FileError("cannot be read as NPY: it does not begin as one; the name of an archive of arrays ends in .npz", str(path))
             else:
                 stream.seek(0)
-                collector.add("samples", np.load(stream, allow_pickle=False))
+                collector.add_loaded("samples", lambda: np.load(stream, allow_pickle=False))
         except Exception as error:
             raise _cannot_be_read(path, "NPZ" if is_archive else "NPY", error) from None
     return collector.channels
