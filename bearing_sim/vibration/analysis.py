@@ -15,7 +15,7 @@ import numpy as np
 from bearing_sim.vibration.comb import Fit, Range, orders_of, search, spectra
 from bearing_sim.vibration.order_tracking import Shaft, constant_shaft, find_shaft, recorded_shaft, shaft_signal_range, wide_range
 from bearing_sim.vibration.phase import Rate, follow, mean_rate
-from bearing_sim.vibration.signal import Band, Spectrum, Vibration, VibrationError, candidate_bands
+from bearing_sim.vibration.signal import Band, Spectrum, Vibration, VibrationError, candidate_bands, repetition
 
 CERTAIN = math.log(1e4)
 """[nat] by which noise must be excluded: a false alarm in 10,000 records."""
@@ -154,6 +154,14 @@ def analyse(
         The record is too short or sampled too slowly for this bearing, or nothing says about how fast the shaft turns.
     """
     low, high = _speed_range(vibration, shaft_speed, tolerance)
+    period = repetition(vibration.samples, vibration.rate, 1.0 / low)
+    if period is not None:
+        about = _about(vibration, low, high, tolerance)
+        why = (
+            f"the record repeats itself every {period:.6g} s, as no measured one does, which makes lines at all multiples of {1.0 / period:.6g} Hz;"
+            " expected one continuous measurement: analyse that, or one period of it"
+        )
+        return _nothing(about, None, why)
     raw = Spectrum(vibration.samples, vibration.rate)
     whitened = Spectrum(vibration.samples, vibration.rate, _ENDS).without_lines()
     range_ = geometry.range
@@ -212,13 +220,17 @@ def _speed_range(vibration: Vibration, shaft_speed: float | None, tolerance: flo
     return frequency * (1.0 - tolerance), frequency * (1.0 + tolerance)
 
 
-def _shaft_of(vibration, raw: Spectrum, envelopes, low: float, high: float, tolerance: float, follows_lines: bool) -> Shaft:
-    """Return the shaft: by its own lines, or as recorded or given."""
+def _about(vibration: Vibration, low: float, high: float, tolerance: float) -> Shaft:
+    """Return the shaft as recorded or given."""
     error = tolerance / math.sqrt(3.0)  # standard deviation of a uniform distribution
     if vibration.shaft_speed is not None:
-        about = recorded_shaft(vibration.shaft_speed, vibration.rate, error)
-    else:
-        about = constant_shaft(0.5 * (low + high), error * 0.5 * (low + high), vibration.duration)
+        return recorded_shaft(vibration.shaft_speed, vibration.rate, error)
+    return constant_shaft(0.5 * (low + high), error * 0.5 * (low + high), vibration.duration)
+
+
+def _shaft_of(vibration, raw: Spectrum, envelopes, low: float, high: float, tolerance: float, follows_lines: bool) -> Shaft:
+    """Return the shaft: by its own lines, or as recorded or given."""
+    about = _about(vibration, low, high, tolerance)
     if follows_lines:
         highest = shaft_signal_range(high)
         signals = [raw.low_passed(min(highest, raw.highest))]

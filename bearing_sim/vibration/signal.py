@@ -19,6 +19,11 @@ _LINE = 4.0  # times the floor: noise exceeds it in 1.5e-5 of the bins (its magn
 _SKIRT = 3  # bins on either side of a line that go with it
 _TAPER = 0.1  # fraction of a band's width over which its edges fall off
 _OVERSAMPLED = 1.28  # rate of a signal over twice its highest frequency
+_EVENED_ORDERS = 1.5  # times the frequency of the shaft over which the level is evened out where repetitions are looked for
+_SHORTEST_LAG = 16  # samples
+_REPEATED = 0.8  # correlation from which on a record repeats itself
+_MULTIPLE = 0.8  # of the highest correlation, that the shortest period has and its multiples have
+_LONGER_THAN_A_TURN = 1.05
 _LARGEST_ENVELOPE = 20.0  # times its median: what is higher is a knock or a fault of the sensor, not a bearing
 
 
@@ -169,6 +174,40 @@ class Spectrum:
         """
         power = np.abs(self.in_band(band)[0]) ** 2
         return float(np.median([np.mean(each**2) / max(np.mean(each) ** 2, 1e-300) - 2.0 for each in np.array_split(power, parts)]))
+
+
+def repetition(samples: np.ndarray, rate: float, turn: float) -> float | None:
+    """Return the period [s] with which a whole record repeats itself; None if it does not, as no measured one does.
+
+    A loop of samples has lines at all multiples of the rate at which it repeats, and a comb among them by chance.  What repeats is the broadband
+    part, at all frequencies alike: the autocorrelation is taken of the spectrum evened out over 1.5 times the frequency of the shaft, so that lines
+    of machines count little.  A period below a turn of the shaft is not reported, because machines have such themselves.
+
+    Parameters
+    ----------
+    samples : of the record.
+    rate : of the samples [Hz].
+    turn : time of a turn of the shaft [s].
+    """
+    count = len(samples)
+    lines = scipy.fft.rfft(samples - samples.mean())
+    blocks = max(1, int(rate / 2.0 / (_EVENED_ORDERS / turn)))
+    edges = np.linspace(0, len(lines), blocks + 1).astype(int)
+    level = np.add.reduceat(np.abs(lines) ** 2, edges[:-1]) / np.diff(edges)
+    level = np.interp(np.arange(len(lines)), (edges[1:] + edges[:-1]) / 2.0, np.maximum(level, 1e-24 * level.max()))
+    # The weights widen the peak of the correlation, for a period of no whole number of samples.
+    evened = scipy.fft.irfft(lines * np.cos(0.5 * np.pi * np.arange(len(lines)) / len(lines)) / np.sqrt(level), count)
+    padded = scipy.fft.next_fast_len(count + count // 2 + 1, real=True)
+    lags = np.arange(count // 2 + 1)
+    correlation = scipy.fft.irfft(np.abs(scipy.fft.rfft(evened, padded)) ** 2, padded)[: len(lags)]
+    energy = np.concatenate(([0.0], np.cumsum(evened**2)))
+    correlation /= np.maximum(np.sqrt(energy[count - lags] * (energy[-1] - energy[lags])), 1e-300)
+    highest = float(np.max(correlation[_SHORTEST_LAG:]))
+    if highest < _REPEATED:
+        return None
+    lag = _SHORTEST_LAG + int(np.argmax(correlation[_SHORTEST_LAG:] > _MULTIPLE * highest))
+    lag += int(np.argmax(correlation[lag : lag + _SHORTEST_LAG]))
+    return lag / rate if lag / rate > _LONGER_THAN_A_TURN * turn else None
 
 
 def kurtogram(spectrum: Spectrum, narrowest: float) -> list[tuple[float, Band]]:
