@@ -16,6 +16,9 @@ from bearing_sim.levels.steady.table_builder import solve_scene
 from bearing_sim.model.params import lubricate, pack
 from bearing_sim.numerics.linear_algebra import ALPHA_0, ALPHA_1, ALPHA_2, ALPHA_3, solve_cyclic
 from bearing_sim.scene.scene import tolerance_overrides
+from bearing_sim.simulation import scene_inputs
+from bearing_sim.studies.extremes_cases import sampled_cases
+from bearing_sim.studies.extremes_stock import at_stock
 from bearing_sim.studies.steady_check import compare, marched, solved
 
 RPM = math.pi / 30
@@ -79,6 +82,24 @@ def test_everything_that_level_slip_models_counts(overrides):
     expected, expected_life = marched(of, inputs, lag)
     assert found == pytest.approx(expected, rel=0.02, abs=5e-4)
     assert life == pytest.approx(expected_life, rel=0.02)
+
+
+@pytest.mark.parametrize("factor", [1.0, 2.0])
+def test_a_scatter_of_the_drive_is_not_taken_for_a_balance(factor):
+    # a thin cold oil at 97,700 rpm under 158 N: rollers begin and cease to stick within a pitch, and the mean drive scatters by its own size
+    overrides = at_stock(sampled_cases("steady", 2000, 0)[1449]).overrides
+    of = load_scene("deng2017_table1", [*overrides, f"operating.radial_load={158.25 * factor} N"])
+    inputs = scene_inputs(of)
+    slip, _, _ = solved(of, inputs)
+    run = Simulation(load_scene("deng2017_table1", [*overrides, "level=slip"]), inputs)
+    rolling = run.sample.copy()
+    for before, toward in ((0.03, 1.0), (slip - 0.04, 1.0), (slip + 0.04, -1.0)):
+        start = rolling.copy()
+        for name in ("cage_speed", "orbital_speed", "roller_spin"):
+            start[name] *= 1.0 - before
+        run.reset(inputs, start=start)
+        after = run.advance(20e-3, samples=20)["cage_slip"][-1]
+        assert toward * (after - before) > 1e-4, f"from a slip of {before}"
 
 
 def test_more_angles_a_pitch_change_slip_by_less_than_half_a_percent():
