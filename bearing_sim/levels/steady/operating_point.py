@@ -15,9 +15,9 @@ measures both).
 first: the spins follow the cage within a fraction of its own time, so the cage follows the mean torque until that is zero.  The search
 does the same: from ideal rolling in steps of slip until the mean torque on the cage changes its sign.
 
-**False balances.** Where spins stick and slip within a pitch there may be several spin curves at one speed of the cage, or the differences do not resolve
-the one there is.  The mean torque then scatters with the cage's speed by as much as its own size, and a scatter looks like a change of sign: a slip at
-which the cage is left with a noticeable torque is none at which it rests.
+**False balances.** Where spins stick and slip within a pitch there may be several spin curves at one speed of the cage, or the differences do not
+resolve the one there is.  The mean torque then scatters with the cage's speed by as much as its own size, and a scatter looks like a change of
+sign: a slip at which the cage is left with a noticeable torque is none at which it rests.
 
 **Marching.** A traction curve that falls steeply (cold oil, a loaded bearing that creeps) makes spins jump: they have no smooth periodic curve.
 There, and where only false balances are found, level ``slip`` is marched until it has settled.  Where spins jump, its way
