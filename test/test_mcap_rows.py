@@ -11,11 +11,15 @@ from mcap.reader import make_reader
 from mcap.records import Chunk, MessageIndex
 from mcap.stream_reader import StreamReader
 
-from bearing_sim.messages.topics import INPUTS, RECORDED, outputs, recorded
+from bearing_sim.messages.cdr import message_type
+from bearing_sim.messages.sample_messages import InputMessages
+from bearing_sim.messages.topics import INPUTS, MEASUREMENTS, RECORDED, RESIDUAL, outputs, recorded
 from bearing_sim.model.sample import OBSERVABLES, new_block
+from bearing_sim.recording.mcap_reader import McapReader, Rows
 from bearing_sim.recording.mcap_writer import SampleRows
 from bearing_sim.recording.writer import McapFile
 from bearing_sim.scene.loader import load_scene
+from bearing_sim.simulation import Inputs
 
 START = 1_700_000_000_000_000_000
 LEVELS = ("slip", "spatial")
@@ -94,6 +98,40 @@ def test_rows_and_single_messages_mix_in_one_file(tmp_path):
     found, statistics = contents(tmp_path / "run.mcap")
     assert [len(messages) for messages in found.values()] == [3] * (len(layout.topics) + 1)
     assert statistics.message_count == 3 * (len(layout.topics) + 1)
+
+
+def test_samples_with_further_topics_have_them_before_their_others_and_all_count_their_messages(tmp_path):
+    """At ten samples a second each one has the topics that a thousand a second repeat now and then only; then all are read back in rows."""
+    scene = load_scene("deng2017_table1")
+    further, common = (tuple(topic for topic in recorded(scene).values() if topic.repeats == repeats) for repeats in (True, False))
+    layout, whole = (SampleRows(topics, scene.bearing.roller.count) for topics in (common, (*further, *common)))
+    block, times = random_block(60, scene.bearing.roller.count), np.uint64(START) + np.arange(60, dtype=np.uint64)
+    chosen = np.array([0, 1, 5, *range(20, 60)])
+    with McapFile(tmp_path / "rows.mcap") as rows, McapFile(tmp_path / "single.mcap") as single:
+        for part in np.split(np.arange(60), [1, 7, 30]):
+            rows.write_rows(layout, block[part], times[part], whole, np.flatnonzero(np.isin(part, chosen)))
+        for k, (sample, time_ns) in enumerate(zip(block, times.tolist())):
+            for topic in (*further, *common) if k in chosen else common:
+                single.write(f"/{topic.name}", topic.ros_type, time_ns, topic.message(time_ns, sample))
+    assert further and contents(tmp_path / "rows.mcap")[0] == contents(tmp_path / "single.mcap")[0]
+    reader = McapReader(tmp_path / "rows.mcap", in_rows=lambda topic: True)
+    found = [record for record in reader if isinstance(record, Rows)]
+    assert sum(len(each.table) for each in found if len(each.channels) == len(further) + len(common)) >= 30
+
+
+@pytest.mark.parametrize("name", [*INPUTS, *MEASUREMENTS])
+def test_messages_of_inputs_filled_from_a_template_are_those_of_the_topic(name):
+    topic, messages, random = (INPUTS | MEASUREMENTS)[name], InputMessages(), np.random.default_rng(3)
+    for k in range(6):
+        if name in INPUTS:
+            source = Inputs(*(1e3 * random.random(6)).tolist())
+        else:
+            source = float(random.random()) if name == RESIDUAL else (0.1, (float("nan"), 1.0, 0.02)[k % 3]) if k % 2 else (0.3,)
+        frame, stamp_ns = (None, "", "rig")[k % 3], START + k * 1_234_567_891
+        message = topic.message(stamp_ns, source)
+        if frame is not None and "header" in message:
+            message["header"]["frame_id"] = frame
+        assert messages.serialized(topic, stamp_ns, source, frame) == message_type(topic.ros_type).serialize(message)
 
 
 def test_the_index_of_a_chunk_says_where_its_messages_stand(tmp_path):

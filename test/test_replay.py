@@ -26,6 +26,7 @@ from bearing_sim.messages.events import Event, Level
 from bearing_sim.monitoring.monitor import Monitor
 from bearing_sim.recording.append_file import AppendFile
 from bearing_sim.recording.writer import McapSink
+from bearing_sim.runtime import replay as replaying
 from bearing_sim.runtime.replay import Replay, replay
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.simulation import Counters, Inputs, Simulation
@@ -175,6 +176,51 @@ def test_watchers_get_every_sample_and_event(tmp_path):
     _, sink, _ = run(steady_log(tmp_path / "log.mcap", duration=25.0), watchers=[watcher])
     assert times(watcher) == times(sink) and len(times(sink)) == 250
     assert watcher.events == sink.events
+
+
+class TakesCourses(FakeSimulation):
+    """A stand-in of a level that advances over many instants at once."""
+
+    takes_profiles = True
+
+    def advance_profile(self, stretches, inputs):
+        return np.concatenate([self.advance(float(stretch), Inputs(*row.tolist())) for stretch, row in zip(stretches, inputs)])
+
+
+@pytest.mark.parametrize("make", [TakesCourses, FakeSimulation])
+def test_outputs_of_a_level_that_takes_courses_are_written_many_at_once_and_say_the_same(tmp_path, monkeypatch, make):
+    """Slip goes up and down across its limit from 4 s on, so that parts of the run are judged output by output; those of other levels come singly."""
+    log = steady_log(tmp_path / "log.mcap", duration=25.0)
+    scene = load_scene("deng2017_table1", ["thresholds.slip_warning=1.5%", "thresholds.slip_hold.clear_after=0.5 s"])
+
+    def replayed():
+        class Waving(make):
+            def _observe(self, now, inputs):
+                sample = super()._observe(now, inputs)
+                sample["cage_slip"] = 0.01 if now < 4.0 else 0.01 + 0.01 * (int(now) % 4 > 1)
+                return sample
+
+        lengths = []
+        sink = ListSink()
+        sink.write = lambda block, write=sink.write: (lengths.append(len(block)), write(block))
+
+        def model(scene, inputs):
+            simulation = Waving(inputs)
+            simulation.counters = Counters(7, 2, 1, 0, 0, 0)
+            return simulation
+
+        result = replay(scene, judge(read_input_log(log), scene.accepted_inputs, HELD), sink, model=model)
+        return lengths, sink, result
+
+    lengths, sink, result = replayed()
+    monkeypatch.setattr(replaying, "_TOGETHER", 1)
+    singly, expected, same = replayed()
+    assert singly == [1] * 250 and (lengths == singly) == (make is FakeSimulation) and sum(lengths) == 250
+    assert len(lengths) <= 3 or make is FakeSimulation
+    assert np.array(sink.samples).tobytes() == np.array(expected.samples).tobytes()
+    for name in ("inputs", "events", "diagnostics", "starts"):
+        assert repr(getattr(sink, name)) == repr(getattr(expected, name)), name
+    assert len(sink.events) > 4 and (result.samples, result.weight, result.slip) == (same.samples, same.weight, same.slip)
 
 
 def test_progress_never_goes_back_and_ends_at_the_end(tmp_path):

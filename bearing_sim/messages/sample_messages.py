@@ -9,6 +9,8 @@ samples of a block together, and in the node only for topics that somebody liste
 
 import struct
 from collections.abc import Callable, Sequence
+from functools import reduce
+from operator import getitem
 from typing import NamedTuple
 
 import numpy as np
@@ -149,6 +151,40 @@ class SampleMessages:
         self._words[self._targets] = np.frombuffer(sample, np.float64)[self._sources]
         for at in self._stamps:
             _STAMP.pack_into(self._buffer, at, *divmod(stamp_ns, 1_000_000_000))
+
+
+class InputMessages:
+    """Serialised messages of inputs and measurements: those of a topic, frame and joints differ in stamp and numbers only."""
+
+    def __init__(self):
+        self._templates: dict[tuple[str | None, ...], tuple[bytearray, int | None, list[tuple[int, list[str]]]]] = {}
+
+    def serialized(self, topic: Topic, stamp_ns: int, source, frame: str | None = None) -> bytes:
+        """Return a message.
+
+        Parameters
+        ----------
+        topic : of `bearing_sim.messages.topics.INPUTS` or ``MEASUREMENTS``.
+        stamp_ns : of its header, if it has one [ns since the epoch].
+        source : what `Topic.message` takes.
+        frame : in its header; that of the topic if absent.
+        """
+        message = topic.message(0, source)
+        key = (topic.name, frame, *message.get("name", ()))
+        if key not in self._templates:
+            if frame is not None and "header" in message:
+                message["header"]["frame_id"] = frame
+            data = message_type(topic.ros_type).serialize(message)
+            layout = CdrLayout(topic.ros_type, data)
+            stamp = layout.by_path[STAMP_FIELDS[0]].begin if STAMP_FIELDS[0] in layout.by_path else None
+            self._templates[key] = bytearray(data), stamp, [(field.begin, field.path.split(".")) for field in layout.numbers]
+        data, stamp, fields = self._templates[key]
+        if stamp is not None:
+            _STAMP.pack_into(data, stamp, *divmod(int(stamp_ns), 1_000_000_000))
+        for begin, path in fields:
+            numbers = np.asarray(reduce(getitem, path, message), np.float64).tobytes()
+            data[begin : begin + len(numbers)] = numbers
+        return bytes(data)
 
 
 class BandMessages:

@@ -88,7 +88,7 @@ class SampleRows:
         names, offsets, formats = zip(*fields)
         self._dtype = np.dtype({"names": names, "formats": formats, "offsets": offsets, "itemsize": self.size})
 
-    def filled(self, block: np.ndarray, times_ns: np.ndarray, channels: Sequence[int], first_sequence: int) -> np.ndarray:
+    def filled(self, block: np.ndarray, times_ns: np.ndarray, channels: Sequence[int], sequences: Sequence[np.ndarray]) -> np.ndarray:
         """Return the records of a block.
 
         Parameters
@@ -96,7 +96,7 @@ class SampleRows:
         block : samples, shape (n,).
         times_ns : log, publish and header time of each [ns since the epoch], uint64.
         channels : id of each topic's channel.
-        first_sequence : of the first sample's messages.
+        sequences : numbers of each topic's messages, shape (topics, n).
 
         Returns
         -------
@@ -105,8 +105,7 @@ class SampleRows:
         rows = np.empty((len(block), self.size), np.uint8)
         rows[:] = self._template
         fields = rows.view(self._dtype)[:, 0]
-        sequence = first_sequence + np.arange(len(block))
-        for k, channel in enumerate(channels):
+        for k, (channel, sequence) in enumerate(zip(channels, sequences, strict=True)):
             fields[f"channel{k}"], fields[f"sequence{k}"] = channel, sequence
             fields[f"log{k}"] = fields[f"publish{k}"] = times_ns
         if self._stamps:

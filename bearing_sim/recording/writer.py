@@ -7,7 +7,7 @@
 import math
 import os
 import threading
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import NamedTuple
@@ -19,7 +19,7 @@ from bearing_sim.messages import diagnostics, topics
 from bearing_sim.messages.bands import Bands
 from bearing_sim.messages.cdr import message_type
 from bearing_sim.messages.events import Event, Level
-from bearing_sim.messages.sample_messages import BandMessages
+from bearing_sim.messages.sample_messages import BandMessages, InputMessages
 from bearing_sim.recording.append_file import AppendFile, set_aside
 from bearing_sim.recording.bag import ACTIVE, QOS_TEXT, UNLIMITED, Limits, Part, TopicCount, bag_metadata, write_bag_metadata
 from bearing_sim.recording.mcap_format import Message
@@ -157,7 +157,7 @@ class McapFile(AbstractContextManager):
             self._writer.add_message(Message(channel.id, self._counts[topic], time_ns, time_ns if publish_ns is None else publish_ns, data))
 
     def write_rows(
-        self, layout: SampleRows, block: np.ndarray, times_ns: np.ndarray, repeating: SampleRows | None = None, chosen: Sequence[int] = ()
+        self, layout: SampleRows, block: np.ndarray, times_ns: np.ndarray, whole: SampleRows | None = None, chosen: Sequence[int] = ()
     ) -> None:
         """Write the messages of all topics of a layout for a block of samples.  Raises as `write`.
 
@@ -166,32 +166,42 @@ class McapFile(AbstractContextManager):
         layout : of the topics, which are written in no other way.
         block : samples, shape (n,).
         times_ns : log, publish and header time of each [ns since the epoch], uint64.
-        repeating : of further topics, which only some of the samples have, before their other topics.
+        whole : of some of the samples: of these topics and further ones, which only those samples have.
         chosen : the indices of these samples, in order.
         """
         if not len(block):
             return
+        is_chosen = np.zeros(len(block), bool)
+        is_chosen[np.asarray(chosen, int)] = True
         with self._lock:
             self._require_open()
-            rows, ids = self._filled(layout, block, times_ns)
-            repeating_rows, repeating_ids, start = None, [], 0
-            if len(chosen):
-                repeating_rows, repeating_ids = self._filled(repeating, block[chosen], times_ns[chosen])
-            for k, index in enumerate(chosen):
-                if index > start:
-                    self._writer.add_rows(layout, rows[start:index], times_ns[start:index], ids)
-                self._writer.add_rows(repeating, repeating_rows[k : k + 1], times_ns[index : index + 1], repeating_ids)
-                start = index
-            self._writer.add_rows(layout, rows[start:], times_ns[start:], ids)
+            common, parts = {topic.name for topic in layout.topics}, {}
+            for kind, each in ((False, layout), (True, whole)):
+                if (is_chosen == kind).any():
+                    parts[kind] = self._filled(each, block, times_ns, np.flatnonzero(is_chosen == kind), common)
+            for name in common:
+                self._counts[f"/{name}"] += len(block)
+            written, starts = {False: 0, True: 0}, [0, *(np.flatnonzero(np.diff(is_chosen)) + 1).tolist()]
+            for start, end in zip(starts, [*starts[1:], len(block)]):
+                kind = bool(is_chosen[start])
+                rows, ids = parts[kind]
+                begin, written[kind] = written[kind], written[kind] + end - start
+                self._writer.add_rows(whole if kind else layout, rows[begin : written[kind]], times_ns[start:end], ids)
             self._span = widened(self._span, int(times_ns.min()), int(times_ns.max()))
 
-    def _filled(self, layout: SampleRows, block: np.ndarray, times_ns: np.ndarray) -> tuple[np.ndarray, list[int]]:
-        """Return the records of a block and the ids of their channels, and count them."""
+    def _filled(
+        self, layout: SampleRows, block: np.ndarray, times_ns: np.ndarray, places: np.ndarray, common: Collection[str]
+    ) -> tuple[np.ndarray, list[int]]:
+        """Return the records of some samples of a block and the ids of their channels; count them but for the ``common`` topics, which all have."""
         names = [f"/{topic.name}" for topic in layout.topics]
         ids = [(self._channels.get(name) or self._register(name, topic.ros_type)).id for name, topic in zip(names, layout.topics)]
-        rows = layout.filled(block, times_ns, ids, self._counts[names[0]] + 1)
-        for name in names:
-            self._counts[name] += len(block)
+        among = np.arange(len(places))
+        own = [topic.name not in common for topic in layout.topics]
+        sequences = [self._counts[name] + 1 + (among if is_own else places) for name, is_own in zip(names, own)]
+        which = slice(None) if len(places) == len(block) else places
+        rows = layout.filled(block[which], times_ns[which], ids, sequences)
+        for name, is_own in zip(names, own):
+            self._counts[name] += len(places) * is_own
         return rows, ids
 
     def __exit__(self, kind, *_) -> None:
@@ -437,9 +447,9 @@ class McapSink(AbstractContextManager):
         self._bearing = scene.bearing.name
         recorded = topics.recorded(scene).values()
         self._topics = tuple(topic for topic in recorded if not topic.repeats)
-        self._repeating_topics = tuple(topic for topic in recorded if topic.repeats)
+        self._whole_topics = tuple(sorted(recorded, key=lambda topic: not topic.repeats))  # those that repeat others come first
         self._lay_out(scene.bearing.roller.count)
-        self._band_messages = BandMessages(frame)
+        self._band_messages, self._input_messages = BandMessages(frame), InputMessages()
         self._last_period = -1  # of `REPEATING_RATE`, in which a sample was written with its repeating topics
         origin = {"package_version": package_version(), "git_hash": git_hash()}
         packages = {f"version_{name}": version for name, version in versions().items()}
@@ -463,12 +473,11 @@ class McapSink(AbstractContextManager):
         if rollers != self._rows.rollers:
             self._lay_out(rollers)
         times_ns = np.uint64(self.start_ns) + np.rint(block["time"] * 1e9).astype(np.int64).astype(np.uint64)
-        chosen = self._with_repeating(block["time"]) if self._repeating_rows is not None else ()
-        self._files.current.write_rows(self._rows, block, times_ns, self._repeating_rows, chosen)
+        self._files.current.write_rows(self._rows, block, times_ns, self._whole_rows, self._with_repeating(block["time"]))
 
     def _lay_out(self, rollers: int) -> None:
         self._rows = SampleRows(self._topics, rollers, self._frame)
-        self._repeating_rows = SampleRows(self._repeating_topics, rollers, self._frame) if self._repeating_topics else None
+        self._whole_rows = SampleRows(self._whole_topics, rollers, self._frame)
 
     def _with_repeating(self, times: np.ndarray) -> np.ndarray:
         """Return the indices of the samples that are written with their repeating topics: the first one of each period of `REPEATING_RATE`."""
@@ -515,10 +524,8 @@ class McapSink(AbstractContextManager):
     def _write_input(self, topic: topics.Topic, time: float, source, origin: topics.Origin | None) -> None:
         received_ns = self._time_ns(time)
         sent_ns = received_ns if origin is None or origin.stamp_ns is None else origin.stamp_ns
-        message = topic.message(sent_ns, source)
-        if origin is not None and "header" in message:
-            message["header"]["frame_id"] = origin.frame_id
-        self._files.current.write(f"/{topic.name}", topic.ros_type, received_ns, message)
+        message = self._input_messages.serialized(topic, sent_ns, source, None if origin is None else origin.frame_id)
+        self._files.current.write_cdr(f"/{topic.name}", topic.ros_type, received_ns, message)
 
     def write_received(self, topic: str, ros_type: str, time_ns: int, data: bytes, publish_ns: int | None = None) -> None:
         """Copy a serialised message of another recording; times are [ns since the epoch]."""

@@ -34,6 +34,7 @@ _PROGRESS_EVERY = 50  # items
 _JUDGED = 400  # outputs judged at once if none of them can raise or clear an alarm
 _ENDLESS = 1e7  # [h]; longer lives are those of a shaft that hardly turns
 _ESTIMATED = 100  # outputs that bands are computed for at once
+_TOGETHER = 100  # outputs of a level that takes courses, written and judged at once: singly they take ten times as long as their computation
 _WATCHED_BLOCK = 100  # samples: views take one long block far faster than single samples
 
 
@@ -213,6 +214,7 @@ class _Run:
         self._pending_clearances = deque(profile.measured_clearance)
         self._changes = Changes()
         self._watched: list[np.ndarray] = []
+        self._untaken: list[Output] = []
         self._next_report = 0.0
         self._monitor, self._limits = Monitor(scene), LimitsMonitor(scene)
         self._unjudged: list[np.ndarray] = []
@@ -239,20 +241,26 @@ class _Run:
         result, outputs_only = self._result, not self._recordings and not self._watchers and not self._scene.estimation.calibrated
         run = ProfileRun(partial(self._begin, model), outputs_only)
         segment = self._profile.segment(self._rate, self._scene.lubricant.temperature)
+        together = 1
         for k, item in enumerate(run.advance_segment(segment)):
+            moment = float(item.block["time"][-1]) if isinstance(item, Output) else item.time
+            self._write_events_until(moment)
             if isinstance(item, Output):
-                self._take(item)
-                moment = float(item.block["time"][-1])
+                self._untaken.append(item)
+                if len(self._untaken) >= together or len(item.block) > 1:
+                    self._take_outputs()
             else:
-                moment = item.time
-                self._write_events_until(moment)
                 if isinstance(item, Event):
+                    self._take_outputs()  # they come first
                     self._write_event(item)
                 elif isinstance(item, Begun):
                     if self._keeper is not None:
                         self._keeper.count(item.block, self._profile.start_ns, np.zeros(len(item.block)))
                     for recording in self._recordings:
                         recording.write_start(item.block)
+                    # Not where outputs take long, so that a recording that is cut short has them; nor where a measurement acts on the next output.
+                    is_fast = getattr(run.simulation, "takes_profiles", False) and not self._scene.estimation.calibrated
+                    together = _TOGETHER if is_fast else 1
                 else:
                     for recording in self._recordings:
                         recording.write_inputs(*item)
@@ -260,6 +268,7 @@ class _Run:
                 self._progress(moment)
         if not run.given_up:
             self._progress(self._profile.end * 1e-9)
+        self._take_outputs()
         self._judge_limits()
         self._estimate()
         self._write_events_until(math.inf)
@@ -298,10 +307,15 @@ class _Run:
         time_ns = self._profile.start_ns + round(1e9 * float(newest["time"]))
         note(self._keeper, self._comparison.residual, self._monitor, self._estimation, newest, time_ns)
 
+    def _take_outputs(self) -> None:
+        """Write and judge the outputs since the last call."""
+        outputs, self._untaken = self._untaken, []
+        if outputs:
+            self._take(Output(joined([each.block for each in outputs]), np.concatenate([each.weights for each in outputs])))
+
     def _take(self, output: Output) -> None:
         """Write outputs and judge them."""
         block, result = output.block, self._result
-        self._write_events_until(float(block["time"][-1]))
         result.samples += len(block)
         result.weight += output.weights.tolist()
         for kept, name in ((result.slip, "cage_slip"), (result.speed, "shaft_speed"), (result.life, "rating_life")):
@@ -325,7 +339,7 @@ class _Run:
             self._unjudged.append(part)
             if sum(map(len, self._unjudged)) >= _JUDGED:
                 self._judge_limits()
-            self._judge(part)
+            self._judge_until_reports(part)
 
     def _estimate(self) -> None:
         """Write the bands of the outputs since the last call: those of many at once cost a fraction of single ones."""
@@ -340,6 +354,13 @@ class _Run:
         if blocks:
             for event in self._limits.take(joined(blocks)):
                 self._write_event(event)
+
+    def _judge_until_reports(self, block: np.ndarray) -> None:
+        """Judge outputs in parts, each of which ends where the bearing's condition is to be written."""
+        while len(block):
+            due = int(np.searchsorted(block["time"], self._next_report)) if self._recordings else len(block)
+            self._judge(block[: due + 1])
+            block = block[due + 1 :]
 
     def _judge(self, block: np.ndarray) -> None:
         """Judge outputs one by one, or all at once if none of them can raise or clear an alarm."""
@@ -403,8 +424,9 @@ class _Run:
     def _write_events_until(self, moment: float) -> None:
         """Write the events and the measured clearances of the log up to a time [s]."""
         while self._pending_clearances and self._pending_clearances[0][0] <= moment:
-            for recording in self._recordings:
-                recording.write_clearance(*self._pending_clearances[0])
+            for sink in (*self._recordings, *self._watchers):
+                sink.write_clearance(*self._pending_clearances[0])
             self._pending_clearances.popleft()
         while self._pending_events and self._pending_events[0].time <= moment:
+            self._take_outputs()  # they come first
             self._write_event(self._pending_events.pop(0))
