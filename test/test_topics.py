@@ -14,7 +14,7 @@ from bearing_sim.messages.diagnostics import condition, report
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.messages.point_cloud import ROLLER_FIELDS
 from bearing_sim.messages.sample_messages import SampleMessages, message_templates
-from bearing_sim.model.characteristic_frequencies import characteristic_frequencies
+from bearing_sim.model.characteristic_frequencies import characteristic_frequencies, frequencies_text
 from bearing_sim.model.sample import OBSERVABLES, new_block
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.scene.scene import InputLimits
@@ -465,6 +465,14 @@ def test_without_slip_characteristic_frequencies_are_those_of_the_handbooks(roll
         0.5 * shaft_turns / ratio * (1.0 - ratio**2),
     ]
     np.testing.assert_allclose(characteristic_frequencies(block), [handbook] * 3, rtol=1e-12)
+
+
+def test_people_are_told_which_frequency_a_level_does_not_compute():
+    known = {"cage": 312.3472, "ball_pass_outer": 5622.2, "ball_pass_inner": 7877.8, "roller_spin": 1500.0}
+    assert frequencies_text(known) == "FTF 312.35, BPFO 5622.2, BPFI 7877.8, BSF 1500 Hz, with this slip"
+    without = frequencies_text(known | {"roller_spin": math.nan})
+    assert without == "FTF 312.35, BPFO 5622.2, BPFI 7877.8 Hz, with this slip; not BSF, which this level does not compute"
+    assert "nan" not in frequencies_text(dict.fromkeys(known, math.nan))
 
 
 def test_slip_lowers_the_frequencies_of_cage_and_outer_ring_and_raises_that_of_the_inner_ring():

@@ -14,6 +14,7 @@ Without slip w_c = w_i (1 - gamma)/2 and w R_w = r_m w_c (eq. `eq-speeds` of the
 Rolling Bearing Analysis, 5th ed., vol. 1, chapter 10, for contact angle 0.
 """
 
+import math
 from collections.abc import Mapping
 from typing import NamedTuple
 
@@ -66,5 +67,8 @@ def mean_frequencies(samples: np.ndarray) -> dict[str, float]:
 
 
 def frequencies_text(frequencies: Mapping[str, float]) -> str:
-    """Return characteristic frequencies [Hz] for people, by their abbreviations."""
-    return ", ".join(f"{each.symbol} {frequencies[each.name]:.5g}" for each in FREQUENCIES) + " Hz, with this slip"
+    """Return characteristic frequencies [Hz] for people, by their abbreviations, and which of them the level does not compute, NaN."""
+    known = {each.symbol: frequencies[each.name] for each in FREQUENCIES if not math.isnan(frequencies[each.name])}
+    unknown = ", ".join(each.symbol for each in FREQUENCIES if each.symbol not in known)
+    shown = ", ".join(f"{symbol} {value:.5g}" for symbol, value in known.items()) + " Hz, with this slip" if known else ""
+    return "; ".join(filter(None, (shown, f"not {unknown}, which this level does not compute" if unknown else "")))
