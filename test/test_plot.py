@@ -30,6 +30,7 @@ from bearing_sim.sweep.point import Column
 from bearing_sim.sweep.table import Table, write_table
 
 SCENE = load_scene("deng2017_table1")
+MODIFIED = load_scene("deng2017_table1", ["life.reliability=95 %"])
 
 
 @pytest.fixture(autouse=True)
@@ -182,19 +183,27 @@ def test_a_band_is_drawn_only_where_there_is_one(tmp_path):
 
 
 def test_bands_that_a_run_published_are_shaded_but_not_at_rest_and_dashed_where_measurements_moved_them(tmp_path):
-    shown = course(run_of(LINEAR, shaft_speed=np.where(LINEAR < 0.5, 0.0, 4700.0), cage_slip=0.02), panels=("slip", "clearance"))
-    names, units = ("cage_slip", "running_clearance"), ("", "m")
-    numbers = np.tile([[0.03, 0.02, 0.05], [28e-6, 26e-6, 31e-6]], (300, 1, 1))
+    block = run_of(LINEAR, shaft_speed=np.where(LINEAR < 0.5, 0.0, 4700.0), cage_slip=0.02, modified_rating_life=500.0)
+    shown = course(block, panels=("slip", "life", "clearance"))
+    names, units = ("cage_slip", "rating_life", "running_clearance"), ("", "h", "m")
+    numbers = np.tile([[0.03, 0.02, 0.05], [2000.0, 900.0, 7000.0], [28e-6, 26e-6, 31e-6]], (300, 1, 1))
     published = [Bands(BANDS, names, units, LINEAR[k : k + 1], numbers[k : k + 1]) for k in range(300)]
-    shown.recorded = recorded_bands(published, shown.lines)
+    shown.recorded = recorded_bands(published, shown.lines, SCENE)
     slip, clearance = shown.recorded["slip"], shown.recorded["clearance"]
     assert np.isnan(slip.high[slip.times < 0.5]).all() and slip.high[-1] == pytest.approx(5.0) and clearance.low[0] == pytest.approx(26.0)
     figure = draw_over_time(tmp_path / "a.png", [shown])
-    assert [len(axes.collections) for axes in figure.axes] == [1, 1] and [len(axes.lines) for axes in figure.axes] == [1, 1]
+    assert [len(axes.collections) for axes in figure.axes] == [1, 1, 1] and [len(axes.lines) for axes in figure.axes] == [1, 1, 1]
+    low, high = figure.axes[1].get_ylim()
+    assert low <= 500.0 and high >= 7000.0, "the band of the life lies on its axis"
     assert "as the run published it" in figure.legends[0].get_texts()[0].get_text()
-    shown.recorded = recorded_bands([*published, Bands(ESTIMATES, ("x",), ("",), LINEAR[:1], np.ones((1, 1, 3)))], shown.lines)
+    shown.recorded = recorded_bands([*published, Bands(ESTIMATES, ("x",), ("",), LINEAR[:1], np.ones((1, 1, 3)))], shown.lines, SCENE)
     figure = draw_over_time(tmp_path / "b.png", [shown])
-    assert [len(axes.lines) for axes in figure.axes] == [2, 2] and "dashed: as measurements" in figure.legends[0].get_texts()[0].get_text()
+    assert [len(axes.lines) for axes in figure.axes] == [2, 2, 2] and "dashed: as measurements" in figure.legends[0].get_texts()[0].get_text()
+    assert_readable(figure)
+    shown.recorded = recorded_bands(published, shown.lines, MODIFIED)
+    figure = draw_over_time(tmp_path / "c.png", [shown])
+    assert [len(axes.lines) for axes in figure.axes] == [1, 2, 1], "the line is the modified life, the band is about the basic one"
+    assert figure.axes[1].lines[1].get_ydata()[-1] == 2000.0 and SCENE.life.symbols[0] in figure.legends[0].get_texts()[0].get_text()
     assert_readable(figure)
 
 

@@ -104,7 +104,7 @@ class SlipBand(NamedTuple):
     high: np.ndarray
 
 
-_BANDED = {"slip": ("cage_slip", 100.0), "clearance": ("running_clearance", 1e6)}
+_BANDED = {"slip": ("cage_slip", 100.0), "life": ("rating_life", 1.0), "clearance": ("running_clearance", 1e6)}
 """Quantity with recorded bands of a panel, and by what its unit is smaller than that of the panel."""
 
 
@@ -116,6 +116,7 @@ class RecordedBand(NamedTuple):
     times : [s].
     value, low, high : what the run said, its 5 and its 95 % quantile; thinned out to the extremes of each stretch.
     is_calibrated : whether measurements calibrated fields in the run, so that the value is not the one that the level computed.
+    own_value : symbol of the value where the line of the panel is another quantity: the life without the factor a_ISO; else ``""``.
     """
 
     times: np.ndarray
@@ -123,6 +124,7 @@ class RecordedBand(NamedTuple):
     low: np.ndarray
     high: np.ndarray
     is_calibrated: bool
+    own_value: str = ""
 
 
 @dataclass
@@ -181,17 +183,18 @@ def read_course(
 
     course = course_of(blocks(), recording.scene, name, recording.samples, panels, progress)
     course.start_ns = recording.start_ns
-    course.recorded = recorded_bands(bands, course.lines)
+    course.recorded = recorded_bands(bands, course.lines, recording.scene)
     return course
 
 
-def recorded_bands(bands: Sequence[Bands], lines: Mapping[tuple[str, int], tuple[np.ndarray, np.ndarray]]) -> dict[str, RecordedBand]:
+def recorded_bands(bands: Sequence[Bands], lines: Mapping[tuple[str, int], tuple[np.ndarray, np.ndarray]], scene: Scene) -> dict[str, RecordedBand]:
     """Return bands that a run published, in order of time, by the name of the panel that shows them; none where its line has a gap, as at rest.
 
     Parameters
     ----------
     bands : of the run.
     lines : those of `Course`.
+    scene : of the run, whose method of life says what the bands of the life are about.
     """
     is_calibrated = any(each.topic == ESTIMATES for each in bands)
     published = [each for each in bands if each.topic == BANDS]
@@ -205,7 +208,8 @@ def recorded_bands(bands: Sequence[Bands], lines: Mapping[tuple[str, int], tuple
             value, low, high = scale * numbers[:, published[0].names.index(quantity)].T
             value, low, high = np.where(np.isnan(np.interp(times, *lines[panel, 0])), np.nan, (value, low, high))
             ends = np.fmin.reduceat(low, starts), np.fmax.reduceat(high, starts)
-            found[panel] = RecordedBand(times[starts], value[starts], *ends, is_calibrated)
+            own_value = scene.life.symbols[0] if panel == "life" and not scene.life.is_basic else ""
+            found[panel] = RecordedBand(times[starts], value[starts], *ends, is_calibrated, own_value)
     return found
 
 
@@ -373,10 +377,10 @@ def _draw_panel(axes, name: str, panel: Panel, courses: Sequence[Course], starts
 
 
 def _draw_recorded(axes, band: RecordedBand, start: float, divisor: float, colour: str) -> list[np.ndarray]:
-    """Shade a band that a run published, with its value where measurements moved that; return the numbers that must be seen."""
+    """Shade a band that a run published, with its value where that is not the line of the panel; return the numbers that must be seen."""
     times = (band.times - start) / divisor
     axes.fill_between(times, band.low, band.high, color=colour, alpha=0.22, lw=0.0)
-    if band.is_calibrated:
+    if band.is_calibrated or band.own_value:
         axes.plot(times, band.value, color=colour, lw=1.1, ls="--")
     return [each[np.isfinite(each)] for each in (band.low, band.high)]
 
@@ -392,6 +396,8 @@ def _name_courses(figure, courses: Sequence[Course]) -> None:
     if any(course.recorded for course in courses):
         calibrated = any(each.is_calibrated for course in courses for each in course.recorded.values())
         text = "5 to 95 % as the run published it" + (", dashed: as measurements calibrated it" if calibrated else "")
+        symbols = dict.fromkeys(each.own_value for course in courses for each in course.recorded.values() if each.own_value)
+        text += "".join(f"; life: about {symbol}, dashed" for symbol in symbols)
         handles.append(Patch(color=COLOURS[0], alpha=0.22, label=text))
     if any(course.band is not None for course in courses):
         handles.append(Patch(color=COLOURS[0], alpha=0.22, label="settled slip, 5 to 95 % by the scene's uncertainty"))
