@@ -12,11 +12,13 @@ from rerun_files import column
 from synthetic_run import synthetic_block
 
 from bearing_sim.cli import view
+from bearing_sim.messages import topics
 from bearing_sim.messages.cdr import message_type, typestore
 from bearing_sim.messages.diagnostics import report
-from bearing_sim.messages.events import Event, Level
+from bearing_sim.messages.events import Event, Level, MeasuredClearance
 from bearing_sim.messages.topics import outputs
 from bearing_sim.recording.bag import RecordingError
+from bearing_sim.recording.reader import Recording
 from bearing_sim.recording.writer import McapFile, McapSink
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.view.bag import BagSeries, Line, read_bag_series, write_bag_view
@@ -187,6 +189,37 @@ def test_a_measured_cage_in_a_recording_of_ours_shows_its_residual(tmp_path):
     np.testing.assert_allclose(
         column(tmp_path / "run.rrd", "/speed/cage_measured")[1], 0.9 * block["ideal_cage_speed"][1::2] * 30 / math.pi, rtol=1e-6
     )
+
+
+def test_a_measured_clearance_in_a_recording_of_ours_is_shown_in_micrometres_at_its_own_times(tmp_path):
+    block = synthetic_block(SCENE, 0.005 * np.arange(1, 61))
+    with McapSink(tmp_path / "run.mcap", SCENE, START) as sink:
+        for k in range(60):
+            sink.write(block[k : k + 1])
+            if k % 10 == 3:
+                sink.write_clearance(float(block["time"][k]) - 0.001, 1e-6 * (20 - k), 1e-6 if k % 20 == 3 else math.nan)
+    found = [item for item in Recording(tmp_path / "run.mcap").with_measurements() if isinstance(item, MeasuredClearance)]
+    assert [each.clearance for each in found] == pytest.approx([1e-6 * (20 - k) for k in range(3, 60, 10)])
+    assert [math.isnan(each.standard_error) for each in found] == [False, True] * 3
+    assert run(tmp_path / "run.mcap", "-o", tmp_path / "run.rrd", "--no-open").exit_code == 0
+    times, clearances = column(tmp_path / "run.rrd", "/clearance/measured")
+    np.testing.assert_allclose(times, block["time"][3::10] - 0.001, atol=1e-6)
+    np.testing.assert_allclose(clearances, 20.0 - np.arange(3, 60, 10), rtol=1e-5)
+
+
+def test_a_measured_clearance_of_another_source_is_known_by_its_joint_or_its_field(tmp_path):
+    probe = topics.MEASUREMENTS[topics.MEASURED_CLEARANCE]
+    with McapFile(tmp_path / "probe.mcap") as log, McapFile(tmp_path / "log.mcap") as other:
+        for k in range(3):
+            log.write("/probe", probe.ros_type, START + k * SECOND, probe.message(START, (2e-5 + 1e-6 * k, 1e-6)))
+            other.write("/lift", "std_msgs/msg/Float64", START + k * SECOND, {"data": 30.0 - k})
+    by_joint = {key: values.tolist() for key, (_, values) in read_bag_series(tmp_path / "probe.mcap").series.items()}
+    assert by_joint["clearance", "/probe running_clearance", "µm"] == pytest.approx([20.0, 21.0, 22.0])
+    named, constants = view._lines({"clearance": ("/lift.data", "um")})
+    series = read_bag_series(tmp_path / "log.mcap", named, constants).series
+    assert series["clearance", "/lift.data", "µm"][1].tolist() == pytest.approx([30.0, 29.0, 28.0])
+    assert run(tmp_path / "log.mcap", "-o", tmp_path / "a.rrd", "--no-open", "--clearance", "/lift.data", "--clearance-unit", "um").exit_code == 0
+    assert column(tmp_path / "a.rrd", "/clearance/measured")[1].tolist() == pytest.approx([30.0, 29.0, 28.0])
 
 
 def test_a_cage_measured_while_the_shaft_speeds_up_is_compared_with_the_ideal_speed_of_its_own_moment(tmp_path):

@@ -41,6 +41,11 @@ def guessed(tmp_path, text, encoding="utf-8", **decided):
         ),
         (SECOND_LINE, "utf-8", {"time": "Date", "shaft_speed": "n", "radial_load": "F", "inner_ring_temperature": "IR temp"}),
         (CAMEL, "utf-8", {"time": "epoch_ms", "shaft_speed": "shaft_speed_rpm", "radial_load": "radial_load_N", "cage_speed": "cageSpeedRpm"}),
+        (
+            "t [s];n [rpm];F [kN];radial clearance [um]\n0;1500;1,5;21,5\n1;1500;1,6;20,5\n",
+            "utf-8",
+            {"time": "t [s]", "shaft_speed": "n [rpm]", "radial_load": "F [kN]", "running_clearance": "radial clearance [um]"},
+        ),
     ],
 )
 def test_a_guess_names_the_columns_says_why_and_imports_as_it_is(tmp_path, text, encoding, columns):

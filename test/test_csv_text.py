@@ -169,7 +169,8 @@ def test_inputs_that_were_not_measured_are_constants_and_two_of_them_are_no_log(
         (TIME + "shaft_speed: {constant: 3000 rpm}\n" + constant, "nothing is left of the table"),
         (MAPPING + "oil_temperature: {constant: 60 degC, unit: K}\n", "unit do not go with a constant"),
         (MAPPING + "oil_temperature: {constant: 60 N}\n", "wrong dimension"),
-        (MAPPING + "cage_speed: {constant: 60 rpm}\n", "a constant is no measurement"),
+        (MAPPING + "cage_speed: {constant: 60 rpm}\n", "cage_speed: expected a column; a constant is no measurement"),
+        (MAPPING + "running_clearance: {constant: 20 um}\n", "running_clearance: expected a column; a constant is no measurement"),
         (MAPPING.replace("{column: n, unit: rpm}", "{constant: 3000}"), "has no unit"),
     ):
         with pytest.raises(ValueError, match=words):

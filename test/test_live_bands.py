@@ -28,6 +28,7 @@ from bearing_sim.messages.cdr import typestore
 from bearing_sim.messages.diagnostics import report
 from bearing_sim.messages.events import Level
 from bearing_sim.messages.sample_messages import BandMessages
+from bearing_sim.messages.topics import MEASURED_CHANNELS
 from bearing_sim.model.sample import RING_TEMPERATURES
 from bearing_sim.recording.bag import RecordingError
 from bearing_sim.recording.reader import Recording
@@ -290,7 +291,7 @@ def test_a_view_shades_from_one_edge_to_the_other(tmp_path):
 
 def test_bands_and_calibrated_fields_have_plots_only_where_a_scene_asks_for_them():
     def contents(scene):
-        views = views_in(blueprint(scene, ((0.0, 1.0), (0.0, 1.0)), live=False, measured=True).root_container)
+        views = views_in(blueprint(scene, ((0.0, 1.0), (0.0, 1.0)), live=False, measured=MEASURED_CHANNELS).root_container)
         return {path for view in views for path in (view.contents if isinstance(view.contents, list) else [])}
 
     asked = contents(asking_scene(f"estimation.calibrated=[{FIELD}]")) - contents(load_scene("deng2017_table1"))

@@ -12,6 +12,7 @@ from rerun_files import column, views_in, written
 from synthetic_run import synthetic_block
 
 from bearing_sim.messages.events import Event, Level
+from bearing_sim.messages.topics import MEASURED, MEASURED_CHANNELS, MEASURED_CLEARANCE
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.view.blueprint import blueprint
 from bearing_sim.view.drawings import BarDrawing
@@ -31,7 +32,7 @@ def shown(scene, **options):
 
 
 def plots(scene):
-    return [view for view in shown(scene, measured=True) if isinstance(view, rrb.TimeSeriesView)]
+    return [view for view in shown(scene, measured=MEASURED_CHANNELS) if isinstance(view, rrb.TimeSeriesView)]
 
 
 @pytest.mark.parametrize("level", SCENES)
@@ -129,8 +130,14 @@ def test_thresholds_that_a_scene_has_are_drawn_and_others_are_not():
 
 
 def test_residual_has_a_plot_where_the_cage_is_measured_and_only_there():
-    names = [[view.name for view in shown(SLIP, measured=measured)] for measured in (False, True)]
+    names = [[view.name for view in shown(SLIP, measured=measured)] for measured in ([MEASURED_CLEARANCE], [MEASURED])]
     assert [any(name.startswith("Residual slip") for name in found) for found in names] == [False, True]
+
+
+def test_a_measured_clearance_stands_beside_the_predicted_one_where_there_is_one():
+    for measured, is_shown in (((), False), ([MEASURED], False), ([MEASURED_CLEARANCE], True)):
+        (plot,) = [view for view in shown(SLIP, measured=measured) if view.name.startswith("Clearance")]
+        assert ("/clearance/measured" in plot.contents) == ("measured" in plot.name) == is_shown
 
 
 def test_residual_slip_is_written_in_points_and_a_zero_line_beside_it(tmp_path):

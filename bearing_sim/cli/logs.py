@@ -102,7 +102,16 @@ def _flow(value) -> str:
     return json.dumps(value, ensure_ascii=False)  # JSON is YAML
 
 
-_FIELDS = ("time", "shaft_speed", "radial_load", "oil_temperature", "inner_ring_temperature", "outer_ring_temperature", "cage_speed")
+_FIELDS = (
+    "time",
+    "shaft_speed",
+    "radial_load",
+    "oil_temperature",
+    "inner_ring_temperature",
+    "outer_ring_temperature",
+    "cage_speed",
+    "running_clearance",
+)
 
 
 def _pairs(option, texts, known=()) -> dict[str, str]:

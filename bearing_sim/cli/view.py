@@ -28,6 +28,13 @@ from bearing_sim.files.outputs import Output
 @click.option("--load", "--load-topic", "load", metavar="TOPIC", help="Likewise for the radial load, or 800N [default: /radial_load].")
 @click.option("--cage", "--cage-topic", "cage", metavar="TOPIC", help="Likewise for a measured cage speed [default: /cage_speed_measured].")
 @click.option(
+    "--clearance",
+    "--clearance-topic",
+    "clearance",
+    metavar="TOPIC",
+    help="Likewise for a measured running clearance [default: /running_clearance_measured].",
+)
+@click.option(
     "--oil-temperature",
     "--temperature",
     "--temperature-topic",
@@ -37,12 +44,30 @@ from bearing_sim.files.outputs import Output
 )
 @click.option("--speed-unit", metavar="UNIT", help="Unit of the speeds that are fields, such as rpm [default: rad/s].")
 @click.option("--load-unit", metavar="UNIT", help="Unit of a load that is a field, such as kN [default: N].")
+@click.option("--clearance-unit", metavar="UNIT", help="Unit of a clearance that is a field, such as um [default: m].")
 @click.option("--web", "is_web", is_flag=True, help="Show it in a browser: serve rerun's web viewer on 127.0.0.1 until Ctrl-C.")
 @click.option(
     "--web-port", type=click.IntRange(0, 65535), metavar="PORT", help="Port on 127.0.0.1 for --web; 0 for any that is free [default: 9090]."
 )
 @click.option("--open/--no-open", "opens", default=None, help="Open rerun [default: if there is a display].")
-def view(recording, out, screenshot, seconds, size, speed, load, cage, temperature, speed_unit, load_unit, is_web, web_port, opens):
+def view(
+    recording,
+    out,
+    screenshot,
+    seconds,
+    size,
+    speed,
+    load,
+    cage,
+    clearance,
+    temperature,
+    speed_unit,
+    load_unit,
+    clearance_unit,
+    is_web,
+    web_port,
+    opens,
+):
     """Show RUN.mcap in rerun: a recording of bearing-sim or the node, or any rosbag2 recording.
 
     Writes RUN.rrd and opens it, or prints the command that does. A picture needs no display, only a Vulkan driver; a software driver
@@ -58,6 +83,7 @@ def view(recording, out, screenshot, seconds, size, speed, load, cage, temperatu
         raise UsageError("--web and --screenshot contradict each other; give one of them")
     picture_size = _size(size)
     given = {"speed": (speed, speed_unit), "load": (load, load_unit), "cage_speed": (cage, speed_unit), "temperature": (temperature, None)}
+    given["clearance"] = clearance, clearance_unit
     lines = _lines({role: texts for role, texts in given.items() if texts[0]})
     with as_usage_error(RecordingError), as_file_error(), ExitStack() as stack:
         if out is None and screenshot is not None:  # nobody has asked for the file itself
@@ -76,7 +102,8 @@ def view(recording, out, screenshot, seconds, size, speed, load, cage, temperatu
 
 
 _MOST_LEFT_OUT = 30  # lines
-_CHANNELS = {"speed": "shaft_speed", "load": "radial_load", "cage_speed": "cage_speed_measured", "temperature": "oil_temperature"}
+_CHANNELS = {"speed": "shaft_speed", "load": "radial_load", "temperature": "oil_temperature"}
+_CHANNELS |= {"cage_speed": "cage_speed_measured", "clearance": "running_clearance_measured"}
 
 
 def _lines(given: dict[str, tuple[str, str | None]]) -> tuple[dict, dict[str, float]]:
@@ -138,7 +165,7 @@ def _size(text: str) -> tuple[int, int]:
 
 def _convert(source, out: Path) -> None:
     from bearing_sim.messages.bands import Bands
-    from bearing_sim.messages.events import Event, Measurement
+    from bearing_sim.messages.events import Event, MeasuredClearance, Measurement
     from bearing_sim.view.worker import RerunFile
 
     with progress_bar(f"reading {source.path.name}", source.duration) as progress:
@@ -146,6 +173,8 @@ def _convert(source, out: Path) -> None:
             for item in source.with_measurements():
                 if isinstance(item, Measurement):
                     sink.write_measurement(*item)
+                elif isinstance(item, MeasuredClearance):
+                    sink.write_clearance(*item)
                 elif isinstance(item, Bands):
                     sink.write_bands(item)
                 elif isinstance(item, Event):

@@ -53,6 +53,7 @@ class Role(NamedTuple):
 _TEMPERATURE = r"temp|^t_|theta|°c|degc"
 ROLES = (
     Role("cage_speed", "rad/s", r"(cage|k[aä]fig).*(speed|rpm|n$|drehzahl|omega)|^n_?(cage|k[aä]fig|k)\b|(speed|rpm|drehzahl).*(cage|k[aä]fig)"),
+    Role("running_clearance", "m", r"clearance|lagerluft|radialluft|betriebsspiel|lagerspiel", r"initial|nominal|cold|kalt|einbau|axial"),
     Role(
         "shaft_speed",
         "rad/s",
@@ -433,8 +434,9 @@ def _is_a_unit(unit: str) -> bool:
 
 
 def _guess_channels(found: Guess, named: AnyMapping[str, list[str]], columns, units, constants, lines) -> None:
-    """Enter speed, load and temperatures into a guess."""
-    for name in ("shaft_speed", "radial_load", "oil_temperature", "inner_ring_temperature", "outer_ring_temperature", "cage_speed"):
+    """Enter speed, load, temperatures, and what is measured of the results, into a guess."""
+    temperatures = ("oil_temperature", "inner_ring_temperature", "outer_ring_temperature")
+    for name in ("shaft_speed", "radial_load", *temperatures, "cage_speed", "running_clearance"):
         if name in constants:
             found.tree[name], found.reasons[name] = constants[name], "given"
             continue
@@ -487,4 +489,4 @@ def _column_of(found: Guess, name: str, headings: list[str], columns, units) -> 
     return {"column": heading, "unit": unit}, reason
 
 
-_UNIT_EXAMPLES = {"rad/s": "rpm", "N": "kN", "K": "degC"}
+_UNIT_EXAMPLES = {"rad/s": "rpm", "N": "kN", "K": "degC", "m": "um"}

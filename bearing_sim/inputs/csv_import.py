@@ -58,6 +58,8 @@ _TIMES_END = 2**31 * 1_000_000_000  # [ns since 1970], in the year 2038: stamps 
 _LONGEST_TIME = 10_000 * 366 * 86_400 * 1_000_000_000  # [ns] from any epoch that a date can name
 _SHOWN = 60  # characters of a cell in a message
 
+_RESULTS = {topics.MEASURED: "cage_speed", topics.MEASURED_CLEARANCE: "running_clearance"}
+"""The field of a mapping for each channel of what the model predicts and somebody has measured."""
 _LAWS = frozenset({"sum", "norm", "mass_times_acceleration", "gear_force", "constant"})
 
 
@@ -113,7 +115,7 @@ def _column(si_unit: str, meaning: str) -> type:
     return Column
 
 
-_EXAMPLES = {"rad/s": "1500 rpm", "N": "800 N", "m/s^2": "9.81 m/s^2", "K": "60 degC", "W": "2 kW", "N*m": "50 N*m"}
+_EXAMPLES = {"rad/s": "1500 rpm", "N": "800 N", "m/s^2": "9.81 m/s^2", "K": "60 degC", "W": "2 kW", "N*m": "50 N*m", "m": "20 um"}
 
 SpeedColumn = _column("rad/s", "shaft speed")
 ForceColumn = _column("N", "force")
@@ -121,6 +123,7 @@ AccelerationColumn = _column("m/s^2", "acceleration")
 TemperatureColumn = _column("K", "temperature of oil or of a ring")
 PowerColumn = _column("W", "power")
 TorqueColumn = _column("N*m", "torque")
+ClearanceColumn = _column("m", "diametral clearance of the running bearing, negative is preload,")
 
 
 @record
@@ -283,6 +286,7 @@ class Mapping:
     inner_ring_temperature: TemperatureColumn | None = None  # as measured
     outer_ring_temperature: TemperatureColumn | None = None  # as measured
     cage_speed: SpeedColumn | None = None  # as measured; compared with the model, not an input of it
+    running_clearance: ClearanceColumn | None = None  # as measured, diametral; likewise
 
     @check
     def _is_complete(self) -> list[str]:
@@ -292,8 +296,9 @@ class Mapping:
             return ["delimiter: expected a character other than the decimal mark"]
         if self.shaft_speed.constant is not None and isinstance(self.radial_load, ConstantLoad):
             return ["shaft_speed and radial_load are constants, so that nothing is left of the table; `bearing-sim run` takes them"]
-        if self.cage_speed is not None and self.cage_speed.constant is not None:
-            return ["cage_speed: expected a column; a constant is no measurement"]
+        for name in _RESULTS.values():
+            if getattr(self, name) is not None and getattr(self, name).constant is not None:
+                return [f"{name}: expected a column; a constant is no measurement"]
         if any(one.constant is not None for one in self.load_columns()):
             return ["radial_load: expected columns; a load that was not measured has law: constant and a value"]
         if isinstance(self.radial_load, ConstantLoad) or self.load_columns():
@@ -312,7 +317,7 @@ class Mapping:
     def columns(self) -> list[tuple[str, object]]:
         """Return (path in the mapping, record) of every column of numbers."""
         named = [("shaft_speed", self.shaft_speed), *(("radial_load", one) for one in self.load_columns())]
-        named += [(name, getattr(self, name)) for name in (*topics.TEMPERATURES, "cage_speed")]
+        named += [(name, getattr(self, name)) for name in (*topics.TEMPERATURES, *_RESULTS.values())]
         return [(where, one) for where, one in named if one is not None and one.constant is None]
 
     def column_names(self) -> list[tuple[str, str]]:
@@ -521,7 +526,7 @@ class _RowReader:
         self._load_columns = [(columns[one.column], one.column, *one.line()) for one in mapping.load_columns()]
         self._load = _load_law(mapping)
         self._speed = self._value_reader(mapping.shaft_speed, columns)
-        optional = {channel: getattr(mapping, channel) for channel in topics.TEMPERATURES} | {topics.MEASURED: mapping.cage_speed}
+        optional = {channel: getattr(mapping, name) for channel, name in (*zip(topics.TEMPERATURES, topics.TEMPERATURES), *_RESULTS.items())}
         self._optional = {channel: self._value_reader(one, columns) for channel, one in optional.items() if one}
         self.newest: int | None = None
 
@@ -719,7 +724,7 @@ def write_log(
     with McapFile(out, {METADATA: metadata}, {"generator": "bearing_sim", **origin}, replace=replace) as recording:
         for done, (stamp, channel, k) in enumerate(messages):
             topic, value = (topics.INPUTS | topics.MEASUREMENTS)[channel], table.values[channel][k]
-            content = (value,) if channel == topics.MEASURED else with_values(Inputs(0.0, 0.0, 0.0, 0.0), channel, (value,))
+            content = (value,) if channel in _RESULTS else with_values(Inputs(0.0, 0.0, 0.0, 0.0), channel, (value,))
             recording.write(f"/{topic.name}", topic.ros_type, stamp, topic.message(stamp, content))
             if done % 1000 == 0:
                 progress(done)

@@ -77,3 +77,18 @@ class Measurement(NamedTuple):
     cage_speed: float
     residual: float
     standard_error: float = math.nan
+
+
+class MeasuredClearance(NamedTuple):
+    """A measured diametral clearance of the running bearing.
+
+    Attributes
+    ----------
+    time : [s] since the start of the run.
+    clearance : [m], negative is preload.
+    standard_error : of the clearance [m]; NaN where the sensor does not say.
+    """
+
+    time: float
+    clearance: float
+    standard_error: float = math.nan

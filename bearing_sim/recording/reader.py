@@ -16,15 +16,17 @@ from rosbags.serde import SerdeError
 from bearing_sim.messages.bands import Bands, bands_of_message
 from bearing_sim.messages.cdr import CdrError, CdrLayout, NumberColumns, typestore
 from bearing_sim.messages.diagnostics import events_of
-from bearing_sim.messages.events import Event, Level, Measurement
+from bearing_sim.messages.events import Event, Level, MeasuredClearance, Measurement
 from bearing_sim.messages.sample_messages import sample_columns
 from bearing_sim.messages.topics import (
     ARRAYS,
     CAGE_JOINT,
+    CLEARANCE_JOINT,
     DIAGNOSTICS,
     ESTIMATED,
     INPUTS,
     MEASURED,
+    MEASURED_CLEARANCE,
     MEASUREMENTS,
     OUTPUTS,
     RECORDED,
@@ -184,20 +186,18 @@ class Recording:
         """Yield blocks of at most `ROWS_PER_BLOCK` samples, and events, in the order of the file."""
         return self._items()
 
-    def with_received(self) -> Iterator["np.ndarray | Event | Received"]:
-        """Yield what iterating yields, and the messages of inputs and measurements as they were recorded."""
-        return self._items(with_received=True)
+    def with_received(self) -> Iterator["np.ndarray | Event | Received | Bands"]:
+        """Yield what iterating yields, and the messages of inputs and measurements as they were recorded; bands, too."""
+        return self._items(with_received=True, with_bands=True)
 
-    def with_measurements(self) -> Iterator["np.ndarray | Event | Measurement | Bands"]:
+    def with_measurements(self) -> Iterator["np.ndarray | Event | Measurement | MeasuredClearance | Bands"]:
         """Yield what iterating yields and, before a block, the measurements up to its end that were read by then, in order of time; bands, too."""
         waiting: dict[int, dict[str, tuple[float, ...]]] = {}
         for item in self._items(with_received=True, with_bands=True):
             if isinstance(item, Received):
                 name = item.topic[1:]
-                if name in (MEASURED, RESIDUAL):
-                    with _as_unreadable(item.topic):
-                        numbers = _measured_numbers(name, _decoded(item.data, item.topic))
-                    waiting.setdefault(item.log_ns, {})[name] = numbers
+                if name in MEASUREMENTS:
+                    waiting.setdefault(item.log_ns, {})[name] = measured_numbers(item)
                 continue
             if isinstance(item, np.ndarray):
                 end_ns = self.start_ns + round(float(item["time"][-1]) * 1e9)
@@ -207,6 +207,8 @@ class Recording:
                         speed, *error = found[MEASURED]
                         (residual,) = found.get(RESIDUAL, (math.nan,))
                         yield Measurement((log_ns - self.start_ns) * 1e-9, speed, residual, *error)
+                    if MEASURED_CLEARANCE in found:
+                        yield MeasuredClearance((log_ns - self.start_ns) * 1e-9, *found[MEASURED_CLEARANCE])
             yield item
 
     def with_bands(self) -> Iterator["np.ndarray | Event | Bands"]:
@@ -375,10 +377,23 @@ def _decoded(data: bytes, topic: str):
     return typestore().deserialize_cdr(data, _TYPES[topic])
 
 
+def measured_numbers(received: Received) -> tuple[float, ...]:
+    """Return the numbers of a message of one of `bearing_sim.messages.topics.MEASUREMENTS`: value and, where it is known, standard error.
+
+    Raises
+    ------
+    RecordingError
+        It cannot be read.
+    """
+    with _as_unreadable(received.topic):
+        return _measured_numbers(received.topic[1:], _decoded(received.data, received.topic))
+
+
 def _measured_numbers(name: str, message) -> tuple[float, ...]:
     if MEASUREMENTS[name].ros_type == "std_msgs/msg/Float64":
         return (float(message.data),)
-    joint = CAGE_JOINT if CAGE_JOINT in message.name else message.name[0]  # a cage of another name is recorded under its own
+    usual = CAGE_JOINT if name == MEASURED else CLEARANCE_JOINT
+    joint = usual if usual in message.name else message.name[0]  # a cage of another name is recorded under its own
     return input_values(name, MEASUREMENTS[name].ros_type, message, joint)
 
 

@@ -14,7 +14,7 @@ from bearing_sim.simulation import Inputs
 
 
 class Sink(Protocol):
-    """A destination of samples, events, measured cage speeds and bands (see `bearing_sim.recording` and `bearing_sim.view`).
+    """A destination of samples, events, measured cage speeds and clearances, and bands (see `bearing_sim.recording` and `bearing_sim.view`).
 
     A block of samples must not be changed, and is not changed by its sender afterwards.
     """
@@ -22,6 +22,7 @@ class Sink(Protocol):
     def write(self, block: np.ndarray) -> None: ...
     def write_event(self, event: Event) -> None: ...
     def write_measurement(self, time: float, cage_speed: float, residual: float, standard_error: float, origin: Origin | None = None) -> None: ...
+    def write_clearance(self, time: float, clearance: float, standard_error: float, origin: Origin | None = None) -> None: ...
     def write_bands(self, bands: Bands) -> None: ...
     def close(self) -> None: ...
 
@@ -31,7 +32,6 @@ class Recorder(Sink, Protocol):
 
     def write_start(self, block: np.ndarray) -> None: ...
     def write_inputs(self, time: float, inputs: Inputs, channels, origin: Origin | None = None) -> None: ...
-    def write_clearance(self, time: float, clearance: float, standard_error: float, origin: Origin | None = None) -> None: ...
     def write_diagnostics(self, time: float, events, values) -> None: ...
 
 
@@ -95,8 +95,8 @@ class SinkRegistry:
         self._each(self.by_name, time, "write_measurement", time, cage_speed, residual, standard_error, *origin)
 
     def write_clearance(self, time: float, clearance: float, standard_error: float, *origin: Origin) -> None:
-        """Write a measured clearance and its standard error [m] to all recorders."""
-        self._each(self.recorders, time, "write_clearance", time, clearance, standard_error, *origin)
+        """Write a measured clearance and its standard error [m] to all sinks."""
+        self._each(self.by_name, time, "write_clearance", time, clearance, standard_error, *origin)
 
     def write_bands(self, now: float, bands: Bands) -> None:
         """Write quantities with their bands to all sinks, at ``now`` [s]."""

@@ -41,14 +41,17 @@ _WRENCHES = {"geometry_msgs/msg/Wrench", "geometry_msgs/msg/WrenchStamped"}
 _LOGS = {"diagnostic_msgs/msg/DiagnosticArray", "rcl_interfaces/msg/Log"}
 _PICTURES = {f"sensor_msgs/msg/{kind}" for kind in ("Image", "CompressedImage", "CameraInfo", "PointCloud", "LaserScan")}
 _PICTURES |= {"nav_msgs/msg/OccupancyGrid", "visualization_msgs/msg/Marker", "visualization_msgs/msg/MarkerArray", "tf2_msgs/msg/TFMessage"}
-_USUAL = {"speed": "/shaft_speed", "load": "/radial_load", "cage_speed": f"/{topics.MEASURED}", "temperature": "/oil_temperature"}
+_USUAL = {"speed": "/shaft_speed", "load": "/radial_load", "temperature": "/oil_temperature"}
+_USUAL |= {"cage_speed": f"/{topics.MEASURED}", "clearance": f"/{topics.MEASURED_CLEARANCE}"}
 _RPM = 30 / math.pi
 _PLOTTED = {  # by role: factor, the value in SI that is zero, and unit of what is drawn
     "speed": (_RPM, 0.0, "rpm"),
     "cage_speed": (_RPM, 0.0, "rpm"),
     "load": (1.0, 0.0, "N"),
     "temperature": (1.0, topics.ZERO_CELSIUS, "°C"),
+    "clearance": (1e6, 0.0, "µm"),
 }
+_JOINTS = {topics.SHAFT_JOINT: "speed", topics.CAGE_JOINT: "cage_speed", topics.CLEARANCE_JOINT: "clearance"}
 _MOST_LINES = 64  # of one array
 _MOST_REASONS = 5  # in an error
 _LONGEST_TEXT = 1000  # characters of an event
@@ -97,7 +100,7 @@ def read_bag_series(path: str | Path, named: Mapping[str, Line] | None = None, c
     Parameters
     ----------
     path : a file, or the folder of a bag.
-    named : by role (speed, load, cage_speed, temperature), where it is, if not at the topic of the usual name.
+    named : by role (speed, load, cage_speed, temperature, clearance), where it is, if not at the topic of the usual name.
     constants : by role, values in SI that nobody recorded, shown all the time.
 
     Raises
@@ -249,12 +252,15 @@ def _numbers_in(ros_type: str, topic: str, role: str, message) -> Iterator[tuple
     """Yield role, name of the line, unit and value of each number of a message that is shown."""
     if ros_type == "sensor_msgs/msg/JointState":
         for name, velocity in zip(message.name, message.velocity):
-            own = role or {topics.SHAFT_JOINT: "speed", topics.CAGE_JOINT: "cage_speed"}.get(name, "")
+            own = role or _JOINTS.get(name, "")
             yield own, f"{topic} {printable(name)}", "rpm", _RPM * velocity
         if not len(message.velocity):  # then positions are what the message is about, with or without a unit behind the name
             for text, position in zip(message.name, message.position):
                 name, _, unit = printable(text).removesuffix("]").partition(" [")
-                yield "", f"{topic} {name}", unit or "-", position
+                if _JOINTS.get(name) == "clearance" or (role == "clearance" and name != topics.standard_error_joint(topics.CLEARANCE_JOINT)):
+                    yield "clearance", f"{topic} {name}", "µm", 1e6 * position
+                else:
+                    yield "", f"{topic} {name}", unit or "-", position
     elif ros_type in _WRENCHES:
         force = getattr(message, "wrench", message).force
         yield role, f"{topic} radial force", "N", math.hypot(force.y, force.z)
@@ -291,6 +297,7 @@ _ROLES = {  # where the same quantity stands in views of our own runs, and the t
     "cage_speed": ("/speed/cage_measured", "Speeds [rpm] (blue: shaft, white: cage, measured)"),
     "load": ("/load/radial", "Radial load [N]"),
     "temperature": ("/oil/temperature", "Oil [°C]"),
+    "clearance": ("/clearance/measured", "Running clearance [µm], measured"),
 }
 _AROUND = (colours.BLUE, colours.ORANGE, colours.GREEN, colours.YELLOW, colours.VERMILION, colours.PURPLE, colours.WHITE, colours.GREY)
 _MOST_PLOTS = 9

@@ -2,12 +2,13 @@
 """Lay-out of the view: which panel shows what, with the unit in every title."""
 
 import math
+from collections.abc import Collection
 from typing import NamedTuple
 
 import rerun as rr
 import rerun.blueprint as rrb
 
-from bearing_sim.messages.topics import FREQUENCIES, LIFE_SYMBOLS, RING_TEMPERATURES
+from bearing_sim.messages.topics import FREQUENCIES, LIFE_SYMBOLS, MEASURED, MEASURED_CLEARANCE, RING_TEMPERATURES
 from bearing_sim.scene.scene import Scene
 from bearing_sim.view import section
 from bearing_sim.view.bands import REMAINING_LIFE, field_plots, field_title
@@ -42,7 +43,7 @@ def _cage_factor(scene: Scene) -> str:
     return f", cage x{section.cage_magnification(scene)}" if scene.cage_whirls else ""
 
 
-def blueprint(scene: Scene, bounds, live: bool, extent: Extent | None = None, measured: bool = False) -> rrb.Blueprint:
+def blueprint(scene: Scene, bounds, live: bool, extent: Extent | None = None, measured: Collection[str] = ()) -> rrb.Blueprint:
     """Return the lay-out.
 
     Parameters
@@ -51,11 +52,11 @@ def blueprint(scene: Scene, bounds, live: bool, extent: Extent | None = None, me
     bounds : horizontal and vertical range of the cross-section [mm] (`SectionDrawing.bounds`).
     live : True follows the newest data and shows the last seconds only.
     extent : what the finished run covers; axes choose themselves where absent.
-    measured : whether the cage is measured, and its residual slip has a plot.
+    measured : which of `bearing_sim.messages.topics.MEASURED_CHANNELS` are measured; the residual slip of a measured cage has a plot.
     """
     axes = _Axes(live, extent)
     lanes = rrb.StateTimelineView(origin="/", contents=["/regime", "/level"], name="Regime by the slip's thresholds, level", time_view=axes.time)
-    plots = rrb.Horizontal(_middle(scene, axes, measured), _right(scene, axes), column_shares=[0.58, 0.42])
+    plots = rrb.Horizontal(_middle(scene, axes, measured), _right(scene, axes, measured), column_shares=[0.58, 0.42])
     below = rrb.Horizontal(lanes, log_view(), column_shares=[0.58, 0.42])
     return page(rrb.Horizontal(_left(scene, bounds), rrb.Vertical(plots, below, row_shares=[0.815, 0.185]), column_shares=[0.42, 0.58]))
 
@@ -166,10 +167,11 @@ def _orbit(scene: Scene) -> rrb.Spatial2DView:
     return _flat("/cage_orbit", "Cage orbit", ((-edge, edge), (-edge, edge)))
 
 
-def _middle(scene: Scene, axes: _Axes, measured: bool) -> rrb.Vertical:
-    rows = [_speeds(axes, measured), _slips(scene, axes, measured), _rollers(axes), _lives(scene, axes), _loads(scene, axes)]
+def _middle(scene: Scene, axes: _Axes, measured: Collection[str]) -> rrb.Vertical:
+    has_cage = MEASURED in measured
+    rows = [_speeds(axes, has_cage), _slips(scene, axes, has_cage), _rollers(axes), _lives(scene, axes), _loads(scene, axes)]
     title = "Residual slip [points]: measured less predicted (grey: none)"
-    residual = [axes.plot(title, ["/slip/no_residual", "/slip/residual"])] if measured else []
+    residual = [axes.plot(title, ["/slip/no_residual", "/slip/residual"])] if has_cage else []
     fields = field_plots(scene)
     learned = [axes.plot(f"{field_title(path)}, 5 to 95 %", [plot.path, plot.line], from_zero=False) for path, plot in fields.items()]
     beside = [*residual, *([rrb.Tabs(*learned, active_tab=0)] if learned else [])]
@@ -178,18 +180,18 @@ def _middle(scene: Scene, axes: _Axes, measured: bool) -> rrb.Vertical:
     return rrb.Vertical(*rows, *([_tilts(axes)] if scene.bodies_tilt else []))
 
 
-def _speeds(axes: _Axes, measured: bool) -> rrb.TimeSeriesView:
+def _speeds(axes: _Axes, has_cage: bool) -> rrb.TimeSeriesView:
     paths = ["/speed/shaft", "/speed/ideal_cage", "/speed/cage"]
     title = "Speeds [rpm] (blue: shaft, orange: cage, grey: cage without slip)"
-    if measured:
+    if has_cage:
         title, paths = "Speeds [rpm] (blue: shaft, orange: cage, white: measured)", [*paths, "/speed/cage_measured"]
     return axes.plot(title, paths)
 
 
-def _slips(scene: Scene, axes: _Axes, measured: bool) -> rrb.Tabs:
+def _slips(scene: Scene, axes: _Axes, has_cage: bool) -> rrb.Tabs:
     whirl = [axes.plot("e/c [-]", ["/cage/eccentricity"])] if scene.cage_whirls else []
     title, paths = "Cage slip [%] (yellow: warning, red: error)", ["/slip/warning", "/slip/error", "/slip/cage"]
-    if measured:
+    if has_cage:
         title, paths = (
             "Cage slip [%] (blue: predicted, white: measured)",
             ["/slip/warning", "/slip/error", "/slip/measured", "/slip/cage"],
@@ -252,10 +254,10 @@ def _tilts(axes: _Axes) -> rrb.Tabs:
     )
 
 
-def _right(scene: Scene, axes: _Axes) -> rrb.Vertical:
+def _right(scene: Scene, axes: _Axes, measured: Collection[str]) -> rrb.Vertical:
     bars = _flat("/power_now", f"Power: mean of {SAMPLES} samples", bar_bounds(len(causes_of(scene))))
     clearance_bars = _flat("/clearance_now", "Running clearance", bar_bounds(len(CLEARANCES), signed=True))
-    clearance = _clearance(scene, axes)
+    clearance = _clearance(scene, axes, MEASURED_CLEARANCE in measured)
     load, damage = axes.plot("Radial load [N]", ["/load/radial"]), axes.plot("Damage [millionths of the life]", ["/damage/ppm"])
     oil = axes.plot("Oil [°C]", ["/oil/temperature"])
     texts = rrb.Tabs(rrb.TextDocumentView(origin="/now", name="Now"), rrb.TextDocumentView(origin="/about", name="About"))
@@ -271,10 +273,13 @@ def _right(scene: Scene, axes: _Axes) -> rrb.Vertical:
     return rrb.Vertical(texts, powers, loads, rrb.Tabs(damage, oil, active_tab=0), row_shares=[0.39, 0.295, 0.1575, 0.1575])
 
 
-def _clearance(scene: Scene, axes: _Axes) -> rrb.TimeSeriesView:
+def _clearance(scene: Scene, axes: _Axes, is_measured: bool) -> rrb.TimeSeriesView:
     paths = ["/clearance/band"] if scene.estimation.bands else []
     paths += ["/clearance/warning", "/clearance/error", *(f"/clearance/{part}" for part in reversed(CLEARANCES))]
-    return axes.plot("Clearance [µm]: white running, grey initial, orange fits, blue rotation, purple heat, green contour", paths)
+    shown = "white running, grey initial, orange fits, blue rotation, purple heat, green contour"
+    if is_measured:
+        paths, shown = [*paths, "/clearance/measured"], f"lime measured, {shown}"
+    return axes.plot(f"Clearance [µm]: {shown}", paths)
 
 
 def _temperatures(axes: _Axes) -> rrb.TimeSeriesView:

@@ -13,7 +13,16 @@ import numpy as np
 import rerun as rr
 
 from bearing_sim.messages.events import Event, Level
-from bearing_sim.messages.topics import FREQUENCIES, LIFE_SYMBOLS, RING_TEMPERATURES, ZERO_CELSIUS, characteristic_frequencies
+from bearing_sim.messages.topics import (
+    FREQUENCIES,
+    LIFE_SYMBOLS,
+    MEASURED,
+    MEASURED_CHANNELS,
+    MEASURED_CLEARANCE,
+    RING_TEMPERATURES,
+    ZERO_CELSIUS,
+    characteristic_frequencies,
+)
 from bearing_sim.scene.fidelity import LEVELS, level_of
 from bearing_sim.scene.scene import NO_CLEARANCE_LIMIT, Scene
 from bearing_sim.view import colours, section
@@ -64,6 +73,7 @@ _FREQUENCY_COLOURS = (colours.ORANGE, colours.WHITE, colours.BLUE, colours.PURPL
 LINES |= {f"/frequency/{each.name}": (each.symbol, colour, 2.0) for each, colour in zip(FREQUENCIES, _FREQUENCY_COLOURS, strict=True)}
 LINES |= {f"/power/{cause}": (name, colour, 2.0) for cause, (name, colour) in CAUSES.items()}
 LINES |= {f"/clearance/{part}": (name, colour, 2.0) for part, (name, colour) in CLEARANCES.items()}
+LINES["/clearance/measured"] = ("running, measured", colours.LIME, 1.5)
 LINES |= {f"/temperature/{body}": (name, colour, 2.0) for body, (name, _, colour) in BODIES.items()}
 LINES |= {f"/temperature/{name}_measured": (f"{name.partition('_')[0]} ring, measured", colours.WHITE, 1.5) for name in RING_TEMPERATURES}
 
@@ -400,7 +410,7 @@ class RunSeries:
 
     Attributes
     ----------
-    is_measured : whether a measured cage was drawn.
+    measured : what was drawn of `bearing_sim.messages.topics.MEASURED_CHANNELS`.
     bucket : length of the buckets that a long run is thinned out to [s]; None where all is kept.
     """
 
@@ -409,17 +419,17 @@ class RunSeries:
         self._scene = scene
         self._thin, self._duration = thin, duration
         self._overview: Overview | None = None
-        self._measured_overview: Overview | None = None
+        self._measured_overviews: dict[str, Overview] = {}  # by channel
         self._chosen = False  # whether it is known if the run is thinned out
         self._regime, self._level = "", math.nan
         self._ranges: dict[str, tuple[float, float]] = {}  # lowest and highest value so far, by entity path
         self._slip_ranges: dict[int, tuple[float, float]] = {}  # the same for the slip, by octave of the shaft speed
-        self._measured: list[tuple[float, float, float]] = []  # time, cage speed, residual
+        self._waiting: dict[str, list[tuple[float, ...]]] = {}  # time and numbers of measurements, by channel
         self._fastest_cage = 0.0  # that was measured [rad/s]
         self._newest: list[np.ndarray] = []  # the last two blocks written: measurements come before or after those of their times
         self._started: float | None = None
         self.bucket: float | None = None
-        self.is_measured = False
+        self.measured: set[str] = set()
 
     def describe(self) -> None:
         """Log names, colours and texts that hold for the whole run."""
@@ -456,12 +466,16 @@ class RunSeries:
 
     def note_measurement(self, time: float, cage_speed: float, residual: float) -> None:
         """Take a measured cage speed [rad/s] and its residual slip (see `bearing_sim.view.sink`); written with the next block."""
-        self._measured.append((time, cage_speed, residual))
+        self._waiting.setdefault(MEASURED, []).append((time, cage_speed, residual))
+
+    def note_clearance(self, time: float, clearance: float) -> None:
+        """Take a measured running clearance [m]; written with the next block."""
+        self._waiting.setdefault(MEASURED_CLEARANCE, []).append((time, clearance))
 
     def finish(self) -> None:
         """Send what waits, and mark the end of the run."""
         self._write_measured()
-        for overview in filter(None, (self._overview, self._measured_overview)):
+        for overview in self._overviews:
             self._send_thinned(overview.finish())
         if self._newest:
             last = float(self._newest[-1]["time"][-1])
@@ -475,7 +489,8 @@ class RunSeries:
         self.bucket = bucket = bucket_for(float(np.median(np.diff(times))), self._duration)
         if bucket is not None:
             whole = FULL_ROWS if self._duration is None else 0
-            self._overview, self._measured_overview = Overview(bucket, whole), Overview(bucket, whole)
+            self._overview = Overview(bucket, whole)
+            self._measured_overviews = {channel: Overview(bucket, whole) for channel in MEASURED_CHANNELS}
             self._keep_around(float(times[0]))
             for path, (name, colour, _) in LINES.items():
                 describe_range(self._recording, path, name, colour)
@@ -492,19 +507,31 @@ class RunSeries:
             self._write_thresholds(thinned.lines.times[[0, -1]])
 
     def _write_measured(self) -> None:
-        if not self._measured or not self._newest:
+        if not self._newest:
             return
-        rows, self._measured = np.array(self._measured), []
-        rows = rows[np.argsort(rows[:, 0], kind="stable")]
-        values = measured_series(*rows.T, np.concatenate(self._newest))
-        lines = Lines(rows[:, 0], {path: plottable(column) for path, column in values.items()})
+        waiting, self._waiting = self._waiting, {}
+        for channel, readings in waiting.items():
+            rows = np.array(readings)
+            rows = rows[np.argsort(rows[:, 0], kind="stable")]
+            values = self._cage_lines(rows) if channel == MEASURED else self._clearance_lines(rows)
+            self._send(Lines(rows[:, 0], {path: plottable(column) for path, column in values.items()}), self._measured_overviews.get(channel))
+            self.measured.add(channel)
+
+    def _cage_lines(self, rows: np.ndarray) -> dict[str, np.ndarray]:
+        """Return what is plotted of a measured cage's times, speeds and residuals, shape (n, 3), by entity path."""
         self._fastest_cage = max(self._fastest_cage, float(np.abs(rows[:, 1]).max()))
         turning = np.abs(rows[:, 1]) >= 0.1 * self._fastest_cage  # as for the predicted slip, see `ranges`
-        for path, column in lines.values.items():
+        lines = measured_series(*rows.T, np.concatenate(self._newest))
+        for path, column in lines.items():
             _widen(self._ranges, path, column if path.startswith("/speed") else column[turning])
-        self.is_measured = True
-        self._send(lines, self._measured_overview)
         self._send_level("/slip/no_residual", rows[[0, -1], 0], 0.0)
+        return lines
+
+    def _clearance_lines(self, rows: np.ndarray) -> dict[str, np.ndarray]:
+        """Return what is plotted of the times and values of a measured clearance, shape (n, 2), by entity path."""
+        lines = {"/clearance/measured": 1e6 * rows[:, 1]}
+        _widen(self._ranges, "/clearance/measured", lines["/clearance/measured"])
+        return lines
 
     def _write_thresholds(self, ends: np.ndarray) -> None:
         for path, value in threshold_lines(self._scene).items():
@@ -546,8 +573,12 @@ class RunSeries:
         self._keep_around(time)
 
     def _keep_around(self, time: float) -> None:
-        for overview in filter(None, (self._overview, self._measured_overview)):
+        for overview in self._overviews:
             overview.mark(time)
+
+    @property
+    def _overviews(self) -> list[Overview]:
+        return [] if self._overview is None else [self._overview, *self._measured_overviews.values()]
 
     def write_event(self, event: Event) -> None:
         """Log an event at its own time."""

@@ -212,7 +212,7 @@ class RunView:
         self._pending: list[np.ndarray] = []
         self._newest: np.void | None = None
         self._first_time = 0.0
-        self._scene, self._live, self._laid_out_measured = scene, live, False
+        self._scene, self._live, self._laid_out_measured = scene, live, frozenset()
         for drawing in filter(None, (self._drawing, self._solid, *self._bars, self._cage, self._heat)):
             drawing.draw_still_parts()
         self._series.describe()
@@ -255,6 +255,10 @@ class RunView:
         """Take a cage speed [rad/s] measured at ``time`` [s] and its residual slip, a fraction or NaN; its standard error is not shown."""
         self._series.note_measurement(time, cage_speed, residual)
 
+    def write_clearance(self, time: float, clearance: float, standard_error: float = math.nan) -> None:
+        """Take a running clearance [m] measured at ``time`` [s]; its standard error is not shown."""
+        self._series.note_clearance(time, clearance)
+
     def write_bands(self, bands: Bands) -> None:
         """Take quantities with their bands; they may wait for `flush`."""
         if self._bands is not None:
@@ -272,10 +276,10 @@ class RunView:
             self._pending.clear()
             if self._bands is not None and self._series.bucket is not None:
                 self._bands.thin(self._series.bucket)
-            if self._live and self._series.is_measured and not self._laid_out_measured:
-                self._laid_out_measured = True
-                self._recording.send_blueprint(blueprint(self._scene, self._drawing.bounds(), live=True, measured=True))
-
+            measured = frozenset(self._series.measured)
+            if self._live and measured != self._laid_out_measured:
+                self._laid_out_measured = measured
+                self._recording.send_blueprint(blueprint(self._scene, self._drawing.bounds(), live=True, measured=measured))
         if self._bands is not None:
             self._bands.flush()
 
@@ -293,8 +297,8 @@ class RunView:
                     self._bands.finish()
                     ranges |= self._bands.ranges()
                 extent = Extent((self._first_time, last), ranges)
-                measured = self._series.is_measured
-                self._recording.send_blueprint(blueprint(self._scene, self._drawing.bounds(), live=False, extent=extent, measured=measured))
+                laid_out = blueprint(self._scene, self._drawing.bounds(), live=False, extent=extent, measured=self._series.measured)
+                self._recording.send_blueprint(laid_out)
         self._recording.flush(timeout_sec=5.0)
         self._recording.disconnect()
 

@@ -29,7 +29,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bearing_sim.messages.bands import Bands
-from bearing_sim.messages.events import Event, Measurement
+from bearing_sim.messages.events import Event, MeasuredClearance, Measurement
 from bearing_sim.messages.topics import Origin
 from bearing_sim.scene.scene import Scene
 from bearing_sim.view.run_view import NOTHING_KNOWN, RunView, ViewOptions
@@ -109,11 +109,15 @@ class View(AbstractContextManager):
         """
         self.put(Measurement(time, cage_speed, residual, standard_error))
 
+    def write_clearance(self, time: float, clearance: float, standard_error: float = math.nan, origin: Origin | None = None) -> None:
+        """Take a running clearance [m] measured at ``time`` [s]; ``origin`` as of `write_measurement`."""
+        self.put(MeasuredClearance(time, clearance, standard_error))
+
     def write_bands(self, bands: Bands) -> None:
         """Take quantities with their bands; returns at once."""
         self.put(bands)
 
-    def put(self, item: np.ndarray | Event | Measurement | Bands) -> None:
+    def put(self, item: np.ndarray | Event | Measurement | MeasuredClearance | Bands) -> None:
         """Queue an item, which must not be changed any more; returns at once, except if nothing is dropped."""
         if self._closed:
             raise ValueError("the rerun view is closed")
@@ -207,6 +211,8 @@ class ViewThread(View):
                 view.write_event(item)
             elif isinstance(item, Measurement):
                 view.write_measurement(*item)
+            elif isinstance(item, MeasuredClearance):
+                view.write_clearance(*item)
             elif isinstance(item, Bands):
                 view.write_bands(item)
             elif len(item):
