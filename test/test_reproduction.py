@@ -4,15 +4,20 @@
 import json
 import math
 import time
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
 from fake_simulation import FakeSimulation
+from made_up_response import FIELD, asking_scene, made_up_response
 from recording_kills import kill_recordings
 from recordings import steady_log
 
 from bearing_sim.cli.main import main
+from bearing_sim.estimation.live import LiveEstimation
+from bearing_sim.messages import topics
+from bearing_sim.messages.bands import BANDS
 from bearing_sim.model.sample import joined
 from bearing_sim.recording.compare import compare
 from bearing_sim.recording.reader import Recording
@@ -20,6 +25,7 @@ from bearing_sim.recording.recovery import contents
 from bearing_sim.recording.writer import McapSink
 from bearing_sim.runtime.live import LiveModel
 from bearing_sim.runtime.pacing import tick_schedule
+from bearing_sim.runtime.reproduction import reproduce
 from bearing_sim.scene.loader import load_scene
 from bearing_sim.simulation import Inputs, Simulation, start_sample
 
@@ -33,12 +39,34 @@ def invoke(*arguments, code=0):
 
 
 def live_run(
-    scene, path, rate=1000.0, publish_rate=100.0, from_start=True, steady=False, reset_at=(), skip_at=(), ticks=120, measured=lambda tick: ()
+    scene,
+    path,
+    rate=1000.0,
+    publish_rate=100.0,
+    from_start=True,
+    steady=False,
+    reset_at=(),
+    skip_at=(),
+    ticks=120,
+    measured=lambda tick: (),
+    estimation=None,
+    cage_slip=None,
 ):
     """Record a run as a live one makes it: tick by tick to inputs that step, in the blocks of a tick schedule, with time that is skipped.
 
-    ``measured(tick)`` are the temperatures of the rings [K].
+    ``measured(tick)`` are the temperatures of the rings [K]; ``estimation`` a `LiveEstimation`, ``cage_slip`` that of a cage measured in each tick.
     """
+
+    def estimate(block):
+        estimation.know([*topics.ALWAYS_KNOWN])
+        if tick in reset_at:
+            estimation.restart()
+        if cage_slip is not None:
+            speed, now = (1.0 - cage_slip) * float(block["ideal_cage_speed"][-1]), float(block["time"][-1])
+            estimation.measure(now, speed)
+            sink.write_measurement(now, speed, cage_slip - float(block["cage_slip"][-1]))
+        return estimation.take(block)
+
     simulation, beat, shift = Simulation(scene, Inputs(3000.0, 700.0, 0.0, 393.15)), tick_schedule(rate, publish_rate), 0.5
     with McapSink(path, scene, START, advance=(beat.tick, beat.samples)) as sink:
         if from_start:
@@ -61,7 +89,17 @@ def live_run(
             if from_start or tick >= ticks // 2:
                 sink.write(block)
                 sink.write_inputs(float(block["time"][-1]), inputs)
+                for bands in estimate(block) if estimation is not None else ():
+                    sink.write_bands(bands)
     return path
+
+
+def sink_of_nothing():
+    return Mock(spec=["write", "write_received", "write_event", "write_bands"])
+
+
+def bands_in(path):
+    return sum(bands.topic == BANDS for bands in Recording(path).bands())
 
 
 def worst(differences, *topics):
@@ -125,6 +163,37 @@ def test_a_replayed_log_is_repeated_with_its_messages(tmp_path):
     invoke("replay", log, "--scene", "deng2017_table1", "--rate", "200", "-o", tmp_path / "run.mcap")
     told, differences = repeated(tmp_path / "run.mcap", tmp_path)
     assert told["received"] == 32 and all(difference.agrees for difference in differences)
+
+
+def test_bands_are_computed_again_and_compared_with_those_of_the_run(tmp_path, monkeypatch):
+    scene = asking_scene("level=slip")
+    response = made_up_response(scene)
+    path = live_run(scene, tmp_path / "run.mcap", 100.0, 50.0, ticks=60, reset_at=(30,), estimation=LiveEstimation(scene, response))
+    with McapSink(tmp_path / "again.mcap", scene, START) as sink:
+        found = reproduce(Recording(path), sink, response=response).bands
+    assert {"cage_slip", "rating_life", "running_clearance", "remaining_life"} <= set(found)
+    count = bands_in(path)
+    assert count > 10 and all((each.compared, each.missing, each.further) == (count, 0, 0) for each in found.values())
+    assert all(each.largest < 1e-2 for each in found.values()), "the tick of the reset began at inputs that no sample has"
+    (bands,) = [each for each in compare(path, tmp_path / "again.mcap", 1e-3)[0] if each.topic == "/bands"]
+    assert bands.matched == count and not (bands.only_first or bands.only_second)
+    monkeypatch.setattr("made_up_response.FACTOR", 6.0)
+    told = reproduce(Recording(path), sink_of_nothing(), response=made_up_response(scene)).bands
+    assert told["cage_slip"].largest > 0.3, "another response shows"
+    monkeypatch.setattr("bearing_sim.cli.replay.response_with_progress", lambda asked: response)
+    assert "band of cage_slip" in invoke("replay", path, "--from-recording")
+    assert json.loads(invoke("replay", path, "--from-recording", "--json"))["bands"]["cage_slip"]["compared"] == count
+
+
+def test_what_measurements_taught_is_learned_again(tmp_path):
+    scene = asking_scene("level=slip", f"estimation.calibrated=[{FIELD}]")
+    response = made_up_response(scene)
+    estimation = LiveEstimation(scene, response)
+    path = live_run(scene, tmp_path / "run.mcap", 100.0, 50.0, steady=True, ticks=400, estimation=estimation, cage_slip=0.03)
+    assert estimation.is_calibrated
+    found = reproduce(Recording(path), sink_of_nothing(), response=response).bands
+    assert FIELD in found and found[FIELD].compared > 3 and found["cage_slip"].compared == bands_in(path)
+    assert all((each.missing, each.further) == (0, 0) and each.largest < 1e-6 for each in found.values())
 
 
 def test_a_repetition_of_another_model_differs(tmp_path, monkeypatch):

@@ -309,13 +309,17 @@ def reproduce(path: Path, out: Path | None, as_json: bool) -> None:
             origin |= {name: record for name, record in recording.records.items() if name == RECORD}
             sink = stack.enter_context(recording_into(out, McapSink(out.path, recording.scene, recording.start_ns, origin, replace=out.force)))
         announce_compilation(recording.scene)
+        response = response_with_progress(recording.scene) if reproduction.first_bands(recording) is not None else None
         progress = stack.enter_context(progress_bar(f"reproducing {path.name}", recording.duration))
-        result = reproduction.reproduce(recording, sink, progress)
+        result = reproduction.reproduce(recording, sink, progress, response)
     was = {name: recording.metadata.get(name, "") for name in ("package_version", "git_hash")}
     now = {"package_version": package_version(), "git_hash": git_hash()}
     if as_json:
         report = {"recording": str(path), "out": out and str(out), "scene": recording.scene.name, "level": recording.scene.level}
-        print_json({**report, **vars(result), "recorded_with": was, "repeated_with": now, "recording_unfinished": recording.unfinished})
+        bands = {name: vars(each) for name, each in result.bands.items()}
+        print_json(
+            {**report, **vars(result), "bands": bands, "recorded_with": was, "repeated_with": now, "recording_unfinished": recording.unfinished}
+        )
         return
     rows = [
         ("level", recording.scene.level),
@@ -329,11 +333,19 @@ def reproduce(path: Path, out: Path | None, as_json: bool) -> None:
             f"{result.sim_seconds:.6g} s in {result.wall_seconds:.3g} s; {result.skipped_seconds:.4g} s were not simulated originally either",
         ),
         ("changes of level", str(result.level_changes)),
+        *((f"band of {name}", _differing(each)) for name, each in result.bands.items()),
         ("recording", f"{out}; bearing-sim compare {path} {out} shows the differences" if out else "none"),
     ]
     if recording.unfinished:
         rows.insert(0, ("recording ends early", recording.unfinished))
     print_table(f"{path.name} reproduced on {recording.scene.name}", rows)
+
+
+def _differing(band) -> str:
+    """Return in words how a band differs from the recorded one (`bearing_sim.runtime.reproduced_bands.BandDifference`)."""
+    alone = "".join(f"; {count} instants {which} only" for count, which in ((band.missing, "recorded"), (band.further, "reproduced")) if count)
+    largest = f"largest difference {band.largest:.3g} of its width, at {band.at:.6g} s" if band.largest else "no difference"
+    return f"{largest} ({band.compared} instants compared){alone}"
 
 
 def _version(origin: dict[str, str]) -> str:
@@ -351,3 +363,6 @@ class _Nowhere:
 
     def write_event(self, event) -> None:
         """Drop an event."""
+
+    def write_bands(self, bands) -> None:
+        """Drop bands."""

@@ -18,13 +18,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bearing_sim.estimation.response import ResponseModel
+from bearing_sim.messages.bands import Bands
 from bearing_sim.messages.events import Event, Level
 from bearing_sim.model.sample import RING_TEMPERATURES, new_block
 from bearing_sim.recording.reader import Received, Recording
+from bearing_sim.runtime.reproduced_bands import BandDifference, ReproducedBands, first_bands
 from bearing_sim.scene.fidelity import NUMBERS
 from bearing_sim.simulation import Inputs, IntegrationError, Simulation, begin_at_temperatures, inputs_of, start_sample, thermal_nodes
 from bearing_sim.stored_state.counting import LifeCounter
 from bearing_sim.stored_state.keeper import RECORD
+from bearing_sim.stored_state.state import StoredState
 from bearing_sim.stored_state.state_file import parsed
 
 _SKIPPED = 0.25  # fraction of a spacing by which angle and stamps may disagree before time counts as skipped
@@ -45,6 +49,7 @@ class Reproduction:
     skipped_seconds : time of the recording that its run did not simulate.
     failed : samples that could not be computed; the run continues from the recorded ones.
     steps, rejected_steps : the integrator's work.
+    bands : how bands and calibrated fields differ from those recorded, by name; empty where none were computed again.
     """
 
     samples: int = 0
@@ -57,9 +62,12 @@ class Reproduction:
     failed: int = 0
     steps: int = 0
     rejected_steps: int = 0
+    bands: dict[str, BandDifference] = dataclasses.field(default_factory=dict)
 
 
-def reproduce(recording: Recording, sink, progress: Callable[[float], None] = lambda seconds: None) -> Reproduction:
+def reproduce(
+    recording: Recording, sink, progress: Callable[[float], None] = lambda seconds: None, response: ResponseModel | None = None
+) -> Reproduction:
     """Compute a recorded run again.
 
     Parameters
@@ -67,25 +75,44 @@ def reproduce(recording: Recording, sink, progress: Callable[[float], None] = la
     recording : of a run, with all observables.
     sink : a `bearing_sim.recording.writer.McapSink` or similar; gets samples at the recorded times, and the received inputs unchanged.
     progress : called repeatedly with the time reached [s].
+    response : of the scene, by which the bands of the recording are computed again and compared; None does without.
 
     Raises
     ------
     ValueError
         The recording does not contain the inputs of every sample.
     """
-    run = _Run(recording, sink)
+    run, first = _Run(recording, sink), first_bands(recording) if response is not None else None
+    bands = ReproducedBands(recording, response, first, run.together, _stored_state(recording)) if first is not None else None
     began = time.perf_counter()
     for item in recording.with_received():
         if isinstance(item, Received):
             sink.write_received(item.topic, item.ros_type, item.log_ns, item.data, item.publish_ns)
             run.result.received += 1
+            if bands is not None:
+                bands.receive(item)
+        elif isinstance(item, Bands):
+            if bands is not None:
+                bands.note_recorded(item)
         elif isinstance(item, np.ndarray):
-            sink.write(run.take(item))
+            _write(run.take(item), run, sink, bands)
             progress(float(item["time"][-1]) - recording.first_time)
-    sink.write(run.rest())
+    _write(run.rest(), run, sink, bands)
     run.finish()
+    if bands is not None:
+        bands.finish()
+        run.result.bands = bands.differences
     run.result.wall_seconds = time.perf_counter() - began
     return run.result
+
+
+def _write(block: np.ndarray, run: "_Run", sink, bands: ReproducedBands | None) -> None:
+    """Write samples that were computed again, and their bands."""
+    sink.write(block)
+    if bands is not None and len(block):
+        for each in bands.take(block, run.restarts):
+            sink.write_bands(each)
+    run.restarts.clear()
 
 
 class _Run:
@@ -96,8 +123,9 @@ class _Run:
         self._scene, self._sink = recording.scene, sink
         self._interval = recording.duration / max(recording.samples - 1, 1)
         self._duration = float(recording.metadata.get("advance_seconds") or 0.0)  # of one call of the recorded run
-        self._together = int(recording.metadata.get("advance_samples") or 1)  # samples that it returned
-        self._next_together = self._together
+        self.together = int(recording.metadata.get("advance_samples") or 1)  # samples that it returned
+        self._next_together = self.together
+        self.restarts: set[float] = set()  # times of the samples with which the run began anew [s], since somebody has cleared them
         self._simulation: Simulation | None = None
         self._start_ns, self._counter = recording.start_ns, _counter(recording)
         self._is_counted = False  # whether the simulation's damage is that of the run, to which the life used before is to be added
@@ -116,7 +144,7 @@ class _Run:
             computed += [self._call(group)] if not begins and self._is_call(group) else [self._one(sample) for sample in group]
             done += size
             # A sample that is not the state at a start is the first of its call.
-            self._next_together = self._together - 1 if begins and group["shaft_angle"][0] and self._together > 1 else self._together
+            self._next_together = self.together - 1 if begins and group["shaft_angle"][0] and self.together > 1 else self.together
         self._waiting = rows[done:].copy()
         return self._written(rows[:done], computed)
 
@@ -173,6 +201,8 @@ class _Run:
         inputs = _inputs(sample)
         first, begins = self._simulation is None, self._simulation is None or self._is_reset(sample)
         if begins:
+            if not first:
+                self.restarts.add(float(sample["time"]))
             lead = self._begin(sample, inputs)
         else:
             lead = self._lead(self._last, sample)
@@ -254,16 +284,23 @@ class _Run:
         self._simulation = other
 
 
-def _counter(recording: Recording) -> LifeCounter | None:
-    """Return what adds the life used before a recorded run, and leaves out times that were not counted again; None without a stored state."""
+def _stored_state(recording: Recording) -> StoredState | None:
+    """Return the state with which the bearing of a recorded run began; None without one."""
     record = recording.records.get(RECORD)
     if record is None:
         return None
     try:
-        state = parsed(record["state"].encode())
+        return parsed(record["state"].encode())
     except (KeyError, ValueError, OSError) as error:
         raise ValueError(f"the stored state in the recording cannot be used: {error}; replay its inputs with --scene instead") from None
-    return LifeCounter(state.totals.damage, state.covered if record.get("counts") == "once" else None)
+
+
+def _counter(recording: Recording) -> LifeCounter | None:
+    """Return what adds the life used before a recorded run, and leaves out times that were not counted again; None without a stored state."""
+    state = _stored_state(recording)
+    if state is None:
+        return None
+    return LifeCounter(state.totals.damage, state.covered if recording.records[RECORD].get("counts") == "once" else None)
 
 
 def _inputs(sample: np.void) -> Inputs:

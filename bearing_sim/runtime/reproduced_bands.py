@@ -1,0 +1,140 @@
+# Copyright 2026 the bearing_sim maintainers. SPDX-License-Identifier: Apache-2.0
+"""Bands of a recorded run, computed again from its samples and measurements, and how far they are from those that it recorded.
+
+Bands follow from the samples at their instants.  Calibrated ones follow from every measurement since the start as well, in the order in which the
+run took them; what a recording does not contain is a call of ``~/accept_change``, after which they differ.
+"""
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+import numpy as np
+
+from bearing_sim.estimation.live import LiveEstimation
+from bearing_sim.estimation.response import ResponseModel
+from bearing_sim.messages.bands import Bands
+from bearing_sim.messages.topics import INPUTS, MEASURED, MEASURED_CHANNELS
+from bearing_sim.recording.reader import Received, Recording, measured_numbers
+from bearing_sim.stored_state.state import StoredState
+
+
+@dataclass
+class BandDifference:
+    """How the bands of one quantity differ from the recorded ones.
+
+    Attributes
+    ----------
+    compared : instants that both have.
+    missing, further : instants of the recording only, and of the reproduction only.
+    largest : largest difference of value, 5 or 95 % quantile over the width of the recorded band there; infinite where only one of two is finite.
+    at : time of that [s].
+    """
+
+    compared: int = 0
+    missing: int = 0
+    further: int = 0
+    largest: float = 0.0
+    at: float = 0.0
+
+
+def first_bands(recording: Recording) -> float | None:
+    """Return the time of the first bands of a recording [s]; None where it has none."""
+    return next((float(bands.times[0]) for bands in recording.bands()), None)
+
+
+class ReproducedBands:
+    """Computes the bands of a run again.
+
+    Parameters
+    ----------
+    recording : of the run.
+    response : of its scene.
+    first : time of its first bands [s]: what comes before was not estimated.
+    together : samples that a call of the run returned, which were estimated together.
+    state : with which the bearing began; None without a stored state.
+
+    Attributes
+    ----------
+    differences : by quantity or calibrated field.
+    """
+
+    def __init__(self, recording: Recording, response: ResponseModel, first: float, together: int, state: StoredState | None):
+        self._start_ns, self._first, self._together = recording.start_ns, first, together
+        self._estimation = LiveEstimation(recording.scene, response)
+        if state is not None:
+            since = max(recording.start_ns - state.until_ns, 0) * 1e-9
+            self._estimation.restore(state.learned.get("estimation", {}), since)
+        self._known: set[str] = set()
+        self._waiting: tuple[dict, dict] = {}, {}  # bands of recording and reproduction by topic and time [ns], until the other one comes
+        self.differences: dict[str, BandDifference] = {}
+
+    def receive(self, item: Received) -> None:
+        """Take a message of an input or a measurement."""
+        name = item.topic[1:]
+        if name in MEASURED_CHANNELS:
+            take = self._estimation.measure if name == MEASURED else self._estimation.measure_clearance
+            take((item.log_ns - self._start_ns) * 1e-9, *measured_numbers(item))
+        elif name in INPUTS and name not in self._known:
+            self._known.add(name)
+            self._estimation.know(sorted(self._known))
+
+    def note_recorded(self, bands: Bands) -> None:
+        """Take bands of the recording."""
+        self._enter(0, bands)
+
+    def take(self, block: np.ndarray, restarts: Collection[float] = ()) -> list[Bands]:
+        """Return the bands of samples that were computed again, in order of time.
+
+        Parameters
+        ----------
+        block : shape (n,), see `bearing_sim.model.sample`.
+        restarts : times of those with which the run began anew [s].
+        """
+        found = []
+        block = block[block["time"] >= self._first - 1e-9]
+        cuts = np.union1d(np.arange(0, len(block), self._together), np.searchsorted(block["time"], sorted(restarts)))
+        for part in np.split(block, cuts.astype(int)):
+            if len(part):
+                if float(part["time"][0]) in restarts:
+                    self._estimation.restart()
+                found += self._estimation.take(part)
+        for bands in found:
+            self._enter(1, bands)
+        return found
+
+    def finish(self) -> None:
+        """Count what only one of both has."""
+        for side, waiting in enumerate(self._waiting):
+            for _, (names, _) in waiting.items():
+                for name in names:
+                    difference = self.differences.setdefault(name, BandDifference())
+                    if side:
+                        difference.further += 1
+                    else:
+                        difference.missing += 1
+            waiting.clear()
+
+    def _enter(self, side: int, bands: Bands) -> None:
+        for time, numbers in zip(bands.times.tolist(), bands.numbers):
+            key = bands.topic, round(time * 1e9)
+            other = self._waiting[1 - side].pop(key, None)
+            if other is None:
+                self._waiting[side][key] = bands.names, numbers
+            else:
+                pair = ((bands.names, numbers), other)
+                self._compare(time, *(pair if side == 0 else pair[::-1]))
+
+    def _compare(self, time: float, recorded: tuple[tuple[str, ...], np.ndarray], computed: tuple[tuple[str, ...], np.ndarray]) -> None:
+        again = dict(zip(*computed))
+        for name, own in zip(*recorded):
+            difference = self.differences.setdefault(name, BandDifference())
+            if name not in again:
+                difference.missing += 1
+                continue
+            difference.compared += 1
+            width = own[2] - own[1]
+            with np.errstate(invalid="ignore"):
+                gap = np.where((own == again[name]) | (np.isnan(own) & np.isnan(again[name])), 0.0, np.abs(own - again[name]))
+            gap = np.where(np.isnan(gap), np.inf, gap).max() / (width if np.isfinite(width) and width > 0.0 else max(abs(own[0]), 1e-300))
+            if gap > difference.largest:
+                difference.largest, difference.at = float(gap), time
