@@ -344,8 +344,8 @@ def reproduce(path: Path, out: Path | None, as_json: bool) -> None:
 def _differing(band) -> str:
     """Return in words how a band differs from the recorded one (`bearing_sim.runtime.reproduced_bands.BandDifference`)."""
     alone = "".join(f"; {count} instants {which} only" for count, which in ((band.missing, "recorded"), (band.further, "reproduced")) if count)
-    largest = f"largest difference {band.largest:.3g} of its width, at {band.at:.6g} s" if band.largest else "no difference"
-    return f"{largest} ({band.compared} instants compared){alone}"
+    largest = f", the farthest off by {band.largest:.3g} of it, at {band.at:.6g} s" if band.largest else ""
+    return f"{band.near} of {band.compared} instants within a tenth of its width{largest}{alone}"
 
 
 def _version(origin: dict[str, str]) -> str:

@@ -5,17 +5,19 @@ Bands follow from the samples at their instants.  Calibrated ones follow from ev
 run took them; what a recording does not contain is a call of ``~/accept_change``, after which they differ.
 """
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from bearing_sim.estimation.live import LiveEstimation
 from bearing_sim.estimation.response import ResponseModel
-from bearing_sim.messages.bands import Bands
+from bearing_sim.messages.bands import ESTIMATES, Bands
 from bearing_sim.messages.topics import INPUTS, MEASURED, MEASURED_CHANNELS
 from bearing_sim.recording.reader import Received, Recording, measured_numbers
 from bearing_sim.stored_state.state import StoredState
+
+_NEAR = 0.1  # of the width of a band
 
 
 @dataclass
@@ -24,13 +26,16 @@ class BandDifference:
 
     Attributes
     ----------
-    compared : instants that both have.
+    compared : instants that both have; of results those at which the shaft turns (`thresholds.slip_from_speed`), because near rest slip may be
+        anything.
+    near : those of them at which value and both quantiles are within a tenth of the width of the recorded band.
     missing, further : instants of the recording only, and of the reproduction only.
     largest : largest difference of value, 5 or 95 % quantile over the width of the recorded band there; infinite where only one of two is finite.
     at : time of that [s].
     """
 
     compared: int = 0
+    near: int = 0
     missing: int = 0
     further: int = 0
     largest: float = 0.0
@@ -65,6 +70,7 @@ class ReproducedBands:
             since = max(recording.start_ns - state.until_ns, 0) * 1e-9
             self._estimation.restore(state.learned.get("estimation", {}), since)
         self._known: set[str] = set()
+        self._slowest = recording.scene.thresholds.slip_from_speed
         self._waiting: tuple[dict, dict] = {}, {}  # bands of recording and reproduction by topic and time [ns], until the other one comes
         self.differences: dict[str, BandDifference] = {}
 
@@ -98,14 +104,15 @@ class ReproducedBands:
                 if float(part["time"][0]) in restarts:
                     self._estimation.restart()
                 found += self._estimation.take(part)
+        turning = dict(zip(block["time"].tolist(), (np.abs(block["shaft_speed"]) >= self._slowest).tolist()))
         for bands in found:
-            self._enter(1, bands)
+            self._enter(1, bands, [bands.topic == ESTIMATES or turning[time] for time in bands.times.tolist()])
         return found
 
     def finish(self) -> None:
         """Count what only one of both has."""
         for side, waiting in enumerate(self._waiting):
-            for _, (names, _) in waiting.items():
+            for names, *_ in waiting.values():
                 for name in names:
                     difference = self.differences.setdefault(name, BandDifference())
                     if side:
@@ -114,27 +121,30 @@ class ReproducedBands:
                         difference.missing += 1
             waiting.clear()
 
-    def _enter(self, side: int, bands: Bands) -> None:
-        for time, numbers in zip(bands.times.tolist(), bands.numbers):
-            key = bands.topic, round(time * 1e9)
+    def _enter(self, side: int, bands: Bands, counts: Sequence[bool] | None = None) -> None:
+        """Compare bands with those of the other side where they are here already; ``counts`` says of computed ones which instants count."""
+        for time, numbers, does_count in zip(bands.times.tolist(), bands.numbers, counts or [True] * len(bands.times)):
+            key, own = (bands.topic, round(time * 1e9)), (bands.names, numbers, does_count)
             other = self._waiting[1 - side].pop(key, None)
             if other is None:
-                self._waiting[side][key] = bands.names, numbers
-            else:
-                pair = ((bands.names, numbers), other)
-                self._compare(time, *(pair if side == 0 else pair[::-1]))
+                self._waiting[side][key] = own
+            elif own[2] and other[2]:
+                self._compare(time, *((own, other) if side == 0 else (other, own)))
 
-    def _compare(self, time: float, recorded: tuple[tuple[str, ...], np.ndarray], computed: tuple[tuple[str, ...], np.ndarray]) -> None:
-        again = dict(zip(*computed))
-        for name, own in zip(*recorded):
+    def _compare(self, time: float, recorded: tuple, computed: tuple) -> None:
+        again = dict(zip(*computed[:2]))
+        for name, own in zip(*recorded[:2]):
             difference = self.differences.setdefault(name, BandDifference())
             if name not in again:
                 difference.missing += 1
                 continue
             difference.compared += 1
-            width = own[2] - own[1]
             with np.errstate(invalid="ignore"):
-                gap = np.where((own == again[name]) | (np.isnan(own) & np.isnan(again[name])), 0.0, np.abs(own - again[name]))
-            gap = np.where(np.isnan(gap), np.inf, gap).max() / (width if np.isfinite(width) and width > 0.0 else max(abs(own[0]), 1e-300))
+                width = own[2] - own[1]
+                gaps = np.where((own == again[name]) | (np.isnan(own) & np.isnan(again[name])), 0.0, np.abs(own - again[name]))
+            if not (np.isfinite(width) and width > 0.0):
+                width = abs(own[0]) if np.isfinite(own[0]) and own[0] else 1.0
+            gap = np.where(np.isnan(gaps), np.inf, gaps).max() / width
+            difference.near += bool(gap <= _NEAR)
             if gap > difference.largest:
                 difference.largest, difference.at = float(gap), time
